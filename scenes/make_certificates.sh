@@ -6,9 +6,10 @@
 #
 # makes keys/render, keys/device and keys/watch, one folder for each node, which is all that its machine needs, and
 # keys/authority, which stays here: with it more nodes are made later. What a node may do follows from the start of its
-# name: render..., device... and watch...; a watcher can change nothing. Copy the folders by a way that nobody else reads.
+# name: render..., device..., watch... and operate... (vps ask); a watcher can change nothing. Copy the folders by a way that
+# nobody else reads.
 set -euo pipefail
-[ $# -ge 2 ] || { sed -n '3,9s/^# \{0,1\}//p' "$0"; exit 2; }
+[ $# -ge 2 ] || { sed -n '3,10s/^# \{0,1\}//p' "$0"; exit 2; }
 out=$1; shift
 umask 077
 authority=$out/authority
@@ -61,10 +62,11 @@ topics() { for topic in "$@"; do printf '<topic>%s</topic>' "$topic"; done; }
 # Of each topic one role is the writer (scenes/src/network/link.h). Who watches may point, for the others who watch.
 written_by() {
   case $1 in
-    render*) topics 'vps/*/beat' 'vps/*/scene' 'vps/*/physics' 'vps/*/snapshot' 'vps/*/request' 'vps/*/news' ;;
+    render*) topics 'vps/*/beat' 'vps/*/scene' 'vps/*/physics' 'vps/*/snapshot' 'vps/*/request' 'vps/*/news' 'vps/*/answer' ;;
     device*) topics 'vps/*/beat' 'vps/*/haptic' 'vps/*/reply' 'vps/*/log' 'vps/*/pointer' ;;  # also of a page with a hand
     watch*) topics 'vps/*/beat' 'vps/*/pointer' ;;
-    *) echo "make_certificates.sh: $1 must begin with render, device or watch" >&2; exit 2 ;;
+    operate*) topics 'vps/*/ask' ;;
+    *) echo "make_certificates.sh: $1 must begin with render, device, watch or operate" >&2; exit 2 ;;
   esac
 }
 

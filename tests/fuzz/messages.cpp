@@ -45,6 +45,9 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   read<NewsMessage>(bytes);
   read<PointerMessage>(bytes);
   read<BeatMessage>(bytes);
+  read<AskMessage>(bytes);
+  read<AnswerMessage>(bytes);
+  read<PieceMessage>(bytes);
   return 0;
 }
 
@@ -65,5 +68,8 @@ std::vector<std::string> vps::fuzz::seeds() {
           std::string(writer.write(snapshot)),
           std::string(writer.write(NewsMessage{})),
           std::string(writer.write(PointerMessage{})),
-          std::string(writer.write(BeatMessage{}))};
+          std::string(writer.write(BeatMessage{})),
+          std::string(writer.write(AskMessage{})),
+          std::string(writer.write(AnswerMessage{})),
+          std::string(writer.write(PieceMessage{}))};
 }

@@ -193,6 +193,22 @@ TEST(FaultyMesh, OverlappingShellsAreTheirUnion) {
   EXPECT_EQ(wrongSigns(map, truth), 0u);
 }
 
+// Middle and corners of each facet of the floor are in a wall, and what is between them is not.
+TEST(FaultyMesh, AFloorUnderFourWallsStaysWhereItIsFree) {
+  const auto block = [](const Vec3& min, const Vec3& max) {
+    return transformed(makeBox(max - min), Pose::translation(0.5 * (min + max)));
+  };
+  Mesh box = block({-0.03, -0.02, -0.005}, {0.03, 0.02, 0.0001});
+  append(box, block({-0.03, -0.01, 0}, {-0.01, 0.01, 0.03}));
+  append(box, block({0.01, -0.01, 0}, {0.03, 0.01, 0.03}));
+  append(box, block({-0.03, -0.02, 0}, {0.03, -0.01005, 0.04}));
+  append(box, block({-0.03, 0.01005, 0}, {0.03, 0.02, 0.04}));
+  const Solid solid(box);
+  EXPECT_NEAR(solid.signedDistance({-0.002, 0.003, 0.0003}), 0.0002, 1e-9);  // above the floor
+  EXPECT_NEAR(solid.signedDistance({-0.002, 0.003, 0}), -0.0001, 1e-9);      // in it
+  EXPECT_LT(solid.signedDistance({-0.02, 0, 0.01}), 0);
+}
+
 TEST(FaultyMesh, AShellWithinAnotherIsLeftOut) {
   Mesh nested = makeSphere(0.01, 3);
   append(nested, makeSphere(0.006, 3));

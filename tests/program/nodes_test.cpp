@@ -56,8 +56,9 @@ TEST_F(NodesProgram, ADeviceIsSafeWhenRenderIsKilledAndJoinsTheNextOne) {
   ASSERT_TRUE(nodes_->join()) << texts();
   ASSERT_TRUE(nodes_->waitForHold()) << texts();
   ASSERT_TRUE(nodes_->waitForPhysics(0.2)) << texts();
-  const std::int64_t killed_ns = nodes_->render.killNow();
+  const std::int64_t killed_ns = nodes_->render.sendKill();
   EXPECT_TRUE(nodes_->safeAfter_s(killed_ns, 10).has_value()) << texts();
+  nodes_->render.killNow();
   nodes_->startRender();
   EXPECT_EQ(nodes_->render.wait(), 0) << texts();
   EXPECT_NE(slurp(folder_ / "device.txt").find("the render node is lost"), std::string::npos) << texts();

@@ -3,10 +3,12 @@
 #include <nlohmann/json.hpp>
 
 #include <array>
+#include <cctype>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -266,6 +268,59 @@ TEST_F(Plan, SubassembliesOfACadFileAreAssembledBeforeTheProductThatMountsThem) 
   EXPECT_EQ(ran.status == 0, fits) << ran.out << ran.err;
   EXPECT_LT(ran.out.find("\nsubassembly_1\n"), ran.out.find("\nproduct\n")) << ran.out;
   EXPECT_NE(ran.out.rfind("run/subassembly_1/report.html"), std::string::npos) << ran.out;
+}
+
+// Two links of a chain leave a plate as one, and then not each other. The product is run all the same.
+TEST_F(Plan, ASubassemblyThatCannotBeTakenApartDoesNotKeepTheProductFromBeingRun) {
+  write("product.obj", objOf({{"plate", {-10, -10, -40}, {70, 50, -30}},
+                              {"flat", {0, 0, -2}, {40, 4, 2}},
+                              {"flat", {0, 36, -2}, {40, 40, 2}},
+                              {"flat", {0, 0, -2}, {4, 40, 2}},
+                              {"flat", {36, 0, -2}, {40, 40, 2}},
+                              {"upright", {20, 18, -20}, {60, 22, -16}},
+                              {"upright", {20, 18, 16}, {60, 22, 20}},
+                              {"upright", {20, 18, -20}, {24, 22, 20}},
+                              {"upright", {56, 18, -20}, {60, 22, 20}}}));
+  const Ran ran = run("assemble product.obj --units mm --base plate --out run --no-pictures");
+  EXPECT_EQ(ran.status, 1) << ran.out << ran.err;
+  EXPECT_NE(ran.out.find("\nsubassembly_1\nNone of its parts can be taken off, so it was not run"),
+            std::string::npos)
+      << ran.out << ran.err;
+  const json product = json::parse(slurp(folder_ / "run/assemble.json"));
+  ASSERT_EQ(product["steps"].size(), 1U);
+  EXPECT_EQ(product["steps"][0]["part"], "subassembly_1");
+}
+
+// Names of files are cut and kept apart; those of parts stay as they are, as far as they are text.
+TEST_F(Plan, AnyNamesOfPartsMakeASceneThatIsReadAgain) {
+  const std::string longest(300, 'x');
+  write("product.obj", objOf({kPlate,
+                              {longest, {2, 2, 10}, {6, 6, 14}},
+                              {longest + "y", {10, 2, 10}, {14, 6, 14}},
+                              {"../../up", {18, 2, 10}, {22, 6, 14}},
+                              {"Stra\xDF"
+                               "e",
+                               {26, 2, 10},
+                               {30, 6, 14}},
+                              {"a \"b\" \\ [[part]] #", {34, 2, 10}, {38, 6, 14}},
+                              {"scene", {42, 2, 10}, {46, 6, 14}},
+                              {"Plate", {50, 2, 10}, {54, 6, 14}}}));
+  const Ran ran = run("plan product.obj --units mm -o planned");
+  ASSERT_EQ(ran.status, 0) << ran.out << ran.err;
+  const Ran verified = run("plan --verify planned/scene.toml");
+  EXPECT_EQ(verified.status, 0) << verified.out << verified.err;
+  EXPECT_NE(verified.out.find("7 steps"), std::string::npos) << verified.out;
+  std::size_t meshes = 0;
+  std::set<std::string> lower;
+  for (const auto& entry : std::filesystem::directory_iterator(folder_ / "planned")) {
+    std::string name = entry.path().filename().string();
+    if (!name.ends_with(".stl")) continue;
+    ++meshes;
+    EXPECT_LT(name.size(), 120U);
+    for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    EXPECT_TRUE(lower.insert(name).second) << name;
+  }
+  EXPECT_EQ(meshes, 8U);
 }
 
 // What a designer does: each fault is in the words of the answer.

@@ -16,10 +16,10 @@ namespace {
 
 using nlohmann::json;
 
-const std::vector<std::string> kReady = {"check", "plan",      "assemble", "replay",   "simulate",
-                                         "query", "import",    "export",   "snapshot", "video",
-                                         "view",  "explain",   "trade",    "render",   "device",
-                                         "watch", "calibrate", "margin",   "study",    "compare"};
+const std::vector<std::string> kReady = {"check",  "plan",    "assemble", "replay", "simulate",  "query",
+                                         "import", "export",  "snapshot", "video",  "view",      "explain",
+                                         "trade",  "render",  "device",   "watch",  "calibrate", "margin",
+                                         "study",  "compare", "ask"};
 
 TEST_F(Program, EveryCommandHasHelpWithAnExample) {
   const std::string overview = run("--help").out;

@@ -184,6 +184,25 @@ TEST(DrawnOverlaps, ASealThatIsDrawnRoundIsLeftOut) {
   EXPECT_EQ(plan.steps(), 1U);
 }
 
+TEST(DrawnOverlaps, APartWithoutVolumeIsLeftOut) {
+  Mesh label = block({0, 0, 0.02}, {0.01, 0.01, 0.02});  // flat
+  Mesh face;
+  face.vertices = {{0.03, 0.03, 0.015}, {0.04, 0.03, 0.015}, {0.03, 0.04, 0.015}};
+  face.triangles = {{0, 1, 2}};
+  const auto [plan, scene] = planned(
+      {at("plate", makeBox(Vec3(0.1, 0.1, 0.01)), {0, 0, 0}), at("label", label, {0, 0, 0}),
+       at("face", face, {0, 0, 0}), at("foil", block({0.02, 0, 0.006}, {0.04, 0.01, 0.00601}), {0, 0, 0})},
+      "plate");
+  ASSERT_EQ(plan.choices.size(), 2U);
+  EXPECT_EQ(plan.choices[0].kind, OverlapKind::NoVolume);
+  EXPECT_EQ(plan.choices[0].left_out, "label");
+  EXPECT_EQ(plan.choices[1].left_out, "face");
+  EXPECT_TRUE(partOf(scene, "label").is_scenery);
+  EXPECT_TRUE(partOf(scene, "face").is_scenery);
+  ASSERT_EQ(plan.steps(), 1U);  // 10 um are a body
+  EXPECT_EQ(plan.assemblies[0].steps[0].name, "foil");
+}
+
 TEST(DrawnOverlaps, AThinBracketThatClashesIsNoSeal) {
   Mesh bracket = block({0, 0, 0}, {0.05, 0.02, 0.002});
   append(bracket, block({0, 0, 0}, {0.002, 0.02, 0.05}));

@@ -48,6 +48,9 @@ TEST(HeavyParts, AreBroughtAsLightOnesAreAndTold) {
     EXPECT_LT(step.peak_force_N, 30) << step.part;
     EXPECT_GT(step.peak_force_N, 1) << step.part;  // the hand carried it
   }
+  // 7850 kg/m3, (100 mm)^3; half of 30 N on the hand.
+  EXPECT_NEAR(result.steps[0].hoist_N, 7.85 * 9.81 - 15, 0.05);
+  EXPECT_EQ(result.steps[1].hoist_N, 0);
   ASSERT_EQ(warnings.size(), 1U);
   EXPECT_NE(warnings[0].find("'cube1' weighs 77.0 N, and the hand carries 15.0 N"), std::string::npos)
       << warnings[0];

@@ -262,6 +262,31 @@ TEST(ImportStep, ChordsStayWithinTheDeflection) {
   EXPECT_LE(deepest_m, 1e-6);
 }
 
+TEST(ImportNames, BytesThatAreNoTextAndControlCharactersAreReplaced) {
+  const Folder folder;
+  const auto nameOf = [&](const std::string& name) {
+    return importCad(folder.write("cube.obj", cubeObj(10, name)).string(), inUnit("mm")).parts.at(0).name;
+  };
+  const std::string odd = "\xEF\xBF\xBD";  // U+FFFD
+  EXPECT_EQ(nameOf("\xE3\x81\xAD\xE3\x81\x98 M4"), "\xE3\x81\xAD\xE3\x81\x98 M4");
+  EXPECT_EQ(nameOf("\xF0\x9F\x94\xA9"), "\xF0\x9F\x94\xA9");
+  EXPECT_EQ(nameOf("Stra\xDF"
+                   "e"),
+            "Stra" + odd + "e");                                     // Latin-1
+  EXPECT_EQ(nameOf("\xFF\xFEx\xC3"), odd + odd + "x" + odd);         // no first byte, and a cut character
+  EXPECT_EQ(nameOf("a\xC0\xAFz"), "a" + odd + odd + "z");            // an overlong form
+  EXPECT_EQ(nameOf("a\xED\xA0\x80z"), "a" + odd + odd + odd + "z");  // a surrogate
+  EXPECT_EQ(nameOf("a\x7Fz"), "a z");
+}
+
+TEST(ImportGltf, WithoutMeshesItHoldsNoSurfaces) {
+  const Folder folder;
+  const std::string message = messageOf(folder.write(
+      "empty.gltf",
+      R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"name":"a"}]})"));
+  EXPECT_NE(message.find("holds no surfaces"), std::string::npos) << message;
+}
+
 TEST(ImportObj, NeedsAUnitAndNamesTheRemedy) {
   const Folder folder;
   const fs::path file = folder.write("cube.obj", cubeObj(10, "cube"));
@@ -486,16 +511,18 @@ TEST(ImportVrml, WithoutUnitIsInMetresWithAWarning) {
   EXPECT_NEAR(volume(importCad(file.string(), inUnit("mm")).parts.at(0)), 6e-9, 1e-14);
 }
 
+// Axes are those of the file, which is y up.
 TEST(ImportUp, TheAxisThatIsUpBecomesZ) {
   const std::string file = (kBlock / "bearing_block.glb").string();
   const ImportedCad as_is = importCad(file);
+  const auto inFile = [](const Vec3& p) { return Vec3(p.x(), p.z(), -p.y()); };
   for (const char* name : {"x", "-x", "y", "-y", "z", "-z"}) {
     ImportSettings settings;
     settings.up = axisFromText(name);
     ASSERT_TRUE(settings.up) << name;
     const ImportedCad turned = importCad(file, settings);
     const Pose &before = as_is.parts.at(1).X_WP, &after = turned.parts.at(1).X_WP;
-    EXPECT_NEAR((after * Vec3::Ones()).z(), settings.up->dot(before * Vec3::Ones()), 1e-12) << name;
+    EXPECT_NEAR((after * Vec3::Ones()).z(), settings.up->dot(inFile(before * Vec3::Ones())), 1e-12) << name;
     EXPECT_NEAR(after.R.determinant(), 1, 1e-12) << name;
   }
   for (const char* name : {"", "-", "w", "yy", "--y"}) EXPECT_FALSE(axisFromText(name)) << name;

@@ -42,6 +42,7 @@ class ScriptedDevice final : public Link {
   }
   [[nodiscard]] std::uint64_t lost(Channel) const noexcept override { return 0; }
   [[nodiscard]] bool isAlive(NodeRole) const override { return true; }
+  [[nodiscard]] std::size_t watchers() const override { return 0; }
   [[nodiscard]] std::uint64_t sessionId() const override { return 7; }
   [[nodiscard]] bool hasEnded() const override { return false; }
   [[nodiscard]] std::string sceneBytes() const override { return {}; }

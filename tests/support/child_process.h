@@ -54,16 +54,19 @@ class ChildProcess {
         id_ > 0 && waitid(P_PID, static_cast<id_t>(id_), &info, WEXITED | WNOHANG | WNOWAIT) == 0;
     return is_known && info.si_pid == 0;
   }
-  /// Returns the time of the kill by the monotonic clock.
-  std::int64_t killNow() {
+  /// Does not wait for its end. Returns the time of the kill by the monotonic clock.
+  [[nodiscard]] std::int64_t sendKill() const {
     const std::int64_t now_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(
                                     std::chrono::steady_clock::now().time_since_epoch())
                                     .count();
-    if (id_ > 0) {
-      kill(id_, SIGKILL);
-      waitpid(std::exchange(id_, 0), nullptr, 0);
-    }
+    if (id_ > 0) kill(id_, SIGKILL);
     return now_ns;
+  }
+  /// Waits for its end, in which the system takes its memory back.
+  void killNow() {
+    if (id_ <= 0) return;
+    kill(id_, SIGKILL);
+    waitpid(std::exchange(id_, 0), nullptr, 0);
   }
   /// Its exit status; -1: a signal ended it.
   int wait() {

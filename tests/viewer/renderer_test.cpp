@@ -172,6 +172,76 @@ TEST(RendererTest, AnEmptySnapshotIsABackgroundAndInvalidBodiesAreLeftOut) {
   EXPECT_EQ(renderer.render(snapshot, fromAbove(), plain()).rgb, empty.rgb);
 }
 
+/// A peg in hand before a tube on a plate, with its target, contacts and a force.
+struct PegBeforeTube {
+  Mesh plate = makeBox(Vec3(0.2, 0.2, 0.02)), tube = makeTube(0.03, 0.02, 0.04, 48),
+       peg = makeBox(Vec3(0.02, 0.02, 0.06));
+  RenderScene drawn = {{&plate}, {&tube}, {&peg, {0.8f, 0.1f, 0.1f}}};
+  scenes::Snapshot snapshot;
+  Camera camera = frameScene({Vec3(-0.1, -0.1, -0.03), Vec3(0.1, 0.1, 0.1)}, Vec3(1, -1, 1));
+  DrawOptions options = plain();
+
+  PegBeforeTube() {
+    snapshot.bodies = {mounted(0, Vec3(0, 0, -0.03)),
+                       mounted(1, Vec3::Zero()),
+                       {2, Pose::translation(Vec3(0.005, 0, 0.05)), scenes::BodyRole::InHand}};
+    snapshot.has_target = snapshot.has_hand = true;
+    snapshot.target_part = 2;
+    snapshot.X_WP_target = Pose::translation(Vec3(0, 0, 0.02));
+    snapshot.X_W_Proxy = snapshot.bodies[2].X_WP;
+    options.is_draft = options.show_edges = true;
+  }
+  void move(const Vec3& by_W, double force_N) {
+    snapshot.bodies[2].X_WP.p += by_W;
+    snapshot.X_W_Proxy.p += by_W;
+    snapshot.F_hand_W.f = Vec3(0, 0, force_N);
+    snapshot.contacts.clear();
+    if (force_N > 0)
+      snapshot.contacts.push_back({snapshot.bodies[2].X_WP * Vec3(0, 0, -0.03), Vec3::UnitZ(), 1e-5});
+  }
+  /// Draws the same with a renderer that has drawn nothing before.
+  [[nodiscard]] Image afresh() const { return Renderer(drawn).render(snapshot, camera, options); }
+};
+
+class Drafts : public testing::TestWithParam<bool> {};
+INSTANTIATE_TEST_SUITE_P(WithAndWithoutASection, Drafts, testing::Bool());
+
+TEST_P(Drafts, WhereAPartMovedHaveTheBitsOfDraftsThatAreDrawnAsAWhole) {
+  PegBeforeTube shown;
+  if (GetParam()) shown.options.cut = CutPlane{Vec3::Zero(), Vec3(1, -1, 0).normalized(), false};
+  shown.options.show_flash = true;
+  Renderer renderer(shown.drawn);
+  Image last = renderer.render(shown.snapshot, shown.camera, shown.options);
+  EXPECT_TRUE(renderer.drewWhole());
+  EXPECT_EQ(last.rgb, shown.afresh().rgb);
+  // It moves, touches, slides on, and lets go.
+  for (const double force_N : {0.0, 5.0, 8.0, 0.0}) {
+    shown.move(Vec3(8e-3, -4e-3, -3e-3), force_N);  // farther than the margin around what moves
+    const Image image = renderer.render(shown.snapshot, shown.camera, shown.options);
+    EXPECT_FALSE(renderer.drewWhole());
+    EXPECT_NE(image.rgb, last.rgb);
+    EXPECT_EQ(image.rgb, shown.afresh().rgb) << "at " << force_N << " N";
+    last = image;
+  }
+  EXPECT_EQ(renderer.render(shown.snapshot, shown.camera, shown.options).rgb, last.rgb) << "nothing moved";
+}
+
+TEST(DraftsOfAnotherView, AreDrawnAsAWhole) {
+  PegBeforeTube shown;
+  Renderer renderer(shown.drawn);
+  static_cast<void>(renderer.render(shown.snapshot, shown.camera, shown.options));
+  shown.camera.eye_W.x() += 1e-3;
+  const Image turned = renderer.render(shown.snapshot, shown.camera, shown.options);
+  EXPECT_TRUE(renderer.drewWhole());
+  EXPECT_EQ(turned.rgb, shown.afresh().rgb);
+  shown.options.is_draft = false;
+  static_cast<void>(renderer.render(shown.snapshot, shown.camera, shown.options));
+  EXPECT_TRUE(renderer.drewWhole());
+  shown.options.is_draft = true;
+  shown.snapshot.bodies.pop_back();  // a part goes, after a picture in full
+  EXPECT_EQ(renderer.render(shown.snapshot, shown.camera, shown.options).rgb, shown.afresh().rgb);
+}
+
 TEST(Camera, FrameSceneShowsTheWholeBoxAndTouchesTheMargin) {
   const Box box = {Vec3(-0.1, 0.2, 0), Vec3(0.3, 0.25, 0.9)};
   const Camera camera = frameScene(box, Vec3(1, -2, 0.7), 0.5, 4.0 / 3, 0.1);

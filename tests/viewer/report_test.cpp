@@ -152,6 +152,17 @@ TEST(Report, RepeatsByteForByte) {
   EXPECT_EQ(textOf(first), textOf(second));
 }
 
+TEST(Report, SaysWhatAHoistCarries) {
+  const ReportOptions options = {.command = {}, .progress = {}, .has_pictures = false};
+  scenes::AssembleResult result = smallResult();
+  const auto pageOf = [&](const char* folder) {
+    return textOf(writeReport(smallScene(), result, freshFolder(folder), options).file);
+  };
+  EXPECT_EQ(pageOf("by_hand").find("hoist"), std::string::npos);
+  result.steps.front().hoist_N = 62.04;
+  EXPECT_NE(pageOf("hoist").find("carries 62.0 N of its weight"), std::string::npos);
+}
+
 TEST(Report, WithoutPicturesItHasTheTables) {
   const std::string dir = freshFolder("bare");
   const ReportOptions options = {.command = {}, .progress = {}, .has_pictures = false};

@@ -234,10 +234,11 @@ TEST(LiveCurves, RatesAreThoseSinceTheFiguresBefore) {
                                   .to_hand_J = 2e-3,
                                   .injected_J = 5e-6};
   const std::vector<std::string> lines = figureLines(now, before, 2);
-  ASSERT_EQ(lines.size(), 3u);
+  ASSERT_EQ(lines.size(), 4u);
   EXPECT_EQ(lines[0], "haptic ticks: 2000 a second, p99 41 µs, 3 missed");
   EXPECT_EQ(lines[1], "physics steps: 1000 a second, p99 600 µs, 1 missed");
-  EXPECT_EQ(lines[2], "energy: 2 mJ to the hand, 0 from it, 0.005 injected");
+  EXPECT_EQ(lines[2], "energy: 2 mJ to the hand, 0 from it");
+  EXPECT_EQ(lines[3], "energy injected: 0.005 mJ");
 }
 
 }  // namespace

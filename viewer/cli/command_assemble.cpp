@@ -125,7 +125,8 @@ scenes::Verdict worseOf(scenes::Verdict a, scenes::Verdict b) {
 
 /// Runs the subassemblies of a planned product, inner ones first, each into a folder of its own, and then the
 /// product, which mounts each of them as one part. Takes apart in the reverse order.
-scenes::Verdict runPlanned(const AssembleArguments& given, const std::vector<std::string>& scene_files) {
+scenes::Verdict runPlanned(const AssembleArguments& given,
+                           const std::vector<PlannedFolder::SceneFile>& scene_files) {
   namespace fs = std::filesystem;
   Table table({"<assembly", "<verdict", "<report"});
   scenes::Verdict whole = scenes::Verdict::Fits;
@@ -137,15 +138,23 @@ scenes::Verdict runPlanned(const AssembleArguments& given, const std::vector<std
   };
   const auto runPart = [&](std::size_t i) {
     AssembleArguments part = given;
-    part.scene.scene = scene_files[i];
-    const std::string name = fs::path(scene_files[i]).stem().string();
+    part.scene.scene = scene_files[i].path;
+    const std::string name = fs::path(part.scene.scene).stem().string();
+    if (!scene_files[i].has_steps) {
+      std::printf(
+          "\n%s\nNone of its parts can be taken off, so it was not run; the plan names what is in the way.\n",
+          name.c_str());
+      whole = worseOf(whole, scenes::Verdict::Blocked);
+      table.add({name, words(scenes::Verdict::Blocked), "-"});
+      return;
+    }
     part.out = (fs::path(given.out) / name).string();
     part.json = part.record = part.sound = "";
     run(part, name);
   };
   const auto runProduct = [&] {
     AssembleArguments product = given;
-    product.scene.scene = scene_files.front();
+    product.scene.scene = scene_files.front().path;
     run(product, "product");
   };
   const std::size_t count = scene_files.size();

@@ -292,6 +292,10 @@ Json wayFaults(const std::vector<scenes::WayFault>& faults) {
 
 }  // namespace
 
+std::string toJson(const scenes::SessionAnswer& answer) {
+  return text({{"done", answer.is_done}, {"answer", answer.words}});
+}
+
 std::string toJson(const scenes::PlanResult& plan, const std::vector<scenes::WayFault>& faults) {
   Json json = {{"wall", toObject(plan, scenes::kPlanWallFields)}};
   addFields(json, plan, scenes::kPlanFields);

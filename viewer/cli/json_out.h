@@ -12,6 +12,7 @@
 #include "vps/wrench.h"
 #include "vps_scenes/explain.h"
 #include "vps_scenes/import.h"
+#include "vps_scenes/network/session_request.h"
 #include "vps_scenes/plan.h"
 #include "vps_scenes/result.h"
 #include "vps_scenes/simulate.h"
@@ -113,6 +114,7 @@ std::string toJson(const scenes::TradeResult& result);
 std::string toJson(const scenes::CheckResult& result);
 std::string toJson(const scenes::MarginResult& result);
 std::string toJson(const scenes::RunComparison& result);
+std::string toJson(const scenes::SessionAnswer& answer);
 std::string toJson(const scenes::Ergonomics& result);
 std::string toJson(const scenes::StudyResult& result);
 std::string toJson(const scenes::PlanResult& plan, const std::vector<scenes::WayFault>& faults);

@@ -26,6 +26,9 @@ std::string reasonOf(const CLI::ParseError& error, const CLI::App& app) {
   const bool has_command = !app.get_subcommands().empty();
   const auto left_over = app.remaining(true);
   const bool is_extra = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
+  if (has_command && !left_over.empty() && dynamic_cast<const CLI::RequiredError*>(&error) != nullptr &&
+      !app.get_subcommands().front()->get_subcommands({}).empty())
+    return "unknown: '" + app.get_subcommands().front()->get_name() + " " + left_over.front() + "'";
   if (left_over.empty() || (has_command && !is_extra)) return error.what();
   const auto option = std::ranges::find_if(left_over, [](const auto& one) { return one.starts_with('-'); });
   if (has_command && option != left_over.end()) return "unknown option '" + *option + "'";

@@ -168,7 +168,8 @@ PlannedFolder planInto(const PlanArguments& given, ProgressBar& bar) {
       faults, [](const scenes::WayFault& fault) { return fault.kind == scenes::WayFaultKind::Support; });
   PlannedFolder folder{plan.blocked() > 0 || !is_free ? kBad : kGood, plan.steps(), {}};
   for (std::size_t i = 0; i < plan.assemblies.size(); ++i)
-    folder.scene_files.push_back((std::filesystem::path(given.out) / sceneFileName(plan, i)).string());
+    folder.scene_files.push_back({(std::filesystem::path(given.out) / sceneFileName(plan, i)).string(),
+                                  !plan.assemblies[i].steps.empty()});
   return folder;
 }
 

@@ -28,8 +28,12 @@ void addPlanOptions(CLI::App& command, PlanArguments& given);
 struct PlannedFolder {
   int status = 0;         ///< the program's exit status
   std::size_t steps = 0;  ///< of all assemblies
+  struct SceneFile {
+    std::string path;
+    bool has_steps = true;  ///< false: none of its parts can be taken off
+  };
   /// Of the product, then of its subassemblies; each comes after the one that mounts it.
-  std::vector<std::string> scene_files;
+  std::vector<SceneFile> scene_files;
 };
 
 /// Where planInto() keeps what it had found when it was stopped.

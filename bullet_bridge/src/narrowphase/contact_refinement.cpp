@@ -22,6 +22,9 @@ constexpr double kCosEdge = 0.94;  // 20 degrees, as in PointShellSettings::edge
 constexpr double kAlong = 0.087;   // 5 degrees, as findCrossings()
 constexpr double kInto = 0.17;     // 10 degrees. assumed: more than the angle between facets of a round face
 constexpr double kNever_m = 1;     // farther than any step moves
+// The cost of the search for the nearest triangle grows with the distance searched. Except at sharp edges, the
+// field's error is a small part of a voxel.
+constexpr double kUsualError = 0.05;
 
 /// A shell point and its own part's surface around it.
 struct OwnPoint {
@@ -262,7 +265,8 @@ void refine(std::vector<Candidate>& candidates, const SideView& side, const Side
                        shell.points[c.id],
                        is_two_sided};
     const double max_m = std::abs(c.distance_m) + field_error_m;
-    Exact exact = refiner.at(own, max_m);
+    Exact exact = refiner.at(own, std::abs(c.distance_m) + kUsualError * field_error_m);
+    if (!exact.is_contact) exact = refiner.at(own, max_m);
     if (!exact.found) continue;  // only the field is known
     if (!exact.is_contact && exact.is_inside && !own.edges.empty())
       if (const Exact beside = besideEdge(refiner, own, max_m); beside.found) exact = beside;
@@ -286,14 +290,11 @@ void refine(std::vector<Candidate>& candidates, const SideView& side, const Side
 
 namespace {
 
-// The cost of the search for the nearest triangle grows with the distance searched. Except at sharp edges,
-// the field's error is a small part of a voxel.
 Exact nearFieldDistance(const Refiner& refiner, const Vec3& p_W, const Vec3& inward, double field_m,
                         double voxel_m) {
   const OwnPoint own{p_W, inward, true};  // penalty contact has no crossings, only the points of edges
-  constexpr double kUsualMargin = 0.05, kFullMargin = 1;  // of a voxel
-  Exact exact = refiner.at(own, std::abs(field_m) + kUsualMargin * voxel_m);
-  if (!exact.found) exact = refiner.at(own, std::abs(field_m) + kFullMargin * voxel_m);
+  Exact exact = refiner.at(own, std::abs(field_m) + kUsualError * voxel_m);
+  if (!exact.found) exact = refiner.at(own, std::abs(field_m) + voxel_m);
   return exact;
 }
 

@@ -66,6 +66,7 @@ enum class SyncEventKind : std::uint8_t {
   Rearm,
   SnapOn,  ///< axis snap acts from this physics step on
   SnapOff,
+  GiveUp,  ///< the part is let go of on request, after this physics step
 };
 
 struct SyncEvent {

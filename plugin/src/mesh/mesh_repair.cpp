@@ -436,8 +436,9 @@ class Repairer {
     const WindingNumber w(mesh(), bounding);
     // Every facet needs a test only where shells' boxes overlap or a patch shows it.
     if (!mayOverlap(w)) return;
+    const double size_m = bounds(mesh()).size().norm();
     tbb::parallel_for(std::size_t{0}, bounding.size(), [&](std::size_t k) {
-      if (isInternal(w, bounding[k])) is_kept_[bounding[k]] = Keep::Solid;
+      if (isInternal(w, bounding[k], size_m)) is_kept_[bounding[k]] = Keep::Solid;
     });
     std::vector<char> is_overlapping(patches_.size(), 0);
     for (const std::uint32_t i : bounding) {
@@ -459,8 +460,9 @@ class Repairer {
     return false;
   }
 
-  /// At its middle and near its corners.
-  bool isInternal(const WindingNumber& w, std::uint32_t triangle) {
+  /// At its middle, near its corners and, for a facet that is large enough to pass through several shells, on
+  /// a grid: corners and middle of a floor can be in the walls of a box whose inside is free.
+  bool isInternal(const WindingNumber& w, std::uint32_t triangle, double size_m) {
     Facet f = facetOf(mesh(), triangle);
     if (!(f.area_m2 > 0)) return false;
     if (inPlane(w, f) < kInternal) return false;
@@ -469,6 +471,19 @@ class Repairer {
       f.center = middle + 0.9 * (mesh().vertices[v] - middle);
       if (inPlane(w, f) < kInternal) return false;
     }
+    constexpr double kLarge = 0.05;  // of the mesh, for each division of a side
+    constexpr int kMostDivisions = 24;
+    const auto& [a, b, c] = mesh().triangles[triangle];
+    const Vec3 u = 0.95 * (mesh().vertices[b] - mesh().vertices[a]),
+               v = 0.95 * (mesh().vertices[c] - mesh().vertices[a]),
+               corner = middle + 0.95 * (mesh().vertices[a] - middle);
+    const double side_m = std::max({u.norm(), v.norm(), (u - v).norm()});
+    const int n = std::min(kMostDivisions, static_cast<int>(side_m / (kLarge * size_m)));
+    for (int i = 0; i <= n && n > 0; ++i)
+      for (int k = 0; k <= n - i; ++k) {
+        f.center = corner + static_cast<double>(i) / n * u + static_cast<double>(k) / n * v;
+        if (inPlane(w, f) < kInternal) return false;
+      }
     return true;
   }
 

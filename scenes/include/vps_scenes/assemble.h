@@ -13,6 +13,7 @@
 #include "vps_scenes/export.h"
 #include "vps_scenes/model_options.h"
 #include "vps_scenes/result.h"
+#include "vps_scenes/run_requests.h"
 #include "vps_scenes/scene.h"
 
 namespace vps::scenes::inline v0 {
@@ -55,6 +56,8 @@ struct AssembleOptions : ModelOptions {
   /// (src/procedure/axis_snap.h). It may change at any time. Null: none. A recorded run in simulated time has
   /// none, since its recording would not hold the moment of the change.
   const std::atomic<bool>* snaps = nullptr;
+  /// What others ask of a run by the clock. Null: nobody asks.
+  RunRequests* requests = nullptr;
   /// Called after each step of the procedure with the result so far, whose sums are not filled in yet; its
   /// `finished` shows where the parts are. May be empty.
   std::function<void(const AssembleResult&)> on_step;

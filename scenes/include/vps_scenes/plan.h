@@ -115,6 +115,7 @@ enum class OverlapKind {
   Twice,       ///< one part drawn twice
   Flexible,    ///< a spring, belt or seal that is drawn undeformed
   LineToLine,  ///< no overlap: a shaft that is drawn exactly as wide as its hole
+  NoVolume,    ///< no overlap: a part that is no body
   Clash,       ///< nothing explains it
 };
 VPS_SCENES_API const char* toText(OverlapKind kind);
@@ -126,9 +127,9 @@ struct Resized {
   double from_radius_m = 0, to_radius_m = 0;
 };
 
-/// An overlap, or a fit without clearance, and what is done about it.
+/// An overlap, a fit without clearance or a part without volume, and what is done about it.
 struct OverlapChoice {
-  std::string a, b;
+  std::string a, b;  ///< b is empty for a part without volume
   OverlapKind kind = OverlapKind::Clash;
   std::string words;               ///< all of it, for a person
   std::string left_out;            ///< a part that is scenery in the planned scenes; empty: none
@@ -141,7 +142,7 @@ struct PlanResult {
   std::string assembly;
   std::vector<Fastener> fasteners;
   std::vector<OverlapChoice>
-      choices;  ///< one for each overlap that is not allowed, then shafts drawn line to line
+      choices;  ///< parts without volume, one for each overlap that is not allowed, shafts drawn line to line
   std::vector<PlannedAssembly> assemblies;  ///< the whole first, then its subassemblies
   std::vector<PlannedContact> contacts;     ///< the graph of contacts and of what blocks what
   std::vector<EqualParts> equal;            ///< two or more of each

@@ -68,13 +68,13 @@ static_assert(coversAllMembers<Fastener>(kFastenerFields));
 
 inline constexpr auto kOverlapChoiceFields = std::make_tuple(
     field("a", &OverlapChoice::a, "a part"),
-    field("b", &OverlapChoice::b, "another one that overlaps it as drawn, or leaves it no clearance"),
+    field("b", &OverlapChoice::b,
+          "another one that overlaps it as drawn, or leaves it no clearance; empty for `no volume`"),
     field("kind", &OverlapChoice::kind,
           "what that is taken for: `thread` (drawn as cylinders), `press fit`, `twice` (drawn twice), "
           "`flexible` "
-          "(a spring, belt or seal drawn undeformed), `line to line` (a shaft as wide as its hole), or "
-          "`clash`: "
-          "nothing explains it"),
+          "(a spring, belt or seal drawn undeformed), `line to line` (a shaft as wide as its hole), "
+          "`no volume` (a surface, which is no body), or `clash`: nothing explains it"),
     field("words", &OverlapChoice::words, "in words, with what is done"),
     field("left_out", &OverlapChoice::left_out, "a part that is scenery in the planned scene; empty: none"),
     field("changed", &OverlapChoice::changed, "a part with another mesh or `press_fit` there; empty: none"),

@@ -69,6 +69,7 @@ struct StepResult {
   double lean_rad = 0;                  ///< greatest angle between its axis and that of its target meanwhile
   /// To press it in, by Lame's formula for the declared interference; 0: no press fit that check finds.
   double press_needed_N = 0;
+  double hoist_N = 0;        ///< of its weight, what a hoist carries, since the hand may not; 0: no hoist
   double tolerance_m = 0;    ///< of final_error_m, as stated or from the fit
   double final_error_m = 0;  ///< greatest distance of its surface from where it belongs
   double final_error_rad = 0;

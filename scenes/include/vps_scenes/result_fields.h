@@ -86,6 +86,9 @@ inline constexpr auto kStepFields = std::make_tuple(
           "of a screw: greatest angle between its axis and that of its target meanwhile"),
     field("press_needed_N", &StepResult::press_needed_N,
           "force that presses it in, by Lamé's formula for the declared interference; 0: not a press fit"),
+    field("hoist_N", &StepResult::hoist_N,
+          "what a hoist carries of its weight, which is more than half of the coupling's greatest force, so "
+          "that forces on the hand are those of a lighter part; 0: no hoist"),
     field("tolerance_m", &StepResult::tolerance_m, "tolerance of `final_error_m`, as stated or from the fit"),
     field("final_error_m", &StepResult::final_error_m,
           "greatest distance of the part's surface from where it belongs"),

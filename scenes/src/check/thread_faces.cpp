@@ -254,8 +254,20 @@ std::vector<Line> candidateAxes(const PartSurface& surface, const std::vector<Ro
   for (const RoundFace* face : longest) add({face->p, face->axis});
   const MassProperties mass = massProperties(surface.mesh());
   if (!(mass.volume_m3 > 0) || !isWithin(mass.com, surface.box())) return lines;
-  const Eigen::SelfAdjointEigenSolver<Mat3> principal(mass.inertia_m5);
-  for (int k = 0; k < 3; ++k) add({mass.com, principal.eigenvectors().col(k)});
+  const auto addPrincipal = [&](const Mat3& tensor) {
+    const Eigen::SelfAdjointEigenSolver<Mat3> principal(tensor);
+    for (int k = 0; k < 3; ++k) add({mass.com, principal.eigenvectors().col(k)});
+  };
+  addPrincipal(mass.inertia_m5);
+  // A rod that is 0.87 times as long as wide has the same inertia about all axes; its facets do not face all
+  // ways alike.
+  Mat3 facing_m2 = Mat3::Zero();
+  for (std::uint32_t i = 0; i < surface.mesh().triangles.size(); ++i) {
+    const Triangle t = surface.triangle(i);
+    const Vec3 n = surface.normal(i);
+    facing_m2 += 0.5 * (t[1] - t[0]).cross(t[2] - t[0]).norm() * n * n.transpose();
+  }
+  addPrincipal(facing_m2);
   return lines;
 }
 

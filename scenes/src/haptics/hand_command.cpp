@@ -33,6 +33,7 @@ void carryOut(Hand& hand, device::HapticLoop& loop, const HandCommand& command) 
     case device::SyncEventKind::Paused:
     case device::SyncEventKind::SnapOn:
     case device::SyncEventKind::SnapOff:
+    case device::SyncEventKind::GiveUp:
       return;
   }
 }

@@ -53,6 +53,10 @@ class HapticDriver {
   virtual bool hasSettled(bool is_ready) { return is_ready; }
   /// Whether axis snap acts in the coming physics step, after advance(): as the caller says, or as recorded.
   virtual bool snaps(bool is_wanted) { return is_wanted; }
+  /// Whether the part is let go of on request, after advance(): as the caller says, or as recorded.
+  virtual bool givesUp(bool is_wanted) { return is_wanted; }
+  /// Gains from the next part on that is handed over, also in settings(). Not in a run that is recorded.
+  virtual void setGains(const CouplingGains& /*gains*/) {}
   /// Time the caller spent between the last two calls of advance(); 0 in lockstep.
   [[nodiscard]] virtual double busy_s() const { return 0; }
   /// In real time, from the next advance() on: steps of step_s of simulated time, one each period_s of the

@@ -58,6 +58,15 @@ class RealTimeDriver final : public ClockedDriver {
            is_wanted ? device::SyncEventKind::SnapOn : device::SyncEventKind::SnapOff});
     return snaps_ = is_wanted;
   }
+  bool givesUp(bool is_wanted) override {
+    if (is_wanted)
+      haptic_log_.addFromPhysics({view_.report.time_s, view_.tick, 1, 0, device::SyncEventKind::GiveUp});
+    return is_wanted;
+  }
+  void setGains(const CouplingGains& gains) override {
+    settings_.gains = gains;
+    side_.setGains(gains);
+  }
   device::OperatorState state() override { return known_state_; }
   [[nodiscard]] double busy_s() const override { return clock_.busy_s(); }
   void setLoadLevel(double step_s, double period_s, const CouplingGains& gains) override {

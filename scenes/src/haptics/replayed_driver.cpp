@@ -65,6 +65,11 @@ class ReplayedDriver final : public ClockedDriver {
     }
     return snaps_;
   }
+  bool givesUp(bool) override {
+    if (!isAt(device::SyncEventKind::GiveUp)) return false;
+    logEvent(device::SyncEventKind::GiveUp);
+    return true;
+  }
   device::OperatorState state() override { return hand_.state(); }
   std::uint64_t missed() override { return 0; }
   TickTimes times() override { return clock_.summary(); }

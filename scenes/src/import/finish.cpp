@@ -10,6 +10,7 @@
 #include <tbb/parallel_for.h>
 
 #include "core/equal_meshes.h"
+#include "core/valid_text.h"
 #include "import/readers.h"
 #include "vps/load_error.h"
 
@@ -246,9 +247,7 @@ void nameUniquely(std::vector<ImportedPart>& parts, const std::string& fallback)
   std::set<std::string> taken;
   std::map<std::string, int> tried;  // by name: the last number that was tried
   for (ImportedPart& part : parts) {
-    for (char& c : part.name) {
-      if (static_cast<unsigned char>(c) < 0x20) c = ' ';
-    }
+    part.name = printable(part.name);
     if (part.name.find_first_not_of(' ') == std::string::npos) part.name = fallback;
     const std::string base = part.name;
     if (taken.insert(base).second) continue;

@@ -116,6 +116,12 @@ std::optional<std::string> plyItReadsRight(const std::string& file) {
   return bytes;
 }
 
+/// Back to the axes of the file: the user says which of them is up.
+void keepFileAxes(RawCad& cad) {
+  const Eigen::Affine3d X_YZ(Eigen::AngleAxisd(-0.5 * EIGEN_PI, Vec3::UnitX()));
+  for (RawPart& part : cad.parts) part.X_WP = X_YZ * part.X_WP;
+}
+
 /// True if all vertices of the faces exist. assimp's readers do not check this, and its triangulation then
 /// aborts.
 bool hasAllVertices(const aiMesh& mesh) {
@@ -172,6 +178,8 @@ RawCad readAssimp(const std::string& file, const std::string& format, const Impo
     throw LoadError(file, "",
                     std::string("is not a readable ") + format + " file (" + e.what() + "); export it again");
   }
+  if (scene != nullptr && scene->mRootNode != nullptr && scene->mNumMeshes == 0)
+    throw LoadError(file, "", "holds no surfaces; export solids or meshes");
   if (!scene || !scene->mRootNode || (scene->mFlags & AI_SCENE_FLAGS_INCOMPLETE)) {
     std::string reason = importer.GetErrorString();
     for (char& c : reason) c = c == '\n' ? ' ' : c;
@@ -180,6 +188,7 @@ RawCad readAssimp(const std::string& file, const std::string& format, const Impo
   const bool is_gltf = format == "glTF";
   Walk{*scene, is_gltf, cad}.node(*scene->mRootNode, Eigen::Affine3d::Identity());
   if (is_gltf || format == "DAE") makeZUp(cad, is_gltf);
+  if (is_gltf && settings.up) keepFileAxes(cad);
   if (format == "OBJ") cad.open_shapes = Shapes::BoundOne;
   for (RawPart& part : cad.parts) {
     if (text) {

@@ -189,6 +189,13 @@ void LoadShedder::setRate(LoadLevelChange change) {
   changes_.push_back(std::move(change));
 }
 
+void LoadShedder::setOwnGains(const CouplingGains& own) {
+  const LoadLevel& level = loadLevelOf(level_);
+  const double period_s = level.periods() / scene_.fidelity.physics_rate_hz;
+  gains_ = level.periods() > 1 ? softer(own, gains_at_(1 / period_s)) : own;
+  driver_.setLoadLevel(dt_s_, period_s, gains_);
+}
+
 double LoadShedder::timeDivisor() const {
   return loadLevelOf(level_).time_divisor;
 }

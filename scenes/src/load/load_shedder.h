@@ -57,6 +57,8 @@ class LoadShedder {
   /// The clock's time by simulated time: speeds in simulated time are greater by this factor.
   [[nodiscard]] double timeDivisor() const;
   [[nodiscard]] const CouplingGains& gains() const { return gains_; }
+  /// The driver's gains have changed to these; nothing is held.
+  void setOwnGains(const CouplingGains& own);
   [[nodiscard]] const std::vector<LoadLevelChange>& changes() const { return changes_; }
 
  private:

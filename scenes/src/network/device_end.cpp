@@ -39,10 +39,12 @@ double peerPhysicsLimit_s(double physics_s) {
   return std::max(0.75 * kPeerLimit_s, 3 * physics_s);
 }
 
-DeviceEnd::DeviceEnd(Link& link, const std::atomic<bool>* stop, std::function<void(const std::string&)> say)
+DeviceEnd::DeviceEnd(Link& link, const std::atomic<bool>* stop, std::function<void(const std::string&)> say,
+                     RunRequests* requests)
     : link_(link),
       stop_(stop),
       say_(std::move(say)),
+      requests_(requests),
       writer_(link.sessionId(), link.form()),
       buffer_(kLongestMessage) {}
 

@@ -13,6 +13,7 @@
 #include "network/clock_doubts.h"
 #include "network/link.h"
 #include "network/messages.h"
+#include "vps_scenes/run_requests.h"
 
 namespace vps::scenes::inline v0 {
 
@@ -21,7 +22,9 @@ class DeviceEnd {
  public:
   /// @param link  of the render node; outlives this object
   /// @param say   notes for the user and the watchers
-  DeviceEnd(Link& link, const std::atomic<bool>* stop, std::function<void(const std::string&)> say);
+  /// @param requests  of others; null: nobody asks
+  DeviceEnd(Link& link, const std::atomic<bool>* stop, std::function<void(const std::string&)> say,
+            RunRequests* requests = nullptr);
 
   /// Waits until a device has joined, or rejoined. False: stopped.
   bool waitForDevice();
@@ -70,6 +73,11 @@ class DeviceEnd {
   [[nodiscard]] std::string doubts() const { return ClockDoubts::summary(link_); }
   [[nodiscard]] bool isStopped() const { return stop_ != nullptr && stop_->load(); }
   void say(const std::string& words) const { say_(words); }
+  /// Others ask for the loop to be re-armed, once.
+  [[nodiscard]] bool takeRearm() const { return requests_ != nullptr && requests_->takeRearm(); }
+  void setFaulted(bool is_faulted) const {
+    if (requests_ != nullptr) requests_->setFaulted(is_faulted);
+  }
   /// See Link.
   [[nodiscard]] std::optional<PeerTiming> timing() const { return link_.timing(NodeRole::Device); }
 
@@ -79,6 +87,7 @@ class DeviceEnd {
   Link& link_;
   const std::atomic<bool>* stop_;
   std::function<void(const std::string&)> say_;
+  RunRequests* requests_;
   MessageWriter writer_;
   MessageReader hello_reader_, reply_reader_, state_reader_, log_reader_;
   std::vector<char> buffer_;

@@ -91,6 +91,8 @@ class Link {
   // The functions below may call the system.
   /// Whether a process has the role now.
   [[nodiscard]] virtual bool isAlive(NodeRole role) const = 0;
+  /// How many watchers there are now.
+  [[nodiscard]] virtual std::size_t watchers() const = 0;
   /// A number that no other run of the render node has.
   [[nodiscard]] virtual std::uint64_t sessionId() const = 0;
   /// The render node has ended the session in good order.

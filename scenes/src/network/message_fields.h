@@ -2,8 +2,8 @@
 // The fields of each message, in the order of its bytes: one table for writing and reading.
 //
 // visit(x) for a number, vector, pose, twist, wrench, flag or text; visit.notNegative(x) for a number of at
-// least 0; visit.choice(e, count) for an enumeration
-// with that many values; visit.unchecked(on) where a value may be anything, as in the log of a faulty device.
+// least 0; visit.choice(e, count) for an enumeration with that many values; visit.raw(x) for bytes of any
+// value; visit.unchecked(on) where a number may be anything, as in the log of a faulty device.
 #pragma once
 
 #include "network/messages.h"
@@ -243,6 +243,32 @@ void fields(PointerMessage& m, V& visit) {
   visit(m.person);
   visit(m.is_shown);
   visit(m.p_W);
+}
+
+template <typename V>
+void fields(AskMessage& m, V& visit) {
+  visit.choice(m.kind, 8);
+  visit(m.text);
+  visit.notNegative(m.k_N_per_m);
+  visit.notNegative(m.k_Nm_per_rad);
+}
+
+template <typename V>
+void fields(AnswerMessage& m, V& visit) {
+  visit(m.asker);
+  visit(m.number);
+  visit(m.is_done);
+  visit(m.wants_scene);
+  visit(m.text);
+}
+
+template <typename V>
+void fields(PieceMessage& m, V& visit) {
+  visit(m.hash);
+  visit(m.total);
+  visit(m.offset);
+  visit(m.size);
+  visit.raw(m.bytes);
 }
 
 }  // namespace vps::scenes::inline v0::wire

@@ -51,6 +51,12 @@ template <>
 constexpr MessageKind kKindOf<BeatMessage> = MessageKind::Beat;
 template <>
 constexpr MessageKind kKindOf<PointerMessage> = MessageKind::Pointer;
+template <>
+constexpr MessageKind kKindOf<AskMessage> = MessageKind::Ask;
+template <>
+constexpr MessageKind kKindOf<AnswerMessage> = MessageKind::Answer;
+template <>
+constexpr MessageKind kKindOf<PieceMessage> = MessageKind::Piece;
 
 /// What both directions share: how a field is made of numbers.
 template <typename Self>
@@ -78,6 +84,10 @@ class Visit {
   template <std::size_t N>
   void operator()(std::array<char, N>& text) {
     self().text(text.data(), N);
+  }
+  template <std::size_t N>
+  void raw(std::array<char, N>& bytes) {
+    self().put(bytes.data(), N);
   }
   template <typename T>
   requires std::is_arithmetic_v<T>
@@ -250,6 +260,7 @@ class Put : public Visit<Put> {
   }
   void flag(bool x) { writer_.put(static_cast<std::uint8_t>(x)); }
   void text(const char* bytes, std::size_t size) { writer_.bytes({bytes, size}); }
+  void put(const char* bytes, std::size_t size) { writer_.bytes({bytes, size}); }
   void become(device::LogEntry&, std::uint8_t) {}
   void checkRotation(const Mat3&) {}
   void refuse() {}
@@ -289,6 +300,10 @@ class Get : public Visit<Get> {
     const std::string_view read = reader_.take(size);
     std::copy(read.begin(), read.end(), bytes);
     if (read.find('\0') == std::string_view::npos) refuse();
+  }
+  void put(char* bytes, std::size_t size) {
+    const std::string_view read = reader_.take(size);
+    std::copy(read.begin(), read.end(), bytes);
   }
   void become(device::LogEntry& entry, std::uint8_t index) {
     if (index == 0)
@@ -455,6 +470,9 @@ MESSAGE(SnapshotMessage)
 MESSAGE(NewsMessage)
 MESSAGE(BeatMessage)
 MESSAGE(PointerMessage)
+MESSAGE(AskMessage)
+MESSAGE(AnswerMessage)
+MESSAGE(PieceMessage)
 #undef MESSAGE
 
 }  // namespace vps::scenes::inline v0

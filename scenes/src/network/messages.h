@@ -26,7 +26,7 @@
 namespace vps::scenes::inline v0 {
 
 /// Of all messages together; nodes of other versions are refused when they join.
-inline constexpr std::uint16_t kMessageVersion = 5;
+inline constexpr std::uint16_t kMessageVersion = 6;
 
 enum class MessageKind : std::uint16_t {
   Haptic = 1,
@@ -40,6 +40,9 @@ enum class MessageKind : std::uint16_t {
   News,
   Beat,
   Pointer,
+  Ask,
+  Answer,
+  Piece,
 };
 
 /// At the start of each message.
@@ -143,6 +146,43 @@ struct PointerMessage {
   std::uint32_t person = 0;  ///< counted by the sender
   bool is_shown = false;     ///< false: no longer
   Vec3 p_W = Vec3::Zero();
+};
+
+/// What is asked of the render node by a program that is no node.
+enum class AskKind : std::uint8_t {
+  Who,      ///< who is there, and what they do
+  Take,     ///< the next part; `text`: its name, or empty
+  Release,  ///< the part in hand
+  Rearm,    ///< the haptic loop, after a fault
+  Gains,    ///< from the next part on
+  Load,     ///< the scene with the hash `text` in place of this one
+  Again,    ///< the same scene from its beginning
+  Record,   ///< the runs that begin from now on, in the file `text`; empty: none
+};
+
+struct AskMessage {
+  AskKind kind = AskKind::Who;
+  std::array<char, 64> text{};  ///< zero-terminated
+  double k_N_per_m = 0;         ///< of Gains
+  double k_Nm_per_rad = 0;      ///< of Gains; 0: as it is
+};
+
+struct AnswerMessage {
+  std::uint64_t asker = 0;  ///< the sender of what is answered, and its number
+  std::uint64_t number = 0;
+  bool is_done = false;
+  bool wants_scene = false;       ///< of Load: it is not known here, and is to be sent in pieces
+  std::array<char, 1024> text{};  ///< what is so, or why it was not done; zero-terminated
+};
+
+/// Of a scene's archive, in order, each answered before the next.
+struct PieceMessage {
+  static constexpr std::size_t kMost = 32 * 1024;
+  std::array<char, 64> hash{};  ///< of the whole, zero-terminated
+  std::uint64_t total = 0;      ///< [bytes]
+  std::uint64_t offset = 0;
+  std::uint32_t size = 0;
+  std::array<char, kMost> bytes{};
 };
 
 /// What became of the bytes of a message.

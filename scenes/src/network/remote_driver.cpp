@@ -105,6 +105,15 @@ class RemoteDriver final : public ClockedDriver {
       haptic_log_.addFromPhysics({view_.report.time_s, view_.tick, 1, 0, device::SyncEventKind::Settled});
     return is_ready;
   }
+  bool givesUp(bool is_wanted) override {
+    if (is_wanted)
+      haptic_log_.addFromPhysics({view_.report.time_s, view_.tick, 1, 0, device::SyncEventKind::GiveUp});
+    return is_wanted;
+  }
+  void setGains(const CouplingGains& gains) override {
+    settings_.gains = gains_ = gains;
+    askUntilDone(setup());
+  }
   device::OperatorState state() override { return known_state_; }
   std::uint64_t missed() override { return end_.times().tick.missed; }
   [[nodiscard]] double busy_s() const override { return clock_.busy_s(); }
@@ -309,6 +318,8 @@ bool RemoteDriver::restoreHold(device::OperatorPhase phase) {
 
 // As a person does; the force then returns gradually, from a new grasp of the part where it is.
 void RemoteDriver::rearmWhenGood() {
+  end_.setFaulted(newest_.safety.fault != device::SafetyFault::None);
+  if (is_running_ && end_.takeRearm() && end_.hello().may_rearm) return rearmIfFaulted();
   const bool waits =
       is_running_ && end_.hello().may_rearm && newest_.safety.fault == device::SafetyFault::PhysicsStalled;
   good_steps_ = waits ? good_steps_ + 1 : 0;

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "network/device_end.h"
+#include "network/request_server_work.h"
 #include "procedure/assembly_run.h"
 #include "record/run_record.h"
 #include "record/scene_archive.h"
@@ -80,21 +81,61 @@ double networkDelay_s(DeviceEnd& end, const RenderOptions& options) {
   throw LoadError("", "", "the device's answers do not come; check --network on both machines");
 }
 
+/// A run is known to those who ask, for as long as it goes on.
+class Served {
+ public:
+  Served(RequestServer* server, const Scene& scene, std::string scene_bytes, const Link& link,
+         const std::string& file)
+      : work_(server != nullptr ? &server->work() : nullptr) {
+    if (work_ == nullptr) return;
+    work_->requests.beginRun();
+    work_->run.begin(scene, std::move(scene_bytes), link, file);
+  }
+  ~Served() {
+    if (work_ != nullptr) work_->run.end();
+  }
+  Served(const Served&) = delete;
+  Served& operator=(const Served&) = delete;
+
+  [[nodiscard]] RunRequests* requests() const { return work_ != nullptr ? &work_->requests : nullptr; }
+  void setDevice(const HelloMessage& hello, const CouplingGains& gains, const CouplingGains& most) {
+    if (work_ != nullptr) work_->run.setDevice(hello.name.data(), hello.may_rearm, gains, most);
+  }
+  /// Until the first part may be taken. False: stopped.
+  bool waitForTake(DeviceEnd& end) const {
+    if (requests() == nullptr || requests()->mayTake()) return true;
+    end.say("the first part waits to be taken: vps ask take");
+    while (!requests()->mayTake()) {
+      if (end.isStopped()) return false;
+      end.poll();
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    return true;
+  }
+
+ private:
+  RequestServer::Work* work_;  ///< null: nobody can ask
+};
+
 }  // namespace
 
 AssembleResult renderNode(Scene& scene, const RenderOptions& given, const std::string& file) {
   requirePossible(scene, given, file);
-  const std::unique_ptr<Link> link = makeSession(given.session, sceneToBytes(scene), given.network);
+  std::string scene_bytes = sceneToBytes(scene);
+  const std::unique_ptr<Link> link = makeSession(given.session, scene_bytes, given.network);
+  Served served(given.server, scene, std::move(scene_bytes), *link, file);
   Broadcast* broadcast = nullptr;
-  DeviceEnd end(*link, given.stop, [&](const std::string& words) {
+  const auto say = [&](const std::string& words) {
     if (given.say) given.say(words);
     if (broadcast != nullptr) broadcast->tell(NewsKind::Note, -1, Verdict::NotShown, words);
-  });
+  };
+  DeviceEnd end(*link, given.stop, say, served.requests());
   Broadcast all(end, given);
   broadcast = &all;
 
   AssembleOptions options = given;
   options.is_real_time = true;
+  options.requests = served.requests();
   options.tap = all.tap();
   options.after_step = [&](double time_s) {
     all.afterStep(time_s);
@@ -113,7 +154,8 @@ AssembleResult renderNode(Scene& scene, const RenderOptions& given, const std::s
   if (end.hello().is_by_person)
     for (SceneStep& step : scene.steps) step.timeout_s = std::max(step.timeout_s, kPersonTimeout_s);
   const std::unique_ptr<Hand> hand = remoteHand(end, scene);
-  device::LoopSettings settings = loopSettings(scene, hand->device(), networkDelay_s(end, given));
+  const double delay_s = networkDelay_s(end, given);
+  device::LoopSettings settings = loopSettings(scene, hand->device(), delay_s);
   if (!device::areUsable(settings.gains))
     throw LoadError(scene.file, "",
                     "the device '" + std::string(hand->device().name()) +
@@ -124,6 +166,9 @@ AssembleResult renderNode(Scene& scene, const RenderOptions& given, const std::s
                   settings.gains.k_N_per_m, settings.gains.k_Nm_per_rad);
     end.say(words);
   }
+  served.setDevice(end.hello(), settings.gains,
+                   passiveGains(scene, hand->device().limits(), scene.fidelity.physics_rate_hz, delay_s));
+  if (!served.waitForTake(end)) return result;
   settings.physics_limit_s = peerPhysicsLimit_s(1 / scene.fidelity.physics_rate_hz);
   if (file.empty()) {
     result = runProcedure(scene, *hand, nullptr, settings, options);

@@ -66,6 +66,7 @@ class SharedLink final : public Link {
     return readers_[static_cast<std::size_t>(channel)].lost();
   }
   [[nodiscard]] bool isAlive(NodeRole role) const override { return region_.isTaken(role); }
+  [[nodiscard]] std::size_t watchers() const override { return region_.watchers(); }
   [[nodiscard]] std::uint64_t sessionId() const override {
     return head()[kIdentity].load(std::memory_order_relaxed);
   }
@@ -121,6 +122,7 @@ std::unique_ptr<Link> joinSession(const std::string& session, NodeRole role) {
   // The writers continue where the region's last device stopped, so the role comes first.
   if (role == NodeRole::Device && !region.take(NodeRole::Device))
     throw LoadError("", "", sessionWords(session) + " has a device already; only one hand can hold the part");
+  if (role == NodeRole::Watch) region.markWatcher();
   return std::make_unique<SharedLink>(std::move(region), role);
 }
 

@@ -14,6 +14,7 @@
 #include <filesystem>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "vps/load_error.h"
 
@@ -25,6 +26,8 @@ constexpr mode_t kMode = 0600;
 constexpr const char* kFolder = "/dev/shm";  // where Linux shows the names; elsewhere nothing is swept
 constexpr int kTries = 20;                   // another process may be sweeping: its lock is held for moments
 constexpr std::chrono::milliseconds kPause{10};
+constexpr off_t kWatchers = 1000;          // bytes from here on are watchers' marks
+constexpr off_t kMostProcesses = 1 << 22;  // greatest number of a process in Linux
 
 std::string prefix() {
   return "/bullet-vps." + std::to_string(getuid()) + ".";
@@ -165,6 +168,32 @@ SharedRegion SharedRegion::open(const std::string& session, bool is_writable) {
 
 bool SharedRegion::take(NodeRole role) const {
   return lockByte(file_, role);
+}
+
+// A lock for reading on a byte that has the process's number: such locks exclude nobody.
+void SharedRegion::markWatcher() const {
+  struct flock lock = byteOf(NodeRole::Watch, F_RDLCK);
+  lock.l_start = kWatchers + getpid();
+  fcntl(file_, F_OFD_SETLK, &lock);
+}
+
+// The system names any lock of a range, not the first one, so both sides of it are searched.
+std::size_t SharedRegion::watchers() const {
+  std::size_t count = 0;
+  std::vector<std::pair<off_t, off_t>> ranges = {{kWatchers, kWatchers + kMostProcesses}};
+  while (!ranges.empty()) {
+    const auto [from, to] = ranges.back();
+    ranges.pop_back();
+    if (from >= to) continue;
+    struct flock lock = byteOf(NodeRole::Watch, F_WRLCK);
+    lock.l_start = from;
+    lock.l_len = to - from;
+    if (fcntl(file_, F_OFD_GETLK, &lock) != 0 || lock.l_type == F_UNLCK) continue;
+    ++count;
+    ranges.emplace_back(from, lock.l_start);
+    ranges.emplace_back(lock.l_len == 0 ? to : lock.l_start + lock.l_len, to);
+  }
+  return count;
 }
 
 bool SharedRegion::isTaken(NodeRole role) const {

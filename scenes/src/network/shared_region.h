@@ -43,6 +43,9 @@ class SharedRegion {
   bool take(NodeRole role) const;
   /// Whether a process has the role.
   [[nodiscard]] bool isTaken(NodeRole role) const;
+  /// Leaves a mark that this process watches, and counts the processes that do. It needs no right to write.
+  void markWatcher() const;
+  [[nodiscard]] std::size_t watchers() const;
 
   /// Removes the name; the memory stays for those who have it open.
   void removeName();

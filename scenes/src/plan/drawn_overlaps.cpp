@@ -22,6 +22,8 @@ const char* toText(OverlapKind kind) {
       return "flexible";
     case OverlapKind::LineToLine:
       return "line to line";
+    case OverlapKind::NoVolume:
+      return "no volume";
     case OverlapKind::Clash:
       return "clash";
   }
@@ -208,6 +210,28 @@ std::vector<OverlapChoice> overlapChoices(const std::vector<PlacedSurface>& part
   for (const CheckedPair& pair : checked.pairs)
     if (pair.isClash() && !isLeftOut(pair.a) && !isLeftOut(pair.b))
       out.push_back(Explained(pair, parts, checked, shapes, fixed).choice());
+  return out;
+}
+
+std::vector<OverlapChoice> noVolumeChoices(const std::vector<PlacedSurface>& parts,
+                                           const std::vector<std::size_t>& fixed) {
+  const auto isBody = [](const PlacedSurface& part) {
+    constexpr double kThinnest_m = 1e-6;  // as far as import follows curved faces
+    const Mesh& mesh = part.surface->mesh();
+    return part.surface->solid().report().sheet_facets < mesh.triangles.size() &&
+           2 * std::abs(massProperties(mesh).volume_m3) > kThinnest_m * area(mesh);
+  };
+  std::vector<OverlapChoice> out;
+  if (std::ranges::none_of(parts, isBody)) return out;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (isBody(parts[i]) || std::ranges::binary_search(fixed, i)) continue;
+    OverlapChoice choice;
+    choice.a = choice.left_out = parts[i].name;
+    choice.kind = OverlapKind::NoVolume;
+    choice.words = "'" + parts[i].name +
+                   "' has no volume, so that it is no body that a hand could carry: left out as scenery";
+    out.push_back(std::move(choice));
+  }
   return out;
 }
 

@@ -22,8 +22,13 @@ std::vector<OverlapChoice> overlapChoices(const std::vector<PlacedSurface>& part
                                           const std::vector<std::optional<FastenerShape>>& shapes,
                                           const std::vector<std::size_t>& fixed);
 
-/// The parts of which choices say that they are left out: of parts drawn twice all but the first, and
-/// flexible ones. Ascending.
+/// A choice for each part that is no body: a face, or a surface without an inside. It has no mass that a hand
+/// could carry. Empty where no part is a body.
+std::vector<OverlapChoice> noVolumeChoices(const std::vector<PlacedSurface>& parts,
+                                           const std::vector<std::size_t>& fixed);
+
+/// The parts of which choices say that they are left out: those without volume, of parts drawn twice all but
+/// the first, and flexible ones. Ascending.
 std::vector<std::size_t> leftOut(const std::vector<PlacedSurface>& parts,
                                  const std::vector<OverlapChoice>& choices);
 

@@ -286,7 +286,8 @@ PlanResult planAssembly(const std::string& name, const std::vector<DrawnPart>& p
   begun_s = wallSeconds();
   const std::vector<std::optional<FastenerShape>> shapes = fastenerShapes(placed, progress);
   result.fasteners = fastenersIn(placed, checked, shapes);
-  result.choices = overlapChoices(placed, checked, shapes, fixed);
+  result.choices = noVolumeChoices(placed, fixed);
+  std::ranges::move(overlapChoices(placed, checked, shapes, fixed), std::back_inserter(result.choices));
   std::ranges::move(lineToLineChoices(placed, checked, result.choices), std::back_inserter(result.choices));
   for (const OverlapChoice& choice : result.choices)
     if (choice.kind == OverlapKind::Twice) result.twice.push_back({choice.a, choice.b});

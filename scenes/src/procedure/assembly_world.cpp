@@ -110,6 +110,8 @@ void AssemblyWorld::mountFixed() {
 void AssemblyWorld::take(std::size_t index) {
   const SceneStep& step = scene_.steps[index];
   state_.step = static_cast<int>(index);
+  state_.gives_up = false;
+  changeGains();
   const Pose X_WP_start = startOf(step);
   state_.X_WP[step.part] = X_WP_start;
   requireFreeStart(step);
@@ -117,7 +119,8 @@ void AssemblyWorld::take(std::size_t index) {
   const double most_kg = g_m_s2 > 0 ? kMostCarried * shedder_->gains().max_force_N / g_m_s2
                                     : std::numeric_limits<double>::infinity();
   const double own_kg = simulation_.addBody(step.part, X_WP_start, most_kg);
-  if (own_kg > most_kg && options_.warn)
+  const double hoist_N = std::max(0.0, own_kg - most_kg) * g_m_s2;
+  if (hoist_N > 0 && options_.warn)
     options_.warn("'" + scene_.parts[step.part].part.name + "' weighs " + newtons(own_kg * g_m_s2) +
                   ", and the hand carries " + newtons(most_kg * g_m_s2) +
                   " of it; a hoist carries the rest, so that forces on the hand are those of a lighter part");
@@ -127,6 +130,7 @@ void AssemblyWorld::take(std::size_t index) {
                    step.X_WP_target,
                    bounds(scene_.parts[step.part].part.mesh),
                    simulation_.mass(step.part) * scene_.gravity_W,
+                   hoist_N,
                    simulation_.mechanicalEnergy()};
   simulation_.grasp(step.part, state_.moving.X_PG, shedder_->gains());
   grip_ = 1;
@@ -137,6 +141,14 @@ void AssemblyWorld::take(std::size_t index) {
   driver_->handOver(X_WP_start * state_.moving.X_PG);
   state_.is_holding = true;
   if (options_.has_local_contact) startLocalContact();
+}
+
+void AssemblyWorld::changeGains() {
+  if (options_.requests == nullptr || log_ != nullptr) return;
+  const std::optional<CouplingGains> gains = options_.requests->takeGains();
+  if (!gains) return;
+  driver_->setGains(*gains);
+  shedder_->setOwnGains(*gains);
 }
 
 Penetration AssemblyWorld::overlapAt(const SceneStep& step, const Pose& X_WP) {

@@ -25,6 +25,7 @@ struct StepPart {
   Pose X_WP_target;
   Box box_P;
   Vec3 weight_W = Vec3::Zero();
+  double hoist_N = 0;            ///< of its whole weight, what is not in weight_W
   double energy_at_grasp_J = 0;  ///< mechanical energy when it was taken
 };
 
@@ -36,6 +37,7 @@ struct AssemblyState {
   std::vector<BodyRole> roles;
   StepPart moving;
   bool is_holding = false;  ///< the hand holds the moving part
+  bool gives_up = false;    ///< the part was let go of on request
   Pose X_WP_before;         ///< of the moving part at the start of the last physics step
 };
 
@@ -84,6 +86,16 @@ class AssemblyWorld {
   [[nodiscard]] double dt_s() const { return dt_s_; }
   /// Duration of a physics step in the hand's time, which is the clock's.
   [[nodiscard]] double handStep_s() const { return shedder_->dt_s() * shedder_->timeDivisor(); }
+  /// False while the next part waits to be asked for.
+  [[nodiscard]] bool mayTakeNext() const {
+    const bool is_last = static_cast<std::size_t>(state_.step) + 1 >= scene_.steps.size();
+    return options_.requests == nullptr || is_last || options_.requests->mayTake();
+  }
+  /// After advance(), while the hand works: others ask for the part to be let go of.
+  [[nodiscard]] bool givesUp() {
+    state_.gives_up = driver_->givesUp(options_.requests != nullptr && options_.requests->isReleaseWanted());
+    return state_.gives_up;
+  }
   /// The hand cannot go on.
   [[nodiscard]] bool hasEnded() const { return has_ended_; }
   /// Ended, or stopped by the caller.
@@ -113,6 +125,8 @@ class AssemblyWorld {
   void giveSnapshot();
   void passEvents();
   void shedLoad();
+  /// Gains that others wish, while nothing is held.
+  void changeGains();
   /// Axis snap on the part in hand, for the coming step.
   void snap();
   void step();

@@ -92,7 +92,8 @@ void settleStep(AssemblyWorld& world, std::vector<OverlapSample> samples, StepRe
   std::future<CookedField> field = cookAsync(world);
   const std::uint64_t missed_before = driver.missed();
   if (driver.isByClock())
-    advanceUntil(world, [&] { return driver.hasSettled(isReady(verdict) && isReady(field)); });
+    advanceUntil(
+        world, [&] { return driver.hasSettled(isReady(verdict) && isReady(field) && world.mayTakeNext()); });
   while (!isReady(verdict) || !isReady(field)) {
     std::this_thread::sleep_for(kPoll);
     world.reportProgress(0.95);  // its receiver may stop the run

@@ -170,12 +170,14 @@ std::optional<Brought> work(AssemblyWorld& world, RunTrace& trace, const SceneSt
     trace.add(world, tracePhase(phase), result);
     const double elapsed_s = world.state().time_s - result.start_s;
     world.reportProgress(0.8 * std::min(1.0, elapsed_s / step.timeout_s * 2));
+    if (world.givesUp()) break;
     if (phase != device::OperatorPhase::Regrasp) continue;
     ++result.index_count;
     if (!clutch.index(regrasp)) return std::nullopt;
     trace.logPhase(world);
   }
-  const Brought brought{world.movingPose(), driver.phase() == device::OperatorPhase::Failed,
+  const Brought brought{world.movingPose(),
+                        world.state().gives_up || driver.phase() == device::OperatorPhase::Failed,
                         driver.last().status == Status::Fault};
   if (brought.is_given_up) noteContact(world, step, result);
   if (!clutch.comeFree(press)) return brought;
@@ -236,11 +238,15 @@ StepResult runStep(AssemblyWorld& world, RunTrace& trace, std::size_t index, Ste
   result.start_s = world.state().time_s;
   result.penetration_limit_m += penetrationLimit_m(step);  // beyond what is drawn
 
+  RunRequests* requests = world.options().requests;
+  if (requests != nullptr) requests->beginStep(static_cast<int>(index));
   world.take(index);
+  result.hoist_N = world.state().moving.hoist_N;
   trace.beginStep(world);
   trace.logEvent(world, device::RunEventKind::Take,
                  (step.takes_off ? "takes off '" : "takes '") + result.part + "'");
   const std::optional<Brought> brought = work(world, trace, step, result);
+  if (requests != nullptr) requests->endWork();
   world.pauseLocalContact();
   for (const ContactEpisode& episode : contactEpisodes(trace.stepRows()))
     ++(episode.is_slide ? result.slides : result.impacts);

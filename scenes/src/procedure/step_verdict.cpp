@@ -54,6 +54,7 @@ std::string failureReason(const AssemblyWorld& world, const SceneStep& step, con
           .append(kHoldsRemedy);
     return words;
   }
+  if (world.state().gives_up) return "it was let go of on request: " + where;
   const bool is_late = world.state().time_s - result.start_s > step.timeout_s;
   if (!step.takes_off && is_late && result.final_error_m <= result.tolerance_m)
     return "its time (timeout_s) was over before the hand had pressed it home, so it is not shown to be in "

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <numbers>
 
+#include "core/valid_text.h"
 #include "vps_scenes/settings_fields.h"
 
 namespace vps::scenes::inline v0 {
@@ -126,7 +127,7 @@ std::string fidelityText(const Scene& scene) {
 
 std::string tomlText(const std::string& text) {
   std::string out = "\"";
-  for (const unsigned char c : text) {
+  for (const unsigned char c : validUtf8(text)) {
     char escape[8];
     if (c == '"' || c == '\\') {
       out += '\\';

@@ -14,6 +14,7 @@
 #include "support/node_processes.h"
 #include "support/temporary_folder.h"
 #include "usage.h"
+#include "vps_device/periodic_thread.h"
 
 namespace vps::bench {
 
@@ -89,8 +90,13 @@ bool killRows(int kills, const std::string& network) {
     for (std::size_t role = 0; role < alive.size(); ++role) memory[role].look(*alive[role]);
     if (i <= kills / 3) own_early_MB = usageOf(getpid()).memory_MB;
     if (i % 3 == 0) {
-      const std::int64_t killed_ns = nodes.render.killNow();
+      // With priority, and before the dead process is waited for: of the device's states only the newest can
+      // be read, so that who looks late sees a later one.
+      device::requestRealTime(60, false);
+      const std::int64_t killed_ns = nodes.render.sendKill();
       const std::optional<double> safe = nodes.safeAfter_s(killed_ns);
+      device::leaveRealTime();
+      nodes.render.killNow();
       if (safe)
         safe_s.push_back(*safe);
       else

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How long a state takes from the device's node to the render node and its answer back. The render node's
-// side answers at once, so that the link alone is measured.
+// side answers at once, so that the link alone is measured. Beside it what the calls take that no link can do
+// without: writing and reading in one process, or the same bytes over UDP without DDS.
+#include <arpa/inet.h>
 #include <signal.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -12,9 +15,11 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
+#include "exchange_times.h"
 #include "network/link.h"
 #include "network/messages.h"
 #include "rows.h"
@@ -27,12 +32,7 @@ namespace {
 
 using namespace scenes;
 
-constexpr std::int64_t kPeriod_ns = 625'000;  // 1600 Hz
 constexpr const char* kSession = "bench-latency";
-
-std::int64_t now_ns() {
-  return device::monotonicClock().now_ns();
-}
 
 /// One end of the link with what it needs to write and read.
 struct End {
@@ -90,32 +90,6 @@ void pauseFor(const std::string& network) {
   }
 }
 
-struct Times {
-  explicit Times(std::vector<std::int64_t> ns) : all(std::move(ns)) { std::sort(all.begin(), all.end()); }
-  [[nodiscard]] double us(double share) const {
-    const auto rank = static_cast<std::size_t>(share * static_cast<double>(all.size() - 1));
-    return 1e-3 * static_cast<double>(all[rank]);
-  }
-  std::vector<std::int64_t> all;
-};
-
-/// Calls `exchange` at 1600 Hz, with its number, and times it.
-template <typename Exchange>
-Times timed(double seconds, const Exchange& exchange) {
-  device::Metronome metronome(kPeriod_ns, device::monotonicClock());
-  metronome.start();
-  std::vector<std::int64_t> ns;
-  const auto count = static_cast<std::int32_t>(1e9 * seconds / kPeriod_ns);
-  ns.reserve(static_cast<std::size_t>(count));
-  for (std::int32_t i = 1; i <= count; ++i) {
-    metronome.wait();
-    const std::int64_t begun_ns = now_ns();
-    exchange(i);
-    ns.push_back(now_ns() - begun_ns);
-  }
-  return Times(std::move(ns));
-}
-
 /// The render node's side in a process of its own, and this process's side.
 struct Ends {
   explicit Ends(const std::string& network) {
@@ -152,8 +126,72 @@ Times bareTimes(double seconds, WireForm form) {
   return times;
 }
 
+/// A socket of UDP on lo.
+class UdpSocket {
+ public:
+  UdpSocket() : file_(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
+    socklen_t size = sizeof address_;
+    address_.sin_family = AF_INET;
+    address_.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    const timeval limit{0, 100'000};
+    if (file_ < 0 || bind(file_, generic(), size) != 0 || getsockname(file_, generic(), &size) != 0 ||
+        setsockopt(file_, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit) != 0)
+      throw std::runtime_error("no UDP on lo");
+  }
+  ~UdpSocket() { close(file_); }
+  UdpSocket(const UdpSocket&) = delete;
+  UdpSocket& operator=(const UdpSocket&) = delete;
+  void send(UdpSocket& to, std::string_view bytes) {
+    sendto(file_, bytes.data(), bytes.size(), 0, to.generic(), sizeof address_);
+  }
+  /// Waits.
+  std::string_view receive() {
+    const ssize_t size = recv(file_, buffer_.data(), buffer_.size(), 0);
+    return {buffer_.data(), static_cast<std::size_t>(std::max<ssize_t>(0, size))};
+  }
+
+ private:
+  sockaddr* generic() { return reinterpret_cast<sockaddr*>(&address_); }
+  int file_;
+  sockaddr_in address_{};
+  std::vector<char> buffer_ = std::vector<char>(kLongestMessage);
+};
+
+/// The same bytes between two processes by the system's calls for UDP alone, each of which waits in its call.
+Times bareUdpTimes(double seconds) {
+  UdpSocket device, render;
+  const pid_t other = fork();
+  if (other == 0) {
+    device::requestRealTime(70, false);
+    MessageWriter writer(1, WireForm::Compact);
+    MessageReader reader;
+    HapticMessage haptic;
+    PhysicsMessage physics;
+    for (;;) {
+      if (reader.read(render.receive(), haptic) != Reading::Good) continue;
+      physics.state.step = haptic.state.tick;
+      render.send(device, writer.write(physics));
+    }
+  }
+  device::requestRealTime(80, false);
+  MessageWriter writer(2, WireForm::Compact);
+  MessageReader reader;
+  HapticMessage haptic;
+  PhysicsMessage physics;
+  const Times times = timed(seconds, [&](std::int32_t i) {
+    haptic.state.tick = i;
+    device.send(render, writer.write(haptic));
+    while (reader.read(device.receive(), physics) == Reading::Good && physics.state.step != i) {
+    }
+  });
+  device::leaveRealTime();
+  kill(other, SIGKILL);
+  waitpid(other, nullptr, 0);
+  return times;
+}
+
 bool latencyRow(const std::string& network, double seconds, double p50_bar_us, double p99_bar_us) {
-  const Times bare = bareTimes(seconds, formOf(network));
+  const Times bare = network.empty() ? bareTimes(seconds, formOf(network)) : bareUdpTimes(seconds);
   MessageWriter sizes(1, formOf(network));
   HapticMessage odd;  // most states have only what changes at every tick
   odd.state.tick = 1;
@@ -178,10 +216,11 @@ bool latencyRow(const std::string& network, double seconds, double p50_bar_us, d
 
   char words[240], bar[80];
   std::snprintf(words, sizeof words,
-                "p50 %.1f us, p99 %.1f us, p99.9 %.1f us; %d of %zu not within a period; bare calls p50 %.1f "
-                "us, p99 %.1f us; a state of the proxy has %zu bytes",
-                both.us(0.5), both.us(0.99), both.us(0.999), unanswered, both.all.size(), bare.us(0.5),
-                bare.us(0.99), bytes);
+                "p50 %.1f us, p99 %.1f us, p99.9 %.1f us; %d of %zu not within a period; %s p50 %.1f us, p99 "
+                "%.1f us; a state of the proxy has %zu bytes",
+                both.us(0.5), both.us(0.99), both.us(0.999), unanswered, both.all.size(),
+                network.empty() ? "the same calls in one process" : "bare UDP between two processes",
+                bare.us(0.5), bare.us(0.99), bytes);
   std::snprintf(bar, sizeof bar, "p50 <= %.0f us, p99 <= %.0f us beyond bare calls", p50_bar_us, p99_bar_us);
   const bool is_reached =
       both.us(0.5) - bare.us(0.5) <= p50_bar_us && both.us(0.99) - bare.us(0.99) <= p99_bar_us;

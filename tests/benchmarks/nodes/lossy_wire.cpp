@@ -100,7 +100,8 @@ void LossyWire::carry() {
   while (!is_ending_) {
     const std::int64_t now_ns = device::monotonicClock().now_ns();
     if (now_ns - second_ns >= 1'000'000'000) {
-      busiest_ = std::max<std::uint64_t>(busiest_, bytes_ - before);
+      const std::lock_guard lock(mutex_);
+      per_second_.push_back(bytes_ - before);
       before = bytes_;
       second_ns = now_ns;
     }

@@ -5,8 +5,10 @@
 
 #include <atomic>
 #include <cstdint>
+#include <mutex>
 #include <string>
 #include <thread>
+#include <vector>
 
 namespace vps::bench {
 
@@ -29,15 +31,20 @@ class LossyWire {
   /// Bytes and packets that were put on the wire, with all headers, both ways.
   [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
   [[nodiscard]] std::uint64_t packets() const { return packets_; }
-  /// Bytes in the second that had most.
-  [[nodiscard]] std::uint64_t busiest() const { return busiest_; }
+  /// Bytes of each whole second so far.
+  [[nodiscard]] std::vector<std::uint64_t> perSecond() const {
+    const std::lock_guard lock(mutex_);
+    return per_second_;
+  }
 
  private:
   void carry();
 
   WireFaults faults_;
   int ends_[2] = {-1, -1};
-  std::atomic<std::uint64_t> bytes_{0}, packets_{0}, busiest_{0};
+  std::atomic<std::uint64_t> bytes_{0}, packets_{0};
+  mutable std::mutex mutex_;
+  std::vector<std::uint64_t> per_second_;
   std::atomic<bool> is_ending_{false};
   std::thread thread_;
 };

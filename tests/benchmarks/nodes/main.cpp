@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vps_bench_nodes [latency|run SCENE|wire SCENE|kills N|kills-udp N|clock SECONDS|watchers SCENE|hostile
-// SCENE| endurance SECONDS]...: without words, all rows, which take some 100 minutes.
+// vps_bench_nodes [latency|run SCENE|wire SCENE|links|kills N|kills-udp N|clock SECONDS|watchers SCENE|
+// hostile SCENE|endurance SECONDS]...: without words, all rows, which take some 100 minutes.
 #include <cstdio>
 #include <cstdlib>
 #include <string>
@@ -27,6 +27,7 @@ int main(int argc, char** argv) {
              VPS_SCENE_FOLDER "/bearing_block/scene.toml",
              "wire",
              VPS_SCENE_FOLDER "/peg_in_hole/scene.toml",
+             "links",
              "kills",
              "100",
              "clock",
@@ -38,15 +39,18 @@ int main(int argc, char** argv) {
              "endurance",
              "3600"};
   std::printf("| case | bar | measured | |\n|---|---|---|---|\n");
+  std::fflush(stdout);  // before rows of other processes
   bool is_good = true;
   for (std::size_t i = 0; i < words.size(); ++i) {
     const bool has_more = i + 1 < words.size();
     if (words[i] == "latency")
-      is_good = latencyRows(10) && is_good;
+      is_good = iceoryxRow(10) && latencyRows(10) && is_good;
     else if (words[i] == "run" && has_more)
       is_good = runRows(words[++i]) && is_good;
     else if (words[i] == "wire" && has_more)
       is_good = wireRows(words[++i]) && is_good;
+    else if (words[i] == "links")
+      is_good = linkRows() && is_good;
     else if (words[i] == "kills" && has_more)
       is_good = killRows(std::atoi(words[++i].c_str()), "") && is_good;
     else if (words[i] == "kills-udp" && has_more)

@@ -11,10 +11,14 @@ void printRow(const std::string& what, const std::string& bar, const std::string
 
 /// Device to render and back at 1600 Hz between two processes, against the same calls within one.
 bool latencyRows(double seconds);
+/// The same bytes through iceoryx, for comparison with our shared memory.
+bool iceoryxRow(double seconds);
 /// A scene in three processes and in one, by the clock.
 bool runRows(const std::string& scene);
 /// The same with device and render in two network namespaces, joined by a wire without and with faults.
 bool wireRows(const std::string& scene);
+/// What the link carries, against wave variables and passivity controllers, in simulated time.
+bool linkRows();
 /// kill -9 of each node in turn.
 /// @param network  interface; empty: shared memory
 bool killRows(int kills, const std::string& network);

@@ -73,7 +73,8 @@ struct DrawOptions {
   double force_full_scale_N = 15;       ///< force whose arrow has a sixth of the picture's size
   int supersampling = 2;  ///< n x n samples per pixel besides multisampling: 1 fast, 2 for print
   /// For a view that moves: without shadows, ambient occlusion and outlines, and scenes of more than
-  /// kDraftTriangles are coarser.
+  /// kDraftTriangles are coarser. Where only parts and marks moved since the last draft, only the rectangle
+  /// around them is drawn again, with the same bits.
   bool is_draft = false;
 
   bool operator==(const DrawOptions&) const = default;
@@ -110,10 +111,13 @@ class VPS_VIEWER_API Renderer {
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;
 
-  /// Draws one picture. Half a million triangles at 1280x960 take about a second on two cores with llvmpipe.
+  /// Draws one picture. Half a million triangles at 1280x720 take 0.34 s of processor time with llvmpipe.
   /// Throws std::runtime_error, which says what helps, where OpenGL is out of memory or the graphics card was
   /// reset; then only a new Renderer draws again.
   Image render(const scenes::Snapshot& snapshot, const Camera& camera, const DrawOptions& options = {});
+
+  /// Whether the last picture was drawn as a whole: false for a draft in which only parts and marks moved.
+  [[nodiscard]] bool drewWhole() const;
 
   /// "llvmpipe (LLVM 15.0.6, 256 bits), OpenGL 4.5, 4 samples".
   [[nodiscard]] std::string description() const;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The colour image: background, parts, cut faces, edges, marks, and the part's target.
+// The colour image: parts, cut faces, edges, marks, and the part's target, over the background.
 #include <algorithm>
 #include <optional>
 
@@ -56,9 +56,8 @@ void drawGhost(const DrawnBody& ghost, const Picture& picture) {
   glDisable(GL_BLEND);
 }
 
-void drawMarks(const scenes::Snapshot& snapshot, const Picture& picture) {
+void drawMarks(const MarkList& marks, const Picture& picture) {
   const View& view = picture.view;
-  const MarkList marks = listMarks(snapshot, view.X_CW, 2 * view.detail_m, picture.options);
   const gl::Program& program = picture.gl.programs.mark;
   program.use();
   program.set("projection", view.projection);
@@ -80,62 +79,82 @@ void drawMarks(const scenes::Snapshot& snapshot, const Picture& picture) {
 
 }  // namespace
 
-void renderColor(const Picture& picture, const scenes::Snapshot& snapshot, const DrawnBody* target) {
+void renderBehind(const Picture& picture) {
+  const FrameTargets& frame = *picture.gl.frame;
+  glBindFramebuffer(GL_FRAMEBUFFER, frame.behind_target.id());
+  glViewport(0, 0, frame.width, frame.height);
+  glDisable(GL_DEPTH_TEST);
+  picture.gl.drawFullScreen(picture.gl.programs.background);
+  if (picture.options.show_ground && !picture.options.is_draft) drawFloorShadow(picture);
+  glEnable(GL_DEPTH_TEST);
+}
+
+void renderColor(const Picture& picture, const MarkList& marks, const DrawnBody* target) {
   const GpuResources& gl = picture.gl;
   const FrameTargets& frame = *gl.frame;
   glBindFramebuffer(GL_FRAMEBUFFER, frame.color_target.id());
   glViewport(0, 0, frame.width * frame.factor, frame.height * frame.factor);
-  glClear(GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
-  glDisable(GL_DEPTH_TEST);
-  gl.drawFullScreen(gl.programs.background);
-  glEnable(GL_DEPTH_TEST);
-  if (picture.options.show_ground && !picture.options.is_draft) drawFloorShadow(picture);
+  glEnable(GL_SCISSOR_TEST);
+  const PixelRect region = scaled(picture.region, frame.factor);
+  glScissor(region.x, region.y, region.width, region.height);
+  glClearColor(0, 0, 0, 0);
+  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
   setStudio(gl.programs.mesh, picture);
   drawMeshes(gl.programs.mesh, picture.bodies, picture.view, picture.view.projection, true);
   setStudio(gl.programs.cap, picture);
   drawCaps(gl.programs.cap, picture);
   if (picture.options.show_edges) drawEdges(picture);
-  drawMarks(snapshot, picture);
+  drawMarks(marks, picture);
   if (target != nullptr) drawGhost(*target, picture);
+  glDisable(GL_SCISSOR_TEST);
 }
 
 namespace {
 
-void drawFlash(const FrameTargets& frame, bool is_lit) {
-  const int size_px = flashSize_px(frame.height);
-  const float light = is_lit ? 1.0f : 0.0f;
-  glEnable(GL_SCISSOR_TEST);
-  glScissor(0, 0, size_px, size_px);
-  glClearColor(light, light, light, 1);
-  glClear(GL_COLOR_BUFFER_BIT);
-  glDisable(GL_SCISSOR_TEST);
+void readBack(const PixelRect& rect, Image& image) {
+  std::vector<std::uint8_t> rgba(std::size_t(4) * rect.width * rect.height);
+  glReadPixels(rect.x, rect.y, rect.width, rect.height, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
+  for (int y = 0; y < rect.height; ++y) {
+    const std::uint8_t* from = &rgba[std::size_t(4) * rect.width * y];
+    std::uint8_t* to = image.at(rect.x, image.height - 1 - rect.y - y);  // OpenGL's rows start at the bottom
+    for (int x = 0; x < rect.width; ++x) std::copy_n(from + 4 * x, 3, to + 3 * x);
+  }
 }
 
 }  // namespace
 
-Image resolvePicture(const GpuResources& gl, std::optional<bool> flash) {
+void resolvePicture(const Picture& picture, Image& image) {
+  const GpuResources& gl = picture.gl;
   const FrameTargets& f = *gl.frame;
-  const int w = f.width * f.factor, h = f.height * f.factor;
-  glBlitNamedFramebuffer(f.color_target.id(), f.resolved_target.id(), 0, 0, w, h, 0, 0, w, h,
-                         GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  const PixelRect& region = picture.region;
   glBindFramebuffer(GL_FRAMEBUFFER, f.shown_target.id());
   glViewport(0, 0, f.width, f.height);
   glDisable(GL_DEPTH_TEST);
-  glBindTextureUnit(0, f.resolved.id());
-  gl.programs.final.set("linear_picture", 0);
-  gl.programs.final.set("factor", f.factor);
-  gl.drawFullScreen(gl.programs.final);
-  if (flash) drawFlash(f, *flash);
+  glEnable(GL_SCISSOR_TEST);
+  glScissor(region.x, region.y, region.width, region.height);
+  glBindTextureUnit(0, f.color.id());
+  glBindTextureUnit(1, f.behind.id());
+  const gl::Program& program = gl.finalProgram();
+  program.set("parts", 0);
+  program.set("behind", 1);
+  gl.drawFullScreen(program);
+  glDisable(GL_SCISSOR_TEST);
   glEnable(GL_DEPTH_TEST);
-  std::vector<std::uint8_t> rgba(std::size_t(4) * f.width * f.height);
-  glReadPixels(0, 0, f.width, f.height, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
-  Image image(f.width, f.height);
-  for (int y = 0; y < f.height; ++y) {
-    const std::uint8_t* row =
-        &rgba[std::size_t(4) * f.width * (f.height - 1 - y)];  // OpenGL's rows start at the bottom
-    for (int x = 0; x < f.width; ++x) std::copy_n(row + 4 * x, 3, image.at(x, y));
-  }
-  return image;
+  readBack(region, image);
+}
+
+void drawFlash(const GpuResources& gl, bool is_lit, Image& image) {
+  const FrameTargets& frame = *gl.frame;
+  const int size_px = flashSize_px(frame.height);
+  const PixelRect square = intersection({0, 0, size_px, size_px}, {0, 0, frame.width, frame.height});
+  const float light = is_lit ? 1.0f : 0.0f;
+  glBindFramebuffer(GL_FRAMEBUFFER, frame.shown_target.id());
+  glEnable(GL_SCISSOR_TEST);
+  glScissor(square.x, square.y, square.width, square.height);
+  glClearColor(light, light, light, 1);
+  glClear(GL_COLOR_BUFFER_BIT);
+  glDisable(GL_SCISSOR_TEST);
+  readBack(square, image);
 }
 
 }  // namespace vps::viewer::inline v0

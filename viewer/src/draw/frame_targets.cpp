@@ -19,32 +19,30 @@ gl::Framebuffer targetOf(const gl::Texture& texture, const char* what,
 /// llvmpipe has 4 samples, GPUs 8 and more; more than 4 do not improve a supersampled picture visibly.
 int usableSamples() {
   GLint color = 0, depth = 0;
-  glGetIntegerv(GL_MAX_SAMPLES, &color);
-  glGetInternalformativ(GL_RENDERBUFFER, GL_DEPTH32F_STENCIL8, GL_SAMPLES, 1, &depth);
+  glGetIntegerv(GL_MAX_COLOR_TEXTURE_SAMPLES, &color);
+  glGetInternalformativ(GL_RENDERBUFFER, GL_DEPTH24_STENCIL8, GL_SAMPLES, 1, &depth);
   return std::clamp(std::min(color, depth), 1, 4);
 }
 
 }  // namespace
 
-FrameTargets::FrameTargets(int width, int height, int factor)
+FrameTargets::FrameTargets(int width, int height, int factor, bool is_draft)
     : width(width), height(height), factor(factor), samples(usableSamples()) {
-  geometry = gl::makeTexture(GL_RGBA32F, width, height, GL_NEAREST);
-  geometry_depth = gl::makeRenderbuffer(GL_DEPTH32F_STENCIL8, width, height, 0);
+  const int lit_width = is_draft ? 1 : width, lit_height = is_draft ? 1 : height;
+  geometry = gl::makeTexture(GL_RGBA32F, lit_width, lit_height, GL_NEAREST);
+  geometry_depth = gl::makeRenderbuffer(GL_DEPTH24_STENCIL8, lit_width, lit_height, 0);
   geometry_target = targetOf(geometry, "normals", &geometry_depth);
-  occlusion_raw = gl::makeTexture(GL_RG8, width, height, GL_NEAREST);
+  occlusion_raw = gl::makeTexture(GL_RG8, lit_width, lit_height, GL_NEAREST);
   occlusion_raw_target = targetOf(occlusion_raw, "occlusion", &geometry_depth);
-  occlusion = gl::makeTexture(GL_RG8, width, height, GL_LINEAR);
+  occlusion = gl::makeTexture(GL_RG8, lit_width, lit_height, GL_LINEAR);
   occlusion_target = targetOf(occlusion, "blurred occlusion", &geometry_depth);
 
   const int w = width * factor, h = height * factor;
-  color = gl::makeRenderbuffer(GL_RGBA16F, w, h, samples);
-  depth = gl::makeRenderbuffer(GL_DEPTH32F_STENCIL8, w, h, samples);
-  color_target = gl::makeFramebuffer();
-  glNamedFramebufferRenderbuffer(color_target.id(), GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, color.id());
-  glNamedFramebufferRenderbuffer(color_target.id(), GL_DEPTH_STENCIL_ATTACHMENT, GL_RENDERBUFFER, depth.id());
-  gl::requireComplete(color_target, "colour");
-  resolved = gl::makeTexture(GL_RGBA16F, w, h, GL_NEAREST);
-  resolved_target = targetOf(resolved, "resolved colour");
+  behind = gl::makeTexture(GL_RGBA16F, width, height, GL_NEAREST);
+  behind_target = targetOf(behind, "background");
+  color = gl::makeMultisampleTexture(GL_RGBA16F, w, h, samples);
+  depth = gl::makeRenderbuffer(GL_DEPTH24_STENCIL8, w, h, samples);
+  color_target = targetOf(color, "colour", &depth);
   shown = gl::makeRenderbuffer(GL_RGBA8, width, height, 0);
   shown_target = gl::makeFramebuffer();
   glNamedFramebufferRenderbuffer(shown_target.id(), GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, shown.id());
@@ -62,7 +60,7 @@ ShadowTargets::ShadowTargets() {
 
   floor_a = gl::makeTexture(GL_RG16F, kFloorSize, kFloorSize, GL_LINEAR);
   floor_b = gl::makeTexture(GL_RG16F, kFloorSize, kFloorSize, GL_LINEAR);
-  floor_depth = gl::makeRenderbuffer(GL_DEPTH32F_STENCIL8, kFloorSize, kFloorSize, 0);
+  floor_depth = gl::makeRenderbuffer(GL_DEPTH24_STENCIL8, kFloorSize, kFloorSize, 0);
   floor_a_target = targetOf(floor_a, "the floor", &floor_depth);
   floor_b_target = targetOf(floor_b, "the blurred floor");
 }

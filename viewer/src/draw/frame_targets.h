@@ -11,21 +11,25 @@ struct FrameTargets {
   int factor;         ///< supersampling: the colour image is factor times as wide and high
   int samples;        ///< multisampling on top of it
 
-  // Normal and depth of the visible surface, for ambient occlusion, at the size of the finished picture.
+  // Normal and depth of the visible surface, for ambient occlusion, at the size of the finished picture. In a
+  // draft, which has none, they are one pixel.
   gl::Texture geometry;
   gl::Renderbuffer geometry_depth;
   gl::Framebuffer geometry_target;
   gl::Texture occlusion_raw, occlusion;
   gl::Framebuffer occlusion_raw_target, occlusion_target;
-  // Linear colour: multisampled with stencil, then resolved, then converted to sRGB.
-  gl::Renderbuffer color, depth;
+  // Background and the shadow on the floor, in linear colour: they need one sample a pixel only.
+  gl::Texture behind;
+  gl::Framebuffer behind_target;
+  // Linear colour of all else with its opacity, multisampled with stencil, then laid over `behind` and
+  // converted to sRGB.
+  gl::Texture color;
+  gl::Renderbuffer depth;
   gl::Framebuffer color_target;
-  gl::Texture resolved;
-  gl::Framebuffer resolved_target;
   gl::Renderbuffer shown;
   gl::Framebuffer shown_target;
 
-  FrameTargets(int width, int height, int factor);
+  FrameTargets(int width, int height, int factor, bool is_draft);
 };
 
 /// The render targets whose size does not depend on the picture's.

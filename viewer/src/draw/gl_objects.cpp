@@ -83,6 +83,14 @@ Texture makeTexture(GLenum format, int width, int height, GLenum filter) {
   return Texture(id);
 }
 
+Texture makeMultisampleTexture(GLenum format, int width, int height, int samples) {
+  GLuint id = 0;
+  glCreateTextures(GL_TEXTURE_2D_MULTISAMPLE, 1, &id);
+  // Fixed sample positions, as those of the renderbuffer that has the depth.
+  glTextureStorage2DMultisample(id, samples, format, width, height, GL_TRUE);
+  return Texture(id);
+}
+
 Renderbuffer makeRenderbuffer(GLenum format, int width, int height, int samples) {
   GLuint id = 0;
   glCreateRenderbuffers(1, &id);

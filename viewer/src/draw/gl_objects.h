@@ -72,6 +72,8 @@ void addAttribute(const VertexArray& array, const Buffer& buffer, GLuint locatio
 
 /// A two-dimensional texture, clamped to its edge.
 Texture makeTexture(GLenum format, int width, int height, GLenum filter);
+/// One that is drawn into and read sample by sample.
+Texture makeMultisampleTexture(GLenum format, int width, int height, int samples);
 Renderbuffer makeRenderbuffer(GLenum format, int width, int height, int samples);
 Framebuffer makeFramebuffer();
 /// Throws std::runtime_error with `what` and the status when the driver rejects the combination of

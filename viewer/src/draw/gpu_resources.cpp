@@ -11,10 +11,19 @@ GpuResources::GpuResources() {
   gl::addAttribute(quad, quad_corners, 0, 2, 0, 2 * sizeof(float));
 }
 
-void GpuResources::resizeFrame(int width, int height, int factor) {
-  if (frame && frame->width == width && frame->height == height && frame->factor == factor) return;
-  frame.reset();  // first, so that two sizes are never in memory at once
-  frame = std::make_unique<FrameTargets>(width, height, factor);
+bool GpuResources::resizeFrame(int width, int height, int factor, bool is_draft) {
+  std::unique_ptr<FrameTargets>& owner = is_draft ? draft_ : full_;
+  frame = owner.get();
+  if (frame != nullptr && frame->width == width && frame->height == height && frame->factor == factor)
+    return false;
+  owner.reset();  // first, so that two sizes are never in memory at once
+  owner = std::make_unique<FrameTargets>(width, height, factor, is_draft);
+  frame = owner.get();
+  if (!final_.contains(factor))
+    final_.try_emplace(factor, "final", glsl::kFullScreenVertex,
+                       "const int factor = " + std::to_string(factor) +
+                           ", samples = " + std::to_string(frame->samples) + ";\n" + glsl::kFinalFragment);
+  return true;
 }
 
 void GpuResources::drawFullScreen(const gl::Program& program) const {

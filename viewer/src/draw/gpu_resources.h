@@ -29,25 +29,31 @@ struct ShaderPrograms {
   gl::Program background{"background", glsl::kFullScreenVertex, glsl::kBackgroundFragment};
   gl::Program line{"line", glsl::kLineVertex, glsl::kFlatFragment};
   gl::Program mark{"mark", glsl::kMarkVertex, glsl::kMarkFragment};
-  gl::Program final{"final", glsl::kFullScreenVertex, glsl::kFinalFragment};
 };
 
 struct GpuResources {
   ShaderPrograms programs;
   ShadowTargets shadows;
-  std::unique_ptr<FrameTargets> frame;                     ///< of the current picture's size
+  FrameTargets* frame = nullptr;                           ///< of the current picture
   std::map<const Mesh*, std::unique_ptr<GpuMesh>> meshes;  ///< equal parts share one
   MarkShape arrow = MarkShape::arrow(), disc = MarkShape::disc();
   gl::Buffer quad_corners;
   gl::VertexArray quad = gl::makeVertexArray(), empty = gl::makeVertexArray();
 
   GpuResources();
-  /// Makes `frame` have this size.
-  void resizeFrame(int width, int height, int factor);
+  /// Makes `frame` have this size. Drafts have one of their own, which keeps the last of them.
+  /// @return whether it is a new one, which shows nothing yet
+  bool resizeFrame(int width, int height, int factor, bool is_draft);
+  /// kFinalFragment for `frame`.
+  [[nodiscard]] const gl::Program& finalProgram() const { return final_.at(frame->factor); }
   /// Runs a program that uses kFullScreenVertex on every pixel.
   void drawFullScreen(const gl::Program& program) const;
   /// Runs a program that uses kCapVertex: one square in a plane.
   void drawSquare(const gl::Program& program) const;
+
+ private:
+  std::unique_ptr<FrameTargets> full_, draft_;
+  std::map<int, gl::Program> final_;  ///< by FrameTargets::factor
 };
 
 }  // namespace vps::viewer::inline v0

@@ -21,7 +21,7 @@ double nearest_m(const DrawnBody& body, const View& view) {
 }  // namespace
 
 void drawMeshes(const gl::Program& program, const std::vector<DrawnBody>& bodies, const View& view,
-                const Eigen::Matrix4f& projection, bool is_shaded, bool is_shadow) {
+                const Eigen::Matrix4f& projection, bool is_shaded, std::optional<Detail> detail) {
   program.use();
   program.set("projection", projection);
   for (const DrawnBody& body : bodies) {
@@ -31,8 +31,8 @@ void drawMeshes(const gl::Program& program, const std::vector<DrawnBody>& bodies
     program.set("X_CP", toMatrix(body.X_CP));
     program.set("cut_C", body.is_cut ? view.cut_C : kNoCut);
     if (is_shaded) program.set("color", body.color);
-    if (is_shadow || body.detail != Detail::Full || body.is_cut)
-      body.mesh->draw(is_shadow ? Detail::Shadow : body.detail);
+    if (detail || body.detail != Detail::Full || body.is_cut)
+      body.mesh->draw(detail.value_or(body.detail));
     else
       body.mesh->drawAt(view.px_m / nearest_m(body, view));
     glDisable(GL_CULL_FACE);

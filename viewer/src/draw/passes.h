@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "draw/gpu_resources.h"
+#include "draw/marks.h"
+#include "draw/screen_box.h"
 #include "draw/view.h"
 
 namespace vps::viewer::inline v0 {
@@ -18,6 +20,7 @@ struct Picture {
   const View& view;
   const DrawOptions& options;
   const std::vector<DrawnBody>& bodies;
+  PixelRect region;  ///< of the finished picture: what the colour image is drawn in
 };
 
 // shadow_pass.cpp
@@ -25,7 +28,7 @@ struct Picture {
 void renderKeyShadow(const Picture& picture);
 /// How close the nearest part above each place of the floor is, blurred.
 void renderFloorShadow(const Picture& picture);
-/// Lays the floor's shadow under the picture.
+/// Lays the floor's shadow on the background.
 void drawFloorShadow(const Picture& picture);
 
 // occlusion_pass.cpp
@@ -37,19 +40,23 @@ void renderOcclusion(const Picture& picture);
 void lightEverything(const Picture& picture);
 
 // color_pass.cpp
-/// The colour image: background, parts, cut faces, edges, marks, target.
+/// The background and the floor's shadow, which all else is laid over.
+void renderBehind(const Picture& picture);
+/// The colour image: parts, cut faces, edges, marks, target.
 /// @param target the part at its target pose; null: none
-void renderColor(const Picture& picture, const scenes::Snapshot& snapshot, const DrawnBody* target);
-/// Averages the samples, converts to sRGB and reads the picture back.
-/// @param flash  DrawOptions::show_flash: whether something touches; none: no square
-Image resolvePicture(const GpuResources& gl, std::optional<bool> flash);
+void renderColor(const Picture& picture, const MarkList& marks, const DrawnBody* target);
+/// Averages the samples, converts to sRGB and reads the region into `image`, which has the picture's size.
+void resolvePicture(const Picture& picture, Image& image);
+/// DrawOptions::show_flash: draws the square and reads it back.
+void drawFlash(const GpuResources& gl, bool is_lit, Image& image);
 
 // What several passes use.
 // mesh_drawing.cpp
 /// @param is_shaded whether the program takes a colour
-/// @param is_shadow large scenes have fewer triangles (Detail::Shadow)
+/// @param detail    null: as much as the view shows
 void drawMeshes(const gl::Program& program, const std::vector<DrawnBody>& bodies, const View& view,
-                const Eigen::Matrix4f& projection, bool is_shaded, bool is_shadow = false);
+                const Eigen::Matrix4f& projection, bool is_shaded,
+                std::optional<Detail> detail = std::nullopt);
 // section_caps.cpp
 /// The cut faces of all parts that the section passes through.
 void drawCaps(const gl::Program& program, const Picture& picture);

@@ -5,6 +5,7 @@
 #include <exception>
 
 #include "draw/egl_context.h"
+#include "draw/last_draft.h"
 #include "draw/overlay.h"
 #include "draw/passes.h"
 #include "draw/visible_parts.h"
@@ -26,6 +27,8 @@ struct Renderer::Impl {
   std::vector<PartExtent> parts;
   Lettering lettering;
   std::string description;
+  std::optional<LastDraft> last_draft;  ///< none: the next draft is drawn as a whole
+  bool drew_whole = false;
 
   explicit Impl(const RenderScene& scene) : parts(partExtents(scene)) {
     const EglContext::Current current(context);
@@ -94,6 +97,10 @@ struct Renderer::Impl {
     target.is_cut = options.cut && options.cut->cuts_hand;
     return target;
   }
+
+  Image drawInFull(const scenes::Snapshot& snapshot, const Camera& camera, const DrawOptions& options);
+  /// Draws only what changed since the last draft; the pixels are those of a draft that is drawn as a whole.
+  Image drawDraft(const scenes::Snapshot& snapshot, const Camera& camera, const DrawOptions& options);
 };
 
 Renderer::Renderer(const RenderScene& scene) : impl_(std::make_unique<Impl>(scene)) {}
@@ -104,35 +111,100 @@ std::string Renderer::description() const {
   return impl_->description;
 }
 
+namespace {
+
+/// As a draft shows it: what is drawn on the finished picture is none of its pixels.
+DrawOptions withoutOverlay(DrawOptions options) {
+  options.title.clear();
+  options.caption.clear();
+  options.show_legend = options.show_flash = false;
+  return options;
+}
+
+}  // namespace
+
 Image Renderer::render(const scenes::Snapshot& snapshot, const Camera& camera, const DrawOptions& options) {
   Impl& impl = *impl_;
   const EglContext::Current current(impl.context);
   DrawOptions clamped = options;
   clamped.width = pictureLength_px(options.width);
   clamped.height = pictureLength_px(options.height);
-  impl.gl->resizeFrame(clamped.width, clamped.height, std::clamp(options.supersampling, 1, 4));
+  if (impl.gl->resizeFrame(clamped.width, clamped.height, std::clamp(options.supersampling, 1, 4),
+                           clamped.is_draft) &&
+      clamped.is_draft)
+    impl.last_draft.reset();
 
   glEnable(GL_DEPTH_TEST);
-  glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  // Opacity adds up as that of layers, because the picture is laid over its background at the end.
+  glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
   glClearStencil(0);
-  const View view = makeView(visibleBounds(impl.parts, snapshot, clamped.show_waiting, clamped.show_target),
-                             camera, clamped);
-  const std::vector<DrawnBody> bodies = impl.listBodies(snapshot, view, clamped);
-  const std::optional<DrawnBody> target = impl.targetOf(snapshot, view, clamped);
-  const Picture picture = {*impl.gl, view, clamped, bodies};
-  if (clamped.is_draft) {
-    lightEverything(picture);
-  } else {
-    renderKeyShadow(picture);
-    if (clamped.show_ground) renderFloorShadow(picture);
-    renderGeometry(picture);
-    renderOcclusion(picture);
-  }
-  renderColor(picture, snapshot, target ? &*target : nullptr);
-  Image image = resolvePicture(
-      *impl.gl, options.show_flash ? std::optional(totalForce_N(snapshot.contacts) > 0) : std::nullopt);
+  Image image = clamped.is_draft ? impl.drawDraft(snapshot, camera, clamped)
+                                 : impl.drawInFull(snapshot, camera, clamped);
+  if (options.show_flash) drawFlash(*impl.gl, totalForce_N(snapshot.contacts) > 0, image);
   gl::requireSound();
   drawOverlay(image, snapshot, options, {kHandColor, kHandColor}, impl.lettering);
+  return image;
+}
+
+bool Renderer::drewWhole() const {
+  return impl_->drew_whole;
+}
+
+Image Renderer::Impl::drawInFull(const scenes::Snapshot& snapshot, const Camera& camera,
+                                 const DrawOptions& options) {
+  drew_whole = true;
+  const View view =
+      makeView(visibleBounds(parts, snapshot, options.show_waiting, options.show_target), camera, options);
+  const std::vector<DrawnBody> bodies = listBodies(snapshot, view, options);
+  const std::optional<DrawnBody> target = targetOf(snapshot, view, options);
+  const Picture picture = {*gl, view, options, bodies, {0, 0, options.width, options.height}};
+  renderKeyShadow(picture);
+  if (options.show_ground) renderFloorShadow(picture);
+  renderGeometry(picture);
+  renderOcclusion(picture);
+  renderBehind(picture);
+  renderColor(picture, listMarks(snapshot, view.X_CW, 2 * view.detail_m, options),
+              target ? &*target : nullptr);
+  Image image(options.width, options.height);
+  resolvePicture(picture, image);
+  return image;
+}
+
+Image Renderer::Impl::drawDraft(const scenes::Snapshot& snapshot, const Camera& camera,
+                                const DrawOptions& options) {
+  DraftContents next;
+  next.box_W = coarseBounds(visibleBounds(parts, snapshot, options.show_waiting, options.show_target),
+                            last_draft ? &last_draft->contents.box_W : nullptr);
+  next.camera = camera;
+  next.options = withoutOverlay(options);
+  const View view = makeView(next.box_W, camera, options);
+  next.bodies = listBodies(snapshot, view, options);
+  next.target = targetOf(snapshot, view, options);
+  next.marks = listMarks(snapshot, view.X_CW, 2 * view.detail_m, options);
+
+  std::optional<PixelRect> changed;
+  if (last_draft) changed = changedPixels(last_draft->contents, next, view, options.width, options.height);
+  drew_whole = !changed;
+  Image image = last_draft ? std::move(last_draft->image) : Image(options.width, options.height);
+  last_draft.reset();  // until this one is drawn
+  std::vector<DrawnBody> shown = next.bodies;
+  if (changed)
+    std::erase_if(shown, [&](const DrawnBody& body) {
+      return intersection(*changed, boxOnScreen(body, view, options.width, options.height,
+                                                lineMargin_px(options.height)))
+          .isEmpty();
+    });
+  const Picture picture = {*gl, view, options, shown,
+                           changed.value_or(PixelRect{0, 0, options.width, options.height})};
+  if (!changed) {
+    lightEverything(picture);
+    renderBehind(picture);
+  }
+  if (!picture.region.isEmpty()) {
+    renderColor(picture, next.marks, next.target ? &*next.target : nullptr);
+    resolvePicture(picture, image);
+  }
+  last_draft = LastDraft{std::move(next), image};
   return image;
 }
 

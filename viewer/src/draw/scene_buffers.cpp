@@ -46,9 +46,9 @@ GpuMesh::GpuMesh(const Mesh& mesh, const std::vector<std::array<float, 3>>* vert
 }
 
 void GpuMesh::addLevels(CoarseMesh& coarse) {
-  constexpr std::size_t kFewest = 5000;                   // triangles. assumed: fewer cost little
-  constexpr std::array<double, 3> kCells = {24, 48, 96};  // along the diagonal
-  constexpr double kWorthwhile = 0.7;                     // of the triangles of the level before
+  constexpr std::size_t kFewest = 5000;                           // triangles. assumed: fewer cost little
+  constexpr std::array<double, 5> kCells = {24, 34, 48, 68, 96};  // along the diagonal
+  constexpr double kWorthwhile = 0.7;                             // of the triangles of the level before
   std::size_t before = shading.indices.size();
   if (before / 3 < kFewest) return;
   for (auto cells = kCells.rbegin(); cells != kCells.rend(); ++cells) {
@@ -61,7 +61,7 @@ void GpuMesh::addLevels(CoarseMesh& coarse) {
 }
 
 void GpuMesh::drawAt(double px_per_m) const {
-  constexpr double kCell_px = 5;  // a surface then stays within a pixel or so, see CoarseMesh
+  constexpr double kCell_px = 8;  // a surface then stays within a tenth of a pixel or so, see CoarseMesh
   const auto level =
       std::ranges::find_if(levels_, [&](const Level& each) { return each.cell_m * px_per_m < kCell_px; });
   const Indices& drawn = level == levels_.end() ? of(Detail::Full) : level->indices;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The hatched cut faces of a section, found with the stencil buffer.
-#include <algorithm>
 #include <cmath>
 
 #include "draw/box_corners.h"
 #include "draw/passes.h"
+#include "draw/screen_box.h"
 
 namespace vps::viewer::inline v0 {
 namespace {
@@ -12,40 +12,14 @@ namespace {
 using Eigen::Vector2f;
 using Eigen::Vector3f;
 
-/// Where a part lies in the viewport, and whether the section passes through it.
-struct ScreenBox {
-  GLint x, y;
-  GLsizei width, height;
-  bool meets_plane;
-};
-
-ScreenBox boxOnScreen(const DrawnBody& body, const View& view) {
-  GLint viewport[4];
-  glGetIntegerv(GL_VIEWPORT, viewport);
-  ScreenBox whole = {0, 0, viewport[2], viewport[3], false};
-  Eigen::Array2d low(1, 1), high(-1, -1);
-  bool is_near_side = false, is_far_side = false, reaches_eye = false;
+/// Whether the section passes through the part's box.
+bool meetsPlane(const DrawnBody& body, const View& view) {
+  bool is_near_side = false, is_far_side = false;
   for (const Vec3& corner_P : corners(body.mesh->bounds_P)) {
     const Vec3 p_C = body.X_CP * (corner_P - body.mesh->shading.center);
     (view.cut_C.head<3>().cast<double>().dot(p_C) > view.cut_C.w() ? is_near_side : is_far_side) = true;
-    if (p_C.z() > -view.near_m) {
-      reaches_eye = true;
-      continue;
-    }
-    const Eigen::Array2d ndc = (p_C.head<2>().array() / -p_C.z() - view.shift.cast<double>().array()) /
-                               view.half_view.cast<double>().array();
-    low = low.min(ndc);
-    high = high.max(ndc);
   }
-  whole.meets_plane = is_near_side && is_far_side;
-  if (reaches_eye || !whole.meets_plane) return whole;
-  low = low.max(-1.0);
-  high = high.min(1.0);
-  whole.x = static_cast<GLint>(std::floor(0.5 * (low.x() + 1) * viewport[2])) - 1;
-  whole.y = static_cast<GLint>(std::floor(0.5 * (low.y() + 1) * viewport[3])) - 1;
-  whole.width = std::max(0, static_cast<GLint>(std::ceil(0.5 * (high.x() + 1) * viewport[2])) + 1 - whole.x);
-  whole.height = std::max(0, static_cast<GLint>(std::ceil(0.5 * (high.y() + 1) * viewport[3])) + 1 - whole.y);
-  return whole;
+  return is_near_side && is_far_side;
 }
 
 /// A square in the section's plane, large enough for everything. Its axes are fixed in the plane, so that the
@@ -82,26 +56,40 @@ void markInside(const DrawnBody& body, const Picture& picture) {
   glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
 }
 
+void setScissor(const PixelRect& rect) {
+  glScissor(rect.x, rect.y, rect.width, rect.height);
+}
+
 }  // namespace
 
 void drawCaps(const gl::Program& program, const Picture& picture) {
   const View& view = picture.view;
   if (!view.has_caps) return;
   setPlane(program, view);
+  // The cost of stencil and caps is per pixel, so each part gets a scissor of its own within the pass's.
+  GLint pass[4], viewport[4];
+  glGetIntegerv(GL_SCISSOR_BOX, pass);
+  glGetIntegerv(GL_VIEWPORT, viewport);
+  const bool had_scissor = glIsEnabled(GL_SCISSOR_TEST) == GL_TRUE;
+  PixelRect within = {0, 0, viewport[2], viewport[3]};
+  if (had_scissor) within = intersection(within, {pass[0], pass[1], pass[2], pass[3]});
   glEnable(GL_STENCIL_TEST);
   glEnable(GL_SCISSOR_TEST);
   for (const DrawnBody& body : picture.bodies) {
-    if (!body.is_cut) continue;
-    const ScreenBox screen = boxOnScreen(body, view);
-    if (!screen.meets_plane) continue;
-    glScissor(screen.x, screen.y, screen.width, screen.height);  // the cost of stencil and caps is per pixel
+    if (!body.is_cut || !meetsPlane(body, view)) continue;
+    const PixelRect screen = intersection(within, boxOnScreen(body, view, viewport[2], viewport[3], 1));
+    if (screen.isEmpty()) continue;
+    setScissor(screen);
     markInside(body, picture);
     program.set("color", body.color);
     program.set("hatch", Vector2f(std::sqrt(0.5f), body.part % 2 == 0 ? std::sqrt(0.5f) : -std::sqrt(0.5f)));
     program.set("hatch_step_m", static_cast<float>(0.035 * view.detail_m * (1 + 0.25 * (body.part % 3))));
     picture.gl.drawSquare(program);
   }
-  glDisable(GL_SCISSOR_TEST);
+  if (had_scissor)
+    setScissor({pass[0], pass[1], pass[2], pass[3]});
+  else
+    glDisable(GL_SCISSOR_TEST);
   glDisable(GL_STENCIL_TEST);
 }
 

@@ -51,7 +51,8 @@ vec3 studio(vec3 p_C, vec3 n, vec3 albedo) {
   diffuse += vec3(0.76, 0.74, 0.70) * max(dot(n, kKey), 0.0) * lit;
   diffuse += vec3(0.17, 0.18, 0.20) * max(0.3 + 0.7 * dot(n, kFill), 0.0) * mix(open, 1.0, 0.5);
   diffuse += vec3(0.22, 0.23, 0.25) * max(dot(n, kRim), 0.0) * open;
-  float fresnel = 0.04 + 0.40 * pow(1.0 - n_v, 5.0);
+  float grazing = 1.0 - n_v, grazing2 = grazing * grazing;
+  float fresnel = 0.04 + 0.40 * grazing2 * grazing2 * grazing;
   vec3 mirrored = environment(reflect(-v, n)) * mix(0.35, 1.0, lit) * open;
   return albedo * diffuse + fresnel * mirrored;
 }
@@ -74,7 +75,8 @@ uniform vec3 color;
 out vec4 result;
 void main() {
   vec3 n = normalize(gl_FrontFacing ? n_C : -n_C);
-  float rim = pow(1.0 - max(dot(n, normalize(-p_C)), 0.0), 2.0);
+  float grazing = 1.0 - max(dot(n, normalize(-p_C)), 0.0);
+  float rim = grazing * grazing;
   float shade = 0.75 + 0.35 * n.y;
   result = vec4(color * shade, 0.27 + 0.40 * rim);
 }
@@ -133,9 +135,9 @@ void main() {
 }
 )";
 
-// Ambient occlusion in screen space: the share of the hemisphere over a pixel that no nearer geometry covers.
-// The sample pattern is fixed: a spiral whose rotation repeats every 4 x 4 pixels. A 4 x 4 blur afterwards
-// removes this period exactly.
+// Ambient occlusion in screen space: the share of the hemisphere over a pixel that no nearer geometry covers;
+// and the key light's soft shadow. The sample patterns are fixed and differ from pixel to pixel of a square
+// of 4 x 4, which the blur afterwards averages exactly: there a surface gets 160 directions and 64 depths.
 inline constexpr const char* kOcclusionFragment = R"(
 in vec2 uv;
 uniform sampler2D geometry;
@@ -147,15 +149,17 @@ uniform sampler2DShadow shadow_map;
 uniform mat4 shadow_from_C;
 uniform float shadow_offset_m;
 out vec2 reaching;
-const int kSamples = 20;
+const int kSamples = 10;
 
-float keyLight(vec3 p_C, vec3 n) {
+// The pixels of a square have an 8 x 8 grid of depths between them, over 10 x 10 texels.
+float keyLight(vec3 p_C, vec3 n, ivec2 tile) {
   vec4 s = shadow_from_C * vec4(p_C + shadow_offset_m * n, 1);
   vec2 texel = 1.0 / vec2(textureSize(shadow_map, 0));
+  vec2 first = 1.25 * (vec2(tile) + 0.5) - 5.0;
   float lit = 0.0;
-  for (int y = -2; y <= 2; ++y)
-    for (int x = -2; x <= 2; ++x) lit += texture(shadow_map, vec3(s.xy + 2.0 * vec2(x, y) * texel, s.z));
-  return lit / 25.0;
+  for (int y = 0; y < 2; ++y)
+    for (int x = 0; x < 2; ++x) lit += texture(shadow_map, vec3(s.xy + (first + 5.0 * vec2(x, y)) * texel, s.z));
+  return 0.25 * lit;
 }
 
 void main() {
@@ -164,15 +168,16 @@ void main() {
   if (g.w > -1e-9 || g.w < -1e8) return;
   vec3 p = vec3(((2.0 * uv - 1.0) * half_view + view_shift) * -g.w, g.w);
   vec3 n = g.xyz;
-  float lit = keyLight(p, n);
-  p += n * radius_m * 0.03;
   ivec2 tile = ivec2(gl_FragCoord.xy) & 3;
-  float turn = 6.2831853 * float(((4 * tile.x + tile.y) * 7) & 15) / 16.0;
+  float lit = keyLight(p, n, tile);
+  p += n * radius_m * 0.03;
+  float place = (float(((4 * tile.x + tile.y) * 7) & 15) + 0.5) / 16.0;
+  float turn = 6.2831853 * place;
   vec3 t = normalize(abs(n.x) < 0.8 ? cross(n, vec3(1, 0, 0)) : cross(n, vec3(0, 1, 0)));
   vec3 b = cross(n, t);
   float hidden = 0.0;
   for (int i = 0; i < kSamples; ++i) {
-    float share = (float(i) + 0.5) / float(kSamples);
+    float share = (float(i) + place) / float(kSamples);
     float angle = turn + 2.3999632 * float(i);
     float sin_t = sqrt(share);  // cosine-weighted directions
     vec3 d = t * (cos(angle) * sin_t) + b * (sin(angle) * sin_t) + n * sqrt(1.0 - share);
@@ -184,7 +189,8 @@ void main() {
     float nearby = smoothstep(0.0, 1.0, radius_m / max(abs(p.z - z), 1e-12));
     hidden += z > s.z + radius_m * 0.02 ? nearby : 0.0;
   }
-  reaching = vec2(pow(clamp(1.0 - hidden / float(kSamples), 0.0, 1.0), 1.5), lit);
+  float open = clamp(1.0 - hidden / float(kSamples), 0.0, 1.0);
+  reaching = vec2(open * sqrt(open), lit);
 }
 )";
 
@@ -333,11 +339,12 @@ void main() {
 
 // --- the finished picture ---
 
-// Averages samples in linear colour, compresses highlights instead of clipping them, and encodes as sRGB
-// [IEC 61966-2-1].
+// Averages samples in linear colour, lays them over the background, compresses highlights instead of clipping
+// them, and encodes as sRGB [IEC 61966-2-1]. Its constants `factor` and `samples` are put before it: a
+// processor takes much longer for loops whose length it does not know.
 inline constexpr const char* kFinalFragment = R"(
-uniform sampler2D linear_picture;
-uniform int factor;
+uniform sampler2DMS parts;  // colour times opacity, and opacity
+uniform sampler2D behind;
 out vec4 result;
 vec3 shoulder(vec3 c) {  // identity to 0.8, then towards 1
   vec3 over = max(c - 0.8, 0.0);
@@ -345,9 +352,15 @@ vec3 shoulder(vec3 c) {  // identity to 0.8, then towards 1
 }
 void main() {
   ivec2 first = ivec2(gl_FragCoord.xy) * factor;
+  vec3 background = texelFetch(behind, ivec2(gl_FragCoord.xy), 0).rgb;
   vec3 sum = vec3(0);
   for (int y = 0; y < factor; ++y)
-    for (int x = 0; x < factor; ++x) sum += shoulder(texelFetch(linear_picture, first + ivec2(x, y), 0).rgb);
+    for (int x = 0; x < factor; ++x) {
+      vec4 part = vec4(0);
+      for (int i = 0; i < samples; ++i) part += texelFetch(parts, first + ivec2(x, y), i);
+      part /= float(samples);
+      sum += shoulder(part.rgb + (1.0 - part.a) * background);
+    }
   vec3 c = clamp(sum / float(factor * factor), 0.0, 1.0);
   result = vec4(mix(12.92 * c, 1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, step(0.0031308, c)), 1);
 }

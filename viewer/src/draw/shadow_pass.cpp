@@ -29,7 +29,8 @@ void renderKeyShadow(const Picture& picture) {
   glClear(GL_DEPTH_BUFFER_BIT);
   glEnable(GL_POLYGON_OFFSET_FILL);
   glPolygonOffset(2, 4);
-  drawMeshes(gl.programs.depth, picture.bodies, picture.view, picture.view.shadow_projection, false, true);
+  drawMeshes(gl.programs.depth, picture.bodies, picture.view, picture.view.shadow_projection, false,
+             Detail::Shadow);
   glDisable(GL_POLYGON_OFFSET_FILL);
 }
 
@@ -48,7 +49,7 @@ void renderFloorShadow(const Picture& picture) {
   floor.set("up_C", view.up_C);
   floor.set("size_m", static_cast<float>(2 * view.radius_m));
   drawMeshes(floor, picture.bodies, view, parallelProjection(view.floor_C, half_m, -up, floorAxis(up)), false,
-             true);
+             Detail::Draft);  // blurred over a sixth of its width
 
   glDisable(GL_DEPTH_TEST);
   const gl::Program& blur = picture.gl.programs.floor_blur;

@@ -35,7 +35,8 @@ Matrix4f clipToTexture() {
 
 void setLens(View& view, const Camera& camera, const DrawOptions& options) {
   // Marks stick out of the box by up to a third of its size.
-  const double reach_m = 1.6 * view.radius_m, depth_m = -view.center_C.z();
+  const double reach_m = (options.is_draft ? 2.2 : 1.6) * view.radius_m;  // see coarseBounds()
+  const double depth_m = -view.center_C.z();
   const double far_m = std::max(depth_m + reach_m, 1e-6);
   const double near_m = std::max(depth_m - reach_m, 1e-3 * far_m);
   view.near_m = static_cast<float>(near_m);

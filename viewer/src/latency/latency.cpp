@@ -2,6 +2,7 @@
 #include "vps_viewer/latency.h"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <condition_variable>
@@ -21,18 +22,22 @@
 namespace vps::viewer::inline v0 {
 namespace {
 
-constexpr std::size_t kWarmUp = 3;  // taps: the first picture and the first sound come late
-constexpr double kMostTap_s = 2;    // of a tap with all of its pauses, for what is kept
+// Taps before those that count: the first picture comes late, and so does the first sound, since the modes of
+// the parts are found when the run begins. Without sound after the most, it is measured without.
+constexpr std::size_t kWarmUp = 3, kMostWarmUp = 100;
+constexpr double kMostTap_s = 2;  // of a tap with all of its pauses, for what is kept
 
 /// Stamps what is written to a sound card.
 class StampedOutput final : public SoundOutput {
  public:
-  StampedOutput(std::unique_ptr<SoundOutput> inner, std::vector<LatencyLog::Written>& written)
-      : inner_(std::move(inner)), written_(written) {}
+  StampedOutput(std::unique_ptr<SoundOutput> inner, std::vector<LatencyLog::Written>& written,
+                std::atomic<bool>& has_begun)
+      : inner_(std::move(inner)), written_(written), has_begun_(has_begun) {}
   void write(std::span<const float> parts, std::span<const float> beeps, const Vec3& to_L) override {
     float peak = 0;
     for (const float x : parts) peak = std::max(peak, std::abs(x));
     written_.push_back({device::monotonicSeconds(), peak});
+    has_begun_ = true;
     inner_->write(parts, beeps, to_L);
   }
   [[nodiscard]] bool isThere() const override { return inner_->isThere(); }
@@ -40,6 +45,7 @@ class StampedOutput final : public SoundOutput {
  private:
   std::unique_ptr<SoundOutput> inner_;
   std::vector<LatencyLog::Written>& written_;
+  std::atomic<bool>& has_begun_;
 };
 
 /// Keeps the device of a run, which the run deletes.
@@ -154,13 +160,15 @@ LatencyResult measureLatency(scenes::Scene scene, const LatencySettings& setting
   result.part = scene.parts[scene.steps.front().part].part.name;
   result.width = settings.width;
   result.height = settings.height;
-  const std::size_t taps = kWarmUp + settings.taps + 1;  // the last one is not seen to its end
+  const std::size_t wanted = settings.taps + 1;  // the last one is not seen to its end
+  const std::size_t most_taps = kMostWarmUp + wanted;
   LatencyLog log;
   log.steps.reserve(
-      static_cast<std::size_t>(kMostTap_s * static_cast<double>(taps) * scene.fidelity.physics_rate_hz));
+      static_cast<std::size_t>(kMostTap_s * static_cast<double>(most_taps) * scene.fidelity.physics_rate_hz));
   const auto handle = std::make_shared<TappingHandle>(
       planFor(scene),
-      static_cast<std::size_t>(kMostTap_s * static_cast<double>(taps) * scene.fidelity.haptic_rate_hz));
+      static_cast<std::size_t>(kMostTap_s * static_cast<double>(most_taps) * scene.fidelity.haptic_rate_hz));
+  std::atomic<bool> has_sound{false}, has_sounded{false};
   LiveSettings live;
   live.models = settings.models;
   live.device = [handle] { return std::make_unique<SharedHandle>(handle); };
@@ -177,7 +185,8 @@ LatencyResult measureLatency(scenes::Scene scene, const LatencySettings& setting
         why);
     result.silence = why;
     if (!card) return nullptr;
-    return std::make_unique<StampedOutput>(std::move(card), log.written);
+    has_sound = true;
+    return std::make_unique<StampedOutput>(std::move(card), log.written, has_sounded);
   };
   const Camera camera = cameraOf(scene, settings);
   double from_s = 0;
@@ -186,18 +195,20 @@ LatencyResult measureLatency(scenes::Scene scene, const LatencySettings& setting
     LiveRun run(scene, live, [&watcher] { watcher.wake(); });
     run.listenAt(camera.pose());
     run.ask();
-    while (handle->taps() < taps && (settings.stop == nullptr || !settings.stop->load())) {
+    std::size_t warm_up = kWarmUp;
+    while (handle->taps() < warm_up + wanted && (settings.stop == nullptr || !settings.stop->load())) {
       watcher.wait();
       watcher.follow(run, camera, log);
       requireGoing(run, *handle, scene);
-      if (handle->taps() < kWarmUp) from_s = device::monotonicSeconds();
+      if (has_sound && !has_sounded) warm_up = std::min(handle->taps() + kWarmUp, kMostWarmUp);
+      if (handle->taps() < warm_up) from_s = device::monotonicSeconds();
       if (settings.models.progress) {
         const LiveStatus status = run.status();
         if (handle->taps() == 0)
           settings.models.progress(status.doing, status.share);
         else
-          settings.models.progress("tapping",
-                                   static_cast<double>(handle->taps()) / static_cast<double>(taps));
+          settings.models.progress(
+              "tapping", static_cast<double>(handle->taps()) / static_cast<double>(warm_up + wanted));
       }
     }
     result.drawn_by = watcher.description();

@@ -107,6 +107,11 @@ std::string stepFacts(const scenes::StepResult& s) {
   if (s.press_needed_N > 0)
     facts.emplace_back("Force to press it in",
                        format(s.press_needed_N, "%.0f") + " N, by Lamé's formula; the hand does not feel it");
+  if (s.hoist_N > 0)
+    facts.emplace_back("Hangs on a hoist",
+                       "which carries " + format(s.hoist_N, "%.1f") +
+                           " N of its weight, as the hand may carry no more than the rest; "
+                           "forces on the hand are those of the lighter part");
   return html::facts(facts);
 }
 

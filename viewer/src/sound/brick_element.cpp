@@ -1,125 +1,143 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sound/brick_element.h"
 
-#include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <cmath>
 
 namespace vps::viewer::inline v0 {
 namespace {
 
-using Strain = Eigen::Matrix<double, 6, 3>;  ///< of a displacement: xx, yy, zz, xy, yz, zx
-using Matrix6 = Eigen::Matrix<double, 6, 6>;
-
-Matrix6 elasticityMatrix(const Elasticity& material) {
-  const double nu = material.poissons_ratio;
-  const double scale = material.youngs_modulus_Pa / ((1 + nu) * (1 - 2 * nu));
-  Matrix6 C = Matrix6::Zero();
-  C.topLeftCorner<3, 3>().setConstant(nu);
-  for (int k = 0; k < 3; ++k) {
-    C(k, k) = 1 - nu;
-    C(3 + k, 3 + k) = 0.5 - nu;
-  }
-  return scale * C;
+std::array<std::array<int, 3>, kBrickNodes> makeNodes() {
+  std::array<std::array<int, 3>, kBrickNodes> nodes{};
+  int count = 0;
+  for (int z = 0; z < 3; ++z)
+    for (int y = 0; y < 3; ++y)
+      for (int x = 0; x < 3; ++x)
+        if (int(x == 1) + int(y == 1) + int(z == 1) <= 1) nodes[count++] = {x, y, z};
+  return nodes;
 }
 
-/// The strain of a displacement field u(x) = shape(x) u, from the shape's gradient.
-Strain strainOf(const Vec3& g) {
-  Strain B = Strain::Zero();
-  B(0, 0) = B(3, 1) = B(5, 2) = g.x();
-  B(1, 1) = B(3, 0) = B(4, 2) = g.y();
-  B(2, 2) = B(4, 1) = B(5, 0) = g.z();
-  return B;
+/// The axis of the edge whose middle the node is, or -1 for a corner.
+int edgeOf(const std::array<int, 3>& node) {
+  for (int k = 0; k < 3; ++k)
+    if (node[k] == 1) return k;
+  return -1;
 }
 
-/// Gradient of a corner's trilinear shape at xi in [-1, 1]^3.
-Vec3 cornerGradient(int corner, const Vec3& xi, const Vec3& size_m) {
-  Vec3 sign, g;
-  for (int k = 0; k < 3; ++k) sign[k] = (corner >> k & 1) != 0 ? 1 : -1;
-  for (int k = 0; k < 3; ++k) {
-    const int a = (k + 1) % 3, b = (k + 2) % 3;
-    g[k] = 0.125 * sign[k] * (1 + sign[a] * xi[a]) * (1 + sign[b] * xi[b]) * 2 / size_m[k];
-  }
-  return g;
+/// The powers of x, y and z whose sums the shapes are: those of each corner's product of (1 +- x) with one
+/// coordinate more.
+const std::array<std::array<int, 3>, kBrickNodes>& monomials() {
+  static const std::array<std::array<int, 3>, kBrickNodes> kMonomials = [] {
+    std::array<std::array<int, 3>, kBrickNodes> all{};
+    int count = 0;
+    for (int i = 0; i < 27; ++i) {
+      const std::array<int, 3> powers = {i % 3, i / 3 % 3, i / 9};
+      if (int(powers[0] == 2) + int(powers[1] == 2) + int(powers[2] == 2) <= 1) all[count++] = powers;
+    }
+    return all;
+  }();
+  return kMonomials;
 }
 
-/// A brick's stiffness as it is summed over points.
-class BrickIntegral {
- public:
-  BrickIntegral(const Vec3& size_m, const Elasticity& material)
-      : size_m_(size_m), C_(elasticityMatrix(material)) {}
+/// Column i holds the coefficients of shape i: the inverse of the monomials at the nodes.
+const BrickMass& shapeCoefficients() {
+  static const BrickMass kCoefficients = [] {
+    BrickMass at_nodes;
+    for (int i = 0; i < kBrickNodes; ++i)
+      for (int m = 0; m < kBrickNodes; ++m) {
+        at_nodes(i, m) = 1;
+        for (int k = 0; k < 3; ++k) at_nodes(i, m) *= std::pow(brickNode(i)[k] - 1, monomials()[m][k]);
+      }
+    return BrickMass(at_nodes.inverse());
+  }();
+  return kCoefficients;
+}
 
-  void add(const Vec3& xi, double weight_m3) {
-    Corners B;
-    for (int i = 0; i < 8; ++i) B.middleCols<3>(3 * i) = strainOf(cornerGradient(i, xi, size_m_));
-    Inner G;  // of 1 - xi_k^2
-    for (int k = 0; k < 3; ++k)
-      G.middleCols<3>(3 * k) = strainOf(Vec3(Vec3::Unit(k) * (-2 * xi[k] * 2 / size_m_[k])));
-    const Corners CB = weight_m3 * C_ * B;
-    const Inner CG = weight_m3 * C_ * G;
-    K_uu_ += B.transpose() * CB;
-    K_ua_ += B.transpose() * CG;
-    K_aa_ += G.transpose() * CG;
-    B_sum_ += weight_m3 * B;
-    G_sum_ += weight_m3 * G;
-    volume_m3_ += weight_m3;
-  }
-  /// The inner displacements take the values of least energy. Their mean strain is taken from them, so that
-  /// they do no work on a constant stress, which makes constant strain exact in every shape (the patch test):
-  /// Simo and Rifai, Int. J. Numer. Methods Eng. 29, 1990. In a whole brick it is 0.
-  [[nodiscard]] BrickMatrix result() const {
-    const Corners B_mean = B_sum_ / volume_m3_;
-    const Inner G_mean = G_sum_ / volume_m3_;
-    const Eigen::Matrix<double, 24, 9> K_ua = K_ua_ - volume_m3_ * B_mean.transpose() * C_ * G_mean;
-    Matrix9 K_aa = K_aa_ - volume_m3_ * G_mean.transpose() * C_ * G_mean;
-    K_aa.diagonal().array() +=
-        kLeastInner * K_aa_.trace();  // in a filling that is flat some are without energy
-    const BrickMatrix K = K_uu_ - K_ua * K_aa.ldlt().solve(K_ua.transpose());
-    return 0.5 * (K + K.transpose());
-  }
+/// The integral of d m_i / dx_k * d m_j / dx_l over the filling, for all monomials m; of m_i m_j for k = l =
+/// -1.
+BrickMass integralOf(const BrickFilling& filling, int k, int l) {
+  BrickMass integral;
+  for (int i = 0; i < kBrickNodes; ++i)
+    for (int j = 0; j < kBrickNodes; ++j) {
+      std::array<int, 3> a = monomials()[i], b = monomials()[j];
+      double factor = 1;
+      if (k >= 0) factor = a[k]-- * b[l]--;
+      integral(i, j) = factor == 0 ? 0 : factor * filling.moment(a[0] + b[0], a[1] + b[1], a[2] + b[2]);
+    }
+  return integral;
+}
 
- private:
-  using Corners = Eigen::Matrix<double, 6, 24>;
-  using Inner = Eigen::Matrix<double, 6, 9>;
-  using Matrix9 = Eigen::Matrix<double, 9, 9>;
-  static constexpr double kLeastInner = 1e-9;
-
-  Vec3 size_m_;
-  Matrix6 C_;
-  BrickMatrix K_uu_ = BrickMatrix::Zero();
-  Eigen::Matrix<double, 24, 9> K_ua_ = Eigen::Matrix<double, 24, 9>::Zero();
-  Matrix9 K_aa_ = Matrix9::Zero();
-  Corners B_sum_ = Corners::Zero();
-  Inner G_sum_ = Inner::Zero();
-  double volume_m3_ = 0;
-};
+/// From H(k n + i, l n + j), the integral of d shape_i / dx_k * d shape_j / dx_l.
+BrickStiffness stiffnessFrom(const BrickStiffness& H, const Elasticity& material) {
+  const double nu = material.poissons_ratio, shear_Pa = material.youngs_modulus_Pa / (2 * (1 + nu));
+  const double lame_Pa = 2 * shear_Pa * nu / (1 - 2 * nu);
+  constexpr int n = kBrickNodes;
+  BrickStiffness K;
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) {
+      const double trace = H(i, j) + H(n + i, n + j) + H(2 * n + i, 2 * n + j);
+      for (int k = 0; k < 3; ++k)
+        for (int l = 0; l < 3; ++l)
+          K(3 * i + k, 3 * j + l) = lame_Pa * H(k * n + i, l * n + j) + shear_Pa * H(l * n + i, k * n + j) +
+                                    (k == l ? shear_Pa * trace : 0);
+    }
+  return K;
+}
 
 }  // namespace
 
-BrickMatrix brickStiffness(const Vec3& size_m, const Elasticity& material) {
-  BrickIntegral integral(size_m, material);
-  for (int point = 0; point < 8; ++point) {  // 2 x 2 x 2 Gauss points
-    Vec3 xi;
-    for (int k = 0; k < 3; ++k) xi[k] = ((point >> k & 1) != 0 ? 1 : -1) / std::sqrt(3.0);
-    integral.add(xi, size_m.prod() / 8);
+BrickFilling::Powers BrickFilling::powersOf(double x) {
+  Powers powers = {1};
+  for (int i = 1; i < kPowers; ++i) powers[i] = powers[i - 1] * x;
+  return powers;
+}
+
+void BrickFilling::addBox(const Vec3& low, const Vec3& high) {
+  std::array<Powers, 3> integral{};  // of each power along each axis, over 2
+  for (int k = 0; k < 3; ++k)
+    for (int i = 0; i < kPowers; ++i)
+      integral[k][i] = (std::pow(high[k], i + 1) - std::pow(low[k], i + 1)) / (2 * (i + 1));
+  for (int z = 0; z < kPowers; ++z)
+    for (int y = 0; y < kPowers; ++y)
+      for (int x = 0; x < kPowers; ++x)
+        moments_[x + kPowers * (y + kPowers * z)] += integral[0][x] * integral[1][y] * integral[2][z];
+}
+
+const BrickFilling& wholeBrick() {
+  static const BrickFilling kWhole = [] {
+    BrickFilling whole;
+    whole.addBox(-Vec3::Ones(), Vec3::Ones());
+    return whole;
+  }();
+  return kWhole;
+}
+
+const std::array<int, 3>& brickNode(int node) {
+  static const std::array<std::array<int, 3>, kBrickNodes> kNodes = makeNodes();
+  return kNodes[node];
+}
+
+BrickShapes brickShapes(const Vec3& xi) {
+  BrickShapes shapes;
+  for (int i = 0; i < kBrickNodes; ++i) {
+    const std::array<int, 3>& node = brickNode(i);
+    const Vec3 s(node[0] - 1, node[1] - 1, node[2] - 1);
+    const double f = (Vec3::Ones() + s.cwiseProduct(xi)).prod();
+    const int edge = edgeOf(node);
+    shapes[i] = edge < 0 ? f * (s.dot(xi) - 2) / 8 : f * (1 - xi[edge] * xi[edge]) / 4;
   }
-  return integral.result();
+  return shapes;
 }
 
-BrickMatrix brickStiffness(const Vec3& size_m, const Elasticity& material, const BrickFilling& filling) {
-  BrickIntegral integral(size_m, material);
-  for (const Vec3& xi : filling.at) integral.add(xi, filling.share_volume * size_m.prod());
-  return integral.result();
-}
-
-std::array<double, 8> cornerShares(const BrickFilling& filling) {
-  std::array<double, 8> shares{};
-  for (const Vec3& xi : filling.at)
-    for (int i = 0; i < 8; ++i) {
-      double shape = 0.125;
-      for (int k = 0; k < 3; ++k) shape *= 1 + ((i >> k & 1) != 0 ? xi[k] : -xi[k]);
-      shares[i] += shape * filling.share_volume;
-    }
-  return shares;
+BrickMatrices brickMatrices(const Vec3& size_m, const Elasticity& material, const BrickFilling& filling) {
+  const BrickMass& C = shapeCoefficients();
+  constexpr int n = kBrickNodes;
+  BrickStiffness H;
+  for (int k = 0; k < 3; ++k)
+    for (int l = 0; l < 3; ++l)
+      H.block<n, n>(k * n, l * n) =
+          size_m.prod() * 4 / (size_m[k] * size_m[l]) * (C.transpose() * integralOf(filling, k, l) * C);
+  return {stiffnessFrom(H, material), size_m.prod() * (C.transpose() * integralOf(filling, -1, -1) * C)};
 }
 
 }  // namespace vps::viewer::inline v0

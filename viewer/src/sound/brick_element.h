@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Stiffness of a box-shaped finite element of elastic material.
+// Stiffness and mass of a box-shaped finite element of elastic material.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,29 +15,78 @@ struct Elasticity {
   double poissons_ratio = 0.3;
 };
 
-using BrickMatrix = Eigen::Matrix<double, 24, 24>;
+/// Eight corners and the middles of twelve edges.
+constexpr int kBrickNodes = 20;
+using BrickStiffness = Eigen::Matrix<double, 3 * kBrickNodes, 3 * kBrickNodes>;
+using BrickMass = Eigen::Matrix<double, kBrickNodes, kBrickNodes>;
+using BrickShapes = Eigen::Matrix<double, kBrickNodes, 1>;
 
-/// The part of a brick that is filled, as equal shares of its volume around points in [-1, 1]^3.
-struct BrickFilling {
-  std::vector<Vec3> at;     ///< of the filled shares
-  double share_volume = 0;  ///< of each, as a share of the brick's volume
+/// The part of a brick that is filled, by the integrals of x^i y^j z^k over it, with i, j, k up to 4; the
+/// brick is [-1, 1]^3, and the integral of 1 is the share that is filled.
+class BrickFilling {
+ public:
+  static constexpr int kPowers = 5;
+
+  /// All of the box [low, high].
+  void addBox(const Vec3& low, const Vec3& high);
+  /// Equal shares of the box [low, high], `along` of them along each edge (at most 8): those that are filled.
+  template <class IsFilled>  // bool(int x, int y, int z)
+  void addShares(const Vec3& low, const Vec3& high, int along, const IsFilled& isFilled);
+
+  [[nodiscard]] double total() const { return moments_[0]; }
+  [[nodiscard]] double moment(int x, int y, int z) const {
+    return moments_[static_cast<std::size_t>(x + kPowers * (y + kPowers * z))];
+  }
+
+ private:
+  using Powers = std::array<double, kPowers>;
+  static Powers powersOf(double x);
+
+  std::array<double, std::size_t{kPowers} * kPowers * kPowers> moments_{};
 };
 
-/// Stiffness [N/m] of a brick with 8 corners; rows 3 i to 3 i + 2 are x, y, z of corner i, whose coordinates
-/// are the bits of i (x lowest). Three quadratic displacements inside the element, which its neighbours do
-/// not share, let it bend without locking, so that one layer of bricks bends as a plate does. Source: Wilson,
-/// Taylor, Doherty and Ghaboussi 1973 (incompatible modes); Hughes, "The Finite Element Method", 2000,
-/// section 4.7.
-BrickMatrix brickStiffness(const Vec3& size_m, const Elasticity& material);
+/// All of a brick.
+const BrickFilling& wholeBrick();
 
-/// The same of a brick that is filled in part: its energy is integrated over what is filled, so that a wall
-/// across the brick keeps the place and thickness it has, and bends as it does. Material that were spread
-/// evenly over the brick would bend a wall of half a brick with four times its stiffness. Source: Parvizian,
-/// Duester and Rank, "Finite cell method", Comput. Mech. 41, 2007. O(points).
-BrickMatrix brickStiffness(const Vec3& size_m, const Elasticity& material, const BrickFilling& filling);
+/// Where a node stands along each edge: 0, 1 (the middle) or 2.
+const std::array<int, 3>& brickNode(int node);
 
-/// The share of a brick's filling that each corner carries: the integral of its trilinear shape. They add up
-/// to the share that is filled.
-std::array<double, 8> cornerShares(const BrickFilling& filling);
+/// What a unit displacement of each node moves the point xi by: the 20-node "serendipity" shapes. Source:
+/// Zienkiewicz and Taylor, "The Finite Element Method", 2000, volume 1, section 8.8.
+BrickShapes brickShapes(const Vec3& xi);
+
+struct BrickMatrices {
+  BrickStiffness stiffness_N_per_m;  ///< rows 3 i to 3 i + 2 are x, y, z of node i
+  BrickMass mass_share_m3;           ///< the mass matrix over the density; the same along x, y and z
+};
+
+/// Energy is integrated over what is filled, so that a wall across the brick keeps the place and thickness it
+/// has. Quadratic displacements bend such a wall in any direction: a wall of a sixth of a brick comes out as
+/// well as one of a whole brick. Trilinear ones with incompatible modes do not: a wall of half a brick was 20
+/// % too high. Source: Parvizian, Duester and Rank, "Finite cell method", Comput. Mech. 41, 2007.
+BrickMatrices brickMatrices(const Vec3& size_m, const Elasticity& material, const BrickFilling& filling);
+
+template <class IsFilled>
+void BrickFilling::addShares(const Vec3& low, const Vec3& high, int along, const IsFilled& isFilled) {
+  const Vec3 step = (high - low) / along;
+  const double share = step.prod() / 8;
+  std::array<std::array<Powers, 3>, 8> powers;  // of the middle of each share
+  for (int i = 0; i < along; ++i)
+    for (int k = 0; k < 3; ++k) powers[i][k] = powersOf(low[k] + (i + 0.5) * step[k]);
+  for (int z = 0; z < along; ++z) {
+    std::array<double, std::size_t{kPowers} * kPowers> layer{};
+    for (int y = 0; y < along; ++y) {
+      Powers row{};
+      for (int x = 0; x < along; ++x)
+        if (isFilled(x, y, z))
+          for (int i = 0; i < kPowers; ++i) row[i] += powers[x][0][i];
+      for (int j = 0; j < kPowers; ++j)
+        for (int i = 0; i < kPowers; ++i) layer[i + kPowers * j] += row[i] * powers[y][1][j];
+    }
+    for (int k = 0; k < kPowers; ++k)
+      for (int i = 0; i < kPowers * kPowers; ++i)
+        moments_[i + kPowers * kPowers * k] += share * layer[i] * powers[z][2][k];
+  }
+}
 
 }  // namespace vps::viewer::inline v0

@@ -5,36 +5,47 @@
 #include <Eigen/SparseCore>
 #include <array>
 #include <functional>
+#include <map>
+#include <memory>
 #include <vector>
 
-#include "sound/modes.h"
+#include "sound/brick_element.h"
+#include "vps/box.h"
 
 namespace vps::viewer::inline v0 {
 
 struct Brick {
-  std::array<int, 3> at{};       ///< column, row, layer
-  std::array<int, 8> corners{};  ///< as in brickStiffness()
-  BrickFilling filling;          ///< no points: the whole brick
-
-  [[nodiscard]] bool isWhole() const { return filling.at.empty(); }
-  /// Share of its volume that is inside.
-  [[nodiscard]] double fill() const {
-    return isWhole() ? 1 : static_cast<double>(filling.at.size()) * filling.share_volume;
-  }
+  std::array<int, 3> at{};                  ///< column, row, layer
+  std::array<int, kBrickNodes> nodes{};     ///< as in brickNode()
+  std::shared_ptr<const BrickFilling> cut;  ///< none: the whole brick is filled
 };
 
 struct BrickGrid {
+  Vec3 low_P = Vec3::Zero();
   Vec3 size_m = Vec3::Zero();  ///< of a brick
   std::vector<Brick> bricks;
-  std::vector<Vec3> corners_P;
-  std::vector<double> mass_kg;       ///< of each corner
-  std::vector<Vec3> normal_area_m2;  ///< of each corner: area of the free faces around it, along their normal
+  std::map<std::array<int, 3>, std::size_t> brick_at;
+  std::size_t node_count = 0;
 };
 
+/// Bricks that divide the box, as small as most_bricks filled ones allow; at least one along each edge.
+/// Nothing inside, or a flat box: none. Calls isInside about a thousand times a brick that is looked at, and
+/// looks at no more than eight times as many as it fills.
 BrickGrid makeBrickGrid(const Box& box_P, const std::function<bool(const Vec3& p_P)>& isInside,
-                        double density_kg_m3, const ModeSettings& settings);
+                        std::size_t most_bricks);
 
-/// Three rows a corner: x, y, z.
-Eigen::SparseMatrix<double> stiffnessOf(const BrickGrid& grid, const Elasticity& material);
+/// Three rows a node: x, y, z.
+struct VibrationMatrices {
+  Eigen::SparseMatrix<double> stiffness, mass;
+  double mass_kg = 0;
+};
+VibrationMatrices matricesOf(const BrickGrid& grid, double density_kg_m3, const Elasticity& material);
+
+/// What the nodes of a brick move a point by. Points beside the bricks move as the nearest place of one.
+struct PointShapes {
+  const Brick* brick = nullptr;
+  BrickShapes shapes;
+};
+PointShapes shapesAt(const BrickGrid& grid, const Vec3& p_P);
 
 }  // namespace vps::viewer::inline v0

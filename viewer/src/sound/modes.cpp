@@ -5,6 +5,8 @@
 #include <Eigen/SparseCholesky>
 #include <cmath>
 #include <numbers>
+#include <tuple>
+#include <utility>
 
 #include "sound/brick_grid.h"
 #include "vps_device/random.h"
@@ -14,16 +16,45 @@ namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+using Sparse = Eigen::SparseMatrix<double>;
 
 constexpr int kRigidModes = 6;
 constexpr double kLeast_hz = 20;  // below are the motions of a rigid body
 
-/// The lowest eigenvalues w^2 of K x = w^2 M x with their vectors, in rising order; M is diagonal.
-/// Source: Bathe, "Finite Element Procedures", 1996, section 11.6 (subspace iteration), shifted by a positive
-/// amount, since K of a free body is singular.
 struct Eigenpairs {
   VectorXd values;
   MatrixXd vectors;  ///< V^T M V = 1
+};
+
+/// A basis that is orthonormal by M, and grows.
+class Basis {
+ public:
+  Basis(const Sparse& M, Eigen::Index most) : M_(M), V_(M.rows(), most), MV_(M.rows(), most) {}
+
+  /// Adds what of the columns is not in the basis yet. Returns how many were added.
+  Eigen::Index add(const MatrixXd& columns) {
+    constexpr double kDependent = 1e-8;  // share of a column that is left where it is nothing but rounding
+    const Eigen::Index before = size_;
+    for (Eigen::Index j = 0; j < columns.cols() && size_ < V_.cols(); ++j) {
+      VectorXd x = columns.col(j);
+      const double norm = std::sqrt(std::max(0.0, x.dot(M_ * x)));
+      for (int twice = 0; twice < 2; ++twice) x -= V_.leftCols(size_) * (MV_.leftCols(size_).transpose() * x);
+      const double left = std::sqrt(std::max(0.0, x.dot(M_ * x)));
+      if (!(left > kDependent * norm)) continue;
+      V_.col(size_) = x / left;
+      MV_.col(size_) = M_ * V_.col(size_);
+      ++size_;
+    }
+    return size_ - before;
+  }
+  [[nodiscard]] Eigen::Index size() const { return size_; }
+  [[nodiscard]] auto vectors() const { return V_.leftCols(size_); }
+  [[nodiscard]] auto weighted() const { return MV_.leftCols(size_); }
+
+ private:
+  const Sparse& M_;
+  MatrixXd V_, MV_;
+  Eigen::Index size_ = 0;
 };
 
 MatrixXd startingVectors(Eigen::Index rows, Eigen::Index columns) {
@@ -34,102 +65,121 @@ MatrixXd startingVectors(Eigen::Index rows, Eigen::Index columns) {
   return X;
 }
 
-/// Settled up to `most` and beyond the last wanted one, as far as the columns reach.
-Eigenpairs lowest(const Eigen::SparseMatrix<double>& K, const VectorXd& M, double shift, double most,
-                  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>& solver, Eigen::Index columns) {
-  constexpr int kRounds = 16;
-  constexpr double kSettled = 1e-6;  // relative change of w^2
-  Eigenpairs found;
-  MatrixXd X = startingVectors(K.rows(), columns);
-  for (int round = 0; round < kRounds; ++round) {
-    const MatrixXd Y = solver.solve(MatrixXd(M.asDiagonal() * X));
-    const MatrixXd K_small = Y.transpose() * (K * Y), M_small = Y.transpose() * M.asDiagonal() * Y;
-    const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> small(K_small, M_small);
-    if (small.info() != Eigen::Success) return {};
-    X = Y * small.eigenvectors();
-    const VectorXd before = found.values;
-    found.values = small.eigenvalues();
-    if (before.size() == 0) continue;
-    bool is_settled = true;
-    for (Eigen::Index i = 0; i < columns - columns / 4 && is_settled; ++i)
-      is_settled = found.values[i] > 1.1 * most ||
-                   std::abs(found.values[i] - before[i]) <= kSettled * (std::abs(found.values[i]) + shift);
-    if (is_settled) break;
+/// Whether the values that are asked for, up to `most` or `wanted` of them, stay as they were before.
+bool areSettled(const VectorXd& values, const VectorXd& before, double most, double shift,
+                Eigen::Index wanted) {
+  constexpr double kSettled = 1e-7;  // relative change of w^2
+  for (Eigen::Index i = 0; i < wanted; ++i) {
+    if (i >= before.size()) return false;
+    if (std::abs(values[i] - before[i]) > kSettled * (std::abs(values[i]) + shift)) return false;
+    if (values[i] > most) return true;
   }
-  found.vectors = X;
-  return found;
+  return true;
 }
 
-/// All up to `most`, or `wanted` of them. Few columns come first, since most parts have few modes that one
-/// hears.
-Eigenpairs lowest(const Eigen::SparseMatrix<double>& K, const VectorXd& M, double most, Eigen::Index wanted) {
+/// The lowest eigenvalues w^2 of K x = w^2 M x with their vectors, in rising order: all up to `most`, or
+/// `wanted` of them, and some that are not settled. Source: Golub and Van Loan, "Matrix Computations", 2013,
+/// section 10.3.6 (block Lanczos; a block of eight, since symmetric bodies have several modes of one
+/// frequency, six of them at rest), inverted and shifted by a positive amount, since K of a free body is
+/// singular.
+Eigenpairs lowest(const Sparse& K, const Sparse& M, double most, Eigen::Index wanted) {
   constexpr double kShift_hz = 300;
+  constexpr Eigen::Index kBlock = 8;
   const double shift = std::pow(2 * std::numbers::pi * kShift_hz, 2);
-  Eigen::SparseMatrix<double> shifted = K;
-  shifted += Eigen::SparseMatrix<double>((shift * M).asDiagonal());
-  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(shifted);
+  const Sparse shifted = K + shift * M;
+  const Eigen::SimplicialLDLT<Sparse> solver(shifted);
   if (solver.info() != Eigen::Success) return {};
-  const Eigen::Index enough = std::min(K.rows(), wanted + wanted / 3 + 8);
-  for (Eigen::Index columns = std::min<Eigen::Index>(16, enough);; columns = std::min(2 * columns, enough)) {
-    Eigenpairs found = lowest(K, M, shift, most, solver, columns);
-    if (found.values.size() == 0 || columns == enough || found.values[columns - columns / 4 - 1] > most)
-      return found;
+  const Eigen::Index greatest = std::min(K.rows(), 6 * (wanted + kBlock));
+  Basis basis(M, greatest);
+  MatrixXd inverse(greatest, greatest);  // of the shifted K, in the basis
+  MatrixXd block = startingVectors(K.rows(), kBlock);
+  VectorXd values;
+  MatrixXd small_vectors;
+  while (const Eigen::Index added = basis.add(block)) {
+    const Eigen::Index size = basis.size();
+    block = solver.solve(MatrixXd(basis.weighted().rightCols(added)));
+    inverse.block(0, size - added, size, added) = basis.weighted().transpose() * block;
+    inverse.block(size - added, 0, added, size) =
+        inverse.block(0, size - added, size, added).transpose().eval();
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> small(inverse.topLeftCorner(size, size));
+    if (small.info() != Eigen::Success) return {};
+    const VectorXd before =
+        std::exchange(values, (small.eigenvalues().reverse().cwiseInverse().array() - shift).matrix());
+    small_vectors = small.eigenvectors().rowwise().reverse();
+    if (areSettled(values, before, most, shift, wanted)) break;
   }
+  return {values, basis.vectors() * small_vectors};
 }
 
-/// Of the displacement along the normal, over the surface.
-double normalRms(const VectorXd& mode, const BrickGrid& grid) {
-  double sum = 0, area_m2 = 0;
-  for (std::size_t c = 0; c < grid.corners_P.size(); ++c) {
-    const Vec3& a = grid.normal_area_m2[c];
-    const double size_m2 = a.norm();
-    if (size_m2 == 0) continue;
-    const double along = mode.segment<3>(static_cast<Eigen::Index>(3 * c)).dot(a) / size_m2;
-    sum += size_m2 * along * along;
-    area_m2 += size_m2;
+struct SurfacePoint {
+  Vec3 p_P, n_P;
+};
+
+/// Each stands for the same area.
+std::vector<SurfacePoint> surfacePoints(const Mesh& mesh) {
+  constexpr double kPoints = 2000;
+  const double each_m2 = std::max(area(mesh) / kPoints, 1e-300);
+  device::Random random(2);
+  std::vector<SurfacePoint> points;
+  double due_m2 = 0.5 * each_m2;  // the area until the next point
+  for (const auto& [i, j, k] : mesh.triangles) {
+    const Vec3 &a = mesh.vertices[i], ab = mesh.vertices[j] - a, ac = mesh.vertices[k] - a;
+    const Vec3 twice_m2 = ab.cross(ac);
+    const double size_m2 = 0.5 * twice_m2.norm();
+    for (due_m2 -= size_m2; due_m2 < 0; due_m2 += each_m2) {
+      double u = random.uniform(), v = random.uniform();
+      if (u + v > 1) std::tie(u, v) = std::pair(1 - u, 1 - v);
+      points.push_back({a + u * ab + v * ac, twice_m2.normalized()});
+    }
   }
-  return area_m2 > 0 ? std::sqrt(sum / area_m2) : 0;
+  return points;
 }
 
 }  // namespace
 
-std::size_t BodyModes::nearestCorner(const Vec3& p_P) const {
-  std::size_t best = 0;
-  for (std::size_t c = 1; c < corners_P.size(); ++c)
-    if ((corners_P[c] - p_P).squaredNorm() < (corners_P[best] - p_P).squaredNorm()) best = c;
-  return best;
+std::vector<Vec3> BodyModes::shapesAt(const Vec3& p_P) const {
+  std::vector<Vec3> shapes(frequency_hz.size(), Vec3::Zero());
+  const PointShapes at = viewer::shapesAt(grid, p_P);
+  if (at.brick == nullptr) return shapes;
+  for (std::size_t mode = 0; mode < shapes.size(); ++mode)
+    for (int i = 0; i < kBrickNodes; ++i)
+      shapes[mode] +=
+          at.shapes[i] *
+          nodes.col(static_cast<Eigen::Index>(mode)).segment<3>(3 * at.brick->nodes[i]).cast<double>();
+  return shapes;
 }
 
-BodyModes findModes(const Box& box_P, const std::function<bool(const Vec3& p_P)>& isInside,
+BodyModes findModes(const Mesh& mesh_P, const std::function<bool(const Vec3& p_P)>& isInside,
                     double density_kg_m3, const Elasticity& material, const ModeSettings& settings) {
   BodyModes body;
-  const BrickGrid grid = makeBrickGrid(box_P, isInside, density_kg_m3, settings);
-  if (grid.bricks.empty()) return body;
-  VectorXd M(static_cast<Eigen::Index>(3 * grid.corners_P.size()));
-  for (std::size_t c = 0; c < grid.corners_P.size(); ++c) {
-    M.segment<3>(static_cast<Eigen::Index>(3 * c)).setConstant(grid.mass_kg[c]);
-    body.mass_kg += grid.mass_kg[c];
-    body.surface_m2 += grid.normal_area_m2[c].lpNorm<1>();
-  }
+  body.grid = makeBrickGrid(bounds(mesh_P), isInside, settings.most_bricks);
+  if (body.grid.bricks.empty()) return body;
+  const VibrationMatrices matrices = matricesOf(body.grid, density_kg_m3, material);
+  for (Brick& brick : body.grid.bricks) brick.cut.reset();
+  body.mass_kg = matrices.mass_kg;
+  body.surface_m2 = area(mesh_P);
   const Eigenpairs pairs =
-      lowest(stiffnessOf(grid, material), M, std::pow(2 * std::numbers::pi * settings.most_hz, 2),
+      lowest(matrices.stiffness, matrices.mass, std::pow(2 * std::numbers::pi * settings.most_hz, 2),
              static_cast<Eigen::Index>(settings.most_modes) + kRigidModes);
-  std::vector<std::size_t> surface;
-  for (std::size_t c = 0; c < grid.corners_P.size(); ++c)
-    if (grid.normal_area_m2[c].norm() > 0) {
-      surface.push_back(c);
-      body.corners_P.push_back(grid.corners_P[c]);
-    }
-  for (Eigen::Index i = 0; i < pairs.values.size() && body.frequency_hz.size() < settings.most_modes; ++i) {
+  std::vector<Eigen::Index> heard;
+  for (Eigen::Index i = 0; i < pairs.values.size() && heard.size() < settings.most_modes; ++i) {
     const double hz = std::sqrt(std::max(0.0, pairs.values[i])) / (2 * std::numbers::pi);
     if (hz < kLeast_hz) continue;
     if (hz > settings.most_hz) break;
-    const VectorXd mode = pairs.vectors.col(i);
     body.frequency_hz.push_back(hz);
-    body.normal_rms.push_back(normalRms(mode, grid));
-    for (const std::size_t c : surface)
-      body.shapes.emplace_back(mode.segment<3>(static_cast<Eigen::Index>(3 * c)).cast<float>());
+    heard.push_back(i);
   }
+  body.nodes.resize(matrices.mass.rows(), static_cast<Eigen::Index>(heard.size()));
+  for (std::size_t i = 0; i < heard.size(); ++i)
+    body.nodes.col(static_cast<Eigen::Index>(i)) = pairs.vectors.col(heard[i]).cast<float>();
+  body.normal_rms.assign(heard.size(), 0);
+  const std::vector<SurfacePoint> surface = surfacePoints(mesh_P);
+  for (const SurfacePoint& point : surface) {
+    const std::vector<Vec3> shapes = body.shapesAt(point.p_P);
+    for (std::size_t i = 0; i < shapes.size(); ++i)
+      body.normal_rms[i] += std::pow(shapes[i].dot(point.n_P), 2) / static_cast<double>(surface.size());
+  }
+  for (double& rms : body.normal_rms) rms = std::sqrt(rms);
   return body;
 }
 

@@ -52,9 +52,7 @@ PartVoice::PartVoice(BodyModes modes, double volume_m3, double mass_kg, int rate
 Touch PartVoice::touch(const Vec3& p_P, const Vec3& n_P) const {
   Touch touch;
   if (modes_.frequency_hz.empty()) return touch;
-  const std::size_t corner = modes_.nearestCorner(p_P);
-  for (std::size_t i = 0; i < modes_.frequency_hz.size(); ++i)
-    touch.drive.push_back(modes_.shape(i, corner).cast<double>().dot(n_P));
+  for (const Vec3& shape : modes_.shapesAt(p_P)) touch.drive.push_back(shape.dot(n_P));
   return touch;
 }
 

@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <memory>
 #include <numbers>
-#include <optional>
 #include <utility>
 
 #include "vps/solid.h"
@@ -15,6 +16,29 @@ namespace vps::viewer::inline v0 {
 namespace {
 
 constexpr double kCurvature_m = 5e-3;  // radius at the place of contact. assumed: edges and rounds of a part
+
+using IsInside = std::function<bool(const Vec3& p_P)>;
+
+/// By the part's own map. Where it has none, or one of some regions only, by a map for this use: inside is
+/// asked some million times, which takes a solid ten times as long as the map and its making. Walls that are
+/// thin beside such a map's voxels are left to the solid.
+IsInside insideOf(const scenes::ScenePart& part, double volume_m3) {
+  constexpr double kVoxelsAcross = 250;  // about as fine as the samples of bricks, of which there are ten
+  constexpr double kVoxelsInWall = 3;
+  if (part.model && part.model->map && !part.is_cropped)
+    return [map = part.model->map](const Vec3& p_P) { return map->isInsideCoarse(p_P); };
+  const Mesh& mesh = part.part.mesh;
+  const double voxel_m = bounds(mesh).size().maxCoeff() / kVoxelsAcross, wall_m = 2 * volume_m3 / area(mesh);
+  if (!(wall_m > kVoxelsInWall * voxel_m))
+    return [solid = std::make_shared<const Solid>(mesh, part.part.name)](const Vec3& p_P) {
+      return solid->isInside(p_P);
+    };
+  VoxMapSettings settings;
+  settings.voxel_m = voxel_m;
+  return [map = buildVoxMap(mesh, settings, part.part.name)](const Vec3& p_P) {
+    return map.isInsideCoarse(p_P);
+  };
+}
 
 }  // namespace
 
@@ -40,14 +64,8 @@ PartVoice partVoice(const scenes::ScenePart& part, const SoundSettings& settings
   const double volume_m3 = std::max(1e-12, std::abs(massProperties(part.part.mesh).volume_m3));
   BodyModes modes;
   if (settings.has_rings) {
-    const bool has_map = part.model && part.model->map && !part.is_cropped;
-    std::optional<Solid> solid;
-    if (!has_map) solid.emplace(part.part.mesh, part.part.name);
-    modes = findModes(bounds(part.part.mesh),
-                      [&](const Vec3& p_P) {
-                        return has_map ? part.model->map->isInsideCoarse(p_P) : solid->isInside(p_P);
-                      },
-                      material.density_kg_m3, {part.youngs_modulus_Pa, part.poissons_ratio});
+    modes = findModes(part.part.mesh, insideOf(part, volume_m3), material.density_kg_m3,
+                      {part.youngs_modulus_Pa, part.poissons_ratio});
   }
   return {std::move(modes), volume_m3, volume_m3 * material.density_kg_m3, settings.rate_hz,
           settings.distance_m};

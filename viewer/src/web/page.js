@@ -575,6 +575,11 @@
     const at = part.surface.localToWorld(middle).project(camera), box = canvas.getBoundingClientRect();
     return [box.left + 0.5 * box.width * (1 + at.x), box.top + 0.5 * box.height * (1 - at.y)];
   };
+  // How many pixels of the page a metre of the scene takes, in the middle of the view.
+  seen.pixelsPerMetre = function () {
+    const away = camera.position.distanceTo(controls.target);
+    return kScreenScale * canvas.getBoundingClientRect().height / (2 * away * Math.tan(0.5 * camera.fov * Math.PI / 180));
+  };
   function isMine() { return Boolean(seen.hand) && seen.you !== 0 && seen.hand.holder === seen.you; }
   function isPressed(id) { return $(id).getAttribute("aria-pressed") === "true"; }
 

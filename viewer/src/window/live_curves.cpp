@@ -51,13 +51,15 @@ void addChapters(Timeline& line, std::size_t step, double time_s,
 
 std::vector<std::string> figureLines(const scenes::RunFigures& now, const scenes::RunFigures& before,
                                      double elapsed_s) {
-  char energy[120];
-  std::snprintf(energy, sizeof energy, "energy: %.3g mJ to the hand, %.3g from it, %.3g injected",
-                1e3 * now.to_hand_J, 1e3 * now.from_hand_J, 1e3 * now.injected_J);
+  // In two lines: one would be too long for the panel, and ImGui breaks lines within a number.
+  char energy[80], injected[80];
+  std::snprintf(energy, sizeof energy, "energy: %.3g mJ to the hand, %.3g from it", 1e3 * now.to_hand_J,
+                1e3 * now.from_hand_J);
+  std::snprintf(injected, sizeof injected, "energy injected: %.3g mJ", 1e3 * now.injected_J);
   return {ratesOf("haptic ticks", now.ticks, before.ticks, elapsed_s, now.tick_p99_us, now.missed),
           ratesOf("physics steps", now.physics_steps, before.physics_steps, elapsed_s, now.step_p99_us,
                   now.physics_missed),
-          energy};
+          energy, injected};
 }
 
 }  // namespace vps::viewer::inline v0

@@ -34,6 +34,12 @@ bool isSameEyes(const std::optional<EyePair>& a, const std::optional<EyePair>& b
   return a->left == b->left && a->right == b->right;
 }
 
+/// Whether both differ by what the snapshot shows only.
+bool isSameView(const PictureRequest& a, const PictureRequest& b) {
+  return a.camera == b.camera && a.options == b.options && a.stereo == b.stereo &&
+         isSameEyes(a.eyes, b.eyes) && a.rows == b.rows;
+}
+
 Image draw(Renderer& renderer, const PictureRequest& asked, const Camera& camera,
            const DrawOptions& options) {
   if (!asked.eyes) return renderer.render(asked.snapshot, camera, options);
@@ -46,8 +52,7 @@ Image draw(Renderer& renderer, const PictureRequest& asked, const Camera& camera
 }  // namespace
 
 bool isSame(const PictureRequest& a, const PictureRequest& b) {
-  return a.camera == b.camera && a.options == b.options && a.stereo == b.stereo &&
-         isSameEyes(a.eyes, b.eyes) && a.rows == b.rows && isSameSnapshot(a.snapshot, b.snapshot);
+  return isSameView(a, b) && isSameSnapshot(a.snapshot, b.snapshot);
 }
 
 Image drawInFull(Renderer& renderer, const PictureRequest& asked) {
@@ -141,11 +146,15 @@ void PictureWorker::drawAll(Renderer& renderer) {
   // third of them across still shows what moves where. Between the two times nothing changes.
   constexpr double kSlowDraft_s = 0.05, kFastDraft_s = 0.015;
   constexpr int kMostShrink = 3;
+  // Where the view stands still only what moves is drawn, and a contact is to be seen soon: a draft is being
+  // drawn when it happens, and it is in the next, both of them within the 24 ms that picture, sound and force
+  // may be apart.
+  constexpr double kSlowPart_s = 0.012, kFastPart_s = 0.004;
   int shrink = 1;
   PictureRequest asked;
   bool has_draft = false;  // of `asked`, and it is not drawn in full yet
   for (;;) {
-    bool is_draft = true;
+    bool is_draft = true, is_still = false;
     {
       std::unique_lock lock(mutex_);
       const auto is_new = [&] { return is_ending_ || (wanted_ && !(has_draft && isSame(asked, *wanted_))); };
@@ -154,14 +163,18 @@ void PictureWorker::drawAll(Renderer& renderer) {
       else
         wake_.wait(lock, is_new);
       if (is_ending_) return;
+      is_still = isSameView(asked, *wanted_);
       asked = *wanted_;
       if (!is_draft) wanted_.reset();
     }
     const double begun_s = device::monotonicSeconds();
     Image image = is_draft ? drawDraft(renderer, asked, shrink) : drawInFull(renderer, asked);
     const double done_s = device::monotonicSeconds(), wall_s = done_s - begun_s;
-    if (is_draft && wall_s > kSlowDraft_s && shrink < kMostShrink) ++shrink;
-    if (is_draft && wall_s < kFastDraft_s && shrink > 1) --shrink;
+    const bool is_part = !renderer.drewWhole();
+    if (is_draft && (is_part || !is_still)) {
+      if (wall_s > (is_part ? kSlowPart_s : kSlowDraft_s) && shrink < kMostShrink) ++shrink;
+      if (wall_s < (is_part ? kFastPart_s : kFastDraft_s) && shrink > 1) --shrink;
+    }
     {
       const std::lock_guard lock(mutex_);
       done_ = DrawnPicture{std::move(image), is_draft, wall_s, done_s};

@@ -24,11 +24,15 @@ namespace vps::scenes::inline v0 {
 /// Words for the user. May be called by any thread of a node, one at a time.
 using Say = std::function<void(const std::string&)>;
 
+class RequestServer;
+
+/// `requests` is the server's, where there is one.
 struct RenderOptions : AssembleOptions {
   std::string session = "default";
   SessionNetwork network;
-  Say say;                      ///< may be empty
-  double picture_rate_hz = 60;  ///< snapshots for the watchers, in simulated time
+  Say say;                          ///< may be empty
+  RequestServer* server = nullptr;  ///< where others ask for something; null: they cannot
+  double picture_rate_hz = 60;      ///< snapshots for the watchers, in simulated time
 };
 
 /// Runs the procedure by the clock, with the hand in a device's node. Builds what the scene requires when the

@@ -143,6 +143,13 @@ class DdsLink final : public Link {
              since_s(peer.heard_ns) < kAlive_s;
     });
   }
+  [[nodiscard]] std::size_t watchers() const override {
+    const std::lock_guard lock(mutex_);
+    return static_cast<std::size_t>(std::count_if(peers_.begin(), peers_.end(), [&](const auto& entry) {
+      const Peer& peer = entry.second;
+      return peer.role == NodeRole::Watch && peer.session == session_ && since_s(peer.heard_ns) < kAlive_s;
+    }));
+  }
   [[nodiscard]] std::uint64_t sessionId() const override { return session_; }
   [[nodiscard]] bool hasEnded() const override {
     const std::lock_guard lock(mutex_);
@@ -243,13 +250,13 @@ void DdsLink::pump() {
       next_beat_ns = now_ns() + kBeat_ns;
     }
     timespec until{};
-    clock_gettime(CLOCK_REALTIME, &until);
+    clock_gettime(CLOCK_MONOTONIC, &until);  // setting the clock holds up no beat
     until.tv_nsec += kBeat_ns;
     if (until.tv_nsec >= 1'000'000'000) {
       until.tv_nsec -= 1'000'000'000;
       ++until.tv_sec;
     }
-    sem_timedwait(&wake_, &until);
+    sem_clockwait(&wake_, CLOCK_MONOTONIC, &until);
     while (sem_trywait(&wake_) == 0) {
     }
   }

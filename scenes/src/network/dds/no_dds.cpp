@@ -2,6 +2,7 @@
 // In place of dds_link.cpp where Cyclone DDS is missing.
 #include "network/link.h"
 #include "network/pointer_topic.h"
+#include "network/request_channel.h"
 #include "vps/load_error.h"
 #include "vps_scenes/network/head_topic.h"
 #include "vps_scenes/network/ros_topics.h"
@@ -26,6 +27,13 @@ std::unique_ptr<Link> joinNetworkSession(const std::string&, NodeRole, const Ses
 }
 
 std::unique_ptr<PointerTopic> makePointerTopic(const std::string&, const SessionNetwork&) {
+  refuseNetwork();
+}
+
+std::unique_ptr<ServerChannel> makeNetworkServer(const std::string&, const SessionNetwork&) {
+  refuseNetwork();
+}
+std::unique_ptr<ClientChannel> findNetworkServer(const std::string&, const SessionNetwork&) {
   refuseNetwork();
 }
 

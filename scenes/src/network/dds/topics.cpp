@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "network/dds/topics.h"
 
+#include <dds/ddsrt/log.h>
+
 #include <algorithm>
 #include <cctype>
 #include <cstddef>
@@ -79,6 +81,9 @@ dds_domainid_t domainOf(const SessionNetwork& network, int wanted) {
     throw LoadError("", "", "--network " + interface + " was used with other certificates by this process");
   }
   requireName(interface);
+  // Cyclone DDS prints a line for each peer without a certificate of our authority, which a program's own
+  // words must not be mixed with.
+  dds_set_log_sink([](void*, const dds_log_data_t*) {}, nullptr);
   // Loopback has no multicast, so the participants look for each other at the ports of the first few.
   const std::string find =
       isLoopback(interface)

@@ -58,6 +58,7 @@ void drawView(Session& session) {
   for (std::size_t i = 0; i < standardViews().size(); ++i)
     press(standardViews()[i].name.data(), static_cast<Action>(static_cast<std::size_t>(Action::View1) + i));
   ImGui::NewLine();
+  ImGui::AlignTextToFramePadding();
   press("fit", Action::Fit);
   auto explode = static_cast<float>(view.explode);
   if (ImGui::SliderFloat("exploded", &explode, 0, 1.5f)) view.explode = explode;
@@ -233,7 +234,9 @@ void drawTimeAxis(Session& session, const PictureSize& size, float side_px, floa
   ViewState& view = session.view;
   const Timeline& line = session.shownLine();
   if (session.is_at_work) {
-    ImGui::Text("%s %.3f s", session.run || session.followed != nullptr ? "running live:" : "at rest after",
+    const bool is_over = session.run && session.status.is_over;
+    const bool is_live = session.run || session.followed != nullptr;
+    ImGui::Text("%s %.3f s", is_over ? "ended at" : (is_live ? "running live:" : "at rest after"),
                 view.time_s);
   } else {
     if (ImGui::Button(view.is_playing ? "pause" : "play"))
@@ -248,9 +251,12 @@ void drawTimeAxis(Session& session, const PictureSize& size, float side_px, floa
     if (ImGui::SliderFloat("##speed", &speed, 0.05f, 4, "%.2f x", ImGuiSliderFlags_Logarithmic))
       view.speed = speed;
   }
-  ImGui::TextDisabled("%s   %s, last picture %.0f ms%s   ? lists the keys",
-                      line.chapters[line.chapterAt(view.time_s)].name.c_str(), session.drawn_by.c_str(),
-                      session.picture_ms, session.is_draft ? " (draft)" : "");
+  char drawn[160] = "no picture yet";
+  if (!session.drawn_by.empty())
+    std::snprintf(drawn, sizeof drawn, "%s, last picture %.0f ms%s", session.drawn_by.c_str(),
+                  session.picture_ms, session.is_draft ? " (draft)" : "");
+  ImGui::TextDisabled("%s   %s   ? lists the keys", line.chapters[line.chapterAt(view.time_s)].name.c_str(),
+                      drawn);
   ImGui::End();
 }
 

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Requests over UDP: a topic for what is asked, and one for the answers, which name whom they are for.
+#include <condition_variable>
+#include <deque>
+#include <mutex>
+
+#include "network/dds/topics.h"
+#include "network/request_channel.h"
+
+namespace vps::scenes::inline v0 {
+
+namespace {
+
+constexpr std::size_t kMostWaiting = 64;  // of a flood the newest
+
+/// What a thread of DDS has received.
+class Inbox {
+ public:
+  void put(std::string_view bytes) {
+    if (bytes.size() > kLongestAsk) return;
+    {
+      const std::lock_guard lock(mutex_);
+      if (waiting_.size() >= kMostWaiting) waiting_.pop_front();
+      waiting_.emplace_back(bytes);
+    }
+    changed_.notify_one();
+  }
+  std::string take(std::chrono::milliseconds limit) {
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, limit, [this] { return !waiting_.empty(); });
+    if (waiting_.empty()) return {};
+    std::string bytes = std::move(waiting_.front());
+    waiting_.pop_front();
+    return bytes;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<std::string> waiting_;
+};
+
+class NetworkServer final : public ServerChannel {
+ public:
+  NetworkServer(const std::string& session, const SessionNetwork& network)
+      : participant_(network),
+        out_(participant_, topicName(session, "answer"), Delivery::Reliable, nullptr),
+        in_(participant_, topicName(session, "ask"), Delivery::Reliable,
+            [this](std::string_view bytes) { inbox_.put(bytes); }) {}
+
+  std::optional<IncomingRequest> receive(std::chrono::milliseconds limit) override {
+    std::string bytes = inbox_.take(limit);
+    if (bytes.empty()) return {};
+    return IncomingRequest{0, std::move(bytes), false};
+  }
+  void answer(std::uint64_t, std::string_view bytes) override { out_.write(bytes); }
+
+ private:
+  Inbox inbox_;
+  DdsParticipant participant_;
+  DdsTopic out_, in_;  // after all that threads of DDS use
+};
+
+class NetworkClient final : public ClientChannel {
+ public:
+  NetworkClient(const std::string& session, const SessionNetwork& network)
+      : participant_(network),
+        out_(participant_, topicName(session, "ask"), Delivery::Reliable, nullptr),
+        in_(participant_, topicName(session, "answer"), Delivery::Reliable,
+            [this](std::string_view bytes) { inbox_.put(bytes); }) {}
+
+  void send(std::string_view bytes) override { out_.write(bytes); }
+  std::string receive(std::chrono::milliseconds limit) override { return inbox_.take(limit); }
+
+ private:
+  Inbox inbox_;
+  DdsParticipant participant_;
+  DdsTopic out_, in_;
+};
+
+}  // namespace
+
+std::unique_ptr<ServerChannel> makeNetworkServer(const std::string& session, const SessionNetwork& network) {
+  return std::make_unique<NetworkServer>(session, network);
+}
+
+std::unique_ptr<ClientChannel> findNetworkServer(const std::string& session, const SessionNetwork& network) {
+  return std::make_unique<NetworkClient>(session, network);
+}
+
+}  // namespace vps::scenes::inline v0

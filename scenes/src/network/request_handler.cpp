@@ -1,0 +1,386 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "network/request_handler.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <utility>
+
+#include "procedure/assembly_run.h"
+#include "record/scene_archive.h"
+#include "vps/load_error.h"
+#include "vps/write_file.h"
+#include "vps_device/gains.h"
+#include "vps_device/metronome.h"
+
+namespace vps::scenes::inline v0 {
+
+namespace {
+
+constexpr std::size_t kMostSenders = 64;         // a flood of senders takes no more memory than this
+constexpr std::uint64_t kMostScene = 1U << 30U;  // [bytes]
+constexpr double kTransferLimit_s = 10;          // who sends asks again every 0.3 s, and gives up after 5
+constexpr std::size_t kHashDigits = 32;
+constexpr const char* kSceneEnding = ".scene";
+constexpr std::size_t kMostKept = 16;  // assumed: what a person works on; the newest stay
+
+template <std::size_t N>
+std::string textOf(const std::array<char, N>& text) {
+  return text.data();
+}
+
+std::string quoted(const std::string& name) {
+  return "'" + name + "'";
+}
+
+std::string gainsInWords(const CouplingGains& gains) {
+  char words[80];
+  std::snprintf(words, sizeof words, "%.0f N/m and %.1f N m/rad", gains.k_N_per_m, gains.k_Nm_per_rad);
+  return words;
+}
+
+bool isHash(const std::string& text) {
+  return text.size() == kHashDigits &&
+         std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isxdigit(c) != 0; });
+}
+
+/// Of a file, without a folder, so that nobody chooses where on this machine it goes.
+bool isFileName(const std::string& name) {
+  const auto is_good = [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '-' || c == '_' || c == '.';
+  };
+  return name.size() > 5 && name.ends_with(".mcap") && name.front() != '.' &&
+         std::all_of(name.begin(), name.end(), is_good);
+}
+
+/// Bytes of the text up to a limit, without half a character of UTF-8 at its end.
+std::size_t fittingSize(const std::string& text, std::size_t most) {
+  std::size_t size = std::min(text.size(), most);
+  if (size == text.size()) return size;
+  while (size > 0 && (static_cast<unsigned char>(text[size]) & 0xC0U) == 0x80U) --size;
+  return size;
+}
+
+std::string readAll(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+}  // namespace
+
+std::string unusedFile(const std::string& wanted) {
+  namespace fs = std::filesystem;
+  const fs::path path(wanted);
+  std::error_code error;
+  std::string file = wanted;
+  for (int number = 2; fs::exists(file, error); ++number)
+    file = (path.parent_path() /
+            (path.stem().string() + "-" + std::to_string(number) + path.extension().string()))
+               .string();
+  return file;
+}
+
+void ServedRun::begin(const Scene& scene, std::string scene_bytes, const Link& link,
+                      const std::string& recording) {
+  const std::lock_guard lock(mutex_);
+  facts_ = {};
+  facts_.name = scene.name;
+  facts_.hash = contentHash(scene_bytes);
+  facts_.bytes = std::move(scene_bytes);
+  for (const SceneStep& step : scene.steps) facts_.parts.push_back(scene.parts[step.part].part.name);
+  facts_.recording = recording;
+  facts_.is_running = true;
+  link_ = &link;
+}
+
+void ServedRun::end() {
+  const std::lock_guard lock(mutex_);
+  link_ = nullptr;
+  facts_.is_running = false;
+}
+
+void ServedRun::setDevice(const std::string& name, bool may_rearm, const CouplingGains& gains,
+                          const CouplingGains& most) {
+  const std::lock_guard lock(mutex_);
+  facts_.device = name;
+  facts_.may_rearm = may_rearm;
+  facts_.gains = gains;
+  facts_.most = most;
+}
+
+ServedRun::Facts ServedRun::facts(bool with_bytes) const {
+  const std::lock_guard lock(mutex_);
+  Facts facts = facts_;
+  if (!with_bytes) facts.bytes.clear();
+  facts.has_device = link_ != nullptr && link_->isAlive(NodeRole::Device);
+  facts.watchers = link_ != nullptr ? link_->watchers() : 0;
+  return facts;
+}
+
+RequestHandler::Client& RequestHandler::clientOf(std::uint64_t sender) {
+  if (!clients_.contains(sender) && clients_.size() >= kMostSenders)
+    clients_.erase(std::min_element(clients_.begin(), clients_.end(), [](const auto& a, const auto& b) {
+      return a.second.heard < b.second.heard;
+    }));
+  const auto [found, is_new] = clients_.try_emplace(sender);
+  if (is_new) found->second.reader.bindTo(sender);
+  found->second.heard = ++heard_;
+  return found->second;
+}
+
+std::string_view RequestHandler::write(std::uint64_t sender, std::uint64_t number, const Answer& answer) {
+  AnswerMessage message{sender, number, answer.is_done, answer.wants_scene, {}};
+  std::memcpy(message.text.data(), answer.words.data(), fittingSize(answer.words, message.text.size() - 1));
+  return writer_.write(message);
+}
+
+/// Who is of another version learns that from the answer's own version.
+std::string_view RequestHandler::refuseUnread(Reading reading) {
+  if (refused_++ == 0 && options_.say)
+    options_.say(std::string("a request that cannot be read was refused: ") + toText(reading));
+  return reading == Reading::BadVersion ? write(0, 0, {false, "another version", false}) : std::string_view();
+}
+
+std::string_view RequestHandler::answer(const IncomingRequest& ask) {
+  const bool is_piece = kindOf(ask.bytes) == MessageKind::Piece;
+  AskMessage message;
+  PieceMessage piece;
+  const auto read = [&](MessageReader& reader) {
+    return is_piece ? reader.read(ask.bytes, piece) : reader.read(ask.bytes, message);
+  };
+  MessageReader any;
+  if (const Reading reading = read(any); reading != Reading::Good) return refuseUnread(reading);
+  const Envelope envelope = any.envelope();
+  if (ask.is_stranger)
+    return write(envelope.sender, envelope.number,
+                 {false, "refused: the session is of another user of this machine", false});
+  Client& client = clientOf(envelope.sender);
+  const Reading reading = read(client.reader);
+  if (reading == Reading::Replayed && !client.last_answer.empty()) return client.last_answer;  // it was lost
+  if (reading != Reading::Good) return refuseUnread(reading);
+  const Answer answer = is_piece ? addPiece(envelope.sender, piece) : obey(message);
+  client.last_answer = write(envelope.sender, envelope.number, answer);
+  return client.last_answer;
+}
+
+RequestHandler::Answer RequestHandler::obey(const AskMessage& ask) {
+  if (ask.kind == AskKind::Who) return who();
+  if (options_.rights != RequestRights::All)
+    return {false, "refused: this session may only be asked who is there (vps render --requests all)", false};
+  const std::string text = textOf(ask.text);
+  switch (ask.kind) {
+    case AskKind::Who:
+      break;
+    case AskKind::Take:
+      return take(text);
+    case AskKind::Release:
+      return release();
+    case AskKind::Rearm:
+      return rearm();
+    case AskKind::Gains:
+      return setGains(ask.k_N_per_m, ask.k_Nm_per_rad);
+    case AskKind::Load:
+      return load(text);
+    case AskKind::Again:
+      return again();
+    case AskKind::Record:
+      return record(text);
+  }
+  return {};
+}
+
+RequestHandler::Answer RequestHandler::who() const {
+  const ServedRun::Facts facts = run_.facts();
+  const int step = requests_.step();
+  const std::size_t count = facts.parts.size();
+  std::string words = "render: ";
+  if (!facts.is_running) {
+    words += "no run";
+  } else {
+    words += quoted(facts.name) + " (scene " + facts.hash + ")";
+    if (requests_.phase() == RunPhase::Preparing || step < 0)
+      words += ", before its first step";
+    else if (static_cast<std::size_t>(step) < count)
+      words += ", step " + std::to_string(step + 1) + " of " + std::to_string(count) + ": " +
+               quoted(facts.parts[static_cast<std::size_t>(step)]) +
+               (requests_.phase() == RunPhase::InHand ? " is in hand" : " was let go of");
+    if (requests_.isWaiting()) words += requests_.mayTake() ? "" : "; parts are taken on request";
+    if (!facts.recording.empty()) words += "; recorded in " + facts.recording;
+  }
+  words += "\ndevice: ";
+  if (!facts.has_device)
+    words += facts.is_running ? "none, it is waited for" : "none";
+  else
+    words += (facts.device.empty() ? "joining" : quoted(facts.device) + ", " + gainsInWords(gainsOf(facts))) +
+             (requests_.isFaulted() ? "; safe after a fault: no force" : "");
+  words += "\nwatchers: " + std::to_string(facts.watchers);
+  return {true, words, false};
+}
+
+/// Those that were set last count from the step after that.
+CouplingGains RequestHandler::gainsOf(const ServedRun::Facts& facts) const {
+  return gains_ && requests_.step() > gains_step_ ? *gains_ : facts.gains;
+}
+
+RequestHandler::Answer RequestHandler::take(const std::string& part) {
+  if (!requests_.isWaiting())
+    return {false, "refused: this run takes its parts by itself; start vps render with --on-request", false};
+  const ServedRun::Facts facts = run_.facts();
+  const bool has_begun = requests_.phase() != RunPhase::Preparing;
+  const auto next = static_cast<std::size_t>(has_begun ? requests_.step() + 1 : 0);
+  if (!facts.is_running || next >= facts.parts.size())
+    return {false, "refused: there is no further part to take", false};
+  if (requests_.phase() == RunPhase::InHand)
+    return {false, "refused: the hand has " + quoted(facts.parts[next - 1]), false};
+  if (!part.empty() && part != facts.parts[next])
+    return {false, "refused: the next part is " + quoted(facts.parts[next]), false};
+  requests_.take();
+  return {true, quoted(facts.parts[next]) + " is taken next", false};
+}
+
+RequestHandler::Answer RequestHandler::release() {
+  const ServedRun::Facts facts = run_.facts();
+  const auto step = static_cast<std::size_t>(requests_.step());  // -1: none, beyond all parts
+  if (!facts.is_running || requests_.phase() != RunPhase::InHand || step >= facts.parts.size())
+    return {false, "refused: nothing is in hand", false};
+  requests_.release();
+  return {true, "the hand lets go of " + quoted(facts.parts[step]), false};
+}
+
+RequestHandler::Answer RequestHandler::rearm() {
+  const ServedRun::Facts facts = run_.facts();
+  if (!facts.has_device || facts.device.empty()) return {false, "refused: no device has joined", false};
+  if (!facts.may_rearm)
+    return {false, "refused: a person holds the device and has not allowed that (vps device --auto-rearm)",
+            false};
+  if (!requests_.isFaulted()) return {false, "refused: the device has no fault", false};
+  requests_.rearm();
+  return {true, "the device is re-armed", false};
+}
+
+RequestHandler::Answer RequestHandler::setGains(double k_N_per_m, double k_Nm_per_rad) {
+  const ServedRun::Facts facts = run_.facts();
+  if (!facts.is_running || facts.device.empty())
+    return {false, "refused: no device has joined, from whose limits the gains follow", false};
+  if (!facts.recording.empty()) return {false, "refused: a run that is recorded keeps its gains", false};
+  CouplingGains wish = facts.most;
+  wish.k_N_per_m = k_N_per_m;
+  wish.k_Nm_per_rad = k_Nm_per_rad > 0 ? k_Nm_per_rad : gainsOf(facts).k_Nm_per_rad;
+  const CouplingGains gains = device::softerOf(wish, facts.most);
+  if (!device::areUsable(gains))
+    return {false, "refused: " + gainsInWords(wish) + " are too soft to hold a part", false};
+  requests_.setGains(gains);
+  gains_ = gains;
+  gains_step_ = requests_.step();
+  const bool is_bounded = gains.k_N_per_m < wish.k_N_per_m || gains.k_Nm_per_rad < wish.k_Nm_per_rad;
+  return {true,
+          "from the next part on " + gainsInWords(gains) +
+              (is_bounded ? ", up to which this device is passive here" : ""),
+          false};
+}
+
+std::string RequestHandler::fileOf(const std::string& hash) const {
+  return options_.scenes.empty() ? "" : options_.scenes + "/" + hash + kSceneEnding;
+}
+
+RequestHandler::Answer RequestHandler::load(const std::string& hash) {
+  if (!isHash(hash)) return {false, "refused: a scene is named by the 32 digits of its hash", false};
+  const ServedRun::Facts facts = run_.facts(true);
+  if (facts.hash == hash) return begin(facts.bytes);
+  if (const std::string file = fileOf(hash); !file.empty())
+    if (const std::string bytes = readAll(file); contentHash(bytes) == hash) return begin(bytes);
+  return {false, "the scene " + hash + " is not known here; name its file, so that it is sent", true};
+}
+
+RequestHandler::Answer RequestHandler::addPiece(std::uint64_t sender, const PieceMessage& piece) {
+  if (options_.rights != RequestRights::All)
+    return {false, "refused: no scene may be sent to this session", false};
+  const std::string hash = textOf(piece.hash);
+  if (!isHash(hash) || piece.total == 0 || piece.total > kMostScene || piece.size > PieceMessage::kMost)
+    return {false, "refused: this is no piece of a scene", false};
+  if (piece.offset == 0) transfer_ = {sender, hash, {}, piece.total, 0};
+  Transfer& now = transfer_;
+  if (now.sender != sender || now.hash != hash || now.total != piece.total ||
+      now.bytes.size() != piece.offset || piece.size > now.total - piece.offset)
+    return {false, "refused: another scene was sent meanwhile; ask again", false};
+  now.bytes.append(piece.bytes.data(), piece.size);
+  now.heard_s = device::monotonicSeconds();
+  if (now.bytes.size() < now.total) return {true, "more", true};
+  const std::string bytes = std::exchange(transfer_, {}).bytes;
+  if (contentHash(bytes) != hash) return {false, "refused: the scene came damaged; ask again", false};
+  const Answer answer = begin(bytes);
+  if (answer.is_done) keep(hash, bytes);
+  return answer;
+}
+
+void RequestHandler::dropLostTransfer() {
+  if (!transfer_.bytes.empty() && device::monotonicSeconds() - transfer_.heard_s > kTransferLimit_s)
+    transfer_ = {};
+}
+
+void RequestHandler::keep(const std::string& hash, const std::string& bytes) const {
+  namespace fs = std::filesystem;
+  if (options_.scenes.empty()) return;
+  try {
+    fs::create_directories(options_.scenes);
+    writeWholeFile(fileOf(hash), bytes);
+    std::vector<fs::directory_entry> kept;
+    for (const fs::directory_entry& entry : fs::directory_iterator(options_.scenes))
+      if (entry.path().extension() == kSceneEnding) kept.push_back(entry);
+    std::sort(kept.begin(), kept.end(), [](const fs::directory_entry& a, const fs::directory_entry& b) {
+      return a.last_write_time() > b.last_write_time();
+    });
+    for (std::size_t i = kMostKept; i < kept.size(); ++i) fs::remove(kept[i]);
+  } catch (const std::exception& failed) {  // it runs all the same
+    if (options_.say) options_.say(std::string("the scene that was sent is not kept: ") + failed.what());
+  }
+}
+
+RequestHandler::Answer RequestHandler::begin(const std::string& bytes) {
+  try {
+    Scene scene = sceneFromBytes(bytes, "the scene that was asked for");
+    requireSteps(scene);
+    const std::string name = scene.name;
+    gains_.reset();
+    next_ = std::move(scene);
+    return {true, (run_.facts().is_running ? "this run ends, and " : "") + quoted(name) + " begins", false};
+  } catch (const std::exception& bad) {
+    return {false, std::string("refused: ") + bad.what(), false};
+  }
+}
+
+RequestHandler::Answer RequestHandler::again() {
+  const ServedRun::Facts facts = run_.facts(true);
+  if (facts.bytes.empty()) return {false, "refused: there was no run yet", false};
+  return begin(facts.bytes);
+}
+
+RequestHandler::Answer RequestHandler::record(const std::string& name) {
+  if (name.empty()) {
+    const bool is_recorded = !run_.facts().recording.empty();
+    recording_.clear();
+    return {true,
+            std::string("no further run is recorded") +
+                (is_recorded ? "; the recording of this one ends with it" : ""),
+            false};
+  }
+  if (!options_.network.empty())
+    return {false, "refused: a run over a network cannot be replayed, so it is not recorded", false};
+  if (!isFileName(name))
+    return {false, "refused: name a file as run_1.mcap, without a folder; it goes to where vps render runs",
+            false};
+  const std::string folder = options_.recordings.empty() ? "." : options_.recordings;
+  if (access(folder.c_str(), W_OK) != 0)
+    return {false, "refused: vps render cannot write into its folder for recordings", false};
+  recording_ = (std::filesystem::path(folder) / name).string();
+  return {true, "the next run is recorded in " + unusedFile(recording_) + "; again begins one", false};
+}
+
+}  // namespace vps::scenes::inline v0

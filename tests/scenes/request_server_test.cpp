@@ -1,0 +1,478 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What is asked of a render node while it runs. tests/program/ask_test.cpp does the same by the program.
+#include "vps_scenes/network/request_server.h"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <fstream>
+#include <functional>
+#include <thread>
+
+#include "network/request_server_work.h"
+#include "record/scene_archive.h"
+#include "scenes/two_pins.h"
+#include "support/temporary_folder.h"
+#include "vps/load_error.h"
+#include "vps_device/recording.h"
+#include "vps_scenes/network/session_request.h"
+#include "vps_scenes/replay.h"
+
+namespace vps::scenes {
+namespace {
+
+std::string sessionName() {
+  const auto* info = testing::UnitTest::GetInstance()->current_test_info();
+  return std::string("requests-")
+      .append(std::to_string(getpid()))
+      .append("-")
+      .append(std::to_string(std::hash<std::string>{}(info->name()) % 100000));
+}
+
+/// A handler of a run of two pins, without sockets and without a run.
+class RequestHandlerTest : public testing::Test {
+ protected:
+  void SetUp() override { begin(); }
+  void begin(const std::string& recording = "") {
+    scene_ = twoPins();
+    scene_.name = "two pins";
+    bytes_ = sceneToBytes(scene_);
+    run_.begin(scene_, bytes_, *link_, recording);
+  }
+  void joinDevice(bool may_rearm = true) {
+    run_.setDevice("arm", may_rearm, gains(800, 8), gains(1000, 10));
+    if (device_ == nullptr) device_ = joinSession(session_, NodeRole::Device);
+  }
+  static CouplingGains gains(double k_N_per_m, double k_Nm_per_rad) {
+    CouplingGains gains;
+    gains.k_N_per_m = k_N_per_m;
+    gains.k_Nm_per_rad = k_Nm_per_rad;
+    gains.b_Ns_per_m = gains.b_Nms_per_rad = 1;
+    gains.max_force_N = gains.max_torque_Nm = 10;
+    return gains;
+  }
+  static AskMessage message(AskKind kind, const std::string& text = "") {
+    AskMessage ask;
+    ask.kind = kind;
+    std::copy(text.begin(), text.end(), ask.text.begin());
+    return ask;
+  }
+  AnswerMessage answerTo(const std::string& bytes, bool is_stranger = false) {
+    AnswerMessage answer;
+    MessageReader reader;
+    answered_ = handler_.answer({1, bytes, is_stranger});
+    EXPECT_EQ(reader.read(answered_, answer), Reading::Good);
+    return answer;
+  }
+  AnswerMessage ask(AskKind kind, const std::string& text = "") {
+    return answerTo(std::string(asker_.write(message(kind, text))));
+  }
+  AnswerMessage askGains(double k_N_per_m) {
+    AskMessage ask = message(AskKind::Gains);
+    ask.k_N_per_m = k_N_per_m;
+    return answerTo(std::string(asker_.write(ask)));
+  }
+  static bool says(const AnswerMessage& answer, const std::string& words) {
+    return std::string(answer.text.data()).find(words) != std::string::npos;
+  }
+
+  std::string session_ = sessionName(), bytes_, answered_;
+  std::unique_ptr<Link> link_ = makeSession(session_, "a scene"), device_;
+  Scene scene_;
+  RequestServerOptions options_;
+  RunRequests requests_;
+  ServedRun run_;
+  RequestHandler handler_{options_, requests_, run_};
+  MessageWriter asker_{newSender()};
+};
+
+TEST_F(RequestHandlerTest, WhoTellsSceneStepDeviceAndWatchers) {
+  EXPECT_TRUE(says(ask(AskKind::Who), "'two pins' (scene " + contentHash(bytes_) + "), before its first"));
+  EXPECT_TRUE(says(ask(AskKind::Who), "device: none, it is waited for"));
+  joinDevice();
+  requests_.beginStep(1);
+  const std::unique_ptr<Link> watcher = joinSession(session_, NodeRole::Watch);
+  const AnswerMessage answer = ask(AskKind::Who);
+  EXPECT_TRUE(answer.is_done);
+  EXPECT_TRUE(says(answer, "step 2 of 2: 'right' is in hand")) << answer.text.data();
+  EXPECT_TRUE(says(answer, "'arm', 800 N/m and 8.0 N m/rad")) << answer.text.data();
+  EXPECT_TRUE(says(answer, "watchers: 1")) << answer.text.data();
+}
+
+TEST_F(RequestHandlerTest, AnAnswerNamesWhomItIsForAndARequestThatIsRepeatedIsCarriedOutOnce) {
+  requests_.beginStep(0);
+  const std::string bytes(asker_.write(message(AskKind::Release)));
+  const AnswerMessage answer = answerTo(bytes);
+  EXPECT_EQ(answer.asker, asker_.sender());
+  EXPECT_EQ(answer.number, 1u);
+  EXPECT_TRUE(requests_.isReleaseWanted());
+  requests_.beginStep(1);  // clears it
+  EXPECT_EQ(answerTo(bytes).number, 1u);
+  EXPECT_FALSE(requests_.isReleaseWanted());
+}
+
+TEST_F(RequestHandlerTest, PartsAreTakenInTheirOrderOnly) {
+  EXPECT_TRUE(says(ask(AskKind::Take), "takes its parts by itself"));
+  requests_.setWaiting(true);
+  EXPECT_FALSE(requests_.mayTake());
+  EXPECT_TRUE(says(ask(AskKind::Take, "right"), "the next part is 'left'"));
+  EXPECT_FALSE(requests_.mayTake());
+  EXPECT_TRUE(ask(AskKind::Take, "left").is_done);
+  EXPECT_TRUE(requests_.mayTake());
+  requests_.beginStep(0);
+  EXPECT_FALSE(requests_.mayTake());
+  EXPECT_TRUE(says(ask(AskKind::Take), "the hand has 'left'"));
+  requests_.endWork();
+  EXPECT_TRUE(says(ask(AskKind::Take), "'right' is taken next"));
+  requests_.beginStep(1);
+  requests_.endWork();
+  EXPECT_TRUE(says(ask(AskKind::Take), "no further part"));
+}
+
+TEST_F(RequestHandlerTest, NothingIsReleasedThatIsNotInHand) {
+  EXPECT_TRUE(says(ask(AskKind::Release), "nothing is in hand"));
+  requests_.beginStep(0);
+  requests_.endWork();
+  EXPECT_FALSE(ask(AskKind::Release).is_done);
+  EXPECT_FALSE(requests_.isReleaseWanted());
+  requests_.beginStep(1);
+  run_.end();  // stopped while a part was in hand
+  EXPECT_TRUE(says(ask(AskKind::Release), "nothing is in hand"));
+  EXPECT_TRUE(says(askGains(500), "no device has joined"));
+}
+
+// The system lists their marks in the order in which they joined, not by the number of their process.
+TEST_F(RequestHandlerTest, WatchersAreCountedWhateverTheirOrder) {
+  int pipe_ends[2];
+  ASSERT_EQ(pipe(pipe_ends), 0);
+  const pid_t child = fork();  // has a higher number than this process, and joins before it
+  if (child == 0) {
+    const std::unique_ptr<Link> watcher = joinSession(session_, NodeRole::Watch);
+    (void)!write(pipe_ends[1], "w", 1);
+    pause();
+    _exit(0);
+  }
+  char byte = 0;
+  ASSERT_EQ(read(pipe_ends[0], &byte, 1), 1);
+  const std::unique_ptr<Link> watcher = joinSession(session_, NodeRole::Watch);
+  EXPECT_TRUE(says(ask(AskKind::Who), "watchers: 2")) << answered_;
+  kill(child, SIGKILL);
+  waitpid(child, nullptr, 0);
+  EXPECT_TRUE(says(ask(AskKind::Who), "watchers: 1"));
+  close(pipe_ends[0]);
+  close(pipe_ends[1]);
+}
+
+TEST_F(RequestHandlerTest, OnlyADeviceThatAllowsItIsRearmedFromElsewhere) {
+  EXPECT_TRUE(says(ask(AskKind::Rearm), "no device has joined"));
+  joinDevice(false);
+  requests_.setFaulted(true);
+  EXPECT_TRUE(says(ask(AskKind::Rearm), "a person holds the device"));
+  EXPECT_FALSE(requests_.takeRearm());
+  run_.setDevice("arm", true, gains(800, 8), gains(1000, 10));
+  EXPECT_TRUE(ask(AskKind::Rearm).is_done);
+  EXPECT_TRUE(requests_.takeRearm());
+  requests_.setFaulted(false);
+  EXPECT_TRUE(says(ask(AskKind::Rearm), "has no fault"));
+}
+
+TEST_F(RequestHandlerTest, GainsAreBoundedByWhatIsPassive) {
+  EXPECT_TRUE(says(askGains(500), "no device has joined"));
+  joinDevice();
+  EXPECT_TRUE(askGains(500).is_done);
+  EXPECT_EQ(requests_.takeGains()->k_N_per_m, 500);
+  EXPECT_TRUE(says(askGains(5000), "1000 N/m and 8.0 N m/rad, up to which"));
+  EXPECT_EQ(requests_.takeGains()->k_N_per_m, 1000);
+  begin("run.mcap");
+  joinDevice();
+  EXPECT_TRUE(says(askGains(500), "recorded keeps its gains"));
+  EXPECT_FALSE(requests_.takeGains());
+}
+
+TEST_F(RequestHandlerTest, RightsAreHeld) {
+  options_.rights = RequestRights::Look;
+  requests_.beginStep(0);
+  EXPECT_TRUE(ask(AskKind::Who).is_done);
+  for (const AskKind kind : {AskKind::Take, AskKind::Release, AskKind::Rearm, AskKind::Load, AskKind::Again})
+    EXPECT_TRUE(says(ask(kind), "may only be asked who is there"));
+  PieceMessage piece;
+  EXPECT_TRUE(says(answerTo(std::string(asker_.write(piece))), "no scene may be sent"));
+  options_.rights = RequestRights::All;
+  EXPECT_TRUE(says(answerTo(std::string(asker_.write(message(AskKind::Release))), true), "of another user"));
+  EXPECT_FALSE(requests_.isReleaseWanted());
+  EXPECT_FALSE(handler_.takeNext());
+}
+
+TEST_F(RequestHandlerTest, RecordingsGoToTheFolderOfTheRenderNodeOnly) {
+  const test::TemporaryFolder folder;
+  options_.recordings = folder.path();
+  for (const char* name : {"../run.mcap", "/tmp/run.mcap", "run", ".mcap", ".a.mcap", "a b.mcap"})
+    EXPECT_FALSE(ask(AskKind::Record, name).is_done) << name;
+  EXPECT_TRUE(ask(AskKind::Record, "run_1.mcap").is_done);
+  EXPECT_EQ(handler_.recording(), (folder.path() / "run_1.mcap").string());
+  EXPECT_EQ(unusedFile(handler_.recording()), handler_.recording());
+  std::ofstream(handler_.recording()) << "an earlier run";
+  EXPECT_EQ(unusedFile(handler_.recording()), (folder.path() / "run_1-2.mcap").string());
+  EXPECT_TRUE(ask(AskKind::Record).is_done);
+  EXPECT_EQ(handler_.recording(), "");
+  options_.network = "lo";
+  EXPECT_TRUE(says(ask(AskKind::Record, "run_1.mcap"), "over a network cannot be replayed"));
+}
+
+TEST_F(RequestHandlerTest, ASceneIsSentInPiecesOnceAndThenKnownByItsHash) {
+  const test::TemporaryFolder folder;
+  options_.scenes = folder.path() / "scenes";
+  Scene other = twoPins();
+  other.name = "other pins";
+  other.parts[0].part.mesh = makeSphere(10e-3, 5);  // of several pieces
+  const std::string bytes = sceneToBytes(other), hash = contentHash(bytes);
+  ASSERT_GT(bytes.size(), 2 * PieceMessage::kMost);
+  EXPECT_TRUE(ask(AskKind::Load, hash).wants_scene);
+  EXPECT_FALSE(ask(AskKind::Load, "../../etc/passwd").wants_scene);
+  const auto send = [&](std::uint64_t offset, const std::string& from) {
+    PieceMessage piece;
+    std::copy(hash.begin(), hash.end(), piece.hash.begin());
+    piece.total = from.size();
+    piece.offset = offset;
+    piece.size = static_cast<std::uint32_t>(std::min<std::size_t>(PieceMessage::kMost, from.size() - offset));
+    std::copy_n(from.begin() + static_cast<std::ptrdiff_t>(offset), piece.size, piece.bytes.begin());
+    return answerTo(std::string(asker_.write(piece)));
+  };
+  EXPECT_TRUE(says(send(PieceMessage::kMost, bytes), "another scene was sent"));  // not from its begin
+  std::string damaged = bytes;
+  damaged[100] ^= 1;
+  AnswerMessage last;
+  for (std::uint64_t at = 0; at < bytes.size(); at += PieceMessage::kMost) last = send(at, damaged);
+  EXPECT_TRUE(says(last, "came damaged"));
+  EXPECT_FALSE(handler_.takeNext());
+  for (std::uint64_t at = 0; at < bytes.size(); at += PieceMessage::kMost) last = send(at, bytes);
+  EXPECT_TRUE(last.is_done) << last.text.data();
+  ASSERT_TRUE(handler_.takeNext());
+  EXPECT_TRUE(ask(AskKind::Load, hash).is_done);
+  EXPECT_EQ(handler_.takeNext()->name, "other pins");
+}
+
+TEST_F(RequestHandlerTest, ASceneThatCannotRunEndsNoRun) {
+  Scene empty = twoPins();
+  empty.steps.clear();
+  const std::string bytes = sceneToBytes(empty);
+  run_.begin(empty, bytes, *link_, "");
+  EXPECT_TRUE(says(ask(AskKind::Again), "has no [[step]]"));
+  EXPECT_FALSE(handler_.takeNext());
+}
+
+TEST_F(RequestHandlerTest, ALongAnswerEndsBetweenTwoCharacters) {
+  for (const char* shift : {"", "x", "xx"}) {
+    scene_.name = shift;
+    for (int i = 0; i < 500; ++i) scene_.name += "\u20ac";  // three bytes each
+    run_.begin(scene_, bytes_, *link_, "");
+    const AnswerMessage answer = ask(AskKind::Who);
+    const std::string words = answer.text.data();
+    EXPECT_GT(words.size(), answer.text.size() - 5);
+    EXPECT_EQ(words.substr(words.size() - 3), "\u20ac");
+  }
+}
+
+TEST_F(RequestHandlerTest, WhatCannotBeReadIsRefusedAndSaidOnce) {
+  std::vector<std::string> said;
+  options_.say = [&said](const std::string& words) { said.push_back(words); };
+  std::string bytes(asker_.write(message(AskKind::Release)));
+  for (std::size_t i = 0; i < bytes.size(); ++i)
+    EXPECT_EQ(handler_.answer({1, bytes.substr(0, i), false}), "");
+  EXPECT_EQ(said.size(), 1u);
+  bytes[2] ^= 1;  // another version
+  AnswerMessage answer;
+  MessageReader reader;
+  EXPECT_EQ(reader.read(std::string(handler_.answer({1, bytes, false})), answer), Reading::Good);
+  EXPECT_TRUE(says(answer, "another version"));
+}
+
+/// A render node with its server, and a device, each on a thread.
+class RequestServerTest : public testing::Test {
+ protected:
+  void start(const std::string& file = "", bool waits = false) {
+    RequestServerOptions options;
+    options.session = session_;
+    options.waits = waits;
+    options.stop = &stop_;
+    server_.emplace(options);
+    render_ = std::thread([this, file] {
+      Scene scene = twoPins();
+      RenderOptions render;
+      render.session = session_;
+      render.server = &*server_;
+      render.stop = server_->endsRun();
+      result_ = renderNode(scene, render, file);
+      is_over_ = true;
+    });
+    device_ = std::thread([this] { deviceNode({session_, "", &stop_, {}, false, false}); });
+  }
+  void TearDown() override {
+    stop_ = true;
+    join();
+  }
+  void join() {
+    if (render_.joinable()) render_.join();
+    if (device_.joinable()) device_.join();
+  }
+  bool waitFor(const std::function<bool()>& isSo) const {
+    for (int i = 0; i < 3000 && !isSo(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    return isSo();
+  }
+  [[nodiscard]] RunRequests& requests() { return server_->work().requests; }
+
+  std::string session_ = sessionName();
+  std::atomic<bool> stop_{false}, is_over_{false};
+  std::optional<RequestServer> server_;
+  AssembleResult result_;
+  std::thread render_, device_;
+  SessionRequest request_{session_};
+};
+
+TEST_F(RequestServerTest, APartThatIsReleasedEndsItsStepAndTheRunReplaysBitForBit) {
+  const test::TemporaryFolder folder;
+  const std::string file = folder.path() / "run.mcap";
+  start(file);
+  ASSERT_TRUE(waitFor([&] { return requests().phase() == RunPhase::InHand; }));
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));  // the hand works
+  ASSERT_EQ(requests().step(), 0);
+  EXPECT_TRUE(request_.release().is_done);
+  join();
+  ASSERT_EQ(result_.steps.size(), 2u);
+  EXPECT_FALSE(result_.steps[0].completed);
+  EXPECT_NE(result_.steps[0].failure_reason.find("let go of on request"), std::string::npos)
+      << result_.steps[0].failure_reason;
+  const device::RecordedRun run = device::loadRecording(file);
+  const ReplayResult replayed = replay(run);
+  EXPECT_EQ(replayed.departure, "");
+  EXPECT_EQ(replayed.equal, run.entries.size());
+}
+
+TEST_F(RequestServerTest, APartWaitsUntilItIsAskedForAndGainsComeWithIt) {
+  const test::TemporaryFolder folder;
+  start("", true);
+  ASSERT_TRUE(waitFor([&] {
+    return request_.who().words.find("parts are taken on request") != std::string::npos &&
+           request_.who().words.find("N/m") != std::string::npos;
+  }));
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  EXPECT_EQ(requests().phase(), RunPhase::Preparing);
+  EXPECT_TRUE(request_.take("left").is_done);
+  ASSERT_TRUE(waitFor([&] { return requests().phase() == RunPhase::Settling; }));
+  std::this_thread::sleep_for(std::chrono::seconds(1));
+  EXPECT_EQ(requests().step(), 0);
+  EXPECT_FALSE(is_over_);
+  EXPECT_TRUE(request_.setGains(500).is_done);
+  EXPECT_TRUE(request_.take().is_done);
+  join();
+  EXPECT_EQ(result_.steps.size(),
+            2u);  // whether the hand had time enough is another matter on a busy machine
+  EXPECT_FALSE(requests().takeGains());  // they were taken
+}
+
+TEST_F(RequestServerTest, AnotherSceneEndsTheRunAndIsNext) {
+  start();
+  ASSERT_TRUE(waitFor([&] { return requests().phase() == RunPhase::InHand; }));
+  Scene other = twoPins();
+  other.name = "other pins";
+  EXPECT_TRUE(request_.load(other).is_done);
+  render_.join();
+  const std::optional<Scene> next = server_->takeNext();
+  ASSERT_TRUE(next);
+  EXPECT_EQ(next->name, "other pins");
+  EXPECT_FALSE(server_->endsRun()->load());
+}
+
+TEST(SessionRequest, WhereNobodyAnswersThatIsSaid) {
+  EXPECT_THROW((void)SessionRequest(sessionName()).who(), LoadError);
+  EXPECT_THROW(SessionRequest("a/b"), LoadError);
+  RequestServerOptions options;
+  options.session = sessionName();
+  const RequestServer server(options);
+  EXPECT_THROW(RequestServer second(options), LoadError);
+  EXPECT_NE(SessionRequest(options.session).who().words.find("no run"), std::string::npos);
+}
+
+/// Two ends of a socket of a session.
+class LocalRequestsTest : public testing::Test {
+ protected:
+  std::string session_ = sessionName();
+  std::unique_ptr<ServerChannel> server_ = makeLocalServer(session_);
+};
+
+TEST_F(LocalRequestsTest, WhoSendsWithoutEndKeepsNobodyOut) {
+  const std::unique_ptr<ClientChannel> flood = findLocalServer(session_), other = findLocalServer(session_);
+  const auto floods = [&] {
+    for (int i = 0; i < 20; ++i) flood->send("flood");
+  };
+  floods();
+  bool is_heard = false;
+  for (int i = 0; i < 20 && !is_heard; ++i) {
+    if (i == 5) other->send("other");
+    const std::optional<IncomingRequest> ask = server_->receive(std::chrono::milliseconds(100));
+    is_heard = ask && ask->bytes == "other";
+    floods();
+  }
+  EXPECT_TRUE(is_heard);
+}
+
+TEST_F(LocalRequestsTest, WhoAsksWaitsForNoServerThatDoesNotRead) {
+  const std::unique_ptr<ClientChannel> channel = findLocalServer(session_);
+  const std::string bytes(kLongestAsk, 'x');
+  for (int i = 0; i < 100; ++i) channel->send(bytes);  // more than the system keeps
+  EXPECT_FALSE(channel->isOver());
+  std::vector<std::unique_ptr<ClientChannel>> waiting;
+  EXPECT_THROW(
+      {
+        for (int i = 0; i < 100; ++i) waiting.push_back(findLocalServer(session_));
+      },
+      LoadError);
+}
+
+// Needs the right to become another user.
+TEST(SessionRequest, AnotherUserOfTheMachineIsRefused) {
+  if (getuid() != 0) GTEST_SKIP() << "only root can become another user";
+  RequestServerOptions options;
+  options.session = sessionName();
+  const RequestServer server(options);
+  const pid_t child = fork();
+  if (child == 0) {  // another user, without the server's thread
+    if (setuid(65534) != 0) _exit(10);
+    const std::unique_ptr<ClientChannel> channel = findLocalServer(options.session, 0);
+    if (channel == nullptr) _exit(11);
+    MessageWriter writer(newSender());
+    channel->send(writer.write(AskMessage{}));
+    AnswerMessage answer;
+    MessageReader reader;
+    const std::string bytes = channel->receive(std::chrono::seconds(5));
+    if (reader.read(bytes, answer) != Reading::Good) _exit(12);
+    const bool is_refused =
+        !answer.is_done && std::string(answer.text.data()).find("of another user") != std::string::npos;
+    _exit(is_refused ? 0 : 13);
+  }
+  int status = -1;
+  waitpid(child, &status, 0);
+  EXPECT_EQ(WEXITSTATUS(status), 0);
+}
+
+TEST(SessionRequest, OverANetworkTheSameIsAnswered) {
+  RequestServerOptions options;
+  options.session = sessionName();
+  options.network = "lo";
+  try {
+    const RequestServer server(options);
+    EXPECT_NE(SessionRequest(options.session, "lo").who().words.find("no run"), std::string::npos);
+    EXPECT_FALSE(SessionRequest(options.session, "lo").again().is_done);
+  } catch (const LoadError& error) {
+    if (std::string(error.what()).find("this build has no network") == std::string::npos) throw;
+    GTEST_SKIP() << "this build has no network";
+  }
+}
+
+}  // namespace
+}  // namespace vps::scenes
