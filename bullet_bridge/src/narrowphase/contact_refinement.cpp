@@ -22,8 +22,8 @@ constexpr double kCosEdge = 0.94;  // 20 degrees, as in PointShellSettings::edge
 constexpr double kAlong = 0.087;   // 5 degrees, as findCrossings()
 constexpr double kInto = 0.17;     // 10 degrees. assumed: more than the angle between facets of a round face
 constexpr double kNever_m = 1;     // farther than any step moves
-// The cost of the search for the nearest triangle grows with the distance searched. Except at sharp edges, the
-// field's error is a small part of a voxel.
+// The cost of the search for the nearest triangle grows with the distance searched. Except at sharp edges,
+// the field's error is a small part of a voxel.
 constexpr double kUsualError = 0.05;
 
 /// A shell point and its own part's surface around it.
