@@ -56,13 +56,8 @@ int runAsk(const AskArguments& given) {
   return kGood;
 }
 
-bool isHash(const std::string& text) {
-  constexpr std::size_t kDigits = 32;
-  return text.size() == kDigits && text.find_first_not_of("0123456789abcdef") == std::string::npos;
-}
-
 scenes::SessionAnswer load(const scenes::SessionRequest& request, const std::string& scene) {
-  if (isHash(scene)) return request.load(scene);
+  if (scenes::isSceneHash(scene)) return request.load(scene);
   ProgressBar bar;
   const Progress show = bar.progress();
   return request.load(sceneFrom(scene, {}, {}), [&](double share) { show("sending the scene", share); });

@@ -19,6 +19,7 @@
 #include "vps/write_file.h"
 #include "vps_device/gains.h"
 #include "vps_device/metronome.h"
+#include "vps_scenes/network/session_request.h"
 
 namespace vps::scenes::inline v0 {
 
@@ -27,7 +28,6 @@ namespace {
 constexpr std::size_t kMostSenders = 64;         // a flood of senders takes no more memory than this
 constexpr std::uint64_t kMostScene = 1U << 30U;  // [bytes]
 constexpr double kTransferLimit_s = 10;          // who sends asks again every 0.3 s, and gives up after 5
-constexpr std::size_t kHashDigits = 32;
 constexpr const char* kSceneEnding = ".scene";
 constexpr std::size_t kMostKept = 16;  // assumed: what a person works on; the newest stay
 
@@ -44,11 +44,6 @@ std::string gainsInWords(const CouplingGains& gains) {
   char words[80];
   std::snprintf(words, sizeof words, "%.0f N/m and %.1f N m/rad", gains.k_N_per_m, gains.k_Nm_per_rad);
   return words;
-}
-
-bool isHash(const std::string& text) {
-  return text.size() == kHashDigits &&
-         std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isxdigit(c) != 0; });
 }
 
 /// Of a file, without a folder, so that nobody chooses where on this machine it goes.
@@ -291,7 +286,7 @@ std::string RequestHandler::fileOf(const std::string& hash) const {
 }
 
 RequestHandler::Answer RequestHandler::load(const std::string& hash) {
-  if (!isHash(hash)) return {false, "refused: a scene is named by the 32 digits of its hash", false};
+  if (!isSceneHash(hash)) return {false, "refused: a scene is named by the 32 digits of its hash", false};
   const ServedRun::Facts facts = run_.facts(true);
   if (facts.hash == hash) return begin(facts.bytes);
   if (const std::string file = fileOf(hash); !file.empty())
@@ -303,7 +298,7 @@ RequestHandler::Answer RequestHandler::addPiece(std::uint64_t sender, const Piec
   if (options_.rights != RequestRights::All)
     return {false, "refused: no scene may be sent to this session", false};
   const std::string hash = textOf(piece.hash);
-  if (!isHash(hash) || piece.total == 0 || piece.total > kMostScene || piece.size > PieceMessage::kMost)
+  if (!isSceneHash(hash) || piece.total == 0 || piece.total > kMostScene || piece.size > PieceMessage::kMost)
     return {false, "refused: this is no piece of a scene", false};
   if (piece.offset == 0) transfer_ = {sender, hash, {}, piece.total, 0};
   Transfer& now = transfer_;

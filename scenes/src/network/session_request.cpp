@@ -86,6 +86,11 @@ SessionAnswer answerOf(const AnswerMessage& message) {
 
 }  // namespace
 
+bool isSceneHash(const std::string& text) {
+  constexpr std::size_t kDigits = 32;  // of contentHash()
+  return text.size() == kDigits && text.find_first_not_of("0123456789abcdef") == std::string::npos;
+}
+
 SessionRequest::SessionRequest(std::string session, SessionNetwork network)
     : session_(std::move(session)), network_(std::move(network)) {
   requireSessionName(session_);

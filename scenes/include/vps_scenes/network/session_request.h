@@ -11,6 +11,9 @@
 
 namespace vps::scenes::inline v0 {
 
+/// Whether a text has the form of a scene's hash: 32 hexadecimal digits, in small letters.
+VPS_SCENES_API bool isSceneHash(const std::string& text);
+
 struct SessionAnswer {
   bool is_done = false;
   std::string words;  ///< what is so, or why it was not done
@@ -34,7 +37,7 @@ class VPS_SCENES_API SessionRequest {
   /// @param progress  gets the share that was sent; may be empty
   [[nodiscard]] SessionAnswer load(const Scene& scene,
                                    const std::function<void(double)>& progress = nullptr) const;
-  /// One that the render node knows.
+  /// One that the render node knows. See isSceneHash().
   [[nodiscard]] SessionAnswer load(const std::string& hash) const;
   [[nodiscard]] SessionAnswer again() const;
   /// The runs that begin from now on. @param name  of a file, without a folder; empty: no more

@@ -135,21 +135,8 @@ class DdsLink final : public Link {
   [[nodiscard]] std::uint64_t lost(Channel channel) const noexcept override {
     return readers_[static_cast<std::size_t>(channel)].lost();
   }
-  [[nodiscard]] bool isAlive(NodeRole role) const override {
-    const std::lock_guard lock(mutex_);
-    return std::any_of(peers_.begin(), peers_.end(), [&](const auto& entry) {
-      const Peer& peer = entry.second;
-      return peer.role == role && peer.session == session_ && !peer.has_ended &&
-             since_s(peer.heard_ns) < kAlive_s;
-    });
-  }
-  [[nodiscard]] std::size_t watchers() const override {
-    const std::lock_guard lock(mutex_);
-    return static_cast<std::size_t>(std::count_if(peers_.begin(), peers_.end(), [&](const auto& entry) {
-      const Peer& peer = entry.second;
-      return peer.role == NodeRole::Watch && peer.session == session_ && since_s(peer.heard_ns) < kAlive_s;
-    }));
-  }
+  [[nodiscard]] bool isAlive(NodeRole role) const override { return aliveOf(role) > 0; }
+  [[nodiscard]] std::size_t watchers() const override { return aliveOf(NodeRole::Watch); }
   [[nodiscard]] std::uint64_t sessionId() const override { return session_; }
   [[nodiscard]] bool hasEnded() const override {
     const std::lock_guard lock(mutex_);
@@ -183,6 +170,15 @@ class DdsLink final : public Link {
   }
 
  private:
+  /// How many nodes have the role in this session now.
+  [[nodiscard]] std::size_t aliveOf(NodeRole role) const {
+    const std::lock_guard lock(mutex_);
+    return static_cast<std::size_t>(std::count_if(peers_.begin(), peers_.end(), [&](const auto& entry) {
+      const Peer& peer = entry.second;
+      return peer.role == role && peer.session == session_ && !peer.has_ended &&
+             since_s(peer.heard_ns) < kAlive_s;
+    }));
+  }
   /// Until it is so, at most so long.
   template <typename IsSo>
   static bool waitFor(double most_s, IsSo is_so) {

@@ -40,20 +40,17 @@ class Inbox {
   std::deque<std::string> waiting_;
 };
 
-class NetworkServer final : public ServerChannel {
+/// One topic to write, and one to read.
+class Exchange {
  public:
-  NetworkServer(const std::string& session, const SessionNetwork& network)
+  Exchange(const std::string& session, const SessionNetwork& network, const char* out, const char* in)
       : participant_(network),
-        out_(participant_, topicName(session, "answer"), Delivery::Reliable, nullptr),
-        in_(participant_, topicName(session, "ask"), Delivery::Reliable,
+        out_(participant_, topicName(session, out), Delivery::Reliable, nullptr),
+        in_(participant_, topicName(session, in), Delivery::Reliable,
             [this](std::string_view bytes) { inbox_.put(bytes); }) {}
 
-  std::optional<IncomingRequest> receive(std::chrono::milliseconds limit) override {
-    std::string bytes = inbox_.take(limit);
-    if (bytes.empty()) return {};
-    return IncomingRequest{0, std::move(bytes), false};
-  }
-  void answer(std::uint64_t, std::string_view bytes) override { out_.write(bytes); }
+  void send(std::string_view bytes) { out_.write(bytes); }
+  std::string receive(std::chrono::milliseconds limit) { return inbox_.take(limit); }
 
  private:
   Inbox inbox_;
@@ -61,21 +58,32 @@ class NetworkServer final : public ServerChannel {
   DdsTopic out_, in_;  // after all that threads of DDS use
 };
 
+class NetworkServer final : public ServerChannel {
+ public:
+  NetworkServer(const std::string& session, const SessionNetwork& network)
+      : topics_(session, network, "answer", "ask") {}
+
+  std::optional<IncomingRequest> receive(std::chrono::milliseconds limit) override {
+    std::string bytes = topics_.receive(limit);
+    if (bytes.empty()) return {};
+    return IncomingRequest{0, std::move(bytes), false};
+  }
+  void answer(std::uint64_t, std::string_view bytes) override { topics_.send(bytes); }
+
+ private:
+  Exchange topics_;
+};
+
 class NetworkClient final : public ClientChannel {
  public:
   NetworkClient(const std::string& session, const SessionNetwork& network)
-      : participant_(network),
-        out_(participant_, topicName(session, "ask"), Delivery::Reliable, nullptr),
-        in_(participant_, topicName(session, "answer"), Delivery::Reliable,
-            [this](std::string_view bytes) { inbox_.put(bytes); }) {}
+      : topics_(session, network, "ask", "answer") {}
 
-  void send(std::string_view bytes) override { out_.write(bytes); }
-  std::string receive(std::chrono::milliseconds limit) override { return inbox_.take(limit); }
+  void send(std::string_view bytes) override { topics_.send(bytes); }
+  std::string receive(std::chrono::milliseconds limit) override { return topics_.receive(limit); }
 
  private:
-  Inbox inbox_;
-  DdsParticipant participant_;
-  DdsTopic out_, in_;
+  Exchange topics_;
 };
 
 }  // namespace
