@@ -28,7 +28,7 @@ std::string lastError() {
 }
 
 const char* nameOf(int key) {
-  static constexpr std::array<std::pair<int, const char*>, 10> kNames = {{{GLFW_KEY_SPACE, "Space"},
+  static constexpr std::array<std::pair<int, const char*>, 11> kNames = {{{GLFW_KEY_SPACE, "Space"},
                                                                           {GLFW_KEY_ENTER, "Enter"},
                                                                           {GLFW_KEY_KP_ENTER, "Enter"},
                                                                           {GLFW_KEY_LEFT, "Left"},
@@ -37,6 +37,7 @@ const char* nameOf(int key) {
                                                                           {GLFW_KEY_DOWN, "Down"},
                                                                           {GLFW_KEY_HOME, "Home"},
                                                                           {GLFW_KEY_END, "End"},
+                                                                          {GLFW_KEY_F11, "F11"},
                                                                           {GLFW_KEY_ESCAPE, "Escape"}}};
   for (const auto& [code, name] : kNames)
     if (code == key) return name;
@@ -157,6 +158,25 @@ void GlfwWindow::wake() {
 
 bool GlfwWindow::isClosed() const {
   return glfwWindowShouldClose(window_) == GLFW_TRUE;
+}
+
+bool GlfwWindow::setFullScreen(bool is_full, int monitor) {
+  auto& [x, y, width, height] = windowed_;
+  if (!is_full) {
+    if (is_full_screen_) glfwSetWindowMonitor(window_, nullptr, x, y, width, height, GLFW_DONT_CARE);
+    is_full_screen_ = false;
+    return true;
+  }
+  int count = 0;
+  GLFWmonitor** monitors = glfwGetMonitors(&count);
+  if (monitor >= count) return false;
+  const GLFWvidmode* mode = glfwGetVideoMode(monitors[monitor]);
+  if (mode == nullptr) return false;
+  glfwGetWindowPos(window_, &x, &y);
+  glfwGetWindowSize(window_, &width, &height);
+  glfwSetWindowMonitor(window_, monitors[monitor], 0, 0, mode->width, mode->height, mode->refreshRate);
+  is_full_screen_ = true;
+  return true;
 }
 
 PictureSize GlfwWindow::size() const {

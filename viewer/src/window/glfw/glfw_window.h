@@ -2,6 +2,7 @@
 // A window with OpenGL and Dear ImGui, and the picture that it shows.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <functional>
 #include <string>
@@ -33,6 +34,9 @@ class GlfwWindow {
   /// Ends wait(), from any thread.
   void wake();
   [[nodiscard]] bool isClosed() const;
+  /// Fills that monitor, counted from 0, or goes back to where the window was. False where there is none.
+  bool setFullScreen(bool is_full, int monitor);
+  [[nodiscard]] bool isFullScreen() const { return is_full_screen_; }
   /// In pixels; 0 while it is minimised.
   [[nodiscard]] PictureSize size() const;
   /// Row of the monitor that shows the window's uppermost row; 0 where the display does not say it (Wayland).
@@ -62,7 +66,8 @@ class GlfwWindow {
   PictureSize texture_size_{0, 0};
   float scale_ = 1;
   int greatest_picture_ = 0;
-  bool has_picture_ = false;
+  bool has_picture_ = false, is_full_screen_ = false;
+  std::array<int, 4> windowed_{};  ///< place and size before it filled a monitor
   int frames_due_ = 3;
   std::atomic<bool> has_news_{false};
 };
