@@ -392,6 +392,15 @@ TEST_F(Window, ShowsAllPicturesOfADisplayFileAndOneAloneByAKey) {
                 "shows no 'back', but front_anna, front_ben, floor_anna, floor_ben");
 }
 
+TEST_F(Window, ADriverWithoutABufferForEachEyeIsSaid) {
+  open("scene.toml --quad-buffer");
+  EXPECT_TRUE(shows(expected(0)));
+  EXPECT_EQ(close(), 0);
+  const std::string words = slurp(folder_ / "err.txt");
+  EXPECT_EQ(std::count(words.begin(), words.end(), '\n'), 1) << words;
+  EXPECT_NE(words.find("this driver has no buffer for each eye"), std::string::npos) << words;
+}
+
 TEST_F(Window, InterleavedRowsStayWithTheScreensRowsWhereverTheWindowIs) {
   open("scene.toml --stereo interleaved");
   const auto eyeOf = [&](int row) {  // the same picture with the rows of both eyes exchanged, or not

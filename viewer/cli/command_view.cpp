@@ -135,6 +135,10 @@ void addView(CommandLine& line) {
       .add_option("--stereo", given->stereo, "how the pictures of both eyes are shown at first; S switches")
       ->capture_default_str()
       ->check(CLI::IsMember(modes));
+  command.add_flag(
+      "--quad-buffer", window.has_stereo_buffers,
+      "each eye's picture in a buffer of its own, where the driver has that (shutter glasses); in "
+      "the mode mono");
   command
       .add_option(
           "--display", given->display,

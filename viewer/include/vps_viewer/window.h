@@ -22,7 +22,8 @@ namespace vps::viewer::inline v0 {
 struct WindowOptions {
   int width = 1280, height = 720;
   bool is_dark = false;
-  StereoMode stereo = StereoMode::Mono;    ///< of Spectral both pictures are beside each other
+  StereoMode stereo = StereoMode::Mono;  ///< of Spectral both pictures are beside each other
+  bool has_stereo_buffers = false;  ///< each eye's picture in a buffer of its own, where the driver has it
   std::optional<scenes::Display> display;  ///< all its pictures are in the window; none: a desktop
   std::string output;                      ///< of them the one that is shown alone at first; empty: all
   int full_screen = 0;         ///< number of the monitor that the picture fills at first, from 1; 0: a window

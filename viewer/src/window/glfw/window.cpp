@@ -113,6 +113,28 @@ void limitStereo(Session& session, const GlfwWindow& window) {
   session.view.stereo = StereoMode::Mono;
 }
 
+/// The left eye's picture beside the right one's, which go to a buffer each; in the other modes the same to
+/// both, since the screen's own way to keep the eyes apart is not used then.
+void addStereoBuffers(PictureRequest& wanted) {
+  const int width = wanted.options.width, height = wanted.options.height;
+  EyePair eyes = wanted.eyes ? *wanted.eyes : eyesAbout(wanted.camera, {width, height});
+  wanted.options.width = 2 * width;
+  if (wanted.stereo == StereoMode::Mono && wanted.tiles.empty()) {
+    wanted.eyes.reset();
+    wanted.tiles = {{{eyes.left, eyes.left}, {0, 0, width, height}, 0},
+                    {{eyes.right, eyes.right}, {width, 0, width, height}, 0}};
+    return;
+  }
+  if (wanted.tiles.empty()) wanted.tiles = {{eyes, {0, 0, width, height}, 0}};
+  wanted.eyes.reset();
+  for (std::size_t i = 0, count = wanted.tiles.size(); i < count; ++i) {
+    PictureTile again = wanted.tiles[i];
+    again.place.x += width;
+    wanted.tiles.push_back(again);
+  }
+  if (wanted.rows.width > 0) wanted.rows.width *= 2;
+}
+
 void askForPicture(Session& session, PictureWorker& worker, const GlfwWindow& window) {
   const double size_m = snapshotBounds(session.drawn, session.shown).size().norm();
   session.placed = exploded(session.scene, session.shown, session.view.explode, size_m);
@@ -137,6 +159,7 @@ void askForPicture(Session& session, PictureWorker& worker, const GlfwWindow& wi
                    window.screenRow() + static_cast<int>(session.area.y)};
   wanted.options.width = size.width;
   wanted.options.height = size.height;
+  if (window.hasStereo()) addStereoBuffers(wanted);
   worker.request(wanted);
 }
 
@@ -275,7 +298,14 @@ void loop(Session& session, GlfwWindow& window) {
 void openAndLoop(Session& session, const std::string& title) {
   for (const std::string& note : session.options.notes) session.say(note);
   session.view.output = firstOutput(session.options);
-  GlfwWindow window(title, {session.options.width, session.options.height});
+  GlfwWindow window(title, {session.options.width, session.options.height},
+                    session.options.has_stereo_buffers);
+  if (session.options.has_stereo_buffers && !window.hasStereo()) {
+    const std::string words =
+        "this driver has no buffer for each eye (quad-buffered stereo); S has other modes";
+    session.say(words);
+    if (session.options.say) session.options.say(words);
+  }
   window.on_key = [&session](const std::string& key) { typed(session, key); };
   loop(session, window);
 }
