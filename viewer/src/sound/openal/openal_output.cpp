@@ -24,7 +24,7 @@ namespace {
 constexpr double kBuffer_s = 1.25e-3;
 // By which a thread may be late. Sound is heard later by as long, so it begins with little and grows with
 // each time that it was not enough.
-constexpr double kLate_s = 2.5e-3, kMostLate_s = 10e-3;
+constexpr double kLate_s = 1.25e-3, kMostLate_s = 10e-3;
 constexpr double kPause_s = 0.05;    // assumed: what comes later than that was not late, but paused
 constexpr int kCardPeriod = 128;     // samples, asked of a card. assumed: a desktop's is as short as that
 constexpr double kSlowCard_s = 0.1;  // no period is longer; what a driver says beyond is not believed
