@@ -174,15 +174,18 @@ void dropUnreachable(const RelativeMotion& motion, std::vector<Candidate>& candi
 
 namespace {
 
-// The same of distances that are the field's: the exact ones, which refineAll() finds, may be less.
+// Drops candidates that are out of reach even if the field reads too much. Those that are in reach only then
+// are moved to `doubtful`.
 void dropUnreachableByField(const PairView& pair, const RelativeMotion& motion, const Settings& settings,
-                            std::vector<Candidate>& candidates) {
-  if (!settings.use_surfaces) return dropUnreachable(motion, candidates);
+                            std::vector<Candidate>& candidates, std::vector<Candidate>& doubtful) {
+  doubtful.clear();
   std::erase_if(candidates, [&](Candidate& c) {
     if (motion.canTouch(c)) return false;
+    if (!settings.use_surfaces) return true;
     Candidate nearer = c;
     nearer.distance_m -= fieldError_m(pair, c);
-    return !motion.canTouch(nearer);
+    if (motion.canTouch(nearer)) doubtful.push_back(c);
+    return true;
   });
 }
 
@@ -190,13 +193,20 @@ void dropUnreachableByField(const PairView& pair, const RelativeMotion& motion, 
 
 void selectContacts(const PairView& pair, const RelativeMotion& motion, const Settings& settings,
                     ManifoldWriter* writer, std::vector<Candidate>& candidates, Selection* selection) {
-  dropUnreachableByField(pair, motion, settings, candidates);
-  if (writer) writer->markExistingContacts(candidates);
+  thread_local std::vector<Candidate> doubtful;
+  dropUnreachableByField(pair, motion, settings, candidates, doubtful);
+  if (writer) {
+    writer->markExistingContacts(candidates);
+    writer->markExistingContacts(doubtful);
+  }
   const auto limit = static_cast<std::size_t>(settings.contact_limit);
   const double radius_m = pair.radius_m();
   // Four times the limit are refined by the exact surfaces: enough although some turn out to be out of reach.
   // With twice the limit a shaft in its bushings had to be solved again in most steps, which cost more.
   const double sampling_m = reduceByCell(candidates, 4 * limit, radius_m / 16, radius_m);
+  // The others apart, so that they take no room from those.
+  reduceByCell(doubtful, 2 * limit, radius_m / 16, radius_m);
+  candidates.insert(candidates.end(), doubtful.begin(), doubtful.end());
   refineAll(pair, motion, settings, candidates);
   if (isQueriedOnce(pair, motion)) measureAtEnd(pair, motion, settings, candidates);
   dropUnreachable(motion, candidates);
