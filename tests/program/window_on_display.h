@@ -138,6 +138,7 @@ class Window : public Program {
       const auto eye = [&](int side) {
         return viewer::cameraFor(display, display.screens[0], display.viewers[0].eye_S(side));
       };
+      options.show_ground = false;
       return viewer::renderStereo(renderer, snapshot, {eye(-1), eye(1)}, options, mode)[0];
     }
     if (mode == viewer::StereoMode::Mono) return renderer.render(snapshot, camera, options);

@@ -56,9 +56,9 @@ double angle(const Mat3& a, const Mat3& b) {
   return rotationVector(a * b.transpose()).norm();
 }
 
-// Half a micrometre in each direction; rotations four times as coarse as with 20 bits (4e-6); mantissas of 9
-// and 8 bits: half of 1/127 and 1/63 of the greatest.
-constexpr double kNear_m = 0.87e-6, kNear_rad = 16e-6, kNearTwist = 1.74 * 0.5 / 127,
+// Half a micrometre in each direction; rotations four times as coarse as with 20 bits (4.7e-6); mantissas of
+// 9 and 8 bits: half of 1/127 and 1/63 of the greatest.
+constexpr double kNear_m = 0.87e-6, kNear_rad = 19e-6, kNearTwist = 1.74 * 0.5 / 127,
                  kNearForce = 1.74 * 0.5 / 63;
 
 TEST(DenseState, AHapticStateIsRightToItsRounding) {

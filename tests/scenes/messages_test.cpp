@@ -231,7 +231,7 @@ TEST(Messages, EveryRotationIsPackedToTwentyBits) {
   }
   // Three components are off by half a step of 1.35e-6 each, and a turn is twice a quaternion's way; the
   // largest one follows from them.
-  EXPECT_LT(worst_rad, 4e-6);
+  EXPECT_LT(worst_rad, 5e-6);
   EXPECT_FALSE(unpackedRotation(~std::uint64_t{0}).has_value());
   EXPECT_FALSE(unpackedRotation((std::uint64_t{1} << 60U) - 1).has_value());
 }

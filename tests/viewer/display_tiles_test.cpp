@@ -104,7 +104,6 @@ TEST(DisplayTiles, APictureOfSeveralHoldsWhatEachShowsAlone) {
     ASSERT_EQ(whole.width, 300);
     for (const PictureTile& tile : wanted.tiles) {
       DrawOptions alone = wanted.options;
-      alone.show_ground = false;
       alone.width = tile.place.width;
       alone.height = tile.place.height;
       // Rows go by turns over the whole picture.
@@ -121,7 +120,6 @@ TEST(DisplayTiles, APictureOfSeveralHoldsWhatEachShowsAlone) {
   add(0, {150, 0, 140, 70}, 1);
   const Image whole = drawInFull(renderer, wanted);
   DrawOptions alone = wanted.options;
-  alone.show_ground = false;
   alone.width = 140;
   alone.height = 70;
   const std::vector<Image> both =

@@ -152,7 +152,7 @@ void addView(CommandLine& line) {
       ->needs("--display");
   command
       .add_option("--full-screen", window.full_screen,
-                  "fill this monitor, counted from 1, without panels; F11 switches")
+                  "fill this monitor, counted from 1, without panels, as in --full-screen=2; F11 switches")
       ->expected(0, 1)
       ->default_str("1")
       ->check(CLI::Range(1, 64));

@@ -10,7 +10,8 @@ namespace vps::bullet::inline v0 {
 
 namespace {
 
-// Rounds up to a geometric series of lengths: a QueryMemory is valid for one cutoff.
+// Rounds up to a geometric series of lengths: a larger cutoff than the last one's costs a QueryMemory
+// readings.
 double roundedUp(double cutoff_m, double most_m) {
   constexpr double kStep = 1.5, kUnit_m = 1e-6;
   const double steps = std::ceil(std::log(cutoff_m / kUnit_m) / std::log(kStep));

@@ -196,9 +196,11 @@ void layOutBlocks(PointShell& shell) {
   shell.blocks.shrink_to_fit();
 }
 
-/// Keeps those that are within the radius of a waiting point, in their order.
-static void keepNear(std::span<const Vec3> points, const std::vector<std::uint32_t>& waiting, double radius_m,
-                     std::vector<std::uint32_t>& joined) {
+namespace {
+
+// Keeps those that are within the radius of a waiting point, in their order.
+void keepNear(std::span<const Vec3> points, const std::vector<std::uint32_t>& waiting, double radius_m,
+              std::vector<std::uint32_t>& joined) {
   PointGrid grid(2 * radius_m, waiting.size());
   for (const std::uint32_t i : waiting) grid.insert(points[i], i);
   std::erase_if(joined, [&](std::uint32_t i) {
@@ -207,6 +209,8 @@ static void keepNear(std::span<const Vec3> points, const std::vector<std::uint32
     return is_far;
   });
 }
+
+}  // namespace
 
 std::vector<std::uint32_t> progressiveOrder(std::span<const Vec3> points) {
   // Level by level with half the radius: a point joins if no joined point is within the radius.

@@ -17,7 +17,7 @@ class MotionTube {
   MotionTube() = default;
 
   /// The motion from `start` to `end` goes on with the same twist for a few steps. Poses of part 1 in part 0.
-  /// @param width  of the margin, relative to that of the first tube of a pair; see nextWidth()
+  /// @param width  of the margin, relative to the narrowest; see nextWidth()
   MotionTube(const Ball& ball0, const Ball& ball1, const Pose& start, const Pose& end, double width = 1)
       : ball0_(ball0), ball1_(ball1), width_(width) {
     // assumed, by measurement on threads, gears and a heap: a wider margin lasts longer, but more is near.

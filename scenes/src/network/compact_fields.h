@@ -64,7 +64,7 @@ void compactFields(SnapshotMessage& m, V& visit) {
   visit.list(s.contacts, [&visit](ContactMark& mark) {
     visit(mark.p_W);
     visit.coarse(mark.n_W);
-    visit.coarse(mark.depth_m);  // to 0.06 um
+    visit.coarse(mark.depth_m);  // to 0.06 um, or a part in 2048
     visit.coarse(mark.force_N);
   });
 }

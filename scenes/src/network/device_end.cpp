@@ -60,6 +60,7 @@ void DeviceEnd::welcome(const HelloMessage& hello) {
   if (!first_) first_ = hello;
   sender_ = sender;
   for (MessageReader* reader : {&reply_reader_, &state_reader_, &log_reader_}) reader->bindTo(sender);
+  writer_.startAnew();
   is_present_ = true;
   ++joins_;
   say_("the device '" + name + "' has joined");

@@ -48,7 +48,7 @@ class SentTimes {
   }
 
  private:
-  std::array<double, 256> times_s_{};
+  std::array<double, 512> times_s_{};  // as many as HapticLoop knows the work of
   std::size_t newest_ = 0;
 };
 

@@ -223,6 +223,8 @@ class MessageWriter {
     return numbers_[static_cast<std::size_t>(kind)];
   }
   [[nodiscard]] std::uint64_t sender() const noexcept { return sender_; }
+  /// The next states are sent whole, for a reader that has none to begin with.
+  void startAnew() noexcept { dense_haptic_ = dense_physics_ = {}; }
 
  private:
   std::string out_;

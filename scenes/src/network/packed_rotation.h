@@ -10,7 +10,7 @@
 namespace vps::scenes::inline v0 {
 
 /// The three smaller components of the quaternion, 20 bits each, and which the largest one is: 62 bits. Right
-/// to 3e-6 rad, and to 2^n as much with n bits less.
+/// to 5e-6 rad, and to 2^n as much with n bits less.
 /// @param bits  of a component, at most 20
 std::uint64_t packedRotation(const Mat3& R, unsigned bits = 20);
 /// Empty: no rotation has this number.

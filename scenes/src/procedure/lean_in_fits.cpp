@@ -45,6 +45,7 @@ double leanInFits_m(const DrawnPart& part, const std::vector<DrawnPart>& others)
   parts.push_back(part);
   CheckSettings settings;
   settings.has_play = false;
+  settings.only_parts = {part.name};
   const CheckResult checked = checkAssembly("lean", parts, settings);
   std::optional<double> least_m;
   for (const Guide& guide : guidesOf(checked.fits, part.name)) {

@@ -39,8 +39,6 @@ class VPS_VIEWER_API HeadsetSession {
   void tremble(std::size_t hand, double share);
   /// What happened since the last call, in words: the headset was put on, or its session has ended.
   [[nodiscard]] std::vector<std::string> takeMessages();
-  /// Pairs of pictures handed over so far.
-  [[nodiscard]] std::size_t frames() const;
 
   struct Work;
 

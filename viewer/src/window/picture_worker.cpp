@@ -59,7 +59,6 @@ Image drawTiles(Renderer& renderer, const PictureRequest& asked, const DrawOptio
   for (const PictureTile& tile : asked.tiles) {
     const TilePlace& place = tile.place;
     DrawOptions own = options;
-    own.show_ground = false;  // the floor is the room's
     own.width = pictureLength_px(scaled(place.width, asked.options.width, options.width));
     own.height = pictureLength_px(scaled(place.height, asked.options.height, options.height));
     const int x = scaled(place.x, asked.options.width, whole_w);

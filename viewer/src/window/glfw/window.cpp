@@ -157,6 +157,7 @@ void askForPicture(Session& session, PictureWorker& worker, const GlfwWindow& wi
   if (wanted.stereo == StereoMode::Interleaved)
     wanted.rows = {session.area.size.width, session.area.size.height,
                    window.screenRow() + static_cast<int>(session.area.y)};
+  if (session.heads) wanted.options.show_ground = false;  // the floor is the room's
   wanted.options.width = size.width;
   wanted.options.height = size.height;
   if (window.hasStereo()) addStereoBuffers(wanted);

@@ -11,6 +11,22 @@ namespace {
   throw std::runtime_error("a headset needs " + what);
 }
 
+/// Xlib's own handler of errors ends the process.
+class QuietErrors {
+ public:
+  explicit QuietErrors(Display* display) : display_(display) {}
+  ~QuietErrors() {
+    XSync(display_, 0);
+    XSetErrorHandler(before_);
+  }
+  QuietErrors(const QuietErrors&) = delete;
+  QuietErrors& operator=(const QuietErrors&) = delete;
+
+ private:
+  Display* display_;
+  XErrorHandler before_ = XSetErrorHandler([](Display*, XErrorEvent*) { return 0; });
+};
+
 }  // namespace
 
 GlxContext::GlxContext() : display_(XOpenDisplay(nullptr)) {
@@ -43,9 +59,12 @@ GlxContext::GlxContext() : display_(XOpenDisplay(nullptr)) {
   const int version[] = {
       GLX_CONTEXT_MAJOR_VERSION_ARB,    3, GLX_CONTEXT_MINOR_VERSION_ARB, 3, GLX_CONTEXT_PROFILE_MASK_ARB,
       GLX_CONTEXT_CORE_PROFILE_BIT_ARB, 0};
-  context_ = glXCreateContextAttribsARB(display_, config_, nullptr, 1, version);
   const int size[] = {GLX_PBUFFER_WIDTH, 1, GLX_PBUFFER_HEIGHT, 1, 0};
-  surface_ = glXCreatePbuffer(display_, config_, size);
+  {
+    const QuietErrors quiet(display_);
+    context_ = glXCreateContextAttribsARB(display_, config_, nullptr, 1, version);
+    surface_ = glXCreatePbuffer(display_, config_, size);
+  }
   if (context_ == nullptr) fail(display_, "OpenGL 3.3 on its X display (Debian: libgl1-mesa-dri)");
 }
 

@@ -122,7 +122,6 @@ struct HeadsetSession::Work {
   std::array<HeadsetHand, 2> hands;
   std::array<std::optional<double>, 2> trembles;
   std::vector<std::string> messages;
-  std::size_t frames = 0;
 
   std::atomic<bool> is_ending{false};
   std::thread thread;  // last, since it uses the others
@@ -152,6 +151,11 @@ void HeadsetSession::Work::run() {
   } catch (const std::exception& error) {
     say(std::string("the headset shows nothing more: ") + error.what());
   }
+  {
+    const std::lock_guard lock(mutex);
+    hands = {};  // what a hand held is let go
+  }
+  on_news();
   if (session != XR_NULL_HANDLE) xrDestroySession(session);
   context->release();
 }
@@ -317,7 +321,6 @@ void HeadsetSession::Work::frame(XrSession session, Renderer& renderer,
   end.layers = layers;
   check(xrEndFrame(session, &end), "xrEndFrame");
   const std::lock_guard lock(mutex);
-  if (draws) ++frames;
 }
 
 std::unique_ptr<HeadsetSession> HeadsetSession::begin(const RenderScene& scene, const Box& box_W,
@@ -366,11 +369,6 @@ void HeadsetSession::tremble(std::size_t hand, double share) {
 std::vector<std::string> HeadsetSession::takeMessages() {
   const std::lock_guard lock(work_->mutex);
   return std::exchange(work_->messages, {});
-}
-
-std::size_t HeadsetSession::frames() const {
-  const std::lock_guard lock(work_->mutex);
-  return work_->frames;
 }
 
 }  // namespace vps::viewer::inline v0

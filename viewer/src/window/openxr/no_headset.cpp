@@ -23,8 +23,4 @@ void HeadsetSession::tremble(std::size_t, double) {}
 std::vector<std::string> HeadsetSession::takeMessages() {
   return {};
 }
-std::size_t HeadsetSession::frames() const {
-  return 0;
-}
-
 }  // namespace vps::viewer::inline v0

@@ -10,7 +10,8 @@ XrConnection::XrConnection() {
   setenv("XR_LOADER_DEBUG", "none", 0);  // what the loader prints by itself; we say it in words
   static constexpr const char* kOpenGl[] = {XR_KHR_OPENGL_ENABLE_EXTENSION_NAME};
   auto wanted = xrStruct<XrInstanceCreateInfo>(XR_TYPE_INSTANCE_CREATE_INFO);
-  wanted.applicationInfo.apiVersion = XR_CURRENT_API_VERSION;
+  wanted.applicationInfo.apiVersion =
+      XR_MAKE_VERSION(1, 0, 0);  // nothing newer is used, and old runtimes refuse it
   wanted.enabledExtensionCount = 1;
   wanted.enabledExtensionNames = kOpenGl;
   std::snprintf(static_cast<char*>(wanted.applicationInfo.applicationName), XR_MAX_APPLICATION_NAME_SIZE,
