@@ -302,6 +302,7 @@ TEST_F(Window, ShowsStereoAndSwitchesItsModeByAKey) {
   EXPECT_TRUE(shows(expected(0, Anaglyph)));
   for (const viewer::StereoMode mode : {Interleaved, Mono, SideBySide, TopBottom}) {
     xdotool("key s");
+    if (mode == Mono) xdotool("key s");  // past spectral, whose two pictures DisplayTiles looks at
     EXPECT_TRUE(shows(expected(0, mode))) << viewer::toText(mode);
   }
   EXPECT_EQ(close(), 0);
