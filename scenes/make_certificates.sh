@@ -62,8 +62,8 @@ topics() { for topic in "$@"; do printf '<topic>%s</topic>' "$topic"; done; }
 # Of each topic one role is the writer (scenes/src/network/link.h). Who watches may point, for the others who watch.
 written_by() {
   case $1 in
-    render*) topics 'vps/*/beat' 'vps/*/scene' 'vps/*/physics' 'vps/*/snapshot' 'vps/*/request' 'vps/*/news' 'vps/*/answer' ;;
-    device*) topics 'vps/*/beat' 'vps/*/haptic' 'vps/*/reply' 'vps/*/log' 'vps/*/pointer' ;;  # also of a page with a hand
+    render*) topics 'vps/*/beat' 'vps/*/scene' 'vps/*/physics' 'vps/*/physics_state' 'vps/*/snapshot' 'vps/*/request' 'vps/*/news' 'vps/*/answer' ;;
+    device*) topics 'vps/*/beat' 'vps/*/haptic' 'vps/*/haptic_state' 'vps/*/reply' 'vps/*/log' 'vps/*/pointer' ;;  # also of a page with a hand
     watch*) topics 'vps/*/beat' 'vps/*/pointer' ;;
     operate*) topics 'vps/*/ask' ;;
     *) echo "make_certificates.sh: $1 must begin with render, device, watch or operate" >&2; exit 2 ;;

@@ -52,6 +52,7 @@ std::vector<Rule> rules() {
       {"window libraries are used in the window only",
        {"GLFW/", "imgui", "backends/imgui"},
        {"viewer/src/window/glfw/"}},
+      {"OpenXR and Xlib are used in the headset only", {"openxr/", "X11/"}, {"viewer/src/window/openxr/"}},
       {"Boost.Beast is used in the web server only",
        {"boost/beast", "boost/asio"},
        {"viewer/src/web/beast/"}},

@@ -101,6 +101,31 @@ TEST(Crossing, SlidesOverShellPointsWithoutAJolt) {
   EXPECT_GT(slowest_m_s, 0.02 * (1 - 1e-3));
 }
 
+// A peg that has gone into its hole by far less than a voxel: rims face each other on a narrow strip, where
+// the field, which rounds edges off, reads up to 0.4 voxels more than the gap. They lie along each other, so
+// that no edges cross.
+TEST(Rims, ThatFaceEachOtherOnANarrowStripHoldAPeg) {
+  constexpr double kRadius_m = 5.12e-3, kGap_m = 10e-6, kHigh_m = 10.25e-3;
+  for (const double into_m : {10e-6, 30e-6, 60e-6}) {
+    World world(SolverKind::Constraint);
+    const Built hole = build(makeTube(9e-3, kRadius_m + kGap_m, kHigh_m, 96), 7850),
+                peg = build(makeCylinder(kRadius_m, kHigh_m, 96), 7850);
+    world.add(hole, Pose(), true, 0.3);
+    btRigidBody& body = world.add(peg, Pose::translation({0, 0, kHigh_m - into_m}), false, 0.3);
+    body.setGravity({0, 0, 0});
+    body.setAngularFactor(0);
+    const Vec3 start = fromBt(body.getWorldTransform().getOrigin());
+    body.setLinearVelocity({toBt(-0.0012), toBt(-0.0016), 0});
+    double most_m = 0;
+    for (int i = 0; i < 40; ++i) {
+      world.step();
+      most_m = std::max(most_m, (fromBt(body.getWorldTransform().getOrigin()) - start).norm());
+    }
+    // Polygons of 96 sides meet side on side, or corner on side 0.3 um later.
+    EXPECT_NEAR(most_m, kGap_m, 1e-6) << into_m;
+  }
+}
+
 TEST(Crossing, OfASquarePegsRimDoesNotKeepItOutOfItsHole) {
   // 10 um of clearance on each side, sharp edges everywhere: when the peg is inside, its lower rim is below
   // the hole's.

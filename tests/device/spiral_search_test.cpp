@@ -27,7 +27,7 @@ struct SlidingPart {
     Feel feel;
     feel.time_s = time_s;
     feel.resist_N = push_N;
-    feel.across_m = part_m;
+    feel.across_m = feel.tip_m = part_m;
     feel.side_N = k_N_per_m * (part_m - hand_m);
     return feel;
   }

@@ -94,14 +94,17 @@ TEST_P(QueryMemoryTest, SlowMotionIsNoticedAfterAVeryLongJump) {
   EXPECT_GT(counts.size(), 1u);
 }
 
-TEST_P(QueryMemoryTest, ContactsAreThoseOfTheExhaustiveQueryInAnyMotion) {
-  for (const double cutoff_m : {0.0, 30 * kUm, 0.9 * scene.map.band_m()}) {
+TEST_P(QueryMemoryTest, ContactsAreThoseOfTheExhaustiveQueryInAnyMotionWithAnyCutoff) {
+  const double far_m = 0.9 * scene.map.band_m();
+  using Cutoffs = std::vector<double>;  // one pose after the other
+  for (const Cutoffs& cutoffs_m :
+       {Cutoffs{0}, {30 * kUm}, {far_m}, {0, 10 * kUm, 30 * kUm, 10 * kUm, far_m, 2 * far_m, 0, 0}}) {
     QueryMemory memory(scene.map, scene.shell);
     ContactSet coherent(scene.shell.size()), all(scene.shell.size());
     QueryOptions options;
-    options.cutoff_m = cutoff_m;
-    std::size_t touching = 0, read = 0, visited = 0;
+    std::size_t touching = 0, read = 0, visited = 0, step = 0;
     for (const Pose& X_MP : motion(scene, 600, 5)) {
+      const double cutoff_m = options.cutoff_m = cutoffs_m[step++ % cutoffs_m.size()];
       options.is_exhaustive = false;
       const QueryResult a = queryContacts(scene.map, scene.shell, X_MP, options, coherent, &memory);
       options.is_exhaustive = true;

@@ -9,7 +9,6 @@
 #include <optional>
 #include <thread>
 
-#include "program.h"
 #include "support/child_process.h"
 #include "vps_scenes/display.h"
 #include "vps_scenes/network/session_pointers.h"
@@ -17,167 +16,12 @@
 #include "vps_viewer/model_view.h"
 #include "vps_viewer/renderer.h"
 #include "vps_viewer/stereo.h"
-#include "vps_viewer/window.h"
 #include "window/camera_motion.h"
-#include "window/timeline.h"
+#include "window/picture_worker.h"
+#include "window_on_display.h"
 
 namespace vps {
 namespace {
-
-using namespace std::chrono_literals;
-using viewer::Image;
-
-std::string outputOf(const std::string& command) {
-  FILE* pipe = popen(command.c_str(), "r");
-  std::string text;
-  for (int c = fgetc(pipe); c != EOF; c = fgetc(pipe)) text += static_cast<char>(c);
-  pclose(pipe);
-  while (!text.empty() && text.back() == '\n') text.pop_back();
-  return text;
-}
-
-bool has(const char* program) {
-  return std::system(("command -v " + std::string(program) + " >/dev/null 2>&1").c_str()) == 0;
-}
-
-class Window : public Program {
- protected:
-  // The part of a window of 1280 x 720 that the panels leave.
-  static constexpr viewer::PictureSize kPicture = {950, 656};
-
-  void SetUp() override {
-    Program::SetUp();
-    if (!viewer::missingForWindow().empty()) GTEST_SKIP() << viewer::missingForWindow();
-    if (!has("Xvfb") || !has("xdotool")) GTEST_SKIP() << "needs Xvfb and xdotool (Debian: xvfb, xdotool)";
-    const std::string number = (folder_ / "display.txt").string();
-    // Without -noreset the server starts anew when its last client leaves, as xdotool does, and refuses a
-    // window that opens at that moment.
-    // A number of this process alone: of two servers that share one, the first to end takes the other's
-    // socket.
-    xvfb_ = std::stoi(outputOf("Xvfb :" + std::to_string(1000 + getpid() % 30000) +
-                               " -noreset -displayfd 3 -screen 0 1400x900x24 3>'" + number +
-                               "' >/dev/null 2>&1 & echo $!"));
-    ASSERT_TRUE(soon([&] { return slurp(number).find('\n') != std::string::npos; }));
-    const std::string text = slurp(number);
-    display_number_ = text.substr(0, text.find('\n'));
-    display_ = "DISPLAY=:" + display_number_ + " ";
-  }
-  void TearDown() override {
-    if (view_ > 0) kill(view_, SIGKILL);
-    if (xvfb_ > 0) kill(xvfb_, SIGTERM);
-    for (int i = 0; i < 50 && fs::exists("/tmp/.X11-unix/X" + display_number_); ++i)
-      std::this_thread::sleep_for(100ms);
-    Program::TearDown();
-  }
-
-  /// Waits for a minute at most.
-  template <class Condition>
-  static bool soon(Condition is_true) {
-    for (int i = 0; i < 600; ++i) {
-      if (is_true()) return true;
-      std::this_thread::sleep_for(100ms);
-    }
-    return false;
-  }
-
-  void open(const std::string& arguments) {
-    view_ = std::stoi(outputOf("cd '" + folder_.string() + "'; (" + display_ +
-                               " exec '" VPS_PROGRAM "' view " + arguments +
-                               " >out.txt 2>err.txt & echo $! >pid.txt; wait $!; echo $? >status.txt) "
-                               "</dev/null >/dev/null 2>&1 & sleep 0.3; cat pid.txt"));
-    ASSERT_TRUE(soon([&] {
-      window_ = outputOf(display_ + "xdotool search --name 'vps view' 2>/dev/null");
-      return !window_.empty() || fs::exists(folder_ / "status.txt");
-    }));
-    ASSERT_FALSE(window_.empty()) << slurp(folder_ / "err.txt");
-    xdotool("windowfocus " + window_);
-  }
-  void xdotool(const std::string& arguments) const {
-    std::system((display_ + "xdotool " + arguments + " >/dev/null 2>&1").c_str());
-  }
-  /// The window's content, by its own key.
-  Image picture() {
-    const fs::path file = folder_ / ("view_" + std::to_string(++pictures_) + ".png");
-    for (int i = 0; i < 20 && !fs::exists(file); ++i) {
-      xdotool("key p");
-      for (int k = 0; k < 50 && !fs::exists(file); ++k) std::this_thread::sleep_for(100ms);
-    }
-    // A key that was sent twice saves twice.
-    while (fs::exists(folder_ / ("view_" + std::to_string(pictures_ + 1) + ".png"))) ++pictures_;
-    return fs::exists(file) ? viewer::loadPng(file.string()) : Image();
-  }
-  /// Whether the window shows this picture, or does so soon.
-  bool shows(const Image& wanted) {
-    return soon([&] {
-      const Image now = picture();
-      if (now.width < wanted.width || now.height < wanted.height) return false;
-      Image crop(wanted.width, wanted.height);
-      for (int y = 0; y < crop.height; ++y)
-        std::copy_n(now.at(0, y), 3 * static_cast<std::size_t>(crop.width), crop.at(0, y));
-      return viewer::compare(crop, wanted, 2).share_beyond == 0;  // 2: as for other pictures, image.h
-    });
-  }
-  /// The exit status.
-  int close(const std::string& key = "q") {
-    xdotool("key " + key);
-    if (!soon([&] { return !slurp(folder_ / "status.txt").empty(); })) return -1;
-    view_ = 0;
-    return std::stoi(slurp(folder_ / "status.txt"));
-  }
-  /// What the finished assembly looks like from a standard view, or on a screen of a display file.
-  Image expected(std::size_t view, viewer::StereoMode mode = viewer::StereoMode::Mono,
-                 const std::string& display_file = "", int screen_row = 0) const {
-    const scenes::Scene scene = scenes::loadScene((folder_ / "scene.toml").string());
-    const viewer::RenderScene drawn = viewer::drawnMeshes(scene);
-    const scenes::Snapshot snapshot = viewer::sceneTour(scene).at(0);
-    viewer::DrawOptions options;
-    options.width = kPicture.width;
-    options.height = kPicture.height;
-    options.supersampling = 1;
-    options.show_legend = false;
-    viewer::Renderer renderer(drawn);
-    const viewer::Camera camera =
-        viewer::cameraFor(viewer::standardViews()[view], viewer::snapshotBounds(drawn, snapshot), kPicture);
-    if (!display_file.empty()) {
-      const scenes::Display display = scenes::loadDisplay((folder_ / display_file).string());
-      const auto eye = [&](int side) {
-        return viewer::cameraFor(display, display.screens[0], display.viewers[0].eye_S(side));
-      };
-      return viewer::renderStereo(renderer, snapshot, {eye(-1), eye(1)}, options, mode)[0];
-    }
-    if (mode == viewer::StereoMode::Mono) return renderer.render(snapshot, camera, options);
-    const double distance_m = (camera.eye_W - camera.target_W).norm();
-    const viewer::EyePair eyes =
-        viewer::eyesOf(camera, viewer::kEyeShare * distance_m, double(kPicture.width) / kPicture.height);
-    return viewer::renderStereo(renderer, snapshot, eyes, options, mode, {0, 0, screen_row})[0];
-  }
-  /// The part of the window that shows the scene.
-  Image scenePicture() {
-    const Image whole = picture();
-    Image crop(kPicture.width, kPicture.height);
-    if (whole.width < crop.width || whole.height < crop.height) return crop;
-    for (int y = 0; y < crop.height; ++y)
-      std::copy_n(whole.at(0, y), 3 * static_cast<std::size_t>(crop.width), crop.at(0, y));
-    return crop;
-  }
-  /// The same once it is drawn in full, and rests.
-  Image restingPicture() {
-    Image last = scenePicture();
-    int same = 0;  // a picture in full may take longer than the time between two looks
-    soon([&] {
-      std::this_thread::sleep_for(1s);
-      Image now = scenePicture();
-      same = now.rgb == last.rgb ? same + 1 : 0;
-      last = std::move(now);
-      return same >= 4;
-    });
-    return last;
-  }
-
-  std::string display_, window_, display_number_;
-  pid_t xvfb_ = 0, view_ = 0;
-  int pictures_ = 0;
-};
 
 TEST_F(Window, OpensShowsTheSceneObeysKeysAndClosesCleanly) {
   open("scene.toml");
@@ -458,6 +302,7 @@ TEST_F(Window, ShowsStereoAndSwitchesItsModeByAKey) {
   EXPECT_TRUE(shows(expected(0, Anaglyph)));
   for (const viewer::StereoMode mode : {Interleaved, Mono, SideBySide, TopBottom}) {
     xdotool("key s");
+    if (mode == Mono) xdotool("key s");  // past spectral, whose two pictures DisplayTiles looks at
     EXPECT_TRUE(shows(expected(0, mode))) << viewer::toText(mode);
   }
   EXPECT_EQ(close(), 0);
@@ -492,6 +337,69 @@ TEST_F(Window, IsAScreenOfADisplayFile) {
   open("scene.toml --display wall.toml --stereo top_bottom");
   EXPECT_TRUE(shows(expected(0, viewer::StereoMode::TopBottom, "wall.toml")));
   EXPECT_EQ(close(), 0);
+}
+
+TEST_F(Window, ShowsAllPicturesOfADisplayFileAndOneAloneByAKey) {
+  write("wall.toml",
+        "[scene]\npose = {position = [0, 0.3, 0.6]}\nscale = 12\n"
+        "[[screen]]\nname = 'front'\nlower_left = [-0.8, 0, 0]\nlower_right = [0.8, 0, 0]\n"
+        "upper_left = [-0.8, 0, 1.1]\n"
+        "[[screen]]\nname = 'floor'\nlower_left = [-0.8, -1, 0]\nlower_right = [0.8, -1, 0]\n"
+        "upper_left = [-0.8, 0, 0]\n"
+        "[[viewer]]\nname = 'anna'\nhead = {position = [0.3, -1.2, 0.8], rpy_deg = [90, 0, 0]}\n"
+        "[[viewer]]\nname = 'ben'\nhead = {position = [-0.3, -1.2, 0.9], rpy_deg = [90, 0, 0]}\n");
+  open("scene.toml --display wall.toml --stereo anaglyph");
+  const scenes::Scene scene = scenes::loadScene((folder_ / "scene.toml").string());
+  const viewer::RenderScene drawn = viewer::drawnMeshes(scene);
+  const scenes::Snapshot snapshot = viewer::sceneTour(scene).at(0);
+  const scenes::Display display = scenes::loadDisplay((folder_ / "wall.toml").string());
+  const auto outputs = viewer::outputsOf(display, viewer::StereoMode::Anaglyph);
+  ASSERT_EQ(outputs.size(), 4u);
+  viewer::PictureRequest wanted;
+  wanted.snapshot = snapshot;
+  wanted.stereo = viewer::StereoMode::Anaglyph;
+  wanted.options.width = kPicture.width;
+  wanted.options.height = kPicture.height;
+  wanted.options.supersampling = 1;
+  wanted.options.show_legend = false;
+  const auto places = viewer::tilePlaces(outputs, kPicture);
+  for (std::size_t i = 0; i < outputs.size(); ++i)
+    wanted.tiles.push_back(
+        {viewer::eyesOf(display, display.screens[outputs[i].screen], display.viewers[outputs[i].viewer]),
+         places[i], 0});
+  viewer::Renderer renderer(drawn);
+  const Image all = viewer::drawInFull(renderer, wanted);
+  // Their names cover a little of each.
+  EXPECT_TRUE(soon([&] { return viewer::compare(scenePicture(), all, 2).share_beyond < 0.02; }));
+  EXPECT_GT(viewer::compare(scenePicture(), all, 2).share_beyond, 0.0005) << "the names";
+
+  xdotool("key o");  // the front as Anna sees it
+  EXPECT_TRUE(shows(expected(0, viewer::StereoMode::Anaglyph, "wall.toml")));
+  for (int i = 0; i < 4; ++i) xdotool("key o");
+  EXPECT_TRUE(soon([&] { return viewer::compare(scenePicture(), all, 2).share_beyond < 0.02; }));
+
+  xdotool("key F11");  // without panels
+  EXPECT_TRUE(soon([&] { return picture().width == 1400; }));
+  EXPECT_EQ(picture().height, 900);
+  xdotool("key F11");
+  EXPECT_TRUE(soon([&] { return viewer::compare(scenePicture(), all, 2).share_beyond < 0.02; }));
+  EXPECT_EQ(close(), 0);
+
+  fs::remove(folder_ / "status.txt");
+  open("scene.toml --display wall.toml --output front_anna");
+  EXPECT_TRUE(shows(expected(0, viewer::StereoMode::Mono, "wall.toml")));
+  EXPECT_EQ(close(), 0);
+  expectRefused("view scene.toml --display wall.toml --output back",
+                "shows no 'back', but front_anna, front_ben, floor_anna, floor_ben");
+}
+
+TEST_F(Window, ADriverWithoutABufferForEachEyeIsSaid) {
+  open("scene.toml --quad-buffer");
+  EXPECT_TRUE(shows(expected(0)));
+  EXPECT_EQ(close(), 0);
+  const std::string words = slurp(folder_ / "err.txt");
+  EXPECT_EQ(std::count(words.begin(), words.end(), '\n'), 1) << words;
+  EXPECT_NE(words.find("this driver has no buffer for each eye"), std::string::npos) << words;
 }
 
 TEST_F(Window, InterleavedRowsStayWithTheScreensRowsWhereverTheWindowIs) {

@@ -57,9 +57,25 @@ TEST(ClockEstimate, ThreeSecondsAndAHundredPartsInAMillionAreFoundWithinFiftyMic
     ASSERT_LE(std::abs(error_s), 50e-6) << i;
     ASSERT_LE(std::abs(error_s), estimate.error_s()) << i;
   }
-  // Offsets off by at most 50 us over 4 s: by least squares well below twice 50 us / 4 s.
+  // Offsets off by at most 50 us over 16 s: by least squares well below twice 50 us / 16 s.
   EXPECT_NEAR(estimate.drift(), 100e-6, 25e-6);
   EXPECT_EQ(estimate.contradictions(), 0u);
+}
+
+// Two of three stretches of 2 s are busy: each way waits up to 2 ms there, so that the shortest of 50 round
+// trips is some 0.3 ms too long, one way or the other.
+TEST(ClockEstimate, StretchesOfABusyMachineDoNotSpoilIt) {
+  OtherClock quiet(3, 100e-6, 60e-6), busy(3, 100e-6, 2e-3);
+  ClockEstimate estimate;
+  for (int i = 0; i < 12'000; ++i) {
+    const double here_s = 100 + 5e-3 * i;
+    const bool is_busy = i / 400 % 3 != 0;
+    estimate.add((is_busy ? busy : quiet).exchange(here_s));
+    if (i < 1200) continue;  // one quiet stretch and two busy ones
+    const double error_s = estimate.offset_s(std::llround(1e9 * here_s)) - quiet.offsetAt_s(here_s);
+    ASSERT_LE(std::abs(error_s), 50e-6) << here_s;
+    ASSERT_LE(std::abs(error_s), estimate.error_s()) << here_s;
+  }
 }
 
 TEST(ClockEstimate, APeerThatLiesAboutTimeIsNoticedAndNotBelieved) {

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 
 #include "scenes/assemblies_to_plan.h"
 #include "support/screw.h"
@@ -538,6 +539,50 @@ TEST(CheckWays, AWayThroughAWallIsNamedWithItsDepth) {
   EXPECT_EQ(faults.front().part, "block");
   EXPECT_EQ(faults.front().against, "plate");
   EXPECT_NEAR(faults.front().depth_m, 0.005, 0.6e-3);  // in the middle of 10 mm, at one of 24 poses
+}
+
+// A lid closes the nut, so that there is one way off.
+TEST(Plan, AThreadedCapTurnsOffItsNeck) {
+  test::ThreadShape neck;
+  neck.clearance_m = 0;
+  neck.columns = 48;
+  neck.rows_per_pitch = 16;
+  neck.length_m = 6 * neck.pitch_m;
+  test::ThreadShape thread = neck;
+  thread.clearance_m = 0.1e-3;
+  Mesh cap = test::makeNut(thread, 0.011);
+  const double top_m = bounds(cap).max.z();
+  append(cap, transformed(makeCylinder(0.01, 3e-3, 48), Pose::translation({0, 0, top_m + 1e-3})));
+  const std::vector<DrawnPart> parts = {at("neck", test::makeThreadedRod(neck), {0, 0, -neck.pitch_m}),
+                                        at("cap", cap, {0, 0, 0})};
+  PlanSettings settings;
+  settings.fixed = {"neck"};
+  const PlanResult plan = planAssembly("test", parts, settings);
+  ASSERT_EQ(stepsOf(plan.assemblies.front()), Names{"cap"});
+  const PlannedStep& step = plan.assemblies.front().steps.front();
+  EXPECT_EQ(step.kind, WayKind::Screw);
+  EXPECT_NEAR(step.lead_m, neck.pitch_m, 1e-6);
+  EXPECT_NEAR(step.insertion_W.z(), -1, 1e-6);
+  expectFreeWays(parts, plan);
+}
+
+/// The plan of a block above a table, which it touches nowhere.
+PlannedStep blockAboveTable(double gap_m) {
+  const std::vector<DrawnPart> parts = {at("table", makeBox({0.1, 0.1, 0.01}), {0, 0, -0.005}),
+                                        at("block", makeBox({0.02, 0.02, 0.02}), {0, 0, 0.01 + gap_m})};
+  PlanSettings settings;
+  settings.fixed = {"table"};
+  const PlanResult plan = planAssembly("test", parts, settings);
+  if (plan.assemblies.front().steps.size() != 1) throw std::runtime_error("no step");
+  return plan.assemblies.front().steps.front();
+}
+
+// Without a fit a part may be 0.5 mm off.
+TEST(Plan, APartThatIsDrawnFloatingIsHeld) {
+  EXPECT_TRUE(blockAboveTable(0).is_carried);
+  EXPECT_TRUE(blockAboveTable(0.4e-3).is_carried);
+  EXPECT_FALSE(blockAboveTable(0.6e-3).is_carried);
+  EXPECT_FALSE(blockAboveTable(5e-3).is_carried);
 }
 
 }  // namespace

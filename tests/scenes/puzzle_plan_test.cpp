@@ -99,5 +99,22 @@ TEST(PuzzlePlan, TwentyPartsNeedTenSubassemblies) {
   }
 }
 
+// No link leaves by itself: each keeps the one before it in the one after it.
+TEST(PuzzlePlan, AChainOfTwentyLeavesItsLastLinkAsOne) {
+  EXPECT_TRUE(test::lockedChain(5).comesApart());
+  for (const int links : {5, 20}) {
+    const PlanResult plan = planned(drawn(test::lockedChain(links), 10e-3));
+    EXPECT_EQ(plan.blocked(), 0U);
+    const std::vector<PlannedStep>& steps = plan.assemblies.front().steps;
+    ASSERT_EQ(steps.size(), 1U);
+    EXPECT_EQ(steps.front().parts.size(), static_cast<std::size_t>(links - 1));
+    std::size_t alone = 0;
+    for (const PlannedAssembly& assembly : plan.assemblies)
+      for (const PlannedStep& step : assembly.steps) alone += step.parts.size() == 1 ? 1 : 0;
+    // Each link is the first of an assembly, or brought by itself.
+    EXPECT_EQ(alone + plan.assemblies.size(), static_cast<std::size_t>(links));
+  }
+}
+
 }  // namespace
 }  // namespace vps::scenes

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <deque>
+#include <optional>
 #include <string>
 #include <variant>
 
@@ -16,7 +17,11 @@ namespace {
 /// Answers each request at once, and gives the states that a test has put there, as a network might.
 class ScriptedDevice final : public Link {
  public:
-  ScriptedDevice() { replies_.emplace_back(writer_.write(HelloMessage{})); }
+  explicit ScriptedDevice(bool may_rearm = false) {
+    HelloMessage hello;
+    hello.may_rearm = may_rearm;
+    replies_.emplace_back(writer_.write(hello));
+  }
 
   void addState(std::int32_t tick, device::OperatorPhase phase, std::uint64_t faults = 0) {
     HapticMessage message;
@@ -27,10 +32,12 @@ class ScriptedDevice final : public Link {
     states_.emplace_back(writer_.write(message));
   }
   ReplyMessage answer;  ///< to what is asked next
+  std::optional<device::SyncEventKind> last_command;
 
   bool send(Channel channel, std::string_view bytes) noexcept override {
     RequestMessage request;
     if (channel != Channel::Request || reader_.read(bytes, request) != Reading::Good) return true;
+    if (request.kind == RequestKind::Command) last_command = request.command;
     answer.request = reader_.envelope().number;
     replies_.emplace_back(writer_.write(answer));
     return true;
@@ -112,6 +119,35 @@ TEST(RemoteDriver, AFaultIsReportedAfterTheStepThatSeesIt) {
   device.addState(2, device::OperatorPhase::Insert, 1);
   ASSERT_TRUE(driver->advance());
   EXPECT_EQ(log.order, "step 1; step 2; fault; ");
+}
+
+/// The command that a faulted loop gets once others have asked for it to be re-armed.
+std::optional<device::SyncEventKind> commandAfterRearm(bool may_rearm) {
+  ScriptedDevice device(may_rearm);
+  RunRequests requests;
+  DeviceEnd end(
+      device, nullptr, [](const std::string&) {}, &requests);
+  EXPECT_TRUE(end.waitForDevice());
+  const Scene scene = twoPins();
+  const std::unique_ptr<Hand> hand = remoteHand(end, scene);
+  const std::unique_ptr<HapticDriver> driver = hand->makeDriver(
+      {}, 5e-3, [](const std::string&) {}, nullptr);
+  driver->resume();
+  for (int tick = 1; tick <= 2; ++tick) {
+    device.addState(tick, device::OperatorPhase::Insert, 1);
+    EXPECT_TRUE(driver->advance());
+  }
+  EXPECT_FALSE(device.last_command) << "nobody has asked";
+  requests.rearm();
+  device.addState(3, device::OperatorPhase::Insert, 1);
+  EXPECT_TRUE(driver->advance());
+  return device.last_command;
+}
+
+// The request handler refuses it in words; a device that joined in between is safe all the same.
+TEST(RemoteDriver, OnlyADeviceThatAllowsItIsRearmedForOthers) {
+  EXPECT_EQ(commandAfterRearm(true), device::SyncEventKind::Rearm);
+  EXPECT_EQ(commandAfterRearm(false), std::nullopt);
 }
 
 }  // namespace

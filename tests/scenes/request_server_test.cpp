@@ -19,6 +19,7 @@
 #include "scenes/two_pins.h"
 #include "support/temporary_folder.h"
 #include "vps/load_error.h"
+#include "vps_device/metronome.h"
 #include "vps_device/recording.h"
 #include "vps_scenes/network/session_request.h"
 #include "vps_scenes/replay.h"
@@ -255,6 +256,29 @@ TEST_F(RequestHandlerTest, ASceneIsSentInPiecesOnceAndThenKnownByItsHash) {
   ASSERT_TRUE(handler_.takeNext());
   EXPECT_TRUE(ask(AskKind::Load, hash).is_done);
   EXPECT_EQ(handler_.takeNext()->name, "other pins");
+}
+
+// Who sends a scene and is killed meanwhile leaves what came; it is forgotten once nothing has come for 10 s.
+TEST_F(RequestHandlerTest, ASceneWhoseSenderIsGoneIsForgotten) {
+  Scene other = twoPins();
+  other.parts[0].part.mesh = makeSphere(10e-3, 5);  // of several pieces
+  const std::string bytes = sceneToBytes(other), hash = contentHash(bytes);
+  const auto send = [&](std::uint64_t offset) {
+    PieceMessage piece;
+    std::copy(hash.begin(), hash.end(), piece.hash.begin());
+    piece.total = bytes.size();
+    piece.offset = offset;
+    piece.size = PieceMessage::kMost;
+    std::copy_n(bytes.begin() + static_cast<std::ptrdiff_t>(offset), piece.size, piece.bytes.begin());
+    return answerTo(std::string(asker_.write(piece)));
+  };
+  ASSERT_GT(bytes.size(), 3 * PieceMessage::kMost);
+  EXPECT_TRUE(send(0).is_done);
+  const double sent_s = device::monotonicSeconds();
+  handler_.dropLostTransfer(sent_s + 9.5);
+  EXPECT_TRUE(send(PieceMessage::kMost).is_done);
+  handler_.dropLostTransfer(device::monotonicSeconds() + 10.1);
+  EXPECT_TRUE(says(send(2 * PieceMessage::kMost), "another scene was sent"));
 }
 
 TEST_F(RequestHandlerTest, ASceneThatCannotRunEndsNoRun) {

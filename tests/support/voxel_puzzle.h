@@ -170,6 +170,46 @@ inline VoxelPuzzle randomCube(int size, std::size_t parts, std::uint64_t seed) {
   return VoxelPuzzle(std::move(grown));
 }
 
+/// A chain in which each link slides in the jaw of the next, across the joint before, and is kept there by
+/// arms of the link after that one. So all links but the last can only leave the last one together, and so
+/// on.
+///
+///      from the side, along the slot        from above
+///              jaw of the next                arms of the link after it
+///              +---+---+                     ==============
+///              |   head|                      jaw | head
+///      --------neck    |                     ==============
+///              |   head|
+///              +---+---+
+inline VoxelPuzzle lockedChain(int links) {
+  constexpr int kPitch = 4;
+  std::vector<std::set<Cell>> parts;
+  for (int i = 0; i < links; ++i) {
+    std::set<Cell> cells;
+    // At joint j the head's wings lie along one axis, the slot along the other.
+    const auto put = [&cells](int joint, int x, int along_wings) {
+      cells.insert(joint % 2 == 0 ? Cell{x, 0, along_wings} : Cell{x, along_wings, 0});
+    };
+    const int x = kPitch * i;
+    if (i > 0) {
+      for (const int side : {-1, 1}) {
+        put(i, x, side);
+        put(i, x, 2 * side);
+        put(i, x + 1, 2 * side);
+        for (int arm = 1; i > 1 && arm < kPitch; ++arm) put(i, x - arm, side);
+      }
+      for (int t = -2; t <= 2; ++t) put(i, x + 2, t);
+    }
+    put(i, x + 3, 0);
+    if (i + 1 < links) {
+      put(i, x + 4, 0);
+      for (int t = -1; t <= 1; ++t) put(i + 1, x + 5, t);
+    }
+    parts.push_back(std::move(cells));
+  }
+  return VoxelPuzzle(std::move(parts));
+}
+
 /// A six-piece burr: two bars of 2 x 2 x 6 along each axis cross in the middle. Each cell that several bars
 /// share is given to one of them at random, or is left empty with a probability; the first bar is whole. Many
 /// have bars in several pieces: see isConnected().

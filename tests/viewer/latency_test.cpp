@@ -18,7 +18,7 @@
 namespace vps::viewer {
 namespace {
 
-constexpr double kTick_s = 1e-3, kCard_s = 256 / 48000.0;
+constexpr double kTick_s = 1e-3, kCard_s = 128 / 48000.0;  // a period of the card
 
 /// Ticks, steps and periods of two seconds, with a contact that is read at `read_s`, found 2 ms later, felt
 /// after 3 ms, given to the card after 4, heard after 11 and seen after 20.

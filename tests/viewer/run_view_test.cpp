@@ -59,7 +59,9 @@ TEST(RunView, HasThePartsAndTheirPlacesInTheRun) {
   // [time, step, place in mm, turn, force, depth in um, contacts]: at 0.64 s it has slid for 40 ms.
   EXPECT_EQ(frames[16], nlohmann::json::parse("[0.64, 0, 2, 0, 0, 1, 0, 0, 0, 3, 3, 3]"));
   // The hole is 40 mm wide, and 30 mm high about the origin; the peg ends at 35 mm.
-  EXPECT_NEAR(data["center"][2].get<double>(), 10, 1e-6);
+  EXPECT_NEAR(data["run"]["min"][2].get<double>(), -15, 1e-6);
+  EXPECT_NEAR(data["run"]["max"][2].get<double>(), 35, 1e-6);
+  EXPECT_LE(data["assembly"]["max"][2].get<double>(), 35 + 1e-6);
 }
 
 TEST(RunView, APartOfManyFacetsIsDrawnWithFewer) {

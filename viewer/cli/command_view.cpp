@@ -14,7 +14,6 @@
 #include "terminal.h"
 #include "vps/load_error.h"
 #include "vps_device/device_kinds.h"
-#include "vps_viewer/headset.h"
 #include "vps_viewer/stereo.h"
 #include "vps_viewer/window.h"
 
@@ -27,7 +26,7 @@ struct ViewArguments {
   WindowOptions window;
   std::string stereo = "mono", display;
   std::vector<std::string> show;
-  bool seeks_headset = false, measures_latency = false;
+  bool measures_latency = false;
   LatencySettings latency;
   std::string json;
 };
@@ -50,10 +49,6 @@ int runView(const ViewArguments& given) {
   WindowOptions window = given.window;
   window.stop = &stopRequested();
   window.say = [](const std::string& words) { say(words); };
-  if (given.seeks_headset) {
-    window.notes.push_back(headsetWords());
-    say(window.notes.back());
-  }
   window.stereo = stereoModeOf(given.stereo);
   window.show = shownModels(given.show);
   if (!given.display.empty()) window.display = scenes::loadDisplay(given.display);
@@ -130,21 +125,37 @@ void addView(CommandLine& line) {
       ->check(CLI::Range(0.0, 1000.0));
   command.add_option("--record", window.record, "record a run (MCAP), for vps replay and vps view")
       ->type_name("FILE");
-  command.add_flag("--headset", given->seeks_headset,
-                   "say whether OpenXR has a headset; a headset is shown by its browser (vps watch --web)");
+  command.add_flag(
+      "--headset", window.seeks_headset,
+      "show the scene in a headset too, on a table before its wearer (OpenXR); its trigger picks "
+      "and, with --hand mouse, takes the part");
   std::vector<std::string> modes;
-  for (const StereoMode mode : stereoModes())
-    if (mode != StereoMode::Spectral) modes.emplace_back(toText(mode));
+  for (const StereoMode mode : stereoModes()) modes.emplace_back(toText(mode));
   command
       .add_option("--stereo", given->stereo, "how the pictures of both eyes are shown at first; S switches")
       ->capture_default_str()
       ->check(CLI::IsMember(modes));
+  command.add_flag(
+      "--quad-buffer", window.has_stereo_buffers,
+      "each eye's picture in a buffer of its own, where the driver has that (shutter glasses); in "
+      "the mode mono");
   command
       .add_option(
           "--display", given->display,
-          "display file (TOML): the window is its first screen, seen by its first viewer, and a device "
-          "whose place it has moves the part where the hand is")
+          "display file (TOML): the window shows what its screens show to its viewers, O one of them alone, "
+          "and a device whose place it has moves the part where the hand is")
       ->type_name("FILE");
+  command
+      .add_option("--output", window.output,
+                  "of a display file, show this alone at first: SCREEN, SCREEN_VIEWER, ...")
+      ->type_name("NAME")
+      ->needs("--display");
+  command
+      .add_option("--full-screen", window.full_screen,
+                  "fill this monitor, counted from 1, without panels, as in --full-screen=2; F11 switches")
+      ->expected(0, 1)
+      ->default_str("1")
+      ->check(CLI::Range(1, 64));
   command
       .add_option("--show", given->show,
                   "the models of contact in place of the parts: points, voxels, or points,voxels (points of "

@@ -2,6 +2,8 @@
 // vps watch: shows a session in a window, or prints what happens in it. A watcher reads only, so that it can
 // disturb nobody.
 // vps watch --web: shows a session, a run of a scene, or a recording in web browsers.
+#include <sys/resource.h>
+
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -47,6 +49,7 @@ struct WatchArguments {
 };
 
 constexpr std::chrono::milliseconds kWatchPoll{5};
+constexpr std::chrono::milliseconds kLook{16};  ///< as often as there are snapshots, for who only reads words
 
 /// What a watcher knows.
 class Watching {
@@ -69,7 +72,7 @@ class Watching {
       const bool is_over = watcher_.isOver();  // first, so that the last news is read
       readAll();
       if (is_over) return;
-      std::this_thread::sleep_for(kWatchPoll);
+      std::this_thread::sleep_for(ros_ ? kWatchPoll : kLook);
     }
   }
   /// Of the run; empty: it has not ended.
@@ -219,8 +222,15 @@ std::optional<int> tryWindow(const WatchArguments& given) {
   }
 }
 
+/// On a machine of several nodes who watches waits rather than who computes; threads made later do so, too.
+void giveWay() {
+  constexpr int kNice = 10;
+  if (getpriority(PRIO_PROCESS, 0) < kNice) setpriority(PRIO_PROCESS, 0, kNice);
+}
+
 int runWatch(const WatchArguments& given) {
   requireRosAllowed(given);
+  if (given.scene.scene.empty() && !given.web.allows_hand) giveWay();
   if (given.port >= 0) return serveWeb(given);
   if (!given.scene.scene.empty())
     throw LoadError(given.scene.scene, "", "vps watch follows a session; add --web PORT, or use vps view");

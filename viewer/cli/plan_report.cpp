@@ -85,7 +85,9 @@ std::string assemblyTable(const scenes::PlannedAssembly& assembly) {
   for (const scenes::PlannedStep& step : assembly.steps)
     if (!step.is_carried) held.push_back(step.name);
   if (!held.empty())
-    out += "Nothing carries " + listed(held) + "; the hand holds each until the end of its step.\n";
+    out += "Nothing carries " + listed(held) +
+           "; the hand holds each until the end of its step. If a fixture holds it "
+           "afterwards, give the fixture as a part; what is not to be assembled is scenery = true.\n";
   for (const scenes::PlannedStep& step : assembly.steps)
     if (!step.falling.empty())
       out += "Until '" + step.name + "' is in place, nothing carries " + listed(step.falling) + ".\n";

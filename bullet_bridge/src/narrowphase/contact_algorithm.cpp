@@ -168,7 +168,8 @@ void ContactAlgorithm::prepare(const btCollisionObjectWrapper* body0, const btCo
   constexpr double kPenaltyMargin_m = 2e-6;  // assumed: contact changes the motion within the step
   const double contact_margin_m =
       is_penalty ? std::min(kPenaltyMargin_m, settings.contact_margin_m) : settings.contact_margin_m;
-  state.motion = relativeMotion(pair, info.m_timeStep, contact_margin_m);
+  const bool is_held = !is_penalty && state.selection.is_valid && !state.selection.contacts.empty();
+  state.motion = relativeMotion(pair, info.m_timeStep, contact_margin_m, is_held);
   is_penalty ? selectPenalty(pair, state) : selectRigid(pair, state);
 }
 

@@ -49,6 +49,7 @@ struct RelativeMotion {
   double contact_margin_m = 0;
   double speed_m_s = 0;      ///< upper bound of the relative speed of the smaller body's points
   double own_speed_m_s = 0;  ///< the same without the pull of couplings
+  double pull_share = 1;     ///< the share of that pull which V has
 
   [[nodiscard]] Vec3 velocityAt(const Vec3& p_W) const { return V.v + V.w.cross(p_W); }
   /// How far points are taken to move in any direction.

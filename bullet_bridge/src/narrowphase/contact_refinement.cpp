@@ -157,6 +157,9 @@ Exact contactAt(const Foot& foot, const OwnPoint& own) {
   exact.is_contact = own.edges.empty() || is_edge_on_edge
                          ? is_facing
                          : own.isFirstAlong(foot.normal) || (is_facing && !own.is_two_sided);
+  // Where the point's edge leads on towards the face, its end or its crossing with the face's border is
+  // nearer.
+  if (own.is_edge && !foot.is_edge && !foot.is_sheet && own.runsAlong(foot.normal)) exact.is_contact = false;
   exact.is_curved = foot.is_curved;
   if (exact.is_contact && !is_edge_on_edge) {
     const bool is_flush = !foot.is_edge && cos_facing > kCosFlush;

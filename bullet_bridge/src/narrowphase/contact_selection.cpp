@@ -10,7 +10,8 @@ namespace vps::bullet::inline v0 {
 
 namespace {
 
-// Rounds up to a geometric series of lengths: a QueryMemory is valid for one cutoff.
+// Rounds up to a geometric series of lengths: a larger cutoff than the last one's costs a QueryMemory
+// readings.
 double roundedUp(double cutoff_m, double most_m) {
   constexpr double kStep = 1.5, kUnit_m = 1e-6;
   const double steps = std::ceil(std::log(cutoff_m / kUnit_m) / std::log(kStep));
@@ -42,11 +43,12 @@ Pose poseAfterStep(const PairView& pair, const RelativeMotion& motion) {
 
 // Points are looked for as far as they may move in any direction; edges, whose motion is known, only where
 // they come near on it.
-CrossingRange crossingRange(const PairView& pair, double cutoff_m, const PairState* state) {
+CrossingRange crossingRange(const PairView& pair, double cutoff_m, const PairState* state,
+                            const RelativeMotion* motion) {
   if (!state) return {cutoff_m, edgeDepth_m(pair, cutoff_m), pair.side(0).X_WM.inverse() * pair.side(1).X_WM};
-  const double near_m = state->motion.contact_margin_m + state->motion.anyWay_m();
+  const double near_m = motion->contact_margin_m + motion->anyWay_m();
   const double depth_m = mayOverlapDeeply(state->selection, near_m) ? edgeDepth_m(pair, near_m) : near_m;
-  return {near_m, depth_m, poseAfterStep(pair, state->motion)};
+  return {near_m, depth_m, poseAfterStep(pair, *motion)};
 }
 
 // How far a point may be from what it touches in the step. The pull of couplings is left out, as in
@@ -61,16 +63,13 @@ QueryState& queryStateOf(const PairView& pair, int i, PairState& state) {
   return own ? *own : own.emplace(*pair.shape[1 - i]->models().map, *pair.shape[i]->models().shell);
 }
 
-SideQuery sideQueryOf(const PairView& pair, int i, PairState& state) {
+SideQuery sideQueryOf(const PairView& pair, int i, PairState& state, const RelativeMotion& motion) {
   std::vector<std::uint32_t>& always = state.always[i];
   always.clear();
   for (const Candidate& c : state.selection.contacts)  // ascending
     if (c.side == i && !c.isCrossing()) always.push_back(c.id);
-  const double way_s = (i == 0 ? 1 : -1) * state.motion.dt_s;
-  return {&queryStateOf(pair, i, state),
-          {way_s * state.motion.V.w, way_s * state.motion.V.v},
-          always,
-          pair.radius_m()};
+  const double way_s = (i == 0 ? 1 : -1) * motion.dt_s;
+  return {&queryStateOf(pair, i, state), {way_s * motion.V.w, way_s * motion.V.v}, always, pair.radius_m()};
 }
 
 // In penalty contact the points of faces press along their own normals.
@@ -88,7 +87,7 @@ bool isQueriedOnce(const PairView& pair, const RelativeMotion& motion) {
 }
 
 void findCandidates(const PairView& pair, double cutoff_m, Context& context, std::vector<Candidate>& out,
-                    PairState* state) {
+                    PairState* state, const RelativeMotion* motion) {
   std::size_t tested = 0, left_out = 0;
   for (int i = 0; i < 2; ++i) {
     if (!queriesPoints(pair, i, context.settings.sides)) continue;
@@ -98,7 +97,7 @@ void findCandidates(const PairView& pair, double cutoff_m, Context& context, std
                                           cutoff_m, context.settings, out, tested);
     else if (pair.hasMap(j)) {
       const double wide_m = state ? roundedUp(cutoff_m, queryRange_m(pair)) : cutoff_m;
-      const SideQuery query = state ? sideQueryOf(pair, i, *state) : SideQuery{};
+      const SideQuery query = state ? sideQueryOf(pair, i, *state, *motion) : SideQuery{};
       left_out += findMapCandidates(pair.side(i), pair.side(j), wide_m, context.settings, query, out, tested);
     } else {
       left_out += findSurfaceCandidates(pair.side(i), pair.side(j), cutoff_m, context.settings, out, tested);
@@ -107,8 +106,9 @@ void findCandidates(const PairView& pair, double cutoff_m, Context& context, std
   // Penalty points represent areas, and a crossing has none.
   if (context.settings.contact_method == ContactMethod::Constraint && context.settings.use_surfaces &&
       pair.shape[0] && pair.shape[1])
-    left_out += findCrossingCandidates(pair.side(0), pair.side(1), crossingRange(pair, cutoff_m, state),
-                                       context.settings, state ? &state->crossings : nullptr, out);
+    left_out +=
+        findCrossingCandidates(pair.side(0), pair.side(1), crossingRange(pair, cutoff_m, state, motion),
+                               context.settings, state ? &state->crossings : nullptr, out);
   context.points_tested += tested;
   context.left_out += left_out;
 }
@@ -119,7 +119,11 @@ void findStepCandidates(const PairView& pair, const RelativeMotion& motion, Pair
   const double range_m = queryRange_m(pair);
   const double travel_m = motion.speed_m_s * motion.dt_s;
   if (isQueriedOnce(pair, motion)) {
-    findCandidates(pair, motion.contact_margin_m + travel_m, context, out, &state);
+    const bool is_refined =
+        context.settings.use_surfaces && context.settings.contact_method == ContactMethod::Constraint;
+    const double seen_m = is_refined ? fieldError_m(pair) : 0;
+    findCandidates(pair, std::min(motion.contact_margin_m + travel_m + seen_m, range_m), context, out, &state,
+                   &motion);
     useOwnNormalsForPenalty(pair, context.settings, out);
     return;
   }
@@ -169,15 +173,41 @@ void dropUnreachable(const RelativeMotion& motion, std::vector<Candidate>& candi
   std::erase_if(candidates, [&](Candidate& c) { return !motion.canTouch(c); });
 }
 
+namespace {
+
+// Drops candidates that are out of reach even if the field reads too much. Those that are in reach only then
+// are moved to `doubtful`.
+void dropUnreachableByField(const PairView& pair, const RelativeMotion& motion, const Settings& settings,
+                            std::vector<Candidate>& candidates, std::vector<Candidate>& doubtful) {
+  doubtful.clear();
+  std::erase_if(candidates, [&](Candidate& c) {
+    if (motion.canTouch(c)) return false;
+    if (!settings.use_surfaces) return true;
+    Candidate nearer = c;
+    nearer.distance_m -= fieldError_m(pair, c);
+    if (motion.canTouch(nearer)) doubtful.push_back(c);
+    return true;
+  });
+}
+
+}  // namespace
+
 void selectContacts(const PairView& pair, const RelativeMotion& motion, const Settings& settings,
                     ManifoldWriter* writer, std::vector<Candidate>& candidates, Selection* selection) {
-  dropUnreachable(motion, candidates);
-  if (writer) writer->markExistingContacts(candidates);
+  thread_local std::vector<Candidate> doubtful;
+  dropUnreachableByField(pair, motion, settings, candidates, doubtful);
+  if (writer) {
+    writer->markExistingContacts(candidates);
+    writer->markExistingContacts(doubtful);
+  }
   const auto limit = static_cast<std::size_t>(settings.contact_limit);
   const double radius_m = pair.radius_m();
   // Four times the limit are refined by the exact surfaces: enough although some turn out to be out of reach.
   // With twice the limit a shaft in its bushings had to be solved again in most steps, which cost more.
   const double sampling_m = reduceByCell(candidates, 4 * limit, radius_m / 16, radius_m);
+  // The others apart, so that they take no room from those.
+  reduceByCell(doubtful, 2 * limit, radius_m / 16, radius_m);
+  candidates.insert(candidates.end(), doubtful.begin(), doubtful.end());
   refineAll(pair, motion, settings, candidates);
   if (isQueriedOnce(pair, motion)) measureAtEnd(pair, motion, settings, candidates);
   dropUnreachable(motion, candidates);

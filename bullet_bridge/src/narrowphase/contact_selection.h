@@ -13,9 +13,11 @@ namespace vps::bullet::inline v0 {
 // Both contact methods use these.
 
 /// Adds the points nearer to the other side than the cutoff, both ways if the settings say so. With a pair's
-/// state, which makes repeated queries cheaper, possibly more points than that.
+/// state, which makes repeated queries cheaper, possibly more points than that, and of many near points only
+/// the most urgent of each place.
+/// @param motion  with a state: that of the bodies from where they are
 void findCandidates(const PairView& pair, double cutoff_m, Context& context, std::vector<Candidate>& out,
-                    PairState* state = nullptr);
+                    PairState* state = nullptr, const RelativeMotion* motion = nullptr);
 
 /// Adds the candidates of the step. A body that moves less than the query range is queried once, where it is.
 /// A faster one is queried at several places along its path, so that it cannot tunnel; the plane that it

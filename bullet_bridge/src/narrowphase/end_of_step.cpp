@@ -18,8 +18,14 @@ namespace {
 // would be at the end of the step is no place to look at.
 constexpr double kSlope = 0.2;
 
-Pose freeWay(const btCollisionObject& object, double dt_s) {
-  const Twist V = predictedVelocity(object, dt_s);
+// With the share of the pull of couplings that the motion has.
+Pose freeWay(const btCollisionObject& object, const RelativeMotion& motion) {
+  const double dt_s = motion.dt_s;
+  Twist V = predictedVelocity(object, dt_s);
+  if (motion.pull_share < 1) {
+    const Twist own = predictedVelocity(object, dt_s, false);
+    V = {own.w + motion.pull_share * (V.w - own.w), own.v + motion.pull_share * (V.v - own.v)};
+  }
   const Vec3 center = fromBt(object.getWorldTransform().getOrigin());
   const Mat3 R = rotationFromVector(V.w * dt_s);
   return {R, center + (V.v + V.w.cross(center)) * dt_s - R * center};
@@ -45,7 +51,7 @@ void measureAtEnd(const PairView& pair, const RelativeMotion& motion, const Sett
                   std::vector<Candidate>& candidates) {
   if (!settings.use_surfaces || !pair.shape[0] || !pair.shape[1]) return;
   Pose way[2];
-  for (int i = 0; i < 2; ++i) way[i] = freeWay(*pair.wrapper[i]->getCollisionObject(), motion.dt_s);
+  for (int i = 0; i < 2; ++i) way[i] = freeWay(*pair.wrapper[i]->getCollisionObject(), motion);
   RelativeMotion still;
   still.contact_margin_m = motion.contact_margin_m;
   thread_local std::vector<Candidate> ends;

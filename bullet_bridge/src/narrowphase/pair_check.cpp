@@ -16,8 +16,6 @@ namespace {
 
 // An overlap that existed before the step may grow by this share of that: rounding.
 constexpr double kGrowthShare = 0.1;
-// The field's error in voxels, up to which points count as possibly inside: at edges, and on faces.
-constexpr double kEdgeError = 0.45, kFaceError = 0.05;
 
 double turn_rad(const Mat3& R) {
   return rotationVector(R).norm();
@@ -100,21 +98,19 @@ bool isInside(const Vec3& p_W, const SideView& other, double near_m, double tole
   return false;
 }
 
-double voxel_m(const PairView& pair, int i) {
-  return pair.hasMap(i) ? pair.shape[i]->models().map->voxel_m() : 0;
-}
-
 /// Points and crossings that overlap by more than tolerated where the bodies are, by the exact surfaces.
-void findOverlaps(const PairView& pair, Context& context, double tolerated_m, std::vector<Candidate>& found) {
+/// Crossings that are deeper than travel_m may be left out.
+void findOverlaps(const PairView& pair, PairState& state, double tolerated_m, double travel_m,
+                  std::vector<Candidate>& found) {
   found.clear();
-  double cutoff_m = tolerated_m;
-  for (int i = 0; i < 2; ++i) cutoff_m = std::max(cutoff_m, kEdgeError * voxel_m(pair, i));
-  findCandidates(pair, std::min(cutoff_m, queryRange_m(pair)), context, found);
+  Context& context = *state.context;
+  RelativeMotion here;
+  here.contact_margin_m = std::max(tolerated_m, travel_m);
+  findCandidates(pair, std::min(std::max(tolerated_m, fieldError_m(pair)), queryRange_m(pair)), context,
+                 found, &state, &here);
   std::erase_if(found, [&](Candidate& c) {
     c.predicted_m = c.distance_m;
-    if (c.isCrossing()) return c.distance_m >= -tolerated_m;
-    const bool is_edge = pair.shape[c.side]->isEdgePoint(c.id);
-    return c.distance_m > (is_edge ? kEdgeError : kFaceError) * voxel_m(pair, 1 - c.side);
+    return c.isCrossing() ? c.distance_m >= -tolerated_m : c.distance_m > fieldError_m(pair, c);
   });
   const double radius_m = pair.radius_m();
   const std::size_t limit = 4 * static_cast<std::size_t>(context.settings.contact_limit);
@@ -264,7 +260,7 @@ void PairCheck::findAmongRefined(const Motion& m, std::vector<Candidate>& missed
   for (const Candidate& c : state_.selection.refined) {
     Candidate end = m.since_selected.moved(c);
     if (!isMissed(c.distance_m, end.distance_m, m.tolerated_m)) continue;
-    const double near_m = std::abs(end.distance_m) + voxel_m(at_end.pair, 1 - c.side);
+    const double near_m = std::abs(end.distance_m) + at_end.pair.voxel_m(1 - c.side);
     if (c.isCrossing() ? !crossAt(end, side[0], side[1])
                        : !isInside(end.p_W, side[1 - c.side], near_m, m.tolerated_m))
       continue;
@@ -283,7 +279,7 @@ void PairCheck::findAlongPath(const Motion& m, std::vector<Candidate>& missed) c
     const double share = static_cast<double>(k) / places;
     const Pose then[2] = {interpolate(m.start[0], m.end[0], share), interpolate(m.start[1], m.end[1], share)};
     const Placed placed(*this, then);
-    findOverlaps(placed.pair, *state_.context, m.tolerated_m, missed);
+    findOverlaps(placed.pair, state_, m.tolerated_m, m.travel_m, missed);
     const Displacement back = {{m.start[0] * then[0].inverse(), m.start[1] * then[1].inverse()}};
     const Displacement onward = {{m.end[0] * then[0].inverse(), m.end[1] * then[1].inverse()}};
     entered.clear();

@@ -36,6 +36,8 @@ struct PairView {
   }
   [[nodiscard]] bool hasShell(int i) const { return shape[i] && shape[i]->models().shell; }
   [[nodiscard]] bool hasMap(int i) const { return shape[i] && shape[i]->models().map; }
+  /// Of the side's map; 0 without one.
+  [[nodiscard]] double voxel_m(int i) const { return hasMap(i) ? shape[i]->models().map->voxel_m() : 0; }
   [[nodiscard]] bool isTwoSided() const { return hasMap(0) && hasMap(1) && hasShell(0) && hasShell(1); }
   /// Half the diagonal of the smaller body.
   [[nodiscard]] double radius_m() const {
@@ -53,10 +55,19 @@ struct PairView {
   }
 };
 
-RelativeMotion relativeMotion(const PairView& pair, double dt_s, double contact_margin_m);
+/// @param is_held  by contacts in the last step: then the pull of couplings counts only as far as the query
+/// range
+RelativeMotion relativeMotion(const PairView& pair, double dt_s, double contact_margin_m, bool is_held);
 
 /// Greatest distance that the fields can measure [m]; their band bounds it.
 double queryRange_m(const PairView& pair);
+
+/// How much nearer than the field says a point may be [m]. The field interpolates between nodes: along the
+/// edges of a part it reads too much, and those are met by the other part's edges. Zero where the distance is
+/// exact: of crossings, and from native shapes.
+double fieldError_m(const PairView& pair, const Candidate& c);
+/// The greatest of any point of the pair.
+double fieldError_m(const PairView& pair);
 
 /// True if the points of side i are queried. One-sided: only those of the smaller body, since points of a
 /// larger one may be too far apart to touch it.

@@ -15,7 +15,7 @@ struct QueryState {
   /// O(points / 16). The shell must outlive it.
   QueryState(const VoxMap& map, const PointShell& shell) : query(map, shell) {}
 
-  QueryMemory query;  ///< valid for one cutoff
+  QueryMemory query;
   /// Two representative points of each group of neighbours with similar normals; for constraint contact, as
   /// soon as more points than smallQueryLimit() have been near. O(points) to make: most pairs never need it.
   std::optional<RepresentativePoints> leading;

@@ -9,12 +9,15 @@ namespace {
 
 constexpr double kInside_m = 0.5e-3;  // beyond the first touch: in the hole
 constexpr int kLittleBackOffs = 3;    // then it withdraws whole
+constexpr double kDeeper_m = 2e-3;    // beyond one mouth there may be another one
+constexpr int kSearchesDeeper = 4;    // at one place, before it withdraws to the first mouth
 
 }  // namespace
 
 void Insertion::reset() noexcept {
   has_aligned_ = false;
-  stuck_inside_ = searches_ = 0;
+  stuck_inside_ = searches_ = searches_deeper_ = 0;
+  first_mouth_m_ = 0;
 }
 
 Strategy& Insertion::present() noexcept {
@@ -50,6 +53,7 @@ bool Insertion::isFree(const Feel& feel) const noexcept {
 void Insertion::next(bool succeeded, const Feel& feel) noexcept {
   switch (strategy_) {
     case OperatorStrategy::Approach:
+      if (succeeded && !situation_.has_touched) first_mouth_m_ = feel.along_m;
       return afterApproach(succeeded, feel);
     case OperatorStrategy::Touch:
       return afterTouch(feel);
@@ -92,7 +96,20 @@ void Insertion::afterTouch(const Feel& feel) noexcept {
     return start(OperatorStrategy::AlignByTorque, feel);
   }
   const bool is_inside = feel.along_m > situation_.mouth_m + kInside_m;
+  if (is_inside && situation_.is_slender) return afterTouchInside(feel);
   backOff(!is_inside || ++stuck_inside_ % (kLittleBackOffs + 1) == 0, feel);
+}
+
+// A long part that has passed one wall may stand before the next one, whose hole it has to find as it found
+// the first; or it is jammed in the first.
+void Insertion::afterTouchInside(const Feel& feel) noexcept {
+  const bool is_deeper = feel.along_m > situation_.mouth_m + kDeeper_m;
+  if (is_deeper && ++stuck_inside_ % 2 == 0) {
+    situation_.mouth_m = feel.along_m;
+    searches_ = searches_deeper_ = 0;
+    return backOff(true, feel);
+  }
+  backOff(!is_deeper && stuck_inside_++ % (kLittleBackOffs + 1) == 0, feel);
 }
 
 void Insertion::backOff(bool is_whole, const Feel& feel) noexcept {
@@ -100,6 +117,10 @@ void Insertion::backOff(bool is_whole, const Feel& feel) noexcept {
   is_whole_ = is_whole;
   if (is_whole) {
     ++searches_;
+    if (situation_.mouth_m > first_mouth_m_ && ++searches_deeper_ > kSearchesDeeper) {
+      situation_.mouth_m = first_mouth_m_;
+      searches_deeper_ = 0;
+    }
     has_aligned_ = false;
   }
   start(OperatorStrategy::BackOff, feel);

@@ -3,6 +3,7 @@
 //
 //   approach -> touch -> seen near the target? -> press home -> done
 //                 |  \-> in the hole already?  -> align by torque -> touch
+//                 |  \-> a slender part: at the mouth of a second hole, perhaps -> spiral search there
 //                 \----> align, then tilt in, spiral search and turn search in turn, each after backing off
 #pragma once
 
@@ -11,6 +12,11 @@
 namespace vps::device::inline v0 {
 
 class Insertion final : public Sequence {
+ public:
+  [[nodiscard]] bool hasTouched() const noexcept { return situation_.has_touched; }
+  /// `along` where the part first touched: the mouth of its hole.
+  [[nodiscard]] double firstMouth_m() const noexcept { return first_mouth_m_; }
+
  private:
   void reset() noexcept override;
   void prepare() noexcept override;
@@ -19,6 +25,7 @@ class Insertion final : public Sequence {
   [[nodiscard]] bool isFree(const Feel& feel) const noexcept;
   [[nodiscard]] OperatorStrategy nextSearch() const noexcept;
   void afterTouch(const Feel& feel) noexcept;
+  void afterTouchInside(const Feel& feel) noexcept;
   void backOff(bool is_whole, const Feel& feel) noexcept;
 
   TiltIn tilt_in_;
@@ -28,7 +35,8 @@ class Insertion final : public Sequence {
   BackOff back_off_whole_{true}, back_off_little_{false};
   PressHome press_home_;
   bool has_aligned_ = false, is_whole_ = true;
-  int stuck_inside_ = 0, searches_ = 0;
+  int stuck_inside_ = 0, searches_ = 0, searches_deeper_ = 0;
+  double first_mouth_m_ = 0;
 };
 
 }  // namespace vps::device::inline v0

@@ -13,6 +13,10 @@ constexpr double kSoon_s = 0.2;     // of what is seen along the axis
 constexpr double kLeastGain = 0.2;  // of the first gain: what was seen long ago counts less
 constexpr double kGiveWay_per_s = 4;
 constexpr double kNear = 4;  // errors of sight, to the target
+constexpr double kGuided =
+    0.25;  // of the lever of a slender part: this deep in its hole it no longer leans freely
+constexpr double kPivots_m = 5e-3;  // this deep in a hole a slender part turns about its mouth
+constexpr double kHome_per_s = 4;   // of a slender part's end to where its hole was seen
 
 Vec3 shortened(const Vec3& v, double limit) noexcept {
   const double length = v.norm();
@@ -37,6 +41,8 @@ void VirtualOperator::Person::begin(const OperatorTask& task, double now_s) {
   misread_rad_ = habits_.aim_turn_rad > 0 ? habits_.aim_turn_rad * (2 * random_.uniform() - 1) * axis_W_
                                           : Vec3(Vec3::Zero());
   belief_ = {};
+  hole_m_ = Vec3::Zero();
+  hole_seen_for_s_ = kSoon_s;  // the aim counts as much as a short look
   seen_for_s_ = 0;
   serve_m_ = serve_rad_ = Vec3::Zero();
   has_view_ = is_home_ = false;  // the next view gives the hand's start
@@ -147,6 +153,7 @@ void VirtualOperator::Person::reach(const OperatorView& view) noexcept {
 
 void VirtualOperator::Person::startInsertion(const OperatorView& view) noexcept {
   belief_.across_m = across(belief_.across_m) + aim_m_;
+  hole_m_ = isSlender() ? belief_.across_m : Vec3(Vec3::Zero());
   belief_.turn_rad += aim_rad_;
   seen_for_s_ = 0;
   const Pose& X_to = path_.back();
@@ -158,6 +165,9 @@ void VirtualOperator::Person::startInsertion(const OperatorView& view) noexcept 
     const Vec3 corner_W = across(task_.X_WP_target * task_.tip_P - X_to.p);
     if (corner_W.norm() > 1e-9) situation.corner_W = corner_W.normalized();
   }
+  if (isSlender()) situation.corner_W = Vec3::Zero();  // a tilt would take the hand too far to find back
+  situation.is_slender = isSlender();
+  situation.tip_m = tip_m_;
   situation.has_corners = task_.has_corners;
   situation.screw = task_.screw;
   situation.near_m = task_.tolerance_m + kNear * habits_.see_error_m;
@@ -178,6 +188,8 @@ void VirtualOperator::Person::insert(const OperatorView& view, double dt_s) noex
     belief_.across_m += last.across_m;  // that is where the hole was found
     belief_.turn_rad += last.turn_rad;
   }
+  if (isSlender() && before == OperatorStrategy::SpiralSearch && sequence().strategy() != before)
+    belief_.across_m = tip_felt_m_;  // it led the end by more than it goes back by
   const bool is_last = sequence().strategy() == OperatorStrategy::PressHome ||
                        sequence().strategy() == OperatorStrategy::PlaceBySight;
   if (is_last != (phase_ == OperatorPhase::Press))
@@ -216,7 +228,7 @@ void VirtualOperator::Person::turn(const OperatorView& view, double spin_rad_s, 
 // --- Senses
 
 void VirtualOperator::Person::sense(const OperatorView& view, double dt_s) noexcept {
-  const bool is_new = sight_.look(view);
+  const bool is_new = sight_.look(view, tip_felt_m_);
   const Pose& X_target = path_.empty() ? X_rest_ : path_.back();
   const Wrench& F = view.F_hand_W;
   const double share = std::min(1.0, dt_s / kFeel_s);
@@ -228,6 +240,9 @@ void VirtualOperator::Person::sense(const OperatorView& view, double dt_s) noexc
   const Vec3 p_m = view.X_WG_hand.p - X_target.p + task_.give_m_per_N * F.f;
   feel_.along_m = axis_W_.dot(p_m);
   feel_.across_m = across(p_m);
+  lean_m_ += share * (tipFromGrasp(view.X_WP.R * task_.X_PG.R) - lean_m_);
+  tip_felt_m_ = feel_.across_m + lean_m_;
+  feel_.tip_m = tip_felt_m_ - hole_m_;
   feel_.R_hand = view.X_WG_hand.R;
   const double turned_rad = axis_W_.dot(rotationVector(view.X_WG_hand.R * R_felt_.transpose()));
   R_felt_ = view.X_WG_hand.R;
@@ -249,6 +264,17 @@ void VirtualOperator::Person::sense(const OperatorView& view, double dt_s) noexc
   if (is_new && phase_ == OperatorPhase::Reach) correctOnTheWay(1 / habits_.see_rate_hz);
 }
 
+// From the grasp to the end that goes in first, in the part's attitude R_WG, across the axis.
+Vec3 VirtualOperator::Person::tipFromGrasp(const Mat3& R_WG) const noexcept {
+  return path_.empty() ? Vec3(Vec3::Zero()) : across(tip_m_ * (R_WG * path_.back().R.transpose() * axis_W_));
+}
+
+// That end, as it is seen beside the line on which it belongs.
+Vec3 VirtualOperator::Person::seenTip() const noexcept {
+  const Pose X_seen = seenGrasp();
+  return across(X_seen.p - path_.back().p) + tipFromGrasp(X_seen.R);
+}
+
 // Integral action on the seen error across the path. Along the path the error is only the visual delay.
 void VirtualOperator::Person::correctOnTheWay(double dt_s) noexcept {
   const Pose X_seen = seenGrasp();
@@ -267,29 +293,49 @@ void VirtualOperator::Person::correctOnTheWay(double dt_s) noexcept {
       shortened(belief_.turn_rad + gain * rotationVector(X_path.R * X_seen.R.transpose()), seeLimit_rad());
 }
 
-// The longer it looks, the more it averages: the gain falls as 1/t.
+// The longer it looks, the more it averages: the gain falls as 1/t. The end of a slender part is taken
+// far off by a little lean, and the hand would sway after what it sees late: it keeps where the hole is seen
+// from the end as it is felt at the same time, over all that it has seen of it, and moves the end there by
+// touch.
 void VirtualOperator::Person::correctAtTheHole(double dt_s) noexcept {
   if (!sight_.hasSeen()) return;
+  const Pose X_seen = seenGrasp(), &X_to = path_.back();
+  const Vec3 tip_m = seenTip();
+  const Mat3 R_path = spun(feel_.spin_rad) * turnAtTheHole(axis_W_.dot(X_seen.p - X_to.p));
+  const Vec3 lean_rad = tiltOf(rotationVector(R_path * X_seen.R.transpose()));
   seen_for_s_ += dt_s;
   const double gain =
       dt_s * habits_.see_gain_per_s * std::max(kLeastGain, 1 / (1 + habits_.see_gain_per_s * seen_for_s_));
-  const Pose X_seen = seenGrasp(), &X_to = path_.back();
-  const Vec3 tip_m = (X_seen.p - X_to.p) + tip_m_ * (X_seen.R * X_to.R.transpose() * axis_W_ - axis_W_);
-  belief_.across_m -= gain * across(tip_m);
-  const Mat3 R_path = spun(feel_.spin_rad) * turnAtTheHole(axis_W_.dot(X_seen.p - X_to.p));
-  belief_.turn_rad += gain * tiltOf(rotationVector(R_path * X_seen.R.transpose()));
+  const bool is_before_hole = sequence().strategy() != OperatorStrategy::PlaceBySight;
+  if (!isSlender() || !is_before_hole) {
+    belief_.across_m -= gain * tip_m;
+    belief_.turn_rad += gain * lean_rad;
+  } else {
+    hole_seen_for_s_ += dt_s;
+    hole_m_ += dt_s / hole_seen_for_s_ * (sight_.felt_m() - tip_m - hole_m_);
+    const Vec3 home_m = -std::min(1.0, kHome_per_s * dt_s) * feel_.tip_m;
+    belief_.across_m += home_m;
+    belief_.turn_rad += depth_m() > kPivots_m ? turnAboutMouth(home_m) : Vec3(gain * lean_rad);
+  }
   belief_.across_m = shortened(belief_.across_m, habits_.see_limit_m);
   belief_.turn_rad = shortened(belief_.turn_rad, seeLimit_rad());
 }
 
-// The belief moves to where the hand is pushed, until side force and torque vanish.
+// The belief moves to where the hand is pushed, until side force and torque vanish. A slender part that is
+// pushed falls over on its end if the hand yields to its lean, until the hole guides it.
 void VirtualOperator::Person::giveWay(double dt_s) noexcept {
   const double share = std::min(1.0, kGiveWay_per_s * dt_s);
   const Pose& X_to = path_.back();
   const Pose X_wanted = wantedAtTheHole();
-  const Vec3 p_hand = X_to.p + feel_.across_m;
-  belief_.across_m += share * across(p_hand - X_wanted.p);
-  belief_.turn_rad += share * tiltOf(rotationVector(feel_.R_hand * X_wanted.R.transpose()));
+  double guided = 1;
+  if (isSlender()) {
+    const Vec3 wanted_tip_m = across(X_wanted.p - X_to.p) + tipFromGrasp(X_wanted.R);
+    belief_.across_m += share * (tip_felt_m_ - wanted_tip_m);
+    guided = std::clamp(depth_m() / (kGuided * tip_m_), 0.0, 1.0);
+  } else {
+    belief_.across_m += share * across(X_to.p + feel_.across_m - X_wanted.p);
+  }
+  belief_.turn_rad += guided * share * tiltOf(rotationVector(feel_.R_hand * X_wanted.R.transpose()));
   belief_.across_m = shortened(belief_.across_m, habits_.see_limit_m);
   belief_.turn_rad = shortened(belief_.turn_rad, seeLimit_rad());
   serve_m_ -= share * serve_m_;
@@ -323,11 +369,16 @@ Mat3 VirtualOperator::Person::turnAtTheHole(double along_m) const noexcept {
 Pose VirtualOperator::Person::wantedAtTheHole() const noexcept {
   const Move& move = sequence().move();
   const Pose& X_to = path_.back();
-  const Mat3 turn = rotationFromVector(belief_.turn_rad + move.turn_rad);
+  const Mat3 turn = rotationFromVector(belief_.turn_rad + move.turn_rad + turnAboutMouth(move.across_m));
   const Vec3 tip = tip_m_ * axis_W_;
   Vec3 p = X_to.p + belief_.across_m + move.across_m + tip - turn * tip;
   p += axis_W_ * (reach_m_ - axis_W_.dot(p - X_to.p));
   return {Mat3(turn * spun(spin_rad_) * turnAtTheHole(reach_m_)), p};
+}
+
+// A slender part that is in one hole, before the next, turns about the first one where its end is to move.
+Vec3 VirtualOperator::Person::turnAboutMouth(const Vec3& end_m) const noexcept {
+  return depth_m() > kPivots_m ? Vec3(axis_W_.cross(end_m) / depth_m()) : Vec3(Vec3::Zero());
 }
 
 // Integral action of the hand on its own position, against friction of the device.

@@ -67,6 +67,13 @@ class VirtualOperator::Person {
   void correctAtTheHole(double dt_s) noexcept;
   void giveWay(double dt_s) noexcept;
   [[nodiscard]] Vec3 across(const Vec3& v) const noexcept { return v - axis_W_ * axis_W_.dot(v); }
+  [[nodiscard]] Vec3 tipFromGrasp(const Mat3& R_WG) const noexcept;
+  [[nodiscard]] Vec3 seenTip() const noexcept;
+  /// Friction at the end that goes in first leans the part in the hand by more than a search for the hole
+  /// goes.
+  [[nodiscard]] bool isSlender() const noexcept {
+    return tip_m_ > 0 && habits_.search_N * tip_m_ * tip_m_ > habits_.k_Nm_per_rad * habits_.search_limit_m;
+  }
   [[nodiscard]] Pose seenGrasp() const noexcept {
     const Pose X = sight_.seen() * task_.X_PG;
     return {Mat3(rotationFromVector(misread_rad_) * X.R), X.p};
@@ -76,6 +83,12 @@ class VirtualOperator::Person {
   // Hand.
   [[nodiscard]] Pose wanted(double now_s) const noexcept;
   [[nodiscard]] Pose wantedAtTheHole() const noexcept;
+  [[nodiscard]] Vec3 turnAboutMouth(const Vec3& end_m) const noexcept;
+  /// How deep a slender part is in the first hole that it found; 0 for others.
+  [[nodiscard]] double depth_m() const noexcept {
+    return isSlender() && !isScrew() && insertion_.hasTouched() ? feel_.along_m - insertion_.firstMouth_m()
+                                                                : 0;
+  }
   [[nodiscard]] Mat3 turnAtTheHole(double along_m) const noexcept;
   void serve(const Pose& X_wanted, const Pose& X_hand, double dt_s) noexcept;
   [[nodiscard]] Pose limited(const Pose& X_wanted, const Pose& X_hand) const noexcept;
@@ -107,6 +120,11 @@ class VirtualOperator::Person {
   Belief belief_;
   double seen_for_s_ = 0;
   Feel feel_;
+  // How far the end that goes in first is felt beside the grasp, and beside its line.
+  Vec3 lean_m_ = Vec3::Zero(), tip_felt_m_ = Vec3::Zero();
+  // Of a slender part: where its end is felt when it is at its hole, and how long that was seen.
+  Vec3 hole_m_ = Vec3::Zero();
+  double hole_seen_for_s_ = 0;
   Insertion insertion_;
   Screwing screwing_;
   double spin_rad_ = 0;             // wanted, about the axis

@@ -18,7 +18,10 @@ class Sight {
   /// @param tip_P  where the person looks: the error of position is that of this point
   void begin(const Vec3& tip_P, double now_s) noexcept;
   /// Takes a visual sample if one is due. True: there is a new one, and `seen()` is late by the delay.
-  bool look(const OperatorView& view) noexcept;
+  /// @param felt_m  what the hand feels now; `felt_m()` gives it back with the picture of the same time
+  bool look(const OperatorView& view, const Vec3& felt_m = Vec3::Zero()) noexcept;
+  /// What the hand felt when it was as `seen()`.
+  [[nodiscard]] const Vec3& felt_m() const noexcept { return felt_m_; }
   /// The part's pose as seen.
   [[nodiscard]] const Pose& seen() const noexcept { return X_seen_; }
   [[nodiscard]] bool hasSeen() const noexcept { return has_seen_; }
@@ -27,6 +30,7 @@ class Sight {
   struct Picture {
     double time_s = 0;
     Pose X_WP;
+    Vec3 felt_m = Vec3::Zero();
   };
   static constexpr std::size_t kPictures = 64;              // in the delay line
   static constexpr std::uint64_t kStream = 0x5159ac0ffee5;  // apart from the draws of the aim
@@ -37,6 +41,7 @@ class Sight {
   std::size_t count_ = 0;
   double next_look_s_ = 0, next_fixation_s_ = 0;
   Vec3 tip_P_ = Vec3::Zero(), error_m_ = Vec3::Zero(), error_rad_ = Vec3::Zero();
+  Vec3 felt_m_ = Vec3::Zero();
   Pose X_seen_;
   bool has_seen_ = false;
 };

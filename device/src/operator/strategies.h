@@ -90,7 +90,7 @@ class BackOff final : public Strategy {
 
  private:
   bool is_whole_;
-  double goal_m_ = 0, looked_s_ = 0;
+  double goal_m_ = 0, looked_s_ = 0, longest_s_ = 0;
 };
 
 /// Presses the part against its stop, and relaxes. Failed: it yields, or it is seen elsewhere.

@@ -12,8 +12,10 @@ namespace vps::device::inline v0 {
 /// the force that it feels. a: axis of insertion.
 struct Feel {
   double time_s = 0;
-  double along_m = 0;              ///< beyond the target along a; negative before it
-  Vec3 across_m = Vec3::Zero();    ///< from the line through the target
+  double along_m = 0;            ///< beyond the target along a; negative before it
+  Vec3 across_m = Vec3::Zero();  ///< from the line through the target
+  /// Of the end that goes in first, from that line; of a slender part from where its hole was seen.
+  Vec3 tip_m = Vec3::Zero();
   Mat3 R_hand = Mat3::Identity();  ///< of the hand, in W
   double spin_rad = 0;             ///< turn of the hand about a since the insertion began; beyond a turn too
   Vec3 lean_rad = Vec3::Zero();    ///< of the hand's own axis from a
@@ -52,6 +54,8 @@ struct Situation {
   double near_m = 0;             ///< seen this close to the target it may be there
   bool has_touched = false;      ///< the hole leads, and sight no longer corrects across
   double mouth_m = 0;            ///< `along` at the first touch
+  double tip_m = 0;              ///< from G along the axis to the end that goes in first
+  bool is_slender = false;       ///< a little lean moves its end far
   bool has_corners = false;      ///< it may have to be turned about the axis
   int attempt = 0;
   ScrewTask screw;

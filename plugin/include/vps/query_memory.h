@@ -20,8 +20,9 @@ namespace vps::inline v0 {
 /// odometer. So no touching point is missed: the answer is the exhaustive one for every motion, jumps
 /// included.
 ///
-/// One memory serves one pair and one thread at a time. A query with another cutoff resets it; a query of
-/// another map or shell ignores it. Queries with a memory do not allocate.
+/// One memory serves one pair and one thread at a time. Queries may have different cutoffs; a larger one than
+/// the last query's counts as a motion by the difference. A query of another map or shell ignores the memory.
+/// Queries with a memory do not allocate.
 class VPS_API QueryMemory {
  public:
   /// The shell must outlive the memory and not change. Memory: about 10 bytes for each leaf of 16 points.
@@ -51,7 +52,8 @@ class VPS_API QueryMemory {
   std::vector<std::uint16_t>
       row_near_;  ///< bit i: leaf i was too near for a bound of its sphere, so it is read
   Pose X_MP_;
-  double cutoff_ = 0;
+  static constexpr double kNoQuery = -1e300;
+  double cutoff_ = kNoQuery;  ///< of the last query [voxels]
 };
 
 }  // namespace vps::inline v0

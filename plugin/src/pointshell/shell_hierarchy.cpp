@@ -196,6 +196,22 @@ void layOutBlocks(PointShell& shell) {
   shell.blocks.shrink_to_fit();
 }
 
+namespace {
+
+// Keeps those that are within the radius of a waiting point, in their order.
+void keepNear(std::span<const Vec3> points, const std::vector<std::uint32_t>& waiting, double radius_m,
+              std::vector<std::uint32_t>& joined) {
+  PointGrid grid(2 * radius_m, waiting.size());
+  for (const std::uint32_t i : waiting) grid.insert(points[i], i);
+  std::erase_if(joined, [&](std::uint32_t i) {
+    bool is_far = true;
+    grid.visitNear(points[i], radius_m, [&is_far](std::uint32_t, double) { return is_far = false; });
+    return is_far;
+  });
+}
+
+}  // namespace
+
 std::vector<std::uint32_t> progressiveOrder(std::span<const Vec3> points) {
   // Level by level with half the radius: a point joins if no joined point is within the radius.
   std::vector<std::uint32_t> waiting = bitReversed(points.size()), order;
@@ -204,9 +220,16 @@ std::vector<std::uint32_t> progressiveOrder(std::span<const Vec3> points) {
   for (const Vec3& p : points) box.add(p);
   double radius_m = points.empty() ? 0 : box.size().norm();
   constexpr int kLevels = 32;  // from metres to below a nanometre; remaining points are duplicates
+  constexpr std::size_t kFew = 8;
+  std::vector<std::uint32_t> joined;  // those that a waiting point may be near
+  std::size_t taken = 0;              // of order, into `joined`
   for (int level = 0; level < kLevels && !waiting.empty() && radius_m > 0; ++level, radius_m /= 2) {
-    PointGrid grid(2 * radius_m, order.size());
-    for (const std::uint32_t i : order) grid.insert(points[i], i);
+    joined.insert(joined.end(), order.begin() + static_cast<std::ptrdiff_t>(taken), order.end());
+    taken = order.size();
+    // A few duplicates wait through all levels: only their neighbours matter.
+    if (kFew * waiting.size() < joined.size()) keepNear(points, waiting, radius_m, joined);
+    PointGrid grid(2 * radius_m, joined.size());
+    for (const std::uint32_t i : joined) grid.insert(points[i], i);
     std::size_t kept = 0;
     for (const std::uint32_t i : waiting) {
       bool is_near = false;

@@ -8,6 +8,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "query/leaf_walk.h"
 #include "vps/query.h"
@@ -25,19 +26,21 @@ class CoherentWalk {
         memory_(memory),
         cutoff_(cutoff),
         error_(reading.field.error),
-        beyond_(cutoff + error_ < reading.field.band ? cutoff + error_
-                                                     : reading.field.band + reading.field.diagonal),
+        beyond_(beyond(reading, cutoff)),
         turn_(X_MP.R - memory.X_MP_.R),
         shift_(X_MP.p - memory.X_MP_.p),
         turn_norm_(largestStretch(turn_)),
         reader_(reading, Reader{this, consume}) {}
 
-  /// Call before the first group of a pose. Another cutoff than before resets the memory.
-  static void begin(QueryMemory& memory, double cutoff, const Pose& X_MP) noexcept {
-    if (memory.cutoff_ == cutoff) return;
-    memory.clear();
-    memory.cutoff_ = cutoff;
-    memory.X_MP_ = X_MP;
+  /// Call before the first group of a pose. Thresholds of a smaller cutoff than this one's are too late by no
+  /// more than the cutoffs differ, and those of a larger one too early, which costs only readings.
+  static void begin(QueryMemory& memory, const Reading& reading, double cutoff, const Pose& X_MP) noexcept {
+    const double last = std::exchange(memory.cutoff_, cutoff);
+    if (last == QueryMemory::kNoQuery) memory.X_MP_ = X_MP;
+    if (last == QueryMemory::kNoQuery || cutoff <= last) return;
+    const double shift =
+        std::max((cutoff - last) / reading.field.slope, beyond(reading, cutoff) - beyond(reading, last));
+    for (QueryMemory::Group& group : memory.groups_) group.odometer += shift * (1 + 1e-9) + kRoundingOfSum;
   }
   /// Call after the last group of a pose.
   static void end(QueryMemory& memory, const Pose& X_MP) noexcept { memory.X_MP_ = X_MP; }
@@ -54,6 +57,11 @@ class CoherentWalk {
   static constexpr double kFarthest = 1 << 20, kRoundingOfSum = 1.3e-10;
   static constexpr double kNever = std::numeric_limits<double>::infinity();
 
+  /// A true distance above this gives readings above the cutoff.
+  static double beyond(const Reading& reading, double cutoff) noexcept {
+    const double least = cutoff + reading.field.error;
+    return least < reading.field.band ? least : reading.field.band + reading.field.diagonal;
+  }
   /// The largest singular value of a matrix, rounded up: the root of the largest eigenvalue of its square.
   /// For any matrix, since poses may be rotations to a few digits only.
   static double largestStretch(const Mat3& m) noexcept {
@@ -166,9 +174,9 @@ class CoherentWalk {
   const Reading& reading_;
   QueryMemory& memory_;
   const double cutoff_;
-  const double error_;   ///< of the field: half a cell's diagonal and a quantum
-  const double beyond_;  ///< a true distance above this gives readings above the cutoff
-  const Mat3 turn_;      // since the last pose
+  const double error_;  ///< of the field: half a cell's diagonal and a quantum
+  const double beyond_;
+  const Mat3 turn_;  // since the last pose
   const Vec3 shift_;
   const double turn_norm_;
   std::uint32_t noted_ = UINT32_MAX;
@@ -190,7 +198,7 @@ double readNearLeaves(const Reading& reading, const Pose& X_MP, const QueryOptio
   if (reading.shell.leaf_blocks == 0) return least;
   if (memory != nullptr && !options.is_exhaustive) {
     using Walk = CoherentWalk<Consume>;
-    Walk::begin(*memory, cutoff, X_MP);
+    Walk::begin(*memory, reading, cutoff, X_MP);
     Walk walk(reading, X_MP, cutoff, *memory, consume);
     for (std::size_t g = 0; g < groupCount(reading.shell); ++g) walk.visit(g);
     walk.flush();

@@ -385,13 +385,13 @@ void findCrossings(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_0
   // Near now, or at the end of the step.
   const double reach_m = reachOfCrossing_m(std::max(range.cutoff_m, range.depth_m));
   CrossingTest test(edges0, edges1, X_01, range, out);
-  const auto tube = [&] {
+  const auto tube = [&](double width) {
     const Ball ball0{edges0.nodes_[0].center, edges0.nodes_[0].radius_m};
     const Ball ball1{edges1.nodes_[0].center, edges1.nodes_[0].radius_m};
-    return MotionTube(ball0, ball1, X_01, range.X_01_end);
+    return MotionTube(ball0, ball1, X_01, range.X_01_end, width);
   };
   if (memory == nullptr) {
-    const MotionTube once = tube();
+    const MotionTube once = tube(1);
     EdgePairSearch(edges0, edges1, once, reach_m).run([&](std::uint32_t i0, std::uint32_t i1) {
       test.cross(i0, i1);
     });
@@ -400,8 +400,12 @@ void findCrossings(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_0
     const bool is_kept = memory->is_valid_ && reach_m <= memory->reach_m_ && memory->tube_->holds(X_01) &&
                          memory->tube_->holds(range.X_01_end);
     if (!is_kept) {
-      *memory->tube_ = tube();
-      memory->search(edges0, edges1, kMore * reach_m);
+      const auto search = [&](double width) {
+        *memory->tube_ = tube(width);
+        memory->search(edges0, edges1, kMore * reach_m);
+      };
+      search(memory->tube_->nextWidth(memory->near_.size()));
+      if (memory->tube_->isTooWide(memory->near_.size())) search(1);
     }
     for (const CrossingMemory::Pair& pair : memory->near_) test.cross(pair.edge[0], pair.edge[1]);
   }

@@ -224,7 +224,7 @@ void FeatureMotion::checkStretch(const FeatureSet& part0, const FeatureSet& part
   const double gap_m = rest_m(part0, part1), looked_at_m = kLeastShare * gap_m;
   if (is_valid_) path_m_ += travel_m(part0, part1, last_, start);
   if (!is_valid_ || !tube_->holds(start) || !tube_->holds(to)) {
-    *tube_ = MotionTube(ballAround(part0), ballAround(part1), start, to);
+    *tube_ = MotionTube(ballAround(part0), ballAround(part1), start, to, tube_->nextWidth(near_.size()));
     search(part0, part1);
   }
   is_valid_ = true;

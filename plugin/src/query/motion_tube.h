@@ -17,13 +17,14 @@ class MotionTube {
   MotionTube() = default;
 
   /// The motion from `start` to `end` goes on with the same twist for a few steps. Poses of part 1 in part 0.
-  MotionTube(const Ball& ball0, const Ball& ball1, const Pose& start, const Pose& end)
-      : ball0_(ball0), ball1_(ball1) {
+  /// @param width  of the margin, relative to the narrowest; see nextWidth()
+  MotionTube(const Ball& ball0, const Ball& ball1, const Pose& start, const Pose& end, double width = 1)
+      : ball0_(ball0), ball1_(ball1), width_(width) {
     // assumed, by measurement on threads, gears and a heap: a wider margin lasts longer, but more is near.
     constexpr double kLeast_m = 25e-6, kMost_m = 150e-6, kOfStep = 0.5;
     constexpr double kLongest = 8;
     const double step_m = travel_m(ball0, ball1, start, end);
-    slack_m_ = std::clamp(kOfStep * step_m, kLeast_m, kMost_m);
+    slack_m_ = width * std::clamp(kOfStep * step_m, kLeast_m, kMost_m);
     const double step_rad = Way(ball0, ball1, start, end).turn_rad();
     const double bend_m = bendOf(step_m, step_rad);
     double steps = kLongest;
@@ -38,6 +39,13 @@ class MotionTube {
     bend_m_ = bendOf(travel_m(ball0, ball1, start, to), way_.turn_rad());
   }
 
+  /// A wider tube lasts longer, but each pair of its list costs time in each step. The width for the next
+  /// one, when a search of this one listed so many pairs:
+  [[nodiscard]] double nextWidth(std::size_t pairs) const {
+    if (pairs < kFewPairs) return std::min(2 * width_, kWidest);
+    return isTooWide(pairs) ? std::max(0.5 * width_, 1.0) : width_;
+  }
+  [[nodiscard]] bool isTooWide(std::size_t pairs) const { return width_ > 1 && pairs > kManyPairs; }
   /// Poses of part 1 in part 0.
   [[nodiscard]] const Pose& from() const { return from_; }
   [[nodiscard]] const Pose& to() const { return to_; }
@@ -57,6 +65,9 @@ class MotionTube {
   }
 
  private:
+  // assumed, by measurement: a search takes as long as some thousand pairs.
+  static constexpr std::size_t kFewPairs = 128, kManyPairs = 512;
+  static constexpr double kWidest = 8;
   // How far a point leaves the straight line from its first to its last place, on a way of this length and
   // turn. Of a point q of the larger part, seen from the smaller one, whose centre is at c: R'(q - c) has a
   // second derivative of at most turn^2 |q - c| + 2 turn |c'|. With turn |q - c| <= way + turn (slack + way),
@@ -68,6 +79,7 @@ class MotionTube {
   Ball ball0_, ball1_;
   Pose from_, to_;
   Way way_;
+  double width_ = 1;
   double slack_m_ = 0, bend_m_ = 0;
 };
 

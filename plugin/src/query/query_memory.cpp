@@ -34,7 +34,7 @@ void QueryMemory::clear() noexcept {
   std::fill(leaf_next_.begin(), leaf_next_.end(), std::numeric_limits<double>::infinity());
   std::fill_n(leaf_next_.begin(), shell_->leaf_blocks, -1.0);
   std::fill(row_near_.begin(), row_near_.end(), std::uint16_t{0});
-  cutoff_ = -1e300;  // of no query: the next one resets the thresholds
+  cutoff_ = kNoQuery;
 }
 
 bool QueryMemory::isFor(const VoxMap& map, const PointShell& shell) const noexcept {

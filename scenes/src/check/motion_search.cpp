@@ -290,10 +290,10 @@ Reach MotionSearch::reach(const Motion& motion, double most, SearchWork* work) c
 }
 
 std::array<Reach, 2> MotionSearch::reachBoth(const Motion& motion, double most,
-                                             const PassingFacets* passing) const {
+                                             const std::array<const PassingFacets*, 2>& passing) const {
   const std::optional<Turning> turning = turningOf(motion, most);
-  return {reach(motion, most, turning, passing, nullptr),
-          reach(motion.reversed(), most, turning, passing, nullptr)};
+  return {reach(motion, most, turning, passing[0], nullptr),
+          reach(motion.reversed(), most, turning, passing[1], nullptr)};
 }
 
 Reach MotionSearch::reach(const Motion& motion, double most, const std::optional<Turning>& turning,

@@ -69,8 +69,9 @@ class MotionSearch {
   /// @param work   counts what is done; a motion is stopped where it is spent. Null: no limit but the steps
   [[nodiscard]] Reach reach(const Motion& motion, double most, SearchWork* work = nullptr) const;
   /// Of the motion and of its reverse.
+  /// @param passing  for each of the two; null: all facets are looked at
   [[nodiscard]] std::array<Reach, 2> reachBoth(const Motion& motion, double most,
-                                               const PassingFacets* passing = nullptr) const;
+                                               const std::array<const PassingFacets*, 2>& passing = {}) const;
   /// Whether the two facets alone stop the motion.
   [[nodiscard]] bool isStoppedBy(const Blocker& blocker, const Motion& motion, double most) const;
   [[nodiscard]] const PlacedSurface& held(std::size_t index) const { return *held_[index].part; }

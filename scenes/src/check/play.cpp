@@ -111,9 +111,13 @@ std::vector<ScrewWay> screwWaysOut(const MotionSearch& search, const PlacedSurfa
     const std::size_t mate = search.indexOf(is_screw ? fit.bore : fit.shaft);
     const PlacedSurface& other = search.held(mate);
     const PlacedSurface &inner = is_screw ? part : other, &outer = is_screw ? other : part;
-    const PassingFacets passing(mate, is_screw, ScrewProfile(outer, screw).passing(inner),
-                                inner.surface->tree());
-    const std::array<Reach, 2> reach = search.reachBoth(screw, most_rad, &passing);
+    // The nut moves over the screw, or the screw the other way through the nut.
+    const Vec3 ahead_W = (forward_m > 0) == is_screw ? Vec3(-fit.axis_W) : fit.axis_W;
+    const PassingFacets forwards(mate, is_screw, ScrewProfile(outer, screw, inner, ahead_W).passing(inner),
+                                 inner.surface->tree());
+    const PassingFacets back(mate, is_screw, ScrewProfile(outer, screw, inner, -ahead_W).passing(inner),
+                             inner.surface->tree());
+    const std::array<Reach, 2> reach = search.reachBoth(screw, most_rad, {&forwards, &back});
     for (const std::size_t i : {0, 1})
       if (!reach[i].is_stopped)
         ways.push_back({(i == 0) == (forward_m > 0) ? fit.axis_W : Vec3(-fit.axis_W), fit.at_W, fit.lead_m});

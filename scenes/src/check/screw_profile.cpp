@@ -23,6 +23,13 @@ Triangle placedTriangle(const PlacedSurface& part, std::uint32_t i) {
   return t;
 }
 
+double farthest_m(const PlacedSurface& part, const Vec3& ahead_W) {
+  double farthest_m = -1e300;
+  for (const Vec3& p : part.surface->mesh().vertices)
+    farthest_m = std::max(farthest_m, ahead_W.dot(part.X_WP * p));
+  return farthest_m;
+}
+
 }  // namespace
 
 /// A triangle by radius and phase of its corners. Between them both are nearly linear: a radius is at most
@@ -121,17 +128,28 @@ bool ScrewProfile::forEachBin(const Triangle& triangle_W, Visit visit, int halvi
 }
 
 ScrewProfile::ScrewProfile(const PlacedSurface& nut, const Motion& screw)
+    : ScrewProfile(nut, screw, Vec3::Zero(), 0) {}
+
+ScrewProfile::ScrewProfile(const PlacedSurface& nut, const Motion& screw, const PlacedSurface& part,
+                           const Vec3& ahead_W)
+    : ScrewProfile(nut, screw, ahead_W, farthest_m(part, ahead_W)) {}
+
+/// Without what is beyond `end_m`, the place along ahead_W.
+ScrewProfile::ScrewProfile(const PlacedSurface& nut, const Motion& screw, const Vec3& ahead_W, double end_m)
     : screw_(screw),
       x_(screw.direction.unitOrthogonal()),
       y_(screw.direction.cross(x_)),
       lead_m_(std::abs(screw.forward_m) * kWholeTurn_rad),
       least_m_(kBins, 1e300) {
-  for (std::uint32_t i = 0; i < nut.surface->mesh().triangles.size(); ++i)
-    forEachBin(placedTriangle(nut, i), [&](int bin, double least, double) {
+  for (std::uint32_t i = 0; i < nut.surface->mesh().triangles.size(); ++i) {
+    const Triangle triangle = placedTriangle(nut, i);
+    if (std::ranges::all_of(triangle, [&](const Vec3& p) { return ahead_W.dot(p) > end_m; })) continue;
+    forEachBin(triangle, [&](int bin, double least, double) {
       double& of_bin = least_m_[static_cast<std::size_t>(bin)];
       of_bin = std::min(of_bin, least);
       return true;
     });
+  }
 }
 
 std::vector<std::uint8_t> ScrewProfile::passing(const PlacedSurface& part) const {

@@ -23,12 +23,17 @@ class ScrewProfile {
  public:
   /// @param screw in the world, with a lead
   ScrewProfile(const PlacedSurface& nut, const Motion& screw);
+  /// For a nut that moves in this direction along the axis only: without its facets beyond all of the part in
+  /// that direction, which never come to it, as the lid of a cap that is screwed off.
+  ScrewProfile(const PlacedSurface& nut, const Motion& screw, const PlacedSurface& part, const Vec3& ahead_W);
 
   /// By facet of a part in place: 1 if all of it is below the profile, facets as flat triangles. Bounds from
   /// both sides: what is said to pass does pass. O(facets).
   [[nodiscard]] std::vector<std::uint8_t> passing(const PlacedSurface& part) const;
 
  private:
+  ScrewProfile(const PlacedSurface& nut, const Motion& screw, const Vec3& ahead_W, double end_m);
+
   struct Facet;
   template <class Visit>
   bool forEachBin(const Facet& facet, Visit visit) const;

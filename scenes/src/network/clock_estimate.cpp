@@ -43,38 +43,52 @@ void ClockEstimate::add(const ClockExchange& exchange) noexcept {
   kept_ = std::min(kept_ + 1, kPoints);
 }
 
-// Least squares through the kept points; with a single one the drift is not known and taken as none.
+ClockEstimate::Line ClockEstimate::line() const noexcept {
+  constexpr double kShare = 0.25, kLeast_s = 5e-6;  // assumed: what round trips differ by on an idle machine
+  double shortest_s = point(0).round_trip_s;
+  for (std::size_t i = 0; i < kept_; ++i) shortest_s = std::min(shortest_s, point(i).round_trip_s);
+  Line line;
+  for (std::size_t i = 0; i < kept_; ++i) {
+    const double off_s = point(i).round_trip_s - (1 - kShare) * shortest_s + kLeast_s;
+    line.weight[i] = (kLeast_s / off_s) * (kLeast_s / off_s);
+    line.weights += line.weight[i];
+    line.t_mean_s += line.weight[i] * time_s(i);
+  }
+  line.t_mean_s /= line.weights;
+  for (std::size_t i = 0; i < kept_; ++i) {
+    const double t_s = time_s(i) - line.t_mean_s;
+    line.square += line.weight[i] * t_s * t_s;
+  }
+  return line;
+}
+
+// With a single point the drift is not known and taken as none.
 double ClockEstimate::drift() const noexcept {
   if (kept_ < 2) return 0;
-  double t_mean = 0, o_mean = 0;
-  const std::int64_t zero_ns = point(0).here_ns;
-  const auto count = static_cast<double>(kept_);
-  for (std::size_t i = 0; i < kept_; ++i) {
-    t_mean += between_s(zero_ns, point(i).here_ns) / count;
-    o_mean += (point(i).offset_s - point(0).offset_s) / count;
-  }
-  double both = 0, square = 0;
-  for (std::size_t i = 0; i < kept_; ++i) {
-    const double t_s = between_s(zero_ns, point(i).here_ns) - t_mean;
-    both += t_s * (point(i).offset_s - point(0).offset_s - o_mean);
-    square += t_s * t_s;
-  }
-  return square > 0 ? std::clamp(both / square, -kMostDrift, kMostDrift) : 0;
+  const Line line = this->line();
+  double rate = 0;
+  for (std::size_t i = 0; i < kept_ && line.square > 0; ++i)
+    rate += line.weight[i] * (time_s(i) - line.t_mean_s) * (point(i).offset_s - point(0).offset_s);
+  return line.square > 0 ? std::clamp(rate / line.square, -kMostDrift, kMostDrift) : 0;
 }
 
 double ClockEstimate::offset_s(std::int64_t here_ns) const noexcept {
   if (kept_ == 0) return 0;
-  const double rate = drift();
+  const Line line = this->line();
   double mean_s = 0;
   for (std::size_t i = 0; i < kept_; ++i)
-    mean_s += (point(i).offset_s + rate * between_s(point(i).here_ns, here_ns)) / static_cast<double>(kept_);
-  return mean_s;
+    mean_s += line.weight[i] * (point(i).offset_s - point(0).offset_s) / line.weights;
+  return point(0).offset_s + mean_s + drift() * (between_s(point(0).here_ns, here_ns) - line.t_mean_s);
 }
 
+// Each point's offset is off by at most half of its round trip, and counts as much as the line says.
 double ClockEstimate::error_s() const noexcept {
-  double worst_s = 0;
-  for (std::size_t i = 0; i < kept_; ++i) worst_s = std::max(worst_s, 0.5 * point(i).round_trip_s);
-  return worst_s;
+  if (kept_ == 0) return 0;
+  const Line line = this->line();
+  double error_s = 0;
+  for (std::size_t i = 0; i < kept_; ++i)
+    error_s += std::abs(line.share(i, time_s(i), 0)) * 0.5 * point(i).round_trip_s;
+  return error_s;
 }
 
 std::int64_t sentByClockHere_ns(std::int64_t sent_ns, double offset_s, std::int64_t now_ns) noexcept {

@@ -6,7 +6,9 @@
 //   there        t1 ----------- t2
 //
 // The error is greatest where one way took all of the time, so exchanges with a short round trip are worth
-// most: of each quarter of a second only the shortest is kept. Source: [Mills 1991], clock filter.
+// most: of each quarter of a second only the shortest is kept (source: [Mills 1991], clock filter), and a
+// line is laid through those of the last 16 s, each of which weighs the less the more its round trip is above
+// the shortest. So a machine that is busy for seconds, with no short round trip meanwhile, does no harm.
 #pragma once
 
 #include <array>
@@ -37,7 +39,7 @@ class ClockEstimate {
   [[nodiscard]] bool isKnown() const noexcept { return kept_ > 0; }
   /// What the clock there is ahead at that time by the clock here.
   [[nodiscard]] double offset_s(std::int64_t here_ns) const noexcept;
-  /// Bound of its error at the last exchange, if the clock there does not lie.
+  /// Bound of its error at the last exchange, if the clock there does not lie and its rate stays.
   [[nodiscard]] double error_s() const noexcept;
   /// Rate of the clock there against the one here, less 1.
   [[nodiscard]] double drift() const noexcept;
@@ -49,7 +51,23 @@ class ClockEstimate {
     std::int64_t here_ns = 0;
     double offset_s = 0, round_trip_s = 0;
   };
-  static constexpr std::size_t kPoints = 16;  ///< 4 s
+  static constexpr std::size_t kPoints = 64;  ///< 16 s
+
+  /// The line, as what each kept point counts in its value at a time.
+  struct Line {
+    double weights = 0, t_mean_s = 0, square = 0;
+    std::array<double, kPoints> weight{};
+    /// Of the point's offset in the line's value at that time from the newest point on.
+    [[nodiscard]] double share(std::size_t i, double point_s, double t_s) const noexcept {
+      const double slope = square > 0 ? (t_s - t_mean_s) * (point_s - t_mean_s) / square : 0;
+      return weight[i] * (1 / weights + slope);
+    }
+  };
+  [[nodiscard]] Line line() const noexcept;
+  /// By the clock here, from the newest point on.
+  [[nodiscard]] double time_s(std::size_t i) const noexcept {
+    return 1e-9 * static_cast<double>(point(i).here_ns - point(0).here_ns);
+  }
 
   [[nodiscard]] const Point& point(std::size_t age) const noexcept {
     return points_[(newest_ + kPoints - age) % kPoints];

@@ -1,23 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The states between nodes where bytes are dear, over UDP: lengths as floats, rotations in eight bytes,
-// twists and wrenches as half floats. What changes slowly comes with some of the messages only; a reader
-// keeps what it has.
+// twists and wrenches as half floats. Of haptics and physics these are the whole states, of which there are
+// few; most are dense (dense_state.h).
 //
 // visit(x) takes the worth of a float of each number; visit.exact(x) every bit; visit.coarse(x) the worth of
-// a half float; visit.isDue(number, every) whether a state of that number has the slow values. Shared by
-// writing and reading.
+// a half float. Shared by writing and reading.
 #pragma once
 
 #include "network/message_fields.h"
 #include "network/messages.h"
 
 namespace vps::scenes::inline v0::wire {
-
-/// How many states from one with the slow values to the next. assumed: forces at 400 Hz and energies at 100
-/// Hz are as many as anybody shows
-inline constexpr std::int32_t kForceEvery = 4, kSlowEvery = 16;
-/// The held part is for whoever looks at it, who needs it less often than the coupling needs its pose.
-inline constexpr std::int32_t kHeldEvery = 4;
 
 template <typename V>
 void compactFields(HapticMessage& m, V& visit) {
@@ -30,10 +23,7 @@ void compactFields(HapticMessage& m, V& visit) {
   visit.exact(m.hand);
   visit(report.X_WG);
   visit.coarse(report.V_WG);
-  const bool is_faulted =
-      m.state.safety.fault != device::SafetyFault::None;  // that the force is zero is news
-  if (is_faulted || visit.isDue(m.state.tick, kForceEvery)) visit.coarse(report.F_hand_W);
-  if (!visit.isDue(m.state.tick, kSlowEvery)) return;
+  visit.coarse(report.F_hand_W);
   visit.coarse(report.F_hand_D);
   visit(report.clutch_ratio);
   visit.exact(m.state.safety.faults);
@@ -50,7 +40,6 @@ void compactFields(PhysicsMessage& m, V& visit) {
   visit(m.state.part.X_W);
   visit.coarse(m.state.part.V_W);
   visit(m.state.stored_J);
-  if (!visit.isDue(m.state.step, kHeldEvery)) return;
   visit(m.state.held.X_WP);
   visit.coarse(m.state.held.V_WP);
   visit(m.state.held.weight_W);
@@ -72,7 +61,12 @@ void compactFields(SnapshotMessage& m, V& visit) {
     visit(body.X_WP);
     visit.choice(body.role, 4);
   });
-  visit.list(s.contacts, [&visit](ContactMark& mark) { fields(mark, visit); });
+  visit.list(s.contacts, [&visit](ContactMark& mark) {
+    visit(mark.p_W);
+    visit.coarse(mark.n_W);
+    visit.coarse(mark.depth_m);  // to 0.06 um, or a part in 2048
+    visit.coarse(mark.force_N);
+  });
 }
 
 }  // namespace vps::scenes::inline v0::wire

@@ -60,6 +60,7 @@ void DeviceEnd::welcome(const HelloMessage& hello) {
   if (!first_) first_ = hello;
   sender_ = sender;
   for (MessageReader* reader : {&reply_reader_, &state_reader_, &log_reader_}) reader->bindTo(sender);
+  writer_.startAnew();
   is_present_ = true;
   ++joins_;
   say_("the device '" + name + "' has joined");
@@ -149,6 +150,7 @@ void DeviceEnd::send(const NewsMessage& news) {
 std::string DeviceEnd::refusals() const {
   std::string words;
   for (std::size_t i = 1; i < kReadings; ++i) {
+    if (!isRefused(static_cast<Reading>(i))) continue;
     std::uint64_t count = 0;
     for (const MessageReader* reader : {&hello_reader_, &reply_reader_, &state_reader_, &log_reader_})
       count += reader->counts()[i];

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The device's node: the haptic side of a run, with physics at the other end of a link.
 #include <algorithm>
+#include <array>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <thread>
@@ -27,6 +29,29 @@ constexpr std::chrono::milliseconds kUntilSafe{25};  // kPeerLimit_s and a few t
 constexpr int kPollsPerLook = 25;                    // whether the render node lives: each 5 ms
 constexpr int kPollsPerTimes = 500;                  // each 0.1 s
 
+/// A part's state has the time of the proxy's state that it answers, which the loop looks up to the bit. Over
+/// a network it comes rounded, so this end keeps the times that it sent.
+class SentTimes {
+ public:
+  void add(double time_s) noexcept {
+    newest_ = (newest_ + 1) % times_s_.size();
+    times_s_[newest_] = time_s;
+  }
+  /// The sent time that rounds to this one; itself, if there is none.
+  [[nodiscard]] double exact_s(double rounded_s) const noexcept {
+    constexpr double kRounding_s = 0.6e-6;  // half a microsecond, and what a double adds
+    for (std::size_t age = 0; age < times_s_.size(); ++age) {
+      const double time_s = times_s_[(newest_ + times_s_.size() - age) % times_s_.size()];
+      if (std::abs(time_s - rounded_s) < kRounding_s) return time_s;
+    }
+    return rounded_s;
+  }
+
+ private:
+  std::array<double, 512> times_s_{};  // as many as HapticLoop knows the work of
+  std::size_t newest_ = 0;
+};
+
 /// The haptic thread's end of the link. Each message is read into, and written from, memory of its own.
 class RemotePort final : public device::RemotePhysics {
  public:
@@ -38,13 +63,15 @@ class RemotePort final : public device::RemotePhysics {
   void receive(device::PhysicsState& state) noexcept override {
     const std::string_view bytes = link_.receive(Channel::Physics, buffer_);
     if (bytes.empty()) return;
-    if (reader_.read(bytes, message_) == Reading::Good)
-      state = message_.state;
-    else
-      refused_.fetch_add(1, std::memory_order_relaxed);
+    const Reading reading = reader_.read(bytes, message_);
+    if (isRefused(reading)) refused_.fetch_add(1, std::memory_order_relaxed);
+    if (reading != Reading::Good) return;
+    state = message_.state;
+    state.part.time_s = times_.exact_s(state.part.time_s);
   }
   void send(const device::HapticState& state) noexcept override {
     const std::uint8_t hand = hand_ != nullptr ? hand_->load(std::memory_order_relaxed) : 0;
+    times_.add(state.report.time_s);
     link_.send(Channel::Haptic, writer_.write(HapticMessage{state, hand}));
   }
   [[nodiscard]] std::uint64_t refused() const { return refused_.load(std::memory_order_relaxed); }
@@ -56,6 +83,7 @@ class RemotePort final : public device::RemotePhysics {
   std::vector<char> buffer_;
   MessageReader reader_;
   PhysicsMessage message_;
+  SentTimes times_;
   std::atomic<std::uint64_t> refused_{0};
 };
 

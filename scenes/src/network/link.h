@@ -23,12 +23,12 @@ namespace vps::scenes::inline v0 {
 /// order.
 enum class Channel : std::uint8_t {
   Haptic,    ///< state, device to all
-  Physics,   ///< state, render to all
-  Snapshot,  ///< state, render to all
+  Physics,   ///< state, render to device
+  Snapshot,  ///< state, render to watchers
   Request,   ///< render to device
   Reply,     ///< device to render
   Log,       ///< device to render: what a recording holds of the haptic loop
-  News,      ///< render to all: what happened, in words
+  News,      ///< render to watchers: what happened, in words
 };
 inline constexpr std::size_t kChannels = 7;
 
@@ -38,6 +38,24 @@ constexpr bool isState(Channel channel) {
 constexpr NodeRole writerOf(Channel channel) {
   const bool is_devices = channel == Channel::Haptic || channel == Channel::Reply || channel == Channel::Log;
   return is_devices ? NodeRole::Device : NodeRole::Render;
+}
+
+/// Who gets a channel's messages over a network; in shared memory all can read them.
+constexpr bool isReader(Channel channel, NodeRole role) {
+  switch (channel) {
+    case Channel::Haptic:
+      return role != NodeRole::Device;
+    case Channel::Physics:
+    case Channel::Request:
+      return role == NodeRole::Device;
+    case Channel::Reply:
+    case Channel::Log:
+      return role == NodeRole::Render;
+    case Channel::Snapshot:
+    case Channel::News:
+      return role == NodeRole::Watch;
+  }
+  return false;
 }
 
 /// Longest message of any channel, a snapshot of a scene with many parts.
@@ -70,7 +88,8 @@ struct PeerDoubt {
   std::uint64_t contradictions = 0;
 };
 
-/// send() and receive() neither throw, allocate, lock nor wait. A channel is used by one thread at a time.
+/// send() and receive() neither throw, allocate, lock nor wait, except that the render node's send() calls
+/// the network. A channel is used by one thread at a time.
 class Link {
  public:
   virtual ~Link() = default;
@@ -89,6 +108,8 @@ class Link {
   [[nodiscard]] virtual WireForm form() const noexcept { return WireForm::Exact; }
 
   // The functions below may call the system.
+  /// Until a message comes, or so long; for threads with nothing else to do, one at a time.
+  virtual void waitForMessage(std::int64_t most_ns) const;
   /// Whether a process has the role now.
   [[nodiscard]] virtual bool isAlive(NodeRole role) const = 0;
   /// How many watchers there are now.

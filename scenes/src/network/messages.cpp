@@ -31,6 +31,11 @@ template <typename Message>
 constexpr bool kHasCompact =
     std::is_same_v<Message, HapticMessage> || std::is_same_v<Message, PhysicsMessage> ||
     std::is_same_v<Message, SnapshotMessage>;
+template <typename Message>
+constexpr bool kHasDense = std::is_same_v<Message, HapticMessage> || std::is_same_v<Message, PhysicsMessage>;
+template <typename Message>
+constexpr MessageKind kDenseKindOf =
+    std::is_same_v<Message, HapticMessage> ? MessageKind::DenseHaptic : MessageKind::DensePhysics;
 template <>
 constexpr MessageKind kKindOf<PhysicsMessage> = MessageKind::Physics;
 template <>
@@ -148,6 +153,8 @@ class CompactVisit {
   void coarse(Wrench& x) {
     for (Vec3* part : {&x.tau, &x.f}) self().half(*part);
   }
+  void coarse(Vec3& x) { self().half(x); }
+  void coarse(double& x) { self().half(x); }
   template <typename T>
   void exact(T& x) {
     if constexpr (std::is_same_v<T, bool>)
@@ -162,7 +169,6 @@ class CompactVisit {
     if (byte >= count) return self().refuse();
     e = static_cast<Enum>(byte);
   }
-  [[nodiscard]] static bool isDue(std::int32_t number, std::int32_t every) { return number % every == 0; }
 
  private:
   Self& self() { return static_cast<Self&>(*this); }
@@ -172,11 +178,12 @@ class CompactPut : public CompactVisit<CompactPut> {
  public:
   explicit CompactPut(std::string& out) : writer_(out) {}
   void number(double x) { writer_.put(static_cast<float>(x)); }
+  void half(double x) {
+    const auto bounded = static_cast<float>(std::clamp(x, -kLargestHalf, kLargestHalf));
+    writer_.put(std::bit_cast<std::uint16_t>(Eigen::half(bounded)));
+  }
   void half(const Vec3& x) {
-    for (const double component : x) {
-      const auto bounded = static_cast<float>(std::clamp(component, -kLargestHalf, kLargestHalf));
-      writer_.put(std::bit_cast<std::uint16_t>(Eigen::half(bounded)));
-    }
+    for (const double component : x) half(component);
   }
   void rotation(const Mat3& R) { writer_.put(packedRotation(R)); }
   void flag(bool x) { writer_.put(static_cast<std::uint8_t>(x)); }
@@ -204,9 +211,11 @@ class CompactGet : public CompactVisit<CompactGet> {
   [[nodiscard]] bool isGood() const { return is_good_; }
 
   void number(double& x) { check(x = reader_.getFloat()); }
+  void half(double& x) {
+    check(x = static_cast<float>(std::bit_cast<Eigen::half>(reader_.get<std::uint16_t>())));
+  }
   void half(Vec3& x) {
-    for (double& component : x)
-      check(component = static_cast<float>(std::bit_cast<Eigen::half>(reader_.get<std::uint16_t>())));
+    for (double& component : x) half(component);
   }
   void rotation(Mat3& R) {
     const std::optional<Mat3> read = unpackedRotation(reader_.get<std::uint64_t>());
@@ -355,6 +364,10 @@ const char* toText(Reading reading) {
       return "sent before";
     case Reading::TooFarAhead:
       return "with a number too far ahead";
+    case Reading::Early:
+      return "before the first whole one";
+    case Reading::Overtaken:
+      return "overtaken by a later one";
   }
   return "unknown";
 }
@@ -369,6 +382,15 @@ std::string_view MessageWriter::write(const Message& message) noexcept {
   out_.clear();
   if constexpr (kHasCompact<Message>) {
     if (form_ == WireForm::Compact) {
+      if constexpr (kHasDense<Message>) {
+        DenseWriter& dense = kKind == MessageKind::Haptic ? dense_haptic_ : dense_physics_;
+        std::uint64_t& number = numbers_[static_cast<std::size_t>(kDenseKindOf<Message>)];
+        if (dense.write(message, sender_, number + 1, out_)) {
+          ++number;
+          device::ByteWriter(out_).put(static_cast<std::uint64_t>(device::monotonicClock().now_ns()));
+          return out_;
+        }
+      }
       device::ByteWriter head(out_);
       head.put(static_cast<std::uint16_t>(static_cast<std::uint16_t>(kKind) | kCompactBit));
       head.put(kMessageVersion);
@@ -394,9 +416,35 @@ MessageKind kindOf(std::string_view bytes) noexcept {
 }
 
 template <typename Message>
+Reading MessageReader::readDenseState(std::string_view bytes, Message& message) noexcept {
+  constexpr auto kKind = static_cast<std::size_t>(kDenseKindOf<Message>);
+  if (!isDenseOf(bytes, message)) return Reading::BadKind;
+  if (!isThisVersion(bytes)) return Reading::BadVersion;
+  DenseBase& base = baseFor(message);
+  const DenseHead head = denseHead(bytes, last_numbers_[kKind]);
+  const std::uint64_t sender = sender_ != 0 ? sender_ : envelope_.sender;
+  if (head.sender != sender % kDenseSenders) return sender_ != 0 ? Reading::WrongSender : Reading::Early;
+  if (!base.is_known) return Reading::Early;
+  Message read = message;
+  if (!readDense(bytes, base, read)) return Reading::BadValue;
+  if (isOlder(read, message)) return Reading::Overtaken;
+  const auto sent_ns =
+      static_cast<std::int64_t>(device::ByteReader(bytes.substr(kDenseBytes)).get<std::uint64_t>());
+  const MessageOrder::Place place = orders_[kKind].place(head.number, sent_ns, clock_->now_ns());
+  if (place != MessageOrder::Place::Next)
+    return place == MessageOrder::Place::Old ? Reading::Replayed : Reading::TooFarAhead;
+  last_numbers_[kKind] = head.number;
+  envelope_ = {sender, head.number, sent_ns};
+  message = read;
+  return Reading::Good;
+}
+
+template <typename Message>
 Reading MessageReader::read(std::string_view bytes, Message& message) noexcept {
   constexpr MessageKind kKind = kKindOf<Message>;
   const Reading reading = [&] {
+    if constexpr (kHasDense<Message>)
+      if (isDense(bytes)) return readDenseState(bytes, message);
     if (bytes.size() < kCompactEnvelopeBytes) return Reading::BadSize;
     device::ByteReader head(bytes);
     const auto kind = head.get<std::uint16_t>();
@@ -430,12 +478,18 @@ Reading MessageReader::read(std::string_view bytes, Message& message) noexcept {
       taken = take(get, [](Message& m, Get& visit) { wire::fields(m, visit); });
     }
     if (taken != Reading::Good) return taken;
-    if (envelope.sender != envelope_.sender) orders_ = {};
+    if (envelope.sender != envelope_.sender) forget();
     const MessageOrder::Place place =
         orders_[static_cast<std::size_t>(kKind)].place(envelope.number, envelope.time_ns, clock_->now_ns());
     if (place != MessageOrder::Place::Next)
       return place == MessageOrder::Place::Old ? Reading::Replayed : Reading::TooFarAhead;
     envelope_ = envelope;
+    if constexpr (kHasDense<Message>) {
+      DenseBase& base = baseFor(message);
+      const DenseBase given = baseOf(read);
+      if (is_compact && base.is_known) keepNewer(read, message);
+      base = given;
+    }
     message = std::move(read);
     return Reading::Good;
   }();
@@ -445,7 +499,8 @@ Reading MessageReader::read(std::string_view bytes, Message& message) noexcept {
 
 std::uint64_t MessageReader::refused() const noexcept {
   std::uint64_t sum = 0;
-  for (std::size_t i = 1; i < kReadings; ++i) sum += counts_[i];
+  for (std::size_t i = 1; i < kReadings; ++i)
+    if (isRefused(static_cast<Reading>(i))) sum += counts_[i];
   return sum;
 }
 

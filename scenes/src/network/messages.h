@@ -12,6 +12,7 @@
 #include <variant>
 #include <vector>
 
+#include "network/dense_state.h"
 #include "network/message_order.h"
 #include "network/shared_region.h"
 #include "network/wire_form.h"
@@ -26,7 +27,7 @@
 namespace vps::scenes::inline v0 {
 
 /// Of all messages together; nodes of other versions are refused when they join.
-inline constexpr std::uint16_t kMessageVersion = 6;
+inline constexpr std::uint16_t kMessageVersion = 7;
 
 enum class MessageKind : std::uint16_t {
   Haptic = 1,
@@ -43,7 +44,10 @@ enum class MessageKind : std::uint16_t {
   Ask,
   Answer,
   Piece,
+  DenseHaptic,  ///< states in another form, which count by themselves
+  DensePhysics,
 };
+inline constexpr std::size_t kMessageKinds = 17;  ///< and 0, of none
 
 /// At the start of each message.
 struct Envelope {
@@ -195,8 +199,14 @@ enum class Reading : std::uint8_t {
   WrongSender,
   Replayed,     ///< its number is not above the last one of its kind
   TooFarAhead,  ///< its number is above what the sender can have sent by now; see MessageOrder
+  // Not refused for a fault of the sender:
+  Early,      ///< a dense state before the first whole one, as who joins late gets them
+  Overtaken,  ///< a dense state that came after a later whole one
 };
-inline constexpr std::size_t kReadings = 8;
+inline constexpr std::size_t kReadings = 10;
+constexpr bool isRefused(Reading reading) {
+  return reading != Reading::Good && reading < Reading::Early;
+}
 const char* toText(Reading reading);
 
 /// Writes messages without allocating: `out` keeps its room from one message to the next.
@@ -213,12 +223,15 @@ class MessageWriter {
     return numbers_[static_cast<std::size_t>(kind)];
   }
   [[nodiscard]] std::uint64_t sender() const noexcept { return sender_; }
+  /// The next states are sent whole, for a reader that has none to begin with.
+  void startAnew() noexcept { dense_haptic_ = dense_physics_ = {}; }
 
  private:
   std::string out_;
   std::uint64_t sender_;
   WireForm form_;
-  std::array<std::uint64_t, 16> numbers_{};
+  std::array<std::uint64_t, kMessageKinds> numbers_{};
+  DenseWriter dense_haptic_, dense_physics_;
 };
 
 /// Reads messages and counts what was refused.
@@ -228,10 +241,10 @@ class MessageReader {
   /// Refuses all senders but this one, whose messages begin at any number.
   void bindTo(std::uint64_t sender) noexcept {
     sender_ = sender;
-    orders_ = {};
+    forget();
   }
-  /// Good: `message` has the values. Otherwise it is unchanged. Takes both forms; of a compact state some
-  /// values may be those that `message` had. Allocates for snapshots only.
+  /// Good: `message` has the values. Otherwise it is unchanged. Takes all forms; of a dense state some values
+  /// are those that `message` had, so it is the one that was read before. Allocates for snapshots only.
   template <typename Message>
   Reading read(std::string_view bytes, Message& message) noexcept;
 
@@ -241,9 +254,21 @@ class MessageReader {
   [[nodiscard]] std::uint64_t refused() const noexcept;
 
  private:
+  void forget() noexcept {
+    orders_ = {};
+    last_numbers_ = {};
+    haptic_base_ = physics_base_ = {};
+  }
+  DenseBase& baseFor(const HapticMessage&) noexcept { return haptic_base_; }
+  DenseBase& baseFor(const PhysicsMessage&) noexcept { return physics_base_; }
+  template <typename Message>
+  Reading readDenseState(std::string_view bytes, Message& message) noexcept;
+
   device::RealTimeClock* clock_;
   std::uint64_t sender_ = 0;  ///< 0: any
-  std::array<MessageOrder, 16> orders_{};
+  std::array<MessageOrder, kMessageKinds> orders_{};
+  std::array<std::uint64_t, kMessageKinds> last_numbers_{};
+  DenseBase haptic_base_, physics_base_;
   Envelope envelope_;
   std::array<std::uint64_t, kReadings> counts_{};
 };

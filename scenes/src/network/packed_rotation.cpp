@@ -7,14 +7,21 @@ namespace vps::scenes::inline v0 {
 
 namespace {
 
-constexpr unsigned kBits = 20;
-constexpr std::uint64_t kMask = (std::uint64_t{1} << kBits) - 1;
-constexpr double kMiddle = 1 << (kBits - 1U);                   // of zero, so that no rotation is exact
-constexpr double kScale = (kMiddle - 1) * 1.41421356237309515;  // the smaller ones are at most 1/sqrt(2)
+/// Steps of a component.
+struct Steps {
+  explicit Steps(unsigned bits)
+      : mask((std::uint64_t{1} << bits) - 1),
+        middle(1 << (bits - 1U)),
+        scale((middle - 1) * 1.41421356237309515) {}
+  std::uint64_t mask;
+  double middle;  ///< of zero, so that no rotation is exact
+  double scale;   ///< the smaller ones are at most 1/sqrt(2)
+};
 
 }  // namespace
 
-std::uint64_t packedRotation(const Mat3& R) {
+std::uint64_t packedRotation(const Mat3& R, unsigned bits) {
+  const Steps steps(bits);
   Eigen::Vector4d q = Eigen::Quaterniond(R).normalized().coeffs();  // x y z w
   Eigen::Index largest = 0;
   q.cwiseAbs().maxCoeff(&largest);
@@ -22,21 +29,22 @@ std::uint64_t packedRotation(const Mat3& R) {
   std::uint64_t packed = static_cast<std::uint64_t>(largest);
   for (Eigen::Index i = 0; i < 4; ++i)
     if (i != largest)
-      packed = packed << kBits | static_cast<std::uint64_t>(std::lround(kMiddle + kScale * q[i]));
+      packed = packed << bits | static_cast<std::uint64_t>(std::lround(steps.middle + steps.scale * q[i]));
   return packed;
 }
 
-std::optional<Mat3> unpackedRotation(std::uint64_t packed) {
-  constexpr unsigned kAll = 3 * kBits;
-  if (packed >> (kAll + 2U) != 0) return {};
-  const auto largest = static_cast<Eigen::Index>(packed >> kAll);
+std::optional<Mat3> unpackedRotation(std::uint64_t packed, unsigned bits) {
+  const Steps steps(bits);
+  const unsigned all = 3 * bits;
+  if (packed >> (all + 2U) != 0) return {};
+  const auto largest = static_cast<Eigen::Index>(packed >> all);
   Eigen::Vector4d q = Eigen::Vector4d::Zero();
   double rest = 1;
-  unsigned shift = kAll;
+  unsigned shift = all;
   for (Eigen::Index i = 0; i < 4; ++i) {
     if (i == largest) continue;
-    shift -= kBits;
-    q[i] = (static_cast<double>(packed >> shift & kMask) - kMiddle) / kScale;
+    shift -= bits;
+    q[i] = (static_cast<double>(packed >> shift & steps.mask) - steps.middle) / steps.scale;
     rest -= q[i] * q[i];
   }
   constexpr double kLeast = 0.249;  // the largest of four is at least 1/2

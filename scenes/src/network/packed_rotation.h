@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A rotation in eight bytes.
+// A rotation in a few bytes.
 #pragma once
 
 #include <cstdint>
@@ -9,10 +9,11 @@
 
 namespace vps::scenes::inline v0 {
 
-/// The three smaller components of the quaternion, 20 bits each, and which the largest one is. Right to 3e-6
-/// rad.
-std::uint64_t packedRotation(const Mat3& R);
+/// The three smaller components of the quaternion, 20 bits each, and which the largest one is: 62 bits. Right
+/// to 5e-6 rad, and to 2^n as much with n bits less.
+/// @param bits  of a component, at most 20
+std::uint64_t packedRotation(const Mat3& R, unsigned bits = 20);
 /// Empty: no rotation has this number.
-std::optional<Mat3> unpackedRotation(std::uint64_t packed);
+std::optional<Mat3> unpackedRotation(std::uint64_t packed, unsigned bits = 20);
 
 }  // namespace vps::scenes::inline v0

@@ -315,9 +315,8 @@ RequestHandler::Answer RequestHandler::addPiece(std::uint64_t sender, const Piec
   return answer;
 }
 
-void RequestHandler::dropLostTransfer() {
-  if (!transfer_.bytes.empty() && device::monotonicSeconds() - transfer_.heard_s > kTransferLimit_s)
-    transfer_ = {};
+void RequestHandler::dropLostTransfer(double now_s) {
+  if (!transfer_.bytes.empty() && now_s - transfer_.heard_s > kTransferLimit_s) transfer_ = {};
 }
 
 void RequestHandler::keep(const std::string& hash, const std::string& bytes) const {

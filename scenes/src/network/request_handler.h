@@ -64,7 +64,7 @@ class RequestHandler {
   /// The file that was asked for, for the runs that begin from now on; empty: none.
   [[nodiscard]] const std::string& recording() const { return recording_; }
   /// Frees the memory of a scene that its sender has ceased to send.
-  void dropLostTransfer();
+  void dropLostTransfer(double now_s);
 
  private:
   struct Client {

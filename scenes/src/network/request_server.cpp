@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "network/request_server_work.h"
+#include "vps_device/metronome.h"
 
 namespace vps::scenes::inline v0 {
 
@@ -42,7 +43,7 @@ void RequestServer::Work::serve() {
 
 void RequestServer::Work::serveOne() {
   const std::optional<IncomingRequest> ask = channel->receive(kPoll);
-  handler.dropLostTransfer();
+  handler.dropLostTransfer(device::monotonicSeconds());
   if (!ask) return;
   const std::string_view answer = handler.answer(*ask);
   {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The link in shared memory: a head, a ring for each channel, and the scene.
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstring>
@@ -7,6 +8,7 @@
 #include "network/link.h"
 #include "network/messages.h"
 #include "vps/load_error.h"
+#include "vps_device/metronome.h"
 
 namespace vps::scenes::inline v0 {
 
@@ -124,6 +126,13 @@ std::unique_ptr<Link> joinSession(const std::string& session, NodeRole role) {
     throw LoadError("", "", sessionWords(session) + " has a device already; only one hand can hold the part");
   if (role == NodeRole::Watch) region.markWatcher();
   return std::make_unique<SharedLink>(std::move(region), role);
+}
+
+// Nobody is told of a message in shared memory.
+void Link::waitForMessage(std::int64_t most_ns) const {
+  constexpr std::int64_t kLook_ns = 100'000;
+  device::RealTimeClock& clock = device::monotonicClock();
+  clock.sleepUntil(clock.now_ns() + std::min(most_ns, kLook_ns));
 }
 
 std::unique_ptr<Link> makeSession(const std::string& session, std::string_view scene_bytes,

@@ -9,7 +9,7 @@ namespace vps::scenes::inline v0 {
 /// How the numbers of states and snapshots are written; other messages have one form.
 enum class WireForm : std::uint8_t {
   Exact,    ///< every bit, as a recording needs it
-  Compact,  ///< a fifth of the bytes (compact_fields.h)
+  Compact,  ///< a tenth of the bytes (dense_state.h, compact_fields.h)
 };
 
 }  // namespace vps::scenes::inline v0

@@ -106,6 +106,33 @@ bool tipsOver(const PairMotions& motions, std::size_t part, const std::vector<st
   return !canCarry(supports, center_W, up_W, placed.box_W.size().norm());
 }
 
+bool sinksFromItsPlace(const PairMotions& motions, std::size_t part, const std::vector<std::size_t>& held) {
+  // As the tolerance of a step that gives none (procedure/drawn_targets).
+  constexpr double kFitTolerance_m = 0.1e-3, kSightTolerance_m = 0.5e-3, kContact_m = 20e-6;
+  constexpr double kFall_m = 1e-3;
+  constexpr std::uint64_t kMostWork = 2'000'000;
+  std::vector<std::size_t> near;
+  for (const std::size_t one : held)
+    if (motions.areNear(one, part)) near.push_back(one);
+  double allowed_m = kSightTolerance_m;
+  for (const CheckedFit& fit : motions.fitsOf(part))
+    if (std::ranges::any_of(near, [&](std::size_t one) {
+          const std::string& name = motions.parts()[one].name;
+          return fit.shaft == name || fit.bore == name;
+        }))
+      allowed_m =
+          std::min({allowed_m, kFitTolerance_m, std::max(0.0, fit.diametral_clearance_m) + kContact_m});
+  const Vec3& up_W = motions.directions()[motions.up()];
+  const auto chord_m = [](const PlacedSurface& of) { return of.surface->chordIn(of.surface->box()); };
+  double others_m = 0;
+  for (const std::size_t one : near) others_m = std::max(others_m, chord_m(motions.parts()[one]));
+  allowed_m += chord_m(motions.parts()[part]) + others_m;
+  SearchWork work{kMostWork};
+  const Reach sunk =
+      motions.search(motions.parts()[part], part, near).reach({-up_W, Vec3::Zero(), false}, kFall_m, &work);
+  return !sunk.is_given_up && sunk.s > allowed_m;
+}
+
 bool leansInHole(const PairMotions& motions, std::size_t part, const std::vector<std::size_t>& held) {
   constexpr double kLevel = 0.5, kParallel = 0.999;  // of the axes: less than 30 degrees up, and the same one
   const PlacedSurface& placed = motions.parts()[part];

@@ -144,9 +144,10 @@ class Planner {
     for (const std::size_t part : removal.parts) step.parts.push_back(nameOf(part));
     step.kind = way.kind;
     step.lead_m = way.lead_m;
-    step.is_carried = removal.is_carried &&
-                      (removal.parts.size() > 1 || (!leansInHole(motions_, removal.parts.front(), held) &&
-                                                    !tipsOver(motions_, removal.parts.front(), held)));
+    step.is_carried = removal.is_carried && (removal.parts.size() > 1 ||
+                                             (!sinksFromItsPlace(motions_, removal.parts.front(), held) &&
+                                              !leansInHole(motions_, removal.parts.front(), held) &&
+                                              !tipsOver(motions_, removal.parts.front(), held)));
     for (const std::size_t part : removal.falling) step.falling.push_back(nameOf(part));
     const Vec3& out_W = way.legs.back().motion.direction;
     const double out_m = leavingDistance(motions_, removal, held);

@@ -10,6 +10,7 @@
 #include "core/length_words.h"
 #include "judge/surface_error.h"
 #include "procedure/drawn_targets.h"
+#include "procedure/lean_in_fits.h"
 #include "procedure/screw_motion.h"
 #include "procedure/way_check.h"
 #include "vps_scenes/put_down.h"
@@ -81,6 +82,10 @@ double placedAlong_m(AssemblyWorld& world, const SceneStep& step, const Pose& X_
   return isFreeBeyondTarget(world, step, axis_W, kSightTolerance_m, limit_m) ? along_m : 0;
 }
 
+double leanTolerance_m(AssemblyWorld& world) {
+  return leanInFits_m(world.scene(), static_cast<std::size_t>(world.state().step)) + kContactOnBothSides_m;
+}
+
 }  // namespace
 
 double penetrationLimit_m(const SceneStep& step) {
@@ -100,11 +105,15 @@ void judgeCompletion(AssemblyWorld& world, const SceneStep& step, const Pose& X_
   };
   const Pose X_judged = judged(X_WP);
   result.final_error_m = errorAt(X_WP);
-  // Where nothing stops the part along its way, the tolerance of its fit holds across it.
+  // Where nothing stops the part along its way, the tolerance of its fit holds across it; and where the fit
+  // is short, what it lets the part lean, since no stop holds it upright either.
   if (result.final_error_m > result.tolerance_m && result.tolerance_m < kSightTolerance_m) {
     const double along_m = placedAlong_m(world, step, X_WP, result.penetration_limit_m);
     const Vec3 along_W = along_m * insertionAxis(step, X_PG);
-    const bool is_open = along_m != 0 && errorAt(Pose(X_WP.R, X_WP.p - along_W)) <= result.tolerance_m;
+    const double across_m = along_m != 0 ? errorAt(Pose(X_WP.R, X_WP.p - along_W)) : 0;
+    const bool is_given = step.tolerance_m > 0 || step.clearance_m > 0;
+    const bool is_open =
+        along_m != 0 && (across_m <= result.tolerance_m || (!is_given && across_m <= leanTolerance_m(world)));
     if (is_open) result.tolerance_m = kSightTolerance_m;
   }
   result.final_error_rad = rotationVector(X_judged.R * step.X_WP_target.R.transpose()).norm();

@@ -70,6 +70,13 @@ VPS_VIEWER_API std::vector<Image> renderStereo(Renderer& renderer, const scenes:
                                                const EyePair& eyes, const DrawOptions& options,
                                                StereoMode mode, const ScreenRows& rows = {});
 
+/// One of the pictures of Spectral: that of the left eye, or of the right one.
+VPS_VIEWER_API Image renderSpectralEye(Renderer& renderer, const scenes::Snapshot& snapshot,
+                                       const EyePair& eyes, const DrawOptions& options, bool is_left);
+
+/// Copies what fits of a picture into another one, its upper left pixel to (x, y), neither of them negative.
+VPS_VIEWER_API void paste(const Image& part, int x, int y, Image& whole);
+
 /// What a screen shows to a viewer.
 struct ScreenPicture {
   std::string name;  ///< "front_anna", "front_anna_left"

@@ -22,17 +22,21 @@ namespace vps::viewer::inline v0 {
 struct WindowOptions {
   int width = 1280, height = 720;
   bool is_dark = false;
-  StereoMode stereo = StereoMode::Mono;    ///< not Spectral, which needs two projectors
-  std::optional<scenes::Display> display;  ///< its first screen and viewer are the window's; none: a desktop
-  bool runs = false;                       ///< begins with a run of the procedure instead of the tour
-  std::string hand;                ///< kind of device that moves the part in a run; empty: the scene's
-  double speed = 1;                ///< of playing and of a run, by the clock; of a run, 0: as fast as it goes
-  bool has_sound = true;           ///< of a run, where there is a sound card
-  std::string record;              ///< file in which a run is recorded; empty: none
-  std::string pictures = "view";   ///< saved pictures are PICTURES_1.png, ...
-  ShownModels show;                ///< in place of the parts
-  std::vector<std::string> notes;  ///< messages that it begins with
-  scenes::ModelOptions models;     ///< of a run
+  StereoMode stereo = StereoMode::Mono;  ///< of Spectral both pictures are beside each other
+  bool has_stereo_buffers = false;  ///< each eye's picture in a buffer of its own, where the driver has it
+  std::optional<scenes::Display> display;  ///< all its pictures are in the window; none: a desktop
+  std::string output;                      ///< of them the one that is shown alone at first; empty: all
+  int full_screen = 0;         ///< number of the monitor that the picture fills at first, from 1; 0: a window
+  bool runs = false;           ///< begins with a run of the procedure instead of the tour
+  std::string hand;            ///< kind of device that moves the part in a run; empty: the scene's
+  double speed = 1;            ///< of playing and of a run, by the clock; of a run, 0: as fast as it goes
+  bool seeks_headset = false;  ///< shows the scene in a headset too, where OpenXR has one
+  bool has_sound = true;       ///< of a run, where there is a sound card
+  std::string record;          ///< file in which a run is recorded; empty: none
+  std::string pictures = "view";                ///< saved pictures are PICTURES_1.png, ...
+  ShownModels show;                             ///< in place of the parts
+  std::vector<std::string> notes;               ///< messages that it begins with
+  scenes::ModelOptions models;                  ///< of a run
   const std::atomic<bool>* stop = nullptr;      ///< set it to close the window
   std::string session;                          ///< of vps render, for viewSession()
   scenes::SessionNetwork network;               ///< where it is

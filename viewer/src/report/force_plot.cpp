@@ -17,6 +17,10 @@ using gnuplot::number;
 constexpr std::array<const char*, 4> kPhaseNames = {"reach", "insert", "press", "rest"};
 constexpr std::array<const char*, 4> kPhaseColors = {"#FFFFFF", "#E3EEF8", "#FBEBD9", "#EEEEEE"};
 
+// A pale band under the components: where one of them is all there is, both are seen.
+constexpr const char* kSum = "#B4B4B4";
+constexpr double kSumWidth = 4;
+
 /// The legend to the right of a panel; the same distance for all panels.
 std::string keyAt(double top) {
   return "set key at screen 0.845, screen " + number(top) + " left top\n";
@@ -140,12 +144,12 @@ PlotOutcome plotForces(const std::vector<scenes::TraceRow>& whole_trace, const s
       "set yrange [" + number(least_N - 0.05 * range_N) + ":" + number(greatest_N + 0.2 * range_N) + "]\n";
   script += "set ylabel \"force on the hand [N]\" offset 0.5,0\n";
   script += plotLines(
-      {{"f", "|F|", kInk, 0.9}, {"fx", "Fx", kRed}, {"fy", "Fy", kGreen}, {"fz", "Fz", kBlue}}, marks);
+      {{"f", "|F|", kSum, kSumWidth}, {"fx", "Fx", kRed}, {"fy", "Fy", kGreen}, {"fz", "Fz", kBlue}}, marks);
   script += "unset label\nset autoscale y\nset tmargin at screen 0.575\nset bmargin at screen 0.315\n" +
             keyAt(0.575);
   script += "set ylabel \"torque on the hand [N m]\" offset 0.5,0\n";
-  script +=
-      plotLines({{"t", "|T|", kInk, 0.9}, {"tx", "Tx", kRed}, {"ty", "Ty", kGreen}, {"tz", "Tz", kBlue}});
+  script += plotLines(
+      {{"t", "|T|", kSum, kSumWidth}, {"tx", "Tx", kRed}, {"ty", "Ty", kGreen}, {"tz", "Tz", kBlue}});
   script += "set tmargin at screen 0.29\nset bmargin at screen 0.09\nset format x \"%g\"\n" + keyAt(0.29);
   script += "set xlabel \"time [s]\"\nset ylabel \"contact depth [µm]\" offset 0.5,0\nset yrange [0:*]\n";
   script += plotLines({{"depth", "greatest depth", kInk, 1.1}});

@@ -172,20 +172,26 @@ Json framesData(const scenes::AssembleResult& result, std::size_t steps) {
   return frames;
 }
 
+/// In mm.
+Json boxOf(const Box& box) {
+  const Vec3 min_mm = 1e3 * box.min, max_mm = 1e3 * box.max;
+  return {{"min", {min_mm.x(), min_mm.y(), min_mm.z()}}, {"max", {max_mm.x(), max_mm.y(), max_mm.z()}}};
+}
+
 Json runData(const scenes::Scene& scene, const scenes::AssembleResult& result) {
   const RenderScene drawn = drawnMeshes(scene);
   const std::vector<PartExtent> extents = partExtents(drawn);
-  Box seen = visibleBounds(extents, result.finished, false, true);
+  const Box finished = visibleBounds(extents, result.finished, false, true);
+  Box seen = finished;
   for (const scenes::Snapshot& start : result.start) {
     const Box box = visibleBounds(extents, start, false, true);
     seen.add(box.min);
     seen.add(box.max);
   }
-  const Vec3 center_mm = 1e3 * seen.center();
   Json steps = stepsData(extents, scene, result);
   Json frames = framesData(result, steps.size());
-  return {{"center", {center_mm.x(), center_mm.y(), center_mm.z()}},
-          {"radius", 1e3 * 0.5 * seen.size().norm()},
+  return {{"run", boxOf(seen)},
+          {"assembly", boxOf(finished.isEmpty() ? seen : finished)},
           {"parts", partsData(drawn)},
           {"steps", std::move(steps)},
           {"frames", std::move(frames)},

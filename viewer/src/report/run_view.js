@@ -20,6 +20,8 @@
     return;
   }
   renderer.setClearColor(0xffffff);
+  renderer.shadowMap.enabled = true;
+  renderer.shadowMap.type = THREE.PCFShadowMap;
   renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
 
   function decode(text, Type) {
@@ -41,6 +43,30 @@
   const lamp = new THREE.DirectionalLight(0xffffff, 0.55);
   scene.add(lamp);
 
+  // The run is all that is seen in it, the assembly what it leaves.
+  function boxOf(data) {
+    return new THREE.Box3(new THREE.Vector3().fromArray(data.min), new THREE.Vector3().fromArray(data.max));
+  }
+  const wholeRun = boxOf(run.run), assembly = boxOf(run.assembly);
+  const ball = wholeRun.getBoundingSphere(new THREE.Sphere());
+
+  // A soft shadow on the floor below, from a lamp above that lights nothing else much.
+  const sun = new THREE.DirectionalLight(0xffffff, 0.2);
+  sun.position.set(-0.35, -0.3, 1).normalize().multiplyScalar(3 * ball.radius).add(ball.center);
+  sun.target.position.copy(ball.center);
+  sun.castShadow = true;
+  sun.shadow.mapSize.set(2048, 2048);
+  sun.shadow.radius = 4;
+  const reach = 1.3 * ball.radius;
+  Object.assign(sun.shadow.camera, { left: -reach, right: reach, bottom: -reach, top: reach,
+    near: 0.1 * ball.radius, far: 8 * ball.radius });
+  scene.add(sun, sun.target);
+  const floor = new THREE.Mesh(new THREE.PlaneBufferGeometry(12 * ball.radius, 12 * ball.radius),
+    new THREE.ShadowMaterial({ opacity: 0.28 }));
+  floor.position.set(ball.center.x, ball.center.y, run.run.min[2] - 0.002 * ball.radius);
+  floor.receiveShadow = true;
+  scene.add(floor);
+
   const kInHand = 0x2f6fde;
   const lines = new THREE.LineBasicMaterial({ color: 0x222222 });
 
@@ -60,7 +86,9 @@
       color: color, specular: 0x222222, shininess: 25, side: THREE.DoubleSide,
       polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1
     });
-    group.add(new THREE.Mesh(shape, paint));
+    const solid = new THREE.Mesh(shape, paint);
+    solid.castShadow = true;
+    group.add(solid);
     const edges = new THREE.BufferGeometry();
     edges.setAttribute("position", new THREE.BufferAttribute(decode(part.edges, Float32Array), 3));
     group.add(new THREE.LineSegments(edges, lines));
@@ -75,28 +103,65 @@
   hint.visible = false;
   scene.add(hint);
 
-  const sphere = new THREE.Sphere(new THREE.Vector3().fromArray(run.center), run.radius);
+  let box3 = assembly;  // what the camera shows
+  let isTurned = false;   // by the reader; then the camera stays
   const kViews = {
     corner: [0.75, -1.25, 0.85], front: [0, -1, 0], right: [1, 0, 0], back: [0, 1, 0], left: [-1, 0, 0],
     top: [0, -0.001, 1]
   };
   const controls = new THREE.OrbitControls(camera, canvas);
   controls.addEventListener("change", draw);
+  controls.addEventListener("start", function () { isTurned = true; });
 
+  // Where the box's corners are in the picture: from -1 to 1 across and up.
+  function cornersSeen() {
+    camera.updateMatrixWorld();
+    const seen = new THREE.Box2();
+    for (let i = 0; i < 8; ++i) {
+      const corner = new THREE.Vector3(i & 1 ? box3.max.x : box3.min.x, i & 2 ? box3.max.y : box3.min.y,
+        i & 4 ? box3.max.z : box3.min.z).project(camera);
+      seen.expandByPoint(new THREE.Vector2(corner.x, corner.y));
+    }
+    return seen;
+  }
+
+  // Its middle in the middle of the picture and as near as it fits: near parts look larger, so that both are
+  // found by turns.
   function look(name) {
-    const half = 0.5 * camera.fov * Math.PI / 180;
-    const away = sphere.radius / Math.sin(Math.min(half, Math.atan(Math.tan(half) * camera.aspect)));
-    camera.position.fromArray(kViews[name]).normalize().multiplyScalar(away).add(sphere.center);
-    camera.near = 0.02 * away;
-    camera.far = 20 * away;
-    camera.updateProjectionMatrix();
-    controls.target.copy(sphere.center);
+    const kFilled = 0.86;
+    const target = box3.getCenter(new THREE.Vector3());
+    const back = new THREE.Vector3().fromArray(kViews[name]).normalize();
+    const tangent = Math.tan(0.5 * camera.fov * Math.PI / 180);
+    let away = 1.5 * box3.getBoundingSphere(new THREE.Sphere()).radius / Math.min(tangent, tangent * camera.aspect);
+    for (let turn = 0; turn < 6; ++turn) {
+      camera.position.copy(back).multiplyScalar(away).add(target);
+      camera.lookAt(target);
+      camera.near = 0.02 * away;
+      camera.far = 20 * away;
+      camera.updateProjectionMatrix();
+      const seen = cornersSeen(), middle = seen.getCenter(new THREE.Vector2()), size = seen.getSize(new THREE.Vector2());
+      const across = new THREE.Vector3().setFromMatrixColumn(camera.matrixWorld, 0);
+      const up = new THREE.Vector3().setFromMatrixColumn(camera.matrixWorld, 1);
+      target.addScaledVector(across, middle.x * away * tangent * camera.aspect).addScaledVector(up, middle.y * away * tangent);
+      away *= 0.5 * Math.max(size.x, size.y) / kFilled;
+    }
+    camera.position.copy(back).multiplyScalar(away).add(target);
+    controls.target.copy(target);
     controls.update();
     draw();
   }
 
+  // As near as what is shown allows: the assembly once it is done, else all that the run comes to.
+  function frameFor(index) {
+    const wanted = index + 1 >= run.frames.length ? assembly : wholeRun;
+    if (wanted === box3 || isTurned) return;
+    box3 = wanted;
+    look(views.value);
+  }
+
   // The bodies of the step's beginning, and then the part in hand where it is now.
   function show(index) {
+    frameFor(index);
     const frame = run.frames[index];
     const isLast = index + 1 === run.frames.length;
     const step = frame ? run.steps[frame[1]] : null;
@@ -171,7 +236,10 @@
     show(Number(slider.value));
     draw();
   });
-  views.addEventListener("change", function () { look(views.value); });
+  views.addEventListener("change", function () {
+    isTurned = false;
+    look(views.value);
+  });
   window.addEventListener("resize", resize);
 
   slider.max = Math.max(0, run.frames.length - 1);

@@ -35,7 +35,7 @@ VPS_VIEWER_API std::unique_ptr<SoundOutput> openSoundOutput(int rate_hz, std::st
 /// A period of a sound card in the program, mono, and the time at which its first sample is played, by
 /// device::monotonicSeconds().
 using HeardPeriod = std::function<void(std::span<const float> samples, double time_s)>;
-/// A sound card that exists only in the program, mixed by OpenAL as a real one: two periods of 256 samples,
+/// A sound card that exists only in the program, mixed by OpenAL as a real one: two periods of 128 samples,
 /// by the clock. Null in a build without OpenAL, and `why` says so.
 /// @param heard  called on the card's thread
 VPS_VIEWER_API std::unique_ptr<SoundOutput> openSoundLoopback(int rate_hz, HeardPeriod heard,

@@ -28,14 +28,6 @@ Camera behindRectangle(const Vec3& eye, const Vec3& lower_left, double width_m, 
   return camera;
 }
 
-/// Copies what fits of an image into another one.
-void place(const Image& part, int x, int y, Image& whole) {
-  const int width = std::min(part.width, whole.width - x), height = std::min(part.height, whole.height - y);
-  if (width <= 0) return;
-  for (int row = 0; row < height; ++row)
-    std::copy_n(part.at(0, row), 3 * static_cast<std::size_t>(width), whole.at(x, y + row));
-}
-
 /// Stretched without mixing rows or columns, since a mixture of rows would show each eye the other's picture.
 Image interleaved(const Image& left, const Image& right, const ScreenRows& rows) {
   Image both(rows.width > 0 ? rows.width : left.width, rows.height > 0 ? rows.height : left.height);
@@ -146,8 +138,8 @@ std::vector<Image> renderStereo(Renderer& renderer, const scenes::Snapshot& snap
     case StereoMode::TopBottom: {
       const bool is_across = mode == StereoMode::SideBySide;
       Image both(width, height);
-      place(left, 0, 0, both);
-      place(right, is_across ? left.width : 0, is_across ? 0 : left.height, both);
+      paste(left, 0, 0, both);
+      paste(right, is_across ? left.width : 0, is_across ? 0 : left.height, both);
       return {both};
     }
     case StereoMode::Interleaved:
@@ -158,6 +150,22 @@ std::vector<Image> renderStereo(Renderer& renderer, const scenes::Snapshot& snap
       return {throughSpectralFilter(left, true), throughSpectralFilter(right, false)};
   }
   return {};
+}
+
+void paste(const Image& part, int x, int y, Image& whole) {
+  const int width = std::min(part.width, whole.width - x), height = std::min(part.height, whole.height - y);
+  if (width <= 0) return;
+  for (int row = 0; row < height; ++row)
+    std::copy_n(part.at(0, row), 3 * static_cast<std::size_t>(width), whole.at(x, y + row));
+}
+
+Image renderSpectralEye(Renderer& renderer, const scenes::Snapshot& snapshot, const EyePair& eyes,
+                        const DrawOptions& options, bool is_left) {
+  DrawOptions plain = options;
+  plain.show_legend = false;
+  plain.title.clear();
+  plain.caption.clear();
+  return throughSpectralFilter(renderer.render(snapshot, is_left ? eyes.left : eyes.right, plain), is_left);
 }
 
 std::vector<ScreenPicture> renderDisplay(Renderer& renderer, const scenes::Snapshot& snapshot,

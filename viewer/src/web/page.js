@@ -4,7 +4,7 @@
 (function () {
   "use strict";
   const $ = function (id) { return document.getElementById(id); };
-  const canvas = $("view");
+  const canvas = $("view"), stage = $("stage");
   const kInHand = 0x2f6fde, kForceColor = 0x8a2be2, kScreenScale = 1000;
   // For tests, and for the curious: what the page has seen.
   const seen = window.vps = { snapshots: 0, drawn: 0, ages_ms: [], blows: 0, pointers: {}, bodies: {}, hand: null, you: 0 };
@@ -74,12 +74,13 @@
     redraw();
   }
   function resize() {
-    renderer.setSize(window.innerWidth, window.innerHeight, false);
-    camera.aspect = window.innerWidth / window.innerHeight;
+    const width = Math.max(1, stage.clientWidth), height = Math.max(1, stage.clientHeight);
+    renderer.setSize(width, height, false);
+    camera.aspect = width / height;
     camera.updateProjectionMatrix();
     redraw();
   }
-  window.addEventListener("resize", resize);
+  new ResizeObserver(resize).observe(stage);  // also when a button comes or goes and the tools need another line
 
   // ---- the scene
 
@@ -629,13 +630,13 @@
     }
     // Two fingers turn, as the right button does; Shift is depth, or a twist.
     if (grab.isTurn || count > 1) {
-      const angle = Math.PI / window.innerHeight;
+      const angle = Math.PI / stage.clientHeight;
       const turn = event.shiftKey ? new THREE.Vector3(0, 0, -angle * dx) : new THREE.Vector3(angle * dy, angle * dx, 0);
       send({ turn: vectorInScene(turn.applyQuaternion(camera.quaternion)).multiplyScalar(root.scale.x).toArray() });
       return;
     }
     const away = grab.point.clone().applyMatrix4(camera.matrixWorldInverse).z;
-    const perPixel = -2 * away * Math.tan(0.5 * camera.fov * Math.PI / 180) / window.innerHeight;
+    const perPixel = -2 * away * Math.tan(0.5 * camera.fov * Math.PI / 180) / stage.clientHeight;
     if (event.shiftKey) return moveGrab(camera.position.clone().sub(grab.point).normalize().multiplyScalar(perPixel * dy));
     moveGrab(new THREE.Vector3(perPixel * dx, -perPixel * dy, 0).applyQuaternion(camera.quaternion));
   });

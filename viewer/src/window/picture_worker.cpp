@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <utility>
 
 #include "vps_device/metronome.h"
@@ -34,14 +35,50 @@ bool isSameEyes(const std::optional<EyePair>& a, const std::optional<EyePair>& b
   return a->left == b->left && a->right == b->right;
 }
 
+bool isSameTiles(const std::vector<PictureTile>& a, const std::vector<PictureTile>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const PictureTile& x, const PictureTile& y) {
+    return isSameEyes(x.eyes, y.eyes) && x.place == y.place && x.eye == y.eye;
+  });
+}
+
 /// Whether both differ by what the snapshot shows only.
 bool isSameView(const PictureRequest& a, const PictureRequest& b) {
   return a.camera == b.camera && a.options == b.options && a.stereo == b.stereo &&
-         isSameEyes(a.eyes, b.eyes) && a.rows == b.rows;
+         isSameEyes(a.eyes, b.eyes) && a.rows == b.rows && isSameTiles(a.tiles, b.tiles);
+}
+
+/// @param options  of a draft, which may have fewer pixels
+Image drawTiles(Renderer& renderer, const PictureRequest& asked, const DrawOptions& options) {
+  const bool has_rows = asked.stereo == StereoMode::Interleaved;  // which are the screen's, also of a draft
+  const int whole_w = has_rows && asked.rows.width > 0 ? asked.rows.width : options.width;
+  const int whole_h = has_rows && asked.rows.height > 0 ? asked.rows.height : options.height;
+  const auto scaled = [](int px, int from, int to) {
+    return static_cast<int>(std::lround(double(px) * to / std::max(1, from)));
+  };
+  Image whole(whole_w, whole_h);
+  for (const PictureTile& tile : asked.tiles) {
+    const TilePlace& place = tile.place;
+    DrawOptions own = options;
+    own.width = pictureLength_px(scaled(place.width, asked.options.width, options.width));
+    own.height = pictureLength_px(scaled(place.height, asked.options.height, options.height));
+    const int x = scaled(place.x, asked.options.width, whole_w);
+    const int y = scaled(place.y, asked.options.height, whole_h);
+    if (tile.eye != 0) {
+      paste(renderSpectralEye(renderer, asked.snapshot, tile.eyes, own, tile.eye < 0), x, y, whole);
+      continue;
+    }
+    ScreenRows rows;
+    if (has_rows)
+      rows = {scaled(place.width, asked.options.width, whole_w),
+              scaled(place.height, asked.options.height, whole_h), asked.rows.first + y};
+    paste(renderStereo(renderer, asked.snapshot, tile.eyes, own, asked.stereo, rows).front(), x, y, whole);
+  }
+  return whole;
 }
 
 Image draw(Renderer& renderer, const PictureRequest& asked, const Camera& camera,
            const DrawOptions& options) {
+  if (!asked.tiles.empty()) return drawTiles(renderer, asked, options);
   if (!asked.eyes) return renderer.render(asked.snapshot, camera, options);
   ScreenRows rows = asked.rows;
   if (rows.width <= 0) rows.width = asked.options.width;
@@ -149,7 +186,7 @@ void PictureWorker::drawAll(Renderer& renderer) {
   // Where the view stands still only what moves is drawn, and a contact is to be seen soon: a draft is being
   // drawn when it happens, and it is in the next, both of them within the 24 ms that picture, sound and force
   // may be apart.
-  constexpr double kSlowPart_s = 0.012, kFastPart_s = 0.004;
+  constexpr double kSlowPart_s = 0.006, kFastPart_s = 0.002;
   int shrink = 1;
   PictureRequest asked;
   bool has_draft = false;  // of `asked`, and it is not drawn in full yet

@@ -8,11 +8,20 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "vps_viewer/renderer.h"
 #include "vps_viewer/stereo.h"
+#include "window/display_tiles.h"
 
 namespace vps::viewer::inline v0 {
+
+/// What a part of the picture shows.
+struct PictureTile {
+  EyePair eyes;
+  TilePlace place;  ///< in a picture of the options' size
+  int eye = 0;      ///< of Spectral, see DisplayOutput
+};
 
 struct PictureRequest {
   scenes::Snapshot snapshot;
@@ -22,6 +31,7 @@ struct PictureRequest {
   std::optional<EyePair>
       eyes;         ///< of a picture for two eyes, or for the middle between them; none: `camera`'s
   ScreenRows rows;  ///< of an interleaved picture
+  std::vector<PictureTile> tiles;  ///< on black, in place of `camera` and `eyes`; empty: the picture is whole
 };
 /// Whether both give the same picture.
 [[nodiscard]] VPS_VIEWER_API bool isSame(const PictureRequest& a, const PictureRequest& b);

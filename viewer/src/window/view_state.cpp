@@ -34,6 +34,12 @@ void toggleSection(ViewState& state, const Box& box_W) {
     state.draw.cut = sectionFacing(state.camera, box_W);
 }
 
+/// All, the first alone, ..., the last alone, all.
+void nextOutput(ViewState& state) {
+  const std::size_t next = state.output ? *state.output + 1 : 0;
+  state.output = next < state.outputs && state.outputs > 1 ? std::optional(next) : std::nullopt;
+}
+
 void playOrPause(ViewState& state, const Timeline& line) {
   if (!state.is_playing && state.time_s >= line.end_s) state.time_s = 0;
   state.is_playing = !state.is_playing;
@@ -52,6 +58,7 @@ StereoMode nextStereo(StereoMode mode) {
     case StereoMode::Anaglyph:
       return StereoMode::Interleaved;
     case StereoMode::Interleaved:
+      return StereoMode::Spectral;
     case StereoMode::Spectral:
       break;
   }
@@ -94,7 +101,10 @@ std::span<const KeyBinding> keyBindings() {
                  "in free assembly: takes the picked part in hand, or puts it down"},
       KeyBinding{Action::Snap, "A", "axis snap: a spring guides the part in hand to its axis, or not"},
       KeyBinding{Action::Path, "W", "shows or hides the planned path"},
-      KeyBinding{Action::Stereo, "S", "stereo: none, side by side, top and bottom, anaglyph, interleaved"},
+      KeyBinding{Action::Stereo, "S",
+                 "stereo: none, side by side, top and bottom, anaglyph, interleaved, spectral"},
+      KeyBinding{Action::Output, "O", "of a display file: all its pictures, or one after the other alone"},
+      KeyBinding{Action::FullScreen, "F11", "the picture alone, on the whole monitor, or no longer"},
       KeyBinding{Action::Point, "M", "of a session: marks the picked place for all who watch, or no longer"},
       KeyBinding{Action::SavePicture, "P", "saves the picture to a PNG file"},
       KeyBinding{Action::Deselect, "Escape", "deselects the part"},
@@ -212,6 +222,12 @@ void apply(Action action, ViewState& state, const Timeline& line, const Box& box
       break;
     case Action::Stereo:
       state.stereo = nextStereo(state.stereo);
+      break;
+    case Action::Output:
+      nextOutput(state);
+      break;
+    case Action::FullScreen:
+      state.is_full_screen = !state.is_full_screen;
       break;
     case Action::SavePicture:
       state.wants_picture_file = true;

@@ -47,6 +47,8 @@ enum class Action {
   Snap,
   Path,
   Stereo,
+  Output,
+  FullScreen,
   Point,
   SavePicture,
   Deselect,
@@ -76,6 +78,10 @@ struct ViewState {
   bool snaps = false;       ///< axis snap on the part in hand
   bool shows_path = false;  ///< the planned path of the part in hand
   StereoMode stereo = StereoMode::Mono;
+  /// Of the pictures of a display file, the one that is shown alone; none: all, beside each other.
+  std::optional<std::size_t> output;
+  std::size_t outputs = 1;      ///< how many there are
+  bool is_full_screen = false;  ///< without panels
   // What the window carries out and clears.
   bool wants_close = false, wants_picture_file = false, wants_run = false, wants_one_step = false,
        wants_mouse = false, wants_undo = false, wants_redo = false, wants_free = false, wants_take = false,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The link over UDP. The threads of a node use rings of their own process, as in shared memory; a thread of
 // the link passes them to DDS, and threads of DDS fill them. So no haptic thread calls DDS, which locks and
-// allocates.
+// allocates. Physics writes its states itself.
 #include <semaphore.h>
 
 #include <algorithm>
@@ -31,6 +31,7 @@ constexpr double kFind_s = 1;     ///< for a session to be found
 constexpr double kListen_s =
     0.5;                       ///< for another node to be heard. assumed: DDS finds a neighbour in a tenth
 constexpr int kPriority = 75;  // assumed: below the haptic loop's 80, above physics' 70
+constexpr std::size_t kDenseChannels = 2;  ///< Haptic and Physics, whose states have two forms
 constexpr std::size_t kTrips = 64;
 constexpr std::size_t kSceneHead = 16;
 
@@ -39,6 +40,17 @@ std::int64_t now_ns() {
 }
 double since_s(std::int64_t ns) {
   return 1e-9 * static_cast<double>(now_ns() - ns);
+}
+
+/// At most so long. By the monotonic clock, since setting the other one must hold up no beat.
+void waitUntil(sem_t& semaphore, std::int64_t most_ns) {
+  constexpr std::int64_t kSecond_ns = 1'000'000'000;
+  timespec until{};
+  clock_gettime(CLOCK_MONOTONIC, &until);
+  const std::int64_t ns = until.tv_nsec + most_ns;
+  until.tv_sec += ns / kSecond_ns;
+  until.tv_nsec = ns % kSecond_ns;
+  sem_clockwait(&semaphore, CLOCK_MONOTONIC, &until);
 }
 
 Delivery deliveryOf(Channel channel) {
@@ -68,6 +80,7 @@ class DdsLink final : public Link {
   DdsLink(const std::string& session, NodeRole role, const SessionNetwork& network)
       : role_(role), writer_(newSender()), participant_(network) {
     sem_init(&wake_, 0, 0);
+    sem_init(&arrived_, 0, 0);
     beats_in_.emplace(participant_, topicName(session, "beat"), Delivery::Newest,
                       [this](std::string_view bytes) { takeBeat(bytes); });
     beats_out_.emplace(participant_, topicName(session, "beat"), Delivery::Newest, nullptr);
@@ -90,7 +103,9 @@ class DdsLink final : public Link {
     beats_in_.reset();  // no thread of DDS calls this object any more
     scene_.reset();
     for (std::optional<DdsTopic>& topic : topics_) topic.reset();
+    for (std::optional<DdsTopic>& topic : dense_topics_) topic.reset();
     sem_destroy(&wake_);
+    sem_destroy(&arrived_);
   }
 
   /// Opens a session of one's own.
@@ -124,6 +139,8 @@ class DdsLink final : public Link {
 
   [[nodiscard]] WireForm form() const noexcept override { return WireForm::Compact; }
   bool send(Channel channel, std::string_view message) noexcept override {
+    // The thread of physics may call DDS, which saves its states the way to the link's thread.
+    if (channel == Channel::Physics && role_ == NodeRole::Render) return write(channel, message);
     const bool is_sent = writers_[static_cast<std::size_t>(channel)].write(message);
     sem_post(&wake_);  // does not wait
     return is_sent;
@@ -135,6 +152,7 @@ class DdsLink final : public Link {
   [[nodiscard]] std::uint64_t lost(Channel channel) const noexcept override {
     return readers_[static_cast<std::size_t>(channel)].lost();
   }
+  void waitForMessage(std::int64_t most_ns) const override { waitUntil(arrived_, most_ns); }
   [[nodiscard]] bool isAlive(NodeRole role) const override { return aliveOf(role) > 0; }
   [[nodiscard]] std::size_t watchers() const override { return aliveOf(NodeRole::Watch); }
   [[nodiscard]] std::uint64_t sessionId() const override { return session_; }
@@ -195,13 +213,30 @@ class DdsLink final : public Link {
     writers_[i] = RingWriter(ring, kChannelShapes[i]);
     readers_[i] = RingReader(ring, kChannelShapes[i]);
     const bool is_out = writerOf(channel) == role_;
+    if (!is_out && !isReader(channel, role_)) return;
     std::function<void(std::string_view)> receive;
-    if (!is_out) receive = [this, i](std::string_view bytes) { writers_[i].write(bytes); };
+    if (!is_out)
+      receive = [this, i](std::string_view bytes) {
+        {
+          const std::lock_guard lock(receive_mutex_);  // two topics of a channel
+          writers_[i].write(bytes);
+        }
+        int waiting = 0;
+        if (sem_getvalue(&arrived_, &waiting) == 0 && waiting <= 0) sem_post(&arrived_);
+      };
+    if (i < kDenseChannels)
+      dense_topics_[i].emplace(participant_, topicName(session, nameOf(channel) + std::string("_state")),
+                               deliveryOf(channel), receive, TopicType::State);
     topics_[i].emplace(participant_, topicName(session, nameOf(channel)), deliveryOf(channel),
                        std::move(receive));
   }
   void pump();
   void passOn();
+  bool write(Channel channel, std::string_view message) {
+    const auto i = static_cast<std::size_t>(channel);
+    (i < kDenseChannels && isDense(message) ? dense_topics_ : topics_)[i]->write(message);
+    return true;
+  }
   void sendBeats();
   void takeBeat(std::string_view bytes);
 
@@ -217,10 +252,12 @@ class DdsLink final : public Link {
   std::map<std::uint64_t, std::string> scenes_;
   std::vector<char> buffer_ = std::vector<char>(kLongestMessage);
   sem_t wake_{};
+  mutable sem_t arrived_{};  ///< at most 1: something came since the last wait
   std::atomic<bool> is_ending_{false};
   std::atomic<std::uint64_t> refused_beats_{0};
+  std::mutex receive_mutex_;
   // After all that threads of DDS use.
-  std::array<std::optional<DdsTopic>, kChannels> topics_;
+  std::array<std::optional<DdsTopic>, kChannels> topics_, dense_topics_;
   std::optional<DdsTopic> beats_in_, beats_out_, scene_;
   std::thread pump_;
 };
@@ -245,14 +282,7 @@ void DdsLink::pump() {
       sendBeats();
       next_beat_ns = now_ns() + kBeat_ns;
     }
-    timespec until{};
-    clock_gettime(CLOCK_MONOTONIC, &until);  // setting the clock holds up no beat
-    until.tv_nsec += kBeat_ns;
-    if (until.tv_nsec >= 1'000'000'000) {
-      until.tv_nsec -= 1'000'000'000;
-      ++until.tv_sec;
-    }
-    sem_clockwait(&wake_, CLOCK_MONOTONIC, &until);
+    waitUntil(wake_, kBeat_ns);
     while (sem_trywait(&wake_) == 0) {
     }
   }
@@ -267,7 +297,7 @@ void DdsLink::passOn() {
     while (true) {
       const std::string_view bytes = receive(channel, buffer_);
       if (bytes.empty()) break;
-      topics_[i]->write(bytes);
+      write(channel, bytes);
     }
   }
 }

@@ -4,14 +4,17 @@
 #include <dds/ddsrt/log.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cstddef>
 #include <cstdlib>
+#include <cstring>
 #include <map>
 #include <mutex>
 #include <utility>
 
 #include "network/dds/certificates.h"
+#include "network/dense_state.h"
 #include "vps/load_error.h"
 #include "vps_device/periodic_thread.h"
 
@@ -28,18 +31,29 @@ constexpr std::uint32_t code(unsigned a, unsigned b, unsigned c) {
 }
 constexpr std::uint32_t kOperations[] = {code(DDS_OP_ADR, DDS_OP_TYPE_SEQ, DDS_OP_SUBTYPE_1BY),
                                          offsetof(Message, bytes), DDS_OP_RTS};
-constexpr dds_topic_descriptor_t kType = {.m_size = sizeof(Message),
-                                          .m_align = alignof(Message),
-                                          .m_flagset = 0,
-                                          .m_nkeys = 0,
-                                          .m_typename = "vps_node::Message",
-                                          .m_keys = nullptr,
-                                          .m_nops = 2,
-                                          .m_ops = kOperations,
-                                          .m_meta = "",
-                                          .type_information = {},
-                                          .type_mapping = {},
-                                          .restrict_data_representation = 0};
+/// struct State { octet bytes[40]; }: four bytes less than a sequence, which states how long it is.
+struct State {
+  std::array<char, kDenseBytes> bytes;
+};
+constexpr std::uint32_t kStateOperations[] = {code(DDS_OP_ADR, DDS_OP_TYPE_ARR, DDS_OP_SUBTYPE_1BY),
+                                              offsetof(State, bytes), kDenseBytes, DDS_OP_RTS};
+template <typename Type>
+constexpr dds_topic_descriptor_t descriptor(const char* name, const std::uint32_t* operations) {
+  return {.m_size = sizeof(Type),
+          .m_align = alignof(Type),
+          .m_flagset = 0,
+          .m_nkeys = 0,
+          .m_typename = name,
+          .m_keys = nullptr,
+          .m_nops = 2,
+          .m_ops = operations,
+          .m_meta = "",
+          .type_information = {},
+          .type_mapping = {},
+          .restrict_data_representation = 0};
+}
+constexpr dds_topic_descriptor_t kMessageType = descriptor<Message>("vps_node::Message", kOperations),
+                                 kStateType = descriptor<State>("vps_node::State", kStateOperations);
 
 void require(dds_return_t result, const char* what) {
   if (result >= 0) return;
@@ -154,24 +168,36 @@ struct DdsTopic::Work {
       dds_sample_info_t info{};
       const dds_return_t count = dds_take(reader, &sample, &info, 1, 1);
       if (count <= 0) return;
-      if (info.valid_data) {
+      if (info.valid_data && type == TopicType::State)
+        receiveState(*static_cast<const State*>(sample), info.source_timestamp);
+      else if (info.valid_data) {
         const auto* message = static_cast<const Message*>(sample);
         receive({reinterpret_cast<const char*>(message->bytes._buffer), message->bytes._length});
       }
       dds_return_loan(reader, &sample, count);
     }
   }
+  void receiveState(const State& state, dds_time_t sent_ns) {
+    std::array<char, kDenseMessageBytes> bytes;
+    std::memcpy(bytes.data(), state.bytes.data(), kDenseBytes);
+    for (std::size_t i = 0; i < sizeof sent_ns; ++i)
+      bytes[kDenseBytes + i] = static_cast<char>(static_cast<std::uint64_t>(sent_ns) >> 8 * i);
+    receive({bytes.data(), bytes.size()});
+  }
 
   std::mutex mutex;
   std::function<void(std::string_view)> receive;
+  TopicType type = TopicType::Message;
   dds_entity_t topic = 0, end = 0;
 };
 
 DdsTopic::DdsTopic(const DdsParticipant& participant, const std::string& name, Delivery delivery,
-                   std::function<void(std::string_view)> receive)
+                   std::function<void(std::string_view)> receive, TopicType type)
     : work_(std::make_unique<Work>()) {
   const Qos qos(delivery);
-  work_->topic = dds_create_topic(participant.entity(), &kType, name.c_str(), nullptr, nullptr);
+  work_->type = type;
+  const dds_topic_descriptor_t& described = type == TopicType::State ? kStateType : kMessageType;
+  work_->topic = dds_create_topic(participant.entity(), &described, name.c_str(), nullptr, nullptr);
   require(work_->topic, "topic");
   work_->receive = std::move(receive);
   if (!work_->receive) {
@@ -192,6 +218,16 @@ DdsTopic::~DdsTopic() {
 }
 
 void DdsTopic::write(std::string_view bytes) {
+  if (work_->type == TopicType::State) {
+    if (bytes.size() != kDenseMessageBytes) return;
+    State state{};
+    std::memcpy(state.bytes.data(), bytes.data(), kDenseBytes);
+    std::uint64_t sent_ns = 0;
+    for (std::size_t i = 0; i < sizeof sent_ns; ++i)
+      sent_ns |= std::uint64_t{static_cast<unsigned char>(bytes[kDenseBytes + i])} << 8 * i;
+    dds_write_ts(work_->end, &state, static_cast<dds_time_t>(sent_ns));
+    return;
+  }
   Message message{};
   message.bytes._maximum = message.bytes._length = static_cast<std::uint32_t>(bytes.size());
   message.bytes._buffer = reinterpret_cast<std::uint8_t*>(const_cast<char*>(bytes.data()));

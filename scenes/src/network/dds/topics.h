@@ -37,12 +37,18 @@ enum class Delivery {
 /// The name in DDS of what a session has under that name.
 std::string topicName(const std::string& session, const std::string& name);
 
-/// Bytes that are published, or received, under a name. In IDL: struct Message { sequence<octet> bytes; };
+/// What a topic carries.
+enum class TopicType {
+  Message,  ///< in IDL: struct Message { sequence<octet> bytes; };
+  State,    ///< struct State { octet bytes[40]; }; a dense state, whose time of sending is that of the sample
+};
+
+/// Bytes that are published, or received, under a name.
 class DdsTopic {
  public:
   /// @param receive  called by a thread of DDS, one call at a time; empty: the topic is written
   DdsTopic(const DdsParticipant& participant, const std::string& name, Delivery delivery,
-           std::function<void(std::string_view bytes)> receive);
+           std::function<void(std::string_view bytes)> receive, TopicType type = TopicType::Message);
   ~DdsTopic();
   DdsTopic(const DdsTopic&) = delete;
   DdsTopic& operator=(const DdsTopic&) = delete;

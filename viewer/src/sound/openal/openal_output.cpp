@@ -21,9 +21,12 @@
 namespace vps::viewer::inline v0 {
 namespace {
 
-constexpr double kBuffer_s = 2.5e-3;
-constexpr double kLate_s = 4e-3;     // by which a thread may be late. assumed
-constexpr int kCardPeriod = 256;     // samples, asked of a card. assumed: a desktop's is as short as that
+constexpr double kBuffer_s = 1.25e-3;
+// By which a thread may be late. Sound is heard later by as long, so it begins with little and grows with
+// each time that it was not enough.
+constexpr double kLate_s = 1.25e-3, kMostLate_s = 10e-3;
+constexpr double kPause_s = 0.05;    // assumed: what comes later than that was not late, but paused
+constexpr int kCardPeriod = 128;     // samples, asked of a card. assumed: a desktop's is as short as that
 constexpr double kSlowCard_s = 0.1;  // no period is longer; what a driver says beyond is not believed
 
 /// A source that plays a queue of short buffers. The context is current in all its functions.
@@ -31,9 +34,7 @@ class Queue {
  public:
   /// @param period_s  of the card, which takes as much at once
   Queue(int rate_hz, double period_s)
-      : rate_hz_(rate_hz),
-        at_start_(static_cast<std::size_t>(std::ceil((period_s + kLate_s) / kBuffer_s))),
-        buffers_(at_start_ + 1) {
+      : rate_hz_(rate_hz), period_s_(period_s), buffers_(startFor(kMostLate_s) + 1) {
     alGenSources(1, &source_);
     alGenBuffers(static_cast<ALsizei>(buffers_.size()), buffers_.data());
     free_.assign(buffers_.begin(), buffers_.end());
@@ -61,9 +62,16 @@ class Queue {
     reclaim();
     // A source that stopped, since nothing came in time, begins again with a few buffers, or it would stop at
     // once; and what is queued on it before counts as played.
-    if (state != AL_PLAYING && pending_.size() < at_start_ * size) return;
+    const double now_s = device::monotonicSeconds();
+    if (state == AL_STOPPED && was_playing_ && now_s - written_s_ < kPause_s)
+      late_s_ = std::min(late_s_ + kBuffer_s, kMostLate_s);
+    was_playing_ = state == AL_PLAYING;
+    written_s_ = now_s;
+    const std::size_t at_start = startFor(late_s_);
+    if (state != AL_PLAYING && pending_.size() < at_start * size) return;
     std::size_t at = 0;
-    for (; at + size <= pending_.size() && !free_.empty(); at += size) {
+    const auto queued = [this] { return buffers_.size() - free_.size(); };
+    for (; at + size <= pending_.size() && queued() < at_start + 1; at += size) {
       const ALuint buffer = free_.back();
       free_.pop_back();
       alBufferData(buffer, AL_FORMAT_MONO16, &pending_[at], static_cast<ALsizei>(size * sizeof(std::int16_t)),
@@ -74,7 +82,9 @@ class Queue {
     // What is late is dropped, so that sound does not lag behind the picture.
     if (pending_.size() > size)
       pending_.erase(pending_.begin(), pending_.end() - static_cast<std::ptrdiff_t>(size));
-    if (state != AL_PLAYING) alSourcePlay(source_);
+    if (state == AL_PLAYING) return;
+    alSourcePlay(source_);
+    was_playing_ = true;
   }
 
  private:
@@ -88,8 +98,14 @@ class Queue {
     }
   }
 
+  /// Buffers that are queued before it plays.
+  [[nodiscard]] std::size_t startFor(double late_s) const {
+    return static_cast<std::size_t>(std::ceil((period_s_ + late_s) / kBuffer_s));
+  }
+
   int rate_hz_;
-  std::size_t at_start_;  ///< buffers that are queued before it plays
+  double period_s_, late_s_ = kLate_s, written_s_ = 0;
+  bool was_playing_ = false;  ///< at the last write
   ALuint source_ = 0;
   // One more than at the start: what waits is heard later by as long, and what a late thread brings at once
   // would wait forever, since samples come as fast as they are played. What does not fit is dropped.

@@ -28,7 +28,7 @@ std::string lastError() {
 }
 
 const char* nameOf(int key) {
-  static constexpr std::array<std::pair<int, const char*>, 10> kNames = {{{GLFW_KEY_SPACE, "Space"},
+  static constexpr std::array<std::pair<int, const char*>, 11> kNames = {{{GLFW_KEY_SPACE, "Space"},
                                                                           {GLFW_KEY_ENTER, "Enter"},
                                                                           {GLFW_KEY_KP_ENTER, "Enter"},
                                                                           {GLFW_KEY_LEFT, "Left"},
@@ -37,6 +37,7 @@ const char* nameOf(int key) {
                                                                           {GLFW_KEY_DOWN, "Down"},
                                                                           {GLFW_KEY_HOME, "Home"},
                                                                           {GLFW_KEY_END, "End"},
+                                                                          {GLFW_KEY_F11, "F11"},
                                                                           {GLFW_KEY_ESCAPE, "Escape"}}};
   for (const auto& [code, name] : kNames)
     if (code == key) return name;
@@ -73,13 +74,18 @@ void requireDisplay() {
   glfwTerminate();
 }
 
-GlfwWindow::GlfwWindow(const std::string& title, PictureSize size) {
+GlfwWindow::GlfwWindow(const std::string& title, PictureSize size, bool wants_stereo) {
   openDisplay();
   glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
   glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
   glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
   glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
+  glfwWindowHint(GLFW_STEREO, wants_stereo ? GLFW_TRUE : GLFW_FALSE);
   window_ = glfwCreateWindow(size.width, size.height, title.c_str(), nullptr, nullptr);
+  if (window_ == nullptr && wants_stereo) {
+    glfwWindowHint(GLFW_STEREO, GLFW_FALSE);
+    window_ = glfwCreateWindow(size.width, size.height, title.c_str(), nullptr, nullptr);
+  }
   if (window_ == nullptr) {
     const std::string why = lastError();
     glfwTerminate();
@@ -90,12 +96,19 @@ GlfwWindow::GlfwWindow(const std::string& title, PictureSize size) {
   glfwSwapInterval(1);
   glfwSetWindowUserPointer(window_, this);
   openImGui();
+  if (wants_stereo) {  // a driver may give a window without, although it was asked
+    GLboolean is_stereo = GL_FALSE;
+    glGetBooleanv(GL_STEREO, &is_stereo);
+    has_stereo_ = is_stereo == GL_TRUE;
+  }
   glGenTextures(1, &texture_);
+  if (has_stereo_) glGenTextures(1, &right_texture_);
   glGetIntegerv(GL_MAX_TEXTURE_SIZE, &greatest_picture_);
 }
 
 GlfwWindow::~GlfwWindow() {
   glDeleteTextures(1, &texture_);
+  if (has_stereo_) glDeleteTextures(1, &right_texture_);
   ImGui_ImplOpenGL3_Shutdown();
   ImGui_ImplGlfw_Shutdown();
   ImGui::DestroyContext();
@@ -159,6 +172,25 @@ bool GlfwWindow::isClosed() const {
   return glfwWindowShouldClose(window_) == GLFW_TRUE;
 }
 
+bool GlfwWindow::setFullScreen(bool is_full, int monitor) {
+  auto& [x, y, width, height] = windowed_;
+  if (!is_full) {
+    if (is_full_screen_) glfwSetWindowMonitor(window_, nullptr, x, y, width, height, GLFW_DONT_CARE);
+    is_full_screen_ = false;
+    return true;
+  }
+  int count = 0;
+  GLFWmonitor** monitors = glfwGetMonitors(&count);
+  if (monitor >= count) return false;
+  const GLFWvidmode* mode = glfwGetVideoMode(monitors[monitor]);
+  if (mode == nullptr) return false;
+  glfwGetWindowPos(window_, &x, &y);
+  glfwGetWindowSize(window_, &width, &height);
+  glfwSetWindowMonitor(window_, monitors[monitor], 0, 0, mode->width, mode->height, mode->refreshRate);
+  is_full_screen_ = true;
+  return true;
+}
+
 PictureSize GlfwWindow::size() const {
   PictureSize size;
   glfwGetFramebufferSize(window_, &size.width, &size.height);
@@ -195,8 +227,7 @@ void GlfwWindow::beginFrame(bool is_dark) {
   ImGui::NewFrame();
 }
 
-void GlfwWindow::endFrame() {
-  ImGui::Render();
+void GlfwWindow::drawPanels() const {
   const PictureSize now = size();
   glViewport(0, 0, now.width, now.height);
   glClearColor(0.9f, 0.9f, 0.9f, 1);
@@ -204,23 +235,55 @@ void GlfwWindow::endFrame() {
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
 }
 
+void GlfwWindow::endFrame() {
+  ImGui::Render();
+  if (!has_stereo_) return drawPanels();
+  glDrawBuffer(GL_BACK_RIGHT);
+  const auto swapPictures = [](const ImTextureID& from, const ImTextureID& to) {
+    const ImDrawData& drawn = *ImGui::GetDrawData();
+    for (int i = 0; i < drawn.CmdListsCount; ++i)
+      for (ImDrawCmd& command : drawn.CmdLists[i]->CmdBuffer)
+        if (command.TextureId == from) command.TextureId = to;
+  };
+  auto* const right = reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(right_texture_));
+  swapPictures(picture(), right);
+  drawPanels();
+  glDrawBuffer(GL_BACK_LEFT);
+  swapPictures(right, picture());
+  drawPanels();
+}
+
 void GlfwWindow::present() {
   glfwSwapBuffers(window_);
 }
 
-void GlfwWindow::setPicture(const Image& image) {
-  glBindTexture(GL_TEXTURE_2D, texture_);
+namespace {
+
+/// A part of the image's columns.
+void upload(unsigned texture, const Image& image, int from_x, int width, bool has_size) {
+  glBindTexture(GL_TEXTURE_2D, texture);
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-  if (PictureSize size{image.width, image.height}; size != texture_size_) {
-    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGB8, size.width, size.height, 0, GL_RGB, GL_UNSIGNED_BYTE,
-                 image.rgb.data());
+  glPixelStorei(GL_UNPACK_ROW_LENGTH, image.width);
+  const std::uint8_t* first = image.rgb.data() + 3 * static_cast<std::size_t>(from_x);
+  if (has_size) {
+    glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, width, image.height, GL_RGB, GL_UNSIGNED_BYTE, first);
+  } else {
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGB8, width, image.height, 0, GL_RGB, GL_UNSIGNED_BYTE, first);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-    texture_size_ = size;
-  } else {
-    glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, size.width, size.height, GL_RGB, GL_UNSIGNED_BYTE,
-                    image.rgb.data());
   }
+  glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
+}
+
+}  // namespace
+
+void GlfwWindow::setPicture(const Image& image) {
+  const int width = has_stereo_ ? image.width / 2 : image.width;
+  const PictureSize size{width, image.height};
+  const bool has_size = size == texture_size_;
+  upload(texture_, image, 0, width, has_size);
+  if (has_stereo_) upload(right_texture_, image, width, width, has_size);
+  texture_size_ = size;
   has_picture_ = true;
 }
 

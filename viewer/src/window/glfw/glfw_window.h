@@ -2,6 +2,7 @@
 // A window with OpenGL and Dear ImGui, and the picture that it shows.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <functional>
 #include <string>
@@ -20,7 +21,8 @@ void requireDisplay();
 class GlfwWindow {
  public:
   /// Throws std::runtime_error, which says what is missing: a display, or OpenGL 3.3.
-  GlfwWindow(const std::string& title, PictureSize size);
+  /// @param wants_stereo  with a buffer for each eye, where the driver has that; see hasStereo()
+  GlfwWindow(const std::string& title, PictureSize size, bool wants_stereo = false);
   ~GlfwWindow();
   GlfwWindow(const GlfwWindow&) = delete;
   GlfwWindow& operator=(const GlfwWindow&) = delete;
@@ -33,6 +35,9 @@ class GlfwWindow {
   /// Ends wait(), from any thread.
   void wake();
   [[nodiscard]] bool isClosed() const;
+  /// Fills that monitor, counted from 0, or goes back to where the window was. False where there is none.
+  bool setFullScreen(bool is_full, int monitor);
+  [[nodiscard]] bool isFullScreen() const { return is_full_screen_; }
   /// In pixels; 0 while it is minimised.
   [[nodiscard]] PictureSize size() const;
   /// Row of the monitor that shows the window's uppermost row; 0 where the display does not say it (Wayland).
@@ -48,6 +53,8 @@ class GlfwWindow {
   void present();
   /// The picture that picture() stands for, as ImGui's images want it.
   void setPicture(const Image& image);
+  /// Whether it has a buffer for each eye. Then setPicture()'s left half is the left eye's picture.
+  [[nodiscard]] bool hasStereo() const { return has_stereo_; }
   [[nodiscard]] void* picture() const;
   [[nodiscard]] bool hasPicture() const { return has_picture_; }
   /// Between endFrame() and present(): what endFrame() drew, panels included.
@@ -55,14 +62,16 @@ class GlfwWindow {
 
  private:
   void openImGui();
+  void drawPanels() const;
   static void onAny(GLFWwindow* window);
 
   GLFWwindow* window_ = nullptr;
-  unsigned texture_ = 0;
+  unsigned texture_ = 0, right_texture_ = 0;
   PictureSize texture_size_{0, 0};
   float scale_ = 1;
   int greatest_picture_ = 0;
-  bool has_picture_ = false;
+  bool has_picture_ = false, is_full_screen_ = false, has_stereo_ = false;
+  std::array<int, 4> windowed_{};  ///< place and size before it filled a monitor
   int frames_due_ = 3;
   std::atomic<bool> has_news_{false};
 };

@@ -29,9 +29,9 @@ void drawHandMarks(const Session& session) {
   if (!session.isByHand()) return;
   const scenes::BodySnapshot* body = partInHand(session.shown);
   if (body == nullptr || !session.shown.has_hand) return;
-  const PictureSize size = session.area.size;
+  const PictureSize size = session.focus.size;
   const auto onScreen = [&](const PixelPlace& at) {
-    return ImVec2(session.area.x + static_cast<float>(at[0]), session.area.y + static_cast<float>(at[1]));
+    return ImVec2(session.focus.x + static_cast<float>(at[0]), session.focus.y + static_cast<float>(at[1]));
   };
   const auto place = [&](const Vec3& p_W) {
     return onScreen(session.view.camera.project(p_W, size.width, size.height));

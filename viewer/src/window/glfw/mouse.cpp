@@ -21,23 +21,23 @@ void dragOnPicture(Session& session, const ImGuiIO& io) {
   const bool is_other =
       ImGui::IsMouseDown(ImGuiMouseButton_Right) || ImGui::IsMouseDown(ImGuiMouseButton_Middle);
   if (io.KeyCtrl && view.draw.cut) {
-    if (is_left) dragSection(*view.draw.cut, view.camera, drag, session.area.size, session.box_W());
-    if (is_other) tiltSection(*view.draw.cut, view.camera, drag, session.area.size);
+    if (is_left) dragSection(*view.draw.cut, view.camera, drag, session.focus.size, session.box_W());
+    if (is_other) tiltSection(*view.draw.cut, view.camera, drag, session.focus.size);
   } else if (is_other) {
-    pan(view.camera, drag, session.area.size);
+    pan(view.camera, drag, session.focus.size);
   } else if (is_left) {
-    orbit(view.camera, drag, session.area.size);
+    orbit(view.camera, drag, session.focus.size);
   }
 }
 
 void zoomAt(Session& session, const PixelPlace& at, float clicks) {
   const double size_m = session.box_W().size().norm();
-  zoom(session.view.camera, std::pow(1.2, clicks), at, session.area.size, 1e-3 * size_m, 20 * size_m);
+  zoom(session.view.camera, std::pow(1.2, clicks), at, session.focus.size, 1e-3 * size_m, 20 * size_m);
 }
 
 std::optional<PickedPlace> pickAt(const Session& session, const PixelPlace& at) {
   return pick(session.drawn, session.placed, session.view.draw,
-              rayThrough(session.view.camera, at, session.area.size));
+              rayThrough(session.view.camera, at, session.focus.size));
 }
 
 /// The place in the picture of one eye.
@@ -67,7 +67,7 @@ void dragPart(Session& session, const ImGuiIO& io) {
   const bool turns = ImGui::IsMouseDown(ImGuiMouseButton_Right);
   const HandMotion motion = turns ? (io.KeyShift ? HandMotion::Twist : HandMotion::Turn)
                                   : (io.KeyShift ? HandMotion::Depth : HandMotion::Across);
-  if (drag[0] != 0 || drag[1] != 0) session.drag.drag(session.view.camera, drag, session.area.size, motion);
+  if (drag[0] != 0 || drag[1] != 0) session.drag.drag(session.view.camera, drag, session.focus.size, motion);
   constexpr double kWheelStep = 0.01;  // of the scene's size
   if (io.MouseWheel != 0)
     session.drag.pull(session.view.camera, kWheelStep * io.MouseWheel * session.box_W().size().norm());
@@ -83,15 +83,16 @@ bool isClick(const ImGuiIO& io) {
 }  // namespace
 
 void useMouse(Session& session) {
+  if (session.holding_hand) return;  // a headset's controller has the part
   const ImGuiIO& io = ImGui::GetIO();
   const PixelPlace at =
-      inOneEye(session.view.stereo, {io.MousePos.x - session.area.x, io.MousePos.y - session.area.y},
-               session.area.size);
+      inOneEye(session.view.stereo, {io.MousePos.x - session.focus.x, io.MousePos.y - session.focus.y},
+               session.focus.size);
   if (session.drag.isGrabbed()) {  // also over the panels
     dragPart(session, io);
     return grabOrLetGo(session, io, at);
   }
-  if (io.WantCaptureMouse || session.area.size.width <= 0) return;
+  if (io.WantCaptureMouse || session.focus.size.width <= 0) return;
   if (session.isByMouse()) {
     grabOrLetGo(session, io, at);
     if (session.drag.isGrabbed()) return;

@@ -80,8 +80,7 @@ void drawView(Session& session) {
   ImGui::Checkbox("dark", &view.is_dark);
   if (!ImGui::BeginCombo("stereo", toText(view.stereo))) return;
   for (const StereoMode mode : stereoModes())
-    if (mode != StereoMode::Spectral && ImGui::Selectable(toText(mode), view.stereo == mode))
-      view.stereo = mode;
+    if (ImGui::Selectable(toText(mode), view.stereo == mode)) view.stereo = mode;
   ImGui::EndCombo();
 }
 
@@ -297,6 +296,10 @@ void drawFailure(const Session& session) {
 
 void drawPanels(Session& session, const GlfwWindow& window) {
   const PictureSize size = window.size();
+  if (session.view.is_full_screen) {
+    session.area = {0, 0, size};
+    return drawKeys(session.view, size);
+  }
   const float scale = window.scale();
   const float side_px = std::min(330 * scale, 0.45f * static_cast<float>(size.width));
   const float axis_px = std::min(64 * scale, 0.3f * static_cast<float>(size.height));

@@ -17,10 +17,10 @@ void drawPathMarks(const Session& session) {
   if (!(view.shows_path || view.snaps) || view.explode > 0 || session.work.isFree()) return;
   const PlannedPath path = plannedPath(session.scene, session.shown);
   if (path.points_W.empty()) return;
-  const PictureSize size = session.area.size;
+  const PictureSize size = session.focus.size;
   const auto place = [&](const Vec3& p_W) {
     const auto [x, y] = view.camera.project(p_W, size.width, size.height);
-    return ImVec2(session.area.x + static_cast<float>(x), session.area.y + static_cast<float>(y));
+    return ImVec2(session.focus.x + static_cast<float>(x), session.focus.y + static_cast<float>(y));
   };
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   const auto line = [&](const Vec3& a_W, const Vec3& b_W, ImU32 color) {

@@ -14,11 +14,11 @@ constexpr float kPointer_px = 9;
 
 void drawPointerMarks(const Session& session) {
   if (session.followed == nullptr || session.view.explode > 0) return;
-  const PictureSize size = session.area.size;
+  const PictureSize size = session.focus.size;
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   const auto mark = [&](const Vec3& p_W, ImU32 color) {
     const auto [x, y] = session.view.camera.project(p_W, size.width, size.height);
-    const ImVec2 at(session.area.x + static_cast<float>(x), session.area.y + static_cast<float>(y));
+    const ImVec2 at(session.focus.x + static_cast<float>(x), session.focus.y + static_cast<float>(y));
     list.AddCircleFilled(at, kPointer_px + 3, kPointerRim);
     list.AddCircleFilled(at, kPointer_px, color);
     list.AddCircle(at, 2.2f * kPointer_px, color, 0, 3);

@@ -2,6 +2,7 @@
 // What the parts of the open window share.
 #pragma once
 
+#include <array>
 #include <deque>
 #include <memory>
 #include <optional>
@@ -14,6 +15,7 @@
 #include "window/glfw/glfw_window.h"
 #include "window/hand_drag.h"
 #include "window/hand_work.h"
+#include "window/headset_session.h"
 #include "window/live_run.h"
 #include "window/neighbours.h"
 #include "window/picture_worker.h"
@@ -37,8 +39,12 @@ struct Session {
   ModelView models;  ///< whose meshes `drawn` has, where they are shown
   ViewState view;
   PictureArea area;
-  scenes::Snapshot shown;   ///< before it is exploded
-  scenes::Snapshot placed;  ///< what is drawn: `shown`, or its exploded view
+  PictureArea focus;  ///< the part of it that `view.camera` sees: of several pictures that under the cursor
+  std::vector<PictureTile> tiles;       ///< pictures of a display file or of Spectral, in `area`; empty: none
+  std::vector<std::string> tile_names;  ///< of them; empty: they have none
+  std::size_t tile = 0;                 ///< that of `focus`
+  scenes::Snapshot shown;               ///< before it is exploded
+  scenes::Snapshot placed;              ///< what is drawn: `shown`, or its exploded view
   std::unique_ptr<LiveRun> run;
   LiveStatus status;                            ///< of the run, with the steps that were done before it
   HandWork work;                                ///< what has been put down
@@ -55,6 +61,9 @@ struct Session {
   scenes::RunFigures figures, figures_before;  ///< of the run, now and where its rates begin
   double figures_s = 0, figures_before_s = 0;  ///< by the clock
   std::optional<scenes::TrackedHeads> heads;   ///< of the display file
+  std::unique_ptr<HeadsetSession> headset;     ///< while the window is open, which it wakes; null: none
+  std::array<HeadsetHand, 2> hands;            ///< its controllers, as last seen
+  std::optional<std::size_t> holding_hand;     ///< the controller that holds the part in hand
   std::deque<std::string> messages;            ///< of the window itself, the newest first
   std::string drawn_by;
   std::string picture_failure;  ///< why there is no picture, in words; empty: there is one
@@ -114,6 +123,11 @@ void drawPlots(const Timeline& line, double* now_s, float scale, bool may_seek);
 // mouse.cpp
 /// Orbit, pan, zoom, section, picking, and the part in hand, over the picture.
 void useMouse(Session& session);
+// headset_hands.cpp
+/// Looks for a headset, where it is wanted.
+void beginHeadset(Session& session, GlfwWindow& window);
+/// Shows it what is shown, and does what its controllers do.
+void useHeadset(Session& session);
 // path_marks.cpp
 /// Over the picture: the planned path of the part in hand, and with axis snap the axis.
 void drawPathMarks(const Session& session);

@@ -6,10 +6,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <thread>
 #include <utility>
 
+#include "vps/load_error.h"
 #include "vps_scenes/replay.h"
 #include "window/exploded.h"
 #include "window/glfw/session.h"
@@ -48,27 +50,89 @@ void takePicture(Session& session, PictureWorker& worker, GlfwWindow& window) {
   session.drawn_by = worker.description().substr(0, worker.description().find(' '));
 }
 
-/// The head and screen of the display file, else two eyes about the camera, or none.
-std::optional<EyePair> eyesOf(Session& session, PictureSize size) {
-  if (session.heads) {
-    const scenes::Display& display = session.heads->at(session.shown.time_s);
-    for (const std::string& news : session.heads->takeNews()) session.say(news);
-    return viewer::eyesOf(display, display.screens.front(), display.viewers.front());
+void addTiles(Session& session, const scenes::Display& display) {
+  std::vector<DisplayOutput> outputs = outputsOf(display, session.view.stereo);
+  session.view.outputs = outputs.size();
+  if (session.view.output && *session.view.output >= outputs.size()) session.view.output.reset();
+  if (session.view.output) outputs = {outputs[*session.view.output]};
+  const std::vector<TilePlace> places = tilePlaces(outputs, session.area.size);
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    const DisplayOutput& output = outputs[i];
+    session.tiles.push_back(
+        {viewer::eyesOf(display, display.screens[output.screen], display.viewers[output.viewer]), places[i],
+         output.eye});
+    session.tile_names.push_back(output.name);
   }
-  if (session.view.stereo == StereoMode::Mono) return {};
-  const Camera& camera = session.view.camera;
+}
+
+/// Two eyes about the camera, of which each sees a picture of that size.
+EyePair eyesAbout(const Camera& camera, PictureSize size) {
   return viewer::eyesOf(camera, kEyeShare * (camera.eye_W - camera.target_W).norm(),
-                        double(size.width) / size.height);
+                        double(size.width) / std::max(1, size.height));
+}
+
+/// Beside each other, for two projectors that are one desktop.
+void addSpectralTiles(Session& session) {
+  const PictureSize half = {session.area.size.width / 2, session.area.size.height};
+  const EyePair eyes = eyesAbout(session.view.camera, half);
+  session.tiles = {{eyes, {0, 0, half.width, half.height}, -1},
+                   {eyes, {half.width, 0, half.width, half.height}, 1}};
+}
+
+/// Which pictures there are and where, and of several the one that the mouse is in.
+void layOut(Session& session) {
+  session.tiles.clear();
+  session.tile_names.clear();
+  session.focus = session.area;
+  if (session.heads) {
+    addTiles(session, session.heads->at(session.shown.time_s));
+    for (const std::string& news : session.heads->takeNews()) session.say(news);
+  } else if (session.view.stereo == StereoMode::Spectral) {
+    addSpectralTiles(session);
+  }
+  if (session.tiles.empty()) return;
+  const ImGuiIO& io = ImGui::GetIO();
+  for (std::size_t i = 0; i < session.tiles.size() && !ImGui::IsAnyMouseDown(); ++i)
+    if (session.tiles[i].place.has(io.MousePos.x - session.area.x, io.MousePos.y - session.area.y))
+      session.tile = i;
+  session.tile = std::min(session.tile, session.tiles.size() - 1);
+  const PictureTile& used = session.tiles[session.tile];
+  session.focus = {session.area.x + static_cast<float>(used.place.x),
+                   session.area.y + static_cast<float>(used.place.y),
+                   {used.place.width, used.place.height}};
+  if (session.heads) session.view.camera = middleEye(used.eyes);
 }
 
 /// Stretched rows would not keep the eyes apart, so a window that is larger than a texture has no such mode.
-StereoMode stereoFor(Session& session, const GlfwWindow& window) {
+void limitStereo(Session& session, const GlfwWindow& window) {
   const int most = window.greatestPicture();
   if (session.view.stereo != StereoMode::Interleaved ||
       (session.area.size.width <= most && session.area.size.height <= most))
-    return session.view.stereo;
+    return;
   session.say("interleaved stereo needs a window of at most " + std::to_string(most) + " pixels across");
-  return session.view.stereo = StereoMode::Mono;
+  session.view.stereo = StereoMode::Mono;
+}
+
+/// The left eye's picture beside the right one's, which go to a buffer each; in the other modes the same to
+/// both, since the screen's own way to keep the eyes apart is not used then.
+void addStereoBuffers(PictureRequest& wanted) {
+  const int width = wanted.options.width, height = wanted.options.height;
+  EyePair eyes = wanted.eyes ? *wanted.eyes : eyesAbout(wanted.camera, {width, height});
+  wanted.options.width = 2 * width;
+  if (wanted.stereo == StereoMode::Mono && wanted.tiles.empty()) {
+    wanted.eyes.reset();
+    wanted.tiles = {{{eyes.left, eyes.left}, {0, 0, width, height}, 0},
+                    {{eyes.right, eyes.right}, {width, 0, width, height}, 0}};
+    return;
+  }
+  if (wanted.tiles.empty()) wanted.tiles = {{eyes, {0, 0, width, height}, 0}};
+  wanted.eyes.reset();
+  for (std::size_t i = 0, count = wanted.tiles.size(); i < count; ++i) {
+    PictureTile again = wanted.tiles[i];
+    again.place.x += width;
+    wanted.tiles.push_back(again);
+  }
+  if (wanted.rows.width > 0) wanted.rows.width *= 2;
 }
 
 void askForPicture(Session& session, PictureWorker& worker, const GlfwWindow& window) {
@@ -76,15 +140,27 @@ void askForPicture(Session& session, PictureWorker& worker, const GlfwWindow& wi
   session.placed = exploded(session.scene, session.shown, session.view.explode, size_m);
   const PictureSize size = pictureSize(session.area);
   if (size.width < 16 || size.height < 16) return;
-  const StereoMode stereo = stereoFor(session, window);
-  const std::optional<EyePair> eyes = eyesOf(session, size);
-  if (session.heads) session.view.camera = middleEye(*eyes);
-  PictureRequest wanted = {session.placed, session.view.camera, session.view.draw, stereo, eyes, {}};
-  if (stereo == StereoMode::Interleaved)
+  PictureRequest wanted = {
+      session.placed, session.view.camera, session.view.draw, session.view.stereo, {}, {}, {}};
+  if (session.tiles.size() == 1 && session.tiles[0].eye == 0)
+    wanted.eyes = session.tiles[0].eyes;
+  else if (session.tiles.empty() && wanted.stereo != StereoMode::Mono)
+    wanted.eyes = eyesAbout(wanted.camera, size);
+  else
+    wanted.tiles = session.tiles;
+  for (PictureTile& tile : wanted.tiles) {
+    const double shrink = double(size.width) / std::max(1, session.area.size.width);
+    const auto scaled = [shrink](int px) { return static_cast<int>(std::lround(shrink * px)); };
+    tile.place = {scaled(tile.place.x), scaled(tile.place.y), scaled(tile.place.width),
+                  scaled(tile.place.height)};
+  }
+  if (wanted.stereo == StereoMode::Interleaved)
     wanted.rows = {session.area.size.width, session.area.size.height,
                    window.screenRow() + static_cast<int>(session.area.y)};
+  if (session.heads) wanted.options.show_ground = false;  // the floor is the room's
   wanted.options.width = size.width;
   wanted.options.height = size.height;
+  if (window.hasStereo()) addStereoBuffers(wanted);
   worker.request(wanted);
 }
 
@@ -102,10 +178,48 @@ void savePicture(Session& session, const GlfwWindow& window) {
   }
 }
 
+/// Of several pictures, in the upper left corner of each.
+void drawTileNames(const Session& session) {
+  if (session.tiles.size() < 2 || session.view.is_full_screen) return;
+  for (std::size_t i = 0; i < session.tile_names.size(); ++i) {
+    const TilePlace& place = session.tiles[i].place;
+    const ImVec2 at(session.area.x + static_cast<float>(place.x) + 8,
+                    session.area.y + static_cast<float>(place.y) + 6);
+    const ImVec2 size = ImGui::CalcTextSize(session.tile_names[i].c_str());
+    ImDrawList& list = *ImGui::GetBackgroundDrawList();
+    list.AddRectFilled({at.x - 4, at.y - 2}, {at.x + size.x + 4, at.y + size.y + 2},
+                       IM_COL32(255, 255, 255, 200), 4);
+    list.AddText(at, IM_COL32(20, 20, 20, 255), session.tile_names[i].c_str());
+  }
+}
+
+/// The output that is to be shown alone at first. Throws LoadError where there is none of that name.
+std::optional<std::size_t> firstOutput(const WindowOptions& options) {
+  if (options.output.empty() || !options.display) return {};
+  std::string names;
+  const std::vector<DisplayOutput> outputs = outputsOf(*options.display, options.stereo);
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    if (outputs[i].name == options.output) return i;
+    names += (i > 0 ? ", " : "") + outputs[i].name;
+  }
+  throw LoadError(options.display->file, "", "shows no '" + options.output + "', but " + names);
+}
+
+void fillScreen(Session& session, GlfwWindow& window) {
+  if (window.isFullScreen() == session.view.is_full_screen) return;
+  const int monitor = std::max(0, session.options.full_screen - 1);
+  if (!window.setFullScreen(session.view.is_full_screen, monitor)) {
+    session.view.is_full_screen = window.isFullScreen();
+    session.say("there is no monitor " + std::to_string(monitor + 1) + " to fill; they are counted from 1");
+  }
+}
+
 void drawFrame(Session& session, GlfwWindow& window, PictureWorker& worker) {
   window.beginFrame(session.view.is_dark);
   drawPanels(session, window);
-  session.view.size = session.area.size;
+  limitStereo(session, window);
+  layOut(session);
+  session.view.size = session.focus.size;
   useMouse(session);
   // After the click that came before the key. Dear ImGui shows a press and its release one frame apart, so a
   // place may still be picked while a button is down.
@@ -120,6 +234,7 @@ void drawFrame(Session& session, GlfwWindow& window, PictureWorker& worker) {
     drawPointerMarks(session);
   }
   drawHandMarks(session);
+  drawTileNames(session);
   drawFailure(session);
   window.endFrame();
   if (std::exchange(session.view.wants_picture_file, false)) savePicture(session, window);
@@ -139,16 +254,19 @@ void loop(Session& session, GlfwWindow& window) {
   session.view.speed = session.options.speed > 0 ? session.options.speed : 1;
   session.view.wants_run = session.options.runs;
   session.view.stereo = session.options.stereo;
+  session.view.is_full_screen = session.options.full_screen > 0;
   // What wakes the window ends before it, whatever ends the loop.
   const struct Ending {
     Session& session;
     ~Ending() {
       session.run.reset();
       session.gaps.reset();
+      session.headset.reset();
     }
   } ending{session};
   session.gaps = std::make_unique<GapWatch>(session.scene, [&window] { window.wake(); });
   PictureWorker worker(session.drawn, [&window] { window.wake(); });
+  beginHeadset(session, window);
   Clock::time_point last = Clock::now();
   bool is_fitted = false;
   const auto is_stopped = [&] { return session.options.stop != nullptr && session.options.stop->load(); };
@@ -167,7 +285,9 @@ void loop(Session& session, GlfwWindow& window) {
     else
       session.shown = session.line.at(session.view.time_s);
     watchGaps(session);
+    useHeadset(session);
     takePicture(session, worker, window);
+    fillScreen(session, window);
     const PictureSize size_now = window.size();
     if (size_now.width <= 0 || size_now.height <= 0) continue;  // minimised
     if (has_news || moves) drawFrame(session, window, worker);
@@ -178,7 +298,15 @@ void loop(Session& session, GlfwWindow& window) {
 
 void openAndLoop(Session& session, const std::string& title) {
   for (const std::string& note : session.options.notes) session.say(note);
-  GlfwWindow window(title, {session.options.width, session.options.height});
+  session.view.output = firstOutput(session.options);
+  GlfwWindow window(title, {session.options.width, session.options.height},
+                    session.options.has_stereo_buffers);
+  if (session.options.has_stereo_buffers && !window.hasStereo()) {
+    const std::string words =
+        "this driver has no buffer for each eye (quad-buffered stereo); S has other modes";
+    session.say(words);
+    if (session.options.say) session.options.say(words);
+  }
   window.on_key = [&session](const std::string& key) { typed(session, key); };
   loop(session, window);
 }
