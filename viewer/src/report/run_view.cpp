@@ -190,12 +190,9 @@ Json runData(const scenes::Scene& scene, const scenes::AssembleResult& result) {
   }
   Json steps = stepsData(extents, scene, result);
   Json frames = framesData(result, steps.size());
-  return {{"run", boxOf(seen)},
-          {"assembly", boxOf(finished.isEmpty() ? seen : finished)},
-          {"parts", partsData(drawn)},
-          {"steps", std::move(steps)},
-          {"frames", std::move(frames)},
-          {"finished", bodiesOf(extents, result.finished)}};
+  return {{"run", boxOf(seen)},          {"assembly", boxOf(finished.isEmpty() ? seen : finished)},
+          {"parts", partsData(drawn)},   {"steps", std::move(steps)},
+          {"frames", std::move(frames)}, {"finished", bodiesOf(extents, result.finished)}};
 }
 
 }  // namespace
