@@ -68,6 +68,13 @@ struct OwnPoint {
     }
     return true;
   }
+  /// True if runsAlong() and the edge is straight for at least one more point towards the other part.
+  [[nodiscard]] bool leadsOn(const Vec3& n_W) const {
+    if (!runsAlong(n_W)) return false;
+    const EdgeSegment& s = segment(edges[0]);
+    const Vec3& end = inModel(n_W).dot(s.to - s.from) < 0 ? s.to : s.from;
+    return (end - p_M).norm() > side->shape->models().shell->spacing_m;
+  }
   /// True if the point's edge (not a corner) runs towards the other part along this normal: the edge is then
   /// nearer where the edges cross, which is a candidate of its own.
   [[nodiscard]] bool runsAlong(const Vec3& n_W) const {
@@ -157,9 +164,11 @@ Exact contactAt(const Foot& foot, const OwnPoint& own) {
   exact.is_contact = own.edges.empty() || is_edge_on_edge
                          ? is_facing
                          : own.isFirstAlong(foot.normal) || (is_facing && !own.is_two_sided);
-  // Where the point's edge leads on towards the face, its end or its crossing with the face's border is
-  // nearer.
-  if (own.is_edge && !foot.is_edge && !foot.is_sheet && own.runsAlong(foot.normal)) exact.is_contact = false;
+  // Where the point's edge leads on towards the face, a later one of its points or its crossing with the
+  // face's border is nearer. A curved surface has no border between its facets, and may bend towards the
+  // edge.
+  if (own.is_edge && !foot.is_edge && !foot.is_sheet && !foot.is_curved && own.leadsOn(foot.normal))
+    exact.is_contact = false;
   exact.is_curved = foot.is_curved;
   if (exact.is_contact && !is_edge_on_edge) {
     const bool is_flush = !foot.is_edge && cos_facing > kCosFlush;
