@@ -141,8 +141,13 @@ TEST(LoadLevel, AfterTheLoadEndsAllLevelsAreRestoredInReverseOrder) {
 TEST(LoadLevel, NoLevelIsTakenAtWhichTheWatchdogWouldSeeAStall) {
   Scene scene = twoPins();
   scene.fidelity.physics_rate_hz = 100;
-  const AssembleResult result = run(scene, 2.5, [](double) { return 50e-3; });
-  ASSERT_FALSE(result.real_time->load_changes.empty());
+  AssembleResult result;
+  for (const double until_s :
+       {2.5, 15.0}) {  // each level needs its models first, which a busy machine delays
+    result = run(scene, until_s, [](double) { return 50e-3; });
+    ASSERT_FALSE(result.real_time->load_changes.empty());
+    if (!result.real_time->load_changes.back().is_done) break;
+  }
   int most = 0;
   for (const LoadLevelChange& change : result.real_time->load_changes) most = std::max(most, change.to);
   EXPECT_EQ(most, 4);
