@@ -142,11 +142,12 @@ TEST(LoadLevel, NoLevelIsTakenAtWhichTheWatchdogWouldSeeAStall) {
   Scene scene = twoPins();
   scene.fidelity.physics_rate_hz = 100;
   AssembleResult result;
-  for (const double until_s :
-       {2.5, 15.0}) {  // each level needs its models first, which a busy machine delays
+  // Each level needs its models first, which a busy machine delays; one that stops the run for 50 ms more is
+  // seen by the watchdog, rightly.
+  for (const double until_s : {2.5, 5.0, 10.0}) {
     result = run(scene, until_s, [](double) { return 50e-3; });
     ASSERT_FALSE(result.real_time->load_changes.empty());
-    if (!result.real_time->load_changes.back().is_done) break;
+    if (!result.real_time->load_changes.back().is_done && result.real_time->faults == 0) break;
   }
   int most = 0;
   for (const LoadLevelChange& change : result.real_time->load_changes) most = std::max(most, change.to);
