@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <optional>
 
 #include "import/mesh_text.h"
@@ -36,6 +37,29 @@ void appendMesh(const aiMesh& from, Mesh& to) {
     if (face.mNumIndices != 3) continue;  // points and lines
     to.triangles.push_back({base + face.mIndices[0], base + face.mIndices[1], base + face.mIndices[2]});
   }
+}
+
+/// The colours of the triangles that appendMesh() takes: a corner's, where the file has them by vertex, in
+/// the mean, else the mesh's.
+void appendColors(const aiMesh& from, const Color& of_mesh, bool is_gltf, FaceColors& to) {
+  FaceColors own;
+  std::size_t count = 0;
+  std::map<Color, std::uint32_t> known;
+  for (unsigned i = 0; i < from.mNumFaces; ++i) {
+    const aiFace& face = from.mFaces[i];
+    if (face.mNumIndices != 3) continue;
+    ++count;
+    if (!from.HasVertexColors(0)) continue;
+    aiColor4D mean;
+    for (unsigned k = 0; k < 3; ++k) mean += from.mColors[0][face.mIndices[k]];
+    Color color = {mean.r / 3, mean.g / 3, mean.b / 3};
+    if (!is_gltf) color = linearFromSrgb(color);
+    for (std::size_t k = 0; is_gltf && k < 3; ++k) color[k] *= of_mesh[k];  // by its specification
+    const auto [it, is_new] = known.emplace(color, static_cast<std::uint32_t>(own.palette.size()));
+    if (is_new) own.palette.push_back(color);
+    own.of_triangle.push_back(it->second);
+  }
+  append(to, count, own, of_mesh);
 }
 
 std::array<float, 3> colorOf(const aiScene& scene, const aiMesh& mesh, bool is_gltf) {
@@ -77,7 +101,9 @@ struct Walk {
     part.X_WP = X_WP;
     for (unsigned i = 0; i < n.mNumMeshes; ++i) {
       const aiMesh& mesh = *scene.mMeshes[n.mMeshes[i]];
-      if (i == 0) part.color = colorOf(scene, mesh, is_gltf);
+      const Color color = colorOf(scene, mesh, is_gltf);
+      if (i == 0) part.color = color;
+      appendColors(mesh, color, is_gltf, part.face_colors);
       if (part.name.empty()) part.name = mesh.mName.C_Str();
       appendMesh(mesh, part.mesh);
     }
