@@ -459,6 +459,9 @@ TEST_F(Program, AWindowWithoutADisplayIsRefusedInWords) {
   expectRefused("view scene.toml --session x", "leave out the file");
   expectRefused("view --session nobody-" + std::to_string(getpid()), "no window can be opened");
   expectRefused("view scene.toml --hand spoon", "known are dual_arm");
+  expectRefused("view --full-screen scene.toml", "no window can be opened");
+  expectRefused("view --full-screen 2", "--full-screen=2");
+  expectRefused("view --full-screen=65 scene.toml", "--full-screen");
 }
 
 TEST_F(Program, AWatcherWhoseDisplayIsGonePrintsInstead) {
