@@ -166,7 +166,7 @@ TEST(PartGlb, HasTheColorsOfFaces) {
   std::map<std::array<float, 3>, int> vertices;
   for (int i = 0; i < 24; ++i) {
     std::array<float, 3> color{};
-    for (float& channel : color) channel = reader.get<float>();
+    for (float& channel : color) channel = reader.getFloat();
     ++vertices[color];
   }
   // Two of the six faces with four corners each, and four.

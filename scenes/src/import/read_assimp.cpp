@@ -8,12 +8,14 @@
 #include <assimp/scene.h>
 #include <assimp/Importer.hpp>
 
+#include <algorithm>
 #include <cstdint>
 #include <fstream>
 #include <iterator>
 #include <map>
 #include <optional>
 
+#include "import/colors_3mf.h"
 #include "import/mesh_text.h"
 #include "import/readers.h"
 #include "vps/load_error.h"
@@ -89,9 +91,36 @@ class ReplacedFile : public Assimp::DefaultIOSystem {
   const std::string& bytes_;
 };
 
+FaceColors faceColors(const Mesh3mf& mesh) {
+  FaceColors colors;
+  std::map<Color, std::uint32_t> known;
+  for (const std::optional<Color>& own : mesh.colors) {
+    const Color color = own.value_or(ImportedPart().color);
+    const auto [it, is_new] = known.emplace(color, static_cast<std::uint32_t>(colors.palette.size()));
+    if (is_new) colors.palette.push_back(color);
+    colors.of_triangle.push_back(it->second);
+  }
+  return colors;
+}
+
+/// Whether assimp made the mesh from that one: the same triangles between the same places.
+bool isSame(const aiMesh& mesh, const Mesh3mf& one) {
+  if (mesh.mNumFaces != one.triangles.size() || mesh.mNumVertices != one.vertices.size()) return false;
+  for (unsigned i = 0; i < mesh.mNumFaces; ++i)
+    for (unsigned k = 0; k < 3; ++k)
+      if (mesh.mFaces[i].mNumIndices != 3 || mesh.mFaces[i].mIndices[k] != one.triangles[i][k]) return false;
+  constexpr float kRelative = 1e-5F;  // both are floats of the same text
+  for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
+    const Eigen::Vector3f p(mesh.mVertices[i].x, mesh.mVertices[i].y, mesh.mVertices[i].z);
+    if (!((p - one.vertices[i]).norm() <= kRelative * (p.norm() + one.vertices[i].norm()))) return false;
+  }
+  return true;
+}
+
 struct Walk {
   const aiScene& scene;
   bool is_gltf;
+  const std::vector<Mesh3mf>& colored;  ///< of a 3MF file
   RawCad& cad;
 
   void node(const aiNode& n, const Eigen::Affine3d& X_WParent) {
@@ -103,7 +132,11 @@ struct Walk {
       const aiMesh& mesh = *scene.mMeshes[n.mMeshes[i]];
       const Color color = colorOf(scene, mesh, is_gltf);
       if (i == 0) part.color = color;
-      appendColors(mesh, color, is_gltf, part.face_colors);
+      const auto own = std::ranges::find_if(colored, [&](const Mesh3mf& one) { return isSame(mesh, one); });
+      if (own == colored.end() || !own->hasColors())
+        appendColors(mesh, color, is_gltf, part.face_colors);
+      else
+        append(part.face_colors, own->colors.size(), faceColors(*own), color);
       if (part.name.empty()) part.name = mesh.mName.C_Str();
       appendMesh(mesh, part.mesh);
     }
@@ -212,7 +245,9 @@ RawCad readAssimp(const std::string& file, const std::string& format, const Impo
     throw LoadError(file, "", "is not a readable " + format + " file (" + reason + "); export it again");
   }
   const bool is_gltf = format == "glTF";
-  Walk{*scene, is_gltf, cad}.node(*scene->mRootNode, Eigen::Affine3d::Identity());
+  std::vector<Mesh3mf> colored;
+  if (format == "3MF") colored = meshes3mf(model3mf(file));
+  Walk{*scene, is_gltf, colored, cad}.node(*scene->mRootNode, Eigen::Affine3d::Identity());
   if (is_gltf || format == "DAE") makeZUp(cad, is_gltf);
   if (is_gltf && settings.up) keepFileAxes(cad);
   if (format == "OBJ") cad.open_shapes = Shapes::BoundOne;
