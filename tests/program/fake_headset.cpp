@@ -234,6 +234,9 @@ Swapchain& of(XrSwapchain chain) {
   return *reinterpret_cast<Swapchain*>(chain);
 }
 XrResult destroySwapchain(XrSwapchain chain) {
+  // Its images are textures of the session's context.
+  if (glXGetCurrentContext() == nullptr)
+    return wrong("a swapchain destroyed without a context", XR_ERROR_RUNTIME_FAILURE);
   delete &of(chain);
   return XR_SUCCESS;
 }

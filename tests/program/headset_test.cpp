@@ -145,6 +145,16 @@ TEST_F(Headset, OneThatIsTakenOffLeavesTheWindow) {
   EXPECT_EQ(slurp(folder_ / "errors.txt"), "");
 }
 
+TEST_F(Headset, OneWhosePicturesCannotBeDrawnIsLeftInOrder) {
+  display_ += "MESA_GL_VERSION_OVERRIDE=3.3 ";  // enough for the window, too old for the renderer
+  open("scene.toml --headset");
+  EXPECT_TRUE(soon([&] {
+    return slurp(folder_ / "err.txt").find("the headset shows nothing more") != std::string::npos;
+  })) << slurp(folder_ / "err.txt");
+  EXPECT_EQ(close(), 0);
+  EXPECT_EQ(slurp(folder_ / "errors.txt"), "");
+}
+
 TEST_F(Headset, OneThatIsNotConnectedIsSaid) {
   display_ += "VPS_FAKE_UNPLUGGED=1 ";
   open("scene.toml --headset");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The program `vps` as its users run it: exit status, messages and files.
 #include "program.h"
+#include "vps_scenes/scene.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -270,6 +271,39 @@ TEST_F(Program, ImportWritesASceneThatLoads) {
   EXPECT_NE(again.out.find("20.00 x 20.00 x 10.00"), std::string::npos) << again.out;
   const Ran simulated = run("simulate imported/scene.toml --seconds 0.002 --voxel 1mm --spacing 2mm");
   EXPECT_EQ(simulated.status, 0) << simulated.err;
+}
+
+TEST_F(Program, ImportKeepsTheColorsOfFaces) {
+  // A tetrahedron [mm] with a red face, a blue one, and two without a colour.
+  write("two.mtl", "newmtl red\nKd 1 0 0\nnewmtl blue\nKd 0 0 1\nnewmtl grey\nKd 0.5 0.5 0.5\n");
+  write("two.obj",
+        "mtllib two.mtl\no tip\nv 0 0 0\nv 10 0 0\nv 0 10 0\nv 0 0 10\nusemtl red\nf 1 3 2\n"
+        "usemtl blue\nf 1 2 4\nusemtl grey\nf 1 4 3\nf 2 3 4\n");
+  const Ran ran = run("import two.obj -o imported --units mm --json import.json");
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  const scenes::Scene scene = scenes::loadScene((folder_ / "imported/scene.toml").string());
+  ASSERT_EQ(scene.parts.size(), 1U);
+  const scenes::Part& tip = scene.parts[0].part;
+  ASSERT_EQ(tip.mesh.triangles.size(), 4U);
+  ASSERT_EQ(tip.face_colors.of_triangle.size(), 4U);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const auto& t = tip.mesh.triangles[i];
+    const Vec3& a = tip.mesh.vertices[t[0]];
+    const Vec3 n = (tip.mesh.vertices[t[1]] - a).cross(tip.mesh.vertices[t[2]] - a).normalized();
+    const float grey = 0.21404f;  // of 0.5, IEC 61966-2-1
+    const scenes::Color truth = n.z() < -0.9   ? scenes::Color{1, 0, 0}
+                                : n.y() < -0.9 ? scenes::Color{0, 0, 1}
+                                               : scenes::Color{grey, grey, grey};
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(tip.face_colors.at(i)[k], truth[k], 1e-4) << i;
+  }
+  // A colour that the scene gives is for all of the part.
+  const std::string text = slurp(folder_ / "imported/scene.toml");
+  const std::size_t at = text.find("pose = ");
+  ASSERT_NE(at, std::string::npos);
+  write("imported/scene.toml", text.substr(0, at) + "color = \"#00ff00\"\n" + text.substr(at));
+  const scenes::Scene green = scenes::loadScene((folder_ / "imported/scene.toml").string());
+  EXPECT_TRUE(green.parts[0].part.face_colors.isNone());
+  EXPECT_EQ(green.parts[0].part.color, (scenes::Color{0, 1, 0}));
 }
 
 TEST_F(Program, SimulateWritesTheDocumentedKeys) {

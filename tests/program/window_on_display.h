@@ -85,7 +85,13 @@ class Window : public Program {
       return !window_.empty() || fs::exists(folder_ / "status.txt");
     }));
     ASSERT_FALSE(window_.empty()) << slurp(folder_ / "err.txt");
-    xdotool("windowfocus " + window_);
+    // A window has its name before it is on the screen, where it gets no key yet, and the first frame sets
+    // the camera.
+    ASSERT_TRUE(soon([&] {
+      xdotool("windowfocus " + window_);
+      return outputOf(display_ + "xdotool getwindowfocus 2>/dev/null") == window_;
+    })) << slurp(folder_ / "err.txt");
+    ASSERT_GT(picture().width, 0) << slurp(folder_ / "err.txt");
   }
   void xdotool(const std::string& arguments) const {
     std::system((display_ + "xdotool " + arguments + " >/dev/null 2>&1").c_str());
@@ -112,6 +118,8 @@ class Window : public Program {
       return viewer::compare(crop, wanted, 2).share_beyond == 0;  // 2: as for other pictures, image.h
     });
   }
+  /// Returns once all keys so far have been obeyed and a frame with what they change is drawn.
+  void settle() { ASSERT_GT(picture().width, 0) << slurp(folder_ / "err.txt"); }
   /// The exit status.
   int close(const std::string& key = "q") {
     xdotool("key " + key);

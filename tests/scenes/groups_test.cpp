@@ -51,6 +51,21 @@ class SceneGroups : public testing::Test {
   test::TemporaryFolder folder_;
 };
 
+TEST_F(SceneGroups, AGroupKeepsTheColorsOfItsParts) {
+  const std::string group = "[[group]]\nname = 'plug'\nparts = ['a', 'b']\n";
+  EXPECT_TRUE(load(group).parts[1].part.face_colors.isNone());
+  std::vector<ScenePart> parts = load("").parts;
+  parts = {parts[1], parts[2]};
+  parts[0].part.color = {1, 0, 0};
+  parts[1].part.color = {0, 0, 1};
+  const FaceColors colors = unitedPart("plug", parts).part.face_colors;
+  ASSERT_EQ(colors.of_triangle.size(), 24U);
+  EXPECT_EQ(colors.at(0), parts[0].part.color);
+  EXPECT_EQ(colors.at(11), parts[0].part.color);
+  EXPECT_EQ(colors.at(12), parts[1].part.color);
+  EXPECT_EQ(colors.at(23), parts[1].part.color);
+}
+
 TEST_F(SceneGroups, AGroupIsOnePartInPlaceOfItsFirst) {
   const Scene scene = load("[[group]]\nname = 'plug'\nparts = ['a', 'b']\n[[step]]\npart = 'plug'\n");
   ASSERT_EQ(scene.parts.size(), 3U);

@@ -71,6 +71,25 @@ TEST(CoarseMesh, ASmoothedBallHasFewerTrianglesAndStaysWithinAQuarterOfACell) {
   EXPECT_LT(volume_m3, ball_m3);
 }
 
+TEST(CoarseMesh, ColorsStayApart) {
+  const Mesh mesh = ball(120);
+  scenes::FaceColors colors{{{1, 0, 0}, {0, 0, 1}}, {}};  // in stripes of a tenth of the radius
+  for (const auto& t : mesh.triangles) {
+    const double z = (mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]).z() / 3;
+    colors.of_triangle.push_back(static_cast<std::uint32_t>(std::lround(10 * z / kRadius_m + 20)) % 2);
+  }
+  const ShadingMesh colored = buildShadingMesh(mesh, kCreaseAngle_rad, &colors);
+  ASSERT_EQ(colored.colors.size(), colored.vertices.size());
+  CoarseMesh coarse(colored);
+  for (const auto& indices :
+       {colored.indices, coarse.smoothedIndices(0.2 * kRadius_m), coarse.indices(3000)}) {
+    EXPECT_GT(indices.size(), 300U);
+    for (std::size_t i = 0; i < indices.size(); i += 3)
+      for (std::size_t k = 1; k < 3; ++k)
+        ASSERT_EQ(colored.colors[indices[i]], colored.colors[indices[i + k]]) << i;
+  }
+}
+
 TEST(CoarseMesh, CornersOfABoxStay) {
   const ShadingMesh mesh = buildShadingMesh(makeBox({0.1, 0.1, 0.1}));
   EXPECT_EQ(CoarseMesh(mesh).smoothedIndices(1.0), mesh.indices);

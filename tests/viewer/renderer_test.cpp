@@ -255,6 +255,30 @@ TEST(Camera, FrameSceneShowsTheWholeBoxAndTouchesTheMargin) {
   EXPECT_NEAR(reach, 0.9, 1e-9);
 }
 
+TEST(RendererTest, FacesHaveTheirColorsUnlessThePartIsInHand) {
+  const Mesh box = makeBox(Vec3(0.08, 0.08, 0.02));
+  scenes::FaceColors colors{{{0.8f, 0.05f, 0.05f}, {0.05f, 0.8f, 0.05f}}, {}};
+  for (const auto& t : box.triangles) {
+    const Vec3 n = (box.vertices[t[1]] - box.vertices[t[0]]).cross(box.vertices[t[2]] - box.vertices[t[0]]);
+    colors.of_triangle.push_back(n.z() > 0 ? 1 : 0);  // green from above, else red
+  }
+  RenderScene scene = {{&box, {0.5f, 0.5f, 0.5f}}};
+  scene[0].face_colors = &colors;
+  Renderer renderer(scene);
+  Camera below = fromAbove();
+  below.eye_W.z() *= -1;
+  scenes::Snapshot snapshot;
+  snapshot.bodies = {mounted(0, Vec3::Zero())};
+  const auto above = pixel(renderer.render(snapshot, fromAbove(), plain()), 160, 120);
+  EXPECT_GT(above[1], 2 * above[0]);
+  const auto under = pixel(renderer.render(snapshot, below, plain()), 160, 120);
+  EXPECT_GT(under[0], 2 * under[1]);
+  snapshot.bodies[0].role = scenes::BodyRole::InHand;
+  const auto held = pixel(renderer.render(snapshot, fromAbove(), plain()), 160, 120);
+  EXPECT_GT(held[2], held[0] + 40);
+  EXPECT_GT(held[2], held[1] + 20);
+}
+
 TEST(SectionAlong, ContainsTheMotionAndFacesTheViewer) {
   for (const Vec3& d : {Vec3(0, 0, -1), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(1, 1, 0.3)}) {
     const Vec3 viewer(0.7, -1.2, 0.8);

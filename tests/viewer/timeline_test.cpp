@@ -148,6 +148,24 @@ TEST(ViewStateTest, KeysPlayAndMoveAlongTheSteps) {
   EXPECT_EQ(view.time_s, 0) << "playing from the end begins again";
 }
 
+TEST(ViewStateTest, WhatIsShownAloneStaysSoInEachStereoMode) {
+  const Timeline line = sceneTour(scenes::Scene{});
+  const Box box{Vec3(-1, -1, -1), Vec3(1, 1, 1)};
+  ViewState view;
+  view.outputs = 3;
+  view.output = 2;
+  for (const std::size_t eye : {0, 1}) {
+    while (view.stereo != StereoMode::Spectral) {
+      EXPECT_EQ(view.output, 2U) << toText(view.stereo);
+      apply(Action::Stereo, view, line, box);
+    }
+    EXPECT_EQ(view.output, 4U) << "its left eye";
+    *view.output += eye;
+    apply(Action::Stereo, view, line, box);
+    EXPECT_EQ(view.output, 2U);
+  }
+}
+
 TEST(ViewStateTest, EachKeyIsBoundOnceAndEveryActionSurvives) {
   const scenes::Scene scene = twoPins();
   const Timeline tour = sceneTour(scene);

@@ -148,6 +148,31 @@ TEST(PartGlb, HasThePartInMetresAsTheStandardAsks) {
   }
 }
 
+TEST(PartGlb, HasTheColorsOfFaces) {
+  const Mesh mesh = makeBox(Vec3(0.01, 0.02, 0.03));
+  scenes::FaceColors colors{{{1, 0, 0}, {0, 0.5f, 1}}, {}};
+  for (std::uint32_t i = 0; i < 12; ++i) colors.of_triangle.push_back(i < 4 ? 1 : 0);
+  const std::string file = partGlb(buildShadingMesh(mesh, kCreaseAngle_rad, &colors), 1000);
+  ByteReader reader(file);
+  reader.take(12);
+  const auto json_size = reader.get<std::uint32_t>();
+  reader.take(4);
+  const json head = json::parse(reader.take(json_size));
+  const json& attributes = head["meshes"][0]["primitives"][0]["attributes"];
+  ASSERT_TRUE(attributes.contains("COLOR_0"));
+  const json& of = head["accessors"][attributes["COLOR_0"].get<int>()];
+  ASSERT_EQ(of["count"], 24);
+  reader.take(8 + head["bufferViews"][of["bufferView"].get<int>()]["byteOffset"].get<std::size_t>());
+  std::map<std::array<float, 3>, int> vertices;
+  for (int i = 0; i < 24; ++i) {
+    std::array<float, 3> color{};
+    for (float& channel : color) channel = reader.getFloat();
+    ++vertices[color];
+  }
+  // Two of the six faces with four corners each, and four.
+  EXPECT_EQ(vertices, (std::map<std::array<float, 3>, int>{{{0, 0.5f, 1}, 8}, {{1, 0, 0}, 16}}));
+}
+
 /// What a browser knows after some messages, decoded as page.js does.
 struct Decoded {
   std::uint32_t number = 0;

@@ -54,6 +54,13 @@ scenes::ImportSettings importSettingsFrom(const CadArguments& given, std::size_t
   return settings;
 }
 
+scenes::ImportedCad importedCad(const std::vector<std::string>& files, scenes::ImportSettings settings,
+                                const CadArguments& given, const Progress& progress) {
+  const std::optional<ByteCache> cache = cadCacheFrom(given.cache);
+  settings.cache = cache ? &*cache : nullptr;
+  return scenes::importCad(files, settings, progress);
+}
+
 bool areCadFiles(const std::vector<std::string>& files) {
   if (files.size() == 1 && !isCadExtension(lowerExtension(files.front()))) return false;
   for (const std::string& file : files) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "scene_arguments.h"
 #include "vps_scenes/import.h"
 #include "vps_scenes/scene.h"
 
@@ -23,15 +24,21 @@ struct CadArguments {
   double time_limit_s = 0;
   scenes::GroupWishes groups;
   bool has_no_groups = false;
-  [[nodiscard]] bool isAny() const;  ///< whether one of them is given
+  CacheArguments cache;              ///< of what is read
+  [[nodiscard]] bool isAny() const;  ///< whether one of the others is given
 };
 
-/// Adds --units, --deflection, --up, --group, --no-groups and --time-limit.
+/// Adds --units, --deflection, --up, --group, --no-groups and --time-limit; those of the cache come by
+/// addCacheOptions().
 void addCadOptions(CLI::App& command, CadArguments& given);
 
 /// What was given, and otherwise what suits a file that nobody has looked at: parts of more than
 /// `most_triangles` are read coarser, and what is up is guessed. Throws LoadError naming the option.
 scenes::ImportSettings importSettingsFrom(const CadArguments& given, std::size_t most_triangles);
+
+/// Reads the files into one frame, or takes their parts from the cache.
+scenes::ImportedCad importedCad(const std::vector<std::string>& files, scenes::ImportSettings settings,
+                                const CadArguments& given, const Progress& progress);
 
 /// Whether these are CAD files, which are read into one frame, and not a scene file. Throws LoadError for a
 /// scene among several files, and for what is no CAD file.

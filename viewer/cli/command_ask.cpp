@@ -60,7 +60,7 @@ scenes::SessionAnswer load(const scenes::SessionRequest& request, const std::str
   if (scenes::isSceneHash(scene)) return request.load(scene);
   ProgressBar bar;
   const Progress show = bar.progress();
-  return request.load(sceneFrom(scene, {}, {}), [&](double share) { show("sending the scene", share); });
+  return request.load(sceneFrom(scene, {}, {}, {}), [&](double share) { show("sending the scene", share); });
 }
 
 }  // namespace

@@ -57,7 +57,7 @@ scenes::Verdict runScene(const AssembleArguments& given) {
   OutputFile wav(given.sound, {file});
   ProgressBar bar;
   requireNotRead(given.record, {file});
-  scenes::Scene scene = sceneFrom(file, given.scene.fidelity, {given.json, given.record});
+  scenes::Scene scene = sceneFrom(file, given.scene.fidelity, {given.json, given.record}, given.scene.cache);
   if (given.takes_apart) scene = scenes::disassemblyOf(std::move(scene));
 
   scenes::AssembleOptions options;
@@ -175,6 +175,7 @@ std::vector<std::string> filesOf(const AssembleArguments& given) {
 int runCad(AssembleArguments given) {
   PlanArguments plan = std::move(given.plan);
   plan.assembly = filesOf(given);
+  plan.cad.cache = given.scene.cache;
   plan.out = (std::filesystem::path(given.out) / "plan").string();
   plan.is_forced = true;
   requireNotRead(given.json, plan.assembly);

@@ -35,7 +35,7 @@ struct Assembly {
 Assembly readScene(const CheckArguments& given, const Progress& progress) {
   const std::string& file = given.assembly.front();
   requireNoCadOptions(file, given.cad);
-  const scenes::Scene scene = scenes::loadScene(file, progress);
+  const scenes::Scene scene = loadedScene(file, given.cad.cache, progress);
   for (const std::string& warning : scene.warnings) warn(warning);
   Assembly assembly{scene.name, scenes::drawnParts(scene), {file}};
   for (const scenes::ScenePart& part : scene.parts) assembly.read.push_back(part.file);
@@ -44,7 +44,8 @@ Assembly readScene(const CheckArguments& given, const Progress& progress) {
 
 Assembly readCad(const CheckArguments& given, const Progress& progress) {
   const scenes::Scene scene = groupedScene(
-      scenes::importCad(given.assembly, importSettingsFrom(given.cad, kMostTriangles), progress), given.cad);
+      importedCad(given.assembly, importSettingsFrom(given.cad, kMostTriangles), given.cad, progress),
+      given.cad);
   const std::string& first = given.assembly.front();
   for (const std::string& warning : scene.warnings)
     warn(given.assembly.size() > 1 ? warning : first + ": " + warning);
@@ -95,6 +96,7 @@ void addCheck(CommandLine& line) {
       ->required()
       ->type_name("CAD|SCENE");
   addCadOptions(command, given->cad);
+  addCacheOptions(command, given->cad.cache);
   command.add_option("--near", given->near,
                      "clearance up to which pairs are reported, with unit (default: 1mm)");
   command.add_flag("--no-play", given->has_no_play, "leave out play and ways out, which take longest");

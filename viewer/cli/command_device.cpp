@@ -2,14 +2,13 @@
 // vps device --characterise: Table 1 and figure 5 of the paper for the simulated dual arm.
 // vps device --list: the kinds of device.
 // vps device --session NAME: the device's node of a run that vps render computes.
-#include <pthread.h>
-
 #include <cstdio>
 #include <memory>
 
 #include "command.h"
 #include "json_out.h"
 #include "output.h"
+#include "process_settings.h"
 #include "progress_bar.h"
 #include "session_option.h"
 #include "table.h"
@@ -178,18 +177,6 @@ int listKinds() {
   }
   std::fputs(table.text().c_str(), stdout);
   return kGood;
-}
-
-/// The memory of this process is locked, so each thread's stack is there as a whole, also that of a thread
-/// that has ended until another one takes it over. assumed: four times what a haptic thread touches.
-void limitStacks() {
-#ifdef __GLIBC__
-  constexpr std::size_t kStack_bytes = 1024 * 1024;
-  pthread_attr_t attributes;
-  if (pthread_attr_init(&attributes) != 0) return;
-  if (pthread_attr_setstacksize(&attributes, kStack_bytes) == 0) pthread_setattr_default_np(&attributes);
-  pthread_attr_destroy(&attributes);
-#endif
 }
 
 int runNode(const DeviceArguments& given) {

@@ -102,7 +102,8 @@ std::string totalOf(const char* words, const scenes::ModelPlanCost& cost) {
 int runExplain(const ExplainArguments& given) {
   OutputFile json(given.json, {given.scene.scene});
   ProgressBar bar;
-  const scenes::Scene scene = sceneFrom(given.scene.scene, given.scene.fidelity, {given.json});
+  const scenes::Scene scene =
+      sceneFrom(given.scene.scene, given.scene.fidelity, {given.json}, given.scene.cache);
   scenes::ModelOptions options;
   // The time to build is measured, so that models are taken only from a folder that was asked for.
   const std::optional<VoxMapCache> cache = cacheFrom(given.scene.cache.folder);

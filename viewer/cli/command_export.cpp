@@ -54,7 +54,7 @@ const scenes::ScenePart& partOf(const scenes::Scene& scene, const ExportArgument
 Source sourceFrom(const ExportArguments& given) {
   const std::string extension = lowerExtension(given.source);
   if (extension == ".toml") {
-    const scenes::Scene scene = sceneFrom(given.source, given.fidelity, given.out);
+    const scenes::Scene scene = sceneFrom(given.source, given.fidelity, given.out, {.folder = given.cache});
     Source source = {partOf(scene, given).part.mesh, {}, scene.fidelity};
     requireUsable(source.mesh, given.source, given.part);
     return source;

@@ -114,7 +114,7 @@ int runImport(const ImportArguments& given) {
   OutputFolder out(given.out);
   OutputFile json(given.json, given.files);
   ProgressBar bar;
-  scenes::ImportedCad cad = scenes::importCad(given.files, settings, bar.progress());
+  scenes::ImportedCad cad = importedCad(given.files, settings, given.cad, bar.progress());
   const std::vector<scenes::Fastener> fasteners =
       scenes::findFasteners(scenes::drawnParts(cad), bar.progress());
   bar.clear();
@@ -125,11 +125,11 @@ int runImport(const ImportArguments& given) {
   Table table({"<part", "triangles", "<closed", "size [mm]", "<file"});
   for (const scenes::ImportedPart& part : cad.parts) {
     throwIfStopped();
-    const ImportedPartAnswer row{part.name, partFileName(part.name, meshExtension(part.mesh), taken),
-                                 part.mesh.triangles.size(), checkMesh(part.mesh).isClosed(),
-                                 bounds(part.mesh).size()};
+    const ImportedPartAnswer row{
+        part.name, partFileName(part.name, meshExtension(part.mesh, part.face_colors), taken),
+        part.mesh.triangles.size(), checkMesh(part.mesh).isClosed(), bounds(part.mesh).size()};
     requireNotRead((fs::path(given.out) / row.file).string(), given.files);
-    out.write(row.file, meshBytes(part.mesh));
+    out.write(row.file, meshBytes(part.mesh, part.face_colors));
     table.add({row.name, std::to_string(row.triangles), row.is_closed ? "yes" : "no",
                fixed(row.size_m.x() * 1e3, 2) + " x " + fixed(row.size_m.y() * 1e3, 2) + " x " +
                    fixed(row.size_m.z() * 1e3, 2),
@@ -164,6 +164,7 @@ void addImport(CommandLine& line) {
       ->required()
       ->type_name("DIR");
   addCadOptions(command, given->cad);
+  addCacheOptions(command, given->cad.cache);
   command.add_flag("--force", given->is_forced, "replace a scene.toml that exists");
   addJsonOption(command, given->json);
 }

@@ -63,8 +63,8 @@ int runMargin(const MarginArguments& given) {
   options.has_contact = given.has_contact;
   options.stop = &stopRequested();
   ProgressBar bar;
-  scenes::Scene scene =
-      sceneFrom(given.scene.scene, given.scene.fidelity, {given.json, given.html, given.pdf});
+  scenes::Scene scene = sceneFrom(given.scene.scene, given.scene.fidelity,
+                                  {given.json, given.html, given.pdf}, given.scene.cache);
   // No cache: each model is of a size of its own, and would push out those that are used again.
   setModelOptions(options, bar, std::nullopt, given.scene.models_everything);
   const scenes::MarginResult result = scenes::measureMargins(scene, options);

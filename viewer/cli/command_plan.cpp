@@ -25,7 +25,7 @@ int verify(const PlanArguments& given) {
   OutputFile json(given.json, given.assembly);
   ProgressBar bar;
   requireSceneFile(given.assembly.front());
-  const scenes::Scene scene = scenes::loadScene(given.assembly.front(), bar.progress());
+  const scenes::Scene scene = loadedScene(given.assembly.front(), given.cad.cache, bar.progress());
   const std::vector<scenes::WayFault> faults =
       checkWays(scene, bar.progress(), plannedClearances(given.assembly.front()));
   throwIfStopped();
@@ -65,6 +65,7 @@ void addPlan(CommandLine& line) {
       .add_option("-o,--out", given->out, "folder for scene.toml, meshes, plan.json, plan.dot and plan.svg")
       ->type_name("DIR");
   addCadOptions(command, given->cad);
+  addCacheOptions(command, given->cad.cache);
   addPlanOptions(command, *given);
   command.add_flag("--force", given->is_forced, "replace a scene.toml that exists");
   command.add_flag(

@@ -83,7 +83,7 @@ int runRender(const RenderArguments& given) {
   const std::string& file = given.scene.scene;
   ProgressBar bar;
   requireNotRead(given.record, {file});
-  scenes::Scene scene = sceneFrom(file, given.scene.fidelity, {given.json, given.record});
+  scenes::Scene scene = sceneFrom(file, given.scene.fidelity, {given.json, given.record}, given.scene.cache);
 
   scenes::RenderOptions options;
   const std::optional<VoxMapCache> cache = cacheFrom(given.scene.cache);

@@ -72,7 +72,7 @@ int runSimulate(const SimulateArguments& given) {
   const std::string& file = given.scene.scene;
   OutputFile trace(given.trace, {file}), json(given.json, {file});
   ProgressBar bar;
-  scenes::Scene scene = sceneFrom(file, given.scene.fidelity, {given.trace, given.json});
+  scenes::Scene scene = sceneFrom(file, given.scene.fidelity, {given.trace, given.json}, given.scene.cache);
 
   std::string rows;
   scenes::SimulateOptions options;

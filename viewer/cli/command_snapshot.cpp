@@ -38,6 +38,7 @@ struct SnapshotArguments {
   std::string stereo = "mono";
   std::string eye_distance;  ///< in the scene; empty: a thirtieth of the distance
   std::vector<std::string> show;
+  CacheArguments cache;
 };
 
 /// The directions from the scene to the eye.
@@ -163,7 +164,8 @@ int runSnapshot(const SnapshotArguments& given) {
   // Loaded before rendering, so that a missing image is reported at once.
   const Image wanted = given.compare.empty() ? Image() : loadPng(given.compare);
 
-  const scenes::Scene scene = sceneFrom(given.scene, {}, {given.out, given.difference, given.json});
+  const scenes::Scene scene =
+      sceneFrom(given.scene, {}, {given.out, given.difference, given.json}, given.cache);
   RenderScene drawn = drawnMeshes(scene);
   const ModelView models(scene, shownModels(given.show), drawn);
   // Each point and each cube has edges of its own, which would darken the picture.
@@ -205,6 +207,7 @@ void addSnapshot(CommandLine& line) {
                  "vps snapshot scenes/peg_in_hole/scene.toml -o peg.png --view front --section",
                  [given] { return runSnapshot(*given); });
   addSceneArgument(command, given->scene);
+  addCacheOptions(command, given->cache);
   command.add_option("-o,--out", given->out, "picture to write")->type_name("FILE.png");
   command.add_option("--size", given->size, "width and height in pixels")
       ->capture_default_str()

@@ -141,7 +141,7 @@ int runStudyCommand(StudyArguments given, bool has_last) {
   requireNotRead(given.log, {given.scene});
   ProgressBar bar;
   scenes::Scene scene =
-      sceneFrom(given.scene, given.fidelity, {given.json, given.html, given.pdf, given.log});
+      sceneFrom(given.scene, given.fidelity, {given.json, given.html, given.pdf, given.log}, {});
   const std::vector<scenes::StudyVariable> variables = scenes::studyVariables(scene);
   const scenes::StudySettings settings{given.seed, given.has_contact, given.threads};
   std::optional<StudyLog> log;

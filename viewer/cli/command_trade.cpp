@@ -104,7 +104,7 @@ int runTrade(const TradeArguments& given) {
   std::optional<OutputFolder> out;
   if (!given.out.empty()) out.emplace(given.out);
   ProgressBar bar;
-  const scenes::Scene scene = sceneFrom(given.scene, given.fidelity, {given.json, given.csv});
+  const scenes::Scene scene = sceneFrom(given.scene, given.fidelity, {given.json, given.csv}, {});
   if (wish) return pick(scene, *wish, json, bar);
   scenes::TradeOptions options;
   // Does not throw after Ctrl-C, so that finished rows are kept.

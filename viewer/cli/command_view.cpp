@@ -68,8 +68,10 @@ int runView(const ViewArguments& given) {
     viewRecording(device::loadRecording(file), window);
     return kGood;
   }
+  if (window.full_screen > 0 && file.find_first_not_of("0123456789") == std::string::npos)
+    throw LoadError(file, "", "is taken for a file; a monitor is said by --full-screen=" + file);
   requireNotRead(window.record, {file});
-  scenes::Scene scene = sceneFrom(file, given.scene.fidelity, {window.record});
+  scenes::Scene scene = sceneFrom(file, given.scene.fidelity, {window.record}, given.scene.cache);
   if (window.display) window.display->placeDevice(scene.device);
   const std::optional<VoxMapCache> cache = cacheFrom(given.scene.cache);
   if (!window.hand.empty()) {
@@ -150,11 +152,10 @@ void addView(CommandLine& line) {
                   "of a display file, show this alone at first: SCREEN, SCREEN_VIEWER, ...")
       ->type_name("NAME")
       ->needs("--display");
+  // A flag: an option whose value may be left out would take the scene for it.
   command
-      .add_option("--full-screen", window.full_screen,
-                  "fill this monitor, counted from 1, without panels, as in --full-screen=2; F11 switches")
-      ->expected(0, 1)
-      ->default_str("1")
+      .add_flag("--full-screen{1}", window.full_screen,
+                "fill the first monitor without panels, or another one, as in --full-screen=2; F11 switches")
       ->check(CLI::Range(1, 64));
   command
       .add_option("--show", given->show,

@@ -2,8 +2,6 @@
 // vps watch: shows a session in a window, or prints what happens in it. A watcher reads only, so that it can
 // disturb nobody.
 // vps watch --web: shows a session, a run of a scene, or a recording in web browsers.
-#include <sys/resource.h>
-
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -17,6 +15,7 @@
 
 #include "command.h"
 #include "file_kind.h"
+#include "process_settings.h"
 #include "run_report.h"
 #include "scene_arguments.h"
 #include "session_option.h"
@@ -171,7 +170,7 @@ int serveWeb(const WatchArguments& given) {
     serveRecording(device::loadRecording(given.scene.scene), web);
     return kGood;
   }
-  const scenes::Scene scene = sceneFrom(given.scene.scene, given.scene.fidelity, {});
+  const scenes::Scene scene = sceneFrom(given.scene.scene, given.scene.fidelity, {}, given.scene.cache);
   const std::optional<VoxMapCache> cache = cacheFrom(given.scene.cache);
   web.models.cache = cache ? &*cache : nullptr;
   web.models.models_everything = given.scene.models_everything;
@@ -222,14 +221,9 @@ std::optional<int> tryWindow(const WatchArguments& given) {
   }
 }
 
-/// On a machine of several nodes who watches waits rather than who computes; threads made later do so, too.
-void giveWay() {
-  constexpr int kNice = 10;
-  if (getpriority(PRIO_PROCESS, 0) < kNice) setpriority(PRIO_PROCESS, 0, kNice);
-}
-
 int runWatch(const WatchArguments& given) {
   requireRosAllowed(given);
+  // On a machine of several nodes who watches waits rather than who computes.
   if (given.scene.scene.empty() && !given.web.allows_hand) giveWay();
   if (given.port >= 0) return serveWeb(given);
   if (!given.scene.scene.empty())

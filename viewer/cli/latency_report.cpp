@@ -43,7 +43,7 @@ void print(const LatencyResult& result) {
 
 int reportLatency(const SceneArguments& given, const LatencySettings& settings, const std::string& json) {
   OutputFile out(json, {given.scene});
-  const scenes::Scene scene = sceneFrom(given.scene, given.fidelity, {json});
+  const scenes::Scene scene = sceneFrom(given.scene, given.fidelity, {json}, given.cache);
   const std::optional<VoxMapCache> cache = cacheFrom(given.cache);
   ProgressBar bar;
   LatencySettings with_models = settings;

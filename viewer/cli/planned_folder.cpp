@@ -35,11 +35,11 @@ constexpr double kCoarsestToPlan_m = 16e-6;
 scenes::Scene sceneToPlan(const PlanArguments& given, const Progress& progress) {
   if (!areCadFiles(given.assembly)) {
     requireNoCadOptions(given.assembly.front(), given.cad);
-    return scenes::loadScene(given.assembly.front(), progress);
+    return loadedScene(given.assembly.front(), given.cad.cache, progress);
   }
   scenes::ImportSettings settings = importSettingsFrom(given.cad, kMostToPlan);
   settings.coarsest_m = kCoarsestToPlan_m;
-  return groupedScene(scenes::importCad(given.assembly, settings, progress), given.cad);
+  return groupedScene(importedCad(given.assembly, settings, given.cad, progress), given.cad);
 }
 
 /// Of the product, which comes first, and of each subassembly.
@@ -59,9 +59,9 @@ void writeScenes(const PlanArguments& given, const std::vector<scenes::Scene>& p
       throwIfStopped();
       std::string& file = file_of[part.part.name];
       if (file.empty()) {
-        file = partFileName(part.part.name, meshExtension(part.part.mesh), taken);
+        file = partFileName(part.part.name, meshExtension(part.part.mesh, part.part.face_colors), taken);
         requireNotRead((std::filesystem::path(given.out) / file).string(), read);
-        out.write(file, meshBytes(part.part.mesh));
+        out.write(file, meshBytes(part.part.mesh, part.part.face_colors));
       }
       files.push_back(file);
     }

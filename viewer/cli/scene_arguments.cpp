@@ -63,17 +63,18 @@ void addCacheOption(CLI::App& command, std::string& folder) {
 }
 
 void addCacheOptions(CLI::App& command, CacheArguments& given) {
-  CLI::Option* folder =
-      command
-          .add_option(
-              "--cache", given.folder,
-              "folder in which voxmaps and pointshells are kept between runs and looked up; without it "
-              "bullet-vps in $XDG_CACHE_HOME or ~/.cache")
-          ->type_name("DIR");
-  command.add_flag("--no-cache", given.is_off, "build the models again, and keep none")->excludes(folder);
+  CLI::Option* folder = command
+                            .add_option("--cache", given.folder,
+                                        "folder in which models and the parts of CAD files are kept between "
+                                        "runs and looked up; without it "
+                                        "bullet-vps in $XDG_CACHE_HOME or ~/.cache")
+                            ->type_name("DIR");
+  command
+      .add_flag("--no-cache", given.is_off, "build the models and read the CAD files again, and keep none")
+      ->excludes(folder);
   command
       .add_option("--cache-limit", given.limit_GB,
-                  "size of that folder; the models that were not used for the longest time are removed")
+                  "size of that folder; what was not used for the longest time is removed")
       ->type_name("GB")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
@@ -115,12 +116,31 @@ std::optional<VoxMapCache> cacheFrom(const std::string& folder) {
   return VoxMapCache(folder, warn);
 }
 
-std::optional<VoxMapCache> cacheFrom(const CacheArguments& given) {
-  if (given.is_off) return std::nullopt;
-  const std::string folder = given.folder.empty() ? defaultCacheFolder() : given.folder;
-  if (folder.empty()) return std::nullopt;
+namespace {
+
+/// Empty with --no-cache, and where the user has no folder for caches.
+std::string folderOf(const CacheArguments& given) {
+  if (given.is_off) return "";
+  return given.folder.empty() ? defaultCacheFolder() : given.folder;
+}
+
+std::uint64_t limitOf(const CacheArguments& given) {
   constexpr double kMost_GB = 1e9;  // so that the bytes stay within 64 bits
-  return VoxMapCache(folder, warn, static_cast<std::uint64_t>(1e9 * std::min(given.limit_GB, kMost_GB)));
+  return static_cast<std::uint64_t>(1e9 * std::min(given.limit_GB, kMost_GB));
+}
+
+}  // namespace
+
+std::optional<VoxMapCache> cacheFrom(const CacheArguments& given) {
+  if (const std::string folder = folderOf(given); !folder.empty())
+    return VoxMapCache(folder, warn, limitOf(given));
+  return std::nullopt;
+}
+
+std::optional<ByteCache> cadCacheFrom(const CacheArguments& given) {
+  if (const std::string folder = folderOf(given); !folder.empty())
+    return ByteCache(folder, warn, limitOf(given));
+  return std::nullopt;
 }
 
 std::string defaultCacheFolder() {
@@ -141,11 +161,16 @@ void setModelOptions(scenes::ModelOptions& options, ProgressBar& bar, const std:
   options.models_everything = models_everything;
 }
 
+scenes::Scene loadedScene(const std::string& file, const CacheArguments& given, const Progress& progress) {
+  const std::optional<ByteCache> cache = cadCacheFrom(given);
+  return scenes::loadScene(file, progress, cache ? &*cache : nullptr);
+}
+
 scenes::Scene sceneFrom(const std::string& file, const FidelityArguments& given,
-                        const std::vector<std::string>& outputs) {
+                        const std::vector<std::string>& outputs, const CacheArguments& cache) {
   requireSceneFile(file);
   ProgressBar bar;
-  scenes::Scene scene = scenes::loadScene(file, bar.progress());
+  scenes::Scene scene = loadedScene(file, cache, bar.progress());
   bar.clear();
   std::vector<std::string> read;
   for (const scenes::ScenePart& part : scene.parts) read.push_back(part.file);

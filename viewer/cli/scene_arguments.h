@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "vps/byte_cache.h"
 #include "vps/fidelity.h"
 #include "vps/voxmap_cache.h"
 #include "vps_scenes/model_options.h"
@@ -32,7 +33,7 @@ void addPointsOption(CLI::App& command, FidelityArguments& given);
 /// `base` with what was given on the command line. Throws LoadError naming the option.
 Fidelity fidelityFrom(const FidelityArguments& given, Fidelity base);
 
-/// Where models are kept between runs.
+/// Where models and the parts of CAD files are kept between runs.
 struct CacheArguments {
   std::string folder;   ///< empty: the user's own, see defaultCacheFolder()
   bool is_off = false;  ///< models are built each time
@@ -51,7 +52,7 @@ struct SceneArguments {
 void addSceneArgument(CLI::App& command, std::string& scene);
 /// Adds --cache.
 void addCacheOption(CLI::App& command, std::string& folder);
-/// Adds --cache, --no-cache and --cache-limit.
+/// Adds --cache, --no-cache and --cache-limit. Where the command builds no models, only CAD files are meant.
 void addCacheOptions(CLI::App& command, CacheArguments& given);
 /// Adds SCENE and the options --model-everything, those of addCacheOptions() and of addFidelityOptions().
 void addSceneOptions(CLI::App& command, SceneArguments& given);
@@ -59,8 +60,9 @@ void addSceneOptions(CLI::App& command, SceneArguments& given);
 /// The scene, with the command line's fidelity instead of its own. Prints warnings about its CAD files on
 /// stderr. Throws LoadError when one of `outputs` is a file that the scene was read from, and names the
 /// command that reads `file` when it is no scene but a CAD file, a level set or a recording.
+/// @param cache  of the parts of its CAD files
 scenes::Scene sceneFrom(const std::string& file, const FidelityArguments& given,
-                        const std::vector<std::string>& outputs);
+                        const std::vector<std::string>& outputs, const CacheArguments& cache);
 
 /// Adds --units.
 void addUnitsOption(CLI::App& command, std::string& units);
@@ -71,10 +73,15 @@ std::optional<double> unitFrom(const std::string& text);
 /// Throws LoadError when --units or --deflection is given for a scene file, which states both itself.
 void requireOwnUnits(const std::string& scene, const std::string& units, const std::string& deflection);
 
+/// Reads a scene, and its CAD files from the cache.
+scenes::Scene loadedScene(const std::string& file, const CacheArguments& cache, const Progress& progress);
+
 /// The cache in a folder, which reports damaged files on stderr; none for an empty name.
 std::optional<VoxMapCache> cacheFrom(const std::string& folder);
 /// The cache that the options stand for; none with --no-cache, and where the user has no folder for caches.
 std::optional<VoxMapCache> cacheFrom(const CacheArguments& given);
+/// The same folder for the parts of CAD files.
+std::optional<ByteCache> cadCacheFrom(const CacheArguments& given);
 /// bullet-vps in $XDG_CACHE_HOME, or else in $HOME/.cache; empty where neither is an absolute path.
 /// Source: XDG Base Directory Specification 0.8.
 std::string defaultCacheFolder();

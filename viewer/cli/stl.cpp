@@ -5,6 +5,7 @@
 #include <bit>
 #include <charconv>
 #include <cstdint>
+#include <map>
 
 namespace vps::viewer::inline v0 {
 
@@ -25,33 +26,53 @@ std::string stlBytes(const Mesh& mesh) {
   return out;
 }
 
-std::string meshExtension(const Mesh& mesh) {
+std::string meshExtension(const Mesh& mesh, const scenes::FaceColors& colors) {
   constexpr double kMostRounding_m = 0.1e-6, kFloat = 0x1p-24;
   constexpr double kFar = 4;  // sizes: a reader that takes off the middle of the vertices wins two bits
   const Box box = bounds(mesh);
   const double farthest_m = box.min.cwiseAbs().cwiseMax(box.max.cwiseAbs()).norm();
-  return kFloat * farthest_m > kMostRounding_m && farthest_m > kFar * box.size().norm() ? ".obj" : ".stl";
+  const bool is_far = kFloat * farthest_m > kMostRounding_m && farthest_m > kFar * box.size().norm();
+  return is_far || !colors.isNone() ? ".obj" : ".stl";
 }
 
-std::string meshBytes(const Mesh& mesh) {
-  if (meshExtension(mesh) == ".stl") return stlBytes(mesh);
-  std::string out = "# metres\n";
-  const auto put = [&out](auto value) {
+std::string meshBytes(const Mesh& mesh, const scenes::FaceColors& colors) {
+  if (meshExtension(mesh, colors) == ".stl") return stlBytes(mesh);
+  std::string out = "# metres\n", faces;
+  const auto put = [](std::string& to, auto value) {
     std::array<char, 32> text;
     const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value);
-    out.append(1, ' ').append(text.data(), end);
+    to.append(1, ' ').append(text.data(), end);
   };
-  for (const Vec3& p : mesh.vertices) {
+  const auto putVertex = [&](std::uint32_t vertex) {
     out += 'v';
-    for (int axis = 0; axis < 3; ++axis) put(p[axis]);
-    out += '\n';
+    for (int axis = 0; axis < 3; ++axis) put(out, mesh.vertices[vertex][axis]);
+  };
+  // Where colours meet, a vertex is there once for each.
+  std::map<std::array<std::uint32_t, 2>, std::uint32_t> number_of;  // of vertex and colour
+  if (colors.isNone())
+    for (std::uint32_t vertex = 0; vertex < mesh.vertices.size(); ++vertex) {
+      putVertex(vertex);
+      out += '\n';
+    }
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    faces += 'f';
+    for (const std::uint32_t vertex : mesh.triangles[i]) {
+      if (colors.isNone()) {
+        put(faces, vertex + 1);
+        continue;
+      }
+      const auto [it, is_new] = number_of.try_emplace({vertex, colors.of_triangle[i]},
+                                                      static_cast<std::uint32_t>(number_of.size() + 1));
+      if (is_new) {
+        putVertex(vertex);
+        for (const float channel : scenes::srgbFromLinear(colors.at(i))) put(out, channel);
+        out += '\n';
+      }
+      put(faces, it->second);
+    }
+    faces += '\n';
   }
-  for (const auto& triangle : mesh.triangles) {
-    out += 'f';
-    for (const std::uint32_t vertex : triangle) put(vertex + 1);
-    out += '\n';
-  }
-  return out;
+  return out + faces;
 }
 
 }  // namespace vps::viewer::inline v0

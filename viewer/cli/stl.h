@@ -5,6 +5,7 @@
 #include <string>
 
 #include "vps/mesh.h"
+#include "vps_scenes/face_colors.h"
 
 namespace vps::viewer::inline v0 {
 
@@ -12,10 +13,11 @@ namespace vps::viewer::inline v0 {
 /// equal stay equal to the bit, so that readers can weld them.
 std::string stlBytes(const Mesh& mesh);
 
-/// ".stl", or ".obj" for a mesh so far from its origin that floats would move its vertices by more than 0.1
-/// um.
-std::string meshExtension(const Mesh& mesh);
-/// A file with that extension, in metres. OBJ reads back within a float's resolution of the mesh's size.
-std::string meshBytes(const Mesh& mesh);
+/// ".stl", or ".obj" for a mesh whose faces have colours, or that is so far from its origin that floats would
+/// move its vertices by more than 0.1 um.
+std::string meshExtension(const Mesh& mesh, const scenes::FaceColors& colors = {});
+/// A file with that extension, in metres. OBJ reads back within a float's resolution of the mesh's size, and
+/// has colours (sRGB) by vertex.
+std::string meshBytes(const Mesh& mesh, const scenes::FaceColors& colors = {});
 
 }  // namespace vps::viewer::inline v0

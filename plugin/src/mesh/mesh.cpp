@@ -9,6 +9,7 @@
 
 #include "mesh/mesh_edges.h"
 #include "vps/load_error.h"
+#include "vps/mesh_weld.h"
 
 namespace vps::inline v0 {
 namespace {
@@ -155,21 +156,29 @@ void append(Mesh& a, const Mesh& b) {
   for (const auto& t : b.triangles) a.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
 }
 
-Mesh welded(const Mesh& mesh, double tolerance_m) {
+WeldedMesh weldedWithSources(const Mesh& mesh, double tolerance_m) {
   Merger merger(mesh);
   if (tolerance_m > 0)
     merger.within(tolerance_m);
   else
     merger.exact();
-  Mesh out;
-  out.triangles.reserve(mesh.triangles.size());
-  for (const auto& t : mesh.triangles) {
+  WeldedMesh out;
+  out.mesh.triangles.reserve(mesh.triangles.size());
+  out.sources.reserve(mesh.triangles.size());
+  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+    const auto& t = mesh.triangles[i];
     const std::array<std::uint32_t, 3> merged = {merger.index_of[t[0]], merger.index_of[t[1]],
                                                  merger.index_of[t[2]]};
-    if (!hasRepeatedCorner(merged)) out.triangles.push_back(merged);
+    if (hasRepeatedCorner(merged)) continue;
+    out.mesh.triangles.push_back(merged);
+    out.sources.push_back(i);
   }
-  out.vertices = std::move(merger.kept);
+  out.mesh.vertices = std::move(merger.kept);
   return out;
+}
+
+Mesh welded(const Mesh& mesh, double tolerance_m) {
+  return weldedWithSources(mesh, tolerance_m).mesh;
 }
 
 MeshReport checkMesh(const Mesh& mesh) {

@@ -23,7 +23,7 @@ bool isOurs(const fs::path& file) {
   constexpr std::size_t kDigits = 32;  // of nameOf()
   const std::string name = file.filename().string(), end = file.extension().string();
   return name.find_first_not_of("0123456789abcdef") == kDigits && name[kDigits] == '.' &&
-         (end == ".voxmap" || end == ".shell" || end == ".unfinished");
+         (end == ".voxmap" || end == ".shell" || end == ".bytes" || end == ".unfinished");
 }
 
 /// The folder's files, the longest unused first.

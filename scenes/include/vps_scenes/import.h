@@ -9,9 +9,11 @@
 #include <string>
 #include <vector>
 
+#include "vps/byte_cache.h"
 #include "vps/mesh.h"
 #include "vps/progress.h"
 #include "vps_scenes/export.h"
+#include "vps_scenes/face_colors.h"
 
 namespace vps::scenes::inline v0 {
 
@@ -38,13 +40,16 @@ struct ImportSettings {
   /// Of that process: beyond these it is ended, with a LoadError.
   std::uint64_t most_memory_bytes = 0;  ///< 0: half of the machine's
   double most_s = 0;                    ///< 0: no limit
+  /// Where the parts of STEP, IGES and BREP files are kept by the file's content and these settings; null:
+  /// each time they are made again. A file that names other files is always read.
+  const ByteCache* cache = nullptr;
 };
 
 struct ImportedPart {
   std::string name;  ///< unique within the file: a repeated name becomes "<name>_2" and so on
   Mesh mesh;         ///< welded, in the part's own frame, metres
   Pose X_WP;         ///< pose in the assembly
-  std::array<float, 3> color = {0.7f, 0.72f, 0.75f};  ///< linear RGB
+  Color color = {0.7f, 0.72f, 0.75f};  ///< linear RGB; where faces have colours, that of most of the area
   /// Greatest distance of the mesh from the faces that the file describes exactly (STEP, IGES, BREP): as
   /// asked for, or more where it was measured to be more; empty for a file of meshes.
   std::optional<double> deflection_m = {};
@@ -55,6 +60,7 @@ struct ImportedPart {
   /// Greatest distance of its vertices from where the file has them, or from where they were before the file
   /// kept them as 32-bit floats, which are 15 um apart at 300 m. 0: less than 0.05 um.
   double rounding_m = 0;
+  FaceColors face_colors = {};
 };
 
 struct ImportedCad {

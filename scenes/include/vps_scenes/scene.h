@@ -10,10 +10,12 @@
 #include <string>
 #include <vector>
 
+#include "vps/byte_cache.h"
 #include "vps/fidelity.h"
 #include "vps/part_model.h"
 #include "vps/progress.h"
 #include "vps_scenes/export.h"
+#include "vps_scenes/face_colors.h"
 
 namespace vps::scenes::inline v0 {
 
@@ -22,7 +24,8 @@ struct Part {
   std::string name;
   Mesh mesh;
   Material material;
-  std::array<float, 3> color = {0.7f, 0.72f, 0.75f};  ///< linear RGB, 0 to 1
+  Color color = {0.7f, 0.72f, 0.75f};  ///< linear RGB, 0 to 1
+  FaceColors face_colors = {};         ///< of its triangles, where they differ
 };
 
 /// What a part's tolerance of size is meant for.
@@ -172,6 +175,8 @@ struct Scene {
 
 /// Reads a scene file and the CAD files that it names; builds no models. Throws LoadError with file, line,
 /// key and remedy, and what `progress` throws.
-VPS_SCENES_API Scene loadScene(const std::string& file, const Progress& progress = {});
+/// @param cache  see ImportSettings; may be null
+VPS_SCENES_API Scene loadScene(const std::string& file, const Progress& progress = {},
+                               const ByteCache* cache = nullptr);
 
 }  // namespace vps::scenes::inline v0

@@ -13,6 +13,7 @@
 #include "core/valid_text.h"
 #include "import/readers.h"
 #include "vps/load_error.h"
+#include "vps/mesh_weld.h"
 
 namespace vps::scenes::inline v0::import {
 namespace {
@@ -26,6 +27,7 @@ ImportedPart inMetres(const RawPart& raw, double unit_m) {
   ImportedPart part;
   part.name = raw.name;
   part.color = raw.color;
+  part.face_colors = raw.face_colors;
   part.mesh = raw.mesh;
   part.deflection_m = raw.deviation_m;
   part.note = raw.note;
@@ -53,12 +55,12 @@ ImportedPart inMetres(const RawPart& raw, double unit_m) {
 
 /// Welds with the least tolerance that closes the mesh, or else with the one that leaves the fewest open
 /// edges. Exporters round to float (1e-7 of the size) or to CAD tolerance (1 um at most).
-Mesh weldedToClose(const Mesh& mesh, MeshReport& report) {
+WeldedMesh weldedToClose(const Mesh& mesh, MeshReport& report) {
   const double size_m = bounds(mesh).size().norm();
-  Mesh best;
+  WeldedMesh best;
   for (const double relative : {0.0, 1e-7, 1e-6, 1e-5}) {
-    Mesh candidate = welded(mesh, std::min(relative * size_m, 1e-6));
-    const MeshReport found = checkMesh(candidate);
+    WeldedMesh candidate = weldedWithSources(mesh, std::min(relative * size_m, 1e-6));
+    const MeshReport found = checkMesh(candidate.mesh);
     if (relative == 0 || found.open_edges < report.open_edges) {
       best = std::move(candidate);
       report = found;
@@ -68,8 +70,9 @@ Mesh weldedToClose(const Mesh& mesh, MeshReport& report) {
   return best;
 }
 
-/// The connected components of a mesh; triangles with a common vertex are connected.
-std::vector<Mesh> shells(const Mesh& mesh) {
+/// The connected components of a mesh, with their triangles' numbers in it; triangles with a common vertex
+/// are connected.
+std::vector<WeldedMesh> shells(const Mesh& mesh) {
   std::vector<std::uint32_t> parent(mesh.vertices.size());
   std::iota(parent.begin(), parent.end(), 0u);
   const auto root = [&](std::uint32_t i) {
@@ -81,13 +84,14 @@ std::vector<Mesh> shells(const Mesh& mesh) {
     parent[root(t[2])] = root(t[0]);
   }
   std::map<std::uint32_t, std::size_t> shell_of;
-  std::vector<Mesh> out;
+  std::vector<WeldedMesh> out;
   std::vector<std::uint32_t> index(mesh.vertices.size(), UINT32_MAX);
-  for (const auto& t : mesh.triangles) {
-    const auto [it, is_new] = shell_of.try_emplace(root(t[0]), out.size());
+  for (std::uint32_t number = 0; number < mesh.triangles.size(); ++number) {
+    auto triangle = mesh.triangles[number];
+    const auto [it, is_new] = shell_of.try_emplace(root(triangle[0]), out.size());
     if (is_new) out.emplace_back();
-    Mesh& shell = out[it->second];
-    auto triangle = t;
+    Mesh& shell = out[it->second].mesh;
+    out[it->second].sources.push_back(number);
     for (std::uint32_t& i : triangle) {
       if (index[i] == UINT32_MAX) {
         index[i] = std::uint32_t(shell.vertices.size());
@@ -116,26 +120,35 @@ void joinShapes(std::vector<ImportedPart>& parts, Shapes meaning) {
     open_edges += report.open_edges;
     (report.open_edges == 0 ? kept : open).push_back(std::move(part));
   }
-  Mesh all;
+  WeldedMesh all;
+  FaceColors colors;
   MeshReport joined;
   double rounding_m = 0;
   for (const ImportedPart& part : open) rounding_m = std::max(rounding_m, part.rounding_m);
-  for (const ImportedPart& part : open) append(all, transformed(part.mesh, part.X_WP));
-  if (open.size() > 1) all = weldedToClose(all, joined);
+  for (const ImportedPart& part : open) {
+    append(all.mesh, transformed(part.mesh, part.X_WP));
+    append(colors, part.mesh.triangles.size(), part.face_colors, part.color);
+  }
+  if (open.size() > 1) {
+    all = weldedToClose(all.mesh, joined);
+    colors = ofTriangles(colors, all.sources);
+  }
   if (open.size() < 2 || joined.open_edges >= open_edges) {
     kept.insert(kept.end(), std::make_move_iterator(open.begin()), std::make_move_iterator(open.end()));
   } else if (meaning == Shapes::BoundOne) {
-    kept.push_back({"", std::move(all), Pose(), open.front().color});
+    kept.push_back({"", std::move(all.mesh), Pose(), open.front().color});
     kept.back().rounding_m = rounding_m;
+    kept.back().face_colors = std::move(colors);
   } else {
-    for (Mesh& shell : shells(all)) {
+    for (WeldedMesh& shell : shells(all.mesh)) {
       // Name and colour come from the shape with its first vertex.
-      const Vec3 p_W = shell.vertices.front();
+      const Vec3 p_W = shell.mesh.vertices.front();
       const auto source = std::find_if(open.begin(), open.end(),
                                        [&](const ImportedPart& part) { return hasVertex(part, p_W); });
       const ImportedPart& like = source == open.end() ? open.front() : *source;
-      kept.push_back({like.name, std::move(shell), Pose(), like.color});
+      kept.push_back({like.name, std::move(shell.mesh), Pose(), like.color});
       kept.back().rounding_m = rounding_m;
+      kept.back().face_colors = ofTriangles(colors, shell.sources);
     }
   }
   parts = std::move(kept);
@@ -182,15 +195,14 @@ void describe(const ImportedPart& part, const MeshReport& report, std::vector<st
 namespace {
 
 /// A mesh as a part gets it.
-struct WeldedMesh {
-  Mesh mesh;
+struct FinishedMesh : WeldedMesh {
   MeshReport report;
   bool is_turned = false;
 };
 
-WeldedMesh weldedOf(const Mesh& mesh) {
-  WeldedMesh out;
-  out.mesh = weldedToClose(mesh, out.report);
+FinishedMesh finished(const Mesh& mesh) {
+  FinishedMesh out;
+  static_cast<WeldedMesh&>(out) = weldedToClose(mesh, out.report);
   out.is_turned =
       !out.mesh.triangles.empty() && out.report.isClosed() && massProperties(out.mesh).volume_m3 < 0;
   if (out.is_turned) flip(out.mesh);
@@ -209,13 +221,15 @@ void weldAll(ImportedCad& cad) {
     source[i] = i;
     own.push_back(i);
   }
-  std::vector<WeldedMesh> welded(cad.parts.size());
+  std::vector<FinishedMesh> welded(cad.parts.size());
   tbb::parallel_for(std::size_t{0}, own.size(),
-                    [&](std::size_t k) { welded[own[k]] = weldedOf(cad.parts[own[k]].mesh); });
+                    [&](std::size_t k) { welded[own[k]] = finished(cad.parts[own[k]].mesh); });
   for (std::size_t i = 0; i < cad.parts.size(); ++i) {
     ImportedPart& part = cad.parts[i];
-    const WeldedMesh& of = welded[source[i]];
+    const FinishedMesh& of = welded[source[i]];
     part.mesh = of.mesh;
+    part.face_colors = ofTriangles(part.face_colors, of.sources);
+    simplify(part.face_colors, part.color);
     requireUsable(part.mesh, cad.file, part.name);
     if (of.is_turned) cad.warnings.push_back("part '" + part.name + "': was inside out; turned");
     describe(part, of.report, cad.warnings);

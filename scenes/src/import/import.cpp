@@ -8,6 +8,7 @@
 #include <set>
 
 #include "core/machine_memory.h"
+#include "import/kept_cad.h"
 #include "import/own_process.h"
 #include "import/readers.h"
 #include "vps/load_error.h"
@@ -54,18 +55,9 @@ bool isUpOpen(const std::string& format) {
   return format == "Inventor" || format == "VRML";
 }
 
-ImportedCad withFileAxes(const std::string& file, ImportSettings settings, const Progress& progress) {
-  if (settings.unit_m && !(*settings.unit_m > 0))
-    throw LoadError(file, "", "is given a unit that is not a positive length; give metres per file unit");
-  if (!(settings.deflection_m > 0) || !(settings.angle_rad > 0)) {
-    throw LoadError(file, "", "needs a deflection and an angle of more than 0");
-  }
-  if (settings.most_memory_bytes == 0)
-    settings.most_memory_bytes = static_cast<std::uint64_t>(0.5 * machineMemoryBytes());
-  ImportedCad cad;
-  cad.file = file;
-  cad.format = import::detectFormat(file);
-  if (progress) progress("reading " + import::stem(file), 0);
+/// The parts of a file in its own axes, made by its reader.
+void readAnew(const std::string& file, const ImportSettings& settings, const Progress& progress,
+              ImportedCad& cad) {
   const Reader reader = readerOf(cad.format);
   const auto read = [&](const Progress& inner) { return reader.read(file, cad.format, settings, inner); };
   std::optional<import::RawCad> raw;
@@ -79,6 +71,28 @@ ImportedCad withFileAxes(const std::string& file, ImportSettings settings, const
       part.deflection_m = std::max(part.deflection_m.value_or(0), settings.deflection_m);
     else
       part.deflection_m.reset();
+  }
+}
+
+ImportedCad withFileAxes(const std::string& file, ImportSettings settings, const Progress& progress) {
+  if (settings.unit_m && !(*settings.unit_m > 0))
+    throw LoadError(file, "", "is given a unit that is not a positive length; give metres per file unit");
+  if (!(settings.deflection_m > 0) || !(settings.angle_rad > 0)) {
+    throw LoadError(file, "", "needs a deflection and an angle of more than 0");
+  }
+  if (settings.most_memory_bytes == 0)
+    settings.most_memory_bytes = static_cast<std::uint64_t>(0.5 * machineMemoryBytes());
+  ImportedCad cad;
+  cad.file = file;
+  cad.format = import::detectFormat(file);
+  if (progress) progress("reading " + import::stem(file), 0);
+  const std::string made_from =
+      settings.cache != nullptr ? import::madeFrom(file, cad.format, settings, import::occtVersion()) : "";
+  std::optional<std::string> kept;
+  if (!made_from.empty()) kept = settings.cache->find(made_from);
+  if (!kept || !import::readKeptBytes(*kept, cad)) {
+    readAnew(file, settings, progress, cad);
+    if (!made_from.empty()) settings.cache->keep(made_from, import::keptBytes(cad));
   }
   if (progress) progress("reading " + import::stem(file), 1);
   return cad;

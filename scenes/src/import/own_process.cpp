@@ -25,7 +25,6 @@ RawCad inOwnProcess(const std::string&, const std::string&, const ImportSettings
 #include <mutex>
 #include <new>
 #include <system_error>
-#include <type_traits>
 #include <vector>
 
 #include <fcntl.h>
@@ -37,13 +36,15 @@ RawCad inOwnProcess(const std::string&, const std::string&, const ImportSettings
 #include <sys/prctl.h>
 #endif
 
+#include "import/part_bytes.h"
 #include "vps/load_error.h"
 
 namespace vps::scenes::inline v0::import {
 namespace {
 
 // Messages of the child: Progressed (share, text) any number of times, then once Done (a RawCad) or Failed
-// (the text of the error). Both ends are the same program, so values are sent as they lie in memory.
+// (the text of the error). Both ends are the same program, so values are sent as they lie in memory
+// (part_bytes.h).
 enum class Message : std::uint8_t { Progressed, Done, Failed };
 
 /// The child's messages ended early.
@@ -111,50 +112,6 @@ class Reader {
   std::vector<char> ready_;
   std::size_t next_ = 0, end_ = 0;
 };
-
-// One transfer() for each type serves both directions, so that they cannot disagree: `io` copies the bytes of
-// the value out or in.
-template <class Io, class T>
-requires std::is_arithmetic_v<T> || std::is_enum_v<T>
-void transfer(Io& io, T& value) {
-  io(&value, sizeof value);
-}
-
-/// A string, or a vector of values without pointers.
-template <class Io, class Array>
-void transferArray(Io& io, Array& values) {
-  std::uint64_t count = values.size();
-  transfer(io, count);
-  values.resize(std::size_t(count));
-  io(static_cast<void*>(values.data()), values.size() * sizeof(values[0]));
-}
-
-template <class Io, class T, class Each>
-void transferEach(Io& io, std::vector<T>& values, Each each) {
-  std::uint64_t count = values.size();
-  transfer(io, count);
-  values.resize(std::size_t(count));
-  for (T& value : values) each(value);
-}
-
-template <class Io>
-void transfer(Io& io, RawCad& cad) {
-  static_assert(sizeof(Vec3) == 3 * sizeof(double) && sizeof(cad.parts[0].color) == 3 * sizeof(float));
-  transferEach(io, cad.parts, [&](RawPart& part) {
-    transferArray(io, part.name);
-    transferArray(io, part.mesh.vertices);
-    transferArray(io, part.mesh.triangles);
-    io(part.X_WP.data(), 16 * sizeof(double));
-    io(part.color.data(), sizeof part.color);
-    transfer(io, part.deviation_m);
-    transferArray(io, part.note);
-    transfer(io, part.rounding);
-    transferEach(io, part.within, [&](std::string& name) { transferArray(io, name); });
-  });
-  transferEach(io, cad.warnings, [&](std::string& line) { transferArray(io, line); });
-  transfer(io, cad.unit_m);
-  transfer(io, cad.open_shapes);
-}
 
 /// In the child: makes a crash silent, fast and harmless to the parent.
 void prepareToCrash() {

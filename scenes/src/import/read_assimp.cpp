@@ -8,11 +8,14 @@
 #include <assimp/scene.h>
 #include <assimp/Importer.hpp>
 
+#include <algorithm>
 #include <cstdint>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <optional>
 
+#include "import/colors_3mf.h"
 #include "import/mesh_text.h"
 #include "import/readers.h"
 #include "vps/load_error.h"
@@ -36,6 +39,29 @@ void appendMesh(const aiMesh& from, Mesh& to) {
     if (face.mNumIndices != 3) continue;  // points and lines
     to.triangles.push_back({base + face.mIndices[0], base + face.mIndices[1], base + face.mIndices[2]});
   }
+}
+
+/// The colours of the triangles that appendMesh() takes: a corner's, where the file has them by vertex, in
+/// the mean, else the mesh's.
+void appendColors(const aiMesh& from, const Color& of_mesh, bool is_gltf, FaceColors& to) {
+  FaceColors own;
+  std::size_t count = 0;
+  std::map<Color, std::uint32_t> known;
+  for (unsigned i = 0; i < from.mNumFaces; ++i) {
+    const aiFace& face = from.mFaces[i];
+    if (face.mNumIndices != 3) continue;
+    ++count;
+    if (!from.HasVertexColors(0)) continue;
+    aiColor4D mean;
+    for (unsigned k = 0; k < 3; ++k) mean += from.mColors[0][face.mIndices[k]];
+    Color color = {mean.r / 3, mean.g / 3, mean.b / 3};
+    if (!is_gltf) color = linearFromSrgb(color);
+    for (std::size_t k = 0; is_gltf && k < 3; ++k) color[k] *= of_mesh[k];  // by its specification
+    const auto [it, is_new] = known.emplace(color, static_cast<std::uint32_t>(own.palette.size()));
+    if (is_new) own.palette.push_back(color);
+    own.of_triangle.push_back(it->second);
+  }
+  append(to, count, own, of_mesh);
 }
 
 std::array<float, 3> colorOf(const aiScene& scene, const aiMesh& mesh, bool is_gltf) {
@@ -65,9 +91,36 @@ class ReplacedFile : public Assimp::DefaultIOSystem {
   const std::string& bytes_;
 };
 
+FaceColors faceColors(const Mesh3mf& mesh) {
+  FaceColors colors;
+  std::map<Color, std::uint32_t> known;
+  for (const std::optional<Color>& own : mesh.colors) {
+    const Color color = own.value_or(ImportedPart().color);
+    const auto [it, is_new] = known.emplace(color, static_cast<std::uint32_t>(colors.palette.size()));
+    if (is_new) colors.palette.push_back(color);
+    colors.of_triangle.push_back(it->second);
+  }
+  return colors;
+}
+
+/// Whether assimp made the mesh from that one: the same triangles between the same places.
+bool isSame(const aiMesh& mesh, const Mesh3mf& one) {
+  if (mesh.mNumFaces != one.triangles.size() || mesh.mNumVertices != one.vertices.size()) return false;
+  for (unsigned i = 0; i < mesh.mNumFaces; ++i)
+    for (unsigned k = 0; k < 3; ++k)
+      if (mesh.mFaces[i].mNumIndices != 3 || mesh.mFaces[i].mIndices[k] != one.triangles[i][k]) return false;
+  constexpr float kRelative = 1e-5F;  // both are floats of the same text
+  for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
+    const Eigen::Vector3f p(mesh.mVertices[i].x, mesh.mVertices[i].y, mesh.mVertices[i].z);
+    if (!((p - one.vertices[i]).norm() <= kRelative * (p.norm() + one.vertices[i].norm()))) return false;
+  }
+  return true;
+}
+
 struct Walk {
   const aiScene& scene;
   bool is_gltf;
+  const std::vector<Mesh3mf>& colored;  ///< of a 3MF file
   RawCad& cad;
 
   void node(const aiNode& n, const Eigen::Affine3d& X_WParent) {
@@ -77,7 +130,13 @@ struct Walk {
     part.X_WP = X_WP;
     for (unsigned i = 0; i < n.mNumMeshes; ++i) {
       const aiMesh& mesh = *scene.mMeshes[n.mMeshes[i]];
-      if (i == 0) part.color = colorOf(scene, mesh, is_gltf);
+      const Color color = colorOf(scene, mesh, is_gltf);
+      if (i == 0) part.color = color;
+      const auto own = std::ranges::find_if(colored, [&](const Mesh3mf& one) { return isSame(mesh, one); });
+      if (own == colored.end() || !own->hasColors())
+        appendColors(mesh, color, is_gltf, part.face_colors);
+      else
+        append(part.face_colors, own->colors.size(), faceColors(*own), color);
       if (part.name.empty()) part.name = mesh.mName.C_Str();
       appendMesh(mesh, part.mesh);
     }
@@ -186,7 +245,9 @@ RawCad readAssimp(const std::string& file, const std::string& format, const Impo
     throw LoadError(file, "", "is not a readable " + format + " file (" + reason + "); export it again");
   }
   const bool is_gltf = format == "glTF";
-  Walk{*scene, is_gltf, cad}.node(*scene->mRootNode, Eigen::Affine3d::Identity());
+  std::vector<Mesh3mf> colored;
+  if (format == "3MF") colored = meshes3mf(model3mf(file));
+  Walk{*scene, is_gltf, colored, cad}.node(*scene->mRootNode, Eigen::Affine3d::Identity());
   if (is_gltf || format == "DAE") makeZUp(cad, is_gltf);
   if (is_gltf && settings.up) keepFileAxes(cad);
   if (format == "OBJ") cad.open_shapes = Shapes::BoundOne;

@@ -18,11 +18,12 @@ struct RawPart {
   std::string name;
   Mesh mesh;
   Eigen::Affine3d X_WP = Eigen::Affine3d::Identity();  ///< may scale or mirror
-  std::array<float, 3> color = ImportedPart().color;   ///< linear RGB
+  Color color = ImportedPart().color;                  ///< linear RGB
   double deviation_m = 0;                ///< of the mesh from the file's exact faces, as measured
   std::string note;                      ///< what is wrong with it, for a warning; empty: nothing
   std::vector<std::string> within = {};  ///< see ImportedPart
   double rounding = 0;                   ///< of the vertices in the assembly, in file units, see ImportedPart
+  FaceColors face_colors = {};           ///< may have one colour only
 };
 
 /// The greatest distance of a vertex in the assembly from where it was before its coordinates, and those of
@@ -46,6 +47,8 @@ struct RawCad {
 /// Each throws LoadError; `format` is as detected, e.g. "STEP".
 RawCad readOcct(const std::string& file, const std::string& format, const ImportSettings& settings,
                 const Progress& progress);
+/// The version of Open CASCADE; empty in a build without.
+std::string occtVersion();
 RawCad readCoin(const std::string& file, const std::string& format, const ImportSettings& settings,
                 const Progress& progress);
 RawCad readAssimp(const std::string& file, const std::string& format, const ImportSettings& settings,

@@ -180,6 +180,7 @@ Scene sceneOf(const ImportedCad& cad) {
     part.part.name = imported.name;
     part.part.mesh = imported.mesh;
     part.part.color = imported.color;
+    part.part.face_colors = imported.face_colors;
     part.X_WP = imported.X_WP;
     part.file = cad.file;
     part.deflection_m = imported.deflection_m;

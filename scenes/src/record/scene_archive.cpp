@@ -30,7 +30,7 @@ std::string magicOf(int version) {
 
 /// The greatest `since` of all settings, and of what has no table (laterFields()).
 constexpr int latestVersion() {
-  int latest = 6;
+  int latest = 7;
   const auto look = [&](const auto& row) {
     if constexpr (requires { row.traits.since; }) latest = std::max(latest, row.traits.since);
   };
@@ -163,7 +163,7 @@ void fields(Archive& archive, T& x) {
 }
 template <typename Archive, Either<Part> T>
 void fields(Archive& archive, T& x) {
-  auto& [name, mesh, material, color] = x;
+  [[maybe_unused]] auto& [name, mesh, material, color, face_colors] = x;
   archive(name, mesh);
   settings(archive, material, kMaterialFields);
   archive(color);
@@ -217,6 +217,12 @@ void partFields5(Archive& archive, T& part) {
   archive(part.youngs_modulus_Pa, part.poissons_ratio);
 }
 
+/// What a part got with version 7, and what has no table.
+template <typename Archive, Either<ScenePart> T>
+void partFields7(Archive& archive, T& part) {
+  archive(part.part.face_colors.palette, part.part.face_colors.of_triangle);
+}
+
 /// What a step got with version 6, and what has no table.
 template <typename Archive, Either<SceneStep> T>
 void stepFields6(Archive& archive, T& step) {
@@ -241,6 +247,8 @@ void laterFields(Archive& archive, T& x, int version) {
     for (auto& part : x.parts) partFields4(archive, part);
   if (version == 5)
     for (auto& part : x.parts) partFields5(archive, part);
+  if (version == 7)
+    for (auto& part : x.parts) partFields7(archive, part);
   for (auto& step : x.steps) settings(archive, step, kStepKeys, version);
   if (version == 6)
     for (auto& step : x.steps) stepFields6(archive, step);
@@ -283,6 +291,11 @@ std::string impossible(const Scene& scene) {
       for (const std::uint32_t corner : triangle)
         if (corner >= part.part.mesh.vertices.size()) return "a triangle whose corner does not exist";
     if (!part.X_WP.isFinite()) return "a pose that is not finite";
+    const FaceColors& colors = part.part.face_colors;
+    if (!colors.isNone() && colors.of_triangle.size() != part.part.mesh.triangles.size())
+      return "another number of colours than of triangles";
+    for (const std::uint32_t color : colors.of_triangle)
+      if (color >= colors.palette.size()) return "a triangle whose colour does not exist";
   }
   if (scene.device.placement && !scene.device.placement->isFinite()) return "a pose that is not finite";
   std::string key;

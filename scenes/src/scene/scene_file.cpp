@@ -78,6 +78,7 @@ ScenePart placedPart(const ImportedPart& imported, const std::string& file, cons
   part.part.mesh = imported.mesh;
   part.part.material = material;
   part.part.color = imported.color;
+  part.part.face_colors = imported.face_colors;
   part.X_WP = imported.X_WP;
   part.file = file;
   part.deflection_m = imported.deflection_m;
@@ -96,9 +97,11 @@ constexpr double kAutoTolerance_m = 10e-6;
 
 class SceneReader {
  public:
-  SceneReader(const toml::table& root, const std::string& file, const Progress& progress)
+  SceneReader(const toml::table& root, const std::string& file, const Progress& progress,
+              const ByteCache* cache)
       : context_{file, std::nullopt}, top_(root, context_, "", keysOf(kSceneKeys)), progress_(progress) {
     scene_.file = file;
+    import_.cache = cache;
   }
 
   Scene read() {
@@ -193,6 +196,7 @@ class SceneReader {
     for (const char* key : {"velocity_m_s", "angular_velocity_rad_s"})
       if (part.is_fixed && keys.has(key))
         keys.fail(key, "has no effect on a fixed part; leave one of them out");
+    if (keys.has("color")) part.part.face_colors = {};  // one colour for all of it
     readColor(keys, part.part.color);
   }
 
@@ -415,9 +419,9 @@ class SceneReader {
 
 }  // namespace
 
-Scene loadScene(const std::string& file, const Progress& progress) {
+Scene loadScene(const std::string& file, const Progress& progress, const ByteCache* cache) {
   const toml::table root = parseToml(readTomlText(file, "scene file", "scene.toml"), file);
-  return SceneReader(root, file, progress).read();
+  return SceneReader(root, file, progress, cache).read();
 }
 
 }  // namespace vps::scenes::inline v0

@@ -12,10 +12,12 @@ ScenePart unitedPart(const std::string& name, const std::vector<ScenePart>& part
   whole.part.name = name;
   whole.members.clear();
   whole.fastener.clear();
+  whole.part.face_colors = {};
   double mass_kg = 0, volume_m3 = 0, largest_m2 = 0;
   for (const ScenePart& part : parts) {
     if (&part != &parts.front())
       append(whole.part.mesh, transformed(part.part.mesh, whole.X_WP.inverse() * part.X_WP));
+    append(whole.part.face_colors, part.part.mesh.triangles.size(), part.part.face_colors, part.part.color);
     whole.members.push_back(part.part.name);
     const double own_m3 = std::abs(massProperties(part.part.mesh).volume_m3);
     volume_m3 += own_m3;
@@ -30,6 +32,7 @@ ScenePart unitedPart(const std::string& name, const std::vector<ScenePart>& part
     whole.rounding_m = std::max(whole.rounding_m, part.rounding_m);
     if (part.deflection_m) whole.deflection_m = std::max(*part.deflection_m, whole.deflection_m.value_or(0));
   }
+  simplify(whole.part.face_colors, whole.part.color);
   if (volume_m3 > 0) whole.part.material.density_kg_m3 = mass_kg / volume_m3;
   return whole;
 }

@@ -87,7 +87,8 @@ std::string colorText(const std::array<float, 3>& linear) {
 std::string partText(const ScenePart& part, const std::string& file) {
   std::string out = "[[part]]\nname = " + tomlText(part.part.name) + "\nfile = " + tomlText(file) +
                     "\npose = " + tomlPose(part.X_WP) + "\n";
-  if (part.part.color != Part().color) out += "color = " + colorText(part.part.color) + "\n";
+  if (part.part.color != Part().color && part.part.face_colors.isNone())
+    out += "color = " + colorText(part.part.color) + "\n";
   const auto vector = [&](const char* key, const Vec3& v) {
     if (!v.isZero(0))
       out += std::string(key) + " = [" + tomlNumber(v.x(), 17) + ", " + tomlNumber(v.y(), 17) + ", " +

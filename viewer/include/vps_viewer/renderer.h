@@ -31,6 +31,9 @@ struct DrawnMesh {
   Pose X_WP = {};
   /// Linear RGB by vertex, by which `color` is multiplied; null: white. Lives as long as the mesh.
   const std::vector<std::array<float, 3>>* vertex_colors = nullptr;
+  /// Of the faces of a part that is not in hand, in place of `color`; null or none: they have none. Lives as
+  /// long as the mesh.
+  const scenes::FaceColors* face_colors = nullptr;
 };
 using RenderScene = std::vector<DrawnMesh>;
 

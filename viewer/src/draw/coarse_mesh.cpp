@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <set>
 #include <unordered_map>
 
@@ -16,6 +17,16 @@ std::uint64_t side(const std::array<float, 3>& n) {
   for (int k = 1; k < 3; ++k)
     if (std::abs(n[k]) > std::abs(n[axis])) axis = k;
   return static_cast<std::uint64_t>(2 * axis + (n[axis] < 0 ? 1 : 0));
+}
+
+/// By vertex: equal for equal colours. Empty for a mesh without.
+std::vector<std::uint32_t> colorNumbers(const ShadingMesh& mesh) {
+  std::map<std::array<float, 3>, std::uint32_t> known;
+  std::vector<std::uint32_t> numbers;
+  numbers.reserve(mesh.colors.size());
+  for (const std::array<float, 3>& color : mesh.colors)
+    numbers.push_back(known.try_emplace(color, static_cast<std::uint32_t>(known.size())).first->second);
+  return numbers;
 }
 
 }  // namespace
@@ -60,10 +71,13 @@ std::vector<std::uint32_t> CoarseMesh::indices(std::size_t wanted) {
   const float cell = (high - low).maxCoeff() / static_cast<float>(cells);
   if (!(cell > 0)) return mesh_.indices;
 
+  constexpr int kColorBits = 25;  // that a cell and a side leave
+  const std::vector<std::uint32_t> color_of = colorNumbers(mesh_);
   std::unordered_map<std::uint64_t, std::uint32_t> first_in_cell;
   std::vector<std::uint32_t> stand_in(mesh_.vertices.size());
   const auto standIn = [&](std::uint32_t i) {
     std::uint64_t key = side(mesh_.vertices[i].n);
+    if (!color_of.empty()) key |= std::uint64_t{color_of[i] & ((1U << kColorBits) - 1)} << 3;
     for (int k = 0; k < 3; ++k)
       key = key << 12 | static_cast<std::uint64_t>((mesh_.vertices[i].p[k] - low[k]) / cell);
     stand_in[i] = first_in_cell.try_emplace(key, i).first->second;
@@ -80,7 +94,7 @@ std::vector<std::uint32_t> CoarseMesh::smoothedIndices(double cell) {
   constexpr float kNormalBins = 12;  // a unit of a normal's coordinate: 5 degrees
   const std::vector<bool>& is_creased = creased();
   struct Key {
-    std::array<std::int32_t, 6> at;
+    std::array<std::int32_t, 7> at;
     bool operator==(const Key&) const = default;
   };
   const auto hash = [](const Key& key) {
@@ -88,12 +102,14 @@ std::vector<std::uint32_t> CoarseMesh::smoothedIndices(double cell) {
     for (const std::int32_t x : key.at) h = (h ^ static_cast<std::uint32_t>(x)) * 0x9E3779B97F4A7C15ull;
     return h ^ h >> 29;
   };
+  const std::vector<std::uint32_t> color_of = colorNumbers(mesh_);
   std::unordered_map<Key, std::uint32_t, decltype(hash)> first(mesh_.vertices.size(), hash);
   std::vector<std::uint32_t> stand_in(mesh_.vertices.size());
   for (std::uint32_t i = 0; i < mesh_.vertices.size(); ++i) {
     stand_in[i] = i;
     if (is_creased[i]) continue;
     Key key{};
+    if (!color_of.empty()) key.at[6] = static_cast<std::int32_t>(color_of[i]);
     for (std::size_t k = 0; k < 3; ++k) {
       key.at[k] = static_cast<std::int32_t>(std::floor(static_cast<double>(mesh_.vertices[i].p[k]) / cell));
       key.at[3 + k] = static_cast<std::int32_t>(std::floor(kNormalBins * mesh_.vertices[i].n[k] + 0.5f));

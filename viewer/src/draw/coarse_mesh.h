@@ -18,14 +18,14 @@ class CoarseMesh {
   explicit CoarseMesh(const ShadingMesh& mesh) : mesh_(mesh) {}
 
   /// Indices of about `wanted` triangles between some of the mesh's own vertices, or of all where it has no
-  /// more. The vertices within a cell of a cubic grid whose normals face the same side become one of them,
-  /// and triangles that collapse are dropped; a surface stays within a cell's diagonal of where it was.
-  /// O(triangles). Source: vertex clustering, Rossignac and Borrel 1993.
+  /// more. The vertices of one colour within a cell of a cubic grid whose normals face the same side become
+  /// one of them, and triangles that collapse are dropped; a surface stays within a cell's diagonal of where
+  /// it was. O(triangles). Source: vertex clustering, Rossignac and Borrel 1993.
   std::vector<std::uint32_t> indices(std::size_t wanted);
 
-  /// The same surface with fewer triangles where it is smooth: vertices within a cell whose normals differ by
-  /// less than about a twelfth of a right angle become one. Those on creases and borders stay, so nothing
-  /// opens. A surface stays within a quarter of a cell of where it was. O(triangles).
+  /// The same surface with fewer triangles where it is smooth: vertices of one colour within a cell whose
+  /// normals differ by less than about a twelfth of a right angle become one. Those on creases and borders
+  /// stay, so nothing opens. A surface stays within a quarter of a cell of where it was. O(triangles).
   /// @param cell  edge of a cell [m], > 0
   std::vector<std::uint32_t> smoothedIndices(double cell);
 

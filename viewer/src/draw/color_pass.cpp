@@ -95,7 +95,7 @@ void renderColor(const Picture& picture, const MarkList& marks, const DrawnBody*
   glBindFramebuffer(GL_FRAMEBUFFER, frame.color_target.id());
   glViewport(0, 0, frame.width * frame.factor, frame.height * frame.factor);
   glEnable(GL_SCISSOR_TEST);
-  const PixelRect region = scaled(picture.region, frame.factor);
+  const PixelRect region = scaled(picture.parts, frame.factor);
   glScissor(region.x, region.y, region.width, region.height);
   glClearColor(0, 0, 0, 0);
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
@@ -131,13 +131,21 @@ void resolvePicture(const Picture& picture, Image& image) {
   glViewport(0, 0, f.width, f.height);
   glDisable(GL_DEPTH_TEST);
   glEnable(GL_SCISSOR_TEST);
-  glScissor(region.x, region.y, region.width, region.height);
   glBindTextureUnit(0, f.color.id());
   glBindTextureUnit(1, f.behind.id());
-  const gl::Program& program = gl.finalProgram();
-  program.set("parts", 0);
-  program.set("behind", 1);
-  gl.drawFullScreen(program);
+  const auto draw = [&](const PixelRect& rect, bool has_parts) {
+    if (rect.isEmpty()) return;
+    glScissor(rect.x, rect.y, rect.width, rect.height);
+    const gl::Program& program = gl.finalProgram(has_parts);
+    program.set("parts", 0);
+    program.set("behind", 1);
+    gl.drawFullScreen(program);
+  };
+  draw(picture.parts, true);
+  if (picture.parts.isEmpty())
+    draw(region, false);
+  else
+    for (const PixelRect& rect : around(region, picture.parts)) draw(rect, false);
   glDisable(GL_SCISSOR_TEST);
   glEnable(GL_DEPTH_TEST);
   readBack(region, image);

@@ -34,7 +34,8 @@ FrameTargets::FrameTargets(int width, int height, int factor, bool is_draft)
   geometry_target = targetOf(geometry, "normals", &geometry_depth);
   occlusion_raw = gl::makeTexture(GL_RG8, lit_width, lit_height, GL_NEAREST);
   occlusion_raw_target = targetOf(occlusion_raw, "occlusion", &geometry_depth);
-  occlusion = gl::makeTexture(GL_RG8, lit_width, lit_height, GL_LINEAR);
+  // Without supersampling each pixel has a texel of its own.
+  occlusion = gl::makeTexture(GL_RG8, lit_width, lit_height, factor > 1 ? GL_LINEAR : GL_NEAREST);
   occlusion_target = targetOf(occlusion, "blurred occlusion", &geometry_depth);
 
   const int w = width * factor, h = height * factor;

@@ -35,7 +35,8 @@ struct FrameTargets {
 /// The render targets whose size does not depend on the picture's.
 struct ShadowTargets {
   static constexpr int kKeySize = 2048, kFloorSize = 256;
-  gl::Texture key;  ///< depth map of the key light, with comparison on lookup
+  static constexpr double kFloorRadii = 3;  ///< around the centre that the floor's texture covers
+  gl::Texture key;                          ///< depth map of the key light, with comparison on lookup
   gl::Framebuffer key_target;
   gl::Texture floor_a, floor_b;
   gl::Renderbuffer floor_depth;

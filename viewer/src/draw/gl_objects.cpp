@@ -140,6 +140,9 @@ void Program::set(const char* uniform, float value) const {
 void Program::set(const char* uniform, const Eigen::Vector2f& value) const {
   glProgramUniform2fv(program_.id(), at(uniform), 1, value.data());
 }
+void Program::set(const char* uniform, const Eigen::Vector2i& value) const {
+  glProgramUniform2iv(program_.id(), at(uniform), 1, value.data());
+}
 void Program::set(const char* uniform, const Eigen::Vector3f& value) const {
   glProgramUniform3fv(program_.id(), at(uniform), 1, value.data());
 }

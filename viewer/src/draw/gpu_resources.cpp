@@ -2,10 +2,45 @@
 #include "draw/gpu_resources.h"
 
 #include <array>
+#include <cmath>
+#include <cstdio>
+#include <vector>
 
 namespace vps::viewer::inline v0 {
 
-GpuResources::GpuResources() {
+namespace {
+
+std::string finalFragment(int factor, int samples, bool has_parts) {
+  return "const int factor = " + std::to_string(factor) + ", samples = " + std::to_string(samples) +
+         ";\nconst bool has_parts = " + (has_parts ? "true" : "false") + ";\n" + glsl::kFinalFragment;
+}
+
+}  // namespace
+
+std::string FloorBlur::constants() {
+  std::vector<std::array<double, 2>> weights;
+  std::array<double, 2> sum = {0, 0};
+  for (int i = -kReach_texel; i <= kReach_texel; ++i) {
+    std::array<double, 2>& weight = weights.emplace_back();
+    for (std::size_t k = 0; k < 2; ++k) {
+      const double sigma = k == 0 ? kNarrow : kWide;
+      weight[k] = std::exp(-0.5 * i * i / (sigma * sigma));
+      sum[k] += weight[k];
+    }
+  }
+  std::string list;
+  for (const std::array<double, 2>& weight : weights) {
+    char text[64];
+    std::snprintf(text, sizeof text, "%svec2(%.9e, %.9e)", list.empty() ? "" : ", ", weight[0] / sum[0],
+                  weight[1] / sum[1]);
+    list += text;
+  }
+  return "const int kReach = " + std::to_string(kReach_texel) +
+         ";\nconst vec2 kWeights[2 * kReach + 1] = vec2[](" + list + ");\n";
+}
+
+GpuResources::GpuResources()
+    : final_background_("final background", glsl::kFullScreenVertex, finalFragment(1, 1, false)) {
   const std::array<float, 8> corners = {-1, -1, 1, -1, -1, 1, 1, 1};
   quad_corners = gl::makeBuffer(std::span<const float>(corners));
   gl::addAttribute(quad, quad_corners, 0, 2, 0, 2 * sizeof(float));
@@ -20,9 +55,7 @@ bool GpuResources::resizeFrame(int width, int height, int factor, bool is_draft)
   owner = std::make_unique<FrameTargets>(width, height, factor, is_draft);
   frame = owner.get();
   if (!final_.contains(factor))
-    final_.try_emplace(factor, "final", glsl::kFullScreenVertex,
-                       "const int factor = " + std::to_string(factor) +
-                           ", samples = " + std::to_string(frame->samples) + ";\n" + glsl::kFinalFragment);
+    final_.try_emplace(factor, "final", glsl::kFullScreenVertex, finalFragment(factor, frame->samples, true));
   return true;
 }
 

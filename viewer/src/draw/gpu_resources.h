@@ -14,6 +14,17 @@
 
 namespace vps::viewer::inline v0 {
 
+/// The blur of the floor's shadow [texels of its texture].
+struct FloorBlur {
+  static constexpr double kTexels =
+      ShadowTargets::kFloorSize / (2 * ShadowTargets::kFloorRadii);           // of a radius
+  static constexpr double kNarrow = 0.035 * kTexels, kWide = 0.16 * kTexels;  // standard deviations
+  static constexpr int kRadius_texel = static_cast<int>(kTexels + 1);
+  static constexpr int kReach_texel = static_cast<int>(2.5 * kWide + 1);
+  /// The constants of kFloorBlurFragment.
+  static std::string constants();
+};
+
 struct ShaderPrograms {
   gl::Program mesh{"mesh", glsl::kMeshVertex, std::string(glsl::kStudio) + glsl::kMeshFragment};
   gl::Program ghost{"ghost", glsl::kMeshVertex, glsl::kGhostFragment};
@@ -24,7 +35,8 @@ struct ShaderPrograms {
   gl::Program occlusion{"occlusion", glsl::kFullScreenVertex, glsl::kOcclusionFragment};
   gl::Program occlusion_blur{"occlusion blur", glsl::kFullScreenVertex, glsl::kOcclusionBlurFragment};
   gl::Program floor{"floor", glsl::kMeshVertex, glsl::kFloorFragment};
-  gl::Program floor_blur{"floor blur", glsl::kFullScreenVertex, glsl::kFloorBlurFragment};
+  gl::Program floor_blur{"floor blur", glsl::kFullScreenVertex,
+                         FloorBlur::constants() + glsl::kFloorBlurFragment};
   gl::Program floor_shadow{"floor shadow", glsl::kCapVertex, glsl::kFloorShadowFragment};
   gl::Program background{"background", glsl::kFullScreenVertex, glsl::kBackgroundFragment};
   gl::Program line{"line", glsl::kLineVertex, glsl::kFlatFragment};
@@ -45,7 +57,10 @@ struct GpuResources {
   /// @return whether it is a new one, which shows nothing yet
   bool resizeFrame(int width, int height, int factor, bool is_draft);
   /// kFinalFragment for `frame`.
-  [[nodiscard]] const gl::Program& finalProgram() const { return final_.at(frame->factor); }
+  /// @param has_parts  false: only the background is there
+  [[nodiscard]] const gl::Program& finalProgram(bool has_parts) const {
+    return has_parts ? final_.at(frame->factor) : final_background_;
+  }
   /// Runs a program that uses kFullScreenVertex on every pixel.
   void drawFullScreen(const gl::Program& program) const;
   /// Runs a program that uses kCapVertex: one square in a plane.
@@ -54,6 +69,7 @@ struct GpuResources {
  private:
   std::unique_ptr<FrameTargets> full_, draft_;
   std::map<int, gl::Program> final_;  ///< by FrameTargets::factor
+  gl::Program final_background_;
 };
 
 }  // namespace vps::viewer::inline v0

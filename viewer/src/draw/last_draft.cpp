@@ -9,7 +9,7 @@ namespace {
 
 bool isSameBody(const DrawnBody& a, const DrawnBody& b) {
   return a.mesh == b.mesh && a.part == b.part && a.X_CP.R == b.X_CP.R && a.X_CP.p == b.X_CP.p &&
-         a.color == b.color && a.is_cut == b.is_cut && a.detail == b.detail;
+         a.color == b.color && a.shows_faces == b.shows_faces && a.is_cut == b.is_cut && a.detail == b.detail;
 }
 
 bool isSameMark(const Mark& a, const Mark& b) {

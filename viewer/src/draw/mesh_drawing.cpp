@@ -30,7 +30,8 @@ void drawMeshes(const gl::Program& program, const std::vector<DrawnBody>& bodies
     if (showsFrontOnly(body, view)) glEnable(GL_CULL_FACE);
     program.set("X_CP", toMatrix(body.X_CP));
     program.set("cut_C", body.is_cut ? view.cut_C : kNoCut);
-    if (is_shaded) program.set("color", body.color);
+    if (is_shaded) program.set("color", body.shows_faces ? Eigen::Vector3f::Ones().eval() : body.color);
+    if (is_shaded) program.set("tint_share", body.mesh->has_face_colors && !body.shows_faces ? 0.0f : 1.0f);
     if (detail || body.detail != Detail::Full || body.is_cut)
       body.mesh->draw(detail.value_or(body.detail));
     else

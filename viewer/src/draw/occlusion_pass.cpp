@@ -42,7 +42,6 @@ void renderOcclusion(const Picture& picture) {
   occlusion.set("half_view", view.half_view);
   occlusion.set("view_shift", view.shift);
   occlusion.set("radius_m", radius_m);
-  occlusion.set("projection", view.projection);
   glBindTextureUnit(1, picture.gl.shadows.key.id());
   occlusion.set("shadow_map", 1);
   occlusion.set("shadow_from_C", view.shadow_from_C);

@@ -20,7 +20,8 @@ struct Picture {
   const View& view;
   const DrawOptions& options;
   const std::vector<DrawnBody>& bodies;
-  PixelRect region;  ///< of the finished picture: what the colour image is drawn in
+  PixelRect region;  ///< of the finished picture that is drawn
+  PixelRect parts;   ///< of it, where the colour image can show something; elsewhere is the background
 };
 
 // shadow_pass.cpp

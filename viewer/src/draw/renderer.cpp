@@ -55,7 +55,7 @@ struct Renderer::Impl {
     for (const DrawnMesh& part : scene) triangles += part.mesh->triangles.size();
     for (const DrawnMesh& part : scene) {
       std::unique_ptr<GpuMesh>& mesh = gl->meshes[part.mesh];
-      if (!mesh) mesh = std::make_unique<GpuMesh>(*part.mesh, part.vertex_colors, triangles);
+      if (!mesh) mesh = std::make_unique<GpuMesh>(part, triangles);
       part_meshes.push_back(mesh.get());
       part_colors.emplace_back(Eigen::Map<const Vector3f>(part.color.data()));
     }
@@ -78,7 +78,9 @@ struct Renderer::Impl {
                        [&](std::size_t part, const Pose& X_WP, scenes::BodyRole role) {
                          const bool is_in_hand = role == scenes::BodyRole::InHand;
                          DrawnBody body = bodyAt(part, X_WP, view);
-                         body.color = is_in_hand && options.highlight_hand ? kHandColor : part_colors[part];
+                         const bool is_blue = is_in_hand && options.highlight_hand;
+                         body.color = is_blue ? kHandColor : part_colors[part];
+                         body.shows_faces = !is_blue && body.mesh->has_face_colors;
                          body.detail = options.is_draft ? Detail::Draft : Detail::Full;
                          body.is_cut = options.cut && (!is_in_hand || options.cut->cuts_hand);
                          bodies.push_back(body);
@@ -121,6 +123,20 @@ DrawOptions withoutOverlay(DrawOptions options) {
   return options;
 }
 
+/// Where the colour image can show something: a processor takes as long for a pixel without.
+PixelRect partsOnScreen(const std::vector<DrawnBody>& bodies, const DrawnBody* target, const MarkList& marks,
+                        const View& view, const DrawOptions& options) {
+  PixelRect rect;
+  const auto add = [&](const DrawnBody& body) {
+    rect = join(rect, boxOnScreen(body, view, options.width, options.height, lineMargin_px(options.height)));
+  };
+  for (const DrawnBody& body : bodies) add(body);
+  if (target != nullptr) add(*target);
+  for (const std::vector<Mark>* list : {&marks.discs, &marks.arrows})
+    for (const Mark& mark : *list) rect = join(rect, markOnScreen(mark, view, options.width, options.height));
+  return rect;
+}
+
 }  // namespace
 
 Image Renderer::render(const scenes::Snapshot& snapshot, const Camera& camera, const DrawOptions& options) {
@@ -157,14 +173,17 @@ Image Renderer::Impl::drawInFull(const scenes::Snapshot& snapshot, const Camera&
       makeView(visibleBounds(parts, snapshot, options.show_waiting, options.show_target), camera, options);
   const std::vector<DrawnBody> bodies = listBodies(snapshot, view, options);
   const std::optional<DrawnBody> target = targetOf(snapshot, view, options);
-  const Picture picture = {*gl, view, options, bodies, {0, 0, options.width, options.height}};
+  const MarkList marks = listMarks(snapshot, view.X_CW, 2 * view.detail_m, options);
+  const PixelRect whole = {0, 0, options.width, options.height};
+  const Picture picture = {*gl,     view,
+                           options, bodies,
+                           whole,   partsOnScreen(bodies, target ? &*target : nullptr, marks, view, options)};
   renderKeyShadow(picture);
   if (options.show_ground) renderFloorShadow(picture);
   renderGeometry(picture);
   renderOcclusion(picture);
   renderBehind(picture);
-  renderColor(picture, listMarks(snapshot, view.X_CW, 2 * view.detail_m, options),
-              target ? &*target : nullptr);
+  renderColor(picture, marks, target ? &*target : nullptr);
   Image image(options.width, options.height);
   resolvePicture(picture, image);
   return image;
@@ -194,14 +213,17 @@ Image Renderer::Impl::drawDraft(const scenes::Snapshot& snapshot, const Camera& 
                                                 lineMargin_px(options.height)))
           .isEmpty();
     });
-  const Picture picture = {*gl, view, options, shown,
-                           changed.value_or(PixelRect{0, 0, options.width, options.height})};
+  const PixelRect region = changed.value_or(PixelRect{0, 0, options.width, options.height});
+  const DrawnBody* target = next.target ? &*next.target : nullptr;
+  const Picture picture = {
+      *gl,   view,   options,
+      shown, region, intersection(region, partsOnScreen(next.bodies, target, next.marks, view, options))};
   if (!changed) {
     lightEverything(picture);
     renderBehind(picture);
   }
   if (!picture.region.isEmpty()) {
-    renderColor(picture, next.marks, next.target ? &*next.target : nullptr);
+    renderColor(picture, next.marks, target);
     resolvePicture(picture, image);
   }
   last_draft = LastDraft{std::move(next), image};

@@ -20,6 +20,7 @@ namespace {
 
 std::vector<std::array<float, 3>> colorsOf(const ShadingMesh& shading,
                                            const std::vector<std::array<float, 3>>* by_vertex) {
+  if (!shading.colors.empty()) return shading.colors;
   std::vector<std::array<float, 3>> out(shading.sources.size(), {1, 1, 1});
   if (by_vertex == nullptr) return out;
   for (std::size_t i = 0; i < out.size(); ++i) out[i] = by_vertex->at(shading.sources[i]);
@@ -28,12 +29,12 @@ std::vector<std::array<float, 3>> colorsOf(const ShadingMesh& shading,
 
 }  // namespace
 
-GpuMesh::GpuMesh(const Mesh& mesh, const std::vector<std::array<float, 3>>* vertex_colors,
-                 std::size_t scene_triangles)
-    : bounds_P(bounds(mesh)),
-      shading(buildShadingMesh(mesh)),
+GpuMesh::GpuMesh(const DrawnMesh& part, std::size_t scene_triangles)
+    : bounds_P(bounds(*part.mesh)),
+      shading(buildShadingMesh(*part.mesh, kCreaseAngle_rad, part.face_colors)),
+      has_face_colors(!shading.colors.empty()),
       vertices(gl::makeBuffer(std::span<const ShadingVertex>(shading.vertices))),
-      colors(gl::makeBuffer(std::span<const std::array<float, 3>>(colorsOf(shading, vertex_colors)))),
+      colors(gl::makeBuffer(std::span<const std::array<float, 3>>(colorsOf(shading, part.vertex_colors)))),
       sharp_edges(shading.sharp_edges) {
   const std::size_t triangles = shading.indices.size() / 3;
   CoarseMesh coarse(shading);

@@ -33,11 +33,11 @@ inline constexpr std::size_t kShadowTriangles = 120000;
 struct GpuMesh {
   Box bounds_P;         ///< in the part's frame
   ShadingMesh shading;  ///< kept, because outlines and sections are computed on the CPU for each picture
+  bool has_face_colors = false;
   gl::Buffer vertices, colors;
   GpuLines sharp_edges;
   /// @param scene_triangles  of all meshes, of which the details are shares
-  GpuMesh(const Mesh& mesh, const std::vector<std::array<float, 3>>* vertex_colors,
-          std::size_t scene_triangles);
+  GpuMesh(const DrawnMesh& part, std::size_t scene_triangles);
   void draw(Detail detail) const;
   /// With as few triangles as a picture shows where the part is at least that far away.
   /// @param px_per_m  of the picture, there
@@ -69,6 +69,7 @@ struct DrawnBody {
   std::size_t part = 0;
   Pose X_CP;  ///< mesh centre in the camera frame
   Eigen::Vector3f color = Eigen::Vector3f::Zero();
+  bool shows_faces = false;  ///< its faces have their own colours in place of `color`
   bool is_cut = false;
   Detail detail = Detail::Full;
 };

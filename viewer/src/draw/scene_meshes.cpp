@@ -21,6 +21,7 @@ RenderScene drawnMeshes(const scenes::Scene& scene) {
     const bool has_color = part.part.color != scenes::Part().color;
     drawn.push_back({&part.part.mesh, has_color ? part.part.color : kPalette[next++ % kPalette.size()],
                      part.is_fixed, part.X_WP});
+    if (!part.part.face_colors.isNone()) drawn.back().face_colors = &part.part.face_colors;
   }
   return drawn;
 }

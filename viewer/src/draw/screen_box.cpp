@@ -48,6 +48,14 @@ PixelRect join(const PixelRect& a, const PixelRect& b) {
   return {x, y, std::max(a.x + a.width, b.x + b.width) - x, std::max(a.y + a.height, b.y + b.height) - y};
 }
 
+std::array<PixelRect, 4> around(const PixelRect& all, const PixelRect& inner) {
+  const GLint right = inner.x + inner.width, top = inner.y + inner.height;
+  return {{{all.x, all.y, all.width, inner.y - all.y},
+           {all.x, top, all.width, all.y + all.height - top},
+           {all.x, inner.y, inner.x - all.x, inner.height},
+           {right, inner.y, all.x + all.width - right, inner.height}}};
+}
+
 PixelRect scaled(const PixelRect& rect, int factor) {
   return {rect.x * factor, rect.y * factor, rect.width * factor, rect.height * factor};
 }

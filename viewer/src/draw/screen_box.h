@@ -2,6 +2,8 @@
 // Where in a picture something is, in whole pixels.
 #pragma once
 
+#include <array>
+
 #include "draw/marks.h"
 #include "draw/scene_buffers.h"
 #include "draw/view.h"
@@ -19,6 +21,8 @@ struct PixelRect {
 PixelRect intersection(const PixelRect& a, const PixelRect& b);
 /// The least rectangle around both; an empty one has no place.
 PixelRect join(const PixelRect& a, const PixelRect& b);
+/// What the first has around the second, which lies in it: below, above, left, right.
+std::array<PixelRect, 4> around(const PixelRect& all, const PixelRect& inner);
 /// Pixels of a picture that is `factor` times as large.
 PixelRect scaled(const PixelRect& rect, int factor);
 

@@ -61,10 +61,11 @@ vec3 studio(vec3 p_C, vec3 n, vec3 albedo) {
 inline constexpr const char* kMeshFragment = R"(
 in vec3 p_C, n_C, tint;
 uniform vec3 color;
+uniform float tint_share;
 out vec4 result;
 void main() {
   vec3 n = normalize(gl_FrontFacing ? n_C : -n_C);
-  result = vec4(studio(p_C, n, color * tint), 1);
+  result = vec4(studio(p_C, n, color * mix(vec3(1), tint, tint_share)), 1);
 }
 )";
 
@@ -144,12 +145,12 @@ uniform sampler2D geometry;
 uniform vec2 half_view;  // tan of half the angles of view
 uniform vec2 view_shift;  // of the picture's middle
 uniform float radius_m;
-uniform mat4 projection;
 uniform sampler2DShadow shadow_map;
 uniform mat4 shadow_from_C;
 uniform float shadow_offset_m;
 out vec2 reaching;
 const int kSamples = 10;
+const vec2 kGolden = vec2(-0.7373688, 0.6754903);  // cosine and sine of 137.5 degrees
 
 // The pixels of a square have an 8 x 8 grid of depths between them, over 10 x 10 texels.
 float keyLight(vec3 p_C, vec3 n, ivec2 tile) {
@@ -172,19 +173,19 @@ void main() {
   float lit = keyLight(p, n, tile);
   p += n * radius_m * 0.03;
   float place = (float(((4 * tile.x + tile.y) * 7) & 15) + 0.5) / 16.0;
-  float turn = 6.2831853 * place;
+  // Each direction is a golden angle on from the last; a rotation costs a processor less than an angle.
+  vec2 turn = vec2(cos(6.2831853 * place), sin(6.2831853 * place));
   vec3 t = normalize(abs(n.x) < 0.8 ? cross(n, vec3(1, 0, 0)) : cross(n, vec3(0, 1, 0)));
   vec3 b = cross(n, t);
   float hidden = 0.0;
   for (int i = 0; i < kSamples; ++i) {
     float share = (float(i) + place) / float(kSamples);
-    float angle = turn + 2.3999632 * float(i);
     float sin_t = sqrt(share);  // cosine-weighted directions
-    vec3 d = t * (cos(angle) * sin_t) + b * (sin(angle) * sin_t) + n * sqrt(1.0 - share);
+    vec3 d = t * (turn.x * sin_t) + b * (turn.y * sin_t) + n * sqrt(1.0 - share);
+    turn = vec2(turn.x * kGolden.x - turn.y * kGolden.y, turn.x * kGolden.y + turn.y * kGolden.x);
     float reach = fract(share * 7.31 + 0.13);
     vec3 s = p + d * radius_m * (0.08 + 0.92 * reach * reach);
-    vec4 clip = projection * vec4(s, 1);
-    float z = texture(geometry, 0.5 + 0.5 * clip.xy / clip.w).w;
+    float z = texture(geometry, 0.5 + 0.5 * (s.xy / -s.z - view_shift) / half_view).w;
     // Geometry far in front is the silhouette of another body and is ignored.
     float nearby = smoothstep(0.0, 1.0, radius_m / max(abs(p.z - z), 1e-12));
     hidden += z > s.z + radius_m * 0.02 ? nearby : 0.0;
@@ -228,22 +229,18 @@ void main() {
 }
 )";
 
+// Its constants kReach and kWeights (of x and y, of texels -kReach to kReach) are put before it. The texels
+// that it reads exist.
 inline constexpr const char* kFloorBlurFragment = R"(
-in vec2 uv;
 uniform sampler2D source;
-uniform vec2 direction;
-uniform vec2 sigma_texel;  // of x and y
+uniform ivec2 direction;
 out vec2 result;
 void main() {
-  vec2 sum = vec2(0), weights = vec2(0);
-  int reach = int(ceil(2.5 * max(sigma_texel.x, sigma_texel.y)));
-  vec2 texel = direction / vec2(textureSize(source, 0));
-  for (int i = -reach; i <= reach; ++i) {
-    vec2 weight = exp(-0.5 * float(i * i) / (sigma_texel * sigma_texel));
-    sum += weight * texture(source, uv + float(i) * texel).rg;
-    weights += weight;
-  }
-  result = sum / weights;
+  ivec2 here = ivec2(gl_FragCoord.xy);
+  vec2 sum = vec2(0);
+  for (int i = -kReach; i <= kReach; ++i)
+    sum += kWeights[i + kReach] * texelFetch(source, here + i * direction, 0).rg;
+  result = sum;
 }
 )";
 
@@ -341,7 +338,8 @@ void main() {
 
 // Averages samples in linear colour, lays them over the background, compresses highlights instead of clipping
 // them, and encodes as sRGB [IEC 61966-2-1]. Its constants `factor` and `samples` are put before it: a
-// processor takes much longer for loops whose length it does not know.
+// processor takes much longer for loops whose length it does not know. So is `has_parts`: where no part can
+// be, there is the background alone.
 inline constexpr const char* kFinalFragment = R"(
 uniform sampler2DMS parts;  // colour times opacity, and opacity
 uniform sampler2D behind;
@@ -357,7 +355,7 @@ void main() {
   for (int y = 0; y < factor; ++y)
     for (int x = 0; x < factor; ++x) {
       vec4 part = vec4(0);
-      for (int i = 0; i < samples; ++i) part += texelFetch(parts, first + ivec2(x, y), i);
+      for (int i = 0; has_parts && i < samples; ++i) part += texelFetch(parts, first + ivec2(x, y), i);
       part /= float(samples);
       sum += shoulder(part.rgb + (1.0 - part.a) * background);
     }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "draw/float_vectors.h"
+#include "vps/mesh_weld.h"
 
 namespace vps::viewer::inline v0 {
 namespace {
@@ -49,10 +50,12 @@ double cornerAngle(const Mesh& mesh, std::uint32_t corner) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-/// Adds one shading vertex per vertex and smooth group around it. A corner's normal is the mean over the
-/// faces that meet its own at less than the crease angle. Faces are weighted by their angle at the vertex, so
-/// that the mean does not depend on the triangulation of flat faces.
-void addVertices(const Mesh& mesh, const std::vector<Vec3>& normals, double crease_cos, ShadingMesh& out) {
+/// Adds one shading vertex per vertex, smooth group around it, and colour. A corner's normal is the mean over
+/// the faces that meet its own at less than the crease angle. Faces are weighted by their angle at the
+/// vertex, so that the mean does not depend on the triangulation of flat faces.
+/// @param colors  by triangle; none: they have none
+void addVertices(const Mesh& mesh, const std::vector<Vec3>& normals, const scenes::FaceColors& colors,
+                 double crease_cos, ShadingMesh& out) {
   const Fans fans = buildFans(mesh);
   out.indices.resize(3 * mesh.triangles.size());
   std::vector<double> angles;
@@ -69,8 +72,12 @@ void addVertices(const Mesh& mesh, const std::vector<Vec3>& normals, double crea
       if (sum.norm() > 0) sum.normalize();
       const std::array<float, 3> n = toFloat(sum);
       std::size_t i = group_start;
-      while (i < out.vertices.size() && out.vertices[i].n != n) ++i;
+      const auto isSame = [&](std::size_t at) {
+        return out.vertices[at].n == n && (colors.isNone() || out.colors[at] == colors.at(*c / 3));
+      };
+      while (i < out.vertices.size() && !isSame(i)) ++i;
       if (i == out.vertices.size()) {
+        if (!colors.isNone()) out.colors.push_back(colors.at(*c / 3));
         out.vertices.push_back({toFloat(mesh.vertices[v] - out.center), n});
         out.sources.push_back(v);
       }
@@ -116,15 +123,18 @@ void addEdges(const Mesh& mesh, const std::vector<Vec3>& normals, double crease_
 
 }  // namespace
 
-ShadingMesh buildShadingMesh(const Mesh& mesh, double crease_rad) {
+ShadingMesh buildShadingMesh(const Mesh& mesh, double crease_rad, const scenes::FaceColors* colors) {
   const Box box = bounds(mesh);
   // Exporters repeat vertices for each face and round them differently; a ten-millionth of the size is
   // smaller than any feature.
-  const Mesh shared = welded(mesh, 1e-7 * box.size().norm());
+  const WeldedMesh welded = weldedWithSources(mesh, 1e-7 * box.size().norm());
+  const Mesh& shared = welded.mesh;
   const std::vector<Vec3> normals = faceNormals(shared);
+  const bool has_colors = colors != nullptr && colors->of_triangle.size() == mesh.triangles.size();
+  const scenes::FaceColors kept = has_colors ? ofTriangles(*colors, welded.sources) : scenes::FaceColors();
   ShadingMesh out;
   out.center = box.center();
-  addVertices(shared, normals, std::cos(crease_rad), out);
+  addVertices(shared, normals, kept, std::cos(crease_rad), out);
   addEdges(shared, normals, std::cos(crease_rad), out);
   return out;
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "vps/mesh.h"
+#include "vps_scenes/face_colors.h"
 
 namespace vps::viewer::inline v0 {
 
@@ -30,7 +31,8 @@ struct SmoothEdge {
 struct ShadingMesh {
   Vec3 center = Vec3::Zero();  ///< in the part's frame; separate, so that floats keep their precision far out
   std::vector<ShadingVertex> vertices;
-  std::vector<std::uint32_t> sources;  ///< by shading vertex: that of the mesh
+  std::vector<std::uint32_t> sources;        ///< by shading vertex: that of the mesh
+  std::vector<std::array<float, 3>> colors;  ///< linear RGB by shading vertex; empty: none is given
   std::vector<std::uint32_t> indices;
   std::vector<ShadingEdge> sharp_edges;  ///< dihedral angle beyond the crease angle, and open borders
   std::vector<SmoothEdge> smooth_edges;
@@ -45,7 +47,9 @@ inline constexpr double kCreaseAngle_rad = 28 * 3.14159265358979323846 / 180;
 
 /// O(n log n).
 /// @param crease_rad faces that meet at a smaller angle are shaded as one smooth surface
-ShadingMesh buildShadingMesh(const Mesh& mesh, double crease_rad = kCreaseAngle_rad);
+/// @param colors     of the mesh's triangles; null, or of another number of them: none
+ShadingMesh buildShadingMesh(const Mesh& mesh, double crease_rad = kCreaseAngle_rad,
+                             const scenes::FaceColors* colors = nullptr);
 
 /// The intersection of the mesh with the plane n.p = offset (in the part's frame): unordered segments,
 /// relative to center.

@@ -8,11 +8,8 @@
 namespace vps::viewer::inline v0 {
 namespace {
 
-using Eigen::Vector2f;
+using Eigen::Vector2i;
 using Eigen::Vector3f;
-
-/// The floor's texture covers this many radii around the centre.
-constexpr double kFloorRadii = 3;
 
 /// An axis in the floor, the same for rendering its texture and for laying it down.
 Vec3 floorAxis(const Vec3& up) {
@@ -37,7 +34,7 @@ void renderKeyShadow(const Picture& picture) {
 void renderFloorShadow(const Picture& picture) {
   // The camera looks up from below the floor, so that the nearest part wins the depth test.
   const View& view = picture.view;
-  const double half_m = kFloorRadii * view.radius_m;
+  const double half_m = ShadowTargets::kFloorRadii * view.radius_m;
   const Vec3 up = view.up_C.cast<double>();
   const ShadowTargets& shadows = picture.gl.shadows;
   glViewport(0, 0, ShadowTargets::kFloorSize, ShadowTargets::kFloorSize);
@@ -53,17 +50,24 @@ void renderFloorShadow(const Picture& picture) {
 
   glDisable(GL_DEPTH_TEST);
   const gl::Program& blur = picture.gl.programs.floor_blur;
-  const auto texels = static_cast<float>(ShadowTargets::kFloorSize * view.radius_m / (2 * half_m));
-  blur.set("sigma_texel", Vector2f(0.035f * texels, 0.16f * texels));
+  // All parts are within a radius, so that there is no shadow farther out than that and what it is blurred.
+  constexpr int kHalf = FloorBlur::kRadius_texel + FloorBlur::kReach_texel + 1;
+  static_assert(kHalf + FloorBlur::kReach_texel <= ShadowTargets::kFloorSize / 2);
+  glBindFramebuffer(GL_FRAMEBUFFER, shadows.floor_b_target.id());
+  glClear(GL_COLOR_BUFFER_BIT);
+  glEnable(GL_SCISSOR_TEST);
+  glScissor(ShadowTargets::kFloorSize / 2 - kHalf, ShadowTargets::kFloorSize / 2 - kHalf, 2 * kHalf,
+            2 * kHalf);
   for (const auto& [from, to, direction] :
-       {std::tuple(&shadows.floor_a, &shadows.floor_b_target, Vector2f(1, 0)),
-        {&shadows.floor_b, &shadows.floor_a_target, Vector2f(0, 1)}}) {
+       {std::tuple(&shadows.floor_a, &shadows.floor_b_target, Vector2i(1, 0)),
+        {&shadows.floor_b, &shadows.floor_a_target, Vector2i(0, 1)}}) {
     glBindFramebuffer(GL_FRAMEBUFFER, to->id());
     glBindTextureUnit(0, from->id());
     blur.set("source", 0);
     blur.set("direction", direction);
     picture.gl.drawFullScreen(blur);
   }
+  glDisable(GL_SCISSOR_TEST);
   glEnable(GL_DEPTH_TEST);
 }
 
@@ -79,7 +83,7 @@ void drawFloorShadow(const Picture& picture) {
   program.set("origin_C", Vector3f(view.floor_C.cast<float>()));
   program.set("x_C", Vector3f(x.cross(-up).normalized().cast<float>()));
   program.set("y_C", Vector3f(x.cast<float>()));
-  program.set("half_size_m", static_cast<float>(kFloorRadii * view.radius_m));
+  program.set("half_size_m", static_cast<float>(ShadowTargets::kFloorRadii * view.radius_m));
   glBindTextureUnit(0, picture.gl.shadows.floor_a.id());
   program.set("floor_shadow", 0);
   glEnable(GL_BLEND);

@@ -96,9 +96,10 @@ void addPoint(std::vector<float>& to, const std::array<float, 3>& p, const Vec3&
 }
 
 Json partData(const DrawnMesh& part, std::size_t wanted) {
-  const ShadingMesh mesh = buildShadingMesh(*part.mesh);
+  const ShadingMesh mesh = buildShadingMesh(*part.mesh, kCreaseAngle_rad, part.face_colors);
   std::vector<float> places, edges;
   std::vector<std::int8_t> normals;
+  std::vector<std::uint8_t> colors;
   // Only the vertices that the coarser mesh uses, in the order of their use.
   std::vector<std::uint32_t> triangles = CoarseMesh(mesh).indices(wanted);
   std::vector<std::uint32_t> number(mesh.vertices.size(), UINT32_MAX);
@@ -109,6 +110,8 @@ Json partData(const DrawnMesh& part, std::size_t wanted) {
       addPoint(places, mesh.vertices[i].p, mesh.center);
       for (const float n : mesh.vertices[i].n)
         normals.push_back(static_cast<std::int8_t>(std::lround(127 * n)));
+      for (std::size_t k = 0; !mesh.colors.empty() && k < 3; ++k)
+        colors.push_back(srgbByte(mesh.colors[i][k]));
     }
     i = number[i];
   }
@@ -116,9 +119,12 @@ Json partData(const DrawnMesh& part, std::size_t wanted) {
     addPoint(edges, edge.a, mesh.center);
     addPoint(edges, edge.b, mesh.center);
   }
-  return {{"color", webColor(part.color)}, {"fixed", part.is_fixed},      {"pose", poseOf(part.X_WP)},
-          {"places", encoded(places)},     {"normals", encoded(normals)}, {"triangles", encoded(triangles)},
-          {"edges", encoded(edges)}};
+  Json data = {{"color", webColor(part.color)}, {"fixed", part.is_fixed},
+               {"pose", poseOf(part.X_WP)},     {"places", encoded(places)},
+               {"normals", encoded(normals)},   {"triangles", encoded(triangles)},
+               {"edges", encoded(edges)}};
+  if (!colors.empty()) data["colors"] = encoded(colors);
+  return data;
 }
 
 Json partsData(const RenderScene& drawn) {

@@ -74,6 +74,7 @@
     const shape = new THREE.BufferGeometry();
     shape.setAttribute("position", new THREE.BufferAttribute(decode(part.places, Float32Array), 3));
     shape.setAttribute("normal", new THREE.BufferAttribute(decode(part.normals, Int8Array), 3, true));
+    if (part.colors) shape.setAttribute("color", new THREE.BufferAttribute(decode(part.colors, Uint8Array), 3, true));
     shape.setIndex(new THREE.BufferAttribute(decode(part.triangles, Uint32Array), 1));
     return shape;
   }
@@ -95,8 +96,21 @@
     group.visible = part.fixed;
     if (part.fixed) place(group, part.pose);
     scene.add(group);
-    return { group: group, shape: shape, paint: paint, color: color, fixed: part.fixed };
+    return { group: group, shape: shape, paint: paint, color: color, fixed: part.fixed,
+      hasFaceColors: Boolean(part.colors) };
   });
+  // Faces have their own colours, unless the part is in hand.
+  function paintPart(part, isInHand) {
+    const showsFaces = part.hasFaceColors && !isInHand;
+    if (isInHand) part.paint.color.set(kInHand);
+    else if (showsFaces) part.paint.color.set(0xffffff);
+    else part.paint.color.copy(part.color);
+    // THREE.VertexColors before release 114, true since.
+    const mode = Number(THREE.REVISION) < 114 ? (showsFaces ? THREE.VertexColors : THREE.NoColors) : showsFaces;
+    if (part.paint.vertexColors === mode) return;
+    part.paint.vertexColors = mode;
+    part.paint.needsUpdate = true;
+  }
 
   const hint = new THREE.Mesh(undefined, new THREE.MeshBasicMaterial(
     { color: kInHand, transparent: true, opacity: 0.16, depthWrite: false }));
@@ -168,7 +182,7 @@
     const bodies = isLast || !step ? run.finished : step.bodies;
     for (const part of parts) {
       part.group.visible = part.fixed;
-      part.paint.color.copy(part.color);
+      paintPart(part, false);
     }
     for (const body of bodies) {
       place(parts[body[0]].group, body.slice(1));
@@ -182,7 +196,7 @@
     const held = parts[step.part];
     place(held.group, frame.slice(2, 9));
     held.group.visible = true;
-    held.paint.color.set(kInHand);
+    paintPart(held, true);
     hint.geometry = held.shape;
     place(hint, step.target);
     label.textContent = frame[0].toFixed(2) + " s · " + step.name + " · " + frame[9].toFixed(1) + " N on the hand · " +

@@ -321,9 +321,10 @@ std::shared_ptr<const std::string> WebHub::partFile(std::string_view target) {
   if (file) return file;
   std::size_t total = 0;
   for (const scenes::ScenePart& part : scene->parts) total += part.part.mesh.triangles.size();
-  const Mesh& mesh = scene->parts[name->part].part.mesh;
+  const scenes::Part& part = scene->parts[name->part].part;
+  const Mesh& mesh = part.mesh;
   const auto found = meshes_.try_emplace(name->part);
-  if (found.second) found.first->second = buildShadingMesh(mesh);
+  if (found.second) found.first->second = buildShadingMesh(mesh, kCreaseAngle_rad, &part.face_colors);
   const double share = std::min(1.0, static_cast<double>(kFineTriangles) / static_cast<double>(total));
   const std::size_t wanted =
       name->is_coarse ? kCoarseTriangles

@@ -135,6 +135,26 @@
     look($("looks").value);
   }
 
+  // Colours of faces, light as glTF has it, take the place of the part's, unless it is in hand.
+  function useFaceColors(entry, geometry) {
+    const values = geometry.attributes.color.array;
+    for (let i = 0; i < values.length; ++i)
+      values[i] = values[i] <= 0.0031308 ? 12.92 * values[i] : 1.055 * Math.pow(values[i], 1 / 2.4) - 0.055;
+    entry.hasFaceColors = true;
+    paintPart(entry, parts[inHand] === entry);
+  }
+  function paintPart(entry, isInHand) {
+    entry.paint.color.copy(entry.color);
+    if (isInHand) entry.paint.color.set(kInHand);
+    else if (entry.hasFaceColors) entry.paint.color.set(0xffffff);
+    entry.paint.vertexColors = faceColorsMode(Boolean(entry.hasFaceColors) && !isInHand);
+    entry.paint.needsUpdate = true;
+  }
+  // THREE.VertexColors before release 114, true since.
+  function faceColorsMode(isOn) {
+    return Number(THREE.REVISION) < 114 ? (isOn ? THREE.VertexColors : THREE.NoColors) : isOn;
+  }
+
   function fetchPart(entry, run, index, triangles) {
     const loader = new THREE.GLTFLoader();
     const path = "/part/" + run + "/" + index + "/";
@@ -149,6 +169,7 @@
           shape.all.add(new THREE.LineSegments(geometry, lines));
           return;
         }
+        if (geometry.attributes.color) useFaceColors(entry, geometry);
         shape.surface = new THREE.Mesh(geometry, entry.paint);
         shape.back = new THREE.Mesh(geometry, entry.inside);
         shape.all.add(shape.surface, shape.back);
@@ -340,8 +361,8 @@
     let held = -1;
     for (const index in seen.bodies) if (seen.bodies[index].role === "in hand") held = Number(index);
     if (held !== inHand) {
-      if (parts[inHand]) parts[inHand].paint.color.copy(parts[inHand].color);
-      if (parts[held]) parts[held].paint.color.set(kInHand);
+      if (parts[inHand]) paintPart(parts[inHand], false);
+      if (parts[held]) paintPart(parts[held], true);
       inHand = held;
       isChanged = true;
       applyCut();

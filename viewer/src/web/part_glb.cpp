@@ -74,7 +74,7 @@ class GlbBuffer {
 Json surface(const ShadingMesh& mesh, std::size_t wanted, GlbBuffer& buffer) {
   std::vector<std::uint32_t> triangles = CoarseMesh(mesh).indices(wanted);
   std::vector<std::uint32_t> number(mesh.vertices.size(), UINT32_MAX);
-  std::vector<float> places, normals;
+  std::vector<float> places, normals, colors;
   std::uint32_t count = 0;
   for (std::uint32_t& i : triangles) {
     if (number[i] == UINT32_MAX) {
@@ -82,11 +82,14 @@ Json surface(const ShadingMesh& mesh, std::size_t wanted, GlbBuffer& buffer) {
       const ShadingVertex& vertex = mesh.vertices[i];
       places.insert(places.end(), vertex.p.begin(), vertex.p.end());
       normals.insert(normals.end(), vertex.n.begin(), vertex.n.end());
+      if (!mesh.colors.empty()) colors.insert(colors.end(), mesh.colors[i].begin(), mesh.colors[i].end());
     }
     i = number[i];
   }
   const int place = buffer.addVectors(places, true), normal = buffer.addVectors(normals, false);
-  return {{"attributes", {{"POSITION", place}, {"NORMAL", normal}}},
+  Json attributes = {{"POSITION", place}, {"NORMAL", normal}};
+  if (!colors.empty()) attributes["COLOR_0"] = buffer.addVectors(colors, false);
+  return {{"attributes", attributes},
           {"indices", buffer.addIndices(triangles)},
           {"mode", static_cast<int>(kTriangles)}};
 }

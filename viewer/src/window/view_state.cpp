@@ -40,6 +40,15 @@ void nextOutput(ViewState& state) {
   state.output = next < state.outputs && state.outputs > 1 ? std::optional(next) : std::nullopt;
 }
 
+/// Of a display file, Spectral has a picture for each eye in place of one; what is shown alone stays so.
+void switchStereo(ViewState& state) {
+  const bool had_eyes = state.stereo == StereoMode::Spectral;
+  state.stereo = nextStereo(state.stereo);
+  const bool has_eyes = state.stereo == StereoMode::Spectral;
+  if (!state.output || had_eyes == has_eyes) return;
+  state.output = has_eyes ? 2 * *state.output : *state.output / 2;
+}
+
 void playOrPause(ViewState& state, const Timeline& line) {
   if (!state.is_playing && state.time_s >= line.end_s) state.time_s = 0;
   state.is_playing = !state.is_playing;
@@ -221,7 +230,7 @@ void apply(Action action, ViewState& state, const Timeline& line, const Box& box
       state.shows_path = !state.shows_path;
       break;
     case Action::Stereo:
-      state.stereo = nextStereo(state.stereo);
+      switchStereo(state);
       break;
     case Action::Output:
       nextOutput(state);

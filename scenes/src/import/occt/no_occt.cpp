@@ -5,6 +5,10 @@
 
 namespace vps::scenes::inline v0::import {
 
+std::string occtVersion() {
+  return "";
+}
+
 RawCad readOcct(const std::string& file, const std::string& format, const ImportSettings&, const Progress&) {
   throw LoadError(file, "",
                   format +

@@ -20,11 +20,13 @@
 #include <STEPCAFControl_Controller.hxx>
 #include <STEPCAFControl_Reader.hxx>
 #include <Standard_Failure.hxx>
+#include <Standard_Version.hxx>
 #include <TDF_LabelSequence.hxx>
 #include <TDF_Tool.hxx>
 #include <TDataStd_Name.hxx>
 #include <TDocStd_Document.hxx>
 #include <TopExp_Explorer.hxx>
+#include <TopTools_DataMapOfShapeInteger.hxx>
 #include <XCAFApp_Application.hxx>
 #include <XCAFDoc_ColorTool.hxx>
 #include <XCAFDoc_DocumentTool.hxx>
@@ -38,8 +40,6 @@
 
 namespace vps::scenes::inline v0::import {
 namespace {
-
-using Color = std::array<float, 3>;
 
 /// Removes Open CASCADE's console printers for a scope.
 class Quiet {
@@ -116,6 +116,8 @@ class Tree {
     Tessellation tessellation;
     Color color;
     bool has_color;
+    bool is_by_faces = false;                    ///< `color` is that of most of them
+    std::vector<std::optional<Color>> of_faces;  ///< of the tessellation; empty: none has one
   };
 
   /// Calls f(component) for each component of an assembly.
@@ -158,7 +160,8 @@ class Tree {
                          : X_WParent * affine(XCAFDoc_ShapeTool::GetLocation(label).Transformation());
     Color own{};
     // The instance's colour overrides its product's; a colour above applies only where both have none.
-    const bool has_own = colorOf(label, own) || colorOf(product, own);
+    const bool is_instance_colored = label != product && colorOf(label, own);
+    const bool has_own = is_instance_colored || colorOf(product, own);
     const Color* color = has_own ? &own : color_above;
     if (XCAFDoc_ShapeTool::IsAssembly(product)) {
       forComponents(product, [&](const TDF_Label& component) { visit(component, above, X_WP, color); });
@@ -175,6 +178,9 @@ class Tree {
       part.within = above.within;
       if (piece.has_color) part.color = piece.color;
       if (color) part.color = *color;
+      // Over the faces' own goes only what is said of this instance.
+      if (!is_instance_colored && !piece.of_faces.empty())
+        part.face_colors = faceColors(piece, !color && piece.is_by_faces ? ImportedPart().color : part.color);
       cad_.parts.push_back(std::move(part));
     }
   }
@@ -190,13 +196,58 @@ class Tree {
     TDF_Tool::Entry(product, entry);
     const auto [it, is_new] = products_.try_emplace(entry.ToCString());
     if (!is_new) return it->second;
+    const ColoredFaces colored(product, *this);
     for (const TopoDS_Shape& shape : pieces(XCAFDoc_ShapeTool::GetShape(product))) {
       Piece piece;
-      piece.has_color = colorOf(shape, piece.color);
+      piece.has_color = colorOf(shape, piece.color, piece.is_by_faces);
       piece.tessellation = tessellate(shape, settings_, 1 / cad_.unit_m);
+      piece.of_faces = colored.of(shape);
+      // Faces that were healed may be others.
+      if (piece.of_faces.size() != piece.tessellation.faces.size()) piece.of_faces.clear();
       it->second.push_back(std::move(piece));
     }
     return it->second;
+  }
+
+  /// The colours that a product's faces have of their own.
+  class ColoredFaces {
+   public:
+    ColoredFaces(const TDF_Label& product, const Tree& tree) {
+      TDF_LabelSequence labels;
+      XCAFDoc_ShapeTool::GetSubShapes(product, labels);
+      for (const TDF_Label& label : labels) {
+        const TopoDS_Shape shape = XCAFDoc_ShapeTool::GetShape(label);
+        Color color{};
+        if (shape.IsNull() || shape.ShapeType() != TopAbs_FACE || !tree.colorOf(label, color)) continue;
+        number_of_.Bind(shape, static_cast<int>(colors_.size()));
+        colors_.push_back(color);
+      }
+    }
+    /// By face, in the order of TopExp_Explorer; empty where none has a colour.
+    [[nodiscard]] std::vector<std::optional<Color>> of(const TopoDS_Shape& shape) const {
+      std::vector<std::optional<Color>> out;
+      bool has_any = false;
+      for (TopExp_Explorer it(shape, TopAbs_FACE); !colors_.empty() && it.More(); it.Next()) {
+        std::optional<Color>& color = out.emplace_back();
+        int number = 0;
+        if (!number_of_.Find(it.Current(), number)) continue;
+        color = colors_[static_cast<std::size_t>(number)];
+        has_any = true;
+      }
+      if (!has_any) out.clear();
+      return out;
+    }
+
+   private:
+    std::vector<Color> colors_;
+    TopTools_DataMapOfShapeInteger number_of_;
+  };
+
+  static FaceColors faceColors(const Piece& piece, const Color& other) {
+    FaceColors colors;
+    for (std::size_t i = 0; i < piece.of_faces.size(); ++i)
+      append(colors, piece.tessellation.faces[i].triangles, {}, piece.of_faces[i].value_or(other));
+    return colors;
   }
 
   static Color linear(const Quantity_Color& c) { return {float(c.Red()), float(c.Green()), float(c.Blue())}; }
@@ -212,7 +263,7 @@ class Tree {
   }
 
   /// The solid's colour, or the one that most of the area of its faces has, among those that have one.
-  bool colorOf(const TopoDS_Shape& shape, Color& out) const {
+  bool colorOf(const TopoDS_Shape& shape, Color& out, bool& is_by_faces) const {
     const auto has = [&](const TopoDS_Shape& s) {
       Quantity_Color c;
       for (const XCAFDoc_ColorType type : {XCAFDoc_ColorGen, XCAFDoc_ColorSurf}) {
@@ -222,7 +273,9 @@ class Tree {
       }
       return false;
     };
+    is_by_faces = false;
     if (has(shape)) return true;
+    is_by_faces = true;
     std::map<Color, double> area_of;
     for (TopExp_Explorer it(shape, TopAbs_FACE); it.More(); it.Next()) {
       if (!has(it.Current())) continue;
@@ -326,6 +379,10 @@ RawCad read(const std::string& file, const std::string& format, const ImportSett
 }
 
 }  // namespace
+
+std::string occtVersion() {
+  return OCC_VERSION_STRING_EXT;
+}
 
 RawCad readOcct(const std::string& file, const std::string& format, const ImportSettings& settings,
                 const Progress& progress) {

@@ -90,6 +90,19 @@ struct HeadsetSession::Work {
   void run();
   void begin(XrSession& session);
   void loop(XrSession session);
+  /// Calls f() while no context of GLX is current, which a Renderer needs. It is again afterwards, also where
+  /// f() throws: what belongs to the session ends with it.
+  template <typename F>
+  void withoutContext(F f) {
+    context->release();
+    try {
+      f();
+    } catch (...) {
+      context->makeCurrent();
+      throw;
+    }
+    context->makeCurrent();
+  }
   /// Returns whether the session goes on.
   bool follow(XrSession session, bool& is_running);
   void frame(XrSession session, Renderer& renderer, std::array<std::unique_ptr<EyePictures>, 2>& eyes,
@@ -218,9 +231,8 @@ void HeadsetSession::Work::loop(XrSession session) {
   XrSpace space = XR_NULL_HANDLE;
   check(xrCreateReferenceSpace(session, &local, &space), "xrCreateReferenceSpace");
 
-  context->release();
-  Renderer renderer(scene);
-  context->makeCurrent();
+  std::optional<Renderer> renderer;
+  withoutContext([&] { renderer.emplace(scene); });
   bool is_running = false;
   double leaving_s = 0;
   while (follow(session, is_running)) {
@@ -231,7 +243,7 @@ void HeadsetSession::Work::loop(XrSession session) {
       xrRequestExitSession(session);
     }
     if (is_running)
-      frame(session, renderer, eyes, controllers, space);
+      frame(session, *renderer, eyes, controllers, space);
     else
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
@@ -271,13 +283,13 @@ void HeadsetSession::Work::drawEyes(const scenes::Snapshot& seen, const std::vec
   }
   const double begun_s = device::monotonicSeconds();
   std::array<Image, 2> images;
-  context->release();
-  for (std::size_t i = 0; i < 2; ++i) {
-    wanted.width = eyes[i]->width();
-    wanted.height = eyes[i]->height();
-    images[i] = renderer.render(seen, cameraOf(room, eyeOf(views[i]), box_W), effort.apply(wanted));
-  }
-  context->makeCurrent();
+  withoutContext([&] {
+    for (std::size_t i = 0; i < 2; ++i) {
+      wanted.width = eyes[i]->width();
+      wanted.height = eyes[i]->height();
+      images[i] = renderer.render(seen, cameraOf(room, eyeOf(views[i]), box_W), effort.apply(wanted));
+    }
+  });
   for (std::size_t i = 0; i < 2; ++i) {
     pictures[i].pose = views[i].pose;
     pictures[i].fov = views[i].fov;

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vps_scenes/face_colors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace vps::scenes::inline v0 {
+
+Color srgbFromLinear(const Color& linear) {
+  Color srgb{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const float c = linear[i];
+    srgb[i] = c <= 0.0031308f ? 12.92f * c : 1.055f * std::pow(c, 1 / 2.4f) - 0.055f;
+  }
+  return srgb;
+}
+
+void append(FaceColors& to, std::size_t count, const FaceColors& from, const Color& color) {
+  std::map<Color, std::uint32_t> known;
+  for (std::uint32_t i = 0; i < to.palette.size(); ++i) known.emplace(to.palette[i], i);
+  const auto numberOf = [&](const Color& wanted) {
+    const auto [it, is_new] = known.emplace(wanted, static_cast<std::uint32_t>(to.palette.size()));
+    if (is_new) to.palette.push_back(wanted);
+    return it->second;
+  };
+  if (from.isNone()) {
+    if (count > 0) to.of_triangle.insert(to.of_triangle.end(), count, numberOf(color));
+    return;
+  }
+  std::vector<std::uint32_t> number;
+  for (const Color& each : from.palette) number.push_back(numberOf(each));
+  for (std::size_t i = 0; i < count; ++i) to.of_triangle.push_back(number[from.of_triangle[i]]);
+}
+
+FaceColors ofTriangles(const FaceColors& colors, std::span<const std::uint32_t> triangles) {
+  if (colors.isNone()) return {};
+  FaceColors out{colors.palette, {}};
+  out.of_triangle.reserve(triangles.size());
+  for (const std::uint32_t triangle : triangles) out.of_triangle.push_back(colors.of_triangle[triangle]);
+  return out;
+}
+
+void simplify(FaceColors& colors, Color& color) {
+  if (colors.isNone()) return;
+  const Color& first = colors.at(0);
+  for (std::size_t i = 1; i < colors.of_triangle.size(); ++i)
+    if (colors.at(i) != first) return;
+  color = first;
+  colors = {};
+}
+
+}  // namespace vps::scenes::inline v0

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "import/kept_cad.h"
+
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <new>
+#include <stdexcept>
+
+#include "import/part_bytes.h"
+
+namespace vps::scenes::inline v0::import {
+namespace {
+
+/// Incremented when reading gives other bits, or part_bytes.h changes.
+constexpr std::uint32_t kKeptVersion = 1;
+
+class ToBytes {
+ public:
+  void operator()(const void* data, std::size_t size) { out.append(static_cast<const char*>(data), size); }
+  std::string out;
+};
+
+struct Short {};
+
+class FromBytes {
+ public:
+  explicit FromBytes(const std::string& bytes) : bytes_(bytes) {}
+  void operator()(void* data, std::size_t size) {
+    if (size > bytes_.size() - at_) throw Short();
+    if (size > 0) std::memcpy(data, bytes_.data() + at_, size);
+    at_ += size;
+  }
+  [[nodiscard]] bool isAtEnd() const { return at_ == bytes_.size(); }
+
+ private:
+  const std::string& bytes_;
+  std::size_t at_ = 0;
+};
+
+template <class Io>
+void transferParts(Io& io, ImportedCad& cad) {
+  transferEach(io, cad.parts, [&](ImportedPart& part) { transfer(io, part); });
+  transferLines(io, cad.warnings);
+}
+
+}  // namespace
+
+std::string madeFrom(const std::string& file, const std::string& format, const ImportSettings& settings,
+                     const std::string& reader) {
+  if (format != "STEP" && format != "IGES" && format != "BREP") return "";
+  std::ifstream in(file, std::ios::binary);
+  std::string out(std::istreambuf_iterator<char>(in), {});
+  // Parts in files of their own [ISO 10303-203 and 214: DOCUMENT_FILE].
+  if (!in || out.empty() || out.find("DOCUMENT_FILE") != std::string::npos) return "";
+  ToBytes io;
+  auto version = kKeptVersion;
+  transfer(io, version);
+  for (std::string text : {format, reader, stem(file)}) transferArray(io, text);
+  double unit_m = settings.unit_m.value_or(0), deflection_m = settings.deflection_m,
+         angle_rad = settings.angle_rad, coarsest_m = settings.coarsest_m;
+  std::uint64_t most_triangles = settings.most_triangles;
+  for (double* value : {&unit_m, &deflection_m, &angle_rad, &coarsest_m}) transfer(io, *value);
+  transfer(io, most_triangles);
+  return out + io.out;
+}
+
+std::string keptBytes(const ImportedCad& cad) {
+  ToBytes io;
+  ImportedCad copy = cad;  // transfer() takes what could be read as well
+  transferParts(io, copy);
+  return std::move(io.out);
+}
+
+bool readKeptBytes(const std::string& bytes, ImportedCad& cad) {
+  ImportedCad found;
+  try {
+    FromBytes io(bytes);
+    transferParts(io, found);
+    if (!io.isAtEnd() || found.parts.empty()) return false;
+  } catch (const Short&) {
+    return false;
+  } catch (const std::length_error&) {
+    return false;
+  } catch (const std::bad_alloc&) {
+    return false;
+  }
+  cad.parts = std::move(found.parts);
+  cad.warnings = std::move(found.warnings);
+  return true;
+}
+
+}  // namespace vps::scenes::inline v0::import
