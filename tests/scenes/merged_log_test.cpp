@@ -21,7 +21,7 @@ class Words final : public device::RunLog {
     else if (std::holds_alternative<device::WrittenWrench>(entry))
       text += "wrench ";
     else
-      text += "note ";
+      text += std::holds_alternative<device::DeviceSample>(entry) ? "read " : "note ";
   }
   void lose(std::uint64_t count) noexcept override { text += "lost" + std::to_string(count) + " "; }
   std::string text;
@@ -68,11 +68,11 @@ TEST_F(MergedLogTest, AStepWaitsForTheTicksThatItHasSeen) {
   loopTicks(1);
   loopAdds(SyncEventKind::Tick, 2);
   EXPECT_EQ(words_.text, "tick1 wrench tick2 ");
+  EXPECT_TRUE(log_.isWaiting());
   log_.addFromLoop(number_++, device::WrittenWrench{});
-  EXPECT_TRUE(log_.isWaiting());  // whether the tick had more is known with the next one
-  loopTicks(3);
   EXPECT_EQ(words_.text, "tick1 wrench tick2 wrench step2 note ");
   EXPECT_FALSE(log_.isWaiting());
+  loopTicks(3);
   step(2);  // no newer state has come
   EXPECT_EQ(words_.text, "tick1 wrench tick2 wrench step2 note step2 ");
 }
@@ -84,6 +84,17 @@ TEST_F(MergedLogTest, ACommandFollowsTheTicksBeforeItAndPhysicsFollowsIt) {
   loopTicks(1);
   loopAdds(SyncEventKind::Begin, 1);
   EXPECT_EQ(words_.text, "tick1 wrench step1 begin1 note ");
+}
+
+// A part that is handed over is grasped where the handle is then. A replay read the device where the
+// recording had the step.
+TEST_F(MergedLogTest, WhatACommandReadsOfTheDeviceFollowsTheStepBeforeIt) {
+  step(1);
+  log_.waitForEvent(SyncEventKind::Begin);
+  loopTicks(1);
+  log_.addFromLoop(number_++, device::DeviceSample{});
+  loopAdds(SyncEventKind::Begin, 1);
+  EXPECT_EQ(words_.text, "tick1 wrench step1 read begin1 ");
 }
 
 TEST_F(MergedLogTest, SilenceBelongsToTheTickThatFollows) {
@@ -104,7 +115,7 @@ TEST_F(MergedLogTest, NothingIsAddedAfterALoss) {
   log_.add(device::RunTrace{});
   step(2);
   loopTicks(3);
-  EXPECT_EQ(words_.text, "tick1 wrench lost1 ");
+  EXPECT_EQ(words_.text, "tick1 wrench step1 lost1 ");
   EXPECT_FALSE(log_.isWaiting());
 }
 

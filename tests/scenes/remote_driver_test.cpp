@@ -32,8 +32,8 @@ class ScriptedDevice final : public Link {
     states_.emplace_back(writer_.write(message));
   }
   void addLogOfTick(std::int32_t tick) {
-    log_.emplace_back(writer_.write(
-        LogMessage{log_number_++, device::SyncEvent{0, tick, 1, 0, device::SyncEventKind::Tick}}));
+    addLog(device::SyncEvent{0, tick, 1, 0, device::SyncEventKind::Tick});
+    addLog(device::WrittenWrench{});
   }
   ReplyMessage answer;  ///< to what is asked next
   std::optional<device::SyncEventKind> last_command;
@@ -60,6 +60,9 @@ class ScriptedDevice final : public Link {
   [[nodiscard]] std::string sceneBytes() const override { return {}; }
 
  private:
+  void addLog(const device::LogEntry& entry) {
+    log_.emplace_back(writer_.write(LogMessage{log_number_++, entry}));
+  }
   static std::string_view take(std::deque<std::string>& from, std::span<char> buffer) {
     if (from.empty()) return {};
     const std::size_t size = from.front().copy(buffer.data(), buffer.size());

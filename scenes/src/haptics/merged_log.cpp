@@ -1,20 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "haptics/merged_log.h"
 
-#include <optional>
-
 namespace vps::scenes::inline v0 {
-
-namespace {
-
-/// How many ticks precede it; empty: it belongs to the tick before.
-std::optional<std::int32_t> ticksBefore(const device::LogEntry& entry) {
-  const auto* event = std::get_if<device::SyncEvent>(&entry);
-  if (event == nullptr) return {};
-  return event->kind == device::SyncEventKind::Tick ? event->tick - 1 : event->tick;
-}
-
-}  // namespace
 
 void MergedLog::add(const device::LogEntry& entry) noexcept {
   if (is_over_) return;
@@ -49,11 +36,12 @@ bool MergedLog::passUntil(const device::LogEntry& entry) {
   return true;
 }
 
-// A tick is complete once what follows it has come: the next tick, or an event between two.
 bool MergedLog::passUntil(const Tick& until) {
-  for (; !loop_.empty(); passLoopEntry())
-    if (const auto ticks = ticksBefore(loop_.front()); ticks && *ticks >= until.tick) return true;
-  return false;
+  while (complete_ < until.tick) {
+    if (loop_.empty()) return false;
+    passLoopEntry();
+  }
+  return true;
 }
 
 bool MergedLog::passUntil(const Event& until) {
@@ -66,7 +54,13 @@ bool MergedLog::passUntil(const Event& until) {
   return false;
 }
 
+// A tick ends with what it writes. A command may read the device between two ticks.
 void MergedLog::passLoopEntry() {
+  if (const auto* event = std::get_if<device::SyncEvent>(&loop_.front());
+      event != nullptr && event->kind == device::SyncEventKind::Tick)
+    ticking_ = event->tick;
+  else if (std::holds_alternative<device::WrittenWrench>(loop_.front()))
+    complete_ = ticking_;
   log_.add(loop_.front());
   loop_.pop_front();
 }

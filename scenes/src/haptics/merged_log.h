@@ -56,8 +56,9 @@ class MergedLog final : public device::RunLog {
   device::RunLog& log_;
   std::deque<Waiting> waiting_;
   std::deque<device::LogEntry> loop_;
-  std::uint32_t next_ = 0;  ///< number of the loop's next entry
-  bool is_over_ = false;    ///< something was lost, so a replay ends there
+  std::uint32_t next_ = 0;                   ///< number of the loop's next entry
+  std::int32_t ticking_ = 0, complete_ = 0;  ///< the last tick that was passed on, as a whole
+  bool is_over_ = false;                     ///< something was lost, so a replay ends there
 };
 
 }  // namespace vps::scenes::inline v0
