@@ -133,8 +133,8 @@ TEST_F(AskProgram, AWatcherAndTheDeviceReceiveARecordingOfTheRunThatReplaysBitFo
   startRender();
   watch_ = start({"watch", "--terminal", "--record", file(kept.c_str())}, "watch.txt");
   ASSERT_TRUE(test::NodeProcesses::waitFor(
-      [&] { return slurp(folder_ / "watch.txt").find("this run is recorded in") != std::string::npos; }, 60))
-      << texts();
+      [&] { return slurp(folder_ / "watch.txt").find("run is recorded in") != std::string::npos; }, 60))
+      << texts() << slurp(folder_ / "watch.txt");
   device_ = start({"device", "--record", file("device.mcap")}, "device.txt");
   EXPECT_EQ(render_.wait(), 0) << texts();
   EXPECT_EQ(watch_.wait(), 0) << slurp(folder_ / "watch.txt");

@@ -276,6 +276,9 @@ TEST_F(RequestHandlerTest, ARunThatHasBegunIsRecordedNoLongerAndAStoppedOneHasNo
   EXPECT_TRUE(says(answerTo(std::string(asker_.write(wish))), "run.mcap already"));
   run_.end();
   EXPECT_TRUE(says(ask(AskKind::Fetch), "was stopped before its end"));
+  const AnswerMessage between = ask(AskKind::Record, "third.mcap");
+  EXPECT_TRUE(says(between, "the next run is recorded in"));
+  EXPECT_FALSE(says(between, "again"));
 }
 
 TEST_F(RequestHandlerTest, ASceneIsSentInPiecesOnceAndThenKnownByItsHash) {

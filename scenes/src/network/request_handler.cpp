@@ -402,9 +402,10 @@ RequestHandler::Answer RequestHandler::record(std::uint64_t sender, const std::s
     return {false, "refused: vps render cannot write into its folder for recordings", false};
   if (wants_file && !addFetcher(sender, "")) return {false, kCrowd, false};
   recording_ = (std::filesystem::path(folder) / name).string();
-  if (facts.is_running && !facts.has_begun)
-    return {true, "this run is recorded in " + unusedFile(recording_), false};
-  return {true, "the next run is recorded in " + unusedFile(recording_) + "; again begins one", false};
+  const bool is_late = facts.is_running && facts.has_begun;
+  const char* which =
+      facts.is_running && !is_late ? "this run is recorded in " : "the next run is recorded in ";
+  return {true, which + unusedFile(recording_) + (is_late ? "; again begins one" : ""), false};
 }
 
 bool RequestHandler::addFetcher(std::uint64_t sender, const std::string& file) {
