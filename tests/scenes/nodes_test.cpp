@@ -72,7 +72,7 @@ TEST(Nodes, ARecordingOfTwoNodesIsReplayedBitForBitByOne) {
 
 // Physics that takes long lives all the same. The hand was let go of after 15 ms, and with a few of these on
 // its way a part of the sample scene was not brought home.
-TEST(Nodes, ALongStepOfPhysicsIsNoFaultAndASilentProcessIs) {
+TEST(Nodes, ALongStepOfPhysicsIsNoFault) {
   Scene scene = twoPins();
   RenderOptions render;
   render.session = session();

@@ -66,8 +66,10 @@ std::map<int, std::int64_t> shownBy(std::int64_t after_ns, std::int64_t look_ns,
   auto next = comes.begin();
   for (std::int64_t now_ns = 0; now_ns < 11'000 * kMs; now_ns += look_ns) {
     for (; next != comes.end() && next->first <= now_ns; ++next)
-      if (next->second > newest)
-        presentation.add(shotOf(newest = next->second), (newest * 50 * kMs) / 3, now_ns);
+      if (next->second > newest) {
+        newest = next->second;
+        presentation.add(shotOf(newest), (newest * 50 * kMs) / 3, now_ns);
+      }
     for (const int step : dueAt(presentation, now_ns)) shown[step] = now_ns;
   }
   return shown;
