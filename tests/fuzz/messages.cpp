@@ -54,6 +54,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   read<AskMessage>(bytes);
   read<AnswerMessage>(bytes);
   read<PieceMessage>(bytes);
+  read<FetchedMessage>(bytes);
   return 0;
 }
 
@@ -80,5 +81,6 @@ std::vector<std::string> vps::fuzz::seeds() {
           std::string(writer.write(BeatMessage{})),
           std::string(writer.write(AskMessage{})),
           std::string(writer.write(AnswerMessage{})),
-          std::string(writer.write(PieceMessage{}))};
+          std::string(writer.write(PieceMessage{})),
+          std::string(writer.write(FetchedMessage{}))};
 }

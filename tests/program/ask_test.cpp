@@ -103,7 +103,7 @@ TEST_F(AskProgram, PartsAreTakenAndReleasedOnRequest) {
 TEST_F(AskProgram, AnotherSceneIsSentOnceRunsAndIsRecorded) {
   startRender({"--stay"});
   startDevice();
-  ASSERT_TRUE(whoSays("'pins' (scene")) << texts();
+  ASSERT_TRUE(whoSays("step 1 of 2")) << texts();
   EXPECT_NE(ask("record run_2.mcap").out.find("the next run is recorded"), std::string::npos);
   expectRefused("ask record ../run.mcap --session " + session_, "without a folder");
   EXPECT_EQ(ask("load other.toml").out, "this run ends, and 'other pins' begins\n");
@@ -125,6 +125,27 @@ TEST_F(AskProgram, AnotherSceneIsSentOnceRunsAndIsRecorded) {
   EXPECT_NE((replayed.out + replayed.err).find("the same bits"), std::string::npos)
       << replayed.out << replayed.err;
   fs::remove(file);
+}
+
+TEST_F(AskProgram, AWatcherAndTheDeviceReceiveARecordingOfTheRunThatReplaysBitForBit) {
+  const auto file = [this](const char* name) { return (folder_ / name).string(); };
+  const std::string kept = "ask_test_" + std::to_string(getpid()) + ".mcap";  // where vps render runs
+  startRender();
+  watch_ = start({"watch", "--terminal", "--record", file(kept.c_str())}, "watch.txt");
+  ASSERT_TRUE(test::NodeProcesses::waitFor(
+      [&] { return slurp(folder_ / "watch.txt").find("run is recorded in") != std::string::npos; }, 60))
+      << texts() << slurp(folder_ / "watch.txt");
+  device_ = start({"device", "--record", file("device.mcap")}, "device.txt");
+  EXPECT_EQ(render_.wait(), 0) << texts();
+  EXPECT_EQ(watch_.wait(), 0) << slurp(folder_ / "watch.txt");
+  EXPECT_EQ(device_.wait(), 0) << texts();
+  const std::string bytes = slurp(folder_ / kept);
+  EXPECT_GT(bytes.size(), 1000u);
+  EXPECT_TRUE(bytes == slurp(folder_ / "device.mcap"));
+  const Ran replayed = run("replay '" + file("device.mcap") + "' --out replayed");
+  EXPECT_NE((replayed.out + replayed.err).find("the same bits"), std::string::npos)
+      << replayed.out << replayed.err;
+  for (const char* name : {kept.c_str(), "device.mcap"}) fs::remove(fs::current_path() / name);
 }
 
 TEST_F(AskProgram, RightsAreRefusedInWords) {

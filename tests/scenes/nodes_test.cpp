@@ -70,6 +70,25 @@ TEST(Nodes, ARecordingOfTwoNodesIsReplayedBitForBitByOne) {
   EXPECT_GT(replayed.equal, ran.result.haptic.count);
 }
 
+// Physics that takes long lives all the same. The hand was let go of after 15 ms, and with a few of these on
+// its way a part of the sample scene was not brought home.
+TEST(Nodes, ALongStepOfPhysicsIsNoFault) {
+  Scene scene = twoPins();
+  RenderOptions render;
+  render.session = session();
+  int steps = 0;
+  render.after_step = [&steps](double) {
+    if (++steps % 100 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  };
+  DeviceNodeResult result;
+  std::thread device([&] { result = deviceNode({render.session, "", nullptr, {}, false, false}); });
+  const AssembleResult ran = renderNode(scene, render);
+  device.join();
+  EXPECT_GT(steps, 1000);
+  EXPECT_EQ(result.faults, 0u);
+  EXPECT_EQ(ran.verdict, Verdict::Fits);
+}
+
 TEST(Nodes, AWatcherSeesStepsForcesAndVerdict) {
   const std::string name = session();
   std::size_t snapshots = 0, forces = 0;

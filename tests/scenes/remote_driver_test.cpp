@@ -31,6 +31,10 @@ class ScriptedDevice final : public Link {
     message.hand = device::toByte({phase, {}});
     states_.emplace_back(writer_.write(message));
   }
+  void addLogOfTick(std::int32_t tick) {
+    addLog(device::SyncEvent{0, tick, 1, 0, device::SyncEventKind::Tick});
+    addLog(device::WrittenWrench{});
+  }
   ReplyMessage answer;  ///< to what is asked next
   std::optional<device::SyncEventKind> last_command;
 
@@ -45,6 +49,7 @@ class ScriptedDevice final : public Link {
   std::string_view receive(Channel channel, std::span<char> buffer) noexcept override {
     if (channel == Channel::Haptic) return take(states_, buffer);
     if (channel == Channel::Reply) return take(replies_, buffer);
+    if (channel == Channel::Log) return take(log_, buffer);
     return {};
   }
   [[nodiscard]] std::uint64_t lost(Channel) const noexcept override { return 0; }
@@ -55,6 +60,9 @@ class ScriptedDevice final : public Link {
   [[nodiscard]] std::string sceneBytes() const override { return {}; }
 
  private:
+  void addLog(const device::LogEntry& entry) {
+    log_.emplace_back(writer_.write(LogMessage{log_number_++, entry}));
+  }
   static std::string_view take(std::deque<std::string>& from, std::span<char> buffer) {
     if (from.empty()) return {};
     const std::size_t size = from.front().copy(buffer.data(), buffer.size());
@@ -64,7 +72,8 @@ class ScriptedDevice final : public Link {
 
   MessageWriter writer_{5};
   MessageReader reader_;
-  std::deque<std::string> replies_, states_;
+  std::deque<std::string> replies_, states_, log_;
+  std::uint32_t log_number_ = 0;
 };
 
 // A recording could not be replayed, and a step ended before it began, when the state of the tick before a
@@ -96,11 +105,18 @@ TEST(RemoteDriver, AStateFromBeforeACommandDoesNotShowWhatTheHandDoesAfterIt) {
 class WrittenLog final : public device::RunLog {
  public:
   void add(const device::LogEntry& entry) noexcept override {
+    if (std::holds_alternative<device::RunEvent>(entry)) order += "fault; ";
     if (const auto* event = std::get_if<device::SyncEvent>(&entry))
       if (event->kind == device::SyncEventKind::Step) order += "step " + std::to_string(event->tick) + "; ";
   }
   std::string order;
 };
+
+device::RunEvent faultIn(const std::string& words) {
+  device::RunEvent event;
+  event.setWords(words);
+  return event;
+}
 
 // A replay reads the loop's state after it has logged the step. A run that reported the fault before it was
 // not replayed: "comes with /run/sync_event where the recording has /run/event".
@@ -109,16 +125,18 @@ TEST(RemoteDriver, AFaultIsReportedAfterTheStepThatSeesIt) {
   DeviceEnd end(device, nullptr, [](const std::string&) {});
   ASSERT_TRUE(end.waitForDevice());
   const Scene scene = twoPins();
-  const std::unique_ptr<Hand> hand = remoteHand(end, scene);
-  WrittenLog log;
+  WrittenLog written;
+  MergedLog log(written);
+  const std::unique_ptr<Hand> hand = remoteHand(end, scene, &log);
   const std::unique_ptr<HapticDriver> driver = hand->makeDriver(
-      {}, 5e-3, [&log](const std::string&) { log.order += "fault; "; }, &log);
+      {}, 5e-3, [&log](const std::string& words) { log.add(faultIn(words)); }, &log);
   driver->resume();
   device.addState(1, device::OperatorPhase::Insert);
   ASSERT_TRUE(driver->advance());
   device.addState(2, device::OperatorPhase::Insert, 1);
+  for (int tick = 1; tick <= 3; ++tick) device.addLogOfTick(tick);
   ASSERT_TRUE(driver->advance());
-  EXPECT_EQ(log.order, "step 1; step 2; fault; ");
+  EXPECT_EQ(written.order, "step 1; step 2; fault; ");
 }
 
 /// The command that a faulted loop gets once others have asked for it to be re-armed.

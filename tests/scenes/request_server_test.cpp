@@ -12,6 +12,8 @@
 #include <csignal>
 #include <fstream>
 #include <functional>
+#include <memory>
+#include <optional>
 #include <thread>
 
 #include "network/request_server_work.h"
@@ -21,6 +23,7 @@
 #include "vps/load_error.h"
 #include "vps_device/metronome.h"
 #include "vps_device/recording.h"
+#include "vps_scenes/network/session_recording.h"
 #include "vps_scenes/network/session_request.h"
 #include "vps_scenes/replay.h"
 
@@ -221,8 +224,61 @@ TEST_F(RequestHandlerTest, RecordingsGoToTheFolderOfTheRenderNodeOnly) {
   EXPECT_EQ(unusedFile(handler_.recording()), (folder.path() / "run_1-2.mcap").string());
   EXPECT_TRUE(ask(AskKind::Record).is_done);
   EXPECT_EQ(handler_.recording(), "");
-  options_.network = "lo";
-  EXPECT_TRUE(says(ask(AskKind::Record, "run_1.mcap"), "over a network cannot be replayed"));
+}
+
+TEST_F(RequestHandlerTest, ARecordingIsFetchedInPiecesOnceItIsWhole) {
+  const test::TemporaryFolder folder;
+  options_.recordings = folder.path();
+  const auto fetch = [this](std::uint64_t offset) {
+    AskMessage ask = message(AskKind::Fetch);
+    ask.offset = offset;
+    return std::string(asker_.write(ask));
+  };
+  const auto piece = [this, &fetch](std::uint64_t offset) {
+    auto fetched = std::make_unique<FetchedMessage>();
+    answered_ = handler_.answer({1, fetch(offset), false});
+    EXPECT_EQ(MessageReader().read(answered_, *fetched), Reading::Good);
+    EXPECT_EQ(fetched->asker, asker_.sender());
+    return fetched;
+  };
+  EXPECT_TRUE(says(answerTo(fetch(0)), "no recording was asked for"));
+  AskMessage wish = message(AskKind::Record, "run.mcap");
+  wish.wants_file = true;
+  EXPECT_TRUE(says(answerTo(std::string(asker_.write(wish))), "this run is recorded in"));
+  EXPECT_TRUE(says(answerTo(fetch(0)), "has not ended"));
+  const std::string file = handler_.recording();
+  run_.beginRecording(file);
+  EXPECT_TRUE(says(answerTo(fetch(0)), "has not ended"));
+  EXPECT_TRUE(handler_.isFetched(device::monotonicSeconds()));
+  EXPECT_FALSE(handler_.isFetched(device::monotonicSeconds() + 10));
+  std::string whole(PieceMessage::kMost + 100, 'a');
+  whole.back() = 'b';
+  std::ofstream(file) << whole;
+  run_.finishRecording();
+  const auto first = piece(0), last = piece(PieceMessage::kMost);
+  EXPECT_EQ(first->piece.size, PieceMessage::kMost);
+  EXPECT_EQ(last->piece.size, 100u);
+  EXPECT_EQ(last->piece.bytes[99], 'b');
+  EXPECT_EQ(last->piece.total, whole.size());
+  EXPECT_EQ(std::string(last->piece.hash.data()), contentHash(whole));
+  EXPECT_TRUE(says(answerTo(fetch(whole.size())), "sent"));
+  EXPECT_FALSE(handler_.isFetched(device::monotonicSeconds()));
+}
+
+TEST_F(RequestHandlerTest, ARunThatHasBegunIsRecordedNoLongerAndAStoppedOneHasNoRecording) {
+  const test::TemporaryFolder folder;
+  options_.recordings = folder.path();
+  run_.beginRecording("");
+  EXPECT_TRUE(says(ask(AskKind::Record, "run.mcap"), "the next run is recorded in"));
+  run_.beginRecording(handler_.recording());
+  AskMessage wish = message(AskKind::Record, "other.mcap");
+  wish.wants_file = true;
+  EXPECT_TRUE(says(answerTo(std::string(asker_.write(wish))), "run.mcap already"));
+  run_.end();
+  EXPECT_TRUE(says(ask(AskKind::Fetch), "was stopped before its end"));
+  const AnswerMessage between = ask(AskKind::Record, "third.mcap");
+  EXPECT_TRUE(says(between, "the next run is recorded in"));
+  EXPECT_FALSE(says(between, "again"));
 }
 
 TEST_F(RequestHandlerTest, ASceneIsSentInPiecesOnceAndThenKnownByItsHash) {
@@ -324,6 +380,7 @@ class RequestServerTest : public testing::Test {
     options.session = session_;
     options.waits = waits;
     options.stop = &stop_;
+    options.recordings = recordings_;
     server_.emplace(options);
     render_ = std::thread([this, file] {
       Scene scene = twoPins();
@@ -334,7 +391,9 @@ class RequestServerTest : public testing::Test {
       result_ = renderNode(scene, render, file);
       is_over_ = true;
     });
-    device_ = std::thread([this] { deviceNode({session_, "", &stop_, {}, false, false}); });
+    device_ = std::thread([this] {
+      deviceNode({session_, "", &stop_, {}, false, false, "", nullptr, before_hello_});
+    });
   }
   void TearDown() override {
     stop_ = true;
@@ -350,7 +409,8 @@ class RequestServerTest : public testing::Test {
   }
   [[nodiscard]] RunRequests& requests() { return server_->work().requests; }
 
-  std::string session_ = sessionName();
+  std::string session_ = sessionName(), recordings_;
+  std::function<void()> before_hello_;
   std::atomic<bool> stop_{false}, is_over_{false};
   std::optional<RequestServer> server_;
   AssembleResult result_;
@@ -375,6 +435,25 @@ TEST_F(RequestServerTest, APartThatIsReleasedEndsItsStepAndTheRunReplaysBitForBi
   const ReplayResult replayed = replay(run);
   EXPECT_EQ(replayed.departure, "");
   EXPECT_EQ(replayed.equal, run.entries.size());
+}
+
+TEST_F(RequestServerTest, ADeviceHasItsRunRecordedAndReceivesTheFile) {
+  const test::TemporaryFolder folder;
+  recordings_ = folder.path();
+  std::optional<SessionRecording> recording;
+  const std::string file = folder.path() / "mine.mcap";
+  before_hello_ = [&] {
+    recording.emplace(SessionRecordingOptions{session_, "", file, "", &stop_, {}});
+    EXPECT_EQ(recording->waitUntilAsked(10), "");
+  };
+  start();
+  join();
+  EXPECT_EQ(recording->finish(), "");
+  const device::RecordedRun run = device::loadRecording(file);
+  const ReplayResult replayed = replay(run);
+  EXPECT_EQ(replayed.departure, "");
+  EXPECT_EQ(replayed.equal, run.entries.size());
+  EXPECT_GT(replayed.equal, result_.haptic.count);
 }
 
 TEST_F(RequestServerTest, APartWaitsUntilItIsAskedForAndGainsComeWithIt) {

@@ -15,6 +15,7 @@
 #include "progress_bar.h"
 #include "scene_arguments.h"
 #include "session_option.h"
+#include "session_recording_option.h"
 #include "vps/load_error.h"
 #include "vps_scenes/network/session_request.h"
 
@@ -26,7 +27,7 @@ struct AskArguments {
   std::string session = kDefaultSession;
   scenes::SessionNetwork network;
   std::string json;
-  std::string part, scene, name;
+  std::string part, scene, name, bring;
   std::vector<double> gains;
   /// What was chosen.
   std::function<scenes::SessionAnswer(const scenes::SessionRequest&, const AskArguments&)> ask;
@@ -47,7 +48,18 @@ std::string stiffnessFault(const std::string& text) {
   return is_good ? std::string() : "'" + text + "' is no stiffness; give a number above 0";
 }
 
+/// Waits for the recording.
+int bringRecording(const AskArguments& given) {
+  constexpr double kLimit_s = 8;  // more than an answer takes
+  scenes::SessionRecordingOptions options = recordingOptions(given.session, given.network, given.bring);
+  options.name = given.name;
+  scenes::SessionRecording recording(options);
+  if (const std::string why = recording.waitUntilAsked(kLimit_s); !why.empty()) throw LoadError("", "", why);
+  return finishRecording(recording, given.bring);
+}
+
 int runAsk(const AskArguments& given) {
+  if (!given.bring.empty()) return bringRecording(given);
   OutputFile json(given.json, {given.scene});
   const scenes::SessionAnswer answer = given.ask(scenes::SessionRequest(given.session, given.network), given);
   json.write(toJson(answer));
@@ -107,11 +119,14 @@ void addAsk(CommandLine& line) {
       ->type_name("SCENE");
   add("again", "the same scene from its beginning",
       [](const auto& request, const AskArguments&) { return request.again(); });
-  add("record", "records the runs that begin from now on, in the folder of vps render",
-      [](const auto& request, const AskArguments& chosen) { return request.record(chosen.name); })
-      ->add_option("name", given->name, "of the file, such as run_1.mcap")
-      ->required()
-      ->type_name("NAME");
+  CLI::App* record =
+      add("record", "records the runs that begin from now on, in the folder of vps render",
+          [](const auto& request, const AskArguments& chosen) { return request.record(chosen.name); });
+  record->add_option("name", given->name, "of the file, such as run_1.mcap")->required()->type_name("NAME");
+  record
+      ->add_option("--bring", given->bring,
+                   "wait until the run has ended, and bring its recording here, into this file")
+      ->type_name("FILE.mcap");
   add("stop-recording", "no further run is recorded",
       [](const auto& request, const AskArguments&) { return request.record(""); });
 }

@@ -4,6 +4,7 @@
 // vps device --session NAME: the device's node of a run that vps render computes.
 #include <cstdio>
 #include <memory>
+#include <optional>
 
 #include "command.h"
 #include "json_out.h"
@@ -11,6 +12,7 @@
 #include "process_settings.h"
 #include "progress_bar.h"
 #include "session_option.h"
+#include "session_recording_option.h"
 #include "table.h"
 #include "terminal.h"
 #include "vps/load_error.h"
@@ -32,9 +34,11 @@ struct DeviceArguments {
   std::string session;  ///< empty: none
   scenes::SessionNetwork network;
   bool rearms = false, stays = false;
+  std::string record;  ///< file for the recording of the run; empty: none
 };
 
 constexpr const char* kNone = "";
+constexpr double kAskLimit_s = 8;  ///< more than an answer takes
 
 std::string range(double least, double greatest, int digits, double unit = 1) {
   return fixed(least * unit, digits) + " - " + fixed(greatest * unit, digits);
@@ -188,12 +192,21 @@ int runNode(const DeviceArguments& given) {
   options.say = [](const std::string& words) { say(words); };
   options.rearms = given.rearms;
   options.stays = given.stays;
+  std::optional<scenes::SessionRecording> recording;
+  if (!given.record.empty()) {
+    options.before_hello = [&] {
+      if (recording) return;  // of the session that was lost, whose recording ends there
+      recording.emplace(recordingOptions(given.session, given.network, given.record));
+      if (const std::string why = recording->waitUntilAsked(kAskLimit_s); !why.empty())
+        throw LoadError("--record", "", why);
+    };
+  }
   const scenes::DeviceNodeResult result = scenes::deviceNode(options);
   std::printf("%llu ticks, %llu periods missed, %llu safety faults, %llu messages refused\n",
               static_cast<unsigned long long>(result.ticks), static_cast<unsigned long long>(result.missed),
               static_cast<unsigned long long>(result.faults),
               static_cast<unsigned long long>(result.refused));
-  return kGood;
+  return recording ? finishRecording(*recording, given.record) : kGood;
 }
 
 int runDevice(const DeviceArguments& given) {
@@ -248,6 +261,7 @@ void addDevice(CommandLine& line) {
                 "when the render node was lost and is back, let force return by itself; simulated devices "
                 "always do")
       ->needs(session);
+  addRecordOption(command, given->record)->needs(session)->excludes("--list");
   command.add_flag("--stay", given->stays, "wait for the next session when one has ended")->needs(session);
   addJsonOption(command, given->json);
   command.get_option("--json")->needs(characterise);

@@ -67,7 +67,10 @@ scenes::Verdict runOnce(const RenderArguments& given, const scenes::RenderOption
                         const std::string& record, ProgressBar& bar) {
   OutputFolder out(folder);
   OutputFile json(given.json, {given.scene.scene});
-  const scenes::AssembleResult result = scenes::renderNode(scene, options, record);
+  std::string recorded;
+  scenes::RenderOptions run = options;
+  run.on_recording = [&recorded](const std::string& file) { recorded = file; };
+  const scenes::AssembleResult result = scenes::renderNode(scene, run, record);
   throwIfStopped();
   if (options.stop->load()) return scenes::Verdict::NotShown;  // another run was asked for
   const std::vector<std::string> notes =
@@ -75,7 +78,7 @@ scenes::Verdict runOnce(const RenderArguments& given, const scenes::RenderOption
   out.commit();
   json.write(toJson(result));
   bar.clear();
-  printOutcome(result, notes, record, folder);
+  printOutcome(result, notes, recorded, folder);
   return result.verdict;
 }
 
@@ -108,13 +111,14 @@ int runRender(const RenderArguments& given) {
     if (!next) break;
     const std::string folder = given.out + "-" + std::to_string(run);
     try {
-      verdict = runOnce(given, options, *next, "vps ask load", folder, server->recording(), bar);
+      verdict = runOnce(given, options, *next, "vps ask load", folder, "", bar);
     } catch (const LoadError& failed) {  // of a scene that others chose
       if (!given.stays) throw;
       verdict = scenes::Verdict::NotShown;
       options.say(std::string(failed.what()) + "; waits for the next scene");
     }
   }
+  if (server) server->waitForFetchers();
   throwIfStopped();
   return statusOf(verdict);
 }

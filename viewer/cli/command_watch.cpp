@@ -19,6 +19,7 @@
 #include "run_report.h"
 #include "scene_arguments.h"
 #include "session_option.h"
+#include "session_recording_option.h"
 #include "table.h"
 #include "terminal.h"
 #include "vps/load_error.h"
@@ -37,6 +38,7 @@ struct WatchArguments {
   std::string session = kDefaultSession;
   scenes::SessionNetwork network;
   double rate_hz = 1;   ///< lines a second about the part in hand; 0: none
+  std::string record;   ///< file for the recording of the run; empty: none
   int ros_domain = -1;  ///< negative: no topics of ROS 2
   bool is_ros_in_clear = false;
   bool is_terminal = false;  ///< no window, also where there is a display
@@ -48,7 +50,7 @@ struct WatchArguments {
 };
 
 constexpr std::chrono::milliseconds kWatchPoll{5};
-constexpr std::chrono::milliseconds kLook{16};  ///< as often as there are snapshots, for who only reads words
+constexpr std::chrono::milliseconds kLook{50};  ///< for who only reads words, which wait in a ring of 256
 
 /// What a watcher knows.
 class Watching {
@@ -221,8 +223,7 @@ std::optional<int> tryWindow(const WatchArguments& given) {
   }
 }
 
-int runWatch(const WatchArguments& given) {
-  requireRosAllowed(given);
+int follow(const WatchArguments& given) {
   // On a machine of several nodes who watches waits rather than who computes.
   if (given.scene.scene.empty() && !given.web.allows_hand) giveWay();
   if (given.port >= 0) return serveWeb(given);
@@ -255,6 +256,18 @@ int runWatch(const WatchArguments& given) {
   throw Stopped();
 }
 
+int runWatch(const WatchArguments& given) {
+  requireRosAllowed(given);
+  if (given.record.empty()) return follow(given);
+  if (!given.scene.scene.empty())
+    throw LoadError(given.scene.scene, "",
+                    "--record is for a session; vps assemble --record records a scene");
+  scenes::SessionRecording recording(recordingOptions(given.session, given.network, given.record));
+  const int status = follow(given);
+  const int recorded = finishRecording(recording, given.record);
+  return recorded == kGood ? status : recorded;
+}
+
 }  // namespace
 
 void addWatch(CommandLine& line) {
@@ -276,6 +289,7 @@ void addWatch(CommandLine& line) {
       ->check(CLI::Range(0.0, 100.0));
   command.add_flag("--terminal", given->is_terminal,
                    "print what happens in place of a window; also without a display, and with --ros");
+  addRecordOption(command, given->record);
   command.add_flag("--silent", given->is_silent, "a window without sound");
   command
       .add_option("--ros", given->ros_domain,

@@ -3,6 +3,7 @@
 
 #if defined(__unix__)
 #include <pthread.h>
+#include <sched.h>
 #include <sys/resource.h>
 #endif
 
@@ -12,6 +13,11 @@ namespace vps::viewer::inline v0 {
 
 void giveWay() {
 #if defined(__unix__)
+#ifdef SCHED_BATCH
+  // A batch thread that wakes up takes the processor from no other one, however long it has slept.
+  const sched_param none{};
+  sched_setscheduler(0, SCHED_BATCH, &none);  // refused: it is as before
+#endif
   constexpr int kNice = 10;
   if (getpriority(PRIO_PROCESS, 0) < kNice) setpriority(PRIO_PROCESS, 0, kNice);
 #endif

@@ -67,6 +67,7 @@ enum class SyncEventKind : std::uint8_t {
   SnapOn,  ///< axis snap acts from this physics step on
   SnapOff,
   GiveUp,  ///< the part is let go of on request, after this physics step
+  Silent,  ///< physics in another process shows no sign of life, which is a fault in the tick that follows
 };
 
 struct SyncEvent {

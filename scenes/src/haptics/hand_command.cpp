@@ -34,6 +34,7 @@ void carryOut(Hand& hand, device::HapticLoop& loop, const HandCommand& command) 
     case device::SyncEventKind::SnapOn:
     case device::SyncEventKind::SnapOff:
     case device::SyncEventKind::GiveUp:
+    case device::SyncEventKind::Silent:
       return;
   }
 }

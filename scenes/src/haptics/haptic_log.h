@@ -19,8 +19,6 @@ class HapticLog final : public device::RunLog {
 
   /// Haptic thread.
   void add(const device::LogEntry& entry) noexcept override;
-  /// The same for an entry that has its number already: from the haptic thread of another process.
-  void add(std::uint32_t number, const device::LogEntry& entry) noexcept { ring_.push(number, entry); }
 
   /// Physics thread: passes on all entries of the ticks up to this one.
   void passUpTo(std::int32_t tick) {

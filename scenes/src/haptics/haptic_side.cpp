@@ -27,6 +27,7 @@ HapticSide::HapticSide(Hand& hand, device::CouplingPort& port, const device::Loo
                        const HapticTiming& timing, device::RunLog& log)
     : hand_(hand),
       log_(log),
+      is_silent_(timing.is_silent),
       tapped_(hand.device(), log),
       loop_(tapped_, port, withEvents(settings), realTimeSettings(timing)) {}
 
@@ -39,7 +40,10 @@ device::RealTimeSettings HapticSide::realTimeSettings(const HapticTiming& timing
   device::RealTimeSettings settings;
   settings.stale_s = timing.stale_s;
   settings.physics_limit_s = timing.physics_limit_s;
-  settings.before_tick = [this](device::HapticLoop& loop, std::int64_t periods) { logTick(loop, periods); };
+  settings.before_tick = [this](device::HapticLoop& loop, std::int64_t periods) {
+    watchPhysics(loop);
+    logTick(loop, periods);
+  };
   settings.after_tick = [this](device::HapticLoop& loop, double dt_s) { moveHand(loop, dt_s); };
   settings.on_call = [this](device::HapticLoop& loop, std::int32_t) {
     scenes::carryOut(hand_, loop, command_);
@@ -86,6 +90,14 @@ void HapticSide::logTick(const device::HapticLoop& loop, std::int64_t periods) {
   const auto tick = static_cast<std::int32_t>(loop.ticks() + 1);
   log_.add(device::SyncEvent{loop.last().time_s, tick, static_cast<std::int32_t>(periods),
                              loop.received().step, device::SyncEventKind::Tick});
+}
+
+// While nothing is held, no force is there to be taken away, as with physics that stalls.
+void HapticSide::watchPhysics(device::HapticLoop& loop) {
+  if (!is_silent_ || !loop.isHolding() || !loop.received().part.is_coupled) return;
+  if (loop.state().safety.fault != device::SafetyFault::None || !is_silent_()) return;
+  logEvent(loop, device::SyncEventKind::Silent);
+  loop.latchFault(device::SafetyFault::PhysicsStalled);
 }
 
 // The simulated device and hand advance by the elapsed time, in steps of the period they are made for.

@@ -16,6 +16,9 @@ namespace vps::scenes::inline v0 {
 struct HapticTiming {
   double stale_s = 2e-3;         ///< ticks with an older physics state are counted
   double physics_limit_s = 0.1;  ///< device::LoopSettings
+  /// Whether the process that computes physics shows no sign of life; called in each tick. Empty: it is this
+  /// one. A physics step may take longer than such a process may be silent.
+  std::function<bool()> is_silent = nullptr;
 };
 
 /// Used by one thread, apart from state().
@@ -59,12 +62,14 @@ class HapticSide {
   void logEvent(const device::HapticLoop& loop, device::SyncEventKind kind);
   void publishState(const device::HapticLoop& loop);
   void logTick(const device::HapticLoop& loop, std::int64_t periods);
+  void watchPhysics(device::HapticLoop& loop);
   void moveHand(device::HapticLoop& loop, double dt_s);
   device::LoopSettings withEvents(device::LoopSettings settings);
   device::RealTimeSettings realTimeSettings(const HapticTiming& timing);
 
   Hand& hand_;
   device::RunLog& log_;
+  std::function<bool()> is_silent_;
   device::DeviceEventQueue events_;
   std::vector<device::DeviceEvent> reported_;  ///< taken, and not passed on yet
   device::TappedDevice tapped_;

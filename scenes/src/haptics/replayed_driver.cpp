@@ -92,7 +92,12 @@ class ReplayedDriver final : public ClockedDriver {
   /// Runs the ticks before the next event of the physics thread. True if that event is of this kind. A
   /// recording that was cut has no samples left to tick with.
   bool tickUntil(device::SyncEventKind kind) {
-    while (isAt(device::SyncEventKind::Tick)) {
+    while (isAt(device::SyncEventKind::Tick) || isAt(device::SyncEventKind::Silent)) {
+      if (isAt(device::SyncEventKind::Silent)) {
+        loop_.latchFault(device::SafetyFault::PhysicsStalled);
+        logEvent(device::SyncEventKind::Silent);
+        continue;
+      }
       if (!hand_.canGoOn(1)) {
         next_ = sync_events_.size();
         return false;

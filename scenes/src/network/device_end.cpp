@@ -35,10 +35,6 @@ bool isSameDevice(const HelloMessage& a, const HelloMessage& b) {
 
 }  // namespace
 
-double peerPhysicsLimit_s(double physics_s) {
-  return std::max(0.75 * kPeerLimit_s, 3 * physics_s);
-}
-
 DeviceEnd::DeviceEnd(Link& link, const std::atomic<bool>* stop, std::function<void(const std::string&)> say,
                      RunRequests* requests)
     : link_(link),

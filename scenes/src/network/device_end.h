@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "haptics/hand.h"
+#include "haptics/merged_log.h"
 #include "network/clock_doubts.h"
 #include "network/link.h"
 #include "network/messages.h"
@@ -50,6 +51,8 @@ class DeviceEnd {
   /// To the last request.
   [[nodiscard]] const ReplyMessage& reply() const { return reply_; }
 
+  /// States of the part are sent with every bit from now on, as a recording needs them.
+  void sendExactStates() { writer_.writeExactStates(); }
   /// Sends a state of the part.
   void send(const device::PhysicsState& state);
   /// Sends a snapshot or news to the watchers.
@@ -105,12 +108,12 @@ class DeviceEnd {
 
 /// A hand in the device's node: its driver sends each command there.
 /// @param end  outlives the hand; a device has joined
-std::unique_ptr<Hand> remoteHand(DeviceEnd& end, const Scene& scene);
+/// @param log  the log of the run; null: it is not recorded
+std::unique_ptr<Hand> remoteHand(DeviceEnd& end, const Scene& scene, MergedLog* log = nullptr);
 
 /// How long a node may be silent before it counts as lost: the force on the hand is zero by then.
 inline constexpr double kPeerLimit_s = 0.02;
-/// In the device's node: how old a physics state may be. The rest of the limit is left for the tick that
-/// finds it. At slow physics three steps.
-double peerPhysicsLimit_s(double physics_s);
+/// In the device's node. The rest of the limit is left for the tick that finds it.
+inline constexpr double kSilence_s = 0.75 * kPeerLimit_s;
 
 }  // namespace vps::scenes::inline v0

@@ -9,6 +9,7 @@
 #include <thread>
 #include <utility>
 
+#include "haptics/haptic_driver.h"
 #include "haptics/haptic_side.h"
 #include "network/clock_doubts.h"
 #include "network/device_end.h"
@@ -17,6 +18,7 @@
 #include "vps/load_error.h"
 #include "vps_device/device_kinds.h"
 #include "vps_device/gains.h"
+#include "vps_device/metronome.h"
 #include "vps_scenes/network/nodes.h"
 
 namespace vps::scenes::inline v0 {
@@ -26,6 +28,7 @@ namespace {
 constexpr std::chrono::microseconds kRequestPoll{200};  // assumed: below a haptic period
 constexpr std::chrono::milliseconds kSessionPoll{10};
 constexpr std::chrono::milliseconds kUntilSafe{25};  // kPeerLimit_s and a few ticks
+constexpr int kLastStates = 4;                       // assumed: one of them arrives
 constexpr int kPollsPerLook = 25;                    // whether the render node lives: each 5 ms
 constexpr int kPollsPerTimes = 500;                  // each 0.1 s
 
@@ -50,6 +53,28 @@ class SentTimes {
  private:
   std::array<double, 512> times_s_{};  // as many as HapticLoop knows the work of
   std::size_t newest_ = 0;
+};
+
+/// Whether the render node lives, for the haptic thread. A long physics step is no reason to let go.
+class SignsOfLife {
+ public:
+  explicit SignsOfLife(const Link& link) noexcept : link_(link) {}
+  [[nodiscard]] bool isSilent() noexcept {
+    const std::uint64_t sign = link_.signsOfLife();
+    const std::int64_t now_ns = device::monotonicClock().now_ns();
+    const std::int64_t looked_ns = std::exchange(looked_ns_, now_ns);
+    // Who did not look for long does not know how long it was silent.
+    const bool has_slept = now_ns - looked_ns > kLimit_ns;
+    if (sign != std::exchange(sign_, sign) || has_slept) changed_ns_ = now_ns;
+    return now_ns - changed_ns_ > kLimit_ns;
+  }
+
+ private:
+  static constexpr auto kLimit_ns = static_cast<std::int64_t>(1e9 * kSilence_s);
+
+  const Link& link_;
+  std::uint64_t sign_ = 0;
+  std::int64_t changed_ns_ = 0, looked_ns_ = 0;
 };
 
 /// The haptic thread's end of the link. Each message is read into, and written from, memory of its own.
@@ -92,9 +117,11 @@ class LinkLog final : public device::RunLog {
  public:
   LinkLog(Link& link, MessageWriter& writer) : link_(link), writer_(writer) {}
   void setOn(bool is_on) { is_on_.store(is_on, std::memory_order_relaxed); }
+  [[nodiscard]] bool isOn() const { return is_on_.load(std::memory_order_relaxed); }
   void add(const device::LogEntry& entry) noexcept override {
-    if (is_on_.load(std::memory_order_relaxed))
-      link_.send(Channel::Log, writer_.write(LogMessage{number_++, entry}));
+    if (!isOn()) return;
+    writer_.writeExactStates();
+    link_.send(Channel::Log, writer_.write(LogMessage{number_++, entry}));
   }
 
  private:
@@ -118,7 +145,8 @@ class DeviceSession {
         scene_(sceneOf(link, options)),
         hand_(makeHand(scene_, true, options.wish)),
         log_(link, haptic_writer_),
-        remote_(link, haptic_writer_, hand_state_) {
+        remote_(link, haptic_writer_, hand_state_),
+        signs_(link) {
     reader_.bindTo(link.sessionId());
     port_.remote = &remote_;
     const double physics_s = 1 / scene_.fidelity.physics_rate_hz;
@@ -126,7 +154,9 @@ class DeviceSession {
     most_gains_ = passiveGains(scene_, hand_->device().limits(), scene_.fidelity.physics_rate_hz);
     device::LoopSettings settings = loopSettings(scene_, hand_->device());
     settings.gains = bounded(settings.gains);
-    side_.emplace(*hand_, port_, settings, HapticTiming{2 * physics_s, peerPhysicsLimit_s(physics_s)}, log_);
+    side_.emplace(
+        *hand_, port_, settings,
+        HapticTiming{2 * physics_s, physicsLimit_s(physics_s), [this] { return signs_.isSilent(); }}, log_);
     hand_state_ = &side_->stateByte();
   }
 
@@ -210,6 +240,8 @@ class DeviceSession {
         return {};
       case RequestKind::Stop:
         side_->stop();
+        // The last state belongs to the recording, and states may be lost on their way.
+        for (int i = 0; log_.isOn() && i < kLastStates; ++i) remote_.send(side_->loopState());
         sendTimes();
         return {};
       case RequestKind::Setup:
@@ -283,6 +315,7 @@ class DeviceSession {
   LinkLog log_;
   const std::atomic<std::uint8_t>* hand_state_ = nullptr;
   RemotePort remote_;
+  SignsOfLife signs_;
   device::CouplingPort port_;
   std::optional<HapticSide> side_;
 };
@@ -306,6 +339,7 @@ DeviceNodeResult deviceNode(const DeviceNodeOptions& options) {
     }
     has_said = false;
     ++result.sessions;
+    if (options.before_hello) options.before_hello();
     DeviceSession session(*link, options, result);
     say("the device '" + session.deviceName() + "' joins " + sessionWords(options.session));
     if (!session.run()) {

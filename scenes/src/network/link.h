@@ -88,6 +88,13 @@ struct PeerDoubt {
   std::uint64_t contradictions = 0;
 };
 
+/// Of the threads of a link. assumed: below the haptic loop's 80, above physics' 70
+inline constexpr int kLinkPriority = 75;
+
+/// How often a render node that sends nothing else shows that it lives. assumed: three times within the limit
+/// of a silent peer.
+inline constexpr double kSignPeriod_s = 4e-3;
+
 /// send() and receive() neither throw, allocate, lock nor wait, except that the render node's send() calls
 /// the network. A channel is used by one thread at a time.
 class Link {
@@ -104,12 +111,17 @@ class Link {
   /// Messages of a channel that were overwritten before they were received.
   [[nodiscard]] virtual std::uint64_t lost(Channel channel) const noexcept = 0;
 
+  /// Changes while the render node lives, every kSignPeriod_s, also during a long step of its physics. For
+  /// the device's node, whose haptic thread calls it: neither locks nor calls the system.
+  [[nodiscard]] virtual std::uint64_t signsOfLife() const noexcept { return 0; }
+
   /// In which states are sent.
   [[nodiscard]] virtual WireForm form() const noexcept { return WireForm::Exact; }
 
   // The functions below may call the system.
-  /// Until a message comes, or so long; for threads with nothing else to do, one at a time.
-  virtual void waitForMessage(std::int64_t most_ns) const;
+  /// Over UDP until a message comes, or so long; for threads with nothing else to do, one at a time. In
+  /// shared memory nobody is told of a message, so it returns at once.
+  virtual void waitForMessage(std::int64_t /*most_ns*/) const {}
   /// Whether a process has the role now.
   [[nodiscard]] virtual bool isAlive(NodeRole role) const = 0;
   /// How many watchers there are now.

@@ -189,7 +189,7 @@ void fields(device::SyncEvent& e, V& visit) {
   visit(e.tick);
   visit(e.periods);
   visit(e.snapshot);
-  visit.choice(e.kind, 13);
+  visit.choice(e.kind, 17);
 }
 
 template <typename V>
@@ -247,10 +247,12 @@ void fields(PointerMessage& m, V& visit) {
 
 template <typename V>
 void fields(AskMessage& m, V& visit) {
-  visit.choice(m.kind, 8);
+  visit.choice(m.kind, 9);
   visit(m.text);
   visit.notNegative(m.k_N_per_m);
   visit.notNegative(m.k_Nm_per_rad);
+  visit(m.wants_file);
+  visit(m.offset);
 }
 
 template <typename V>
@@ -269,6 +271,13 @@ void fields(PieceMessage& m, V& visit) {
   visit(m.offset);
   visit(m.size);
   visit.raw(m.bytes);
+}
+
+template <typename V>
+void fields(FetchedMessage& m, V& visit) {
+  visit(m.asker);
+  visit(m.number);
+  fields(m.piece, visit);
 }
 
 }  // namespace vps::scenes::inline v0::wire

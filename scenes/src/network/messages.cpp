@@ -62,6 +62,8 @@ template <>
 constexpr MessageKind kKindOf<AnswerMessage> = MessageKind::Answer;
 template <>
 constexpr MessageKind kKindOf<PieceMessage> = MessageKind::Piece;
+template <>
+constexpr MessageKind kKindOf<FetchedMessage> = MessageKind::Fetched;
 
 /// What both directions share: how a field is made of numbers.
 template <typename Self>
@@ -381,7 +383,7 @@ std::string_view MessageWriter::write(const Message& message) noexcept {
   constexpr MessageKind kKind = kKindOf<Message>;
   out_.clear();
   if constexpr (kHasCompact<Message>) {
-    if (form_ == WireForm::Compact) {
+    if (form_ == WireForm::Compact && !(kHasDense<Message> && has_exact_states_)) {
       if constexpr (kHasDense<Message>) {
         DenseWriter& dense = kKind == MessageKind::Haptic ? dense_haptic_ : dense_physics_;
         std::uint64_t& number = numbers_[static_cast<std::size_t>(kDenseKindOf<Message>)];
@@ -528,6 +530,7 @@ MESSAGE(PointerMessage)
 MESSAGE(AskMessage)
 MESSAGE(AnswerMessage)
 MESSAGE(PieceMessage)
+MESSAGE(FetchedMessage)
 #undef MESSAGE
 
 }  // namespace vps::scenes::inline v0

@@ -27,7 +27,7 @@
 namespace vps::scenes::inline v0 {
 
 /// Of all messages together; nodes of other versions are refused when they join.
-inline constexpr std::uint16_t kMessageVersion = 7;
+inline constexpr std::uint16_t kMessageVersion = 8;
 
 enum class MessageKind : std::uint16_t {
   Haptic = 1,
@@ -46,8 +46,9 @@ enum class MessageKind : std::uint16_t {
   Piece,
   DenseHaptic,  ///< states in another form, which count by themselves
   DensePhysics,
+  Fetched,
 };
-inline constexpr std::size_t kMessageKinds = 17;  ///< and 0, of none
+inline constexpr std::size_t kMessageKinds = 18;  ///< and 0, of none
 
 /// At the start of each message.
 struct Envelope {
@@ -162,6 +163,7 @@ enum class AskKind : std::uint8_t {
   Load,     ///< the scene with the hash `text` in place of this one
   Again,    ///< the same scene from its beginning
   Record,   ///< the runs that begin from now on, in the file `text`; empty: none
+  Fetch,    ///< a piece of the recording that the sender asked for with `wants_file`, from `offset` on
 };
 
 struct AskMessage {
@@ -169,6 +171,8 @@ struct AskMessage {
   std::array<char, 64> text{};  ///< zero-terminated
   double k_N_per_m = 0;         ///< of Gains
   double k_Nm_per_rad = 0;      ///< of Gains; 0: as it is
+  bool wants_file = false;      ///< of Record: the sender fetches the file once it is whole
+  std::uint64_t offset = 0;     ///< of Fetch [bytes]; the size of the file: all has come
 };
 
 struct AnswerMessage {
@@ -187,6 +191,13 @@ struct PieceMessage {
   std::uint64_t offset = 0;
   std::uint32_t size = 0;
   std::array<char, kMost> bytes{};
+};
+
+/// The answer to Fetch once the file is whole; an AnswerMessage before.
+struct FetchedMessage {
+  std::uint64_t asker = 0;  ///< as in AnswerMessage
+  std::uint64_t number = 0;
+  PieceMessage piece;  ///< of the file
 };
 
 /// What became of the bytes of a message.
@@ -223,6 +234,8 @@ class MessageWriter {
     return numbers_[static_cast<std::size_t>(kind)];
   }
   [[nodiscard]] std::uint64_t sender() const noexcept { return sender_; }
+  /// States have every bit from now on; a reader takes both forms.
+  void writeExactStates() noexcept { has_exact_states_ = true; }
   /// The next states are sent whole, for a reader that has none to begin with.
   void startAnew() noexcept { dense_haptic_ = dense_physics_ = {}; }
 
@@ -230,6 +243,7 @@ class MessageWriter {
   std::string out_;
   std::uint64_t sender_;
   WireForm form_;
+  bool has_exact_states_ = false;
   std::array<std::uint64_t, kMessageKinds> numbers_{};
   DenseWriter dense_haptic_, dense_physics_;
 };

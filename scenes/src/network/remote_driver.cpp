@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "haptics/clocked_driver.h"
-#include "haptics/haptic_log.h"
+#include "haptics/merged_log.h"
 #include "network/device_end.h"
 #include "simulation/physics_clock.h"
 #include "vps/load_error.h"
@@ -23,6 +23,7 @@ namespace {
 /// A live device that is silent for longer stops physics as well. assumed: longer than any hiccup of a
 /// scheduler; the proxy stands still meanwhile.
 constexpr double kHiccup_s = 0.1;
+constexpr double kLastLog_s = 2;                  ///< assumed: DDS sends again within a tenth
 constexpr std::uint64_t kAdvancesPerDoubt = 256;  // assumed: some times a second
 /// Good physics steps before the loop is re-armed, if its node allows that.
 constexpr int kStepsUntilRearm = 50;
@@ -52,12 +53,11 @@ bool isOver(device::OperatorPhase phase) {
 class RemoteDriver final : public ClockedDriver {
  public:
   RemoteDriver(DeviceEnd& end, const Scene& scene, const device::LoopSettings& settings, double physics_s,
-               const ReportFault& report, device::RunLog* log)
+               const ReportFault& report, MergedLog* log)
       : ClockedDriver(settings, report),
         end_(end),
         scene_(scene),
         log_(log),
-        haptic_log_(log),
         gains_(settings.gains),
         clock_(physics_s),
         joins_(end.joins()) {
@@ -68,9 +68,9 @@ class RemoteDriver final : public ClockedDriver {
   void pause() override {
     is_wanted_ = false;
     if (is_running_ && ask({.kind = RequestKind::Stop})) {
-      takeLog();
-      haptic_log_.passUntil(device::SyncEventKind::Paused);
-      takeState();
+      takeLastLog();
+      takeStateSinceRequest(log_ != nullptr ? kLastLog_s : 0);
+      if (log_ != nullptr && newest_.tick < end_.reply().tick) log_->lose(1);
       setView(newest_);
     }
     is_running_ = false;
@@ -94,20 +94,18 @@ class RemoteDriver final : public ClockedDriver {
     rearmWhenGood();
     takeStateSinceRequest();
     takeLog();
-    haptic_log_.passUpTo(newest_.tick);
-    haptic_log_.addFromPhysics({newest_.report.time_s, newest_.tick, 1, 0, device::SyncEventKind::Step});
+    if (log_ != nullptr) log_->waitForTick(newest_.tick);
+    logEvent(newest_, device::SyncEventKind::Step);
     // Only now: it reports faults, which a replay logs after the step, too.
     setView(newest_);
     return true;
   }
   bool hasSettled(bool is_ready) override {
-    if (is_ready)
-      haptic_log_.addFromPhysics({view_.report.time_s, view_.tick, 1, 0, device::SyncEventKind::Settled});
+    if (is_ready) logEvent(view_, device::SyncEventKind::Settled);
     return is_ready;
   }
   bool givesUp(bool is_wanted) override {
-    if (is_wanted)
-      haptic_log_.addFromPhysics({view_.report.time_s, view_.tick, 1, 0, device::SyncEventKind::GiveUp});
+    if (is_wanted) logEvent(view_, device::SyncEventKind::GiveUp);
     return is_wanted;
   }
   void setGains(const CouplingGains& gains) override {
@@ -137,7 +135,7 @@ class RemoteDriver final : public ClockedDriver {
     request.way_points_left = static_cast<std::uint32_t>(command.task.way_points.size());
     askUntilDone(request);
     takeLog();
-    haptic_log_.passUntil(command.what);
+    if (log_ != nullptr) log_->waitForEvent(command.what);
   }
   void store(const device::PhysicsState& state) override {
     part_ = state;
@@ -181,23 +179,37 @@ class RemoteDriver final : public ClockedDriver {
     newest_ = message->state;
   }
   /// Over UDP a reply may come before the states that were sent before it.
-  void takeStateSinceRequest() {
+  void takeStateSinceRequest(double most_s = kPeerLimit_s) {
     takeState();
-    for (double left_s = kPeerLimit_s; left_s > 0 && is_running_ && newest_.tick < end_.reply().tick;
+    for (double left_s = most_s; left_s > 0 && is_running_ && newest_.tick < end_.reply().tick;
          left_s -= 1e-4) {
       std::this_thread::sleep_for(std::chrono::microseconds(100));
       takeState();
     }
   }
   void takeLog() {
-    end_.takeLog(
-        [this](std::uint32_t number, const device::LogEntry& entry) { haptic_log_.add(number, entry); });
+    end_.takeLog([this](std::uint32_t number, const device::LogEntry& entry) {
+      if (log_ != nullptr) log_->addFromLoop(number, entry);
+    });
+  }
+  /// All of a loop that has stopped. What has not come by then is lost.
+  void takeLastLog() {
+    if (log_ == nullptr) return;
+    log_->waitForEvent(device::SyncEventKind::Paused);
+    for (double left_s = kLastLog_s; left_s > 0; left_s -= 1e-3) {
+      takeLog();
+      if (!log_->isWaiting()) return;
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    log_->lose(1);
+  }
+  void logEvent(const device::HapticState& state, device::SyncEventKind kind) {
+    if (log_ != nullptr) log_->add(device::SyncEvent{state.report.time_s, state.tick, 1, 0, kind});
   }
 
   DeviceEnd& end_;
   const Scene& scene_;
-  device::RunLog* log_;
-  HapticLog haptic_log_;
+  MergedLog* log_;                     ///< null: nothing is recorded
   device::OperatorState known_state_;  ///< as of the last advance() or command
   device::HapticState newest_;         ///< of the loop; view_ follows in advance()
   device::PhysicsState part_;          ///< the last one
@@ -369,10 +381,11 @@ class DistantDevice final : public device::Device {
 
 class RemoteHand final : public Hand {
  public:
-  RemoteHand(DeviceEnd& end, const Scene& scene) : end_(end), scene_(scene), device_(end.hello()) {}
+  RemoteHand(DeviceEnd& end, const Scene& scene, MergedLog* log)
+      : end_(end), scene_(scene), log_(log), device_(end.hello()) {}
   std::unique_ptr<HapticDriver> makeDriver(const device::LoopSettings& settings, double physics_s,
-                                           const ReportFault& report, device::RunLog* log) override {
-    return std::make_unique<RemoteDriver>(end_, scene_, settings, physics_s, report, log);
+                                           const ReportFault& report, device::RunLog* /*log_*/) override {
+    return std::make_unique<RemoteDriver>(end_, scene_, settings, physics_s, report, log_);
   }
   device::Device& device() override { return device_; }
   // Its driver sends the commands to the device's node.
@@ -388,13 +401,14 @@ class RemoteHand final : public Hand {
  private:
   DeviceEnd& end_;
   const Scene& scene_;
+  MergedLog* log_;
   DistantDevice device_;
 };
 
 }  // namespace
 
-std::unique_ptr<Hand> remoteHand(DeviceEnd& end, const Scene& scene) {
-  return std::make_unique<RemoteHand>(end, scene);
+std::unique_ptr<Hand> remoteHand(DeviceEnd& end, const Scene& scene, MergedLog* log) {
+  return std::make_unique<RemoteHand>(end, scene, log);
 }
 
 }  // namespace vps::scenes::inline v0

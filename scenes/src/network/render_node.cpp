@@ -51,12 +51,8 @@ std::string wordsOf(const StepResult& step) {
          (step.reason.empty() ? std::string() : ": " + step.reason);
 }
 
-void requirePossible(const Scene& scene, const RenderOptions& options, const std::string& file) {
+void requirePossible(const Scene& scene, const RenderOptions& options) {
   requireSteps(scene);
-  if (!options.network.empty() && !file.empty())
-    throw LoadError(file, "",
-                    "a run over a network cannot be replayed bit for bit; record it with the device on this "
-                    "machine, without --network");
   if (!options.has_local_contact) return;
   throw LoadError(scene.file, "",
                   "local contact needs the parts' models where the haptic loop runs; leave it out, or use "
@@ -86,7 +82,7 @@ class Served {
  public:
   Served(RequestServer* server, const Scene& scene, std::string scene_bytes, const Link& link,
          const std::string& file)
-      : work_(server != nullptr ? &server->work() : nullptr) {
+      : server_(server), work_(server != nullptr ? &server->work() : nullptr) {
     if (work_ == nullptr) return;
     work_->requests.beginRun();
     work_->run.begin(scene, std::move(scene_bytes), link, file);
@@ -101,6 +97,16 @@ class Served {
   void setDevice(const HelloMessage& hello, const CouplingGains& gains, const CouplingGains& most) {
     if (work_ != nullptr) work_->run.setDevice(hello.name.data(), hello.may_rearm, gains, most);
   }
+  /// The file in which the run is recorded, by its own wish or that of others.
+  std::string beginRecording(const std::string& wish) const {
+    if (work_ == nullptr) return wish;
+    std::string file = wish.empty() ? server_->recording() : wish;
+    work_->run.beginRecording(file);
+    return file;
+  }
+  void finishRecording() const {
+    if (work_ != nullptr) work_->run.finishRecording();
+  }
   /// Until the first part may be taken. False: stopped.
   bool waitForTake(DeviceEnd& end) const {
     if (requests() == nullptr || requests()->mayTake()) return true;
@@ -114,13 +120,14 @@ class Served {
   }
 
  private:
+  RequestServer* server_;
   RequestServer::Work* work_;  ///< null: nobody can ask
 };
 
 }  // namespace
 
 AssembleResult renderNode(Scene& scene, const RenderOptions& given, const std::string& file) {
-  requirePossible(scene, given, file);
+  requirePossible(scene, given);
   std::string scene_bytes = sceneToBytes(scene);
   const std::unique_ptr<Link> link = makeSession(given.session, scene_bytes, given.network);
   Served served(given.server, scene, std::move(scene_bytes), *link, file);
@@ -169,13 +176,20 @@ AssembleResult renderNode(Scene& scene, const RenderOptions& given, const std::s
   served.setDevice(end.hello(), settings.gains,
                    passiveGains(scene, hand->device().limits(), scene.fidelity.physics_rate_hz, delay_s));
   if (!served.waitForTake(end)) return result;
-  settings.physics_limit_s = peerPhysicsLimit_s(1 / scene.fidelity.physics_rate_hz);
-  if (file.empty()) {
+  const std::string recording = served.beginRecording(file);
+  if (recording.empty()) {
     result = runProcedure(scene, *hand, nullptr, settings, options);
   } else {
-    RunRecord record(file, scene, hand->device(), settings, options);
-    result = runProcedure(scene, *hand, &record, settings, options);
-    if (given.stop == nullptr || !given.stop->load()) record.finish();
+    if (file.empty()) end.say("the run is recorded in " + recording);
+    if (given.on_recording) given.on_recording(recording);
+    end.sendExactStates();
+    RunRecord record(recording, scene, hand->device(), settings, options);
+    MergedLog log(record);
+    result = runProcedure(scene, *remoteHand(end, scene, &log), &log, settings, options);
+    if (given.stop == nullptr || !given.stop->load()) {
+      record.finish();
+      served.finishRecording();
+    }
   }
   all.tell(NewsKind::Ended, -1, result.verdict, toText(result.verdict));
   return result;

@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -13,6 +12,7 @@
 #include <iterator>
 #include <utility>
 
+#include "network/recording_name.h"
 #include "procedure/assembly_run.h"
 #include "record/scene_archive.h"
 #include "vps/load_error.h"
@@ -28,6 +28,8 @@ namespace {
 constexpr std::size_t kMostSenders = 64;         // a flood of senders takes no more memory than this
 constexpr std::uint64_t kMostScene = 1U << 30U;  // [bytes]
 constexpr double kTransferLimit_s = 10;          // who sends asks again every 0.3 s, and gives up after 5
+constexpr std::size_t kMostFetchers = 16;        // assumed
+constexpr double kFetchLimit_s = 5;              // who waits for a recording asks each 0.3 s
 constexpr const char* kSceneEnding = ".scene";
 constexpr std::size_t kMostKept = 16;  // assumed: what a person works on; the newest stay
 
@@ -44,15 +46,6 @@ std::string gainsInWords(const CouplingGains& gains) {
   char words[80];
   std::snprintf(words, sizeof words, "%.0f N/m and %.1f N m/rad", gains.k_N_per_m, gains.k_Nm_per_rad);
   return words;
-}
-
-/// Of a file, without a folder, so that nobody chooses where on this machine it goes.
-bool isFileName(const std::string& name) {
-  const auto is_good = [](unsigned char c) {
-    return std::isalnum(c) != 0 || c == '-' || c == '_' || c == '.';
-  };
-  return name.size() > 5 && name.ends_with(".mcap") && name.front() != '.' &&
-         std::all_of(name.begin(), name.end(), is_good);
 }
 
 /// Bytes of the text up to a limit, without half a character of UTF-8 at its end.
@@ -95,8 +88,29 @@ void ServedRun::begin(const Scene& scene, std::string scene_bytes, const Link& l
   link_ = &link;
 }
 
+void ServedRun::beginRecording(const std::string& file) {
+  const std::lock_guard lock(mutex_);
+  facts_.has_begun = true;
+  facts_.recording = file;
+  if (!file.empty()) recorded_[file] = Recorded::Growing;
+}
+
+void ServedRun::finishRecording() {
+  const std::lock_guard lock(mutex_);
+  if (!facts_.recording.empty()) recorded_[facts_.recording] = Recorded::Whole;
+}
+
+ServedRun::Recorded ServedRun::stateOf(const std::string& file) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = recorded_.find(file);
+  return found != recorded_.end() ? found->second : Recorded::Growing;
+}
+
 void ServedRun::end() {
   const std::lock_guard lock(mutex_);
+  if (const auto found = recorded_.find(facts_.recording);
+      found != recorded_.end() && found->second == Recorded::Growing)
+    found->second = Recorded::Failed;
   link_ = nullptr;
   facts_.is_running = false;
 }
@@ -160,12 +174,18 @@ std::string_view RequestHandler::answer(const IncomingRequest& ask) {
   const Reading reading = read(client.reader);
   if (reading == Reading::Replayed && !client.last_answer.empty()) return client.last_answer;  // it was lost
   if (reading != Reading::Good) return refuseUnread(reading);
-  const Answer answer = is_piece ? addPiece(envelope.sender, piece) : obey(message);
+  Answer answer;
+  if (!is_piece && message.kind == AskKind::Fetch) {
+    if (const std::string_view fetched = fetch(envelope, message.offset, answer); !fetched.empty())
+      return client.last_answer = fetched;
+  } else {
+    answer = is_piece ? addPiece(envelope.sender, piece) : obey(envelope.sender, message);
+  }
   client.last_answer = write(envelope.sender, envelope.number, answer);
   return client.last_answer;
 }
 
-RequestHandler::Answer RequestHandler::obey(const AskMessage& ask) {
+RequestHandler::Answer RequestHandler::obey(std::uint64_t sender, const AskMessage& ask) {
   if (ask.kind == AskKind::Who) return who();
   if (options_.rights != RequestRights::All)
     return {false, "refused: this session may only be asked who is there (vps render --requests all)", false};
@@ -186,7 +206,9 @@ RequestHandler::Answer RequestHandler::obey(const AskMessage& ask) {
     case AskKind::Again:
       return again();
     case AskKind::Record:
-      return record(text);
+      return record(sender, text, ask.wants_file);
+    case AskKind::Fetch:
+      break;
   }
   return {};
 }
@@ -356,25 +378,88 @@ RequestHandler::Answer RequestHandler::again() {
   return begin(facts.bytes);
 }
 
-RequestHandler::Answer RequestHandler::record(const std::string& name) {
+RequestHandler::Answer RequestHandler::record(std::uint64_t sender, const std::string& name,
+                                              bool wants_file) {
+  const ServedRun::Facts facts = run_.facts();
   if (name.empty()) {
-    const bool is_recorded = !run_.facts().recording.empty();
     recording_.clear();
     return {true,
             std::string("no further run is recorded") +
-                (is_recorded ? "; the recording of this one ends with it" : ""),
+                (facts.recording.empty() ? "" : "; the recording of this one ends with it"),
             false};
   }
-  if (!options_.network.empty())
-    return {false, "refused: a run over a network cannot be replayed, so it is not recorded", false};
-  if (!isFileName(name))
+  if (!isRecordingName(name))
     return {false, "refused: name a file as run_1.mcap, without a folder; it goes to where vps render runs",
             false};
+  constexpr const char* kCrowd = "refused: too many wait for recordings";
+  if (wants_file && facts.is_running && !facts.recording.empty()) {
+    if (!addFetcher(sender, facts.recording)) return {false, kCrowd, false};
+    return {true, "this run is recorded in " + facts.recording + " already; the file comes when it has ended",
+            false};
+  }
   const std::string folder = options_.recordings.empty() ? "." : options_.recordings;
   if (access(folder.c_str(), W_OK) != 0)
     return {false, "refused: vps render cannot write into its folder for recordings", false};
+  if (wants_file && !addFetcher(sender, "")) return {false, kCrowd, false};
   recording_ = (std::filesystem::path(folder) / name).string();
-  return {true, "the next run is recorded in " + unusedFile(recording_) + "; again begins one", false};
+  const bool is_late = facts.is_running && facts.has_begun;
+  const char* which =
+      facts.is_running && !is_late ? "this run is recorded in " : "the next run is recorded in ";
+  return {true, which + unusedFile(recording_) + (is_late ? "; again begins one" : ""), false};
+}
+
+bool RequestHandler::addFetcher(std::uint64_t sender, const std::string& file) {
+  const double now_s = device::monotonicSeconds();
+  std::erase_if(fetchers_,
+                [now_s](const auto& entry) { return now_s - entry.second.heard_s > kFetchLimit_s; });
+  if (fetchers_.size() >= kMostFetchers && !fetchers_.contains(sender)) return false;
+  fetchers_[sender] = {file, "", now_s};
+  return true;
+}
+
+bool RequestHandler::isFetched(double now_s) const {
+  return std::any_of(fetchers_.begin(), fetchers_.end(), [now_s](const auto& entry) {
+    return !entry.second.file.empty() && now_s - entry.second.heard_s < kFetchLimit_s;
+  });
+}
+
+std::string_view RequestHandler::fetch(const Envelope& envelope, std::uint64_t offset, Answer& words) {
+  const auto found = fetchers_.find(envelope.sender);
+  if (found == fetchers_.end()) {
+    words = {false, "refused: no recording was asked for, or too long ago", false};
+    return {};
+  }
+  Fetcher& fetcher = found->second;
+  fetcher.heard_s = device::monotonicSeconds();
+  if (fetcher.file.empty()) {
+    const ServedRun::Facts facts = run_.facts();
+    if (facts.has_begun) fetcher.file = facts.recording;
+  }
+  words = {true, "the run has not ended", false};
+  if (fetcher.file.empty()) return {};
+  const ServedRun::Recorded state = run_.stateOf(fetcher.file);
+  if (state == ServedRun::Recorded::Growing) return {};
+  FetchedMessage message{envelope.sender, envelope.number, {}};
+  PieceMessage& piece = message.piece;
+  std::ifstream in(fetcher.file, std::ios::binary | std::ios::ate);
+  if (state == ServedRun::Recorded::Failed || !in) {
+    words = {false, "the run was stopped before its end, so that it has no recording", false};
+    fetchers_.erase(found);
+    return {};
+  }
+  piece.total = static_cast<std::uint64_t>(in.tellg());
+  if (offset >= piece.total) {
+    words = {true, "sent", false};
+    fetchers_.erase(found);
+    return {};
+  }
+  if (fetcher.hash.empty()) fetcher.hash = contentHash(readAll(fetcher.file));
+  std::memcpy(piece.hash.data(), fetcher.hash.data(), fetcher.hash.size());
+  piece.offset = offset;
+  piece.size = static_cast<std::uint32_t>(std::min<std::uint64_t>(PieceMessage::kMost, piece.total - offset));
+  in.seekg(static_cast<std::streamoff>(offset));
+  in.read(piece.bytes.data(), piece.size);
+  return writer_.write(message);
 }
 
 }  // namespace vps::scenes::inline v0

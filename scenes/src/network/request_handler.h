@@ -32,6 +32,14 @@ class ServedRun {
   void setDevice(const std::string& name, bool may_rearm, const CouplingGains& gains,
                  const CouplingGains& most);
 
+  /// The run is recorded from its beginning; empty: not. Nobody can change that from now on.
+  void beginRecording(const std::string& file);
+  /// The file is whole.
+  void finishRecording();
+  /// Of a file that was given to beginRecording().
+  enum class Recorded : std::uint8_t { Growing, Whole, Failed };
+  [[nodiscard]] Recorded stateOf(const std::string& file) const;
+
   struct Facts {
     std::string name, hash, bytes;   ///< of the scene
     std::vector<std::string> parts;  ///< that each step moves
@@ -40,6 +48,7 @@ class ServedRun {
     bool may_rearm = false;
     CouplingGains gains, most;
     bool is_running = false, has_device = false;
+    bool has_begun = false;  ///< so that it is too late to record it
     std::size_t watchers = 0;
   };
   [[nodiscard]] Facts facts(bool with_bytes = false) const;
@@ -47,6 +56,7 @@ class ServedRun {
  private:
   mutable std::mutex mutex_;  ///< the physics thread takes it where a run begins and ends
   Facts facts_;
+  std::map<std::string, Recorded> recorded_;
   const Link* link_ = nullptr;
 };
 
@@ -63,6 +73,8 @@ class RequestHandler {
   std::optional<Scene> takeNext() { return std::exchange(next_, std::nullopt); }
   /// The file that was asked for, for the runs that begin from now on; empty: none.
   [[nodiscard]] const std::string& recording() const { return recording_; }
+  /// Somebody is fetching a recording, or waits for it.
+  [[nodiscard]] bool isFetched(double now_s) const;
   /// Frees the memory of a scene that its sender has ceased to send.
   void dropLostTransfer(double now_s);
 
@@ -84,10 +96,17 @@ class RequestHandler {
     double heard_s = 0;  ///< when its last piece came, by device::monotonicSeconds()
   };
 
+  /// Who wants to have a recording.
+  struct Fetcher {
+    std::string file;    ///< empty: of the next run that is recorded
+    std::string hash;    ///< of the whole file; empty: not known yet
+    double heard_s = 0;  ///< by device::monotonicSeconds()
+  };
+
   Client& clientOf(std::uint64_t sender);
   std::string_view write(std::uint64_t sender, std::uint64_t number, const Answer& answer);
   std::string_view refuseUnread(Reading reading);
-  Answer obey(const AskMessage& ask);
+  Answer obey(std::uint64_t sender, const AskMessage& ask);
   Answer who() const;
   /// That the coupling has now.
   [[nodiscard]] CouplingGains gainsOf(const ServedRun::Facts& facts) const;
@@ -97,7 +116,11 @@ class RequestHandler {
   Answer setGains(double k_N_per_m, double k_Nm_per_rad);
   Answer load(const std::string& hash);
   Answer again();
-  Answer record(const std::string& name);
+  Answer record(std::uint64_t sender, const std::string& name, bool wants_file);
+  /// Takes up who wants the file; false: there are too many.
+  bool addFetcher(std::uint64_t sender, const std::string& file);
+  /// The answer in `words`, or, if the result is not empty, a piece of the file.
+  std::string_view fetch(const Envelope& envelope, std::uint64_t offset, Answer& words);
   Answer addPiece(std::uint64_t sender, const PieceMessage& piece);
   /// Checks the scene, and ends the run for it.
   Answer begin(const std::string& bytes);
@@ -112,6 +135,7 @@ class RequestHandler {
   std::map<std::uint64_t, Client> clients_;
   std::uint64_t heard_ = 0, refused_ = 0;
   Transfer transfer_;
+  std::map<std::uint64_t, Fetcher> fetchers_;  ///< by sender
   std::optional<Scene> next_;
   std::string recording_;
   std::optional<CouplingGains> gains_;  ///< that were set last

@@ -43,12 +43,15 @@ void RequestServer::Work::serve() {
 
 void RequestServer::Work::serveOne() {
   const std::optional<IncomingRequest> ask = channel->receive(kPoll);
-  handler.dropLostTransfer(device::monotonicSeconds());
+  const double now_s = device::monotonicSeconds();
+  handler.dropLostTransfer(now_s);
+  is_fetched = handler.isFetched(now_s);
   if (!ask) return;
   const std::string_view answer = handler.answer(*ask);
   {
     const std::lock_guard lock(mutex);
     recording = handler.recording();
+    is_fetched = handler.isFetched(now_s);
     if (std::optional<Scene> scene = handler.takeNext()) {
       next = std::move(scene);
       ends_run = true;
@@ -78,6 +81,12 @@ std::optional<Scene> RequestServer::waitForNext() {
     if (work_->options.stop != nullptr && work_->options.stop->load()) return {};
     std::this_thread::sleep_for(kPoll);
   }
+}
+
+void RequestServer::waitForFetchers() const {
+  const auto is_stopped = [this] { return work_->options.stop != nullptr && work_->options.stop->load(); };
+  do std::this_thread::sleep_for(2 * kPoll);  // what was asked in the meantime counts
+  while (work_->is_fetched && !is_stopped());
 }
 
 std::string RequestServer::recording() const {

@@ -33,7 +33,7 @@ struct RequestServer::Work {
   std::mutex mutex;  ///< of the next two
   std::optional<Scene> next;
   std::string recording;
-  std::atomic<bool> ends_run{false}, is_closing{false};
+  std::atomic<bool> ends_run{false}, is_closing{false}, is_fetched{false};
   std::thread thread;
 };
 

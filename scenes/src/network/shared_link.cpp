@@ -4,11 +4,12 @@
 #include <array>
 #include <atomic>
 #include <cstring>
+#include <optional>
 
 #include "network/link.h"
 #include "network/messages.h"
 #include "vps/load_error.h"
-#include "vps_device/metronome.h"
+#include "vps_device/periodic_thread.h"
 
 namespace vps::scenes::inline v0 {
 
@@ -19,8 +20,8 @@ constexpr std::uint64_t kScheme = kMagic | kMessageVersion;
 
 enum class SessionState : std::uint64_t { Making, Open, Ended };
 
-/// Words of the head, each written once, before the state becomes Open.
-enum Head : std::size_t { kState, kSchemeWord, kIdentity, kSceneSize, kHeadWords = 8 };
+/// Words of the head, each written once, before the state becomes Open; kSigns is counted while it is open.
+enum Head : std::size_t { kState, kSchemeWord, kIdentity, kSceneSize, kSigns, kHeadWords = 8 };
 
 constexpr std::size_t offsetOf(std::size_t channel) {
   std::size_t words = kHeadWords;
@@ -47,6 +48,7 @@ class SharedLink final : public Link {
   }
   ~SharedLink() override {
     if (role_ != NodeRole::Render) return;
+    signs_.reset();
     head()[kState].store(static_cast<std::uint64_t>(SessionState::Ended), std::memory_order_release);
   }
 
@@ -56,6 +58,9 @@ class SharedLink final : public Link {
     head()[kIdentity].store(newSender(), std::memory_order_relaxed);
     head()[kSceneSize].store(scene_bytes.size(), std::memory_order_relaxed);
     head()[kState].store(static_cast<std::uint64_t>(SessionState::Open), std::memory_order_release);
+    signs_.emplace(device::PeriodicSettings{.rate_hz = 1 / kSignPeriod_s, .priority = kLinkPriority});
+    signs_->start(
+        [signs = head() + kSigns](const device::Beat&) { signs->fetch_add(1, std::memory_order_relaxed); });
   }
 
   bool send(Channel channel, std::string_view message) noexcept override {
@@ -66,6 +71,9 @@ class SharedLink final : public Link {
   }
   [[nodiscard]] std::uint64_t lost(Channel channel) const noexcept override {
     return readers_[static_cast<std::size_t>(channel)].lost();
+  }
+  [[nodiscard]] std::uint64_t signsOfLife() const noexcept override {
+    return head()[kSigns].load(std::memory_order_relaxed);
   }
   [[nodiscard]] bool isAlive(NodeRole role) const override { return region_.isTaken(role); }
   [[nodiscard]] std::size_t watchers() const override { return region_.watchers(); }
@@ -93,6 +101,7 @@ class SharedLink final : public Link {
   NodeRole role_;
   std::array<RingWriter, kChannels> writers_;
   std::array<RingReader, kChannels> readers_;
+  std::optional<device::PeriodicThread> signs_;  ///< of the render node
 };
 
 }  // namespace
@@ -126,13 +135,6 @@ std::unique_ptr<Link> joinSession(const std::string& session, NodeRole role) {
     throw LoadError("", "", sessionWords(session) + " has a device already; only one hand can hold the part");
   if (role == NodeRole::Watch) region.markWatcher();
   return std::make_unique<SharedLink>(std::move(region), role);
-}
-
-// Nobody is told of a message in shared memory.
-void Link::waitForMessage(std::int64_t most_ns) const {
-  constexpr std::int64_t kLook_ns = 100'000;
-  device::RealTimeClock& clock = device::monotonicClock();
-  clock.sleepUntil(clock.now_ns() + std::min(most_ns, kLook_ns));
 }
 
 std::unique_ptr<Link> makeSession(const std::string& session, std::string_view scene_bytes,

@@ -9,6 +9,7 @@
 #include "image/srgb.h"
 #include "vps_device/metronome.h"
 #include "web/part_glb.h"
+#include "window/presentation.h"
 
 namespace vps::viewer::inline v0 {
 
@@ -118,7 +119,8 @@ void WebHub::leave(int browser) {
 }
 
 std::string WebHub::helloText(int number) const {
-  return R"({"hello":{"you":)" + std::to_string(number) + R"(,"run":)" +
+  return R"({"hello":{"you":)" + std::to_string(number) + R"(,"present_ms":)" +
+         std::to_string(kPresentAfter_ns / 1'000'000) + R"(,"run":)" +
          std::to_string(has_scene_ ? run_number_ : 0) + (has_scene_ ? "," + scene_text_ : "") + "}}";
 }
 
@@ -217,7 +219,7 @@ void WebHub::poll(double now_s) {
     shot_ = std::move(shot);
     ++shots_;
     if (HandDrag* drag = run_.drag()) drag->watch(shot_->snapshot);
-    if (sounds_) sounds_->hear(shot_->snapshot);
+    if (sounds_) sounds_->hear(shot_->snapshot, shot_->taken_ns);
   }
   sendSounds();
   if (shot_) sendShots(now_s);

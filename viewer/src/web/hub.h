@@ -30,8 +30,8 @@ class BrowserEnd {
 };
 
 /// Snapshots are sent to a browser that has drawn those before it, all but this many: one that is slow, or
-/// far away, gets fewer.
-inline constexpr std::uint32_t kMostUnseen = 4;
+/// far away, gets fewer. Of 60 a second three wait for their instant (window/presentation.h).
+inline constexpr std::uint32_t kMostUnseen = 8;
 
 /// Used by one thread.
 class WebHub {

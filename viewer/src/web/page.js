@@ -7,7 +7,7 @@
   const canvas = $("view"), stage = $("stage");
   const kInHand = 0x2f6fde, kForceColor = 0x8a2be2, kScreenScale = 1000;
   // For tests, and for the curious: what the page has seen.
-  const seen = window.vps = { snapshots: 0, drawn: 0, ages_ms: [], blows: 0, pointers: {}, bodies: {}, hand: null, you: 0 };
+  const seen = window.vps = { snapshots: 0, drawn: 0, ages_ms: [], shown: [], heardAfter_ms: [], blows: 0, pointers: {}, bodies: {}, hand: null, you: 0 };
 
   // ---- drawing
 
@@ -310,7 +310,24 @@
   // ---- snapshots
 
   let socket = null, clockOffset_ms = null;
-  let last = null;  // the newest snapshot
+  let last = null;  // the newest snapshot that is shown
+  const waiting = [];  // those that came before their instant, which is the same for all who watch
+  let present_ms = 0;  // from the time a snapshot was taken to that instant
+
+  // The shortest of the last round trips knows the offset best.
+  const trips = [];
+  function hearClock(sent_ms, there_ms) {
+    const now_ms = performance.now();
+    trips.push({ length_ms: now_ms - sent_ms, offset_ms: there_ms - 0.5 * (sent_ms + now_ms) });
+    if (trips.length > 8) trips.shift();
+    clockOffset_ms = trips.reduce(function (a, b) { return b.length_ms < a.length_ms ? b : a; }).offset_ms;
+  }
+  function serverNow_ms() { return performance.now() + (clockOffset_ms || 0); }
+  // Whoever moves the part sees at once what it does.
+  function presentAfter_ms() { return isMine() || clockOffset_ms === null ? 0 : present_ms; }
+  function showDue() {
+    while (waiting.length > 0 && waiting[0].taken_ms + presentAfter_ms() <= serverNow_ms()) show(waiting.shift());
+  }
   const kBlowKind = 2;
   const kRoles = ["waiting", "in hand", "released", "mounted"];
 
@@ -471,18 +488,24 @@
     ear = audio.createDynamicsCompressor();
     ear.connect(audio.destination);
   }
-  // An impact as the server synthesised it: u32 rate, f32 pressure of the number 32767, i16 samples.
+  // An impact as the server synthesised it: f64 time, u32 rate, f32 pressure of the number 32767, i16 samples.
+  // It is heard when its snapshot is seen.
   function playBlow(buffer) {
     ++seen.blows;
     if (!audio || audio.state !== "running") return;
-    const view = new DataView(buffer), count = (buffer.byteLength - 9) / 2, kFull_Pa = 0.5;
-    const samples = audio.createBuffer(1, count, view.getUint32(1, true));
-    const data = samples.getChannelData(0), scale = view.getFloat32(5, true) / (32767 * kFull_Pa);
-    for (let i = 0; i < count; ++i) data[i] = Math.max(-1, Math.min(1, scale * view.getInt16(9 + 2 * i, true)));
+    const kHead = 17, view = new DataView(buffer), count = (buffer.byteLength - kHead) / 2, kFull_Pa = 0.5;
+    const samples = audio.createBuffer(1, count, view.getUint32(9, true));
+    const data = samples.getChannelData(0), scale = view.getFloat32(13, true) / (32767 * kFull_Pa);
+    for (let i = 0; i < count; ++i) data[i] = Math.max(-1, Math.min(1, scale * view.getInt16(kHead + 2 * i, true)));
+    const wait_s = 1e-3 * (view.getFloat64(1, true) + presentAfter_ms() - serverNow_ms());
+    const latency_s = audio.outputLatency || audio.baseLatency || 0;
+    const when_s = audio.currentTime + Math.max(0, wait_s - latency_s);
+    // When it is heard, after its snapshot was taken, by the clock of the server.
+    seen.heardAfter_ms.push(1e3 * (when_s - audio.currentTime + latency_s - wait_s) + presentAfter_ms());
     const source = audio.createBufferSource();
     source.buffer = samples;
     source.connect(ear);
-    source.start();
+    source.start(when_s);
   }
 
   // ---- the connection
@@ -493,6 +516,8 @@
   const kHear = {
     hello: function (hello) {
       seen.you = hello.you;
+      present_ms = hello.present_ms;
+      waiting.length = 0;  // of the run before
       if (hello.run) begin(hello);
     },
     doing: function (words) { $("doing").textContent = words; },
@@ -508,11 +533,13 @@
     socket.onmessage = function (event) {
       if (typeof event.data !== "string") {
         if (new Uint8Array(event.data)[0] === kBlowKind) return playBlow(event.data);
-        return show(decode(event.data));
+        waiting.push(decode(event.data));
+        if (document.hidden) showDue();  // where nothing is drawn
+        return;
       }
       const message = JSON.parse(event.data);
       if (message.pong !== undefined)
-        clockOffset_ms = message.now_ms - 0.5 * (message.pong + performance.now());
+        hearClock(message.pong, message.now_ms);
       for (const key in message) if (kHear[key]) kHear[key](message[key]);
     };
     socket.onclose = function () {
@@ -536,6 +563,7 @@
 
   let acked = 0;
   function draw() {
+    showDue();
     updateGrabInHeadset();
     chooseLevel();
     const isNew = last && last.number !== acked, isDrawn = isDue || renderer.vr.isPresenting();
@@ -550,8 +578,9 @@
     if (!isDrawn) return;  // nothing in the picture changed
     ++seen.drawn;
     if (clockOffset_ms === null) return;
-    seen.ages_ms.push(performance.now() + clockOffset_ms - last.taken_ms);
-    if (seen.ages_ms.length > 120) seen.ages_ms.shift();
+    seen.ages_ms.push(serverNow_ms() - last.taken_ms);
+    seen.shown.push([last.taken_ms, serverNow_ms()]);
+    for (const list of [seen.ages_ms, seen.shown]) if (list.length > 120) list.shift();
   }
 
   // ---- the hand and the pointer, by mouse or finger

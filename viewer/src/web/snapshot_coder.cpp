@@ -107,6 +107,7 @@ std::string blowBytes(const BlowSound& sound) {
   std::string bytes;
   ByteWriter writer(bytes);
   writer.put(kBlowKind);
+  writer.put(1e-6 * static_cast<double>(sound.taken_ns));
   writer.put(static_cast<std::uint32_t>(BlowSound::kRate_hz));
   writer.put(static_cast<float>(most_Pa));
   for (const double p : sound.pressure_Pa)

@@ -44,7 +44,7 @@ inline constexpr std::size_t kMostContacts = 256;
 /// First byte of the messages to a browser.
 inline constexpr std::uint8_t kShotKind = 1, kBlowKind = 2;
 
-/// u8 kBlowKind, u32 rate_hz, f32 pressure in Pa of the number 32767, i16 samples.
+/// u8 kBlowKind, f64 taken_ms, u32 rate_hz, f32 pressure in Pa of the number 32767, i16 samples.
 std::string blowBytes(const BlowSound& sound);
 
 }  // namespace vps::viewer::inline v0

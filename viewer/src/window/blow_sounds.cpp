@@ -53,8 +53,9 @@ std::optional<Blow> BlowSense::hear(const scenes::Snapshot& shot) {
       // Whichever of the two the normal points to.
       const double speed_m_s = std::abs(n_W.dot(v_W_)) - std::max(0.0, std::abs(n_W.dot(v_W)));
       if (speed_m_s > kLeastSpeed_m_s)
-        blow = Blow{body->part, mass_kg * speed_m_s, body->X_WP.inverse() * p_W,
-                    body->X_WP.R.transpose() * n_W, p_W};
+        blow = Blow{
+            body->part, mass_kg * speed_m_s, body->X_WP.inverse() * p_W, body->X_WP.R.transpose() * n_W, p_W,
+            0};
     }
     v_W_ = v_W;
   }
@@ -89,7 +90,7 @@ struct BlowSounds::Impl {
       auto voice = voices.find(blow.part);
       if (voice == voices.end())
         voice = voices.emplace(blow.part, partVoice(scene.parts[blow.part], settings)).first;
-      BlowSound heard{sound(voice->second, blow), blow.p_W};
+      BlowSound heard{sound(voice->second, blow), blow.p_W, blow.taken_ns};
       lock.lock();
       ready.push_back(std::move(heard));
     }
@@ -121,9 +122,10 @@ struct BlowSounds::Impl {
 BlowSounds::BlowSounds(const scenes::Scene& scene) : impl_(std::make_unique<Impl>(scene)) {}
 BlowSounds::~BlowSounds() = default;
 
-void BlowSounds::hear(const scenes::Snapshot& shot) {
-  const std::optional<Blow> blow = impl_->sense.hear(shot);
+void BlowSounds::hear(const scenes::Snapshot& shot, std::int64_t taken_ns) {
+  std::optional<Blow> blow = impl_->sense.hear(shot);
   if (!blow) return;
+  blow->taken_ns = taken_ns;
   {
     const std::lock_guard lock(impl_->mutex);
     if (impl_->blows.size() >= kMostWaitingBlows) return;

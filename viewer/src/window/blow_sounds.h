@@ -3,6 +3,7 @@
 // does.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -19,13 +20,15 @@ struct Blow {
   double impulse_Ns = 0;
   Vec3 p_P = Vec3::Zero(), n_P = Vec3::UnitZ();  ///< of the part: place and direction
   Vec3 p_W = Vec3::Zero();                       ///< the place
+  std::int64_t taken_ns = 0;                     ///< as BlowSounds::hear() was told
 };
 
 /// What a blow sounds like.
 struct BlowSound {
   static constexpr int kRate_hz = 24000;
   std::vector<double> pressure_Pa;
-  Vec3 p_W = Vec3::Zero();  ///< where it comes from
+  Vec3 p_W = Vec3::Zero();    ///< where it comes from
+  std::int64_t taken_ns = 0;  ///< of the snapshot that showed it
 };
 
 /// Finds blows between snapshots: where contact begins, the part gives up the speed at which it came along
@@ -52,7 +55,8 @@ class VPS_VIEWER_API BlowSounds {
   BlowSounds(const BlowSounds&) = delete;
   BlowSounds& operator=(const BlowSounds&) = delete;
 
-  void hear(const scenes::Snapshot& shot);
+  /// @param taken_ns  when it was taken, for BlowSound
+  void hear(const scenes::Snapshot& shot, std::int64_t taken_ns = 0);
   /// What is ready, each once.
   std::vector<BlowSound> take();
 

@@ -11,6 +11,7 @@
 
 #include "sound/lasting_output.h"
 #include "vps/load_error.h"
+#include "vps_device/metronome.h"
 #include "vps_scenes/verdict.h"
 #include "window/blow_sounds.h"
 
@@ -20,6 +21,9 @@ namespace {
 
 constexpr double kFullBlow_Pa = 0.2;  // as of a run's sound, live_sound.cpp
 constexpr std::chrono::milliseconds kSoundPeriod{10};
+/// From a snapshot to its sound: synthesis, the pace of its thread, and the card's two periods. assumed, from
+/// the 15 ms that are measured from a contact to its sample (vps view --latency).
+constexpr std::int64_t kSoundWay_ns = 15'000'000;
 constexpr double kReopen_s = 2;  // between attempts to open a card that is gone; as LiveSound
 
 }  // namespace
@@ -95,7 +99,7 @@ struct FollowedSession::Sound {
 
 FollowedSession::FollowedSession(std::unique_ptr<scenes::SessionWatcher> watcher, const std::string& session,
                                  const scenes::SessionNetwork& network, bool has_sound)
-    : watcher_(std::move(watcher)) {
+    : watcher_(std::move(watcher)), sounds_(kPresentAfter_ns - kSoundWay_ns) {
   try {
     pointing_.emplace(session, network);
   } catch (const LoadError& refused) {  // certificates of before there were pointers
@@ -124,10 +128,14 @@ void FollowedSession::poll() {
       else
         others_.erase(pointer.who);
     }
+  const std::int64_t now_ns = device::monotonicClock().now_ns();
   if (std::optional<scenes::Snapshot> shot = watcher_->takeSnapshot()) {
-    if (sound_) sound_->hear(*shot);
-    newest_ = std::move(shot);
+    const std::int64_t taken_ns = watcher_->snapshotSent_ns();
+    if (sound_) sounds_.add(*shot, taken_ns, now_ns);
+    pictures_.add(std::move(*shot), taken_ns, now_ns);
   }
+  sounds_.take(now_ns, [this](const scenes::Snapshot& shot, std::int64_t) { sound_->hear(shot); });
+  pictures_.take(now_ns, [this](scenes::Snapshot&& shot, std::int64_t) { newest_ = std::move(shot); });
   const bool has_device = watcher_->hasDevice();
   if (had_device_ && !has_device && !is_over) messages_.emplace_back("no device is in the session");
   had_device_ = has_device;

@@ -11,6 +11,7 @@
 #include "vps_scenes/network/nodes.h"
 #include "vps_scenes/network/session_pointers.h"
 #include "vps_viewer/export.h"
+#include "window/presentation.h"
 
 namespace vps::viewer::inline v0 {
 
@@ -28,7 +29,7 @@ class VPS_VIEWER_API FollowedSession {
   [[nodiscard]] const scenes::Scene& scene() const { return watcher_->scene(); }
   /// Reads what is new. Call it before the others, several times a second.
   void poll();
-  /// The newest snapshot, once.
+  /// The newest snapshot that is due (presentation.h), once.
   std::optional<scenes::Snapshot> take() { return std::exchange(newest_, std::nullopt); }
   /// In words, each once.
   std::vector<std::string> takeMessages() { return std::exchange(messages_, {}); }
@@ -55,6 +56,7 @@ class VPS_VIEWER_API FollowedSession {
   std::unique_ptr<scenes::SessionWatcher> watcher_;
   std::optional<scenes::SessionPointers> pointing_;
   std::unique_ptr<Sound> sound_;  ///< null: silent
+  Presentation pictures_, sounds_;
   std::optional<scenes::Snapshot> newest_;
   std::vector<std::string> messages_;
   std::map<int, scenes::Verdict> steps_;

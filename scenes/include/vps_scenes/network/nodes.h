@@ -33,12 +33,15 @@ struct RenderOptions : AssembleOptions {
   Say say;                          ///< may be empty
   RequestServer* server = nullptr;  ///< where others ask for something; null: they cannot
   double picture_rate_hz = 60;      ///< snapshots for the watchers, in simulated time
+  /// Gets the file in which the run is recorded, before it begins; may be empty.
+  std::function<void(const std::string&)> on_recording = nullptr;
 };
 
 /// Runs the procedure by the clock, with the hand in a device's node. Builds what the scene requires when the
 /// device has joined, for which it waits; a device that is lost is waited for, too, while physics stands
 /// still. `file`: to record the run in, empty: none; a run in which the device was lost cannot be replayed
-/// beyond that. Throws as assemble(), and LoadError where another process runs the session.
+/// beyond that. With `server`, others may ask for a recording until the run begins. Throws as assemble(), and
+/// LoadError where another process runs the session.
 VPS_SCENES_API AssembleResult renderNode(Scene& scene, const RenderOptions& options,
                                          const std::string& file = "");
 
@@ -53,6 +56,7 @@ struct DeviceNodeOptions {
   bool stays = false;                                  ///< waits for the next session when one has ended
   std::string kind = {};                               ///< of the device; empty: the scene's
   std::shared_ptr<device::HandleWish> wish = nullptr;  ///< as in AssembleOptions
+  std::function<void()> before_hello = nullptr;        ///< a session was joined; its run has not begun
 };
 
 struct DeviceNodeResult {

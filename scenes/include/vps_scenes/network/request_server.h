@@ -53,6 +53,9 @@ class VPS_SCENES_API RequestServer {
   /// The file of the next run's recording, which does not exist yet; empty: none is asked for.
   [[nodiscard]] std::string recording() const;
 
+  /// Until those who asked for a recording have its file, or are silent for 5 s, or the user stops.
+  void waitForFetchers() const;
+
   struct Work;
   /// For renderNode().
   [[nodiscard]] Work& work() { return *work_; }

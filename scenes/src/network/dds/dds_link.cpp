@@ -26,11 +26,11 @@ namespace vps::scenes::inline v0 {
 namespace {
 
 constexpr std::int64_t kBeat_ns = 20'000'000;
+constexpr auto kSign_ns = static_cast<std::int64_t>(1e9 * kSignPeriod_s);
 constexpr double kAlive_s = 0.1;  ///< a node whose last beat is older is lost
 constexpr double kFind_s = 1;     ///< for a session to be found
 constexpr double kListen_s =
-    0.5;                       ///< for another node to be heard. assumed: DDS finds a neighbour in a tenth
-constexpr int kPriority = 75;  // assumed: below the haptic loop's 80, above physics' 70
+    0.5;  ///< for another node to be heard. assumed: DDS finds a neighbour in a tenth
 constexpr std::size_t kDenseChannels = 2;  ///< Haptic and Physics, whose states have two forms
 constexpr std::size_t kTrips = 64;
 constexpr std::size_t kSceneHead = 16;
@@ -140,7 +140,10 @@ class DdsLink final : public Link {
   [[nodiscard]] WireForm form() const noexcept override { return WireForm::Compact; }
   bool send(Channel channel, std::string_view message) noexcept override {
     // The thread of physics may call DDS, which saves its states the way to the link's thread.
-    if (channel == Channel::Physics && role_ == NodeRole::Render) return write(channel, message);
+    if (channel == Channel::Physics && role_ == NodeRole::Render) {
+      stated_ns_.store(now_ns(), std::memory_order_relaxed);
+      return write(channel, message);
+    }
     const bool is_sent = writers_[static_cast<std::size_t>(channel)].write(message);
     sem_post(&wake_);  // does not wait
     return is_sent;
@@ -153,6 +156,9 @@ class DdsLink final : public Link {
     return readers_[static_cast<std::size_t>(channel)].lost();
   }
   void waitForMessage(std::int64_t most_ns) const override { waitUntil(arrived_, most_ns); }
+  [[nodiscard]] std::uint64_t signsOfLife() const noexcept override {
+    return signs_.load(std::memory_order_relaxed);
+  }
   [[nodiscard]] bool isAlive(NodeRole role) const override { return aliveOf(role) > 0; }
   [[nodiscard]] std::size_t watchers() const override { return aliveOf(NodeRole::Watch); }
   [[nodiscard]] std::uint64_t sessionId() const override { return session_; }
@@ -223,6 +229,8 @@ class DdsLink final : public Link {
         }
         int waiting = 0;
         if (sem_getvalue(&arrived_, &waiting) == 0 && waiting <= 0) sem_post(&arrived_);
+        if (writerOf(static_cast<Channel>(i)) == NodeRole::Render)
+          signs_.fetch_add(1, std::memory_order_relaxed);
       };
     if (i < kDenseChannels)
       dense_topics_[i].emplace(participant_, topicName(session, nameOf(channel) + std::string("_state")),
@@ -252,7 +260,9 @@ class DdsLink final : public Link {
   std::map<std::uint64_t, std::string> scenes_;
   std::vector<char> buffer_ = std::vector<char>(kLongestMessage);
   sem_t wake_{};
-  mutable sem_t arrived_{};  ///< at most 1: something came since the last wait
+  mutable sem_t arrived_{};                 ///< at most 1: something came since the last wait
+  std::atomic<std::uint64_t> signs_{0};     ///< that came of the render node
+  std::atomic<std::int64_t> stated_ns_{0};  ///< when physics sent its last state
   std::atomic<bool> is_ending_{false};
   std::atomic<std::uint64_t> refused_beats_{0};
   std::mutex receive_mutex_;
@@ -274,15 +284,18 @@ std::optional<PeerTiming> DdsLink::timing(NodeRole role) const {
 }
 
 void DdsLink::pump() {
-  device::requestRealTime(kPriority, false);
+  device::requestRealTime(kLinkPriority, false);
   std::int64_t next_beat_ns = now_ns();
   while (!is_ending_) {
     passOn();
-    if (now_ns() >= next_beat_ns) {
+    // The device's node has to know that this one lives while a step of physics takes long.
+    const bool is_silent =
+        role_ == NodeRole::Render && now_ns() - stated_ns_ >= kSign_ns && isAlive(NodeRole::Device);
+    if (now_ns() >= next_beat_ns || is_silent) {
       sendBeats();
       next_beat_ns = now_ns() + kBeat_ns;
     }
-    waitUntil(wake_, kBeat_ns);
+    waitUntil(wake_, role_ == NodeRole::Render ? kSign_ns : kBeat_ns);
     while (sem_trywait(&wake_) == 0) {
     }
   }
@@ -344,6 +357,8 @@ void DdsLink::takeBeat(std::string_view bytes) {
   peer.has_ended = peer.has_ended || beat.has_ended;
   peer.sent_ns = envelope.time_ns;
   peer.heard_ns = heard_ns;
+  if (beat.role == NodeRole::Render && beat.session == session_)
+    signs_.fetch_add(1, std::memory_order_relaxed);
   if (beat.peer != writer_.sender()) return;
   const ClockExchange exchange{beat.peer_sent_ns, beat.received_ns, envelope.time_ns, heard_ns};
   peer.clock.add(exchange);

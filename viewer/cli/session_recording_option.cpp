@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "session_recording_option.h"
+
+#include <cstdio>
+
+#include "terminal.h"
+
+namespace vps::viewer::inline v0 {
+
+CLI::Option* addRecordOption(CLI::App& command, std::string& file) {
+  return command
+      .add_option(
+          "--record", file,
+          "have vps render record the run, and bring the recording here when it has ended (MCAP), for vps "
+          "replay. It may be asked for until the run begins")
+      ->type_name("FILE.mcap");
+}
+
+scenes::SessionRecordingOptions recordingOptions(const std::string& session,
+                                                 const scenes::SessionNetwork& network,
+                                                 const std::string& file) {
+  scenes::SessionRecordingOptions options;
+  options.session = session;
+  options.network = network;
+  options.file = file;
+  options.stop = &stopRequested();
+  options.say = [](const std::string& words) { say(words); };
+  return options;
+}
+
+int finishRecording(scenes::SessionRecording& recording, const std::string& file) {
+  const std::string why = recording.finish();
+  if (why.empty()) {
+    std::printf("recording: %s\n", file.c_str());
+    return kGood;
+  }
+  warn("no recording in " + file + ": " + why);
+  return kCouldNot;
+}
+
+}  // namespace vps::viewer::inline v0
