@@ -154,9 +154,11 @@ double affordable(const TopoDS_Shape& shape, ImportSettings settings, double uni
   if (settings.most_triangles == 0 || settings.coarsest_m < kStep * asked_m) return asked_m;
   double deflection_m = asked_m;
   while (kStep * deflection_m < kRounding * settings.coarsest_m) deflection_m *= kStep;
+  const IMeshTools_MeshAlgoType algorithm =
+      hasManyHoles(shape) ? IMeshTools_MeshAlgoType_Delabella : IMeshTools_MeshAlgoType_DEFAULT;
   const auto countAt = [&](double d_m) {
     settings.deflection_m = d_m;
-    triangulate(shape, settings, units_per_m, Inner::None);
+    triangulate(shape, settings, units_per_m, Inner::None, algorithm);
     return triangleCount(shape);
   };
   const std::size_t coarse = countAt(deflection_m);
