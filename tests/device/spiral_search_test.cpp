@@ -61,5 +61,24 @@ TEST(SpiralSearch, LeadsAPartThatFrictionHolds) {
   }
 }
 
+// It was backed off before its hole, and sight has moved it above the hole since: it drops while it is
+// lowered, past where it touched before. There is nothing to search for then.
+TEST(SpiralSearch, EndsWhereThePartDropsWhileItIsLowered) {
+  Situation situation;
+  situation.mouth_m = -14e-3;
+  Feel feel;
+  feel.along_m = situation.mouth_m - situation.habits.back_off_m;
+  SpiralSearch search;
+  search.start(situation, feel);
+  Outcome outcome = Outcome::GoingOn;
+  for (; outcome == Outcome::GoingOn && feel.time_s < 10; feel.time_s += kDt_s) {
+    outcome = search.step(feel, kDt_s);
+    feel.along_m = std::min(0.0, feel.along_m + 10e-3 * kDt_s);
+    feel.resist_N = feel.along_m < 0 ? 0 : situation.habits.search_N;
+  }
+  EXPECT_EQ(outcome, Outcome::Done);
+  EXPECT_LT(feel.along_m, situation.mouth_m + 1e-3);
+}
+
 }  // namespace
 }  // namespace vps::device

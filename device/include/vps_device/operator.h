@@ -110,6 +110,11 @@ struct OperatorTask {
   ScrewTask screw;
 };
 
+/// How far a part hangs below the hand that carries it, by the spring between them: the hand holds it so much
+/// higher. Zero for a light part, which is where the hand is as far as sight, which corrects that, can tell.
+VPS_DEVICE_API Vec3 sagBelowHand_m(const OperatorHabits& habits, const Vec3& weight_W,
+                                   double give_m_per_N) noexcept;
+
 /// What the hand senses at one instant.
 struct OperatorView {
   double time_s = 0;

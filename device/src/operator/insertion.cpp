@@ -7,17 +7,17 @@ namespace vps::device::inline v0 {
 
 namespace {
 
-constexpr double kInside_m = 0.5e-3;  // beyond the first touch: in the hole
-constexpr int kLittleBackOffs = 3;    // then it withdraws whole
-constexpr double kDeeper_m = 2e-3;    // beyond one mouth there may be another one
-constexpr int kSearchesDeeper = 4;    // at one place, before it withdraws to the first mouth
+constexpr int kLittleBackOffs = 3;   // then it withdraws whole
+constexpr double kDeeper_m = 2e-3;   // beyond one mouth there may be another one
+constexpr double kFreeWay_m = 3e-3;  // three times as far as it backs off: it had left the first hole
+constexpr int kSearchesDeeper = 4;   // at one place, before it withdraws to the first mouth
 
 }  // namespace
 
 void Insertion::reset() noexcept {
   has_aligned_ = false;
   stuck_inside_ = searches_ = searches_deeper_ = 0;
-  first_mouth_m_ = 0;
+  first_mouth_m_ = approach_from_m_ = 0;
 }
 
 Strategy& Insertion::present() noexcept {
@@ -54,6 +54,7 @@ void Insertion::next(bool succeeded, const Feel& feel) noexcept {
   switch (strategy_) {
     case OperatorStrategy::Approach:
       if (succeeded && !situation_.has_touched) first_mouth_m_ = feel.along_m;
+      if (succeeded) noteNextMouth(feel);
       return afterApproach(succeeded, feel);
     case OperatorStrategy::Touch:
       return afterTouch(feel);
@@ -62,8 +63,10 @@ void Insertion::next(bool succeeded, const Feel& feel) noexcept {
     case OperatorStrategy::TurnSearch:
       return succeeded ? start(OperatorStrategy::AlignByTorque, feel) : backOff(true, feel);
     case OperatorStrategy::AlignByTorque:
+      approach_from_m_ = feel.along_m;
       return start(isFree(feel) ? OperatorStrategy::Approach : OperatorStrategy::Touch, feel);
     case OperatorStrategy::BackOff:
+      approach_from_m_ = feel.along_m;
       if (!is_whole_) return start(OperatorStrategy::AlignByTorque, feel);
       return start(nextSearch(), feel);
     case OperatorStrategy::PressHome:
@@ -86,6 +89,17 @@ OperatorStrategy Insertion::nextSearch() const noexcept {
     default:
       return OperatorStrategy::TurnSearch;
   }
+}
+
+// A ring that has passed one land of a stepped shaft goes on freely until it meets the next one. Its search
+// begins there, and not before the first land, which it would have to pass again.
+void Insertion::noteNextMouth(const Feel& feel) noexcept {
+  const bool went_freely = feel.along_m > approach_from_m_ + kFreeWay_m;
+  if (situation_.is_slender || !went_freely || feel.along_m < situation_.mouth_m + kDeeper_m) return;
+  if (!situation_.has_touched) return;
+  situation_.mouth_m = feel.along_m;
+  has_aligned_ = false;
+  stuck_inside_ = searches_ = searches_deeper_ = 0;
 }
 
 // The part touches and slides no farther: is it home, in the hole, or beside it?

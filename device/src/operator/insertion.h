@@ -3,6 +3,7 @@
 //
 //   approach -> touch -> seen near the target? -> press home -> done
 //                 |  \-> in the hole already?  -> align by torque -> touch
+//                 |  \-> it went on freely to the next land: the search begins anew there
 //                 |  \-> a slender part: at the mouth of a second hole, perhaps -> spiral search there
 //                 \----> align, then tilt in, spiral search and turn search in turn, each after backing off
 #pragma once
@@ -24,6 +25,7 @@ class Insertion final : public Sequence {
   void next(bool succeeded, const Feel& feel) noexcept override;
   [[nodiscard]] bool isFree(const Feel& feel) const noexcept;
   [[nodiscard]] OperatorStrategy nextSearch() const noexcept;
+  void noteNextMouth(const Feel& feel) noexcept;
   void afterTouch(const Feel& feel) noexcept;
   void afterTouchInside(const Feel& feel) noexcept;
   void backOff(bool is_whole, const Feel& feel) noexcept;
@@ -36,7 +38,7 @@ class Insertion final : public Sequence {
   PressHome press_home_;
   bool has_aligned_ = false, is_whole_ = true;
   int stuck_inside_ = 0, searches_ = 0, searches_deeper_ = 0;
-  double first_mouth_m_ = 0;
+  double first_mouth_m_ = 0, approach_from_m_ = 0;
 };
 
 }  // namespace vps::device::inline v0

@@ -80,6 +80,12 @@ HandForce evenHand(const OperatorHabits& habits) noexcept {
   return hand;
 }
 
+Vec3 sagBelowHand_m(const OperatorHabits& habits, const Vec3& weight_W, double give_m_per_N) noexcept {
+  constexpr double kHeavy = 0.5;  // of what sight corrects. assumed
+  const Vec3 sag_m = give_m_per_N * weight_W;
+  return sag_m.norm() > kHeavy * habits.see_limit_m ? sag_m : Vec3(Vec3::Zero());
+}
+
 VirtualOperator::VirtualOperator(const OperatorHabits& habits) : person_(std::make_unique<Person>(habits)) {}
 VirtualOperator::VirtualOperator(VirtualOperator&&) noexcept = default;
 VirtualOperator& VirtualOperator::operator=(VirtualOperator&&) noexcept = default;

@@ -41,6 +41,8 @@ void VirtualOperator::Person::begin(const OperatorTask& task, double now_s) {
   misread_rad_ = habits_.aim_turn_rad > 0 ? habits_.aim_turn_rad * (2 * random_.uniform() - 1) * axis_W_
                                           : Vec3(Vec3::Zero());
   belief_ = {};
+  sag_m_ = sagBelowHand_m(habits_, task.weight_W, task.give_m_per_N);
+  belief_.across_m = -sag_m_;
   hole_m_ = Vec3::Zero();
   hole_seen_for_s_ = kSoon_s;  // the aim counts as much as a short look
   seen_for_s_ = 0;
@@ -153,7 +155,7 @@ void VirtualOperator::Person::reach(const OperatorView& view) noexcept {
 
 void VirtualOperator::Person::startInsertion(const OperatorView& view) noexcept {
   belief_.across_m = across(belief_.across_m) + aim_m_;
-  hole_m_ = isSlender() ? belief_.across_m : Vec3(Vec3::Zero());
+  hole_m_ = isSlender() ? Vec3(belief_.across_m + across(sag_m_)) : Vec3(Vec3::Zero());
   belief_.turn_rad += aim_rad_;
   seen_for_s_ = 0;
   const Pose& X_to = path_.back();
@@ -189,7 +191,7 @@ void VirtualOperator::Person::insert(const OperatorView& view, double dt_s) noex
     belief_.turn_rad += last.turn_rad;
   }
   if (isSlender() && before == OperatorStrategy::SpiralSearch && sequence().strategy() != before)
-    belief_.across_m = tip_felt_m_;  // it led the end by more than it goes back by
+    belief_.across_m = tip_felt_m_ - across(sag_m_);  // it led the end by more than it goes back by
   const bool is_last = sequence().strategy() == OperatorStrategy::PressHome ||
                        sequence().strategy() == OperatorStrategy::PlaceBySight;
   if (is_last != (phase_ == OperatorPhase::Press))
@@ -288,7 +290,7 @@ void VirtualOperator::Person::correctOnTheWay(double dt_s) noexcept {
   Vec3 error_m = X_path.p - X_seen.p;
   error_m -= along * along.dot(error_m);
   const double gain = habits_.see_gain_per_s * dt_s;
-  belief_.across_m = shortened(belief_.across_m + gain * error_m, habits_.see_limit_m);
+  belief_.across_m = shortened(belief_.across_m + gain * error_m, seeLimit_m());
   belief_.turn_rad =
       shortened(belief_.turn_rad + gain * rotationVector(X_path.R * X_seen.R.transpose()), seeLimit_rad());
 }
@@ -317,7 +319,7 @@ void VirtualOperator::Person::correctAtTheHole(double dt_s) noexcept {
     belief_.across_m += home_m;
     belief_.turn_rad += depth_m() > kPivots_m ? turnAboutMouth(home_m) : Vec3(gain * lean_rad);
   }
-  belief_.across_m = shortened(belief_.across_m, habits_.see_limit_m);
+  belief_.across_m = shortened(belief_.across_m, seeLimit_m());
   belief_.turn_rad = shortened(belief_.turn_rad, seeLimit_rad());
 }
 
@@ -330,13 +332,13 @@ void VirtualOperator::Person::giveWay(double dt_s) noexcept {
   double guided = 1;
   if (isSlender()) {
     const Vec3 wanted_tip_m = across(X_wanted.p - X_to.p) + tipFromGrasp(X_wanted.R);
-    belief_.across_m += share * (tip_felt_m_ - wanted_tip_m);
+    belief_.across_m += share * (tip_felt_m_ - across(sag_m_) - wanted_tip_m);
     guided = std::clamp(depth_m() / (kGuided * tip_m_), 0.0, 1.0);
   } else {
-    belief_.across_m += share * across(X_to.p + feel_.across_m - X_wanted.p);
+    belief_.across_m += share * across(X_to.p + feel_.across_m - sag_m_ - X_wanted.p);
   }
   belief_.turn_rad += guided * share * tiltOf(rotationVector(feel_.R_hand * X_wanted.R.transpose()));
-  belief_.across_m = shortened(belief_.across_m, habits_.see_limit_m);
+  belief_.across_m = shortened(belief_.across_m, seeLimit_m());
   belief_.turn_rad = shortened(belief_.turn_rad, seeLimit_rad());
   serve_m_ -= share * serve_m_;
   serve_rad_ -= share * serve_rad_;
@@ -417,8 +419,7 @@ HandForce VirtualOperator::Person::impedance() const noexcept {
   const Mat3 along = axis_W_ * axis_W_.transpose(), across = Mat3::Identity() - along;
   hand.k_N_per_m = k * along + k_across * across;
   hand.b_Ns_per_m = damping(k) * along + damping(k_across) * across;
-  const bool carries = phase_ != OperatorPhase::Idle && phase_ != OperatorPhase::Done;
-  if (carries) hand.F.f = -task_.weight_W;
+  if (phase_ != OperatorPhase::Idle) hand.F.f = -task_.weight_W;  // also until it has let go
   return hand;
 }
 

@@ -78,6 +78,7 @@ class VirtualOperator::Person {
     const Pose X = sight_.seen() * task_.X_PG;
     return {Mat3(rotationFromVector(misread_rad_) * X.R), X.p};
   }
+  [[nodiscard]] double seeLimit_m() const noexcept { return habits_.see_limit_m + sag_m_.norm(); }
   [[nodiscard]] double seeLimit_rad() const noexcept { return habits_.see_limit_rad + habits_.aim_turn_rad; }
 
   // Hand.
@@ -118,6 +119,7 @@ class VirtualOperator::Person {
   Vec3 misread_rad_ = Vec3::Zero();  // about the axis; sight does not correct it
 
   Belief belief_;
+  Vec3 sag_m_ = Vec3::Zero();  // how far a heavy part hangs below the hand; zero of others
   double seen_for_s_ = 0;
   Feel feel_;
   // How far the end that goes in first is felt beside the grasp, and beside its line.

@@ -38,6 +38,7 @@ Outcome SpiralSearch::step(const Feel& feel, double dt_s) noexcept {
   wait_s_ += dt_s;
   const bool is_lowered = feel.resist_N >= 0.5 * situation_.habits.search_N || wait_s_ >= 2;
   if (!is_lowered || wait_s_ < kSpiralSearchSettle_s) {
+    if (isPastMouth(feel)) return Outcome::Done;
     level_m_ = feel.along_m;
     if (!situation_.is_slender) center_m_ = feel.tip_m;
     return Outcome::GoingOn;

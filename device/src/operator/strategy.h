@@ -39,6 +39,8 @@ struct Move {
   bool gives_way = false;        ///< the felt side force and torque correct the belief
 };
 
+inline constexpr double kInside_m = 0.5e-3;  ///< beyond the first touch: in the hole
+
 enum class Outcome {
   GoingOn,
   Done,    ///< it did what it is for
@@ -75,6 +77,11 @@ class Strategy {
   [[nodiscard]] const Move& move() const noexcept { return move_; }
 
  protected:
+  /// While it is lowered onto the mouth, the part has dropped through it: that is where the hole is.
+  [[nodiscard]] bool isPastMouth(const Feel& feel) const noexcept {
+    return feel.along_m > situation_.mouth_m + kInside_m;
+  }
+
   Situation situation_;
   double start_s_ = 0;
   Move move_;

@@ -33,6 +33,7 @@ Outcome TurnSearch::step(const Feel& feel, double dt_s) noexcept {
   const double t_s = feel.time_s - start_s_;
   const bool is_lowered = feel.resist_N > 0.5 * situation_.habits.search_N || t_s > kTurnSearchLower_s;
   if (settled_s_ < kTurnSearchSettle_s) {
+    if (isPastMouth(feel)) return Outcome::Done;
     settled_s_ = is_lowered ? settled_s_ + dt_s : 0;
     level_m_ = feel.along_m;
     return Outcome::GoingOn;

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <deque>
 #include <map>
 #include <numbers>
 
@@ -33,31 +34,75 @@ struct Flank {
   double area_m2 = 0;
 };
 
+constexpr double kLeastSlope = 0.15;   // flanks of 80 degrees from the axis
+constexpr double kLeastFacing = 0.05;  // away from the axis, or towards it
+
+/// A facet, whichever axis it is seen from.
+struct Facet {
+  std::uint32_t number = 0;
+  Vec3 n = Vec3::Zero(), middle = Vec3::Zero();
+  double area_m2 = 0;
+};
+
+/// The facets of a surface, and for each direction of an axis those that can be flanks by their normals
+/// alone: a plate with holes has many axes of one direction, and most of its facets are flat or plain walls.
+class FlankFacets {
+ public:
+  explicit FlankFacets(const PartSurface& surface) {
+    all_.reserve(surface.mesh().triangles.size());
+    for (std::uint32_t i = 0; i < surface.mesh().triangles.size(); ++i) {
+      const Triangle t = surface.triangle(i);
+      all_.push_back(
+          {i, surface.normal(i), (t[0] + t[1] + t[2]) / 3, 0.5 * (t[1] - t[0]).cross(t[2] - t[0]).norm()});
+    }
+  }
+
+  /// At least all whose normals lie as flanksAround() demands.
+  const std::vector<Facet>& along(const Vec3& axis) {
+    constexpr double kSameWay = 1 - 1e-6;  // within 1.4 mrad
+    constexpr double kMargin = 2e-3;       // of slope and facing, for those
+    for (const Direction& known : directions_)
+      if (std::abs(axis.dot(known.axis)) > kSameWay) return known.facets;
+    Direction& direction = directions_.emplace_back();
+    direction.axis = axis;
+    for (const Facet& facet : all_) {
+      const double slope = facet.n.dot(axis);
+      if (std::abs(slope) >= kLeastSlope - kMargin &&
+          (facet.n - slope * axis).norm() >= kLeastFacing - kMargin)
+        direction.facets.push_back(facet);
+    }
+    return direction.facets;
+  }
+
+ private:
+  struct Direction {
+    Vec3 axis;
+    std::vector<Facet> facets;
+  };
+  std::vector<Facet> all_;
+  std::deque<Direction> directions_;
+};
+
 /// Facets that can be the flanks of a thread around the axis, outside or inside.
-std::vector<Flank> flanksAround(const PartSurface& surface, const Line& line, bool is_inside) {
-  constexpr double kLeastSlope = 0.15;                 // flanks of 80 degrees from the axis
-  constexpr double kLeastFacing = 0.05;                // away from the axis, or towards it
+std::vector<Flank> flanksAround(FlankFacets& facets, const Line& line, bool is_inside) {
   constexpr double kLeastLead = 0.002, kMostLead = 1;  // in turns around the axis: 2 pi r
   const Vec3 x = line.axis.unitOrthogonal(), y = line.axis.cross(x);
   std::vector<Flank> out;
-  for (std::uint32_t i = 0; i < surface.mesh().triangles.size(); ++i) {
-    const Vec3 n = surface.normal(i);
-    const double slope = n.dot(line.axis);
+  for (const Facet& facet : facets.along(line.axis)) {
+    const double slope = facet.n.dot(line.axis);
     if (std::abs(slope) < kLeastSlope) continue;
-    const Triangle t = surface.triangle(i);
-    const Vec3 c = (t[0] + t[1] + t[2]) / 3 - line.p;
+    const Vec3 c = facet.middle - line.p;
     const Vec3 r = c - line.axis.dot(c) * line.axis;
     const double radius_m = r.norm();
     if (!(radius_m > 0)) continue;
-    const double facing = n.dot(r) / radius_m * (is_inside ? -1 : 1);
+    const double facing = facet.n.dot(r) / radius_m * (is_inside ? -1 : 1);
     if (facing < kLeastFacing) continue;
-    const double lead_m = -kTurn_rad * n.dot(line.axis.cross(r)) / slope;
+    const double lead_m = -kTurn_rad * facet.n.dot(line.axis.cross(r)) / slope;
     if (std::abs(lead_m) < kLeastLead * kTurn_rad * radius_m ||
         std::abs(lead_m) > kMostLead * kTurn_rad * radius_m)
       continue;
     const double turn = std::atan2(r.dot(y), r.dot(x)) / kTurn_rad;
-    out.push_back({i, lead_m, radius_m, line.axis.dot(c), turn - std::floor(turn),
-                   0.5 * (t[1] - t[0]).cross(t[2] - t[0]).norm()});
+    out.push_back({facet.number, lead_m, radius_m, line.axis.dot(c), turn - std::floor(turn), facet.area_m2});
   }
   return out;
 }
@@ -67,10 +112,13 @@ std::vector<Flank> agreeing(const std::vector<Flank>& flanks) {
   constexpr double kBin = 0.05;  // of the lead's logarithm
   constexpr int kReach = 3;      // bins to each side: facets are flat, and divided coarsely
   std::map<std::pair<bool, int>, double> area_m2;
-  const auto binOf = [&](const Flank& flank) {
-    return std::pair(flank.lead_m < 0, static_cast<int>(std::floor(std::log(std::abs(flank.lead_m)) / kBin)));
-  };
-  for (const Flank& flank : flanks) area_m2[binOf(flank)] += flank.area_m2;
+  std::vector<std::pair<bool, int>> bins;
+  bins.reserve(flanks.size());
+  for (const Flank& flank : flanks) {
+    bins.emplace_back(flank.lead_m < 0,
+                      static_cast<int>(std::floor(std::log(std::abs(flank.lead_m)) / kBin)));
+    area_m2[bins.back()] += flank.area_m2;
+  }
   std::pair<bool, int> best;
   double most_m2 = 0;
   for (const auto& [bin, own_m2] : area_m2) {
@@ -81,10 +129,9 @@ std::vector<Flank> agreeing(const std::vector<Flank>& flanks) {
     if (sum_m2 > most_m2) most_m2 = sum_m2, best = bin;
   }
   std::vector<Flank> out;
-  for (const Flank& flank : flanks)
-    if (const auto bin = binOf(flank);
-        bin.first == best.first && std::abs(bin.second - best.second) <= kReach)
-      out.push_back(flank);
+  for (std::size_t i = 0; i < flanks.size(); ++i)
+    if (bins[i].first == best.first && std::abs(bins[i].second - best.second) <= kReach)
+      out.push_back(flanks[i]);
   return out;
 }
 
@@ -275,9 +322,10 @@ std::vector<Line> candidateAxes(const PartSurface& surface, const std::vector<Ro
 
 std::vector<ThreadFace> threadFaces(const PartSurface& surface, const std::vector<RoundFace>& round) {
   std::vector<ThreadFace> out;
+  FlankFacets facets(surface);
   for (const Line& line : candidateAxes(surface, round))
     for (const bool is_inside : {false, true}) {
-      std::vector<Flank> flanks = agreeing(flanksAround(surface, line, is_inside));
+      std::vector<Flank> flanks = agreeing(flanksAround(facets, line, is_inside));
       keepOneRadius(flanks);
       if (!goAllAround(flanks)) continue;
       ThreadFace face;

@@ -202,15 +202,30 @@ class Child {
   }
   void setClosed() { is_closed_ = true; }
 
-  /// Memory that it occupies itself; 0 where that is not known.
+  /// Memory that it occupies itself, and copies that it forked; 0 where that is not known.
   [[nodiscard]] std::uint64_t memory_bytes() const {
-    const Stream statm(std::fopen(("/proc/" + std::to_string(id_) + "/statm").c_str(), "r"));
+    const std::string process = "/proc/" + std::to_string(id_);
+    const Stream statm(std::fopen((process + "/statm").c_str(), "r"));
     unsigned long long all = 0, resident = 0, shared = 0;
     if (!statm || std::fscanf(statm.get(), "%llu %llu %llu", &all, &resident, &shared) != 3) return 0;
-    return (resident - std::min(resident, shared)) * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+    std::uint64_t sum =
+        (resident - std::min(resident, shared)) * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+    const std::string list = process + "/task/" + std::to_string(id_) + "/children";
+    const Stream copies(std::fopen(list.c_str(), "r"));
+    for (long copy = 0; copies && std::fscanf(copies.get(), "%ld", &copy) == 1;) sum += ownShare_bytes(copy);
+    return sum;
   }
 
  private:
+  /// A process's memory, of what it shares its share.
+  static std::uint64_t ownShare_bytes(long id) {
+    const Stream rollup(std::fopen(("/proc/" + std::to_string(id) + "/smaps_rollup").c_str(), "r"));
+    unsigned long long kilobytes = 0;
+    for (char line[256]; rollup && std::fgets(line, sizeof line, rollup.get()) != nullptr;)
+      if (std::sscanf(line, "Pss: %llu", &kilobytes) == 1) break;
+    return 1024 * kilobytes;
+  }
+
   pid_t id_;
   bool is_gone_ = false, is_closed_ = false;
 };

@@ -10,6 +10,8 @@
 
 #include <Eigen/Core>
 
+#include "core/fit_tolerance.h"
+
 namespace vps::scenes::inline v0 {
 
 namespace {
@@ -107,8 +109,6 @@ bool tipsOver(const PairMotions& motions, std::size_t part, const std::vector<st
 }
 
 bool sinksFromItsPlace(const PairMotions& motions, std::size_t part, const std::vector<std::size_t>& held) {
-  // As the tolerance of a step that gives none (procedure/drawn_targets).
-  constexpr double kFitTolerance_m = 0.1e-3, kSightTolerance_m = 0.5e-3, kContact_m = 20e-6;
   constexpr double kFall_m = 1e-3;
   constexpr std::uint64_t kMostWork = 2'000'000;
   std::vector<std::size_t> near;
@@ -120,8 +120,7 @@ bool sinksFromItsPlace(const PairMotions& motions, std::size_t part, const std::
           const std::string& name = motions.parts()[one].name;
           return fit.shaft == name || fit.bore == name;
         }))
-      allowed_m =
-          std::min({allowed_m, kFitTolerance_m, std::max(0.0, fit.diametral_clearance_m) + kContact_m});
+      allowed_m = std::min(allowed_m, fitTolerance_m(fit.diametral_clearance_m));
   const Vec3& up_W = motions.directions()[motions.up()];
   const auto chord_m = [](const PlacedSurface& of) { return of.surface->chordIn(of.surface->box()); };
   double others_m = 0;

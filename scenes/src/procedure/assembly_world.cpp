@@ -138,9 +138,18 @@ void AssemblyWorld::take(std::size_t index) {
   snap_ = axisSnap(step, state_.moving.X_PG.p, tapped_.limits(), simulation_.mass(step.part),
                    inertia.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff(), dt_s_);
   snap_share_ = 0;
-  driver_->handOver(X_WP_start * state_.moving.X_PG);
+  driver_->handOver(handAt(X_WP_start));
   state_.is_holding = true;
   if (options_.has_local_contact) startLocalContact();
+}
+
+// With the spring to the part stretched by its weight, so that a heavy part does not fall when it is taken.
+Pose AssemblyWorld::handAt(const Pose& X_WP) const {
+  Pose X_WG = X_WP * state_.moving.X_PG;
+  const double k_N_per_m = driver_->settings().gains.k_N_per_m;
+  if (k_N_per_m > 0 && !driver_->settings().is_collocated)
+    X_WG.p -= device::sagBelowHand_m(device::OperatorHabits(), state_.moving.weight_W, 1 / k_N_per_m);
+  return X_WG;
 }
 
 void AssemblyWorld::changeGains() {

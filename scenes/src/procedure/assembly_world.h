@@ -126,6 +126,7 @@ class AssemblyWorld {
   void passEvents();
   void shedLoad();
   /// Gains that others wish, while nothing is held.
+  [[nodiscard]] Pose handAt(const Pose& X_WP) const;
   void changeGains();
   /// Axis snap on the part in hand, for the coming step.
   void snap();

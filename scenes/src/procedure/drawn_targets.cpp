@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "core/fit_tolerance.h"
 #include "core/length_words.h"
 #include "core/parts_in_place.h"
 #include "procedure/closed_room.h"
@@ -155,7 +156,7 @@ double toleranceOf(const CheckResult& checked, const std::vector<InPlace>& in_pl
     const double found_m = std::max(0.0, fit.diametral_clearance_m);
     clearance_m = std::min(clearance_m.value_or(found_m), found_m);
   }
-  return clearance_m ? std::min(kFitTolerance_m, *clearance_m + kContactOnBothSides_m) : kSightTolerance_m;
+  return clearance_m ? fitTolerance_m(*clearance_m) : kSightTolerance_m;
 }
 
 }  // namespace

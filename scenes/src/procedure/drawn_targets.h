@@ -12,13 +12,6 @@
 
 namespace vps::scenes::inline v0 {
 
-/// Greatest tolerance that a fit gives. assumed: a usual tolerance of position
-inline constexpr double kFitTolerance_m = 0.1e-3;
-/// Tolerance of what sight alone stops: five standard deviations of device::OperatorHabits::see_error_m.
-inline constexpr double kSightTolerance_m = 0.5e-3;
-/// Added to the clearance of a fit: 10 um count as contact, and a part may touch on both sides.
-inline constexpr double kContactOnBothSides_m = 20e-6;
-
 /// A result for each step with tolerance_m, aligned_by, mesh_doubt and press_needed_N, and with reason and
 /// blocked_... where geometry proves that the part cannot be there: at its target it overlaps what is in
 /// place by then, by more than the error of the meshes (and the scene does not allow it), or it starts or

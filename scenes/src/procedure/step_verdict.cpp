@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <string>
 
+#include "core/fit_tolerance.h"
 #include "core/insertion_axis.h"
 #include "core/length_words.h"
 #include "judge/surface_error.h"

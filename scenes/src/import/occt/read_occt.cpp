@@ -33,7 +33,7 @@
 #include <XCAFDoc_ShapeTool.hxx>
 
 #include "import/occt/pieces.h"
-#include "import/occt/tessellation.h"
+#include "import/occt/tessellate_all.h"
 #include "import/part_names.h"
 #include "import/readers.h"
 #include "vps/load_error.h"
@@ -103,7 +103,8 @@ class Tree {
   void walk() {
     TDF_LabelSequence roots;
     shapes_->GetFreeShapes(roots);
-    for (const TDF_Label& root : roots) count(root);
+    for (const TDF_Label& root : roots) collect(root, nameOf(root));
+    triangulateAll();
     for (const TDF_Label& root : roots) {
       // A single shape may have a location.
       const Color* none = nullptr;
@@ -114,6 +115,7 @@ class Tree {
  private:
   struct Piece {
     Tessellation tessellation;
+    Eigen::Affine3d X_PieceMesh;  ///< in file units
     Color color;
     bool has_color;
     bool is_by_faces = false;                    ///< `color` is that of most of them
@@ -133,13 +135,28 @@ class Tree {
     return XCAFDoc_ShapeTool::GetReferredShape(label, target) ? target : label;
   }
 
-  void count(const TDF_Label& label) {
+  /// The pieces of each product below a label, named for the progress.
+  void collect(const TDF_Label& label, std::string name) {
     const TDF_Label product = referred(label);
+    if (const std::string own_name = bestName(nameOf(label), nameOf(product)); !own_name.empty())
+      name = own_name;
     if (XCAFDoc_ShapeTool::IsAssembly(product)) {
-      forComponents(product, [&](const TDF_Label& component) { count(component); });
-    } else {
-      ++leaf_count_;
+      forComponents(product, [&](const TDF_Label& component) { collect(component, name); });
+      return;
     }
+    const auto [it, is_new] = first_shape_.try_emplace(entryOf(product), all_shapes_.size());
+    if (!is_new) return;
+    if (progress_) progress_("reading the faces of " + name, 0);
+    for (const TopoDS_Shape& shape : pieces(XCAFDoc_ShapeTool::GetShape(product)))
+      all_shapes_.push_back(shape);
+    shape_end_[it->first] = all_shapes_.size();
+  }
+
+  void triangulateAll() {
+    tessellated_ =
+        tessellateAll(all_shapes_, settings_, 1 / cad_.unit_m, [&](std::size_t done, std::size_t all) {
+          if (progress_) progress_("meshing", double(done) / double(all));
+        });
   }
 
   /// What is above an instance.
@@ -167,14 +184,13 @@ class Tree {
       forComponents(product, [&](const TDF_Label& component) { visit(component, above, X_WP, color); });
       return;
     }
-    if (progress_) progress_("meshing " + name, double(leaf_done_++) / double(leaf_count_));
     for (const Piece& piece : piecesOf(product)) {
       RawPart part;
       part.name = name;
       part.mesh = piece.tessellation.mesh;
       part.deviation_m = errorOf(piece.tessellation, settings_);
       part.note = inWords(piece.tessellation, settings_);
-      part.X_WP = X_WP;
+      part.X_WP = X_WP * piece.X_PieceMesh;
       part.within = above.within;
       if (piece.has_color) part.color = piece.color;
       if (color) part.color = *color;
@@ -191,17 +207,23 @@ class Tree {
     return unique;
   }
 
-  const std::vector<Piece>& piecesOf(const TDF_Label& product) {
+  static std::string entryOf(const TDF_Label& label) {
     TCollection_AsciiString entry;
-    TDF_Tool::Entry(product, entry);
-    const auto [it, is_new] = products_.try_emplace(entry.ToCString());
+    TDF_Tool::Entry(label, entry);
+    return entry.ToCString();
+  }
+
+  const std::vector<Piece>& piecesOf(const TDF_Label& product) {
+    const auto [it, is_new] = products_.try_emplace(entryOf(product));
     if (!is_new) return it->second;
     const ColoredFaces colored(product, *this);
-    for (const TopoDS_Shape& shape : pieces(XCAFDoc_ShapeTool::GetShape(product))) {
+    for (std::size_t i = first_shape_.at(it->first); i < shape_end_.at(it->first); ++i) {
+      const TopoDS_Shape& shape = all_shapes_[i];
       Piece piece;
       piece.has_color = colorOf(shape, piece.color, piece.is_by_faces);
-      piece.tessellation = tessellate(shape, settings_, 1 / cad_.unit_m);
-      piece.of_faces = colored.of(shape);
+      piece.tessellation = tessellated_.tessellations[tessellated_.shapes[i].number];
+      piece.X_PieceMesh = tessellated_.shapes[i].X_ST;
+      piece.of_faces = colored.of(shape);  // a copy's faces are in the order of those it is a copy of
       // Faces that were healed may be others.
       if (piece.of_faces.size() != piece.tessellation.faces.size()) piece.of_faces.clear();
       it->second.push_back(std::move(piece));
@@ -295,7 +317,9 @@ class Tree {
   RawCad& cad_;
   std::map<std::string, std::vector<Piece>> products_;
   std::set<std::string> instances_;
-  std::size_t leaf_count_ = 0, leaf_done_ = 0;
+  std::vector<TopoDS_Shape> all_shapes_;
+  std::map<std::string, std::size_t> first_shape_, shape_end_;  // of each product, in all_shapes_
+  TessellatedShapes tessellated_;
 };
 
 LoadError unreadable(const std::string& file, const std::string& format, const std::string& why) {
@@ -352,12 +376,17 @@ RawCad read(const std::string& file, const std::string& format, const ImportSett
     if (!BRepTools::Read(shape, file.c_str(), BRep_Builder()) || shape.IsNull()) {
       throw unreadable(file, format, "its syntax is wrong");
     }
-    for (const TopoDS_Shape& piece : pieces(shape)) {
+    const TessellatedShapes found =
+        tessellateAll(pieces(shape), settings, 1 / cad.unit_m, [&](std::size_t done, std::size_t all) {
+          if (progress) progress("meshing", double(done) / double(all));
+        });
+    for (const TessellatedShape& one : found.shapes) {
+      const Tessellation& tessellation = found.tessellations[one.number];
       RawPart part;
-      Tessellation found = tessellate(piece, settings, 1 / cad.unit_m);
-      part.mesh = std::move(found.mesh);
-      part.deviation_m = errorOf(found, settings);
-      part.note = inWords(found, settings);
+      part.mesh = tessellation.mesh;
+      part.X_WP = one.X_ST;
+      part.deviation_m = errorOf(tessellation, settings);
+      part.note = inWords(tessellation, settings);
       cad.parts.push_back(std::move(part));
     }
     return cad;

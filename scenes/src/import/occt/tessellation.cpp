@@ -145,29 +145,40 @@ std::size_t triangleCount(const TopoDS_Shape& shape) {
   return count;
 }
 
+struct Affordable {
+  double deflection_m = 0;
+  bool is_triangulated = false;  ///< with it, without points inside faces, by the shape's first algorithm
+};
+
+/// The algorithm that is tried first.
+IMeshTools_MeshAlgoType firstAlgorithm(const TopoDS_Shape& shape) {
+  return hasManyHoles(shape) ? IMeshTools_MeshAlgoType_Delabella : IMeshTools_MeshAlgoType_DEFAULT;
+}
+
 /// The least deflection from the one asked for on, by powers of four, with which the shape has no more
 /// triangles than asked for. From the coarsest down, so that a shape that needs too many is never made: a
 /// cylinder has twice as many with a quarter of the deflection, and a ball four times.
-double affordable(const TopoDS_Shape& shape, ImportSettings settings, double units_per_m) {
+Affordable affordable(const TopoDS_Shape& shape, ImportSettings settings, double units_per_m) {
   constexpr double kStep = 4, kRounding = 1.01;
   const double asked_m = settings.deflection_m;
-  if (settings.most_triangles == 0 || settings.coarsest_m < kStep * asked_m) return asked_m;
+  if (settings.most_triangles == 0 || settings.coarsest_m < kStep * asked_m) return {asked_m};
   double deflection_m = asked_m;
   while (kStep * deflection_m < kRounding * settings.coarsest_m) deflection_m *= kStep;
+  const IMeshTools_MeshAlgoType algorithm = firstAlgorithm(shape);
   const auto countAt = [&](double d_m) {
     settings.deflection_m = d_m;
-    triangulate(shape, settings, units_per_m, Inner::None);
+    triangulate(shape, settings, units_per_m, Inner::None, algorithm);
     return triangleCount(shape);
   };
-  const std::size_t coarse = countAt(deflection_m);
-  if (static_cast<double>(coarse) * deflection_m / asked_m <= static_cast<double>(settings.most_triangles))
-    return asked_m;
-  for (std::size_t count = coarse; deflection_m > kRounding * asked_m; deflection_m /= kStep) {
-    if (2 * count > settings.most_triangles) return deflection_m;
-    count = countAt(deflection_m / kStep);
-    if (count > settings.most_triangles) return deflection_m;
+  const auto most = static_cast<double>(settings.most_triangles);
+  for (auto count = static_cast<double>(countAt(deflection_m)); deflection_m > kRounding * asked_m;
+       deflection_m /= kStep) {
+    if (count * deflection_m / asked_m <= most) return {asked_m};
+    if (2 * count > most) return {deflection_m, true};
+    count = static_cast<double>(countAt(deflection_m / kStep));
+    if (count > most) return {deflection_m};
   }
-  return asked_m;
+  return {asked_m, true};
 }
 
 /// By how much the area of a face's triangles differs from its own beyond what it may; 0: by no more.
@@ -281,13 +292,15 @@ bool Tessellation::isTrusted() const {
 }
 
 Tessellation tessellate(const TopoDS_Shape& shape, ImportSettings settings, double units_per_m) {
-  settings.deflection_m = affordable(shape, settings, units_per_m);
-  if (hasManyHoles(shape)) {
-    Tessellation quick =
-        triangulated(shape, settings, units_per_m, Inner::None, IMeshTools_MeshAlgoType_Delabella);
-    if (quick.isTrusted() && quick.folded == 0) return quick;
+  const Affordable found = affordable(shape, settings, units_per_m);
+  settings.deflection_m = found.deflection_m;
+  const IMeshTools_MeshAlgoType algorithm = firstAlgorithm(shape);
+  if (!found.is_triangulated) triangulate(shape, settings, units_per_m, Inner::None, algorithm);
+  Tessellation best = compared(shape, settings, units_per_m);
+  if (algorithm != IMeshTools_MeshAlgoType_DEFAULT) {
+    if (best.isTrusted() && best.folded == 0) return best;
+    best = triangulated(shape, settings, units_per_m, Inner::None);
   }
-  Tessellation best = triangulated(shape, settings, units_per_m, Inner::None);
   const auto tryThat = [&](const TopoDS_Shape& other, Inner inner) {
     if (best.isTrusted()) return;
     Tessellation next = triangulated(other, settings, units_per_m, inner);

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "import/forked_workers.h"
+
+#include <algorithm>
+#include <optional>
+#include <thread>
+
+#if defined(__unix__)
+#include <atomic>
+#include <cerrno>
+#include <csignal>
+#include <cstdint>
+#include <new>
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/mman.h>
+#include <sys/wait.h>
+#include <unistd.h>
+#ifdef __linux__
+#include <sys/prctl.h>
+#endif
+#endif
+
+namespace vps::scenes::inline v0::import {
+
+namespace {
+
+using Make = std::function<std::string(std::size_t)>;
+using Results = std::vector<std::optional<std::string>>;
+
+#if defined(__unix__)
+
+/// The next place in the order, in memory that all copies share.
+class SharedCounter {
+ public:
+  SharedCounter()
+      : memory_(::mmap(nullptr, sizeof(Counter), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0)) {
+    if (memory_ != MAP_FAILED) counter_ = new (memory_) Counter(0);
+  }
+  ~SharedCounter() {
+    if (counter_ != nullptr) ::munmap(memory_, sizeof(Counter));
+  }
+  SharedCounter(const SharedCounter&) = delete;
+  SharedCounter& operator=(const SharedCounter&) = delete;
+
+  [[nodiscard]] bool isThere() const { return counter_ != nullptr; }
+  std::size_t next() { return counter_->fetch_add(1); }
+
+ private:
+  using Counter = std::atomic<std::size_t>;
+  static_assert(Counter::is_always_lock_free);  // one with a lock would not be shared
+  void* memory_;
+  Counter* counter_ = nullptr;
+};
+
+struct Header {
+  std::uint64_t index = 0, size = 0;
+};
+
+bool writeAll(int to, const void* data, std::size_t size) {
+  for (auto* from = static_cast<const char*>(data); size > 0;) {
+    const ssize_t count = ::write(to, from, size);
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) return false;
+    from += count;
+    size -= static_cast<std::size_t>(count);
+  }
+  return true;
+}
+
+[[noreturn]] void runCopy(int to, SharedCounter& counter, const std::vector<std::size_t>& order,
+                          const Make& make) noexcept {
+#ifdef __linux__
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+#endif
+  try {
+    for (std::size_t k = counter.next(); k < order.size(); k = counter.next()) {
+      const std::string result = make(order[k]);
+      const Header header{order[k], result.size()};
+      if (!writeAll(to, &header, sizeof header) || !writeAll(to, result.data(), result.size())) break;
+    }
+    ::_exit(0);
+  } catch (...) {  // what it was to make is made by the parent, which then throws the same
+    ::_exit(1);
+  }
+}
+
+/// A copy and what it has sent so far.
+struct Copy {
+  pid_t id = -1;
+  int from = -1;
+  std::string received;
+};
+
+/// Takes whole results out of what a copy has sent.
+void takeResults(Copy& copy, Results& results, const std::function<void()>& done) {
+  std::size_t at = 0;
+  for (Header header; copy.received.size() - at >= sizeof header;) {
+    copy.received.copy(reinterpret_cast<char*>(&header), sizeof header, at);
+    if (copy.received.size() - at - sizeof header < header.size) break;
+    at += sizeof header;
+    if (header.index < results.size()) results[header.index] = copy.received.substr(at, header.size);
+    at += header.size;
+    if (done) done();
+  }
+  copy.received.erase(0, at);
+}
+
+/// Reads what there is; false at the end.
+bool receive(Copy& copy) {
+  constexpr std::size_t kBuffer = 1 << 20;
+  const std::size_t before = copy.received.size();
+  copy.received.resize(before + kBuffer);
+  ssize_t count = 0;
+  do count = ::read(copy.from, copy.received.data() + before, kBuffer);
+  while (count < 0 && errno == EINTR);
+  copy.received.resize(before + static_cast<std::size_t>(std::max<ssize_t>(0, count)));
+  return count > 0;
+}
+
+/// All copies; ends those that still run.
+class Copies {
+ public:
+  ~Copies() {
+    for (Copy& copy : copies_) {
+      if (copy.from >= 0) {
+        ::close(copy.from);
+        ::kill(copy.id, SIGKILL);
+      }
+      while (::waitpid(copy.id, nullptr, 0) < 0 && errno == EINTR) {
+      }
+    }
+  }
+  Copies() = default;
+  Copies(const Copies&) = delete;
+  Copies& operator=(const Copies&) = delete;
+
+  void start(SharedCounter& counter, const std::vector<std::size_t>& order, const Make& make) {
+    int ends[2];
+    if (::pipe(ends) != 0) return;
+    for (const int end : ends) ::fcntl(end, F_SETFD, FD_CLOEXEC);
+    const pid_t id = ::fork();
+    if (id == 0) {
+      ::close(ends[0]);
+      for (const Copy& other : copies_) ::close(other.from);
+      runCopy(ends[1], counter, order, make);
+    }
+    ::close(ends[1]);
+    if (id < 0) {
+      ::close(ends[0]);
+      return;
+    }
+    copies_.push_back({id, ends[0], {}});
+  }
+
+  void collect(Results& results, const std::function<void()>& done) {
+    for (;;) {
+      std::vector<pollfd> waiting;
+      for (const Copy& copy : copies_)
+        if (copy.from >= 0) waiting.push_back({copy.from, POLLIN, 0});
+      if (waiting.empty()) return;
+      if (::poll(waiting.data(), waiting.size(), -1) < 0 && errno != EINTR) return;
+      for (const pollfd& one : waiting) {
+        if (one.revents == 0) continue;
+        Copy& copy = *std::ranges::find(copies_, one.fd, &Copy::from);
+        if (receive(copy)) {
+          takeResults(copy, results, done);
+        } else {
+          ::close(copy.from);
+          copy.from = -1;
+        }
+      }
+    }
+  }
+
+ private:
+  std::vector<Copy> copies_;
+};
+
+void makeInCopies(const std::vector<std::size_t>& order, const Make& make, const std::function<void()>& done,
+                  Results& results) {
+  SharedCounter counter;
+  const std::size_t cores = std::max(1u, std::thread::hardware_concurrency());
+  if (cores < 2 || order.size() < 2 || !counter.isThere()) return;
+  Copies copies;
+  for (std::size_t i = 0; i < std::min(cores, order.size()); ++i) copies.start(counter, order, make);
+  copies.collect(results, done);
+}
+
+#else
+
+void makeInCopies(const std::vector<std::size_t>&, const Make&, const std::function<void()>&, Results&) {}
+
+#endif
+
+}  // namespace
+
+std::vector<std::string> madeInCopies(const std::vector<std::size_t>& order, const Make& make,
+                                      const std::function<void()>& done) {
+  Results results(order.size());
+  makeInCopies(order, make, done, results);
+  std::vector<std::string> out(order.size());
+  for (const std::size_t i : order) {
+    if (results[i]) {
+      out[i] = std::move(*results[i]);
+      continue;
+    }
+    out[i] = make(i);
+    if (done) done();
+  }
+  return out;
+}
+
+}  // namespace vps::scenes::inline v0::import

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A ring that has to pass one land of a shaft before the one that it belongs on.
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "scenes/scene_part.h"
+#include "support/lathe.h"
+#include "vps_scenes/assemble.h"
+
+namespace vps::scenes {
+namespace {
+
+constexpr int kFlats = 96;
+constexpr double kLand_m = 16e-3, kBore_m = 16.025e-3, kNeck_m = 15e-3;
+
+/// The lands are 20 mm long and 25 mm apart, with sharp edges; the ring rests on a collar below the second
+/// one.
+Scene ringOverTwoLands(std::uint64_t seed) {
+  const Mesh shaft = test::lathe({{0, -30e-3},
+                                  {25e-3, -30e-3},
+                                  {25e-3, 0},
+                                  {kLand_m, 0},
+                                  {kLand_m, 20e-3},
+                                  {kNeck_m, 20e-3},
+                                  {kNeck_m, 45e-3},
+                                  {kLand_m, 45e-3},
+                                  {kLand_m, 65e-3},
+                                  {0, 65e-3}},
+                                 kFlats);
+  const Mesh ring = test::lathe({{kBore_m, 0}, {24e-3, 0}, {24e-3, 12e-3}, {kBore_m, 12e-3}}, kFlats);
+  Scene scene;
+  scene.file = scene.name = "stepped_shaft";
+  scene.parts = {scenePart("shaft", shaft, Vec3::Zero(), true), scenePart("ring", ring, Vec3::Zero(), false)};
+  SceneStep step;
+  step.part = 1;
+  step.X_WP_target = step.X_WP_start = scene.parts[1].X_WP;
+  step.X_WP_start.p.z() = 68e-3;
+  step.timeout_s = 40;
+  scene.steps.push_back(step);
+  scene.fidelity.haptic_rate_hz = scene.fidelity.physics_rate_hz = 500;
+  scene.release_s = 0.2;
+  scene.hand.seed = seed;
+  return scene;
+}
+
+class SteppedShaft : public testing::TestWithParam<std::uint64_t> {};
+
+TEST_P(SteppedShaft, TakesARingOverItsFirstLandToItsSecond) {
+  Scene scene = ringOverTwoLands(GetParam());
+  const AssembleResult result = assemble(scene);
+  std::ostringstream said;
+  for (const auto& span : result.steps[0].strategies)
+    said << span.strategy << ' ' << span.start_s << '+' << span.duration_s << "; ";
+  EXPECT_EQ(result.verdict, Verdict::Fits) << result.steps[0].reason << ": " << said.str();
+}
+
+INSTANTIATE_TEST_SUITE_P(OfSeveralAims, SteppedShaft, testing::Values<std::uint64_t>(1, 2, 3, 4));
+
+}  // namespace
+}  // namespace vps::scenes
