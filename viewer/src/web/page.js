@@ -325,8 +325,11 @@
   function serverNow_ms() { return performance.now() + (clockOffset_ms || 0); }
   // Whoever moves the part sees at once what it does.
   function presentAfter_ms() { return isMine() || clockOffset_ms === null ? 0 : present_ms; }
+  function isDueNow(shot) {
+    return clockOffset_ms === null || shot.taken_ms + presentAfter_ms() <= serverNow_ms();
+  }
   function showDue() {
-    while (waiting.length > 0 && waiting[0].taken_ms + presentAfter_ms() <= serverNow_ms()) show(waiting.shift());
+    while (waiting.length > 0 && isDueNow(waiting[0])) show(waiting.shift());
   }
   const kBlowKind = 2;
   const kRoles = ["waiting", "in hand", "released", "mounted"];
