@@ -164,14 +164,14 @@ inline Mesh ring(double radius_m, double thick_m) {
   return test::lathe(profile, 48);
 }
 
-/// A box of 40 x 14 x 15 mm with a roof over x < 20 mm.
-inline Mesh roofedBox() {
+/// A box of 40 x 14 x 15 mm with a roof over x < 20 mm; it is open from there to 35 mm.
+inline Mesh roofedBox(double roof_m = 0.02) {
   Mesh mesh = block({-0.002, -0.01, -0.005}, {0.04, 0.01, 0.0005});
   append(mesh, block({-0.002, -0.01, -0.005}, {0, 0.01, 0.015}));
   append(mesh, block({0.035, -0.01, -0.005}, {0.04, 0.01, 0.015}));
   append(mesh, block({-0.002, -0.01, -0.005}, {0.04, -0.0055, 0.015}));
   append(mesh, block({-0.002, 0.0055, -0.005}, {0.04, 0.01, 0.015}));
-  append(mesh, block({-0.002, -0.01, 0.012}, {0.02, 0.01, 0.015}));
+  append(mesh, block({-0.002, -0.01, 0.012}, {roof_m, 0.01, 0.015}));
   return mesh;
 }
 

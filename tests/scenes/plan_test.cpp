@@ -297,6 +297,20 @@ TEST(Plan, ABlockUnderARoofSlidesAndThenRises) {
   expectFreeWays(parts, plan);
 }
 
+// A hand does not follow a wall to the micrometre: the block rises in the middle of an opening that is 0.2 mm
+// wider, and 0.4 mm, a fortieth of its size, from the wall of a wide one.
+TEST(Plan, ABlockRisesWhereItHasRoom) {
+  const auto risesAt_m = [](double roof_m) {
+    const std::vector<DrawnPart> parts = {at("housing", roofedBox(roof_m), {0, 0, 0}),
+                                          at("block", makeBox(Vec3::Constant(0.01)), {0.006, 0, 0.006})};
+    const PlanResult plan = planAssembly("test", parts);
+    expectFreeWays(parts, plan);
+    return plan.assemblies.front().steps.front().before_W.back().p.x();
+  };
+  EXPECT_NEAR(risesAt_m(0.0248), 0.0239, 10e-6);
+  EXPECT_NEAR(risesAt_m(0.02), 0.024 - 0.5 * 0.05 * 0.01 * std::sqrt(3.0), 20e-6);
+}
+
 // The same with the opening closed.
 TEST(Plan, ABlockInAClosedHousingIsBlocked) {
   Mesh closed = roofedBox();

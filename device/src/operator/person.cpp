@@ -419,7 +419,9 @@ HandForce VirtualOperator::Person::impedance() const noexcept {
   const Mat3 along = axis_W_ * axis_W_.transpose(), across = Mat3::Identity() - along;
   hand.k_N_per_m = k * along + k_across * across;
   hand.b_Ns_per_m = damping(k) * along + damping(k_across) * across;
-  if (phase_ != OperatorPhase::Idle) hand.F.f = -task_.weight_W;  // also until it has let go
+  // A heavy part is carried until the hand has let go; a light one leans on its stop meanwhile.
+  const bool has_done = phase_ == OperatorPhase::Done && sag_m_.isZero();
+  if (phase_ != OperatorPhase::Idle && !has_done) hand.F.f = -task_.weight_W;
   return hand;
 }
 

@@ -83,6 +83,7 @@ class LegSearch {
       const Reach reach = reachOf(motion, motions_.leave_m());
       if (!reach.is_stopped) {
         Way way{WayKind::Legs, from.legs, kNoDirection, 0};
+        giveRoom(from, motion, way);
         way.legs.push_back({motion, motions_.leave_m()});
         return way;
       }
@@ -100,6 +101,32 @@ class LegSearch {
     for (const double share : kStops)
       for (const auto& [motion, s] : legs) addPlace(from, {motion, share * s}, waiting);
     return std::nullopt;
+  }
+
+  [[nodiscard]] bool isFreeFrom(const Pose& X_W, const Motion& motion) {
+    return std::ranges::none_of(parts_, [&](std::size_t part) {
+      const PlacedSurface placed = displaced(motions_.parts()[part], X_W);
+      return motions_.search(placed, part, held_).reach(motion, motions_.leave_m(), &work_).is_stopped;
+    });
+  }
+
+  /// Shortens the last leg, which went as far as something stopped it, to the middle of where the part can
+  /// leave from: a hand does not follow a wall to the micrometre.
+  void giveRoom(const Place& from, const Motion& leaving, Way& way) {
+    if (way.legs.empty() || way.legs.back().motion.is_turn) return;
+    constexpr double kMostRoom = 0.05;  // of the part's size. assumed: more than a hand needs
+    constexpr int kHalvings = 10;
+    Leg& last = way.legs.back();
+    const auto isFreeBefore = [&](double back_m) {
+      return isFreeFrom(Pose::translation(-back_m * last.motion.direction) * from.X_W, leaving);
+    };
+    double free_m = 0, stopped_m = std::min(0.5 * last.s, kMostRoom * size_m_);
+    if (isFreeBefore(stopped_m)) free_m = stopped_m;
+    for (int i = 0; i < kHalvings && free_m < stopped_m; ++i) {
+      const double middle_m = 0.5 * (free_m + stopped_m);
+      (isFreeBefore(middle_m) ? free_m : stopped_m) = middle_m;
+    }
+    last.s -= 0.5 * free_m;
   }
 
   void addPlace(const Place& from, const Leg& leg, std::deque<Place>& waiting) {
