@@ -14,6 +14,10 @@
 
 namespace vps::inline v0 {
 
+inline bool hasRepeatedCorner(const std::array<std::uint32_t, 3>& t) {
+  return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
+}
+
 /// One side of a triangle: vertices low < high, which triangle, which of its sides (0 ab, 1 bc, 2 ca).
 struct HalfEdge {
   std::uint32_t low, high;

@@ -142,8 +142,9 @@ inline constexpr auto kStepKeys = std::make_tuple(
           {.quantity = Quantity::Length,
            .range = kNotNegative,
            .default_text = "20 um and the clearance of the tightest fit that `vps check` finds there, at "
-                           "most 0.1 mm; 0.5 mm where it finds none, or with `holds`, since sight alone "
-                           "then stops the part"}),
+                           "most 0.1 mm, or what its play lets the part lie in the corner of a rectangular "
+                           "hole (0.71 of the clearance and 20 um, at most 0.5 mm), if that is more; 0.5 mm "
+                           "where it finds none, or with `holds`, since sight alone then stops the part"}),
     field("tolerance_deg", &SceneStep::tolerance_rad, "greatest rotation from the target",
           {.quantity = Quantity::Angle, .range = kNotNegative, .default_text = "not judged"}),
     field("clearance", &SceneStep::clearance_m,
