@@ -119,5 +119,12 @@ TEST_F(MergedLogTest, NothingIsAddedAfterALoss) {
   EXPECT_FALSE(log_.isWaiting());
 }
 
+TEST_F(MergedLogTest, AnEntryThatComesTwiceIsOneLoss) {
+  loopTicks(1);
+  --number_;
+  loopTicks(2);
+  EXPECT_EQ(words_.text, "lost1 ");
+}
+
 }  // namespace
 }  // namespace vps::scenes

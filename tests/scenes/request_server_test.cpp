@@ -12,6 +12,7 @@
 #include <csignal>
 #include <fstream>
 #include <functional>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <thread>
@@ -80,6 +81,18 @@ class RequestHandlerTest : public testing::Test {
     AskMessage ask = message(AskKind::Gains);
     ask.k_N_per_m = k_N_per_m;
     return answerTo(std::string(asker_.write(ask)));
+  }
+  AnswerMessage askForFile(const std::string& name) {
+    AskMessage wish = message(AskKind::Record, name);
+    wish.wants_file = true;
+    return answerTo(std::string(asker_.write(wish)));
+  }
+  /// The first piece of the recording that was asked for.
+  std::string fetchedBytes() {
+    const auto fetched = std::make_unique<FetchedMessage>();
+    answered_ = handler_.answer({1, std::string(asker_.write(message(AskKind::Fetch))), false});
+    EXPECT_EQ(MessageReader().read(answered_, *fetched), Reading::Good);
+    return {fetched->piece.bytes.data(), fetched->piece.size};
   }
   static bool says(const AnswerMessage& answer, const std::string& words) {
     return std::string(answer.text.data()).find(words) != std::string::npos;
@@ -242,9 +255,7 @@ TEST_F(RequestHandlerTest, ARecordingIsFetchedInPiecesOnceItIsWhole) {
     return fetched;
   };
   EXPECT_TRUE(says(answerTo(fetch(0)), "no recording was asked for"));
-  AskMessage wish = message(AskKind::Record, "run.mcap");
-  wish.wants_file = true;
-  EXPECT_TRUE(says(answerTo(std::string(asker_.write(wish))), "this run is recorded in"));
+  EXPECT_TRUE(says(askForFile("run.mcap"), "this run is recorded in"));
   EXPECT_TRUE(says(answerTo(fetch(0)), "has not ended"));
   const std::string file = handler_.recording();
   run_.beginRecording(file);
@@ -271,14 +282,46 @@ TEST_F(RequestHandlerTest, ARunThatHasBegunIsRecordedNoLongerAndAStoppedOneHasNo
   run_.beginRecording("");
   EXPECT_TRUE(says(ask(AskKind::Record, "run.mcap"), "the next run is recorded in"));
   run_.beginRecording(handler_.recording());
-  AskMessage wish = message(AskKind::Record, "other.mcap");
-  wish.wants_file = true;
-  EXPECT_TRUE(says(answerTo(std::string(asker_.write(wish))), "run.mcap already"));
+  EXPECT_TRUE(says(askForFile("other.mcap"), "run.mcap already"));
   run_.end();
   EXPECT_TRUE(says(ask(AskKind::Fetch), "was stopped before its end"));
   const AnswerMessage between = ask(AskKind::Record, "third.mcap");
   EXPECT_TRUE(says(between, "the next run is recorded in"));
   EXPECT_FALSE(says(between, "again"));
+}
+
+// As with vps render --stay.
+TEST_F(RequestHandlerTest, WhoAsksBetweenTwoRunsReceivesTheRecordingOfTheNextOne) {
+  const test::TemporaryFolder folder;
+  options_.recordings = folder.path();
+  const std::string first = folder.path() / "first.mcap", second = folder.path() / "second.mcap";
+  run_.beginRecording(first);
+  std::ofstream(first) << "first";
+  run_.finishRecording();
+  run_.end();
+  EXPECT_TRUE(says(askForFile("second.mcap"), "the next run is recorded in"));
+  EXPECT_TRUE(says(ask(AskKind::Fetch), "has not ended"));
+  EXPECT_FALSE(handler_.isFetched(device::monotonicSeconds()));  // no file is his yet
+  begin();
+  EXPECT_TRUE(says(ask(AskKind::Fetch), "has not ended"));
+  run_.beginRecording(second);
+  std::ofstream(second) << "second";
+  run_.finishRecording();
+  run_.end();
+  EXPECT_EQ(fetchedBytes(), "second");
+}
+
+// A load by vps ask ends it while it waits for its device.
+TEST_F(RequestHandlerTest, ARunThatEndsBeforeItsRecordingBeginsHasNone) {
+  begin("run.mcap");
+  EXPECT_TRUE(says(askForFile("other.mcap"), "run.mcap already"));
+  EXPECT_TRUE(says(ask(AskKind::Fetch), "has not ended"));
+  run_.end();
+  EXPECT_TRUE(says(ask(AskKind::Fetch), "was stopped before its end"));
+  EXPECT_EQ(run_.stateOf("unknown.mcap"), ServedRun::Recorded::Failed);
+  begin("run.mcap");  // the name is still free
+  EXPECT_TRUE(says(askForFile("other.mcap"), "run.mcap already"));
+  EXPECT_TRUE(says(ask(AskKind::Fetch), "has not ended"));
 }
 
 TEST_F(RequestHandlerTest, ASceneIsSentInPiecesOnceAndThenKnownByItsHash) {
@@ -501,6 +544,25 @@ TEST(SessionRequest, WhereNobodyAnswersThatIsSaid) {
   EXPECT_NE(SessionRequest(options.session).who().words.find("no run"), std::string::npos);
 }
 
+TEST(SessionRequest, AWishForARecordingThatIsNotGrantedSaysWhy) {
+  const test::TemporaryFolder folder;
+  RequestServerOptions options;
+  options.session = sessionName();
+  options.rights = RequestRights::Look;
+  const std::string file = folder.path() / "run.mcap";
+  const SessionRecordingOptions wish{options.session, "", file, "", nullptr, {}};
+  SessionRecording early(wish);
+  const auto names = [](const std::string& words, const char* part) {
+    return words.find(part) != std::string::npos;
+  };
+  EXPECT_PRED2(names, early.waitUntilAsked(0.3), "no vps render runs it that takes requests");
+  EXPECT_PRED2(names, early.finish(), "no vps render runs it that takes requests");
+  const RequestServer server(options);
+  SessionRecording refused(wish);
+  EXPECT_PRED2(names, refused.waitUntilAsked(10), "may only be asked who is there");
+  EXPECT_PRED2(names, refused.finish(), "may only be asked who is there");
+}
+
 /// Two ends of a socket of a session.
 class LocalRequestsTest : public testing::Test {
  protected:
@@ -522,6 +584,43 @@ TEST_F(LocalRequestsTest, WhoSendsWithoutEndKeepsNobodyOut) {
     floods();
   }
   EXPECT_TRUE(is_heard);
+}
+
+// The render node may be stopped as soon as its last piece has left.
+TEST_F(LocalRequestsTest, ARecordingThatHasComeIsKeptAlthoughTheSessionHasEnded) {
+  const test::TemporaryFolder folder;
+  const std::string file = folder.path() / "run.mcap", whole = "a recording", hash = contentHash(whole);
+  SessionRecording recording({session_, "", file, "", nullptr, {}});
+  std::uint64_t from = 0;
+  const auto next = [&] {
+    MessageReader reader;
+    AskMessage ask;
+    for (int i = 0; i < 100; ++i) {
+      const std::optional<IncomingRequest> heard = server_->receive(std::chrono::milliseconds(100));
+      if (!heard) continue;
+      from = heard->from;
+      EXPECT_EQ(reader.read(heard->bytes, ask), Reading::Good);
+      return reader.envelope();
+    }
+    ADD_FAILURE() << "nothing was asked";
+    return Envelope{};
+  };
+  MessageWriter writer(newSender());
+  const Envelope wish = next();
+  server_->answer(from, writer.write(AnswerMessage{wish.sender, wish.number, true, false, {}}));
+  const Envelope fetch = next();
+  const auto fetched = std::make_unique<FetchedMessage>();
+  fetched->asker = fetch.sender;
+  fetched->number = fetch.number;
+  std::copy(hash.begin(), hash.end(), fetched->piece.hash.begin());
+  fetched->piece.total = whole.size();
+  fetched->piece.size = static_cast<std::uint32_t>(whole.size());
+  std::copy(whole.begin(), whole.end(), fetched->piece.bytes.begin());
+  server_->answer(from, writer.write(*fetched));
+  server_.reset();
+  EXPECT_EQ(recording.finish(), "");
+  std::ifstream in(file);
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(in), {}), whole);
 }
 
 TEST_F(LocalRequestsTest, WhoAsksWaitsForNoServerThatDoesNotRead) {

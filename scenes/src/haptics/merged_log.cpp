@@ -20,7 +20,8 @@ void MergedLog::lose(std::uint64_t count) noexcept {
 
 void MergedLog::addFromLoop(std::uint32_t number, const device::LogEntry& entry) {
   if (is_over_) return;
-  if (number != next_) return lose(number - next_);
+  const auto missing = static_cast<std::int32_t>(number - next_);  // by the difference: the numbers go round
+  if (missing != 0) return lose(missing > 0 ? static_cast<std::uint64_t>(missing) : 1);  // or it came twice
   ++next_;
   loop_.push_back(entry);
   pass();

@@ -78,12 +78,15 @@ std::string unusedFile(const std::string& wanted) {
 void ServedRun::begin(const Scene& scene, std::string scene_bytes, const Link& link,
                       const std::string& recording) {
   const std::lock_guard lock(mutex_);
+  const std::uint64_t number = facts_.number + 1;
   facts_ = {};
+  facts_.number = number;
   facts_.name = scene.name;
   facts_.hash = contentHash(scene_bytes);
   facts_.bytes = std::move(scene_bytes);
   for (const SceneStep& step : scene.steps) facts_.parts.push_back(scene.parts[step.part].part.name);
   facts_.recording = recording;
+  if (!recording.empty()) recorded_[recording] = Recorded::Growing;  // it may be asked for from now on
   facts_.is_running = true;
   link_ = &link;
 }
@@ -103,7 +106,7 @@ void ServedRun::finishRecording() {
 ServedRun::Recorded ServedRun::stateOf(const std::string& file) const {
   const std::lock_guard lock(mutex_);
   const auto found = recorded_.find(file);
-  return found != recorded_.end() ? found->second : Recorded::Growing;
+  return found != recorded_.end() ? found->second : Recorded::Failed;
 }
 
 void ServedRun::end() {
@@ -383,37 +386,38 @@ RequestHandler::Answer RequestHandler::record(std::uint64_t sender, const std::s
   const ServedRun::Facts facts = run_.facts();
   if (name.empty()) {
     recording_.clear();
-    return {true,
-            std::string("no further run is recorded") +
-                (facts.recording.empty() ? "" : "; the recording of this one ends with it"),
-            false};
+    return {
+        true,
+        std::string("no further run is recorded") +
+            (!facts.is_running || facts.recording.empty() ? "" : "; the recording of this one ends with it"),
+        false};
   }
   if (!isRecordingName(name))
     return {false, "refused: name a file as run_1.mcap, without a folder; it goes to where vps render runs",
             false};
   constexpr const char* kCrowd = "refused: too many wait for recordings";
   if (wants_file && facts.is_running && !facts.recording.empty()) {
-    if (!addFetcher(sender, facts.recording)) return {false, kCrowd, false};
+    if (!addFetcher(sender, facts.recording, facts.number)) return {false, kCrowd, false};
     return {true, "this run is recorded in " + facts.recording + " already; the file comes when it has ended",
             false};
   }
   const std::string folder = options_.recordings.empty() ? "." : options_.recordings;
   if (access(folder.c_str(), W_OK) != 0)
     return {false, "refused: vps render cannot write into its folder for recordings", false};
-  if (wants_file && !addFetcher(sender, "")) return {false, kCrowd, false};
-  recording_ = (std::filesystem::path(folder) / name).string();
   const bool is_late = facts.is_running && facts.has_begun;
-  const char* which =
-      facts.is_running && !is_late ? "this run is recorded in " : "the next run is recorded in ";
+  const bool is_next = !facts.is_running || is_late;
+  if (wants_file && !addFetcher(sender, "", facts.number + (is_next ? 1 : 0))) return {false, kCrowd, false};
+  recording_ = (std::filesystem::path(folder) / name).string();
+  const char* which = is_next ? "the next run is recorded in " : "this run is recorded in ";
   return {true, which + unusedFile(recording_) + (is_late ? "; again begins one" : ""), false};
 }
 
-bool RequestHandler::addFetcher(std::uint64_t sender, const std::string& file) {
+bool RequestHandler::addFetcher(std::uint64_t sender, const std::string& file, std::uint64_t wanted) {
   const double now_s = device::monotonicSeconds();
   std::erase_if(fetchers_,
                 [now_s](const auto& entry) { return now_s - entry.second.heard_s > kFetchLimit_s; });
   if (fetchers_.size() >= kMostFetchers && !fetchers_.contains(sender)) return false;
-  fetchers_[sender] = {file, "", now_s};
+  fetchers_[sender] = {file, "", now_s, wanted};
   return true;
 }
 
@@ -433,7 +437,7 @@ std::string_view RequestHandler::fetch(const Envelope& envelope, std::uint64_t o
   fetcher.heard_s = device::monotonicSeconds();
   if (fetcher.file.empty()) {
     const ServedRun::Facts facts = run_.facts();
-    if (facts.has_begun) fetcher.file = facts.recording;
+    if (facts.has_begun && facts.number >= fetcher.wanted) fetcher.file = facts.recording;
   }
   words = {true, "the run has not ended", false};
   if (fetcher.file.empty()) return {};

@@ -36,19 +36,20 @@ class ServedRun {
   void beginRecording(const std::string& file);
   /// The file is whole.
   void finishRecording();
-  /// Of a file that was given to beginRecording().
+  /// Of a file that was given to begin() or beginRecording(). Any other file is Failed: nobody writes it.
   enum class Recorded : std::uint8_t { Growing, Whole, Failed };
   [[nodiscard]] Recorded stateOf(const std::string& file) const;
 
   struct Facts {
+    std::uint64_t number = 0;        ///< of the run, from 1 on; 0: there was none yet
     std::string name, hash, bytes;   ///< of the scene
     std::vector<std::string> parts;  ///< that each step moves
-    std::string recording;           ///< file; empty: none
+    std::string recording;           ///< file, which stays until the next run begins; empty: none
     std::string device;              ///< empty: none has joined
     bool may_rearm = false;
     CouplingGains gains, most;
     bool is_running = false, has_device = false;
-    bool has_begun = false;  ///< so that it is too late to record it
+    bool has_begun = false;  ///< so that it is too late to record it; stays until the next run begins
     std::size_t watchers = 0;
   };
   [[nodiscard]] Facts facts(bool with_bytes = false) const;
@@ -98,9 +99,10 @@ class RequestHandler {
 
   /// Who wants to have a recording.
   struct Fetcher {
-    std::string file;    ///< empty: of the next run that is recorded
-    std::string hash;    ///< of the whole file; empty: not known yet
-    double heard_s = 0;  ///< by device::monotonicSeconds()
+    std::string file;          ///< empty: of the next run that is recorded
+    std::string hash;          ///< of the whole file; empty: not known yet
+    double heard_s = 0;        ///< by device::monotonicSeconds()
+    std::uint64_t wanted = 0;  ///< where `file` is empty: number of the first run that may be meant
   };
 
   Client& clientOf(std::uint64_t sender);
@@ -117,8 +119,9 @@ class RequestHandler {
   Answer load(const std::string& hash);
   Answer again();
   Answer record(std::uint64_t sender, const std::string& name, bool wants_file);
-  /// Takes up who wants the file; false: there are too many.
-  bool addFetcher(std::uint64_t sender, const std::string& file);
+  /// Takes up who wants the file, or without one the recording of a run from number `wanted` on; false: there
+  /// are too many.
+  bool addFetcher(std::uint64_t sender, const std::string& file, std::uint64_t wanted);
   /// The answer in `words`, or, if the result is not empty, a piece of the file.
   std::string_view fetch(const Envelope& envelope, std::uint64_t offset, Answer& words);
   Answer addPiece(std::uint64_t sender, const PieceMessage& piece);

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstring>
 #include <filesystem>
+#include <mutex>
 #include <optional>
 #include <string_view>
 #include <thread>
@@ -53,8 +54,8 @@ struct SessionRecording::Work {
     } catch (const std::exception& failed) {
       failure = failed.what();
     }
+    is_over = true;  // first: who sees is_asked reads here whether it was refused
     is_asked = true;
-    is_over = true;
   }
   /// Once the session is there. Empty: refused, or stopped.
   std::optional<Asking> ask() {
@@ -74,12 +75,23 @@ struct SessionRecording::Work {
         if (options.say) options.say(wordsOf(answer));
         is_asked = true;
         return asking;
-      } catch (const LoadError&) {  // not there yet
+      } catch (const LoadError& error) {  // mostly: not there yet
+        keepProblem(error.what());
         std::this_thread::sleep_for(kAppear);
       }
     }
-    failure = "no vps render of this session has answered; check that it takes requests, of this one too";
+    failure = withProblem(
+        "no vps render of this session has answered; check that it takes requests, of this one too");
     return {};
+  }
+  void keepProblem(const std::string& words) {
+    const std::lock_guard lock(mutex);
+    problem = words;
+  }
+  /// With what was in the way last.
+  std::string withProblem(const std::string& words) {
+    const std::lock_guard lock(mutex);
+    return problem.empty() ? words : words + ": " + problem;
   }
   void fetch(Asking& asking) {
     AskMessage message;
@@ -98,13 +110,20 @@ struct SessionRecording::Work {
       }
       MessageReader().read(answered, *piece);
       if (take(piece->piece, hash, bytes)) {
-        message.offset = bytes.size();
-        asking.ask(message);  // so that the other end does not wait
         writeWholeFile(options.file, bytes);
+        message.offset = bytes.size();
+        tellThatItIsHere(asking, message);
         return;
       }
     }
     failure = "stopped before the run had ended";
+  }
+  /// So that the other end does not wait.
+  static void tellThatItIsHere(Asking& asking, const AskMessage& message) {
+    try {
+      asking.ask(message);
+    } catch (const LoadError&) {  // it has ended already; the file is whole and here all the same
+    }
   }
   /// True: that was the last piece.
   static bool take(const PieceMessage& piece, std::string& hash, std::string& bytes) {
@@ -120,6 +139,8 @@ struct SessionRecording::Work {
 
   SessionRecordingOptions options;
   std::string failure;  ///< of the thread, until is_over
+  std::mutex mutex;     ///< of the next
+  std::string problem;  ///< why nothing could be asked, the last time
   std::atomic<bool> is_asked{false}, is_over{false}, is_ending{false};
   std::thread thread;
 };
@@ -131,7 +152,7 @@ SessionRecording::~SessionRecording() = default;
 std::string SessionRecording::waitUntilAsked(double most_s) {
   for (double left_s = most_s; left_s > 0 && !work_->is_asked; left_s -= 5e-3)
     std::this_thread::sleep_for(kWait);
-  if (!work_->is_asked) return "nothing answers the wish for a recording";
+  if (!work_->is_asked) return work_->withProblem("nothing answers the wish for a recording");
   return work_->is_over ? work_->failure : "";
 }
 
