@@ -143,6 +143,8 @@ TEST_F(Copies, InOtherProcessesHaveTheBitsOfThoseMadeHere) {
   }
 }
 
+constexpr std::size_t kCopies = 3;  // on one core too
+
 std::vector<std::size_t> upTo(std::size_t n) {
   std::vector<std::size_t> order(n);
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -154,10 +156,18 @@ TEST(ForkedWorkers, ReturnEachResultAtItsIndex) {
   std::ranges::reverse(order);
   int count = 0;
   const std::vector<std::string> results = import::madeInCopies(
-      order, [](std::size_t i) { return std::string(i * 5000, char('a' + i % 26)); }, [&] { ++count; });
+      order, [](std::size_t i) { return std::string(i * 5000, char('a' + i % 26)); }, [&] { ++count; },
+      kCopies);
   ASSERT_EQ(results.size(), 40U);
   for (std::size_t i = 0; i < 40; ++i) EXPECT_EQ(results[i], std::string(i * 5000, char('a' + i % 26))) << i;
   EXPECT_EQ(count, 40);
+}
+
+TEST(ForkedWorkers, AreOtherProcesses) {
+  if (!import::mayFork()) GTEST_SKIP() << "AddressSanitizer in a program with threads";
+  for (const std::string& id : import::madeInCopies(
+           upTo(4), [](std::size_t) { return std::to_string(::getpid()); }, {}, kCopies))
+    EXPECT_NE(id, std::to_string(::getpid()));
 }
 
 TEST(ForkedWorkers, ThatEndEarlyLoseNothing) {
@@ -166,7 +176,7 @@ TEST(ForkedWorkers, ThatEndEarlyLoseNothing) {
     if (i % 7 == 3 && ::getpid() != here) ::_exit(3);  // as by a crash
     return std::to_string(i);
   };
-  const std::vector<std::string> results = import::madeInCopies(upTo(30), make, {});
+  const std::vector<std::string> results = import::madeInCopies(upTo(30), make, {}, kCopies);
   ASSERT_EQ(results.size(), 30U);
   for (std::size_t i = 0; i < 30; ++i) EXPECT_EQ(results[i], std::to_string(i));
 }
@@ -176,7 +186,7 @@ TEST(ForkedWorkers, ThatThrowLetThisProcessThrowTheSame) {
     if (i == 4) throw std::runtime_error("no fifth");
     return "x";
   };
-  EXPECT_THROW(import::madeInCopies(upTo(8), make, {}), std::runtime_error);
+  EXPECT_THROW(import::madeInCopies(upTo(8), make, {}, kCopies), std::runtime_error);
 }
 
 }  // namespace

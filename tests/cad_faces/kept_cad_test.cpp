@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <iterator>
 
@@ -110,6 +111,40 @@ TEST_F(KeptCad, CutAnywhereIsNotTaken) {
     EXPECT_FALSE(import::readKeptBytes(bytes.substr(0, size), cad)) << size;
     EXPECT_TRUE(cad.parts.empty());
   }
+}
+
+TEST_F(KeptCad, WithATriangleWhoseCornerOrColorDoesNotExistIsNotTaken) {
+  const ImportedCad good = importCad(step(), settings_);
+  const auto isTaken = [](const ImportedCad& kept) {
+    ImportedCad cad;
+    return import::readKeptBytes(import::keptBytes(kept), cad);
+  };
+  EXPECT_TRUE(isTaken(good));
+  ImportedCad bad = good;
+  bad.parts[0].mesh.triangles.back()[1] = std::uint32_t(bad.parts[0].mesh.vertices.size());
+  EXPECT_FALSE(isTaken(bad));
+  bad = good;
+  FaceColors& colors = bad.parts[0].face_colors;
+  colors.palette = {{0.5f, 0.5f, 0.5f}};
+  colors.of_triangle.assign(bad.parts[0].mesh.triangles.size(), 0);
+  EXPECT_TRUE(isTaken(bad));
+  colors.of_triangle.back() = 1;
+  EXPECT_FALSE(isTaken(bad));
+  colors.of_triangle.assign(1, 0);
+  EXPECT_FALSE(isTaken(bad));
+}
+
+TEST_F(KeptCad, WithABoolThatIsNeitherIsNotTaken) {
+  const ImportedCad cad = importCad(step(), settings_);
+  ImportedCad without = cad;
+  without.parts[0].deflection_m.reset();
+  std::string bytes = import::keptBytes(cad);
+  const std::string other = import::keptBytes(without);
+  const auto flag = std::ranges::mismatch(bytes, other).in1;  // the first byte that differs
+  ASSERT_EQ(*flag, 1);
+  *flag = 2;
+  ImportedCad found;
+  EXPECT_FALSE(import::readKeptBytes(bytes, found));
 }
 
 TEST_F(KeptCad, OfAFileThatNamesOthersIsNotKept) {

@@ -153,11 +153,14 @@ std::string model3mf(const std::string& file) {
   constexpr int kAnyCase = 2;
   if (unzLocateFile(archive, "3D/3dmodel.model", kAnyCase) == UNZ_OK &&
       unzOpenCurrentFile(archive) == UNZ_OK) {
+    constexpr std::size_t kMost_bytes = 1'000'000'000;  // assumed: a file that unpacks to more is damaged
     std::array<char, 65536> buffer;
     int count = 0;
-    while ((count = unzReadCurrentFile(archive, buffer.data(), buffer.size())) > 0)
+    while (text.size() <= kMost_bytes &&
+           (count = unzReadCurrentFile(archive, buffer.data(), buffer.size())) > 0)
       text.append(buffer.data(), static_cast<std::size_t>(count));
-    if (unzCloseCurrentFile(archive) != UNZ_OK || count < 0) text.clear();  // its checksum is wrong
+    const bool is_whole = unzCloseCurrentFile(archive) == UNZ_OK && count >= 0;  // its checksum is right
+    if (!is_whole || text.size() > kMost_bytes) text = {};
   }
   unzClose(archive);
 #else

@@ -28,7 +28,8 @@ struct Mesh3mf {
 /// @param model  text of the file's 3D/3dmodel.model
 std::vector<Mesh3mf> meshes3mf(std::string_view model);
 
-/// The text of a 3MF file's model; empty where there is none, or this build has no minizip.
+/// The text of a 3MF file's model; empty where there is none, where it is damaged or has more than 1 GB, and
+/// in a build without minizip.
 std::string model3mf(const std::string& file);
 
 }  // namespace vps::scenes::inline v0::import

@@ -10,7 +10,10 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdint>
+#include <filesystem>
+#include <iterator>
 #include <new>
+#include <system_error>
 
 #include <fcntl.h>
 #include <poll.h>
@@ -19,6 +22,14 @@
 #include <unistd.h>
 #ifdef __linux__
 #include <sys/prctl.h>
+#endif
+#endif
+
+#if defined(__SANITIZE_ADDRESS__)
+#define VPS_ADDRESS_SANITIZER
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define VPS_ADDRESS_SANITIZER
 #endif
 #endif
 
@@ -69,11 +80,13 @@ bool writeAll(int to, const void* data, std::size_t size) {
   return true;
 }
 
-[[noreturn]] void runCopy(int to, SharedCounter& counter, const std::vector<std::size_t>& order,
+/// @param parent  the process that forks this one
+[[noreturn]] void runCopy(pid_t parent, int to, SharedCounter& counter, const std::vector<std::size_t>& order,
                           const Make& make) noexcept {
 #ifdef __linux__
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
 #endif
+  if (::getppid() != parent) ::_exit(1);  // it ended before that
   try {
     for (std::size_t k = counter.next(); k < order.size(); k = counter.next()) {
       const std::string result = make(order[k]);
@@ -140,11 +153,11 @@ class Copies {
     int ends[2];
     if (::pipe(ends) != 0) return;
     for (const int end : ends) ::fcntl(end, F_SETFD, FD_CLOEXEC);
-    const pid_t id = ::fork();
+    const pid_t parent = ::getpid(), id = ::fork();
     if (id == 0) {
       ::close(ends[0]);
       for (const Copy& other : copies_) ::close(other.from);
-      runCopy(ends[1], counter, order, make);
+      runCopy(parent, ends[1], counter, order, make);
     }
     ::close(ends[1]);
     if (id < 0) {
@@ -179,27 +192,40 @@ class Copies {
 };
 
 void makeInCopies(const std::vector<std::size_t>& order, const Make& make, const std::function<void()>& done,
-                  Results& results) {
+                  std::size_t count, Results& results) {
+  if (count < 2 || order.size() < 2 || !mayFork()) return;
   SharedCounter counter;
-  const std::size_t cores = std::max(1u, std::thread::hardware_concurrency());
-  if (cores < 2 || order.size() < 2 || !counter.isThere()) return;
+  if (!counter.isThere()) return;
   Copies copies;
-  for (std::size_t i = 0; i < std::min(cores, order.size()); ++i) copies.start(counter, order, make);
+  for (std::size_t i = 0; i < std::min(count, order.size()); ++i) copies.start(counter, order, make);
   copies.collect(results, done);
 }
 
 #else
 
-void makeInCopies(const std::vector<std::size_t>&, const Make&, const std::function<void()>&, Results&) {}
+void makeInCopies(const std::vector<std::size_t>&, const Make&, const std::function<void()>&, std::size_t,
+                  Results&) {}
 
 #endif
 
 }  // namespace
 
+bool mayFork() {
+#if !defined(__unix__)
+  return false;
+#elif defined(VPS_ADDRESS_SANITIZER)
+  std::error_code error;
+  const std::filesystem::directory_iterator tasks("/proc/self/task", error);
+  return !error && std::distance(begin(tasks), end(tasks)) == 1;
+#else
+  return true;
+#endif
+}
+
 std::vector<std::string> madeInCopies(const std::vector<std::size_t>& order, const Make& make,
-                                      const std::function<void()>& done) {
+                                      const std::function<void()>& done, std::size_t copies) {
   Results results(order.size());
-  makeInCopies(order, make, done, results);
+  makeInCopies(order, make, done, copies > 0 ? copies : std::thread::hardware_concurrency(), results);
   std::vector<std::string> out(order.size());
   for (const std::size_t i : order) {
     if (results[i]) {

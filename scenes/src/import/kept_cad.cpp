@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "import/kept_cad.h"
 
+#include <algorithm>
 #include <cstring>
 #include <fstream>
 #include <iterator>
@@ -21,15 +22,22 @@ class ToBytes {
   std::string out;
 };
 
-struct Short {};
+/// Fewer bytes than they say, or a value that no part has.
+struct Damaged {};
 
 class FromBytes {
  public:
   explicit FromBytes(const std::string& bytes) : bytes_(bytes) {}
   void operator()(void* data, std::size_t size) {
-    if (size > bytes_.size() - at_) throw Short();
+    if (size > bytes_.size() - at_) throw Damaged();
     if (size > 0) std::memcpy(data, bytes_.data() + at_, size);
     at_ += size;
+  }
+  void operator()(bool* value, std::size_t) {
+    unsigned char byte = 0;
+    (*this)(&byte, sizeof byte);
+    if (byte > 1) throw Damaged();
+    *value = byte == 1;
   }
   [[nodiscard]] bool isAtEnd() const { return at_ == bytes_.size(); }
 
@@ -42,6 +50,18 @@ template <class Io>
 void transferParts(Io& io, ImportedCad& cad) {
   transferEach(io, cad.parts, [&](ImportedPart& part) { transfer(io, part); });
   transferLines(io, cad.warnings);
+}
+
+/// Whether all that its triangles name exists.
+bool isConsistent(const ImportedPart& part) {
+  const std::size_t vertices = part.mesh.vertices.size(), triangles = part.mesh.triangles.size();
+  const FaceColors& colors = part.face_colors;
+  return part.X_WP.isFinite() && (colors.isNone() || colors.of_triangle.size() == triangles) &&
+         std::ranges::all_of(colors.of_triangle,
+                             [&](std::uint32_t color) { return color < colors.palette.size(); }) &&
+         std::ranges::all_of(part.mesh.triangles, [&](const auto& triangle) {
+           return std::ranges::all_of(triangle, [&](std::uint32_t corner) { return corner < vertices; });
+         });
 }
 
 }  // namespace
@@ -62,7 +82,8 @@ std::string madeFrom(const std::string& file, const std::string& format, const I
   std::uint64_t most_triangles = settings.most_triangles;
   for (double* value : {&unit_m, &deflection_m, &angle_rad, &coarsest_m}) transfer(io, *value);
   transfer(io, most_triangles);
-  return out + io.out;
+  out += io.out;
+  return out;
 }
 
 std::string keptBytes(const ImportedCad& cad) {
@@ -77,8 +98,8 @@ bool readKeptBytes(const std::string& bytes, ImportedCad& cad) {
   try {
     FromBytes io(bytes);
     transferParts(io, found);
-    if (!io.isAtEnd() || found.parts.empty()) return false;
-  } catch (const Short&) {
+    if (!io.isAtEnd() || found.parts.empty() || !std::ranges::all_of(found.parts, isConsistent)) return false;
+  } catch (const Damaged&) {
     return false;
   } catch (const std::length_error&) {
     return false;

@@ -19,12 +19,9 @@ RawCad inOwnProcess(const std::string&, const std::string&, const ImportSettings
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
-#include <filesystem>
-#include <iterator>
 #include <memory>
 #include <mutex>
 #include <new>
-#include <system_error>
 #include <vector>
 
 #include <fcntl.h>
@@ -36,6 +33,7 @@ RawCad inOwnProcess(const std::string&, const std::string&, const ImportSettings
 #include <sys/prctl.h>
 #endif
 
+#include "import/forked_workers.h"
 #include "import/part_bytes.h"
 #include "vps/load_error.h"
 
@@ -46,6 +44,10 @@ namespace {
 // (the text of the error). Both ends are the same program, so values are sent as they lie in memory
 // (part_bytes.h).
 enum class Message : std::uint8_t { Progressed, Done, Failed };
+
+/// How long to wait for a message, and how often to look at the child's memory, which takes a walk through
+/// its page tables.
+constexpr int kLook_ms = 200;
 
 /// The child's messages ended early.
 struct Broken {};
@@ -88,13 +90,12 @@ class Reader {
 
  private:
   static constexpr std::size_t kBuffer = 65536;
-  static constexpr int kWait_ms = 200;
 
   void fill() {
     const int from = ::fileno(stream_.get());
     pollfd waiting{from, POLLIN, 0};
     for (;;) {
-      const int ready = ::poll(&waiting, 1, kWait_ms);
+      const int ready = ::poll(&waiting, 1, kLook_ms);
       if (ready > 0) break;
       if (ready < 0 && errno != EINTR) throw Broken();
       wait_();
@@ -202,18 +203,22 @@ class Child {
   }
   void setClosed() { is_closed_ = true; }
 
-  /// Memory that it occupies itself, and copies that it forked; 0 where that is not known.
+  /// Memory that it occupies itself, and copies that it forked; 0 where that is not known. With copies, of
+  /// pages that several processes share each has its share, so that none is counted twice.
   [[nodiscard]] std::uint64_t memory_bytes() const {
     const std::string process = "/proc/" + std::to_string(id_);
+    const std::string list = process + "/task/" + std::to_string(id_) + "/children";
+    const Stream copies(std::fopen(list.c_str(), "r"));
+    std::uint64_t sum = 0;
+    long copy = 0;
+    bool has_copies = false;
+    for (; copies && std::fscanf(copies.get(), "%ld", &copy) == 1; has_copies = true)
+      sum += ownShare_bytes(copy);
+    if (has_copies) return sum + ownShare_bytes(id_);
     const Stream statm(std::fopen((process + "/statm").c_str(), "r"));
     unsigned long long all = 0, resident = 0, shared = 0;
     if (!statm || std::fscanf(statm.get(), "%llu %llu %llu", &all, &resident, &shared) != 3) return 0;
-    std::uint64_t sum =
-        (resident - std::min(resident, shared)) * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
-    const std::string list = process + "/task/" + std::to_string(id_) + "/children";
-    const Stream copies(std::fopen(list.c_str(), "r"));
-    for (long copy = 0; copies && std::fscanf(copies.get(), "%ld", &copy) == 1;) sum += ownShare_bytes(copy);
-    return sum;
+    return (resident - std::min(resident, shared)) * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
   }
 
  private:
@@ -241,14 +246,17 @@ class Watch {
     share_ = share;
     look();
   }
-  void look() const {
+  void look() {
     if (progress_) progress_(doing_, share_);
     const std::string remedy =
         " (" + doing_ + "); a greater deflection needs less, or export fewer parts into one file";
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun_).count();
+    const auto now = std::chrono::steady_clock::now();
+    const double seconds = std::chrono::duration<double>(now - begun_).count();
     if (limits_.most_s > 0 && seconds > limits_.most_s)
       throw LoadError(file_, "", "took more than " + number(limits_.most_s) + " s to read" + remedy);
-    if (limits_.most_memory_bytes > 0 && child_.memory_bytes() > limits_.most_memory_bytes)
+    if (limits_.most_memory_bytes == 0 || now < next_memory_) return;
+    next_memory_ = now + std::chrono::milliseconds(kLook_ms);
+    if (child_.memory_bytes() > limits_.most_memory_bytes)
       throw LoadError(file_, "",
                       "needs more than " + number(1e-9 * static_cast<double>(limits_.most_memory_bytes)) +
                           " GB of memory to read" + remedy);
@@ -266,28 +274,8 @@ class Watch {
   const Progress& progress_;
   std::string doing_;
   double share_ = 0;
-  std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now();
+  std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now(), next_memory_ = begun_;
 };
-
-#if defined(__SANITIZE_ADDRESS__)
-#define VPS_ADDRESS_SANITIZER
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
-#define VPS_ADDRESS_SANITIZER
-#endif
-#endif
-
-/// AddressSanitizer's malloc, unlike glibc's, does not work in the fork of a program with threads: a lock
-/// that one of them held stays locked (GCC 12: the child hangs).
-bool mayFork() {
-#ifdef VPS_ADDRESS_SANITIZER
-  std::error_code error;
-  const std::filesystem::directory_iterator tasks("/proc/self/task", error);
-  return !error && std::distance(begin(tasks), end(tasks)) == 1;
-#else
-  return true;
-#endif
-}
 
 RawCad receive(Reader& in, Watch& watch) {
   for (;;) {

@@ -126,7 +126,8 @@ class LegSearch {
       const double middle_m = 0.5 * (free_m + stopped_m);
       (isFreeBefore(middle_m) ? free_m : stopped_m) = middle_m;
     }
-    last.s -= 0.5 * free_m;
+    // Between the two the search looked at some places, and rarely at this one.
+    if (isFreeBefore(0.5 * free_m)) last.s -= 0.5 * free_m;
   }
 
   void addPlace(const Place& from, const Leg& leg, std::deque<Place>& waiting) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "import/occt/congruent.h"
 
+#include <cmath>
+
 #include <BRepAdaptor_Curve.hxx>
 #include <BRepTools.hxx>
 #include <BRep_Tool.hxx>
@@ -67,8 +69,21 @@ ShapeTrace traceOf(const TopoDS_Shape& shape) try {
   return {};
 }
 
+namespace {
+
+/// Whether distances from the first point agree, as a motion keeps them: each of two points may be off by the
+/// tolerance. Ends at the first that does not, so that different shapes cost little.
+bool haveSameDistances(const std::vector<Vec3>& a, const std::vector<Vec3>& b, double tolerance) {
+  for (std::size_t i = 1; i < a.size(); ++i)
+    if (!(std::abs((a[i] - a[0]).norm() - (b[i] - b[0]).norm()) <= 2 * tolerance)) return false;
+  return true;
+}
+
+}  // namespace
+
 std::optional<Eigen::Affine3d> motionBetween(const ShapeTrace& a, const ShapeTrace& b, double tolerance) {
   if (a.kinds != b.kinds || a.points.size() != b.points.size() || a.points.empty()) return std::nullopt;
+  if (!haveSameDistances(a.points, b.points, tolerance)) return std::nullopt;
   using Columns = Eigen::Matrix<double, 3, Eigen::Dynamic>;
   const auto columns = [](const std::vector<Vec3>& points) {
     return Eigen::Map<const Columns>(points.front().data(), 3, static_cast<Eigen::Index>(points.size()));
