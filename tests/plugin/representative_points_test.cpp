@@ -185,24 +185,6 @@ TEST(RepresentativePoints, PointsOnEdgesStandForNeighboursOnly) {
   for (const auto& [group, box] : faces) EXPECT_LE(box.size().minCoeff(), 1e-9);  // each on one face
 }
 
-// The field may read more at a corner that is inside than beside it: it is always reported.
-TEST(RepresentativePoints, ACornerStandsForItself) {
-  const PointShell shell = buildPointShell(makeBox(Vec3(20e-3, 20e-3, 20e-3)), {0.5e-3, 0.35});
-  std::vector<std::uint8_t> on_edge(shell.size());
-  std::size_t corners = 0, loose = 0;
-  for (std::uint32_t id = 0; id < shell.size(); ++id) {
-    const auto faces = (shell.points[id].cwiseAbs().array() > 10e-3 - 1e-9).count();
-    on_edge[id] = faces == 3 ? RepresentativePoints::kCorner : faces == 2 ? 1 : 0;
-    corners += faces == 3;
-  }
-  ASSERT_EQ(corners, 8u);
-  const RepresentativePoints leading(shell, 6e-3, on_edge);
-  for (std::uint32_t id = 0; id < shell.size(); ++id)
-    if (on_edge[id] == RepresentativePoints::kCorner)
-      loose += leading.groupOf(id) == RepresentativePoints::kNone;
-  EXPECT_EQ(loose, corners);
-}
-
 TEST(RepresentativePoints, DoesNotAllocateAndRejectsABadPose) {
   ContactSet set(fit().shell.size());
   const vps_test::NoAllocScope guard;

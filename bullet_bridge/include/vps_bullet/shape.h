@@ -87,10 +87,7 @@ class VPS_BULLET_API Shape : public btConcaveShape {
   [[nodiscard]] bool isEdgePoint(std::uint32_t id) const {
     return !is_edge_point_.empty() && is_edge_point_[id];
   }
-  /// True for an edge point where edges end or turn.
-  [[nodiscard]] bool isCorner(std::uint32_t id) const;
-  /// By point, as RepresentativePoints take it: not 0 on an edge, kCorner where edges end or turn; empty if
-  /// there are no surfaces.
+  /// The same by point; empty if there are no surfaces.
   [[nodiscard]] std::span<const std::uint8_t> edgePoints() const { return is_edge_point_; }
   /// Inward unit normal at a shell point on a face, of the curved surface that the facets approximate, in the
   /// models' frame. On edges, and without surfaces, the shell's own normal.

@@ -147,7 +147,6 @@ std::size_t findMapCandidates(const SideView& side, const SideView& other, doubl
     c.area_m2 = contact.area_m2;
     c.id = contact.id;
     c.owner = contact.owner;
-    c.is_corner = side.shape->isCorner(contact.id);
     c.side = side.side;
     out.push_back(c);
   }

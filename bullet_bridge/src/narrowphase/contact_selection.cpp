@@ -175,24 +175,17 @@ void dropUnreachable(const RelativeMotion& motion, std::vector<Candidate>& candi
 
 namespace {
 
-/// Candidates that are in reach only if the field reads too much. Corners apart, since the field may read
-/// more at a corner that is inside than at its neighbours that are not.
-struct Doubtful {
-  std::vector<Candidate> corners, others;
-};
-
 // Drops candidates that are out of reach even if the field reads too much. Those that are in reach only then
 // are moved to `doubtful`.
 void dropUnreachableByField(const PairView& pair, const RelativeMotion& motion, const Settings& settings,
-                            std::vector<Candidate>& candidates, Doubtful& doubtful) {
-  doubtful.corners.clear();
-  doubtful.others.clear();
+                            std::vector<Candidate>& candidates, std::vector<Candidate>& doubtful) {
+  doubtful.clear();
   std::erase_if(candidates, [&](Candidate& c) {
     if (motion.canTouch(c)) return false;
     if (!settings.use_surfaces) return true;
     Candidate nearer = c;
     nearer.distance_m -= fieldError_m(pair, c);
-    if (motion.canTouch(nearer)) (c.is_corner ? doubtful.corners : doubtful.others).push_back(c);
+    if (motion.canTouch(nearer)) doubtful.push_back(c);
     return true;
   });
 }
@@ -201,12 +194,11 @@ void dropUnreachableByField(const PairView& pair, const RelativeMotion& motion, 
 
 void selectContacts(const PairView& pair, const RelativeMotion& motion, const Settings& settings,
                     ManifoldWriter* writer, std::vector<Candidate>& candidates, Selection* selection) {
-  thread_local Doubtful doubtful;
+  thread_local std::vector<Candidate> doubtful;
   dropUnreachableByField(pair, motion, settings, candidates, doubtful);
   if (writer) {
     writer->markExistingContacts(candidates);
-    writer->markExistingContacts(doubtful.corners);
-    writer->markExistingContacts(doubtful.others);
+    writer->markExistingContacts(doubtful);
   }
   const auto limit = static_cast<std::size_t>(settings.contact_limit);
   const double radius_m = pair.radius_m();
@@ -214,10 +206,8 @@ void selectContacts(const PairView& pair, const RelativeMotion& motion, const Se
   // With twice the limit a shaft in its bushings had to be solved again in most steps, which cost more.
   const double sampling_m = reduceByCell(candidates, 4 * limit, radius_m / 16, radius_m);
   // The others apart, so that they take no room from those.
-  for (std::vector<Candidate>* some : {&doubtful.corners, &doubtful.others}) {
-    reduceByCell(*some, 2 * limit, radius_m / 16, radius_m);
-    candidates.insert(candidates.end(), some->begin(), some->end());
-  }
+  reduceByCell(doubtful, 2 * limit, radius_m / 16, radius_m);
+  candidates.insert(candidates.end(), doubtful.begin(), doubtful.end());
   refineAll(pair, motion, settings, candidates);
   if (isQueriedOnce(pair, motion)) measureAtEnd(pair, motion, settings, candidates);
   dropUnreachable(motion, candidates);

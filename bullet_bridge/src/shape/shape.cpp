@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <span>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -16,7 +15,6 @@
 #include "shape/triangle_tree.h"
 #include "vps/feature_motion.h"
 #include "vps/load_error.h"
-#include "vps/representative_points.h"
 #include "vps_bullet/convert.h"
 
 namespace vps::bullet::inline v0 {
@@ -60,22 +58,6 @@ struct PointNormals {
 };
 
 constexpr double kOnSurface_m = 1e-6;
-
-/// True if the edges at a point do not go on there as one that stands for a curve.
-bool areCornerAt(const Vec3& p, const std::vector<EdgeSegment>& segments,
-                 std::span<const std::uint32_t> edges) {
-  constexpr double kCosCurve = 0.990;  // 8 degrees, as EdgeSegment::is_curved
-  Vec3 away[2];
-  std::size_t ends = 0;
-  for (const std::uint32_t i : edges) {
-    const EdgeSegment& s = segments[i];
-    const bool is_from = (p - s.from).norm() < kOnSurface_m, is_to = (p - s.to).norm() < kOnSurface_m;
-    if (!is_from && !is_to) continue;
-    if (ends == 2) return true;
-    away[ends++] = (is_from ? s.to - s.from : s.from - s.to).normalized();
-  }
-  return ends == 1 || (ends == 2 && away[0].dot(away[1]) > -kCosCurve);
-}
 
 // A point on a face has the normal of that face; a point on an edge has the mean of several.
 PointNormals findNormals(const ShapeModels& models) {
@@ -173,12 +155,9 @@ void Shape::use(ShapeModels models, const Pose& X_SM) {
   edges_at_.clear();
   first_edge_.assign(is_edge_point_.empty() ? 0 : 1, 0);
   for (std::size_t i = 0; i < is_edge_point_.size(); ++i) {
-    if (is_edge_point_[i] != 0) {
-      const Vec3& p = models_.shell->points[i];
-      edges_.forEachNear(p, kOnSurface_m, [this](std::uint32_t segment) { edges_at_.push_back(segment); });
-      if (areCornerAt(p, edges_.segments(), std::span(edges_at_).subspan(first_edge_.back())))
-        is_edge_point_[i] = RepresentativePoints::kCorner;
-    }
+    if (is_edge_point_[i] != 0)
+      edges_.forEachNear(models_.shell->points[i], kOnSurface_m,
+                         [this](std::uint32_t segment) { edges_at_.push_back(segment); });
     first_edge_.push_back(static_cast<std::uint32_t>(edges_at_.size()));
   }
   Box box_M;
@@ -201,10 +180,6 @@ void Shape::use(ShapeModels models, const Pose& X_SM) {
     }
   }
   triangles_ = models_.mesh ? std::make_unique<const TriangleTree>(*models_.mesh, X_SM_) : nullptr;
-}
-
-bool Shape::isCorner(std::uint32_t id) const {
-  return !is_edge_point_.empty() && is_edge_point_[id] == RepresentativePoints::kCorner;
 }
 
 void Shape::getAabb(const btTransform& X_WS, btVector3& min, btVector3& max) const {

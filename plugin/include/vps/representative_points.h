@@ -33,9 +33,8 @@ class VPS_API RepresentativePoints {
   /// The shell must outlive this object and not change. O(points); about 200 bytes for each group and 2 for
   /// each point. Throws std::invalid_argument if the size is not positive.
   /// @param on_edge  by point: not 0 for those on sharp edges. The plane in which such a point touches
-  /// depends on the other part, so these stand for each other only within a quarter of a tile's size.
-  /// kCorner: the point stands for itself, since the field may read more at a corner that is inside than at
-  /// its neighbours that are not. May be empty.
+  /// depends on the other part, so these stand for each other only within a quarter of a tile's size. May be
+  /// empty.
   RepresentativePoints(const PointShell& shell, double tile_size_m,
                        std::span<const std::uint8_t> on_edge = {});
 
@@ -45,7 +44,6 @@ class VPS_API RepresentativePoints {
   /// The group of a point; kNone if it belongs to none and is reported whenever it is near.
   [[nodiscard]] std::uint32_t groupOf(std::uint32_t id) const noexcept;
   static constexpr std::uint32_t kNone = UINT32_MAX;
-  static constexpr std::uint8_t kCorner = 2;  ///< a point where edges end or turn
 
   /// As queryContacts(), with fewer points; the reported contacts have the same bits. For each point left
   /// out, a reported point of the same group is as near now, to 1/16384 voxel, and a reported point is as

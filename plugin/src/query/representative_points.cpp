@@ -27,7 +27,6 @@ class RepresentativePoints::Grouping {
       : shell_(shell), edge_size_m_(kEdgeShare * size_m), on_edge_(on_edge) {}
 
   std::uint8_t add(std::uint32_t id) {
-    if (!on_edge_.empty() && on_edge_[id] == kCorner) return kNoGroup;
     const bool is_edge = !on_edge_.empty() && on_edge_[id] != 0;
     for (std::size_t g = 0; g < members_.size(); ++g)
       if (takes(members_[g], id, is_edge)) return join(g, id);
