@@ -50,11 +50,10 @@ std::string stiffnessFault(const std::string& text) {
 
 /// Waits for the recording.
 int bringRecording(const AskArguments& given) {
-  constexpr double kLimit_s = 8;  // more than an answer takes
   scenes::SessionRecordingOptions options = recordingOptions(given.session, given.network, given.bring);
   options.name = given.name;
   scenes::SessionRecording recording(options);
-  if (const std::string why = recording.waitUntilAsked(kLimit_s); !why.empty()) throw LoadError("", "", why);
+  requireAsked(recording, "");
   return finishRecording(recording, given.bring);
 }
 

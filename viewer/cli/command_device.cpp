@@ -38,7 +38,6 @@ struct DeviceArguments {
 };
 
 constexpr const char* kNone = "";
-constexpr double kAskLimit_s = 8;  ///< more than an answer takes
 
 std::string range(double least, double greatest, int digits, double unit = 1) {
   return fixed(least * unit, digits) + " - " + fixed(greatest * unit, digits);
@@ -197,8 +196,7 @@ int runNode(const DeviceArguments& given) {
     options.before_hello = [&] {
       if (recording) return;  // of the session that was lost, whose recording ends there
       recording.emplace(recordingOptions(given.session, given.network, given.record));
-      if (const std::string why = recording->waitUntilAsked(kAskLimit_s); !why.empty())
-        throw LoadError("--record", "", why);
+      requireAsked(*recording, "--record");
     };
   }
   const scenes::DeviceNodeResult result = scenes::deviceNode(options);

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "terminal.h"
+#include "vps/load_error.h"
 
 namespace vps::viewer::inline v0 {
 
@@ -26,6 +27,12 @@ scenes::SessionRecordingOptions recordingOptions(const std::string& session,
   options.stop = &stopRequested();
   options.say = [](const std::string& words) { say(words); };
   return options;
+}
+
+void requireAsked(scenes::SessionRecording& recording, const std::string& option) {
+  constexpr double kLimit_s = 8;  // more than an answer takes
+  if (const std::string why = recording.waitUntilAsked(kLimit_s); !why.empty())
+    throw LoadError(option, "", why);
 }
 
 int finishRecording(scenes::SessionRecording& recording, const std::string& file) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vps_scenes/face_colors.h"
 
-#include <algorithm>
 #include <cmath>
-#include <map>
+
+#include "color/palette.h"
 
 namespace vps::scenes::inline v0 {
 
@@ -17,19 +17,13 @@ Color srgbFromLinear(const Color& linear) {
 }
 
 void append(FaceColors& to, std::size_t count, const FaceColors& from, const Color& color) {
-  std::map<Color, std::uint32_t> known;
-  for (std::uint32_t i = 0; i < to.palette.size(); ++i) known.emplace(to.palette[i], i);
-  const auto numberOf = [&](const Color& wanted) {
-    const auto [it, is_new] = known.emplace(wanted, static_cast<std::uint32_t>(to.palette.size()));
-    if (is_new) to.palette.push_back(wanted);
-    return it->second;
-  };
+  Palette palette(to);
   if (from.isNone()) {
-    if (count > 0) to.of_triangle.insert(to.of_triangle.end(), count, numberOf(color));
+    if (count > 0) to.of_triangle.insert(to.of_triangle.end(), count, palette.numberOf(color));
     return;
   }
   std::vector<std::uint32_t> number;
-  for (const Color& each : from.palette) number.push_back(numberOf(each));
+  for (const Color& each : from.palette) number.push_back(palette.numberOf(each));
   for (std::size_t i = 0; i < count; ++i) to.of_triangle.push_back(number[from.of_triangle[i]]);
 }
 

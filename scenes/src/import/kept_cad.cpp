@@ -2,7 +2,6 @@
 #include "import/kept_cad.h"
 
 #include <algorithm>
-#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <new>
@@ -15,36 +14,6 @@ namespace {
 
 /// Incremented when reading gives other bits, or part_bytes.h changes.
 constexpr std::uint32_t kKeptVersion = 1;
-
-class ToBytes {
- public:
-  void operator()(const void* data, std::size_t size) { out.append(static_cast<const char*>(data), size); }
-  std::string out;
-};
-
-/// Fewer bytes than they say, or a value that no part has.
-struct Damaged {};
-
-class FromBytes {
- public:
-  explicit FromBytes(const std::string& bytes) : bytes_(bytes) {}
-  void operator()(void* data, std::size_t size) {
-    if (size > bytes_.size() - at_) throw Damaged();
-    if (size > 0) std::memcpy(data, bytes_.data() + at_, size);
-    at_ += size;
-  }
-  void operator()(bool* value, std::size_t) {
-    unsigned char byte = 0;
-    (*this)(&byte, sizeof byte);
-    if (byte > 1) throw Damaged();
-    *value = byte == 1;
-  }
-  [[nodiscard]] bool isAtEnd() const { return at_ == bytes_.size(); }
-
- private:
-  const std::string& bytes_;
-  std::size_t at_ = 0;
-};
 
 template <class Io>
 void transferParts(Io& io, ImportedCad& cad) {

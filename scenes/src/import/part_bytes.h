@@ -8,6 +8,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -16,6 +17,36 @@
 #include "import/readers.h"
 
 namespace vps::scenes::inline v0::import {
+
+class ToBytes {
+ public:
+  void operator()(const void* data, std::size_t size) { out.append(static_cast<const char*>(data), size); }
+  std::string out;
+};
+
+/// Fewer bytes than they say, or a value that no part has.
+struct Damaged {};
+
+class FromBytes {
+ public:
+  explicit FromBytes(const std::string& bytes) : bytes_(bytes) {}
+  void operator()(void* data, std::size_t size) {
+    if (size > bytes_.size() - at_) throw Damaged();
+    if (size > 0) std::memcpy(data, bytes_.data() + at_, size);
+    at_ += size;
+  }
+  void operator()(bool* value, std::size_t) {
+    unsigned char byte = 0;
+    (*this)(&byte, sizeof byte);
+    if (byte > 1) throw Damaged();
+    *value = byte == 1;
+  }
+  [[nodiscard]] bool isAtEnd() const { return at_ == bytes_.size(); }
+
+ private:
+  const std::string& bytes_;
+  std::size_t at_ = 0;
+};
 
 template <class Io, class T>
 requires std::is_arithmetic_v<T> || std::is_enum_v<T>

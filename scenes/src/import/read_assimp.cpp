@@ -12,9 +12,9 @@
 #include <cstdint>
 #include <fstream>
 #include <iterator>
-#include <map>
 #include <optional>
 
+#include "color/palette.h"
 #include "import/colors_3mf.h"
 #include "import/mesh_text.h"
 #include "import/readers.h"
@@ -46,7 +46,7 @@ void appendMesh(const aiMesh& from, Mesh& to) {
 void appendColors(const aiMesh& from, const Color& of_mesh, bool is_gltf, FaceColors& to) {
   FaceColors own;
   std::size_t count = 0;
-  std::map<Color, std::uint32_t> known;
+  Palette palette(own);
   for (unsigned i = 0; i < from.mNumFaces; ++i) {
     const aiFace& face = from.mFaces[i];
     if (face.mNumIndices != 3) continue;
@@ -57,9 +57,7 @@ void appendColors(const aiMesh& from, const Color& of_mesh, bool is_gltf, FaceCo
     Color color = {mean.r / 3, mean.g / 3, mean.b / 3};
     if (!is_gltf) color = linearFromSrgb(color);
     for (std::size_t k = 0; is_gltf && k < 3; ++k) color[k] *= of_mesh[k];  // by its specification
-    const auto [it, is_new] = known.emplace(color, static_cast<std::uint32_t>(own.palette.size()));
-    if (is_new) own.palette.push_back(color);
-    own.of_triangle.push_back(it->second);
+    palette.add(color);
   }
   append(to, count, own, of_mesh);
 }
@@ -93,13 +91,8 @@ class ReplacedFile : public Assimp::DefaultIOSystem {
 
 FaceColors faceColors(const Mesh3mf& mesh) {
   FaceColors colors;
-  std::map<Color, std::uint32_t> known;
-  for (const std::optional<Color>& own : mesh.colors) {
-    const Color color = own.value_or(ImportedPart().color);
-    const auto [it, is_new] = known.emplace(color, static_cast<std::uint32_t>(colors.palette.size()));
-    if (is_new) colors.palette.push_back(color);
-    colors.of_triangle.push_back(it->second);
-  }
+  Palette palette(colors);
+  for (const std::optional<Color>& own : mesh.colors) palette.add(own.value_or(ImportedPart().color));
   return colors;
 }
 

@@ -11,6 +11,7 @@
 #include <thread>
 #include <utility>
 
+#include "core/valid_text.h"
 #include "network/asking.h"
 #include "network/recording_name.h"
 #include "record/scene_archive.h"
@@ -28,10 +29,7 @@ constexpr std::uint64_t kMostFile = std::uint64_t{1} << 34U;  // [bytes] assumed
 
 /// Another program's words, which control no terminal.
 std::string wordsOf(const AnswerMessage& answer) {
-  std::string words = answer.text.data();
-  std::replace_if(
-      words.begin(), words.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
-  return words;
+  return printable(answer.text.data());
 }
 
 }  // namespace

@@ -2,88 +2,45 @@
 #include "import/occt/tessellate_all.h"
 
 #include <algorithm>
-#include <cstring>
 #include <map>
 #include <numeric>
 #include <string>
+#include <utility>
 
 #include <TopExp_Explorer.hxx>
 
 #include "import/forked_workers.h"
 #include "import/occt/congruent.h"
+#include "import/part_bytes.h"
 
 namespace vps::scenes::inline v0::import {
 
 namespace {
 
-/// Numbers of a tessellation, which a copy of this process sends as they lie in memory.
-struct Figures {
-  std::size_t vertices = 0, triangles = 0, faces = 0, open_edges = 0;
-  double deviation_m = 0, deflection_m = 0;
-  int missing = 0, off = 0, folded = 0, uncovered = 0, outside = 0;
-};
-
-struct FaceFigures {
-  std::size_t triangles = 0;
-  bool is_good = true;
-};
-
-template <class T>
-void append(std::string& bytes, const T* values, std::size_t count) {
-  bytes.append(reinterpret_cast<const char*>(values), count * sizeof(T));
+/// Without the handles of its faces.
+template <class Io>
+void transfer(Io& io, Tessellation& t) {
+  transfer(io, t.mesh);
+  transferEach(io, t.faces, [&](Tessellation::Face& face) {
+    transfer(io, face.triangles);
+    transfer(io, face.is_good);
+  });
+  transfer(io, t.deviation_m);
+  transfer(io, t.deflection_m);
+  for (int* count : {&t.missing, &t.off, &t.folded, &t.uncovered, &t.outside}) transfer(io, *count);
+  transfer(io, t.open_edges);
 }
 
-std::string bytesOf(const Tessellation& t) {
-  const Figures figures{t.mesh.vertices.size(),
-                        t.mesh.triangles.size(),
-                        t.faces.size(),
-                        t.open_edges,
-                        t.deviation_m,
-                        t.deflection_m,
-                        t.missing,
-                        t.off,
-                        t.folded,
-                        t.uncovered,
-                        t.outside};
-  std::string bytes;
-  append(bytes, &figures, 1);
-  append(bytes, t.mesh.vertices.data(), t.mesh.vertices.size());
-  append(bytes, t.mesh.triangles.data(), t.mesh.triangles.size());
-  for (const Tessellation::Face& face : t.faces) {
-    const FaceFigures own{face.triangles, face.is_good};
-    append(bytes, &own, 1);
-  }
-  return bytes;
+std::string bytesOf(Tessellation t) {
+  ToBytes io;
+  transfer(io, t);
+  return std::move(io.out);
 }
 
 Tessellation tessellationFrom(const std::string& bytes) {
-  const char* at = bytes.data();
-  const auto take = [&](auto* values, std::size_t count) {
-    if (count > 0) std::memcpy(static_cast<void*>(values), at, count * sizeof *values);
-    at += count * sizeof *values;
-  };
-  Figures figures;
-  take(&figures, 1);
+  FromBytes io(bytes);
   Tessellation t;
-  t.mesh.vertices.resize(figures.vertices);
-  take(t.mesh.vertices.data(), figures.vertices);
-  t.mesh.triangles.resize(figures.triangles);
-  take(t.mesh.triangles.data(), figures.triangles);
-  for (std::size_t i = 0; i < figures.faces; ++i) {
-    FaceFigures own;
-    take(&own, 1);
-    Tessellation::Face& face = t.faces.emplace_back();
-    face.triangles = own.triangles;
-    face.is_good = own.is_good;
-  }
-  t.open_edges = figures.open_edges;
-  t.deviation_m = figures.deviation_m;
-  t.deflection_m = figures.deflection_m;
-  t.missing = figures.missing;
-  t.off = figures.off;
-  t.folded = figures.folded;
-  t.uncovered = figures.uncovered;
-  t.outside = figures.outside;
+  transfer(io, t);
   return t;
 }
 
