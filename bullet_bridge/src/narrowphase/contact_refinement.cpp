@@ -99,7 +99,8 @@ struct Foot {
 };
 
 struct Exact {
-  bool found = false;       ///< there is a surface within reach
+  bool found = false;      ///< there is a surface within reach
+  bool found_all = false;  ///< every surface of the other side is within reach: a wider search finds the same
   bool is_contact = false;  ///< the surface faces the point
   bool is_inside = false;   ///< the point is behind the nearest surface, or on it
   double distance_m = 0;
@@ -198,18 +199,25 @@ struct Refiner {
   bool is_primitive;
 
   Exact at(const OwnPoint& own, double max_m) const {
-    if (is_primitive) return contactAt(footOn(theirs, other.X_WM, own.p_W), own);
+    if (is_primitive) {
+      Exact exact = contactAt(footOn(theirs, other.X_WM, own.p_W), own);
+      exact.found_all = true;
+      return exact;
+    }
     // A cooked body is the union of its parts: the least of their signed distances.
     Exact nearest;
+    bool found_all = true;
     const std::vector<Surface>& surfaces = other.shape->models().surfaces;
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
       Foot foot = footOn(surfaces[i], other.X_WM, own, max_m);
       foot.is_curved = foot.found && other.shape->features().isCurved(i, foot.triangle);
       const Exact exact = contactAt(foot, own);
+      found_all &= exact.found;
       nearest.found |= exact.found;
       nearest.is_inside |= exact.is_inside;
       if (exact.is_contact && (!nearest.is_contact || exact.distance_m < nearest.distance_m)) nearest = exact;
     }
+    nearest.found_all = found_all;
     return nearest;
   }
 };
@@ -278,7 +286,7 @@ void refine(std::vector<Candidate>& candidates, const SideView& side, const Side
                        is_two_sided};
     const double max_m = std::abs(c.distance_m) + field_error_m;
     Exact exact = refiner.at(own, std::abs(c.distance_m) + kUsualError * field_error_m);
-    if (!exact.is_contact) exact = refiner.at(own, max_m);
+    if (!exact.is_contact && !exact.found_all) exact = refiner.at(own, max_m);
     if (!exact.found) continue;  // only the field is known
     if (!exact.is_contact && exact.is_inside && !own.edges.empty())
       if (const Exact beside = besideEdge(refiner, own, max_m); beside.found) exact = beside;

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "narrowphase/deeper_neighbours.h"
+
+#include <algorithm>
+
+#include "narrowphase/contact_selection.h"
+#include "narrowphase/manifold_writer.h"
+
+namespace vps::bullet::inline v0 {
+
+namespace {
+
+constexpr double kDeeper_m = 1e-6;  // as reduceByCell() prefers last step's contacts
+constexpr double kOverlap_m = 2e-6;
+constexpr int kMostSteps = 4;  // of a walk. assumed
+
+/// One side's points at their places, refined one after the other.
+class Walker {
+ public:
+  Walker(const PairView& pair, int i, const RelativeMotion& motion, const Settings& settings,
+         ManifoldWriter* writer, std::vector<Candidate>& refined)
+      : pair_(pair),
+        motion_(motion),
+        settings_(settings),
+        writer_(writer),
+        refined_(refined),
+        own_(pair.side(i)),
+        other_(pair.side(1 - i)),
+        X_MP_(other_.X_WM.inverse() * own_.X_WM) {}
+
+  void walkFrom(const Candidate& start) {
+    Candidate at = start;
+    for (int step = 0; step < kMostSteps; ++step)
+      if (!moveToDeepest(at)) break;
+    if (at.id == start.id || isRefined(at.id) || at.distance_m > -kOverlap_m) return;
+    refined_.push_back(at);
+  }
+
+ private:
+  [[nodiscard]] bool isRefined(std::uint32_t id) const {
+    return std::any_of(refined_.begin(), refined_.end(), [&](const Candidate& c) {
+      return c.side == own_.side && !c.isCrossing() && c.id == id;
+    });
+  }
+  // The gap at the end of the step: where the point will press.
+  bool moveToDeepest(Candidate& at) {
+    thread_local std::vector<Candidate> beside;
+    beside.clear();
+    for (const std::uint32_t id : own_.shape->edgeNeighbours().of(at.id))
+      if (!isRefined(id)) beside.push_back(byField(id));
+    if (beside.empty()) return false;
+    if (writer_) writer_->markExistingContacts(beside);
+    refineAll(pair_, motion_, settings_, beside);
+    dropUnreachable(motion_, beside);
+    const auto deepest =
+        std::min_element(beside.begin(), beside.end(), [](const Candidate& a, const Candidate& b) {
+          return a.distance_m != b.distance_m ? a.distance_m < b.distance_m : a.id < b.id;
+        });
+    if (deepest == beside.end() || deepest->distance_m > at.distance_m - kDeeper_m) return false;
+    at = *deepest;
+    return true;
+  }
+  [[nodiscard]] Candidate byField(std::uint32_t id) const {
+    const VoxMap& map = *other_.shape->models().map;
+    const PointShell& shell = *own_.shape->models().shell;
+    const Vec3 p_M = X_MP_ * shell.points[id];
+    const VoxMap::Sample at = map.sample(p_M);
+    Candidate c;
+    c.id = id;
+    c.side = own_.side;
+    c.owner = map.owner(p_M);
+    c.p_W = other_.X_WM * p_M;
+    c.n_W = (own_.side == 0 ? 1 : -1) * (other_.X_WM.R * at.normal);
+    c.distance_m = at.distance_m;
+    c.area_m2 = shell.area_m2[id];
+    return c;
+  }
+
+  const PairView& pair_;
+  const RelativeMotion& motion_;
+  const Settings& settings_;
+  ManifoldWriter* writer_;
+  std::vector<Candidate>& refined_;
+  SideView own_, other_;
+  Pose X_MP_;
+};
+
+}  // namespace
+
+void addDeeperNeighbours(const PairView& pair, const RelativeMotion& motion, const Settings& settings,
+                         ManifoldWriter* writer, std::vector<Candidate>& refined) {
+  for (int i = 0; i < 2; ++i) {
+    if (!queriesPoints(pair, i, settings.sides) || !pair.hasMap(1 - i)) continue;
+    Walker walker(pair, i, motion, settings, writer, refined);
+    const std::size_t count = refined.size();
+    for (std::size_t k = 0; k < count; ++k) {
+      const Candidate c = refined[k];
+      if (c.side == i && !c.isCrossing() && pair.shape[i]->isEdgePoint(c.id)) walker.walkFrom(c);
+    }
+  }
+}
+
+}  // namespace vps::bullet::inline v0
