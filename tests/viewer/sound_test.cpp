@@ -374,8 +374,9 @@ TEST(LiveSound, WhatALateThreadBringsAtOnceDoesNotDelayWhatFollows) {
       why);
   if (!output) GTEST_SKIP() << why;
   const std::vector<float> late(kRate_hz / 4), click(kRate_hz / 100, 0.5f), silence(kRate_hz / 4);
-  // Six buffers of 2.5 ms wait at most, then the card has two periods of 5.3 ms; the rest is for a late
-  // thread of the card. A queue of 40 ms makes it 50, each time; a busy machine only some times.
+  // Of the first 250 ms at most 13 wait: 10 ms, which is the longest block that is no burst, what a late
+  // thread needs, and a period. Then the card has three periods of 1.3 ms; the rest is for a late thread of
+  // the card. A queue of 40 ms makes it 50, each time; a busy machine only some times.
   constexpr double kBound_s = 0.035;
   double least_s = 1e9;
   for (int attempt = 0; attempt < 20 && least_s > kBound_s; ++attempt) {

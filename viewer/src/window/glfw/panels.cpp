@@ -62,6 +62,7 @@ void drawView(Session& session) {
   press("fit", Action::Fit);
   auto explode = static_cast<float>(view.explode);
   if (ImGui::SliderFloat("exploded", &explode, 0, 1.5f)) view.explode = explode;
+  if (ImGui::IsItemDeactivatedAfterEdit()) view.wants_fit = true;
   bool has_cut = view.draw.cut.has_value();
   if (ImGui::Checkbox("section", &has_cut))
     apply(Action::Section, view, session.shownLine(), session.box_W());
@@ -77,7 +78,7 @@ void drawView(Session& session) {
   ImGui::SameLine();
   ImGui::Checkbox("floor", &view.draw.show_ground);
   ImGui::SameLine();
-  ImGui::Checkbox("dark", &view.is_dark);
+  if (ImGui::Checkbox("dark", &view.is_dark)) view.draw.is_dark = view.is_dark;
   if (!ImGui::BeginCombo("stereo", toText(view.stereo))) return;
   for (const StereoMode mode : stereoModes())
     if (ImGui::Selectable(toText(mode), view.stereo == mode)) view.stereo = mode;
@@ -259,20 +260,32 @@ void drawTimeAxis(Session& session, const PictureSize& size, float side_px, floa
   ImGui::End();
 }
 
+void drawBindings(const char* table, std::span<const KeyBinding> bindings) {
+  if (!ImGui::BeginTable(table, 2, ImGuiTableFlags_SizingFixedFit)) return;
+  for (const KeyBinding& binding : bindings) {
+    ImGui::TableNextColumn();
+    ImGui::TextUnformatted(binding.key);
+    ImGui::TableNextColumn();
+    ImGui::TextUnformatted(binding.does);
+  }
+  ImGui::EndTable();
+}
+
 void drawKeys(ViewState& view, const PictureSize& size) {
   if (!view.shows_help) return;
   ImGui::SetNextWindowPos({0.5f * static_cast<float>(size.width), 0.5f * static_cast<float>(size.height)},
                           ImGuiCond_Appearing, {0.5f, 0.5f});
   ImGui::Begin("Keys and mouse", &view.shows_help,
                ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings);
-  if (ImGui::BeginTable("keys", 2)) {
-    for (const std::span<const KeyBinding> list : {keyBindings(), mouseBindings()})
-      for (const KeyBinding& binding : list) {
-        ImGui::TableNextColumn();
-        ImGui::TextUnformatted(binding.key);
-        ImGui::TableNextColumn();
-        ImGui::TextUnformatted(binding.does);
-      }
+  // Beside each other, or the list is higher than a window of 720 pixels.
+  if (ImGui::BeginTable("lists", 2, ImGuiTableFlags_SizingFixedFit)) {
+    const std::span<const KeyBinding> keys = keyBindings();
+    const std::size_t half = (keys.size() + mouseBindings().size() + 1) / 2;
+    ImGui::TableNextColumn();
+    drawBindings("first", keys.first(half));
+    ImGui::TableNextColumn();
+    drawBindings("second", keys.subspan(half));
+    drawBindings("mouse", mouseBindings());
     ImGui::EndTable();
   }
   ImGui::End();
