@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <span>
+#include <vector>
 
 #include "vps_device/device_kinds.h"
 #include "vps_viewer/verdict_words.h"
@@ -260,15 +262,11 @@ void drawTimeAxis(Session& session, const PictureSize& size, float side_px, floa
   ImGui::End();
 }
 
-void drawBindings(const char* table, std::span<const KeyBinding> bindings) {
-  if (!ImGui::BeginTable(table, 2, ImGuiTableFlags_SizingFixedFit)) return;
-  for (const KeyBinding& binding : bindings) {
-    ImGui::TableNextColumn();
-    ImGui::TextUnformatted(binding.key);
-    ImGui::TableNextColumn();
-    ImGui::TextUnformatted(binding.does);
-  }
-  ImGui::EndTable();
+void drawBinding(const KeyBinding* binding) {
+  ImGui::TableNextColumn();
+  if (binding != nullptr) ImGui::TextUnformatted(binding->key);
+  ImGui::TableNextColumn();
+  if (binding != nullptr) ImGui::TextUnformatted(binding->does);
 }
 
 void drawKeys(ViewState& view, const PictureSize& size) {
@@ -277,15 +275,15 @@ void drawKeys(ViewState& view, const PictureSize& size) {
                           ImGuiCond_Appearing, {0.5f, 0.5f});
   ImGui::Begin("Keys and mouse", &view.shows_help,
                ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings);
-  // Beside each other, or the list is higher than a window of 720 pixels.
-  if (ImGui::BeginTable("lists", 2, ImGuiTableFlags_SizingFixedFit)) {
-    const std::span<const KeyBinding> keys = keyBindings();
-    const std::size_t half = (keys.size() + mouseBindings().size() + 1) / 2;
-    ImGui::TableNextColumn();
-    drawBindings("first", keys.first(half));
-    ImGui::TableNextColumn();
-    drawBindings("second", keys.subspan(half));
-    drawBindings("mouse", mouseBindings());
+  std::vector<const KeyBinding*> all;
+  for (const std::span<const KeyBinding> list : {keyBindings(), mouseBindings()})
+    for (const KeyBinding& binding : list) all.push_back(&binding);
+  const std::size_t rows = (all.size() + 1) / 2;  // in one column it is higher than a window of 720 pixels
+  if (ImGui::BeginTable("keys", 4, ImGuiTableFlags_SizingFixedFit)) {
+    for (std::size_t i = 0; i < rows; ++i) {
+      drawBinding(all[i]);
+      drawBinding(i + rows < all.size() ? all[i + rows] : nullptr);
+    }
     ImGui::EndTable();
   }
   ImGui::End();
