@@ -12,6 +12,7 @@
 #include <fstream>
 #include <numbers>
 #include <numeric>
+#include <optional>
 #include <sstream>
 #include <thread>
 
@@ -361,6 +362,54 @@ TEST(LiveSound, ASoundFromTheRightIsLouderAtTheRightEar) {
   EXPECT_GT(ahead[0], 0);
   EXPECT_LT(std::abs(std::log(ahead[0] / ahead[1])), std::log(1.5));
 }
+
+#ifdef __linux__
+/// An environment variable, which is as before once this is gone.
+class Variable {
+ public:
+  explicit Variable(const char* name) : name_(name) {
+    if (const char* value = std::getenv(name)) before_ = value;
+  }
+  ~Variable() { set(before_); }
+  Variable(const Variable&) = delete;
+  Variable& operator=(const Variable&) = delete;
+  void set(const std::optional<std::string>& value) {
+    if (value)
+      setenv(name_, value->c_str(), 1);
+    else
+      unsetenv(name_);
+  }
+
+ private:
+  const char* name_;
+  std::optional<std::string> before_;
+};
+
+TEST(ShortPeriods, AreAskedForUnlessTheUserHasSettingsForPeriods) {
+  const test::TemporaryFolder folder;
+  Variable settings("ALSOFT_CONF"), home("HOME"), config("XDG_CONFIG_HOME");
+  home.set(folder.path().string());
+  config.set({});
+  settings.set({});
+  std::ofstream(folder.path() / ".alsoftrc") << "[general]\n#period_size = 512\nhrtf = true\n";
+  askForShortPeriods();
+  const char* const file = std::getenv("ALSOFT_CONF");
+  ASSERT_NE(file, nullptr);
+  std::ostringstream words;
+  words << std::ifstream(file).rdbuf();
+  EXPECT_NE(words.str().find("period_size = " + std::to_string(kCardPeriod) + "\n"), std::string::npos);
+  EXPECT_NE(words.str().find("periods = " + std::to_string(kCardPeriods) + "\n"), std::string::npos);
+
+  settings.set("mine.conf");
+  askForShortPeriods();
+  EXPECT_STREQ(std::getenv("ALSOFT_CONF"), "mine.conf");
+
+  settings.set({});
+  std::ofstream(folder.path() / ".alsoftrc") << "[general]\n  period_size = 512\n";
+  askForShortPeriods();
+  EXPECT_EQ(std::getenv("ALSOFT_CONF"), nullptr);
+}
+#endif
 
 TEST(LiveSound, WhatALateThreadBringsAtOnceDoesNotDelayWhatFollows) {
   std::atomic<double> clicked_s{0};

@@ -8,7 +8,7 @@
 #include <system_error>
 #endif
 
-#include "openvdb/level_set_module.h"
+#include "vdb_module/level_set_module.h"
 #include "vps/load_error.h"
 
 namespace vps::viewer::inline v0 {
