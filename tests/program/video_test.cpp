@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Films, and pictures for two eyes and for displays, as the program writes them.
+#include <algorithm>
+
 #include "program.h"
+#include "vps_viewer/image.h"
 
 namespace vps {
 namespace {
@@ -48,6 +51,24 @@ TEST_F(Program, AFilmHasTheSoundOfTheRunThatWasRecorded) {
   }
   expectRefused("video run.mcap -o slow.mp4 --speed 0.5 --sound", "--speed");
   expectRefused("video -o odd.mp4 --sound run.mcap run.mcap", "is no WAV file");
+}
+
+TEST_F(Program, AFilmThatFollowsThePartBeginsWithItInTheMiddle) {
+  const std::string scene = VPS_SOURCE_DIR "/scenes/peg_in_hole/scene.toml";
+  ASSERT_EQ(run("assemble " + scene + " --out a --no-pictures --record run.mcap").status, 0);
+  run("video run.mcap -o run.mp4 --width 320 --height 240 --rate 1 --camera follow");
+  const viewer::Image first = viewer::loadPng((folder_ / "run_frames/000001.png").string());
+  ASSERT_EQ(first.height, 240);
+  int top = first.height, bottom = 0;
+  for (int y = 24; y < 216; ++y)  // between title and legend
+    for (int x = 0; x < first.width; ++x)
+      if (first.at(x, y)[2] > first.at(x, y)[0] + 100) {  // the blue of the part in hand
+        top = std::min(top, y);
+        bottom = std::max(bottom, y);
+      }
+  ASSERT_LT(top, bottom);
+  // As seen from above, by a thirtieth of the picture at most.
+  EXPECT_NEAR(0.5 * (top + bottom), 120, 8);
 }
 
 TEST_F(Program, AFilmOfWhatIsNoRecordingIsRefused) {

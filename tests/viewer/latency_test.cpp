@@ -18,7 +18,7 @@
 namespace vps::viewer {
 namespace {
 
-constexpr double kTick_s = 1e-3, kCard_s = 128 / 48000.0;  // a period of the card
+constexpr double kTick_s = 1e-3, kCard_s = kCardPeriod / 48000.0;  // a period of the card
 
 /// Ticks, steps and periods of two seconds, with a contact that is read at `read_s`, found 2 ms later, felt
 /// after 3 ms, given to the card after 4, heard after 11 and seen after 20.
@@ -35,7 +35,7 @@ LatencyLog madeUp(double read_s) {
   for (double time_s = 0; time_s < 2; time_s += kCard_s) {
     LatencyLog::Heard& heard = log.heard.emplace_back();
     heard.time_s = time_s;
-    for (int i = 0; i < 256; ++i)
+    for (int i = 0; i < kCardPeriod; ++i)
       heard.samples.push_back(time_s + i / log.rate_hz >= read_s + 0.011 ? -0.1F : 1e-4F);
   }
   for (double time_s = 0; time_s < 2; time_s += 0.01)
@@ -55,6 +55,22 @@ TEST(ContactTimes, EachOfTheThreeIsFoundWhereItBegins) {
   EXPECT_NEAR(found[0].picture_s, 20e-3, 1e-9);
   EXPECT_NEAR(found[0].apart_s(true), 16.9e-3, 1e-9);
   EXPECT_TRUE(findContacts(madeUp(1), 1.5).empty()) << "it began before";
+}
+
+TEST(ContactTimes, GapsOfTheSoundAreCountedFromWhereTapsCount) {
+  LatencyLog log = madeUp(1);
+  EXPECT_EQ(lateSamples(log, 0.5) + lateMixes(log, 0.5), 0U);
+  for (LatencyLog::Heard& heard : log.heard) {
+    if (heard.time_s > 0.25) heard.time_s += 1e-3;  // mixed too late, before and after
+    if (heard.time_s > 1.5) heard.time_s += 1e-3;
+  }
+  EXPECT_EQ(lateMixes(log, 0.5), 1U);
+  EXPECT_EQ(lateMixes(log, 0), 2U);
+  for (LatencyLog::Written& written : log.written)
+    written.gaps = written.time_s < 0.25 ? 1 : written.time_s < 1.2 ? 2 : 4;
+  EXPECT_EQ(lateSamples(log, 0.5), 2U);
+  EXPECT_EQ(lateSamples(log, 0), 4U) << "from the start, when there was none";
+  EXPECT_EQ(lateSamples({}, 0.5) + lateMixes({}, 0.5), 0U);
 }
 
 TEST(ContactTimes, WhatIsNotSeenIsNotGood) {

@@ -163,6 +163,29 @@ TEST(RendererTest, ASectionCutsThePartInHandOnlyWithCutsHand) {
   EXPECT_LT(blueness(renderer.render(snapshot, camera, options)), 20);
 }
 
+TEST(RendererTest, ADarkBackgroundChangesNoPixelOfAPart) {
+  const Mesh box = makeBox(Vec3(0.1, 0.1, 0.1));
+  Renderer renderer({{&box}});
+  scenes::Snapshot shot;
+  shot.bodies = {{0, Pose(), scenes::BodyRole::Mounted}};
+  DrawOptions options;
+  options.width = 320;
+  options.height = 240;
+  options.show_ground = options.show_legend = false;
+  const Camera camera = frameScene({Vec3(-0.05, -0.05, -0.05), Vec3(0.05, 0.05, 0.05)}, Vec3(0, -1, 0));
+  const Image light = renderer.render(shot, camera, options);
+  options.is_dark = true;
+  const Image dark = renderer.render(shot, camera, options);
+  // Its face is the middle half of the picture at least.
+  for (const int x : {120, 160, 200})
+    for (int k = 0; k < 3; ++k) EXPECT_EQ(dark.at(x, 120)[k], light.at(x, 120)[k]);
+  for (const int y : {2, 120, 237})
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_GT(light.at(3, y)[k], 200);
+      EXPECT_LT(dark.at(3, y)[k], 80);  // as dark as the panels, whose text is white
+    }
+}
+
 TEST(RendererTest, AnEmptySnapshotIsABackgroundAndInvalidBodiesAreLeftOut) {
   const Mesh box = makeBox(Vec3(0.1, 0.1, 0.1));
   Renderer renderer({{&box, {0.5f, 0.5f, 0.5f}}});

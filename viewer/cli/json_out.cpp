@@ -202,6 +202,8 @@ std::string toJson(const LatencyResult& result) {
                  {"is_good", result.isGood()},
                  {"apart", percentiles(result.apart_s())},
                  {"since_read", stages},
+                 {"late_samples", result.late_samples},
+                 {"late_mixes", result.late_mixes},
                  {"picture_s", result.picture_wall_s},
                  {"drawn_by", result.drawn_by}}}});
 }

@@ -35,7 +35,11 @@ void print(const LatencyResult& result) {
       "apart: %s (bound: 99 of 100 within %.0f ms). Not in it: what a display takes to show a picture.\n",
       result.contacts.size(), result.part.c_str(), result.width, result.height, result.drawn_by.c_str(),
       1e3 * result.picture_wall_s,
-      result.hasSound() ? "a card in the program, two periods of 128 samples" : result.silence.c_str(),
+      result.hasSound() ? ("a card in the program, three periods of 64 samples; samples late " +
+                           std::to_string(result.late_samples) + " times, the mixer " +
+                           std::to_string(result.late_mixes) + " times")
+                              .c_str()
+                        : result.silence.c_str(),
       result.isGood() ? "good" : "too far, or not all seen", 1e3 * kApart_s);
 }
 

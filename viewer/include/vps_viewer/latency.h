@@ -55,8 +55,10 @@ VPS_VIEWER_API const std::vector<LatencyStage>& latencyStages();
 
 struct LatencyResult {
   std::string scene, part, drawn_by;
-  std::string silence;        ///< why there was no sound; empty: there was
-  double picture_wall_s = 0;  ///< median time that a picture took
+  std::string silence;           ///< why there was no sound; empty: there was
+  std::size_t late_samples = 0;  ///< times that the card had nothing to play, since samples came too late
+  std::size_t late_mixes = 0;    ///< and since they were mixed too late
+  double picture_wall_s = 0;     ///< median time that a picture took
   int width = 0, height = 0;
   std::vector<ContactTimes> contacts;
 

@@ -64,6 +64,7 @@ struct DrawOptions {
   bool show_edges = true;
   bool show_ground = true;
   bool show_hidden_marks = true;  ///< hidden contacts and forces are faintly visible through the parts
+  bool is_dark = false;           ///< the background
   bool highlight_hand = true;     ///< the part in hand is blue instead of its own colour
   bool show_legend = true;
   /// A square in the lower left corner, white while something touches and black otherwise: for a light sensor

@@ -84,7 +84,10 @@ void renderBehind(const Picture& picture) {
   glBindFramebuffer(GL_FRAMEBUFFER, frame.behind_target.id());
   glViewport(0, 0, frame.width, frame.height);
   glDisable(GL_DEPTH_TEST);
-  picture.gl.drawFullScreen(picture.gl.programs.background);
+  const gl::Program& background = picture.gl.programs.background;
+  background.use();
+  background.set("darkness", picture.options.is_dark ? 1.0f : 0.0f);
+  picture.gl.drawFullScreen(background);
   if (picture.options.show_ground && !picture.options.is_draft) drawFloorShadow(picture);
   glEnable(GL_DEPTH_TEST);
 }

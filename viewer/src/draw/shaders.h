@@ -260,8 +260,13 @@ void main() {
 inline constexpr const char* kBackgroundFragment = R"(
 in vec2 uv;
 out vec4 result;
+uniform float darkness;
 void main() {
   vec3 low = vec3(0.70, 0.715, 0.735), high = vec3(0.93, 0.94, 0.955);
+  if (darkness > 0.5) {
+    low = vec3(0.020, 0.023, 0.027);
+    high = vec3(0.060, 0.066, 0.075);
+  }
   vec3 c = mix(low, high, smoothstep(0.0, 0.85, uv.y));
   result = vec4(c, 1);
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 namespace vps::viewer::inline v0 {
@@ -114,6 +115,23 @@ double percentile(std::vector<double> values, double share) {
   std::sort(values.begin(), values.end());
   const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size())));
   return values[std::clamp<std::size_t>(rank, 1, values.size()) - 1];
+}
+
+std::size_t lateSamples(const LatencyLog& log, double from_s) {
+  if (log.written.empty()) return 0;
+  const auto at = firstAt(log.written, from_s, [](const LatencyLog::Written& one) { return one.time_s; });
+  return log.written.back().gaps - (at != log.written.begin() ? std::prev(at)->gaps : 0);
+}
+
+std::size_t lateMixes(const LatencyLog& log, double from_s) {
+  std::size_t gaps = 0;
+  constexpr double kRounding_s = 1e-6;
+  for (std::size_t i = 1; i < log.heard.size(); ++i) {
+    const LatencyLog::Heard& before = log.heard[i - 1];
+    const double end_s = before.time_s + static_cast<double>(before.samples.size()) / log.rate_hz;
+    if (before.time_s >= from_s && log.heard[i].time_s > end_s + kRounding_s) ++gaps;
+  }
+  return gaps;
 }
 
 std::vector<ContactTimes> findContacts(const LatencyLog& log, double from_s) {

@@ -20,6 +20,7 @@ struct LatencyLog {
   struct Written {  ///< to the sound card
     double time_s = 0;
     float peak = 0;
+    std::size_t gaps = 0;  ///< SoundOutput::gaps() so far
   };
   struct Heard {        ///< a period of the sound card
     double time_s = 0;  ///< at which its first sample is played
@@ -40,5 +41,10 @@ struct LatencyLog {
 /// The contacts that begin after from_s, each after at least 60 ms without one, so that the step of force,
 /// the click and the flash are its own.
 VPS_VIEWER_API std::vector<ContactTimes> findContacts(const LatencyLog& log, double from_s);
+
+/// Times after from_s that the card had nothing to play, since samples came too late.
+VPS_VIEWER_API std::size_t lateSamples(const LatencyLog& log, double from_s);
+/// And since they were mixed too late.
+VPS_VIEWER_API std::size_t lateMixes(const LatencyLog& log, double from_s);
 
 }  // namespace vps::viewer::inline v0

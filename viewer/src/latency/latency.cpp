@@ -39,6 +39,7 @@ class StampedOutput final : public SoundOutput {
     written_.push_back({device::monotonicSeconds(), peak});
     has_begun_ = true;
     inner_->write(parts, beeps, to_L);
+    written_.back().gaps = inner_->gaps();
   }
   [[nodiscard]] bool isThere() const override { return inner_->isThere(); }
 
@@ -215,6 +216,8 @@ LatencyResult measureLatency(scenes::Scene scene, const LatencySettings& setting
   }
   log.ticks = handle->ticks();
   result.contacts = findContacts(log, from_s);
+  result.late_samples = lateSamples(log, from_s);
+  result.late_mixes = lateMixes(log, from_s);
   result.contacts.resize(std::min(result.contacts.size(), settings.taps));
   std::vector<double> wall_s;
   for (const LatencyLog::Picture& picture : log.pictures) wall_s.push_back(picture.done_s - picture.begun_s);

@@ -23,6 +23,8 @@ class SoundOutput {
   virtual void write(std::span<const float> parts, std::span<const float> beeps, const Vec3& to_L) = 0;
   /// False once the sound card is gone.
   [[nodiscard]] virtual bool isThere() const = 0;
+  /// Times so far that samples came too late, so that there was nothing to play.
+  [[nodiscard]] virtual std::size_t gaps() const { return 0; }
 };
 
 /// The middle of the snapshot's contacts, by their forces; none where nothing touches.
@@ -32,11 +34,20 @@ VPS_VIEWER_API std::optional<Vec3> soundPlace(const scenes::Snapshot& shot);
 /// `why` says so in a line.
 VPS_VIEWER_API std::unique_ptr<SoundOutput> openSoundOutput(int rate_hz, std::string& why);
 
+/// Asks OpenAL for cards with short periods, by settings of this process, where the user has none for
+/// periods. Before the first openSoundOutput() and before other threads are there, since it sets an
+/// environment variable.
+VPS_VIEWER_API void askForShortPeriods();
+
+/// What a card is asked for: samples of a period, and periods. While one is mixed, two are still to be
+/// played, so that the mixer may be as late as with two periods of 128 samples, and takes less at once.
+inline constexpr int kCardPeriod = 64, kCardPeriods = 3;
+
 /// A period of a sound card in the program, mono, and the time at which its first sample is played, by
 /// device::monotonicSeconds().
 using HeardPeriod = std::function<void(std::span<const float> samples, double time_s)>;
-/// A sound card that exists only in the program, mixed by OpenAL as a real one: two periods of 128 samples,
-/// by the clock. Null in a build without OpenAL, and `why` says so.
+/// A sound card that exists only in the program, mixed by OpenAL as a real one: kCardPeriods of kCardPeriod
+/// samples, by the clock. Null in a build without OpenAL, and `why` says so.
 /// @param heard  called on the card's thread
 VPS_VIEWER_API std::unique_ptr<SoundOutput> openSoundLoopback(int rate_hz, HeardPeriod heard,
                                                               std::string& why);

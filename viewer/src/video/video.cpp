@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 #include "report/run_program.h"
 #include "vps/load_error.h"
@@ -58,7 +59,9 @@ class FilmCamera {
     for (const scenes::BodySnapshot& body : shot.bodies)
       if (body.role == scenes::BodyRole::InHand)
         wanted_W_ = body.X_WP * bounds(*drawn_[body.part].mesh).center();
-    const double keep = std::exp(-1 / (kLag_s * settings_.frames_per_s));
+    // A film that begins with a part in hand begins with that in the middle.
+    const double keep =
+        std::exchange(has_begun_, true) ? std::exp(-1 / (kLag_s * settings_.frames_per_s)) : 0;
     target_W_ = keep * target_W_ + (1 - keep) * wanted_W_;
     Camera camera = start_;
     camera.target_W = target_W_;
@@ -73,6 +76,7 @@ class FilmCamera {
   const VideoSettings& settings_;
   Vec3 target_W_;
   Vec3 wanted_W_;  ///< the middle of the part that was in hand last
+  bool has_begun_ = false;
 };
 
 /// Of one film: from the display's viewer, or from the film's camera.

@@ -92,7 +92,7 @@ std::span<const KeyBinding> keyBindings() {
       KeyBinding{Action::Target, "T", "shows or hides the target"},
       KeyBinding{Action::Edges, "L", "shows or hides edge lines"},
       KeyBinding{Action::Ground, "G", "shows or hides the shadow on the floor"},
-      KeyBinding{Action::Theme, "D", "dark or light panels"},
+      KeyBinding{Action::Theme, "D", "dark or light"},
       KeyBinding{Action::PlayPause, "Space", "plays or pauses"},
       KeyBinding{Action::Back, "Left", "20 ms back"},
       KeyBinding{Action::Forward, "Right", "20 ms ahead"},
@@ -159,6 +159,7 @@ void apply(Action action, ViewState& state, const Timeline& line, const Box& box
       break;
     case Action::Explode:
       state.explode = state.explode > 0 ? 0 : 1;
+      state.wants_fit = true;  // once the parts are where they are shown then
       break;
     case Action::Section:
       toggleSection(state, box_W);
@@ -180,6 +181,7 @@ void apply(Action action, ViewState& state, const Timeline& line, const Box& box
       break;
     case Action::Theme:
       state.is_dark = !state.is_dark;
+      state.draw.is_dark = state.is_dark;
       break;
     case Action::PlayPause:
       playOrPause(state, line);

@@ -85,7 +85,7 @@ struct ViewState {
   // What the window carries out and clears.
   bool wants_close = false, wants_picture_file = false, wants_run = false, wants_one_step = false,
        wants_mouse = false, wants_undo = false, wants_redo = false, wants_free = false, wants_take = false,
-       wants_point = false;
+       wants_point = false, wants_fit = false;
 };
 
 /// The mode that the key switches to from that one: those that one picture of a window can show.

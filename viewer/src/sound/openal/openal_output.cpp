@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <deque>
 #include <filesystem>
 #include <memory>
 #include <thread>
@@ -16,36 +17,31 @@
 #include <vector>
 
 #include "sound/live_sound.h"
+#include "sound/queue_level.h"
 #include "vps_device/metronome.h"
+#include "vps_device/periodic_thread.h"
 
 namespace vps::viewer::inline v0 {
 namespace {
 
-constexpr double kBuffer_s = 1.25e-3;
-// By which a thread may be late. Sound is heard later by as long, so it begins with little and grows with
-// each time that it was not enough.
-constexpr double kLate_s = 1.25e-3, kMostLate_s = 10e-3;
-constexpr double kPause_s = 0.05;    // assumed: what comes later than that was not late, but paused
-constexpr int kCardPeriod = 128;     // samples, asked of a card. assumed: a desktop's is as short as that
+constexpr int kMixerPriority = 1;    // as OpenAL's own thread has with askForShortPeriods()
 constexpr double kSlowCard_s = 0.1;  // no period is longer; what a driver says beyond is not believed
 
 /// A source that plays a queue of short buffers. The context is current in all its functions.
 class Queue {
  public:
   /// @param period_s  of the card, which takes as much at once
-  Queue(int rate_hz, double period_s)
-      : rate_hz_(rate_hz), period_s_(period_s), buffers_(startFor(kMostLate_s) + 1) {
+  Queue(int rate_hz, double period_s) : rate_hz_(rate_hz), level_(rate_hz, period_s) {
     alGenSources(1, &source_);
-    alGenBuffers(static_cast<ALsizei>(buffers_.size()), buffers_.data());
-    free_.assign(buffers_.begin(), buffers_.end());
     // Directions from the listener; the loudness is in the samples.
     alSourcei(source_, AL_SOURCE_RELATIVE, AL_TRUE);
     alSourcef(source_, AL_ROLLOFF_FACTOR, 0);
   }
   ~Queue() {
     alSourceStop(source_);
-    alDeleteSources(1, &source_);
-    alDeleteBuffers(static_cast<ALsizei>(buffers_.size()), buffers_.data());
+    alDeleteSources(1, &source_);  // and with it what is queued on it
+    for (const Waiting& waiting : waiting_) free_.push_back(waiting.buffer);
+    alDeleteBuffers(static_cast<ALsizei>(free_.size()), free_.data());
   }
   Queue(const Queue&) = delete;
   Queue& operator=(const Queue&) = delete;
@@ -55,63 +51,64 @@ class Queue {
     alSource3f(source_, AL_POSITION, at.x(), at.y(), at.z());
   }
   void write(std::span<const float> samples) {
-    for (const float x : samples) pending_.push_back(static_cast<std::int16_t>(std::lround(32767 * x)));
-    const auto size = static_cast<std::size_t>(kBuffer_s * rate_hz_);
+    if (samples.empty()) return;
     ALint state = 0;
     alGetSourcei(source_, AL_SOURCE_STATE, &state);
-    reclaim();
-    // A source that stopped, since nothing came in time, begins again with a few buffers, or it would stop at
-    // once; and what is queued on it before counts as played.
-    const double now_s = device::monotonicSeconds();
-    if (state == AL_STOPPED && was_playing_ && now_s - written_s_ < kPause_s)
-      late_s_ = std::min(late_s_ + kBuffer_s, kMostLate_s);
-    was_playing_ = state == AL_PLAYING;
-    written_s_ = now_s;
-    const std::size_t at_start = startFor(late_s_);
-    if (state != AL_PLAYING && pending_.size() < at_start * size) return;
-    std::size_t at = 0;
-    const auto queued = [this] { return buffers_.size() - free_.size(); };
-    for (; at + size <= pending_.size() && queued() < at_start + 1; at += size) {
-      const ALuint buffer = free_.back();
-      free_.pop_back();
-      alBufferData(buffer, AL_FORMAT_MONO16, &pending_[at], static_cast<ALsizei>(size * sizeof(std::int16_t)),
-                   rate_hz_);
-      alSourceQueueBuffers(source_, 1, &buffer);
-    }
-    pending_.erase(pending_.begin(), pending_.begin() + static_cast<std::ptrdiff_t>(at));
-    // What is late is dropped, so that sound does not lag behind the picture.
-    if (pending_.size() > size)
-      pending_.erase(pending_.begin(), pending_.end() - static_cast<std::ptrdiff_t>(size));
-    if (state == AL_PLAYING) return;
-    alSourcePlay(source_);
-    was_playing_ = true;
+    const bool is_playing = state == AL_PLAYING;
+    const QueuePlan plan =
+        level_.plan(is_playing, reclaim(), samples.size(), peakOf(samples), device::monotonicSeconds());
+    if (plan.silence > 0) append(std::vector<float>(plan.silence));
+    append(shortened(samples, plan.dropped));
+    if (!is_playing) alSourcePlay(source_);
   }
+  [[nodiscard]] std::size_t gaps() const { return level_.gaps(); }
 
  private:
-  void reclaim() {
-    ALint done = 0;
-    alGetSourcei(source_, AL_BUFFERS_PROCESSED, &done);
-    for (; done > 0; --done) {
-      ALuint buffer = 0;
-      alSourceUnqueueBuffers(source_, 1, &buffer);
-      free_.push_back(buffer);
-    }
-  }
+  struct Waiting {
+    ALuint buffer = 0;
+    std::size_t count = 0;
+  };
 
-  /// Buffers that are queued before it plays.
-  [[nodiscard]] std::size_t startFor(double late_s) const {
-    return static_cast<std::size_t>(std::ceil((period_s_ + late_s) / kBuffer_s));
+  static float peakOf(std::span<const float> samples) {
+    float peak = 0;
+    for (const float x : samples) peak = std::max(peak, std::abs(x));
+    return peak;
+  }
+  /// Takes back what was played.
+  /// @return samples that the card has not taken yet
+  std::size_t reclaim() {
+    ALint done = 0, at = 0;
+    alGetSourcei(source_, AL_BUFFERS_PROCESSED, &done);
+    for (; done > 0 && !waiting_.empty(); --done) {
+      alSourceUnqueueBuffers(source_, 1, &waiting_.front().buffer);
+      free_.push_back(waiting_.front().buffer);
+      waiting_.pop_front();
+    }
+    std::size_t count = 0;
+    for (const Waiting& waiting : waiting_) count += waiting.count;
+    alGetSourcei(source_, AL_SAMPLE_OFFSET, &at);
+    return count - std::min(count, static_cast<std::size_t>(std::max(at, 0)));
+  }
+  void append(std::span<const float> samples) {
+    if (samples.empty()) return;
+    if (free_.empty()) alGenBuffers(1, &free_.emplace_back());
+    const ALuint buffer = free_.back();
+    free_.pop_back();
+    pcm_.resize(samples.size());
+    std::ranges::transform(samples, pcm_.begin(),
+                           [](float x) { return static_cast<std::int16_t>(std::lround(32767 * x)); });
+    alBufferData(buffer, AL_FORMAT_MONO16, pcm_.data(),
+                 static_cast<ALsizei>(pcm_.size() * sizeof(std::int16_t)), rate_hz_);
+    alSourceQueueBuffers(source_, 1, &buffer);
+    waiting_.push_back({buffer, samples.size()});
   }
 
   int rate_hz_;
-  double period_s_, late_s_ = kLate_s, written_s_ = 0;
-  bool was_playing_ = false;  ///< at the last write
+  QueueLevel level_;
   ALuint source_ = 0;
-  // One more than at the start: what waits is heard later by as long, and what a late thread brings at once
-  // would wait forever, since samples come as fast as they are played. What does not fit is dropped.
-  std::vector<ALuint> buffers_;
+  std::deque<Waiting> waiting_;
   std::vector<ALuint> free_;
-  std::vector<std::int16_t> pending_;
+  std::vector<std::int16_t> pcm_;
 };
 
 class OpenAlOutput final : public SoundOutput {
@@ -144,6 +141,7 @@ class OpenAlOutput final : public SoundOutput {
     alcGetIntegerv(device_, ALC_CONNECTED, 1, &is_connected);
     return is_connected != 0;
   }
+  [[nodiscard]] std::size_t gaps() const override { return parts_->gaps(); }
 
  private:
   ALCdevice* device_;
@@ -170,16 +168,18 @@ class LoopbackCard {
  private:
   void play() {
     const double period_s = static_cast<double>(kCardPeriod) / rate_hz_;
+    const double ahead_s = (kCardPeriods - 1) * period_s;  // still to be played, of what was mixed before
     std::vector<float> stereo(std::size_t{2} * kCardPeriod), mono(kCardPeriod);
+    device::requestRealTime(kMixerPriority, false);  // refused: as it is
     double due_s = device::monotonicSeconds();
     while (!is_ending_) {
       device::monotonicClock().sleepUntil(std::llround(1e9 * due_s));
-      // A card whose period is not mixed in time stops and begins again.
-      due_s = std::max(due_s, device::monotonicSeconds() - period_s);
+      // A card that has nothing left to play stops and begins again.
+      due_s = std::max(due_s, device::monotonicSeconds() - ahead_s);
       render_(device_, stereo.data(), kCardPeriod);
       for (std::size_t i = 0; i < mono.size(); ++i) mono[i] = 0.5F * (stereo[2 * i] + stereo[2 * i + 1]);
+      heard_(mono, due_s + ahead_s);
       due_s += period_s;
-      heard_(mono, due_s);  // while this period is mixed, the one before is played
     }
   }
 
@@ -201,6 +201,7 @@ class LoopbackOutput final : public SoundOutput {
     output_.write(parts, beeps, to_L);
   }
   [[nodiscard]] bool isThere() const override { return true; }
+  [[nodiscard]] std::size_t gaps() const override { return output_.gaps(); }
 
  private:
   OpenAlOutput output_;
@@ -245,8 +246,7 @@ std::unique_ptr<SoundOutput> openSoundOutput(int rate_hz, std::string& why) {
     why = "no sound card answers, so the run is silent; vps assemble --sound writes a file";
     return nullptr;
   }
-  // Without a wish a card is asked for periods of 20 ms.
-  ALCcontext* context = contextOf(device, {ALC_FREQUENCY, rate_hz, ALC_REFRESH, rate_hz / kCardPeriod});
+  ALCcontext* context = contextOf(device, {ALC_FREQUENCY, rate_hz});
   if (context == nullptr) {
     why = "the sound card refuses, so the run is silent; vps assemble --sound writes a file";
     return nullptr;

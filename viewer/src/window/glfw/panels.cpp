@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <span>
+#include <vector>
 
 #include "vps_device/device_kinds.h"
 #include "vps_viewer/verdict_words.h"
@@ -62,6 +64,7 @@ void drawView(Session& session) {
   press("fit", Action::Fit);
   auto explode = static_cast<float>(view.explode);
   if (ImGui::SliderFloat("exploded", &explode, 0, 1.5f)) view.explode = explode;
+  if (ImGui::IsItemDeactivatedAfterEdit()) view.wants_fit = true;
   bool has_cut = view.draw.cut.has_value();
   if (ImGui::Checkbox("section", &has_cut))
     apply(Action::Section, view, session.shownLine(), session.box_W());
@@ -77,7 +80,7 @@ void drawView(Session& session) {
   ImGui::SameLine();
   ImGui::Checkbox("floor", &view.draw.show_ground);
   ImGui::SameLine();
-  ImGui::Checkbox("dark", &view.is_dark);
+  if (ImGui::Checkbox("dark", &view.is_dark)) view.draw.is_dark = view.is_dark;
   if (!ImGui::BeginCombo("stereo", toText(view.stereo))) return;
   for (const StereoMode mode : stereoModes())
     if (ImGui::Selectable(toText(mode), view.stereo == mode)) view.stereo = mode;
@@ -259,20 +262,28 @@ void drawTimeAxis(Session& session, const PictureSize& size, float side_px, floa
   ImGui::End();
 }
 
+void drawBinding(const KeyBinding* binding) {
+  ImGui::TableNextColumn();
+  if (binding != nullptr) ImGui::TextUnformatted(binding->key);
+  ImGui::TableNextColumn();
+  if (binding != nullptr) ImGui::TextUnformatted(binding->does);
+}
+
 void drawKeys(ViewState& view, const PictureSize& size) {
   if (!view.shows_help) return;
   ImGui::SetNextWindowPos({0.5f * static_cast<float>(size.width), 0.5f * static_cast<float>(size.height)},
                           ImGuiCond_Appearing, {0.5f, 0.5f});
   ImGui::Begin("Keys and mouse", &view.shows_help,
                ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings);
-  if (ImGui::BeginTable("keys", 2)) {
-    for (const std::span<const KeyBinding> list : {keyBindings(), mouseBindings()})
-      for (const KeyBinding& binding : list) {
-        ImGui::TableNextColumn();
-        ImGui::TextUnformatted(binding.key);
-        ImGui::TableNextColumn();
-        ImGui::TextUnformatted(binding.does);
-      }
+  std::vector<const KeyBinding*> all;
+  for (const std::span<const KeyBinding> list : {keyBindings(), mouseBindings()})
+    for (const KeyBinding& binding : list) all.push_back(&binding);
+  const std::size_t rows = (all.size() + 1) / 2;  // in one column it is higher than a window of 720 pixels
+  if (ImGui::BeginTable("keys", 4, ImGuiTableFlags_SizingFixedFit)) {
+    for (std::size_t i = 0; i < rows; ++i) {
+      drawBinding(all[i]);
+      drawBinding(i + rows < all.size() ? all[i + rows] : nullptr);
+    }
     ImGui::EndTable();
   }
   ImGui::End();

@@ -118,6 +118,7 @@ void switchFree(Session& session) {
   session.work.begin(true);
   session.is_at_work = true;
   rest(session);
+  session.view.wants_fit = true;  // the parts lie beside each other
   session.say("free assembly: click on a part, Enter takes it in hand and puts it down");
 }
 

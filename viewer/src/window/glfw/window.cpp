@@ -11,6 +11,7 @@
 #include <thread>
 #include <utility>
 
+#include "sound/live_sound.h"
 #include "vps/load_error.h"
 #include "vps_scenes/replay.h"
 #include "window/exploded.h"
@@ -138,6 +139,8 @@ void addStereoBuffers(PictureRequest& wanted) {
 void askForPicture(Session& session, PictureWorker& worker, const GlfwWindow& window) {
   const double size_m = snapshotBounds(session.drawn, session.shown).size().norm();
   session.placed = exploded(session.scene, session.shown, session.view.explode, size_m);
+  if (std::exchange(session.view.wants_fit, false))
+    session.view.camera = fitted(session.view.camera, session.box_W(), session.view.size);
   const PictureSize size = pictureSize(session.area);
   if (size.width < 16 || size.height < 16) return;
   PictureRequest wanted = {
@@ -250,7 +253,7 @@ void loop(Session& session, GlfwWindow& window) {
   session.view.draw.supersampling = 1;
   // Each point and each cube has edges of its own, which would darken the picture.
   if (!session.options.show.isNone()) session.view.draw.show_edges = false;
-  session.view.is_dark = session.options.is_dark;
+  session.view.is_dark = session.view.draw.is_dark = session.options.is_dark;
   session.view.speed = session.options.speed > 0 ? session.options.speed : 1;
   session.view.wants_run = session.options.runs;
   session.view.stereo = session.options.stereo;
@@ -318,6 +321,7 @@ std::string missingForWindow() {
 }
 
 void viewScene(const scenes::Scene& scene, const WindowOptions& options) {
+  if (options.has_sound) askForShortPeriods();
   Session session(scene, options);
   session.line = sceneTour(scene);
   for (const std::string& warning : scene.warnings) session.say(warning);
@@ -334,6 +338,7 @@ void viewRecording(const device::RecordedRun& run, const WindowOptions& options)
 
 std::optional<scenes::Verdict> viewSession(const WindowOptions& options) {
   requireDisplay();  // before the wait, which may be long
+  if (options.has_sound) askForShortPeriods();
   const auto is_stopped = [&] { return options.stop != nullptr && options.stop->load(); };
   std::unique_ptr<scenes::SessionWatcher> watcher;
   for (bool has_said = false; !is_stopped(); has_said = true) {

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sound/queue_level.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vps::viewer::inline v0 {
+namespace {
+
+// By which a thread may be later than it was of late. It grows with each gap, and goes back by half of what
+// it grew where there was none for a while.
+constexpr double kSpare_s = 1.25e-3, kGrow_s = 1.25e-3, kMostSpare_s = 10e-3, kCalm_s = 3;
+constexpr double kLongPause_s = 0.05;   // assumed: what comes later than that was not late, but paused
+constexpr double kSettle_s = 1;         // a program that begins is late for reasons that do not come back
+constexpr double kHalf_s = 1;           // of the time that is looked back on
+constexpr double kLongBlock_s = 10e-3;  // longer ones were late
+// Less than that is not dropped: of what nobody hears, and of what is heard.
+constexpr double kWorthQuiet_s = 0.25e-3, kWorthLoud_s = 0.5e-3;
+constexpr float kQuiet = 1e-3F;  // of full scale, which is 80 dB: 20 dB, less than a quiet room
+
+}  // namespace
+
+void QueueLevel::Least::turn() {
+  has_before_ = now_ != kNone;
+  before_ = now_;
+  now_ = kNone;
+}
+
+void QueueLevel::Least::lower(std::size_t by) {
+  for (std::size_t* value : {&now_, &before_})
+    if (*value != kNone) *value -= std::min(by, *value);
+}
+
+void QueueLevel::Least::clear() {
+  *this = {};
+}
+
+QueueLevel::QueueLevel(int rate_hz, double period_s)
+    : rate_hz_(rate_hz), period_s_(period_s), spare_s_(kSpare_s) {}
+
+std::size_t QueueLevel::samples(double time_s) const {
+  return static_cast<std::size_t>(std::ceil(time_s * rate_hz_ - 1e-6));
+}
+
+void QueueLevel::lookBack(double now_s) {
+  if (now_s - turned_s_ >= kHalf_s) {
+    left_.turn();
+    block_.turn();
+    turned_s_ = now_s;
+  }
+  if (now_s - calm_since_s_ < kCalm_s) return;
+  calm_since_s_ = now_s;
+  spare_s_ = kSpare_s + 0.5 * (spare_s_ - kSpare_s);
+}
+
+QueuePlan QueueLevel::plan(bool is_playing, std::size_t waiting, std::size_t count, float peak,
+                           double now_s) {
+  const double since_s = now_s - written_s_;
+  written_s_ = now_s;
+  block_.add(std::min(count, samples(kLongBlock_s)));
+  if (!is_playing) {
+    if (has_begun_ && since_s < kLongPause_s) {
+      ++gaps_;
+      if (now_s - begun_s_ > kSettle_s) spare_s_ = std::min(spare_s_ + kGrow_s, kMostSpare_s);
+    } else {
+      begun_s_ = now_s;
+    }
+    has_begun_ = true;
+    left_.clear();
+    turned_s_ = calm_since_s_ = now_s;
+  } else {
+    left_.add(waiting);
+    lookBack(now_s);
+  }
+  const std::size_t spare = samples(spare_s_), period = samples(period_s_), block = block_.get();
+  // What is written late is longer by as much, so that what waits afterwards counts.
+  const std::size_t usual = spare + period + block, most = usual + period + block;
+  QueuePlan plan;
+  if (!is_playing) plan.silence = usual - std::min(waiting + count, usual);
+  const std::size_t after = waiting + plan.silence + count;
+  if (after > most && count > 2 * block) {  // after a pause the newest are the ones to be heard
+    plan.dropped = std::min(count, after - usual);
+    return plan;
+  }
+  std::size_t too_many = after > most ? after - most : 0;
+  if (is_playing && left_.isKnown() &&
+      left_.get() >= spare + samples(peak < kQuiet ? kWorthQuiet_s : kWorthLoud_s))
+    too_many = std::max(too_many, left_.get() - spare);
+  plan.dropped = std::min(too_many, peak < kQuiet ? count : count / 2);
+  left_.lower(plan.dropped);
+  return plan;
+}
+
+/// The rest fades into the samples behind it, so that a cut is no click.
+std::vector<float> shortened(std::span<const float> samples, std::size_t dropped) {
+  const std::size_t count = samples.size() - std::min(dropped, samples.size());
+  std::vector<float> rest(samples.begin(), samples.begin() + static_cast<std::ptrdiff_t>(count));
+  if (dropped == 0) return rest;
+  for (std::size_t i = 0; i < count; ++i) {
+    const float share = static_cast<float>(i + 1) / static_cast<float>(count);
+    rest[i] += share * (samples[i + dropped] - rest[i]);
+  }
+  return rest;
+}
+
+}  // namespace vps::viewer::inline v0
