@@ -195,11 +195,12 @@ Solids keyedHub() {
 }
 
 /// A slot that goes in from above and then sideways; the block's head is wider than the slot's mouth.
-Solids elbowSlot() {
+/// @param gap  of the mouth; there is 0.2 mm farther in
+Solids elbowSlot(double gap) {
   TopoDS_Shape base = box(100, 60, 40);
-  base = cut(base, at(box(24.2, 24.2, 40), -25, 0, 12));  // comes in here, from above
-  base = cut(base, at(box(70, 24.2, 16.2), 0, 0, 12));    // goes along here
-  base = cut(base, at(box(70, 12.2, 40), 0, 0, 12));      // the neck's way
+  base = cut(base, at(box(24 + gap, 24 + gap, 40), -25, 0, 12));  // comes in here, from above
+  base = cut(base, at(box(70, 24.2, 16.2), 0, 0, 12));            // goes along here
+  base = cut(base, at(box(70, 12.2, 40), 0, 0, 12));              // the neck's way
   const TopoDS_Shape tee = joined(at(box(24, 24, 16), 20, 0, 12), at(box(12, 12, 40), 20, 0, 20));
   return {base, tee};
 }
@@ -240,7 +241,8 @@ const std::vector<Product>& products() {
       {"posts", "fits", 1, [] { return onPosts(60); }},
       {"posts_300um_off", "blocked", 0, [] { return onPosts(60.3); }},
       {"keyed_hub", "fits", 2, keyedHub},
-      {"elbow_slot", "fits", 1, elbowSlot},
+      {"elbow_slot", "fits", 1, [] { return elbowSlot(0.2); }},
+      {"elbow_slot_tight_mouth", "fits", 1, [] { return elbowSlot(0.06); }},
       {"drawer_3kg", "fits", 1, [] { return drawer(0.2); }},
       {"wheel_on_axle", "fits", 2, onAxle},
   };
