@@ -135,7 +135,7 @@ Solids boxWithLid(double height_inside) {
 /// A dovetail rail that lies along y, with a slide on it; stops at none, one or both ends.
 Solids dovetail(int stops) {
   const double c = 0.1;
-  TopoDS_Shape rail = joined(box(50, 60, 10), prism({{-8, 10}, {8, 10}, {13, 18}, {-13, 18}}, 60));
+  TopoDS_Shape rail = joined(box(50, 70.2, 10), prism({{-8, 10}, {8, 10}, {13, 18}, {-13, 18}}, 70.2));
   const TopoDS_Shape groove = prism(
       {{-8 - c, 9}, {8 + c, 9}, {8 + c, 10}, {13 + 2 * c, 18 + c}, {-13 - 2 * c, 18 + c}, {-8 - c, 10}}, 80);
   const TopoDS_Shape slide = cut(at(box(40, 60, 20), 0, 0, 10), groove);
