@@ -22,6 +22,7 @@ namespace {
 struct PegWorld {
   double mass_kg = 0.2, clear_m = 0.2e-3, bottom_m = -0.02;
   bool has_bottom = true;
+  double channel_m = 0;  ///< at its bottom the hole goes on so far along y, 0.2 mm high, to a wall
   Vec3 weight_W = Vec3(0, 0, -0.2 * 9.81);
   CouplingState part{Pose{}, Twist{}, 0, true};
 
@@ -33,7 +34,13 @@ struct PegWorld {
     const double off_m = std::hypot(part.X_W.p.x(), part.X_W.p.y());
     const bool is_in = part.X_W.p.z() < 0;
     if (!is_in && off_m > clear_m) p.z() = std::max(p.z(), 0.0);
-    if (is_in) p.head<2>() *= std::min(1.0, clear_m / std::max(1e-12, std::hypot(p.x(), p.y())));
+    if (is_in && channel_m > 0 && part.X_W.p.z() < bottom_m + 0.2e-3) {
+      p.x() = std::clamp(p.x(), -clear_m, clear_m);
+      p.y() = std::clamp(p.y(), -clear_m, channel_m);
+      if (part.X_W.p.y() > clear_m) p.z() = std::min(p.z(), bottom_m + 0.2e-3);
+    } else if (is_in) {
+      p.head<2>() *= std::min(1.0, clear_m / std::max(1e-12, std::hypot(p.x(), p.y())));
+    }
     if (has_bottom) p.z() = std::max(p.z(), bottom_m);
     part.V_W.v = (p - part.X_W.p) / dt_s;
     part.V_W.w = proxy.V_W.w;
@@ -58,7 +65,8 @@ Mounting mountPeg(const OperatorHabits& habits, PegWorld world, double timeout_s
   OperatorTask task;
   task.X_WP_start = Pose::translation(Vec3(0.08, 0.03, 0.06));
   task.way_points = {Pose::translation(Vec3(0.02, 0, 0.05)), Pose::translation(Vec3(0, 0, 0.01))};
-  task.X_WP_target = Pose::translation(Vec3(0, 0, world.bottom_m));
+  task.X_WP_target = Pose::translation(Vec3(0, world.channel_m, world.bottom_m));
+  if (world.channel_m > 0) task.way_points.push_back(Pose::translation(Vec3(0, 0, world.bottom_m)));
   task.tolerance_m = 0.25e-3;
   task.timeout_s = timeout_s;
   task.weight_W = world.weight_W;
@@ -151,6 +159,22 @@ TEST(VirtualOperator, FindsTheHoleFromFiveSeedsWithATightMouth) {
         << "seed " << seed;  // the limit, the weight, and the damper
     RecordProperty("seed_" + std::to_string(seed),
                    std::to_string(run.time_s) + " s, retries " + std::to_string(run.retries));
+  }
+}
+
+// The hole is on the way to the target, and not at its end: without a search there the hand goes on along y
+// with the peg still on the mouth. Beside five errors of the aim the mouth is met at most once by luck.
+TEST(VirtualOperator, FindsAHoleOnTheWayAndGoesOnBehindIt) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    OperatorHabits habits;
+    habits.seed = seed;
+    PegWorld world;
+    world.clear_m = 0.05e-3;
+    world.channel_m = 0.03;
+    const Mounting run = mountPeg(habits, world, 30);
+    EXPECT_EQ(run.phase, OperatorPhase::Done) << "seed " << seed << ", " << run.retries << " retries";
+    EXPECT_LE(run.error_m, 0.25e-3) << "seed " << seed;
+    RecordProperty("seed_" + std::to_string(seed), std::to_string(run.time_s));
   }
 }
 

@@ -528,9 +528,9 @@ TEST(ImportUp, TheAxisThatIsUpBecomesZ) {
   for (const char* name : {"", "-", "w", "yy", "--y"}) EXPECT_FALSE(axisFromText(name)) << name;
 }
 
-// An angle bracket on its foot, y up, as Inventor has it; lying on a box that stands well either way, z is
-// kept.
-TEST(ImportUp, IsGuessedWhereTheFormatDoesNotSay) {
+// A post on its foot, and a bench on four short legs with flat ends, are y up, as Inventor has it; so is a
+// cube. A plate that lies in the plane of x and y is z up.
+TEST(ImportUp, IsYAsInventorDefinesUnlessTheDrawingSpeaksClearlyAgainstIt) {
   const Folder folder;
   const auto write = [&](const std::string& name, const std::string& shapes) {
     return folder.write(name,
@@ -551,9 +551,21 @@ TEST(ImportUp, IsGuessedWhereTheFormatDoesNotSay) {
   EXPECT_NEAR(partNamed(importCad(standing.string(), settings), "post").X_WP.p.z(), 3e-3, 1e-8);
   EXPECT_NEAR(partNamed(importCad(standing.string()), "post").X_WP.p.z(), 3e-3, 1e-8);
   settings.up.reset();
-  const ImportedCad cube = importCad(write("cube.iv", foot).string(), settings);
-  EXPECT_LT((cube.parts[0].X_WP.R - Mat3::Identity()).norm(), 1e-12);
-  EXPECT_NE(cube.warnings.at(0).find("z is taken to be up"), std::string::npos) << cube.warnings[0];
+  std::string bench = "DEF bed Separator { Cube { width 40 height 30 depth 200 } }\n";
+  for (const char* at : {"-16 -20 90", "16 -20 90", "-16 -20 -90", "16 -20 -90"})
+    bench += std::string("Separator { Translation { translation ") + at +
+             " } Cube { width 8 height 10 depth 8 } }\n";
+  for (const std::string& shapes : {bench, std::string("DEF cube Separator { Cube { } }\n")}) {
+    const ImportedCad cube = importCad(write("cube.iv", shapes).string(), settings);
+    EXPECT_NEAR((cube.parts[0].X_WP.R * Vec3::UnitY()).z(), 1, 1e-12);
+    EXPECT_NE(cube.warnings.at(0).find("y is taken to be up"), std::string::npos) << cube.warnings[0];
+  }
+  const std::string plate =
+      "DEF plate Separator { Cube { width 60 height 40 depth 4 } }\n"
+      "Separator { Translation { translation 0 0 5 } Cube { width 6 height 6 depth 6 } }\n";
+  const ImportedCad lying = importCad(write("plate.iv", plate).string(), settings);
+  EXPECT_LT((lying.parts[0].X_WP.R - Mat3::Identity()).norm(), 1e-12);
+  EXPECT_NE(lying.warnings.at(0).find("z is taken to be up"), std::string::npos) << lying.warnings[0];
 }
 
 TEST(ImportFiles, SeveralShareAFrameAndTheirNamesAreUnique) {

@@ -165,7 +165,7 @@ TEST(ModelPlan, AReducedAssemblyEqualsTheWholeOneToTheBitWithLessMemory) {
 }
 
 // It is released 10 mm above the plate, and falls out of its region onto a plate that was not modelled.
-TEST(ModelPlan, APartThatLeavesItsRegionMeetsTheOtherFixedPartsAsWell) {
+TEST(ModelPlan, APartThatLeavesItsRegionMeetsTheFixedPartsAroundItAsWell) {
   Scene scene = pinsOnPlate();
   scene.steps.resize(1);
   scene.parts[4].is_scenery = true;
@@ -173,7 +173,7 @@ TEST(ModelPlan, APartThatLeavesItsRegionMeetsTheOtherFixedPartsAsWell) {
   scene.steps[0].X_WP_target = Pose::translation({0, 0, 12 * kMm});
   EXPECT_EQ(useOf(makeModelPlan(scene, ModelPurpose::Assemble), 0, 0), PartUse::LeftOut);
   const AssembleResult reduced = assembled(scene, false), all = assembled(scene, true);
-  EXPECT_EQ(reduced.widened, 1);
+  EXPECT_EQ(reduced.widened, 2);
   EXPECT_EQ(all.widened, 0);
   // It lies on the plate: 1 mm of plate, 1 mm of pin.
   EXPECT_NEAR(reduced.trace.back().X_WP.p.z(), 2 * kMm, 10e-6);
@@ -181,6 +181,24 @@ TEST(ModelPlan, APartThatLeavesItsRegionMeetsTheOtherFixedPartsAsWell) {
   // the drift that a part at rest may have; measured 0.4 um.
   EXPECT_LE(greatestDistance(reduced, all), kRestDriftLimit_m);
   EXPECT_LE(reduced.steps[0].max_penetration_m, reduced.steps[0].penetration_limit_m);
+  // The shelf, 100 mm away, stays out: of the plate some 60 % is nearer than the pin's new region reaches.
+  EXPECT_EQ(reduced.modelled.voxmaps, 3u) << "plate, pin and field";
+  EXPECT_LT(reduced.modelled.field_points, all.modelled.field_points);
+}
+
+// With voxels of 0.1 mm a region grows by 5.1, 10, 20 and 41 mm, and then goes everywhere.
+TEST(ModelPlan, APartThatFallsFarMeetsWhatIsFarBelow) {
+  Scene scene = pinsOnPlate();
+  scene.steps.resize(1);
+  scene.parts[4].is_scenery = true;
+  scene.fidelity.voxel_m = 0.1 * kMm;
+  scene.fidelity.spacing_m = 0.2 * kMm;
+  scene.release_s = 0.3;  // a fall of 150 mm takes 0.17 s
+  scene.steps[0].X_WP_start = Pose::translation({0, 0, 152.2 * kMm});
+  scene.steps[0].X_WP_target = Pose::translation({0, 0, 152 * kMm});
+  const AssembleResult reduced = assembled(scene, false);
+  EXPECT_EQ(reduced.widened, 5);
+  EXPECT_NEAR(reduced.trace.back().X_WP.p.z(), 2 * kMm, 10e-6);
 }
 
 TEST(ModelPlan, AReducedSimulationEqualsTheWholeOneToTheBitWithLessMemory) {

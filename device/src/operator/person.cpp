@@ -31,10 +31,8 @@ void VirtualOperator::Person::begin(const OperatorTask& task, double now_s) {
   for (const Pose& X_WP : task.way_points) path_.push_back(X_WP * task.X_PG);
   path_.push_back(task.X_WP_target * task.X_PG);
 
-  const Vec3 last_leg = path_.back().p - path_[path_.size() - 2].p;
-  axis_W_ = last_leg.norm() > 1e-9 ? Vec3(last_leg.normalized()) : Vec3(-Vec3::UnitZ());
-  const bool knows_tip = !task.tip_P.isZero();
-  tip_m_ = knows_tip ? axis_W_.dot(task.X_WP_target * task.tip_P - path_.back().p) : 0;
+  lookAlong(path_.size() - 1);
+  has_aimed_ = false;
   aim_m_ = across(habits_.aim_error_m * random_.normal3());
   aim_rad_ = habits_.aim_error_rad * random_.normal3();
   if (task.is_taking_off) aim_m_ = aim_rad_ = Vec3::Zero();
@@ -54,7 +52,7 @@ void VirtualOperator::Person::begin(const OperatorTask& task, double now_s) {
   next_ = 1;
   phase_ = OperatorPhase::Reach;
   // Where the person looks: the middle of the end that goes in first.
-  const Vec3 p_tip_W = path_.back().p + tip_m_ * axis_W_;
+  const Vec3 p_tip_W = goal().p + tip_m_ * axis_W_;
   sight_.begin(task.X_WP_target.inverse() * p_tip_W, now_s);
 }
 
@@ -143,6 +141,16 @@ void VirtualOperator::Person::reach(const OperatorView& view) noexcept {
     return;
   }
   if (off_m >= kArrived_m && now_s < end_s + kArrivalWait_s) return;
+  if (isStoppedOnTheWay(view)) {
+    lookAlong(next_);
+    return startInsertion(view);
+  }
+  arrive(view);
+}
+
+// A way point was reached.
+void VirtualOperator::Person::arrive(const OperatorView& view) noexcept {
+  const double now_s = view.time_s;
   const auto& index_points = task_.index_points;
   if (std::find(index_points.begin(), index_points.end(), next_ - 1) != index_points.end()) {
     X_rest_ = wanted(now_s);
@@ -153,30 +161,66 @@ void VirtualOperator::Person::reach(const OperatorView& view) noexcept {
   startSegment(segment_.X_to, path_[next_], now_s);
 }
 
+// Of a leg before the last one: the part is seen behind its end, and is felt to be held back.
+bool VirtualOperator::Person::isStoppedOnTheWay(const OperatorView& view) const noexcept {
+  const Vec3 leg = segment_.X_to.p - path_[next_ - 1].p;
+  if (task_.is_taking_off || isScrew() || !sight_.hasSeen() || leg.norm() < kArrived_m) return false;
+  const Vec3 along = leg.normalized();
+  const double short_m = along.dot(segment_.X_to.p - seenGrasp().p);
+  return short_m >= kArrived_m && -along.dot(view.F_hand_W.f - task_.weight_W) > habits_.touch_N;
+}
+
+// What is felt and done along an axis is along this leg from now on. The task tells of the last leg only
+// which end goes in first.
+void VirtualOperator::Person::lookAlong(std::size_t goal) noexcept {
+  goal_ = goal;
+  feel_.seen_for_s = 0;
+  const Vec3 leg = path_[goal].p - path_[goal - 1].p;
+  axis_W_ = leg.norm() > 1e-9 ? Vec3(leg.normalized()) : Vec3(-Vec3::UnitZ());
+  const bool knows_tip = isLastGoal() && !task_.tip_P.isZero();
+  tip_m_ = knows_tip ? axis_W_.dot(task_.X_WP_target * task_.tip_P - path_.back().p) : 0;
+}
+
 void VirtualOperator::Person::startInsertion(const OperatorView& view) noexcept {
-  belief_.across_m = across(belief_.across_m) + aim_m_;
+  belief_.across_m = across(belief_.across_m);
+  // Before the last free leg's end the aim is no part of what is wanted (wanted()).
+  if (!has_aimed_ && next_ + 2 >= path_.size()) addAim();
   hole_m_ = isSlender() ? Vec3(belief_.across_m + across(sag_m_)) : Vec3(Vec3::Zero());
-  belief_.turn_rad += aim_rad_;
   seen_for_s_ = 0;
-  const Pose& X_to = path_.back();
+  const Pose& X_to = goal();
   reach_m_ = axis_W_.dot(view.X_WG_hand.p - X_to.p);
   Situation situation;
   situation.habits = habits_;
   situation.axis_W = axis_W_;
-  if (!task_.tip_P.isZero()) {
+  if (isLastGoal() && !task_.tip_P.isZero()) {
     const Vec3 corner_W = across(task_.X_WP_target * task_.tip_P - X_to.p);
     if (corner_W.norm() > 1e-9) situation.corner_W = corner_W.normalized();
   }
   if (isSlender()) situation.corner_W = Vec3::Zero();  // a tilt would take the hand too far to find back
   situation.is_slender = isSlender();
   situation.tip_m = tip_m_;
-  situation.has_corners = task_.has_corners;
+  situation.has_corners = task_.has_corners || !isLastGoal();
   situation.screw = task_.screw;
   situation.near_m = task_.tolerance_m + kNear * habits_.see_error_m;
   feel_.time_s = view.time_s;
   feel_.spin_rad = spin_rad_ = handle_rad_ = 0;
   sequence().begin(situation, feel_);
   enter(OperatorPhase::Insert, view.time_s);
+}
+
+void VirtualOperator::Person::addAim() noexcept {
+  belief_.across_m += aim_m_;
+  belief_.turn_rad += aim_rad_;
+  has_aimed_ = true;
+}
+
+// From a search on the way back to the path.
+void VirtualOperator::Person::goOnFromSearch(const OperatorView& view) noexcept {
+  serve_m_ = serve_rad_ = Vec3::Zero();
+  is_home_ = false;
+  enter(OperatorPhase::Reach, view.time_s);
+  lookAlong(path_.size() - 1);
+  arrive(view);
 }
 
 void VirtualOperator::Person::insert(const OperatorView& view, double dt_s) noexcept {
@@ -201,11 +245,12 @@ void VirtualOperator::Person::insert(const OperatorView& view, double dt_s) noex
   if (!move.looks) seen_for_s_ = 0;
   if (move.gives_way) giveWay(dt_s);
   // The reach leads the hand by the push at most, so that a part that comes free does not shoot ahead.
-  const double hand_m = axis_W_.dot(view.X_WG_hand.p - path_.back().p);
+  const double hand_m = axis_W_.dot(view.X_WG_hand.p - goal().p);
   reach_m_ += dt_s * move.speed_m_s;
   reach_m_ = std::min(reach_m_, hand_m + move.push_N / habits_.k_N_per_m);
   reach_m_ = std::max(reach_m_, hand_m - habits_.force_limit_N / habits_.k_N_per_m);
   if (isScrew()) turn(view, is_home_ ? 0 : move.spin_rad_s, dt_s);
+  if (!isLastGoal() && (is_home_ || isPastSearch())) return goOnFromSearch(view);
   if (!is_home_) return;
   const bool is_still =
       view.V_WG_hand.v.norm() < habits_.still_m_s && view.V_WG_hand.w.norm() < habits_.still_rad_s;
@@ -231,7 +276,7 @@ void VirtualOperator::Person::turn(const OperatorView& view, double spin_rad_s, 
 
 void VirtualOperator::Person::sense(const OperatorView& view, double dt_s) noexcept {
   const bool is_new = sight_.look(view, tip_felt_m_);
-  const Pose& X_target = path_.empty() ? X_rest_ : path_.back();
+  const Pose& X_target = path_.empty() ? X_rest_ : goal();
   const Wrench& F = view.F_hand_W;
   const double share = std::min(1.0, dt_s / kFeel_s);
   const Vec3 f_N = F.f - task_.weight_W;
@@ -268,13 +313,13 @@ void VirtualOperator::Person::sense(const OperatorView& view, double dt_s) noexc
 
 // From the grasp to the end that goes in first, in the part's attitude R_WG, across the axis.
 Vec3 VirtualOperator::Person::tipFromGrasp(const Mat3& R_WG) const noexcept {
-  return path_.empty() ? Vec3(Vec3::Zero()) : across(tip_m_ * (R_WG * path_.back().R.transpose() * axis_W_));
+  return path_.empty() ? Vec3(Vec3::Zero()) : across(tip_m_ * (R_WG * goal().R.transpose() * axis_W_));
 }
 
 // That end, as it is seen beside the line on which it belongs.
 Vec3 VirtualOperator::Person::seenTip() const noexcept {
   const Pose X_seen = seenGrasp();
-  return across(X_seen.p - path_.back().p) + tipFromGrasp(X_seen.R);
+  return across(X_seen.p - goal().p) + tipFromGrasp(X_seen.R);
 }
 
 // Integral action on the seen error across the path. Along the path the error is only the visual delay.
@@ -301,7 +346,7 @@ void VirtualOperator::Person::correctOnTheWay(double dt_s) noexcept {
 // touch.
 void VirtualOperator::Person::correctAtTheHole(double dt_s) noexcept {
   if (!sight_.hasSeen()) return;
-  const Pose X_seen = seenGrasp(), &X_to = path_.back();
+  const Pose X_seen = seenGrasp(), &X_to = goal();
   const Vec3 tip_m = seenTip();
   const Mat3 R_path = spun(feel_.spin_rad) * turnAtTheHole(axis_W_.dot(X_seen.p - X_to.p));
   const Vec3 lean_rad = tiltOf(rotationVector(R_path * X_seen.R.transpose()));
@@ -327,7 +372,7 @@ void VirtualOperator::Person::correctAtTheHole(double dt_s) noexcept {
 // pushed falls over on its end if the hand yields to its lean, until the hole guides it.
 void VirtualOperator::Person::giveWay(double dt_s) noexcept {
   const double share = std::min(1.0, kGiveWay_per_s * dt_s);
-  const Pose& X_to = path_.back();
+  const Pose& X_to = goal();
   const Pose X_wanted = wantedAtTheHole();
   double guided = 1;
   if (isSlender()) {
@@ -352,7 +397,7 @@ Pose VirtualOperator::Person::wanted(double now_s) const noexcept {
   const double share = minimumJerk((now_s - segment_.start_s) / segment_.duration_s);
   Pose X = interpolate(segment_.X_from, segment_.X_to, share);
   // The aim error grows over the last free segment; it models the misjudged position of the hole.
-  const double aim = next_ + 2 == path_.size() ? share : 0;
+  const double aim = next_ + 2 == path_.size() && !has_aimed_ ? share : 0;
   X.p += aim * aim_m_ + belief_.across_m;
   X.R = rotationFromVector(aim * aim_rad_ + belief_.turn_rad) * X.R;
   return X;
@@ -360,7 +405,7 @@ Pose VirtualOperator::Person::wanted(double now_s) const noexcept {
 
 // The attitude at this place of the last leg; of a leg that only turns, at this time.
 Mat3 VirtualOperator::Person::turnAtTheHole(double along_m) const noexcept {
-  const Pose &X_from = path_[path_.size() - 2], &X_to = path_.back();
+  const Pose &X_from = path_[goal_ - 1], &X_to = goal();
   const double length_m = (X_to.p - X_from.p).norm();
   const double share = length_m > 1e-9 ? std::clamp(1 + along_m / length_m, 0.0, 1.0)
                                        : minimumJerk((feel_.time_s - segment_.start_s) / segment_.duration_s);
@@ -370,7 +415,7 @@ Mat3 VirtualOperator::Person::turnAtTheHole(double along_m) const noexcept {
 // Turned about the tip, so that a lean does not move the tip.
 Pose VirtualOperator::Person::wantedAtTheHole() const noexcept {
   const Move& move = sequence().move();
-  const Pose& X_to = path_.back();
+  const Pose& X_to = goal();
   const Mat3 turn = rotationFromVector(belief_.turn_rad + move.turn_rad + turnAboutMouth(move.across_m));
   const Vec3 tip = tip_m_ * axis_W_;
   Vec3 p = X_to.p + belief_.across_m + move.across_m + tip - turn * tip;

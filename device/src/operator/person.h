@@ -45,7 +45,19 @@ class VirtualOperator::Person {
   // Plan.
   void startSegment(const Pose& X_from, const Pose& X_to, double now_s) noexcept;
   void reach(const OperatorView& view) noexcept;
+  void arrive(const OperatorView& view) noexcept;
+  void lookAlong(std::size_t goal) noexcept;
   void startInsertion(const OperatorView& view) noexcept;
+  void addAim() noexcept;
+  void goOnFromSearch(const OperatorView& view) noexcept;
+  [[nodiscard]] bool isStoppedOnTheWay(const OperatorView& view) const noexcept;
+  /// Seen where the leg ends, and no longer searching there.
+  [[nodiscard]] bool isPastSearch() const noexcept {
+    return feel_.seen_for_s > 0 && feel_.seen_short_m < habits_.see_error_m;
+  }
+  /// The pose of G at the end of the leg along which it feels, and searches if it has to.
+  [[nodiscard]] const Pose& goal() const noexcept { return path_[goal_]; }
+  [[nodiscard]] bool isLastGoal() const noexcept { return goal_ + 1 == path_.size(); }
   void insert(const OperatorView& view, double dt_s) noexcept;
   void enter(OperatorPhase phase, double now_s) noexcept;
   void finish(OperatorPhase phase, const OperatorView& view) noexcept;
@@ -111,10 +123,12 @@ class VirtualOperator::Person {
 
   std::vector<Pose> path_;  // of G: start, way points, target
   std::size_t next_ = 0;    // index in path_ of the segment's end
+  std::size_t goal_ = 0;    // of goal()
   Segment segment_;
   Vec3 axis_W_ = Vec3::UnitZ();                         // of insertion
   double tip_m_ = 0;                                    // from G along the axis to the end that goes in first
   Vec3 aim_m_ = Vec3::Zero(), aim_rad_ = Vec3::Zero();  // aim error, drawn once per task
+  bool has_aimed_ = false;                              // it is part of belief_
 
   Vec3 misread_rad_ = Vec3::Zero();  // about the axis; sight does not correct it
 

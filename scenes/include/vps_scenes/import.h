@@ -30,8 +30,8 @@ struct ImportSettings {
   double coarsest_m = 64e-6;
   /// The file's axis that is up: the parts are turned so that it becomes z. Empty: the file's axes are kept.
   std::optional<Vec3> up = {};
-  /// Where `up` is empty and no file states what is up (Inventor, VRML): y or z, whichever gives the parts
-  /// the better stand, and a warning says which.
+  /// Where `up` is empty and all files are of formats that define y as up, which many programs do not heed
+  /// (Inventor, VRML): y, unless the parts would hardly stand so, and z then. A warning says which.
   bool guesses_up = false;
   /// Runs the format's library in a child process (POSIX), so that a crash on a damaged file becomes a
   /// LoadError. False: in this process, for a debugger, or where other threads use Open CASCADE or Coin

@@ -203,7 +203,7 @@ struct AssembleResult {
   } local_contact;
   EnergyLedger energy;
   ModelledCost modelled;              ///< at its maximum, with the fixed field
-  int widened = 0;                    ///< times a part left its region, so that all fixed parts were modelled
+  int widened = 0;                    ///< times a part left its region, so that more was modelled
   std::size_t contacts_left_out = 0;  ///< near points beyond a query's limit; 0 unless a limit was set
   double simulated_s = 0, build_wall_s = 0, run_wall_s = 0;
 };

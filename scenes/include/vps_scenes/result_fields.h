@@ -215,7 +215,7 @@ inline constexpr auto kAssembleFields = std::make_tuple(
               field("jump_J", &LocalContact::jump_J, "energy of the jumps at new snapshots"),
               field("greatest_jump_m", &LocalContact::greatest_jump_m, "greatest of these jumps"))),
     field("widened", &AssembleResult::widened,
-          "how often a part reached the border of its region, so that the rest was modelled"),
+          "how often a part reached the border of its region, so that more was modelled"),
     group("modelled", &AssembleResult::modelled, kModelledFields));
 
 inline constexpr auto kAssembleWallFields = std::make_tuple(

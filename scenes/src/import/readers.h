@@ -68,8 +68,8 @@ void nameUniquely(std::vector<ImportedPart>& parts, const std::string& fallback)
 
 /// Turns the parts so that the axis becomes z, the shortest way.
 void turnUp(ImportedCad& cad, const Vec3& axis);
-/// Turns the parts so that y becomes z if they stand better on the side that faces -y than on the one that
-/// faces -z, and adds a warning with the answer.
+/// For formats that define y as up, which many programs do not heed: turns the parts so that y becomes z,
+/// unless they would hardly stand so and stand well with z up; adds a warning with the answer.
 void guessUp(ImportedCad& cad);
 
 /// "STEP", "IGES", "BREP", "Inventor", "VRML", or the extension in capitals; by content where possible.

@@ -2,17 +2,22 @@
 // Which axis of a file is up.
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <vector>
 
 #include "import/readers.h"
+#include "vps/box.h"
+#include "vps/mesh.h"
 
 namespace vps::scenes::inline v0 {
 
 namespace {
 
 constexpr double kGround = 0.005;  // of the height: feet of one foundation are drawn that even
-constexpr double kLevel = 0.99;    // of a facet's normal
-constexpr double kBetter = 0.02;   // of the side: less decides nothing, and z is kept
+constexpr double kShaky_deg = 10;  // assumed: nobody draws a product so that less than this tips it over
+constexpr double kFirm_deg = 20;
 
 }  // namespace
 
@@ -23,42 +28,55 @@ void import::turnUp(ImportedCad& cad, const Vec3& axis) {
 
 namespace {
 
-/// How well the parts stand with an axis up: the share of their box's side below that is flat and lies on
-/// the ground, less half of that of the side above, for a lid is flat as well.
-double standOf(const ImportedCad& cad, int axis) {
+/// The angle by which the parts, as one body, tip over with an axis up: from the centre of mass to the edge
+/// of what is on the ground. Negative where they do not stand at all.
+double tipsAt_deg(const ImportedCad& cad, int axis) {
   Box box;
-  for (const ImportedPart& part : cad.parts)
-    for (const Vec3& p : part.mesh.vertices) box.add(part.X_WP * p);
-  const double slab_m = kGround * box.size()[axis];
-  double below_m2 = 0, above_m2 = 0;
-  for (const ImportedPart& part : cad.parts)
-    for (const auto& [a, b, c] : part.mesh.triangles) {
-      const Vec3 p = part.X_WP * part.mesh.vertices[a], q = part.X_WP * part.mesh.vertices[b],
-                 r = part.X_WP * part.mesh.vertices[c];
-      const Vec3 area_m2 = 0.5 * (q - p).cross(r - p);
-      if (std::abs(area_m2[axis]) < kLevel * area_m2.norm()) continue;
-      if (std::max({p[axis], q[axis], r[axis]}) < box.min[axis] + slab_m && area_m2[axis] < 0)
-        below_m2 -= area_m2[axis];
-      if (std::min({p[axis], q[axis], r[axis]}) > box.max[axis] - slab_m && area_m2[axis] > 0)
-        above_m2 += area_m2[axis];
-    }
-  const double side_m2 = box.size()[(axis + 1) % 3] * box.size()[(axis + 2) % 3];
-  return side_m2 > 0 ? (below_m2 - 0.5 * above_m2) / side_m2 : 0;
+  Vec3 com = Vec3::Zero();
+  double volume_m3 = 0;
+  std::vector<Vec3> points;
+  for (const ImportedPart& part : cad.parts) {
+    for (const Vec3& p : part.mesh.vertices) points.push_back(part.X_WP * p);
+    const MassProperties mass = massProperties(part.mesh);
+    if (!(mass.volume_m3 > 0)) continue;  // an open surface
+    com += mass.volume_m3 * (part.X_WP * mass.com);
+    volume_m3 += mass.volume_m3;
+  }
+  for (const Vec3& p : points) box.add(p);
+  com = volume_m3 > 0 ? Vec3(com / volume_m3) : box.center();
+  const double ground_m = box.min[axis];
+  std::erase_if(points, [&](const Vec3& p) { return p[axis] > ground_m + kGround * box.size()[axis]; });
+  constexpr int kDirections = 360;
+  double least_m = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < kDirections; ++i) {
+    Vec3 u = Vec3::Zero();
+    u[(axis + 1) % 3] = std::cos(2 * std::numbers::pi * i / kDirections);
+    u[(axis + 2) % 3] = std::sin(2 * std::numbers::pi * i / kDirections);
+    double edge_m = -std::numeric_limits<double>::infinity();
+    for (const Vec3& p : points) edge_m = std::max(edge_m, u.dot(p - com));
+    least_m = std::min(least_m, edge_m);
+  }
+  const double height_m = com[axis] - ground_m;
+  return std::atan2(least_m, std::max(height_m, 1e-12)) * 180 / std::numbers::pi;
 }
 
 }  // namespace
 
+// The format's own axis is kept unless the parts would hardly stand. Which side is flatter tells less: a
+// machine on four feet has a flat top and a flat end.
 void import::guessUp(ImportedCad& cad) {
-  const double y = standOf(cad, 1), z = standOf(cad, 2);
-  const bool is_y = y > z + kBetter;
-  char text[200];
-  std::snprintf(
-      text, sizeof text,
-      "%c is taken to be up: of the side below, %.0f %% is flat and on the ground, and %.0f %% with %c up; "
-      "--up %c says otherwise",
-      is_y ? 'y' : 'z', 100 * std::max(0.0, is_y ? y : z), 100 * std::max(0.0, is_y ? z : y),
-      is_y ? 'z' : 'y', is_y ? 'z' : 'y');
-  cad.warnings.emplace_back(text);
+  if (cad.parts.empty()) return;
+  const double y_deg = tipsAt_deg(cad, 1), z_deg = tipsAt_deg(cad, 2);
+  const bool is_y = y_deg > kShaky_deg || z_deg < kFirm_deg;
+  const auto stand = [](double deg) {
+    return deg > 0 ? "tip over at " + std::to_string(std::lround(deg)) + " degrees"
+                   : std::string("do not stand");
+  };
+  const char other = is_y ? 'z' : 'y';
+  cad.warnings.push_back(std::string(is_y ? "y is taken to be up, as Inventor and VRML define"
+                                          : "z is taken to be up, though Inventor and VRML define y") +
+                         ": so the parts " + stand(is_y ? y_deg : z_deg) + ", and with " + other +
+                         " up they " + stand(is_y ? z_deg : y_deg) + "; --up " + other + " says otherwise");
   if (is_y) turnUp(cad, Vec3::UnitY());
 }
 

@@ -141,10 +141,13 @@ class SceneMaker {
     return step;
   }
 
-  /// The hand's time on the way, with the device recentred every 0.2 m, and as much again for what is usual.
-  /// On the last leg it goes at a third of its speed, as it may meet an edge at any time.
+  /// The usual time, the hand's time on the way, with the device recentred every 0.2 m, as much again, and
+  /// two rounds of all searches on the last leg, or on the last two. On the last leg it goes at a third of
+  /// its speed, as it may meet an edge at any time.
   [[nodiscard]] double timeFor(const SceneStep& step) const {
     constexpr double kBetween_m = 0.2, kRecentre_s = 2, kLastLeg = 3;
+    // Measured: a slide is on its dovetail after 52 s, in the second round.
+    constexpr double kSearches_s = 40;
     double way_m = 0;
     Vec3 from = step.X_WP_start.p;
     for (const Pose& point : step.way_points) {
@@ -154,7 +157,8 @@ class SceneMaker {
     const double last_m = (step.X_WP_target.p - from).norm();
     const double way_s =
         (way_m + kLastLeg * last_m) / scene_.hand.speed_m_s + kRecentre_s * (way_m + last_m) / kBetween_m;
-    return std::ceil(SceneStep().timeout_s + 2 * way_s);
+    const double searches_s = kSearches_s * (step.way_points.empty() ? 1 : 2);
+    return std::ceil(SceneStep().timeout_s + searches_s + 2 * way_s);
   }
 
   const Scene& scene_;

@@ -339,13 +339,13 @@ void AssemblyWorld::keepCovered() {
         "'" + scene_.parts[part].part.name +
         "' came near the edge of the space around its planned path, the only one in which contact was "
         "modelled; "
-        "from here on it can touch every fixed part");
+        "more of the parts around it is modelled now");
   // Physics stands still for as long as modelling takes. By the clock that would be a safety fault, so the
   // loop is paused.
   const bool pauses = options_.has_local_contact || driver_->isByClock();
   if (pauses) driver_->pause();
   shedder_->beforeNewModels(state_.time_s);
-  placed_.widen(step);
+  placed_.widen(step, state_.moving.box_P, movingPose());
   shedder_->afterNewModels(state_.time_s, part);
   if (!pauses) return;
   if (options_.has_local_contact && state_.is_holding) startLocalContact();

@@ -2,6 +2,7 @@
 #include "procedure/placed_parts.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "models/scene_models.h"
 #include "vps/box.h"
@@ -38,6 +39,10 @@ const JudgedBody& PlacedParts::judgedBody(std::size_t part) {
 }
 
 std::optional<FieldOrder> PlacedParts::orderFor(std::size_t step) {
+  return orderFor(step, false);
+}
+
+std::optional<FieldOrder> PlacedParts::orderFor(std::size_t step, bool rebuilds) {
   const bool is_past_last = step >= plan_.steps.size();
   if (is_past_last && !plan_.models_everything) return {};
   const FieldPlan& planned = plan_.steps[std::min(step, plan_.steps.size() - 1)];
@@ -52,7 +57,7 @@ std::optional<FieldOrder> PlacedParts::orderFor(std::size_t step) {
     if (!planned.region_W || overlap(box_W, *planned.region_W)) parts.push_back(placed);
   }
   if (!simulation_.needsField(parts, planned)) return {};
-  return simulation_.orderField(parts, planned, shrinks);
+  return simulation_.orderField(parts, planned, shrinks || rebuilds);
 }
 
 void PlacedParts::setField(CookedField field) {
@@ -75,15 +80,47 @@ bool PlacedParts::isCovered(std::size_t step, const Box& box_P, const Pose& X_WP
   return isWithin(grown(moved(box_P, X_WP), reach_m), *region_W);
 }
 
-void PlacedParts::widen(std::size_t step) {
+bool PlacedParts::widenTo(std::size_t step, const Box& region_W) {
+  bool has_changed = false;
+  for (const FixedPart& placed : placed_) {
+    if (!scene_.parts[placed.part].is_fixed) continue;  // all others are modelled everywhere
+    PartModelPlan& part = plan_.parts[placed.part];
+    const bool is_whole = part.has_map && part.kept_P.empty();
+    if (is_whole || !overlap(moved(bounds(scene_.parts[placed.part].part.mesh), placed.X_WP), region_W))
+      continue;
+    part.has_map = part.has_shell = true;
+    part.kept_P.push_back(moved(region_W, placed.X_WP.inverse()));
+    judged_[placed.part].reset();
+    has_changed = true;
+  }
+  plan_.steps[step].region_W = region_W;
+  plan_.steps[step].has_shell = true;
+  return has_changed;
+}
+
+void PlacedParts::widen(std::size_t step, const Box& box_P, const Pose& X_WP) {
+  constexpr int kMostInStep = 4;  // a part that falls goes 15 times its size
   ++widened_;
+  widened_in_step_ = widened_step_ == step ? widened_in_step_ + 1 : 1;
+  widened_step_ = step;
   ModelOptions options;
   options.cache = options_.cache;  // no progress and no warnings: both were given at loading
-  buildWhole(scene_, plan_, options);
-  for (const FixedPart& placed : placed_)
-    if (scene_.parts[placed.part].is_fixed) judged_[placed.part].reset();
-  renewJudge();
-  setField(cookField(simulation_.orderField(placed_, plan_.steps[step], true)));
+  bool has_changed = true;
+  if (widened_in_step_ > kMostInStep) {
+    buildWhole(scene_, plan_, options);
+    for (const FixedPart& placed : placed_)
+      if (scene_.parts[placed.part].is_fixed) judged_[placed.part].reset();
+  } else {
+    const double band_m = voxMapSettings(scene_.fidelity).band_voxels * scene_.fidelity.voxel_m;
+    const double by_m = std::ldexp(box_P.size().norm() + 2 * band_m, widened_in_step_ - 1);
+    Box region_W = grown(moved(box_P, X_WP), by_m);
+    region_W.add(plan_.steps[step].region_W->min);
+    region_W.add(plan_.steps[step].region_W->max);
+    has_changed = widenTo(step, region_W);
+    if (has_changed) buildModels(scene_, plan_, options);
+  }
+  if (has_changed) renewJudge();
+  if (const auto order = orderFor(step, has_changed)) setField(cookField(*order));
 }
 
 }  // namespace vps::scenes::inline v0

@@ -16,7 +16,7 @@ namespace vps::scenes::inline v0 {
 /// is called.
 class PlacedParts {
  public:
-  /// All arguments outlive it. widen() removes the regions from the plan.
+  /// All arguments outlive it. widen() enlarges regions of the plan, or removes them.
   PlacedParts(Scene& scene, ModelPlan& plan, Simulation& simulation, const ModelOptions& options);
 
   /// Adds a part to the fields of later steps.
@@ -42,8 +42,11 @@ class PlacedParts {
   /// @param dt_s  physics step
   [[nodiscard]] bool isCovered(std::size_t step, const Box& box_P, const Pose& X_WP, const Twist& V_W,
                                double dt_s) const;
-  /// Models all fixed parts everywhere and cooks all parts in place. Takes as long as loading.
-  void widen(std::size_t step);
+  /// Enlarges the step's region around the part, by its own size and at each later call for the step by twice
+  /// as much; models the fixed parts in it, and cooks what is in place there. A part that leaves four such
+  /// regions is no longer on its way: then all fixed parts are modelled everywhere, for all steps. Takes as
+  /// long as loading those parts.
+  void widen(std::size_t step, const Box& box_P, const Pose& X_WP);
 
   /// How often widen() was called.
   [[nodiscard]] int widened() const { return widened_; }
@@ -51,6 +54,10 @@ class PlacedParts {
   [[nodiscard]] const ModelledCost& modelled() const { return modelled_; }
 
  private:
+  /// @return true if a fixed part has to be modelled anew
+  bool widenTo(std::size_t step, const Box& region_W);
+  [[nodiscard]] std::optional<FieldOrder> orderFor(std::size_t step, bool rebuilds);
+
   Scene& scene_;
   ModelPlan& plan_;
   Simulation& simulation_;
@@ -60,6 +67,8 @@ class PlacedParts {
   std::vector<std::optional<JudgedBody>> judged_;  ///< by part
   ModelledCost modelled_;
   int widened_ = 0;
+  std::size_t widened_step_ = 0;
+  int widened_in_step_ = 0;
 };
 
 }  // namespace vps::scenes::inline v0

@@ -10,6 +10,7 @@
 #include "core/insertion_axis.h"
 #include "core/length_words.h"
 #include "judge/surface_error.h"
+#include "procedure/displaced_mates.h"
 #include "procedure/drawn_targets.h"
 #include "procedure/lean_in_fits.h"
 #include "procedure/screw_motion.h"
@@ -83,6 +84,17 @@ double placedAlong_m(AssemblyWorld& world, const SceneStep& step, const Pose& X_
   return isFreeBeyondTarget(world, step, axis_W, kSightTolerance_m, limit_m) ? along_m : 0;
 }
 
+/// The tolerance of a part that is where it belongs on a part that is off its own place, within the tolerance
+/// of that one: more by as much. Else as it was.
+template <typename ErrorWithout>
+double toleranceOnMates_m(AssemblyWorld& world, const StepResult& result, const ErrorWithout& errorWithout) {
+  const auto step = static_cast<std::size_t>(world.state().step);
+  for (const Vec3& by_m : displacedMates_m(world.scene(), step, world.state().X_WP))
+    if (by_m.norm() <= kSightTolerance_m && errorWithout(by_m) <= result.tolerance_m)
+      return std::max(result.tolerance_m + by_m.norm(), result.final_error_m);
+  return result.tolerance_m;
+}
+
 double leanTolerance_m(AssemblyWorld& world) {
   return leanInFits_m(world.scene(), static_cast<std::size_t>(world.state().step)) + kContactOnBothSides_m;
 }
@@ -116,6 +128,9 @@ void judgeCompletion(AssemblyWorld& world, const SceneStep& step, const Pose& X_
     const bool is_open =
         along_m != 0 && (across_m <= result.tolerance_m || (!is_given && across_m <= leanTolerance_m(world)));
     if (is_open) result.tolerance_m = kSightTolerance_m;
+    if (!is_open && !is_given && result.stands_on.empty())
+      result.tolerance_m = toleranceOnMates_m(
+          world, result, [&](const Vec3& by_m) { return errorAt(Pose(X_WP.R, X_WP.p - by_m)); });
   }
   result.final_error_rad = rotationVector(X_judged.R * step.X_WP_target.R.transpose()).norm();
   const bool is_turned = step.tolerance_rad > 0 && result.final_error_rad > step.tolerance_rad;

@@ -135,7 +135,7 @@ Solids boxWithLid(double height_inside) {
 /// A dovetail rail that lies along y, with a slide on it; stops at none, one or both ends.
 Solids dovetail(int stops) {
   const double c = 0.1;
-  TopoDS_Shape rail = joined(box(50, 60, 10), prism({{-8, 10}, {8, 10}, {13, 18}, {-13, 18}}, 60));
+  TopoDS_Shape rail = joined(box(50, 70.2, 10), prism({{-8, 10}, {8, 10}, {13, 18}, {-13, 18}}, 70.2));
   const TopoDS_Shape groove = prism(
       {{-8 - c, 9}, {8 + c, 9}, {8 + c, 10}, {13 + 2 * c, 18 + c}, {-13 - 2 * c, 18 + c}, {-8 - c, 10}}, 80);
   const TopoDS_Shape slide = cut(at(box(40, 60, 20), 0, 0, 10), groove);
@@ -195,11 +195,12 @@ Solids keyedHub() {
 }
 
 /// A slot that goes in from above and then sideways; the block's head is wider than the slot's mouth.
-Solids elbowSlot() {
+/// @param gap  of the mouth; there is 0.2 mm farther in
+Solids elbowSlot(double gap) {
   TopoDS_Shape base = box(100, 60, 40);
-  base = cut(base, at(box(24.2, 24.2, 40), -25, 0, 12));  // comes in here, from above
-  base = cut(base, at(box(70, 24.2, 16.2), 0, 0, 12));    // goes along here
-  base = cut(base, at(box(70, 12.2, 40), 0, 0, 12));      // the neck's way
+  base = cut(base, at(box(24 + gap, 24 + gap, 40), -25, 0, 12));  // comes in here, from above
+  base = cut(base, at(box(70, 24.2, 16.2), 0, 0, 12));            // goes along here
+  base = cut(base, at(box(70, 12.2, 40), 0, 0, 12));              // the neck's way
   const TopoDS_Shape tee = joined(at(box(24, 24, 16), 20, 0, 12), at(box(12, 12, 40), 20, 0, 20));
   return {base, tee};
 }
@@ -240,7 +241,8 @@ const std::vector<Product>& products() {
       {"posts", "fits", 1, [] { return onPosts(60); }},
       {"posts_300um_off", "blocked", 0, [] { return onPosts(60.3); }},
       {"keyed_hub", "fits", 2, keyedHub},
-      {"elbow_slot", "fits", 1, elbowSlot},
+      {"elbow_slot", "fits", 1, [] { return elbowSlot(0.2); }},
+      {"elbow_slot_tight_mouth", "fits", 1, [] { return elbowSlot(0.06); }},
       {"drawer_3kg", "fits", 1, [] { return drawer(0.2); }},
       {"wheel_on_axle", "fits", 2, onAxle},
   };

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "procedure/displaced_mates.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "core/parts_in_place.h"
+#include "vps_scenes/check.h"
+
+namespace vps::scenes::inline v0 {
+
+std::vector<Vec3> displacedMates_m(const Scene& scene, std::size_t step, const std::vector<Pose>& X_WP) {
+  const std::vector<DrawnPart> drawn = drawnParts(scene);
+  const SceneStep& planned = scene.steps[step];
+  CheckSettings settings;
+  settings.has_play = false;
+  settings.only_parts = {drawn[planned.part].name};
+  std::vector<DrawnPart> parts = {drawn[planned.part]};
+  parts.front().X_WP = planned.X_WP_target;
+  const std::vector<PartInPlace> in_place = partsInPlace(scene, step);
+  for (const PartInPlace& other : in_place) {
+    parts.push_back(drawn[other.part]);
+    parts.back().X_WP = other.X_WP;
+  }
+  std::vector<Vec3> displaced_m;
+  for (const CheckedFit& fit : checkAssembly("mates", parts, settings).fits) {
+    const std::string& mate = fit.shaft == parts.front().name ? fit.bore : fit.shaft;
+    const auto at =
+        std::ranges::find(in_place, mate, [&](const PartInPlace& other) { return drawn[other.part].name; });
+    if (at == in_place.end() || scene.parts[at->part].is_fixed) continue;
+    displaced_m.push_back(X_WP[at->part] * (at->X_WP.inverse() * fit.at_W) - fit.at_W);
+  }
+  return displaced_m;
+}
+
+}  // namespace vps::scenes::inline v0

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Where a part belongs whose mate is off its own place.
+#include "procedure/displaced_mates.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "scenes/scene_part.h"
+#include "support/lathe.h"
+#include "vps_scenes/assemble.h"
+
+namespace vps::scenes {
+namespace {
+
+constexpr int kFlats = 192;
+
+Mesh ring(double hole_m, double outer_m, double length_m) {
+  return test::lathe({{hole_m, 0}, {outer_m, 0}, {outer_m, length_m}, {hole_m, length_m}}, kFlats);
+}
+
+/// Along x, from its origin on.
+ScenePart lying(const std::string& name, const Mesh& mesh, double x_m, bool is_fixed) {
+  ScenePart part = scenePart(name, mesh, {x_m, 0, 0}, is_fixed);
+  part.X_WP.R = rotationFromVector(Vec3(0, std::numbers::pi / 2, 0));
+  return part;
+}
+
+/// A wall with a level hole, an axle in it with a flange, and a collar on the axle, each with 0.1 mm of play.
+Scene collarOnAxle() {
+  Scene scene;
+  scene.file = scene.name = "axle";
+  scene.parts = {
+      lying("wall", ring(8.05e-3, 30e-3, 20e-3), 0, true),
+      lying(
+          "axle",
+          test::lathe({{0, -6e-3}, {20e-3, -6e-3}, {20e-3, 0}, {8e-3, 0}, {8e-3, 45e-3}, {0, 45e-3}}, kFlats),
+          0, false),
+      lying("collar", ring(8.05e-3, 15e-3, 10e-3), 20e-3, false)};
+  for (const std::size_t part : {1u, 2u}) {
+    SceneStep step;
+    step.part = part;
+    step.X_WP_target = step.X_WP_start = scene.parts[part].X_WP;
+    step.X_WP_start.p.x() += part == 1 ? -55e-3 : 30e-3;
+    step.timeout_s = 40;
+    scene.steps.push_back(step);
+  }
+  return scene;
+}
+
+TEST(DisplacedMates, AreThoseThatWereMovedAndFit) {
+  const Scene scene = collarOnAxle();
+  std::vector<Pose> X_WP;
+  for (const ScenePart& part : scene.parts) X_WP.push_back(part.X_WP);
+  const Vec3 down_m(0, 0, -50e-6);
+  X_WP[1].p += down_m;
+  X_WP[0].p += Vec3(0, 1e-3, 0);  // fixed: it is where it is drawn
+  const std::vector<Vec3> by_m = displacedMates_m(scene, 1, X_WP);
+  ASSERT_EQ(by_m.size(), 1U);
+  EXPECT_LT((by_m[0] - down_m).norm(), 1e-9);
+  EXPECT_TRUE(displacedMates_m(scene, 0, X_WP).empty());
+}
+
+// The axle hangs 50 um low in its hole, and the collar as much lower on the axle: 100 um, the tolerance of
+// its fit alone.
+TEST(DisplacedMates, ACollarOnAnAxleThatHangsInItsHoleIsInPlace) {
+  Scene scene = collarOnAxle();
+  const AssembleResult result = assemble(scene);
+  ASSERT_EQ(result.steps.size(), 2U);
+  for (const StepResult& step : result.steps)
+    EXPECT_EQ(step.verdict, Verdict::Fits) << step.part << ": " << step.reason;
+  EXPECT_GT(result.steps[1].final_error_m, 95e-6);
+  EXPECT_LE(result.steps[1].tolerance_m, 155e-6);
+}
+
+}  // namespace
+}  // namespace vps::scenes
