@@ -41,7 +41,8 @@ TEST(EdgeNeighbours, AreTheNearestEdgePoints) {
   }
 }
 
-/// A box whose lower edge slants into the upper face of another: two degrees along x, and 30 across.
+/// A box whose lower edge slants into the upper face of another, up to 50 um before its rim: two degrees
+/// along x, and 30 across.
 struct Slanted {
   btCollisionObject upper, lower;
   btCollisionObjectWrapper wrapper0{nullptr, box().shape.get(), &upper, upper.getWorldTransform(), -1, -1};
@@ -51,7 +52,7 @@ struct Slanted {
     const Mat3 R =
         rotationFromVector(Vec3(0, 2.0 / 180 * M_PI, 0)) * rotationFromVector(Vec3(M_PI / 6, 0, 0));
     const Vec3 lowest = R * Vec3(0.005, -0.005, -0.005);
-    upper.setWorldTransform(toBt(Pose(R, Vec3(-2e-3, 0, 0.005 - depth_m) - lowest)));
+    upper.setWorldTransform(toBt(Pose(R, Vec3(4.95e-3, 0, 0.005 - depth_m) - lowest)));
     lower.setWorldTransform(toBt(Pose()));
     upper.setCollisionShape(box().shape.get());
     lower.setCollisionShape(box().shape.get());

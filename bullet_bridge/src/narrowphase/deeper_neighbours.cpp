@@ -29,27 +29,38 @@ class Walker {
         X_MP_(other_.X_WM.inverse() * own_.X_WM) {}
 
   void walkFrom(const Candidate& start) {
+    if (start.distance_m > motion_.contact_margin_m) return;
     Candidate at = start;
     for (int step = 0; step < kMostSteps; ++step)
       if (!moveToDeepest(at)) break;
     if (at.id == start.id || isRefined(at.id) || at.distance_m > -kOverlap_m) return;
-    refined_.push_back(at);
+    thread_local std::vector<Candidate> added;
+    added.assign(1, at);
+    if (writer_) writer_->markExistingContacts(added);
+    refined_.push_back(added.front());
   }
 
  private:
+  /// True if an edge of the other part is so near that the field may read too much.
+  [[nodiscard]] bool isBesideEdge(std::uint32_t id) const {
+    constexpr double kNear = 0.5;  // of a voxel, as fieldError_m()
+    bool is_beside = false;
+    other_.shape->edges().forEachNear(X_MP_ * own_.shape->models().shell->points[id],
+                                      kNear * other_.shape->models().map->voxel_m(),
+                                      [&](std::uint32_t) { is_beside = true; });
+    return is_beside;
+  }
   [[nodiscard]] bool isRefined(std::uint32_t id) const {
     return std::any_of(refined_.begin(), refined_.end(), [&](const Candidate& c) {
       return c.side == own_.side && !c.isCrossing() && c.id == id;
     });
   }
-  // The gap at the end of the step: where the point will press.
   bool moveToDeepest(Candidate& at) {
     thread_local std::vector<Candidate> beside;
     beside.clear();
     for (const std::uint32_t id : own_.shape->edgeNeighbours().of(at.id))
-      if (!isRefined(id)) beside.push_back(byField(id));
+      if (isBesideEdge(id) && !isRefined(id)) beside.push_back(byField(id));
     if (beside.empty()) return false;
-    if (writer_) writer_->markExistingContacts(beside);
     refineAll(pair_, motion_, settings_, beside);
     dropUnreachable(motion_, beside);
     const auto deepest =
