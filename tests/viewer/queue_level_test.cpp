@@ -132,6 +132,16 @@ TEST(QueueLevel, AMixerThatWasLateDelaysNothingForLong) {
   EXPECT_LE(card.waiting(), std::size_t(kSpare_s * kRate_hz) + 2 * kPeriod + 2 * kBlock);
 }
 
+TEST(QueueLevel, ACardThatTakesNothingForSecondsIsNotHeardSecondsLater) {
+  Simulated card;
+  for (int i = 0; i < 1000; ++i) card.write(1e-3 * i, kBlock, 0.5F);
+  card.stall(5);
+  for (int i = 1000; i < 6000; ++i) card.write(1e-3 * i, kBlock, 0.5F);
+  constexpr double kMost_s =
+      10e-3 + 10e-3;  // what a thread may be late, once as it is and once as it may become
+  EXPECT_LE(card.waiting(), std::size_t(kMost_s * kRate_hz) + 2 * kPeriod + 3 * kBlock);
+}
+
 TEST(QueueLevel, ACutHasNoStep) {
   std::vector<float> wave(96);
   for (std::size_t i = 0; i < wave.size(); ++i) wave[i] = std::sin(0.05F * static_cast<float>(i));

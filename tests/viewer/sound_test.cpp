@@ -395,6 +395,8 @@ TEST(ShortPeriods, AreAskedForUnlessTheUserHasSettingsForPeriods) {
   askForShortPeriods();
   const char* const file = std::getenv("ALSOFT_CONF");
   ASSERT_NE(file, nullptr);
+  EXPECT_TRUE(isOwnSettings(file));
+  EXPECT_FALSE(isOwnSettings("mine.conf"));
   std::ostringstream words;
   words << std::ifstream(file).rdbuf();
   EXPECT_NE(words.str().find("period_size = " + std::to_string(kCardPeriod) + "\n"), std::string::npos);

@@ -111,7 +111,7 @@ void addView(CommandLine& line) {
   command.add_option("--height", window.height, "height of the window")
       ->capture_default_str()
       ->check(CLI::Range(64, 16384));
-  command.add_flag("--dark", window.is_dark, "dark panels");
+  command.add_flag("--dark", window.is_dark, "dark panels and background");
   command.add_flag("!--silent", window.has_sound, "no sound");
   command.add_flag("--run", window.runs, "run the procedure at once");
   command

@@ -29,14 +29,17 @@ void* openModule() {
 
 /// Opened once, and for good: what it gives has functions of it.
 const LevelSetModule& module(const std::string& file) {
+  static std::string why = "it is not beside the program";
   static const auto* const found = [] {
     void* const opened = openModule();
-    return opened != nullptr ? static_cast<const LevelSetModule*>(dlsym(opened, kLevelSetSymbol)) : nullptr;
+    if (opened != nullptr) return static_cast<const LevelSetModule*>(dlsym(opened, kLevelSetSymbol));
+    if (const char* words = dlerror(); words != nullptr) why = words;
+    return static_cast<const LevelSetModule*>(nullptr);
   }();
   if (found == nullptr)
     throw LoadError(file, "",
-                    "needs OpenVDB and this program's module " VPS_VDB_MODULE
-                    ", which is not there or finds no OpenVDB; install both (Debian: libopenvdb10.0)");
+                    "needs OpenVDB and this program's module " VPS_VDB_MODULE " (" + why +
+                        "); install both (Debian: libopenvdb10.0)");
   return *found;
 }
 

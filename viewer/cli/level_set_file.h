@@ -8,7 +8,8 @@
 
 namespace vps::viewer::inline v0 {
 
-/// Throws LoadError that names the file in a build without OpenVDB.
+/// Throws LoadError that names the file in a build without OpenVDB, and where the program's module for it
+/// cannot be loaded.
 void requireOpenVdb(const std::string& file);
 
 /// These throw LoadError when the file cannot be used, and in a build without OpenVDB.

@@ -62,6 +62,7 @@ class Walker {
       if (isBesideEdge(id) && !isRefined(id)) beside.push_back(byField(id));
     if (beside.empty()) return false;
     refineAll(pair_, motion_, settings_, beside);
+    measureAtEnd(pair_, motion_, settings_, beside);
     dropUnreachable(motion_, beside);
     const auto deepest =
         std::min_element(beside.begin(), beside.end(), [](const Candidate& a, const Candidate& b) {

@@ -46,7 +46,7 @@ struct ModelPlan {
 
 /// A part's region is the box of its start, way points and target, grown by the map's band and by the error
 /// of the hand: 4 standard deviations of its aim in position and angle, and 0.5 mm (assumed). The region is
-/// only an estimate that saves memory and time: a run whose part comes near the border models the rest then
+/// only an estimate that saves memory and time: a run whose part comes near the border models more then
 /// (assemble.h).
 /// @param models_everything  a map and a shell for each part, none shared and nothing left out
 VPS_SCENES_API ModelPlan makeModelPlan(const Scene& scene, ModelPurpose purpose,

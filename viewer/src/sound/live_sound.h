@@ -38,6 +38,8 @@ VPS_VIEWER_API std::unique_ptr<SoundOutput> openSoundOutput(int rate_hz, std::st
 /// periods. Before the first openSoundOutput() and before other threads are there, since it sets an
 /// environment variable.
 VPS_VIEWER_API void askForShortPeriods();
+/// True for the value that it gives to ALSOFT_CONF.
+VPS_VIEWER_API bool isOwnSettings(const std::string& name);
 
 /// What a card is asked for: samples of a period, and periods. While one is mixed, two are still to be
 /// played, so that the mixer may be as late as with two periods of 128 samples, and takes less at once.

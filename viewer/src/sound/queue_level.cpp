@@ -87,6 +87,9 @@ QueuePlan QueueLevel::plan(bool is_playing, std::size_t waiting, std::size_t cou
       left_.get() >= spare + samples(peak < kQuiet ? kWorthQuiet_s : kWorthLoud_s))
     too_many = std::max(too_many, left_.get() - spare);
   plan.dropped = std::min(too_many, peak < kQuiet ? count : count / 2);
+  // A card that takes nothing for long: whatever is heard, it is not to be heard later and later.
+  const std::size_t limit = most + samples(kMostSpare_s);
+  if (after > limit) plan.dropped = std::max(plan.dropped, std::min(count, after - limit));
   left_.lower(plan.dropped);
   return plan;
 }

@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -17,15 +18,7 @@
 namespace vps::viewer::inline v0 {
 namespace {
 
-/// Whether a line of the file sets periods.
-bool setsPeriods(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  for (std::string line; std::getline(in, line);)
-    if (const std::size_t at = line.find_first_not_of(" \t");
-        at != std::string::npos && line.compare(at, 6, "period") == 0)
-      return true;
-  return false;
-}
+#if defined(__linux__)
 
 std::string variable(const char* name) {
   const char* value = std::getenv(name);
@@ -35,6 +28,11 @@ std::string variable(const char* name) {
 /// Where OpenAL Soft looks for the settings of machine and user.
 std::vector<std::filesystem::path> settingsFiles() {
   std::vector<std::filesystem::path> files = {"/etc/openal/alsoft.conf"};
+  std::string folders = variable("XDG_CONFIG_DIRS");
+  if (folders.empty()) folders = "/etc/xdg";
+  std::istringstream list(folders);
+  for (std::string folder; std::getline(list, folder, ':');)
+    if (!folder.empty()) files.push_back(std::filesystem::path(folder) / "alsoft.conf");
   const std::filesystem::path home = variable("HOME"), config = variable("XDG_CONFIG_HOME");
   if (!home.empty()) files.push_back(home / ".alsoftrc");
   if (!config.empty())
@@ -44,21 +42,47 @@ std::vector<std::filesystem::path> settingsFiles() {
   return files;
 }
 
+/// Whether a line of one of these files begins so.
+bool isSet(const std::string& key) {
+  for (const std::filesystem::path& file : settingsFiles()) {
+    std::ifstream in(file);
+    for (std::string line; std::getline(in, line);)
+      if (const std::size_t at = line.find_first_not_of(" \t");
+          at != std::string::npos && line.compare(at, key.size(), key) == 0)
+        return true;
+  }
+  return false;
+}
+
+// Named by the process's own number, so that its children find it too.
+std::string ownFolder() {
+  return "/proc/" + std::to_string(getpid()) + "/fd/";
+}
+
+#endif
+
 }  // namespace
+
+bool isOwnSettings([[maybe_unused]] const std::string& name) {
+#if defined(__linux__)
+  return name.rfind(ownFolder(), 0) == 0;
+#else
+  return false;
+#endif
+}
 
 void askForShortPeriods() {
 #if defined(__linux__)
-  if (!variable("ALSOFT_CONF").empty()) return;
-  for (const std::filesystem::path& file : settingsFiles())
-    if (setsPeriods(file)) return;
+  if (!variable("ALSOFT_CONF").empty() || isSet("period")) return;
+  std::string settings = "[general]\nperiod_size = " + std::to_string(kCardPeriod) +
+                         "\nperiods = " + std::to_string(kCardPeriods) + "\n";
+  if (!isSet("frequency")) settings += "frequency = 48000\n";
   // The mixer's thread is to go first, too, where the system allows it.
-  const std::string settings =
-      "[general]\nfrequency = 48000\nrt-prio = 1\nperiod_size = " + std::to_string(kCardPeriod) +
-      "\nperiods = " + std::to_string(kCardPeriods) + "\n";
+  if (!isSet("rt-prio")) settings += "rt-prio = 1\n";
   const int file = memfd_create("alsoft.conf", MFD_CLOEXEC);  // open until the process ends
   if (file < 0) return;
   if (write(file, settings.data(), settings.size()) == static_cast<ssize_t>(settings.size()))
-    setenv("ALSOFT_CONF", ("/proc/self/fd/" + std::to_string(file)).c_str(), 1);
+    setenv("ALSOFT_CONF", (ownFolder() + std::to_string(file)).c_str(), 1);
   else
     close(file);
 #endif

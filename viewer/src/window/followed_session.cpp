@@ -21,9 +21,9 @@ namespace {
 
 constexpr double kFullBlow_Pa = 0.2;  // as of a run's sound, live_sound.cpp
 constexpr std::chrono::milliseconds kSoundPeriod{10};
-/// From a snapshot to its sound: synthesis, the pace of its thread, and the card's two periods. assumed, from
-/// the 15 ms that are measured from a contact to its sample (vps view --latency).
-constexpr std::int64_t kSoundWay_ns = 15'000'000;
+/// From a snapshot to its sound: synthesis, the pace of its thread, and the card's three periods. assumed,
+/// from the 9 ms that are measured from a contact to its sample (vps view --measure-latency).
+constexpr std::int64_t kSoundWay_ns = 9'000'000;
 constexpr double kReopen_s = 2;  // between attempts to open a card that is gone; as LiveSound
 
 }  // namespace

@@ -212,7 +212,7 @@ class LoopbackOutput final : public SoundOutput {
 bool mayHaveSoundCard() {
 #ifdef __linux__
   for (const char* name : {"ALSOFT_CONF", "ALSOFT_DRIVERS", "PULSE_SERVER"})
-    if (std::getenv(name) != nullptr) return true;
+    if (const char* value = std::getenv(name); value != nullptr && !isOwnSettings(value)) return true;
   const char* folder = std::getenv("XDG_RUNTIME_DIR");
   const std::filesystem::path session = folder != nullptr ? folder : "/run/user/0";
   std::error_code ignored;
