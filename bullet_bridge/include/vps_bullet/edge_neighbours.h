@@ -8,6 +8,7 @@
 
 #include "vps/pointshell.h"
 #include "vps_bullet/export.h"
+#include "vps_bullet/precision.h"
 
 namespace vps::bullet::inline v0 {
 

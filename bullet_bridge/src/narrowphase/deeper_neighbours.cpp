@@ -11,7 +11,9 @@ namespace vps::bullet::inline v0 {
 namespace {
 
 constexpr double kDeeper_m = 1e-6;  // as reduceByCell() prefers last step's contacts
-constexpr double kOverlap_m = 2e-6;
+// Half of what parts may overlap. assumed: with 2 um a falling bolt gained energy where such points were
+// pushed out.
+constexpr double kOverlap_m = 5e-6;
 constexpr int kMostSteps = 4;  // of a walk. assumed
 
 /// One side's points at their places, refined one after the other.
