@@ -60,10 +60,21 @@ struct Slanted {
   [[nodiscard]] PairView pair() const { return {&wrapper0, &wrapper1}; }
 };
 
-double exactGap_m(const PairView& pair, const Candidate& c) {
-  const SideView own = pair.side(c.side), other = pair.side(1 - c.side);
-  return box().exact->signedDistance(other.X_WM.inverse() *
-                                     (own.X_WM * box().shape->models().shell->points[c.id]));
+/// Edge points of the upper box whose exact gap is between these, the deepest first.
+std::vector<Candidate> edgePoints(const PairView& pair, double least_m, double most_m) {
+  const PointShell& shell = *box().shape->models().shell;
+  std::vector<Candidate> points;
+  for (std::uint32_t id = 0; id < shell.size(); ++id) {
+    Candidate c;
+    c.id = id;
+    c.p_W = pair.side(0).X_WM * shell.points[id];
+    c.n_W = Vec3::UnitZ();
+    c.distance_m = box().exact->signedDistance(pair.side(1).X_WM.inverse() * c.p_W);
+    if (box().shape->isEdgePoint(id) && c.distance_m > least_m && c.distance_m < most_m) points.push_back(c);
+  }
+  std::sort(points.begin(), points.end(),
+            [](const Candidate& a, const Candidate& b) { return a.distance_m < b.distance_m; });
+  return points;
 }
 
 TEST(DeeperNeighbours, AreAddedWhereTheFieldChoseOneThatIsLessDeep) {
@@ -72,19 +83,8 @@ TEST(DeeperNeighbours, AreAddedWhereTheFieldChoseOneThatIsLessDeep) {
   RelativeMotion still;
   still.contact_margin_m = 20e-6;
   const Settings settings;
-  const PointShell& shell = *box().shape->models().shell;
   // The corner is 40 um deep, the next point of the edge 5 um.
-  std::vector<Candidate> edge;
-  for (std::uint32_t id = 0; id < shell.size(); ++id) {
-    Candidate c;
-    c.id = id;
-    c.p_W = pair.side(0).X_WM * shell.points[id];
-    c.n_W = Vec3::UnitZ();
-    c.distance_m = exactGap_m(pair, c);
-    if (box().shape->isEdgePoint(id) && c.distance_m < 0) edge.push_back(c);
-  }
-  std::sort(edge.begin(), edge.end(),
-            [](const Candidate& a, const Candidate& b) { return a.distance_m < b.distance_m; });
+  const std::vector<Candidate> edge = edgePoints(pair, -1, 0);
   ASSERT_GE(edge.size(), 2u);
   std::vector<Candidate> refined{edge[1]};
   refineAll(pair, still, settings, refined);
@@ -105,16 +105,7 @@ TEST(DeeperNeighbours, AreNotAddedWhereNothingOverlaps) {
   RelativeMotion still;
   still.contact_margin_m = 100e-6;
   const Settings settings;
-  const PointShell& shell = *box().shape->models().shell;
-  std::vector<Candidate> refined;
-  for (std::uint32_t id = 0; id < shell.size(); ++id) {
-    Candidate c;
-    c.id = id;
-    c.p_W = pair.side(0).X_WM * shell.points[id];
-    c.n_W = Vec3::UnitZ();
-    c.distance_m = exactGap_m(pair, c);
-    if (box().shape->isEdgePoint(id) && c.distance_m > 20e-6 && c.distance_m < 60e-6) refined.push_back(c);
-  }
+  std::vector<Candidate> refined = edgePoints(pair, 20e-6, 60e-6);
   ASSERT_GE(refined.size(), 1u);
   refineAll(pair, still, settings, refined);
   const std::size_t count = refined.size();

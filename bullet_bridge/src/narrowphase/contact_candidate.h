@@ -85,6 +85,9 @@ struct SideQuery {
   double radius_m = 0;                    ///< of the smaller body
 };
 
+/// A point of `side` as it was read in the map of `other`.
+Candidate candidateOf(const Contact& contact, const SideView& side, const SideView& other);
+
 // Finding: each function appends to `out`.
 
 /// Points of `side` near the other Shape's map (of `other`, at its X_WM). With a query state, and far more

@@ -114,6 +114,19 @@ bool RelativeMotion::canTouch(Candidate& c) const {
   return c.distance_m <= contact_margin_m + std::max(approach_m, anyWay_m());
 }
 
+Candidate candidateOf(const Contact& contact, const SideView& side, const SideView& other) {
+  const double sign = side.side == 0 ? 1 : -1;  // the field's normal points out of `other`
+  Candidate c;
+  c.p_W = other.X_WM * contact.p_M;
+  c.n_W = sign * (other.X_WM.R * contact.n_M);
+  c.distance_m = contact.distance_m;
+  c.area_m2 = contact.area_m2;
+  c.id = contact.id;
+  c.owner = contact.owner;
+  c.side = side.side;
+  return c;
+}
+
 std::size_t findMapCandidates(const SideView& side, const SideView& other, double cutoff_m,
                               const Settings& settings, const SideQuery& query, std::vector<Candidate>& out,
                               std::size_t& points_tested) {
@@ -136,20 +149,10 @@ std::size_t findMapCandidates(const SideView& side, const SideView& other, doubl
   }
   if (query.state && query.state->leading)
     points_tested += query.state->leading->find(*theirs.map, X_MP, leaders, near, memory).points_tested;
-  const double sign = side.side == 0 ? 1 : -1;  // the field's normal points out of `other`
   // The buffer's capacity depends on other pairs; the limit must not.
   const std::size_t count = std::min(near.contacts.size(), limitOf(settings, shell));
-  for (const Contact& contact : std::span(near.contacts).first(count)) {
-    Candidate c;
-    c.p_W = other.X_WM * contact.p_M;
-    c.n_W = sign * (other.X_WM.R * contact.n_M);
-    c.distance_m = contact.distance_m;
-    c.area_m2 = contact.area_m2;
-    c.id = contact.id;
-    c.owner = contact.owner;
-    c.side = side.side;
-    out.push_back(c);
-  }
+  for (const Contact& contact : std::span(near.contacts).first(count))
+    out.push_back(candidateOf(contact, side, other));
   return near.contacts.size() - count;
 }
 

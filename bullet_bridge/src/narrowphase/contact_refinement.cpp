@@ -155,7 +155,7 @@ Foot footOn(const btCollisionShape& primitive, const Pose& X_WS, const Vec3& p_W
 // the normal of the other's face.
 Exact contactAt(const Foot& foot, const OwnPoint& own) {
   Exact exact;
-  exact.found = foot.found;
+  exact.found = exact.found_all = foot.found;
   exact.from_q = foot.from_q;
   if (!foot.found) return exact;
   exact.is_inside = foot.from_q.dot(foot.normal) < kTouching_m && !foot.is_sheet;
@@ -199,11 +199,7 @@ struct Refiner {
   bool is_primitive;
 
   Exact at(const OwnPoint& own, double max_m) const {
-    if (is_primitive) {
-      Exact exact = contactAt(footOn(theirs, other.X_WM, own.p_W), own);
-      exact.found_all = true;
-      return exact;
-    }
+    if (is_primitive) return contactAt(footOn(theirs, other.X_WM, own.p_W), own);
     // A cooked body is the union of its parts: the least of their signed distances.
     Exact nearest;
     bool found_all = true;

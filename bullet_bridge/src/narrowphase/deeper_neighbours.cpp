@@ -35,7 +35,7 @@ class Walker {
     Candidate at = start;
     for (int step = 0; step < kMostSteps; ++step)
       if (!moveToDeepest(at)) break;
-    if (at.id == start.id || isRefined(at.id) || at.distance_m > -kOverlap_m) return;
+    if (at.id == start.id || at.distance_m > -kOverlap_m) return;
     thread_local std::vector<Candidate> added;
     added.assign(1, at);
     if (writer_) writer_->markExistingContacts(added);
@@ -79,15 +79,14 @@ class Walker {
     const PointShell& shell = *own_.shape->models().shell;
     const Vec3 p_M = X_MP_ * shell.points[id];
     const VoxMap::Sample at = map.sample(p_M);
-    Candidate c;
-    c.id = id;
-    c.side = own_.side;
-    c.owner = map.owner(p_M);
-    c.p_W = other_.X_WM * p_M;
-    c.n_W = (own_.side == 0 ? 1 : -1) * (other_.X_WM.R * at.normal);
-    c.distance_m = at.distance_m;
-    c.area_m2 = shell.area_m2[id];
-    return c;
+    Contact contact;
+    contact.id = id;
+    contact.p_M = p_M;
+    contact.n_M = at.normal;
+    contact.distance_m = at.distance_m;
+    contact.area_m2 = shell.area_m2[id];
+    contact.owner = map.owner(p_M);
+    return candidateOf(contact, own_, other_);
   }
 
   const PairView& pair_;
