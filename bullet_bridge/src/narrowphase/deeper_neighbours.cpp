@@ -16,6 +16,27 @@ constexpr double kDeeper_m = 1e-6;  // as reduceByCell() prefers last step's con
 constexpr double kOverlap_m = 5e-6;
 constexpr int kMostSteps = 4;  // of a walk. assumed
 
+/// What is known of points, by their number: walks from neighbouring points meet the same ones.
+class KnownPoints {
+ public:
+  void start(std::size_t count) {
+    for (const std::uint32_t id : set_) state_[id] = kUnknown;
+    set_.clear();
+    if (state_.size() < count) state_.resize(count, kUnknown);
+  }
+  [[nodiscard]] bool isUnknown(std::uint32_t id) const { return state_[id] == kUnknown; }
+  [[nodiscard]] bool isTrue(std::uint32_t id) const { return state_[id] == kTrue; }
+  void set(std::uint32_t id, bool is_true) {
+    state_[id] = is_true ? kTrue : kFalse;
+    set_.push_back(id);
+  }
+
+ private:
+  enum : std::uint8_t { kUnknown, kFalse, kTrue };
+  std::vector<std::uint8_t> state_;
+  std::vector<std::uint32_t> set_;
+};
+
 /// One side's points at their places, refined one after the other.
 class Walker {
  public:
@@ -28,7 +49,10 @@ class Walker {
         refined_(refined),
         own_(pair.side(i)),
         other_(pair.side(1 - i)),
-        X_MP_(other_.X_WM.inverse() * own_.X_WM) {}
+        X_MP_(other_.X_WM.inverse() * own_.X_WM),
+        beside_edge_(pointsBesideEdges()) {
+    beside_edge_.start(own_.shape->models().shell->size());
+  }
 
   void walkFrom(const Candidate& start) {
     if (start.distance_m > motion_.contact_margin_m) return;
@@ -43,14 +67,17 @@ class Walker {
   }
 
  private:
+  static KnownPoints& pointsBesideEdges() {
+    thread_local KnownPoints points;  // keeps its memory
+    return points;
+  }
   /// True if an edge of the other part is so near that the field may read too much.
-  [[nodiscard]] bool isBesideEdge(std::uint32_t id) const {
+  [[nodiscard]] bool isBesideEdge(std::uint32_t id) {
     constexpr double kNear = 0.5;  // of a voxel, as fieldError_m()
-    bool is_beside = false;
-    other_.shape->edges().forEachNear(X_MP_ * own_.shape->models().shell->points[id],
-                                      kNear * other_.shape->models().map->voxel_m(),
-                                      [&](std::uint32_t) { is_beside = true; });
-    return is_beside;
+    if (beside_edge_.isUnknown(id))
+      beside_edge_.set(id, other_.shape->edges().isAnyNear(X_MP_ * own_.shape->models().shell->points[id],
+                                                           kNear * other_.shape->models().map->voxel_m()));
+    return beside_edge_.isTrue(id);
   }
   [[nodiscard]] bool isRefined(std::uint32_t id) const {
     return std::any_of(refined_.begin(), refined_.end(), [&](const Candidate& c) {
@@ -96,6 +123,7 @@ class Walker {
   std::vector<Candidate>& refined_;
   SideView own_, other_;
   Pose X_MP_;
+  KnownPoints& beside_edge_;
 };
 
 }  // namespace

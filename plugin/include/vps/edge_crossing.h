@@ -54,6 +54,10 @@ class VPS_API EdgeSet {
   void forEachNear(const Vec3& p, double radius_m, Visit&& visit) const {
     if (!nodes_.empty()) visitNear(0, p, radius_m, visit);
   }
+  /// True if there is a segment within radius_m of a point. Ends with the first that is found.
+  [[nodiscard]] bool isAnyNear(const Vec3& p, double radius_m) const noexcept {
+    return !nodes_.empty() && isAnyNear(0, p, radius_m);
+  }
 
  private:
   friend class EdgePairSearch;
@@ -73,6 +77,7 @@ class VPS_API EdgeSet {
   void build();
   void bound(Node& node, std::span<const std::uint32_t> own) const;
   [[nodiscard]] bool isNear(std::uint32_t segment, const Vec3& p, double radius_m) const noexcept;
+  [[nodiscard]] bool isAnyNear(std::uint32_t at, const Vec3& p, double radius_m) const noexcept;
   template <typename Visit>
   void visitNear(std::uint32_t at, const Vec3& p, double radius_m, Visit& visit) const {
     const Node& node = nodes_[at];

@@ -167,6 +167,19 @@ bool EdgeSet::isNear(std::uint32_t segment, const Vec3& p, double radius_m) cons
   return (p - s.from - share * way).norm() <= radius_m;
 }
 
+bool EdgeSet::isAnyNear(std::uint32_t at, const Vec3& p, double radius_m) const noexcept {
+  const Node& node = nodes_[at];
+  if (node.is_leaf != 0) return isNear(node.first, p, radius_m);
+  // The sphere, and the cylinder around the node's line: a piece of a rim is long and thin.
+  constexpr double kRounding = 1 + 1e-9;
+  const Vec3 off = p - node.from;
+  const double within_m = node.radius_m + radius_m, beside_m = node.width_m + radius_m;
+  if ((p - node.center).squaredNorm() > kRounding * within_m * within_m ||
+      (off - node.along.dot(off) * node.along).squaredNorm() > kRounding * beside_m * beside_m)
+    return false;
+  return isAnyNear(node.first, p, radius_m) || isAnyNear(node.first + 1, p, radius_m);
+}
+
 /// Descends both hierarchies at once; calls visit(i0, i1) for each pair of segments that can cross and come
 /// within reach_m while those of set 1 move in a tube.
 class EdgePairSearch {
