@@ -67,6 +67,40 @@ TEST(EdgeSet, FindsTheSegmentsAtAPoint) {
   EXPECT_EQ(countAt({0.5, 0, 0}), 0) << "the middle of a face";
 }
 
+// The distance to a circle of many segments has a formula; the search by rounded spheres agrees with the
+// exact visit of all segments, also where the radius decides by a nanometre and far from the origin.
+TEST(EdgeSet, ThatAnyEdgeIsNearIsExact) {
+  constexpr double kRadius_m = 5e-3, kNear_m = 125e-6;
+  std::vector<EdgeSegment> rim(500);
+  const Vec3 center(1.5, -0.7, 0.2);
+  for (std::size_t i = 0; i < rim.size(); ++i) {
+    const auto at = [&](std::size_t k) {
+      const double angle_rad = 2 * std::numbers::pi * static_cast<double>(k) / 500;
+      return Vec3(center + kRadius_m * Vec3(std::cos(angle_rad), std::sin(angle_rad), 0));
+    };
+    rim[i].from = at(i);
+    rim[i].to = at(i + 1);
+  }
+  const EdgeSet edges(rim);
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> angle_rad(0, 2 * std::numbers::pi), off_m(-2e-9, 2e-9);
+  int near = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const double around = angle_rad(random), across = angle_rad(random);
+    const double away_m = kNear_m + (i % 2 == 0 ? off_m(random) : 1e4 * off_m(random));
+    const Vec3 out(std::cos(around), std::sin(around), 0);
+    const Vec3 p =
+        center + (kRadius_m + away_m * std::cos(across)) * out + away_m * std::sin(across) * Vec3::UnitZ();
+    int count = 0;
+    edges.forEachNear(p, kNear_m, [&](std::uint32_t) { ++count; });
+    near += count > 0 ? 1 : 0;
+    ASSERT_EQ(edges.isAnyNear(p, kNear_m), count > 0) << i;
+  }
+  EXPECT_GT(near, 5000);
+  EXPECT_LT(near, 15000);
+  EXPECT_FALSE(EdgeSet().isAnyNear(Vec3::Zero(), 1));
+}
+
 // Two bars standing on edge, one across the other.
 TEST(EdgeCrossing, OfTwoBarsLiesAtTheirContact) {
   const EdgeSet along_x = edgesOf(makeBox({10, 1, 1})), along_y = edgesOf(makeBox({1, 10, 1}));

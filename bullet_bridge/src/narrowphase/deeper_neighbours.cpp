@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "narrowphase/deeper_neighbours.h"
 
-#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <vector>
 
 #include "narrowphase/contact_selection.h"
 #include "narrowphase/manifold_writer.h"
@@ -16,24 +18,23 @@ constexpr double kDeeper_m = 1e-6;  // as reduceByCell() prefers last step's con
 constexpr double kOverlap_m = 5e-6;
 constexpr int kMostSteps = 4;  // of a walk. assumed
 
-/// What is known of points, by their number: walks from neighbouring points meet the same ones.
-class KnownPoints {
+/// Values by the number of a point, which are forgotten at once.
+template <typename Value>
+class ByPoint {
  public:
-  void start(std::size_t count) {
-    for (const std::uint32_t id : set_) state_[id] = kUnknown;
+  void start(std::size_t count, Value usual) {
+    for (const std::uint32_t id : set_) value_[id] = usual;
     set_.clear();
-    if (state_.size() < count) state_.resize(count, kUnknown);
+    if (value_.size() < count) value_.resize(count, usual);
   }
-  [[nodiscard]] bool isUnknown(std::uint32_t id) const { return state_[id] == kUnknown; }
-  [[nodiscard]] bool isTrue(std::uint32_t id) const { return state_[id] == kTrue; }
-  void set(std::uint32_t id, bool is_true) {
-    state_[id] = is_true ? kTrue : kFalse;
+  [[nodiscard]] Value operator[](std::uint32_t id) const { return value_[id]; }
+  void set(std::uint32_t id, Value value) {
+    value_[id] = value;
     set_.push_back(id);
   }
 
  private:
-  enum : std::uint8_t { kUnknown, kFalse, kTrue };
-  std::vector<std::uint8_t> state_;
+  std::vector<Value> value_;
   std::vector<std::uint32_t> set_;
 };
 
@@ -50,8 +51,11 @@ class Walker {
         own_(pair.side(i)),
         other_(pair.side(1 - i)),
         X_MP_(other_.X_WM.inverse() * own_.X_WM),
-        beside_edge_(pointsBesideEdges()) {
-    beside_edge_.start(own_.shape->models().shell->size());
+        memory_(memory()) {
+    memory_.measured.clear();
+    memory_.place.start(own_.shape->models().shell->size(), kUnknown);
+    for (const Candidate& c : refined)
+      if (c.side == i && !c.isCrossing()) memory_.place.set(c.id, kNone);
   }
 
   void walkFrom(const Candidate& start) {
@@ -64,40 +68,59 @@ class Walker {
     added.assign(1, at);
     if (writer_) writer_->markExistingContacts(added);
     refined_.push_back(added.front());
+    memory_.place.set(at.id, kNone);
   }
 
  private:
-  static KnownPoints& pointsBesideEdges() {
-    thread_local KnownPoints points;  // keeps its memory
-    return points;
+  static constexpr std::uint32_t kUnknown = ~0U;
+  static constexpr std::uint32_t kNone = kUnknown - 1;  ///< not beside an edge, out of reach, or refined
+
+  /// Walks from neighbouring points meet the same points. Each is measured once.
+  struct Memory {
+    ByPoint<std::uint32_t> place;  ///< of a point among those measured
+    std::vector<Candidate> measured;
+  };
+  static Memory& memory() {
+    thread_local Memory memory;  // keeps its memory
+    return memory;
   }
+
   /// True if an edge of the other part is so near that the field may read too much.
-  [[nodiscard]] bool isBesideEdge(std::uint32_t id) {
+  [[nodiscard]] bool isBesideEdge(std::uint32_t id) const {
     constexpr double kNear = 0.5;  // of a voxel, as fieldError_m()
-    if (beside_edge_.isUnknown(id))
-      beside_edge_.set(id, other_.shape->edges().isAnyNear(X_MP_ * own_.shape->models().shell->points[id],
-                                                           kNear * other_.shape->models().map->voxel_m()));
-    return beside_edge_.isTrue(id);
+    return other_.shape->edges().isAnyNear(X_MP_ * own_.shape->models().shell->points[id],
+                                           kNear * other_.shape->models().map->voxel_m());
   }
-  [[nodiscard]] bool isRefined(std::uint32_t id) const {
-    return std::any_of(refined_.begin(), refined_.end(), [&](const Candidate& c) {
-      return c.side == own_.side && !c.isCrossing() && c.id == id;
-    });
-  }
-  bool moveToDeepest(Candidate& at) {
+  void measure(std::span<const std::uint32_t> ids) {
     thread_local std::vector<Candidate> beside;
     beside.clear();
-    for (const std::uint32_t id : own_.shape->edgeNeighbours().of(at.id))
-      if (isBesideEdge(id) && !isRefined(id)) beside.push_back(byField(id));
-    if (beside.empty()) return false;
+    for (const std::uint32_t id : ids) {
+      if (memory_.place[id] != kUnknown) continue;
+      memory_.place.set(id, kNone);
+      if (isBesideEdge(id)) beside.push_back(byField(id));
+    }
+    if (beside.empty()) return;
     refineAll(pair_, motion_, settings_, beside);
     measureAtEnd(pair_, motion_, settings_, beside);
     dropUnreachable(motion_, beside);
-    const auto deepest =
-        std::min_element(beside.begin(), beside.end(), [](const Candidate& a, const Candidate& b) {
-          return a.distance_m != b.distance_m ? a.distance_m < b.distance_m : a.id < b.id;
-        });
-    if (deepest == beside.end() || deepest->distance_m > at.distance_m - kDeeper_m) return false;
+    for (const Candidate& c : beside) {
+      memory_.place.set(c.id, static_cast<std::uint32_t>(memory_.measured.size()));
+      memory_.measured.push_back(c);
+    }
+  }
+  bool moveToDeepest(Candidate& at) {
+    const std::span<const std::uint32_t> ids = own_.shape->edgeNeighbours().of(at.id);
+    measure(ids);
+    const Candidate* deepest = nullptr;
+    for (const std::uint32_t id : ids) {
+      const std::uint32_t place = memory_.place[id];
+      if (place == kUnknown || place == kNone) continue;
+      const Candidate& c = memory_.measured[place];
+      if (!deepest || c.distance_m < deepest->distance_m ||
+          (c.distance_m == deepest->distance_m && c.id < deepest->id))
+        deepest = &c;
+    }
+    if (!deepest || deepest->distance_m > at.distance_m - kDeeper_m) return false;
     at = *deepest;
     return true;
   }
@@ -123,7 +146,7 @@ class Walker {
   std::vector<Candidate>& refined_;
   SideView own_, other_;
   Pose X_MP_;
-  KnownPoints& beside_edge_;
+  Memory& memory_;
 };
 
 }  // namespace

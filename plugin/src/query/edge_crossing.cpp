@@ -30,6 +30,11 @@ constexpr double kPast_m = 1e-6, kPastShare = 0.18;
 /// The same at a true end, before the edges touch. assumed.
 constexpr double kEndShare = 0.1;
 
+/// Of a coordinate, a radius and the square of a distance in floats, with room to spare: 2^-21.
+constexpr double kFloatRounding = 4.8e-7;
+/// Halves by count limit the depth to 32, with one waiting half on each level.
+constexpr int kStack = 64;
+
 struct Face {
   Vec3 normal, apex;
   bool is_good;
@@ -158,6 +163,11 @@ void EdgeSet::build() {
     waiting.push_back({node.first, range.first, half});
     waiting.push_back({node.first + 1, range.first + half, range.count - half});
   }
+  for (const Node& node : nodes_) {
+    const double rounding_m = kFloatRounding * (node.center.cwiseAbs().maxCoeff() + node.radius_m);
+    balls_.push_back({node.center.cast<float>(), static_cast<float>(node.radius_m + rounding_m), node.first,
+                      node.is_leaf});
+  }
 }
 
 bool EdgeSet::isNear(std::uint32_t segment, const Vec3& p, double radius_m) const noexcept {
@@ -167,17 +177,26 @@ bool EdgeSet::isNear(std::uint32_t segment, const Vec3& p, double radius_m) cons
   return (p - s.from - share * way).norm() <= radius_m;
 }
 
-bool EdgeSet::isAnyNear(std::uint32_t at, const Vec3& p, double radius_m) const noexcept {
-  const Node& node = nodes_[at];
-  if (node.is_leaf != 0) return isNear(node.first, p, radius_m);
-  // The sphere, and the cylinder around the node's line: a piece of a rim is long and thin.
-  constexpr double kRounding = 1 + 1e-9;
-  const Vec3 off = p - node.from;
-  const double within_m = node.radius_m + radius_m, beside_m = node.width_m + radius_m;
-  if ((p - node.center).squaredNorm() > kRounding * within_m * within_m ||
-      (off - node.along.dot(off) * node.along).squaredNorm() > kRounding * beside_m * beside_m)
-    return false;
-  return isAnyNear(node.first, p, radius_m) || isAnyNear(node.first + 1, p, radius_m);
+bool EdgeSet::isAnyNear(const Vec3& p, double radius_m) const noexcept {
+  if (balls_.empty()) return false;
+  const Eigen::Vector3f at = p.cast<float>();
+  const auto reach_m =
+      static_cast<float>(radius_m + kFloatRounding * (p.cwiseAbs().maxCoeff() + std::abs(radius_m)));
+  std::uint32_t stack[kStack];
+  int waiting = 0;
+  stack[waiting++] = 0;
+  while (waiting > 0) {
+    const Ball& ball = balls_[stack[--waiting]];
+    const float within_m = ball.radius_m + reach_m;
+    if ((at - ball.center).squaredNorm() > within_m * within_m) continue;
+    if (ball.is_leaf == 0) {
+      stack[waiting++] = ball.first + 1;
+      stack[waiting++] = ball.first;
+    } else if (isNear(ball.first, p, radius_m)) {
+      return true;
+    }
+  }
+  return false;
 }
 
 /// Descends both hierarchies at once; calls visit(i0, i1) for each pair of segments that can cross and come
