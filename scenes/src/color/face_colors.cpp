@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "color/palette.h"
+#include "vps_scenes/srgb.h"
 
 namespace vps::scenes::inline v0 {
 
@@ -11,7 +12,7 @@ Color srgbFromLinear(const Color& linear) {
   Color srgb{};
   for (std::size_t i = 0; i < 3; ++i) {
     const float c = linear[i];
-    srgb[i] = c <= 0.0031308f ? 12.92f * c : 1.055f * std::pow(c, 1 / 2.4f) - 0.055f;
+    srgb[i] = static_cast<float>(vps::scenes::srgbFromLinear(static_cast<double>(c)));
   }
   return srgb;
 }

@@ -14,6 +14,7 @@
 #include "import/readers.h"
 #include "vps/load_error.h"
 #include "vps/mesh_weld.h"
+#include "vps_scenes/srgb.h"
 
 namespace vps::scenes::inline v0::import {
 namespace {
@@ -252,7 +253,7 @@ std::array<float, 3> linearFromSrgb(const std::array<float, 3>& srgb) {
   std::array<float, 3> linear{};
   for (std::size_t i = 0; i < 3; ++i) {
     const float c = srgb[i];
-    linear[i] = c <= 0.04045f ? c / 12.92f : std::pow((c + 0.055f) / 1.055f, 2.4f);
+    linear[i] = static_cast<float>(scenes::linearFromSrgb(static_cast<double>(c)));
   }
   return linear;
 }

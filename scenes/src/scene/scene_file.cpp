@@ -20,16 +20,13 @@
 #include "vps_scenes/import.h"
 #include "vps_scenes/scene_groups.h"
 #include "vps_scenes/settings_fields.h"
+#include "vps_scenes/srgb.h"
 
 namespace vps::scenes::inline v0 {
 
 namespace {
 
 namespace fs = std::filesystem;
-
-float linearFromSrgb(double s) {  // IEC 61966-2-1
-  return static_cast<float>(s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4));
-}
 
 /// "#rrggbb" or [r, g, b] from 0 to 1, both sRGB.
 void readColor(const SceneKeys& keys, std::array<float, 3>& color) {
@@ -42,7 +39,7 @@ void readColor(const SceneKeys& keys, std::array<float, 3>& color) {
   } else if (!keys.numbers("color", 3, srgb, {.min = 0, .max = 1})) {
     return;
   }
-  for (std::size_t i = 0; i < 3; ++i) color[i] = linearFromSrgb(srgb[i]);
+  for (std::size_t i = 0; i < 3; ++i) color[i] = static_cast<float>(linearFromSrgb(srgb[i]));
 }
 
 std::string didYouMean(const std::string& name, const std::vector<std::string>& names) {

@@ -8,6 +8,7 @@
 
 #include "core/valid_text.h"
 #include "vps_scenes/settings_fields.h"
+#include "vps_scenes/srgb.h"
 
 namespace vps::scenes::inline v0 {
 
@@ -75,10 +76,8 @@ std::string tableOf(const std::string& name, const std::string& lines) {
 std::string colorText(const std::array<float, 3>& linear) {
   std::string out = "\"#";
   for (const float c : linear) {
-    const double s = c <= 0.0031308f ? 12.92 * c : 1.055 * std::pow(c, 1 / 2.4) - 0.055;  // IEC 61966-2-1
     char two[8];
-    std::snprintf(two, sizeof two, "%02x",
-                  static_cast<int>(std::lround(255 * std::min(1.0, std::max(0.0, s)))));
+    std::snprintf(two, sizeof two, "%02x", srgbByte(c));
     out += two;
   }
   return out + "\"";

@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "draw/marks.h"
-#include "image/srgb.h"
+#include "vps_scenes/srgb.h"
 
 namespace vps::viewer::inline v0 {
 namespace {
@@ -65,8 +65,8 @@ class Legend {
         const Eigen::Vector3f color = colorAt((px - x0 + 0.5) / (x1 - x0));
         for (int k = 0; k < 3; ++k) {
           std::uint8_t& channel = image_.at(px, py)[k];
-          channel =
-              static_cast<std::uint8_t>(std::lround(channel * (1 - opacity) + srgbByte(color[k]) * opacity));
+          channel = static_cast<std::uint8_t>(
+              std::lround(channel * (1 - opacity) + scenes::srgbByte(color[k]) * opacity));
         }
       }
   }

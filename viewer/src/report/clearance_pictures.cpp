@@ -6,10 +6,10 @@
 #include <exception>
 #include <vector>
 
-#include "image/srgb.h"
 #include "report/base64.h"
 #include "report/html.h"
 #include "report/length_text.h"
+#include "vps_scenes/srgb.h"
 #include "vps_viewer/image.h"
 #include "vps_viewer/renderer.h"
 #include "vps_viewer/report.h"
@@ -27,7 +27,7 @@ constexpr double kDecades = 3;
 
 std::array<float, 3> toLinear(const std::array<double, 3>& srgb) {
   std::array<float, 3> out{};
-  for (std::size_t k = 0; k < 3; ++k) out[k] = static_cast<float>(linearFromSrgb(srgb[k]));
+  for (std::size_t k = 0; k < 3; ++k) out[k] = static_cast<float>(scenes::linearFromSrgb(srgb[k]));
   return out;
 }
 

@@ -12,12 +12,12 @@
 #include "draw/coarse_mesh.h"
 #include "draw/shading_mesh.h"
 #include "draw/visible_parts.h"
-#include "image/srgb.h"
 #include "report/base64.h"
 #include "report/run_view_script.h"
 #include "report/text_file.h"
 #include "report/thinned_trace.h"
 #include "report/three.h"
+#include "vps_scenes/srgb.h"
 #include "vps_viewer/renderer.h"
 
 namespace vps::viewer::inline v0 {
@@ -85,8 +85,8 @@ Json poseOf(const Pose& X) {
 
 std::string webColor(const std::array<float, 3>& linear) {
   char text[8];
-  std::snprintf(text, sizeof text, "#%02x%02x%02x", srgbByte(linear[0]), srgbByte(linear[1]),
-                srgbByte(linear[2]));
+  std::snprintf(text, sizeof text, "#%02x%02x%02x", scenes::srgbByte(linear[0]), scenes::srgbByte(linear[1]),
+                scenes::srgbByte(linear[2]));
   return text;
 }
 
@@ -111,7 +111,7 @@ Json partData(const DrawnMesh& part, std::size_t wanted) {
       for (const float n : mesh.vertices[i].n)
         normals.push_back(static_cast<std::int8_t>(std::lround(127 * n)));
       for (std::size_t k = 0; !mesh.colors.empty() && k < 3; ++k)
-        colors.push_back(srgbByte(mesh.colors[i][k]));
+        colors.push_back(scenes::srgbByte(mesh.colors[i][k]));
     }
     i = number[i];
   }

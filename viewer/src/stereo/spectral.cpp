@@ -7,8 +7,8 @@
 #include <cmath>
 #include <cstdint>
 
-#include "image/srgb.h"
 #include "vps/pose.h"
+#include "vps_scenes/srgb.h"
 
 namespace vps::viewer::inline v0 {
 namespace {
@@ -45,12 +45,12 @@ Mat3 conversion(bool is_left) {
 Image throughSpectralFilter(const Image& image, bool is_left) {
   const Mat3 M = conversion(is_left);
   std::array<double, 256> levels{};
-  for (int i = 0; i < 256; ++i) levels[static_cast<std::size_t>(i)] = linearFromSrgb(i / 255.0);
+  for (int i = 0; i < 256; ++i) levels[static_cast<std::size_t>(i)] = scenes::linearFromSrgb(i / 255.0);
   Image out = image;
   for (std::size_t i = 0; i + 2 < out.rgb.size(); i += 3) {
     const Vec3 rgb(levels[image.rgb[i]], levels[image.rgb[i + 1]], levels[image.rgb[i + 2]]);
     const Vec3 mixed = M * rgb;
-    for (int k = 0; k < 3; ++k) out.rgb[i + static_cast<std::size_t>(k)] = srgbByte(mixed[k]);
+    for (int k = 0; k < 3; ++k) out.rgb[i + static_cast<std::size_t>(k)] = scenes::srgbByte(mixed[k]);
   }
   return out;
 }

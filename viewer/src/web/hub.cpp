@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "draw/visible_parts.h"
-#include "image/srgb.h"
 #include "vps_device/metronome.h"
+#include "vps_scenes/srgb.h"
 #include "web/part_glb.h"
 #include "window/presentation.h"
 
@@ -36,8 +36,8 @@ Json poseJson(const Pose& X) {
 
 std::string colorText(const std::array<float, 3>& linear) {
   char text[8];
-  std::snprintf(text, sizeof text, "#%02x%02x%02x", srgbByte(linear[0]), srgbByte(linear[1]),
-                srgbByte(linear[2]));
+  std::snprintf(text, sizeof text, "#%02x%02x%02x", scenes::srgbByte(linear[0]), scenes::srgbByte(linear[1]),
+                scenes::srgbByte(linear[2]));
   return text;
 }
 

@@ -2,7 +2,7 @@
 #include <imgui.h>
 
 #include "draw/marks.h"
-#include "image/srgb.h"
+#include "vps_scenes/srgb.h"
 #include "window/glfw/session.h"
 #include "window/hand_mark.h"
 
@@ -10,7 +10,8 @@ namespace vps::viewer::inline v0 {
 namespace {
 
 ImU32 packed(const Eigen::Vector3f& linear) {
-  return IM_COL32(srgbByte(linear.x()), srgbByte(linear.y()), srgbByte(linear.z()), 255);
+  return IM_COL32(scenes::srgbByte(linear.x()), scenes::srgbByte(linear.y()), scenes::srgbByte(linear.z()),
+                  255);
 }
 
 /// White below, so that it is seen on light and dark parts; the bar before it has the force's colour.

@@ -6,8 +6,9 @@
 #include <cmath>
 #include <cstdint>
 
-namespace vps::viewer::inline v0 {
+namespace vps::scenes::inline v0 {
 
+/// Both are O(1) and continuous.
 inline double srgbFromLinear(double linear) {
   return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
 }
@@ -19,4 +20,4 @@ inline std::uint8_t srgbByte(double linear) {
   return static_cast<std::uint8_t>(std::lround(255 * srgbFromLinear(std::clamp(linear, 0.0, 1.0))));
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::scenes::inline v0
