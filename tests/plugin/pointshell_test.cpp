@@ -198,6 +198,67 @@ TEST(PointShell, AFinerTessellationDoesNotCrowdTheRim) {
   EXPECT_GE(on_rim, 2 * std::numbers::pi * 5 / 0.25);
 }
 
+/// A plate of 12 mm with a smooth bump on its upper side: a raised cosine.
+Mesh plateWithBump(const Vec3& at, double width_m, double height_m) {
+  constexpr int kCells = 240;  // of 50 um
+  constexpr double kSide_m = 12 * kMm;
+  Mesh mesh = makeBox({kSide_m, kSide_m, 2 * kMm});
+  std::erase_if(mesh.triangles, [&](const auto& t) {  // the upper side is replaced
+    return std::all_of(t.begin(), t.end(), [&](std::uint32_t v) { return mesh.vertices[v].z() > 0; });
+  });
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  for (int j = 0; j <= kCells; ++j)
+    for (int i = 0; i <= kCells; ++i) {
+      Vec3 p(kSide_m * i / kCells - kSide_m / 2, kSide_m * j / kCells - kSide_m / 2, kMm);
+      const double share = 2 * (p - at).head<2>().norm() / width_m;
+      if (share < 1) p.z() += height_m * 0.5 * (1 + std::cos(std::numbers::pi * share));
+      mesh.vertices.push_back(p);
+    }
+  const auto id = [&](int i, int j) { return first + static_cast<std::uint32_t>(j * (kCells + 1) + i); };
+  for (int j = 0; j < kCells; ++j)
+    for (int i = 0; i < kCells; ++i) {
+      mesh.triangles.push_back({id(i, j), id(i + 1, j), id(i + 1, j + 1)});
+      mesh.triangles.push_back({id(i, j), id(i + 1, j + 1), id(i, j + 1)});
+    }
+  return mesh;
+}
+
+// Without points of their own, bumps narrower than the spacing lie between all points in most places. A point
+// whose normal leans by 20 degrees from the top's is lower by 1 - cos 20 degrees of the radius there.
+TEST(PointShell, ASmoothBumpSmallerThanTheSpacingHasPointsNearItsTop) {
+  constexpr double kSpacing_m = kMm, kHeight_m = 0.2 * kMm;
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> place(-4 * kMm, 4 * kMm);
+  const std::size_t flat = buildPointShell(plateWithBump(Vec3::Zero(), 1 * kMm, 0), {kSpacing_m}).size();
+  for (const double width_m : {0.6 * kMm, 1 * kMm, 1.4 * kMm})
+    for (int i = 0; i < 4; ++i) {
+      const Mesh mesh = plateWithBump({place(random), place(random), 0}, width_m, kHeight_m);
+      const PointShell shell = buildPointShell(mesh, {kSpacing_m});
+      const double radius_m = width_m * width_m / (2 * std::numbers::pi * std::numbers::pi * kHeight_m);
+      double top_m = 0, highest_m = 0;
+      for (const Vec3& v : mesh.vertices) top_m = std::max(top_m, v.z());
+      for (const Vec3& p : shell.points) highest_m = std::max(highest_m, p.z());
+      EXPECT_LE(top_m - highest_m, (1 - 0.94) * radius_m + 0.01 * kSpacing_m) << width_m << " " << i;
+      EXPECT_LT(shell.size(), flat + 100) << width_m << " " << i;
+    }
+}
+
+// What curves evenly needs no more points, convex or hollow.
+TEST(PointShell, EvenCurvatureIsNoBump) {
+  Mesh bore = makeCylinder(4 * kMm, 10 * kMm, 400);
+  for (auto& t : bore.triangles) std::swap(t[0], t[1]);
+  for (const Mesh& mesh : {makeCylinder(4 * kMm, 10 * kMm, 400), bore, makeSphere(4 * kMm, 5)}) {
+    const PointShell shell = buildPointShell(mesh, {0.5 * kMm});
+    for (std::size_t i = 0; i < shell.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j) {
+        const bool is_on_rim = std::abs(std::abs(shell.points[i].z()) - 5 * kMm) < 0.5 * kMm ||
+                               std::abs(std::abs(shell.points[j].z()) - 5 * kMm) < 0.5 * kMm;
+        if (is_on_rim || shell.inward[i].dot(shell.inward[j]) <= 0) continue;
+        ASSERT_GT((shell.points[i] - shell.points[j]).norm(), 0.7499 * 0.5 * kMm) << i << " " << j;
+      }
+  }
+}
+
 TEST(PointShell, BothSidesOfAThinPlateAreSampled) {
   const Sample& plate = samples()[4];
   std::vector<Vec3> top, bottom;

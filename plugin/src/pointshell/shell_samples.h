@@ -38,7 +38,9 @@ std::vector<ShellSample> sampleFeatures(const Mesh& mesh, const std::vector<Vec3
 /// Adds points on faces to samples (which may contain features already) such that every point of the surface
 /// has a sample within spacing_m that faces the same way (normals less than 90 degrees apart, so that a thin
 /// wall is sampled on both sides), and no new point is within 0.75 spacing_m of another that faces the same
-/// way. Then assigns to each sample the area nearest to it. Deterministic. O(area / spacing^2).
+/// way, except on bumps between them: no smooth vertex protrudes by more than a hundredth of spacing_m beyond
+/// the point nearest to it. Then assigns to each sample the area nearest to it. Deterministic.
+/// O(area / spacing^2 + vertices).
 void sampleFaces(const Mesh& mesh, const std::vector<Vec3>& normals, double spacing_m,
                  std::vector<ShellSample>& samples);
 
