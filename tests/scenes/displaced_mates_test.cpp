@@ -61,6 +61,18 @@ TEST(DisplacedMates, AreThoseThatWereMovedAndFit) {
   EXPECT_TRUE(displacedMates_m(scene, 0, X_WP).empty());
 }
 
+TEST(DisplacedMates, AShaftPassesOnNothingAlongItsAxis) {
+  const Scene scene = collarOnAxle();
+  std::vector<Pose> X_WP;
+  for (const ScenePart& part : scene.parts) X_WP.push_back(part.X_WP);
+  const Vec3 down_m(0, 0, -50e-6), along_m(-0.4e-3, 0, 0);
+  X_WP[1].p += down_m + along_m;
+  const std::vector<Vec3> by_m = displacedMates_m(scene, 1, X_WP);
+  ASSERT_EQ(by_m.size(), 2U);
+  EXPECT_LT((by_m[0] - down_m).norm(), 1e-9);
+  EXPECT_LT((by_m[1] - down_m - along_m).norm(), 1e-9);  // it may stand on the axle's shoulder
+}
+
 // The axle hangs 50 um low in its hole, and the collar as much lower on the axle: 100 um, the tolerance of
 // its fit alone.
 TEST(DisplacedMates, ACollarOnAnAxleThatHangsInItsHoleIsInPlace) {

@@ -199,6 +199,28 @@ TEST(Plan, ADovetailSlidesAlongItsGroove) {
   expectFreeWays(parts, plan);
 }
 
+// Resting on the groove's floor, the tail has 0.125 mm to each wall, which lean by 0.5 mm for each mm of
+// height: it goes in the middle of its 0.25 mm of height, and down at the end. In the middle of its play it
+// goes straight.
+TEST(Plan, ATailThatRestsInItsGrooveGoesWhereItHasMostRoom) {
+  for (const double z_m : {0.0, -0.05e-3}) {
+    const std::vector<DrawnPart> parts = {at("groove", dovetailGroove(), {0, 0, 0}),
+                                          at("tail", dovetailTail(), {0, 0, z_m})};
+    const PlanResult plan = planAssembly("test", parts);
+    ASSERT_EQ(stepsOf(plan.assemblies.front()), Names{"tail"});
+    const PlannedStep& step = plan.assemblies.front().steps.front();
+    EXPECT_EQ(step.kind, WayKind::Straight);
+    EXPECT_NEAR(std::abs(step.insertion_W.y()), 1, 1e-9);
+    ASSERT_EQ(step.before_W.size(), z_m < 0 ? 2U : 1U);
+    for (const Pose& before_W : step.before_W)
+      EXPECT_NEAR(before_W.p.z(), z_m < 0 ? 0.083e-3 : 0, 16e-6) << z_m;
+    if (z_m < 0) {
+      EXPECT_NEAR(step.before_W.back().p.y(), 0, 1e-9);
+    }
+    expectFreeWays(parts, plan);
+  }
+}
+
 TEST(Plan, ALidComesAfterWhatItCovers) {
   const std::vector<DrawnPart> parts = {at("lid", makeBox(Vec3(0.04, 0.04, 0.004)), {0, 0, 0.042}),
                                         at("cup", cup(0.04, 0.002), {0, 0, 0}),

@@ -194,7 +194,7 @@ class VPS_DEVICE_API VirtualOperator {
 
   [[nodiscard]] OperatorPhase phase() const noexcept;
   [[nodiscard]] OperatorStrategy strategy() const noexcept;
-  /// How often it backed off to try again.
+  /// How often it backed off to try again, in all searches of the task.
   [[nodiscard]] int retries() const noexcept;
   [[nodiscard]] const OperatorHabits& habits() const noexcept;
 

@@ -47,6 +47,8 @@ void VirtualOperator::Person::begin(const OperatorTask& task, double now_s) {
   serve_m_ = serve_rad_ = Vec3::Zero();
   has_view_ = is_home_ = false;  // the next view gives the hand's start
   is_regrasping_ = false;
+  insertion_.forgetRetries();
+  screwing_.forgetRetries();
   spin_rad_ = handle_rad_ = handle_goal_rad_ = 0;
   begin_s_ = now_s;
   next_ = 1;

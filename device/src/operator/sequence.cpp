@@ -5,6 +5,7 @@ namespace vps::device::inline v0 {
 
 void Sequence::begin(const Situation& situation, const Feel& feel) noexcept {
   situation_ = situation;
+  earlier_retries_ += retries_;
   retries_ = 0;
   reset();
   start(OperatorStrategy::Approach, feel);

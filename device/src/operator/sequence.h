@@ -10,7 +10,10 @@ namespace vps::device::inline v0 {
 class Sequence {
  public:
   virtual ~Sequence() = default;
+  /// A search of a task; one task may have several.
   void begin(const Situation& situation, const Feel& feel) noexcept;
+  /// Before a new task: retries() counts from 0.
+  void forgetRetries() noexcept { retries_ = earlier_retries_ = 0; }
   /// Done when the part is home. Never fails by itself: the operator gives up at its timeout.
   Outcome step(const Feel& feel, double dt_s) noexcept;
 
@@ -18,7 +21,8 @@ class Sequence {
   [[nodiscard]] const Move& move() const noexcept {
     return const_cast<Sequence*>(this)->present().move();  // NOLINT
   }
-  [[nodiscard]] int retries() const noexcept { return retries_; }
+  /// Of all searches of the task.
+  [[nodiscard]] int retries() const noexcept { return earlier_retries_ + retries_; }
 
  protected:
   void start(OperatorStrategy strategy, const Feel& feel) noexcept;
@@ -35,9 +39,10 @@ class Sequence {
 
   Situation situation_;
   OperatorStrategy strategy_ = OperatorStrategy::None;
-  int retries_ = 0;
+  int retries_ = 0;  ///< of this search
 
  private:
+  int earlier_retries_ = 0;
   Approach approach_;
   Touch touch_;
   PlaceBySight place_by_sight_;

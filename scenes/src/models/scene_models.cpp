@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <exception>
 #include <mutex>
+#include <numeric>
 #include <set>
 #include <utility>
 
@@ -156,9 +157,11 @@ void requireMemory(const Scene& scene, const ModelPlan& plan, const ModelOptions
 /// warnings and errors are passed on in the order of the parts, so that the result does not depend on timing.
 class ModelBuilder {
  public:
-  ModelBuilder(Scene& scene, const ModelPlan& plan, const ModelOptions& options)
+  ModelBuilder(Scene& scene, const ModelPlan& plan, std::vector<std::size_t> parts,
+               const ModelOptions& options)
       : scene_(scene),
         plan_(plan),
+        parts_(std::move(parts)),
         options_(options),
         times_(scene.parts.size()),
         warnings_(scene.parts.size()),
@@ -173,7 +176,7 @@ class ModelBuilder {
           for (std::size_t k = range.begin(); k < range.end(); ++k) tryPart(order[k]);
         },
         tbb::simple_partitioner());
-    for (std::size_t i = 0; i < scene_.parts.size(); ++i) {
+    for (const std::size_t i : parts_) {
       if (errors_[i]) std::rethrow_exception(errors_[i]);
       if (options_.warn) std::ranges::for_each(warnings_[i], options_.warn);
       if (plan_.parts[i].same_as) share(i);
@@ -186,7 +189,7 @@ class ModelBuilder {
   /// The parts with models of their own, so that no core is left with a large one at the end.
   [[nodiscard]] std::vector<std::size_t> largestFirst() {
     std::vector<std::size_t> order;
-    for (std::size_t i = 0; i < scene_.parts.size(); ++i)
+    for (const std::size_t i : parts_)
       if (!plan_.parts[i].same_as) order.push_back(i);
     const auto size = [&](std::size_t i) { return scene_.parts[i].part.mesh.triangles.size(); };
     std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return size(a) > size(b); });
@@ -244,6 +247,7 @@ class ModelBuilder {
 
   Scene& scene_;
   const ModelPlan& plan_;
+  const std::vector<std::size_t> parts_;  ///< ascending
   const ModelOptions& options_;
   std::vector<BuildTimes> times_;
   std::vector<std::vector<std::string>> warnings_;  ///< by part
@@ -256,11 +260,18 @@ class ModelBuilder {
 }  // namespace
 
 std::vector<BuildTimes> buildModels(Scene& scene, const ModelPlan& plan, const ModelOptions& options) {
+  std::vector<std::size_t> parts(scene.parts.size());
+  std::iota(parts.begin(), parts.end(), 0U);
+  return buildModels(scene, plan, std::move(parts), options);
+}
+
+std::vector<BuildTimes> buildModels(Scene& scene, const ModelPlan& plan, std::vector<std::size_t> parts,
+                                    const ModelOptions& options) {
   requireMemory(scene, plan, options);
   if (scene.fidelity_wish)
     throw LoadError(scene.file, "",
                     "asks for an automatic fidelity that was not chosen yet; call resolveFidelity() first");
-  return ModelBuilder(scene, plan, options).run();
+  return ModelBuilder(scene, plan, std::move(parts), options).run();
 }
 
 void buildModels(Scene& scene, const ModelOptions& options) {

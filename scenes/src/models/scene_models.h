@@ -23,6 +23,10 @@ struct BuildTimes {
 /// cannot be modelled.
 std::vector<BuildTimes> buildModels(Scene& scene, const ModelPlan& plan, const ModelOptions& options);
 
+/// The same of these parts only, in ascending order. No other part shares the models of one of them.
+std::vector<BuildTimes> buildModels(Scene& scene, const ModelPlan& plan, std::vector<std::size_t> parts,
+                                    const ModelOptions& options);
+
 /// Whole models of every part; parts of equal geometry share them.
 void buildModels(Scene& scene, const ModelOptions& options);
 

@@ -19,6 +19,7 @@
 #include "plan/leaning.h"
 #include "plan/line_to_line.h"
 #include "plan/precedence.h"
+#include "plan/room_beside.h"
 #include "plan/way_clearance.h"
 #include "vps/load_error.h"
 
@@ -154,6 +155,12 @@ class Planner {
     step.insertion_W = way.kind == WayKind::Legs ? insertionOf(way) : Vec3(-out_W);
     if (way.kind == WayKind::Screw) {  // a hand turns a screw by itself
       step.before_W = {Pose::translation(out_m * out_W)};
+      return step;
+    }
+    if (way.kind == WayKind::Straight && removal.parts.size() == 1) {
+      const Vec3 aside_m = toMostRoom_m(motions_, removal.parts.front(), held, out_W);
+      step.before_W = {Pose::translation(out_m * out_W + aside_m)};
+      if (!aside_m.isZero(0)) step.before_W.push_back(Pose::translation(aside_m));
       return step;
     }
     const std::vector<Pose> corners = cornersOf(way);

@@ -10,6 +10,20 @@
 
 namespace vps::scenes::inline v0 {
 
+namespace {
+
+constexpr double kSame_m = 1e-9;  // far below what a part's place is known to
+
+/// The part of a mate's displacement that a fit passes on: a shaft none along its axis, a key only across its
+/// faces.
+Vec3 passedOn(const CheckedFit& fit, const Vec3& by_m) {
+  const Vec3 along_axis_m = fit.axis_W * fit.axis_W.dot(by_m);
+  if (fit.kind == FitKind::Shaft) return by_m - along_axis_m;
+  return fit.kind == FitKind::Key ? along_axis_m : by_m;
+}
+
+}  // namespace
+
 std::vector<Vec3> displacedMates_m(const Scene& scene, std::size_t step, const std::vector<Pose>& X_WP) {
   const std::vector<DrawnPart> drawn = drawnParts(scene);
   const SceneStep& planned = scene.steps[step];
@@ -29,7 +43,10 @@ std::vector<Vec3> displacedMates_m(const Scene& scene, std::size_t step, const s
     const auto at =
         std::ranges::find(in_place, mate, [&](const PartInPlace& other) { return drawn[other.part].name; });
     if (at == in_place.end() || scene.parts[at->part].is_fixed) continue;
-    displaced_m.push_back(X_WP[at->part] * (at->X_WP.inverse() * fit.at_W) - fit.at_W);
+    const Vec3 by_m = X_WP[at->part] * (at->X_WP.inverse() * fit.at_W) - fit.at_W;
+    const Vec3 passed_on_m = passedOn(fit, by_m);
+    displaced_m.push_back(passed_on_m);
+    if ((by_m - passed_on_m).norm() > kSame_m) displaced_m.push_back(by_m);
   }
   return displaced_m;
 }

@@ -80,8 +80,8 @@ bool PlacedParts::isCovered(std::size_t step, const Box& box_P, const Pose& X_WP
   return isWithin(grown(moved(box_P, X_WP), reach_m), *region_W);
 }
 
-bool PlacedParts::widenTo(std::size_t step, const Box& region_W) {
-  bool has_changed = false;
+std::vector<std::size_t> PlacedParts::widenTo(std::size_t step, const Box& region_W) {
+  std::vector<std::size_t> changed;
   for (const FixedPart& placed : placed_) {
     if (!scene_.parts[placed.part].is_fixed) continue;  // all others are modelled everywhere
     PartModelPlan& part = plan_.parts[placed.part];
@@ -91,11 +91,12 @@ bool PlacedParts::widenTo(std::size_t step, const Box& region_W) {
     part.has_map = part.has_shell = true;
     part.kept_P.push_back(moved(region_W, placed.X_WP.inverse()));
     judged_[placed.part].reset();
-    has_changed = true;
+    changed.push_back(placed.part);
   }
   plan_.steps[step].region_W = region_W;
   plan_.steps[step].has_shell = true;
-  return has_changed;
+  std::ranges::sort(changed);
+  return changed;
 }
 
 void PlacedParts::widen(std::size_t step, const Box& box_P, const Pose& X_WP) {
@@ -116,8 +117,9 @@ void PlacedParts::widen(std::size_t step, const Box& box_P, const Pose& X_WP) {
     Box region_W = grown(moved(box_P, X_WP), by_m);
     region_W.add(plan_.steps[step].region_W->min);
     region_W.add(plan_.steps[step].region_W->max);
-    has_changed = widenTo(step, region_W);
-    if (has_changed) buildModels(scene_, plan_, options);
+    const std::vector<std::size_t> changed = widenTo(step, region_W);
+    has_changed = !changed.empty();
+    if (has_changed) buildModels(scene_, plan_, changed, options);
   }
   if (has_changed) renewJudge();
   if (const auto order = orderFor(step, has_changed)) setField(cookField(*order));

@@ -54,8 +54,8 @@ class PlacedParts {
   [[nodiscard]] const ModelledCost& modelled() const { return modelled_; }
 
  private:
-  /// @return true if a fixed part has to be modelled anew
-  bool widenTo(std::size_t step, const Box& region_W);
+  /// @return the fixed parts that have to be modelled anew, in ascending order
+  std::vector<std::size_t> widenTo(std::size_t step, const Box& region_W);
   [[nodiscard]] std::optional<FieldOrder> orderFor(std::size_t step, bool rebuilds);
 
   Scene& scene_;
