@@ -52,11 +52,11 @@ struct VPS_API PointShell {
 /// noise). Every surface point has a shell point within spacing_m that faces the same way; face points are at
 /// least 0.75 spacing_m apart, except on bumps: no vertex protrudes by more than a hundredth of spacing_m
 /// beyond the point nearest to it, measured along the mean of both normals, so that even curvature counts as
-/// none. Face points have the triangle's normal, since interpolated normals would describe another surface
-/// than the mesh's exact distance; points on edges and corners have the angle-weighted pseudonormal.
-/// Deterministic. O(area / spacing^2). Throws LoadError for unusable meshes, for a spacing that is not
-/// positive, and for one that would give more points than fit in memory; the message names one that would
-/// fit.
+/// none, or along its own where the normals are over 20 degrees apart. Face points have the triangle's
+/// normal, since interpolated normals would describe another surface than the mesh's exact distance; points
+/// on edges and corners have the angle-weighted pseudonormal. Deterministic. O(area / spacing^2). Throws
+/// LoadError for unusable meshes, for a spacing that is not positive, and for one that would give more points
+/// than fit in memory; the message names one that would fit.
 VPS_API PointShell buildPointShell(const Mesh& mesh, const PointShellSettings& settings,
                                    const std::string& part = "", const Progress& progress = {});
 
