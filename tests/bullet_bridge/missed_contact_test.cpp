@@ -11,6 +11,7 @@
 
 #include "bullet_bridge/world.h"
 #include "search/prism.h"
+#include "support/lathe.h"
 #include "support/random_draw.h"
 #include "vps/mesh_overlap.h"
 #include "vps_bullet/coupling.h"
@@ -196,6 +197,44 @@ TEST(MissedContact, OfTwoFlatRoofsThatCross) {
   scene.addMoving(roof, Pose(rotationFromVector({0, 0, 1}), Vec3(0.3e-3, 0.2e-3, top_m + 0.2e-3)),
                   {0, 0, -0.5}, {0, 0, 20});
   EXPECT_LE(scene.deepestOf(30), kBound_m);
+}
+
+/// A pocket in a block, a from -x to x and b from -y to y [m], open above z = 0.
+Mesh pocketed(double a_m, double b_m, double deep_m) {
+  constexpr double kWall = 2;  // of the pocket
+  Mesh mesh = test::lathe(
+      {{0, -2 * deep_m}, {kWall, -2 * deep_m}, {kWall, 0}, {1, 0}, {1, -deep_m}, {0, -deep_m}}, 4);
+  // The square's corners lie on the axes.
+  const Mat3 R = rotationFromVector({0, 0, std::numbers::pi / 4});
+  for (Vec3& v : mesh.vertices)
+    v = (R * v).cwiseProduct(Vec3(a_m * std::numbers::sqrt2, b_m * std::numbers::sqrt2, 1));
+  return mesh;
+}
+
+// Forces that would move a light key by a millimetre in one step, if nothing stopped it. Its edges then met
+// the pocket's where they would have been at the end of that step, and the contacts there, up to 0.7 mm deep,
+// pushed a key aside that was not deep at all.
+TEST(MissedContact, OfAKeyThatStrongForcesTurnInItsPocket) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  const auto drawn = [&] { return Vec3(uniform(random), uniform(random), uniform(random)); };
+  Measured scene;
+  scene.add(pocketed(3.025e-3, 10.05e-3, 5e-3), Pose(), true);
+  btRigidBody& key = scene.add(makeBox({6e-3, 20e-3, 6e-3}), Pose::translation({0, 0, -2e-3}));
+  double deepest_m = 0, deepest_contact_m = 0;
+  for (int step = 0; step < 600; ++step) {
+    key.applyCentralForce(toBt(Vec3(Vec3(0, 0, -5) + 5 * drawn())));
+    key.applyTorque(toBt(Vec3(0.002 * drawn())));
+    deepest_m = std::max(deepest_m, scene.deepestOf(1));
+    for (int k = 0; k < scene.world.dispatcher.getNumManifolds(); ++k) {
+      const btPersistentManifold& pair = *scene.world.dispatcher.getManifoldByIndexInternal(k);
+      for (int c = 0; c < pair.getNumContacts(); ++c)
+        deepest_contact_m =
+            std::max(deepest_contact_m, -static_cast<double>(pair.getContactPoint(c).getDistance()));
+    }
+  }
+  EXPECT_LE(deepest_m, kBound_m);
+  EXPECT_LE(deepest_contact_m, kBound_m);
 }
 
 // Sharp bodies fall into a corner of three parts, fast and turning. All causes meet here: points on a fast

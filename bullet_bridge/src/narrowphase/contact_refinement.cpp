@@ -249,12 +249,13 @@ Exact besideEdge(const Refiner& refiner, const OwnPoint& own, double reach_m) {
 
 // The line between two edges turns fast as they pass each other, and would stop a point that is about to pass
 // without contact. So the surface that the point meets at the end of the step counts, unless that is an
-// overlap.
+// overlap. Its plane may lie beyond where the point is now, by as much as the bodies would move if nothing
+// stopped them. It must not push: no contact is deeper than it is now.
 Exact atEndOfStep(const Exact& now, const Refiner& refiner, const OwnPoint& own, const Vec3& way_W,
                   double max_m) {
   Exact end = refiner.at(own.movedTo(own.p_W + way_W), max_m + way_W.norm());
   if (end.found && !(end.is_contact && end.distance_m >= 0)) return now;
-  end.distance_m -= end.n.dot(way_W);
+  end.distance_m = std::max(end.distance_m - end.n.dot(way_W), std::min(0.0, now.distance_m));
   return end;
 }
 
