@@ -23,11 +23,11 @@ double bytesOf(const Scene& scene) {
   return static_cast<double>(estimate(scene, ModelPurpose::Assemble, {}).cost.most.bytes);
 }
 
-TEST(FitFidelity, APartOfManyVoxelsKeepsThePreset) {
+TEST(FitFidelity, APartOfManyVoxelsKeepsThePresetsVoxelsAndHasPointsEveryFour) {
   Scene scene = blockOnPlate(8e-3);
   EXPECT_EQ(fitFidelity(scene), "");
   EXPECT_EQ(scene.fidelity.voxel_m, Fidelity().voxel_m);
-  EXPECT_EQ(scene.fidelity.spacing_m, Fidelity().spacing_m);
+  EXPECT_DOUBLE_EQ(scene.fidelity.spacing_m, 4 * Fidelity().voxel_m);
 }
 
 TEST(FitFidelity, ASmallPartIsEightVoxelsAcross) {

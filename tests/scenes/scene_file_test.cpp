@@ -217,6 +217,22 @@ TEST_F(SceneFile, APresetMayBeGivenByItsName) {
   EXPECT_EQ(load("fidelity = 'fast'\n" + kPin).fidelity.voxel_m, fidelityPreset("fast").voxel_m);
 }
 
+// A quarter of the smallest part that moves, between two and four voxels of 0.25 mm.
+TEST_F(SceneFile, WithoutASpacingThePointsAreAsFarApartAsTheSmallestMovedPartAllows) {
+  const auto spacing_m = [&](double across_mm, const std::string& fidelity) {
+    write("small.stl", stlBox(Vec3(across_mm, 40, 40)));
+    return load(kStep + "[[part]]\nfile = 'small.stl'\n[[step]]\npart = 'small'\n" + fidelity)
+        .fidelity.spacing_m;
+  };
+  EXPECT_NEAR(spacing_m(8, ""), 1e-3, 1e-9);
+  EXPECT_NEAR(spacing_m(3, ""), 0.75e-3, 1e-9);
+  EXPECT_NEAR(spacing_m(1, ""), 0.5e-3, 1e-9);
+  EXPECT_NEAR(spacing_m(1, "[fidelity]\nvoxel = '0.1mm'\n"), 0.25e-3, 1e-9);
+  EXPECT_NEAR(spacing_m(8, "[fidelity]\ncontact = 'penalty'\n"), 0.5e-3, 1e-9);
+  EXPECT_EQ(spacing_m(8, "[fidelity]\npreset = 'normal'\n"), fidelityPreset("normal").spacing_m);
+  EXPECT_NEAR(spacing_m(1, "[fidelity]\nspacing = '2mm'\n"), 2e-3, 1e-12);
+}
+
 TEST_F(SceneFile, AnAutomaticFidelityIsReadAsAWishAndBuildsNothing) {
   const Scene scene =
       load(kPin + "[fidelity]\nauto = true\nbudget_hz = 500\nmemory_MB = 200\ncontact_limit = 7\n");

@@ -296,7 +296,7 @@ TEST(FidelityChoice, KeepsItsMemoryAndItsBudgetOfPoints) {
 
 TEST(FidelityChoice, TakesOneSideForARateAloneButNotWithATolerance) {
   FidelityWish wish;
-  wish.budget_hz = 1e6 / (kStepBase_us + 1);  // 18 points: fewer than any spacing leaves both sides
+  wish.budget_hz = 1e6 / (kStepBase_us + 0.2);  // 4 points: fewer than any spacing leaves both sides
   Scene scene = ballOnPlate();
   EXPECT_EQ(chooseFidelity(scene, wish).fidelity.sides, Sides::One);
   wish.tolerance_m = 20e-6;

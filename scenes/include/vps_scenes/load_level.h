@@ -23,13 +23,14 @@ struct LoadLevel {
 };
 
 /// The levels in order: fewer points first, then fewer steps, then slower time; each level keeps the
-/// reductions of the one before. The spacing grows up to four times, as in fidelity_choice.h. assumed: a
-/// quarter of the rate and of the clock's time, beyond which it would no longer be the same task.
-inline constexpr std::array<LoadLevel, 7> kLoadLevels = {
-    {{1, 1, 1}, {2, 1, 1}, {4, 1, 1}, {4, 2, 1}, {4, 4, 1}, {4, 4, 2}, {4, 4, 4}}};
+/// reductions of the one before. The spacing only doubles: a scene that states none has points as far apart
+/// as its parts allow already. assumed: a quarter of the rate and of the clock's time, beyond which it would
+/// no longer be the same task.
+inline constexpr std::array<LoadLevel, 6> kLoadLevels = {
+    {{1, 1, 1}, {2, 1, 1}, {2, 2, 1}, {2, 4, 1}, {2, 4, 2}, {2, 4, 4}}};
 
 /// The greatest share of its period that a step takes at level - 1, divided by that at `level`: the number of
-/// points goes with the inverse square of their spacing. @param level  1 to 6
+/// points goes with the inverse square of their spacing. @param level  1 to 5
 VPS_SCENES_API double costRatio(std::size_t level);
 
 /// For example "points every 1 mm, physics at 500 Hz, time at 1/2 of the clock's".

@@ -216,8 +216,12 @@ static_assert(coversAllMembers<CouplingWishes>(kCouplingFields));
 inline constexpr auto kFidelityFields = std::make_tuple(
     field("voxel", &Fidelity::voxel_m, "grid step of the voxmaps",
           {.quantity = Quantity::Length, .range = kPositive}),
-    field("spacing", &Fidelity::spacing_m, "distance between the points of a pointshell",
-          {.quantity = Quantity::Length, .range = kPositive}),
+    field(
+        "spacing", &Fidelity::spacing_m, "distance between the points of a pointshell",
+        {.quantity = Quantity::Length,
+         .range = kPositive,
+         .default_text = "of the preset; without one, a quarter of the smallest moved part, between two and "
+                         "four voxels, and two with `penalty`"}),
     field("sides", &Fidelity::sides,
           "one: points of the moving part against the field of the fixed parts; both: the other way as well"),
     field("gradient", &Fidelity::gradient, "how the field's gradient is interpolated"),

@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <string>
 
 #include "core/length_words.h"
-#include "vps/box.h"
+#include "scene/usual_spacing.h"
 #include "vps_scenes/explain.h"
 #include "vps_scenes/plan.h"
 
@@ -23,29 +22,13 @@ constexpr double kStep = 1.4142135623730951;  // ratio of voxel sizes: half of t
 constexpr double kFineShare = 0.2;            // of the memory, for voxels finer than the preset's
 constexpr double kCoarsest_m = 16e-3;         // assumed: parts of 130 mm and more
 
-/// The smallest part that a step moves, across its least size in its own frame.
-struct Smallest {
-  std::string name;
-  double across_m = std::numeric_limits<double>::infinity();
-};
-
-Smallest smallestMoved(const Scene& scene) {
-  Smallest out;
-  for (const SceneStep& step : scene.steps) {
-    const Part& part = scene.parts[step.part].part;
-    const double across_m = bounds(part.mesh).size().minCoeff();
-    if (across_m < out.across_m) out = {part.name, across_m};
-  }
-  return out;
-}
-
 double modelBytes(const Scene& scene) {
   return static_cast<double>(estimate(scene, ModelPurpose::Assemble, {}).cost.most.bytes);
 }
 
 void setVoxel(Scene& scene, double voxel_m) {
   scene.fidelity.voxel_m = voxel_m;
-  scene.fidelity.spacing_m = 2 * voxel_m;  // as in the presets
+  scene.fidelity.spacing_m = usualSpacing_m(scene);
 }
 
 /// Coarser voxels, in steps up to the limit, until the models fit; the memory goes with the square of the
@@ -71,10 +54,12 @@ std::string megabytes(double bytes) {
 
 std::string fitFidelity(Scene& scene, double most_bytes) {
   const Fidelity usual;
+  const double spacing_m = scene.fidelity.spacing_m;
   const bool is_usual = !scene.fidelity_wish && scene.fidelity.voxel_m == usual.voxel_m &&
-                        scene.fidelity.spacing_m == usual.spacing_m;
+                        (spacing_m == usual.spacing_m || spacing_m == usualSpacing_m(scene));
   if (!is_usual || scene.steps.empty()) return "";
-  const Smallest smallest = smallestMoved(scene);
+  setVoxel(scene, usual.voxel_m);
+  const SmallestPart smallest = smallestMoved(scene);
   const double wanted_m = std::min(usual.voxel_m, std::max(kFinest_m, smallest.across_m / kLeastAcross));
   double bytes = 0;
   if (wanted_m < usual.voxel_m) {

@@ -13,6 +13,7 @@
 #include "scene/read_fields.h"
 #include "scene/screw_keys.h"
 #include "scene/toml_text.h"
+#include "scene/usual_spacing.h"
 #include "vps/load_error.h"
 #include "vps_device/device_kinds.h"
 #include "vps_device/dual_arm/parameters.h"
@@ -355,17 +356,22 @@ class SceneReader {
     scene_.device.data = path(file);
   }
 
-  /// The name of a preset, "auto", or a table of single settings over a preset.
+  /// The name of a preset, "auto", or a table of single settings. Without a preset the points are as far
+  /// apart as the parts allow.
   void readFidelity() {
     scene_.fidelity = fidelityPreset("normal");
-    if (!top_.has("fidelity")) return;
-    if (top_.isText("fidelity")) return readNamedFidelity();
+    if (top_.has("fidelity")) return top_.isText("fidelity") ? readNamedFidelity() : readFidelityTable();
+    scene_.fidelity.spacing_m = usualSpacing_m(scene_);
+  }
+
+  void readFidelityTable() {
     const SceneKeys keys(*top_.table("fidelity"), context_, "[fidelity]", keysOf(kFidelityKeys));
     const std::vector<std::string> presets = {"fast", "normal", "fine"};
     std::size_t index = 1;
     if (keys.word("preset", presets, index)) scene_.fidelity = fidelityPreset(presets[index]);
     readFields(keys, scene_.fidelity, kFidelityFields);
     readFidelityWish(keys);
+    if (!keys.has("preset") && !keys.has("spacing")) scene_.fidelity.spacing_m = usualSpacing_m(scene_);
   }
 
   void readNamedFidelity() {

@@ -9,6 +9,7 @@
 
 #include "core/machine_memory.h"
 #include "models/scene_models.h"
+#include "scene/usual_spacing.h"
 #include "trade/seeded_draw.h"
 #include "trade/surface_samples.h"
 #include "vps/load_error.h"
@@ -26,7 +27,7 @@ constexpr std::size_t kSamples = 2000;         ///< of each part
 constexpr double kShare = 0.95;
 constexpr double kMargin =
     0.8;  ///< share of the tolerance, so that points other than the samples keep it too
-constexpr double kMaxSpacing = 4;      ///< greatest ratio of the spacing to the first one
+constexpr double kMaxSpacing = 8;      ///< greatest spacing, in voxels
 constexpr double kMachineShare = 0.5;  ///< assumed: the other half is for points and for other programs
 constexpr double kExpectedOverKept =
     2.5;  ///< greatest ratio of expectedMapBytes() to a map's memory; tests check it
@@ -99,7 +100,6 @@ class Chooser {
   const FidelityWish& wish_;
   const ChoiceOptions& options_;
   std::vector<Check> checks_;
-  double first_spacing_m_ = 0;
   FidelityChoice choice_;
 };
 
@@ -149,7 +149,8 @@ bool Chooser::findVoxel() {
     choice_.error_m = worstError(voxel_m, kMargin * *wish_.tolerance_m);
     if (choice_.error_m > kMargin * *wish_.tolerance_m) continue;
     choice_.fidelity.voxel_m = voxel_m;
-    choice_.fidelity.spacing_m = 2 * voxel_m;  // as in the presets
+    scene_.fidelity.voxel_m = voxel_m;
+    choice_.fidelity.spacing_m = usualSpacing_m(scene_);
     return true;
   }
   choice_.failure_reason = "no voxel size down to 15 um keeps the tolerance of depth; allow more";
@@ -175,12 +176,11 @@ void Chooser::count() {
   // The other parts can touch it with no more surface than its own.
   choice_.points_near = choice_.fidelity.sides == Sides::Both ? 2 * most : most;
   choice_.step_us = kStepBase_us + kStepPoint_us * static_cast<double>(choice_.points_near);
-  if (first_spacing_m_ == 0) first_spacing_m_ = choice_.fidelity.spacing_m;
 }
 
 bool Chooser::coarsen() {
   Fidelity& f = choice_.fidelity;
-  if (f.spacing_m / kStep <= 1.001 * kMaxSpacing * first_spacing_m_) {
+  if (f.spacing_m / kStep <= 1.001 * kMaxSpacing * f.voxel_m) {
     f.spacing_m /= kStep;
     return true;
   }
