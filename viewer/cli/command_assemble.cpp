@@ -109,7 +109,7 @@ scenes::Verdict runScene(const AssembleArguments& given) {
   bar.clear();
   if (!given.sound.empty()) wav.write(heard.wav());
 
-  printOutcome(result, notes, given.record, given.out);
+  printOutcome(scene, result, notes, given.record, given.out);
   // Last, so that nothing is lost where it fails.
   if (given.has_pdf) requirePrinted(given.out + "/report.html", given.out + "/report.pdf");
   return result.verdict;

@@ -7,6 +7,7 @@
 #include "json_out.h"
 #include "output.h"
 #include "progress_bar.h"
+#include "run_report.h"
 #include "scene_arguments.h"
 #include "table.h"
 #include "terminal.h"
@@ -126,8 +127,7 @@ int runExplain(const ExplainArguments& given) {
   bar.clear();
 
   const Fidelity& fidelity = scene.fidelity;
-  std::printf("%s: voxels of %s mm, points every %s mm, %s\n\n%s\n%s\n", scene.name.c_str(),
-              fixed(1e3 * fidelity.voxel_m, 3).c_str(), fixed(1e3 * fidelity.spacing_m, 3).c_str(),
+  std::printf("%s: %s, %s\n\n%s\n%s\n", scene.name.c_str(), fidelityWords(fidelity).c_str(),
               inWords(fidelity.sides), tableOfParts(scene, answer.chosen).c_str(),
               tableOfSteps(scene, answer.chosen).c_str());
   std::fputs(totalOf("total                    ", answer.chosen.cost).c_str(), stdout);

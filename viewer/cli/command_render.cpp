@@ -78,7 +78,7 @@ scenes::Verdict runOnce(const RenderArguments& given, const scenes::RenderOption
   out.commit();
   json.write(toJson(result));
   bar.clear();
-  printOutcome(result, notes, recorded, folder);
+  printOutcome(scene, result, notes, recorded, folder);
   return result.verdict;
 }
 

@@ -81,6 +81,11 @@ std::vector<std::string> fillFolder(const OutputFolder& out, const scenes::Scene
   return std::move(outcome.notes);
 }
 
+std::string fidelityWords(const Fidelity& fidelity) {
+  return "voxels of " + fixed(1e3 * fidelity.voxel_m, 3) + " mm, points every " +
+         fixed(1e3 * fidelity.spacing_m, 3) + " mm";
+}
+
 void printSteps(const scenes::AssembleResult& result) {
   std::fputs(tableOf(result.steps).c_str(), stdout);
   for (const scenes::StepResult& step : result.steps) {
@@ -106,8 +111,9 @@ void printSteps(const scenes::AssembleResult& result) {
          " near points found no room in a query; choose a coarser spacing");
 }
 
-void printOutcome(const scenes::AssembleResult& result, const std::vector<std::string>& notes,
-                  const std::string& record, const std::string& out) {
+void printOutcome(const scenes::Scene& scene, const scenes::AssembleResult& result,
+                  const std::vector<std::string>& notes, const std::string& record, const std::string& out) {
+  std::printf("%s: %s\n", scene.name.c_str(), fidelityWords(scene.fidelity).c_str());
   printSteps(result);
   for (const std::string& note : notes) warn(note);
   if (result.real_time) {

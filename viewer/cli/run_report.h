@@ -22,14 +22,18 @@ struct RunFiles {
 std::vector<std::string> fillFolder(const OutputFolder& out, const scenes::Scene& scene,
                                     const scenes::AssembleResult& result, const RunFiles& files);
 
+/// "voxels of 0.250 mm, points every 0.500 mm"
+std::string fidelityWords(const Fidelity& fidelity);
+
 /// Prints the table of steps, and a line for each problem of a step.
 void printSteps(const scenes::AssembleResult& result);
 
-/// Prints what a run came to: steps, notes of fillFolder(), timing of a run by the clock, recording, verdict.
+/// Prints what a run came to: fidelity, steps, notes of fillFolder(), timing of a run by the clock,
+/// recording, verdict.
 /// @param record  file of the recording; empty: none
 /// @param out     folder of the results
-void printOutcome(const scenes::AssembleResult& result, const std::vector<std::string>& notes,
-                  const std::string& record, const std::string& out);
+void printOutcome(const scenes::Scene& scene, const scenes::AssembleResult& result,
+                  const std::vector<std::string>& notes, const std::string& record, const std::string& out);
 
 /// The program's exit status.
 int statusOf(scenes::Verdict verdict);

@@ -12,6 +12,7 @@
 #include "mesh/directions.h"
 #include "mesh/mesh_edges.h"
 #include "mesh/triangle_distance.h"
+#include "mesh/vertex_normals.h"
 
 namespace vps::inline v0 {
 namespace {
@@ -46,18 +47,14 @@ void MeshDistance::computeNormals() {
   is_edge_of_thin_.assign(count, 0);
   is_corner_of_thin_.assign(mesh_.vertices.size(), 0);
   if (count > 0) touch_m_ = kTouch * bounds(mesh_).size().norm();
-  vertex_normals_.assign(mesh_.vertices.size(), Vec3::Zero());
   for (std::size_t i = 0; i < count; ++i) {
     const auto& t = mesh_.triangles[i];
     const Vec3 corner[3] = {mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]};
     face_normals_[i] = normalOrZero(corner[0], corner[1], corner[2]);
     is_thin_[i] = face_normals_[i].isZero(0);
     for (int k = 0; k < 3 && is_thin_[i] != 0; ++k) is_corner_of_thin_[t[k]] = 1;
-    for (int k = 0; k < 3; ++k) {
-      const double angle_rad = angleBetween(corner[(k + 1) % 3] - corner[k], corner[(k + 2) % 3] - corner[k]);
-      vertex_normals_[t[k]] += angle_rad * face_normals_[i];
-    }
   }
+  vertex_normals_ = angleWeightedNormals(mesh_, face_normals_);
   forEachEdge(sortedHalfEdges(mesh_), [&](std::span<const HalfEdge> same) {
     Vec3 sum = Vec3::Zero();
     for (const HalfEdge& e : same) sum += face_normals_[e.triangle];

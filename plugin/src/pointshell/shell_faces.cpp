@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "mesh/directions.h"
+#include "mesh/vertex_normals.h"
 #include "pointshell/shell_grid.h"
 #include "pointshell/shell_samples.h"
 #include "vps/assert.h"
@@ -23,8 +23,8 @@ constexpr double kCandidates = 6;
 /// point.
 constexpr double kAreaPiece = 0.3;
 
-/// Height over spacing of a bump that gets points of its own (assumed): 5 um at 0.5 mm, the least depth that
-/// a verdict counts.
+/// Height over spacing of a bump that gets points of its own (assumed): 10 um at 1 mm, what counts as contact
+/// to a verdict.
 constexpr double kBump = 0.01;
 /// Normals this far apart, 20 degrees, are those of a tight curve: contact moves along a face no farther.
 constexpr double kCosTight = 0.94;
@@ -220,18 +220,10 @@ class FaceSampler {
     samples_.push_back({p, n, 0});
   }
 
-  /// Angle-weighted mean normals of the vertices, unit; zero at a blade, whose facets cancel. Sharp edges
-  /// need no exception: their own points are nearer to their vertices than any other, and as high.
+  /// Mean normals of the vertices, unit; zero at a blade. Sharp edges need no exception: their own points are
+  /// nearer to their vertices than any other, and as high.
   [[nodiscard]] std::vector<Vec3> vertexNormals() const {
-    std::vector<Vec3> mean(mesh_.vertices.size(), Vec3::Zero());
-    for (std::size_t t = 0; t < mesh_.triangles.size(); ++t)
-      for (std::size_t k = 0; k < 3; ++k) {
-        const auto& corner = mesh_.triangles[t];
-        const Vec3& p = mesh_.vertices[corner[k]];
-        mean[corner[k]] +=
-            angleBetween(mesh_.vertices[corner[(k + 1) % 3]] - p, mesh_.vertices[corner[(k + 2) % 3]] - p) *
-            normals_[t];
-      }
+    std::vector<Vec3> mean = angleWeightedNormals(mesh_, normals_);
     for (Vec3& n : mean) n = n.norm() > kLeastMean ? n.normalized() : Vec3(Vec3::Zero());
     return mean;
   }
@@ -240,15 +232,19 @@ class FaceSampler {
   /// on planes, cylinders, spheres and all else that curves evenly between them, convex or hollow. Where it
   /// curves so tightly that the normals are far apart, along the place's own normal.
   [[nodiscard]] double heightOf(const Vec3& p, const Vec3& n) const {
-    Near near;
-    grid_.visitNear(p, spacing_m_, [&](std::uint32_t id, double) {
-      const double distance_m = (samples_[id].p - p).norm();
-      if (facesAs(id, n) && (distance_m < near.distance_m || (distance_m == near.distance_m && id < near.id)))
-        near = {id, distance_m};
+    constexpr std::uint32_t kNone = 0xffffffff;
+    std::uint32_t found = kNone;
+    double least = 0;
+    grid_.visitNear(p, spacing_m_, [&](std::uint32_t id, double squared) {
+      const bool is_nearer = found == kNone || squared < least || (squared == least && id < found);
+      if (is_nearer && facesAs(id, n)) {
+        found = id;
+        least = squared;
+      }
       return true;
     });
-    if (!(near.distance_m <= spacing_m_)) return 0;
-    const ShellSample& sample = samples_[near.id];
+    if (found == kNone) return 0;
+    const ShellSample& sample = samples_[found];
     const Vec3 way = p - sample.p;
     const double height_m = (n + sample.outward).normalized().dot(way);
     return n.dot(sample.outward) < kCosTight ? std::max(height_m, n.dot(way)) : height_m;
