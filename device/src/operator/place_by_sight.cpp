@@ -9,22 +9,32 @@ namespace vps::device::inline v0 {
 namespace {
 constexpr double kGain_per_s = 1.2, kSpeedMost_m_s = 5e-3;
 constexpr double kCome_s = 2, kHold_s = 5;  // eight fixations at the target
+constexpr double kMost_s = 15;              // assumed: then a person leaves a part that sticks where it is
 }  // namespace
 
 void PlaceBySight::start(const Situation& situation, const Feel& feel) noexcept {
   situation_ = situation;
   start_s_ = feel.time_s;
+  home_m_ = seen_s_ = 0;
   move_ = {};
   move_.looks = true;
   move_.push_N = situation.push_limit_N;
 }
 
-Outcome PlaceBySight::step(const Feel& feel, double) noexcept {
+// While the part comes, what is seen counts as it is. Then the hand averages, over all that it sees, where
+// the part belongs relative to where it is felt to be: friction that holds the part is overcome by pushing
+// on, and the noise of sight does not move it.
+Outcome PlaceBySight::step(const Feel& feel, double dt_s) noexcept {
   const double t_s = feel.time_s - start_s_;
-  const double gain_per_s =
-      kGain_per_s / (1 + std::max(0.0, t_s - kCome_s));  // then an average over what it sees
-  move_.speed_m_s = std::clamp(gain_per_s * feel.seen_short_m, -kSpeedMost_m_s, kSpeedMost_m_s);
-  if (t_s < kHold_s) return Outcome::GoingOn;
+  double short_m = feel.seen_short_m;
+  if (t_s > kCome_s) {
+    seen_s_ += dt_s;
+    home_m_ += dt_s / seen_s_ * (feel.seen_short_m + feel.along_m - home_m_);
+    short_m = home_m_ - feel.along_m;
+  }
+  move_.speed_m_s = std::clamp(kGain_per_s * short_m, -kSpeedMost_m_s, kSpeedMost_m_s);
+  if (t_s < kHold_s || (std::abs(short_m) > situation_.habits.see_error_m && t_s < kMost_s))
+    return Outcome::GoingOn;
   move_.speed_m_s = 0;
   return Outcome::Done;
 }

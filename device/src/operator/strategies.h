@@ -143,6 +143,10 @@ class PlaceBySight final : public Strategy {
  public:
   void start(const Situation& situation, const Feel& feel) noexcept override;
   Outcome step(const Feel& feel, double dt_s) noexcept override;
+
+ private:
+  double home_m_ = 0;  ///< mean of where it is seen to belong, as along_m
+  double seen_s_ = 0;  ///< how long that was seen
 };
 
 }  // namespace vps::device::inline v0
