@@ -75,13 +75,13 @@ INSTANTIATE_TEST_SUITE_P(OfAllLengths, SlenderRod,
 TEST(RodThroughTwoPlates, FindsTheSecondHoleAsWellFromMostAims) {
   int found = 0;
   std::string words;
-  for (const std::uint64_t seed : {1, 2, 3, 4}) {
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
     Scene scene = rodOver(150e-3, {0, -80e-3}, seed);
     const AssembleResult result = assemble(scene);
     if (result.verdict == Verdict::Fits) ++found;
     words += said(result) + '\n';
   }
-  EXPECT_GE(found, 2) << words;
+  EXPECT_GE(found, 5) << words;
 }
 
 }  // namespace

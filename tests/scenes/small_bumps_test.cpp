@@ -17,7 +17,7 @@ namespace {
 /// A smooth bump on the first wall of a square prism: (1 + cos) / 2 times the height, within the radius.
 struct Bump {
   double u_m = 0, z_m = 0;  ///< across the wall, from its middle, and along the prism
-  double radius_m = 0.5e-3, height_m = 0;
+  double radius_m = 0, height_m = 0;
   [[nodiscard]] double at(double u, double z) const {
     const double r = std::hypot(u - u_m, z - z_m) / radius_m;
     return r < 1 ? 0.5 * height_m * (1 + std::cos(std::numbers::pi * r)) : 0;
@@ -39,16 +39,17 @@ std::vector<double> overBump(double at_m, double radius_m) {
 }
 
 /// All sections: the corners, and on the first wall the bump and the sides of a groove around it.
-std::vector<Cut> cutsOf(double half_m, const Bump& bump, double groove_half_m) {
+std::vector<Cut> cutsOf(double half_m, const Bump& bump) {
+  constexpr double kGrooveHalf_m = 1.6e-3;
   std::vector<Cut> cuts;
   for (int wall = 0; wall < 4; ++wall) {
     cuts.push_back({wall, -half_m, false});
     if (wall != 0) continue;
-    cuts.push_back({0, -groove_half_m, false});
-    cuts.push_back({0, -groove_half_m, true});
+    cuts.push_back({0, -kGrooveHalf_m, false});
+    cuts.push_back({0, -kGrooveHalf_m, true});
     for (const double u : overBump(bump.u_m, bump.radius_m)) cuts.push_back({0, u, true});
-    cuts.push_back({0, groove_half_m, true});
-    cuts.push_back({0, groove_half_m, false});
+    cuts.push_back({0, kGrooveHalf_m, true});
+    cuts.push_back({0, kGrooveHalf_m, false});
   }
   return cuts;
 }
@@ -58,13 +59,13 @@ Vec3 onWall(const Cut& cut, double half_m, double z) {
   return rotationFromVector({0, 0, angle_rad}) * Vec3(half_m, cut.u_m, z);
 }
 
-constexpr double kGrooveHalf_m = 1.6e-3, kGroove_m = 0.4e-3;
+constexpr double kGroove_m = 0.4e-3;
 constexpr double kHalf_m = 5e-3, kDepth_m = 12e-3, kLength_m = 16e-3, kPlay_m = 10e-6;
 
 /// A peg that stands on z = 0, with a bump on its wall.
 Mesh bumpyPeg(const Bump& bump) {
   constexpr double kChamfer_m = 0.5e-3;
-  const std::vector<Cut> cuts = cutsOf(kHalf_m, bump, kGrooveHalf_m);
+  const std::vector<Cut> cuts = cutsOf(kHalf_m, bump);
   const int columns = static_cast<int>(cuts.size());
   return test::sweptSections(columns, [&](int i) {
     const Cut& cut = cuts[static_cast<std::size_t>(i % columns)];
@@ -82,7 +83,7 @@ Mesh bumpyPeg(const Bump& bump) {
 /// A square hole for it, open above z = 0, with a groove in which the peg's bump runs past one of its own.
 Mesh bumpyHole(const Bump& bump) {
   constexpr double kOuter_m = 11e-3, kFloor_m = 4e-3, kLead_m = 1e-3;
-  const std::vector<Cut> cuts = cutsOf(kHalf_m + kPlay_m, bump, kGrooveHalf_m);
+  const std::vector<Cut> cuts = cutsOf(kHalf_m + kPlay_m, bump);
   const int columns = static_cast<int>(cuts.size());
   return test::sweptSections(columns, [&](int i) {
     const Cut& cut = cuts[static_cast<std::size_t>(i % columns)];
@@ -103,12 +104,8 @@ Mesh bumpyHole(const Bump& bump) {
 
 /// The bumps meet half way down, and are past each other at the end.
 Scene bumpPastBump(double radius_m, double height_m, double across_m, double along_m) {
-  Bump pegs, holes;
-  pegs.radius_m = holes.radius_m = radius_m;
-  pegs.height_m = holes.height_m = height_m;
-  pegs.u_m = holes.u_m = across_m;
-  pegs.z_m = 3e-3 + along_m;
-  holes.z_m = -kDepth_m + 8e-3 + along_m;
+  const Bump pegs{across_m, 3e-3 + along_m, radius_m, height_m};
+  const Bump holes{across_m, -kDepth_m + 8e-3 + along_m, radius_m, height_m};
   Scene scene;
   scene.file = scene.name = "bump_past_bump";
   scene.parts = {scenePart("hole", bumpyHole(holes), Vec3::Zero(), true),
