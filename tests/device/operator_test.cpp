@@ -22,7 +22,8 @@ namespace {
 struct PegWorld {
   double mass_kg = 0.2, clear_m = 0.2e-3, bottom_m = -0.02;
   bool has_bottom = true;
-  double channel_m = 0;  ///< at its bottom the hole goes on so far along y, 0.2 mm high, to a wall
+  double friction_N = 0;  ///< within the last millimetre before the bottom's place
+  double channel_m = 0;   ///< at its bottom the hole goes on so far along y, 0.2 mm high, to a wall
   Vec3 weight_W = Vec3(0, 0, -0.2 * 9.81);
   CouplingState part{Pose{}, Twist{}, 0, true};
 
@@ -30,6 +31,10 @@ struct PegWorld {
     const double k = gains.k_N_per_m, b = gains.b_Ns_per_m + 5;  // some drag in the hole
     const Vec3 pull = k * (proxy.X_W.p - part.X_W.p) + gains.b_Ns_per_m * proxy.V_W.v + weight_W;
     Vec3 v = (mass_kg * part.V_W.v + dt_s * pull) / (mass_kg + dt_s * b + dt_s * dt_s * k);
+    if (std::abs(part.X_W.p.z() - bottom_m) < 1e-3) {
+      const double stops_m_s = friction_N * dt_s / (mass_kg + dt_s * b + dt_s * dt_s * k);
+      v *= v.norm() > stops_m_s ? 1 - stops_m_s / v.norm() : 0;
+    }
     Vec3 p = part.X_W.p + dt_s * v;
     const double off_m = std::hypot(part.X_W.p.x(), part.X_W.p.y());
     const bool is_in = part.X_W.p.z() < 0;
@@ -207,6 +212,23 @@ TEST(VirtualOperator, PlacesWhatNothingGuidesOnlyAsWellAsItSees) {
   EXPECT_GT(sharp_m, 0.1e-3 * std::sqrt(2.0 / 5) / 3);
   EXPECT_GT(blurred_m, 2 * sharp_m);
   RecordProperty("errors_um", std::to_string(1e6 * sharp_m) + " and " + std::to_string(1e6 * blurred_m));
+}
+
+// The hand pushes the part past its place, where friction holds it on the way back. What it then saw late,
+// while the part moved, once counted as what it saw at its place, and it let go 3.6 mm off.
+TEST(VirtualOperator, PushesOnWhereFrictionHoldsWhatNothingStops) {
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    OperatorHabits habits;
+    habits.seed = seed;
+    PegWorld world;
+    world.has_bottom = false;
+    world.friction_N = 1;
+    const Mounting run = mountPeg(habits, world, 40);
+    EXPECT_EQ(run.phase, OperatorPhase::Done) << "seed " << seed;
+    // Four errors of sight: assumed of a hand that works against friction. Measured 0.26 to 0.32 mm, and 0.02
+    // to 0.08 mm without friction.
+    EXPECT_LE(run.error_m, 4 * habits.see_error_m) << "seed " << seed;
+  }
 }
 
 TEST(VirtualOperator, SearchesForTheHoleWithoutVisualCorrection) {

@@ -8,32 +8,35 @@ namespace vps::device::inline v0 {
 
 namespace {
 constexpr double kGain_per_s = 1.2, kSpeedMost_m_s = 5e-3;
-constexpr double kCome_s = 2, kHold_s = 5;  // eight fixations at the target
-constexpr double kMost_s = 15;              // assumed: then a person leaves a part that sticks where it is
+constexpr double kCome_s = 2, kHold_s = 3;  // five fixations at the target
+constexpr double kHasCome = 3;              // errors of sight
+// assumed: then a person leaves a part that sticks where it is, on its way and near its target
+constexpr double kComeMost_s = 15, kHoldMost_s = 10;
 }  // namespace
 
 void PlaceBySight::start(const Situation& situation, const Feel& feel) noexcept {
   situation_ = situation;
   start_s_ = feel.time_s;
-  home_m_ = seen_s_ = 0;
+  home_m_ = held_s_ = 0;
   move_ = {};
   move_.looks = true;
   move_.push_N = situation.push_limit_N;
 }
 
-// While the part comes, what is seen counts as it is. Then the hand averages, over all that it sees, where
-// the part belongs relative to where it is felt to be: friction that holds the part is overcome by pushing
-// on, and the noise of sight does not move it.
+// While the part comes, what is seen counts as it is: it is late, and would not fit what is felt now. Then
+// the hand averages, over all that it sees, where the part belongs relative to where it is felt to be:
+// friction that holds the part is overcome by pushing on, and the noise of sight does not move it.
 Outcome PlaceBySight::step(const Feel& feel, double dt_s) noexcept {
-  const double t_s = feel.time_s - start_s_;
+  const double t_s = feel.time_s - start_s_, see_error_m = situation_.habits.see_error_m;
   double short_m = feel.seen_short_m;
-  if (t_s > kCome_s) {
-    seen_s_ += dt_s;
-    home_m_ += dt_s / seen_s_ * (feel.seen_short_m + feel.along_m - home_m_);
+  const bool has_come = t_s > kCome_s && (std::abs(short_m) < kHasCome * see_error_m || t_s > kComeMost_s);
+  if (has_come || held_s_ > 0) {
+    held_s_ += dt_s;
+    home_m_ += dt_s / held_s_ * (feel.seen_short_m + feel.along_m - home_m_);
     short_m = home_m_ - feel.along_m;
   }
   move_.speed_m_s = std::clamp(kGain_per_s * short_m, -kSpeedMost_m_s, kSpeedMost_m_s);
-  if (t_s < kHold_s || (std::abs(short_m) > situation_.habits.see_error_m && t_s < kMost_s))
+  if (held_s_ < kHold_s || (std::abs(short_m) > see_error_m && held_s_ < kHoldMost_s))
     return Outcome::GoingOn;
   move_.speed_m_s = 0;
   return Outcome::Done;

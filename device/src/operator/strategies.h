@@ -146,7 +146,7 @@ class PlaceBySight final : public Strategy {
 
  private:
   double home_m_ = 0;  ///< mean of where it is seen to belong, as along_m
-  double seen_s_ = 0;  ///< how long that was seen
+  double held_s_ = 0;  ///< how long that was seen; 0: the part still comes
 };
 
 }  // namespace vps::device::inline v0
