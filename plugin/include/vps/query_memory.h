@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "vps/export.h"
@@ -40,15 +41,18 @@ class VPS_API QueryMemory {
   struct Group {
     Vec3 center = Vec3::Zero();  ///< of a sphere around its points, in P [m]
     double radius_m = 0;
-    double odometer = 0;  ///< [voxels]
-    double next = -1;     ///< no leaf of the group needs a test before the odometer has passed this
+    double odometer = 0;       ///< [voxels]
+    double next = -1;          ///< no leaf of the group needs a test before the odometer has passed this
+    std::uint16_t closed = 0;  ///< bit i: row i was never near, and its leaves have no thresholds yet
   };
+  void openRow(std::size_t row) noexcept;
+
   VoxMap map_;  // shares the map's data, so that no other map can get its address
   const PointShell* shell_;
   const ShellBlock* blocks_;
   std::vector<Group> groups_;
-  std::vector<double> row_next_;   ///< as Group::next, for each row of sixteen leaves
-  std::vector<double> leaf_next_;  ///< as Group::next, for each leaf, in whole rows
+  std::vector<double> row_next_;         ///< as Group::next, for each row of sixteen leaves
+  std::unique_ptr<double[]> leaf_next_;  ///< as Group::next, for each leaf of opened rows, in whole rows
   std::vector<std::uint16_t>
       row_near_;  ///< bit i: leaf i was too near for a bound of its sphere, so it is read
   Pose X_MP_;

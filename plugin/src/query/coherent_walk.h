@@ -56,6 +56,7 @@ class CoherentWalk {
   /// Where odometers are reset [voxels], and half the last place of a double there.
   static constexpr double kFarthest = 1 << 20, kRoundingOfSum = 1.3e-10;
   static constexpr double kNever = std::numeric_limits<double>::infinity();
+  static constexpr std::size_t kRows = kGroupLeaves / kLanes;
 
   /// A true distance above this gives readings above the cutoff.
   static double beyond(const Reading& reading, double cutoff) noexcept {
@@ -92,22 +93,42 @@ class CoherentWalk {
     if (!(group.odometer < kFarthest)) restart(g);
     if (group.odometer < group.next) return;
     group.next = kNever;
-    constexpr std::size_t kRows = kGroupLeaves / kLanes;
+    openNearRows(g);
     for (std::size_t row = g * kRows; row < std::min(memory_.row_next_.size(), (g + 1) * kRows); ++row) {
       if (group.odometer >= memory_.row_next_[row]) visitRow(row, group.odometer);
       group.next = std::min(group.next, memory_.row_next_[row]);
     }
   }
 
+  /// Rows that were never near are bounded by their own spheres, and opened when those no longer suffice.
+  void openNearRows(std::size_t g) noexcept {
+    QueryMemory::Group& group = memory_.groups_[g];
+    double* next = &memory_.row_next_[g * kRows];
+    std::uint32_t waiting = 0;
+    for (std::uint32_t rows = group.closed; rows != 0; rows &= rows - 1) {
+      const int row = std::countr_zero(rows);
+      if (group.odometer >= next[row]) waiting |= 1U << row;
+    }
+    if (waiting == 0) return;
+    SphereBounds bounds;
+    boundChildren(reading_.shell.leaf_blocks + memory_.row_next_.size() + g, bounds);
+    for (; waiting != 0; waiting &= waiting - 1) {
+      const int row = std::countr_zero(waiting);
+      next[row] = group.odometer + (static_cast<double>(bounds.free[row]) - kRounding);
+      if (next[row] > group.odometer) continue;
+      group.closed = static_cast<std::uint16_t>(group.closed & ~(1U << row));
+      memory_.openRow(g * kRows + static_cast<std::size_t>(row));
+    }
+  }
+
   /// Large odometers would lose small steps to rounding: they are reset, and all leaves of the group are
   /// tested.
   void restart(std::size_t g) noexcept {
-    const std::size_t first = g * kGroupLeaves,
-                      end = std::min(reading_.shell.leaf_blocks, first + kGroupLeaves);
     memory_.groups_[g].odometer = 0;
     memory_.groups_[g].next = -1;
-    std::fill(&memory_.leaf_next_[first], &memory_.leaf_next_[first] + (end - first), -1.0);
-    for (std::size_t row = first / kLanes; row * kLanes < end; ++row) memory_.row_next_[row] = -1;
+    const std::size_t first = g * kRows, end = std::min(memory_.row_next_.size(), first + kRows);
+    for (std::size_t row = first; row < end; ++row) memory_.openRow(row);
+    memory_.groups_[g].closed = 0;
   }
 
   /// Tests up to sixteen leaves: those whose threshold has passed are read, unless the bounds of their
@@ -122,7 +143,7 @@ class CoherentWalk {
     std::uint32_t waiting = due();
     if ((waiting & ~std::uint32_t{memory_.row_near_[row]}) != 0) {
       SphereBounds bounds;
-      boundRow(row, bounds);
+      boundChildren(reading_.shell.leaf_blocks + row, bounds);
       for (int i = 0; i < kLanes; ++i)
         next[i] = std::max(next[i], odometer + (static_cast<double>(bounds.free[i]) - kRounding));
       waiting = due();
@@ -139,12 +160,12 @@ class CoherentWalk {
     memory_.row_next_[row] = std::min(memory_.row_next_[row], earliest);
   }
 
-  void boundRow(std::size_t row, SphereBounds& bounds) const noexcept {
-    const auto& shell = reading_.shell;
-    const auto cutoff = static_cast<float>(cutoff_);
-    const std::size_t parent = shell.leaf_blocks + row;
-    if (parent < shell.blocks.size()) {
-      reading_.kernels.bound(reading_.field, reading_.motion, shell.blocks[parent], cutoff, bounds);
+  /// Bounds of a row's leaves, or of a group's rows.
+  void boundChildren(std::size_t parent, SphereBounds& bounds) const noexcept {
+    const auto& blocks = reading_.shell.blocks;
+    if (parent < blocks.size()) {
+      reading_.kernels.bound(reading_.field, reading_.motion, blocks[parent], static_cast<float>(cutoff_),
+                             bounds);
       return;
     }
     // A shell of one leaf has no block above it.

@@ -10,31 +10,37 @@ namespace vps::inline v0 {
 
 QueryMemory::QueryMemory(const VoxMap& map, const PointShell& shell)
     : map_(map), shell_(&shell), blocks_(shell.blocks.data()) {
-  const auto sphere = [](const ShellBlock& b) { return Vec3(b.center[0], b.center[1], b.center[2]); };
-  for (std::size_t first = 0; first < shell.leaf_blocks; first += kGroupLeaves) {
-    const std::size_t end = std::min(shell.leaf_blocks, first + kGroupLeaves);
-    Box box;
-    for (std::size_t i = first; i < end; ++i) box.add(sphere(shell.blocks[i]));
-    Group group;
-    group.center = box.center();
-    for (std::size_t i = first; i < end; ++i)
-      group.radius_m = std::max(group.radius_m,
-                                (sphere(shell.blocks[i]) - group.center).norm() + shell.blocks[i].radius_m);
-    groups_.push_back(group);
+  const std::size_t rows = (shell.leaf_blocks + kLanes - 1) / kLanes;
+  // Up to sixteen rows have one block above them; one leaf, or one row, is itself the last block.
+  for (std::size_t g = 0; g < groupCount(shell); ++g) {
+    const ShellBlock& block = shell.blocks[std::min(shell.blocks.size() - 1, shell.leaf_blocks + rows + g)];
+    groups_.push_back({Vec3(block.center[0], block.center[1], block.center[2]), block.radius_m, 0, -1, 0});
   }
-  row_next_.resize((shell.leaf_blocks + kLanes - 1) / kLanes);
-  row_near_.resize(row_next_.size());
-  leaf_next_.resize(row_next_.size() * kLanes);
+  row_next_.resize(rows);
+  row_near_.resize(rows);
+  leaf_next_ = std::make_unique_for_overwrite<double[]>(rows * kLanes);
   clear();
 }
 
 void QueryMemory::clear() noexcept {
-  for (Group& group : groups_) group.odometer = 0, group.next = -1;
+  const std::size_t rows = row_next_.size();
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
+    const std::size_t of_group = std::min<std::size_t>(kLanes, rows - g * kLanes);
+    groups_[g].odometer = 0;
+    groups_[g].next = -1;
+    groups_[g].closed = rows > 1 ? static_cast<std::uint16_t>((1U << of_group) - 1) : std::uint16_t{0};
+  }
   std::fill(row_next_.begin(), row_next_.end(), -1.0);
-  std::fill(leaf_next_.begin(), leaf_next_.end(), std::numeric_limits<double>::infinity());
-  std::fill_n(leaf_next_.begin(), shell_->leaf_blocks, -1.0);
   std::fill(row_near_.begin(), row_near_.end(), std::uint16_t{0});
+  if (rows == 1) openRow(0);
   cutoff_ = kNoQuery;
+}
+
+void QueryMemory::openRow(std::size_t row) noexcept {
+  double* next = &leaf_next_[row * kLanes];
+  std::fill_n(next, kLanes, std::numeric_limits<double>::infinity());
+  std::fill_n(next, std::min<std::size_t>(kLanes, shell_->leaf_blocks - row * kLanes), -1.0);
+  row_next_[row] = -1;
 }
 
 bool QueryMemory::isFor(const VoxMap& map, const PointShell& shell) const noexcept {
