@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <set>
@@ -11,6 +12,7 @@
 #include "support/no_alloc.h"
 #include "support/random_draw.h"
 #include "vps/query.h"
+#include "vps/shell_crop.h"
 
 namespace vps {
 namespace {
@@ -124,6 +126,52 @@ TEST_P(QueryMemoryTest, ContactsAreThoseOfTheExhaustiveQueryInAnyMotionWithAnyCu
     }
     EXPECT_GT(touching, 100u);
     EXPECT_LT(read, visited);
+  }
+}
+
+/// A stretch of the peg's side with so many leaves. A crop keeps the leaves of its points, so each further
+/// point adds one leaf or none.
+PointShell stretchOf(const PointShell& peg, std::size_t leaves) {
+  Box box;
+  for (const Vec3& p : peg.points) box.add(p);
+  box.min.z() = -4 * kMm;  // apart from the ends, where many points have one height
+  std::vector<double> z_m;
+  for (const Vec3& p : peg.points)
+    if (p.z() >= box.min.z()) z_m.push_back(p.z());
+  std::sort(z_m.begin(), z_m.end());
+  std::size_t few = 1, many = z_m.size();
+  while (few < many) {
+    const std::size_t count = (few + many) / 2;
+    box.max.z() = 0.5 * (z_m[count - 1] + z_m[count]);
+    const PointShell shell = croppedShell(peg, {box});
+    if (shell.leaf_blocks == leaves) return shell;
+    if (shell.leaf_blocks < leaves)
+      few = count + 1;
+    else
+      many = count;
+  }
+  return peg;
+}
+
+// The leaves lie under rows of sixteen, and these under groups of sixteen.
+TEST(QueryMemory, ServesShellsOfAnyNumberOfLeavesAlsoAfterClear) {
+  const Scene& scene = scenes()[0];
+  for (const std::size_t leaves : {1, 2, 16, 17, 256, 257}) {
+    const PointShell shell = stretchOf(scene.shell, leaves);
+    ASSERT_EQ(shell.leaf_blocks, leaves);
+    QueryMemory memory(scene.map, shell);
+    ContactSet coherent(shell.size()), all(shell.size());
+    std::size_t touching = 0, step = 0;
+    for (const Pose& X_MP : motion(scene, 300, static_cast<unsigned>(leaves))) {
+      if (++step % 50 == 0) memory.clear();
+      queryContacts(scene.map, shell, X_MP, {}, coherent, &memory);
+      queryContacts(scene.map, shell, X_MP, {.is_exhaustive = true}, all);
+      ASSERT_EQ(coherent.contacts.size(), all.contacts.size()) << leaves << " leaves, step " << step;
+      for (std::size_t i = 0; i < all.contacts.size(); ++i)
+        ASSERT_EQ(coherent.contacts[i].id, all.contacts[i].id) << leaves << " leaves, step " << step;
+      touching += all.contacts.size();
+    }
+    EXPECT_GT(touching, 0u) << leaves;
   }
 }
 

@@ -12,18 +12,18 @@
 
 namespace vps::inline v0 {
 
-/// Temporal coherence of one map and one shell. When a leaf of points is read or bounded, its readings say
-/// how far the leaf may move before any of its points can come within the cutoff. Every group of leaves has
-/// an odometer: the sum over poses of the largest displacement of any of its points. A leaf is skipped until
-/// the odometer has passed that distance. Proof: for the field I as it is read, |I(p') - I(p)| <= s |p' - p|
-/// with s the steepest slope of its nodes times sqrt 3; the distance between two poses is at most the sum of
-/// the distances between the poses in between (triangle inequality); and rounding always increases the
-/// odometer. So no touching point is missed: the answer is the exhaustive one for every motion, jumps
-/// included.
+/// Temporal coherence of one map and one shell. When a leaf of points is read, or it or sixteen neighbouring
+/// leaves are bounded, that says how far they may move before any of their points can come within the cutoff.
+/// Every group of leaves has an odometer: the sum over poses of the largest displacement of any of its
+/// points. A leaf is skipped until the odometer has passed that distance. Proof: for the field I as it is
+/// read, |I(p') - I(p)| <= s |p' - p| with s the steepest slope of its nodes times sqrt 3; the distance
+/// between two poses is at most the sum of the distances between the poses in between (triangle inequality);
+/// and rounding always increases the odometer. So no touching point is missed: the answer is the exhaustive
+/// one for every motion, jumps included.
 ///
 /// One memory serves one pair and one thread at a time. Queries may have different cutoffs; a larger one than
 /// the last query's counts as a motion by the difference. A query of another map or shell ignores the memory.
-/// Queries with a memory do not allocate.
+/// Queries with a memory do not allocate. It can be moved, not copied.
 class VPS_API QueryMemory {
  public:
   /// The shell must outlive the memory and not change. Memory: about 10 bytes for each leaf of 16 points.

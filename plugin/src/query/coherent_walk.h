@@ -127,8 +127,13 @@ class CoherentWalk {
     memory_.groups_[g].odometer = 0;
     memory_.groups_[g].next = -1;
     const std::size_t first = g * kRows, end = std::min(memory_.row_next_.size(), first + kRows);
-    for (std::size_t row = first; row < end; ++row) memory_.openRow(row);
-    memory_.groups_[g].closed = 0;
+    for (std::size_t row = first; row < end; ++row) {
+      const bool is_closed = (memory_.groups_[g].closed >> (row - first) & 1) != 0;
+      if (is_closed)
+        memory_.row_next_[row] = -1;
+      else
+        memory_.openRow(row);
+    }
   }
 
   /// Tests up to sixteen leaves: those whose threshold has passed are read, unless the bounds of their
