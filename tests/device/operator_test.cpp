@@ -22,7 +22,7 @@ namespace {
 struct PegWorld {
   double mass_kg = 0.2, clear_m = 0.2e-3, bottom_m = -0.02;
   bool has_bottom = true;
-  double friction_N = 0;  ///< within the last millimetre before the bottom's place
+  double friction_N = 0;  ///< within a millimetre of the bottom's place
   double channel_m = 0;   ///< at its bottom the hole goes on so far along y, 0.2 mm high, to a wall
   Vec3 weight_W = Vec3(0, 0, -0.2 * 9.81);
   CouplingState part{Pose{}, Twist{}, 0, true};
@@ -218,19 +218,18 @@ TEST(VirtualOperator, PlacesWhatNothingGuidesOnlyAsWellAsItSees) {
 // The hand pushes the part past its place, where friction holds it on the way back. What it then saw late,
 // while the part moved, once counted as what it saw at its place, and it let go 3.6 mm off.
 TEST(VirtualOperator, PushesOnWhereFrictionHoldsWhatNothingStops) {
-  constexpr double kBound = 4;  // assumed of a hand that works against friction
+  constexpr double kBound = 4;  // errors of sight; assumed of a hand that works against friction
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
     OperatorHabits habits;
     habits.seed = seed;
     PegWorld world;
     world.has_bottom = false;
     world.friction_N = 1;
-
     const Mounting run = mountPeg(habits, world, 40);
     EXPECT_EQ(run.phase, OperatorPhase::Done) << "seed " << seed;
     EXPECT_LE(std::abs(run.along_m), kBound * habits.see_error_m) << "seed " << seed;
-    EXPECT_LE(run.time_s, 26) << "seed "
-                              << seed;  // it has 15 s from where it saw that nothing stops the part
+    // It has 15 s from where it saw that nothing stops the part.
+    EXPECT_LE(run.time_s, 26) << "seed " << seed;
   }
 }
 

@@ -11,9 +11,9 @@ constexpr double kGain_per_s = 1.2, kSpeedMost_m_s = 5e-3;
 constexpr double kCome_s = 2, kHold_s = 3;  // ten fixations at the target
 constexpr double kMost_s = 15;              // assumed: then a person leaves a part that sticks where it is
 constexpr double kLeastError_m = 10e-6;     // assumed: a hand does not place more finely
-// What is seen is 0.35 s late, so a part that is still short by s, and comes at 1.2 s a second, is seen 0.42
-// s too far. In the mean of three seconds, while s falls as exp(-1.2 t), that is 0.12 s: one error of sight
-// where s is eight.
+// What is seen is 0.35 s late. A part that still lacks g to its target comes at 1.2 g a second, and is seen
+// 0.42 g behind its place. In the mean of three seconds, while g falls as exp(-1.2 t), that is 0.11 g: less
+// than an error of sight where g is eight of them.
 constexpr double kHasCome = 8;
 }  // namespace
 

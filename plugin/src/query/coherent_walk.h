@@ -56,7 +56,6 @@ class CoherentWalk {
   /// Where odometers are reset [voxels], and half the last place of a double there.
   static constexpr double kFarthest = 1 << 20, kRoundingOfSum = 1.3e-10;
   static constexpr double kNever = std::numeric_limits<double>::infinity();
-  static constexpr std::size_t kRows = kGroupLeaves / kLanes;
 
   /// A true distance above this gives readings above the cutoff.
   static double beyond(const Reading& reading, double cutoff) noexcept {
@@ -94,7 +93,8 @@ class CoherentWalk {
     if (group.odometer < group.next) return;
     group.next = kNever;
     openNearRows(g);
-    for (std::size_t row = g * kRows; row < std::min(memory_.row_next_.size(), (g + 1) * kRows); ++row) {
+    for (std::size_t row = g * kGroupRows; row < std::min(memory_.row_next_.size(), (g + 1) * kGroupRows);
+         ++row) {
       if (group.odometer >= memory_.row_next_[row]) visitRow(row, group.odometer);
       group.next = std::min(group.next, memory_.row_next_[row]);
     }
@@ -103,7 +103,7 @@ class CoherentWalk {
   /// Rows that were never near are bounded by their own spheres, and opened when those no longer suffice.
   void openNearRows(std::size_t g) noexcept {
     QueryMemory::Group& group = memory_.groups_[g];
-    double* next = &memory_.row_next_[g * kRows];
+    double* next = &memory_.row_next_[g * kGroupRows];
     std::uint32_t waiting = 0;
     for (std::uint32_t rows = group.closed; rows != 0; rows &= rows - 1) {
       const int row = std::countr_zero(rows);
@@ -117,7 +117,7 @@ class CoherentWalk {
       next[row] = group.odometer + (static_cast<double>(bounds.free[row]) - kRounding);
       if (next[row] > group.odometer) continue;
       group.closed = static_cast<std::uint16_t>(group.closed & ~(1U << row));
-      memory_.openRow(g * kRows + static_cast<std::size_t>(row));
+      memory_.openRow(g * kGroupRows + static_cast<std::size_t>(row));
     }
   }
 
@@ -126,7 +126,7 @@ class CoherentWalk {
   void restart(std::size_t g) noexcept {
     memory_.groups_[g].odometer = 0;
     memory_.groups_[g].next = -1;
-    const std::size_t first = g * kRows, end = std::min(memory_.row_next_.size(), first + kRows);
+    const std::size_t first = g * kGroupRows, end = std::min(memory_.row_next_.size(), first + kGroupRows);
     for (std::size_t row = first; row < end; ++row) {
       const bool is_closed = (memory_.groups_[g].closed >> (row - first) & 1) != 0;
       if (is_closed)

@@ -102,6 +102,10 @@ class LeafReader {
 
 /// Leaves per group: 4096 points, all under one block of the second level.
 inline constexpr std::size_t kGroupLeaves = kLanes * kLanes;
+inline constexpr std::size_t kGroupRows = kGroupLeaves / kLanes;  ///< rows of sixteen leaves
+inline std::size_t rowCount(const PointShell& shell) noexcept {
+  return (shell.leaf_blocks + kLanes - 1) / kLanes;
+}
 inline std::size_t groupCount(const PointShell& shell) noexcept {
   return (shell.leaf_blocks + kGroupLeaves - 1) / kGroupLeaves;
 }

@@ -10,7 +10,7 @@ namespace vps::inline v0 {
 
 QueryMemory::QueryMemory(const VoxMap& map, const PointShell& shell)
     : map_(map), shell_(&shell), blocks_(shell.blocks.data()) {
-  const std::size_t rows = (shell.leaf_blocks + kLanes - 1) / kLanes;
+  const std::size_t rows = rowCount(shell);
   // Up to sixteen rows have one block above them; one leaf, or one row, is itself the last block.
   for (std::size_t g = 0; g < groupCount(shell); ++g) {
     const ShellBlock& block = shell.blocks[std::min(shell.blocks.size() - 1, shell.leaf_blocks + rows + g)];
@@ -25,7 +25,7 @@ QueryMemory::QueryMemory(const VoxMap& map, const PointShell& shell)
 void QueryMemory::clear() noexcept {
   const std::size_t rows = row_next_.size();
   for (std::size_t g = 0; g < groups_.size(); ++g) {
-    const std::size_t of_group = std::min<std::size_t>(kLanes, rows - g * kLanes);
+    const std::size_t of_group = std::min(kGroupRows, rows - g * kGroupRows);
     groups_[g].odometer = 0;
     groups_[g].next = -1;
     groups_[g].closed = rows > 1 ? static_cast<std::uint16_t>((1U << of_group) - 1) : std::uint16_t{0};
@@ -45,7 +45,7 @@ void QueryMemory::openRow(std::size_t row) noexcept {
 
 bool QueryMemory::isFor(const VoxMap& map, const PointShell& shell) const noexcept {
   return map_.isSame(map) && shell_ == &shell && blocks_ == shell.blocks.data() &&
-         row_next_.size() == (shell.leaf_blocks + kLanes - 1) / kLanes;
+         row_next_.size() == rowCount(shell);
 }
 
 }  // namespace vps::inline v0

@@ -73,8 +73,6 @@ class WrenchCollector {
   }
 
  private:
-  static constexpr std::uint32_t kGroupRows = kGroupLeaves / kLanes;
-
   struct Entry {
     int lane;
     double arm[3];     ///< from the reference [voxels]
