@@ -78,6 +78,21 @@ TEST_F(NodesProgram, PhysicsWaitsForAKilledDeviceAndTheNextOneFinishesTheStep) {
   EXPECT_NE(slurp(folder_ / "render.txt").find("the device is back"), std::string::npos) << texts();
 }
 
+// The simulated motors had no command for longer than their watchdog allows, and the hand did nothing more in
+// that step.
+TEST_F(NodesProgram, ASimulatedDeviceThatWasHeldUpGoesOn) {
+  nodes_->startDevice();
+  nodes_->startRender();
+  ASSERT_TRUE(nodes_->join()) << texts();
+  ASSERT_TRUE(nodes_->waitForHold()) << texts();
+  for (int i = 0; i < 3; ++i) {
+    ASSERT_TRUE(nodes_->waitForPhysics(0.5)) << texts();
+    nodes_->device.holdUp(std::chrono::milliseconds(60));
+  }
+  EXPECT_EQ(nodes_->render.wait(), 0) << texts();
+  EXPECT_GT(json::parse(slurp(folder_ / "run.json"))["wall"]["haptic"]["missed"].get<int>(), 100) << texts();
+}
+
 TEST_F(NodesProgram, AKilledWatcherHarmsNobody) {
   nodes_->startWatch();
   nodes_->startDevice();

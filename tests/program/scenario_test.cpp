@@ -135,9 +135,13 @@ TEST_F(Scenario, ExplainPrintsWhatIsModelledOfTheBearingBlockAndWhatThatSaves) {
   const json data = read("explain.json");
   EXPECT_EQ(data["parts"].size(), 10u);
   EXPECT_EQ(data["steps"].size(), 9u);
-  // Measured 61 of 120 MB, and 1.2 of 17 s.
-  EXPECT_LT(data["modelled"]["bytes"].get<double>(), 0.6 * data["everything"]["bytes"].get<double>());
-  EXPECT_LT(data["wall"]["cook_s"].get<double>(), 0.5 * data["wall"]["everything"]["cook_s"].get<double>());
+  // Measured 53 of 91 MB, and 1595 of 63973 points.
+  EXPECT_LT(data["modelled"]["bytes"].get<double>(), 0.65 * data["everything"]["bytes"].get<double>());
+  EXPECT_LT(data["modelled"]["field_points"].get<double>(),
+            0.1 * data["everything"]["field_points"].get<double>());
+  // Measured 1.6 of 3.5 s, on a machine that may be busy in only one of them: not compared.
+  EXPECT_GT(data["wall"]["cook_s"].get<double>(), 0);
+  EXPECT_GT(data["wall"]["everything"]["cook_s"].get<double>(), 0);
 }
 
 // Measured 52 MB estimated and 61 built, with everything modelled 122 and 120; 4836 and 4982 points.

@@ -183,6 +183,12 @@ TEST_F(NetworkLink, ARunOverUdpHasTheVerdictOfOneProcess) {
   });
   const AssembleResult result = renderNode(scene, render);
   device.join();
+  for (const StepResult& step : result.steps)
+    EXPECT_EQ(step.verdict, Verdict::Fits)
+        << step.part << ": " << step.reason << "; " << step.failure_reason << " in " << step.duration_s
+        << " s, off by " << 1e6 * step.final_error_m << " um, drifted " << 1e6 * step.rest_drift_m << " um; "
+        << device_result.missed << " of " << device_result.ticks << " ticks late, " << device_result.faults
+        << " faults";
   EXPECT_EQ(result.verdict, Verdict::Fits);
   EXPECT_EQ(device_result.refused, 0u);
 }

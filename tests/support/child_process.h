@@ -11,6 +11,7 @@
 #include <chrono>
 #include <cstdint>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -53,6 +54,12 @@ class ChildProcess {
     const bool is_known =
         id_ > 0 && waitid(P_PID, static_cast<id_t>(id_), &info, WEXITED | WNOHANG | WNOWAIT) == 0;
     return is_known && info.si_pid == 0;
+  }
+  /// The process does nothing for that time, as when a busy machine does not schedule it.
+  void holdUp(std::chrono::milliseconds time) const {
+    if (id_ > 0) kill(id_, SIGSTOP);
+    std::this_thread::sleep_for(time);
+    if (id_ > 0) kill(id_, SIGCONT);
   }
   /// Does not wait for its end. Returns the time of the kill by the monotonic clock.
   [[nodiscard]] std::int64_t sendKill() const {

@@ -12,8 +12,9 @@ namespace vps::scenes::inline v0 {
 
 namespace {
 
-// Missed periods that a simulated device makes up for; beyond that its time stands still.
-constexpr double kCatchUpPeriods = 20;
+// What a simulated device makes up for of periods that were missed; beyond that its time stands still. Half
+// of the dual arm's watchdog (20 ms without a command): that the machine was busy is no fault of its motors.
+constexpr double kCatchUp_s = 10e-3;
 
 constexpr std::chrono::microseconds kCommandPoll{200};  // assumed: well below a haptic period
 
@@ -103,7 +104,8 @@ void HapticSide::watchPhysics(device::HapticLoop& loop) {
 // The simulated device and hand advance by the elapsed time, in steps of the period they are made for.
 void HapticSide::moveHand(device::HapticLoop& loop, double dt_s) {
   const double period_s = loop.settings().period_s;
-  const int steps = static_cast<int>(std::lround(std::min(dt_s / period_s, kCatchUpPeriods)));
+  const double most_s = std::max(kCatchUp_s, period_s);
+  const int steps = static_cast<int>(std::lround(std::min(dt_s, most_s) / period_s));
   for (int i = 0; i < steps; ++i) hand_.step(loop.received().held, loop, period_s);
   publishState(loop);
 }

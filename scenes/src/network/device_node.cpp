@@ -292,7 +292,9 @@ class DeviceSession {
     result_.ticks += times.count;
     result_.missed += times.missed;
     result_.faults += side_->realTime().faults;
-    result_.refused += remote_.refused() + reader_.refused() + link_.refusedBeats();
+    // A request that came twice was answered twice.
+    const std::uint64_t repeated = reader_.counts()[static_cast<std::size_t>(Reading::Replayed)];
+    result_.refused += remote_.refused() + reader_.refused() - repeated + link_.refusedBeats();
     if (const std::string doubts = ClockDoubts::summary(link_); !doubts.empty()) say(doubts);
     return has_ended;
   }

@@ -63,7 +63,7 @@ struct DeviceNodeResult {
   int sessions = 0;  ///< joined
   int lost = 0;      ///< of these, how many render nodes were lost
   std::uint64_t ticks = 0, missed = 0, faults = 0;
-  std::uint64_t refused = 0;           ///< messages
+  std::uint64_t refused = 0;  ///< messages; not requests that came twice, which get their reply again
   std::uint64_t refused_requests = 0;  ///< of render nodes, for what cannot be; the first one is said
 };
 
