@@ -42,11 +42,17 @@ Pose poseAfterStep(const PairView& pair, const RelativeMotion& motion) {
   return (step * pair.side(0).X_WM).inverse() * pair.side(1).X_WM;
 }
 
+// Penalty points represent areas, and a crossing has none.
+bool haveCrossings(const PairView& pair, const Settings& settings) {
+  return settings.contact_method == ContactMethod::Constraint && settings.use_surfaces && pair.shape[0] &&
+         pair.shape[1];
+}
+
 // Points are looked for as far as they may move in any direction; edges, whose motion is known, only where
 // they come near on it.
 CrossingRange crossingRange(const PairView& pair, double cutoff_m, const PairState* state,
                             const RelativeMotion* motion) {
-  if (!state) return {cutoff_m, edgeDepth_m(pair, cutoff_m), pair.side(0).X_WM.inverse() * pair.side(1).X_WM};
+  if (!state) return {cutoff_m, edgeDepth_m(pair, cutoff_m), pair.X_01_models()};
   const double near_m = motion->contact_margin_m + motion->anyWay_m();
   const double depth_m = mayOverlapDeeply(state->selection, near_m) ? edgeDepth_m(pair, near_m) : near_m;
   return {near_m, depth_m, poseAfterStep(pair, *motion)};
@@ -87,8 +93,8 @@ bool isQueriedOnce(const PairView& pair, const RelativeMotion& motion) {
   return motion.contact_margin_m + motion.speed_m_s * motion.dt_s <= queryRange_m(pair);
 }
 
-void findCandidates(const PairView& pair, double cutoff_m, Context& context, std::vector<Candidate>& out,
-                    PairState* state, const RelativeMotion* motion) {
+void findPointCandidates(const PairView& pair, double cutoff_m, Context& context, std::vector<Candidate>& out,
+                         PairState* state, const RelativeMotion* motion) {
   std::size_t tested = 0, left_out = 0;
   for (int i = 0; i < 2; ++i) {
     if (!queriesPoints(pair, i, context.settings.sides)) continue;
@@ -104,14 +110,29 @@ void findCandidates(const PairView& pair, double cutoff_m, Context& context, std
       left_out += findSurfaceCandidates(pair.side(i), pair.side(j), cutoff_m, context.settings, out, tested);
     }
   }
-  // Penalty points represent areas, and a crossing has none.
-  if (context.settings.contact_method == ContactMethod::Constraint && context.settings.use_surfaces &&
-      pair.shape[0] && pair.shape[1])
-    left_out +=
-        findCrossingCandidates(pair.side(0), pair.side(1), crossingRange(pair, cutoff_m, state, motion),
-                               context.settings, state ? &state->crossings : nullptr, out);
   context.points_tested += tested;
   context.left_out += left_out;
+}
+
+void findCandidates(const PairView& pair, double cutoff_m, Context& context, std::vector<Candidate>& out,
+                    PairState* state, const RelativeMotion* motion) {
+  findPointCandidates(pair, cutoff_m, context, out, state, motion);
+  if (haveCrossings(pair, context.settings))
+    context.left_out +=
+        findCrossingCandidates(pair.side(0), pair.side(1), crossingRange(pair, cutoff_m, state, motion),
+                               context.settings, state ? &state->crossings : nullptr, out);
+}
+
+void findEnteredCrossings(const PairView& pair, const PairView& start, const PairView& end, double overlap_m,
+                          double depth_m, PairState& state, std::vector<Candidate>& out) {
+  Context& context = *state.context;
+  if (!haveCrossings(pair, context.settings)) return;
+  const double margin_m = context.settings.contact_margin_m;
+  const double start_depth_m =
+      mayOverlapDeeply(state.selection, margin_m) ? edgeDepth_m(start, margin_m) : margin_m;
+  const EnteredRange range{overlap_m, depth_m, start_depth_m, start.X_01_models(), end.X_01_models()};
+  context.left_out +=
+      findEnteredCandidates(pair.side(0), pair.side(1), range, context.settings, state.entered, out);
 }
 
 void findStepCandidates(const PairView& pair, const RelativeMotion& motion, PairState& state,
@@ -119,6 +140,8 @@ void findStepCandidates(const PairView& pair, const RelativeMotion& motion, Pair
   Context& context = *state.context;
   const double range_m = queryRange_m(pair);
   const double travel_m = motion.speed_m_s * motion.dt_s;
+  // Bullet's broadphase widens boxes of moving bodies by 50 mm (gDbvtMargin), so most pairs are far apart.
+  if (pair.leastDistance_m() > motion.contact_margin_m + travel_m) return;
   if (isQueriedOnce(pair, motion)) {
     const bool is_refined =
         context.settings.use_surfaces && context.settings.contact_method == ContactMethod::Constraint;

@@ -16,6 +16,15 @@ namespace vps::bullet::inline v0 {
 /// state, which makes repeated queries cheaper, possibly more points than that, and of many near points only
 /// the most urgent of each place.
 /// @param motion  with a state: that of the bodies from where they are
+void findPointCandidates(const PairView& pair, double cutoff_m, Context& context, std::vector<Candidate>& out,
+                         PairState* state = nullptr, const RelativeMotion* motion = nullptr);
+
+/// Adds the crossings of edges to which the motion from `start` to `end` has led where the bodies are, that
+/// overlap by overlap_m to depth_m.
+void findEnteredCrossings(const PairView& pair, const PairView& start, const PairView& end, double overlap_m,
+                          double depth_m, PairState& state, std::vector<Candidate>& out);
+
+/// Adds points, as findPointCandidates(), and crossings of edges.
 void findCandidates(const PairView& pair, double cutoff_m, Context& context, std::vector<Candidate>& out,
                     PairState* state = nullptr, const RelativeMotion* motion = nullptr);
 

@@ -98,29 +98,6 @@ bool isInside(const Vec3& p_W, const SideView& other, double near_m, double tole
   return false;
 }
 
-/// Points and crossings that overlap by more than tolerated where the bodies are, by the exact surfaces.
-/// Crossings that are deeper than travel_m may be left out.
-void findOverlaps(const PairView& pair, PairState& state, double tolerated_m, double travel_m,
-                  std::vector<Candidate>& found) {
-  found.clear();
-  Context& context = *state.context;
-  RelativeMotion here;
-  here.contact_margin_m = std::max(tolerated_m, travel_m);
-  findCandidates(pair, std::min(std::max(tolerated_m, fieldError_m(pair)), queryRange_m(pair)), context,
-                 found, &state, &here);
-  std::erase_if(found, [&](Candidate& c) {
-    c.predicted_m = c.distance_m;
-    return c.isCrossing() ? c.distance_m >= -tolerated_m : c.distance_m > fieldError_m(pair, c);
-  });
-  const double radius_m = pair.radius_m();
-  const std::size_t limit = 4 * static_cast<std::size_t>(context.settings.contact_limit);
-  reduceByCell(found, limit, radius_m / 16, radius_m);
-  RelativeMotion still;
-  still.contact_margin_m = context.settings.contact_margin_m;
-  refineAll(pair, still, context.settings, found);
-  std::erase_if(found, [&](const Candidate& c) { return c.distance_m >= -tolerated_m; });
-}
-
 // The contact that a point has where the bodies are, if its distance is less than max_m.
 bool refineAt(const PairView& pair, double max_m, const Settings& settings, Candidate& c) {
   thread_local std::vector<Candidate> one;
@@ -146,6 +123,13 @@ struct PairCheck::Placed {
         pair(&wrapper0, &wrapper1) {}
   Placed(const Placed&) = delete;
   Placed& operator=(const Placed&) = delete;
+};
+
+/// Where the bodies are on the way of the solved step.
+struct PairCheck::Way {
+  const PairView& start;
+  const PairView& here;
+  const PairView& end;
 };
 
 /// The solved step.
@@ -201,6 +185,7 @@ void PairCheck::findMissed(const Pose (&X_WB_end)[2], bool is_first, std::vector
   m.turn_rad = turned.norm();
   m.travel_m = moved.norm() + m.turn_rad * radius_m;
   if (!(m.travel_m > 0)) return;
+  if (at_start.pair.leastDistance_m() > m.travel_m + state_.context->settings.contact_margin_m) return;
   const std::size_t had = out.size();
   if (hasFeatures(at_start.pair, state_.context->settings)) {
     addFeatureContacts(at_start.pair, {{m.end[0], m.end[1]}}, is_first, state_, out);
@@ -269,8 +254,30 @@ void PairCheck::findAmongRefined(const Motion& m, std::vector<Candidate>& missed
   }
 }
 
+// Points and crossings that overlap by more than tolerated. Crossings that are deeper than the bodies moved
+// may be left out.
+void PairCheck::findOverlaps(const Motion& m, const Way& way, std::vector<Candidate>& found) const {
+  found.clear();
+  Context& context = *state_.context;
+  const PairView& pair = way.here;
+  const double cutoff_m = std::min(std::max(m.tolerated_m, fieldError_m(pair)), queryRange_m(pair));
+  RelativeMotion still;
+  still.contact_margin_m = context.settings.contact_margin_m;
+  findPointCandidates(pair, cutoff_m, context, found, &state_, &still);
+  findEnteredCrossings(pair, way.start, way.end, m.tolerated_m, m.travel_m, state_, found);
+  std::erase_if(found, [&](Candidate& c) {
+    c.predicted_m = c.distance_m;
+    return !c.isCrossing() && c.distance_m > fieldError_m(pair, c);
+  });
+  const double radius_m = pair.radius_m();
+  const std::size_t limit = 4 * static_cast<std::size_t>(context.settings.contact_limit);
+  reduceByCell(found, limit, radius_m / 16, radius_m);
+  refineAll(pair, still, context.settings, found);
+  std::erase_if(found, [&](const Candidate& c) { return c.distance_m >= -m.tolerated_m; });
+}
+
 void PairCheck::findAlongPath(const Motion& m, std::vector<Candidate>& missed) const {
-  const Placed at_start(*this, m.start);
+  const Placed at_start(*this, m.start), at_end(*this, m.end);
   const double range_m = std::max(queryRange_m(at_start.pair), m.tolerated_m);
   constexpr double kMaxPlaces = 16;
   const int places = static_cast<int>(std::ceil(std::min(m.travel_m / range_m, kMaxPlaces)));
@@ -279,7 +286,7 @@ void PairCheck::findAlongPath(const Motion& m, std::vector<Candidate>& missed) c
     const double share = static_cast<double>(k) / places;
     const Pose then[2] = {interpolate(m.start[0], m.end[0], share), interpolate(m.start[1], m.end[1], share)};
     const Placed placed(*this, then);
-    findOverlaps(placed.pair, state_, m.tolerated_m, m.travel_m, missed);
+    findOverlaps(m, {at_start.pair, placed.pair, at_end.pair}, missed);
     const Displacement back = {{m.start[0] * then[0].inverse(), m.start[1] * then[1].inverse()}};
     const Displacement onward = {{m.end[0] * then[0].inverse(), m.end[1] * then[1].inverse()}};
     entered.clear();

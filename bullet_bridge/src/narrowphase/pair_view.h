@@ -30,6 +30,15 @@ struct PairView {
   [[nodiscard]] SideView side(int i) const {
     return {shape[i], shape[i] ? X_WS[i] * shape[i]->X_SM() : X_WS[i], static_cast<std::uint8_t>(i)};
   }
+  /// Models' frame of side 1 in that of side 0.
+  [[nodiscard]] Pose X_01_models() const { return side(0).X_WM.inverse() * side(1).X_WM; }
+  /// No points of the two bodies are nearer than this. 0 where a side is no Shape, or their boxes overlap.
+  [[nodiscard]] double leastDistance_m() const {
+    if (!shape[0] || !shape[1]) return 0;
+    const Box &box0 = shape[0]->bounds(), &box1 = shape[1]->bounds();
+    const Pose X_01 = X_WS[0].inverse() * X_WS[1];
+    return std::max(distance_m(box0, moved(box1, X_01)), distance_m(moved(box0, X_01.inverse()), box1));
+  }
   /// Of a side that is no Shape; changes with its size.
   [[nodiscard]] ShapeKey key(int i) const {
     return shape[i] ? ShapeKey{} : keyOf(*wrapper[i]->getCollisionShape());

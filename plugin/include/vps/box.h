@@ -30,6 +30,8 @@ struct Box {
 [[nodiscard]] VPS_API bool isWithin(const Box& inner, const Box& outer) noexcept;
 /// The box grown by `by_m` on every side. An empty box stays empty.
 [[nodiscard]] VPS_API Box grown(const Box& box, double by_m) noexcept;
+/// Distance of the nearest points; 0 where they overlap, infinite for an empty box.
+[[nodiscard]] VPS_API double distance_m(const Box& a, const Box& b) noexcept;
 /// The smallest box around a box that was moved by X. An empty box stays empty.
 [[nodiscard]] VPS_API Box moved(const Box& box, const Pose& X) noexcept;
 

@@ -62,6 +62,7 @@ class VPS_API EdgeSet {
   friend VPS_API void findCrossings(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_01,
                                     const CrossingRange& range, std::vector<EdgeCrossing>& out,
                                     CrossingMemory* memory);
+  friend class CrossingMemory;
   struct Node {
     Vec3 center = Vec3::Zero();
     double radius_m = 0;
@@ -118,6 +119,14 @@ struct CrossingRange {
   Pose X_01_end;        ///< set 1 in set 0 after the step
 };
 
+/// Which crossings a motion has led to.
+struct EnteredRange {
+  double overlap_m = 0;       ///< least overlap
+  double depth_m = 0;         ///< greatest overlap
+  double start_depth_m = 0;   ///< greatest overlap where the motion starts
+  Pose X_01_start, X_01_end;  ///< set 1 in set 0
+};
+
 /// The pairs of edges that come near each other, kept while two parts move as expected.
 class VPS_API CrossingMemory {
  public:
@@ -132,9 +141,15 @@ class VPS_API CrossingMemory {
   friend VPS_API void findCrossings(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_01,
                                     const CrossingRange& range, std::vector<EdgeCrossing>& out,
                                     CrossingMemory* memory);
+  friend VPS_API void findEntered(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_01,
+                                  const EnteredRange& range, std::vector<EdgeCrossing>& out,
+                                  CrossingMemory& memory);
   struct Pair {
     std::uint32_t edge[2];
   };
+  /// Searches again, unless the last search was for all that comes near on a motion.
+  void find(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_01, const Pose& X_01_end,
+            double reach_m);
   void search(const EdgeSet& edges0, const EdgeSet& edges1, double reach_m);
 
   std::vector<Pair> near_;
@@ -154,5 +169,12 @@ class VPS_API CrossingMemory {
 VPS_API void findCrossings(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_01,
                            const CrossingRange& range, std::vector<EdgeCrossing>& out,
                            CrossingMemory* memory = nullptr);
+
+/// Appends the crossings that overlap by overlap_m to depth_m at X_01, which lies on the way of a motion.
+/// Those whose edges are farther apart than start_depth_m all the way may be left out: there the edges did
+/// not meet. So the search does not reach as far as the overlaps are deep. Order, memory and cost: as
+/// findCrossings().
+VPS_API void findEntered(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_01,
+                         const EnteredRange& range, std::vector<EdgeCrossing>& out, CrossingMemory& memory);
 
 }  // namespace vps::inline v0

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vps/box.h"
 
+#include <limits>
+
 namespace vps::inline v0 {
 
 bool overlap(const Box& a, const Box& b) noexcept {
@@ -19,6 +21,11 @@ Box grown(const Box& box, double by_m) noexcept {
   out.min.array() -= by_m;
   out.max.array() += by_m;
   return out;
+}
+
+double distance_m(const Box& a, const Box& b) noexcept {
+  if (a.isEmpty() || b.isEmpty()) return std::numeric_limits<double>::infinity();
+  return (a.min - b.max).cwiseMax(b.min - a.max).cwiseMax(0).norm();
 }
 
 Box moved(const Box& box, const Pose& X) noexcept {

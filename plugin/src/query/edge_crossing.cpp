@@ -401,6 +401,23 @@ CrossingMemory::~CrossingMemory() = default;
 CrossingMemory::CrossingMemory(CrossingMemory&&) noexcept = default;
 CrossingMemory& CrossingMemory::operator=(CrossingMemory&&) noexcept = default;
 
+namespace {
+
+/// With balls around all edges of both sets.
+template <typename Node>
+MotionTube tubeOf(const Node& root0, const Node& root1, const Pose& X_01, const Pose& X_01_end,
+                  double width) {
+  return {{root0.center, root0.radius_m}, {root1.center, root1.radius_m}, X_01, X_01_end, width};
+}
+
+void sortByEdges(std::vector<EdgeCrossing>& out, std::ptrdiff_t first) {
+  std::sort(out.begin() + first, out.end(), [](const EdgeCrossing& a, const EdgeCrossing& b) {
+    return a.edge[0] != b.edge[0] ? a.edge[0] < b.edge[0] : a.edge[1] < b.edge[1];
+  });
+}
+
+}  // namespace
+
 void CrossingMemory::search(const EdgeSet& edges0, const EdgeSet& edges1, double reach_m) {
   near_.clear();
   EdgePairSearch(edges0, edges1, *tube_, reach_m).run([&](std::uint32_t i0, std::uint32_t i1) {
@@ -410,6 +427,18 @@ void CrossingMemory::search(const EdgeSet& edges0, const EdgeSet& edges1, double
   is_valid_ = true;
 }
 
+void CrossingMemory::find(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_01,
+                          const Pose& X_01_end, double reach_m) {
+  constexpr double kMore = 1.5;  // assumed: the cutoff follows the speed
+  if (is_valid_ && reach_m <= reach_m_ && tube_->holds(X_01) && tube_->holds(X_01_end)) return;
+  const auto searchWithin = [&](double width) {
+    *tube_ = tubeOf(edges0.nodes_[0], edges1.nodes_[0], X_01, X_01_end, width);
+    search(edges0, edges1, kMore * reach_m);
+  };
+  searchWithin(tube_->nextWidth(near_.size()));
+  if (tube_->isTooWide(near_.size())) searchWithin(1);
+}
+
 void findCrossings(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_01, const CrossingRange& range,
                    std::vector<EdgeCrossing>& out, CrossingMemory* memory) {
   if (edges0.segments().empty() || edges1.segments().empty()) return;
@@ -417,33 +446,27 @@ void findCrossings(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_0
   // Near now, or at the end of the step.
   const double reach_m = reachOfCrossing_m(std::max(range.cutoff_m, range.depth_m));
   CrossingTest test(edges0, edges1, X_01, range, out);
-  const auto tube = [&](double width) {
-    const Ball ball0{edges0.nodes_[0].center, edges0.nodes_[0].radius_m};
-    const Ball ball1{edges1.nodes_[0].center, edges1.nodes_[0].radius_m};
-    return MotionTube(ball0, ball1, X_01, range.X_01_end, width);
-  };
   if (memory == nullptr) {
-    const MotionTube once = tube(1);
+    const MotionTube once = tubeOf(edges0.nodes_[0], edges1.nodes_[0], X_01, range.X_01_end, 1);
     EdgePairSearch(edges0, edges1, once, reach_m).run([&](std::uint32_t i0, std::uint32_t i1) {
       test.cross(i0, i1);
     });
   } else {
-    constexpr double kMore = 1.5;  // assumed: the cutoff follows the speed
-    const bool is_kept = memory->is_valid_ && reach_m <= memory->reach_m_ && memory->tube_->holds(X_01) &&
-                         memory->tube_->holds(range.X_01_end);
-    if (!is_kept) {
-      const auto search = [&](double width) {
-        *memory->tube_ = tube(width);
-        memory->search(edges0, edges1, kMore * reach_m);
-      };
-      search(memory->tube_->nextWidth(memory->near_.size()));
-      if (memory->tube_->isTooWide(memory->near_.size())) search(1);
-    }
+    memory->find(edges0, edges1, X_01, range.X_01_end, reach_m);
     for (const CrossingMemory::Pair& pair : memory->near_) test.cross(pair.edge[0], pair.edge[1]);
   }
-  std::sort(out.begin() + first, out.end(), [](const EdgeCrossing& a, const EdgeCrossing& b) {
-    return a.edge[0] != b.edge[0] ? a.edge[0] < b.edge[0] : a.edge[1] < b.edge[1];
-  });
+  sortByEdges(out, first);
+}
+
+void findEntered(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_01, const EnteredRange& range,
+                 std::vector<EdgeCrossing>& out, CrossingMemory& memory) {
+  if (edges0.segments().empty() || edges1.segments().empty()) return;
+  const auto first = static_cast<std::ptrdiff_t>(out.size());
+  memory.find(edges0, edges1, range.X_01_start, range.X_01_end, reachOfCrossing_m(range.start_depth_m));
+  const CrossingRange here{-range.overlap_m, range.depth_m, X_01};
+  CrossingTest test(edges0, edges1, X_01, here, out);
+  for (const CrossingMemory::Pair& pair : memory.near_) test.cross(pair.edge[0], pair.edge[1]);
+  sortByEdges(out, first);
 }
 
 }  // namespace vps::inline v0

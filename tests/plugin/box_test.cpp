@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vps/box.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <random>
+
+#include "support/random_draw.h"
+
+namespace vps {
+namespace {
+
+Box drawnBox(std::mt19937& random) {
+  std::normal_distribution<double> normal;
+  Box box;
+  for (int i = 0; i < 2; ++i) box.add(test::drawnVector(normal, random));
+  return box;
+}
+
+// The nearest point of a box is found by clamping; alternating between two boxes ends at their nearest
+// points.
+TEST(Box, DistanceIsThatOfTheNearestPoints) {
+  std::mt19937 random(1);
+  int apart = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const Box a = drawnBox(random), b = drawnBox(random);
+    Vec3 p = a.center(), q = b.center();
+    for (int k = 0; k < 8; ++k) {
+      q = p.cwiseMax(b.min).cwiseMin(b.max);
+      p = q.cwiseMax(a.min).cwiseMin(a.max);
+    }
+    ASSERT_NEAR(distance_m(a, b), (p - q).norm(), 1e-12);
+    ASSERT_EQ(distance_m(a, b), distance_m(b, a));
+    ASSERT_EQ(distance_m(a, b) == 0, overlap(a, b));
+    apart += distance_m(a, b) > 0 ? 1 : 0;
+  }
+  EXPECT_GT(apart, 300);
+  EXPECT_LT(apart, 990);
+  EXPECT_EQ(distance_m(Box(), drawnBox(random)), std::numeric_limits<double>::infinity());
+}
+
+// A turned box lies in the box around it, so no point of it is nearer.
+TEST(Box, NoPointOfATurnedBoxIsNearerThanTheBoxAroundIt) {
+  std::mt19937 random(2);
+  std::normal_distribution<double> normal;
+  for (int i = 0; i < 300; ++i) {
+    const Box a = drawnBox(random), b = drawnBox(random);
+    const Pose X{test::drawnRotation(normal, random), 2 * test::drawnVector(normal, random)};
+    const double least_m = distance_m(a, moved(b, X));
+    for (int corner = 0; corner < 8; ++corner) {
+      const Vec3 p = X * Vec3(corner & 1 ? b.max.x() : b.min.x(), corner & 2 ? b.max.y() : b.min.y(),
+                              corner & 4 ? b.max.z() : b.min.z());
+      ASSERT_LE(least_m, (p - p.cwiseMax(a.min).cwiseMin(a.max)).norm() + 1e-12);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace vps
