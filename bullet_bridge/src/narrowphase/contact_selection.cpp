@@ -26,8 +26,8 @@ double edgeDepth_m(const PairView& pair, double cutoff_m) {
   return pair.hasMap(0) || pair.hasMap(1) ? std::max(cutoff_m, kShare * queryRange_m(pair)) : cutoff_m;
 }
 
-// Edges do not come to overlap by more than the cutoff in a step: only where the last one found overlaps, or
-// in a pair's first, can they be deep.
+// Edges do not come to overlap by more than the cutoff in a step: only where contacts were found to overlap,
+// or in a pair's first step, can they be deep.
 bool mayOverlapDeeply(const Selection& last, double cutoff_m) {
   constexpr double kShare = 0.25;
   return !last.is_valid || std::any_of(last.contacts.begin(), last.contacts.end(),
@@ -141,7 +141,9 @@ void findStepCandidates(const PairView& pair, const RelativeMotion& motion, Pair
   const double range_m = queryRange_m(pair);
   const double travel_m = motion.speed_m_s * motion.dt_s;
   // Bullet's broadphase widens boxes of moving bodies by 50 mm (gDbvtMargin), so most pairs are far apart.
-  if (pair.leastDistance_m() > motion.contact_margin_m + travel_m) return;
+  const double way_m =
+      std::max(travel_m, motion.anyWay_m());  // as far as canTouch() and crossingRange() look
+  if (pair.leastDistance_m() > motion.contact_margin_m + way_m) return;
   if (isQueriedOnce(pair, motion)) {
     const bool is_refined =
         context.settings.use_surfaces && context.settings.contact_method == ContactMethod::Constraint;

@@ -185,7 +185,8 @@ void PairCheck::findMissed(const Pose (&X_WB_end)[2], bool is_first, std::vector
   m.turn_rad = turned.norm();
   m.travel_m = moved.norm() + m.turn_rad * radius_m;
   if (!(m.travel_m > 0)) return;
-  if (at_start.pair.leastDistance_m() > m.travel_m + state_.context->settings.contact_margin_m) return;
+  const double near_m = std::max(state_.context->settings.contact_margin_m, FeatureMotion::kRest_m);
+  if (at_start.pair.leastDistance_m() > m.travel_m + near_m) return;
   const std::size_t had = out.size();
   if (hasFeatures(at_start.pair, state_.context->settings)) {
     addFeatureContacts(at_start.pair, {{m.end[0], m.end[1]}}, is_first, state_, out);
@@ -254,8 +255,8 @@ void PairCheck::findAmongRefined(const Motion& m, std::vector<Candidate>& missed
   }
 }
 
-// Points and crossings that overlap by more than tolerated. Crossings that are deeper than the bodies moved
-// may be left out.
+// Points and crossings that overlap by more than tolerated. Crossings may be left out whose edges did not
+// meet on the way, or that are deeper than the bodies moved.
 void PairCheck::findOverlaps(const Motion& m, const Way& way, std::vector<Candidate>& found) const {
   found.clear();
   Context& context = *state_.context;
@@ -294,7 +295,6 @@ void PairCheck::findAlongPath(const Motion& m, std::vector<Candidate>& missed) c
       Candidate start = back.moved(c), end = onward.moved(c);
       if (c.isCrossing()) {
         start.distance_m = overlapOf(start, at_start.pair);
-        if (-c.distance_m > m.travel_m) continue;
       } else if (start.distance_m < -m.tolerated_m) {
         // It was behind this plane before, so it did not enter through it. The plane that it had then
         // decides.

@@ -32,9 +32,11 @@ struct PairView {
   }
   /// Models' frame of side 1 in that of side 0.
   [[nodiscard]] Pose X_01_models() const { return side(0).X_WM.inverse() * side(1).X_WM; }
-  /// No points of the two bodies are nearer than this. 0 where a side is no Shape, or their boxes overlap.
+  /// No points of the two bodies are nearer than this. 0 where their boxes overlap, or a side's is not known.
   [[nodiscard]] double leastDistance_m() const {
-    if (!shape[0] || !shape[1]) return 0;
+    // Without a mesh the box is that of the models, which may leave out much of the part.
+    for (const Shape* each : shape)
+      if (!each || !each->models().mesh) return 0;
     const Box &box0 = shape[0]->bounds(), &box1 = shape[1]->bounds();
     const Pose X_01 = X_WS[0].inverse() * X_WS[1];
     return std::max(distance_m(box0, moved(box1, X_01)), distance_m(moved(box0, X_01.inverse()), box1));

@@ -104,8 +104,8 @@ void HapticSide::watchPhysics(device::HapticLoop& loop) {
 // The simulated device and hand advance by the elapsed time, in steps of the period they are made for.
 void HapticSide::moveHand(device::HapticLoop& loop, double dt_s) {
   const double period_s = loop.settings().period_s;
-  const double most_s = std::max(kCatchUp_s, period_s);
-  const int steps = static_cast<int>(std::lround(std::min(dt_s, most_s) / period_s));
+  const double most = std::max(1.0, std::floor(kCatchUp_s / period_s));
+  const int steps = static_cast<int>(std::lround(std::min(dt_s / period_s, most)));
   for (int i = 0; i < steps; ++i) hand_.step(loop.received().held, loop, period_s);
   publishState(loop);
 }
