@@ -123,7 +123,7 @@ struct CrossingRange {
 struct EnteredRange {
   double overlap_m = 0;       ///< least overlap
   double depth_m = 0;         ///< greatest overlap
-  double start_depth_m = 0;   ///< greatest overlap where the motion starts
+  double start_depth_m = 0;   ///< edges that are never nearer than this did not meet
   Pose X_01_start, X_01_end;  ///< set 1 in set 0
 };
 
@@ -171,9 +171,9 @@ VPS_API void findCrossings(const EdgeSet& edges0, const EdgeSet& edges1, const P
                            CrossingMemory* memory = nullptr);
 
 /// Appends the crossings that overlap by overlap_m to depth_m at X_01, which lies on the way of a motion.
-/// Those whose edges are farther apart than start_depth_m all the way may be left out: there the edges did
-/// not meet. So the search does not reach as far as the overlaps are deep. Order, memory and cost: as
-/// findCrossings().
+/// Those whose segments are farther apart than start_depth_m all the way may be left out, so that the search
+/// does not reach as far as overlaps are deep; a memory of earlier motions may find more of them. Order and
+/// cost: as findCrossings().
 VPS_API void findEntered(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_01,
                          const EnteredRange& range, std::vector<EdgeCrossing>& out, CrossingMemory& memory);
 
