@@ -315,14 +315,25 @@ TEST(FindCrossings, EdgesThatComeNearInTheStepAreFound) {
   EXPECT_EQ(found({6e-3, 0, -2 * gap_m}), 0u);
 }
 
-// A thread's rod that turns into its nut, fast and slowly, and jumps.
-TEST(FindCrossings, AMemoryDoesNotChangeTheAnswer) {
+test::ThreadShape coarseThread() {
   test::ThreadShape thread;
   thread.columns = 48;
   thread.rows_per_pitch = 16;
   thread.length_m = 3 * thread.pitch_m;
-  const EdgeSet nut = edgesOf(test::makeNut(thread, 1.8 * thread.major_m)),
-                rod = edgesOf(test::makeThreadedRod(thread));
+  return thread;
+}
+
+struct NutAndRod {
+  test::ThreadShape thread = coarseThread();
+  EdgeSet nut = edgesOf(test::makeNut(thread, 1.8 * thread.major_m)),
+          rod = edgesOf(test::makeThreadedRod(thread));
+};
+
+// A thread's rod that turns into its nut, fast and slowly, and jumps.
+TEST(FindCrossings, AMemoryDoesNotChangeTheAnswer) {
+  const NutAndRod parts;
+  const test::ThreadShape& thread = parts.thread;
+  const EdgeSet &nut = parts.nut, &rod = parts.rod;
   CrossingMemory memory;
   std::size_t count = 0;
   double turn_rad = 0;
@@ -353,12 +364,9 @@ TEST(FindCrossings, AMemoryDoesNotChangeTheAnswer) {
 // A thread's rod that is pushed into its nut from where it is free, by steps much longer than what counts as
 // near: what an exhaustive search finds at places on the way, of the edges that met.
 TEST(FindEntered, AreTheCrossingsWhoseEdgesMetOnTheWay) {
-  test::ThreadShape thread;
-  thread.columns = 48;
-  thread.rows_per_pitch = 16;
-  thread.length_m = 3 * thread.pitch_m;
-  const EdgeSet nut = edgesOf(test::makeNut(thread, 1.8 * thread.major_m)),
-                rod = edgesOf(test::makeThreadedRod(thread));
+  const NutAndRod parts;
+  const test::ThreadShape& thread = parts.thread;
+  const EdgeSet &nut = parts.nut, &rod = parts.rod;
   std::mt19937 random(7);
   std::normal_distribution<double> normal;
   const double least_m = 1e-6, start_depth_m = 30e-6;

@@ -88,6 +88,12 @@ struct SideQuery {
 /// A point of `side` as it was read in the map of `other`.
 Candidate candidateOf(const Contact& contact, const SideView& side, const SideView& other);
 
+/// True for constraint contact on exact surfaces. Penalty points represent areas, so they stay where these
+/// are, and a crossing has none.
+inline bool isExact(const Settings& settings) {
+  return settings.use_surfaces && settings.contact_method == ContactMethod::Constraint;
+}
+
 // Finding: each function appends to `out`.
 
 /// Points of `side` near the other Shape's map (of `other`, at its X_WM). With a query state, and far more

@@ -18,11 +18,6 @@ std::size_t limitOf(const Settings& settings, const PointShell& shell) {
   return settings.candidate_limit > 0 ? static_cast<std::size_t>(settings.candidate_limit) : shell.size();
 }
 
-// A penalty point must stay where its area is.
-bool refinesOnRounds(const Settings& settings) {
-  return settings.use_surfaces && settings.contact_method == ContactMethod::Constraint;
-}
-
 // Finds a shell's points near anything with a distance function, by the hierarchy of bounding spheres.
 template <typename CanBeNear, typename At>
 std::size_t findByDistance(const SideView& side, const Pose& X_WS, double cutoff_m, const Settings& settings,
@@ -163,7 +158,7 @@ std::size_t findPrimitiveCandidates(const SideView& side, const btCollisionShape
   const SideView other{nullptr, X_WS, static_cast<std::uint8_t>(1 - side.side)};
   const Pose X_SM = X_WS.inverse() * side.X_WM;
   const PointShell& shell = *side.shape->models().shell;
-  const double reach_m = refinesOnRounds(settings) ? roundReach_m(exact, shell.spacing_m) : 0;
+  const double reach_m = isExact(settings) ? roundReach_m(exact, shell.spacing_m) : 0;
   const auto at = [&](std::uint32_t id) { return primitiveDistance(exact, X_SM * shell.points[id]); };
   const auto canBeNear = [&](const ShellNode& node) {
     return primitiveDistance(exact, X_SM * node.center).distance_m - node.radius_m <= cutoff_m + reach_m;

@@ -28,10 +28,12 @@ double edgeDepth_m(const PairView& pair, double cutoff_m) {
 
 // Edges do not come to overlap by more than the cutoff in a step: only where contacts were found to overlap,
 // or in a pair's first step, can they be deep.
-bool mayOverlapDeeply(const Selection& last, double cutoff_m) {
+double edgeDepth_m(const PairView& pair, const Selection& last, double cutoff_m) {
   constexpr double kShare = 0.25;
-  return !last.is_valid || std::any_of(last.contacts.begin(), last.contacts.end(),
-                                       [&](const Candidate& c) { return c.distance_m < -kShare * cutoff_m; });
+  const bool may_be_deep =
+      !last.is_valid || std::any_of(last.contacts.begin(), last.contacts.end(),
+                                    [&](const Candidate& c) { return c.distance_m < -kShare * cutoff_m; });
+  return may_be_deep ? edgeDepth_m(pair, cutoff_m) : cutoff_m;
 }
 
 // Body 1 in body 0, in their models' frames, after the step's motion.
@@ -42,10 +44,8 @@ Pose poseAfterStep(const PairView& pair, const RelativeMotion& motion) {
   return (step * pair.side(0).X_WM).inverse() * pair.side(1).X_WM;
 }
 
-// Penalty points represent areas, and a crossing has none.
 bool haveCrossings(const PairView& pair, const Settings& settings) {
-  return settings.contact_method == ContactMethod::Constraint && settings.use_surfaces && pair.shape[0] &&
-         pair.shape[1];
+  return isExact(settings) && pair.shape[0] && pair.shape[1];
 }
 
 // Points are looked for as far as they may move in any direction; edges, whose motion is known, only where
@@ -54,8 +54,7 @@ CrossingRange crossingRange(const PairView& pair, double cutoff_m, const PairSta
                             const RelativeMotion* motion) {
   if (!state) return {cutoff_m, edgeDepth_m(pair, cutoff_m), pair.X_01_models()};
   const double near_m = motion->contact_margin_m + motion->anyWay_m();
-  const double depth_m = mayOverlapDeeply(state->selection, near_m) ? edgeDepth_m(pair, near_m) : near_m;
-  return {near_m, depth_m, poseAfterStep(pair, *motion)};
+  return {near_m, edgeDepth_m(pair, state->selection, near_m), poseAfterStep(pair, *motion)};
 }
 
 // How far a point may be from what it touches in the step. The pull of couplings is left out, as in
@@ -127,9 +126,7 @@ void findEnteredCrossings(const PairView& pair, const PairView& start, const Pai
                           double depth_m, PairState& state, std::vector<Candidate>& out) {
   Context& context = *state.context;
   if (!haveCrossings(pair, context.settings)) return;
-  const double margin_m = context.settings.contact_margin_m;
-  const double start_depth_m =
-      mayOverlapDeeply(state.selection, margin_m) ? edgeDepth_m(start, margin_m) : margin_m;
+  const double start_depth_m = edgeDepth_m(start, state.selection, context.settings.contact_margin_m);
   const EnteredRange range{overlap_m, depth_m, start_depth_m, start.X_01_models(), end.X_01_models()};
   context.left_out +=
       findEnteredCandidates(pair.side(0), pair.side(1), range, context.settings, state.entered, out);
@@ -141,13 +138,11 @@ void findStepCandidates(const PairView& pair, const RelativeMotion& motion, Pair
   const double range_m = queryRange_m(pair);
   const double travel_m = motion.speed_m_s * motion.dt_s;
   // Bullet's broadphase widens boxes of moving bodies by 50 mm (gDbvtMargin), so most pairs are far apart.
-  const double way_m =
-      std::max(travel_m, motion.anyWay_m());  // as far as canTouch() and crossingRange() look
+  // This is as far as canTouch() and crossingRange() look.
+  const double way_m = std::max(travel_m, motion.anyWay_m());
   if (pair.leastDistance_m() > motion.contact_margin_m + way_m) return;
   if (isQueriedOnce(pair, motion)) {
-    const bool is_refined =
-        context.settings.use_surfaces && context.settings.contact_method == ContactMethod::Constraint;
-    const double seen_m = is_refined ? fieldError_m(pair) : 0;
+    const double seen_m = isExact(context.settings) ? fieldError_m(pair) : 0;
     findCandidates(pair, std::min(motion.contact_margin_m + travel_m + seen_m, range_m), context, out, &state,
                    &motion);
     useOwnNormalsForPenalty(pair, context.settings, out);

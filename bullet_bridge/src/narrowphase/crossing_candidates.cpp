@@ -89,11 +89,15 @@ bool isFlush(const EdgeSegment& s0, const EdgeSegment& s1, const Mat3& R_01) {
   return false;
 }
 
-// Those that no other part of a merged body covers, as candidates.
-std::size_t addCandidates(const SideView& body0, const SideView& body1, const Pose& X_01,
-                          const Settings& settings, std::vector<EdgeCrossing>& crossings,
-                          std::vector<Candidate>& out) {
+// Adds what find(edges0, edges1, X_01, crossings) appends and no other part of a merged body covers.
+template <typename Find>
+std::size_t addCandidates(const SideView& body0, const SideView& body1, const Settings& settings,
+                          const Find& find, std::vector<Candidate>& out) {
   const EdgeSet &edges0 = body0.shape->edges(), &edges1 = body1.shape->edges();
+  thread_local std::vector<EdgeCrossing> crossings;
+  crossings.clear();
+  const Pose X_01 = body0.X_WM.inverse() * body1.X_WM;
+  find(edges0, edges1, X_01, crossings);
   std::erase_if(crossings, [&, X_10 = X_01.inverse()](const EdgeCrossing& at) {
     return isCovered(at, body0, body1, X_10);
   });
@@ -114,31 +118,24 @@ std::size_t addCandidates(const SideView& body0, const SideView& body1, const Po
   return crossings.size() - room;
 }
 
-// Keeps its memory.
-std::vector<EdgeCrossing>& noCrossings() {
-  thread_local std::vector<EdgeCrossing> crossings;
-  crossings.clear();
-  return crossings;
-}
-
 }  // namespace
 
 std::size_t findCrossingCandidates(const SideView& body0, const SideView& body1, const CrossingRange& range,
                                    const Settings& settings, CrossingMemory* memory,
                                    std::vector<Candidate>& out) {
-  std::vector<EdgeCrossing>& crossings = noCrossings();
-  const Pose X_01 = body0.X_WM.inverse() * body1.X_WM;
-  findCrossings(body0.shape->edges(), body1.shape->edges(), X_01, range, crossings, memory);
-  return addCandidates(body0, body1, X_01, settings, crossings, out);
+  const auto find = [&](const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_01, auto& crossings) {
+    findCrossings(edges0, edges1, X_01, range, crossings, memory);
+  };
+  return addCandidates(body0, body1, settings, find, out);
 }
 
 std::size_t findEnteredCandidates(const SideView& body0, const SideView& body1, const EnteredRange& range,
                                   const Settings& settings, CrossingMemory& memory,
                                   std::vector<Candidate>& out) {
-  std::vector<EdgeCrossing>& crossings = noCrossings();
-  const Pose X_01 = body0.X_WM.inverse() * body1.X_WM;
-  findEntered(body0.shape->edges(), body1.shape->edges(), X_01, range, crossings, memory);
-  return addCandidates(body0, body1, X_01, settings, crossings, out);
+  const auto find = [&](const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_01, auto& crossings) {
+    findEntered(edges0, edges1, X_01, range, crossings, memory);
+  };
+  return addCandidates(body0, body1, settings, find, out);
 }
 
 }  // namespace vps::bullet::inline v0

@@ -19,8 +19,8 @@ void findContacts(const PairView& start, const EndPoses& end, bool holds_close, 
                   std::vector<FeatureContact>& found) {
   found.clear();
   const Pose X_01_end = poseBetween(start, end.X_WS);
-  state.features.check(start.shape[0]->features(), start.shape[1]->features(), poseBetween(start, start.X_WS),
-                       X_01_end, holds_close, found);
+  state.features.check(start.shape[0]->features(), start.shape[1]->features(), start.X_01_models(), X_01_end,
+                       holds_close, found);
 }
 
 std::uint32_t codeOf(const FeatureContact& c, int i) {
@@ -53,7 +53,7 @@ struct FeaturePlacer {
   double rest_m;
 
   explicit FeaturePlacer(const PairView& start)
-      : X_01(poseBetween(start, start.X_WS)),
+      : X_01(start.X_01_models()),
         X_WM0(start.X_WS[0] * start.shape[0]->X_SM()),
         rest_m(FeatureMotion::rest_m(start.shape[0]->features(), start.shape[1]->features())) {}
   [[nodiscard]] Candidate operator()(const FeatureContact& c) const {
@@ -93,8 +93,7 @@ void remember(const FeatureContact& c, std::vector<FeatureContact>& known) {
 }  // namespace
 
 bool hasFeatures(const PairView& pair, const Settings& settings) {
-  if (settings.contact_method != ContactMethod::Constraint || !settings.use_surfaces) return false;
-  return pair.shape[0] && pair.shape[1] && !pair.shape[0]->features().isEmpty() &&
+  return isExact(settings) && pair.shape[0] && pair.shape[1] && !pair.shape[0]->features().isEmpty() &&
          !pair.shape[1]->features().isEmpty();
 }
 

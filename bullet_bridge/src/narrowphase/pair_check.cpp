@@ -125,13 +125,6 @@ struct PairCheck::Placed {
   Placed& operator=(const Placed&) = delete;
 };
 
-/// Where the bodies are on the way of the solved step.
-struct PairCheck::Way {
-  const PairView& start;
-  const PairView& here;
-  const PairView& end;
-};
-
 /// The solved step.
 struct PairCheck::Motion {
   Pose start[2], end[2];        ///< of the shapes
@@ -257,15 +250,15 @@ void PairCheck::findAmongRefined(const Motion& m, std::vector<Candidate>& missed
 
 // Points and crossings that overlap by more than tolerated. Crossings may be left out whose edges did not
 // meet on the way, or that are deeper than the bodies moved.
-void PairCheck::findOverlaps(const Motion& m, const Way& way, std::vector<Candidate>& found) const {
+void PairCheck::findOverlaps(const Motion& m, const PairView& start, const PairView& pair,
+                             const PairView& end, std::vector<Candidate>& found) const {
   found.clear();
   Context& context = *state_.context;
-  const PairView& pair = way.here;
   const double cutoff_m = std::min(std::max(m.tolerated_m, fieldError_m(pair)), queryRange_m(pair));
   RelativeMotion still;
   still.contact_margin_m = context.settings.contact_margin_m;
   findPointCandidates(pair, cutoff_m, context, found, &state_, &still);
-  findEnteredCrossings(pair, way.start, way.end, m.tolerated_m, m.travel_m, state_, found);
+  findEnteredCrossings(pair, start, end, m.tolerated_m, m.travel_m, state_, found);
   std::erase_if(found, [&](Candidate& c) {
     c.predicted_m = c.distance_m;
     return !c.isCrossing() && c.distance_m > fieldError_m(pair, c);
@@ -287,7 +280,7 @@ void PairCheck::findAlongPath(const Motion& m, std::vector<Candidate>& missed) c
     const double share = static_cast<double>(k) / places;
     const Pose then[2] = {interpolate(m.start[0], m.end[0], share), interpolate(m.start[1], m.end[1], share)};
     const Placed placed(*this, then);
-    findOverlaps(m, {at_start.pair, placed.pair, at_end.pair}, missed);
+    findOverlaps(m, at_start.pair, placed.pair, at_end.pair, missed);
     const Displacement back = {{m.start[0] * then[0].inverse(), m.start[1] * then[1].inverse()}};
     const Displacement onward = {{m.end[0] * then[0].inverse(), m.end[1] * then[1].inverse()}};
     entered.clear();

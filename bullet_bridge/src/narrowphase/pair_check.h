@@ -42,9 +42,9 @@ class PairCheck final : public StepCheck {
  private:
   struct Placed;
   struct Motion;
-  struct Way;
   void findAmongRefined(const Motion& motion, std::vector<Candidate>& missed) const;
-  void findOverlaps(const Motion& motion, const Way& way, std::vector<Candidate>& found) const;
+  void findOverlaps(const Motion& motion, const PairView& start, const PairView& pair, const PairView& end,
+                    std::vector<Candidate>& found) const;
   void findAlongPath(const Motion& motion, std::vector<Candidate>& missed) const;
   [[nodiscard]] bool mayMissPoints(const Motion& motion) const;
   void emit(const Motion& motion, std::vector<Candidate>& missed, std::vector<MissedContact>& out);

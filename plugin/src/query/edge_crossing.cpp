@@ -394,15 +394,6 @@ class CrossingTest {
   std::vector<EdgeCrossing>& out_;
 };
 
-}  // namespace
-
-CrossingMemory::CrossingMemory() : tube_(std::make_unique<MotionTube>()) {}
-CrossingMemory::~CrossingMemory() = default;
-CrossingMemory::CrossingMemory(CrossingMemory&&) noexcept = default;
-CrossingMemory& CrossingMemory::operator=(CrossingMemory&&) noexcept = default;
-
-namespace {
-
 /// With balls around all edges of both sets.
 template <typename Node>
 MotionTube tubeOf(const Node& root0, const Node& root1, const Pose& X_01, const Pose& X_01_end,
@@ -417,6 +408,11 @@ void sortByEdges(std::vector<EdgeCrossing>& out, std::ptrdiff_t first) {
 }
 
 }  // namespace
+
+CrossingMemory::CrossingMemory() : tube_(std::make_unique<MotionTube>()) {}
+CrossingMemory::~CrossingMemory() = default;
+CrossingMemory::CrossingMemory(CrossingMemory&&) noexcept = default;
+CrossingMemory& CrossingMemory::operator=(CrossingMemory&&) noexcept = default;
 
 void CrossingMemory::search(const EdgeSet& edges0, const EdgeSet& edges1, double reach_m) {
   near_.clear();

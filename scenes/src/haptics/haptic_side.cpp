@@ -12,8 +12,9 @@ namespace vps::scenes::inline v0 {
 
 namespace {
 
-// What a simulated device makes up for of periods that were missed; beyond that its time stands still. Half
-// of the dual arm's watchdog (20 ms without a command): that the machine was busy is no fault of its motors.
+// The most time of missed periods that a simulated device makes up for; beyond that its time stands still.
+// Half of the time after which the dual arm's watchdog trips (20 ms without a command): a pause of this
+// program must not trip it.
 constexpr double kCatchUp_s = 10e-3;
 
 constexpr std::chrono::microseconds kCommandPoll{200};  // assumed: well below a haptic period
