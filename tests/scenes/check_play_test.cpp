@@ -5,10 +5,12 @@
 
 #include <cmath>
 #include <numbers>
+#include <random>
 
 #include "check/motion_search.h"
 #include "scenes/assemblies_to_plan.h"
 #include "support/lathe.h"
+#include "support/random_draw.h"
 #include "vps_scenes/check.h"
 
 namespace vps::scenes {
@@ -107,7 +109,8 @@ TEST(CheckPlay, AMotionEndsAsStoppedWhereItsWorkIsSpent) {
   const std::vector<DrawnPart> parts = {part("bore", makeTube(0.01, 4.1e-3, 0.02, 100)),
                                         part("peg", makeCylinder(4e-3, 0.02, 100))};
   const std::vector<PlacedSurface> placed = placedSurfaces(parts, {});
-  const MotionSearch search(placed[1], {&placed[0]}, {0});
+  const auto bore = std::make_shared<const StandingParts>(std::vector<const PlacedSurface*>{&placed[0]});
+  const MotionSearch search(placed[1], bore, {0});
   const Motion up{Vec3::UnitZ(), Vec3::Zero(), false};
   SearchWork enough{1'000'000}, little{10};
   EXPECT_FALSE(search.reach(up, 0.1, &enough).is_stopped);
@@ -116,6 +119,62 @@ TEST(CheckPlay, AMotionEndsAsStoppedWhereItsWorkIsSpent) {
   EXPECT_TRUE(search.reach(up, 0.1, &little).is_stopped);
   EXPECT_TRUE(little.isSpent());
   EXPECT_EQ(little.done, little.most);
+}
+
+// A tree finds the parts that a motion comes near. What stops it is the first of what stops it alone.
+TEST(CheckPlay, AmongManyPartsAMotionIsStoppedByTheFirstOfThem) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> place(-0.05, 0.05), size(2e-3, 20e-3);
+  std::normal_distribution<double> normal;
+  std::vector<DrawnPart> parts;
+  for (int i = 0; i < 60; ++i) {
+    parts.push_back(part("box " + std::to_string(i), makeBox(test::drawnVector(size, random))));
+    const Quat turned = test::drawnRotation(normal, random);
+    parts.back().X_WP = Pose{turned, Vec3{place(random), place(random), 4e-3 * i}};  // some overlap
+  }
+  const std::vector<PlacedSurface> placed = placedSurfaces(parts, {});
+  std::vector<const PlacedSurface*> pointers;
+  for (const PlacedSurface& one : placed) pointers.push_back(&one);
+  const auto all = std::make_shared<const StandingParts>(pointers);
+  int stopped = 0;
+  for (std::size_t i = 0; i < placed.size(); ++i) {
+    const MotionSearch among_all(placed[i], all, std::vector<double>(placed.size()));
+    for (const bool is_turn : {false, true}) {
+      const Motion motion{test::drawnVector(normal, random).normalized(), placed[i].box_W.center(), is_turn};
+      const double most = is_turn ? 2 : 0.5;
+      double first = most;
+      for (const PlacedSurface* held : pointers) {
+        if (held == &placed[i]) continue;
+        const auto alone = std::make_shared<const StandingParts>(std::vector{held});
+        first = std::min(first, MotionSearch(placed[i], alone, {0}).reach(motion, most).s);
+      }
+      const Reach reach = among_all.reach(motion, most);
+      // Both end within a step of a tenth of the rest depth of where facets meet, and are set back by it.
+      EXPECT_NEAR(reach.s, first, 2 * MotionSearch::kRest_m / (is_turn ? 1e-3 : 1)) << i << is_turn;
+      EXPECT_EQ(reach.is_stopped, first < most);
+      stopped += reach.is_stopped && reach.s > 0 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(stopped, 15);
+}
+
+TEST(CheckPlay, NearPairsAreThoseWhoseBoxesAreNear) {
+  std::mt19937 random(12);
+  std::uniform_real_distribution<double> place(-0.05, 0.05);
+  std::vector<DrawnPart> parts;
+  for (int i = 0; i < 80; ++i) {
+    parts.push_back(part("box " + std::to_string(i), makeBox({4e-3, 6e-3, 8e-3})));
+    parts.back().X_WP = Pose::translation(test::drawnVector(place, random));
+  }
+  const std::vector<PlacedSurface> placed = placedSurfaces(parts, {});
+  for (const double near_m : {0.0, 1e-3, 10e-3}) {
+    std::vector<std::pair<std::size_t, std::size_t>> expected;
+    for (std::size_t a = 0; a < placed.size(); ++a)
+      for (std::size_t b = a + 1; b < placed.size(); ++b)
+        if (distance2(placed[a].box_W, placed[b].box_W) <= near_m * near_m) expected.emplace_back(a, b);
+    EXPECT_EQ(nearPairs(placed, near_m), expected);
+    EXPECT_GT(expected.size(), 3u);
+  }
 }
 
 // A peg of 8 mm that is as long as its bore: it moves half the clearance across, and tilts until both ends

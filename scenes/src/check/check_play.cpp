@@ -55,7 +55,8 @@ class Neighbours {
 };
 
 /// Empty for a part that clashes or is pressed in: what overlaps cannot be moved apart by it.
-PartTask taskOf(const std::vector<PlacedSurface>& parts, std::size_t part, const Neighbours& neighbours) {
+PartTask taskOf(const std::vector<PlacedSurface>& parts, std::size_t part, const Neighbours& neighbours,
+                const std::shared_ptr<const StandingParts>& all) {
   PartTask task;
   std::vector<double> crossing_m(parts.size());
   for (const auto& [other, pair] : neighbours.pairsOf(part)) {
@@ -63,13 +64,9 @@ PartTask taskOf(const std::vector<PlacedSurface>& parts, std::size_t part, const
     crossing_m[other] = pair->error_m;
     task.error_m = std::max(task.error_m, pair->error_m);
   }
-  crossing_m.erase(crossing_m.begin() + static_cast<std::ptrdiff_t>(part));
-  std::vector<const PlacedSurface*> held;
-  for (std::size_t i = 0; i < parts.size(); ++i)
-    if (i != part) held.push_back(&parts[i]);
   for (const CheckedFit* fit : neighbours.fitsOf(part)) task.fits.push_back(*fit);
   task.frame = playFrame(parts[part], task.fits);
-  task.search = std::make_unique<const MotionSearch>(parts[part], std::move(held), crossing_m);
+  task.search = std::make_unique<const MotionSearch>(parts[part], all, crossing_m);
   task.error_m += task.search->rest_m();
   return task;
 }
@@ -113,17 +110,15 @@ void measurePlay(const PlacedSurface& part, const PartTask& task, double leave_m
 
 void checkPlay(const std::vector<PlacedSurface>& parts, CheckResult& result, const CheckSettings& settings,
                const Progress& progress) {
+  if (parts.empty()) return;
   const Neighbours neighbours(parts, result);
-  Box all;
-  for (const PlacedSurface& part : parts) {
-    all.add(part.box_W.min);
-    all.add(part.box_W.max);
-  }
-  const double leave_m = 2 * all.size().norm();
-  // A search knows all parts, so that only those at work are held in memory.
+  std::vector<const PlacedSurface*> standing;
+  for (const PlacedSurface& part : parts) standing.push_back(&part);
+  const auto all = std::make_shared<const StandingParts>(std::move(standing));
+  const double leave_m = 2 * all->boxes.nodes().front().box.size().norm();
   forEachOnCores(parts.size(), progress, "measuring play", [&](std::size_t i) {
     if (!settings.isAsked(parts[i].name)) return;
-    const PartTask task = taskOf(parts, i, neighbours);
+    const PartTask task = taskOf(parts, i, neighbours, all);
     if (task.search) measurePlay(parts[i], task, leave_m, result.parts[i]);
   });
 }

@@ -36,7 +36,7 @@ std::vector<std::array<std::uint32_t, 3>> neighboursOf(const Mesh& mesh) {
 }
 
 std::vector<Crack> cracksOf(const Mesh& mesh, const std::vector<std::array<std::uint32_t, 3>>& neighbours,
-                            const TriangleTree& tree) {
+                            const BoxTree& tree) {
   constexpr double kNarrow = 0.25, kWidest = 4e-3;  // shares of an edge and of the part's size; assumed
   constexpr double kWedge = 0.99;  // cosine between the sides of a crack that ends in a corner
   struct OpenEdge {

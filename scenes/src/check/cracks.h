@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "check/triangle_tree.h"
+#include "check/box_tree.h"
 #include "vps/mesh.h"
 
 namespace vps::scenes::inline v0 {
@@ -24,6 +24,6 @@ struct Crack {
 /// Cracks are narrow beside the edges that they part, and beside the part; anything wider is a hole. A corner
 /// in which a crack ends has none. O(n log n).
 std::vector<Crack> cracksOf(const Mesh& mesh, const std::vector<std::array<std::uint32_t, 3>>& neighbours,
-                            const TriangleTree& tree);
+                            const BoxTree& tree);
 
 }  // namespace vps::scenes::inline v0

@@ -102,10 +102,10 @@ Box boxOf(const Triangle& t) {
 }  // namespace
 
 PassingFacets::PassingFacets(std::size_t of_held, bool of_moving, std::vector<std::uint8_t> of_facets,
-                             const TriangleTree& tree)
+                             const BoxTree& tree)
     : held(of_held), is_of_moving(of_moving), facets(std::move(of_facets)), nodes(tree.nodes().size(), 1) {
   for (std::size_t n = nodes.size(); n-- > 0;) {  // children stand after their parents
-    const TriangleTree::Node& node = tree.nodes()[n];
+    const BoxTree::Node& node = tree.nodes()[n];
     if (!node.isLeaf()) {
       nodes[n] = nodes[node.left] & nodes[node.left + 1];
       continue;
@@ -114,40 +114,44 @@ PassingFacets::PassingFacets(std::size_t of_held, bool of_moving, std::vector<st
   }
 }
 
-MotionSearch::MotionSearch(const PlacedSurface& part, std::vector<const PlacedSurface*> held,
+StandingParts::StandingParts(std::vector<const PlacedSurface*> of_parts)
+    : parts(std::move(of_parts)), boxes([this] {
+        std::vector<Box> all;
+        for (const PlacedSurface* part : parts) all.push_back(part->box_W);
+        return all;
+      }()) {}
+
+MotionSearch::MotionSearch(const PlacedSurface& part, std::shared_ptr<const StandingParts> held,
                            const std::vector<double>& crossing_m, CrossingDepth depth)
-    : part_(part) {
-  for (std::size_t i = 0; i < held.size(); ++i) {
-    const Pose X_HM = held[i]->X_WP.inverse() * part.X_WP;
-    held_.push_back({held[i], X_HM,
-                     depth == CrossingDepth::UpToMost || crossing_m[i] == 0
-                         ? kRest_m + crossing_m[i]
-                         : restOf(part, *held[i], X_HM, crossing_m[i])});
+    : part_(part), held_(std::move(held)), rest_m_(held_->parts.size(), kRest_m) {
+  for (std::size_t i = 0; i < rest_m_.size(); ++i) {
+    if (crossing_m[i] == 0) continue;
+    rest_m_[i] = depth == CrossingDepth::UpToMost
+                     ? kRest_m + crossing_m[i]
+                     : restOf(part, *held_->parts[i], heldAt(i).X_HM, crossing_m[i]);
+    most_rest_m_ = std::max(most_rest_m_, rest_m_[i]);
   }
+}
+
+MotionSearch::Held MotionSearch::heldAt(std::size_t index) const {
+  const PlacedSurface* held = held_->parts[index];
+  return {held, held->X_WP.inverse() * part_.X_WP, rest_m_[index]};
 }
 
 std::size_t MotionSearch::indexOf(const std::string& held) const {
-  return static_cast<std::size_t>(std::ranges::find(held_, held, [](const Held& h) { return h.part->name; }) -
-                                  held_.begin());
+  return static_cast<std::size_t>(
+      std::ranges::find(held_->parts, held, [](const PlacedSurface* part) { return part->name; }) -
+      held_->parts.begin());
 }
 
 double MotionSearch::rest_m() const {
-  double most_m = kRest_m;
-  for (const Held& held : held_) most_m = std::max(most_m, held.rest_m);
-  return most_m;
+  return most_rest_m_;
 }
 
-std::optional<MotionSearch::Turning> MotionSearch::turningOf(const Motion& motion, double most) const {
+std::optional<MotionSearch::Turning> MotionSearch::turningOf(const Motion& motion) const {
   if (!motion.is_turn) return std::nullopt;
   const Motion in_moving = motion.in(part_.X_WP.inverse());
-  Turning turning{motion.direction, AxisExtents(*part_.surface, in_moving.direction, in_moving.center), {}};
-  turning.held.resize(held_.size());
-  for (const std::size_t h : nearOf(motion, most)) {
-    const PlacedSurface& held = *held_[h].part;
-    const Motion in_held = motion.in(held.X_WP.inverse());
-    turning.held[h].emplace(*held.surface, in_held.direction, in_held.center);
-  }
-  return turning;
+  return Turning{motion.direction, AxisExtents(*part_.surface, in_moving.direction, in_moving.center)};
 }
 
 double MotionSearch::farthestFrom(const Motion& turn, double most) const {
@@ -158,16 +162,27 @@ double MotionSearch::farthestFrom(const Motion& turn, double most) const {
          std::abs(most * turn.forward_m);
 }
 
-std::vector<std::size_t> MotionSearch::nearOf(const Motion& motion, double most) const {
-  std::vector<std::size_t> near;
+std::vector<MotionSearch::Near> MotionSearch::nearOf(const Motion& motion, double most) const {
   const double farthest_m = motion.is_turn ? farthestFrom(motion, most) : 0;
   const Box center{motion.center, motion.center};
-  for (std::size_t h = 0; h < held_.size(); ++h) {
-    const Box& box_W = held_[h].part->box_W;
-    const bool is_near =
-        motion.is_turn ? distance2(center, box_W) <= farthest_m * farthest_m + held_[h].rest_m
-                       : entry(grown(part_.box_W, 2 * held_[h].rest_m), box_W, motion.direction) <= most;
-    if (is_near) near.push_back(h);
+  const auto isNear = [&](const Box& box_W, double rest_m) {
+    return motion.is_turn ? distance2(center, box_W) <= farthest_m * farthest_m + rest_m
+                          : entry(grown(part_.box_W, 2 * rest_m), box_W, motion.direction) <= most;
+  };
+  std::vector<std::size_t> found;
+  held_->boxes.forEach([&](const Box& node_W) { return isNear(node_W, most_rest_m_); },
+                       [&](std::uint32_t h) {
+                         const PlacedSurface* part = held_->parts[h];
+                         if (part != &part_ && isNear(part->box_W, rest_m_[h])) found.push_back(h);
+                       });
+  std::ranges::sort(found);
+  std::vector<Near> near;
+  for (const std::size_t h : found) {
+    near.push_back({h, heldAt(h), std::nullopt});
+    if (!motion.is_turn) continue;
+    const PlacedSurface& held = *near.back().held.part;
+    const Motion in_held = motion.in(held.X_WP.inverse());
+    near.back().turning.emplace(*held.surface, in_held.direction, in_held.center);
   }
   return near;
 }
@@ -189,15 +204,14 @@ double MotionSearch::pairStops(const MovingPair& pair, std::uint32_t moving, std
   return s;
 }
 
-double MotionSearch::step(std::size_t which, const std::optional<Turning>& turning, const Piece& piece,
+double MotionSearch::step(const Near& near, const std::optional<Turning>& turning, const Piece& piece,
                           const PassingFacets* passing, SearchWork* work, Reach& reach) const {
   // No structured binding: clang 14 does not let a lambda use one.
   const Motion& motion_H = piece.motion_H;
   const Pose& X_HM = piece.X_HM;
   const double most = piece.most;
   const std::array<double, 2>& along_m = piece.along_m;
-  const Held& held = held_[which];
-  if (turning && !turning->held[which]) return most;
+  const Held& held = near.held;
   const PartSurface &moving = *part_.surface, &fixed = *held.part->surface;
   const MovingPair pair{moving, fixed, X_HM, motion_H, held.rest_m};
   const double near_m = 2 * held.rest_m;
@@ -208,15 +222,14 @@ double MotionSearch::step(std::size_t which, const std::optional<Turning>& turni
     return std::sqrt(distance2(wide, of_held)) / std::max(std::hypot(radius_m, motion_H.forward_m), 1e-300);
   };
   double best = most;
-  if (passing != nullptr && passing->held != which) passing = nullptr;
+  if (passing != nullptr && passing->held != near.index) passing = nullptr;
   const auto passes = [&](const std::vector<std::uint8_t> PassingFacets::*what, std::uint32_t k,
                           std::uint32_t i) {
     return passing != nullptr && (passing->*what)[passing->is_of_moving ? i : k] != 0;
   };
   const auto visit = [&](std::uint32_t k, std::uint32_t i) {
     if (passes(&PassingFacets::facets, k, i)) return;
-    if (turning && !turning->moving.triangles[i].reaches(turning->held[which]->triangles[k], near_m, along_m))
-      return;
+    if (turning && !turning->moving.triangles[i].reaches(near.turning->triangles[k], near_m, along_m)) return;
     Triangle t = moving.triangle(i);
     for (Vec3& p : t) p = X_HM * p;
     const double radius_m = turning ? turning->moving.triangles[i].farthest_m : 0;
@@ -226,7 +239,7 @@ double MotionSearch::step(std::size_t which, const std::optional<Turning>& turni
     if (stops >= best) return;
     best = stops;
     reach.is_given_up = is_given_up;
-    reach.by = {which, i, k};
+    reach.by = {near.index, i, k};
   };
 
   struct Waiting {
@@ -236,7 +249,7 @@ double MotionSearch::step(std::size_t which, const std::optional<Turning>& turni
   const auto &tree = fixed.tree().nodes(), &tree_M = moving.tree().nodes();
   const auto boundOf = [&](std::uint32_t k, std::uint32_t i) {
     if (passes(&PassingFacets::nodes, k, i)) return kMotionSearchForever;
-    if (turning && !turning->moving.nodes[i].reaches(turning->held[which]->nodes[k], near_m, along_m))
+    if (turning && !turning->moving.nodes[i].reaches(near.turning->nodes[k], near_m, along_m))
       return kMotionSearchForever;
     const double radius_m = turning ? turning->moving.nodes[i].farthest_m : 0;
     const Box box = moved(tree_M[i].box, X_HM);
@@ -263,7 +276,7 @@ double MotionSearch::step(std::size_t which, const std::optional<Turning>& turni
     const Waiting now = stack.back();
     stack.pop_back();
     if (!(now.bound < best)) continue;
-    const TriangleTree::Node &of_held = tree[now.held], &of_moving = tree_M[now.moving];
+    const BoxTree::Node &of_held = tree[now.held], &of_moving = tree_M[now.moving];
     if (of_held.isLeaf() && of_moving.isLeaf()) {
       for (std::uint32_t a = of_held.first; a < of_held.end; ++a)
         for (std::uint32_t b = of_moving.first; b < of_moving.end; ++b)
@@ -286,21 +299,23 @@ double MotionSearch::step(std::size_t which, const std::optional<Turning>& turni
 }
 
 Reach MotionSearch::reach(const Motion& motion, double most, SearchWork* work) const {
-  return reach(motion, most, turningOf(motion, most), nullptr, work);
+  return reach(motion, most, nearOf(motion, most), turningOf(motion), nullptr, work);
 }
 
 std::array<Reach, 2> MotionSearch::reachBoth(const Motion& motion, double most,
                                              const std::array<const PassingFacets*, 2>& passing) const {
-  const std::optional<Turning> turning = turningOf(motion, most);
-  return {reach(motion, most, turning, passing[0], nullptr),
-          reach(motion.reversed(), most, turning, passing[1], nullptr)};
+  const std::optional<Turning> turning = turningOf(motion);
+  const std::vector<Near> near = nearOf(motion, most);
+  return {reach(motion, most, near, turning, passing[0], nullptr),
+          reach(motion.reversed(), most, turning ? near : nearOf(motion.reversed(), most), turning,
+                passing[1], nullptr)};
 }
 
-Reach MotionSearch::reach(const Motion& motion, double most, const std::optional<Turning>& turning,
-                          const PassingFacets* passing, SearchWork* work) const {
-  const std::vector<std::size_t> near = nearOf(motion, most);
+Reach MotionSearch::reach(const Motion& motion, double most, const std::vector<Near>& near,
+                          const std::optional<Turning>& turning, const PassingFacets* passing,
+                          SearchWork* work) const {
   std::vector<Motion> in_held;
-  for (const std::size_t h : near) in_held.push_back(motion.in(held_[h].part->X_WP.inverse()));
+  for (const Near& one : near) in_held.push_back(motion.in(one.held.part->X_WP.inverse()));
   const double speed = std::max(motion.is_turn ? greatestSpeed(motion, part_.box_W) : 1, 1e-300);
   const double least = kLeastStep_m / speed;
   double longest = kFirstStep_m / speed;
@@ -311,7 +326,7 @@ Reach MotionSearch::reach(const Motion& motion, double most, const std::optional
     for (std::size_t k = 0; k < near.size() && free > 0; ++k) {
       const auto [back_m, front_m] = std::minmax({reach.s * forward_m, (reach.s + free) * forward_m});
       const Piece piece{
-          in_held[k], in_held[k].at(reach.s) * held_[near[k]].X_HM, free, least, {back_m, front_m}};
+          in_held[k], in_held[k].at(reach.s) * near[k].held.X_HM, free, least, {back_m, front_m}};
       const double here = step(near[k], turning, piece, passing, work, reach);
       if (here >= free) continue;
       free = here;
@@ -329,7 +344,7 @@ Reach MotionSearch::reach(const Motion& motion, double most, const std::optional
 
 /// Takes back the rest depth by which facets may enter each other.
 Reach MotionSearch::backedOff(Reach reach, const Motion& motion_W, double speed) const {
-  const Held& held = held_[reach.by.held];
+  const Held held = heldAt(reach.by.held);
   const Motion motion = motion_W.in(held.part->X_WP.inverse());
   const MovingPair pair{*part_.surface, *held.part->surface, motion.at(reach.s) * held.X_HM, motion,
                         held.rest_m};
@@ -341,7 +356,7 @@ Reach MotionSearch::backedOff(Reach reach, const Motion& motion_W, double speed)
 }
 
 bool MotionSearch::isStoppedBy(const Blocker& blocker, const Motion& motion, double most) const {
-  const Held& held = held_[blocker.held];
+  const Held held = heldAt(blocker.held);
   const Motion motion_H = motion.in(held.part->X_WP.inverse());
   double s = 0;
   for (int i = 0; i < kMostSteps && s < most; ++i) {

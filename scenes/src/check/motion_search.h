@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -27,6 +28,13 @@ struct Reach {
   Blocker by;
 };
 
+/// Parts that stand, and a tree of their boxes in the world.
+struct StandingParts {
+  explicit StandingParts(std::vector<const PlacedSurface*> of_parts);
+  std::vector<const PlacedSurface*> parts;
+  BoxTree boxes;
+};
+
 /// What need not be looked at in a motion: facets of the moving part or of one that is held, which cannot
 /// touch the other of the two.
 struct PassingFacets {
@@ -34,8 +42,7 @@ struct PassingFacets {
   bool is_of_moving = false;
   std::vector<std::uint8_t> facets, nodes;  ///< 1: passes; a node of the part's tree if all its facets do
 
-  PassingFacets(std::size_t held, bool is_of_moving, std::vector<std::uint8_t> facets,
-                const TriangleTree& tree);
+  PassingFacets(std::size_t held, bool is_of_moving, std::vector<std::uint8_t> facets, const BoxTree& tree);
 };
 
 /// How much a search may do, in visited pairs of nodes: 1 us each, or 4 us in a turn. A limit that does not
@@ -61,8 +68,9 @@ class MotionSearch {
   /// How deep the facets of parts that rest on each other may be in each other.
   static constexpr double kRest_m = 0.1e-6;
 
+  /// @param held  may be shared by searches; the part itself may be among them, and does not count
   /// @param crossing_m by pair of the part and each held one: facets may cross by no more than this
-  MotionSearch(const PlacedSurface& part, std::vector<const PlacedSurface*> held,
+  MotionSearch(const PlacedSurface& part, std::shared_ptr<const StandingParts> held,
                const std::vector<double>& crossing_m, CrossingDepth depth = CrossingDepth::AsDrawn);
 
   /// @param motion in the world
@@ -74,7 +82,7 @@ class MotionSearch {
                                                const std::array<const PassingFacets*, 2>& passing = {}) const;
   /// Whether the two facets alone stop the motion.
   [[nodiscard]] bool isStoppedBy(const Blocker& blocker, const Motion& motion, double most) const;
-  [[nodiscard]] const PlacedSurface& held(std::size_t index) const { return *held_[index].part; }
+  [[nodiscard]] const PlacedSurface& held(std::size_t index) const { return *held_->parts[index]; }
   /// Of the held part with this name, which is among them.
   [[nodiscard]] std::size_t indexOf(const std::string& held) const;
   /// The greatest rest depth of all pairs.
@@ -86,11 +94,16 @@ class MotionSearch {
     Pose X_HM;  ///< the moving part, as drawn
     double rest_m;
   };
-  /// For a turn: of the part, and of each held part that it can reach.
+  /// A held part that may be near on a motion.
+  struct Near {
+    std::size_t index;
+    Held held;
+    std::optional<AxisExtents> turning;  ///< of a turn
+  };
+  /// For a turn: of the part.
   struct Turning {
     Vec3 axis_W;
     AxisExtents moving;
-    std::vector<std::optional<AxisExtents>> held;
   };
   /// A piece of a motion: from a pose on, `most` at most.
   struct Piece {
@@ -99,24 +112,29 @@ class MotionSearch {
     double most = 0, least = 0;          ///< how far to look, and the step that counts as none
     std::array<double, 2> along_m = {};  ///< where a screw goes, along Turning::axis_W from the pose as drawn
   };
-  [[nodiscard]] std::optional<Turning> turningOf(const Motion& motion, double most) const;
-  [[nodiscard]] Reach reach(const Motion& motion, double most, const std::optional<Turning>& turning,
-                            const PassingFacets* passing, SearchWork* work) const;
+  [[nodiscard]] Held heldAt(std::size_t index) const;
+  [[nodiscard]] std::optional<Turning> turningOf(const Motion& motion) const;
+  [[nodiscard]] Reach reach(const Motion& motion, double most, const std::vector<Near>& near,
+                            const std::optional<Turning>& turning, const PassingFacets* passing,
+                            SearchWork* work) const;
   [[nodiscard]] Reach backedOff(Reach reach, const Motion& motion_W, double speed) const;
-  /// The held parts that may be near on the motion, as their boxes tell. O(held parts), 10 ns each.
-  [[nodiscard]] std::vector<std::size_t> nearOf(const Motion& motion, double most) const;
+  /// The held parts that may be near on the motion, as their boxes tell, ascending. A turn and its reverse
+  /// have the same.
+  [[nodiscard]] std::vector<Near> nearOf(const Motion& motion, double most) const;
   /// How far the part reaches from the centre of a turn.
   [[nodiscard]] double farthestFrom(const Motion& turn, double most) const;
   /// How far on the piece no facet of a held part stops; where one does, `reach` says which and whether it
   /// was given up.
-  double step(std::size_t held, const std::optional<Turning>& turning, const Piece& piece,
+  double step(const Near& near, const std::optional<Turning>& turning, const Piece& piece,
               const PassingFacets* passing, SearchWork* work, Reach& reach) const;
   /// The same of one pair of facets, which advances by itself.
   static double pairStops(const MovingPair& pair, std::uint32_t moving, std::uint32_t held,
                           const Piece& piece, double most, SearchWork* work, bool& is_given_up);
 
   const PlacedSurface& part_;
-  std::vector<Held> held_;
+  std::shared_ptr<const StandingParts> held_;
+  std::vector<double> rest_m_;  // of each held part
+  double most_rest_m_ = kRest_m;
 };
 
 }  // namespace vps::scenes::inline v0

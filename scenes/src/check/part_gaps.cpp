@@ -5,14 +5,14 @@
 #include <array>
 
 #include "check/triangle_gap.h"
-#include "check/triangle_tree.h"
+#include "check/box_tree.h"
 #include "vps/mesh_distance.h"
 
 namespace vps::scenes::inline v0 {
 
 struct PartGaps::Surface {
   Mesh mesh;
-  TriangleTree tree;
+  BoxTree tree;
   MeshDistance distance;
 
   explicit Surface(const Mesh& of_part) : mesh(of_part), tree(mesh), distance(mesh) {}

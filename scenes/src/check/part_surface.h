@@ -11,7 +11,7 @@
 
 #include "check/cracks.h"
 #include "check/triangle_gap.h"
-#include "check/triangle_tree.h"
+#include "check/box_tree.h"
 #include "vps/mesh_overlap.h"
 #include "vps/solid.h"
 
@@ -29,7 +29,7 @@ class PartSurface {
   [[nodiscard]] const Mesh& mesh() const { return overlap_.mesh(); }
   [[nodiscard]] const Box& box() const { return overlap_.box(); }
   [[nodiscard]] const OverlapMesh& overlap() const { return overlap_; }
-  [[nodiscard]] const TriangleTree& tree() const { return tree_; }
+  [[nodiscard]] const BoxTree& tree() const { return tree_; }
   [[nodiscard]] const std::vector<std::array<std::uint32_t, 3>>& neighbours() const { return neighbours_; }
   [[nodiscard]] Triangle triangle(std::uint32_t i) const;
   [[nodiscard]] Vec3 normal(std::uint32_t i) const { return solid().featureNormal(i, 0); }
@@ -77,7 +77,7 @@ class PartSurface {
   void tellInside();
   void gatherNormals();
   OverlapMesh overlap_;
-  TriangleTree tree_;
+  BoxTree tree_;
   std::vector<std::array<std::uint32_t, 3>> neighbours_;
   std::vector<Crack> cracks_;
   std::optional<double> most_chord_m_;

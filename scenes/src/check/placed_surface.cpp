@@ -76,10 +76,17 @@ std::vector<PlacedSurface> placedSurfaces(const std::vector<DrawnPart>& parts, c
 
 std::vector<std::pair<std::size_t, std::size_t>> nearPairs(const std::vector<PlacedSurface>& parts,
                                                            double near_m) {
+  std::vector<Box> boxes;
+  for (const PlacedSurface& part : parts) boxes.push_back(part.box_W);
+  const BoxTree tree(boxes);
   std::vector<std::pair<std::size_t, std::size_t>> pairs;
-  for (std::size_t a = 0; a < parts.size(); ++a)
-    for (std::size_t b = a + 1; b < parts.size(); ++b)
-      if (distance2(parts[a].box_W, parts[b].box_W) <= near_m * near_m) pairs.emplace_back(a, b);
+  for (std::size_t a = 0; a < parts.size(); ++a) {
+    const auto isNear = [&](const Box& box) { return distance2(boxes[a], box) <= near_m * near_m; };
+    tree.forEach(isNear, [&](std::uint32_t b) {
+      if (b > a && isNear(boxes[b])) pairs.emplace_back(a, b);
+    });
+  }
+  std::ranges::sort(pairs);
   return pairs;
 }
 

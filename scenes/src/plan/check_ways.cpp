@@ -50,10 +50,12 @@ class WayCheck {
       : step_(scene.steps[step]),
         part_(placed[step_.part]),
         center_P_(massProperties(part_.surface->mesh()).com) {
+    std::vector<const PlacedSurface*> standing;
     for (const std::size_t i : held) {
-      held_.push_back(&placed[i]);
+      standing.push_back(&placed[i]);
       allowed_m_.push_back(kTouch_m + depthAt(placed[i], step_.X_WP_target).depth_m);
     }
+    held_ = std::make_shared<const StandingParts>(std::move(standing));
   }
 
   /// Where the way is deepest in a part, beyond what is drawn; no part if it is free.
@@ -86,12 +88,13 @@ class WayCheck {
 
   void consider(const Pose& X_WP, WayFault& worst) const {
     const Box box_W = moved(part_.surface->box(), X_WP);
-    for (std::size_t i = 0; i < held_.size(); ++i) {
-      if (!overlap(box_W, held_[i]->box_W)) continue;
-      const Overlap here = depthAt(*held_[i], X_WP);
+    for (std::size_t i = 0; i < held_->parts.size(); ++i) {
+      const PlacedSurface& held = *held_->parts[i];
+      if (!overlap(box_W, held.box_W)) continue;
+      const Overlap here = depthAt(held, X_WP);
       if (here.depth_m <= allowed_m_[i] || here.depth_m - allowed_m_[i] <= worst.depth_m - worst.allowed_m)
         continue;
-      worst = {WayFaultKind::Through, part_.name, held_[i]->name, here.depth_m, allowed_m_[i], here.p_W};
+      worst = {WayFaultKind::Through, part_.name, held.name, here.depth_m, allowed_m_[i], here.p_W};
     }
   }
 
@@ -218,7 +221,7 @@ class WayCheck {
   const SceneStep& step_;
   const PlacedSurface& part_;
   Vec3 center_P_;
-  std::vector<const PlacedSurface*> held_;
+  std::shared_ptr<const StandingParts> held_;
   std::vector<double> allowed_m_;
 };
 

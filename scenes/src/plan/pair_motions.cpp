@@ -115,7 +115,8 @@ void PairMotions::findNear(const CheckResult& checked, const Progress& progress)
   forEachOnCores(all.size(), progress, "preparing motions", [&](std::size_t i) {
     auto& [pair, near] = *all[i];
     near.search = std::make_unique<const MotionSearch>(
-        parts_[pair.first], std::vector<const PlacedSurface*>{&parts_[pair.second]},
+        parts_[pair.first],
+        std::make_shared<const StandingParts>(std::vector<const PlacedSurface*>{&parts_[pair.second]}),
         std::vector<double>{near.crossing_m}, CrossingDepth::UpToMost);
     near.probes = ContactProbes(parts_[pair.first], parts_[pair.second], near.crossing_m);
     SearchWork down{kMostWork}, up{kMostWork};
@@ -184,7 +185,8 @@ MotionSearch PairMotions::search(const PlacedSurface& placed, std::size_t part,
     const auto near = near_.find(std::minmax(h, part));
     crossing_m.push_back(near == near_.end() ? touchOf(parts_[h], parts_[part]) : near->second.crossing_m);
   }
-  return {placed, std::move(surfaces), crossing_m, CrossingDepth::UpToMost};
+  return {placed, std::make_shared<const StandingParts>(std::move(surfaces)), crossing_m,
+          CrossingDepth::UpToMost};
 }
 
 }  // namespace vps::scenes::inline v0

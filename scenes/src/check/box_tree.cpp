@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "check/triangle_tree.h"
+#include "check/box_tree.h"
 
 #include <algorithm>
 #include <numeric>
@@ -10,13 +10,19 @@ namespace {
 
 constexpr std::uint32_t kLeaf = 2;
 
-}  // namespace
-
-TriangleTree::TriangleTree(const Mesh& mesh) : order_(mesh.triangles.size()) {
-  std::iota(order_.begin(), order_.end(), 0U);
-  std::vector<Box> boxes(order_.size());
+std::vector<Box> boxesOf(const Mesh& mesh) {
+  std::vector<Box> boxes(mesh.triangles.size());
   for (std::size_t i = 0; i < boxes.size(); ++i)
     for (const std::uint32_t v : mesh.triangles[i]) boxes[i].add(mesh.vertices[v]);
+  return boxes;
+}
+
+}  // namespace
+
+BoxTree::BoxTree(const Mesh& mesh) : BoxTree(boxesOf(mesh)) {}
+
+BoxTree::BoxTree(const std::vector<Box>& boxes) : order_(boxes.size()) {
+  std::iota(order_.begin(), order_.end(), 0U);
   if (order_.empty()) return;
   nodes_.push_back({{}, 0, static_cast<std::uint32_t>(order_.size()), 0});
   for (std::size_t n = 0; n < nodes_.size(); ++n) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A tree of the boxes of a mesh's triangles, which is searched together with that of another mesh.
+// A tree of boxes, of a mesh's triangles or of parts, which is searched alone or together with another one.
 #pragma once
 
 #include <cstdint>
@@ -9,23 +9,25 @@
 
 namespace vps::scenes::inline v0 {
 
-class TriangleTree {
+class BoxTree {
  public:
   struct Node {
     Box box;
-    std::uint32_t first = 0, end = 0;  ///< its triangles: a range of order()
+    std::uint32_t first = 0, end = 0;  ///< its boxes: a range of order()
     std::uint32_t left = 0;            ///< of an inner node: its children are left and left + 1
     [[nodiscard]] bool isLeaf() const { return left == 0; }
   };
 
-  /// O(n log n). The same tree in every standard library.
-  explicit TriangleTree(const Mesh& mesh);
+  /// Of the mesh's triangles. O(n log n). The same tree in every standard library.
+  explicit BoxTree(const Mesh& mesh);
+  /// Likewise.
+  explicit BoxTree(const std::vector<Box>& boxes);
 
-  /// The root is the first; empty for a mesh without triangles.
+  /// The root is the first; empty without boxes.
   [[nodiscard]] const std::vector<Node>& nodes() const { return nodes_; }
   [[nodiscard]] const std::vector<std::uint32_t>& order() const { return order_; }
 
-  /// Calls visit(triangle) for all triangles in nodes for which `isWanted(box)` is true.
+  /// Calls visit(number of a box) for all boxes in nodes for which `isWanted(box of the node)` is true.
   template <class IsWanted, class Visit>
   void forEach(IsWanted isWanted, Visit visit) const {
     std::vector<std::uint32_t> stack;
@@ -53,12 +55,11 @@ inline double distance2(const Box& a, const Box& b) {
   return (a.min - b.max).cwiseMax(b.min - a.max).cwiseMax(0).squaredNorm();
 }
 
-/// Calls visit(triangle of a, triangle of b) for pairs of leaves, the nearer first, in which
+/// Calls visit(number of a box of a, of b) for pairs of leaves, the nearer first, in which
 /// `bound(box of a, box of b, in one frame)` is less than `limit()`. `place(box of b)` gives a box of b in
 /// the frame of a.
 template <class Place, class Bound, class Limit, class Visit>
-void visitPairs(const TriangleTree& a, const TriangleTree& b, Place place, Bound bound, Limit limit,
-                Visit visit) {
+void visitPairs(const BoxTree& a, const BoxTree& b, Place place, Bound bound, Limit limit, Visit visit) {
   struct Waiting {
     std::uint32_t a, b;
     double bound;
@@ -72,7 +73,7 @@ void visitPairs(const TriangleTree& a, const TriangleTree& b, Place place, Bound
     const Waiting now = stack.back();
     stack.pop_back();
     if (!(now.bound < limit())) continue;
-    const TriangleTree::Node &of_a = a.nodes()[now.a], &of_b = b.nodes()[now.b];
+    const BoxTree::Node &of_a = a.nodes()[now.a], &of_b = b.nodes()[now.b];
     if (of_a.isLeaf() && of_b.isLeaf()) {
       for (std::uint32_t i = of_a.first; i < of_a.end; ++i)
         for (std::uint32_t k = of_b.first; k < of_b.end; ++k) visit(a.order()[i], b.order()[k]);
