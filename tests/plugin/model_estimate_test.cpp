@@ -44,6 +44,15 @@ TEST(ModelEstimate, WholeModelsTakeAboutWhatIsEstimated) {
   }
 }
 
+TEST(ModelEstimate, OfWholeModelsAloneItIsTheSame) {
+  for (const Case& part : cases()) {
+    const ModelEstimate any(part.mesh, {}, {}), whole(part.mesh, {}, {}, ModelEstimate::Extent::WholeOnly);
+    EXPECT_EQ(whole.mapBytes(), any.mapBytes()) << part.name;
+    EXPECT_EQ(whole.pointCount(), any.pointCount()) << part.name;
+    EXPECT_GT(whole.pointCount(), 0) << part.name;
+  }
+}
+
 TEST(ModelEstimate, CroppedModelsTakeAboutWhatIsEstimated) {
   for (const Case& part : cases()) {
     const Box all = bounds(part.mesh);

@@ -17,8 +17,12 @@ namespace vps::inline v0 {
 /// them every edge counts as sharp.
 class VPS_API ModelEstimate {
  public:
+  /// What may be asked for.
+  enum class Extent { Any, WholeOnly };
   /// O(n log n) for n triangles, at most some 20,000 pieces of larger ones, and the points of sharp edges.
-  ModelEstimate(const Mesh& mesh, const VoxMapSettings& voxels, const PointShellSettings& points);
+  /// @param extent  of whole models only, it keeps a few numbers instead of pieces and points
+  ModelEstimate(const Mesh& mesh, const VoxMapSettings& voxels, const PointShellSettings& points,
+                Extent extent = Extent::Any);
 
   /// Of VoxMap::memoryBytes(), of the map as croppedVoxMap() leaves it; no boxes: the whole map.
   [[nodiscard]] double mapBytes(const std::vector<Box>& kept_P = {}) const;
@@ -37,7 +41,8 @@ class VPS_API ModelEstimate {
 
   std::vector<Piece> pieces_;
   std::vector<Vec3> edge_points_P_;
-  double area_m2_ = 0, directory_bytes_ = 0;
+  Extent extent_ = Extent::Any;
+  double area_m2_ = 0, directory_bytes_ = 0, edge_points_ = 0;
   double cell_m_ = 0, bricks_per_m2_ = 0, face_points_per_m2_ = 0;
 };
 

@@ -6,6 +6,7 @@
 
 #include "pointshell/shell_samples.h"
 #include "voxmap/map_limits.h"
+#include "vps/assert.h"
 
 namespace vps::inline v0 {
 namespace {
@@ -26,8 +27,9 @@ bool isWithinAny(const Vec3& p, const std::vector<Box>& boxes) {
 
 }  // namespace
 
-ModelEstimate::ModelEstimate(const Mesh& mesh, const VoxMapSettings& voxels,
-                             const PointShellSettings& points) {
+ModelEstimate::ModelEstimate(const Mesh& mesh, const VoxMapSettings& voxels, const PointShellSettings& points,
+                             Extent extent)
+    : extent_(extent) {
   // A mesh that cannot be built costs nothing; building it says why.
   const bool is_finite = std::all_of(mesh.vertices.begin(), mesh.vertices.end(),
                                      [](const Vec3& vertex) { return vertex.allFinite(); });
@@ -40,13 +42,16 @@ ModelEstimate::ModelEstimate(const Mesh& mesh, const VoxMapSettings& voxels,
   directory_bytes_ =
       directoryBytes(Vec3((size_m.array() + 2 * voxels.band_voxels * voxels.voxel_m) / cell_m_ + 3));
   face_points_per_m2_ = kDensity / (points.spacing_m * points.spacing_m);
+  const std::vector<ShellSample> on_edges =
+      sampleFeatures(mesh, triangleNormals(mesh), kEdgeStep * points.spacing_m,
+                     kEdgeTolerance * points.spacing_m, points.edge_angle_rad);
+  edge_points_ = static_cast<double>(on_edges.size());
+  if (extent == Extent::WholeOnly) return;
+  for (const ShellSample& sample : on_edges) edge_points_P_.push_back(sample.p);
   const double piece_m = std::max(kPiece * cell_m_, std::sqrt(area_m2_ / kMostPieces));
   pieces_.reserve(mesh.triangles.size());
   for (const auto& [a, b, c] : mesh.triangles)
     addPieces(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c], piece_m);
-  for (const ShellSample& sample : sampleFeatures(mesh, triangleNormals(mesh), kEdgeStep * points.spacing_m,
-                                                  kEdgeTolerance * points.spacing_m, points.edge_angle_rad))
-    edge_points_P_.push_back(sample.p);
 }
 
 /// Halves a triangle across its longest edge until its longest edge is short.
@@ -66,6 +71,7 @@ void ModelEstimate::addPieces(const Vec3& a, const Vec3& b, const Vec3& c, doubl
 }
 
 double ModelEstimate::areaWithin(const std::vector<Box>& boxes_P) const {
+  VPS_ASSERT(extent_ == Extent::Any);
   double sum_m2 = 0;
   for (const Piece& piece : pieces_)
     if (isWithinAny(piece.center_P, boxes_P)) sum_m2 += piece.area_m2;
@@ -84,7 +90,7 @@ double ModelEstimate::mapBytes(const std::vector<Box>& kept_P) const {
 
 double ModelEstimate::pointCount(const std::vector<Box>& kept_P) const {
   const double kept_m2 = kept_P.empty() ? area_m2_ : areaWithin(kept_P);
-  double edges = static_cast<double>(edge_points_P_.size());
+  double edges = edge_points_;
   if (!kept_P.empty())
     edges = static_cast<double>(
         std::ranges::count_if(edge_points_P_, [&](const Vec3& p_P) { return isWithinAny(p_P, kept_P); }));
