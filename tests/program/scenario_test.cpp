@@ -144,6 +144,28 @@ TEST_F(Scenario, ExplainPrintsWhatIsModelledOfTheBearingBlockAndWhatThatSaves) {
   EXPECT_GT(data["wall"]["everything"]["cook_s"].get<double>(), 0);
 }
 
+// A line each would bury what is modelled.
+TEST_F(Scenario, ExplainPutsManyPartsThatNothingComesNearIntoOneRow) {
+  const auto withPlates = [this](int count) {
+    std::string scene = "unit = \"mm\"\n";
+    for (int i = 0; i < count; ++i)
+      scene += "[[part]]\nfile = \"plate.stl\"\nname = \"plate " + std::to_string(i) +
+               "\"\nfixed = true\npose = {position = [" + std::to_string(40 * i) + ", 0, 0]}\n";
+    scene +=
+        "[[part]]\nfile = \"pin.stl\"\npose = {position = [0, 0, 9.5]}\n"
+        "[[step]]\npart = \"pin\"\napproach = [0, 0, 20]\n";
+    write("plates.toml", scene);
+    const Ran ran = run("explain plates.toml --json plates.json");
+    EXPECT_EQ(ran.status, 0) << ran.err;
+    return ran.out;
+  };
+  EXPECT_EQ(withPlates(12).find("others"), std::string::npos);
+  const std::string out = withPlates(40);
+  EXPECT_NE(out.find(" others"), std::string::npos) << out;
+  EXPECT_EQ(out.find("plate 39"), std::string::npos) << out;
+  EXPECT_EQ(read("plates.json")["parts"].size(), 41u);
+}
+
 // Measured 52 MB estimated and 61 built, with everything modelled 122 and 120; 4836 and 4982 points.
 TEST_F(Scenario, ExplainEstimatesWhatItMeasures) {
   const std::string call = "explain " + kScenes + "bearing_block/scene.toml --json ";

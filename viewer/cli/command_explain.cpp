@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // vps explain: what of a scene is modelled, what not, why, and at what cost.
 #include <cstdio>
+#include <map>
 #include <memory>
 
 #include "command.h"
@@ -27,9 +28,18 @@ std::string megabytes(std::size_t bytes) {
   return fixed(1e-6 * static_cast<double>(bytes), 2);
 }
 
+constexpr std::size_t kNamed = 12;  // of more parts of a kind, one is named and the others are counted
+
+std::string othersOf(std::size_t count) {
+  return " and " + std::to_string(count) + " others";
+}
+
 std::string namesOf(const scenes::Scene& scene, const std::vector<std::size_t>& parts) {
   std::string names;
-  for (const std::size_t i : parts) names += (names.empty() ? "" : ", ") + scene.parts[i].part.name;
+  const std::size_t shown = parts.size() <= kNamed ? parts.size() : 1;
+  for (std::size_t i = 0; i < shown; ++i)
+    names += (names.empty() ? "" : ", ") + scene.parts[parts[i]].part.name;
+  if (shown < parts.size()) names += othersOf(parts.size() - shown);
   return names.empty() ? "-" : names;
 }
 
@@ -49,17 +59,59 @@ std::string whereOf(const scenes::PartModelPlan& part) {
   return "near " + std::to_string(part.kept_P.size()) + (part.kept_P.size() == 1 ? " path" : " paths");
 }
 
+/// For each part that is not modelled for the same reason as others before it: how many follow it in its
+/// row. A product has thousands that nothing comes near.
+class Folded {
+ public:
+  Folded(const scenes::Scene& scene, const scenes::ModelPlan& plan) : first_(plan.parts.size()) {
+    std::map<std::string, std::vector<std::size_t>> alike;
+    for (std::size_t i = 0; i < first_.size(); ++i) {
+      first_[i] = i;
+      const scenes::PartModelPlan& part = plan.parts[i];
+      if (!part.has_map && !part.has_shell && !part.same_as) alike[part.why].push_back(i);
+    }
+    for (const auto& [why, parts] : alike) {
+      if (parts.size() <= kNamed) continue;
+      Group& group = groups_[parts.front()];
+      group.others = parts.size() - 1;
+      for (const std::size_t i : parts) {
+        first_[i] = parts.front();
+        group.triangles += scene.parts[i].part.mesh.triangles.size();
+      }
+    }
+  }
+  [[nodiscard]] bool hasRow(std::size_t part) const { return first_[part] == part; }
+  [[nodiscard]] std::string nameOf(const scenes::Scene& scene, std::size_t part) const {
+    const auto group = groups_.find(part);
+    const std::string& name = scene.parts[part].part.name;
+    return group == groups_.end() ? name : name + othersOf(group->second.others);
+  }
+  [[nodiscard]] std::size_t trianglesOf(const scenes::Scene& scene, std::size_t part) const {
+    const auto group = groups_.find(part);
+    return group == groups_.end() ? scene.parts[part].part.mesh.triangles.size() : group->second.triangles;
+  }
+
+ private:
+  struct Group {
+    std::size_t others = 0, triangles = 0;
+  };
+  std::vector<std::size_t> first_;  // the part in whose row a part is
+  std::map<std::size_t, Group> groups_;
+};
+
 std::string tableOfParts(const scenes::Scene& scene, const scenes::ExplainedModels& explained) {
   const bool is_measured = !explained.cost.is_estimated;
   Table table(
       {"<part", "<modelled", "<where", "MB", "points", is_measured ? "build [s]" : "triangles", "<why"});
+  const Folded folded(scene, explained.plan);
   for (std::size_t i = 0; i < scene.parts.size(); ++i) {
+    if (!folded.hasRow(i)) continue;
     const scenes::PartModelPlan& part = explained.plan.parts[i];
     const scenes::PartCost& cost = explained.cost.parts[i];
-    table.add({scene.parts[i].part.name, modelsOf(part), whereOf(part),
+    table.add({folded.nameOf(scene, i), modelsOf(part), whereOf(part),
                megabytes(cost.map_bytes + cost.shell_bytes), std::to_string(cost.points),
                is_measured ? fixed(cost.map_wall_s + cost.shell_wall_s, 3)
-                           : std::to_string(scene.parts[i].part.mesh.triangles.size()),
+                           : std::to_string(folded.trianglesOf(scene, i)),
                whyOf(scene, part)});
   }
   return table.text();
