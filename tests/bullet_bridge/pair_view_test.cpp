@@ -2,6 +2,7 @@
 #include "narrowphase/pair_view.h"
 
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
+#include <BulletDynamics/Dynamics/btRigidBody.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -75,6 +76,33 @@ TEST(PairView, WithoutMeshABodysBoxIsNotKnown) {
   Placed body2(shape1);
   const btCollisionObjectWrapper same = body2.at({});
   EXPECT_GT(PairView(&other, &same).leastDistance_m(), 0.9);
+}
+
+// A prediction that turns bodies about the world's origin looks for this one 5 mm away.
+TEST(PairView, ABodyThatSpinsFarFromTheOriginStaysWhereItIs) {
+  Shape shape(withMesh()), other(withMesh());
+  btRigidBody spinning(
+      btRigidBody::btRigidBodyConstructionInfo(1, nullptr, &shape, btVector3(1e-3, 1e-3, 1e-3)));
+  const Pose X_WB = Pose::translation({1, 0.5, 0});
+  spinning.setWorldTransform(toBt(X_WB));
+  spinning.setAngularVelocity(btVector3(0, 0, 100));
+  const btCollisionObjectWrapper of_spinning{nullptr, &shape, &spinning, spinning.getWorldTransform(),
+                                             -1,      -1};
+  Placed standing(other);
+  const btCollisionObjectWrapper of_standing = standing.at({});
+  const PairView start(&of_spinning, &of_standing);
+  PairView later = start;
+  const double dt_s = 1e-3;
+  advance(later, start, dt_s, dt_s);
+  const double rounding = sizeof(btScalar) == 8 ? 1e-12 : 1e-6;
+  EXPECT_LT((later.X_WS[0].p - X_WB.p).norm(), rounding);
+  const Mat3 R = rotationFromVector(Vec3(0, 0, 100 * dt_s));
+  EXPECT_LT((later.X_WS[0].R - R).norm(), rounding);
+  EXPECT_LT((later.X_WS[1].p).norm(), rounding);
+  // As the way that is searched for edges.
+  Pose way[2];
+  coast(start, dt_s, way);
+  EXPECT_LT(((way[0] * start.X_WS[0]).p - later.X_WS[0].p).norm(), rounding);
 }
 
 }  // namespace

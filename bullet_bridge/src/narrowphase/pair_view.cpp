@@ -68,21 +68,28 @@ int sideCount(const PairView& pair, Sides sides) {
   return sides == Sides::Both && pair.isTwoSided() ? 2 : 1;
 }
 
+namespace {
+
+// A body turns about its own centre, wherever the world's origin is.
+Pose displacement(const btCollisionObject& object, const Twist& V, double t_s) {
+  const Vec3 center = fromBt(object.getWorldTransform().getOrigin());
+  const Mat3 R = rotationFromVector(V.w * t_s);
+  return Pose(R, center + (V.v + V.w.cross(center)) * t_s - R * center);
+}
+
+}  // namespace
+
 void advance(PairView& pair, const PairView& start, double dt_s, double t_s) {
   for (int i = 0; i < 2; ++i) {
-    const Twist V = predictedVelocity(*pair.wrapper[i]->getCollisionObject(), dt_s);
-    const Mat3 R = rotationFromVector(V.w * t_s);
-    pair.X_WS[i] = Pose(Mat3(R * start.X_WS[i].R), R * start.X_WS[i].p + V.v * t_s);
+    const btCollisionObject& object = *pair.wrapper[i]->getCollisionObject();
+    pair.X_WS[i] = displacement(object, predictedVelocity(object, dt_s), t_s) * start.X_WS[i];
   }
 }
 
 void coast(const PairView& pair, double dt_s, Pose (&way)[2]) {
   for (int i = 0; i < 2; ++i) {
     const btCollisionObject& object = *pair.wrapper[i]->getCollisionObject();
-    const Twist V = predictedVelocity(object, 0, false);
-    const Vec3 center = fromBt(object.getWorldTransform().getOrigin());
-    const Mat3 R = rotationFromVector(V.w * dt_s);
-    way[i] = Pose(R, center + (V.v + V.w.cross(center)) * dt_s - R * center);
+    way[i] = displacement(object, predictedVelocity(object, 0, false), dt_s);
   }
 }
 
