@@ -59,8 +59,8 @@ std::string whereOf(const scenes::PartModelPlan& part) {
   return "near " + std::to_string(part.kept_P.size()) + (part.kept_P.size() == 1 ? " path" : " paths");
 }
 
-/// For each part that is not modelled for the same reason as others before it: how many follow it in its
-/// row. A product has thousands that nothing comes near.
+/// Parts that are not modelled, in groups that have the same reason. A group of more than kNamed has one row,
+/// in place of its first part: a product has thousands that nothing comes near.
 class Folded {
  public:
   Folded(const scenes::Scene& scene, const scenes::ModelPlan& plan) : first_(plan.parts.size()) {
@@ -95,8 +95,8 @@ class Folded {
   struct Group {
     std::size_t others = 0, triangles = 0;
   };
-  std::vector<std::size_t> first_;  // the part in whose row a part is
-  std::map<std::size_t, Group> groups_;
+  std::vector<std::size_t> first_;  // by part: the part in whose row it is counted, itself if it has its own
+  std::map<std::size_t, Group> groups_;  // by their first part
 };
 
 std::string tableOfParts(const scenes::Scene& scene, const scenes::ExplainedModels& explained) {

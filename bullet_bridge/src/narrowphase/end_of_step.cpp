@@ -26,9 +26,7 @@ Pose freeWay(const btCollisionObject& object, const RelativeMotion& motion) {
     const Twist own = predictedVelocity(object, dt_s, false);
     V = {own.w + motion.pull_share * (V.w - own.w), own.v + motion.pull_share * (V.v - own.v)};
   }
-  const Vec3 center = fromBt(object.getWorldTransform().getOrigin());
-  const Mat3 R = rotationFromVector(V.w * dt_s);
-  return {R, center + (V.v + V.w.cross(center)) * dt_s - R * center};
+  return displacement(object, V, dt_s);
 }
 
 bool slides(const Candidate& c, const Vec3& way_W, double contact_margin_m) {

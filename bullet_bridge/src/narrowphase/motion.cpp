@@ -66,4 +66,10 @@ Twist predictedVelocity(const btCollisionObject& object, double dt_s, bool with_
   return V;
 }
 
+Pose displacement(const btCollisionObject& object, const Twist& V, double t_s) {
+  const Vec3 center = fromBt(object.getWorldTransform().getOrigin());
+  const Mat3 R = rotationFromVector(V.w * t_s);
+  return {R, center + (V.v + V.w.cross(center)) * t_s - R * center};
+}
+
 }  // namespace vps::bullet::inline v0

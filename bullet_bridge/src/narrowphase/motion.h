@@ -13,4 +13,8 @@ namespace vps::bullet::inline v0 {
 /// of a btMultiBody has the velocity that its joints give it. Zero for static objects.
 Twist predictedVelocity(const btCollisionObject& object, double dt_s, bool with_couplings = true);
 
+/// Where a twist about the world's origin, constant for t_s, takes the object, in W. It turns about its own
+/// centre, wherever the world's origin is.
+Pose displacement(const btCollisionObject& object, const Twist& V, double t_s);
+
 }  // namespace vps::bullet::inline v0

@@ -68,17 +68,6 @@ int sideCount(const PairView& pair, Sides sides) {
   return sides == Sides::Both && pair.isTwoSided() ? 2 : 1;
 }
 
-namespace {
-
-// A body turns about its own centre, wherever the world's origin is.
-Pose displacement(const btCollisionObject& object, const Twist& V, double t_s) {
-  const Vec3 center = fromBt(object.getWorldTransform().getOrigin());
-  const Mat3 R = rotationFromVector(V.w * t_s);
-  return Pose(R, center + (V.v + V.w.cross(center)) * t_s - R * center);
-}
-
-}  // namespace
-
 void advance(PairView& pair, const PairView& start, double dt_s, double t_s) {
   for (int i = 0; i < 2; ++i) {
     const btCollisionObject& object = *pair.wrapper[i]->getCollisionObject();

@@ -17,10 +17,10 @@ namespace vps::inline v0 {
 /// them every edge counts as sharp.
 class VPS_API ModelEstimate {
  public:
-  /// What may be asked for.
+  /// Which models are asked for: whole or cropped ones, or whole ones alone.
   enum class Extent { Any, WholeOnly };
   /// O(n log n) for n triangles, at most some 20,000 pieces of larger ones, and the points of sharp edges.
-  /// @param extent  of whole models only, it keeps a few numbers instead of pieces and points
+  /// @param extent  WholeOnly: a few numbers are kept, no pieces of surface, and kept_P must be empty below
   ModelEstimate(const Mesh& mesh, const VoxMapSettings& voxels, const PointShellSettings& points,
                 Extent extent = Extent::Any);
 

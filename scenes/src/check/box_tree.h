@@ -20,7 +20,7 @@ class BoxTree {
 
   /// Of the mesh's triangles. O(n log n). The same tree in every standard library.
   explicit BoxTree(const Mesh& mesh);
-  /// Likewise.
+  /// Of boxes; visits then give indices of this list.
   explicit BoxTree(const std::vector<Box>& boxes);
 
   /// The root is the first; empty without boxes.

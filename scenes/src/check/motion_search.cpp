@@ -306,9 +306,10 @@ std::array<Reach, 2> MotionSearch::reachBoth(const Motion& motion, double most,
                                              const std::array<const PassingFacets*, 2>& passing) const {
   const std::optional<Turning> turning = turningOf(motion);
   const std::vector<Near> near = nearOf(motion, most);
+  std::vector<Near> near_back;  // of a straight motion; a turn's are the same
+  if (!turning) near_back = nearOf(motion.reversed(), most);
   return {reach(motion, most, near, turning, passing[0], nullptr),
-          reach(motion.reversed(), most, turning ? near : nearOf(motion.reversed(), most), turning,
-                passing[1], nullptr)};
+          reach(motion.reversed(), most, turning ? near : near_back, turning, passing[1], nullptr)};
 }
 
 Reach MotionSearch::reach(const Motion& motion, double most, const std::vector<Near>& near,

@@ -28,7 +28,7 @@ struct Reach {
   Blocker by;
 };
 
-/// Parts that stand, and a tree of their boxes in the world.
+/// Parts that stand, which must outlive it, and a tree of their boxes in the world.
 struct StandingParts {
   explicit StandingParts(std::vector<const PlacedSurface*> of_parts);
   std::vector<const PlacedSurface*> parts;
@@ -68,8 +68,11 @@ class MotionSearch {
   /// How deep the facets of parts that rest on each other may be in each other.
   static constexpr double kRest_m = 0.1e-6;
 
-  /// @param held  may be shared by searches; the part itself may be among them, and does not count
-  /// @param crossing_m by pair of the part and each held one: facets may cross by no more than this
+  /// @param part  must outlive the search
+  /// @param held  may be shared by searches; the part itself, known by its address, may be among them and is
+  ///              not searched
+  /// @param crossing_m by pair of the part and each held one: facets may cross by no more than this; 0 for
+  ///                   the part itself
   MotionSearch(const PlacedSurface& part, std::shared_ptr<const StandingParts> held,
                const std::vector<double>& crossing_m, CrossingDepth depth = CrossingDepth::AsDrawn);
 
@@ -119,7 +122,7 @@ class MotionSearch {
                             SearchWork* work) const;
   [[nodiscard]] Reach backedOff(Reach reach, const Motion& motion_W, double speed) const;
   /// The held parts that may be near on the motion, as their boxes tell, ascending. A turn and its reverse
-  /// have the same.
+  /// have the same. O(log n + those found); of a turn also their triangles.
   [[nodiscard]] std::vector<Near> nearOf(const Motion& motion, double most) const;
   /// How far the part reaches from the centre of a turn.
   [[nodiscard]] double farthestFrom(const Motion& turn, double most) const;

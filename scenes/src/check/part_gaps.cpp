@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <array>
 
-#include "check/triangle_gap.h"
 #include "check/box_tree.h"
+#include "check/triangle_gap.h"
 #include "vps/mesh_distance.h"
 
 namespace vps::scenes::inline v0 {

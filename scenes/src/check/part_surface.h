@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "check/box_tree.h"
 #include "check/cracks.h"
 #include "check/triangle_gap.h"
-#include "check/box_tree.h"
 #include "vps/mesh_overlap.h"
 #include "vps/solid.h"
 

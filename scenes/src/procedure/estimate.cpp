@@ -40,13 +40,17 @@ class Estimator {
           out_.plan.steps, [i](const FieldPlan& step) { return std::ranges::count(step.cooked, i) > 0; });
     };
     for (const ScenePart& part : scene_.parts) requireUsable(part.part.mesh, part.file, part.part.name);
+    // The pieces of 10,000 parts took 3 GB.
+    const bool is_cropped =
+        std::ranges::any_of(out_.plan.parts,
+                            [](const PartModelPlan& part) { return !part.kept_P.empty(); }) ||
+        std::ranges::any_of(out_.plan.steps, [](const FieldPlan& step) { return step.region_W.has_value(); });
+    const auto extent = is_cropped ? ModelEstimate::Extent::Any : ModelEstimate::Extent::WholeOnly;
     tbb::parallel_for(std::size_t{0}, scene_.parts.size(), [&](std::size_t i) {
       const PartModelPlan& planned = out_.plan.parts[i];
       if (planned.same_as || !(isModelled(planned) || isCooked(i))) return;
-      // Of everything nothing is cropped. The pieces of 10,000 parts took 3 GB.
-      estimates_[i].emplace(
-          scene_.parts[i].part.mesh, voxMapSettings(scene_.fidelity), pointShellSettings(scene_.fidelity),
-          out_.plan.models_everything ? ModelEstimate::Extent::WholeOnly : ModelEstimate::Extent::Any);
+      estimates_[i].emplace(scene_.parts[i].part.mesh, voxMapSettings(scene_.fidelity),
+                            pointShellSettings(scene_.fidelity), extent);
     });
     for (std::size_t i = 0; i < scene_.parts.size(); ++i) addPart(i);
     own_ = out_.cost.most;
