@@ -50,6 +50,9 @@ TEST(ModelEstimate, OfWholeModelsAloneItIsTheSame) {
     EXPECT_EQ(whole.mapBytes(), any.mapBytes()) << part.name;
     EXPECT_EQ(whole.pointCount(), any.pointCount()) << part.name;
     EXPECT_GT(whole.pointCount(), 0) << part.name;
+    const Box far{Vec3::Constant(0.1), Vec3::Constant(0.11)};
+    EXPECT_EQ(whole.mapBytes({far}), any.mapBytes()) << part.name;
+    EXPECT_EQ(whole.pointCount({far}), any.pointCount()) << part.name;
   }
 }
 

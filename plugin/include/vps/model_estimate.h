@@ -20,7 +20,7 @@ class VPS_API ModelEstimate {
   /// Which models are asked for: whole or cropped ones, or whole ones alone.
   enum class Extent { Any, WholeOnly };
   /// O(n log n) for n triangles, at most some 20,000 pieces of larger ones, and the points of sharp edges.
-  /// @param extent  WholeOnly: a few numbers are kept, no pieces of surface, and kept_P must be empty below
+  /// @param extent  WholeOnly: a few numbers are kept, no pieces of surface; cropped models count as whole
   ModelEstimate(const Mesh& mesh, const VoxMapSettings& voxels, const PointShellSettings& points,
                 Extent extent = Extent::Any);
 
@@ -37,6 +37,9 @@ class VPS_API ModelEstimate {
     double area_m2;
   };
   void addPieces(const Vec3& a, const Vec3& b, const Vec3& c, double piece_m);
+  [[nodiscard]] bool isCropped(const std::vector<Box>& kept_P) const {
+    return extent_ == Extent::Any && !kept_P.empty();
+  }
   [[nodiscard]] double areaWithin(const std::vector<Box>& boxes_P) const;
 
   std::vector<Piece> pieces_;

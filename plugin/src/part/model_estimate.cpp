@@ -6,7 +6,6 @@
 
 #include "pointshell/shell_samples.h"
 #include "voxmap/map_limits.h"
-#include "vps/assert.h"
 
 namespace vps::inline v0 {
 namespace {
@@ -71,7 +70,6 @@ void ModelEstimate::addPieces(const Vec3& a, const Vec3& b, const Vec3& c, doubl
 }
 
 double ModelEstimate::areaWithin(const std::vector<Box>& boxes_P) const {
-  VPS_ASSERT(extent_ == Extent::Any);
   double sum_m2 = 0;
   for (const Piece& piece : pieces_)
     if (isWithinAny(piece.center_P, boxes_P)) sum_m2 += piece.area_m2;
@@ -80,7 +78,7 @@ double ModelEstimate::areaWithin(const std::vector<Box>& boxes_P) const {
 
 double ModelEstimate::mapBytes(const std::vector<Box>& kept_P) const {
   double kept_m2 = area_m2_;
-  if (!kept_P.empty()) {
+  if (isCropped(kept_P)) {
     std::vector<Box> around_P;
     for (const Box& box : kept_P) around_P.push_back(grown(box, kKeptCells * cell_m_));
     kept_m2 = areaWithin(around_P);
@@ -89,9 +87,9 @@ double ModelEstimate::mapBytes(const std::vector<Box>& kept_P) const {
 }
 
 double ModelEstimate::pointCount(const std::vector<Box>& kept_P) const {
-  const double kept_m2 = kept_P.empty() ? area_m2_ : areaWithin(kept_P);
+  const double kept_m2 = isCropped(kept_P) ? areaWithin(kept_P) : area_m2_;
   double edges = edge_points_;
-  if (!kept_P.empty())
+  if (isCropped(kept_P))
     edges = static_cast<double>(
         std::ranges::count_if(edge_points_P_, [&](const Vec3& p_P) { return isWithinAny(p_P, kept_P); }));
   return edges + std::max(0.0, face_points_per_m2_ * kept_m2 - kDensity * kTakenByEdge * edges);
