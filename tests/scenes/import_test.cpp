@@ -870,7 +870,7 @@ TEST(OwnProcess, BeyondItsTimeOrMemoryItIsEndedWithARemedy) {
   const std::string grown = messageWith(limits, [](const Progress& tell) {
     std::vector<char> all(300'000'000);
     for (std::size_t i = 0; i < all.size(); i += 4096) all[i] = 1;
-    if (tell) tell("meshing", all[4096]);  // the parent has not asked for any
+    if (tell) tell("meshing", all[4096]);  // empty, since messageWith() passes none
     for (;;) ::pause();
     return import::RawCad();
   });

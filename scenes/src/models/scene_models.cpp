@@ -140,9 +140,7 @@ void requireMemory(const Scene& scene, const ModelPlan& plan, const ModelOptions
   });
   if (at_most <= most_bytes) return;
   const double about = sum([&](const Mesh& mesh, const PartModelPlan& planned) {
-    const ModelEstimate estimate(
-        mesh, voxels, points,
-        planned.kept_P.empty() ? ModelEstimate::Extent::WholeOnly : ModelEstimate::Extent::Any);
+    const ModelEstimate estimate(mesh, voxels, points);
     return (planned.has_map ? estimate.mapBytes(planned.kept_P) : 0) +
            (planned.has_shell ? ModelEstimate::shellBytes(estimate.pointCount(planned.kept_P)) : 0);
   });

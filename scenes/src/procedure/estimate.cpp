@@ -40,7 +40,7 @@ class Estimator {
           out_.plan.steps, [i](const FieldPlan& step) { return std::ranges::count(step.cooked, i) > 0; });
     };
     for (const ScenePart& part : scene_.parts) requireUsable(part.part.mesh, part.file, part.part.name);
-    // The pieces of 10,000 parts took 3 GB.
+    // Only estimates of cropped models need pieces of the surface, and those of 10,000 parts take 3 GB.
     const bool is_cropped =
         std::ranges::any_of(out_.plan.parts,
                             [](const PartModelPlan& part) { return !part.kept_P.empty(); }) ||

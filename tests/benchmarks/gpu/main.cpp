@@ -14,7 +14,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -28,6 +27,7 @@
 #include <vector>
 
 #include "benchmarks/scene_parts.h"
+#include "core/wall_clock.h"
 #include "draw/egl_context.h"
 #include "vps/voxmap.h"
 
@@ -39,15 +39,11 @@ constexpr int kCells = VoxMap::kBrick, kNodes = kCells + 1;
 constexpr std::size_t kNodesOfBrick = std::size_t{kNodes} * kNodes * kNodes;
 constexpr int kRepeats = 5;
 
-double nowSeconds() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
 template <typename Run>
 double secondsOf(Run run) {
-  const double begun_s = nowSeconds();
+  const double begun_s = scenes::wallSeconds();
   run();
-  return nowSeconds() - begun_s;
+  return scenes::wallSeconds() - begun_s;
 }
 
 double median(std::vector<double> values) {
@@ -262,9 +258,9 @@ std::size_t allCores() {
 bool row(GLuint program, int voxels, int coarser, bool is_timed) {
   const Mesh mesh = test::makeRingGear(ringShape(coarser));
   const double voxel_m = bounds(mesh).size().maxCoeff() / voxels;
-  double sort_s = nowSeconds();
+  double sort_s = scenes::wallSeconds();
   const Faces faces(mesh, voxel_m);
-  sort_s = nowSeconds() - sort_s;
+  sort_s = scenes::wallSeconds() - sort_s;
   std::vector<float> nodes;
   std::array<std::vector<double>, 3> times;
   for (int i = 0; i < (is_timed ? kRepeats : 1); ++i) {
@@ -294,14 +290,14 @@ bool row(GLuint program, int voxels, int coarser, bool is_timed) {
 }
 
 int run(bool is_check) {
-  double begun_s = nowSeconds();
+  double begun_s = scenes::wallSeconds();
   const viewer::EglContext context;
   const viewer::EglContext::Current current(context);
   const auto* name = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
-  const double context_s = nowSeconds() - begun_s;
-  begun_s = nowSeconds();
+  const double context_s = scenes::wallSeconds() - begun_s;
+  begun_s = scenes::wallSeconds();
   const GLuint program = compiled();
-  const double compile_s = nowSeconds() - begun_s;
+  const double compile_s = scenes::wallSeconds() - begun_s;
   bool is_good = true;
   if (is_check) {
     is_good = row(program, 48, 8, false);
