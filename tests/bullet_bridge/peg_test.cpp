@@ -108,9 +108,15 @@ TEST_P(PegInBore, DroppedItSeats) {
   for (int i = 0; i < 1500; ++i) step(body, i % 5 == 0);
   const Pose rest = test::partPose(body, peg_);
   double speed_m_s = 0;
+  const std::size_t searched = stats(world.dispatcher).pair_updates;
   for (int i = 0; i < 2000; ++i) {
     world.step();
     speed_m_s = std::max<double>(speed_m_s, body.getLinearVelocity().length());
+  }
+  // The seat gives all contacts of the limit. What else the rim needs must be kept beside them, or each step
+  // is solved twice and searched again.
+  if (GetParam().solver == SolverKind::Constraint) {
+    EXPECT_LE(stats(world.dispatcher).pair_updates - searched, 20u);
   }
   const Pose later = test::partPose(body, peg_);
   report("drop");

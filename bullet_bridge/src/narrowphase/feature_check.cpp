@@ -143,7 +143,6 @@ void addMissedFeatures(const PairView& pair, const Settings& settings, PairState
   });
   const std::size_t had = contacts.size();
   for (const FeatureContact& c : state.missed_features) {
-    if (contacts.size() >= static_cast<std::size_t>(settings.contact_limit)) break;
     Candidate at = place(c);
     if (!isAmong(contacts, at) && state.motion.canTouch(at)) contacts.push_back(at);
   }

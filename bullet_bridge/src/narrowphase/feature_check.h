@@ -17,9 +17,10 @@ constexpr double kToleratedShare = 0.05;
 /// True if both bodies have exact surfaces, whose features can be compared.
 bool hasFeatures(const PairView& pair, const Settings& settings);
 
-/// Adds the contacts of features that earlier steps lacked and that are still as near, in key order. Parts
-/// that rest on features that are no points of a shell and no crossings would otherwise be solved twice in
-/// each step: once without these contacts.
+/// Adds the contacts of features that earlier steps lacked and that are still as near, in key order; at most
+/// 16, beyond the contact limit, which the selection has used up where a part lies on faces. Parts that rest
+/// on features that are not among their other contacts would otherwise be solved twice in each step: once
+/// without these.
 void addMissedFeatures(const PairView& pair, const Settings& settings, PairState& state,
                        std::vector<Candidate>& contacts);
 
