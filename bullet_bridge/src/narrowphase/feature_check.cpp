@@ -70,15 +70,16 @@ struct FeaturePlacer {
 };
 
 // A point of a shell or a crossing at the same place of the same plane: its own point may be the one of the
-// other body, across the gap.
-bool isAmong(const std::vector<Candidate>& contacts, const Candidate& at) {
+// other body, across the gap. Null: there is none.
+Candidate* findAt(std::vector<Candidate>& contacts, const Candidate& at) {
   constexpr double kNear_m = 1e-6, kCosSame = 0.99999;  // assumed, as in isRepeated()
-  return std::any_of(contacts.begin(), contacts.end(), [&](const Candidate& c) {
+  const auto found = std::find_if(contacts.begin(), contacts.end(), [&](const Candidate& c) {
     const Vec3 to = c.p_W - at.p_W;
     const double height_m = at.n_W.dot(to);
     return at.n_W.dot(c.n_W) > kCosSame && std::abs(height_m) < std::abs(at.distance_m) + kNear_m &&
            (to - height_m * at.n_W).squaredNorm() < kNear_m * kNear_m;
   });
+  return found != contacts.end() ? &*found : nullptr;
 }
 
 void remember(const FeatureContact& c, std::vector<FeatureContact>& known) {
@@ -144,7 +145,12 @@ void addMissedFeatures(const PairView& pair, const Settings& settings, PairState
   const std::size_t had = contacts.size();
   for (const FeatureContact& c : state.missed_features) {
     Candidate at = place(c);
-    if (!isAmong(contacts, at) && state.motion.canTouch(at)) contacts.push_back(at);
+    Candidate* same = findAt(contacts, at);
+    // Where curved edges lie flush, a crossing rests without a gap; but not where the gap was missed.
+    if (same)
+      same->rest_m = at.rest_m;
+    else if (state.motion.canTouch(at))
+      contacts.push_back(at);
   }
   const auto middle = contacts.begin() + static_cast<std::ptrdiff_t>(had);
   const auto byKey = [](const Candidate& a, const Candidate& b) { return a.key() < b.key(); };

@@ -14,6 +14,16 @@
 
 namespace vps::bullet::inline v0 {
 
+Vec3 RigidContact::position_W() const {
+  return 0.5 * fromBt(point->getPositionWorldOnA() + point->getPositionWorldOnB());
+}
+Vec3 RigidContact::normal_W() const {
+  return fromBt(point->m_normalWorldOnB);
+}
+Vec3 RigidContact::tangent_W(int k) const {
+  return fromBt(k == 0 ? point->m_lateralFrictionDir1 : point->m_lateralFrictionDir2);
+}
+
 double ContactSweeps::velocity(const ContactRow& row) const {
   double v = row.fixed_velocity;
   for (const ContactRow::Side& side : row.side)

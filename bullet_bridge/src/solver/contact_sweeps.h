@@ -47,6 +47,11 @@ struct RigidContact {
   double p_n = 0, p_t[2] = {0, 0}, p_push = 0;  ///< impulses [N s]
   double W_t_inverse[3] = {0, 0, 0};            ///< of the 2x2 tangent block: 11, 12, 22
   double W_t = 0;                               ///< its greatest eigenvalue
+
+  /// Where its forces act, the middle of the gap, and their directions.
+  [[nodiscard]] Vec3 position_W() const;
+  [[nodiscard]] Vec3 normal_W() const;
+  [[nodiscard]] Vec3 tangent_W(int k) const;
 };
 
 class ContactSweeps {

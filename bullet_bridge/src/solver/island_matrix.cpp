@@ -74,17 +74,20 @@ void IslandMatrix::add(int row_body, int column_body, const Mat6& block) {
   }
 }
 
-bool IslandMatrix::solve(const Eigen::VectorXd& rhs, Eigen::VectorXd& answer) {
+bool IslandMatrix::factorise() {
   if (isDense()) {
     dense_factor_.compute(dense_);
-    if (dense_factor_.info() != Eigen::Success) return false;
-    answer = dense_factor_.solve(rhs);
-    return true;
+    return dense_factor_.info() == Eigen::Success;
   }
   sparse_factor_.factorize(sparse_);
-  if (sparse_factor_.info() != Eigen::Success) return false;
-  answer = sparse_factor_.solve(rhs);
-  return true;
+  return sparse_factor_.info() == Eigen::Success;
+}
+
+void IslandMatrix::solve(Eigen::VectorXd& x) const {
+  if (isDense())
+    dense_factor_.solveInPlace(x);
+  else
+    x = sparse_factor_.solve(x);
 }
 
 }  // namespace vps::bullet::inline v0

@@ -21,8 +21,10 @@ class IslandMatrix {
   void start(std::size_t body_count, std::span<const std::pair<int, int>> pairs);
   /// Adds to the block of two bodies. Blocks of the upper half are ignored.
   void add(int row_body, int column_body, const Mat6& block);
-  /// answer: the inverse of the matrix times rhs. False: the matrix is not positive definite.
-  [[nodiscard]] bool solve(const Eigen::VectorXd& rhs, Eigen::VectorXd& answer);
+  /// False: the matrix is not positive definite.
+  [[nodiscard]] bool factorise();
+  /// Replaces x by the inverse of the factorised matrix times x.
+  void solve(Eigen::VectorXd& x) const;
 
  private:
   static constexpr std::size_t kDense = 12;  // assumed: greatest number of bodies for which dense is faster

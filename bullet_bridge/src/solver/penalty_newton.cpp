@@ -6,17 +6,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solver/patch_math.h"
 #include "vps_bullet/convert.h"
 
 namespace vps::bullet::inline v0 {
 namespace {
-
-/// Transforms a twist about `from` into one about `to`.
-Mat6 twistShift(const Vec3& from, const Vec3& to) {
-  Mat6 X = Mat6::Identity();
-  X.bottomLeftCorner<3, 3>() = -crossMatrix(to - from);
-  return X;
-}
 
 double sumOfProducts(const std::vector<Vec6>& a, const std::vector<Vec6>& b) {
   double sum = 0;
@@ -140,11 +134,12 @@ bool PenaltyNewton::newtonStep(const std::vector<Vec6>& gradient, std::vector<Ve
     if (is_free_[r])
       addPair(row.body, [&](int i, int j) -> Mat6 { return joint_kg_[r] * row.J[i] * row.J[j].transpose(); });
   }
-  Eigen::VectorXd rhs(static_cast<Eigen::Index>(6 * gradient.size())), answer;
+  if (!hessian_.factorise()) return false;
+  Eigen::VectorXd x(static_cast<Eigen::Index>(6 * gradient.size()));
   for (std::size_t i = 0; i < gradient.size(); ++i)
-    rhs.segment<6>(static_cast<Eigen::Index>(6 * i)) = -gradient[i];
-  if (!hessian_.solve(rhs, answer)) return false;
-  for (std::size_t i = 0; i < step.size(); ++i) step[i] = answer.segment<6>(static_cast<Eigen::Index>(6 * i));
+    x.segment<6>(static_cast<Eigen::Index>(6 * i)) = -gradient[i];
+  hessian_.solve(x);
+  for (std::size_t i = 0; i < step.size(); ++i) step[i] = x.segment<6>(static_cast<Eigen::Index>(6 * i));
   return true;
 }
 

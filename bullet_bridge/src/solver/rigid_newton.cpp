@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "solver/rigid_newton.h"
 
-#include <BulletCollision/NarrowPhaseCollision/btManifoldPoint.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
-
-#include "vps_bullet/convert.h"
 
 namespace vps::bullet::inline v0 {
 namespace {
@@ -27,19 +23,15 @@ bool isOfPair(const RigidContact& c, const PenaltyPair& pair) {
   return c.object[0] == pair.object[0] && c.object[1] == pair.object[1] && c.mu == pair.mu;
 }
 
-Vec3 tangentOf(const RigidContact& c, int k) {
-  return fromBt(k == 0 ? c.point->m_lateralFrictionDir1 : c.point->m_lateralFrictionDir2);
-}
-
 PenaltyPoint penaltyPointOf(const RigidContact& c, double dt_s, double compliance) {
   PenaltyPoint p;
-  p.p_W = 0.5 * fromBt(c.point->getPositionWorldOnA() + c.point->getPositionWorldOnB());
-  p.n_W = fromBt(c.point->m_normalWorldOnB);
+  p.p_W = c.position_W();
+  p.n_W = c.normal_W();
   p.k_N_per_m = 1 / (compliance * c.normal.W * dt_s * dt_s);
   p.f_n_N = c.p_n / dt_s;
   p.gap_m = -c.target_m_s * dt_s - p.f_n_N / p.k_N_per_m;
   // The bend is the displacement of body 0 relative to body 1; the impulse on body 0 opposes it.
-  p.bend_W = -(c.p_t[0] * tangentOf(c, 0) + c.p_t[1] * tangentOf(c, 1)) / (dt_s * p.k_N_per_m);
+  p.bend_W = -(c.p_t[0] * c.tangent_W(0) + c.p_t[1] * c.tangent_W(1)) / (dt_s * p.k_N_per_m);
   return p;
 }
 
@@ -69,7 +61,7 @@ double RigidNewton::readImpulses(std::span<RigidContact> contacts, double dt_s) 
     for (const PenaltyPoint& p : pair.points) {
       const double p_n = dt_s * p.f_n_N;
       const Vec3 impulse_t = -dt_s * p.k_N_per_m * p.bend_W;
-      const double p_t[2] = {impulse_t.dot(tangentOf(*c, 0)), impulse_t.dot(tangentOf(*c, 1))};
+      const double p_t[2] = {impulse_t.dot(c->tangent_W(0)), impulse_t.dot(c->tangent_W(1))};
       const double change_Ns =
           std::abs(p_n - c->p_n) + std::abs(p_t[0] - c->p_t[0]) + std::abs(p_t[1] - c->p_t[1]);
       error_m_s = std::max(error_m_s, compliance_ * c->normal.W * change_Ns);

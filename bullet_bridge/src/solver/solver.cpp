@@ -28,6 +28,7 @@
 #include "solver/island.h"
 #include "solver/penalty_contacts.h"
 #include "solver/penalty_newton.h"
+#include "solver/rigid_admm.h"
 #include "solver/rigid_newton.h"
 #include "solver/step_check.h"
 #include "vps_bullet/convert.h"
@@ -48,6 +49,7 @@ struct Solver::Work {
   JointRows joints;
   ContactSweeps rigid{island, joints};
   RigidNewton rigid_newton{island, joints};
+  RigidAdmm rigid_admm{island};
   PenaltyNewton penalty{island, joints};
   bool is_penalty = false;
   std::vector<CouplingConstraint*> couplings;
@@ -69,6 +71,7 @@ struct Solver::Work {
   void applyLaws();
   bool updateLaws();
   SolveOutcome solveContacts(const SolverSettings& settings, double dt_s);
+  [[nodiscard]] bool isHeap() const;
   SolveOutcome solveRigid(const SolverSettings& settings, double dt_s);
   SolveOutcome solveWithLaws(const SolverSettings& settings, double dt_s);
   bool addMissed(const btContactSolverInfo& info, bool is_first);
@@ -199,7 +202,23 @@ bool Solver::Work::updateLaws() {
   return is_converged;
 }
 
-// For parts near rest sweeps converge within a few microseconds; otherwise Newton's method follows.
+// Many bodies that touch, of masses that are not too different. In a heap of 50 parts Newton's method hardly
+// ever converges; RigidAdmm leaves a third of its error (median of 24 problems) for a quarter of the work.
+// For a few bodies, or one on another of a thousandth of its mass, it is the reverse; a hundredth is no
+// trouble.
+bool Solver::Work::isHeap() const {
+  constexpr std::size_t kFewBodies = 12;
+  constexpr double kMassRatio = 100;
+  if (!joints.rows.empty() || island.bodies.size() <= kFewBodies) return false;
+  const auto mass = [](const IslandBody& b) { return b.effective_mass.bottomRightCorner<3, 3>().trace(); };
+  const auto [least, most] =
+      std::minmax_element(island.bodies.begin(), island.bodies.end(),
+                          [&](const IslandBody& a, const IslandBody& b) { return mass(a) < mass(b); });
+  return mass(*most) <= kMassRatio * mass(*least);
+}
+
+// For parts near rest sweeps converge within a few microseconds; otherwise a method follows that sees the
+// whole island: for heaps with a fixed amount of work, otherwise Newton's.
 SolveOutcome Solver::Work::solveRigid(const SolverSettings& settings, double dt_s) {
   constexpr int kSweepsFirst = 30, kSweepsPerNewtonStep = 10;  // assumed; the second: ratio of their costs
   constexpr double kShareOfSpeed = 1e-5;  // assumed: a micrometre on a path of a decimetre
@@ -207,6 +226,8 @@ SolveOutcome Solver::Work::solveRigid(const SolverSettings& settings, double dt_
   // again and again for the contacts that it misses: that takes longer than to converge. Mass ratios up to
   // 8e5 took up to 40 steps on impact and 20 afterwards.
   constexpr int kNewtonAtLeast = 60;
+  // Measured: 40 leave up to three times the error of 80 in a heap.
+  constexpr int kAllAtOnce = 60;
   const int newton_share = std::max(0, settings.iteration_limit - kSweepsFirst) / kSweepsPerNewtonStep;
   const int newton_limit = newton_share > 0 ? std::max(kNewtonAtLeast, newton_share) : 0;
   rigid.start();
@@ -215,6 +236,13 @@ SolveOutcome Solver::Work::solveRigid(const SolverSettings& settings, double dt_
   if (outcome.is_converged || newton_limit == 0) return outcome;
   island.readVelocities(u);
   const double near_m_s = std::max(settings.residual_m_s, kShareOfSpeed * island.topSpeed(u));
+  if (isHeap()) {
+    const int left = settings.iteration_limit - outcome.steps;
+    const SolveOutcome all = rigid_admm.solve(rigid.contacts(), near_m_s, std::min(kAllAtOnce, left));
+    rigid.applyImpulses();
+    const SolveOutcome end = rigid.sweep(settings.residual_m_s, kSweepsFirst);
+    return {outcome.steps + all.steps + end.steps, all.is_converged || end.is_converged};
+  }
   const SolveOutcome newton = rigid_newton.solve(rigid.contacts(), dt_s, near_m_s, newton_limit);
   outcome.steps += kSweepsPerNewtonStep * newton.steps;
   outcome.is_converged = newton.is_converged;

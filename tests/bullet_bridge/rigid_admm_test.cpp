@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The solution for many bodies at once, on problems whose impulses are known.
+#include "solver/rigid_admm.h"
+
+#include <BulletCollision/CollisionShapes/btBoxShape.h>
+#include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
+#include <BulletDynamics/ConstraintSolver/btContactSolverInfo.h>
+#include <BulletDynamics/Dynamics/btRigidBody.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <deque>
+
+#include "vps_bullet/convert.h"
+
+namespace vps::bullet {
+namespace {
+
+constexpr double kDt_s = 1e-3, kHalf_m = 5e-3, kMass_kg = 0.02, kGravity_m_s2 = 9.81;
+constexpr int kShort = 60;  // as bullet::Solver gives it
+constexpr int kLong = 1000;
+
+/// Cubes of 10 mm with four contacts on each face that touches another.
+struct Cubes {
+  btBoxShape shape{btVector3(kHalf_m, kHalf_m, kHalf_m)};
+  std::deque<btRigidBody> bodies;
+  std::deque<btPersistentManifold> manifolds;
+  btRigidBody floor{btRigidBody::btRigidBodyConstructionInfo(0, nullptr, &shape, btVector3(0, 0, 0))};
+  Island island;
+  JointRows joints;
+  ContactSweeps sweeps{island, joints};
+  btContactSolverInfo info;
+
+  Cubes() { info.m_timeStep = kDt_s; }
+
+  btRigidBody& add(const Vec3& center, const Vec3& force_N) {
+    btVector3 inertia;
+    shape.calculateLocalInertia(kMass_kg, inertia);
+    btRigidBody& body =
+        bodies.emplace_back(btRigidBody::btRigidBodyConstructionInfo(kMass_kg, nullptr, &shape, inertia));
+    body.setWorldTransform(btTransform(btMatrix3x3::getIdentity(), toBt(center)));
+    body.updateInertiaTensor();
+    body.applyCentralForce(toBt(force_N));
+    return body;
+  }
+  // Of `upper` on what is below it.
+  void touch(btRigidBody& upper, btRigidBody& lower, double mu) {
+    btPersistentManifold& manifold = manifolds.emplace_back(&upper, &lower, 0, 1e-3, 1e-3);
+    for (const double x : {-kHalf_m, kHalf_m})
+      for (const double y : {-kHalf_m, kHalf_m}) {
+        const btVector3 at = upper.getWorldTransform() * btVector3(x, y, -kHalf_m);
+        btManifoldPoint point(btVector3(0, 0, 0), btVector3(0, 0, 0), btVector3(0, 0, 1), 0);
+        point.m_positionWorldOnA = point.m_positionWorldOnB = at;
+        point.m_combinedFriction = toBt(mu);
+        manifold.addManifoldPoint(point);
+      }
+  }
+  void start() {
+    for (btRigidBody& body : bodies) island.add(body, kDt_s);
+    for (IslandBody& b : island.bodies) {
+      b.effective_mass = b.mass;
+      b.effective_inverse = b.mass.inverse();
+    }
+    for (btPersistentManifold& manifold : manifolds)
+      for (int i = 0; i < manifold.getNumContacts(); ++i)
+        sweeps.add(manifold, manifold.getContactPoint(i), info);
+    sweeps.start();
+  }
+  SolveOutcome solve(int limit) {
+    RigidAdmm admm(island);
+    const SolveOutcome outcome = admm.solve(sweeps.contacts(), 1e-9, limit);
+    sweeps.applyImpulses();
+    return outcome;
+  }
+};
+
+/// A tower; each contact carries a quarter of what is above it.
+struct Tower : Cubes {
+  static constexpr int kCubes = 20;
+  Tower() {
+    btRigidBody* below = &floor;
+    for (int k = 0; k < kCubes; ++k) {
+      btRigidBody& cube = add(Vec3(0, 0, (2 * k + 1) * kHalf_m), Vec3(0, 0, -kMass_kg * kGravity_m_s2));
+      touch(cube, *below, 0.3);
+      below = &cube;
+    }
+    start();
+  }
+  /// Greatest error, as a share of the tower's weight.
+  [[nodiscard]] double error() {
+    double most = 0;
+    for (std::size_t i = 0; i < sweeps.contacts().size(); ++i) {
+      const double above = kCubes - static_cast<double>(i / 4);
+      const double p_Ns = above / 4 * kMass_kg * kGravity_m_s2 * kDt_s;
+      most = std::max(most, std::abs(sweeps.contacts()[i].p_n - p_Ns));
+    }
+    return most / (kCubes * kMass_kg * kGravity_m_s2 * kDt_s / 4);
+  }
+};
+
+TEST(RigidAdmm, CarriesTheWeightOfATowerWhereAsManySweepsDoNot) {
+  Tower swept, tower;
+  swept.sweeps.sweep(1e-9, kShort);
+  tower.solve(kShort);
+  std::printf("[ measured ] sweeps %.3g, all at once %.3g of the weight\n", swept.error(), tower.error());
+  EXPECT_LT(tower.error(), 0.1);
+  EXPECT_GT(swept.error(), 3 * tower.error());
+  tower.solve(kLong);
+  EXPECT_LT(tower.error(), 1e-5);
+}
+
+TEST(RigidAdmm, SlidesWithTheForceBeyondFrictionAndSticksBelow) {
+  constexpr double mu = 0.3;
+  for (const double pull : {0.5, 0.2}) {  // of the weight, sidewards
+    Cubes cubes;
+    const double weight_N = kMass_kg * kGravity_m_s2;
+    for (int k = 0; k < 20; ++k) {
+      btRigidBody& cube = cubes.add(Vec3(0.02 * k, 0, kHalf_m), Vec3(0, pull * weight_N, -weight_N));
+      cubes.touch(cube, cubes.floor, mu);
+    }
+    cubes.start();
+    EXPECT_TRUE(cubes.solve(kLong).is_converged);
+    const double speed_m_s = std::max(0.0, pull - mu) * kGravity_m_s2 * kDt_s;
+    for (const IslandBody& b : cubes.island.bodies)
+      EXPECT_NEAR((b.u - stacked(Vec3(0, 0, 0), Vec3(0, speed_m_s, 0))).norm(), 0, 1e-6);
+    for (const RigidContact& c : cubes.sweeps.contacts())
+      EXPECT_LE(std::hypot(c.p_t[0], c.p_t[1]), (1 + 1e-9) * mu * c.p_n);
+  }
+}
+
+TEST(RigidAdmm, AContactOnlyPushes) {
+  Cubes cubes;
+  for (int k = 0; k < 20; ++k) {
+    btRigidBody& cube =
+        cubes.add(Vec3(0.02 * k, 0, kHalf_m), Vec3(0, 0, (k % 2 ? 1 : -1) * kMass_kg * kGravity_m_s2));
+    cubes.touch(cube, cubes.floor, 0.3);
+  }
+  cubes.start();
+  EXPECT_TRUE(cubes.solve(kLong).is_converged);
+  for (std::size_t k = 0; k < 20; ++k)
+    EXPECT_NEAR(cubes.island.bodies[k].u[5], k % 2 ? kGravity_m_s2 * kDt_s : 0, 1e-6) << k;
+}
+
+}  // namespace
+}  // namespace vps::bullet
