@@ -11,6 +11,8 @@
 #include <cmath>
 #include <cstdio>
 #include <deque>
+#include <random>
+#include <utility>
 
 #include "vps_bullet/convert.h"
 
@@ -125,8 +127,62 @@ TEST(RigidAdmm, SlidesWithTheForceBeyondFrictionAndSticksBelow) {
     for (const IslandBody& b : cubes.island.bodies)
       EXPECT_NEAR((b.u - stacked(Vec3(0, 0, 0), Vec3(0, speed_m_s, 0))).norm(), 0, 1e-6);
     for (const RigidContact& c : cubes.sweeps.contacts())
-      EXPECT_LE(std::hypot(c.p_t[0], c.p_t[1]), (1 + 1e-9) * mu * c.p_n);
+      EXPECT_LE(std::hypot(c.p_t[0], c.p_t[1]), (1 + 1e-9) * c.mu * c.p_n);
   }
+}
+
+// Normals in all directions, either body first, gaps, a floor that moves, and pairs whose contacts are apart
+// in the list. Velocities are those of very many sweeps.
+struct Random : Cubes {
+  static constexpr int kCubes = 15;
+  explicit Random(unsigned seed) {
+    std::mt19937 engine(seed);
+    std::uniform_real_distribution<double> in(-1, 1);
+    const auto vector = [&] { return Vec3(in(engine), in(engine), in(engine)); };
+    floor.setCollisionFlags(btCollisionObject::CF_KINEMATIC_OBJECT);
+    floor.setLinearVelocity(btVector3(toBt(0.01), 0, toBt(0.02)));
+    floor.setAngularVelocity(btVector3(0, toBt(0.1), 0));
+    for (int k = 0; k < kCubes; ++k)
+      add(0.03 * vector(), kMass_kg * (kGravity_m_s2 * Vec3(0, 0, -1) + 10 * vector()));
+    for (int round = 0; round < 2; ++round)
+      for (int k = 0; k < kCubes; ++k) {
+        btRigidBody& other = k % 5 == 0 ? floor : bodies[static_cast<std::size_t>(k - 1)];
+        btRigidBody* pair[2] = {&bodies[static_cast<std::size_t>(k)], &other};
+        if (k % 2) std::swap(pair[0], pair[1]);
+        btPersistentManifold& manifold = manifolds.emplace_back(pair[0], pair[1], 0, 1e-3, 1e-3);
+        for (int i = 0; i < 2; ++i) {
+          const Vec3 n = (vector() + Vec3(0, 0, k % 2 ? -2 : 2)).normalized();
+          const btVector3 at = toBt(Vec3(0.03 * vector()));
+          btManifoldPoint point(btVector3(0, 0, 0), btVector3(0, 0, 0), toBt(n),
+                                toBt(1e-6 * (1 + in(engine))));
+          point.m_positionWorldOnA = point.m_positionWorldOnB = at;
+          point.m_combinedFriction = toBt(0.2);
+          manifold.addManifoldPoint(point);
+        }
+      }
+    start();
+  }
+};
+
+TEST(RigidAdmm, RandomContactsHaveTheVelocitiesOfManySweeps) {
+  for (unsigned seed = 1; seed <= 10; ++seed) {
+    Random swept(seed), random(seed);
+    swept.sweeps.sweep(1e-12, 100'000);
+    random.solve(20 * kLong);
+    for (std::size_t k = 0; k < Random::kCubes; ++k) {
+      const Vec6 off = random.island.bodies[k].u - swept.island.bodies[k].u;
+      EXPECT_LE(off.tail<3>().norm() + kHalf_m * off.head<3>().norm(), 1e-6) << seed << ' ' << k;
+    }
+  }
+}
+
+TEST(RigidAdmm, LeavesTheImpulsesWhereAVelocityIsNotFinite) {
+  Tower tower;
+  tower.solve(kLong);
+  tower.island.bodies.back().momentum[5] = std::nan("");
+  RigidAdmm admm(tower.island);
+  EXPECT_FALSE(admm.solve(tower.sweeps.contacts(), 1e300, kShort).is_converged);
+  EXPECT_LT(tower.error(), 1e-5);
 }
 
 TEST(RigidAdmm, AContactOnlyPushes) {

@@ -14,7 +14,7 @@ struct Settings {
   /// message (log.h) then says so, once. Penalty contact has no restitution.
   ContactMethod contact_method = ContactMethod::Constraint;
   double stiffness_N_per_m3 = 1e12;  ///< of penalty contact, per area; assumed: steel, 0.2 m thick
-  int contact_limit = 32;            ///< contacts chosen for each pair, >= 4; a step's check may add some
+  int contact_limit = 32;            ///< contacts of each pair, >= 4; checks of steps add up to 16
   /// A point is a contact if it can come within this distance during the step. 20 um: measured. A larger
   /// value gives the solver contacts that do not act; a smaller one misses points that rotation and the
   /// solver's residual bring into contact.

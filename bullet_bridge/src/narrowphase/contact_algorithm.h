@@ -15,7 +15,7 @@ struct Context;
 ///
 ///   1. Find candidates: points of each side that can touch the other within the step, and crossings of edges
 ///      (speculative contact: the distance may be > 0).
-///   2. Reduce them to contact_limit contacts that keep depth, extent and directions, preferring last step's.
+///   2. Reduce them to about contact_limit that keep depth, extent and directions, preferring last step's.
 ///   3. Refine distance and normal by the exact surfaces.
 ///   4. Write them into as many manifolds of four as needed, each contact with its impulse of the last step.
 ///

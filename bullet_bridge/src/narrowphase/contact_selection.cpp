@@ -236,6 +236,7 @@ void selectContacts(const PairView& pair, const RelativeMotion& motion, const Se
     addDeeperNeighbours(pair, motion, settings, writer, candidates);
   if (selection) {
     selection->refined = candidates;
+    selection->leaves_out = candidates.size() > limit;
     selection->sampling_m = sampling_m;
     selection->is_of_path = !isQueriedOnce(pair, motion);
     selection->any_way_m = motion.anyWay_m();

@@ -147,8 +147,9 @@ void addMissedFeatures(const PairView& pair, const Settings& settings, PairState
     Candidate at = place(c);
     Candidate* same = findAt(contacts, at);
     // Where curved edges lie flush, a crossing rests without a gap; but not where the gap was missed.
+    // Its distance may be that of the curved surface, and the feature's is that of the facets.
     if (same)
-      same->rest_m = at.rest_m;
+      same->rest_m = std::max(same->rest_m, at.rest_m + same->distance_m - at.distance_m);
     else if (state.motion.canTouch(at))
       contacts.push_back(at);
   }

@@ -232,8 +232,7 @@ bool PairCheck::mayMissPoints(const Motion& m) const {
 }
 
 void PairCheck::findAmongRefined(const Motion& m, std::vector<Candidate>& missed) const {
-  if (state_.selection.refined.size() <= state_.selection.contacts.size() && m.bend_m <= m.tolerated_m)
-    return;
+  if (!state_.selection.leaves_out && m.bend_m <= m.tolerated_m) return;
   const Placed at_end(*this, m.end);
   const SideView side[2] = {at_end.pair.side(0), at_end.pair.side(1)};
   for (const Candidate& c : state_.selection.refined) {

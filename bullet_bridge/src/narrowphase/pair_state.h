@@ -30,6 +30,7 @@ struct Selection {
   ShapeKey key[2];                        ///< of sides that are no Shape
   std::vector<Candidate> penalty_points;  ///< with penalty contact: all that can touch
   std::vector<Candidate> refined;         ///< with rigid contact: all whose exact distance is known
+  bool leaves_out = false;                ///< not all of these are contacts
   bool is_of_path = false;  ///< only what a fast body met first on its predicted path was considered
   double any_way_m = 0;     ///< otherwise: points that could move so far in any direction were
   double sampling_m = 0;  ///< greatest size of an area from which only the most urgent points were considered

@@ -18,7 +18,7 @@ inline Mat6 twistShift(const Vec3& from, const Vec3& to) {
   return X;
 }
 
-/// Sum of symmetric matrices; of those of single vectors only the lower half is computed.
+/// Sum of symmetric matrices.
 class SymmetricSum {
  public:
   // Column by column, so that the compiler vectorises the inner loop.

@@ -11,6 +11,7 @@
 #include "vps_bullet/convert.h"
 
 namespace vps::bullet::inline v0 {
+
 void PenaltyPatch::build(PenaltyPair& from, const Mat3 (&off_tangent)[2], double dt_s, int level) {
   pair = &from;
   dt_s_ = dt_s;

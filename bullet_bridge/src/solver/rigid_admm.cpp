@@ -13,8 +13,8 @@
 namespace vps::bullet::inline v0 {
 namespace {
 
-// The springs' velocity per impulse, as a share of the contact's inverse mass. Measured on problems of a heap
-// of 50 parts: 0.03 takes twice as many iterations, 0.3 half as many at first and then five times as many.
+// The springs' velocity per impulse, as a share of the contact's inverse mass. Measured on 16 problems of a
+// heap of 50 parts, after 80 iterations: 0.3 leaves 1.5 times the error, 0.03 nearly four times (medians).
 constexpr double kSoftness = 0.1;
 // Over-relaxation [Boyd et al. 2011, section 3.4.3]: between 1.5 and 1.8.
 constexpr double kRelaxation = 1.6;
@@ -103,7 +103,8 @@ void RigidAdmm::start() {
 }
 
 bool RigidAdmm::factorise() {
-  std::vector<std::pair<int, int>> touching;
+  thread_local std::vector<std::pair<int, int>> touching;
+  touching.clear();
   for (const Patch& patch : patches_)
     if (patch.body[0] >= 0 && patch.body[1] >= 0) touching.emplace_back(patch.body[0], patch.body[1]);
   matrix_.start(island_.bodies.size(), touching);
@@ -176,6 +177,7 @@ SolveOutcome RigidAdmm::solve(std::span<RigidContact> contacts, double residual_
     outcome.is_converged = cut() <= residual_m_s;
     ++outcome.steps;
   }
+  if (!u_.allFinite()) return {outcome.steps, false};
   writeImpulses(contacts);
   return outcome;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Constraint contacts for which sweeps do not converge: many contacts on one body, heaps, a heavy body on a
-// light one.
+// Constraint contacts for which sweeps do not converge: many contacts on one body, a few bodies that touch, a
+// heavy body on a light one.
 //
 // The method of multipliers: each contact is a penalty point of moderate stiffness, offset by the impulse
 // found so far. Newton's method balances all of them at once, for any masses. The forces found become the
