@@ -217,14 +217,13 @@ std::size_t Solver::Work::largestHeap() {
   for (const RigidContact& c : rigid.contacts()) {
     const int a = c.normal.side[0].body, b = c.normal.side[1].body;
     if (a < 0 || b < 0) continue;
-    const auto [low, high] = std::minmax(rootOf(a), rootOf(b));
-    heap_of[static_cast<std::size_t>(high)] = low;
+    const int root_a = rootOf(a), root_b = rootOf(b);
+    heap_of[static_cast<std::size_t>(std::max(root_a, root_b))] = std::min(root_a, root_b);
   }
   std::size_t largest = 0;
-  std::vector<std::size_t>& size = heap_size;
-  size.assign(heap_of.size(), 0);
+  heap_size.assign(heap_of.size(), 0);
   for (std::size_t i = 0; i < heap_of.size(); ++i)
-    largest = std::max(largest, ++size[static_cast<std::size_t>(rootOf(static_cast<int>(i)))]);
+    largest = std::max(largest, ++heap_size[static_cast<std::size_t>(rootOf(static_cast<int>(i)))]);
   return largest;
 }
 
