@@ -16,7 +16,6 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
-#include <numeric>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -62,8 +61,13 @@ struct Solver::Work {
   std::vector<StepCheck*> checks;          // of rigid contact, one for each pair
   std::vector<MissedContact> missed;       // scratch
   std::vector<Vec6> u;                     // scratch
-  std::vector<int> heap_of;                // scratch: another body of the same heap; of one body, itself
-  std::vector<std::size_t> heap_size;      // scratch
+  /// Bodies that hang together by contacts.
+  struct Group {
+    int root = 0;  // a body of the group; the group's own if it is this body
+    std::size_t bodies = 0, pairs = 0;
+  };
+  std::vector<Group> groups;                  // scratch, one for each body
+  std::vector<std::pair<int, int>> touching;  // scratch
 
   bool gatherBodies(std::span<btCollisionObject*> objects, double dt_s);
   void gatherConstraints(std::span<btTypedConstraint*> constraints, const btContactSolverInfo& info);
@@ -74,7 +78,7 @@ struct Solver::Work {
   void applyLaws();
   bool updateLaws();
   SolveOutcome solveContacts(const SolverSettings& settings, double dt_s);
-  std::size_t largestHeap();
+  bool hasLoops(std::size_t few);
   [[nodiscard]] bool isHeap();
   SolveOutcome solveRigid(const SolverSettings& settings, double dt_s);
   SolveOutcome solveWithLaws(const SolverSettings& settings, double dt_s);
@@ -206,31 +210,33 @@ bool Solver::Work::updateLaws() {
   return is_converged;
 }
 
-// Bodies that hang together by contacts.
-std::size_t Solver::Work::largestHeap() {
-  heap_of.resize(island.bodies.size());
-  std::iota(heap_of.begin(), heap_of.end(), 0);
-  const auto rootOf = [&](int i) {
-    while (heap_of[static_cast<std::size_t>(i)] != i) i = heap_of[static_cast<std::size_t>(i)];
-    return i;
-  };
+// True if over `few` bodies hang together by contacts of which some close a loop. In a tower, or a lid on
+// pins, none does.
+bool Solver::Work::hasLoops(std::size_t few) {
+  touching.clear();
   for (const RigidContact& c : rigid.contacts()) {
     const int a = c.normal.side[0].body, b = c.normal.side[1].body;
-    if (a < 0 || b < 0) continue;
-    const int root_a = rootOf(a), root_b = rootOf(b);
-    heap_of[static_cast<std::size_t>(std::max(root_a, root_b))] = std::min(root_a, root_b);
+    if (a >= 0 && b >= 0) touching.emplace_back(std::min(a, b), std::max(a, b));
   }
-  std::size_t largest = 0;
-  heap_size.assign(heap_of.size(), 0);
-  for (std::size_t i = 0; i < heap_of.size(); ++i)
-    largest = std::max(largest, ++heap_size[static_cast<std::size_t>(rootOf(static_cast<int>(i)))]);
-  return largest;
+  std::sort(touching.begin(), touching.end());
+  touching.erase(std::unique(touching.begin(), touching.end()), touching.end());
+  groups.assign(island.bodies.size(), {});
+  for (std::size_t i = 0; i < groups.size(); ++i) groups[i].root = static_cast<int>(i);
+  const auto groupOf = [&](int i) -> Group& {
+    while (groups[static_cast<std::size_t>(i)].root != i) i = groups[static_cast<std::size_t>(i)].root;
+    return groups[static_cast<std::size_t>(i)];
+  };
+  for (const auto& [a, b] : touching) groupOf(b).root = groupOf(a).root;
+  for (std::size_t i = 0; i < groups.size(); ++i) ++groupOf(static_cast<int>(i)).bodies;
+  for (const auto& [a, b] : touching) ++groupOf(a).pairs;
+  return std::any_of(groups.begin(), groups.end(),
+                     [&](const Group& g) { return g.bodies > few && g.pairs >= g.bodies; });
 }
 
 // Many bodies that touch, of masses that are not too different. In a heap of 50 parts Newton's method hardly
 // ever converges; RigidAdmm leaves a third of its error (median of 24 problems) for a quarter of the work.
-// For a few bodies Newton's method is better. So it is where a body lies on one of a thousandth of its mass;
-// a hundredth is no trouble for RigidAdmm.
+// For a few bodies and for towers Newton's method is better. So it is where a body lies on one of a
+// thousandth of its mass; a hundredth is no trouble for RigidAdmm.
 bool Solver::Work::isHeap() {
   constexpr std::size_t kFewBodies = 12;
   constexpr double kMassRatio = 100;
@@ -239,7 +245,7 @@ bool Solver::Work::isHeap() {
   const auto [least, most] =
       std::minmax_element(island.bodies.begin(), island.bodies.end(),
                           [&](const IslandBody& a, const IslandBody& b) { return mass(a) < mass(b); });
-  return mass(*most) <= kMassRatio * mass(*least) && largestHeap() > kFewBodies;
+  return mass(*most) <= kMassRatio * mass(*least) && hasLoops(kFewBodies);
 }
 
 // For parts near rest sweeps converge within a few microseconds; otherwise a method follows that sees the
