@@ -5,9 +5,8 @@
 // would make the GPU's side longer.
 //
 //   vps_bench_gpu           maps of 256^3 and 512^3
-//   vps_bench_gpu --check   a small gear, and tests only that the nodes are right: the bits that the
-//   processor
-//                           computes from the same planes, and no nearer to the surface than in the voxmap
+//   vps_bench_gpu --check   a small gear, and tests only that nodes have the bits that the processor computes
+//                           from the same planes, and are no nearer to the surface than in the voxmap
 #include <epoxy/gl.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
