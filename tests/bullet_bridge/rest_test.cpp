@@ -4,6 +4,8 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 #include "bullet_bridge/world.h"
 #include "vps/feature_motion.h"
