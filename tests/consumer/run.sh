@@ -23,7 +23,7 @@ prefix=$work/prefix
 suffix=""  # of the package's names
 grep -q '^VPS_BULLET_DOUBLE:BOOL=OFF' "$build/CMakeCache.txt" && suffix=-float32
 include=$prefix/include${suffix:+/vps$suffix}
-libs=$(dirname "$(find "$prefix" -name 'libvps_plugin*' | head -1)")
+libs=$(dirname "$(find "$prefix" -name 'libvps_plugin*' -print -quit)")
 export LD_LIBRARY_PATH=$libs${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}
 flags=""
 [ -n "$sanitize" ] && flags="-fsanitize=$sanitize"
@@ -42,7 +42,7 @@ refused() {  # refused WORDS CONFIGURE-ARGUMENT...: must fail, and say these wor
     echo "should have been refused: $*"
     exit 1
   fi
-  tr -s ' \n' ' ' <<<"$said" | grep -qF "$words" || { echo "does not say '$words': $said"; exit 1; }
+  grep -qF "$words" <<<"$(tr -s ' \n' ' ' <<<"$said")" || { echo "does not say '$words': $said"; exit 1; }
 }
 others=(VpsOpenVDB assimp PNG Freetype VpsEpoxy OpenCASCADE Coin)  # packages of components that are not requested here
 
@@ -92,8 +92,8 @@ ${CXX:-c++} -std=c++20 -O2 $flags "$source/app/app.cpp" -o "$work/app_by_pkg_con
 if [ "$kind" = shared ]; then
   echo "== the shared libraries"
   version=$(pkg-config --modversion "vps-plugin$suffix")
-  readelf -d "$libs/libvps_plugin$suffix.so" | grep -q "soname: \[libvps_plugin$suffix.so.${version%.*}\]"
-  readelf -d "$work/app/app" | grep -q "NEEDED.*libvps_bullet$suffix.so.${version%.*}"
+  grep -q "soname: \[libvps_plugin$suffix.so.${version%.*}\]" <<<"$(readelf -d "$libs/libvps_plugin$suffix.so")"
+  grep -q "NEEDED.*libvps_bullet$suffix.so.${version%.*}" <<<"$(readelf -d "$work/app/app")"
   exported=$(nm -DC --defined-only "$libs/libvps_plugin$suffix.so")
   grep -q 'vps::v0::buildPointShell(' <<<"$exported" || { echo "a public function is not exported"; exit 1; }
   if grep 'vps::v0::\(sampleFeatures\|joinCoarse\|readKernels\)(' <<<"$exported"; then

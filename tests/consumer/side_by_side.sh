@@ -23,7 +23,8 @@ build() {  # build NAME [OPTION...]
   "$cmake" --build "$work/$name" >/dev/null
   "$work/$name/app"
 }
-of_double() { ldd "$1" | grep -q "BulletDynamics-float64"; }
+# Not `ldd | grep -q`: grep ends at its first match, and a writer that is not done then dies, which pipefail counts.
+of_double() { grep -q "BulletDynamics-float64" <<<"$(ldd "$1")"; }
 build double -DVPS_BULLET_DOUBLE=ON
 of_double "$work/double/app" || { echo "not the package in double precision"; exit 1; }
 build single -DVPS_BULLET_DOUBLE=OFF
