@@ -3,6 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
 #include "support/analytic.h"
 
 namespace vps::test {
@@ -45,18 +50,82 @@ TEST(ClosestOnTriangle, ATriangleWithCollinearCornersIsItsEdges) {
   EXPECT_EQ(closestOnTriangle({1, 2, 3}, a, a, a).q, a);
 }
 
-TEST(MeshDistance, EqualsAnExhaustiveSearchOfTheTriangles) {
-  const Mesh mesh = transformed(makeTube(0.02, 0.01, 0.03, 37), RandomPoints(3).pose(0.01));
+/// Of triangles equally near, the first of the mesh.
+void expectExhaustiveSearch(const Mesh& mesh, const std::vector<Vec3>& points) {
   const MeshDistance distance(mesh);
-  RandomPoints random(4);
-  for (int n = 0; n < 2000; ++n) {
-    const Vec3 p = random.inBox(Vec3::Constant(0.05));
+  for (const Vec3& p : points) {
     double least2 = 1e300;
-    for (const auto& t : mesh.triangles) {
+    std::uint32_t nearest = 0;
+    for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+      const auto& t = mesh.triangles[i];
       const Vec3 q = closestOnTriangle(p, mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]).q;
-      least2 = std::min(least2, (p - q).squaredNorm());
+      const double distance2 = (p - q).squaredNorm();
+      if (distance2 < least2) nearest = i;
+      least2 = std::min(least2, distance2);
     }
-    ASSERT_EQ(distance.closest(p).distance_m, std::sqrt(least2));
+    const MeshDistance::Closest closest = distance.closest(p);
+    ASSERT_TRUE(closest.found);
+    ASSERT_EQ(closest.distance_m, std::sqrt(least2));
+    ASSERT_EQ(closest.triangle, nearest);
+    ASSERT_EQ(distance.closest(p, (1 + 1e-12) * closest.distance_m + 1e-12).triangle, nearest);
+  }
+}
+
+std::vector<Vec3> randomPoints(std::uint64_t seed, int count, double half_m) {
+  RandomPoints random(seed);
+  std::vector<Vec3> points;
+  for (int n = 0; n < count; ++n) points.push_back(random.inBox(Vec3::Constant(half_m)));
+  return points;
+}
+
+TEST(MeshDistance, EqualsAnExhaustiveSearchOfTheTriangles) {
+  const Mesh tube = transformed(makeTube(0.02, 0.01, 0.03, 37), RandomPoints(3).pose(0.01));
+  expectExhaustiveSearch(tube, randomPoints(4, 2000, 0.05));
+}
+
+TEST(MeshDistance, OfTrianglesEquallyNearTheFirstIsTheNearest) {
+  // Coordinates are exact, so that distances of points above corners, edges and centres are equal to the bit.
+  Mesh grid;
+  constexpr std::uint32_t kSide = 24;
+  for (std::uint32_t i = 0; i <= kSide; ++i)
+    for (std::uint32_t j = 0; j <= kSide; ++j) grid.vertices.emplace_back(i, j, (i + j) % 2 == 0 ? 0 : 1);
+  for (std::uint32_t i = 0; i < kSide; ++i)
+    for (std::uint32_t j = 0; j < kSide; ++j) {
+      const std::uint32_t at = i * (kSide + 1) + j, beyond = at + kSide + 1;
+      grid.triangles.push_back({at, beyond, beyond + 1});
+      grid.triangles.push_back({at, beyond + 1, at + 1});
+    }
+  Mesh reversed = grid;
+  std::reverse(reversed.triangles.begin(), reversed.triangles.end());
+  std::vector<Vec3> points;
+  for (int i = 0; i <= 2 * static_cast<int>(kSide); i += 3)
+    for (int j = 0; j <= 2 * static_cast<int>(kSide); j += 3)
+      for (const double z : {-2.0, 0.5, 3.0}) points.emplace_back(0.5 * i, 0.5 * j, z);
+  expectExhaustiveSearch(grid, points);
+  expectExhaustiveSearch(reversed, points);
+}
+
+TEST(MeshDistance, FindsTheNearestInTreesThatDivideUnevenly) {
+  // Each triangle is half as large as the one before, so that divisions by area take off few at a time; all
+  // alike, so that none divides; and one that is larger than all others together.
+  Mesh shrinking, alike, mixed;
+  const auto add = [](Mesh& mesh, const Vec3& at, double size_m) {
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    mesh.vertices.push_back(at);
+    mesh.vertices.push_back(at + Vec3(size_m, 0, 0.1 * size_m));
+    mesh.vertices.push_back(at + Vec3(0, size_m, 0));
+    mesh.triangles.push_back({first, first + 1, first + 2});
+  };
+  for (int n = 0; n < 1000; ++n) {
+    add(shrinking, Vec3(std::ldexp(1.0, -n), 0, 0), std::ldexp(0.5, -n));
+    add(alike, Vec3::Zero(), 1);
+    add(mixed, Vec3(0.001 * n, 0, 0.3), 1e-4);
+  }
+  add(mixed, Vec3::Constant(-2), 4);
+  for (const Mesh* mesh : {&shrinking, &alike, &mixed}) {
+    std::vector<Vec3> points = randomPoints(5, 100, 1.5);
+    for (int n = 0; n < 100; ++n) points.push_back(mesh->vertices[static_cast<std::size_t>(29 * n)] * 1.01);
+    expectExhaustiveSearch(*mesh, points);
   }
 }
 

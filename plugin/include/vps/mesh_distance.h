@@ -19,10 +19,11 @@ struct TrianglePoint {
 };
 VPS_API TrianglePoint closestOnTriangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) noexcept;
 
-/// A bounding-volume hierarchy over a mesh. Answers are exact to floating point; the sign is that of the
-/// angle-weighted pseudonormal of the nearest feature, right for closed, consistently oriented meshes.
-/// Triangles without area, which fill cracks of CAD exports, have no normal: the facets beyond them decide.
-/// Source: Baerentzen and Aanaes, Signed distance computation using the angle weighted pseudonormal, 2005.
+/// A bounding-volume hierarchy over a mesh. Answers are exact to floating point, and of triangles equally
+/// near the first of the mesh is the nearest; the sign is that of the angle-weighted pseudonormal of the
+/// nearest feature, right for closed, consistently oriented meshes. Triangles without area, which fill cracks
+/// of CAD exports, have no normal: the facets beyond them decide. Source: Baerentzen and Aanaes, Signed
+/// distance computation using the angle weighted pseudonormal, 2005.
 class VPS_API MeshDistance {
  public:
   struct Closest {
@@ -75,18 +76,21 @@ class VPS_API MeshDistance {
   template <typename Visit>
   double search(const Vec3& p, double max_m, double box_weight, Visit onNearer) const noexcept;
 
-  /// Four boxes in one node, in floats about the mesh's centre, rounded outwards; unused lanes are infinitely
-  /// far.
+  static constexpr int kLanes = 8;
+  using Lanes = Eigen::Array<float, kLanes, 1>;
+  using IsLane = Eigen::Array<bool, kLanes, 1>;
+  /// Eight boxes in one node, in floats about the mesh's centre, rounded outwards; unused lanes are
+  /// infinitely far. Plain arrays, since a program that includes this may be compiled for wider vectors.
   struct Node {
     Node();
     void set(int lane, const Vec3& min_m, const Vec3& max_m, std::uint32_t to);
-    [[nodiscard]] Eigen::Array4f distance2(const Eigen::Vector3f& p) const;
-    [[nodiscard]] Eigen::Array<bool, 4, 1> overlaps(const Eigen::Vector3f& low,
-                                                    const Eigen::Vector3f& high) const;
-    [[nodiscard]] Eigen::Array<bool, 4, 1> meets(const Eigen::Vector3f& middle,
-                                                 const Eigen::Vector3f& half) const;
-    Eigen::Array4f min[3], max[3];
-    std::uint32_t child[4] = {0, 0, 0, 0};  ///< a node, or a triangle and kTriangle
+    [[nodiscard]] Lanes distance2(const Eigen::Vector3f& p) const;
+    [[nodiscard]] IsLane overlaps(const Eigen::Vector3f& low, const Eigen::Vector3f& high) const;
+    [[nodiscard]] IsLane meets(const Eigen::Vector3f& middle, const Eigen::Vector3f& half) const;
+    [[nodiscard]] Lanes lowest(int axis) const { return Eigen::Map<const Lanes>(min[axis]); }
+    [[nodiscard]] Lanes highest(int axis) const { return Eigen::Map<const Lanes>(max[axis]); }
+    float min[3][kLanes], max[3][kLanes];
+    std::uint32_t child[kLanes] = {};  ///< a node, or a triangle and kTriangle
   };
   static constexpr std::uint32_t kTriangle = 1U << 31;
   Mesh mesh_;

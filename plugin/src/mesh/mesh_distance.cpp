@@ -5,9 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <numeric>
 #include <span>
-#include <utility>
 
 #include "mesh/directions.h"
 #include "mesh/mesh_edges.h"
@@ -20,8 +18,8 @@ namespace {
 /// The distance that counts as contact, relative to the size of the mesh: more than the height of a thin
 /// triangle.
 constexpr double kTouch = 1e-9;
-/// Four children by count limit the depth to log4(2^31), with three waiting children on each level.
-constexpr int kStack = 64;
+/// buildTree() makes at most 33 levels, with seven waiting children on each.
+constexpr int kStack = 256;
 
 Vec3 normalOrZero(const Vec3& a, const Vec3& b, const Vec3& c) {
   return hasArea(a, b, c) ? unitOrZero((b - a).cross(c - a)) : Vec3(Vec3::Zero());
@@ -68,128 +66,41 @@ void MeshDistance::computeNormals() {
   for (Vec3& n : vertex_normals_) n = unitOrZero(n);
 }
 
-namespace {
-
-using Range = std::span<std::uint32_t>;
-
-/// Splits a range of triangles at the median of the boxes' longest side.
-std::pair<Range, Range> halved(Range range, const std::vector<Box>& boxes) {
-  if (range.size() < 2) return {range, {}};
-  Box centers;
-  for (const std::uint32_t i : range) centers.add(boxes[i].center());
-  int axis = 0;
-  centers.size().maxCoeff(&axis);
-  const std::size_t half = range.size() / 2;
-  const auto at = [&](std::uint32_t i) { return boxes[i].min[axis] + boxes[i].max[axis]; };
-  std::nth_element(range.begin(), range.begin() + static_cast<std::ptrdiff_t>(half), range.end(),
-                   [&](std::uint32_t a, std::uint32_t b) {  // a strict order: the same tree everywhere
-                     return at(a) != at(b) ? at(a) < at(b) : a < b;
-                   });
-  return {range.first(half), range.subspan(half)};
-}
-
-}  // namespace
-
-void MeshDistance::buildTree() {
-  const auto count = static_cast<std::uint32_t>(mesh_.triangles.size());
-  if (count == 0) return;
-  std::vector<Box> boxes(count);
-  Box all;
-  for (std::uint32_t i = 0; i < count; ++i)
-    for (const std::uint32_t v : mesh_.triangles[i]) {
-      boxes[i].add(mesh_.vertices[v]);
-      all.add(mesh_.vertices[v]);
-    }
-  center_ = all.center();
-  // Boxes and points are rounded to floats relative to the centre: a point as far away as the mesh is large
-  // has an error of 2^-24 of that, a corner of a box half as much.
-  constexpr double kRounding = 2.5e-7;
-  const double margin_m = kRounding * 0.5 * all.size().norm();
-  std::vector<std::uint32_t> order(count);
-  std::iota(order.begin(), order.end(), 0u);
-
-  struct Open {
-    std::uint32_t node;
-    Range range;
-  };
-  std::vector<Open> open{{0, order}};
-  nodes_.reserve(count / 2 + 1);
-  nodes_.emplace_back();
-  while (!open.empty()) {
-    const Open next = open.back();
-    open.pop_back();
-    const auto [low, high] = halved(next.range, boxes);
-    const auto [a, b] = halved(low, boxes);
-    const auto [c, d] = halved(high, boxes);
-    int lane = 0;
-    for (const Range& part : {a, b, c, d}) {
-      if (part.empty()) continue;
-      Box box;
-      for (const std::uint32_t i : part) {
-        box.add(boxes[i].min);
-        box.add(boxes[i].max);
-      }
-      std::uint32_t child = kTriangle | part.front();
-      if (part.size() > 1) {
-        child = static_cast<std::uint32_t>(nodes_.size());
-        nodes_.emplace_back();
-        open.push_back({child, part});
-      }
-      nodes_[next.node].set(lane++, (box.min - center_).array() - margin_m,
-                            (box.max - center_).array() + margin_m, child);
-    }
-  }
-}
-
-MeshDistance::Node::Node() {
-  constexpr float kFar = std::numeric_limits<float>::infinity();
-  for (int k = 0; k < 3; ++k) {
-    min[k] = Eigen::Array4f::Constant(kFar);
-    max[k] = Eigen::Array4f::Constant(-kFar);
-  }
-}
-
-void MeshDistance::Node::set(int lane, const Vec3& min_m, const Vec3& max_m, std::uint32_t to) {
-  for (int k = 0; k < 3; ++k) {
-    min[k][lane] = static_cast<float>(min_m[k]);
-    max[k][lane] = static_cast<float>(max_m[k]);
-  }
-  child[lane] = to;
-}
-
-/// Squared distances from a point to the four boxes, rounded down.
-[[gnu::always_inline]] inline Eigen::Array4f MeshDistance::Node::distance2(const Eigen::Vector3f& p) const {
+/// Squared distances from a point to the boxes, rounded down.
+[[gnu::always_inline]] inline MeshDistance::Lanes MeshDistance::Node::distance2(
+    const Eigen::Vector3f& p) const {
   // A point far from the mesh, rounded to floats, has an error proportional to its distance.
   constexpr float kRounding = 1 - 2e-6f;
-  Eigen::Array4f sum = Eigen::Array4f::Zero();
-  for (int k = 0; k < 3; ++k) sum += (min[k] - p[k]).max(p[k] - max[k]).max(0.0f).square();
+  Lanes sum = Lanes::Zero();
+  for (int k = 0; k < 3; ++k) sum += (lowest(k) - p[k]).max(p[k] - highest(k)).max(0.0f).square();
   return kRounding * sum;
 }
 
-[[gnu::always_inline]] inline Eigen::Array<bool, 4, 1> MeshDistance::Node::overlaps(
+[[gnu::always_inline]] inline MeshDistance::IsLane MeshDistance::Node::overlaps(
     const Eigen::Vector3f& low, const Eigen::Vector3f& high) const {
-  return min[0] <= high[0] && low[0] <= max[0] && min[1] <= high[1] && low[1] <= max[1] &&
-         min[2] <= high[2] && low[2] <= max[2];
+  IsLane is_met = IsLane::Constant(true);
+  for (int k = 0; k < 3; ++k) is_met = is_met && lowest(k) <= high[k] && low[k] <= highest(k);
+  return is_met;
 }
 
 /// True where the segment middle +- half may meet a box: their shadows overlap along the axes and along the
 /// products of the axes with the segment (separating axes).
-[[gnu::always_inline]] inline Eigen::Array<bool, 4, 1> MeshDistance::Node::meets(
+[[gnu::always_inline]] inline MeshDistance::IsLane MeshDistance::Node::meets(
     const Eigen::Vector3f& middle, const Eigen::Vector3f& half) const {
   // Each product below has a few roundings of floats, relative to the size of its terms.
   constexpr float kRounding = 2e-6f;
-  Eigen::Array4f off[3], size[3];
-  Eigen::Array<bool, 4, 1> is_met = Eigen::Array<bool, 4, 1>::Constant(true);
+  Lanes off[3], size[3];
+  IsLane is_met = IsLane::Constant(true);
   for (int k = 0; k < 3; ++k) {
-    off[k] = 0.5f * (min[k] + max[k]) - middle[k];
-    size[k] = 0.5f * (max[k] - min[k]) + kRounding * off[k].abs();
+    off[k] = 0.5f * (lowest(k) + highest(k)) - middle[k];
+    size[k] = 0.5f * (highest(k) - lowest(k)) + kRounding * off[k].abs();
     is_met = is_met && off[k].abs() <= size[k] + std::abs(half[k]) * (1 + kRounding);
   }
   for (int k = 0; k < 3; ++k) {
     const int i = (k + 1) % 3, j = (k + 2) % 3;
     const float half_i = std::abs(half[i]), half_j = std::abs(half[j]);
-    const Eigen::Array4f reach = size[i] * half_j + size[j] * half_i;
-    const Eigen::Array4f rounding = kRounding * (off[i].abs() * half_j + off[j].abs() * half_i + reach);
+    const Lanes reach = size[i] * half_j + size[j] * half_i;
+    const Lanes rounding = kRounding * (off[i].abs() * half_j + off[j].abs() * half_i + reach);
     is_met = is_met && (off[i] * half[j] - off[j] * half[i]).abs() <= reach + rounding;
   }
   return is_met;
@@ -199,7 +110,7 @@ namespace {
 
 /// Visits the triangles in those boxes of a tree that are near, in no particular order, until visit(triangle)
 /// returns false. Returns true if it never did.
-/// @param isNear  of the four boxes of a node
+/// @param isNear  of the boxes of a node
 template <typename Nodes, typename IsNear, typename Visit>
 bool descend(const Nodes& nodes, std::uint32_t triangle_bit, IsNear isNear, Visit visit) {
   std::uint32_t stack[kStack];
@@ -212,8 +123,8 @@ bool descend(const Nodes& nodes, std::uint32_t triangle_bit, IsNear isNear, Visi
       continue;
     }
     const auto& node = nodes[next];
-    const Eigen::Array<bool, 4, 1> is_near = isNear(node);
-    for (int lane = 0; lane < 4; ++lane)
+    const auto is_near = isNear(node);
+    for (int lane = 0; lane < is_near.size(); ++lane)
       if (is_near[lane]) stack[waiting++] = node.child[lane];
   }
   return true;
@@ -260,12 +171,19 @@ bool MeshDistance::overlapping(const Box& box, std::size_t most,
 }
 
 /// Visits triangles in order of distance and calls onNearer(triangle, point) for each that is nearer than all
-/// before and than max_m; returns the least squared distance. Skips boxes whose squared distance times
-/// box_weight is not less.
+/// before (or as near, with a lower number, so that the tree's order does not matter) and than max_m; returns
+/// the least squared distance. Skips boxes whose squared distance times box_weight is greater.
 template <typename Visit>
 double MeshDistance::search(const Vec3& p, double max_m, double box_weight, Visit onNearer) const noexcept {
   double best2 = max_m * max_m;
   if (nodes_.empty()) return best2;
+  std::uint32_t best_triangle = 0;  // none is before it
+  // Rounded up to a float, and finite: unused lanes are infinitely far.
+  const auto limitOf = [box_weight](double squared) {
+    constexpr float kRoundingUp = 1 + 4e-7f, kMost = std::numeric_limits<float>::max() / 2;
+    return kRoundingUp * static_cast<float>(std::min(squared / box_weight, static_cast<double>(kMost)));
+  };
+  float limit2 = limitOf(best2);
   struct Waiting {
     std::uint32_t child;
     float distance2;
@@ -276,25 +194,33 @@ double MeshDistance::search(const Vec3& p, double max_m, double box_weight, Visi
   stack[waiting++] = {0, 0};
   while (waiting > 0) {
     const Waiting next = stack[--waiting];
-    if (box_weight * static_cast<double>(next.distance2) >= best2) continue;
+    if (next.distance2 > limit2) continue;
     if ((next.child & kTriangle) != 0) {
       const std::uint32_t triangle = next.child & ~kTriangle;
       const auto& t = mesh_.triangles[triangle];
       const TrianglePoint at =
           closestOnTriangleInline(p, mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]);
       const double distance2 = (p - at.q).squaredNorm();
-      if (distance2 >= best2) continue;
+      if (!(distance2 < best2 || (distance2 == best2 && triangle < best_triangle))) continue;
       best2 = distance2;
+      limit2 = limitOf(best2);
+      best_triangle = triangle;
       onNearer(triangle, at);
       continue;
     }
     const Node& node = nodes_[next.child];
-    const Eigen::Array4f distance2 = node.distance2(from_center);
+    float distance2[kLanes];
+    Eigen::Map<Lanes>{distance2} = node.distance2(from_center);
+    // First all near lanes, without a branch that could be predicted wrong, then the nearest on top.
+    int near[kLanes], count = 0;
+    for (int lane = 0; lane < kLanes; ++lane) {
+      near[count] = lane;
+      count += static_cast<int>(distance2[lane] <= limit2);
+    }
     const int first = waiting;
-    for (int lane = 0; lane < 4; ++lane) {
-      const Waiting child{node.child[lane], distance2[lane]};
-      if (!(box_weight * static_cast<double>(child.distance2) < best2)) continue;
-      int at = waiting++;  // the nearest is on top
+    for (int i = 0; i < count; ++i) {
+      const Waiting child{node.child[near[i]], distance2[near[i]]};
+      int at = waiting++;
       for (; at > first && stack[at - 1].distance2 < child.distance2; --at) stack[at] = stack[at - 1];
       stack[at] = child;
     }
@@ -310,6 +236,8 @@ MeshDistance::Closest MeshDistance::closest(const Vec3& p, double max_m) const n
     best.triangle = triangle;
     best.found = true;
     feature = at.feature;
+    __builtin_prefetch(&is_thin_[triangle]);
+    __builtin_prefetch(&face_normals_[triangle]);
   });
   best.distance_m = best.found ? std::sqrt(best2) : max_m;
   if (best.found)
