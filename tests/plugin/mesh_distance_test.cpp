@@ -54,6 +54,7 @@ TEST(ClosestOnTriangle, ATriangleWithCollinearCornersIsItsEdges) {
 void expectExhaustiveSearch(const Mesh& mesh, const std::vector<Vec3>& points) {
   const MeshDistance distance(mesh);
   for (const Vec3& p : points) {
+    SCOPED_TRACE(testing::Message() << mesh.triangles.size() << " triangles, from " << p.transpose());
     double least2 = 1e300;
     std::uint32_t nearest = 0;
     for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
@@ -106,8 +107,8 @@ TEST(MeshDistance, OfTrianglesEquallyNearTheFirstIsTheNearest) {
 }
 
 TEST(MeshDistance, FindsTheNearestInTreesThatDivideUnevenly) {
-  // Each triangle is half as large as the one before, so that divisions by area take off few at a time; all
-  // alike, so that none divides; and one that is larger than all others together.
+  // Each triangle smaller than the one before, so that divisions by area take off few at a time, and those by
+  // count are reached; all alike, so that none divides; one that is larger than all others together.
   Mesh shrinking, alike, mixed;
   const auto add = [](Mesh& mesh, const Vec3& at, double size_m) {
     const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
@@ -116,15 +117,15 @@ TEST(MeshDistance, FindsTheNearestInTreesThatDivideUnevenly) {
     mesh.vertices.push_back(at + Vec3(0, size_m, 0));
     mesh.triangles.push_back({first, first + 1, first + 2});
   };
-  for (int n = 0; n < 1000; ++n) {
-    add(shrinking, Vec3(std::ldexp(1.0, -n), 0, 0), std::ldexp(0.5, -n));
+  for (int n = 0; n < 3000; ++n) {
+    add(shrinking, Vec3(std::pow(0.8, n), 0, 0), 0.1 * std::pow(0.8, n));
     add(alike, Vec3::Zero(), 1);
-    add(mixed, Vec3(0.001 * n, 0, 0.3), 1e-4);
+    add(mixed, Vec3(0.0003 * n, 0, 0.3), 1e-4);
   }
   add(mixed, Vec3::Constant(-2), 4);
   for (const Mesh* mesh : {&shrinking, &alike, &mixed}) {
     std::vector<Vec3> points = randomPoints(5, 100, 1.5);
-    for (int n = 0; n < 100; ++n) points.push_back(mesh->vertices[static_cast<std::size_t>(29 * n)] * 1.01);
+    for (int n = 0; n < 100; ++n) points.push_back(mesh->vertices[static_cast<std::size_t>(89 * n)] * 1.01);
     expectExhaustiveSearch(*mesh, points);
   }
 }
@@ -207,6 +208,16 @@ TEST(MeshDistance, LowerBoundIsWithinItsSlack) {
     ASSERT_LE(bound_m, truth_m);
     ASSERT_GE(bound_m * 1.1, truth_m * (1 - 1e-15));
   }
+}
+
+TEST(MeshDistance, ABoxBeyondTheRangeOfFloatsOverlapsAllTriangles) {
+  const Mesh sphere = makeSphere(0.02, 2);
+  Box all;
+  all.add(Vec3::Constant(-1e300));
+  all.add(Vec3::Constant(1e300));
+  std::vector<std::uint32_t> triangles;
+  EXPECT_TRUE(MeshDistance(sphere).overlapping(all, sphere.triangles.size(), triangles));
+  EXPECT_EQ(triangles.size(), sphere.triangles.size());
 }
 
 TEST(MeshDistance, AnEmptyMeshIsInfinitelyFar) {

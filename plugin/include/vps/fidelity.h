@@ -38,7 +38,7 @@ struct Fidelity {
   double spacing_m = 0.5e-3;  ///< distance between shell points
   Sides sides = Sides::Both;  ///< One: only the moving part's points against the fixed part's field
   Gradient gradient = Gradient::Continuous;
-  int contact_limit = 32;  ///< contacts of each pair, and at most 16 more that a check of a step finds
+  int contact_limit = 32;  ///< of each pair, given to the solver; checks of solved steps add up to 16
   double haptic_rate_hz = 1000;
   double physics_rate_hz = 1000;
   int solver_iterations = 100;

@@ -19,11 +19,11 @@ struct TrianglePoint {
 };
 VPS_API TrianglePoint closestOnTriangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) noexcept;
 
-/// A bounding-volume hierarchy over a mesh. Answers are exact to floating point, and of triangles equally
-/// near the first of the mesh is the nearest; the sign is that of the angle-weighted pseudonormal of the
-/// nearest feature, right for closed, consistently oriented meshes. Triangles without area, which fill cracks
-/// of CAD exports, have no normal: the facets beyond them decide. Source: Baerentzen and Aanaes, Signed
-/// distance computation using the angle weighted pseudonormal, 2005.
+/// A bounding-volume hierarchy over a mesh of finite vertices. Answers are exact to floating point; of
+/// several triangles with the same computed distance the first counts. The sign is that of the angle-weighted
+/// pseudonormal of the nearest feature, right for closed, consistently oriented meshes. Triangles without
+/// area fill cracks of CAD exports and have no normal: the facets beyond them decide. Source: Baerentzen and
+/// Aanaes, Signed distance computation using the angle weighted pseudonormal, 2005.
 class VPS_API MeshDistance {
  public:
   struct Closest {

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "mesh/directions.h"
+#include "mesh/mesh_distance_tree.h"
 #include "mesh/mesh_edges.h"
 #include "mesh/triangle_distance.h"
 #include "mesh/vertex_normals.h"
@@ -18,8 +19,9 @@ namespace {
 /// The distance that counts as contact, relative to the size of the mesh: more than the height of a thin
 /// triangle.
 constexpr double kTouch = 1e-9;
-/// buildTree() makes at most 33 levels, with seven waiting children on each.
+/// Seven children wait on each level, and the last one that was taken.
 constexpr int kStack = 256;
+static_assert(7 * kTreeLevels + 1 <= kStack);
 
 Vec3 normalOrZero(const Vec3& a, const Vec3& b, const Vec3& c) {
   return hasArea(a, b, c) ? unitOrZero((b - a).cross(c - a)) : Vec3(Vec3::Zero());
@@ -125,7 +127,7 @@ bool descend(const Nodes& nodes, std::uint32_t triangle_bit, IsNear isNear, Visi
     const auto& node = nodes[next];
     const auto is_near = isNear(node);
     for (int lane = 0; lane < is_near.size(); ++lane)
-      if (is_near[lane]) stack[waiting++] = node.child[lane];
+      if (is_near[lane] && node.child[lane] != 0) stack[waiting++] = node.child[lane];  // 0: unused
   }
   return true;
 }

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "mesh/mesh_distance_tree.h"
 #include "vps/mesh_distance.h"
 
 namespace vps::inline v0 {
@@ -21,6 +22,7 @@ double halfArea(const Box& box) {
 }
 
 void add(Box& box, const Box& other) {
+  if (other.isEmpty()) return;
   box.add(other.min);
   box.add(other.max);
 }
@@ -28,7 +30,7 @@ void add(Box& box, const Box& other) {
 /// Divides ranges of triangles in two.
 class Divider {
  public:
-  /// Parts of ranges of more than `whole` triangles have a multiple of that, except for one.
+  /// The first part of what is divided has a multiple of `whole` triangles, the second takes the remainder.
   Divider(const std::vector<Box>& boxes, std::size_t whole) : boxes_(boxes), whole_(whole) {}
 
   [[nodiscard]] Box around(Range range) const {
@@ -37,7 +39,7 @@ class Divider {
     return box;
   }
 
-  /// Across the longest side of the triangles' centres.
+  /// Divides a range of more than `whole` triangles along the longest side of the box around their centres.
   /// @param by_area  where the surface area heuristic says; if false, at the median
   [[nodiscard]] std::pair<Range, Range> divided(Range range, bool by_area) const {
     Box centers;
@@ -141,9 +143,6 @@ void MeshDistance::buildTree() {
   std::vector<std::uint32_t> order(count);
   std::iota(order.begin(), order.end(), 0u);
 
-  // Division by area may take few triangles at a time. From this level on it is by count, to limit the depth:
-  // of 2^31 triangles, eleven more levels of eight children, and one for what is not a multiple of eight.
-  constexpr int kUneven = 20;
   constexpr std::size_t kFull = kLanes;
   const Divider divider(boxes, kFull);
   struct Open {
@@ -171,7 +170,7 @@ void MeshDistance::buildTree() {
       Box box;
       double size;
     };
-    const bool by_area = next.level < kUneven;
+    const bool by_area = next.level < kTreeLevelsByArea;
     const auto partOf = [&](Range range) {
       const Box box = divider.around(range);
       const double size = by_area ? halfArea(box) : static_cast<double>(range.size());

@@ -226,7 +226,7 @@ inline constexpr auto kFidelityFields = std::make_tuple(
           "one: points of the moving part against the field of the fixed parts; both: the other way as well"),
     field("gradient", &Fidelity::gradient, "how the field's gradient is interpolated"),
     field("contact_limit", &Fidelity::contact_limit,
-          "contacts of each pair of parts, and at most 16 more that a check of a step finds",
+          "contacts of each pair of parts given to the solver; checks of solved steps may add up to 16",
           {.range = {.min = 4, .max = kCount.max}}),
     field("haptic_rate_hz", &Fidelity::haptic_rate_hz, "rate of the haptic loop", {.range = kRate_Hz}),
     field("physics_rate_hz", &Fidelity::physics_rate_hz, "rate of the physics steps", {.range = kRate_Hz}),
