@@ -50,7 +50,7 @@ TEST(ClosestOnTriangle, ATriangleWithCollinearCornersIsItsEdges) {
   EXPECT_EQ(closestOnTriangle({1, 2, 3}, a, a, a).q, a);
 }
 
-/// Of triangles equally near, the first of the mesh.
+/// Expects the nearest triangle that a search of all of them finds, and of those equally near the first.
 void expectExhaustiveSearch(const Mesh& mesh, const std::vector<Vec3>& points) {
   const MeshDistance distance(mesh);
   for (const Vec3& p : points) {

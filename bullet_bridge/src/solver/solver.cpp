@@ -235,9 +235,8 @@ bool Solver::Work::hasLoops(std::size_t few) {
 
 // Many bodies that touch, of masses that are not too different. In a heap of 50 parts Newton's method hardly
 // ever converges; 70 iterations of RigidAdmm leave a third of its error (median of 24 problems) for a quarter
-// of the work.
-// For a few bodies and for towers Newton's method is better. So it is where a body lies on one of a
-// thousandth of its mass; a hundredth is no trouble for RigidAdmm.
+// of the work. For a few bodies and for towers Newton's method is better. So it is where a body lies on one
+// of a thousandth of its mass; a hundredth is no trouble for RigidAdmm.
 bool Solver::Work::isHeap() {
   constexpr std::size_t kFewBodies = 12;
   constexpr double kMassRatio = 100;

@@ -58,15 +58,22 @@ class Divider {
   }
 
  private:
+  struct Bin {
+    Box box;
+    std::size_t count = 0;
+
+    void join(const Bin& other) {
+      add(box, other.box);
+      count += other.count;
+    }
+    [[nodiscard]] double cost() const { return count > 0 ? static_cast<double>(count) * halfArea(box) : 0; }
+  };
+
   // How many triangles, in order along an axis, go to the first side so that the sum of count times area of
   // both boxes is least, tried at the borders of some bins. Source: Wald, On fast construction of SAH-based
   // bounding volume hierarchies, 2007.
   [[nodiscard]] std::size_t bestCount(Range range, int axis, const Box& centers) const {
     constexpr int kBins = 16;
-    struct Bin {
-      Box box;
-      std::size_t count = 0;
-    };
     Bin bins[kBins];
     const double low = centers.min[axis], width = centers.size()[axis];
     if (!(width > 0)) return range.size() / 2;
@@ -79,29 +86,20 @@ class Divider {
     double cost_above[kBins] = {};  // of the bins from k on
     Bin above;
     for (int k = kBins - 1; k > 0; --k) {
-      join(above, bins[k]);
-      cost_above[k] = costOf(above);
+      above.join(bins[k]);
+      cost_above[k] = above.cost();
     }
     Bin below;
     std::size_t best = range.size() / 2;
     double least = std::numeric_limits<double>::infinity();
     for (int k = 0; k + 1 < kBins; ++k) {
-      join(below, bins[k]);
-      const double cost = costOf(below) + cost_above[k + 1];
+      below.join(bins[k]);
+      const double cost = below.cost() + cost_above[k + 1];
       if (below.count == range.size() || !(cost < least)) continue;
       least = cost;
       best = below.count;
     }
     return best;
-  }
-  template <typename Bin>
-  static void join(Bin& bin, const Bin& other) {
-    if (other.count > 0) add(bin.box, other.box);
-    bin.count += other.count;
-  }
-  template <typename Bin>
-  static double costOf(const Bin& bin) {
-    return bin.count > 0 ? static_cast<double>(bin.count) * halfArea(bin.box) : 0;
   }
 
   const std::vector<Box>& boxes_;
@@ -176,7 +174,7 @@ void MeshDistance::buildTree() {
       const double size = by_area ? halfArea(box) : static_cast<double>(range.size());
       return Part{range, box, range.size() > kFull ? size : -1};
     };
-    std::vector<Part> parts{partOf(next.range)};
+    std::vector<Part> parts{{next.range, {}, 1}};  // is divided in any case
     while (parts.size() < kFull) {
       const auto largest = std::max_element(parts.begin(), parts.end(),
                                             [](const Part& a, const Part& b) { return a.size < b.size; });
