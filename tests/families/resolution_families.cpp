@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "family.h"
+
+namespace vps::families {
+
+std::vector<Family> resolutionFamilies() {
+  return {};
+}
+
+}  // namespace vps::families
