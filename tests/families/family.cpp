@@ -11,7 +11,7 @@ std::vector<Family> allFamilies() {
   for (const auto make :
        {materialFamilies, restitutionFamilies, narrowGapFamilies, rotationFamilies, shellFamilies,
         resolutionFamilies, roundBodyFamilies, rollingFamilies, flushStartFamilies, openSurfaceFamilies,
-        spinningFaceFamilies, penaltyFallFamilies, loadedThreadFamilies, mechanismFamilies})
+        spinningFaceFamilies, penaltyFallFamilies, loadedThreadFamilies, mechanismFamilies, judgeFamilies})
     for (Family& family : make()) all.push_back(std::move(family));
   return all;
 }

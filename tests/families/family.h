@@ -44,6 +44,8 @@ std::vector<Family> penaltyFallFamilies();   // L: penalty contact of bodies tha
 std::vector<Family> loadedThreadFamilies();  // M: a loaded thread
 std::vector<Family> mechanismFamilies();     // N: mechanisms do not halt
 
+std::vector<Family> judgeFamilies();  // C, G: the judge sees passages, and its depth is exact
+
 std::vector<Family> allFamilies();
 
 /// How a family did.

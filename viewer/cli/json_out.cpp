@@ -42,6 +42,13 @@ Json pairOverlap(const scenes::PairOverlap& pair) {
           {"time_s", pair.time_s}};
 }
 
+Json exactDepth(const scenes::JudgedDepth& judged) {
+  const bool has_any = judged.deepest.depth_m > 0;
+  return {{"deepest", has_any ? pairOverlap(judged.deepest) : Json(nullptr)},
+          {"bound_m", judged.bound_m},
+          {"measures", judged.measures}};
+}
+
 Json overlap(const scenes::JudgedOverlap& judged) {
   Json starts = Json::array();
   for (const scenes::OverlappingStart& start : judged.at_start) {
@@ -90,9 +97,12 @@ std::string toJson(const std::string& scene, double seconds, const scenes::Simul
                {"contact_steps", result.contact_step.count},
                {"bodies", bodies},
                {"max_penetration_m", result.max_penetration_m},
+               {"max_penetration_by", result.exact ? "exact_distance" : "contacts"},
+               {"contact_depth_m", result.contact_depth_m},
                {"kinetic_energy_J", result.kinetic_energy_J},
                {"shortened_steps", result.shortened_steps},
                {"modelled", modelled(result.modelled)}};
+  json["exact"] = result.exact ? exactDepth(*result.exact) : Json(nullptr);
   if (result.overlap) json["overlap"] = overlap(*result.overlap);
   return text(json);
 }

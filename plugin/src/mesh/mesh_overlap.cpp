@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "mesh/box_tree.h"
 #include "mesh/facet_overlap.h"
@@ -11,6 +12,26 @@
 #include "vps/sharp_edges.h"
 
 namespace vps::inline v0 {
+
+struct EdgeGroups {
+  explicit EdgeGroups(std::vector<Box> of_groups) : boxes(std::move(of_groups)), tree(boxes) {}
+  EdgeGroups(const EdgeGroups&) = delete;
+  EdgeGroups& operator=(const EdgeGroups&) = delete;
+
+  /// The groups whose boxes share a point with this one, in ascending order. Rounding may move a box's side.
+  [[nodiscard]] std::vector<std::uint32_t> near(const Box& box) const {
+    std::vector<std::uint32_t> found;
+    tree.forEachOverlap(grown(box, 1e-9 * box.size().norm()), [&](std::uint32_t group) {
+      found.push_back(group);
+      return true;
+    });
+    std::sort(found.begin(), found.end());
+    return found;
+  }
+
+  std::vector<Box> boxes;
+  BoxTree tree;  ///< over these boxes
+};
 
 namespace {
 
@@ -42,6 +63,16 @@ Vec3 at(const Vec3& a, const Vec3& b, double fraction) {
   return a + fraction * (b - a);
 }
 
+/// Edges of near numbers are mostly near each other, since vertices are numbered along the surface.
+constexpr std::size_t kGroup = 16;
+
+std::vector<Box> groupBoxes(const std::vector<std::array<std::uint32_t, 2>>& edges, const Mesh& mesh) {
+  std::vector<Box> boxes((edges.size() + kGroup - 1) / kGroup);
+  for (std::size_t i = 0; i < edges.size(); ++i)
+    for (const std::uint32_t vertex : edges[i]) boxes[i / kGroup].add(mesh.vertices[vertex]);
+  return boxes;
+}
+
 /// An edge of one solid in the frame of the other, and where it crosses the other's surface.
 struct CrossedEdge {
   std::size_t index;  ///< among the edges of its solid
@@ -52,13 +83,14 @@ struct CrossedEdge {
 std::vector<CrossedEdge> edgesNear(const OverlapMesh& in, const OverlapMesh& other, const Pose& X_SO) {
   std::vector<CrossedEdge> near;
   const std::vector<Vec3>& vertices = other.mesh().vertices;
-  for (std::size_t i = 0; i < other.edges().size(); ++i) {
-    const auto& [from, to] = other.edges()[i];
-    CrossedEdge edge{i, X_SO * vertices[from], X_SO * vertices[to], {}};
-    if (!meet(boxOf(edge.a, edge.b), in.box())) continue;
-    in.solid().appendCrossings(edge.a, edge.b, edge.crossings);
-    near.push_back(std::move(edge));
-  }
+  for (const std::uint32_t group : other.groups().near(moved(in.box(), X_SO.inverse())))
+    for (std::size_t i = kGroup * group; i < std::min(kGroup * (group + 1), other.edges().size()); ++i) {
+      const auto& [from, to] = other.edges()[i];
+      CrossedEdge edge{i, X_SO * vertices[from], X_SO * vertices[to], {}};
+      if (!meet(boxOf(edge.a, edge.b), in.box())) continue;
+      in.solid().appendCrossings(edge.a, edge.b, edge.crossings);
+      near.push_back(std::move(edge));
+    }
   return near;
 }
 
@@ -95,6 +127,39 @@ bool isAnyCrossed(const std::vector<CrossedEdge>& edges) {
   return std::any_of(edges.begin(), edges.end(), [](const CrossedEdge& e) { return !e.crossings.empty(); });
 }
 
+/// The depth of a sheet in a solid. Where the solid's edges cross the sheet they surround what is inside: its
+/// middle is a first guess.
+/// @param crossed  edges of the solid in the sheet's frame
+void searchSheet(const OverlapMesh& sheet, const OverlapMesh& solid, const Pose& X_SolidSheet,
+                 const std::vector<CrossedEdge>& crossed, Deepest& deepest) {
+  Vec3 sum = Vec3::Zero();
+  int count = 0;
+  for (const CrossedEdge& edge : crossed)
+    for (const double fraction : edge.crossings) {
+      if (fraction == 1) continue;  // the end of the edge, which closes its last stretch
+      sum += at(edge.a, edge.b, fraction);
+      ++count;
+    }
+  if (count == 0) return;
+  const Vec3 p_S = X_SolidSheet * sheet.solid().closest(sum / count).q;
+  if (const double depth_m = -solid.solid().signedDistance(p_S); depth_m > deepest.depth_m)
+    deepest = {depth_m, p_S, true};
+  deepest.is_between_edges = true;
+  std::vector<std::uint32_t> facets(sheet.mesh().triangles.size());
+  std::iota(facets.begin(), facets.end(), 0U);
+  searchFacets(solid, sheet, X_SolidSheet, facets, deepest);
+}
+
+bool hasSheets(const Solid& solid) {
+  return solid.isSheet() || solid.report().sheet_facets > 0;
+}
+
+std::size_t workOf(const std::vector<CrossedEdge>& edges) {
+  std::size_t work = edges.size();
+  for (const CrossedEdge& edge : edges) work += 3 * edge.crossings.size();
+  return work;
+}
+
 /// True if the first vertex is outside and does not touch the surface.
 bool isClearlyOutside(const OverlapMesh& in, const OverlapMesh& other, const Pose& X_SO) {
   const Vec3 p = X_SO * other.mesh().vertices.front();
@@ -107,27 +172,31 @@ OverlapMesh::OverlapMesh(std::shared_ptr<const Solid> solid)
     : solid_(std::move(solid)),
       box_(bounds(solid_->mesh())),
       edges_(sharpEdges(solid_->mesh(), kFlat_rad)),
-      triangles_at_edges_(trianglesAt(edges_, solid_->mesh())) {}
+      triangles_at_edges_(trianglesAt(edges_, solid_->mesh())),
+      groups_(std::make_shared<const EdgeGroups>(groupBoxes(edges_, solid_->mesh()))) {}
 
-Overlap deepestOverlap(const OverlapMesh& a, const Pose& X_WA, const OverlapMesh& b, const Pose& X_WB) {
+Overlap deepestOverlap(const OverlapMesh& a, const Pose& X_WA, const OverlapMesh& b, const Pose& X_WB,
+                       bool with_sheets) {
   const Pose X_AB = X_WA.inverse() * X_WB, X_BA = X_AB.inverse();
   if (!meet(moved(b.box(), X_AB), a.box()) || !meet(moved(a.box(), X_BA), b.box())) return {};
   std::vector<CrossedEdge> of_b = edgesNear(a, b, X_AB), of_a = edgesNear(b, a, X_BA);
+  std::size_t work = 4 + workOf(of_a) + workOf(of_b);
   if (!isAnyCrossed(of_b) && !isAnyCrossed(of_a) && isClearlyOutside(a, b, X_AB) &&
       isClearlyOutside(b, a, X_BA))
-    return {};
+    return {0, Vec3::Zero(), work};
   Deepest in_a, in_b;
   const std::vector<std::size_t> edges_b = searchEdges(a, of_b, in_a);
   in_b.depth_m = in_a.depth_m;
   const std::vector<std::size_t> edges_a = searchEdges(b, of_a, in_b);
-  Overlap deepest = in_b.depth_m > in_a.depth_m ? Overlap{in_b.depth_m, X_WB * in_b.p_S}
-                                                : Overlap{in_a.depth_m, X_WA * in_a.p_S};
+  Overlap deepest = in_b.depth_m > in_a.depth_m ? Overlap{in_b.depth_m, X_WB * in_b.p_S, 0}
+                                                : Overlap{in_a.depth_m, X_WA * in_a.p_S, 0};
+  deepest.work = work + 4 * (edges_a.size() + edges_b.size());
   // Between edges: first all facets, then below those that are flush.
   bool is_between_edges = false;
   const auto keep = [&](const Pose& X_WS, const auto& search) {
     Deepest found{deepest.depth_m, Vec3::Zero(), is_between_edges};
     search(found);
-    if (found.depth_m > deepest.depth_m) deepest = {found.depth_m, X_WS * found.p_S};
+    if (found.depth_m > deepest.depth_m) deepest = {found.depth_m, X_WS * found.p_S, deepest.work};
     is_between_edges = found.is_between_edges;
   };
   std::vector<FlushPoint> flush_b, flush_a;
@@ -135,6 +204,10 @@ Overlap deepestOverlap(const OverlapMesh& a, const Pose& X_WA, const OverlapMesh
   keep(X_WB, [&](Deepest& found) { flush_a = searchFacets(b, a, X_BA, trianglesAt(a, edges_a), found); });
   keep(X_WA, [&](Deepest& found) { searchBelow(a, b, X_AB, flush_b, found); });
   keep(X_WB, [&](Deepest& found) { searchBelow(b, a, X_BA, flush_a, found); });
+  if (with_sheets && hasSheets(b.solid()))
+    keep(X_WA, [&](Deepest& found) { searchSheet(b, a, X_AB, of_a, found); });
+  if (with_sheets && hasSheets(a.solid()))
+    keep(X_WB, [&](Deepest& found) { searchSheet(a, b, X_BA, of_b, found); });
   return deepest;
 }
 

@@ -64,8 +64,9 @@ inline constexpr auto kStepFields = std::make_tuple(
     field("start_s", &StepResult::start_s, "simulated time at which the step began"),
     field("duration_s", &StepResult::duration_s, "simulated time that it took"),
     field("max_penetration_m", &StepResult::max_penetration_m,
-          "deepest penetration over the step and the rest after it, by exact distance along all sharp edges "
-          "and at the shells' points on faces, at every 200th pose and the fifty with the deepest contacts"),
+          "deepest penetration over the step and the rest after it, by exact distance along all sharp edges, "
+          "at the vertices of curved faces and at the shells' points on faces, at every 200th pose and the "
+          "fifty with the deepest contacts; also of passages between samples that are more than 0.1 mm apart"),
     field("penetration_limit_m", &StepResult::penetration_limit_m,
           "min(10 um, clearance / 4); of a part that is taken off, beyond the overlap as drawn"),
     field("deepest_against", &StepResult::deepest_against, "name of the part that was penetrated deepest"),

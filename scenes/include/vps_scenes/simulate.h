@@ -39,9 +39,9 @@ struct OverlappingStart {
 struct JudgedOverlap {
   double limit_m = 0;
   std::size_t poses_judged = 0;
-  /// Of all pairs and judged steps, but for pairs that overlapped at the start: as long as they have not come
-  /// apart, they count only where they are deeper than then, by the limit or more. The part that moves is
-  /// named first.
+  /// Of all pairs and steps, between their ends too, but for pairs that overlapped at the start: as long as
+  /// they have not come apart, they count only where they are deeper than then, by the limit or more. The
+  /// part that moves is named first.
   PairOverlap deepest;
   std::vector<OverlappingStart> at_start;
   /// Pairs that overlapped at the start and have not come apart since. They overlap by more than the limit.
@@ -51,6 +51,13 @@ struct JudgedOverlap {
     return count;
   }
   [[nodiscard]] bool isWithinLimit() const { return deepest.depth_m <= limit_m && neverApart() == 0; }
+};
+
+/// The deepest overlap of a run by exact distance, at the start, the end and along all steps.
+struct JudgedDepth {
+  PairOverlap deepest;       ///< depth 0: nothing overlapped
+  double bound_m = 0;        ///< no overlap was deeper at any time, between the steps' poses too
+  std::size_t measures = 0;  ///< of single pairs between start and end
 };
 
 struct SimulateOptions : ModelOptions {
@@ -66,7 +73,10 @@ struct SimulateOptions : ModelOptions {
 
 struct SimulateResult {
   std::vector<BodyState> bodies;
-  double max_penetration_m = 0;  ///< deepest contact of the run, by the voxmaps
+  /// Deepest overlap of the run: exact->deepest.depth_m, but in real time contact_depth_m.
+  double max_penetration_m = 0;
+  double contact_depth_m = 0;        ///< deepest contact of the run as the solver saw it
+  std::optional<JudgedDepth> exact;  ///< not in real time, which leaves no time for it
   std::optional<JudgedOverlap> overlap;
   double kinetic_energy_J = 0;  ///< at the end
   /// How often bodies in contact were stopped within a step, because no contact force was found that keeps

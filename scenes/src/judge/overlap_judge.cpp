@@ -14,6 +14,7 @@ namespace vps::scenes::inline v0 {
 namespace {
 
 constexpr double kSharp_rad = 0.35;  // about 20 degrees, as for pointshells
+constexpr double kFlat_rad = 1e-6;   // rounding turns the diagonal of a flat face by about 1e-8
 
 void keep(PointDepth& deepest, double depth_m, const Vec3& p_S) {
   if (depth_m > deepest.depth_m) deepest = {depth_m, p_S};
@@ -64,10 +65,22 @@ PointDepth deepestPoint(const JudgedBody& solid, const JudgedBody& other, const 
   return deepest;
 }
 
+PointDepth deepestVertex(const JudgedBody& solid, const JudgedBody& other, const Pose& X_SO) {
+  std::vector<Vec3> near;
+  for (const Vec3& vertex : *other.vertices)
+    if (const Vec3 p_S = X_SO * vertex; !isSurelyOutside(solid, p_S, p_S)) near.push_back(p_S);
+  std::vector<double> depths(near.size());
+  tbb::parallel_for(std::size_t{0}, near.size(),
+                    [&](std::size_t i) { depths[i] = -solid.model->solid->signedDistance(near[i]); });
+  PointDepth deepest;
+  for (std::size_t i = 0; i < depths.size(); ++i) keep(deepest, depths[i], near[i]);
+  return deepest;
+}
+
 PointDepth deepestIn(const JudgedBody& solid, const JudgedBody& other, const Pose& X_SO) {
   PointDepth deepest = deepestPoint(solid, other, X_SO);
-  const PointDepth on_edge = deepestEdge(solid, other, X_SO);
-  keep(deepest, on_edge.depth_m, on_edge.p_S);
+  for (const PointDepth& found : {deepestEdge(solid, other, X_SO), deepestVertex(solid, other, X_SO)})
+    keep(deepest, found.depth_m, found.p_S);
   return deepest;
 }
 
@@ -76,9 +89,18 @@ PointDepth deepestIn(const JudgedBody& solid, const JudgedBody& other, const Pos
 JudgedBody makeJudgedBody(std::shared_ptr<const PartModel> model) {
   const Mesh& mesh = model->solid->mesh();
   std::vector<SharpEdge> edges;
-  for (const auto& [a, b] : sharpEdges(mesh, kSharp_rad))
+  std::vector<bool> is_curved(mesh.vertices.size());
+  for (const auto& edge : sharpEdges(mesh, kFlat_rad))
+    for (const std::uint32_t end : edge) is_curved[end] = true;
+  for (const auto& [a, b] : sharpEdges(mesh, kSharp_rad)) {
     edges.push_back({mesh.vertices[a], mesh.vertices[b]});
-  return {std::move(model), std::make_shared<const std::vector<SharpEdge>>(std::move(edges))};
+    is_curved[a] = is_curved[b] = false;  // measured with the edge
+  }
+  std::vector<Vec3> vertices;
+  for (std::size_t i = 0; i < is_curved.size(); ++i)
+    if (is_curved[i]) vertices.push_back(mesh.vertices[i]);
+  return {std::move(model), std::make_shared<const std::vector<SharpEdge>>(std::move(edges)),
+          std::make_shared<const std::vector<Vec3>>(std::move(vertices))};
 }
 
 void OverlapJudge::mount(JudgedBody body, const Pose& X_WB) {

@@ -20,9 +20,11 @@ struct SharpEdge {
 struct JudgedBody {
   std::shared_ptr<const PartModel> model;
   std::shared_ptr<const std::vector<SharpEdge>> edges;  ///< where faces meet at more than 20 degrees
+  /// Vertices of curved faces, which protrude from the chords between the shell's points.
+  std::shared_ptr<const std::vector<Vec3>> vertices;
 };
 
-/// Finds the part's sharp edges. O(n log n).
+/// Finds the part's sharp edges and the vertices of its curved faces. O(n log n).
 JudgedBody makeJudgedBody(std::shared_ptr<const PartModel> model);
 
 struct Penetration {
@@ -31,11 +33,11 @@ struct Penetration {
   std::size_t against = 0;  ///< index of the mounted body
 };
 
-/// Measures along every sharp edge of both parts (deepestOnSegment(), to kCertain_m) and at the shells'
-/// points on faces. Two surfaces that cross do so at an edge of one of them. So only overlaps of smooth faces
-/// can be missed: those that lie between two face points, or are smaller than the facets' own deviation. What
-/// is inside of a faulty mesh is its Solid's answer; in the middle of a hole, where the signed distance
-/// jumps, a point may be missed.
+/// Measures along every sharp edge of both parts (deepestOnSegment(), to kCertain_m), at the vertices of
+/// curved faces and at the shells' points on faces. Two surfaces that cross do so at an edge of one of them.
+/// So only overlaps of smooth faces can be missed where edges that meet at less than 20 degrees cross each
+/// other: by at most the deviation of the facets from the curved face. What is inside of a faulty mesh is its
+/// Solid's answer; in the middle of a hole, where the signed distance jumps, a point may be missed.
 class OverlapJudge {
  public:
   static constexpr double kCertain_m = 0.5e-6;
@@ -45,6 +47,11 @@ class OverlapJudge {
   [[nodiscard]] const std::string& name(std::size_t mounted) const {
     return mounted_[mounted].body.model->name;
   }
+  struct Mounted {
+    JudgedBody body;
+    Pose X_WB;
+  };
+  [[nodiscard]] const std::vector<Mounted>& mounted() const { return mounted_; }
 
   /// Deepest point of `moving` in any mounted part and the reverse. Same input, same bits, on any number of
   /// threads. Allocates; not for the haptic path.
@@ -55,10 +62,6 @@ class OverlapJudge {
   [[nodiscard]] double fieldDepth_m(const JudgedBody& moving, const Pose& X_WP) const;
 
  private:
-  struct Mounted {
-    JudgedBody body;
-    Pose X_WB;
-  };
   std::vector<Mounted> mounted_;
 };
 

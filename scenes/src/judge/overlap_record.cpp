@@ -3,15 +3,62 @@
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 #include <set>
 
 #include "judge/box_motion.h"
+#include "judge/motion_judge.h"
 
 namespace vps::scenes::inline v0 {
 
 namespace {
 
 constexpr std::size_t kSuspects = 50;  ///< poses that are judged whatever the stride
+
+/// A passage between two samples is at most half as deep as the part moves between them. A hand moves by less
+/// than this in a step of physics; samples of long steps are thinned.
+constexpr double kFast_m = 0.1e-3;
+constexpr double kCredit = 100;  ///< for each fast sample, see MotionJudge
+
+std::vector<MovingBody> bodiesOf(const OverlapJudge& judge, const JudgedBody& moving) {
+  const auto body = [](const std::shared_ptr<const PartModel>& model, bool is_fixed) {
+    const Box box = bounds(model->solid->mesh());
+    return MovingBody{box, box.center(), is_fixed,
+                      [model] { return std::make_shared<const ExactBody>(model->solid); }};
+  };
+  std::vector<MovingBody> bodies;
+  for (const OverlapJudge::Mounted& mounted : judge.mounted())
+    bodies.push_back(body(mounted.body.model, true));
+  bodies.push_back(body(moving.model, false));
+  return bodies;
+}
+
+/// Looks for passages between samples that are far from each other.
+void judgeBetween(const OverlapJudge& judge, const JudgedBody& moving,
+                  const std::vector<OverlapSample>& samples, const std::atomic<bool>* stop,
+                  OverlapVerdict& verdict) {
+  const Box box = bounds(moving.model->solid->mesh());
+  std::vector<Pose> X_WP;
+  for (const OverlapJudge::Mounted& mounted : judge.mounted()) X_WP.push_back(mounted.X_WB);
+  X_WP.emplace_back();
+  std::optional<MotionJudge> motions;
+  for (std::size_t i = 1; i < samples.size(); ++i) {
+    if (greatestDisplacement(box, samples[i - 1].X_WP, samples[i].X_WP) <= kFast_m) continue;
+    X_WP.back() = samples[i - 1].X_WP;
+    if (!motions) {
+      motions.emplace(bodiesOf(judge, moving), X_WP, samples[i - 1].time_s);
+      motions->setLeast(std::max(verdict.worst.depth_m, kFast_m / 2));
+    }
+    motions->place(samples[i - 1].time_s, X_WP);
+    X_WP.back() = samples[i].X_WP;
+    motions->addStep(samples[i].time_s, X_WP, kCredit, stop);
+    motions->search(stop);
+  }
+  if (!motions || !(motions->deepest().depth_m > verdict.worst.depth_m)) return;
+  const DeepestOverlap& deepest = motions->deepest();
+  verdict.worst = {deepest.depth_m, deepest.p_W, deepest.a};
+  verdict.time_s = deepest.time_s;
+}
 
 }  // namespace
 
@@ -47,6 +94,7 @@ OverlapVerdict judgeSamples(const OverlapJudge& judge, const JudgedBody& moving,
       verdict.time_s = sample.time_s;
     }
   }
+  judgeBetween(judge, moving, samples, stop, verdict);
   return verdict;
 }
 

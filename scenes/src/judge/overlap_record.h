@@ -24,7 +24,8 @@ struct OverlapVerdict {
 
 /// Judges every `stride`-th pose, the last pose, and the kSuspects poses with the deepest contacts. A pose
 /// that differs from the last one judged by less than OverlapJudge::kCertain_m (greatest motion of any point)
-/// is skipped.
+/// is skipped. Between samples that are more than 0.1 mm apart, passages that are more than half of that deep
+/// are searched for (MotionJudge).
 /// @param stop  ends the search early when set; the result is what was found until then; may be null
 OverlapVerdict judgeSamples(const OverlapJudge& judge, const JudgedBody& moving,
                             const std::vector<OverlapSample>& samples, std::size_t stride,

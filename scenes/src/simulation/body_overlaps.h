@@ -3,36 +3,49 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <utility>
 #include <vector>
 
-#include "vps/mesh_overlap.h"
+#include "judge/motion_judge.h"
 #include "vps_scenes/scene.h"
 #include "vps_scenes/simulate.h"
 
 namespace vps::scenes::inline v0 {
 
-/// Measures pairs of which one part can move and whose boxes overlap.
+/// Measures pairs of which one part can move and whose boxes overlap: at single instants, and along the steps
+/// between them.
 class BodyOverlaps {
  public:
-  /// Takes the parts at their designed poses.
-  explicit BodyOverlaps(const Scene& scene);
+  /// Takes the parts at their designed poses. A part's surface is prepared when another one comes near.
+  /// @param centers_P  centres of mass, by part; empty: the middles of the parts' boxes
+  explicit BodyOverlaps(const Scene& scene, const std::vector<Vec3>& centers_P = {});
   void move(std::size_t part, const Pose& X_WP) { X_WP_[part] = X_WP; }
   /// Records the pairs that overlap by more than the limit.
   void judgeStart();
+  /// The parts are where a step has brought them.
+  /// @param credit  see MotionJudge::addStep()
+  void endStep(double time_s, double credit, const std::atomic<bool>* stop = nullptr) {
+    motions_.addStep(time_s, X_WP_, credit, stop);
+  }
+  /// Judges all pairs where they are, and the steps that have ended since the last time.
   void judge(double time_s);
   [[nodiscard]] JudgedOverlap result() const;
+  /// Of all pairs and instants, also of those that overlapped at the start.
+  [[nodiscard]] JudgedDepth deepest() const;
 
  private:
-  using Pair = std::pair<std::size_t, std::size_t>;
+  using Pair = MotionJudge::Pair;
   /// Calls visit(pair, overlap) for each pair that overlaps.
   template <typename Visit>
-  void forEachOverlap(Visit visit) const;
-  [[nodiscard]] PairOverlap describe(const Pair& pair, const Overlap& overlap, double time_s) const;
+  void forEachOverlap(Visit visit);
+  [[nodiscard]] PairOverlap describe(const Pair& pair, double depth_m, const Vec3& p_W, double time_s) const;
+  [[nodiscard]] PairOverlap describe(const DeepestOverlap& deepest) const;
 
   const Scene& scene_;
-  std::vector<OverlapMesh> meshes_;
+  std::vector<Box> boxes_P_;
   std::vector<Pose> X_WP_;
+  MotionJudge motions_;
   JudgedOverlap judged_;
   std::map<Pair, OverlappingStart> starts_;
 };

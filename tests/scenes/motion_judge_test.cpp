@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Overlaps between the poses at the ends of steps: the family C_judge has more of them.
+#include "judge/motion_judge.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "judge/overlap_record.h"
+#include "scenes/scene_part.h"
+#include "simulation/body_overlaps.h"
+#include "vps_scenes/simulate.h"
+
+namespace vps::scenes {
+namespace {
+
+constexpr double kMm = 1e-3, kUm = 1e-6;
+
+MovingBody movingBody(const Mesh& mesh, bool is_fixed) {
+  return {bounds(mesh), Vec3::Zero(), is_fixed,
+          [mesh] { return std::make_shared<const ExactBody>(std::make_shared<const Solid>(mesh)); }};
+}
+
+/// A fixed body at the origin and another one.
+MotionJudge judgeOf(const Mesh& fixed, const Mesh& moving, const Pose& X_0) {
+  return MotionJudge({movingBody(fixed, true), movingBody(moving, false)}, {Pose(), X_0}, 0);
+}
+
+const Mesh kPlate = makeBox({100 * kMm, 100 * kMm, 2 * kMm});
+const Mesh kBall = makeSphere(5 * kMm, 3);
+
+TEST(MotionJudge, APassageThroughAPlateIsAsDeepAsHalfThePlateAndHasItsTime) {
+  for (const double speed_m_s : {20.0, 50.0, 500.0, 5000.0}) {
+    const double from_m = 0.25 * speed_m_s * 1e-3 + 7 * kMm;
+    MotionJudge judge = judgeOf(kPlate, kBall, Pose::translation({1 * kMm, 2 * kMm, from_m}));
+    const double to_m = from_m - speed_m_s * 1e-3;
+    ASSERT_LT(to_m, -6 * kMm);  // apart again
+    judge.addStep(1e-3, {Pose(), Pose::translation({1 * kMm, 2 * kMm, to_m})}, 0);
+    judge.search();
+    const DeepestOverlap& deepest = judge.deepest();
+    EXPECT_NEAR(deepest.depth_m, 1 * kMm, MotionJudge::toleranceOf(1 * kMm)) << speed_m_s;
+    EXPECT_GE(judge.bound_m(), 1 * kMm);
+    const double z_m = from_m - speed_m_s * deepest.time_s;
+    EXPECT_LT(std::abs(z_m), 6 * kMm) << speed_m_s;  // while it is in the plate
+    EXPECT_LT(judge.measured(), 60U) << speed_m_s;
+  }
+}
+
+TEST(MotionJudge, WhatSlidesAndRollsOnAPlateIsExcludedWithoutMeasures) {
+  const double r_m = 5 * kMm;
+  MotionJudge judge = judgeOf(kPlate, kBall, Pose::translation({-20 * kMm, 0, r_m + 1 * kMm + 0.1 * kUm}));
+  for (int step = 1; step <= 40; ++step) {
+    const double x_m = step * 1 * kMm;  // 1 m/s
+    judge.addStep(step * 1e-3,
+                  {Pose(), Pose(rotationFromVector({0, x_m / r_m, 0}),
+                                Vec3(-20 * kMm + x_m, 0, r_m + 1 * kMm + 0.1 * kUm))},
+                  0);
+  }
+  judge.search();
+  EXPECT_EQ(judge.deepest().depth_m, 0);
+  EXPECT_LE(judge.bound_m(), MotionJudge::toleranceOf(0));
+  EXPECT_LE(judge.measured(), 2U);
+}
+
+TEST(MotionJudge, WhatRestsIsMeasuredOnce) {
+  const Pose X = Pose::translation({0, 0, 6 * kMm - 20 * kUm});
+  MotionJudge judge = judgeOf(kPlate, kBall, X);
+  for (int step = 1; step <= 1000; ++step) {
+    Pose now = X;
+    now.p.x() += 1e-10 * (step % 2);
+    judge.addStep(step * 1e-3, {Pose(), now}, 0);
+  }
+  judge.search();
+  // Below the lowest vertex or edge of the sphere's mesh.
+  EXPECT_NEAR(judge.deepest().depth_m, 20 * kUm, 0.5 * kUm);
+  EXPECT_LE(judge.measured(), 3U);
+}
+
+// Along a bore no direction keeps the hulls apart.
+TEST(MotionJudge, WithoutCreditTheBoundTellsWhatMayHaveBeenMissed) {
+  const Mesh tube = makeTube(10 * kMm, 5.02 * kMm, 60 * kMm, 64);
+  MotionJudge judge = judgeOf(tube, kBall, Pose::translation({0, 0, -20 * kMm}));
+  for (int step = 1; step <= 20; ++step)
+    judge.addStep(step * 1e-3, {Pose(), Pose::translation({0, 0, (2 * step - 20) * kMm})}, -1e9);
+  judge.search();
+  EXPECT_EQ(judge.deepest().depth_m, 0);
+  EXPECT_GT(judge.bound_m(), 0.5 * kMm);
+}
+
+TEST(MotionJudge, ADepthThatIsAllowedDoesNotCountUntilItIsForbiddenAgain) {
+  const Pose X = Pose::translation({0, 0, 6 * kMm - 100 * kUm});
+  MotionJudge judge = judgeOf(kPlate, kBall, X);
+  judge.allow({0, 1}, 150 * kUm);
+  judge.addStep(1e-3, {Pose(), X * Pose::translation({0, 0, -30 * kUm})}, 0);
+  judge.search();
+  EXPECT_EQ(judge.deepest().depth_m, 0);
+  judge.forbid({0, 1});
+  judge.addStep(2e-3, {Pose(), X}, 0);
+  judge.search();
+  EXPECT_NEAR(judge.deepest().depth_m, 130 * kUm, 5 * kUm);
+}
+
+// A box that lies on the floor and turns about its vertical axis by 57 degrees within a step has its
+// corners beyond those of both poses: it hits a post beside it.
+TEST(MotionJudge, ATurnWithinAStepIsFollowedAlongItsArcs) {
+  const Mesh post = makeBox({2 * kMm, 2 * kMm, 20 * kMm}), bar = makeBox({40 * kMm, 4 * kMm, 4 * kMm});
+  const double reach_m = std::hypot(20.0, 2.0) * kMm;
+  const Vec3 p_W(0, -reach_m, 0);
+  for (const auto& [beside_m, is_hit] : {std::pair{-0.5 * kMm, true}, std::pair{1.5 * kMm, false}}) {
+    const auto at = [&](double turn_rad) {
+      return Pose(rotationFromVector({0, 0, M_PI / 2 + turn_rad}), Vec3(p_W - Vec3(0, beside_m, 0)));
+    };
+    MotionJudge judge = judgeOf(post, bar, at(-0.5));
+    judge.addStep(1e-3, {Pose(), at(0.5)}, 0);
+    judge.search();
+    EXPECT_EQ(judge.deepest().depth_m > 0.1 * kMm, is_hit) << judge.deepest().depth_m;
+  }
+}
+
+TEST(MotionJudge, AnOpenSheetIsSeenWhenItIsPassed) {
+  Mesh sheet;
+  sheet.vertices = {
+      {-50 * kMm, -50 * kMm, 0}, {50 * kMm, -50 * kMm, 0}, {50 * kMm, 50 * kMm, 0}, {-50 * kMm, 50 * kMm, 0}};
+  sheet.triangles = {{0, 1, 2}, {0, 2, 3}};
+  MotionJudge judge = judgeOf(sheet, kBall, Pose::translation({3 * kMm, 7 * kMm, 20 * kMm}));
+  judge.addStep(1e-3, {Pose(), Pose::translation({3 * kMm, 7 * kMm, -30 * kMm})}, 0);
+  judge.search();
+  // The sheet passes the ball's middle.
+  EXPECT_NEAR(judge.deepest().depth_m, 5 * kMm, 0.5 * kMm);
+}
+
+TEST(BodyOverlaps, APassageBetweenTwoStepsCountsAsAnOverlap) {
+  Scene scene;
+  scene.file = scene.name = "passage";
+  scene.parts = {scenePart("plate", kPlate, Vec3::Zero(), true),
+                 scenePart("ball", kBall, {0, 0, 20 * kMm}, false)};
+  BodyOverlaps overlaps(scene);
+  overlaps.judgeStart();
+  overlaps.move(1, Pose::translation({0, 0, -30 * kMm}));
+  overlaps.endStep(1e-3, 0);
+  overlaps.judge(1e-3);
+  const JudgedOverlap judged = overlaps.result();
+  EXPECT_FALSE(judged.isWithinLimit());
+  EXPECT_EQ(judged.deepest.a, "ball");
+  EXPECT_EQ(judged.deepest.b, "plate");
+  EXPECT_NEAR(judged.deepest.depth_m, 1 * kMm, MotionJudge::toleranceOf(1 * kMm));
+  EXPECT_NEAR(judged.deepest.time_s, 0.4e-3, 0.12e-3);
+  EXPECT_EQ(overlaps.deepest().deepest.depth_m, judged.deepest.depth_m);
+}
+
+TEST(OverlapRecord, APassageBetweenTwoSamplesOfAStepIsFound) {
+  VoxMapSettings voxels;
+  voxels.voxel_m = 0.5 * kMm;
+  PointShellSettings points;
+  points.spacing_m = 1 * kMm;
+  const auto body = [&](const char* name, const Mesh& mesh) {
+    return makeJudgedBody(buildPartModel(name, mesh, voxels, points));
+  };
+  OverlapJudge judge;
+  judge.mount(body("plate", kPlate), {});
+  const std::vector<OverlapSample> samples = {{0, Pose::translation({0, 0, 20 * kMm}), 0},
+                                              {1e-3, Pose::translation({0, 0, -30 * kMm}), 0}};
+  const OverlapVerdict verdict = judgeSamples(judge, body("ball", kBall), samples, 200);
+  EXPECT_NEAR(verdict.worst.depth_m, 1 * kMm, MotionJudge::toleranceOf(1 * kMm));
+  EXPECT_EQ(verdict.worst.against, 0U);
+}
+
+// Facets of 5.6 degrees are no sharp edges, and the shell's points lie on their faces and not at vertices.
+TEST(OverlapJudge, AVertexOfAFinelyMeshedBallHasItsDepth) {
+  VoxMapSettings voxels;
+  voxels.voxel_m = 0.5 * kMm;
+  PointShellSettings points;
+  points.spacing_m = 1 * kMm;
+  OverlapJudge judge;
+  judge.mount(makeJudgedBody(buildPartModel("plate", kPlate, voxels, points)), {});
+  const JudgedBody ball = makeJudgedBody(buildPartModel("ball", makeSphere(5 * kMm, 4), voxels, points));
+  for (int i = 0; i < 20; ++i) {
+    const Mat3 R = rotationFromVector({0.1 * i, 0.23 * i, -0.07 * i});
+    double lowest_m = 0;
+    for (const Vec3& v : ball.model->solid->mesh().vertices) lowest_m = std::min(lowest_m, (R * v).z());
+    const Pose X(R, Vec3(0.1 * kMm, 0.2 * kMm, 1 * kMm - lowest_m - 2 * kUm));
+    EXPECT_NEAR(judge.deepest(ball, X).depth_m, 2 * kUm, 1e-12) << i;
+  }
+}
+
+}  // namespace
+}  // namespace vps::scenes
