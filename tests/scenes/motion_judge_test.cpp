@@ -183,5 +183,34 @@ TEST(OverlapJudge, AVertexOfAFinelyMeshedBallHasItsDepth) {
   }
 }
 
+// Soft contact, so that it sinks by much more than what the solver is told at the start of a step.
+TEST(Simulate, ReportsTheExactDepthAndBesideItThatOfTheContacts) {
+  Scene scene;
+  scene.file = scene.name = "sinks";
+  scene.parts = {scenePart("plate", kPlate, Vec3::Zero(), true),
+                 scenePart("block", makeBox({8 * kMm, 6 * kMm, 4 * kMm}), {0, 0, 3.1 * kMm}, false)};
+  scene.fidelity.contact_method = ContactMethod::Penalty;
+  for (ScenePart& part : scene.parts) part.part.material.stiffness_N_per_m3 = 1e8;
+  double lowest_m = 1;
+  SimulateOptions options;
+  options.trace = [&](double, const std::vector<BodyState>& bodies, double) {
+    lowest_m = std::min(lowest_m, bodies.front().X_WP.p.z());
+  };
+  const SimulateResult result = simulate(scene, 0.03, options);
+  const double depth_m = 3 * kMm - lowest_m;  // it falls flat
+  ASSERT_GT(depth_m, 20 * kUm);
+  EXPECT_NEAR(result.max_penetration_m, depth_m, MotionJudge::toleranceOf(depth_m));
+  ASSERT_TRUE(result.exact.has_value());
+  EXPECT_EQ(result.exact->deepest.depth_m, result.max_penetration_m);
+  EXPECT_LE(result.exact->bound_m, result.max_penetration_m + MotionJudge::toleranceOf(depth_m) + 1e-12);
+  EXPECT_GT(result.contact_depth_m, 0);
+  EXPECT_FALSE(result.overlap.has_value());
+
+  options.is_real_time = true;
+  const SimulateResult by_clock = simulate(scene, 0.005, options);
+  EXPECT_FALSE(by_clock.exact.has_value());
+  EXPECT_EQ(by_clock.max_penetration_m, by_clock.contact_depth_m);
+}
+
 }  // namespace
 }  // namespace vps::scenes

@@ -108,12 +108,17 @@ void MotionJudge::allow(const Pair& pair, double depth_m) {
 }
 
 /// A bound of the depth at one moment by the boxes alone: no point is deeper in a box than half its least
-/// side.
+/// No point is deeper in a body than half the least side of its box.
+double MotionJudge::mostDepth_m(const Pair& pair) const {
+  const auto half_m = [&](std::size_t i) { return 0.5 * bodies_[i].box_P.size().minCoeff(); };
+  return std::max(half_m(pair.first), half_m(pair.second));
+}
+
+/// A bound of the depth at one moment by the boxes alone.
 double MotionJudge::boxDepth_m(const Pair& pair, double step) const {
   const auto box_W = [&](std::size_t i) { return moved(bodies_[i].box_P, poseAt(i, step)); };
   const double apart_m = distance_m(box_W(pair.first), box_W(pair.second));
-  const auto half_m = [&](std::size_t i) { return 0.5 * bodies_[i].box_P.size().minCoeff(); };
-  return apart_m > 0 ? -apart_m : std::max(half_m(pair.first), half_m(pair.second));
+  return apart_m > 0 ? -apart_m : mostDepth_m(pair);
 }
 
 /// Pairs whose boxes meet somewhere along the steps.
@@ -187,7 +192,7 @@ void MotionJudge::searchPaths(std::vector<PairPath>& paths, const std::atomic<bo
     const double travel_m = path.travelAt(stretch.to) - path.travelAt(stretch.from);
     // An end that was not measured is no deeper than the other one and the way to it.
     stretch.bound_m = std::min({0.5 * (stretch.from_m + stretch.to_m + travel_m), stretch.from_m + travel_m,
-                                stretch.to_m + travel_m});
+                                stretch.to_m + travel_m, mostDepth_m(path.pair)});
     if (stretch.bound_m > enough_m(path.pair)) waiting.push(stretch);
   };
   const double end = static_cast<double>(time_s_.size() - 1);
@@ -234,7 +239,8 @@ void MotionJudge::search(const std::atomic<bool>* stop) {
 
 void MotionJudge::setDepth(const Pair& pair, double depth_m, const Vec3& p_W) {
   record(pair, depth_m, p_W, time_s_.back());
-  if (depth_m > 0) depth_m_[pair] = depth_m;
+  double& known_m = depth_m_.try_emplace(pair, depth_m).first->second;
+  known_m = depth_m > 0 ? depth_m : std::min(known_m, 0.0);
 }
 
 }  // namespace vps::scenes::inline v0

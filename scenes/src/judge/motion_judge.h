@@ -90,6 +90,7 @@ class MotionJudge {
   [[nodiscard]] std::vector<Pair> nearPairs() const;
   [[nodiscard]] PairPath pathOf(const Pair& pair);
   [[nodiscard]] double allowed_m(const Pair& pair) const;
+  [[nodiscard]] double mostDepth_m(const Pair& pair) const;
   [[nodiscard]] double boxDepth_m(const Pair& pair, double step) const;
   [[nodiscard]] double enough_m(const Pair& pair) const;
   /// The depth, or less a lower bound of the gap.

@@ -35,10 +35,10 @@ std::vector<Vec3> centersOfMass(const Scene& scene, const Simulation& simulation
   return centers_P;
 }
 
-/// What the judge may spend on a step, in about microseconds: a third of what a step costs that has so many
-/// contacts (measured), and ten times as much where it was asked for.
+/// What the judge may spend on a step, in half microseconds: about a third of what a step costs that has so
+/// many contacts (measured), and ten times as much where it was asked for.
 double creditOf(const TouchState& touch, const SimulateOptions& options) {
-  constexpr double kStep = 10, kContact = 2, kAsked = 10;
+  constexpr double kStep = 10, kContact = 12, kAsked = 10;
   return (kStep + kContact * touch.contacts) * (options.judge_every > 0 ? kAsked : 1);
 }
 
