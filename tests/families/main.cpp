@@ -123,6 +123,7 @@ int main(int argc, char** argv) {
   }
   if (found == 0 && isKind(options.wanted)) {
     std::printf("kind %c has no families yet\n", options.wanted[1]);
+    options.file.add(std::string("families ") + options.wanted[1], "", "none yet", vps::test::kReported);
     return 0;
   }
   if (found == 0) return usage();
