@@ -93,8 +93,8 @@ std::string describe(int member) {
   return text;
 }
 
-// The torque rises evenly, from a share of the theory's, until the nut has turned by kTurned_rad. At the right torque
-// that takes two or three steps, so that it is measured within a hundredth.
+// The torque rises evenly, from a share of the theory's, until the nut has turned by kTurned_rad. At the
+// right torque that takes two or three steps, so that it is measured within a hundredth.
 double error(dynamics::Mode mode, double from, int member) {
   // Points every millimetre, as in scenes that state no spacing.
   static const dynamics::Engine engine = dynamics::vpsEngine({0.25e-3, 1e-3});

@@ -43,7 +43,7 @@ Roll rollOf(int member) {
   search::Random random(static_cast<std::uint64_t>(member));
   Roll roll;
   roll.is_sphere = member % 3 == 2;
-  roll.sides = 2 * static_cast<int>(random.logUniform(50, roll.is_sphere ? 100 : 600));
+  roll.sides = 2 * static_cast<int>(random.logUniform(roll.is_sphere ? 30 : 12, roll.is_sphere ? 100 : 600));
   if (member % 20 == 7 && !roll.is_sphere) roll.sides = 25'000;  // 100,000 facets
   roll.radius_m = random.logUniform(4e-3, 20e-3);
   const double lift_m_s = std::sqrt(kGravity_m_s2 * roll.radius_m);
