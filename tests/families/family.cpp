@@ -41,7 +41,7 @@ Outcome measure(const Family& family, bool is_short, int member) {
     double value = family.measured(i);
     if (std::isnan(value)) value = std::numeric_limits<double>::infinity();
     ++outcome.run;
-    outcome.above += value > family.bar;
+    if (value > family.bar) ++outcome.above, outcome.members_above.push_back(i);
     if (value > outcome.worst) {
       outcome.worst = value;
       outcome.worst_member = i;

@@ -52,8 +52,9 @@ std::vector<Family> allFamilies();
 struct Outcome {
   double worst = -std::numeric_limits<double>::infinity();  ///< greatest value
   int worst_member = -1;
-  int run = 0;    ///< members measured
-  int above = 0;  ///< members above the bar
+  int run = 0;                     ///< members measured
+  int above = 0;                   ///< members above the bar
+  std::vector<int> members_above;  ///< these members, ascending
   double cpu_s = 0;
 };
 

@@ -1,10 +1,115 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// I: a block starts exactly flush on a plate, with a velocity along it. It must move as one that starts 0.1
+// um above.
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+#include "dynamics/world.h"
 #include "family.h"
+#include "search/random.h"
+#include "vps_bullet/convert.h"
 
 namespace vps::families {
 
+namespace {
+
+using dynamics::PartMesh;
+using dynamics::World;
+
+struct Start {
+  Vec3 size_m{20e-3, 20e-3, 10e-3};
+  Vec3 over_m{8e-3, 0, 0};  ///< beyond the plate's edges at +x and +y
+  Vec3 v_W{-0.5, 0, 0};
+  double mu = 0.15;
+  double turn_rad = 0;  ///< of the scene about z, by right angles: flush to the bit
+};
+
+constexpr double kPlate_m = 60e-3, kThick_m = 6e-3;
+
+// Member 0 is the case that was found. Every fourth block is on the plate as a whole.
+Start startOf(int member) {
+  Start start;
+  if (member == 0) return start;
+  search::Random random(static_cast<std::uint64_t>(member));
+  const Vec3 sizes_m[] = {
+      {20e-3, 20e-3, 10e-3}, {10e-3, 10e-3, 10e-3}, {24e-3, 12e-3, 5e-3}, {8e-3, 16e-3, 12e-3}};
+  start.size_m = sizes_m[random.index(4)];
+  // Less than half of the block is over, or it would tip.
+  const double x = random.uniform(0.02, 0.45) * start.size_m.x(),
+               y = random.uniform(0.02, 0.3) * start.size_m.y();
+  const int kind = member % 4;
+  start.over_m = kind == 0   ? Vec3(-20e-3, -20e-3, 0)
+                 : kind == 1 ? Vec3(0.25 * x, 0.8 * y, 0)
+                             : Vec3(x, -20e-3, 0);
+  const double speed_m_s = random.logUniform(0.01, 2), heading_rad = random.uniform(-1.2, 1.2);
+  const Vec3 inward(-std::cos(heading_rad), std::sin(heading_rad), 0);
+  start.v_W = speed_m_s * (random.chance(0.7) ? inward : Vec3(-1, 0, 0));
+  start.mu = random.chance(0.5) ? 0 : random.uniform(0.05, 0.4);
+  start.turn_rad = 0.5 * std::numbers::pi * random.index(4);
+  return start;
+}
+
+std::string describe(int member) {
+  const Start s = startOf(member);
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "block %.0fx%.0fx%.0f mm, beyond the edges by %.2f and %.2f mm, v %.3f, %.3f m/s, mu %.2f",
+                1e3 * s.size_m.x(), 1e3 * s.size_m.y(), 1e3 * s.size_m.z(), 1e3 * s.over_m.x(),
+                1e3 * s.over_m.y(), s.v_W.x(), s.v_W.y(), s.mu);
+  return text;
+}
+
+const PartMesh& boxPart(const Vec3& size_m) {
+  static std::map<std::vector<double>, PartMesh> parts;
+  return dynamics::keptPart(parts, {size_m.x(), size_m.y(), size_m.z()},
+                            [&] { return dynamics::makePart(makeBox(size_m)); });
+}
+
+std::vector<Vec3> pathOf(const Start& start, double gap_m) {
+  static const dynamics::Engine engine = dynamics::vpsEngine();
+  constexpr int kSteps = 30;
+  // Right angles to the bit, so that flush stays flush.
+  Mat3 R = rotationFromVector({0, 0, start.turn_rad});
+  for (int i = 0; i < 9; ++i) R.data()[i] = std::round(R.data()[i]);
+  World world({dynamics::Mode::Constraint, false, engine});
+  world.add(boxPart({kPlate_m, kPlate_m, kThick_m}), Pose(R, Vec3(0, 0, -0.5 * kThick_m)), true, start.mu);
+  const Vec3 center = Vec3(0.5 * kPlate_m, 0.5 * kPlate_m, 0) -
+                      0.5 * Vec3(start.size_m.x(), start.size_m.y(), 0) + start.over_m +
+                      Vec3(0, 0, 0.5 * start.size_m.z() + gap_m);
+  const dynamics::Placed block = world.add(boxPart(start.size_m), Pose(R, R * center), false, start.mu);
+  block.body->setLinearVelocity(bullet::toBt(Vec3(R * start.v_W)));
+  std::vector<Vec3> path;
+  for (int i = 0; i < kSteps; ++i) {
+    world.step();
+    path.push_back(R.transpose() * block.pose().p);
+  }
+  return path;
+}
+
+double difference_m(int member) {
+  const Start start = startOf(member);
+  const std::vector<Vec3> flush = pathOf(start, 0), above = pathOf(start, 0.1e-6);
+  double most_m = 0;
+  for (std::size_t i = 0; i < flush.size(); ++i) most_m = std::max(most_m, (flush[i] - above[i]).norm());
+  return most_m;
+}
+
+}  // namespace
+
 std::vector<Family> flushStartFamilies() {
-  return {};
+  Family family;
+  family.key = "I_flush";
+  family.measure = "distance from a start 0.1 um above, 30 steps [m]";
+  // The gap itself; and while it closes, a hundredth of a step's friction is missing, 1 um in 30 steps.
+  family.bar = 2e-6;
+  family.members = 60;
+  family.expected_failure = 8.300e-3;
+  family.expected_failure_short = 5.617e-3;
+  family.every = 6;
+  family.measured = difference_m;
+  family.describe = describe;
+  return {family};
 }
 
 }  // namespace vps::families

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "edge_table.h"
 
+#include <algorithm>
 #include <cstdio>
+#include <ctime>
 #include <string>
 #include <vector>
 
 #include "edge_case.h"
+#include "support/table_rows.h"
 #include "vps/load_error.h"
 #include "vps_scenes/assemble.h"
 
@@ -16,6 +19,7 @@ namespace {
 struct Row {
   std::string name;
   int cases = 0, right = 0, not_shown = 0, missed = 0, wrong = 0, refused = 0;
+  double deepest_m = 0, cpu_s = 0;
 };
 
 void count(Row& row, EdgeOutcome outcome) {
@@ -57,7 +61,22 @@ void runCase(const EdgeCase& edge, const EdgeTableSettings& settings, Row& row) 
   const EdgeOutcome outcome = settings.has_wall ? outcomeOf(edge, step.verdict) : outcomeWithoutWall(step);
   if (settings.is_verbose || outcome == EdgeOutcome::Wrong || outcome == EdgeOutcome::MissedFit)
     printCase(edge, step, outcome);
+  row.deepest_m = std::max(row.deepest_m, step.max_penetration_m);
   count(row, outcome);
+}
+
+bool write(const std::vector<Row>& rows, const std::string& path) {
+  test::TableRows file;
+  if (path.empty()) return true;
+  if (!file.open(path)) return false;
+  for (const Row& row : rows) {
+    char value[128];
+    std::snprintf(value, sizeof value, "%d right, %d not shown, %d missed, %d wrong, %d refused; %.2f um",
+                  row.right, row.not_shown, row.missed, row.wrong, row.refused, 1e6 * row.deepest_m);
+    file.add("hand edge, " + row.name, std::to_string(row.cases) + " cases, none wrong", value,
+             row.wrong == 0 ? test::kMet : test::kFailed, row.cpu_s);
+  }
+  return true;
 }
 
 void add(Row& to, const Row& row) {
@@ -79,6 +98,7 @@ int printEdgeTable(const EdgeTableSettings& settings) {
     edge.fit.has_wall = settings.has_wall;
     if (rowName(edge).find(settings.only) == std::string::npos) continue;
     if (rows.empty() || rows.back().name != rowName(edge)) rows.push_back({rowName(edge)});
+    const std::clock_t begun = std::clock();
     try {
       runCase(edge, settings, rows.back());
     } catch (const LoadError& error) {
@@ -86,6 +106,7 @@ int printEdgeTable(const EdgeTableSettings& settings) {
       ++rows.back().refused;
       std::printf("%s: %s\n", caseName(edge).c_str(), error.what());
     }
+    rows.back().cpu_s += static_cast<double>(std::clock() - begun) / CLOCKS_PER_SEC;
   }
   std::printf("| %-32s | cases | right | not shown | missed | wrong | refused |\n", "");
   std::printf(
@@ -96,7 +117,9 @@ int printEdgeTable(const EdgeTableSettings& settings) {
     add(total, row);
   }
   print(total);
-  return total.wrong;
+  if (write(rows, settings.rows_file)) return total.wrong;
+  std::fprintf(stderr, "%s: cannot be written\n", settings.rows_file.c_str());
+  return total.wrong + 1;
 }
 
 }  // namespace vps::hand

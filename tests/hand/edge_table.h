@@ -13,6 +13,7 @@ struct EdgeTableSettings {
   std::uint64_t seed = 1;
   std::string only;         ///< of the rows whose name contains this
   bool has_wall = true;     ///< false: only the bottom of each hole is left
+  std::string rows_file;    ///< the rows go to this file as well (support/table_rows.h)
   bool is_verbose = false;  ///< a line for each case
 };
 

@@ -9,6 +9,7 @@
 
 #include "edge_table.h"
 #include "peg_scenes.h"
+#include "support/table_rows.h"
 #include "thread_scenes.h"
 #include "vps_scenes/assemble.h"
 
@@ -25,10 +26,11 @@ std::vector<PegScene> allScenes() {
 
 int usage() {
   std::printf(
-      "usage: vps_hand CASE [FIRST [LAST]] [--trace FILE]\n"
+      "usage: vps_hand CASE [FIRST [LAST]] [--trace FILE] [--tsv FILE]\n"
       "Runs the seeds FIRST to LAST (default 1 to 100) and prints a line for each, then their share.\n"
       "  --trace  writes time, phase, pose error and force of every 10th physics step of the last seed\n"
-      "       vps_hand edge [--every N] [--from K] [--seed S] [--only WORDS] [--no-wall] [--verbose]\n"
+      "       vps_hand edge [--every N] [--from K] [--seed S] [--only WORDS] [--no-wall] [--verbose] [--tsv "
+      "FILE]\n"
       "Pegs from 50 um too large to 50 um of clearance; the exit status is 1 if a verdict is wrong.\n"
       "  --no-wall  takes away the bores' walls; wrong is then what says 'by contact'\n"
       "cases:\n");
@@ -52,8 +54,17 @@ void writeTrace(const vps::scenes::AssembleResult& result, const vps::Pose& X_ta
   std::fclose(out);
 }
 
-int runEdgeTable(const std::vector<std::string>& words) {
+void writeRows(const std::string& name, const vps::scenes::StepResult& step, vps::test::TableRows& file) {
+  char value[96];
+  std::snprintf(value, sizeof value, "%s, %.2f s, deepest %.2f um",
+                step.completed ? "done" : step.failure_reason.c_str(), step.duration_s,
+                1e6 * step.max_penetration_m);
+  file.add(name, "completed", value, step.completed ? vps::test::kMet : vps::test::kFailed);
+}
+
+int runEdgeTable(const std::vector<std::string>& words, const std::string& rows_file) {
   vps::hand::EdgeTableSettings settings;
+  settings.rows_file = rows_file;
   for (std::size_t i = 1; i < words.size(); ++i) {
     const bool has_value = i + 1 < words.size();
     const auto number = [&] { return std::strtoull(words[++i].c_str(), nullptr, 10); };
@@ -78,16 +89,20 @@ int runEdgeTable(const std::vector<std::string>& words) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::string trace;
+  std::string trace, rows_file;
   std::vector<std::string> words;
   for (int i = 1; i < argc; ++i) {
     if (std::string(argv[i]) == "--trace" && i + 1 < argc)
       trace = argv[++i];
+    else if (std::string(argv[i]) == "--tsv" && i + 1 < argc)
+      rows_file = argv[++i];
     else
       words.emplace_back(argv[i]);
   }
   if (words.empty()) return usage();
-  if (words[0] == "edge") return runEdgeTable(words);
+  if (words[0] == "edge") return runEdgeTable(words, rows_file);
+  vps::test::TableRows file;
+  if (!rows_file.empty() && !file.open(rows_file)) return usage();
   const std::vector<PegScene> scenes = allScenes();
   const auto chosen =
       std::find_if(scenes.begin(), scenes.end(), [&](const PegScene& s) { return words[0] == s.name; });
@@ -116,6 +131,7 @@ int main(int argc, char** argv) {
                   step.turns, 1e3 * step.advance_per_turn_m, 1e3 * step.lean_rad, step.index_count,
                   vps::scenes::toText(step.verdict), step.reason.c_str());
     std::fflush(stdout);
+    writeRows("hand " + std::string(chosen->name) + ", seed " + std::to_string(seed), step, file);
     if (!trace.empty() && seed == last) writeTrace(result, scene.steps[0].X_WP_target, trace.c_str());
   }
   std::printf("%s: %d of %d seeds succeed, mean %.2f s\n", chosen->name, good, runs,

@@ -22,6 +22,7 @@ int usage() {
       "  --runs               cases of each row\n"
       "  --seed               of the first case; the others count up from it (default: from the date)\n"
       "  --save               folder for cases that exceed the bound (default: out/search)\n"
+      "  --tsv                a file for the rows\n"
       "  --verbose            a line for each case\n"
       "families:\n");
   for (const vps::search::Family& family : vps::search::families())
@@ -58,6 +59,8 @@ bool take(SearchOptions& options, const std::string& name, const std::string& va
     options.seed = std::strtoull(value.c_str(), nullptr, 10);
   } else if (name == "--save") {
     options.save_folder = value;
+  } else if (name == "--tsv") {
+    options.rows_file = value;
   } else if (name == "--family") {
     options.families = parts(value);
     for (const std::string& family : options.families)

@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <ctime>
 
 #include "scene_writer.h"
+#include "support/table_rows.h"
 
 namespace vps::search {
 
@@ -18,6 +20,8 @@ struct Row {
   long runs = 0, over = 0, tunnelled = 0, refused = 0;
   double simulated_s = 0, deepest_m = 0;
   std::uint64_t worst_seed = 0;
+  bool is_good = true;
+  double cpu_s = 0;
 };
 
 std::vector<Row> rowsOf(const SearchOptions& options) {
@@ -49,17 +53,22 @@ std::string commandOf(const SearchOptions& options, const Row& row, std::uint64_
               static_cast<unsigned long long>(seed));
 }
 
+/// Cases with longer steps and in penalty contact have no bound of depth.
+bool hasBound(const SearchOptions& options, const Row& row) {
+  return options.mode == dynamics::Mode::Constraint && row.step_s <= 1.001e-3;
+}
+
 /// What makes a run a failure: see printTable().
 bool isFailure(const SearchOptions& options, const Row& row, const RunSettings& settings,
                const CaseResult& result) {
   if (!result.refusal.empty() || result.has_tunnelled) return true;
-  const bool has_bound = options.mode == dynamics::Mode::Constraint && row.step_s <= 1.001e-3;
-  return has_bound && result.deepest.overlap.depth_m > settings.bound_m;
+  return hasBound(options, row) && result.deepest.overlap.depth_m > settings.bound_m;
 }
 
 /// @return false for a failure
 bool runNext(const SearchOptions& options, Row& row) {
   const std::uint64_t seed = options.seed + static_cast<std::uint64_t>(row.runs);
+  const std::clock_t begun = std::clock();
   const Case made = makeCase(*row.family, seed, row.is_faulty);
   RunSettings settings;
   settings.mode = options.mode;
@@ -73,6 +82,8 @@ bool runNext(const SearchOptions& options, Row& row) {
   row.refused += !result.refusal.empty();
   if (deepest_m > row.deepest_m) row.deepest_m = deepest_m, row.worst_seed = seed;
   const bool is_failure = isFailure(options, row, settings, result);
+  row.is_good = row.is_good && !is_failure;
+  row.cpu_s += static_cast<double>(std::clock() - begun) / CLOCKS_PER_SEC;
   if (is_failure || options.is_verbose) {
     std::printf("%s: %.2f um at %.4f s, %s in %s%s%s%s; hash %016llx\n",
                 commandOf(options, row, seed).c_str(), 1e6 * deepest_m, result.deepest_at_s,
@@ -107,6 +118,20 @@ void print(const std::vector<Row>& rows) {
                 static_cast<unsigned long long>(row.worst_seed), row.over, row.tunnelled, row.refused);
 }
 
+bool write(const SearchOptions& options, const std::vector<Row>& rows) {
+  if (options.rows_file.empty()) return true;
+  test::TableRows file;
+  if (!file.open(options.rows_file)) return false;
+  for (const Row& row : rows)
+    file.add(text("search %s, %g ms, %s, %s", row.family->name, 1e3 * row.step_s, meshesOf(row),
+                  dynamics::nameOf(options.mode)),
+             hasBound(options, row) ? text("%ld cases <= %g um", row.runs, 1e6 * RunSettings().bound_m)
+                                    : text("%ld cases, none passes through", row.runs),
+             text("%.2f um, %ld tunnelled, %ld refused", 1e6 * row.deepest_m, row.tunnelled, row.refused),
+             row.is_good ? test::kMet : test::kFailed, row.cpu_s);
+  return true;
+}
+
 }  // namespace
 
 bool printTable(const SearchOptions& options) {
@@ -129,7 +154,7 @@ bool printTable(const SearchOptions& options) {
     }
   }
   print(rows);
-  return is_good;
+  return write(options, rows) && is_good;
 }
 
 }  // namespace vps::search

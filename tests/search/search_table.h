@@ -22,6 +22,7 @@ struct SearchOptions {
   bool has_closed = true, has_faulty = true;
   dynamics::Mode mode = dynamics::Mode::Constraint;
   std::string save_folder = "out/search";  ///< for cases that exceed the bound
+  std::string rows_file;  ///< the rows go to this file as well (support/table_rows.h); empty: to none
   bool is_verbose = false;
 };
 

@@ -13,10 +13,11 @@ namespace {
 int usage() {
   std::printf(
       "usage: vps_stability [--short] [--thorough] [--rows=a,b] [--mode=constraint|penalty|stock] "
-      "[--values=x,y]\n"
+      "[--values=x,y] [--tsv=FILE]\n"
       "  --short     what must hold, without the search for limits\n"
       "  --thorough  hours at rest instead of seconds\n"
       "  --values    these instead of the rows' own\n"
+      "  --tsv       also writes the rows to this file\n"
       "rows:");
   for (const vps::stability::Row& row : vps::stability::allRows()) std::printf(" %s", row.key.c_str());
   std::printf("\n");
@@ -37,6 +38,7 @@ std::vector<double> numbers(const char* text) {
 int main(int argc, char** argv) {
   using namespace vps::stability;
   Options options;
+  vps::test::TableRows rows_file;
   std::string wanted;
   std::vector<double> values;
   for (int i = 1; i < argc; ++i) {
@@ -55,6 +57,8 @@ int main(int argc, char** argv) {
       options.modes = {Mode::Penalty};
     } else if (arg == "--mode=stock") {
       options.modes = {Mode::ConstraintStock};
+    } else if (arg.rfind("--tsv=", 0) == 0) {
+      if (!rows_file.open(arg.substr(6))) return usage();
     } else {
       return usage();
     }
@@ -66,5 +70,5 @@ int main(int argc, char** argv) {
     rows.push_back(std::move(row));
   }
   if (rows.empty()) return usage();
-  return printTable(rows, options) == 0 ? 0 : 1;
+  return printTable(rows, options, rows_file) == 0 ? 0 : 1;
 }

@@ -77,7 +77,7 @@ Result runRow(const Row& row, Mode mode, const Options& options) {
   return result;
 }
 
-int printTable(const std::vector<Row>& rows, const Options& options) {
+int printTable(const std::vector<Row>& rows, const Options& options, test::TableRows& file) {
   int missed = 0;
   std::printf("| row | to the extreme | judged by | contact | at the end of the promised values | limit |\n");
   std::printf("|---|---|---|---|---|---|\n");
@@ -90,6 +90,8 @@ int printTable(const std::vector<Row>& rows, const Options& options) {
                   dynamics::nameOf(mode), r.is_met ? "" : "**breaks** at ", r.promised.c_str(),
                   r.is_required_met ? "" : " **MISSED**", r.limit.c_str());
       std::fflush(stdout);
+      file.add("stability " + row.key + ", " + dynamics::nameOf(mode), row.judged, r.promised,
+               r.is_required_met ? test::kMet : test::kFailed);
       if (!r.is_required_met) ++missed, std::fprintf(stderr, "%s: %s\n", row.key.c_str(), r.failure.c_str());
     }
   }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "row.h"
+#include "support/table_rows.h"
 
 namespace vps::stability {
 
@@ -23,7 +24,8 @@ struct Result {
 
 Result runRow(const Row& row, Mode mode, const Options& options);
 
-/// Prints Markdown, one line for each row. Returns how many rows miss a required value.
-int printTable(const std::vector<Row>& rows, const Options& options);
+/// Prints Markdown, one line for each row, and adds each to `file`. Returns how many rows miss a required
+/// value.
+int printTable(const std::vector<Row>& rows, const Options& options, test::TableRows& file);
 
 }  // namespace vps::stability

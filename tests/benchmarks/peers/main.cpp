@@ -10,6 +10,7 @@
 int main(int argc, char** argv) {
   using namespace vps;
   bench::Options options{{dynamics::Mode::Constraint, dynamics::Mode::Penalty}, false};
+  bench::Table table;
   std::string wanted;
   for (int i = 1; i < argc; ++i) {
     const std::string arg = argv[i];
@@ -23,14 +24,17 @@ int main(int argc, char** argv) {
       options.modes = {dynamics::Mode::Penalty};
     } else if (arg == "--mode=stock") {
       options.modes = {dynamics::Mode::ConstraintStock};
+    } else if (arg.rfind("--tsv=", 0) == 0 && table.file.open(arg.substr(6))) {
+      continue;
     } else {
-      std::printf("usage: vps_bench_peers [--rows=a,b] [--mode=constraint|penalty|stock] [--short]\nrows:");
+      std::printf(
+          "usage: vps_bench_peers [--rows=a,b] [--mode=constraint|penalty|stock] [--short] [--tsv=FILE]\n"
+          "rows:");
       for (const bench::Case& c : bench::allCases()) std::printf(" %s", c.key);
       std::printf("\n");
       return 2;
     }
   }
-  bench::Table table;
   for (const bench::Case& c : bench::allCases())
     if (wanted.empty() ? !c.is_optional : wanted.find("," + std::string(c.key) + ",") != std::string::npos)
       c.run(options, table);

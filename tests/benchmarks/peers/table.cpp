@@ -6,6 +6,7 @@
 #include <cstdarg>
 #include <cstdio>
 #include <map>
+#include <utility>
 
 namespace vps::bench {
 
@@ -24,14 +25,14 @@ std::string text(const char* format, ...) {
 
 Figure atMost(const std::string& what, double value, double bound, double scale, const std::string& unit) {
   return {text("%s %.3g %s", what.c_str(), value * scale, unit.c_str()),
-          text("<= %.3g %s", bound * scale, unit.c_str()), value <= bound};
+          text("<= %.3g %s", bound * scale, unit.c_str()), value <= bound, what};
 }
 
 Figure within(const std::string& what, double value, double wanted, double tolerance, double scale,
               const std::string& unit) {
   return {text("%s %.5g %s", what.c_str(), value * scale, unit.c_str()),
           text("%.5g +- %.3g %s", wanted * scale, tolerance * scale, unit.c_str()),
-          std::abs(value - wanted) <= tolerance};
+          std::abs(value - wanted) <= tolerance, what};
 }
 
 Figure holds(const std::string& claim, bool is_met) {
@@ -39,7 +40,7 @@ Figure holds(const std::string& claim, bool is_met) {
 }
 
 Figure reported(const std::string& what, double value, double scale, const std::string& unit) {
-  return {text("%s %.3g %s", what.c_str(), value * scale, unit.c_str()), "", true};
+  return {text("%s %.3g %s", what.c_str(), value * scale, unit.c_str()), "", true, what};
 }
 
 namespace {
@@ -60,16 +61,33 @@ void printRow(const Row& row, const char* verdict) {
 void Table::add(Row row) {
   printRow(row, row.isMet() ? "met" : "NOT MET");
   std::fflush(stdout);
-  rows_.push_back({std::move(row), true});
+  const std::clock_t now = std::clock();
+  rows_.push_back({std::move(row), true, static_cast<double>(now - last_) / CLOCKS_PER_SEC});
+  last_ = now;
 }
 
 void Table::addRival(Row row) {
   printRow(row, "-");
   std::fflush(stdout);
-  rows_.push_back({std::move(row), false});
+  rows_.push_back({std::move(row), false, 0});
+  last_ = std::clock();
 }
 
-int Table::print() const {
+// Figures without a name before their number, as claims, are told apart by their bound.
+void Table::write(const Entry& entry, bool is_case_met) {
+  double cpu_s = entry.cpu_s;
+  for (const Figure& f : entry.row.figures) {
+    const std::string name = f.name.empty() ? f.bound : f.name;
+    const char* verdict = f.bound.empty() ? test::kReported
+                          : f.is_met      ? test::kMet
+                          : is_case_met   ? "by another mode"
+                                          : test::kFailed;
+    file.add("peers " + entry.row.name + ", " + entry.row.mode + ": " + name, f.bound, f.text, verdict,
+             std::exchange(cpu_s, 0));
+  }
+}
+
+int Table::print() {
   std::map<std::string, bool> case_met;
   for (const Entry& e : rows_)
     if (e.is_judged) case_met[e.row.name] |= e.row.isMet();
@@ -79,6 +97,8 @@ int Table::print() const {
                     : e.row.isMet()           ? "met"
                     : case_met.at(e.row.name) ? "no (another mode does)"
                                               : "NOT MET");
+  for (const Entry& e : rows_)
+    if (e.is_judged) write(e, case_met.at(e.row.name));
   return static_cast<int>(
       std::count_if(case_met.begin(), case_met.end(), [](const auto& c) { return !c.second; }));
 }

@@ -5,12 +5,15 @@
 #include <string>
 #include <vector>
 
+#include "support/table_rows.h"
+
 namespace vps::bench {
 
 struct Figure {
   std::string text;   ///< measured value with its unit
   std::string bound;  ///< its bound; empty: reported, not judged
   bool is_met = true;
+  std::string name = {};  ///< what was measured; empty: said by the bound
 };
 
 struct Row {
@@ -41,14 +44,19 @@ class Table {
   void addRival(Row row);
   /// One line for each row. A case is met if one mode meets all its bounds.
   /// @return the number of cases that are not met
-  int print() const;
+  int print();
+  /// print() writes the figures of judged rows to this file as well.
+  test::TableRows file;
 
  private:
   struct Entry {
     Row row;
     bool is_judged;
+    double cpu_s;
   };
+  void write(const Entry& entry, bool is_case_met);
   std::vector<Entry> rows_;
+  std::clock_t last_ = 0;
 };
 
 }  // namespace vps::bench

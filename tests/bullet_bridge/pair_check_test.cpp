@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a pair of bodies says about a step that is solved: where they would overlap at its end, and up to
+// which share of it they do not. The end poses are given, no solver is involved.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "bullet_bridge/world.h"
+#include "search/random.h"
+#include "solver/penalty_contacts.h"
+#include "solver/step_check.h"
+
+namespace vps::bullet {
+namespace {
+
+using test::Built;
+
+/// A box above a plate, after the narrow phase of a step.
+struct BoxAbovePlate {
+  test::World world;
+  const Built& box = sharedBox();
+  Pose X_WB[2];  ///< of the plate's and the box's body
+  StepCheck* check = nullptr;
+  int plate = 0;  ///< which of the check's two bodies it is
+
+  static const Built& sharedBox() {
+    static const Built box = test::steelBox();
+    return box;
+  }
+  static const Built& sharedPlate() {
+    static const Built plate = test::plate();
+    return plate;
+  }
+  /// @param gap_m  of the lowest corner
+  BoxAbovePlate(const Mat3& R, double gap_m) {
+    double lowest_m = 1e300;
+    for (const Vec3& v : box.mesh.vertices) lowest_m = std::min(lowest_m, (R * v).z());
+    btRigidBody& low = world.add(sharedPlate(), Pose::translation({0, 0, -5e-3}), true);
+    btRigidBody& high = world.add(box, Pose(R, Vec3(0, 0, gap_m - lowest_m)));
+    X_WB[0] = fromBt(low.getWorldTransform());
+    X_WB[1] = fromBt(high.getWorldTransform());
+    world.world->performDiscreteCollisionDetection();
+    const ContactCreateFunction* stores = contactFunctionOf(&world.dispatcher);
+    for (int i = 0; stores && i < world.dispatcher.getNumManifolds(); ++i)
+      if (StepCheck* found = stores->step_checks->find(world.dispatcher.getManifoldByIndexInternal(i)))
+        check = found;
+    if (check && check->object(0) != &low) plate = 1;
+  }
+  /// The box moved by a displacement of its body and a turn about its centre.
+  std::vector<MissedContact> missedAt(const Pose& X_end) {
+    std::vector<MissedContact> missed;
+    const Pose ends[2] = {plate == 0 ? X_WB[0] : X_end, plate == 0 ? X_end : X_WB[0]};
+    check->findMissed(ends, true, missed);
+    return missed;
+  }
+  double freeShareTo(const Pose& X_end) {
+    const Pose ends[2] = {plate == 0 ? X_WB[0] : X_end, plate == 0 ? X_end : X_WB[0]};
+    return check->freeShare(ends);
+  }
+  [[nodiscard]] Pose moved(const Vec3& by_W, const Vec3& turn = Vec3::Zero()) const {
+    return {rotationFromVector(turn) * X_WB[1].R, X_WB[1].p + by_W};
+  }
+  /// By exact distance of the box's corners from the plate's face.
+  [[nodiscard]] double depthAt(const Pose& X_end) const {
+    double lowest_m = 1e300;
+    for (const Vec3& v : box.mesh.vertices)
+      lowest_m = std::min(lowest_m, (X_end * box.frame.X_PB.inverse() * v).z());
+    return -lowest_m;
+  }
+};
+
+TEST(PairCheck, MissesNothingInAStepThatStaysFree) {
+  for (const double gap_m : {5e-6, 100e-6}) {
+    BoxAbovePlate scene(Mat3::Identity(), gap_m);
+    ASSERT_TRUE(scene.check);
+    for (const Vec3& by : {Vec3(0, 0, 0), Vec3(0, 0, 1e-3), Vec3(2e-3, 0, 0), Vec3(0, 0, -0.5 * gap_m)}) {
+      EXPECT_TRUE(scene.missedAt(scene.moved(by)).empty()) << gap_m << ' ' << by.transpose();
+      EXPECT_EQ(scene.freeShareTo(scene.moved(by)), 1) << gap_m << ' ' << by.transpose();
+    }
+  }
+}
+
+// A corner, an edge or a face goes into the plate: the deepest contact that is reported has the exact depth.
+TEST(PairCheck, ReportsTheExactDepthOfWhatGoesIn) {
+  search::Random random(1);
+  for (int i = 0; i < 40; ++i) {
+    const Mat3 R = i < 4    ? Mat3(Mat3::Identity())
+                   : i < 12 ? rotationFromVector({0.4, 0, 0})
+                            : random.rotation();
+    BoxAbovePlate scene(R, random.uniform(10e-6, 100e-6));
+    ASSERT_TRUE(scene.check);
+    const Pose X_end = scene.moved(
+        {random.uniform(-1e-4, 1e-4), random.uniform(-1e-4, 1e-4), -random.uniform(150e-6, 400e-6)},
+        random.inBox(Vec3::Constant(2e-3)));
+    const double depth_m = scene.depthAt(X_end);
+    double deepest_m = 0;
+    for (const MissedContact& m : scene.missedAt(X_end)) {
+      deepest_m = std::max(deepest_m, -m.end_gap_m);
+      ASSERT_TRUE(m.point);
+      EXPECT_GT(std::abs(static_cast<double>(m.point->m_normalWorldOnB.z())), 0.999) << i;
+    }
+    EXPECT_NEAR(deepest_m, depth_m, 2e-6) << i;
+  }
+}
+
+// The share that is free ends before the corner meets the face, and not much before.
+TEST(PairCheck, TheFreeShareEndsWhereACornerMeetsTheFace) {
+  search::Random random(2);
+  for (int i = 0; i < 40; ++i) {
+    const double gap_m = random.uniform(20e-6, 100e-6), way_m = random.uniform(150e-6, 400e-6);
+    BoxAbovePlate scene(random.rotation(), gap_m);
+    ASSERT_TRUE(scene.check);
+    const double share = scene.freeShareTo(scene.moved({0, 0, -way_m}));
+    EXPECT_LE(share, gap_m / way_m * (1 + 1e-6)) << i;
+    EXPECT_GE(share, 0.9 * gap_m / way_m - 1e-6 / way_m) << i;
+  }
+}
+
+// Until the narrow phase has looked at the pair again, there is nothing to check.
+TEST(PairCheck, IsSilentAfterTheEndOfItsStep) {
+  BoxAbovePlate scene(Mat3::Identity(), 50e-6);
+  ASSERT_TRUE(scene.check);
+  scene.check->endStep();
+  EXPECT_TRUE(scene.missedAt(scene.moved({0, 0, -300e-6})).empty());
+}
+
+}  // namespace
+}  // namespace vps::bullet
