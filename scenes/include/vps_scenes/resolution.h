@@ -12,8 +12,8 @@ namespace vps::scenes::inline v0 {
 /// um deep, with 2 mm it gets 129 um deep into the rim of its hole.
 inline constexpr double kVoxelsAcross = 8;
 
-/// The models of one part take no more than those of a cube of this size with the voxels and points of the
-/// preset `normal` [m]. Larger parts get larger voxels: the exact surfaces measure contacts, so that the
+/// The voxmap of one part takes no more memory than that of a cube of this size with the voxels of the preset
+/// `normal` [m]. Larger parts get larger voxels: the exact surfaces measure contacts, so that the
 /// voxels need only find them.
 inline constexpr double kLargestUsual_m = 0.15;
 
@@ -21,7 +21,7 @@ inline constexpr double kLargestUsual_m = 0.15;
 /// for all sizes:
 /// - a voxel is that of the preset `normal`, or an eighth of the least size that has to be resolved
 ///   (meeting sizes: parts across, bores and slots, and the walls that fit into them), if that is less,
-/// - but not so small that the part's models take more than those of a cube of kLargestUsual_m.
+/// - but not so small that the part's voxmap takes more than that of a cube of kLargestUsual_m.
 /// In a scene without steps each part that moves has its own voxel, and the fixed parts have one together. In
 /// a scene with steps all parts have the same, as fitFidelity() chooses it. Depends on the scene alone. Notes
 /// the choice in Scene::resolution_choice, also where memory does not allow what has to be resolved.
