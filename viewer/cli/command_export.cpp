@@ -55,7 +55,10 @@ Source sourceFrom(const ExportArguments& given) {
   const std::string extension = lowerExtension(given.source);
   if (extension == ".toml") {
     const scenes::Scene scene = sceneFrom(given.source, given.fidelity, given.out, {.folder = given.cache});
-    Source source = {partOf(scene, given).part.mesh, {}, scene.fidelity};
+    const scenes::ScenePart& part = partOf(scene, given);
+    Source source = {part.part.mesh, {}, scene.fidelity};
+    if (part.voxel_m > 0) source.fidelity.voxel_m = part.voxel_m;
+    if (part.spacing_m > 0) source.fidelity.spacing_m = part.spacing_m;
     requireUsable(source.mesh, given.source, given.part);
     return source;
   }
@@ -63,9 +66,9 @@ Source sourceFrom(const ExportArguments& given) {
   if (extension == ".vdb") {
     return {{}, loadLevelSet(given.source), {}};
   }
-  return {readMesh(given.source, unitFrom(given.units)),
-          {},
-          fidelityFrom(given.fidelity, fidelityPreset("normal"))};
+  Mesh mesh = readMesh(given.source, unitFrom(given.units));
+  const Fidelity fidelity = fidelityFrom(given.fidelity, mesh, nullptr);
+  return {std::move(mesh), {}, fidelity};
 }
 
 VoxMap mapFrom(const Source& source, const ExportArguments& given, const Progress& progress) {

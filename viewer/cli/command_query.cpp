@@ -251,31 +251,37 @@ void runPoses(const std::vector<Pose>& poses, std::size_t repeats, const OneWay&
 int runQuery(const QueryArguments& given) {
   if (!(given.stiffness_N_per_m3 >= 0) || !std::isfinite(given.stiffness_N_per_m3))
     throw LoadError("", "", "--stiffness must be a finite number of at least 0");
-  Fidelity fidelity = fidelityFrom(given.fidelity, fidelityPreset("normal"));
+  const Fidelity usual = fidelityFrom(given.fidelity, fidelityPreset("normal"));
   const std::vector<Pose> poses = readPoses(given);
   OutputFile json(given.json, {given.mesh_a, given.mesh_b, given.poses});
   ProgressBar bar;
 
   Operands operands = loadOperands(given);
-  const bool is_two_sided = isTwoSided(operands, fidelity, given);
-  if (operands.mesh_a) warnIfThin(*operands.mesh_a, fidelity.voxel_m, given.mesh_a);
-  if (is_two_sided) warnIfThin(*operands.mesh_b, fidelity.voxel_m, given.mesh_b);
+  const bool is_two_sided = isTwoSided(operands, usual, given);
+  const auto fidelityOf = [&](const std::optional<Mesh>& mesh, const std::optional<Mesh>& other) {
+    return mesh ? fidelityFrom(given.fidelity, *mesh, other ? &*other : nullptr) : usual;
+  };
+  Fidelity of_a = fidelityOf(operands.mesh_a, operands.mesh_b);
+  Fidelity of_b = fidelityOf(operands.mesh_b, operands.mesh_a);
+  if (operands.mesh_a) warnIfThin(*operands.mesh_a, of_a.voxel_m, given.mesh_a);
+  if (is_two_sided) warnIfThin(*operands.mesh_b, of_b.voxel_m, given.mesh_b);
   if (operands.mesh_b && given.fidelity.points > 0)
-    fidelity.spacing_m = spacingFor(*operands.mesh_b, given.fidelity.points);
+    of_a.spacing_m = of_b.spacing_m = spacingFor(*operands.mesh_b, given.fidelity.points);
   const std::optional<VoxMapCache> cache = cacheFrom(given.cache);
-  const auto mapFor = [&](const Mesh& mesh, const std::string& file) {
+  const auto mapFor = [&](const Mesh& mesh, const Fidelity& fidelity, const std::string& file) {
     return mapOf(mesh, {.voxel_m = fidelity.voxel_m}, file, cache, bar.progress());
   };
-  const auto shellFor = [&](const Mesh& mesh, const std::string& file) {
+  const auto shellFor = [&](const Mesh& mesh, const Fidelity& fidelity, const std::string& file) {
     return buildPointShell(Solid(mesh, file), {.spacing_m = fidelity.spacing_m}, file, bar.progress());
   };
   const auto begun = Clock::now();
   const OneWay b_in_a = {
-      operands.map_a ? std::move(*operands.map_a) : mapFor(*operands.mesh_a, given.mesh_a),
-      operands.shell_b ? std::move(*operands.shell_b) : shellFor(*operands.mesh_b, given.mesh_b)};
+      operands.map_a ? std::move(*operands.map_a) : mapFor(*operands.mesh_a, of_a, given.mesh_a),
+      operands.shell_b ? std::move(*operands.shell_b) : shellFor(*operands.mesh_b, of_b, given.mesh_b)};
   std::optional<OneWay> a_in_b;
   if (is_two_sided)
-    a_in_b = OneWay{mapFor(*operands.mesh_b, given.mesh_b), shellFor(*operands.mesh_a, given.mesh_a)};
+    a_in_b =
+        OneWay{mapFor(*operands.mesh_b, of_b, given.mesh_b), shellFor(*operands.mesh_a, of_a, given.mesh_a)};
 
   QueryAnswer answer;
   answer.build_wall_s = secondsSince(begun);
@@ -287,7 +293,7 @@ int runQuery(const QueryArguments& given) {
   answer.memory_bytes = b_in_a.memoryBytes() + (a_in_b ? a_in_b->memoryBytes() : 0);
   const std::size_t repeats = given.repeats > 0 ? static_cast<std::size_t>(given.repeats)
                                                 : std::max<std::size_t>(1, 100 / poses.size());
-  runPoses(poses, repeats, b_in_a, a_in_b, {fidelity.gradient, given.stiffness_N_per_m3}, bar.progress(),
+  runPoses(poses, repeats, b_in_a, a_in_b, {usual.gradient, given.stiffness_N_per_m3}, bar.progress(),
            answer);
   throwIfStopped();
   json.write(toJson(answer));

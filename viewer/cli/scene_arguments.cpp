@@ -13,6 +13,7 @@
 #include "vps/load_error.h"
 #include "vps_scenes/fidelity_choice.h"
 #include "vps_scenes/import.h"
+#include "vps_scenes/resolution.h"
 
 namespace vps::viewer::inline v0 {
 
@@ -52,6 +53,21 @@ Fidelity fidelityFrom(const FidelityArguments& given, Fidelity base) {
     base.sides = given.sides == "one" ? Sides::One : Sides::Both;
   }
   return base;
+}
+
+Fidelity fidelityFrom(const FidelityArguments& given, const Mesh& mesh, const Mesh* other) {
+  Fidelity base = fidelityPreset("normal");
+  if (given.preset.empty() && given.voxel.empty()) {
+    scenes::Scene scene;
+    scene.chooses_voxel = true;
+    for (const Mesh* part : {&mesh, other})
+      if (part != nullptr) scene.parts.emplace_back().part.mesh = *part;
+    scenes::chooseResolution(scene);
+    const double points_per_voxel = base.spacing_m / base.voxel_m;
+    if (const double voxel_m = scene.parts[0].voxel_m; voxel_m > 0)
+      base.spacing_m = points_per_voxel * (base.voxel_m = voxel_m);
+  }
+  return fidelityFrom(given, base);
 }
 
 void addSceneArgument(CLI::App& command, std::string& scene) {
@@ -177,7 +193,11 @@ scenes::Scene sceneFrom(const std::string& file, const FidelityArguments& given,
   if (!scene.device.data.empty()) read.push_back(scene.device.data);
   for (const std::string& output : outputs) requireNotRead(output, read);
   for (const std::string& warning : scene.warnings) warn(warning);
+  // What the command line gives is not chosen.
+  if (!given.preset.empty() || !given.voxel.empty()) scene.chooses_voxel = scene.chooses_spacing = false;
+  if (!given.spacing.empty()) scene.chooses_spacing = false;
   scenes::resolveFidelity(scene);
+  if (!scene.resolution_choice.empty()) say("chosen by the sizes of the parts: " + scene.resolution_choice);
   const Fidelity own = scene.fidelity;
   scene.fidelity = fidelityFrom(given, own);
   if (scene.fidelity_choice.empty()) return scene;

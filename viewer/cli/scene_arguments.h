@@ -32,6 +32,10 @@ void addFidelityOptions(CLI::App& command, FidelityArguments& given);
 void addPointsOption(CLI::App& command, FidelityArguments& given);
 /// `base` with what was given on the command line. Throws LoadError naming the option.
 Fidelity fidelityFrom(const FidelityArguments& given, Fidelity base);
+/// The same for a mesh that no scene states a fidelity for: where neither preset nor voxel is given, by its
+/// size and that of what it meets (vps_scenes/resolution.h).
+/// @param other  may be null
+Fidelity fidelityFrom(const FidelityArguments& given, const Mesh& mesh, const Mesh* other);
 
 /// Where models and the parts of CAD files are kept between runs.
 struct CacheArguments {

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "voxelise/map_estimate.h"
 
+#include <cmath>
 #include <cstdio>
+#include <limits>
 
 #include "voxmap/map_limits.h"
 
@@ -22,6 +24,28 @@ double estimatedBytes(double area_m2, const Vec3& size_m, double h, double band_
 
 double expectedMapBytes(const Mesh& mesh, const VoxMapSettings& settings) {
   return estimatedBytes(area(mesh), bounds(mesh).size(), settings.voxel_m, settings.band_voxels);
+}
+
+double largestMapBytes() {
+  return kMemoryLimit_bytes;
+}
+
+double fittingVoxel_m(const Mesh& mesh, const VoxMapSettings& settings, double most_bytes) {
+  const double area_m2 = area(mesh);
+  const Vec3 size_m = bounds(mesh).size();
+  const auto fits = [&](double h) {
+    return estimatedBytes(area_m2, size_m, h, settings.band_voxels) <= most_bytes;
+  };
+  double low = settings.voxel_m, high = low;
+  if (!(low > 0) || !std::isfinite(area_m2) || fits(low)) return low;
+  constexpr double kCoarsest_m = 1e30;  // as requireSettings()
+  while (!fits(high *= 2))
+    if (high > kCoarsest_m) return std::numeric_limits<double>::infinity();
+  for (low = high / 2; high > 1.001 * low;) {
+    const double middle = std::sqrt(low * high);
+    (fits(middle) ? high : low) = middle;
+  }
+  return high;
 }
 
 void requireFits(const Mesh& mesh, const VoxMapSettings& settings, const std::string& part) {

@@ -41,9 +41,10 @@ struct ChoiceOptions {
 VPS_SCENES_API FidelityChoice chooseFidelity(Scene& scene, FidelityWish wish,
                                              const ChoiceOptions& options = {});
 
-/// Chooses the fidelity of a scene whose file says `auto`, and notes the choice in it; otherwise does
-/// nothing. Every scene passes here once, between loadScene() and its use. Throws LoadError with file and
-/// line if the wish cannot be met, and as chooseFidelity().
+/// Chooses the fidelity of a scene whose file says `auto`, and notes the choice in it; otherwise voxel and
+/// spacing where the file leaves them open (chooseResolution()). Every scene passes here once, between
+/// loadScene() and its use. Throws LoadError with file and line if the wish cannot be met, and as
+/// chooseFidelity().
 VPS_SCENES_API void resolveFidelity(Scene& scene, const ChoiceOptions& options = {});
 
 /// The fidelity as lines of a scene file.

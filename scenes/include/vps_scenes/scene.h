@@ -73,6 +73,9 @@ struct ScenePart {
   std::string fastener;                ///< what it is taken for by its shape, in words: "nut M8"; empty: none
   std::optional<double> deflection_m;  ///< see ImportedPart, as rounding_m
   double rounding_m = 0;
+  /// Of its own models, where chooseResolution() (resolution.h) found others right than the scene's; 0: those
+  /// of Scene::fidelity. A part in the fixed field has the scene's.
+  double voxel_m = 0, spacing_m = 0;
   /// Built from `part` at the scene's fidelity; null until then, and for a part that is only drawn.
   std::shared_ptr<const PartModel> model;
   bool is_cropped = false;  ///< `model` covers only the regions of the model plan that it was built for
@@ -166,6 +169,10 @@ struct Scene {
   /// without that no run takes the scene.
   std::optional<FidelityWish> fidelity_wish;
   std::string fidelity_choice;  ///< what was chosen for `auto`, in words; empty: nothing was
+  /// The file states no voxel, or no spacing: resolveFidelity() may choose others than those of the preset
+  /// `normal`, by the sizes of the parts (resolution.h).
+  bool chooses_voxel = false, chooses_spacing = false;
+  std::string resolution_choice;  ///< what was chosen by the parts' sizes, in words; empty: the preset serves
   CouplingWishes coupling;
   DeviceSettings device;
   OperatorSettings hand;

@@ -215,7 +215,10 @@ static_assert(coversAllMembers<CouplingWishes>(kCouplingFields));
 /// `[fidelity]`: the settings themselves.
 inline constexpr auto kFidelityFields = std::make_tuple(
     field("voxel", &Fidelity::voxel_m, "grid step of the voxmaps",
-          {.quantity = Quantity::Length, .range = kPositive}),
+          {.quantity = Quantity::Length,
+           .range = kPositive,
+           .default_text = "of the preset; without one, `\"0.25mm\"`, or other ones for parts and fits below "
+                           "2 mm and for large parts, see below"}),
     field(
         "spacing", &Fidelity::spacing_m, "distance between the points of a pointshell",
         {.quantity = Quantity::Length,

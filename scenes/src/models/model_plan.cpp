@@ -192,7 +192,8 @@ class Planner {
       const ScenePart& part = scene_.parts[i];
       const std::size_t equal = known.findOrAdd(i, part.part.mesh, [&](std::size_t j) {
         const ScenePart& other = scene_.parts[j];
-        return part.press_fit_m == other.press_fit_m && isEqualGeometry(part.part.mesh, other.part.mesh);
+        return part.press_fit_m == other.press_fit_m && part.voxel_m == other.voxel_m &&
+               part.spacing_m == other.spacing_m && isEqualGeometry(part.part.mesh, other.part.mesh);
       });
       if (equal != EqualMeshes::kNone) share(i, equal);
     }

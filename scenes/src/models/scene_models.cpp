@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cmath>
 #include <cstdio>
 #include <exception>
 #include <mutex>
@@ -18,6 +19,7 @@
 #include "core/machine_memory.h"
 #include "core/wall_clock.h"
 #include "models/shrunk_mesh.h"
+#include "vps/box.h"
 #include "vps/load_error.h"
 #include "vps/map_estimate.h"
 #include "vps/model_estimate.h"
@@ -37,6 +39,13 @@ PointShellSettings pointShellSettings(const Fidelity& fidelity) {
   PointShellSettings settings;
   settings.spacing_m = fidelity.spacing_m;
   return settings;
+}
+
+Fidelity fidelityOf(const ScenePart& part, const Fidelity& fidelity) {
+  Fidelity own = fidelity;
+  if (part.voxel_m > 0) own.voxel_m = part.voxel_m;
+  if (part.spacing_m > 0) own.spacing_m = part.spacing_m;
+  return own;
 }
 
 namespace {
@@ -119,37 +128,71 @@ BuildTimes buildPart(ScenePart& scene_part, const PartModelPlan& planned, const 
   return times;
 }
 
+bool isBuilt(const ModelPlan& plan, std::size_t part) {
+  const PartModelPlan& planned = plan.parts[part];
+  return !planned.same_as && (planned.has_map || planned.has_shell || isCooked(plan, part));
+}
+
+/// Refuses a map that would not be built, before the others are: some take minutes. O(triangles).
+void requireMaps(const Scene& scene, const ModelPlan& plan) {
+  for (std::size_t i = 0; i < scene.parts.size(); ++i) {
+    const ScenePart& part = scene.parts[i];
+    if (!isBuilt(plan, i) || (part.model && part.model->map)) continue;
+    const VoxMapSettings voxels = voxMapSettings(fidelityOf(part, scene.fidelity));
+    const double bytes = expectedMapBytes(part.part.mesh, voxels);
+    if (bytes <= largestMapBytes()) continue;
+    const Vec3 size_mm = 1e3 * bounds(part.part.mesh).size();
+    constexpr double kGiB = 1024.0 * 1024 * 1024, kRoundedUp = 1.05;
+    std::array<char, 300> words{};
+    std::snprintf(
+        words.data(), words.size(),
+        "of %.4g x %.4g x %.4g mm needs about %.3g GiB of memory for voxels of %.3g mm, and a voxmap "
+        "takes at most %.0f; set larger ones in the scene file: [fidelity] voxel = \"%.2gmm\"",
+        size_mm.x(), size_mm.y(), size_mm.z(), bytes / kGiB, 1e3 * voxels.voxel_m, largestMapBytes() / kGiB,
+        1e3 * kRoundedUp * fittingVoxel_m(part.part.mesh, voxels, largestMapBytes()));
+    throw LoadError(part.file, part.part.name, words.data());
+  }
+}
+
 /// Refuses a plan whose models need more memory than there is, since the system would end the program without
 /// a word. The exact estimate is only made where the areas alone do not tell. O(triangles).
 void requireMemory(const Scene& scene, const ModelPlan& plan, const ModelOptions& options) {
   const double most_bytes = options.memory_bytes > 0 ? options.memory_bytes : machineMemoryBytes();
   if (!(most_bytes > 0)) return;
-  const VoxMapSettings voxels = voxMapSettings(scene.fidelity);
-  const PointShellSettings points = pointShellSettings(scene.fidelity);
   const auto sum = [&](auto bytesOf) {
     double bytes = 0;
-    for (std::size_t i = 0; i < scene.parts.size(); ++i)
-      if (!plan.parts[i].same_as && (plan.parts[i].has_map || plan.parts[i].has_shell))
-        bytes += bytesOf(scene.parts[i].part.mesh, plan.parts[i]);
+    for (std::size_t i = 0; i < scene.parts.size(); ++i) {
+      const Fidelity fidelity = fidelityOf(scene.parts[i], scene.fidelity);
+      if (isBuilt(plan, i))
+        bytes += bytesOf(scene.parts[i].part.mesh, plan.parts[i], voxMapSettings(fidelity),
+                         pointShellSettings(fidelity));
+    }
     return bytes;
   };
   constexpr double kDensest = 2;  // points for each square of the spacing; more where edges are near
-  const double at_most = sum([&](const Mesh& mesh, const PartModelPlan&) {
+  const double at_most = sum([&](const Mesh& mesh, const PartModelPlan&, const VoxMapSettings& voxels,
+                                 const PointShellSettings& points) {
     return expectedMapBytes(mesh, voxels) +
            ModelEstimate::shellBytes(kDensest * area(mesh) / (points.spacing_m * points.spacing_m));
   });
   if (at_most <= most_bytes) return;
-  const double about = sum([&](const Mesh& mesh, const PartModelPlan& planned) {
+  // A part that is only in the fixed field has its map there.
+  const bool is_simulation = plan.purpose == ModelPurpose::Simulate;
+  const double about = sum([&](const Mesh& mesh, const PartModelPlan& planned, const VoxMapSettings& voxels,
+                               const PointShellSettings& points) {
     const ModelEstimate estimate(mesh, voxels, points);
-    return (planned.has_map ? estimate.mapBytes(planned.kept_P) : 0) +
+    return (planned.has_map || is_simulation ? estimate.mapBytes(planned.kept_P) : 0) +
            (planned.has_shell ? ModelEstimate::shellBytes(estimate.pointCount(planned.kept_P)) : 0);
   });
   if (about <= most_bytes) return;
-  std::array<char, 200> words{};
-  std::snprintf(words.data(), words.size(),
-                "its models need about %.3g MB of memory, and there are %.3g MB; choose larger voxels and "
-                "spacing, or leave parts out that nothing touches (vps explain lists what each part needs)",
-                1e-6 * about, 1e-6 * most_bytes);
+  const double larger_mm = 1e3 * scene.fidelity.voxel_m * std::sqrt(1.1 * about / most_bytes);
+  std::array<char, 300> words{};
+  std::snprintf(
+      words.data(), words.size(),
+      "its models need about %.3g MB of memory, and there are %.3g MB; choose larger voxels and "
+      "spacing ([fidelity] voxel = \"%.2gmm\"), or leave parts out that nothing touches (vps explain "
+      "lists what each part needs)",
+      1e-6 * about, 1e-6 * most_bytes, larger_mm);
   throw LoadError(scene.file, "", words.data());
 }
 
@@ -233,7 +276,7 @@ class ModelBuilder {
     options.warn = [&](const std::string& text) { warnings_[i].push_back(text); };
     PartModel model = startingModel(part, nullptr);
     if (isModelled(i) && !model.solid) model.solid = solidOf(part, *model.mesh);
-    times_[i] = buildPart(part, plan_.parts[i], scene_.fidelity, options, model);
+    times_[i] = buildPart(part, plan_.parts[i], fidelityOf(part, scene_.fidelity), options, model);
     part.model = std::make_shared<const PartModel>(std::move(model));
   }
 
@@ -259,6 +302,11 @@ class ModelBuilder {
 
 }  // namespace
 
+void requireModelsFit(const Scene& scene, const ModelPlan& plan, const ModelOptions& options) {
+  requireMaps(scene, plan);
+  requireMemory(scene, plan, options);
+}
+
 std::vector<BuildTimes> buildModels(Scene& scene, const ModelPlan& plan, const ModelOptions& options) {
   std::vector<std::size_t> parts(scene.parts.size());
   std::iota(parts.begin(), parts.end(), 0U);
@@ -267,7 +315,7 @@ std::vector<BuildTimes> buildModels(Scene& scene, const ModelPlan& plan, const M
 
 std::vector<BuildTimes> buildModels(Scene& scene, const ModelPlan& plan, std::vector<std::size_t> parts,
                                     const ModelOptions& options) {
-  requireMemory(scene, plan, options);
+  requireModelsFit(scene, plan, options);
   if (scene.fidelity_wish)
     throw LoadError(scene.file, "",
                     "asks for an automatic fidelity that was not chosen yet; call resolveFidelity() first");

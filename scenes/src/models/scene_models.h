@@ -11,11 +11,18 @@ namespace vps::scenes::inline v0 {
 
 VoxMapSettings voxMapSettings(const Fidelity& fidelity);
 PointShellSettings pointShellSettings(const Fidelity& fidelity);
+/// The scene's fidelity, with the voxel and spacing of this part's own models.
+Fidelity fidelityOf(const ScenePart& part, const Fidelity& fidelity);
 
 /// Time to build one part's own models; 0 where it has none or shares them.
 struct BuildTimes {
   double map_wall_s = 0, shell_wall_s = 0;
 };
+
+/// Throws LoadError, with the voxel that would do, if a voxmap of the plan takes more than one may, or all
+/// models more than the options or this machine have. By the areas of the meshes; builds nothing.
+/// O(triangles).
+void requireModelsFit(const Scene& scene, const ModelPlan& plan, const ModelOptions& options);
 
 /// Gives every part of the plan its ScenePart::model. A voxmap, pointshell or surface that a part has already
 /// is kept, unless it is cropped. Parts are built in parallel, with the same bits on any number of cores;

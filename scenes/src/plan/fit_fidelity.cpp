@@ -1,26 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Voxels of a planned scene, by the size of its parts and the memory that they take.
+// Voxels of a scene with steps, by the sizes of its parts and fits and the memory that they take.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <string>
 
 #include "core/length_words.h"
+#include "models/meeting_sizes.h"
 #include "scene/usual_spacing.h"
+#include "vps/box.h"
 #include "vps_scenes/explain.h"
 #include "vps_scenes/plan.h"
+#include "vps_scenes/resolution.h"
 
 namespace vps::scenes::inline v0 {
 
 namespace {
 
-/// Voxels across the least size of a part. Measured with a peg of 8 mm (scenes/peg_in_hole): with 1 mm it is
-/// brought home less than 1 um deep, with 2 mm it gets 129 um deep into the rim of its hole.
-constexpr double kLeastAcross = 8;
-constexpr double kFinest_m = 30e-6;           // assumed: parts of 0.25 mm
 constexpr double kStep = 1.4142135623730951;  // ratio of voxel sizes: half of the memory
 constexpr double kFineShare = 0.2;            // of the memory, for voxels finer than the preset's
-constexpr double kCoarsest_m = 16e-3;         // assumed: parts of 130 mm and more
 
 double modelBytes(const Scene& scene) {
   return static_cast<double>(estimate(scene, ModelPurpose::Assemble, {}).cost.most.bytes);
@@ -44,6 +43,33 @@ double coarsen(Scene& scene, double most_bytes, double coarsest_m) {
   return bytes;
 }
 
+/// The largest voxel that can help: the largest part is kVoxelsAcross of them.
+double coarsest_m(const Scene& scene) {
+  double size_m = 0;
+  for (const ScenePart& part : scene.parts)
+    size_m = std::max(size_m, bounds(part.part.mesh).size().maxCoeff());
+  return std::max(scene.fidelity.voxel_m, size_m / kVoxelsAcross);
+}
+
+/// The least size that has to be resolved.
+struct LeastSize {
+  double size_m = std::numeric_limits<double>::infinity();
+  std::string name;   ///< of the part, quoted
+  std::string words;  ///< of a fit: "the gap in 'gear' of 100 um"; empty: the part's size across
+};
+
+LeastSize leastSize(const Scene& scene) {
+  LeastSize least;
+  for (const SceneStep& step : scene.steps) {
+    const Part& part = scene.parts[step.part].part;
+    if (const double size_m = across_m(part.mesh); size_m < least.size_m) least = {size_m, part.name, ""};
+  }
+  const double most_m = std::min(least.size_m, kVoxelsAcross * Fidelity().voxel_m);
+  for (const MeetingSize& fit : meetingSizes(scene, most_m))
+    if (fit.least_m < least.size_m) least = {fit.least_m, "", fit.words};
+  return least;
+}
+
 std::string megabytes(double bytes) {
   char text[32];
   std::snprintf(text, sizeof text, "%.0f MB", 1e-6 * bytes);
@@ -59,8 +85,8 @@ std::string fitFidelity(Scene& scene, double most_bytes) {
                         (spacing_m == usual.spacing_m || spacing_m == usualSpacing_m(scene));
   if (!is_usual || scene.steps.empty()) return "";
   setVoxel(scene, usual.voxel_m);
-  const SmallestPart smallest = smallestMoved(scene);
-  const double wanted_m = std::min(usual.voxel_m, std::max(kFinest_m, smallest.across_m / kLeastAcross));
+  const LeastSize least = leastSize(scene);
+  const double wanted_m = std::min(usual.voxel_m, least.size_m / kVoxelsAcross);
   double bytes = 0;
   if (wanted_m < usual.voxel_m) {
     setVoxel(scene, wanted_m);
@@ -68,22 +94,23 @@ std::string fitFidelity(Scene& scene, double most_bytes) {
   }
   if (scene.fidelity.voxel_m == usual.voxel_m) bytes = modelBytes(scene);
   const double usual_bytes = bytes;
-  if (bytes > most_bytes) coarsen(scene, most_bytes, kCoarsest_m);
+  if (bytes > most_bytes) coarsen(scene, most_bytes, coarsest_m(scene));
 
   const double voxel_m = scene.fidelity.voxel_m;
-  const bool is_missed = smallest.across_m < kLeastAcross * voxel_m * (1 - 1e-9);
+  const bool is_missed = least.size_m < kVoxelsAcross * voxel_m * (1 - 1e-9);
   if (voxel_m == usual.voxel_m && !is_missed) return "";
   std::string words = "voxels of " + lengthInWords(voxel_m);
   if (voxel_m > usual.voxel_m)
     words +=
         ": with " + lengthInWords(usual.voxel_m) + " the models would take some " + megabytes(usual_bytes);
+  const std::string size = lengthInWords(least.size_m);
   if (is_missed)
-    words +=
-        "; '" + smallest.name + "', " + lengthInWords(smallest.across_m) +
-        " across, is less than eight of them, so that its contacts may be missed, and smaller ones would "
-        "take much memory: plan it in a scene of its own, or set [fidelity]";
+    words += "; " + (least.words.empty() ? "'" + least.name + "', " + size + " across," : least.words) +
+             " is less than eight of them, so that its contacts may be missed, and smaller ones would "
+             "take much memory: plan it in a scene of its own, or set [fidelity]";
   else if (voxel_m < usual.voxel_m)
-    words += ", since '" + smallest.name + "' is " + lengthInWords(smallest.across_m) + " across";
+    words += ", since " +
+             (least.words.empty() ? "'" + least.name + "' is " + size + " across" : least.words + " is met");
   return words;
 }
 

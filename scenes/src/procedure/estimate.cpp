@@ -49,8 +49,9 @@ class Estimator {
     tbb::parallel_for(std::size_t{0}, scene_.parts.size(), [&](std::size_t i) {
       const PartModelPlan& planned = out_.plan.parts[i];
       if (planned.same_as || !(isModelled(planned) || isCooked(i))) return;
-      estimates_[i].emplace(scene_.parts[i].part.mesh, voxMapSettings(scene_.fidelity),
-                            pointShellSettings(scene_.fidelity), extent);
+      const Fidelity fidelity = fidelityOf(scene_.parts[i], scene_.fidelity);
+      estimates_[i].emplace(scene_.parts[i].part.mesh, voxMapSettings(fidelity), pointShellSettings(fidelity),
+                            extent);
     });
     for (std::size_t i = 0; i < scene_.parts.size(); ++i) addPart(i);
     own_ = out_.cost.most;

@@ -170,11 +170,11 @@ void fields(Archive& archive, T& x) {
 }
 template <typename Archive, Either<ScenePart> T>
 void fields(Archive& archive, T& x) {
-  // The model is built again; velocities and tolerances are for simulate() and study(), which are not
-  // recorded.
+  // The model is built again; velocities, tolerances and own resolutions are for simulate() and study(),
+  // which are not recorded.
   [[maybe_unused]] auto& [part, X_WP, V_WP_W, is_fixed, allow_overlap, is_scenery, press_fit_m,
                           youngs_modulus_Pa, poissons_ratio, tolerance, file, members, fastener, deflection_m,
-                          rounding_m, model, is_cropped] = x;
+                          rounding_m, voxel_m, spacing_m, model, is_cropped] = x;
   archive(part, X_WP, is_fixed, allow_overlap, file);
 }
 template <typename Archive, Either<SceneStep> T>
@@ -194,8 +194,8 @@ void fields(Archive& archive, T& x) {
 /// A wish is not archived: a recorded scene has its fidelity.
 template <typename Archive, Either<Scene> T>
 void fields(Archive& archive, T& x) {
-  [[maybe_unused]] auto& [file, name, warnings, parts, steps, gravity, fidelity, wish, choice, coupling,
-                          device, hand, record, release_s] = x;
+  [[maybe_unused]] auto& [file, name, warnings, parts, steps, gravity, fidelity, wish, choice, chooses_voxel,
+                          chooses_spacing, resolution, coupling, device, hand, record, release_s] = x;
   archive(file, name, parts, steps, gravity);
   settings(archive, fidelity, kFidelityFields);
   settings(archive, coupling, kCouplingFields);

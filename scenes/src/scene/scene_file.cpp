@@ -362,6 +362,7 @@ class SceneReader {
     scene_.fidelity = fidelityPreset("normal");
     if (top_.has("fidelity")) return top_.isText("fidelity") ? readNamedFidelity() : readFidelityTable();
     scene_.fidelity.spacing_m = usualSpacing_m(scene_);
+    scene_.chooses_voxel = scene_.chooses_spacing = true;
   }
 
   void readFidelityTable() {
@@ -371,6 +372,9 @@ class SceneReader {
     if (keys.word("preset", presets, index)) scene_.fidelity = fidelityPreset(presets[index]);
     readFields(keys, scene_.fidelity, kFidelityFields);
     readFidelityWish(keys);
+    const bool is_open = !keys.has("preset") && !scene_.fidelity_wish;
+    scene_.chooses_voxel = is_open && !keys.has("voxel");
+    scene_.chooses_spacing = is_open && !keys.has("spacing");
     if (!keys.has("preset") && !keys.has("spacing")) scene_.fidelity.spacing_m = usualSpacing_m(scene_);
   }
 

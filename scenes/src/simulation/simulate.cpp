@@ -9,6 +9,7 @@
 #include "models/scene_models.h"
 #include "simulation/body_overlaps.h"
 #include "simulation/physics_clock.h"
+#include "simulation/scaled_scene.h"
 #include "simulation/simulation.h"
 #include "vps/load_error.h"
 
@@ -72,13 +73,7 @@ class StepPacer {
   std::optional<SimulateResult::RealTime> real_time_;
 };
 
-}  // namespace
-
-SimulateResult simulate(Scene& scene, double seconds, const SimulateOptions& options) {
-  if (!(seconds > 0) || !std::isfinite(seconds))
-    throw LoadError(scene.file, "", "the time to simulate must be a positive number of seconds");
-  if (options.judge_every > 0 && options.is_real_time)
-    throw LoadError(scene.file, "", "overlap is measured between the steps, which real time has no time for");
+SimulateResult simulateAsDrawn(Scene& scene, double seconds, const SimulateOptions& options) {
   const double begun_s = wallSeconds();
   const ModelPlan plan = makeModelPlan(scene, ModelPurpose::Simulate, options.models_everything);
   buildModels(scene, plan, options);
@@ -145,6 +140,25 @@ SimulateResult simulate(Scene& scene, double seconds, const SimulateOptions& opt
   result.modelled = modelledCost(scene);
   simulation.addField(result.modelled);
   return result;
+}
+
+}  // namespace
+
+SimulateResult simulate(Scene& scene, double seconds, const SimulateOptions& options) {
+  if (!(seconds > 0) || !std::isfinite(seconds))
+    throw LoadError(scene.file, "", "the time to simulate must be a positive number of seconds");
+  if (options.judge_every > 0 && options.is_real_time)
+    throw LoadError(scene.file, "", "overlap is measured between the steps, which real time has no time for");
+  const double factor = simulationScale(scene);
+  if (factor == 1) return simulateAsDrawn(scene, seconds, options);
+  requireModelsFit(scene, makeModelPlan(scene, ModelPurpose::Simulate, options.models_everything), options);
+  Scene larger = scaledScene(scene, factor);
+  SimulateOptions larger_options = options;
+  if (options.trace)
+    larger_options.trace = [&](double time_s, const std::vector<BodyState>& bodies, double max_depth_m) {
+      options.trace(time_s, scaledBack(bodies, factor), max_depth_m / factor);
+    };
+  return scaledBack(simulateAsDrawn(larger, seconds, larger_options), factor);
 }
 
 }  // namespace vps::scenes::inline v0

@@ -15,6 +15,7 @@
 #include "vps/load_error.h"
 #include "vps/map_estimate.h"
 #include "vps/solid.h"
+#include "vps_scenes/resolution.h"
 #include "vps_scenes/settings_fields.h"
 
 namespace vps::scenes::inline v0 {
@@ -239,7 +240,7 @@ FidelityChoice chooseFidelity(Scene& scene, FidelityWish wish, const ChoiceOptio
 }
 
 void resolveFidelity(Scene& scene, const ChoiceOptions& options) {
-  if (!scene.fidelity_wish) return;
+  if (!scene.fidelity_wish) return chooseResolution(scene);
   const FidelityWish wish = *scene.fidelity_wish;
   const FidelityChoice choice = chooseFidelity(scene, wish, options);
   if (!choice.is_met)

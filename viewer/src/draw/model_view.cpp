@@ -22,10 +22,12 @@ ModelView::ModelView(const scenes::Scene& scene, const ShownModels& shown, Rende
     const Solid solid(part.part.mesh, part.part.name);
     meshes_.push_back(std::make_unique<TintedMesh>());
     TintedMesh& model = *meshes_.back();
+    const double voxel_m = part.voxel_m > 0 ? part.voxel_m : scene.fidelity.voxel_m;
+    const double spacing_m = part.spacing_m > 0 ? part.spacing_m : scene.fidelity.spacing_m;
     if (has_points)
-      model.mesh = pointMesh(buildPointShell(solid, {.spacing_m = scene.fidelity.spacing_m}, part.part.name));
+      model.mesh = pointMesh(buildPointShell(solid, {.spacing_m = spacing_m}, part.part.name));
     else
-      model = voxelMesh(buildVoxMap(solid, {.voxel_m = scene.fidelity.voxel_m}, part.part.name));
+      model = voxelMesh(buildVoxMap(solid, {.voxel_m = voxel_m}, part.part.name));
     drawn[i].mesh = &model.mesh;
     if (!model.tints.empty()) drawn[i].vertex_colors = &model.tints;
   }

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Voxel and spacing by the sizes of the parts and of what they meet; memory known before anything is built.
+#include "vps_scenes/resolution.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "models/meeting_sizes.h"
+#include "scenes/scene_part.h"
+#include "simulation/scaled_scene.h"
+#include "vps/load_error.h"
+#include "vps_scenes/explain.h"
+#include "vps_scenes/simulate.h"
+
+namespace vps::scenes {
+namespace {
+
+constexpr double kMm = 1e-3;
+
+/// A cube on a plate, of a scene that states no resolution.
+Scene cubeOnPlate(double cube_m) {
+  Scene scene;
+  scene.file = scene.name = "cube";
+  scene.parts = {scenePart("plate", makeBox(Vec3(3, 3, 1) * cube_m), {0, 0, -0.5 * cube_m}, true),
+                 scenePart("cube", makeBox(Vec3::Constant(cube_m)), {0, 0, 0.5 * cube_m}, false)};
+  scene.chooses_voxel = scene.chooses_spacing = true;
+  return scene;
+}
+
+double voxelOf(const Scene& scene, std::size_t part) {
+  return scene.parts[part].voxel_m > 0 ? scene.parts[part].voxel_m : scene.fidelity.voxel_m;
+}
+
+TEST(Resolution, OrdinaryPartsHaveThePresetsVoxelToTheLastBit) {
+  for (const double cube_m : {2.0 * kMm, 3 * kMm, 20 * kMm, 60 * kMm}) {
+    Scene scene = cubeOnPlate(cube_m);
+    chooseResolution(scene);
+    for (const std::size_t i : {0u, 1u}) EXPECT_EQ(voxelOf(scene, i), Fidelity().voxel_m) << cube_m;
+    EXPECT_EQ(scene.resolution_choice, "");
+  }
+  Scene largest = cubeOnPlate(kLargestUsual_m);
+  chooseResolution(largest);
+  EXPECT_EQ(voxelOf(largest, 1), Fidelity().voxel_m);
+}
+
+TEST(Resolution, AtBothEdgesTheVoxelIsContinuous) {
+  for (const double edge_m : {2 * kMm, kLargestUsual_m}) {
+    Scene below = cubeOnPlate(edge_m * (1 - 1e-3)), above = cubeOnPlate(edge_m * (1 + 1e-3));
+    chooseResolution(below);
+    chooseResolution(above);
+    EXPECT_NEAR(voxelOf(below, 1) / voxelOf(above, 1), 1, 3e-3) << edge_m;
+    EXPECT_LT(voxelOf(below, 1), voxelOf(above, 1)) << edge_m;
+  }
+}
+
+TEST(Resolution, ASmallPartIsEightVoxelsAcrossAndItsLargePlateIsNot) {
+  Scene scene = cubeOnPlate(0.1 * kMm);
+  scene.parts[0].part.mesh = makeBox({0.1, 0.1, 0.02});
+  chooseResolution(scene);
+  EXPECT_DOUBLE_EQ(voxelOf(scene, 1), 0.1 * kMm / kVoxelsAcross);
+  EXPECT_EQ(voxelOf(scene, 0), Fidelity().voxel_m);
+}
+
+TEST(Resolution, TheModelsOfALargePartTakeNoMoreThanThoseOfACubeOf150Mm) {
+  Scene usual = cubeOnPlate(kLargestUsual_m);
+  usual.parts.erase(usual.parts.begin());
+  const auto bytesOf = [](Scene& scene) {
+    chooseResolution(scene);
+    return static_cast<double>(estimate(scene, ModelPurpose::Simulate, {}).cost.most.bytes);
+  };
+  const double usual_bytes = bytesOf(usual);
+  for (const double size_m : {0.5, 2.0, 20.0}) {
+    Scene scene = cubeOnPlate(size_m);
+    EXPECT_LT(bytesOf(scene), 2.3 * usual_bytes) << size_m;  // both parts
+    EXPECT_NE(scene.resolution_choice.find("for 'cube'"), std::string::npos) << scene.resolution_choice;
+  }
+}
+
+TEST(Resolution, WhatIsStatedIsKept) {
+  Scene scene = cubeOnPlate(0.1 * kMm);
+  scene.chooses_voxel = false;
+  chooseResolution(scene);
+  EXPECT_EQ(voxelOf(scene, 1), Fidelity().voxel_m);
+  scene.chooses_voxel = true;
+  scene.chooses_spacing = false;
+  chooseResolution(scene);
+  EXPECT_LT(voxelOf(scene, 1), Fidelity().voxel_m);
+  EXPECT_EQ(scene.parts[1].spacing_m, 0);
+}
+
+/// A block with a bore of this diameter, and a pin of 20 mm whose pivot is `pivot_m` thick.
+Scene pivotInBore(double bore_m, double pivot_m) {
+  Scene scene;
+  scene.file = scene.name = "pivot";
+  Mesh pin = makeCylinder(2.5 * kMm, 20 * kMm, 48);
+  append(pin, transformed(makeCylinder(0.5 * pivot_m, 4 * kMm, 48), Pose::translation({0, 0, 13 * kMm})));
+  scene.parts = {scenePart("wheel", makeTube(5 * kMm, 0.5 * bore_m, 3 * kMm, 48), {0, 0, 13 * kMm}, true),
+                 scenePart("pin", pin, {0, 0, 0}, false)};
+  scene.chooses_voxel = scene.chooses_spacing = true;
+  return scene;
+}
+
+TEST(Resolution, ABoreAndWhatFitsIntoItAreResolvedAndOneIntoWhichNothingFitsIsNot) {
+  Scene fits = pivotInBore(0.11 * kMm, 0.1 * kMm);
+  chooseResolution(fits);
+  EXPECT_NEAR(voxelOf(fits, 0), 0.11 * kMm / kVoxelsAcross, 0.01 * 0.11 * kMm / kVoxelsAcross);
+  EXPECT_NEAR(voxelOf(fits, 1), 0.1 * kMm / kVoxelsAcross, 0.01 * 0.1 * kMm / kVoxelsAcross);
+  EXPECT_NE(fits.resolution_choice.find("14"), std::string::npos) << fits.resolution_choice;
+  Scene misses = pivotInBore(0.1 * kMm, 0.5 * kMm);
+  chooseResolution(misses);
+  EXPECT_EQ(voxelOf(misses, 0), Fidelity().voxel_m);
+  EXPECT_EQ(voxelOf(misses, 1), Fidelity().voxel_m);
+}
+
+TEST(WallSizes, AreThoseOfTubesAndBoxes) {
+  const WallSizes tube = wallSizes(makeTube(1.5 * kMm, 0.5 * kMm, 5 * kMm, 64), 2 * kMm);
+  EXPECT_NEAR(tube.thinnest_m, 1 * kMm, 0.01 * kMm);
+  ASSERT_FALSE(tube.gaps_m.empty());
+  EXPECT_NEAR(tube.gaps_m.front(), 1 * kMm, 0.01 * kMm);
+  const WallSizes plate = wallSizes(makeBox({20 * kMm, 20 * kMm, 1.5 * kMm}), 2 * kMm);
+  EXPECT_DOUBLE_EQ(plate.thinnest_m, 1.5 * kMm);
+  EXPECT_TRUE(plate.gaps_m.empty());
+}
+
+TEST(WallSizes, BadMeshesHaveNone) {
+  EXPECT_TRUE(wallSizes(Mesh(), 1).gaps_m.empty());
+  Mesh damaged = makeBox({1, 1, 1});
+  damaged.vertices[0].x() = std::nan("");
+  EXPECT_TRUE(std::isinf(wallSizes(damaged, 2).thinnest_m));
+}
+
+TEST(Resolution, ATooLargeModelIsRefusedBeforeAnyIsBuiltWithTheKeyToSet) {
+  Scene scene = cubeOnPlate(0.8);
+  scene.parts[0].part.mesh = makeBox({0.1, 0.1, 0.02});
+  scene.chooses_voxel = false;  // stated: 0.25 mm
+  SimulateOptions options;
+  options.progress = [](std::string_view doing, double) { ADD_FAILURE() << doing; };
+  try {
+    simulate(scene, 0.01, options);
+    FAIL() << "was not refused";
+  } catch (const LoadError& error) {
+    const std::string words = error.what();
+    for (const char* part : {"800 x 800 x 800 mm", "GiB", "[fidelity] voxel = \"0."})
+      EXPECT_NE(words.find(part), std::string::npos) << words;
+    // What is named fits.
+    double voxel_mm = 0;
+    ASSERT_EQ(std::sscanf(words.c_str() + words.find("voxel = \"") + 9, "%lf", &voxel_mm), 1) << words;
+    scene.fidelity.voxel_m = voxel_mm * kMm;
+  }
+  EXPECT_GT(scene.fidelity.voxel_m, Fidelity().voxel_m);
+  EXPECT_LT(scene.fidelity.voxel_m, 2 * Fidelity().voxel_m);
+}
+
+// All numbers of the two runs differ by powers of two.
+TEST(ScaledScene, ASmallSceneHasTheAnswersOfTheSimilarOneToTheLastBit) {
+  const auto run = [](double factor) {
+    Scene scene = cubeOnPlate(0.8 * kMm * factor);
+    scene.parts[1].X_WP.p.z() += 0.1 * kMm * factor;
+    scene.parts[1].V_WP_W.v = Vec3(0.02, 0, 0) * factor;
+    scene.gravity_W *= factor;
+    chooseResolution(scene);
+    return simulate(scene, 0.05, {});
+  };
+  const SimulateResult one = run(1), small = run(0x1p-6);
+  EXPECT_EQ(Vec3(small.bodies[0].X_WP.p * 0x1p6), one.bodies[0].X_WP.p);
+  EXPECT_EQ(small.bodies[0].X_WP.R, one.bodies[0].X_WP.R);
+  EXPECT_EQ(small.kinetic_energy_J * 0x1p30, one.kinetic_energy_J);
+}
+
+TEST(ScaledScene, PartsOfAMillimetreAreSimulatedAsTheyAre) {
+  EXPECT_EQ(simulationScale(cubeOnPlate(1 * kMm)), 1);
+  EXPECT_EQ(simulationScale(cubeOnPlate(20)), 1);
+  EXPECT_EQ(simulationScale(cubeOnPlate(0.99 * kMm)), 2);
+  EXPECT_EQ(simulationScale(cubeOnPlate(20e-6)), 64);
+}
+
+}  // namespace
+}  // namespace vps::scenes
