@@ -1,10 +1,104 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// D: free rotation, fast rotation.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
 #include "family.h"
+#include "impact_world.h"
+#include "search/random.h"
+#include "vps_bullet/convert.h"
 
 namespace vps::families {
+namespace {
+
+using search::Random;
+
+/// A box in free space that nothing touches: its angular momentum and its energy stay.
+struct Spin {
+  Vec3 size_m = Vec3(20e-3, 30e-3, 60e-3);
+  Vec3 w_B = Vec3(0.02, 20, 0.01);  // near the middle axis, about which no body turns stably
+  double dt_s = 1e-3, duration_s = 10;
+  Mat3 R = Mat3::Identity();
+  dynamics::Mode mode = dynamics::Mode::Constraint;
+
+  explicit Spin(int member) {
+    if (member == 0) return;
+    Random random(0xd0 + static_cast<std::uint64_t>(member));
+    if (member >= 4) {
+      constexpr std::array<double, 4> kSizes_m{10e-3, 20e-3, 30e-3, 60e-3};
+      for (int i = 0; i < 3; ++i) size_m[i] = kSizes_m[static_cast<std::size_t>(random.index(4))];
+      R = random.rotation();
+      constexpr std::array<double, 5> kSteps_s{0.25e-3, 0.5e-3, 1e-3, 2e-3, 4e-3};
+      dt_s = kSteps_s[static_cast<std::size_t>(random.index(5))];
+      if (random.chance(0.3)) mode = dynamics::Mode::Penalty;
+    }
+    // Up to Bullet's limit of an eighth of a turn in a step.
+    const double speed_rad_s = member < 4 ? 20 : random.logUniform(1, 0.7 / dt_s);
+    const Vec3 axis =
+        member % 2 ? Vec3(Vec3::Unit(random.index(3)) + 1e-3 * random.direction()) : random.direction();
+    w_B = speed_rad_s * axis.normalized();
+    duration_s = 10000 * dt_s;
+  }
+  /// Greatest change of energy or angular momentum, relative.
+  [[nodiscard]] double error() const {
+    ImpactWorld scene(mode);
+    scene.world.setGravity(Vec3::Zero());
+    const dynamics::Placed body = scene.add(boxPart(size_m), Pose(R, Vec3::Zero()), 0, 0);
+    setVelocity(body, Vec3::Zero(), R * w_B);
+    const double start_J = scene.energy_J(false);
+    const Vec3 start_Nms = scene.momentum().angular;
+    double worst = 0;
+    const int steps = static_cast<int>(std::lround(duration_s / dt_s));
+    for (int k = 0; k < steps; ++k) {
+      scene.world.step(1, dt_s);
+      worst = std::max({worst, std::abs(scene.energy_J(false) / start_J - 1),
+                        (scene.momentum().angular - start_Nms).norm() / start_Nms.norm()});
+    }
+    return worst;
+  }
+  [[nodiscard]] std::string words() const {
+    char text[200];
+    std::snprintf(text, sizeof text, "box %.0fx%.0fx%.0f mm, %.3g %.3g %.3g rad/s, %.2g ms, %s",
+                  1e3 * size_m.x(), 1e3 * size_m.y(), 1e3 * size_m.z(), w_B.x(), w_B.y(), w_B.z(), 1e3 * dt_s,
+                  dynamics::nameOf(mode));
+    return text;
+  }
+};
+
+/// A disc or plate that spins about its own axis turns by w t: no phase error by the step.
+double angleError(int member) {
+  Random random(0xd1 + static_cast<std::uint64_t>(member));
+  ImpactWorld scene;
+  scene.world.setGravity(Vec3::Zero());
+  const int axis = random.index(3);
+  const Mat3 R = random.rotation();
+  const dynamics::Placed body = scene.add(boxPart(Vec3(20e-3, 30e-3, 60e-3)), Pose(R, Vec3::Zero()), 0, 0);
+  const double dt_s = 1e-3, speed_rad_s = member == 0 ? 20 : random.logUniform(1, 700);
+  // The body's principal axes are those of the box.
+  const Mat3 R_WB = bullet::fromBt(body.body->getWorldTransform().getBasis());
+  const Vec3 w_W = speed_rad_s * Vec3(R_WB.col(axis));
+  setVelocity(body, Vec3::Zero(), w_W);
+  const int steps = 20;
+  scene.world.step(steps, dt_s);
+  const Mat3 wanted = rotationFromVector(w_W * (steps * dt_s)) * R_WB;
+  const Mat3 turned = bullet::fromBt(body.body->getWorldTransform().getBasis());
+  return rotationVector(turned * wanted.transpose()).norm() / (speed_rad_s * steps * dt_s);
+}
+
+std::vector<Family> freeRotationFamilies() {
+  return {
+      {"D_torque_free", "change of energy or angular momentum, relative", 1e-4, 60, 6,
+       [](int i) { return Spin(i).error(); }, [](int i) { return Spin(i).words(); }},
+      {"D_principal_axis", "error of the angle turned, relative", 1e-9, 50, 5, angleError},
+  };
+}
+
+}  // namespace
 
 std::vector<Family> rotationFamilies() {
-  return {};
+  return freeRotationFamilies();
 }
 
 }  // namespace vps::families

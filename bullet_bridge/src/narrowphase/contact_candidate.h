@@ -30,6 +30,7 @@ struct Candidate {
   double impulse_Ns = 0;             ///< its normal impulse in the last step
   double rest_m = 0;                 ///< gap at which sharp features rest
   bool is_flush = false;             ///< curved surfaces of both parts lie flush around it
+  bool bounces = false;              ///< restitution acts on it in this step
   bool was_contact = false;          ///< was given to the solver in the last step
   std::uint32_t id = 0;              ///< of the point in its shell; at a crossing body 0's edge
   std::uint32_t crossed = 0;         ///< at a crossing 1 + body 1's edge; 0: a shell point

@@ -86,6 +86,7 @@ btManifoldPoint makePoint(const Candidate& c, const btCollisionObjectWrapper* co
   point.m_partId1 = c.side == 0 ? c.owner : 0;
   setMaterial(point, bodies[0]->getCollisionObject(), bodies[1]->getCollisionObject());
   if (c.rest_m > 0) setRestGap(point, c.rest_m);
+  if (c.bounces) setBounces(point);
   setFrictionDirections(point, c.n_W, motion.velocityAt(c.p_W));
   // Bullet's solver scales the directions by the bodies' factors, but only those that it chooses itself.
   if (hasAnisotropicFriction(*bodies[0]->getCollisionObject(), *bodies[1]->getCollisionObject()))

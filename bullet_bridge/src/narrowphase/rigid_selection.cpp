@@ -27,14 +27,15 @@ bool reuseSelection(const PairView& pair, PairState& state) {
   return true;
 }
 
-void prepareRestitution(std::vector<Candidate>& candidates, const RelativeMotion& motion,
-                        const btCollisionObject* object0, const btCollisionObject* object1) {
-  // The solver subtracts the gap from the rebound speed, which would suppress a bounce within the step. So a
-  // point that bounces does so at once: early by less than a step's travel, with the right energy.
+// Contacts that meet within the step. Bullet's own solver then lets the bodies bounce at once: early by less
+// than a step's travel, with the right speed. bullet::Solver solves for the gap, and has restitution.h.
+void markBounces(std::vector<Candidate>& candidates, const RelativeMotion& motion,
+                 const btCollisionObject* object0, const btCollisionObject* object1) {
+  constexpr double kThreshold_m_s = 0.2;  // btContactSolverInfo::m_restitutionVelocityThreshold
   if (!(btManifoldResult::calculateCombinedRestitution(object0, object1) > 0)) return;
   for (Candidate& c : candidates)
-    if (c.distance_m > 0 && c.predicted_m < 0 && c.predicted_m < c.distance_m - 0.2 * motion.dt_s)
-      c.distance_m = 0;
+    c.bounces =
+        c.distance_m > 0 && c.predicted_m < 0 && c.predicted_m < c.distance_m - kThreshold_m_s * motion.dt_s;
 }
 
 }  // namespace
@@ -51,8 +52,8 @@ void selectRigid(const PairView& pair, PairState& state) {
     storeSelection(state.contacts, pair, state.motion, state.selection);
   }
   markSharp(pair, context.settings, state.contacts);
-  prepareRestitution(state.contacts, state.motion, pair.wrapper[0]->getCollisionObject(),
-                     pair.wrapper[1]->getCollisionObject());
+  markBounces(state.contacts, state.motion, pair.wrapper[0]->getCollisionObject(),
+              pair.wrapper[1]->getCollisionObject());
 }
 
 }  // namespace vps::bullet::inline v0

@@ -7,8 +7,8 @@ namespace vps::bullet::inline v0 {
 
 namespace {
 
-// A bit of m_contactPointFlags far above Bullet's own.
-constexpr int kHasRestGap = 1 << 24;
+// Bits of m_contactPointFlags far above Bullet's own.
+constexpr int kHasRestGap = 1 << 24, kBounces = 1 << 28;
 constexpr int kIsSoft = BT_CONTACT_FLAG_HAS_CONTACT_CFM | BT_CONTACT_FLAG_CONTACT_STIFFNESS_DAMPING;
 
 }  // namespace
@@ -21,6 +21,16 @@ void setRestGap(btManifoldPoint& point, double rest_m) {
 
 double restGap_m(const btManifoldPoint& point) {
   return (point.m_contactPointFlags & kHasRestGap) != 0 ? point.m_contactCFM : 0;
+}
+
+void setBounces(btManifoldPoint& point) {
+  point.m_contactPointFlags |= kBounces;
+  point.m_distance1 = 0;
+}
+
+double solvedDistance_m(const btManifoldPoint& point) {
+  if ((point.m_contactPointFlags & kBounces) == 0) return point.getDistance();
+  return point.m_normalWorldOnB.dot(point.getPositionWorldOnA() - point.getPositionWorldOnB());
 }
 
 std::uint64_t keyOf(const btManifoldPoint& point) {

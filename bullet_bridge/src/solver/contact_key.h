@@ -22,6 +22,13 @@ void setRestGap(btManifoldPoint& point, double rest_m);
 /// 0: it has none.
 double restGap_m(const btManifoldPoint& point);
 
+/// Marks a contact at which the bodies will bounce within the step. Bullet's solver subtracts the gap from
+/// the speed of the rebound, which would suppress a bounce within the step; so it is given no gap. The two
+/// positions keep it.
+void setBounces(btManifoldPoint& point);
+/// The distance that bullet::Solver solves for: getDistance(), except where setBounces() removed it.
+double solvedDistance_m(const btManifoldPoint& point);
+
 /// Key of a contact that ManifoldWriter wrote: the side with the shell has the point's id as its index, the
 /// other -1; at a crossing each index is that body's edge.
 std::uint64_t keyOf(const btManifoldPoint& point);

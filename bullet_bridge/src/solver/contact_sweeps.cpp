@@ -3,7 +3,6 @@
 
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 #include <BulletDynamics/ConstraintSolver/btContactSolverInfo.h>
-#include <BulletDynamics/Dynamics/btRigidBody.h>
 
 #include <algorithm>
 #include <cmath>
@@ -13,6 +12,15 @@
 #include "vps_bullet/convert.h"
 
 namespace vps::bullet::inline v0 {
+namespace {
+
+// More than 1 would make energy. Bullet accepts any value, also one that is not a number.
+double restitutionOf(const btManifoldPoint& point) {
+  const double e = point.m_combinedRestitution;
+  return e > 0 ? std::min(e, 1.0) : 0.0;
+}
+
+}  // namespace
 
 Vec3 RigidContact::position_W() const {
   return 0.5 * fromBt(point->getPositionWorldOnA() + point->getPositionWorldOnB());
@@ -67,8 +75,9 @@ void ContactSweeps::add(btPersistentManifold& manifold, btManifoldPoint& point,
   c.point = &point;
   for (int i = 0; i < 2; ++i) c.object[i] = objects[i];
   c.mu = point.m_combinedFriction;
-  c.gap_m = point.getDistance() + info.m_linearSlop - restGap_m(point);
-  c.is_sharp = restGap_m(point) > 0 && point.getDistance() > 0;
+  const double distance_m = solvedDistance_m(point);
+  c.gap_m = distance_m + info.m_linearSlop - restGap_m(point);
+  c.is_sharp = restGap_m(point) > 0 && distance_m > 0;
   const Vec3 n = fromBt(point.m_normalWorldOnB);
   if (n.isZero(0)) return;  // a contact without a normal has no direction
   if (!(point.m_contactPointFlags & BT_CONTACT_FLAG_LATERAL_FRICTION_INITIALIZED)) {
@@ -80,16 +89,8 @@ void ContactSweeps::add(btPersistentManifold& manifold, btManifoldPoint& point,
   c.tangent[1] = makeRow(objects, point, fromBt(point.m_lateralFrictionDir2));
   if (c.normal.side[0].body < 0 && c.normal.side[1].body < 0) return;
 
-  if (c.gap_m > 0) {
-    c.target_m_s = -c.gap_m / info.m_timeStep;
-  } else {
-    double approach_m_s = -c.normal.fixed_velocity;
-    for (const ContactRow::Side& side : c.normal.side) {
-      if (side.body >= 0) approach_m_s -= side.J.dot(Island::fixedVelocity(body(side).rigid));
-    }
-    if (approach_m_s > info.m_restitutionVelocityThreshold)
-      c.target_m_s = point.m_combinedRestitution * approach_m_s;
-  }
+  c.restitution = restitutionOf(point);
+  if (c.gap_m > 0) c.target_m_s = -c.gap_m / info.m_timeStep;
   if (info.m_solverMode & SOLVER_USE_WARMSTARTING) {
     c.p_n = std::max<double>(0, point.m_appliedImpulse);
     c.p_t[0] = point.m_appliedImpulseLateral1;
@@ -123,8 +124,7 @@ void ContactSweeps::addMissed(std::span<const MissedContact> missed, const btCon
     c.gap_m = gap_m - m.rest_m;
     c.is_sharp = m.is_sharp;
     c.target_m_s = -(gap_m - m.kept_m) / dt_s;
-    if (m.point->m_combinedRestitution > 0 && -v > info.m_restitutionVelocityThreshold)
-      c.target_m_s = std::max(c.target_m_s, -m.point->m_combinedRestitution * v);
+    c.restitution = restitutionOf(*m.point);
     const auto same = std::find_if(contacts_.begin(), contacts_.end(),
                                    [&](const RigidContact& had) { return had.point == m.point; });
     if (same == contacts_.end()) {
@@ -324,20 +324,11 @@ void ContactSweeps::solvePush(const btContactSolverInfo& info, int sweep_limit) 
   }
 }
 
-void ContactSweeps::finish(double dt_s) {
+void ContactSweeps::finish() const {
   for (const RigidContact& c : contacts_) {
     c.point->m_appliedImpulse = toBt(c.p_n);
     c.point->m_appliedImpulseLateral1 = toBt(c.p_t[0]);
     c.point->m_appliedImpulseLateral2 = toBt(c.p_t[1]);
-  }
-  for (std::size_t i = 0; i < push_.size(); ++i) {
-    const Vec6& push = push_[i];
-    if (push.isZero(0)) continue;
-    btRigidBody& rigid = *island_.bodies[i].rigid;
-    btTransform moved;
-    btTransformUtil::integrateTransform(rigid.getWorldTransform(), toBt(Vec3(push.tail<3>())),
-                                        toBt(Vec3(push.head<3>())), toBt(dt_s), moved);
-    rigid.setWorldTransform(moved);
   }
 }
 

@@ -3,8 +3,9 @@
 //
 // Signorini's condition in the normal direction (gap at the end of the step >= 0), Coulomb's cone (not a
 // pyramid) in the tangent plane. A second, frictionless solve then removes overlap; its velocities move the
-// bodies once and are discarded, so that no energy is added (split impulse). Sources: Catto 2005 (sequential
-// impulses); Jourdan, Alart and Jean 1998 (Gauss-Seidel for frictional contact).
+// bodies once and are discarded, so that no energy is added (split impulse). Restitution is no part of
+// either: see restitution.h. Sources: Catto 2005 (sequential impulses); Jourdan, Alart and Jean 1998
+// (Gauss-Seidel for frictional contact).
 #pragma once
 
 #include <span>
@@ -43,6 +44,7 @@ struct RigidContact {
   double push_m_s = 0;    ///< least normal velocity of the push
   double gap_m = 0;
   double mu = 0;
+  double restitution = 0;                       ///< 0 to 1
   bool is_sharp = false;                        ///< of sharp features apart, whose gap no push may take
   double p_n = 0, p_t[2] = {0, 0}, p_push = 0;  ///< impulses [N s]
   double W_t_inverse[3] = {0, 0, 0};            ///< of the 2x2 tangent block: 11, 12, 22
@@ -79,8 +81,8 @@ class ContactSweeps {
   void scalePush(double share) {
     for (Vec6& push : push_) push *= share;
   }
-  /// Writes the impulses to the manifolds and moves the bodies by the push.
-  void finish(double dt_s);
+  /// Writes the impulses to the manifolds.
+  void finish() const;
 
  private:
   [[nodiscard]] IslandBody& body(const ContactRow::Side& side) const {

@@ -9,24 +9,39 @@
 #include <cmath>
 #include <limits>
 
+#include "solver/free_rotation.h"
 #include "vps_bullet/convert.h"
 
 namespace vps::bullet::inline v0 {
 namespace {
 
-// As initSolverBody and convertBodies of the stock solver: forces, torques, gyroscopic terms.
+// As initSolverBody of the stock solver.
 Vec6 externalVelocity(const btRigidBody& b, double dt_s) {
-  Vec3 w = fromBt(b.getInvInertiaTensorWorld() * b.getTotalTorque()) * dt_s;
-  const Vec3 v = fromBt(b.getTotalForce()) * b.getInvMass() * dt_s;
-  const int flags = b.getFlags();
-  const btScalar dt = toBt(dt_s);
-  if (flags & BT_ENABLE_GYROSCOPIC_FORCE_IMPLICIT_BODY)
-    w += fromBt(b.computeGyroscopicImpulseImplicit_Body(dt));
-  else if (flags & BT_ENABLE_GYROSCOPIC_FORCE_IMPLICIT_WORLD)
-    w += fromBt(b.computeGyroscopicImpulseImplicit_World(dt));
-  else if (flags & BT_ENABLE_GYROSCOPIC_FORCE_EXPLICIT)
-    w -= fromBt(b.getInvInertiaTensorWorld() * b.computeGyroscopicForceExplicit(100)) * dt_s;
-  return stacked(w, v);
+  return stacked(fromBt(b.getInvInertiaTensorWorld() * b.getTotalTorque()) * dt_s,
+                 fromBt(b.getTotalForce()) * b.getInvMass() * dt_s);
+}
+
+// Bullet has three approximations of one torque, of which each takes or makes energy; with any of them the
+// body turns as free bodies do.
+bool turnsFreely(const btRigidBody& b) {
+  constexpr int kAny = BT_ENABLE_GYROSCOPIC_FORCE_EXPLICIT | BT_ENABLE_GYROSCOPIC_FORCE_IMPLICIT_WORLD |
+                       BT_ENABLE_GYROSCOPIC_FORCE_IMPLICIT_BODY;
+  return (b.getFlags() & kAny) != 0;
+}
+
+Vec3 inertia_kg_m2(const btRigidBody& b) {
+  return fromBt(b.getInvInertiaDiagLocal()).cwiseInverse();
+}
+
+btTransform moved(const btTransform& X, const Vec6& by, double dt_s) {
+  btTransform to;
+  btTransformUtil::integrateTransform(X, toBt(Vec3(by.tail<3>())), toBt(Vec3(by.head<3>())), toBt(dt_s), to);
+  return to;
+}
+
+// Bullet sweeps these bodies from where the solver leaves them to where they end, and stops them on the way.
+bool isSweptByBullet(const btRigidBody& b) {
+  return b.getCcdSquareMotionThreshold() > 0 && b.getCollisionShape()->isConvex();
 }
 
 // Greatest distance of the body's points from its origin.
@@ -55,7 +70,17 @@ void Island::add(btRigidBody& rigid, double dt_s) {
   b.mass.bottomRightCorner<3, 3>() = Mat3::Identity() / rigid.getInvMass();
   b.reach_m = reach_m(rigid);
   b.u = velocityOf(rigid);
-  b.momentum = b.mass * (b.u + externalVelocity(rigid, dt_s));
+  b.start = b.u;
+  Vec6 undisturbed = b.u + externalVelocity(rigid, dt_s);
+  b.turns_freely = turnsFreely(rigid);
+  if (b.turns_freely) {
+    const Mat3 R = fromBt(rigid.getWorldTransform()).R;
+    const Vec3 w_B = R.transpose() * undisturbed.head<3>();
+    const Vec3 change_W = R * (meanAngularVelocity(inertia_kg_m2(rigid), w_B, dt_s) - w_B);
+    undisturbed.head<3>() += change_W;
+    b.rest_momentum_Nms = -(b.mass.topLeftCorner<3, 3>() * change_W);
+  }
+  b.momentum = b.mass * undisturbed;
   index_[&rigid] = static_cast<int>(bodies.size());
   bodies.push_back(b);
 }
@@ -70,23 +95,59 @@ Vec6 Island::fixedVelocity(const btCollisionObject* object) {
   return rigid ? velocityOf(*rigid) : Vec6(Vec6::Zero());
 }
 
+btTransform Island::pushed(std::size_t i, std::span<const Vec6> push, double dt_s) const {
+  const btTransform& X_WB = bodies[i].rigid->getWorldTransform();
+  return push.empty() || push[i].isZero(0) ? X_WB : moved(X_WB, push[i], dt_s);
+}
+
+btTransform Island::endTransform(std::size_t i, std::span<const Vec6> push, double dt_s) const {
+  return moved(pushed(i, push, dt_s), bodies[i].u, dt_s);
+}
+
 Pose Island::endPose(const btCollisionObject* object, std::span<const Vec6> push, double dt_s) const {
-  btTransform X_WB = object->getWorldTransform();
-  const auto move = [&](const Vec6& by) {
-    btTransform moved;
-    btTransformUtil::integrateTransform(X_WB, toBt(Vec3(by.tail<3>())), toBt(Vec3(by.head<3>())), toBt(dt_s),
-                                        moved);
-    X_WB = moved;
-  };
   const int index = indexOf(object);
-  if (index < 0) {
-    if (const Vec6 v = fixedVelocity(object); !v.isZero(0)) move(v);
-    return fromBt(X_WB);
+  if (index >= 0) return fromBt(endTransform(static_cast<std::size_t>(index), push, dt_s));
+  const Vec6 v = fixedVelocity(object);
+  return fromBt(v.isZero(0) ? object->getWorldTransform() : moved(object->getWorldTransform(), v, dt_s));
+}
+
+void Island::readEnds(std::span<const Vec6> push, double dt_s, std::vector<BodyEnd>& ends) const {
+  ends.clear();
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const IslandBody& b = bodies[i];
+    BodyEnd end;
+    end.X_WB = fromBt(endTransform(i, push, dt_s));
+    const Mat3& R = end.X_WB.R;
+    const Vec3 inertia = inertia_kg_m2(*b.rigid);
+    end.mass = b.mass;
+    end.mass.topLeftCorner<3, 3>() = R * inertia.asDiagonal() * R.transpose();
+    end.inverse_mass.topLeftCorner<3, 3>() = R * inertia.cwiseInverse().asDiagonal() * R.transpose();
+    end.inverse_mass.bottomRightCorner<3, 3>() = Mat3::Identity() * double(b.rigid->getInvMass());
+    end.v = b.u;
+    // The end velocity w1 of the momentum that u and the rest have: I1 w1 = I0 w + rest.
+    const Mat3 turned = b.mass.topLeftCorner<3, 3>() - end.mass.topLeftCorner<3, 3>();
+    if (b.turns_freely)
+      end.v.head<3>() +=
+          end.inverse_mass.topLeftCorner<3, 3>() * (turned * b.u.head<3>() + b.rest_momentum_Nms);
+    if (!end.v.allFinite()) end.v = b.u;
+    ends.push_back(end);
   }
-  const auto i = static_cast<std::size_t>(index);
-  if (!push.empty() && !push[i].isZero(0)) move(push[i]);
-  move(bodies[i].u);
-  return fromBt(X_WB);
+}
+
+void Island::finish(std::span<const Vec6> push, double dt_s, std::span<const BodyEnd> ends) const {
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    btRigidBody& rigid = *bodies[i].rigid;
+    const Vec6 &u = bodies[i].u, &v = ends[i].v;
+    rigid.setAngularVelocity(toBt(Vec3(v.head<3>())));
+    rigid.setLinearVelocity(toBt(Vec3(v.tail<3>())));
+    btTransform start = pushed(i, push, dt_s);
+    const btTransform end = endTransform(i, push, dt_s);
+    if (u.tail<3>() != v.tail<3>() && !isSweptByBullet(rigid))
+      start.setOrigin(end.getOrigin() - rigid.getLinearVelocity() * toBt(dt_s));
+    if (u.head<3>() != v.head<3>())
+      start.setBasis(moved(btTransform::getIdentity(), v, dt_s).getBasis().transpose() * end.getBasis());
+    rigid.setWorldTransform(start);
+  }
 }
 
 double Island::topSpeed(std::span<const Vec6> twists) const {
@@ -102,13 +163,6 @@ double Island::topSpeed(std::span<const Vec6> twists) const {
 void Island::readVelocities(std::vector<Vec6>& u) const {
   u.clear();
   for (const IslandBody& b : bodies) u.push_back(b.u);
-}
-
-void Island::writeVelocities() const {
-  for (const IslandBody& b : bodies) {
-    b.rigid->setAngularVelocity(toBt(Vec3(b.u.head<3>())));
-    b.rigid->setLinearVelocity(toBt(Vec3(b.u.tail<3>())));
-  }
 }
 
 }  // namespace vps::bullet::inline v0

@@ -1,5 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The bodies of one of Bullet's simulation islands during a step: mass, drive and velocity.
+// The bodies of one of Bullet's simulation islands during a step: mass, drive, displacement and velocity.
+//
+// A step has two outputs, which are different things:
+//
+//   the displacement  by the push (which removes overlap) and then by the velocity u of the solve, which
+//   depends on
+//                     no restitution; all checks of the end pose see this one;
+//   the end velocity  after rotation and restitution. It is u, except where a body's inertia turns with it (a
+//   free
+//                     body keeps its angular momentum, not its angular velocity) or where bodies bounce.
+//
+// Bullet has one velocity, by which it moves the body after the solver. Where the two differ, finish() puts
+// the body to the place from which Bullet's motion at the end velocity leads exactly to the pose of the
+// displacement.
 #pragma once
 
 #include <Eigen/Dense>
@@ -11,6 +24,7 @@
 
 class btCollisionObject;
 class btRigidBody;
+class btTransform;
 
 namespace vps::bullet::inline v0 {
 
@@ -27,13 +41,31 @@ inline Vec6 stacked(const Vec3& w, const Vec3& v) {
 /// effective_mass u = momentum + coupling_impulse + the contacts' impulses.
 struct IslandBody {
   btRigidBody* rigid = nullptr;
-  double reach_m = 0;  ///< greatest distance of its points from its centre
+  double reach_m = 0;         ///< greatest distance of its points from its centre
+  Vec6 start = Vec6::Zero();  ///< velocity before the step
   Mat6 mass = Mat6::Zero();
-  Vec6 momentum = Vec6::Zero();        ///< mass times the velocity with external forces
+  Vec6 momentum = Vec6::Zero();  ///< mass times the velocity of its displacement by external forces alone
+  bool turns_freely = true;      ///< keeps its angular momentum; false if Bullet's gyroscopic flags are off
+  Vec3 rest_momentum_Nms =
+      Vec3::Zero();  ///< its angular momentum with external torques, less that in `momentum`
   Mat6 effective_mass = Mat6::Zero();  ///< mass plus the implicit part of its couplings
   Mat6 effective_inverse = Mat6::Zero();
   Vec6 coupling_impulse = Vec6::Zero();  ///< constant part of its couplings
   Vec6 u = Vec6::Zero();                 ///< initially that of the last step
+
+  /// Change of momentum in the step, by all impulses.
+  [[nodiscard]] Vec6 gained() const {
+    Vec6 sum = mass * (u - start);
+    sum.head<3>() += rest_momentum_Nms;
+    return sum;
+  }
+};
+
+/// Where and how fast a body is at the end of the step, about its centre.
+struct BodyEnd {
+  Pose X_WB;
+  Mat6 mass = Mat6::Zero(), inverse_mass = Mat6::Zero();
+  Vec6 v = Vec6::Zero();  ///< the end velocity
 };
 
 /// Result of an iterative solution of the island.
@@ -54,7 +86,10 @@ class Island {
   /// kinematic body goes on at its velocity.
   /// @param push  velocities that change positions only, one for each body; may be empty
   [[nodiscard]] Pose endPose(const btCollisionObject* object, std::span<const Vec6> push, double dt_s) const;
-  void writeVelocities() const;
+  /// Each body's end pose, and the end velocity without restitution: the one that keeps the angular momentum.
+  void readEnds(std::span<const Vec6> push, double dt_s, std::vector<BodyEnd>& ends) const;
+  /// Writes the end velocities, and moves the bodies so that Bullet takes them to their end poses.
+  void finish(std::span<const Vec6> push, double dt_s, std::span<const BodyEnd> ends) const;
   void readVelocities(std::vector<Vec6>& u) const;
   /// Greatest speed of any point at these twists, one for each body [m/s]; infinite if one is not finite.
   [[nodiscard]] double topSpeed(std::span<const Vec6> twists) const;
@@ -62,6 +97,9 @@ class Island {
   std::vector<IslandBody> bodies;
 
  private:
+  [[nodiscard]] btTransform pushed(std::size_t i, std::span<const Vec6> push, double dt_s) const;
+  [[nodiscard]] btTransform endTransform(std::size_t i, std::span<const Vec6> push, double dt_s) const;
+
   std::unordered_map<const btCollisionObject*, int> index_;
 };
 

@@ -28,6 +28,7 @@
 #include "solver/island.h"
 #include "solver/penalty_contacts.h"
 #include "solver/penalty_newton.h"
+#include "solver/restitution.h"
 #include "solver/rigid_admm.h"
 #include "solver/rigid_newton.h"
 #include "solver/step_check.h"
@@ -51,6 +52,8 @@ struct Solver::Work {
   RigidNewton rigid_newton{island, joints};
   RigidAdmm rigid_admm{island};
   PenaltyNewton penalty{island, joints};
+  Restitution restitution{island, joints};
+  std::vector<BodyEnd> ends;
   bool is_penalty = false;
   std::vector<CouplingConstraint*> couplings;
   std::vector<ActiveCoupling> active_couplings;
@@ -400,22 +403,21 @@ btScalar Solver::solveGroup(btCollisionObject** bodies, int body_count, btPersis
     work.rigid.solvePush(info, settings_.iteration_limit);
     if (checked == kMaxChecks || !work.addMissed(info, checked == 0)) break;
   }
-  if (!work.is_penalty && !work.missed.empty() && work.shorten(dt_s)) ++shortened_steps_;
+  const bool is_shortened = !work.is_penalty && !work.missed.empty() && work.shorten(dt_s);
+  if (is_shortened) ++shortened_steps_;
   for (const Work::ActiveCoupling& h : work.active_couplings) {
     const Vec6 V_G = h.J * work.island.bodies[static_cast<std::size_t>(h.body)].u;
     h.coupling->setImpulse(h.law.c - h.law.D.cwiseProduct(V_G), dt_s);
   }
   for (StepCheck* check : work.checks) check->endStep();
-  if (work.is_penalty) {
-    work.penalty.finish();
-    work.joints.finish(dt_s);
-    writeImpulses(work.manifolds, dt_s);
-    work.island.writeVelocities();
-  } else {
-    work.joints.finish(dt_s);
-    work.island.writeVelocities();
-    work.rigid.finish(dt_s);
-  }
+  const std::span<const Vec6> push = work.is_penalty ? std::span<const Vec6>() : work.rigid.push();
+  work.island.readEnds(push, dt_s, work.ends);
+  // A step that was cut short did not end at its contacts.
+  if (!work.is_penalty && !is_shortened) work.restitution.apply(work.rigid.contacts(), work.ends, info);
+  if (work.is_penalty) work.penalty.finish();
+  work.joints.finish(dt_s);
+  work.is_penalty ? writeImpulses(work.manifolds, dt_s) : work.rigid.finish();
+  work.island.finish(push, dt_s, work.ends);
   return 0;
 }
 

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "solver/reflections.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vps::bullet::inline v0 {
+namespace {
+
+// Products of rows in one v(t), about 0.1 s. A body between two others of R times its mass takes pi sqrt(R)
+// impacts.
+constexpr std::size_t kMostWork = 10'000'000;
+// Shares of the fastest approach. A slower one is no impact of its own, but is stopped in the end: contacts
+// of flush faces that rest on each other would otherwise be reflected or not by the sign of their rounding,
+// half of a face with one impact and half with the next, and the bodies would turn. It costs at most the
+// square of this in energy.
+constexpr double kNoImpact = 1e-3;
+constexpr double kConverged = 1e-10;  // a projection leaves no more
+
+/// Iterations over the rows of one impact.
+class Impact {
+ public:
+  Impact(std::span<const ImpactRow> rows, const std::vector<Vec6>& before) : rows_(rows), projection_(rows) {
+    for (const ImpactRow& row : rows)
+      if (isContact(row)) fastest_m_s_ = std::max(fastest_m_s_, -row.velocity(before));
+  }
+
+  /// v(t) of the header.
+  [[nodiscard]] ImpactState at(double t, const std::vector<Vec6>& before) {
+    ImpactState state{before, std::vector<double>(rows_.size(), 0)};
+    for (const std::size_t start = projection_.work(); projection_.work() < start + kMostWork;) {
+      if (chooseInelastic(t)) project(1, state);
+      if (!addApproaching(t, state.v)) break;
+      project(2, state);
+    }
+    chosen_.assign(rows_.size(), 1);
+    project(1, state);
+    return state;
+  }
+
+ private:
+  static bool isContact(const ImpactRow& row) { return row.lower_Ns == 0 && row.upper_Ns > 0; }
+
+  bool chooseInelastic(double t) {
+    chosen_.assign(rows_.size(), 0);
+    for (std::size_t i = 0; i < rows_.size(); ++i) chosen_[i] = !(rows_[i].restitution > t);
+    return std::find(chosen_.begin(), chosen_.end(), 1) != chosen_.end();
+  }
+  bool addApproaching(double t, const std::vector<Vec6>& v) {
+    bool is_any = false;
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      if (!(rows_[i].restitution > t) || !(rows_[i].velocity(v) < -kNoImpact * fastest_m_s_)) continue;
+      chosen_[i] = is_any = true;
+    }
+    return is_any;
+  }
+  // Changes v by `times` what a projection onto the chosen rows does, or less where this would make energy,
+  // because the projection is not exact. The energy after t times its impulses has grown by t a + t^2 (b - a)
+  // / 2, with the impulses' work a at the velocities before them and b after them.
+  void project(double times, ImpactState& state) {
+    before_ = state.v;
+    projection_.solve(chosen_, kConverged * fastest_m_s_, state.v, lambda_);
+    double a = 0, b = 0;
+    for (std::size_t i = 0; i < rows_.size(); ++i)
+      if (lambda_[i] != 0) {
+        a += lambda_[i] * rows_[i].velocity(before_);
+        b += lambda_[i] * rows_[i].velocity(state.v);
+      }
+    const double t = b > a ? std::clamp(-2 * a / (b - a), 0.0, times) : 0;
+    for (std::size_t i = 0; i < state.v.size(); ++i) state.v[i] = before_[i] + t * (state.v[i] - before_[i]);
+    for (std::size_t i = 0; i < rows_.size(); ++i) state.p_Ns[i] += t * lambda_[i];
+  }
+  std::span<const ImpactRow> rows_;
+  ImpactProjection projection_;
+  double fastest_m_s_ = 0;
+  std::vector<std::uint8_t> chosen_;
+  std::vector<double> lambda_;
+  std::vector<Vec6> before_;
+};
+
+void addShare(double share, const ImpactState& part, ImpactState& sum) {
+  for (std::size_t i = 0; i < sum.v.size(); ++i) sum.v[i] += share * part.v[i];
+  for (std::size_t i = 0; i < sum.p_Ns.size(); ++i) sum.p_Ns[i] += share * part.p_Ns[i];
+}
+
+}  // namespace
+
+// v(t) is constant between two values of e: the mean is a sum over these intervals.
+ImpactState afterImpact(std::span<const ImpactRow> rows, const std::vector<Vec6>& before) {
+  std::vector<double> ends{1};
+  for (const ImpactRow& row : rows) ends.push_back(std::clamp(row.restitution, 0.0, 1.0));
+  std::sort(ends.begin(), ends.end());
+  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+  Impact impact(rows, before);
+  ImpactState mean{std::vector<Vec6>(before.size(), Vec6::Zero()), std::vector<double>(rows.size(), 0)};
+  double from = 0;
+  for (const double to : ends) {
+    if (to > from) addShare(to - from, impact.at(from, before), mean);
+    from = to;
+  }
+  return mean;
+}
+
+}  // namespace vps::bullet::inline v0

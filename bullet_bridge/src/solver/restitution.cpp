@@ -1,0 +1,296 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "solver/restitution.h"
+
+#include <BulletDynamics/ConstraintSolver/btContactSolverInfo.h>
+#include <BulletDynamics/Dynamics/btRigidBody.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "vps/friction.h"
+#include "vps_bullet/convert.h"
+
+namespace vps::bullet::inline v0 {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+template <typename TwistOf>
+double velocityOf(const ContactRow& row, const TwistOf& twistOf) {
+  double v = row.fixed_velocity;
+  for (const ContactRow::Side& side : row.side)
+    if (side.body >= 0) v += side.J.dot(twistOf(static_cast<std::size_t>(side.body)));
+  return v;
+}
+
+// Rows of joints with a bounded impulse, motors, are no part of an impact. False: such a row.
+bool boundsOf(const JointRow& row, double& lower_Ns, double& upper_Ns) {
+  constexpr double kAny_Ns = 1e15;  // Bullet's infinity is 1e18 or 1e30
+  const auto isBound = [](double limit_Ns) { return limit_Ns == 0 || std::abs(limit_Ns) >= kAny_Ns; };
+  if (!isBound(row.lower_Ns) || !isBound(row.upper_Ns)) return false;
+  lower_Ns = row.lower_Ns == 0 ? 0 : -kInfinity;
+  upper_Ns = row.upper_Ns == 0 ? 0 : kInfinity;
+  return lower_Ns < upper_Ns;
+}
+
+// True if its bodies touch there at the end of the step.
+bool touchesAtEnd(const RigidContact& c, double velocity_m_s, double dt_s) {
+  constexpr double kTouch_m = 1e-7;  // assumed: far above what the solver leaves open, far below what matters
+  return c.p_n > 0 || std::min(velocity_m_s - c.target_m_s, velocity_m_s + c.gap_m / dt_s) * dt_s <= kTouch_m;
+}
+
+}  // namespace
+
+bool Restitution::isImpact(const RigidContact& c, double threshold_m_s) const {
+  if (!(c.restitution > 0) || !(c.p_n > 0)) return false;
+  return velocityOf(c.normal, [&](std::size_t i) -> const Vec6& { return island_.bodies[i].start; }) <
+         -threshold_m_s;
+}
+
+int Restitution::rootOf(int body) const {
+  while (parent_[static_cast<std::size_t>(body)] != body) body = parent_[static_cast<std::size_t>(body)];
+  return body;
+}
+
+void Restitution::connect(std::span<RigidContact> contacts, double dt_s) {
+  parent_.resize(island_.bodies.size());
+  std::iota(parent_.begin(), parent_.end(), 0);
+  const auto join = [&](int a, int b) {
+    if (a < 0 || b < 0) return;
+    const int root_a = rootOf(a), root_b = rootOf(b);
+    parent_[static_cast<std::size_t>(std::max(root_a, root_b))] = std::min(root_a, root_b);
+  };
+  touches_.clear();
+  for (const RigidContact& c : contacts) {
+    const double v = velocityOf(c.normal, [&](std::size_t i) -> const Vec6& { return island_.bodies[i].u; });
+    touches_.push_back(touchesAtEnd(c, v, dt_s));
+    if (touches_.back()) join(c.normal.side[0].body, c.normal.side[1].body);
+  }
+  for (const JointRow& row : joints_.rows) {
+    double lower = 0, upper = 0;
+    if (boundsOf(row, lower, upper)) join(row.body[0], row.body[1]);
+  }
+}
+
+// Where a contact acts at the end of the step: it goes with the body that turns more easily.
+Vec3 Restitution::placeOf(const RigidContact& c, std::span<const BodyEnd> ends) const {
+  const Vec3 x_W = c.position_W();
+  Vec3 way_W = Vec3::Zero();
+  double sum = 0;
+  for (int i = 0; i < 2; ++i) {
+    const int body = c.normal.side[i].body;
+    if (body < 0) continue;
+    const BodyEnd& end = ends[static_cast<std::size_t>(body)];
+    const Pose X_WB = fromBt(c.object[i]->getWorldTransform());
+    const double ease = end.inverse_mass.topLeftCorner<3, 3>().trace();
+    way_W += ease * (end.X_WB * (X_WB.inverse() * x_W) - x_W);
+    sum += ease;
+  }
+  return sum > 0 ? Vec3(x_W + way_W / sum) : x_W;
+}
+
+ImpactRow Restitution::rowOf(const ContactRow& row, const Vec3& at_W, const Vec3& d_W,
+                             std::span<const BodyEnd> ends) const {
+  ImpactRow to;
+  to.fixed_velocity = row.fixed_velocity;
+  for (int i = 0; i < 2; ++i) {
+    const int body = row.side[i].body;
+    if (body < 0) continue;
+    const Vec3 d = i == 0 ? d_W : Vec3(-d_W);
+    to.body[i] = local_[static_cast<std::size_t>(body)];
+    to.J[i] = stacked((at_W - ends[static_cast<std::size_t>(body)].X_WB.p).cross(d), d);
+  }
+  to.prepare(group_.inverse_mass);
+  return to;
+}
+
+void Restitution::gather(int root, std::span<RigidContact> contacts, std::span<const BodyEnd> ends) {
+  group_ = {};
+  local_.assign(island_.bodies.size(), -1);
+  for (std::size_t i = 0; i < island_.bodies.size(); ++i) {
+    if (rootOf(static_cast<int>(i)) != root) continue;
+    local_[i] = static_cast<int>(group_.bodies.size());
+    group_.bodies.push_back(static_cast<int>(i));
+    group_.inverse_mass.push_back(ends[i].inverse_mass);
+    group_.solved.push_back(ends[i].v);
+  }
+  const auto isOfGroup = [&](int a, int b) {
+    const int body = std::max(a, b);
+    return body >= 0 && local_[static_cast<std::size_t>(body)] >= 0;
+  };
+  for (std::size_t k = 0; k < contacts.size(); ++k) {
+    RigidContact& c = contacts[k];
+    if (!touches_[k] || !isOfGroup(c.normal.side[0].body, c.normal.side[1].body)) continue;
+    const Vec3 at_W = placeOf(c, ends);
+    Contact contact{&c, {}, {c.p_t[0], c.p_t[1]}, 0};
+    for (int t = 0; t < 2; ++t) contact.tangent[t] = rowOf(c.tangent[t], at_W, c.tangent_W(t), ends);
+    contact.W_t = contact.tangent[0].W + contact.tangent[1].W;
+    group_.contacts.push_back(contact);
+    group_.rows.push_back(rowOf(c.normal, at_W, c.normal_W(), ends));
+    group_.rows.back().restitution = c.restitution;
+    group_.solved_Ns.push_back(c.p_n);
+  }
+  for (JointRow& joint : joints_.rows) {
+    ImpactRow row;
+    if (!isOfGroup(joint.body[0], joint.body[1]) || !boundsOf(joint, row.lower_Ns, row.upper_Ns)) continue;
+    row.fixed_velocity = joint.fixed_velocity - joint.target;
+    for (int i = 0; i < 2; ++i) {
+      row.J[i] = joint.J[i];
+      if (joint.body[i] >= 0) row.body[i] = local_[static_cast<std::size_t>(joint.body[i])];
+    }
+    row.prepare(group_.inverse_mass);
+    group_.joints.push_back(&joint);
+    group_.rows.push_back(row);
+    group_.solved_Ns.push_back(joint.impulse_Ns);
+  }
+}
+
+// The change of momentum in the step without the impulses of contacts and joints, which acted at the poses
+// before it.
+void Restitution::takeExternal() {
+  for (const int i : group_.bodies)
+    group_.impulse.push_back(island_.bodies[static_cast<std::size_t>(i)].gained());
+  std::vector<Vec6> external = group_.impulse;
+  const auto take = [&](int body, const Vec6& J, double impulse_Ns) {
+    if (body >= 0)
+      external[static_cast<std::size_t>(local_[static_cast<std::size_t>(body)])] -= impulse_Ns * J;
+  };
+  for (const Contact& c : group_.contacts)
+    for (int i = 0; i < 2; ++i) {
+      take(c.of->normal.side[i].body, c.of->normal.side[i].J, c.of->p_n);
+      for (int t = 0; t < 2; ++t)
+        take(c.of->tangent[t].side[i].body, c.of->tangent[t].side[i].J, c.of->p_t[t]);
+    }
+  for (const JointRow* joint : group_.joints)
+    for (int i = 0; i < 2; ++i) take(joint->body[i], joint->J[i], joint->impulse_Ns);
+  for (std::size_t i = 0; i < external.size(); ++i)
+    group_.external.push_back(group_.inverse_mass[i] * external[i]);
+}
+
+void Restitution::bounce() {
+  std::vector<Vec6> before = group_.solved;
+  for (std::size_t i = 0; i < before.size(); ++i) before[i] -= group_.external[i];
+  for (std::size_t k = 0; k < group_.rows.size(); ++k) group_.rows[k].apply(-group_.solved_Ns[k], before);
+  for (const Contact& c : group_.contacts)
+    for (int t = 0; t < 2; ++t) c.tangent[t].apply(-c.of->p_t[t], before);
+  ImpactState after = afterImpact(group_.rows, before);
+  group_.v = std::move(after.v);
+  group_.bounced_Ns = std::move(after.p_Ns);
+}
+
+void Restitution::settleFriction(Contact& c, double limit_Ns, double& most_m_s) {
+  if (!(c.W_t > 0)) return;
+  double p[2];
+  for (int t = 0; t < 2; ++t) p[t] = c.p_t[t] - c.tangent[t].velocity(group_.v) / c.W_t;
+  limitToCone(p[0], p[1], limit_Ns);
+  for (int t = 0; t < 2; ++t) {
+    const double change_Ns = p[t] - c.p_t[t];
+    if (change_Ns != 0) c.tangent[t].apply(change_Ns, group_.v);
+    most_m_s = std::max(most_m_s, std::abs(change_Ns) * c.W_t);
+    c.p_t[t] = p[t];
+  }
+}
+
+void Restitution::settle() {
+  constexpr int kMostSweeps = 400;
+  constexpr double kSettled_m_s = 1e-8;
+  Group& g = group_;
+  for (std::size_t i = 0; i < g.v.size(); ++i) g.v[i] += g.external[i];
+  // Without friction first: exactly, also where flush faces have dozens of contacts.
+  std::vector<double> p;
+  ImpactProjection(g.rows).solve(std::vector<std::uint8_t>(g.rows.size(), 1), kSettled_m_s, g.v, p);
+  for (std::size_t k = 0; k < g.contacts.size(); ++k) {
+    Contact& c = g.contacts[k];
+    limitToCone(c.p_t[0], c.p_t[1], c.of->mu * (p[k] + g.bounced_Ns[k]));
+    for (int t = 0; t < 2; ++t) c.tangent[t].apply(c.p_t[t], g.v);
+  }
+  for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
+    double most_m_s = 0;
+    for (std::size_t k = 0; k < p.size(); ++k) {
+      const ImpactRow& row = g.rows[k];
+      if (row.W > 0) {
+        const double to_Ns = std::clamp(p[k] - row.velocity(g.v) / row.W, row.lower_Ns, row.upper_Ns);
+        if (to_Ns != p[k]) row.apply(to_Ns - p[k], g.v);
+        most_m_s = std::max(most_m_s, std::abs(to_Ns - p[k]) * row.W);
+        p[k] = to_Ns;
+      }
+      if (k < g.contacts.size())
+        settleFriction(g.contacts[k], g.contacts[k].of->mu * (p[k] + g.bounced_Ns[k]), most_m_s);
+    }
+    if (!(most_m_s > kSettled_m_s)) break;
+  }
+  g.p_Ns = g.bounced_Ns;
+  for (std::size_t k = 0; k < p.size(); ++k) g.p_Ns[k] += p[k];
+}
+
+// The greatest share s of the change of velocities for which a s^2 + b s + c, the energy above what is
+// allowed, is not positive.
+double Restitution::shareWithoutGain(std::span<const BodyEnd> ends) const {
+  const Group& g = group_;
+  double a = 0, b = 0, c = 0, scale_J = 0;
+  for (std::size_t i = 0; i < g.bodies.size(); ++i) {
+    const auto at = static_cast<std::size_t>(g.bodies[i]);
+    const IslandBody& body = island_.bodies[at];
+    const Vec6 change = g.v[i] - g.solved[i], momentum = ends[at].mass * change;
+    const double before_J = 0.5 * body.start.dot(body.mass * body.start);
+    a += 0.5 * momentum.dot(change);
+    b += momentum.dot(g.solved[i]);
+    c += 0.5 * g.solved[i].dot(ends[at].mass * g.solved[i]) - before_J - g.impulse[i].dot(body.u);
+    scale_J += before_J;
+  }
+  // Contacts work against bodies that they do not move only; their other work is not allowed.
+  const auto twistOf = [&](std::size_t i) -> const Vec6& { return island_.bodies[i].u; };
+  for (std::size_t k = 0; k < g.rows.size(); ++k)
+    b += g.rows[k].fixed_velocity * (g.p_Ns[k] - g.solved_Ns[k]);
+  for (const Contact& contact : g.contacts) {
+    const RigidContact& of = *contact.of;
+    c += of.p_n * velocityOf(of.normal, twistOf);
+    for (int t = 0; t < 2; ++t) {
+      c += of.p_t[t] * velocityOf(of.tangent[t], twistOf);
+      b += of.tangent[t].fixed_velocity * (contact.p_t[t] - of.p_t[t]);
+    }
+  }
+  constexpr double kRounding = 1e-13;
+  if (a + b + c <= kRounding * scale_J) return 1;
+  const double root = b * b - 4 * a * c;
+  if (!(root >= 0) || !(a > 0)) return 0;  // also where a value is not finite
+  return std::clamp((-b + std::sqrt(root)) / (2 * a), 0.0, 1.0);
+}
+
+void Restitution::write(double share, std::span<BodyEnd> ends) {
+  Group& g = group_;
+  const auto part = [share](double from, double to) { return share < 1 ? from + share * (to - from) : to; };
+  for (std::size_t i = 0; i < g.bodies.size(); ++i)
+    ends[static_cast<std::size_t>(g.bodies[i])].v =
+        share < 1 ? Vec6(g.solved[i] + share * (g.v[i] - g.solved[i])) : g.v[i];
+  for (std::size_t k = 0; k < g.contacts.size(); ++k) {
+    RigidContact& c = *g.contacts[k].of;
+    c.p_n = part(c.p_n, g.p_Ns[k]);
+    for (int t = 0; t < 2; ++t) c.p_t[t] = part(c.p_t[t], g.contacts[k].p_t[t]);
+  }
+  for (std::size_t k = 0; k < g.joints.size(); ++k) {
+    double& impulse_Ns = g.joints[k]->impulse_Ns;
+    impulse_Ns = part(impulse_Ns, g.p_Ns[g.contacts.size() + k]);
+  }
+}
+
+void Restitution::apply(std::span<RigidContact> contacts, std::span<BodyEnd> ends,
+                        const btContactSolverInfo& info) {
+  std::vector<int> roots;
+  for (const RigidContact& c : contacts) {
+    if (!isImpact(c, info.m_restitutionVelocityThreshold)) continue;
+    if (roots.empty()) connect(contacts, info.m_timeStep);
+    const int root = rootOf(std::max(c.normal.side[0].body, c.normal.side[1].body));
+    if (std::find(roots.begin(), roots.end(), root) == roots.end()) roots.push_back(root);
+  }
+  for (const int root : roots) {
+    gather(root, contacts, ends);
+    takeExternal();
+    bounce();
+    settle();
+    if (const double share = shareWithoutGain(ends); share > 0) write(share, ends);
+  }
+}
+
+}  // namespace vps::bullet::inline v0

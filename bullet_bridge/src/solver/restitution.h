@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Restitution: the end velocities of bodies that met in a step.
+//
+// The step was solved without restitution, and its displacement stays that of this solution, so that gaps are
+// kept as without restitution, however narrow they are. What remains is a problem of velocities at the end
+// pose:
+//
+//   group     bodies that hang together by contacts that touch at the end of the step, and by joints. Nothing
+//   happens
+//             in a group without an impact: a contact with e > 0 that carried load in the step and whose
+//             bodies approached each other before it, faster than the threshold of Bullet's
+//             btContactSolverInfo. Gravity of the step itself is no approach, so a body at rest does not
+//             bounce.
+//   bounce    From the end velocities, the impulses of the contacts and joints and the external impulses are
+//   taken away
+//             again. What is left are the velocities before the impact, at the end pose. They are reflected
+//             (reflections.h).
+//   settle    The external impulses are given back, and what then approaches (a part that rests on another)
+//   is stopped,
+//             with Coulomb's friction, whose limit is that of the whole normal impulse of the step: sweeps
+//             that start from the impulses of the solution. Friction only reduces slip.
+//
+// The impulses that come on top of those of the solution act at the end pose, on both bodies in one line. So
+// linear and angular momentum are kept to rounding, although the displacement is not that of the end
+// velocities. The line goes with the body that turns more easily, so that a box that bounces off a plate is
+// not turned by it.
+//
+// Energy. In one pose, reflections keep it and settling takes it. But the pose of the bounce is not that
+// before the step, which is a difference of the order of the step. Therefore the group's change of velocities
+// is scaled down where its energy would be above what the bodies had before the step, plus the work in the
+// displacement of all that is no contact (gravity, couplings, motors), plus that of bodies which contact does
+// not move. So no group ever gains energy by restitution, whatever has not converged. The masses are those of
+// the bodies, not the effective ones: a coupling's spring and damper have no share in an impact.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "solver/contact_sweeps.h"
+#include "solver/island.h"
+#include "solver/joint_rows.h"
+#include "solver/reflections.h"
+
+struct btContactSolverInfo;
+
+namespace vps::bullet::inline v0 {
+
+class Restitution {
+ public:
+  Restitution(const Island& island, JointRows& joints) : island_(island), joints_(joints) {}
+
+  /// Changes the end velocities of groups with an impact, and adds the impulses to those of contacts and
+  /// joints.
+  /// @param contacts  of the solved island
+  /// @param ends      from Island::readEnds()
+  void apply(std::span<RigidContact> contacts, std::span<BodyEnd> ends, const btContactSolverInfo& info);
+
+ private:
+  struct Contact {
+    RigidContact* of = nullptr;
+    ImpactRow tangent[2];
+    double p_t[2] = {0, 0};  // in all
+    double W_t = 0;          // at least the greatest eigenvalue of its tangent block
+  };
+  struct Group {
+    std::vector<int> bodies;  // of the island
+    std::vector<Mat6> inverse_mass;
+    std::vector<Vec6> impulse;   // change of momentum in the step, all impulses of the solution together
+    std::vector<Vec6> external;  // change of velocity by what is no contact or joint
+    std::vector<Vec6> solved;    // end velocities of the solution
+    std::vector<Vec6> v;         // those that are sought
+    std::vector<Contact> contacts;
+    std::vector<JointRow*> joints;
+    std::vector<ImpactRow> rows;     // normals of the contacts, then joints
+    std::vector<double> solved_Ns;   // their impulses in the solution
+    std::vector<double> bounced_Ns;  // in the impact alone
+    std::vector<double> p_Ns;        // in all
+  };
+
+  [[nodiscard]] bool isImpact(const RigidContact& c, double threshold_m_s) const;
+  void connect(std::span<RigidContact> contacts, double dt_s);
+  [[nodiscard]] int rootOf(int body) const;
+  [[nodiscard]] Vec3 placeOf(const RigidContact& c, std::span<const BodyEnd> ends) const;
+  [[nodiscard]] ImpactRow rowOf(const ContactRow& row, const Vec3& at_W, const Vec3& d_W,
+                                std::span<const BodyEnd> ends) const;
+  void gather(int root, std::span<RigidContact> contacts, std::span<const BodyEnd> ends);
+  void takeExternal();
+  void bounce();
+  void settle();
+  void settleFriction(Contact& c, double limit_Ns, double& most_m_s);
+  [[nodiscard]] double shareWithoutGain(std::span<const BodyEnd> ends) const;
+  void write(double share, std::span<BodyEnd> ends);
+
+  const Island& island_;
+  JointRows& joints_;
+  std::vector<int> parent_;            // of each body, towards the root of its group
+  std::vector<int> local_;             // index of each body in group_; -1: of another group
+  std::vector<std::uint8_t> touches_;  // of each contact
+  Group group_;
+};
+
+}  // namespace vps::bullet::inline v0
