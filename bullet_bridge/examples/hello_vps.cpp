@@ -21,8 +21,7 @@ int main() {
   const auto ring = vps::buildPartModel("ring", vps::makeTube(0.010, 0.00505, 0.005, 128));
 
   // Mass, inertia and centre of mass follow from the mesh; Bullet wants its bodies' origins there.
-  const auto frame =
-      vps::bullet::makeBodyFrame(vps::massProperties(*ring->mesh), ring->material.density_kg_m3);
+  const auto frame = vps::bullet::makeBodyFrame(ring->solid->mass(), ring->material.density_kg_m3);
   vps::bullet::Shape ring_shape(vps::bullet::makeModels(*ring), frame.X_PB.inverse());
   btRigidBody body(vps::bullet::toBt(frame.mass_kg), nullptr, &ring_shape,
                    vps::bullet::toBt(frame.inertia_kg_m2));

@@ -27,8 +27,8 @@ double leastDistance_m(const PartMesh& a, const PartMesh& b, const Pose& X_AB) {
 PartMesh makePart(Mesh mesh, double density_kg_m3) {
   PartMesh part;
   part.mesh = welded(mesh);
-  part.frame = bullet::makeBodyFrame(massProperties(part.mesh), density_kg_m3);
   part.exact = std::make_shared<const Solid>(part.mesh);
+  part.frame = bullet::makeBodyFrame(part.exact->mass(), density_kg_m3);
   return part;
 }
 

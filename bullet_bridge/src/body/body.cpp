@@ -12,6 +12,7 @@
 #include "log/report.h"
 #include "vps/friction.h"
 #include "vps/lids.h"
+#include "vps/mesh_repair.h"
 #include "vps_bullet/convert.h"
 #include "vps_bullet/tune.h"
 
@@ -52,22 +53,20 @@ void requireUsable(const BodySettings& settings) {
                                 "' is not a finite position with a rotation");
 }
 
-/// The divergence theorem needs a closed surface: without a lid, a box lacks up to a third of its volume.
-MassProperties solidMass(const Mesh& mesh, const std::string& name) {
-  Mesh closed = welded(mesh);
-  const Mesh lids = lidsOf(closed);
-  if (lids.triangles.empty()) return massProperties(mesh);
-  const MassProperties open = massProperties(mesh);
-  append(closed, lids);
-  const MassProperties whole = massProperties(closed);
-  if (std::abs(whole.volume_m3 - open.volume_m3) > 1e-3 * std::abs(whole.volume_m3))
+/// Lids over its holes are part of an open mesh's solid: without one, a box lacks up to a third of its
+/// volume.
+MassProperties massWithLids(const PartModel& part, const std::string& name) {
+  const bool has_inside = part.solid && !part.solid->isSheet();
+  const MassProperties whole = has_inside ? part.solid->mass() : solidMass(*part.mesh, name);
+  if (lidsOf(welded(*part.mesh)).triangles.empty()) return whole;
+  if (std::abs(whole.volume_m3 - massProperties(*part.mesh).volume_m3) > 1e-3 * std::abs(whole.volume_m3))
     report(LogLevel::Warning, name + " has an open mesh: its mass is that of the part with flat lids");
   return whole;
 }
 
 /// A fixed body needs no mass; a part without a volume, such as a sheet, then has its mesh's frame.
 BodyFrame frameOf(const PartModel& part, const BodySettings& settings) {
-  const MassProperties mass = solidMass(*part.mesh, settings.name);
+  const MassProperties mass = massWithLids(part, settings.name);
   const double density_kg_m3 = settings.material.density_kg_m3;
   const bool has_mass = mass.volume_m3 > 0 && density_kg_m3 > 0 && std::isfinite(density_kg_m3);
   return settings.is_fixed && !has_mass ? BodyFrame{} : makeBodyFrame(mass, density_kg_m3);

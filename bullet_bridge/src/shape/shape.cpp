@@ -15,6 +15,7 @@
 #include "shape/triangle_tree.h"
 #include "vps/feature_motion.h"
 #include "vps/load_error.h"
+#include "vps/mesh_repair.h"
 #include "vps_bullet/convert.h"
 
 namespace vps::bullet::inline v0 {
@@ -43,6 +44,13 @@ Mat3 shiftedInertia(const Mat3& about_com, double mass_kg, const Vec3& p) {
 void requireModels(const ShapeModels& models) {
   if (!models.map && !models.shell && !models.mesh)
     throw std::invalid_argument("Shape: it has no models; give it a map, a shell or a mesh (makeModels)");
+}
+
+/// Of the solid that the mesh stands for.
+MassProperties solidMass(const ShapeModels& models) {
+  const bool has_own_solid = models.surfaces.size() == 1 && models.surfaces[0].X_MP.R.isIdentity(0) &&
+                             models.surfaces[0].X_MP.p.isZero(0) && !models.surfaces[0].distance->isSheet();
+  return has_own_solid ? models.surfaces[0].distance->mass() : vps::solidMass(*models.mesh);
 }
 
 Box boxOf(const PointShell& shell) {
@@ -200,7 +208,7 @@ void Shape::calculateLocalInertia(btScalar mass, btVector3& inertia) const {
     throw std::invalid_argument("Shape: a mass of " + std::to_string(mass) +
                                 " kg; give a positive one, or 0 for a fixed body");
   if (models_.mesh) {
-    const MassProperties unit = massProperties(*models_.mesh);
+    const MassProperties unit = solidMass(models_);
     if (unit.volume_m3 > 0) {
       const Mat3 about_com = inertiaAboutCom(unit, mass / unit.volume_m3);
       const Mat3 about_So = shiftedInertia(X_SM_.R * about_com * X_SM_.R.transpose(), mass, X_SM_ * unit.com);

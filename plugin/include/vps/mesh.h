@@ -50,7 +50,11 @@ struct MeshReport {
   std::size_t overlapping_shells = 0;  ///< shells with facets within another shell
   std::size_t internal_facets = 0;     ///< facets with solid on both sides: not surface, left out
   std::size_t sheet_facets = 0;        ///< of free sheets: a surface without an inside
+  std::size_t united_shells = 0;       ///< that touch or cross others; their union took their place
   bool signed_by_winding = false;      ///< else by pseudonormals, which closed meshes allow
+  /// Shells touch or cross each other, and their union was not found: depths near them are those of single
+  /// shells, and the mass counts twice what two of them share.
+  bool is_union_incomplete = false;
   /// Share of the voxmap's nodes in the band whose winding number is more than 0.25 from 0.5; 1 for a closed
   /// mesh.
   double certain_share = 1;

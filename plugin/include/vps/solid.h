@@ -67,10 +67,14 @@ class VPS_API Solid {
     return distance_.smoothCurvature(triangle);
   }
 
-  /// The repaired surface: facets face out, without duplicates, inner walls and facets within the solid.
+  /// The repaired surface: facets face out, without duplicates, inner walls and facets within the solid. Of
+  /// shells that touch or cross each other it is the surface of their union.
   [[nodiscard]] const Mesh& mesh() const noexcept { return distance_.mesh(); }
   /// What was found and repaired. `certain_share` is that of a voxmap and is not set.
   [[nodiscard]] const MeshReport& report() const noexcept { return report_; }
+  /// Volume, centre and inertia of the solid: of the repaired mesh, as massOf() in mesh_repair.h says. All
+  /// zero for a sheet.
+  [[nodiscard]] const MassProperties& mass() const noexcept { return mass_; }
   /// True if pseudonormals do not decide everywhere.
   [[nodiscard]] bool isByWinding() const noexcept { return interior_ != nullptr; }
 
@@ -83,6 +87,7 @@ class VPS_API Solid {
 
   MeshDistance distance_;
   MeshReport report_;
+  MassProperties mass_;
   std::unique_ptr<const Interior> interior_;
   /// By triangle, if interior_ is not null: up to this distance the pseudonormal's sign is the winding
   /// number's.

@@ -15,6 +15,8 @@
 #include "mesh/joined_edges.h"
 #include "mesh/mesh_edges.h"
 #include "mesh/mesh_survey.h"
+#include "mesh/shell_union.h"
+#include "vps/lids.h"
 #include "vps/mesh_distance.h"
 #include "vps/winding_number.h"
 
@@ -63,8 +65,14 @@ double determinant(const Mesh& mesh, std::uint32_t triangle, const Vec3& o) {
   return a.dot(b.cross(c));
 }
 
+bool haveContact(std::vector<Box> boxes, double touch_m) {
+  if (boxes.size() < 2) return false;
+  for (Box& box : boxes) box = {box.min.array() - touch_m, box.max.array() + touch_m};
+  return BoxTree(boxes).hasOverlap();
+}
+
 /// True if all of the given closed and consistently oriented shells face out, and no two shells' boxes
-/// overlap.
+/// overlap or touch.
 bool areSound(const Mesh& mesh, const std::vector<std::uint32_t>& shell_of, std::size_t count) {
   std::vector<Box> boxes(count);
   for (std::size_t i = 0; i < shell_of.size(); ++i)
@@ -73,12 +81,12 @@ bool areSound(const Mesh& mesh, const std::vector<std::uint32_t>& shell_of, std:
   for (std::uint32_t i = 0; i < shell_of.size(); ++i)
     volume_m3[shell_of[i]] += determinant(mesh, i, boxes[shell_of[i]].center()) / 6;
   return std::all_of(volume_m3.begin(), volume_m3.end(), [](double v) { return v > 0; }) &&
-         !BoxTree(boxes).hasOverlap();
+         !haveContact(boxes, touchDistance(mesh));
 }
 
 class Repairer {
  public:
-  Repairer(Mesh mesh, Crossing crossing) : is_crossing_(crossing == Crossing::Seen) {
+  Repairer(Mesh mesh, Crossing crossing) : is_crossing_(crossing == Crossing::Seen), is_single_(false) {
     result_.solid = std::move(mesh);
   }
 
@@ -90,6 +98,7 @@ class Repairer {
     const bool is_whole = !is_crossing_ && report().isClosed() && report().degenerate_triangles == 0;
     if (is_whole && report().duplicate_triangles == 0 && areSound(mesh(), shell_of, report().shells))
       return finish(true);
+    if (std::optional<RepairedMesh> united = unitedShells()) return std::move(*united);
     joined_ = joinFacets(mesh(), edges_, kWidestBetweenCopies);
     const bool has_dropped_copies = dropDuplicates();
     if (has_dropped_copies) edges_ = sortedHalfEdges(mesh());
@@ -115,7 +124,46 @@ class Repairer {
   }
 
  private:
+  /// Without a union of shells.
+  Repairer(const Mesh& mesh, bool is_single) : is_crossing_(false), is_single_(is_single) {
+    result_.solid = mesh;
+  }
+
   enum class Keep : std::uint8_t { Both, Solid, Surface, None };
+
+  /// The union of closed shells, if some of them touch. Duplicates come first: if these are the only fault,
+  /// they are copies of facets.
+  std::optional<RepairedMesh> unitedShells() {
+    if (is_crossing_ || is_single_ || report().open_edges > 0 || report().degenerate_triangles > 0)
+      return std::nullopt;
+    if (report().duplicate_triangles > 0 && Repairer(mesh(), true).run().is_sound) return std::nullopt;
+    Repairer closed(mesh(), true);
+    std::optional<ShellUnion> found = closed.uniteClosed();
+    if (!found || found->united_shells == 0) return std::nullopt;
+    if (found->mesh.triangles.empty()) {
+      report().is_union_incomplete = true;
+      return std::nullopt;
+    }
+    RepairedMesh united{found->mesh, std::move(found->mesh), closed.report(), false};
+    united.report.united_shells = found->united_shells;
+    united.report.overlapping_shells = found->covered_shells;
+    united.report.internal_facets = found->covered_facets;
+    return united;
+  }
+
+  /// Nothing if some shell is not closed. Turns shells that face in.
+  std::optional<ShellUnion> uniteClosed() {
+    edges_ = sortedHalfEdges(mesh());
+    result_.report = checkMesh(mesh(), edges_);
+    joined_ = joinFacets(mesh(), edges_, kWidestBetweenCopies);
+    findPatches();
+    const auto isOpen = [](const Patch& p) { return !p.is_closed; };
+    if (patches_.size() < 2 || std::any_of(patches_.begin(), patches_.end(), isOpen) ||
+        !haveContact(boxesOfClosed(), touchDistance(mesh())))
+      return std::nullopt;
+    turnClosed();
+    return unite(mesh(), patch_of_);
+  }
 
   Mesh& mesh() { return result_.solid; }
   MeshReport& report() { return result_.report; }
@@ -188,6 +236,7 @@ class Repairer {
     std::vector<std::array<std::uint32_t, 3>> across(
         count, {UINT32_MAX, UINT32_MAX, UINT32_MAX});  // triangle * 2 + disagrees
     forEachEdge(edges_, [&](std::span<const HalfEdge> same) {
+      if (is_single_ && same.size() > 2) pairInOrder(same, across);
       if (same.size() != 2 || has_copy[same[0].triangle][same[0].side] != 0) return;
       const std::uint32_t disagrees = same[0].is_forward == same[1].is_forward;
       across[same[0].triangle][same[0].side] = 2 * same[1].triangle + disagrees;
@@ -239,6 +288,17 @@ class Repairer {
     measurePatches();
   }
 
+  /// Where shells have an edge in common, their facets follow each other in the list.
+  static void pairInOrder(std::span<const HalfEdge> same, std::vector<std::array<std::uint32_t, 3>>& across) {
+    std::vector<const HalfEdge*> forward, backward;
+    for (const HalfEdge& e : same) (e.is_forward ? forward : backward).push_back(&e);
+    if (forward.size() != backward.size()) return;
+    for (std::size_t i = 0; i < forward.size(); ++i) {
+      across[forward[i]->triangle][forward[i]->side] = 2 * backward[i]->triangle;
+      across[backward[i]->triangle][backward[i]->side] = 2 * forward[i]->triangle;
+    }
+  }
+
   void measurePatches() {
     for (Patch& patch : patches_) {
       patch.is_closed = true;
@@ -266,6 +326,15 @@ class Repairer {
     return e.is_forward != (is_flipped_[e.triangle] != 0);
   }
 
+  /// True if most of a patch lies within a shell: it may touch its surface, or reach through.
+  bool liesIn(const Patch& patch, const WindingNumber& shell) {
+    constexpr std::size_t kPlaces = 9;
+    std::size_t within = 0;
+    const std::vector<Facet> samples = samplesOf(patch, kPlaces);
+    for (const Facet& f : samples) within += shell.at(f.center).w > 0.75;
+    return 2 * within > samples.size();
+  }
+
   /// Turns closed patches that face in and lie in no other patch, with everything inside them.
   void turnClosed() {
     std::vector<std::size_t> closed;
@@ -283,16 +352,15 @@ class Repairer {
     std::vector<std::uint32_t> around;
     for (std::uint32_t i = 0; i < closed.size(); ++i) {
       Patch& patch = patches_[closed[i]];
-      const Vec3& p = mesh().vertices[mesh().triangles[patch.triangles[0]][0]];
       around.clear();
-      tree.forEachOverlap({p, p}, [&](std::uint32_t k) {
+      tree.forEachOverlap(patch.box, [&](std::uint32_t k) {
         if (is_outermost[k]) around.push_back(k);
         return true;
       });
       std::sort(around.begin(), around.end());
       const auto outer = std::find_if(around.begin(), around.end(), [&](std::uint32_t k) {
         if (!windings[k]) windings[k].emplace(mesh(), patches_[closed[k]].triangles);
-        return windings[k]->at(p).w > 0.75;
+        return liesIn(patch, *windings[k]);
       });
       is_outermost[i] = outer == around.end();
       is_turned[i] = is_outermost[i] ? patch.volume_m3 < 0 : is_turned[*outer];
@@ -506,7 +574,7 @@ class Repairer {
     return std::move(result_);
   }
 
-  const bool is_crossing_;
+  const bool is_crossing_, is_single_;
   RepairedMesh result_;
   std::vector<HalfEdge> edges_;  // as the facets were at first
   JoinedFacets joined_;          // as the facets were at first
@@ -535,6 +603,22 @@ RepairedMesh repairCrossing(const RepairedMesh& sound) {
   return again;
 }
 
+MassProperties massOf(const RepairedMesh& repaired) {
+  constexpr double kFlat = 1e-12;  // of the area times the size: rounding
+  const auto isClosed = [](const Mesh& mesh) { return lidsOf(mesh).triangles.empty(); };
+  Mesh solid;
+  const bool is_closed =
+      repaired.is_sound || (repaired.report.sheet_facets == 0 && isClosed(repaired.surface));
+  if (!is_closed) {
+    solid = repaired.solid;
+    append(solid, lidsOf(solid));
+  }
+  const Mesh& mesh = is_closed ? repaired.surface : solid;
+  const MassProperties mass = massProperties(mesh);
+  const bool is_flat = std::abs(mass.volume_m3) <= kFlat * area(mesh) * bounds(mesh).size().norm();
+  return is_flat ? MassProperties{} : mass;
+}
+
 std::string describe(const MeshReport& report) {
   std::string text;
   const auto say = [&](std::size_t count, const char* one, const char* many) {
@@ -551,9 +635,15 @@ std::string describe(const MeshReport& report) {
   say(report.degenerate_triangles, "facet without area", "facets without area");
   say(report.flipped_facets, "flipped facet turned", "flipped facets turned");
   say(report.turned_shells, "shell that faced in turned", "shells that faced in turned");
-  say(report.overlapping_shells, "overlapping shell", "overlapping shells");
+  say(report.united_shells, "touching shell united", "touching or overlapping shells united");
+  if (report.united_shells == 0) say(report.overlapping_shells, "overlapping shell", "overlapping shells");
   say(report.internal_facets, "facet within the solid left out", "facets within the solid left out");
   say(report.sheet_facets, "facet of a sheet without an inside", "facets of sheets without an inside");
+  if (report.is_union_incomplete)
+    text += std::string(text.empty() ? "" : ", ") +
+            "shells that touch or overlap could not be united, so that depths near them are those of single "
+            "shells and "
+            "the mass counts twice what two of them share";
   if (report.joined_corners > 0) {
     char joined[96];
     std::snprintf(joined, sizeof joined, "%s%zu %s joined across cracks of up to %.2g um",

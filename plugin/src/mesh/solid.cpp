@@ -2,6 +2,7 @@
 #include "vps/solid.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "mesh/crossing_facets.h"
@@ -43,7 +44,8 @@ Mesh times(Mesh mesh, double factor) {
 
 Solid::Solid(const Mesh& mesh, const std::string& part) : Solid(repaired(mesh, part)) {}
 
-Solid::Solid(RepairedMesh&& repaired) : distance_(repaired.surface), report_(repaired.report) {
+Solid::Solid(RepairedMesh&& repaired)
+    : distance_(repaired.surface), report_(repaired.report), mass_(massOf(repaired)) {
   if (repaired.is_sound) {
     if (!touchesItself(distance_)) return;
     repaired = repairCrossing(repaired);
@@ -70,6 +72,8 @@ Solid Solid::sheet(const Mesh& mesh) {
 
 Solid Solid::scaled(double factor) const {
   Solid larger(times(mesh(), factor), report_);
+  larger.mass_ = {mass_.volume_m3 * std::pow(factor, 3), mass_.com * factor,
+                  mass_.inertia_m5 * std::pow(factor, 5)};
   larger.is_sheet_ = is_sheet_;
   if (interior_ == nullptr) return larger;
   larger.interior_ =
@@ -97,6 +101,10 @@ double Solid::signedDistance(const Vec3& p, double max_m) const noexcept {
   const Closest nearest = closest(p, max_m);
   const bool is_inside = !is_sheet_ && nearest.found && nearest.normal.dot(p - nearest.q) < 0;
   return is_inside ? -nearest.distance_m : nearest.distance_m;
+}
+
+MassProperties solidMass(const Mesh& mesh, const std::string& part) {
+  return massOf(repaired(mesh, part));
 }
 
 bool Solid::isInside(const Vec3& p) const noexcept {

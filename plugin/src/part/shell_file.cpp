@@ -9,7 +9,7 @@ namespace vps::inline v0 {
 namespace {
 
 /// Incremented when the file's layout changes, or sampling gives other bits.
-constexpr std::uint32_t kShellVersion = 2;
+constexpr std::uint32_t kShellVersion = 3;
 constexpr std::array<char, 8> kShellMagic = {'v', 'p', 's', 's', 'h', 'e', 'l', 'l'};
 
 struct ShellHeader {

@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Incremented when the file's layout changes, or building gives other bits.
-constexpr std::uint32_t kVersion = 7;
+constexpr std::uint32_t kVersion = 8;
 constexpr std::array<char, 8> kMagic = {'v', 'p', 's', 'c', 'a', 'c', 'h', 'e'};
 
 struct Header {
@@ -36,13 +36,14 @@ static_assert(std::is_trivially_copyable_v<Header> && sizeof(Header) == 144);  /
 /// All members of a report, one by one: gaps between them would put undefined bytes into the file.
 template <typename Report>
 auto membersOf(Report& r) {
-  static_assert(sizeof(MeshReport) == 18 * 8, "a member was added");
+  static_assert(sizeof(MeshReport) == 19 * 8, "a member was added");
   return std::tie(r.triangles, r.degenerate_triangles, r.duplicate_triangles, r.open_edges,
                   r.non_manifold_edges, r.flipped_edges, r.shells, r.joined_corners, r.joined_m, r.holes,
                   r.t_junctions, r.flipped_facets, r.turned_shells, r.overlapping_shells, r.internal_facets,
-                  r.sheet_facets, r.signed_by_winding, r.certain_share);
+                  r.sheet_facets, r.united_shells, r.signed_by_winding, r.is_union_incomplete,
+                  r.certain_share);
 }
-constexpr std::uint64_t kReportBytes = 15 * sizeof(std::size_t) + sizeof(bool) + 2 * sizeof(double);
+constexpr std::uint64_t kReportBytes = 16 * sizeof(std::size_t) + 2 * sizeof(bool) + 2 * sizeof(double);
 
 Digest keyOf(const Mesh& mesh, const VoxMapSettings& settings) {
   const std::array<std::uint64_t, 3> sizes = {kVersion, mesh.vertices.size(), mesh.triangles.size()};

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "vps/mesh.h"
+#include "vps_scenes/part_mass.h"
 
 namespace vps::scenes::inline v0 {
 
@@ -26,8 +27,7 @@ bool isUpright(const Scene& scene) {
 std::vector<std::vector<HandPlace>> placesOf(const Scene& scene, const std::vector<TraceRow>& trace) {
   std::vector<std::vector<HandPlace>> of_step(scene.steps.size());
   std::vector<Vec3> com_P;
-  for (const SceneStep& step : scene.steps)
-    com_P.push_back(massProperties(scene.parts[step.part].part.mesh).com);
+  for (const SceneStep& step : scene.steps) com_P.push_back(partMass(scene.parts[step.part]).com);
   for (std::size_t i = 0; i < trace.size(); ++i) {
     const TraceRow& row = trace[i];
     if (row.step < 0 || static_cast<std::size_t>(row.step) >= of_step.size()) continue;

@@ -7,6 +7,7 @@
 
 #include "vps/load_error.h"
 #include "vps/mesh.h"
+#include "vps_scenes/part_mass.h"
 
 namespace vps::scenes::inline v0 {
 
@@ -196,7 +197,7 @@ PathSegments withHandle(const GraspPath& path, const Pose& X_GP, double scale) {
 /// The device's axes are those of the step's poses.
 PathSegments splitAlongAxes(const Scene& scene, const SceneStep& step, const Workspace& workspace) {
   const double scale = scene.device.scale;
-  const Pose X_PG = Pose::translation(massProperties(scene.parts[step.part].part.mesh).com);
+  const Pose X_PG = Pose::translation(partMass(scene.parts[step.part]).com);
   std::vector<Pose> X_WG = {step.X_WP_start * X_PG};
   for (const Pose& X_WP : step.way_points) X_WG.push_back(X_WP * X_PG);
   X_WG.push_back(step.X_WP_target * X_PG);

@@ -9,9 +9,10 @@
 namespace vps::scenes::inline v0 {
 
 std::string meshWarning(const MeshReport& report) {
-  if (!report.signed_by_winding) return {};
+  if (!report.signed_by_winding && !report.is_union_incomplete) return {};
   const bool has_faults = !report.isClosed() || report.overlapping_shells > 0 || report.internal_facets > 0 ||
-                          report.sheet_facets > 0 || report.duplicate_triangles > 0;
+                          report.sheet_facets > 0 || report.duplicate_triangles > 0 ||
+                          report.united_shells > 0 || report.is_union_incomplete;
   if (!has_faults && report.certain_share >= 1) return {};
   std::string words = report.isClosed() ? "is repaired: " : "is not a closed surface: ";
   const std::string found = describe(report);

@@ -14,6 +14,7 @@
 #include "procedure/run_trace.h"
 #include "vps/load_error.h"
 #include "vps_device/metronome.h"
+#include "vps_scenes/part_mass.h"
 
 namespace vps::scenes::inline v0 {
 
@@ -166,7 +167,7 @@ Penetration AssemblyWorld::overlapAt(const SceneStep& step, const Pose& X_WP) {
 
 Pose AssemblyWorld::startOf(const SceneStep& step) {
   if (!driver_->settings().is_collocated || !driver_->isByClock()) return step.X_WP_start;
-  const Vec3 p_PG = massProperties(scene_.parts[step.part].part.mesh).com;
+  const Vec3 p_PG = partMass(scene_.parts[step.part]).com;
   Pose X_WP = step.X_WP_start;
   bool is_told = false;
   driver_->resume();

@@ -8,6 +8,7 @@
 
 #include "core/insertion_axis.h"
 #include "vps/load_error.h"
+#include "vps/mesh_repair.h"
 #include "vps_device/operator.h"
 
 namespace vps::scenes::inline v0 {
@@ -56,7 +57,7 @@ std::vector<Pose> wayOutOfThread(const SceneStep& step, const Pose& X_PG) {
 }
 
 SceneStep takenOff(const SceneStep& step, const Mesh& mesh) {
-  const Pose X_PG = Pose::translation(massProperties(mesh).com);
+  const Pose X_PG = Pose::translation(solidMass(mesh).com);
   const bool is_screw = step.motion == StepMotion::Screw && step.pitch_m != 0;
   std::vector<Pose> way = is_screw ? wayOutOfThread(step, X_PG) : restOfTheWay(step);
   SceneStep off;

@@ -5,6 +5,9 @@
 #include <cmath>
 #include <map>
 
+#include "vps/mesh_repair.h"
+#include "vps_scenes/part_mass.h"
+
 namespace vps::scenes::inline v0 {
 
 ScenePart unitedPart(const std::string& name, const std::vector<ScenePart>& parts) {
@@ -19,7 +22,7 @@ ScenePart unitedPart(const std::string& name, const std::vector<ScenePart>& part
       append(whole.part.mesh, transformed(part.part.mesh, whole.X_WP.inverse() * part.X_WP));
     append(whole.part.face_colors, part.part.mesh.triangles.size(), part.part.face_colors, part.part.color);
     whole.members.push_back(part.part.name);
-    const double own_m3 = std::abs(massProperties(part.part.mesh).volume_m3);
+    const double own_m3 = std::abs(partMass(part).volume_m3);
     volume_m3 += own_m3;
     mass_kg += own_m3 * part.part.material.density_kg_m3;
     if (const double own_m2 = area(part.part.mesh); own_m2 > largest_m2) {
@@ -33,6 +36,10 @@ ScenePart unitedPart(const std::string& name, const std::vector<ScenePart>& part
     if (part.deflection_m) whole.deflection_m = std::max(*part.deflection_m, whole.deflection_m.value_or(0));
   }
   simplify(whole.part.face_colors, whole.part.color);
+  // Members that overlap fill less than the sum of their volumes, which is otherwise known to rounding.
+  constexpr double kRounding = 1e-9;
+  const double united_m3 = solidMass(whole.part.mesh, name).volume_m3;
+  if (std::abs(united_m3 - volume_m3) > kRounding * volume_m3 && united_m3 > 0) volume_m3 = united_m3;
   if (volume_m3 > 0) whole.part.material.density_kg_m3 = mass_kg / volume_m3;
   return whole;
 }

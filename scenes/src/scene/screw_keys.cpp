@@ -6,6 +6,7 @@
 
 #include "core/insertion_axis.h"
 #include "scene/thread_form.h"
+#include "vps/mesh_repair.h"
 
 namespace vps::scenes::inline v0 {
 
@@ -13,7 +14,7 @@ namespace {
 
 // Around the axis of insertion, through the part's centre of mass.
 double leadOnMesh_m(const Mesh& mesh, const SceneStep& step) {
-  const Pose X_PG = Pose::translation(massProperties(mesh).com);
+  const Pose X_PG = Pose::translation(solidMass(mesh).com);
   const Vec3 axis_W = insertionAxis(step, X_PG);
   if (axis_W.isZero(0)) return 0;
   const auto form = findThread(mesh, X_PG.p, step.X_WP_target.R.transpose() * axis_W);

@@ -16,6 +16,7 @@
 #include "vps_bullet/install.h"
 #include "vps_bullet/shape.h"
 #include "vps_bullet/solver.h"
+#include "vps_scenes/part_mass.h"
 
 namespace vps::scenes::inline v0 {
 
@@ -202,9 +203,7 @@ double Simulation::addBody(std::size_t part, const Pose& X_WP, double most_kg) {
   w.remove(part);
   const ScenePart& scene_part = w.scene.parts[part];
   DynamicBody added;
-  MassProperties mass = massProperties(scene_part.part.mesh);
-  // A mesh that is inside out and not closed either is turned where its inside was found.
-  if (!(mass.volume_m3 > 0) && w.modelOf(part)->solid) mass = massProperties(w.modelOf(part)->solid->mesh());
+  const MassProperties mass = partMass(scene_part);
   if (!(mass.volume_m3 > 0))
     throw LoadError(
         scene_part.file, scene_part.part.name,

@@ -10,6 +10,7 @@
 #include "vps/mesh.h"
 #include "vps_device/operator.h"
 #include "vps_scenes/compare.h"
+#include "vps_scenes/part_mass.h"
 #include "vps_scenes/replay.h"
 #include "vps_scenes/result.h"
 
@@ -31,9 +32,9 @@ std::vector<RecordedStep> stepsOf(const device::RecordedRun& run) {
   std::vector<RecordedStep> steps;
   std::vector<Pose> X_PG;
   for (const SceneStep& step : scene.steps) {
-    const Part& part = scene.parts[step.part].part;
-    steps.push_back({part.name, {}, false});
-    X_PG.push_back(Pose::translation(massProperties(part.mesh).com));
+    const ScenePart& part = scene.parts[step.part];
+    steps.push_back({part.part.name, {}, false});
+    X_PG.push_back(Pose::translation(partMass(part).com));
   }
   const auto isStep = [&](std::int32_t step) {
     return step >= 0 && static_cast<std::size_t>(step) < steps.size();

@@ -10,6 +10,7 @@
 #include "sound/scene_voice.h"
 #include "vps/voxmap.h"
 #include "vps_device/random.h"
+#include "vps_scenes/part_mass.h"
 #include "vps_viewer/sound.h"
 
 namespace vps::viewer::inline v0 {
@@ -91,7 +92,7 @@ Sounding& RunSound::Impl::sounding(std::size_t index) {
   if (sounding.voice) return sounding;
   const scenes::ScenePart& part = scene.parts[index];
   sounding.plane_strain_Pa = planeStrain_Pa(part);
-  sounding.center_P = massProperties(part.part.mesh).com;
+  sounding.center_P = scenes::partMass(part).com;
   sounding.voice.emplace(partVoice(part, settings));
   return sounding;
 }

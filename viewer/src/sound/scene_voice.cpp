@@ -10,6 +10,7 @@
 
 #include "vps/solid.h"
 #include "vps/voxmap.h"
+#include "vps_scenes/part_mass.h"
 
 namespace vps::viewer::inline v0 {
 
@@ -61,7 +62,7 @@ double Stroke::force_N(long sample, double rate_hz) const {
 
 PartVoice partVoice(const scenes::ScenePart& part, const SoundSettings& settings) {
   const Material& material = part.part.material;
-  const double volume_m3 = std::max(1e-12, std::abs(massProperties(part.part.mesh).volume_m3));
+  const double volume_m3 = std::max(1e-12, std::abs(scenes::partMass(part).volume_m3));
   BodyModes modes;
   if (settings.has_rings) {
     modes = findModes(part.part.mesh, insideOf(part, volume_m3), material.density_kg_m3,

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "sound/scene_voice.h"
+#include "vps_scenes/part_mass.h"
 #include "window/hand_drag.h"
 
 namespace vps::viewer::inline v0 {
@@ -24,9 +25,8 @@ constexpr std::size_t kMostWaitingBlows = 4;  // more are not kept apart by an e
 std::vector<double> massesOf(const scenes::Scene& scene) {
   std::vector<double> masses_kg;
   for (const scenes::ScenePart& part : scene.parts)
-    masses_kg.push_back(part.is_fixed ? 0
-                                      : std::abs(massProperties(part.part.mesh).volume_m3) *
-                                            part.part.material.density_kg_m3);
+    masses_kg.push_back(
+        part.is_fixed ? 0 : std::abs(scenes::partMass(part).volume_m3) * part.part.material.density_kg_m3);
   return masses_kg;
 }
 

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "window/planned_path.h"
 
+#include "vps_scenes/part_mass.h"
+
 namespace vps::viewer::inline v0 {
 
 PlannedPath plannedPath(const scenes::Scene& scene, const scenes::Snapshot& shot) {
   PlannedPath path;
   if (shot.step < 0 || static_cast<std::size_t>(shot.step) >= scene.steps.size()) return path;
   const scenes::SceneStep& step = scene.steps[static_cast<std::size_t>(shot.step)];
-  const Vec3 p_PG = massProperties(scene.parts[step.part].part.mesh).com;
+  const Vec3 p_PG = scenes::partMass(scene.parts[step.part]).com;
   path.points_W.push_back(step.X_WP_start * p_PG);
   for (const Pose& X_WP : step.way_points) path.points_W.push_back(X_WP * p_PG);
   path.points_W.push_back(step.X_WP_target * p_PG);

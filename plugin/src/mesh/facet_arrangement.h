@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Cuts facets of a mesh along their intersections, so that they meet only at common vertices and edges.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "vps/mesh.h"
+
+namespace vps::inline v0 {
+
+/// A mesh whose facets have been cut.
+struct Arrangement {
+  Mesh mesh;                          ///< the given vertices keep their numbers and places
+  std::vector<std::uint32_t> source;  ///< of each triangle: the facet that it is a piece of
+};
+
+/// True if two facets share a point, or come nearer to each other than `touch_m` and are not clearly apart.
+bool mayTouch(const Mesh& mesh, std::uint32_t f, std::uint32_t g, double touch_m);
+
+/// Cuts the facets of each of the given pairs along their intersection. What is nearer than touch_m is one:
+/// vertices are merged, vertices near an edge or a facet become part of it, edges that nearly meet get a
+/// common point. Facets that lie on each other are both cut along each other's edges. As in: OpenCASCADE,
+/// Boolean operations, General Fuse (vertices first, then edges, then faces). Nothing if some facet cannot be
+/// triangulated. O(pairs) and, in each facet, O(points x segments).
+std::optional<Arrangement> arrange(const Mesh& mesh, std::span<const std::array<std::uint32_t, 2>> pairs,
+                                   double touch_m);
+
+}  // namespace vps::inline v0

@@ -1,0 +1,302 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mesh/shell_union.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <span>
+
+#include "mesh/box_tree.h"
+#include "mesh/facet_arrangement.h"
+#include "mesh/mesh_edges.h"
+#include "mesh/triangle_distance.h"
+
+namespace vps::inline v0 {
+namespace {
+
+using Pair = std::array<std::uint32_t, 2>;
+
+/// More pairs of near facets than these are not cut. Assumed: a minute.
+constexpr std::size_t kMostPairs = 4'000'000;
+
+Box boxOf(const Mesh& mesh, std::uint32_t triangle, double margin_m) {
+  Box box;
+  for (const std::uint32_t v : mesh.triangles[triangle]) box.add(mesh.vertices[v]);
+  return {box.min.array() - margin_m, box.max.array() + margin_m};
+}
+
+std::vector<Box> boxesOf(const Mesh& mesh, const std::vector<std::uint32_t>& shell_of, double margin_m) {
+  std::vector<Box> boxes;
+  for (std::uint32_t i = 0; i < shell_of.size(); ++i) {
+    if (shell_of[i] >= boxes.size()) boxes.resize(shell_of[i] + 1);
+    const Box own = boxOf(mesh, i, margin_m);
+    boxes[shell_of[i]].add(own.min);
+    boxes[shell_of[i]].add(own.max);
+  }
+  return boxes;
+}
+
+/// Pairs of facets of different shells that may touch, in ascending order; more than kMostPairs if there are
+/// too many.
+std::vector<Pair> nearPairs(const Mesh& mesh, const std::vector<std::uint32_t>& shell_of, double touch_m) {
+  const std::vector<Box> shells = boxesOf(mesh, shell_of, touch_m);
+  const BoxTree tree(shells);
+  std::vector<std::uint32_t> near;  // facets in the box of another shell
+  std::vector<Box> boxes;
+  for (std::uint32_t i = 0; i < shell_of.size(); ++i) {
+    const Box box = boxOf(mesh, i, touch_m);
+    if (tree.forEachOverlap(box, [&](std::uint32_t shell) { return shell == shell_of[i]; })) continue;
+    near.push_back(i);
+    boxes.push_back(box);
+  }
+  const BoxTree facets(boxes);
+  std::vector<Pair> pairs;
+  for (std::uint32_t k = 0; k < near.size() && pairs.size() <= kMostPairs; ++k)
+    facets.forEachOverlap(boxes[k], [&](std::uint32_t other) {
+      const std::uint32_t f = near[k], g = near[other];
+      if (f < g && shell_of[f] != shell_of[g] && mayTouch(mesh, f, g, touch_m)) pairs.push_back({f, g});
+      return pairs.size() <= kMostPairs;
+    });
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
+/// Over 4 pi. Source: van Oosterom and Strackee 1983.
+double solidAngle(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const double la = a.norm(), lb = b.norm(), lc = c.norm();
+  const double up = a.dot(b.cross(c)), across = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
+  return std::atan2(up, across) / (2 * std::numbers::pi);
+}
+
+/// Where the solid is, around points of the shells' surfaces.
+class Shells {
+ public:
+  Shells(const Mesh& mesh, const std::vector<std::uint32_t>& shell_of, double touch_m)
+      : mesh_(mesh), shell_of_(shell_of), touch_m_(touch_m), boxes_(boxesOf(mesh, shell_of, touch_m)) {
+    triangles_.resize(boxes_.size());
+    for (std::uint32_t i = 0; i < shell_of.size(); ++i) triangles_[shell_of[i]].push_back(i);
+  }
+
+  /// Whether the surface of the union has a piece of facet f at p, of f's own orientation: then of all flush
+  /// facets of that orientation the one of the first shell stands for it.
+  [[nodiscard]] bool isKept(std::uint32_t f, const Vec3& p) const {
+    const Vec3 n = normal(f);
+    double w = 0;
+    int same = 0, opposite = 0;
+    bool is_first = true;
+    for (std::uint32_t shell = 0; shell < boxes_.size(); ++shell) {
+      if (!isWithin(p, boxes_[shell])) continue;
+      bool is_same = shell == shell_of_[f], is_opposite = false;
+      for (const std::uint32_t i : triangles_[shell]) {
+        if (i == f) continue;
+        if (isFlush(i, p)) {
+          if (shell == shell_of_[f]) continue;  // a neighbour, beyond p's nearest side
+          (normal(i).dot(n) > 0 ? is_same : is_opposite) = true;
+        } else {
+          w += solidAngleOf(i, p);
+        }
+      }
+      same += is_same;
+      opposite += is_opposite;
+      is_first = is_first && (!is_same || shell >= shell_of_[f]);
+    }
+    const double step = 0.5 * (same - opposite);
+    return w - step < 0.5 && w + step > 0.5 && is_first;
+  }
+
+  [[nodiscard]] std::size_t count() const { return boxes_.size(); }
+
+  [[nodiscard]] bool isInside(const Vec3& p) const {
+    double w = 0;
+    for (std::uint32_t shell = 0; shell < boxes_.size(); ++shell)
+      if (isWithin(p, boxes_[shell]))
+        for (const std::uint32_t i : triangles_[shell]) w += solidAngleOf(i, p);
+    return w > 0.5;
+  }
+
+ private:
+  [[nodiscard]] const Vec3& corner(std::uint32_t i, std::size_t k) const {
+    return mesh_.vertices[mesh_.triangles[i][k]];
+  }
+  [[nodiscard]] Vec3 normal(std::uint32_t i) const {
+    return (corner(i, 1) - corner(i, 0)).cross(corner(i, 2) - corner(i, 0)).normalized();
+  }
+  [[nodiscard]] double solidAngleOf(std::uint32_t i, const Vec3& p) const {
+    return solidAngle(corner(i, 0) - p, corner(i, 1) - p, corner(i, 2) - p);
+  }
+  [[nodiscard]] bool isFlush(std::uint32_t i, const Vec3& p) const {
+    return isWithin(p, boxOf(mesh_, i, 2 * touch_m_)) &&
+           (closestOnTriangle(p, corner(i, 0), corner(i, 1), corner(i, 2)).q - p).norm() <= 2 * touch_m_;
+  }
+
+  const Mesh& mesh_;
+  const std::vector<std::uint32_t>& shell_of_;
+  const double touch_m_;
+  std::vector<Box> boxes_;
+  std::vector<std::vector<std::uint32_t>> triangles_;
+};
+
+/// Pieces that are connected by edges at which no others end, numbered from 0.
+std::vector<std::uint32_t> patchesOf(const Mesh& pieces) {
+  Groups groups(pieces.triangles.size());
+  forEachEdge(sortedHalfEdges(pieces), [&](std::span<const HalfEdge> same) {
+    if (same.size() == 2) groups.join(same[0].triangle, same[1].triangle);
+  });
+  return groups.numbered();
+}
+
+/// The height of a triangle over its longest side.
+double width(const Mesh& mesh, std::uint32_t i) {
+  const auto& t = mesh.triangles[i];
+  const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+  const double longest_m = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
+  return longest_m > 0 ? (b - a).cross(c - a).norm() / longest_m : 0;
+}
+
+Vec3 middle(const Mesh& mesh, std::uint32_t i) {
+  const auto& t = mesh.triangles[i];
+  return (mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]) / 3;
+}
+
+bool isClosed(const Mesh& mesh) {
+  bool is_closed = !mesh.triangles.empty();
+  forEachEdge(sortedHalfEdges(mesh), [&](std::span<const HalfEdge> same) {
+    int net = 0;
+    for (const HalfEdge& e : same) net += e.is_forward ? 1 : -1;
+    is_closed = is_closed && net == 0;
+  });
+  return is_closed;
+}
+
+/// The radical inverse of i: evenly spread in 0 to 1 [Halton 1960].
+double halton(int i, int base) {
+  double value = 0, digit = 1;
+  for (; i > 0; i /= base) value += (digit /= base) * (i % base);
+  return value;
+}
+
+/// Whether at points spread over the box both have the same inside.
+bool agree(const Mesh& mesh, const Shells& shells) {
+  constexpr int kPoints = 64;
+  const Shells united(mesh, std::vector<std::uint32_t>(mesh.triangles.size(), 0), 0);
+  const Box box = bounds(mesh);
+  std::array<char, kPoints> agrees{};
+  tbb::parallel_for(0, kPoints, [&](int i) {
+    const Vec3 share(halton(i + 1, 2), halton(i + 1, 3), halton(i + 1, 5));
+    const Vec3 p = box.min + share.cwiseProduct(box.size());
+    agrees[static_cast<std::size_t>(i)] = united.isInside(p) == shells.isInside(p);
+  });
+  return std::find(agrees.begin(), agrees.end(), 0) == agrees.end();
+}
+
+/// Without vertices that no triangle has.
+Mesh compacted(const Mesh& mesh) {
+  Mesh out;
+  std::vector<std::uint32_t> number(mesh.vertices.size(), UINT32_MAX);
+  for (auto t : mesh.triangles) {
+    for (std::uint32_t& v : t) {
+      if (number[v] == UINT32_MAX) {
+        number[v] = static_cast<std::uint32_t>(out.vertices.size());
+        out.vertices.push_back(mesh.vertices[v]);
+      }
+      v = number[v];
+    }
+    out.triangles.push_back(t);
+  }
+  return out;
+}
+
+/// Shells that have facets which were cut, or that have edges in common with others.
+std::size_t countMet(const Arrangement& cut, const std::vector<std::uint32_t>& shell_of) {
+  std::vector<std::uint32_t> met;
+  for (std::size_t i = 1; i < cut.source.size(); ++i)
+    if (cut.source[i] == cut.source[i - 1]) met.push_back(shell_of[cut.source[i]]);
+  forEachEdge(sortedHalfEdges(cut.mesh), [&](std::span<const HalfEdge> same) {
+    if (same.size() <= 2) return;
+    for (const HalfEdge& e : same) met.push_back(shell_of[cut.source[e.triangle]]);
+  });
+  std::sort(met.begin(), met.end());
+  return static_cast<std::size_t>(std::unique(met.begin(), met.end()) - met.begin());
+}
+
+}  // namespace
+
+double touchDistance(const Mesh& mesh) {
+  const Box box = bounds(mesh);
+  return kTouchShare * box.min.cwiseAbs().cwiseMax(box.max.cwiseAbs()).maxCoeff();
+}
+
+namespace {
+
+/// Of each patch the piece that is widest, where rounding matters least.
+std::vector<std::uint32_t> widestOf(const Mesh& pieces, const std::vector<std::uint32_t>& patch_of) {
+  std::vector<std::uint32_t> widest;
+  std::vector<double> width_m;
+  for (std::uint32_t i = 0; i < patch_of.size(); ++i) {
+    const double own_m = width(pieces, i);
+    if (patch_of[i] == widest.size()) widest.push_back(i), width_m.push_back(own_m);
+    if (own_m > width_m[patch_of[i]]) widest[patch_of[i]] = i, width_m[patch_of[i]] = own_m;
+  }
+  return widest;
+}
+
+/// The pieces that bound the union. Counts what is left out.
+Mesh surfaceOf(const Arrangement& cut, const std::vector<std::uint32_t>& shell_of, const Shells& shells,
+               ShellUnion& out) {
+  const std::vector<std::uint32_t> patch_of = patchesOf(cut.mesh), widest = widestOf(cut.mesh, patch_of);
+  std::vector<char> is_kept(widest.size());
+  tbb::parallel_for(std::size_t{0}, widest.size(), [&](std::size_t patch) {
+    is_kept[patch] = shells.isKept(cut.source[widest[patch]], middle(cut.mesh, widest[patch]));
+  });
+  Mesh kept = {cut.mesh.vertices, {}};
+  std::vector<char> has_piece(shell_of.size(), 0), loses(shells.count(), 0);
+  for (std::uint32_t i = 0; i < patch_of.size(); ++i) {
+    if (is_kept[patch_of[i]] == 0) {
+      loses[shell_of[cut.source[i]]] = 1;
+      continue;
+    }
+    kept.triangles.push_back(cut.mesh.triangles[i]);
+    has_piece[cut.source[i]] = 1;
+  }
+  out.covered_shells = static_cast<std::size_t>(std::count(loses.begin(), loses.end(), 1));
+  out.covered_facets = static_cast<std::size_t>(std::count(has_piece.begin(), has_piece.end(), 0));
+  return kept;
+}
+
+ShellUnion uniteWithin(const Mesh& mesh, const std::vector<std::uint32_t>& shell_of, double touch_m) {
+  ShellUnion out;
+  const std::vector<Pair> pairs = nearPairs(mesh, shell_of, touch_m);
+  if (pairs.empty()) return out;
+  out.united_shells = 2;  // at least, if the rest fails
+  if (pairs.size() > kMostPairs) return out;
+  const std::optional<Arrangement> cut = arrange(mesh, pairs, touch_m);
+  if (!cut) return out;
+  out.united_shells = countMet(*cut, shell_of);
+  if (out.united_shells == 0) return out;
+  const Shells shells(mesh, shell_of, touch_m);
+  const Mesh surface = surfaceOf(*cut, shell_of, shells, out);
+  if (isClosed(surface) && agree(surface, shells)) out.mesh = compacted(surface);
+  return out;
+}
+
+}  // namespace
+
+ShellUnion unite(const Mesh& mesh, const std::vector<std::uint32_t>& shell_of) {
+  // What is about as far apart as touch_m may be merged at one place and not at the next; then another
+  // distance decides. Overlaps of a micrometre are more than eight times touch_m in parts of up to half a
+  // metre.
+  constexpr double kOtherShares[] = {8, 1.0 / 32, 1.0 / 1024};
+  const double touch_m = touchDistance(mesh);
+  ShellUnion first = uniteWithin(mesh, shell_of, touch_m);
+  if (first.united_shells == 0 || !first.mesh.triangles.empty()) return first;
+  for (const double share : kOtherShares) {
+    ShellUnion other = uniteWithin(mesh, shell_of, share * touch_m);
+    if (!other.mesh.triangles.empty()) return other;
+  }
+  return first;
+}
+
+}  // namespace vps::inline v0

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Meshes of several shells against the formulas of their union.
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include "support/analytic.h"
+#include "vps/mesh_repair.h"
+#include "vps/solid.h"
+
+namespace vps::test {
+namespace {
+
+Mesh block(const Vec3& min, const Vec3& max) {
+  return transformed(makeBox(max - min), Pose::translation(0.5 * (min + max)));
+}
+Mesh joined(Mesh a, const Mesh& b) {
+  append(a, b);
+  return a;
+}
+Mesh turned(Mesh mesh) {
+  for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
+  return mesh;
+}
+
+/// A base of 60 x 20 x 10 mm with two arms of 10 x 20 x 30 mm on its ends, which reach into it.
+Mesh channel(double overlap_m) {
+  Mesh mesh = block({0, 0, 0}, {0.06, 0.02, 0.01});
+  append(mesh, block({0, 0, 0.01 - overlap_m}, {0.01, 0.02, 0.04}));
+  return joined(mesh, block({0.05, 0, 0.01 - overlap_m}, {0.06, 0.02, 0.04}));
+}
+constexpr double kChannel_m3 = 0.06 * 0.02 * 0.01 + 2 * 0.01 * 0.02 * 0.03;
+
+TEST(ShellUnion, AChannelOfThreeBoxesIsOneSolid) {
+  for (const double overlap_m : {0.0, 1e-6, 1e-4, 5e-3})
+    for (const bool is_turned : {false, true}) {
+      const Pose X = is_turned ? RandomPoints(3).pose(0.05) : Pose();
+      const Solid solid(transformed(channel(overlap_m), X));
+      EXPECT_NEAR(solid.mass().volume_m3 / kChannel_m3, 1, 1e-12) << overlap_m;
+      EXPECT_EQ(solid.report().united_shells, 3u);
+      EXPECT_FALSE(solid.report().is_union_incomplete);
+      // On the seam, 5 mm from the ends, where single boxes have a face.
+      EXPECT_NEAR(solid.signedDistance(X * Vec3(0.004, 0.01, 0.01)), -0.004, 1e-12) << overlap_m;
+      EXPECT_NEAR(solid.signedDistance(X * Vec3(0.03, 0.01, 0.02)), 0.01, 1e-12) << overlap_m;
+    }
+}
+
+TEST(ShellUnion, AGapOfAMicrometreStays) {
+  const Solid solid(
+      joined(block({0, 0, 0}, {0.02, 0.02, 0.01}), block({0, 0, 0.010001}, {0.02, 0.02, 0.02})));
+  EXPECT_EQ(solid.report().united_shells, 0u);
+  EXPECT_NEAR(solid.signedDistance({0.01, 0.01, 0.0100005}), 0.5e-6, 1e-12);
+}
+
+TEST(ShellUnion, ShellsThatDoNotTouchKeepTheirBits) {
+  const Mesh apart = welded(
+      joined(makeSphere(0.01, 3), transformed(makeBox({0.01, 0.01, 0.01}), Pose::translation({0.03, 0, 0}))));
+  const Solid solid(apart);
+  EXPECT_EQ(solid.mesh().vertices, apart.vertices);
+  EXPECT_EQ(solid.mesh().triangles, apart.triangles);
+  EXPECT_FALSE(solid.isByWinding());
+}
+
+TEST(ShellUnion, BoxesWithACommonEdgeOrCornerAreBothThere) {
+  for (const double y : {0.0, 0.02}) {
+    const Solid solid(
+        joined(block({0, 0, 0}, {0.02, 0.02, 0.02}), block({0.02, y, 0.02}, {0.04, y + 0.02, 0.04})));
+    EXPECT_NEAR(solid.mass().volume_m3 / 16e-6, 1, 1e-12);
+    EXPECT_NEAR(solid.signedDistance({0.01, 0.01, 0.01}), -0.01, 1e-12);
+    EXPECT_NEAR(solid.signedDistance({0.03, y + 0.01, 0.03}), -0.01, 1e-12);
+  }
+}
+
+TEST(SolidMass, AnInvertedCubeBesideAnotherCounts) {
+  const Mesh cube = makeBox({0.02, 0.02, 0.02});
+  const Mesh both = joined(cube, turned(transformed(cube, Pose::translation({0.05, 0, 0}))));
+  const MassProperties mass = Solid(both).mass();
+  EXPECT_NEAR(mass.volume_m3 / 16e-6, 1, 1e-12);
+  EXPECT_NEAR((mass.com - Vec3(0.025, 0, 0)).norm(), 0, 1e-12);
+  EXPECT_EQ(solidMass(both).volume_m3, mass.volume_m3);
+}
+
+TEST(SolidMass, AnInnerShellIsACavityOnlyIfItFacesTheOtherWay) {
+  const Mesh outer = makeBox({0.04, 0.04, 0.04}), inner = makeBox({0.02, 0.02, 0.02});
+  EXPECT_NEAR(solidMass(joined(outer, inner)).volume_m3 / 64e-6, 1, 1e-12);
+  EXPECT_NEAR(solidMass(joined(outer, turned(inner))).volume_m3 / 56e-6, 1, 1e-12);
+  EXPECT_NEAR(solidMass(turned(joined(outer, inner))).volume_m3 / 64e-6, 1, 1e-12);
+  EXPECT_NEAR(solidMass(turned(joined(outer, turned(inner)))).volume_m3 / 56e-6, 1, 1e-12);
+}
+
+TEST(SolidMass, ALidClosesAnOpenBoxAndAFlatSheetHasNoVolume) {
+  Mesh open = makeBox({0.02, 0.02, 0.02});
+  open.triangles.resize(open.triangles.size() - 2);  // one side
+  EXPECT_NEAR(solidMass(open).volume_m3 / 8e-6, 1, 1e-12);
+  Mesh sheet = transformed(makeBox({0.02, 0.02, 0.02}), RandomPoints(4).pose(0.1));
+  sheet.triangles.resize(2);
+  EXPECT_EQ(solidMass(sheet).volume_m3, 0);
+}
+
+TEST(ShellUnion, HasTheSameBitsForAnyNumberOfThreads) {
+  Mesh mesh = makeSphere(0.01, 3);
+  append(mesh, transformed(makeTube(0.008, 0.006, 0.03, 60), RandomPoints(5).pose(2e-3)));
+  append(mesh, transformed(makeBox({0.03, 0.004, 0.006}), RandomPoints(6).pose(2e-3)));
+  const Solid many(mesh);
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  const Solid single(mesh);
+  EXPECT_EQ(many.report().united_shells, 3u);
+  EXPECT_EQ(many.mesh().vertices, single.mesh().vertices);
+  EXPECT_EQ(many.mesh().triangles, single.mesh().triangles);
+}
+
+TEST(ShellUnion, WhatCouldNotBeUnitedIsSaid) {
+  MeshReport report;
+  report.shells = 2;
+  report.is_union_incomplete = true;
+  EXPECT_NE(describe(report).find("could not be united"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace vps::test
