@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Constraint contact: few points, each a constraint of the solver.
-#include <BulletCollision/CollisionDispatch/btManifoldResult.h>
-
 #include <utility>
 
 #include "narrowphase/contact_selection.h"
 #include "narrowphase/feature_check.h"
+#include "narrowphase/pair_material.h"
 
 namespace vps::bullet::inline v0 {
 
@@ -28,12 +27,12 @@ bool reuseSelection(const PairView& pair, PairState& state) {
 }
 
 void prepareRestitution(std::vector<Candidate>& candidates, const RelativeMotion& motion,
-                        const btCollisionObject* object0, const btCollisionObject* object1) {
+                        const PairMaterial& material) {
   // The solver subtracts the gap from the rebound speed, which would suppress a bounce within the step. So a
   // point that bounces does so at once: early by less than a step's travel, with the right energy.
-  if (!(btManifoldResult::calculateCombinedRestitution(object0, object1) > 0)) return;
   for (Candidate& c : candidates)
-    if (c.distance_m > 0 && c.predicted_m < 0 && c.predicted_m < c.distance_m - 0.2 * motion.dt_s)
+    if (material.restitution(c) > 0 && c.distance_m > 0 && c.predicted_m < 0 &&
+        c.predicted_m < c.distance_m - 0.2 * motion.dt_s)
       c.distance_m = 0;
 }
 
@@ -51,8 +50,7 @@ void selectRigid(const PairView& pair, PairState& state) {
     storeSelection(state.contacts, pair, state.motion, state.selection);
   }
   markSharp(pair, context.settings, state.contacts);
-  prepareRestitution(state.contacts, state.motion, pair.wrapper[0]->getCollisionObject(),
-                     pair.wrapper[1]->getCollisionObject());
+  prepareRestitution(state.contacts, state.motion, PairMaterial(pair.wrapper));
 }
 
 }  // namespace vps::bullet::inline v0
