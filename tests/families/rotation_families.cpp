@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "family.h"
+#include "fast_rotation_families.h"
 
 namespace vps::families {
 
 std::vector<Family> rotationFamilies() {
-  return {};
+  return fastRotationFamilies();
 }
 
 }  // namespace vps::families

@@ -132,6 +132,17 @@ inline constexpr auto kEnergyFields = std::make_tuple(
           "bound of the error of `injected_J` by the encoders' resolution"));
 static_assert(coversAllMembers<EnergyLedger>(kEnergyFields));
 
+/// Of a part that turned farther in a step than the step can hold.
+inline constexpr auto kFastTurnFields = std::make_tuple(
+    field("part", &FastTurn::part, "name of the part"),
+    field("in_contact", &FastTurn::is_in_contact, "the rotation is that against what it touches"),
+    field("angular_velocity_rad_s", &FastTurn::w_rad_s, "its rotation where it needs the shortest step"),
+    field("turn_rad", &FastTurn::turn_rad, "its turn in a step, or in a part of one (`substeps`)"),
+    field("limit_rad", &FastTurn::limit_rad,
+          "greatest turn that is held: 0.1 between bodies in contact, else that of Bullet"),
+    field("needed_hz", &FastTurn::needed_hz, "`physics_rate_hz` that would hold it, without `substeps`"));
+static_assert(coversAllMembers<FastTurn>(kFastTurnFields));
+
 inline constexpr auto kModelledFields =
     std::make_tuple(field("voxmaps", &ModelledCost::voxmaps, "number of voxmaps"),
                     field("pointshells", &ModelledCost::pointshells, "number of pointshells"),
@@ -199,6 +210,7 @@ inline constexpr auto kAssembleFields = std::make_tuple(
           "near points that found no room in a query; 0 unless a limit was set"),
     field("simulated_s", &AssembleResult::simulated_s, "simulated time"),
     list("steps", &AssembleResult::steps, std::tuple_cat(kStepFields, kStepLists)),
+    list("fast_turns", &AssembleResult::fast_turns, kFastTurnFields),
     list("tries", &AssembleResult::tries, kTryFields),
     field("ease_of_assembly", &AssembleResult::ease_share,
           "share of the tries in which every part was brought home; null for a single run"),
