@@ -177,7 +177,7 @@ TEST(LocalContact, InTheAirItMovesByTheCouplingAlone) {
 
 TEST(LocalContact, FrictionHoldsAPartThatIsPulledWithinTheCone) {
   LocalPart part = wall().part();
-  part.friction = 0.3;
+  part.material.friction = 0.3;
   const CouplingGains gains = dualArmGains();
   for (const double pull_m : {0.5e-3, 2e-3}) {
     LocalContact local;

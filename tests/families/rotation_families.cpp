@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "family.h"
+#include "fast_rotation_families.h"
 #include "impact_world.h"
 #include "search/random.h"
 #include "vps_bullet/convert.h"
@@ -98,7 +99,9 @@ std::vector<Family> freeRotationFamilies() {
 }  // namespace
 
 std::vector<Family> rotationFamilies() {
-  return freeRotationFamilies();
+  std::vector<Family> all = freeRotationFamilies();
+  for (Family& family : fastRotationFamilies()) all.push_back(std::move(family));
+  return all;
 }
 
 }  // namespace vps::families

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "models/scene_models.h"
 #include "scenes/scene_part.h"
 #include "vps/box.h"
@@ -45,6 +47,53 @@ TEST(PlacedParts, AGrownRegionModelsOnlyThosePartsAnewThatReachIntoIt) {
   placed.widen(0, bounds(scene.parts[2].part.mesh), scene.parts[2].X_WP);
   EXPECT_GT(scene.parts[0].model->shell->size(), near->shell->size());
   EXPECT_EQ(scene.parts[1].model, far) << "nothing of it is in the grown region";
+}
+
+/// A block that slides at 0.5 m/s on the fixed or mounted part at y.
+double slid_m(Simulation& simulation, std::size_t block, double y_m) {
+  simulation.addBody(block, Pose::translation({0, y_m, 4 * kMm}));
+  Twist V;
+  V.v = {0.5, 0, 0};
+  simulation.setTwist(block, V);
+  for (int i = 0; i < 30; ++i) simulation.step(1e-3);
+  const double x_m = simulation.pose(block).p.x();
+  simulation.removeBody(block);
+  return x_m;
+}
+
+// v t - mu g t^2 / 2, each step with the velocity of its end.
+double slides_m(double mu) {
+  return 0.5 * 0.03 - mu * 9.81 * 1e-6 * 30 * 31 / 2;
+}
+
+TEST(PlacedParts, AMountedPartKeepsItsOwnFriction) {
+  Scene scene;
+  scene.file = scene.name = "plates";
+  const Mesh plate = makeBox({60 * kMm, 10 * kMm, 4 * kMm});
+  scene.parts = {scenePart("base", plate, Vec3::Zero(), true),
+                 scenePart("mounted", plate, {0, 20 * kMm, 0}, false),
+                 scenePart("block", makeBox({8 * kMm, 6 * kMm, 4 * kMm}), {0, 0, 4 * kMm}, false)};
+  const double mu[] = {0.8, 0.1, 0.5};
+  for (const std::size_t i : {0u, 1u, 2u}) scene.parts[i].part.material.friction = mu[i];
+  ModelOptions options;
+  options.models_everything = true;
+  ModelPlan plan = makeModelPlan(scene, ModelPurpose::Simulate, true);
+  buildModels(scene, plan, options);
+  Simulation simulation(scene, plan);
+  PlacedParts placed(scene, plan, simulation, options);
+  for (const std::size_t part : {0u, 1u}) {
+    placed.add(part, scene.parts[part].X_WP);
+    placed.setField(cookField(placed.orderFor(0).value()));
+  }
+  for (const std::size_t part : {0u, 1u}) {
+    const double expected_m = slides_m(std::sqrt(mu[part] * mu[2]));
+    EXPECT_NEAR(slid_m(simulation, 2, 20 * kMm * static_cast<double>(part)), expected_m, 0.01 * expected_m);
+  }
+  simulation.addBody(2, scene.parts[2].X_WP);
+  const auto contacts = simulation.fieldContacts(2);
+  ASSERT_EQ(contacts.size(), 2U);
+  for (const std::size_t part : {0u, 1u})
+    EXPECT_DOUBLE_EQ(contacts[part].friction, std::sqrt(mu[part]) * std::sqrt(mu[2]));
 }
 
 }  // namespace

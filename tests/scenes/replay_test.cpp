@@ -164,6 +164,7 @@ TEST(SceneArchive, ColorsOfFacesThatAreNotThereAreRefused) {
 TEST(SceneArchive, EarlierVersionsAreReadWithDefaultsForLaterSettings) {
   Scene scene = pinOnPlate();
   scene.fidelity.contact_method = ContactMethod::Penalty;
+  scene.fidelity.substeps = 0;
   scene.device.has_indexing = false;
   scene.device.placement = Pose::translation({1, 2, 3});
   scene.steps[0].is_held = true;
@@ -172,24 +173,26 @@ TEST(SceneArchive, EarlierVersionsAreReadWithDefaultsForLaterSettings) {
   scene.steps[0].takes_off = true;
   scene.parts[1].part.face_colors = {{{1, 0, 0}, {0, 0, 1}}, {}};
   scene.parts[1].part.face_colors.of_triangle.assign(12, 1);
-  const std::string bytes = sceneToBytes(scene), magic = "vps-scene-7\n";
+  const std::string bytes = sceneToBytes(scene), magic = "vps-scene-8\n";
   ASSERT_TRUE(bytes.starts_with(magic));
   // Version 2 brought the contact method, a byte, version 3 indexing, a byte, and version 4 `holds`, a byte,
   // a number of the operator, and for each of the two parts two bytes and two numbers. Version 5 brought the
   // motion, a byte, with two numbers, and for each part two numbers, and version 6 whether the step takes its
   // part off, a byte, and the device's placement, a byte and twelve numbers. Version 7 brought the colours of
-  // faces: for each part two counts, here with two colours of three floats and twelve numbers. Each stands at
-  // the end.
+  // faces: for each part two counts, here with two colours of three floats and twelve numbers, and version 8
+  // the parts of a step, four bytes. Each stands at the end.
   const auto before = [&](const std::string& later, int version, std::size_t added) {
     return "vps-scene-" + std::to_string(version) + "\n" +
            later.substr(magic.size(), later.size() - magic.size() - added);
   };
-  const std::string sixth = before(bytes, 6, 2 * 2 * 8 + 2 * 3 * 4 + 12 * 8),
+  const std::string seventh = before(bytes, 7, 4), sixth = before(seventh, 6, 2 * 2 * 8 + 2 * 3 * 4 + 12 * 8),
                     fifth = before(sixth, 5, 1 + 1 + 12 * 8),
                     fourth = before(fifth, 4, 1 + 2 * 8 + 2 * 2 * 8),
                     third = before(fourth, 3, 1 + 8 + 2 * (2 + 2 * 8)), second = before(third, 2, 1),
                     first = before(second, 1, 1);
-  EXPECT_EQ(sceneFromBytes(bytes, "x").parts[1].part.face_colors, scene.parts[1].part.face_colors);
+  EXPECT_EQ(sceneFromBytes(bytes, "x").fidelity.substeps, 0);
+  EXPECT_EQ(sceneFromBytes(seventh, "x").fidelity.substeps, 1);
+  EXPECT_EQ(sceneFromBytes(seventh, "x").parts[1].part.face_colors, scene.parts[1].part.face_colors);
   EXPECT_TRUE(sceneFromBytes(sixth, "x").parts[1].part.face_colors.isNone());
   EXPECT_TRUE(sceneFromBytes(bytes, "x").steps[0].takes_off);
   EXPECT_FALSE(sceneFromBytes(fifth, "x").steps[0].takes_off);

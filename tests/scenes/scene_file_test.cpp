@@ -147,6 +147,7 @@ gradient = "trilinear"
 contact_limit = 10
 haptic_rate_hz = 4000
 physics_rate_hz = 2000
+substeps = "auto"
 solver_iterations = 50
 contact = "penalty"
 [record]
@@ -204,9 +205,17 @@ csv_rate_hz = 100
   EXPECT_EQ(scene.fidelity.contact_limit, 10);
   EXPECT_EQ(scene.fidelity.haptic_rate_hz, 4000);
   EXPECT_EQ(scene.fidelity.physics_rate_hz, 2000);
+  EXPECT_EQ(scene.fidelity.substeps, 0);
   EXPECT_EQ(scene.fidelity.solver_iterations, 50);
   EXPECT_EQ(scene.fidelity.contact_method, ContactMethod::Penalty);
   EXPECT_EQ(scene.record.csv_rate_hz, 100);
+}
+
+TEST_F(SceneFile, TheSubstepsOfAStepAreANumberOrAuto) {
+  EXPECT_EQ(load(kPin).fidelity.substeps, 1);
+  EXPECT_EQ(load(kPin + "[fidelity]\nsubsteps = 12\n").fidelity.substeps, 12);
+  EXPECT_THROW(load(kPin + "[fidelity]\nsubsteps = 'many'\n"), LoadError);
+  EXPECT_THROW(load(kPin + "[fidelity]\nsubsteps = -1\n"), LoadError);
 }
 
 TEST_F(SceneFile, AScrewHasAPitchWithASign) {

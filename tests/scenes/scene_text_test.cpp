@@ -23,7 +23,6 @@ TEST(SceneText, IsReadAsTheSameScene) {
 unit = "mm"
 gravity = [0, 1.5, -9]
 release_s = 0.3
-fidelity = "fast"
 [[part]]
 file = "box.stl"
 name = "base"
@@ -49,6 +48,9 @@ seed = 17
 aim_error_deg = 0.1
 [coupling]
 k_N_per_m = 900
+[fidelity]
+preset = "fast"
+substeps = "auto"
 )");
   const std::string text = sceneText(first, {"box.stl", "box.stl"}, "a comment");
   // STL states no unit, and the text is in metres: the mesh of this test is scaled instead.
@@ -59,6 +61,8 @@ k_N_per_m = 900
   EXPECT_EQ(second.gravity_W, first.gravity_W);
   EXPECT_EQ(second.release_s, 0.3);
   EXPECT_EQ(second.fidelity.voxel_m, first.fidelity.voxel_m);
+  EXPECT_NE(text.find("substeps = \"auto\""), std::string::npos);
+  EXPECT_EQ(second.fidelity.substeps, 0);
   EXPECT_TRUE(second.parts[0].is_fixed);
   EXPECT_EQ(second.parts[1].press_fit_m, 3e-6);
   EXPECT_EQ(second.parts[1].part.material.density_kg_m3, 2700);

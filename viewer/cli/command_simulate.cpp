@@ -119,6 +119,7 @@ int runSimulate(const SimulateArguments& given) {
     std::printf(
         "steps shortened: bodies in contact were stopped within a step %zu times, which takes energy\n",
         result.shortened_steps);
+  for (const scenes::FastTurn& turn : result.fast_turns) warn(inWords(turn));
   const bool is_good = !result.overlap || printOverlap(*result.overlap);
   if (!result.real_time) return is_good ? kGood : kBad;
   for (const std::string& words : result.real_time->warnings) warn(words);

@@ -102,6 +102,10 @@ std::string toJson(const std::string& scene, double seconds, const scenes::Simul
                {"kinetic_energy_J", result.kinetic_energy_J},
                {"shortened_steps", result.shortened_steps},
                {"modelled", modelled(result.modelled)}};
+  addFields(json, result,
+            std::make_tuple(
+                scenes::list("fast_turns", &scenes::SimulateResult::fast_turns, scenes::kFastTurnFields)));
+  json["most_substeps"] = result.most_substeps;
   json["exact"] = result.exact ? exactDepth(*result.exact) : Json(nullptr);
   if (result.overlap) json["overlap"] = overlap(*result.overlap);
   return text(json);

@@ -109,6 +109,7 @@ void printSteps(const scenes::AssembleResult& result) {
   if (result.contacts_left_out > 0)
     warn(std::to_string(result.contacts_left_out) +
          " near points found no room in a query; choose a coarser spacing");
+  for (const scenes::FastTurn& turn : result.fast_turns) warn(inWords(turn));
 }
 
 void printOutcome(const scenes::Scene& scene, const scenes::AssembleResult& result,

@@ -26,6 +26,8 @@ struct Settings {
   /// Bounds the time of a step, but leaves a patch without contact where points are left out. At least
   /// contact_limit.
   int candidate_limit = 0;
+  /// A message (log.h) says once for each cause that bodies turn farther in a step than it can hold (turn.h).
+  bool warns_of_turns = true;
 };
 
 /// Counters since installation, over all pairs of a dispatcher.

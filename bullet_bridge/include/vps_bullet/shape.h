@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -32,6 +33,19 @@ VPS_BULLET_API BodyFrame makeBodyFrame(const MassProperties& unit_density, doubl
 
 class SheetBorder;
 
+/// What a contact takes from the surface that it touches. A value that is not set is that of the body:
+/// btCollisionObject::getFriction() and getRestitution(), and Settings::stiffness_N_per_m3.
+struct SurfaceMaterial {
+  /// As btCollisionObject::setFriction(): the values of both bodies are multiplied, so that two equal ones
+  /// are frictionFactor() of their coefficient (vps/friction.h). A host's own rule
+  /// (gCalculateCombinedFrictionCallback) is given the bodies, and takes precedence.
+  std::optional<double> friction;
+  std::optional<double> restitution;         ///< as btCollisionObject::setRestitution(), and likewise
+  std::optional<double> stiffness_N_per_m3;  ///< of penalty contact, per area; of both sides the lesser acts
+
+  [[nodiscard]] bool isNone() const { return !friction && !restitution && !stiffness_N_per_m3; }
+};
+
 /// The exact surface of one part in the models' frame M.
 struct Surface {
   std::shared_ptr<const Solid> distance;
@@ -39,6 +53,10 @@ struct Surface {
   /// For an open surface without an inside, where a point meets the side that it faces; null for a solid.
   /// `distance` is then a Solid::sheet().
   std::shared_ptr<const SheetBorder> sheet = nullptr;
+  /// Of contacts with this part. A contact belongs to the surface that its distance is measured from, or,
+  /// where no exact surface is asked, to the map's owner (btManifoldPoint::m_partId0 and m_partId1 say
+  /// which).
+  SurfaceMaterial material = {};
 };
 
 /// The models of a shape, all in one frame M. This is not a PartModel because a fixed field merges several
@@ -104,6 +122,12 @@ class VPS_BULLET_API Shape : public btConcaveShape {
   };
   /// Requires surfaces and a point on a face: !isEdgePoint(id).
   [[nodiscard]] PointFace faceAt(std::uint32_t id) const { return face_at_[id]; }
+  /// Index of the surface that a shell point lies on; 0 without surfaces.
+  [[nodiscard]] std::uint16_t surfaceAt(std::uint32_t id) const {
+    return surface_at_.empty() ? std::uint16_t{0} : surface_at_[id];
+  }
+  /// Index of the surface that a vertex of features() belongs to.
+  [[nodiscard]] std::uint16_t surfaceOfVertex(std::uint32_t vertex) const;
   /// Sharp edges of the surfaces, in the models' frame.
   [[nodiscard]] const EdgeSet& edges() const { return edges_; }
   /// Corners, sharp edges and facets of the surfaces, in the models' frame.
@@ -156,7 +180,8 @@ class VPS_BULLET_API Shape : public btConcaveShape {
   std::vector<std::uint8_t> is_edge_point_;
   EdgeNeighbours edge_neighbours_;
   std::vector<Vec3> smooth_inward_;
-  std::vector<PointFace> face_at_;  // by point
+  std::vector<PointFace> face_at_;         // by point
+  std::vector<std::uint16_t> surface_at_;  // by point; empty: there is one surface or none
   EdgeSet edges_;
   FeatureSet features_;
   std::vector<std::uint32_t> edges_at_, first_edge_;  // those of a point start at edges_at_[first_edge_[id]]

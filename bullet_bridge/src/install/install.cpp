@@ -33,6 +33,7 @@
 #include "solver/dispatch_table.h"
 #include "solver/penalty_contacts.h"
 #include "solver/step_check.h"
+#include "solver/turn_check.h"
 
 namespace vps::bullet::inline v0 {
 
@@ -165,6 +166,7 @@ struct Installation {
     context->native_shapes = std::make_shared<NativeShapeCache>();
     context->penalty_contacts = create.penalty_contacts = std::make_shared<PenaltyContacts>();
     context->step_checks = create.step_checks = std::make_shared<StepChecks>();
+    context->turn_reports = create.turn_reports = std::make_shared<TurnReports>();
     create.context = context;
   }
 };
@@ -256,6 +258,7 @@ void install(btCollisionDispatcher& dispatcher, const Settings& settings) {
     installations()[&dispatcher] = std::move(fresh);
   }
   installation->context->settings = settings;
+  installation->context->turn_reports->is_on = settings.warns_of_turns;
   if (dispatcher.getNearCallback() != &nearCallback)
     installation->create.next_near_callback = dispatcher.getNearCallback();
   dispatcher.setNearCallback(&nearCallback);

@@ -17,6 +17,8 @@
 #include "narrowphase/pair_check.h"
 #include "solver/penalty_contacts.h"
 #include "solver/step_check.h"
+#include "solver/turn_check.h"
+#include "vps_bullet/turn.h"
 
 namespace vps::bullet::inline v0 {
 
@@ -97,6 +99,14 @@ void warnWithoutSolver() {
     report(LogLevel::Warning,
            "contact_method is Penalty, but the world is not solved by bullet::Solver: its contacts are taken "
            "as rigid");
+}
+
+// Points are not checked any more where bodies turn farther (PairCheck::findMissed()), and planes are off.
+void warnOfTurn(const PairState& state, const PairView& pair) {
+  const double w_rad_s = state.motion.V.w.norm(), dt_s = state.motion.dt_s;
+  if (state.contacts.empty() || !(w_rad_s * dt_s > kContactTurn_rad)) return;
+  reportContactTurn(*state.context->turn_reports, *pair.wrapper[0]->getCollisionObject(),
+                    *pair.wrapper[1]->getCollisionObject(), w_rad_s, dt_s);
 }
 
 // Pairs without penalty points, as all pairs of constraint contact, leave nothing for the solver.
@@ -194,6 +204,7 @@ void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* body0,
   state_->is_prepared = false;
   countInitialOverlap(pair, *state_);
   context.contacts += state_->contacts.size();
+  warnOfTurn(*state_, pair);
   state_->writer->write(state_->contacts, pair.wrapper, state_->motion, mayNeedMore(pair, *state_));
   registerCheck(pair, *state_);
   passToSolver(*state_);

@@ -22,21 +22,21 @@ struct QueryState;
 /// A point that can touch within the step: a point of one side's shell, or a crossing of an edge of body 0
 /// with an edge of body 1.
 struct Candidate {
-  Vec3 p_W = Vec3::Zero();           ///< the shell's point now; at a crossing the point on body 0's edge
-  Vec3 n_W = Vec3::Zero();           ///< unit, from body 1 to body 0
-  double distance_m = 0;             ///< signed gap now
-  double predicted_m = 0;            ///< gap at the end of the step in free motion
-  double area_m2 = 0;                ///< surface that the point represents
-  double impulse_Ns = 0;             ///< its normal impulse in the last step
-  double rest_m = 0;                 ///< gap at which sharp features rest
-  bool is_flush = false;             ///< curved surfaces of both parts lie flush around it
-  bool bounces = false;              ///< restitution acts on it in this step
-  bool was_contact = false;          ///< was given to the solver in the last step
-  std::uint32_t id = 0;              ///< of the point in its shell; at a crossing body 0's edge
-  std::uint32_t crossed = 0;         ///< at a crossing 1 + body 1's edge; 0: a shell point
-  std::uint16_t owner = 0;           ///< part of the other side's map
-  std::uint8_t side = 0;             ///< whose shell the point belongs to: body 0 or 1
-  std::uint8_t plane_of = kBetween;  ///< body whose face the plane is: 0 or 1
+  Vec3 p_W = Vec3::Zero();            ///< the shell's point now; at a crossing the point on body 0's edge
+  Vec3 n_W = Vec3::Zero();            ///< unit, from body 1 to body 0
+  double distance_m = 0;              ///< signed gap now
+  double predicted_m = 0;             ///< gap at the end of the step in free motion
+  double area_m2 = 0;                 ///< surface that the point represents
+  double impulse_Ns = 0;              ///< its normal impulse in the last step
+  double rest_m = 0;                  ///< gap at which sharp features rest
+  bool is_flush = false;              ///< curved surfaces of both parts lie flush around it
+  bool bounces = false;               ///< restitution acts on it in this step
+  bool was_contact = false;           ///< was given to the solver in the last step
+  std::uint32_t id = 0;               ///< of the point in its shell; at a crossing body 0's edge
+  std::uint32_t crossed = 0;          ///< at a crossing 1 + body 1's edge; 0: a shell point
+  std::uint16_t surface[2] = {0, 0};  ///< of body 0 and 1, that touches: index of ShapeModels::surfaces
+  std::uint8_t side = 0;              ///< whose shell the point belongs to: body 0 or 1
+  std::uint8_t plane_of = kBetween;   ///< body whose face the plane is: 0 or 1
   static constexpr std::uint8_t kBetween = 2;  ///< the plane lies between edges, or is only the field's
 
   [[nodiscard]] bool isCrossing() const { return crossed != 0; }

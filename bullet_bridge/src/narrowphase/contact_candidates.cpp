@@ -50,6 +50,8 @@ std::size_t findByDistance(const SideView& side, const Pose& X_WS, double cutoff
       c.area_m2 = shell.area_m2[id];
       c.id = id;
       c.side = side.side;
+      c.surface[c.side] = side.shape->surfaceAt(id);
+      c.surface[1 - c.side] = surface.surface;
       out.push_back(c);
     }
   }
@@ -117,8 +119,9 @@ Candidate candidateOf(const Contact& contact, const SideView& side, const SideVi
   c.distance_m = contact.distance_m;
   c.area_m2 = contact.area_m2;
   c.id = contact.id;
-  c.owner = contact.owner;
   c.side = side.side;
+  c.surface[c.side] = side.shape->surfaceAt(c.id);
+  c.surface[1 - c.side] = contact.owner;
   return c;
 }
 

@@ -110,6 +110,7 @@ struct Exact {
   bool is_own_face = false, is_their_face = false;  ///< whose the plane is
   bool is_curved = false;                           ///< the other's face stands for a curved surface
   FacePoint face;                                   ///< if is_smooth: the other's
+  std::uint16_t surface = 0;                        ///< index of the other's surface
   Vec3 from_q = Vec3::Zero();                       ///< the point minus its foot
 };
 
@@ -207,7 +208,8 @@ struct Refiner {
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
       Foot foot = footOn(surfaces[i], other.X_WM, own, max_m);
       foot.is_curved = foot.found && other.shape->features().isCurved(i, foot.triangle);
-      const Exact exact = contactAt(foot, own);
+      Exact exact = contactAt(foot, own);
+      exact.surface = static_cast<std::uint16_t>(i);
       found_all &= exact.found;
       nearest.found |= exact.found;
       nearest.is_inside |= exact.is_inside;
@@ -242,6 +244,7 @@ Exact besideEdge(const Refiner& refiner, const OwnPoint& own, double reach_m) {
       best.found = best.is_contact = best.is_their_face = true;
       best.distance_m = distance_m;
       best.n = X_WM.R * n;
+      best.surface = s.owner;
     }
   });
   return best;
@@ -291,6 +294,7 @@ void refine(std::vector<Candidate>& candidates, const SideView& side, const Side
       exact = atEndOfStep(exact, refiner, own, sign * motion.dt_s * motion.velocityAt(c.p_W), max_m);
     c.distance_m = exact.is_contact ? exact.distance_m : kNever_m;
     c.n_W = sign * exact.n;
+    if (exact.is_contact) c.surface[1 - c.side] = exact.surface;
     c.is_flush = exact.is_curved && own.isFlushOn(exact.n);
     c.plane_of = exact.is_own_face     ? side.side
                  : exact.is_their_face ? static_cast<std::uint8_t>(1 - side.side)
@@ -343,6 +347,7 @@ void refineEdges(std::vector<Candidate>& candidates, const SideView& side, const
     }
     c.distance_m = exact.is_contact ? exact.distance_m : kNever_m;
     c.n_W = sign * exact.n;
+    if (exact.is_contact) c.surface[1 - c.side] = exact.surface;
   }
 }
 

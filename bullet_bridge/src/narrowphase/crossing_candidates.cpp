@@ -112,7 +112,8 @@ std::size_t addCandidates(const SideView& body0, const SideView& body1, const Se
     c.id = at.edge[0];
     c.crossed = at.edge[1] + 1;
     c.is_flush = isFlush(edges0.segments()[at.edge[0]], edges1.segments()[at.edge[1]], X_01.R);
-    c.owner = edges1.segments()[at.edge[1]].owner;
+    c.surface[0] = edges0.segments()[at.edge[0]].owner;
+    c.surface[1] = edges1.segments()[at.edge[1]].owner;
     out.push_back(c);
   }
   return crossings.size() - room;

@@ -104,6 +104,7 @@ bool moveToNearest(Candidate& c, const SideView& side, const SideView& other, co
   if (c.distance_m - gap_m > max_gain_m) return false;
   c.p_W = own->q_W;
   c.n_W = (side.side == 0 ? 1 : -1) * their->outward_W;
+  c.surface[1 - c.side] = static_cast<std::uint16_t>(their->surface - other.shape->models().surfaces.data());
   // A corner between facets may be nearer than the curved surface.
   c.distance_m = std::min(c.distance_m, gap_m);
   return true;

@@ -31,6 +31,16 @@ std::uint32_t codeOf(const FeatureContact& c, int i) {
   return kind | (c.feature[i] & (kCorner - 1));
 }
 
+// The surface of a shape that a feature lies on.
+std::uint16_t surfaceOf(const FeatureContact& c, int i, const Shape& shape) {
+  const FeatureSet& features = shape.features();
+  const std::uint32_t feature = c.feature[i];
+  if (c.kind == FeatureContact::Kind::EdgeOnEdge)
+    return shape.surfaceOfVertex(features.edges()[feature].from);
+  const bool is_corner = (c.kind == FeatureContact::Kind::CornerOnFacet) == (i == 0);
+  return shape.surfaceOfVertex(is_corner ? features.corners()[feature] : features.facets()[feature][0]);
+}
+
 // Facets of one plane, and edges that meet in a corner, give the same contact several times.
 bool isRepeated(const FeatureContact& c, const std::vector<const FeatureContact*>& chosen) {
   constexpr double kNear_m = 1e-6, kCosSame = 0.99999;  // assumed; a quarter of a degree
@@ -50,11 +60,13 @@ bool isOnSheet(const FeatureContact& c, const PairView& pair) {
 /// Contacts of features, where both bodies are at the start of a step.
 struct FeaturePlacer {
   Pose X_01, X_WM0;
+  const Shape* shape[2];
   double rest_m;
 
   explicit FeaturePlacer(const PairView& start)
       : X_01(start.X_01_models()),
         X_WM0(start.X_WS[0] * start.shape[0]->X_SM()),
+        shape{start.shape[0], start.shape[1]},
         rest_m(FeatureMotion::rest_m(start.shape[0]->features(), start.shape[1]->features())) {}
   [[nodiscard]] Candidate operator()(const FeatureContact& c) const {
     Candidate at;
@@ -63,6 +75,7 @@ struct FeaturePlacer {
     at.distance_m = c.gap_m(X_01);
     at.id = codeOf(c, 0);
     at.crossed = codeOf(c, 1) + 1;
+    for (const int i : {0, 1}) at.surface[i] = surfaceOf(c, i, *shape[i]);
     at.rest_m = rest_m;
     at.plane_of = c.kind == FeatureContact::Kind::EdgeOnEdge ? Candidate::kBetween : c.plane_of;
     return at;

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "narrowphase/pair_material.h"
 #include "vps_bullet/convert.h"
 
 namespace vps::bullet::inline v0 {
@@ -55,9 +56,10 @@ bool hasAnisotropicFriction(const btCollisionObject& a, const btCollisionObject&
 }
 
 // Sets what btManifoldResult::addContactPoint would set from the bodies.
-void setMaterial(btManifoldPoint& point, const btCollisionObject* a, const btCollisionObject* b) {
-  point.m_combinedFriction = btManifoldResult::calculateCombinedFriction(a, b);
-  point.m_combinedRestitution = btManifoldResult::calculateCombinedRestitution(a, b);
+void setMaterial(btManifoldPoint& point, const Candidate& c, const PairMaterial& material,
+                 const btCollisionObject* a, const btCollisionObject* b) {
+  point.m_combinedFriction = toBt(material.friction(c));
+  point.m_combinedRestitution = toBt(material.restitution(c));
   point.m_combinedRollingFriction = btManifoldResult::calculateCombinedRollingFriction(a, b);
   point.m_combinedSpinningFriction = btManifoldResult::calculateCombinedSpinningFriction(a, b);
   const int flags = a->getCollisionFlags() | b->getCollisionFlags();
@@ -70,8 +72,8 @@ void setMaterial(btManifoldPoint& point, const btCollisionObject* a, const btCol
     point.m_contactPointFlags |= BT_CONTACT_FLAG_FRICTION_ANCHOR;
 }
 
-btManifoldPoint makePoint(const Candidate& c, const btCollisionObjectWrapper* const (&bodies)[2],
-                          const RelativeMotion& motion) {
+btManifoldPoint makePoint(const Candidate& c, const PairMaterial& material,
+                          const btCollisionObjectWrapper* const (&bodies)[2], const RelativeMotion& motion) {
   Vec3 on0, on1;
   positions(c, on0, on1);
   const btVector3 p0 = toBt(on0), p1 = toBt(on1);
@@ -82,9 +84,9 @@ btManifoldPoint makePoint(const Candidate& c, const btCollisionObjectWrapper* co
   point.m_positionWorldOnB = p1;
   point.m_index0 = indexOn(c, 0);
   point.m_index1 = indexOn(c, 1);
-  point.m_partId0 = c.side == 1 ? c.owner : 0;
-  point.m_partId1 = c.side == 0 ? c.owner : 0;
-  setMaterial(point, bodies[0]->getCollisionObject(), bodies[1]->getCollisionObject());
+  point.m_partId0 = c.surface[0];
+  point.m_partId1 = c.surface[1];
+  setMaterial(point, c, material, bodies[0]->getCollisionObject(), bodies[1]->getCollisionObject());
   if (c.rest_m > 0) setRestGap(point, c.rest_m);
   if (c.bounces) setBounces(point);
   setFrictionDirections(point, c.n_W, motion.velocityAt(c.p_W));
@@ -202,6 +204,7 @@ void ManifoldWriter::write(std::span<const Candidate> contacts,
     manifolds_.push_back(manifold);
   }
   const bool is_custom = wantsAdded(objects_[0], objects_[1]);
+  const PairMaterial material(bodies);
   // Bullet's own algorithms add up to four points again in each step, and keep what others have: so do we,
   // one manifold after the other.
   const std::size_t added_again = used > 0 ? turn_++ % used : 0;
@@ -217,7 +220,7 @@ void ManifoldWriter::write(std::span<const Candidate> contacts,
       manifold.setNumContacts(i + 1);
       const Candidate& c = contacts[first + static_cast<std::size_t>(i)];
       btManifoldPoint& point = manifold.getContactPoint(i);
-      point = makePoint(c, bodies, motion);
+      point = makePoint(c, material, bodies, motion);
       while (old != old_.end() && old->key < c.key()) ++old;  // both are ascending by key
       bool is_kept = false;
       if (old != old_.end() && old->key == c.key()) {
@@ -265,12 +268,13 @@ void ManifoldWriter::end() {
 btManifoldPoint* ManifoldWriter::put(const Candidate& contact,
                                      const btCollisionObjectWrapper* const (&bodies)[2],
                                      const RelativeMotion& motion) {
+  const PairMaterial material(bodies);
   btPersistentManifold* free = nullptr;
   for (btPersistentManifold* manifold : manifolds_) {
     for (int i = 0; i < manifold->getNumContacts(); ++i)
       if (btManifoldPoint& point = manifold->getContactPoint(i); keyOf(point) == contact.key()) {
         const btManifoldPoint old = point;
-        point = makePoint(contact, bodies, motion);
+        point = makePoint(contact, material, bodies, motion);
         copyImpulses(point, old);
         return &point;
       }
@@ -279,7 +283,7 @@ btManifoldPoint* ManifoldWriter::put(const Candidate& contact,
   if (!free) return nullptr;
   const int i = free->getNumContacts();
   free->setNumContacts(i + 1);
-  return &(free->getContactPoint(i) = makePoint(contact, bodies, motion));
+  return &(free->getContactPoint(i) = makePoint(contact, material, bodies, motion));
 }
 
 void reportContacts(std::span<const Candidate> contacts, const btCollisionObjectWrapper* const (&bodies)[2],
@@ -292,8 +296,8 @@ void reportContacts(std::span<const Candidate> contacts, const btCollisionObject
   for (const Candidate& c : contacts) {
     Vec3 on0, on1;
     positions(c, on0, on1);
-    result.setShapeIdentifiersA(c.side == 1 ? c.owner : 0, indexOn(c, 0));
-    result.setShapeIdentifiersB(c.side == 0 ? c.owner : 0, indexOn(c, 1));
+    result.setShapeIdentifiersA(c.surface[0], indexOn(c, 0));
+    result.setShapeIdentifiersB(c.surface[1], indexOn(c, 1));
     result.addContactPoint(toBt(c.n_W), toBt(on1), toBt(c.distance_m));
   }
   result.setPersistentManifold(before);

@@ -9,6 +9,7 @@
 #include "narrowphase/contact_selection.h"
 #include "narrowphase/feature_check.h"
 #include "native_shapes/primitive.h"
+#include "vps_bullet/turn.h"
 
 namespace vps::bullet::inline v0 {
 
@@ -186,9 +187,8 @@ void PairCheck::findMissed(const Pose (&X_WB_end)[2], bool is_first, std::vector
     if (out.size() > had) state_.is_incomplete = true;
   }
   // A plane that is carried along by a body that turns so far says nothing about where the bodies are then.
-  // assumed: 100 rad/s in steps of 1 ms. Sharp features were looked at above, however fast they turn.
-  constexpr double kMaxTurn_rad = 0.1;
-  if (m.travel_m <= m.tolerated_m || m.turn_rad > kMaxTurn_rad) return;
+  // Sharp features were looked at above, however fast they turn.
+  if (m.travel_m <= m.tolerated_m || m.turn_rad > kContactTurn_rad) return;
   const double dt_s = state_.motion.dt_s;
   const Vec3 predicted = dt_s * (selection.V.v + selection.V.w.cross(center_W));
   m.turn_deviation_rad = (turned - dt_s * selection.V.w).norm();

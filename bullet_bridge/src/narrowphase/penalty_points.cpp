@@ -9,7 +9,8 @@
 
 namespace vps::bullet::inline v0 {
 
-void updatePenaltyPoints(PenaltyPair& pair, std::span<const Candidate> candidates, double stiffness_N_per_m3,
+void updatePenaltyPoints(PenaltyPair& pair, std::span<const Candidate> candidates,
+                         const PairMaterial& material, double usual_N_per_m3, int sides,
                          const RelativeMotion& motion, const CandidateMotion& moved) {
   constexpr double kSeparation_m_s = 0.05;  // assumed: bodies that start inside each other separate gently
   const double separation_m = kSeparation_m_s * motion.dt_s;
@@ -27,7 +28,8 @@ void updatePenaltyPoints(PenaltyPair& pair, std::span<const Candidate> candidate
     point.key = c.key();
     point.p_W = c.p_W;
     point.n_W = c.n_W;
-    point.k_N_per_m = stiffness_N_per_m3 * c.area_m2;
+    point.k_N_per_m = material.stiffness_N_per_m3(c, usual_N_per_m3) / sides * c.area_m2;
+    point.mu = material.friction(c);
     double before_m = 0;  // a new point has had no depth
     while (before != old.end() && before->key < point.key) ++before;
     if (before != old.end() && before->key == point.key) {

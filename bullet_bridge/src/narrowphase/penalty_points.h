@@ -4,15 +4,17 @@
 
 #include <span>
 
-#include "narrowphase/contact_candidate.h"
+#include "narrowphase/pair_material.h"
 #include "solver/penalty_pair.h"
 
 namespace vps::bullet::inline v0 {
 
 /// Updates a pair's points from candidates (ascending by key), carried from where they were found to where
 /// the bodies are now; points that stay keep bend, force and tolerated overlap.
-/// @param stiffness_N_per_m3  per area; half of it where both sides' points are queried
-void updatePenaltyPoints(PenaltyPair& pair, std::span<const Candidate> candidates, double stiffness_N_per_m3,
+/// @param usual_N_per_m3  stiffness per area of surfaces that have none of their own
+/// @param sides  how many sides' points are queried: they share the stiffness, since their areas overlap
+void updatePenaltyPoints(PenaltyPair& pair, std::span<const Candidate> candidates,
+                         const PairMaterial& material, double usual_N_per_m3, int sides,
                          const RelativeMotion& motion, const CandidateMotion& moved);
 
 }  // namespace vps::bullet::inline v0

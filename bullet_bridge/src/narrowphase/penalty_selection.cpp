@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Penalty contact: every point that can touch presses.
-#include <BulletCollision/CollisionDispatch/btManifoldResult.h>
-
 #include "narrowphase/contact_selection.h"
 #include "narrowphase/penalty_points.h"
 
@@ -65,10 +63,9 @@ void selectPenalty(const PairView& pair, PairState& state) {
   CandidateMotion moved;
   if (!reusePenaltyPoints(pair, state, moved)) selectPenaltyPoints(pair, state);
   for (int i = 0; i < 2; ++i) state.penalty.object[i] = pair.wrapper[i]->getCollisionObject();
-  state.penalty.mu =
-      btManifoldResult::calculateCombinedFriction(state.penalty.object[0], state.penalty.object[1]);
-  const double stiffness = context.settings.stiffness_N_per_m3 / sideCount(pair, context.settings.sides);
-  updatePenaltyPoints(state.penalty, state.selection.penalty_points, stiffness, state.motion, moved);
+  updatePenaltyPoints(state.penalty, state.selection.penalty_points, PairMaterial(pair.wrapper),
+                      context.settings.stiffness_N_per_m3, sideCount(pair, context.settings.sides),
+                      state.motion, moved);
 }
 
 }  // namespace vps::bullet::inline v0

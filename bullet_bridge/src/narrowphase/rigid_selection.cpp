@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Constraint contact: few points, each a constraint of the solver.
-#include <BulletCollision/CollisionDispatch/btManifoldResult.h>
-
 #include <utility>
 
 #include "narrowphase/contact_selection.h"
 #include "narrowphase/feature_check.h"
+#include "narrowphase/pair_material.h"
 
 namespace vps::bullet::inline v0 {
 
@@ -30,12 +29,11 @@ bool reuseSelection(const PairView& pair, PairState& state) {
 // Contacts that meet within the step. Bullet's own solver then lets the bodies bounce at once: early by less
 // than a step's travel, with the right speed. bullet::Solver solves for the gap, and has restitution.h.
 void markBounces(std::vector<Candidate>& candidates, const RelativeMotion& motion,
-                 const btCollisionObject* object0, const btCollisionObject* object1) {
+                 const PairMaterial& material) {
   constexpr double kThreshold_m_s = 0.2;  // btContactSolverInfo::m_restitutionVelocityThreshold
-  if (!(btManifoldResult::calculateCombinedRestitution(object0, object1) > 0)) return;
   for (Candidate& c : candidates)
-    c.bounces =
-        c.distance_m > 0 && c.predicted_m < 0 && c.predicted_m < c.distance_m - kThreshold_m_s * motion.dt_s;
+    c.bounces = material.restitution(c) > 0 && c.distance_m > 0 && c.predicted_m < 0 &&
+                c.predicted_m < c.distance_m - kThreshold_m_s * motion.dt_s;
 }
 
 }  // namespace
@@ -52,8 +50,7 @@ void selectRigid(const PairView& pair, PairState& state) {
     storeSelection(state.contacts, pair, state.motion, state.selection);
   }
   markSharp(pair, context.settings, state.contacts);
-  markBounces(state.contacts, state.motion, pair.wrapper[0]->getCollisionObject(),
-              pair.wrapper[1]->getCollisionObject());
+  markBounces(state.contacts, state.motion, PairMaterial(pair.wrapper));
 }
 
 }  // namespace vps::bullet::inline v0

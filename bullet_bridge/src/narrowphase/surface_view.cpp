@@ -41,7 +41,9 @@ SurfaceDistance SurfaceView::at(const Vec3& p_M, const Vec3& inward_M, double cu
   for (std::size_t i = 0; i < surfaces_.size(); ++i) {
     const SurfaceDistance d = surfaces_[i].sheet ? atSheet(surfaces_[i], p_M, inward_M, cutoff_m)
                                                  : atSolid(surfaces_[i], p_M, cutoff_m, known_[i]);
-    if (d.distance_m < nearest.distance_m) nearest = d;
+    if (d.distance_m >= nearest.distance_m) continue;
+    nearest = d;
+    nearest.surface = static_cast<std::uint16_t>(i);
   }
   return nearest;
 }

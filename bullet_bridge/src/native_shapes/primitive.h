@@ -12,7 +12,8 @@ namespace vps::bullet::inline v0 {
 struct SurfaceDistance {
   double distance_m = 0;
   Vec3 n = Vec3::Zero();
-  bool is_edge = false;  ///< the nearest point is on a sharp edge or corner
+  bool is_edge = false;       ///< the nearest point is on a sharp edge or corner
+  std::uint16_t surface = 0;  ///< of a Shape: index of the surface that it is from
 };
 
 /// True for plane, box, sphere, capsule, cylinder, cone, multi-sphere (of up to 12 spheres, scaled evenly), a

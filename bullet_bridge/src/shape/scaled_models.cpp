@@ -44,7 +44,7 @@ std::vector<Surface> scaled(const std::vector<Surface>& surfaces, double factor)
   std::vector<Surface> larger;
   for (const Surface& surface : surfaces)
     larger.push_back({std::make_shared<const Solid>(surface.distance->scaled(factor)),
-                      Pose(surface.X_MP.R, factor * surface.X_MP.p), surface.sheet});
+                      Pose(surface.X_MP.R, factor * surface.X_MP.p), surface.sheet, surface.material});
   return larger;
 }
 

@@ -63,6 +63,7 @@ struct PointNormals {
   std::vector<std::uint8_t> is_edge;  // by point
   std::vector<Vec3> smooth_inward;
   std::vector<Shape::PointFace> faces;
+  std::vector<std::uint16_t> surfaces;  // of edge points as well; empty: there is only one
 };
 
 constexpr double kOnSurface_m = 1e-6;
@@ -73,8 +74,9 @@ PointNormals findNormals(const ShapeModels& models) {
       0.99;  // 8 degrees; at an edge of 20 degrees or more the mean normal is 10 degrees or more away
   if (!models.shell || models.surfaces.empty()) return {};
   const std::size_t count = models.shell->size();
-  PointNormals normals{std::vector<std::uint8_t>(count, 1), models.shell->inward,
-                       std::vector<Shape::PointFace>(count)};
+  PointNormals normals{
+      std::vector<std::uint8_t>(count, 1), models.shell->inward, std::vector<Shape::PointFace>(count), {}};
+  if (models.surfaces.size() > 1) normals.surfaces.resize(count);
   for (std::size_t i = 0; i < count; ++i)
     for (std::uint32_t s = 0; s < models.surfaces.size(); ++s) {
       const Surface& surface = models.surfaces[s];
@@ -82,12 +84,15 @@ PointNormals findNormals(const ShapeModels& models) {
       const MeshDistance::Closest closest =
           surface.distance->closest(X_PM * models.shell->points[i], kOnSurface_m);
       if (!closest.found) continue;
+      if (!normals.surfaces.empty() && normals.is_edge[i] != 0)
+        normals.surfaces[i] = static_cast<std::uint16_t>(s);
       const Vec3 outward = -(X_PM.R * models.shell->inward[i]);
       if (outward.dot(surface.distance->featureNormal(closest.triangle, 0)) <= kCosFace) continue;
       normals.is_edge[i] = 0;
       normals.smooth_inward[i] =
           -(surface.X_MP.R * surface.distance->smoothNormal(closest.triangle, closest.q));
       normals.faces[i] = {s, closest.triangle};
+      if (!normals.surfaces.empty()) normals.surfaces[i] = static_cast<std::uint16_t>(s);
     }
   return normals;
 }
@@ -158,6 +163,7 @@ void Shape::use(ShapeModels models, const Pose& X_SM) {
   is_edge_point_ = std::move(normals.is_edge);
   smooth_inward_ = std::move(normals.smooth_inward);
   face_at_ = std::move(normals.faces);
+  surface_at_ = std::move(normals.surfaces);
   edges_ = edgesOf(models_.surfaces);
   features_ = featuresOf(models_.surfaces);
   edges_at_.clear();
@@ -189,6 +195,15 @@ void Shape::use(ShapeModels models, const Pose& X_SM) {
     }
   }
   triangles_ = models_.mesh ? std::make_unique<const TriangleTree>(*models_.mesh, X_SM_) : nullptr;
+}
+
+std::uint16_t Shape::surfaceOfVertex(std::uint32_t vertex) const {
+  std::uint16_t i = 0;
+  for (std::size_t end = 0; i + std::size_t{1} < models_.surfaces.size(); ++i) {
+    end += models_.surfaces[i].distance->mesh().vertices.size();
+    if (vertex < end) break;
+  }
+  return i;
 }
 
 void Shape::getAabb(const btTransform& X_WS, btVector3& min, btVector3& max) const {

@@ -20,6 +20,7 @@ namespace vps::bullet::inline v0 {
 
 struct PenaltyPair;
 class StepChecks;
+struct TurnReports;
 
 /// The pair of penalty points behind each manifold, for the pairs of one installation.
 class PenaltyContacts {
@@ -46,6 +47,7 @@ class PenaltyContacts {
 struct ContactCreateFunction : btCollisionAlgorithmCreateFunc {
   std::shared_ptr<PenaltyContacts> penalty_contacts;
   std::shared_ptr<StepChecks> step_checks;
+  std::shared_ptr<TurnReports> turn_reports;
 };
 
 /// The create function of the installation on this dispatcher, with its stores; null without one.

@@ -51,8 +51,8 @@ PenaltyPair penaltyPairOf(const btPersistentManifold& manifold, double dt_s) {
     point.f_n_N = contact.m_appliedImpulse / dt_s;
     // The impulse acted on body 0, against its displacement.
     point.bend_W = -lateralImpulse(contact) / (dt_s * point.k_N_per_m);
+    point.mu = contact.m_combinedFriction;
     pair.points.push_back(point);
-    pair.mu = std::max<double>(pair.mu, contact.m_combinedFriction);
   }
   return pair;
 }

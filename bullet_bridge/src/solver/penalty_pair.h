@@ -21,6 +21,7 @@ struct PenaltyPoint {
   Vec3 n_W = Vec3::Zero();     ///< unit, from body 1 to body 0
   double gap_m = 0;            ///< now, plus tolerated_m
   double k_N_per_m = 0;        ///< of spring and bristle: stiffness per area times area
+  double mu = 0;               ///< coefficient of friction
   Vec3 bend_W = Vec3::Zero();  ///< of the bristle [m]: displacement of body 0 against body 1
   double f_n_N = 0;            ///< normal force at the end of the last step solved
   bool is_leader = false;      ///< stood for its PointGroup in the last step solved
@@ -33,7 +34,6 @@ struct PenaltyPair {
   bool is_of_manifold = false;   ///< points are in the order of a manifold's contacts
   Mat3 R_W1 = Mat3::Identity();  ///< orientation of body 1 for which bends are given
   std::vector<PenaltyPoint> points;
-  double mu = 0;
   double total_N = 0;     ///< normal force of all points
   double manifold_N = 0;  ///< normal force of the points that are contacts in a manifold
 };

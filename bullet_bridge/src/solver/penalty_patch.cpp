@@ -31,7 +31,7 @@ void PenaltyPatch::build(PenaltyPair& from, const Mat3 (&off_tangent)[2], double
     const PointGroup& group = groups_[i];
     const PenaltyPoint& p = from.points[group.leader];
     const Vec3 r = p.p_W - center;
-    points_[i] = {r, p.n_W, group.k_N_per_m};
+    points_[i] = {r, p.n_W, group.k_N_per_m, p.mu};
     const Vec6 wrench = wrenchOf(r, p.n_W);
     for (int c = 0; c < 6; ++c) wrench_[static_cast<std::size_t>(c)][i] = wrench[c];
     for (int c = 0; c < 3; ++c) {
@@ -40,7 +40,7 @@ void PenaltyPatch::build(PenaltyPair& from, const Mat3 (&off_tangent)[2], double
     }
     gap_m_[i] =
         p.gap_m + p.n_W.dot(off_tangent[0] * (p.p_W - origin[0]) - off_tangent[1] * (p.p_W - origin[1]));
-    limit_N_[i] = from.mu * group.f_n_N;
+    limit_N_[i] = p.mu * group.f_n_N;
     radius2_m2 = std::max(radius2_m2, r.squaredNorm());
   }
   radius_m = std::sqrt(radius2_m2);
@@ -112,7 +112,7 @@ void PenaltyPatch::evaluate(const Vec6& twist, bool with_hessian) {
 void PenaltyPatch::updateLimits(const Vec6& twist, double& change, double& greatest) {
   findGaps(twist);
   for (std::size_t i = 0; i < points_.size(); ++i) {
-    const double limit_N = pair->mu * points_[i].k * std::max(0.0, -end_m_[i]);
+    const double limit_N = points_[i].mu * points_[i].k * std::max(0.0, -end_m_[i]);
     change = std::max(change, std::abs(limit_N - limit_N_[i]));
     greatest = std::max(greatest, limit_N);
     limit_N_[i] = limit_N;

@@ -55,6 +55,7 @@ class PenaltyPatch {
     Vec3 r;  // from the centre
     Vec3 n;
     double k;
+    double mu;
   };
   using Columns = std::array<std::vector<double>, 3>;
   void findGaps(const Vec6& twist) const;

@@ -21,7 +21,7 @@ void forEachGroup(const PenaltyPair& pair, int level, const Visit& visit) {
     std::size_t end = first + 1;
     if (!pair.is_of_manifold && level > 0)
       while (end < points.size() && points[end].key >> level == points[first].key >> level &&
-             points[end].n_W.dot(points[first].n_W) > kSameWay)
+             points[end].mu == points[first].mu && points[end].n_W.dot(points[first].n_W) > kSameWay)
         ++end;
     visit(first, end);
     first = end;

@@ -20,9 +20,9 @@ struct PointGroup {
 };
 
 /// Groups of up to 2^level points with neighbouring ids, which are neighbours in space (PointShell), and with
-/// normals within 45 degrees. The leader is the deepest, or one that led in the last step and is not clearly
-/// less deep: a new leader would be another place to hold by friction, and a part would creep. Level 0: each
-/// point alone. Contacts of a manifold stay alone. O(points).
+/// normals within 45 degrees and the same friction. The leader is the deepest, or one that led in the last
+/// step and is not clearly less deep: a new leader would be another place to hold by friction, and a part
+/// would creep. Level 0: each point alone. Contacts of a manifold stay alone. O(points).
 void groupPoints(const PenaltyPair& pair, int level, std::vector<PointGroup>& groups);
 
 /// Greatest level; a group is then as large as an eighth of a cube's face of 20,000 points.

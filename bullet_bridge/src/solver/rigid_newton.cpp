@@ -20,13 +20,14 @@ constexpr double kShareOfError = 0.1, kFirstError_m_s = 1e-2;
 constexpr int kStepsPerRound = 20;
 
 bool isOfPair(const RigidContact& c, const PenaltyPair& pair) {
-  return c.object[0] == pair.object[0] && c.object[1] == pair.object[1] && c.mu == pair.mu;
+  return c.object[0] == pair.object[0] && c.object[1] == pair.object[1] && c.mu == pair.points.front().mu;
 }
 
 PenaltyPoint penaltyPointOf(const RigidContact& c, double dt_s, double compliance) {
   PenaltyPoint p;
   p.p_W = c.position_W();
   p.n_W = c.normal_W();
+  p.mu = c.mu;
   p.k_N_per_m = 1 / (compliance * c.normal.W * dt_s * dt_s);
   p.f_n_N = c.p_n / dt_s;
   p.gap_m = -c.target_m_s * dt_s - p.f_n_N / p.k_N_per_m;
@@ -44,7 +45,6 @@ void RigidNewton::setPenaltyPoints(std::span<const RigidContact> contacts, doubl
       if (pair_count_ == pairs_.size()) pairs_.emplace_back();
       PenaltyPair& pair = pairs_[pair_count_++];
       for (int i = 0; i < 2; ++i) pair.object[i] = c.object[i];
-      pair.mu = c.mu;
       pair.points.clear();
     }
     pairs_[pair_count_ - 1].points.push_back(penaltyPointOf(c, dt_s, compliance_));

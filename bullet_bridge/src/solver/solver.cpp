@@ -32,6 +32,7 @@
 #include "solver/rigid_admm.h"
 #include "solver/rigid_newton.h"
 #include "solver/step_check.h"
+#include "solver/turn_check.h"
 #include "vps_bullet/convert.h"
 #include "vps_bullet/coupling.h"
 
@@ -378,6 +379,7 @@ btScalar Solver::solveGroup(btCollisionObject** bodies, int body_count, btPersis
   Work& work = *work_;
   const ContactCreateFunction* stores = contactFunctionOf(dispatcher);
   if (stores) stores->penalty_contacts->setHasSolver();
+  if (stores) reportClampedTurn(*stores->turn_reports, spanOf(bodies, body_count), dt_s);
   if (!work.gatherBodies(spanOf(bodies, body_count), dt_s) ||
       !work.gatherContacts(spanOf(manifolds, manifold_count), stores, info))
     return btSequentialImpulseConstraintSolver::solveGroup(

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "vps/coupling_law.h"
 #include "vps/query.h"
@@ -30,8 +31,17 @@ struct LocalPart {
   double mass_kg = 0;             ///< > 0
   Mat3 inertia_G = Mat3::Zero();  ///< about G, in G [kg m^2], positive
   Vec3 gravity_W = Vec3::Zero();
-  double friction = 0;
-  double k_N_per_m3 = 1e12;  ///< contact stiffness per area
+  /// Of contacts with one part of the map.
+  struct Material {
+    double friction = 0;       ///< coefficient between both parts
+    double k_N_per_m3 = 1e12;  ///< contact stiffness per area
+  };
+  Material material;               ///< of parts that are not in `of_owner`
+  std::vector<Material> of_owner;  ///< by the map's owner (Contact::owner)
+
+  [[nodiscard]] const Material& materialAt(const Contact& contact) const noexcept {
+    return contact.owner < of_owner.size() ? of_owner[contact.owner] : material;
+  }
 };
 
 /// One thread at a time; take() and letGo() only while the loop is stopped. follow() never throws, allocates

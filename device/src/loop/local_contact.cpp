@@ -48,7 +48,8 @@ std::size_t addContacts(const LocalPart& part, const ContactSet& near, std::size
     const Contact& contact = near.contacts[i];
     const Vec3 n_W = part.X_WM.R * contact.n_M;
     const Vec3 r_W = part.X_WM * contact.p_M - p_WG;
-    const double k_N_per_m = part.k_N_per_m3 * contact.area_m2 * static_cast<double>(stride);
+    const LocalPart::Material& material = part.materialAt(contact);
+    const double k_N_per_m = material.k_N_per_m3 * contact.area_m2 * static_cast<double>(stride);
     Vec6 J;
     J << r_W.cross(n_W), n_W;
     const double gap_m = contact.distance_m + dt_s * J.dot(V);
@@ -56,11 +57,11 @@ std::size_t addContacts(const LocalPart& part, const ContactSet& near, std::size
     ++touching;
     system.A.noalias() += (dt_s * dt_s * k_N_per_m) * J * J.transpose();
     system.b -= (dt_s * k_N_per_m * contact.distance_m) * J;
-    if (part.friction <= 0) continue;
+    if (material.friction <= 0) continue;
     Eigen::Matrix<double, 3, 6> slide;
     slide << -crossMatrix(r_W), Mat3::Identity();
     slide -= n_W * (n_W.transpose() * slide);
-    const double limit_Ns = dt_s * part.friction * k_N_per_m * -gap_m;
+    const double limit_Ns = dt_s * material.friction * k_N_per_m * -gap_m;
     system.A.noalias() +=
         frictionDamping(limit_Ns, (slide * V).norm(), kCreep_m_s) * slide.transpose() * slide;
   }

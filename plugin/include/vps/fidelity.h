@@ -41,6 +41,8 @@ struct Fidelity {
   int contact_limit = 32;  ///< of each pair, given to the solver; checks of solved steps add up to 16
   double haptic_rate_hz = 1000;
   double physics_rate_hz = 1000;
+  /// Parts of equal length of each physics step. 0: in each step as many as the bodies' rotation needs.
+  int substeps = 1;
   int solver_iterations = 100;
   ContactMethod contact_method = ContactMethod::Constraint;
 };

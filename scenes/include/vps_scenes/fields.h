@@ -48,6 +48,7 @@ struct FieldTraits {
   int since = 1;                       ///< version of the scene archive that first holds the setting
   std::string_view type = {};          ///< for the documentation, where the member's type does not tell
   std::string_view default_text = {};  ///< for the documentation, where the struct's default does not tell
+  std::string_view zero_word = {};     ///< of an integer: what a scene file writes for 0
 };
 
 /// One setting or one reported number.

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "vps/wrench.h"
+#include "vps_scenes/export.h"
 #include "vps_scenes/snapshot.h"
 #include "vps_scenes/verdict.h"
 
@@ -125,6 +126,19 @@ struct EnergyLedger {
   double quantisation_error_bound_J = 0;  ///< of injected_J, by the encoders' resolution
 };
 
+/// A part that turned farther in a step than the step can hold: contacts that turn by more than 0.1 rad
+/// against each other miss teeth and corners, and Bullet turns no body by more than 45 degrees.
+struct FastTurn {
+  std::string part;
+  bool is_in_contact = false;  ///< the rotation is that against what it touches
+  double w_rad_s = 0;          ///< the greatest of the run, by what it needs
+  double turn_rad = 0;         ///< at that speed in a step, or in a part of a step (Fidelity::substeps)
+  double limit_rad = 0;        ///< greatest turn that is held
+  double needed_hz = 0;        ///< Fidelity::physics_rate_hz that would hold it, without substeps
+};
+/// "'shaft' turns with 10000 rpm, ...", with the remedy.
+VPS_SCENES_API std::string inWords(const FastTurn& turn);
+
 struct ModelledCost {
   std::size_t voxmaps = 0, pointshells = 0;
   std::size_t points = 0;        ///< of the parts' own pointshells
@@ -204,6 +218,7 @@ struct AssembleResult {
   EnergyLedger energy;
   ModelledCost modelled;              ///< at its maximum, with the fixed field
   int widened = 0;                    ///< times a part left its region, so that more was modelled
+  std::vector<FastTurn> fast_turns;   ///< one for each part that turned too fast for its steps
   std::size_t contacts_left_out = 0;  ///< near points beyond a query's limit; 0 unless a limit was set
   double simulated_s = 0, build_wall_s = 0, run_wall_s = 0;
 };

@@ -63,10 +63,11 @@ inline constexpr auto kStepFields = std::make_tuple(
     field("failure_reason", &StepResult::failure_reason, "empty when completed"),
     field("start_s", &StepResult::start_s, "simulated time at which the step began"),
     field("duration_s", &StepResult::duration_s, "simulated time that it took"),
-    field("max_penetration_m", &StepResult::max_penetration_m,
-          "deepest penetration over the step and the rest after it, by exact distance along all sharp edges, "
-          "at the vertices of curved faces and at the shells' points on faces, at every 200th pose and the "
-          "fifty with the deepest contacts; also of passages between samples that are more than 0.1 mm apart"),
+    field(
+        "max_penetration_m", &StepResult::max_penetration_m,
+        "deepest penetration over the step and the rest after it, by exact distance along all sharp edges, "
+        "at the vertices of curved faces and at the shells' points on faces, at every 200th pose and the "
+        "fifty with the deepest contacts; also of passages between samples that are more than 0.1 mm apart"),
     field("penetration_limit_m", &StepResult::penetration_limit_m,
           "min(10 um, clearance / 4); of a part that is taken off, beyond the overlap as drawn"),
     field("deepest_against", &StepResult::deepest_against, "name of the part that was penetrated deepest"),
@@ -132,6 +133,17 @@ inline constexpr auto kEnergyFields = std::make_tuple(
     field("quantisation_error_bound_J", &EnergyLedger::quantisation_error_bound_J,
           "bound of the error of `injected_J` by the encoders' resolution"));
 static_assert(coversAllMembers<EnergyLedger>(kEnergyFields));
+
+/// Of a part that turned farther in a step than the step can hold.
+inline constexpr auto kFastTurnFields = std::make_tuple(
+    field("part", &FastTurn::part, "name of the part"),
+    field("in_contact", &FastTurn::is_in_contact, "the rotation is that against what it touches"),
+    field("angular_velocity_rad_s", &FastTurn::w_rad_s, "its rotation where it needs the shortest step"),
+    field("turn_rad", &FastTurn::turn_rad, "its turn in a step, or in a part of one (`substeps`)"),
+    field("limit_rad", &FastTurn::limit_rad,
+          "greatest turn that is held: 0.1 between bodies in contact, else that of Bullet"),
+    field("needed_hz", &FastTurn::needed_hz, "`physics_rate_hz` that would hold it, without `substeps`"));
+static_assert(coversAllMembers<FastTurn>(kFastTurnFields));
 
 inline constexpr auto kModelledFields =
     std::make_tuple(field("voxmaps", &ModelledCost::voxmaps, "number of voxmaps"),
@@ -200,6 +212,7 @@ inline constexpr auto kAssembleFields = std::make_tuple(
           "near points that found no room in a query; 0 unless a limit was set"),
     field("simulated_s", &AssembleResult::simulated_s, "simulated time"),
     list("steps", &AssembleResult::steps, std::tuple_cat(kStepFields, kStepLists)),
+    list("fast_turns", &AssembleResult::fast_turns, kFastTurnFields),
     list("tries", &AssembleResult::tries, kTryFields),
     field("ease_of_assembly", &AssembleResult::ease_share,
           "share of the tries in which every part was brought home; null for a single run"),

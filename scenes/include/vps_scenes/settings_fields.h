@@ -51,10 +51,10 @@ inline constexpr auto kMaterialFields = std::make_tuple(
     field("friction", &Material::friction,
           "Coulomb coefficient of the material on itself; two materials have the geometric mean of theirs",
           {.range = kNotNegative}),
-    field("restitution", &Material::restitution, "0 inelastic to 1 elastic",
+    field("restitution", &Material::restitution,
+          "0 inelastic to 1 elastic; two parts have the product of theirs",
           {.range = {.min = 0, .max = 1}, .type = "0 to 1"}),
-    field("stiffness", &Material::stiffness_N_per_m3,
-          "penalty stiffness per area; the least of all parts applies to all contacts",
+    field("stiffness", &Material::stiffness_N_per_m3, "penalty stiffness per area; of two parts the lesser",
           {.range = kPositive, .type = "N/m^3"}));
 static_assert(coversAllMembers<Material>(kMaterialFields));
 
@@ -233,6 +233,10 @@ inline constexpr auto kFidelityFields = std::make_tuple(
           {.range = {.min = 4, .max = kCount.max}}),
     field("haptic_rate_hz", &Fidelity::haptic_rate_hz, "rate of the haptic loop", {.range = kRate_Hz}),
     field("physics_rate_hz", &Fidelity::physics_rate_hz, "rate of the physics steps", {.range = kRate_Hz}),
+    field("substeps", &Fidelity::substeps,
+          "each physics step is divided into so many; `\"auto\"`: into as many as keep what turns right, "
+          "see below",
+          {.range = {.min = 0, .max = 1e4}, .since = 8, .type = "number or `\"auto\"`", .zero_word = "auto"}),
     field("solver_iterations", &Fidelity::solver_iterations, "iterations of the contact solver in a step",
           {.range = kCount}),
     field(

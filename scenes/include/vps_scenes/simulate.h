@@ -82,7 +82,9 @@ struct SimulateResult {
   /// How often bodies in contact were stopped within a step, because no contact force was found that keeps
   /// their sharp edges and corners apart for the whole step. Each takes energy.
   std::size_t shortened_steps = 0;
-  TickTimes step, contact_step;  ///< of all steps; of those with contact
+  std::vector<FastTurn> fast_turns;  ///< one for each part that turned too fast for its steps
+  int most_substeps = 1;             ///< greatest number of parts of a step
+  TickTimes step, contact_step;      ///< of all steps; of those with contact
   ModelledCost modelled;
   double build_wall_s = 0;
   struct RealTime {

@@ -6,6 +6,7 @@
 #include "core/wall_clock.h"
 #include "models/scene_models.h"
 #include "vps/box.h"
+#include "vps/friction.h"
 #include "vps/shell_crop.h"
 #include "vps/voxmap_crop.h"
 
@@ -67,6 +68,16 @@ std::shared_ptr<const Mesh> meshOf(const FieldOrder& order) {
 
 }  // namespace
 
+bullet::SurfaceMaterial surfaceMaterial(const Material& material) {
+  return {frictionFactor(material.friction), material.restitution, material.stiffness_N_per_m3};
+}
+
+bullet::ShapeModels shapeModels(const PartModel& model) {
+  bullet::ShapeModels models = bullet::makeModels(model);
+  for (bullet::Surface& surface : models.surfaces) surface.material = surfaceMaterial(model.material);
+  return models;
+}
+
 std::size_t CookedField::memoryBytes(const std::vector<std::shared_ptr<const VoxMap>>& own) const {
   if (!shape) return 0;
   const bullet::ShapeModels& models = shape->models();
@@ -88,7 +99,8 @@ CookedField cookField(const FieldOrder& order) {
   if (order.has_mesh) models.mesh = meshOf(order);
   for (const FieldPart& part : order.parts) {
     field.parts.push_back(part.placed);
-    models.surfaces.push_back({part.model->solid, part.placed.X_WP});
+    models.surfaces.push_back(
+        {part.model->solid, part.placed.X_WP, nullptr, surfaceMaterial(part.model->material)});
   }
   field.shape = std::make_unique<bullet::Shape>(std::move(models));
   field.wall_s = wallSeconds() - begun_s;

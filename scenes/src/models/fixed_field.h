@@ -14,6 +14,13 @@
 
 namespace vps::scenes::inline v0 {
 
+/// What contacts with a part of this material take from it. Bullet multiplies the two bodies' values: with
+/// square roots the product of friction is the geometric mean, so that two parts of 0.15 have 0.15 between
+/// them, as in tables of friction.
+bullet::SurfaceMaterial surfaceMaterial(const Material& material);
+/// The models of a moving part, with its material.
+bullet::ShapeModels shapeModels(const PartModel& model);
+
 /// A part in place.
 struct FixedPart {
   std::size_t part = 0;

@@ -79,7 +79,7 @@ ResampledShells resampleShells(ResampleOrder order, std::shared_ptr<const ShellS
   if (before_m && after_m) out.misread_m = *after_m - *before_m;
 
   out.part = order.part;
-  out.shape = std::make_unique<bullet::Shape>(bullet::makeModels(*order.model), order.X_SM);
+  out.shape = std::make_unique<bullet::Shape>(shapeModels(*order.model), order.X_SM);
   out.shells = std::move(shells);
   return out;
 }

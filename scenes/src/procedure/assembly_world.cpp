@@ -209,8 +209,8 @@ void AssemblyWorld::startLocalContact() {
   part.mass_kg = simulation_.mass(moving.part);
   part.inertia_G = simulation_.inertia(moving.part);
   part.gravity_W = scene_.gravity_W;
-  part.friction = simulation_.friction(moving.part);
-  part.k_N_per_m3 = scene_.parts[moving.part].part.material.stiffness_N_per_m3;
+  for (const Simulation::FieldContact& contact : simulation_.fieldContacts(moving.part))
+    part.of_owner.push_back({contact.friction, contact.stiffness_N_per_m3});
   local_.take(part);
 }
 
@@ -383,6 +383,7 @@ void AssemblyWorld::summarise(AssembleResult& result) const {
   result.energy = {energy.to_hand_J, energy.from_hand_J, energy.injected_J,
                    energy.quantisation_error_bound_J};
   result.contacts_left_out = simulation_.contactsLeftOut();
+  result.fast_turns = simulation_.fastTurns();
   result.modelled = placed_.modelled();
   result.widened = placed_.widened();
   const device::LocalContact::Report& local = local_.report();

@@ -44,7 +44,7 @@ void cookSteps(const Scene& scene, const ModelPlan& plan, const ModelOptions& op
       step.is_cooked = true;
       step.cook_wall_s = field.wall_s;
       cost.cook_wall_s += field.wall_s;
-      simulation.setField(std::move(field), parts.front().part);
+      simulation.setField(std::move(field));
     }
     ModelledCost with_field = own;
     simulation.addField(with_field);

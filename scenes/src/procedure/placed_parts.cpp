@@ -62,7 +62,7 @@ std::optional<FieldOrder> PlacedParts::orderFor(std::size_t step, bool rebuilds)
 
 void PlacedParts::setField(CookedField field) {
   if (!field.shape) return simulation_.clearField();
-  simulation_.setField(std::move(field), placed_.front().part);
+  simulation_.setField(std::move(field));
   ModelledCost cost = modelledCost(scene_);
   simulation_.addField(cost);
   if (cost.bytes > modelled_.bytes) modelled_ = cost;

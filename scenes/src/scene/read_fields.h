@@ -72,6 +72,12 @@ template <class Integer>
 requires std::integral<Integer>
 bool readValue(const SceneKeys& keys, std::string_view key, const FieldTraits& traits, Integer& out) {
   std::int64_t value = 0;
+  if (!traits.zero_word.empty() && keys.isText(key)) {
+    std::size_t zero = 0;
+    keys.word(key, {std::string(traits.zero_word)}, zero);
+    out = 0;
+    return true;
+  }
   if (!keys.integer(key, value, traits.range)) return false;
   out = static_cast<Integer>(value);
   return true;

@@ -38,7 +38,8 @@ std::string tomlValue(const FieldTraits& traits, const std::optional<double>& va
   return tomlValue(traits, value.value_or(0));
 }
 template <class T>
-std::string tomlValue(const FieldTraits&, const T& value) {
+std::string tomlValue(const FieldTraits& traits, const T& value) {
+  if (!traits.zero_word.empty() && value == T{}) return tomlText(std::string(traits.zero_word));
   if constexpr (std::is_enum_v<T>)
     return tomlText(toText(value));
   else

@@ -24,7 +24,7 @@ void cookFixed(const Scene& scene, const ModelPlan& plan, Simulation& simulation
   for (const std::size_t i : step.cooked) {
     fixed.push_back({i, scene.parts[i].X_WP});
     if (plan.models_everything || i == step.cooked.back())
-      simulation.setField(cookField(simulation.orderField(fixed, step)), fixed.front().part);
+      simulation.setField(cookField(simulation.orderField(fixed, step)));
   }
 }
 
@@ -135,6 +135,8 @@ SimulateResult simulateAsDrawn(Scene& scene, double seconds, const SimulateOptio
   }
   result.kinetic_energy_J = simulation.kineticEnergy();
   result.shortened_steps = simulation.shortenedSteps();
+  result.fast_turns = simulation.fastTurns();
+  result.most_substeps = simulation.mostSubsteps();
   result.step = all.summary();
   result.contact_step = in_contact.summary();
   result.modelled = modelledCost(scene);

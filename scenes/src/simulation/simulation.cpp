@@ -16,6 +16,7 @@
 #include "vps_bullet/install.h"
 #include "vps_bullet/shape.h"
 #include "vps_bullet/solver.h"
+#include "vps_bullet/turn.h"
 #include "vps_scenes/part_mass.h"
 
 namespace vps::scenes::inline v0 {
@@ -32,14 +33,10 @@ bullet::Settings bulletSettings(const Scene& scene) {
   const Fidelity& fidelity = scene.fidelity;
   bullet::Settings settings;
   settings.contact_method = fidelity.contact_method;
-  for (std::size_t i = 0; i < scene.parts.size(); ++i) {
-    const double stiffness = scene.parts[i].part.material.stiffness_N_per_m3;
-    // The bridge takes one stiffness for all pairs; the softest part deforms most.
-    if (i == 0 || stiffness < settings.stiffness_N_per_m3) settings.stiffness_N_per_m3 = stiffness;
-  }
   settings.contact_limit = fidelity.contact_limit;
   settings.sides = fidelity.sides;
   settings.gradient = fidelity.gradient;
+  settings.warns_of_turns = false;  // fastTurns() names the parts
   return settings;
 }
 
@@ -48,6 +45,22 @@ bullet::SolverSettings solverSettings(const Fidelity& fidelity) {
   settings.iteration_limit = fidelity.solver_iterations;
   return settings;
 }
+
+/// The greatest turns of bodies that turn too far in a step.
+class Turns {
+ public:
+  /// @param dt_s  of the step
+  void add(const bullet::BodyTurn& turn, double dt_s) {
+    if (!(turn.w_rad_s * dt_s > turn.limit_rad())) return;
+    FastTurn& known = by_part_[static_cast<std::size_t>(turn.body->getUserIndex())];
+    if (!(turn.rate_hz() > known.needed_hz)) return;
+    known = {"", turn.is_in_contact, turn.w_rad_s, turn.w_rad_s * dt_s, turn.limit_rad(), turn.rate_hz()};
+  }
+  [[nodiscard]] const std::map<std::size_t, FastTurn>& byPart() const { return by_part_; }
+
+ private:
+  std::map<std::size_t, FastTurn> by_part_;
+};
 
 }  // namespace
 
@@ -62,12 +75,18 @@ struct Simulation::World {
 
   std::map<std::size_t, DynamicBody> bodies;
   std::shared_ptr<const ShellSet> shells;  // these replace the parts' own; null: none
-  double dt_s;                             // of the last step
+  double dt_s;                             // of the last step, or part of one
+  Turns turns;
+  std::vector<bullet::BodyTurn> found;  // scratch
+  int most_substeps = 1;
   CookedField field;
   std::unique_ptr<btRigidBody> fixed_body;
   std::unique_ptr<bullet::CouplingConstraint> coupling;
   std::size_t grasped = 0;
   Pose X_PG;
+  std::optional<CouplingState> target,
+      next_target;  // of the proxy, at the end of the last step and of the next
+  Wrench push_G_W;  // for the coming step
 
   World(const Scene& s, const ModelPlan& p)
       : scene(s), plan(p), solver(solverSettings(s.fidelity)), dt_s(1 / s.fidelity.physics_rate_hz) {
@@ -89,9 +108,37 @@ struct Simulation::World {
   }
 
   void uncouple() {
+    target.reset();
+    next_target.reset();
+    push_G_W = {};
     if (!coupling) return;
     world.removeConstraint(coupling.get());
     coupling.reset();
+  }
+
+  /// The coupling's target at the end of the next part of a step; the proxy moves evenly.
+  /// @param share  of the step at that part's end
+  void aimCoupling(double share) {
+    if (!coupling || !next_target) return;
+    CouplingState at = *next_target;
+    if (target && share < 1) at.X_W = interpolate(target->X_W, at.X_W, share);
+    coupling->setTarget(at);
+  }
+
+  /// Bullet forgets forces after each of its steps.
+  void applyPush() {
+    if (!coupling || (push_G_W.f.isZero(0) && push_G_W.tau.isZero(0))) return;
+    const DynamicBody& held = bodies.at(grasped);
+    const Pose X_WP = bullet::fromBt(held.body->getWorldTransform()) * held.frame.X_PB.inverse();
+    const Vec3 p_BG_W = X_WP * X_PG.p - X_WP * held.frame.X_PB.p;
+    held.body->applyCentralForce(bullet::toBt(push_G_W.f));
+    held.body->applyTorque(bullet::toBt(Vec3(push_G_W.tau + p_BG_W.cross(push_G_W.f))));
+  }
+
+  void noteTurns() {
+    found.clear();
+    bullet::findTurns(world, found);
+    for (const bullet::BodyTurn& turn : found) turns.add(turn, dt_s);
   }
 
   void remove(std::size_t part) {
@@ -100,14 +147,6 @@ struct Simulation::World {
     if (coupling && grasped == part) uncouple();
     world.removeRigidBody(found->second.body.get());
     bodies.erase(found);
-  }
-
-  void setMaterial(btRigidBody& body, std::size_t part) const {
-    const Material& material = scene.parts[part].part.material;
-    // Bullet multiplies the two bodies' values. With square roots the product is the geometric mean, so that
-    // two parts of 0.15 have 0.15 between them, as in tables of friction.
-    body.setFriction(static_cast<btScalar>(frictionFactor(material.friction)));
-    body.setRestitution(static_cast<btScalar>(material.restitution));
   }
 };
 
@@ -145,14 +184,13 @@ void Simulation::clearField() {
   w.field = {};
 }
 
-void Simulation::setField(CookedField field, std::size_t material) {
+void Simulation::setField(CookedField field) {
   World& w = *world_;
   for (const FixedPart& placed : field.parts) w.remove(placed.part);
   clearField();
   w.field = std::move(field);
   w.fixed_body = std::make_unique<btRigidBody>(
       btRigidBody::btRigidBodyConstructionInfo(0, nullptr, w.field.shape.get()));
-  w.setMaterial(*w.fixed_body, material);
   w.world.addRigidBody(w.fixed_body.get());
 }
 
@@ -213,15 +251,14 @@ double Simulation::addBody(std::size_t part, const Pose& X_WP, double most_kg) {
   const double own_kg = density_kg_m3 * mass.volume_m3;
   added.frame =
       bullet::makeBodyFrame(mass, own_kg > most_kg ? density_kg_m3 * (most_kg / own_kg) : density_kg_m3);
-  added.shape =
-      std::make_unique<bullet::Shape>(bullet::makeModels(*w.modelOf(part)), added.frame.X_PB.inverse());
+  added.shape = std::make_unique<bullet::Shape>(shapeModels(*w.modelOf(part)), added.frame.X_PB.inverse());
   added.body = std::make_unique<btRigidBody>(
       btRigidBody::btRigidBodyConstructionInfo(static_cast<btScalar>(added.frame.mass_kg), nullptr,
                                                added.shape.get(), bullet::toBt(added.frame.inertia_kg_m2)));
   added.body->setWorldTransform(bullet::toBt(X_WP * added.frame.X_PB));
   added.body->setInterpolationWorldTransform(added.body->getWorldTransform());
   added.body->setActivationState(DISABLE_DEACTIVATION);
-  w.setMaterial(*added.body, part);
+  added.body->setUserIndex(static_cast<int>(part));
   w.world.addRigidBody(added.body.get());
   w.bodies.emplace(part, std::move(added));
   return own_kg;
@@ -268,15 +305,12 @@ void Simulation::setGains(const CouplingGains& gains) {
 
 void Simulation::push(const Wrench& F_G_W) {
   if (!world_->coupling) return;
-  const DynamicBody& held = world_->bodies.at(world_->grasped);
-  const Pose X_WP = pose(world_->grasped);
-  const Vec3 p_BG_W = X_WP * world_->X_PG.p - X_WP * held.frame.X_PB.p;
-  held.body->applyCentralForce(bullet::toBt(F_G_W.f));
-  held.body->applyTorque(bullet::toBt(Vec3(F_G_W.tau + p_BG_W.cross(F_G_W.f))));
+  world_->push_G_W.f += F_G_W.f;
+  world_->push_G_W.tau += F_G_W.tau;
 }
 
 void Simulation::setProxy(const CouplingState& proxy) {
-  if (world_->coupling) world_->coupling->setTarget(proxy);
+  if (world_->coupling) world_->next_target = proxy;
 }
 
 CouplingState Simulation::graspState() const {
@@ -284,10 +318,22 @@ CouplingState Simulation::graspState() const {
 }
 
 void Simulation::step(double dt_s) {
-  world_->dt_s = dt_s;
-  // No sub-steps: each call is exactly one step of dt_s, so that a run is a fixed sequence.
-  world_->world.stepSimulation(static_cast<btScalar>(dt_s), 0);
-  for (const auto& [part, b] : world_->bodies)
+  World& w = *world_;
+  constexpr int kMost = 10'000;  // as of the setting
+  const int set = w.scene.fidelity.substeps;
+  const int parts = set > 0 ? set : bullet::substepsFor(w.world, dt_s, kMost);
+  w.most_substeps = std::max(w.most_substeps, parts);
+  w.dt_s = dt_s / parts;
+  for (int k = 1; k <= parts; ++k) {
+    w.aimCoupling(static_cast<double>(k) / parts);
+    w.applyPush();
+    // No sub-steps of Bullet's: each call is exactly one step, so that a run is a fixed sequence.
+    w.world.stepSimulation(static_cast<btScalar>(w.dt_s), 0);
+    w.noteTurns();
+  }
+  if (w.next_target) w.target = w.next_target;
+  w.push_G_W = {};
+  for (const auto& [part, b] : w.bodies)
     if (!bullet::fromBt(b.body->getWorldTransform()).isFinite())
       throw LoadError(world_->scene.file, world_->scene.parts[part].part.name,
                       "its pose is not finite any more; check its mass and size, or choose a finer fidelity");
@@ -338,10 +384,15 @@ Mat3 Simulation::inertia(std::size_t part) const {
   return frame.X_PB.R * frame.inertia_kg_m2.asDiagonal() * frame.X_PB.R.transpose();
 }
 
-double Simulation::friction(std::size_t part) const {
-  const World& w = *world_;
-  const double fixed = w.fixed_body ? static_cast<double>(w.fixed_body->getFriction()) : 0;
-  return fixed * static_cast<double>(w.bodies.at(part).body->getFriction());
+std::vector<Simulation::FieldContact> Simulation::fieldContacts(std::size_t part) const {
+  const Material& own = world_->scene.parts[part].part.material;
+  std::vector<FieldContact> contacts;
+  for (const FixedPart& placed : world_->field.parts) {
+    const Material& fixed = world_->scene.parts[placed.part].part.material;
+    contacts.push_back({combinedFriction(own.friction, fixed.friction),
+                        std::min(own.stiffness_N_per_m3, fixed.stiffness_N_per_m3)});
+  }
+  return contacts;
 }
 
 const VoxMap* Simulation::fixedMap() const {
@@ -415,6 +466,19 @@ std::size_t Simulation::contactsLeftOut() const {
 
 std::size_t Simulation::shortenedSteps() const {
   return world_->solver.shortenedSteps();
+}
+
+std::vector<FastTurn> Simulation::fastTurns() const {
+  std::vector<FastTurn> turns;
+  for (const auto& [part, turn] : world_->turns.byPart()) {
+    turns.push_back(turn);
+    turns.back().part = world_->scene.parts[part].part.name;
+  }
+  return turns;
+}
+
+int Simulation::mostSubsteps() const {
+  return world_->most_substeps;
 }
 
 void Simulation::addField(ModelledCost& cost) const {

@@ -39,9 +39,9 @@ class Simulation {
   /// first of them, in this order, and nothing else, the new map is built on its map, unless `rebuilds`.
   FieldOrder orderField(const std::vector<FixedPart>& parts, const FieldPlan& step, bool rebuilds = false);
   /// Replaces the field between two steps. The field's parts are no longer bodies of their own. O(1) except
-  /// for freeing. The field is one Bullet body with one friction: that of part `material`, usually the
-  /// housing.
-  void setField(CookedField field, std::size_t material);
+  /// for freeing. The field is one Bullet body; contacts with it have the material of the part that they
+  /// touch.
+  void setField(CookedField field);
   /// Removes the field between two steps.
   void clearField();
   /// The field in place; it has no parts if nothing is fixed.
@@ -81,6 +81,7 @@ class Simulation {
   /// The part's grasp frame now, to which the haptic loop couples.
   [[nodiscard]] CouplingState graspState() const;
 
+  /// In as many parts of equal length as Fidelity::substeps says. The proxy moves evenly from part to part.
   /// Throws LoadError naming the part whose pose is not finite any more.
   void step(double dt_s);
 
@@ -93,8 +94,12 @@ class Simulation {
   [[nodiscard]] double mass(std::size_t part) const;
   /// About the centre of mass, in the part's frame [kg m^2].
   [[nodiscard]] Mat3 inertia(std::size_t part) const;
-  /// Friction coefficient between the part and the fixed field.
-  [[nodiscard]] double friction(std::size_t part) const;
+  /// Of contacts between the part and each part of the field, in the field's order.
+  struct FieldContact {
+    double friction = 0;  ///< coefficient
+    double stiffness_N_per_m3 = 0;
+  };
+  [[nodiscard]] std::vector<FieldContact> fieldContacts(std::size_t part) const;
   /// The cooked field, in W, valid until the next setField(); null if nothing is fixed.
   [[nodiscard]] const VoxMap* fixedMap() const;
   /// Centre of mass in the part's frame.
@@ -108,6 +113,10 @@ class Simulation {
   [[nodiscard]] std::size_t contactsLeftOut() const;
   /// How often bodies were stopped within a step so far, see bullet::Solver.
   [[nodiscard]] std::size_t shortenedSteps() const;
+  /// Parts that turned farther in a step, or part of one, than it can hold; one entry for each, by part.
+  [[nodiscard]] std::vector<FastTurn> fastTurns() const;
+  /// Greatest number of parts of a step so far.
+  [[nodiscard]] int mostSubsteps() const;
   /// Adds the field's map and points, without what it shares with the parts' own models.
   void addField(ModelledCost& cost) const;
 

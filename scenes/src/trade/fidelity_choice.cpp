@@ -224,7 +224,8 @@ std::string tomlValue(double value, const FieldTraits& traits) {
     std::snprintf(text, sizeof text, "%.6g", value);
   return text;
 }
-std::string tomlValue(int value, const FieldTraits&) {
+std::string tomlValue(int value, const FieldTraits& traits) {
+  if (value == 0 && !traits.zero_word.empty()) return "\"" + std::string(traits.zero_word) + "\"";
   return std::to_string(value);
 }
 template <class Enum>

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How far bodies turn in a step, what is said of it, and into how many steps a time must be divided.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "bullet_bridge/world.h"
+#include "vps_bullet/log.h"
+#include "vps_bullet/turn.h"
+
+namespace vps::bullet {
+namespace {
+
+using test::Built;
+using test::SolverKind;
+using test::World;
+
+/// Keeps the messages of its lifetime.
+class Messages {
+ public:
+  Messages() {
+    setLogHook([this](LogLevel, const std::string& words) { all_.push_back(words); });
+  }
+  ~Messages() { setLogHook({}); }
+  Messages(const Messages&) = delete;
+  Messages& operator=(const Messages&) = delete;
+  [[nodiscard]] long count(const std::string& words) const {
+    return std::count_if(all_.begin(), all_.end(),
+                         [&](const std::string& each) { return each.find(words) != std::string::npos; });
+  }
+
+ private:
+  std::vector<std::string> all_;
+};
+
+const Built& disc() {
+  static const Built built = test::build(makeCylinder(0.01, 0.005, 48), 7850, 0.5e-3, 1e-3);
+  return built;
+}
+
+/// A disc that turns about its axis, on a plate or far from all.
+struct SpinningDisc {
+  World world;
+  btRigidBody* body = nullptr;
+
+  SpinningDisc(double w_rad_s, bool is_on_plate, const Settings& settings = {})
+      : world(SolverKind::Constraint, settings) {
+    static const Built ground = test::plate();
+    world.add(ground, Pose::translation({0, 0, -0.005}), true, 0);
+    body = &world.add(disc(), Pose::translation({0, 0, is_on_plate ? 0.0025 : 1.0}), false, 0);
+    body->setAngularVelocity({0, 0, toBt(w_rad_s)});
+  }
+};
+
+const char* const kClamped = "turns no body by more than";
+const char* const kInContact = "touch and turn against each other";
+
+TEST(Turn, ABodyThatBulletTurnsLessThanItsSpeedIsReportedOnce) {
+  for (const double turn_rad : {0.78, 0.79}) {  // pi / 4 is 0.785
+    const Messages messages;
+    SpinningDisc spinning(turn_rad / 1e-3, false);
+    spinning.world.step(5);
+    EXPECT_EQ(messages.count(kClamped), turn_rad > kBulletTurn_rad ? 1 : 0);
+    EXPECT_EQ(messages.count(kInContact), 0);
+  }
+}
+
+TEST(Turn, BodiesInContactThatTurnTooFarAreReportedOnceWithTheRateThatHoldsThem) {
+  for (const double turn_rad : {0.099, 0.1013}) {
+    const Messages messages;
+    SpinningDisc spinning(turn_rad / 1e-3, true);
+    spinning.world.step(5);
+    EXPECT_EQ(messages.count(kInContact), turn_rad > kContactTurn_rad ? 1 : 0);
+    EXPECT_EQ(messages.count("1013 steps a second or more"), turn_rad > kContactTurn_rad ? 1 : 0);
+  }
+}
+
+TEST(Turn, NothingIsReportedWhereTheHostDoesNotWantIt) {
+  Settings settings;
+  settings.warns_of_turns = false;
+  const Messages messages;
+  SpinningDisc(2000, true, settings).world.step(3);
+  EXPECT_EQ(messages.count("steps a second"), 0);
+}
+
+TEST(Turn, TheTurnOfABodyIsThatAgainstWhatItTouches) {
+  for (const bool is_on_plate : {false, true}) {
+    SpinningDisc spinning(200, is_on_plate);
+    spinning.world.step(2);
+    std::vector<BodyTurn> turns;
+    findTurns(*spinning.world.world, turns);
+    ASSERT_EQ(turns.size(), 1U);
+    EXPECT_EQ(turns[0].body, spinning.body);
+    EXPECT_EQ(turns[0].is_in_contact, is_on_plate);
+    EXPECT_NEAR(turns[0].w_rad_s, 200, 1e-3);
+    EXPECT_NEAR(turns[0].rate_hz(), is_on_plate ? 2000 : 200 / kBulletTurn_rad, 0.1);
+  }
+}
+
+TEST(Turn, ATimeIsDividedByTheFastestBody) {
+  const auto parts = [](double w_rad_s, bool is_on_plate) {
+    SpinningDisc spinning(w_rad_s, is_on_plate);
+    spinning.world.world->performDiscreteCollisionDetection();
+    return substepsFor(*spinning.world.world, 1e-3, 1000);
+  };
+  EXPECT_EQ(parts(0, true), 1);
+  EXPECT_EQ(parts(99, true), 1);
+  EXPECT_EQ(parts(101, true), 2);
+  EXPECT_EQ(parts(1047, true), 11);   // 10,000 rpm
+  EXPECT_EQ(parts(1047, false), 2);   // 1.047 rad, at most 0.785 in a step
+  EXPECT_EQ(parts(1e7, true), 1000);  // the most
+}
+
+// Two bodies that turn together do not turn against each other.
+TEST(Turn, BodiesThatTurnTogetherAreLimitedByBulletAlone) {
+  World world;
+  const double w_rad_s = 500;
+  for (const int i : {0, 1}) {
+    btRigidBody& body = world.add(disc(), Pose::translation({0, 0, 0.005 * i}), false, 0);
+    body.setAngularVelocity({0, 0, toBt(w_rad_s)});
+  }
+  world.world->performDiscreteCollisionDetection();
+  EXPECT_EQ(substepsFor(*world.world, 1e-3, 1000), 1);
+}
+
+}  // namespace
+}  // namespace vps::bullet
