@@ -63,8 +63,8 @@ void BodyOverlaps::forEachOverlap(Visit visit) {
       if (!overlap(boxes_W[a], boxes_W[b])) continue;
       const Overlap found =
           deepestOverlap(motions_.body(a).overlap(), X_WP_[a], motions_.body(b).overlap(), X_WP_[b], true);
+      if (found.depth_m > 0) visit(Pair{a, b}, found);  // which may allow this depth
       motions_.setDepth({a, b}, found.depth_m, found.p_W);
-      if (found.depth_m > 0) visit(Pair{a, b}, found);
     }
 }
 
