@@ -109,15 +109,5 @@ TEST(Restitution, BodiesOnAFixedJointBounceAsOne) {
   world.world->removeConstraint(&joint);
 }
 
-// A paddle that moves gives the ball twice its own speed.
-TEST(Restitution, AMovingPlateAddsTwiceItsSpeed) {
-  Fall fall(1);
-  btRigidBody& ground = *fall.world.bodies[0];
-  ground.setCollisionFlags(ground.getCollisionFlags() | btCollisionObject::CF_KINEMATIC_OBJECT);
-  ground.setLinearVelocity(btVector3(0, 0, toBt(0.5)));
-  fall.world.step();
-  EXPECT_NEAR(fall.speed_m_s(), kSpeed_m_s + 2 * 0.5, 1e-2);
-}
-
 }  // namespace
 }  // namespace vps::bullet

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdio>
 
-#include "dynamics/nut.h"
 #include "family.h"
 #include "impact_world.h"
 #include "search/random.h"
@@ -122,28 +121,13 @@ double pinDepth_um(int member) {
   return bore.depth_um(bore.restitution);
 }
 
-/// An M20 nut on its rod, thrown in any direction.
-double nutDepth_um(int member, double e_share = 1) {
-  constexpr dynamics::NutSize kM20{20e-3, 2.5e-3, 10e-3, 34.6e-3 / 2};
-  Random random(0xc2 + static_cast<std::uint64_t>(member));
-  ImpactWorld scene;
-  const Placed rod = scene.addFixed(dynamics::rodPart(kM20, 192), Pose(), 1, 0.15);
-  const Placed nut = scene.add(dynamics::nutPart(kM20, 192), Pose(),
-                               e_share * (member == 0 ? 0.7 : random.uniform(0.1, 1)), 0.15);
-  setVelocity(nut, member == 0 ? Vec3(0, 0, 0) : Vec3(random.logUniform(0.1, 3) * random.direction()),
-              member == 0 ? Vec3(0, 0, 0) : Vec3(0, 0, random.uniform(-30, 30)));
-  return deepest_um(scene, nut, rod, member == 0 ? 40 : 10, 1e-3, 1);
-}
-
 }  // namespace
 
 std::vector<Family> narrowGapFamilies() {
   const std::string depth = "depth, also on the way [um]";
   return {
-      {"C_balls", depth, 10, 80, 8, ballDepth_um, [](int i) { return Bore(i, false).words(); }},
+      {"C_balls", depth, 10, 80, 8, ballDepth_um, [](int i) { return Bore(i, false).words(); }, 336.12},
       {"C_pins", depth, 10, 50, 10, pinDepth_um, [](int i) { return Bore(i, true).words(); }},
-      {"C_nuts", "depth after a step [um]", 10, 50, 50, [](int i) { return nutDepth_um(i); },
-       [](int i) { return "without restitution " + std::to_string(nutDepth_um(i, 0)) + " um"; }},
   };
 }
 

@@ -340,8 +340,8 @@ Vec6 Solver::Work::commonVelocity() const {
   return momentum / mass_kg;
 }
 
-// The bodies stop, relative to each other, before sharp features come too near to each other, where no contacts were
-// found that prevent it. This takes energy and is the last resort. Kinematic bodies go on.
+// The bodies stop, relative to each other, before sharp features come too near to each other, where no
+// contacts were found that prevent it. This takes energy and is the last resort. Kinematic bodies go on.
 bool Solver::Work::shorten(double dt_s) {
   constexpr double kShort = 0.9;  // assumed: not quite up to the place
   constexpr int kMost = 6;        // assumed; then the bodies stand for this step
