@@ -223,11 +223,12 @@ TEST_P(RestWithSolver, TwoFreeBodiesKeepTheirMomentum) {
     return Vec3(I * fromBt(body.getAngularVelocity()) + m * p.cross(fromBt(body.getLinearVelocity())));
   };
   const Vec3 L0 = angular(a) + angular(b);
-  // Bullet's integrator keeps the angular velocity of a tumbling box rather than its angular momentum: the
-  // rotation in a step adds I w - R' I w, with I after the step.
+  // bullet::Solver keeps a tumbling box's angular momentum. With the stock solver Bullet's integrator keeps
+  // its angular velocity instead: the rotation in a step adds I w - R' I w, with I after the step.
   Vec3 added = Vec3::Zero();
   for (int i = 0; i < 50 && a.getLinearVelocity().length() < 0.1; ++i) {
     world.step();
+    if (GetParam() != SolverKind::Stock) continue;
     for (const btRigidBody* body : {&a, &b}) {
       const Vec3 w = fromBt(body->getAngularVelocity());
       const Vec3 Iw = fromBt(body->getInvInertiaTensorWorld()).inverse() * w;

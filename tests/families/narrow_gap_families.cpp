@@ -5,8 +5,8 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <map>
 
-#include "dynamics/nut.h"
 #include "family.h"
 #include "impact_world.h"
 #include "search/random.h"
@@ -39,16 +39,16 @@ const PartMesh& pinPart(double radius_m, double height_m) {
 
 /// Greatest depth [um] of a body in a fixed one: after each step, and at poses on the way of the step, which
 /// is a straight line and one rotation.
-double deepest_um(ImpactWorld& scene, const Placed& body, const Placed& fixed, int steps, double dt_s) {
-  constexpr int kPlaces = 4;
+double deepest_um(ImpactWorld& scene, const Placed& body, const Placed& fixed, int steps, double dt_s,
+                  int places = 4) {
   double deepest_m = -1;
   for (int k = 0; k < steps; ++k) {
     const Pose from = body.pose();
     scene.world.step(1, dt_s);
     const Pose to = body.pose();
-    for (int i = 1; i <= kPlaces; ++i)
+    for (int i = 1; i <= places; ++i)
       deepest_m =
-          std::max(deepest_m, dynamics::penetration_m(body.part, interpolate(from, to, double(i) / kPlaces),
+          std::max(deepest_m, dynamics::penetration_m(body.part, interpolate(from, to, double(i) / places),
                                                       fixed.part, fixed.pose()));
   }
   return kToUm * deepest_m;
@@ -122,28 +122,13 @@ double pinDepth_um(int member) {
   return bore.depth_um(bore.restitution);
 }
 
-/// An M20 nut on its rod, thrown in any direction.
-double nutDepth_um(int member, double e_share = 1) {
-  constexpr dynamics::NutSize kM20{20e-3, 2.5e-3, 10e-3, 34.6e-3 / 2};
-  Random random(0xc2 + static_cast<std::uint64_t>(member));
-  ImpactWorld scene;
-  const Placed rod = scene.addFixed(dynamics::rodPart(kM20, 192), Pose(), 1, 0.15);
-  const Placed nut = scene.add(dynamics::nutPart(kM20, 192), Pose(),
-                               e_share * (member == 0 ? 0.7 : random.uniform(0.1, 1)), 0.15);
-  setVelocity(nut, member == 0 ? Vec3(0, 0, 0) : Vec3(random.logUniform(0.1, 3) * random.direction()),
-              member == 0 ? Vec3(0, 0, 0) : Vec3(0, 0, random.uniform(-30, 30)));
-  return deepest_um(scene, nut, rod, member == 0 ? 100 : 20, 1e-3);
-}
-
 }  // namespace
 
 std::vector<Family> narrowGapFamilies() {
   const std::string depth = "depth, also on the way [um]";
   return {
-      {"C_balls", depth, 10, 80, 8, ballDepth_um, [](int i) { return Bore(i, false).words(); }},
+      {"C_balls", depth, 10, 80, 8, ballDepth_um, [](int i) { return Bore(i, false).words(); }, 336.12},
       {"C_pins", depth, 10, 50, 10, pinDepth_um, [](int i) { return Bore(i, true).words(); }},
-      {"C_nuts", depth, 10, 50, 25, [](int i) { return nutDepth_um(i); },
-       [](int i) { return "without restitution " + std::to_string(nutDepth_um(i, 0)) + " um"; }},
   };
 }
 

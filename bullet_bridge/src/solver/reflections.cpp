@@ -14,7 +14,7 @@ constexpr std::size_t kMostWork = 10'000'000;
 // of flush faces that rest on each other would otherwise be reflected or not by the sign of their rounding,
 // half of a face with one impact and half with the next, and the bodies would turn. It costs at most the
 // square of this in energy.
-constexpr double kNoImpact = 1e-3;
+constexpr double kNoImpact = 1e-2;
 constexpr double kConverged = 1e-10;  // a projection leaves no more
 
 /// Iterations over the rows of one impact.

@@ -87,6 +87,7 @@ struct Solver::Work {
   SolveOutcome solveRigid(const SolverSettings& settings, double dt_s);
   SolveOutcome solveWithLaws(const SolverSettings& settings, double dt_s);
   bool addMissed(const btContactSolverInfo& info, bool is_first);
+  [[nodiscard]] Vec6 commonVelocity() const;
   bool shorten(double dt_s);
 };
 
@@ -327,8 +328,21 @@ bool Solver::Work::addMissed(const btContactSolverInfo& info, bool is_first) {
   return std::any_of(missed.begin(), missed.end(), [](const MissedContact& m) { return m.point != nullptr; });
 }
 
-// The bodies stop before sharp features come too near to each other, where no contacts were found that
-// prevent it. This takes energy and is the last resort. Kinematic bodies go on.
+// The velocity of the centre of mass of bodies that can meet each other only; zero for others.
+Vec6 Solver::Work::commonVelocity() const {
+  Vec6 momentum = Vec6::Zero();
+  double mass_kg = 0;
+  for (const StepCheck* check : checks)
+    if (island.indexOf(check->object(0)) < 0 || island.indexOf(check->object(1)) < 0) return momentum;
+  for (const IslandBody& b : island.bodies) {
+    momentum.tail<3>() += b.mass(3, 3) * b.u.tail<3>();
+    mass_kg += b.mass(3, 3);
+  }
+  return momentum / mass_kg;
+}
+
+// The bodies stop, relative to each other, before sharp features come too near to each other, where no
+// contacts were found that prevent it. This takes energy and is the last resort. Kinematic bodies go on.
 bool Solver::Work::shorten(double dt_s) {
   constexpr double kShort = 0.9;  // assumed: not quite up to the place
   constexpr int kMost = 6;        // assumed; then the bodies stand for this step
@@ -343,7 +357,8 @@ bool Solver::Work::shorten(double dt_s) {
     if (share >= 1) break;
     is_shortened = true;
     share = k < kMost ? kShort * share : 0;
-    for (IslandBody& b : island.bodies) b.u *= share;
+    const Vec6 common = commonVelocity();
+    for (IslandBody& b : island.bodies) b.u = common + share * (b.u - common);
     rigid.scalePush(share);
   }
   return is_shortened;

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Restitution in the solver: the displacement is that without, the velocity bounces, and nothing else
+// changes.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "bullet_bridge/world.h"
+
+namespace vps::bullet {
+namespace {
+
+using test::Built;
+using test::kIsDouble;
+using test::plate;
+using test::SolverKind;
+using test::steelBox;
+using test::World;
+
+constexpr double kGap_m = 0.4e-3, kSpeed_m_s = 1;
+
+/// A box of 20 x 15 x 10 mm that falls onto a plate without gravity.
+struct Fall {
+  World world;
+  Built box = steelBox(), ground = plate();
+  btRigidBody* body = nullptr;
+
+  explicit Fall(double e, const SolverSettings& settings = {})
+      : world(SolverKind::Constraint, {}, 100, settings) {
+    world.world->setGravity(btVector3(0, 0, 0));
+    world.add(ground, Pose::translation(Vec3(0, 0, -0.005)), true, 0).setRestitution(1);
+    body = &world.add(box, Pose::translation(Vec3(0, 0, 0.005 + kGap_m)), false, 0);
+    body->setRestitution(toBt(e));
+    body->setLinearVelocity(btVector3(0, 0, toBt(-kSpeed_m_s)));
+  }
+  [[nodiscard]] double height_m() const { return body->getWorldTransform().getOrigin().z() - 0.005; }
+  [[nodiscard]] double speed_m_s() const { return body->getLinearVelocity().z(); }
+};
+
+TEST(Restitution, TheStepOfTheImpactEndsAtContactAndBouncesInFull) {
+  for (const int sweeps_only : {0, 1}) {
+    SolverSettings settings;
+    if (sweeps_only) settings.iteration_limit = 39;
+    for (const double e : {0.0, 0.3, 1.0}) {
+      Fall fall(e, settings);
+      fall.world.step();
+      EXPECT_NEAR(fall.height_m(), 0, 1e-6) << e;
+      EXPECT_NEAR(fall.speed_m_s(), e > 0 ? e * kSpeed_m_s : -kGap_m / 1e-3, 1e-3) << e;
+      fall.world.step();
+      EXPECT_NEAR(fall.height_m(), e * kSpeed_m_s * 1e-3, 2e-6) << e;
+    }
+  }
+}
+
+TEST(Restitution, MoreThanOneOrNotANumberIsTakenAsOneOrNone) {
+  for (const auto& [e, expected] : {std::pair(3.0, 1.0), std::pair(std::nan(""), 0.0)}) {
+    Fall fall(e);
+    fall.world.step(2);
+    EXPECT_NEAR(fall.speed_m_s(), expected * kSpeed_m_s, 1e-3);
+  }
+}
+
+TEST(Restitution, ABodyAtRestUnderGravityDoesNotBounce) {
+  Fall fall(1);
+  fall.world.world->setGravity(btVector3(0, 0, toBt(-9.81)));
+  fall.body->setLinearVelocity(btVector3(0, 0, 0));
+  fall.body->setWorldTransform(btTransform(btMatrix3x3::getIdentity(), btVector3(0, 0, toBt(0.005))));
+  for (int i = 0; i < 100; ++i) {
+    fall.world.step();
+    EXPECT_LE(std::abs(fall.speed_m_s()), kIsDouble ? 1e-6 : 1e-4);
+  }
+}
+
+// Friction at the impact: at most mu times the normal impulse m (1 + e) v.
+TEST(Restitution, FrictionAtTheImpactIsThatOfTheWholeImpulse) {
+  constexpr double mu = 0.1, e = 0.5, slide_m_s = 1;
+  World world(SolverKind::Constraint);
+  world.world->setGravity(btVector3(0, 0, 0));
+  const Built box = steelBox(), ground = plate();
+  world.add(ground, Pose::translation(Vec3(0, 0, -0.005)), true, mu).setRestitution(1);
+  btRigidBody& body = world.add(box, Pose::translation(Vec3(0, 0, 0.005 + kGap_m)), false, mu);
+  body.setRestitution(toBt(e));
+  body.setLinearVelocity(btVector3(toBt(slide_m_s), 0, toBt(-kSpeed_m_s)));
+  const double energy_J = body.getLinearVelocity().length2();
+  world.step();
+  // The friction also turns the box, which lowers the normal impulse at one edge: within a tenth.
+  EXPECT_NEAR(body.getLinearVelocity().x(), slide_m_s - mu * (1 + e) * kSpeed_m_s,
+              0.1 * mu * (1 + e) * kSpeed_m_s);
+  EXPECT_LE(body.getLinearVelocity().length2(), energy_J);
+}
+
+// A joint is part of the impact: what hangs on the body that is hit moves with it.
+TEST(Restitution, BodiesOnAFixedJointBounceAsOne) {
+  World world(SolverKind::Constraint);
+  world.world->setGravity(btVector3(0, 0, 0));
+  const Built box = steelBox(), ground = plate();
+  world.add(ground, Pose::translation(Vec3(0, 0, -0.005)), true, 0).setRestitution(1);
+  btRigidBody& low = world.add(box, Pose::translation(Vec3(0, 0, 0.005 + kGap_m)), false, 0);
+  btRigidBody& high = world.add(box, Pose::translation(Vec3(0, 0, 0.025 + kGap_m)), false, 0);
+  low.setRestitution(1);
+  btTransform up = btTransform::getIdentity(), down = btTransform::getIdentity();
+  up.setOrigin(btVector3(0, 0, toBt(0.01)));
+  down.setOrigin(btVector3(0, 0, toBt(-0.01)));
+  btFixedConstraint joint(low, high, up, down);
+  world.world->addConstraint(&joint, true);
+  for (btRigidBody* body : {&low, &high}) body->setLinearVelocity(btVector3(0, 0, toBt(-kSpeed_m_s)));
+  world.step(3);
+  for (const btRigidBody* body : {&low, &high}) EXPECT_NEAR(body->getLinearVelocity().z(), kSpeed_m_s, 1e-2);
+  world.world->removeConstraint(&joint);
+}
+
+}  // namespace
+}  // namespace vps::bullet
