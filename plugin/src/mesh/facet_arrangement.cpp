@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
 #include "mesh/mesh_edges.h"
 #include "mesh/planar_triangulation.h"
-#include "mesh/triangle_distance.h"
 
 namespace vps::inline v0 {
 namespace {
@@ -27,7 +27,6 @@ Vec3 normalOf(const Mesh& mesh, std::uint32_t facet) {
 struct Segment {
   std::uint32_t a = 0, b = 0;
   std::vector<std::uint32_t> points;  ///< between its ends, not sorted
-  std::vector<std::uint32_t> facets;  ///< in which it lies, beside those of which it is a side
 };
 
 /// The nearest points of two lines, as fractions of ab and cd; nothing if they are parallel.
@@ -142,7 +141,7 @@ class Arranger {
     a = find(a), b = find(b);
     const std::uint64_t key = (std::uint64_t{std::min(a, b)} << 32) | std::max(a, b);
     const auto [at, is_new] = segment_of_.try_emplace(key, static_cast<std::uint32_t>(segments_.size()));
-    if (is_new) segments_.push_back({std::min(a, b), std::max(a, b), {}, {}});
+    if (is_new) segments_.push_back({std::min(a, b), std::max(a, b), {}});
     return at->second;
   }
   [[nodiscard]] bool isOn(const Segment& s, std::uint32_t p) const {
@@ -178,7 +177,6 @@ class Arranger {
     for (std::size_t k = 0; k < 3; ++k)
       facet.sides[k] = segment(facet.corners[k], facet.corners[(k + 1) % 3]);
     facets_.push_back(std::move(facet));
-    numbers_.push_back(f);
   }
   Facet& facet(std::uint32_t f) { return facets_[facet_of_.at(f)]; }
   [[nodiscard]] double height(const Facet& f, const Vec3& p) const {
@@ -207,8 +205,15 @@ class Arranger {
   void crossSides(std::uint32_t f, std::uint32_t g) {
     for (const std::uint32_t s : facet(f).sides)
       for (const std::uint32_t r : facet(g).sides)
-        if (s != r && crossed_.emplace((std::uint64_t{std::min(s, r)} << 32) | std::max(s, r), true).second)
+        if (s != r && areNear(segments_[s], segments_[r]) &&
+            crossed_.insert((std::uint64_t{std::min(s, r)} << 32) | std::max(s, r)).second)
           crossSegments(std::min(s, r), std::max(s, r));
+  }
+  [[nodiscard]] bool areNear(const Segment& s, const Segment& r) const {
+    const auto low = [&](const Segment& of) { return points_[of.a].cwiseMin(points_[of.b]).eval(); };
+    const auto high = [&](const Segment& of) { return points_[of.a].cwiseMax(points_[of.b]).eval(); };
+    return (low(s).array() <= high(r).array() + touch_m_).all() &&
+           (low(r).array() <= high(s).array() + touch_m_).all();
   }
 
   /// Gives two segments a common point where they nearly meet.
@@ -284,7 +289,6 @@ class Arranger {
     if (std::find(in.sides.begin(), in.sides.end(), s) != in.sides.end()) return;
     if (std::find(in.sections.begin(), in.sections.end(), s) != in.sections.end()) return;
     in.sections.push_back(s);
-    segments_[s].facets.push_back(f);
   }
 
   /// All corners of one lie in the plane of the other.
@@ -307,7 +311,7 @@ class Arranger {
   }
 
   void addSections(std::uint32_t f, std::uint32_t g) {
-    const std::vector<std::uint32_t> of_f = commonPoints_(f), of_g = commonPoints_(g);
+    const std::vector<std::uint32_t> of_f = ownPoints(f), of_g = ownPoints(g);
     std::vector<std::uint32_t> common;
     std::set_intersection(of_f.begin(), of_f.end(), of_g.begin(), of_g.end(), std::back_inserter(common));
     if (common.size() < 2) return;
@@ -328,8 +332,8 @@ class Arranger {
     }
     addRow(f, g, common, along);
   }
-  /// Before sections were added: these do not change what two facets have in common.
-  std::vector<std::uint32_t> commonPoints_(std::uint32_t f) {
+  /// Without those of sections, which do not change what two facets have in common.
+  std::vector<std::uint32_t> ownPoints(std::uint32_t f) {
     Facet bare = facet(f);
     bare.sections.clear();
     return pointsOf(bare);
@@ -449,10 +453,9 @@ class Arranger {
   std::vector<std::array<std::uint32_t, 2>> pairs_;
   std::vector<Segment> segments_;
   std::unordered_map<std::uint64_t, std::uint32_t> segment_of_;
-  std::unordered_map<std::uint64_t, bool> crossed_;
+  std::unordered_set<std::uint64_t> crossed_;
   std::unordered_map<std::uint32_t, std::uint32_t> facet_of_;
   std::vector<Facet> facets_;
-  std::vector<std::uint32_t> numbers_;
 };
 
 }  // namespace
