@@ -89,13 +89,13 @@ TEST(Resolution, WhatIsStatedIsKept) {
   EXPECT_EQ(scene.parts[1].spacing_m, 0);
 }
 
-/// A block with a bore of this diameter, and a pin of 20 mm whose pivot is `pivot_m` thick.
+/// A wheel with a bore of this diameter, and a pin of 8 mm whose pivot is `pivot_m` thick.
 Scene pivotInBore(double bore_m, double pivot_m) {
   Scene scene;
   scene.file = scene.name = "pivot";
-  Mesh pin = makeCylinder(2.5 * kMm, 20 * kMm, 48);
-  append(pin, transformed(makeCylinder(0.5 * pivot_m, 4 * kMm, 48), Pose::translation({0, 0, 13 * kMm})));
-  scene.parts = {scenePart("wheel", makeTube(5 * kMm, 0.5 * bore_m, 3 * kMm, 48), {0, 0, 13 * kMm}, true),
+  Mesh pin = makeCylinder(1 * kMm, 8 * kMm, 48);
+  append(pin, transformed(makeCylinder(0.5 * pivot_m, 4 * kMm, 48), Pose::translation({0, 0, 6 * kMm})));
+  scene.parts = {scenePart("wheel", makeTube(2 * kMm, 0.5 * bore_m, 3 * kMm, 48), {0, 0, 6 * kMm}, true),
                  scenePart("pin", pin, {0, 0, 0}, false)};
   scene.chooses_voxel = scene.chooses_spacing = true;
   return scene;
@@ -106,7 +106,8 @@ TEST(Resolution, ABoreAndWhatFitsIntoItAreResolvedAndOneIntoWhichNothingFitsIsNo
   chooseResolution(fits);
   EXPECT_NEAR(voxelOf(fits, 0), 0.11 * kMm / kVoxelsAcross, 0.01 * 0.11 * kMm / kVoxelsAcross);
   EXPECT_NEAR(voxelOf(fits, 1), 0.1 * kMm / kVoxelsAcross, 0.01 * 0.1 * kMm / kVoxelsAcross);
-  EXPECT_NE(fits.resolution_choice.find("14"), std::string::npos) << fits.resolution_choice;
+  EXPECT_NE(fits.resolution_choice.find("13.7 um for the fixed parts"), std::string::npos)
+      << fits.resolution_choice;
   Scene misses = pivotInBore(0.1 * kMm, 0.5 * kMm);
   chooseResolution(misses);
   EXPECT_EQ(voxelOf(misses, 0), Fidelity().voxel_m);
