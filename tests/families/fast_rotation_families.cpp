@@ -204,10 +204,10 @@ std::vector<Family> fastRotationFamilies() {
     return family;
   };
   return {
-      familyOf("D_gears", "error of the driven gear's speed, steps divided", 8, gearError, true, gearsOf),
-      familyOf("D_gears_said", "the same with whole steps, unless it is said that they are too long", 8,
+      familyOf("D_gears", "error of the driven gear's speed, steps divided", 12, gearError, true, gearsOf),
+      familyOf("D_gears_said", "the same with whole steps, unless it is said that they are too long", 12,
                gearError, false, gearsOf),
-      familyOf("D_shafts", "error of a shaft's speed or angle, steps divided", 8, shaftError, true, shaftOf),
+      familyOf("D_shafts", "error of a shaft's speed or angle, steps divided", 12, shaftError, true, shaftOf),
       familyOf("D_shafts_said", "the same with whole steps, unless it is said that they are too long", 4,
                shaftError, false, shaftOf)};
 }

@@ -77,16 +77,16 @@ struct Simulation::World {
   std::shared_ptr<const ShellSet> shells;  // these replace the parts' own; null: none
   double dt_s;                             // of the last step, or part of one
   Turns turns;
-  std::vector<bullet::BodyTurn> found;  // scratch
+  std::vector<bullet::BodyTurn> body_turns;  // scratch
   int most_substeps = 1;
   CookedField field;
   std::unique_ptr<btRigidBody> fixed_body;
   std::unique_ptr<bullet::CouplingConstraint> coupling;
   std::size_t grasped = 0;
   Pose X_PG;
-  std::optional<CouplingState> target,
-      next_target;  // of the proxy, at the end of the last step and of the next
-  Wrench push_G_W;  // for the coming step
+  std::optional<CouplingState> target;       // of the proxy, at the end of the last step
+  std::optional<CouplingState> next_target;  // and of the coming one
+  Wrench push_G_W;                           // for the coming step
 
   World(const Scene& s, const ModelPlan& p)
       : scene(s), plan(p), solver(solverSettings(s.fidelity)), dt_s(1 / s.fidelity.physics_rate_hz) {
@@ -136,9 +136,9 @@ struct Simulation::World {
   }
 
   void noteTurns() {
-    found.clear();
-    bullet::findTurns(world, found);
-    for (const bullet::BodyTurn& turn : found) turns.add(turn, dt_s);
+    body_turns.clear();
+    bullet::findTurns(world, body_turns);
+    for (const bullet::BodyTurn& turn : body_turns) turns.add(turn, dt_s);
   }
 
   void remove(std::size_t part) {
