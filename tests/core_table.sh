@@ -13,7 +13,7 @@ export LC_ALL=C
 tests=$(cd "$(dirname "$0")" && pwd)
 
 usage() {
-  sed -n '4,11s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2
+  sed -n '6,10s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2
   exit 2
 }
 
@@ -136,7 +136,7 @@ add() {  # as job(); only jobs that --only names
 }
 
 if [ "${1:-}" = --compare ]; then
-  [ $# -eq 3 ] && [ -f "$2" ] && [ -f "$3" ] || usage
+  if [ $# -ne 3 ] || [ ! -f "$2" ] || [ ! -f "$3" ]; then usage; fi
   compare "$2" "$3"
   exit
 fi

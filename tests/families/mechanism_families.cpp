@@ -51,7 +51,7 @@ std::unique_ptr<btHingeConstraint> hingeOf(const Placed& gear) {
 
 struct Pair {
   int driver = 17, driven = 41;
-  double speed_rad_s = 2 * kPi, brake_Nm = 1, mu = 0.15;
+  double speed_rad_s = 2 * kPi, brake_Nm = 1, mu = 0;
 };
 
 // Member 0 is the pair that was found.
@@ -65,7 +65,7 @@ Pair pairOf(int member) {
   pair.driven = teeth[1];
   pair.speed_rad_s = random.logUniform(1, 40);
   pair.brake_Nm = random.logUniform(0.05, 5);
-  pair.mu = random.chance(0.3) ? 0 : random.uniform(0.02, 0.3);
+  pair.mu = random.chance(0.5) ? 0 : random.uniform(0.02, 0.2);
   return pair;
 }
 
@@ -78,7 +78,7 @@ std::string describePair(int member) {
 }
 
 double slowGearSteps(int member) {
-  static const dynamics::Engine engine = dynamics::vpsEngine({0.25e-3, 1e-3});
+  static const dynamics::Engine engine = dynamics::vpsEngine({0.5e-3, 1e-3});
   const Pair pair = pairOf(member);
   const int steps = member == 0 ? 1950 : 250, settling = 50;
   World world({dynamics::Mode::Constraint, false, engine});
@@ -193,6 +193,7 @@ std::vector<Family> mechanismFamilies() {
   screw.key = "N_screw";
   screw.measure = "steps in which the driven nut is over 20 % slow";
   screw.members = 50;
+  screw.expected_failure = 95;
   screw.every = 16;
   screw.measured = slowScrewSteps;
   screw.describe = describeScrew;
