@@ -3,7 +3,7 @@
 # The specification of contact as one command: runs every table that pins it, prints one table of all rows (row,
 # bound, value, verdict, processor time), and compares two of them. tests/README.md says what it runs.
 #
-#   tests/core_table.sh BUILD [--long] [--out DIR] [--only WORDS]
+#   tests/core_table.sh BUILD [--long] [--out DIR] [--only WORDS] [--jobs N] [--limit SECONDS]
 #   tests/core_table.sh --compare A.tsv B.tsv
 #
 # Exit status: 0 if each row is met or fails as expected, 1 if one failed, crashed, timed out or was not built, 2 for a
@@ -144,12 +144,14 @@ build=${1:-}
 [ -d "$build" ] || usage
 build=$(cd "$build" && pwd)
 shift
-is_long=false out="" only="" parallel=2
+is_long=false out="" only="" parallel=2 limit=""
 while [ $# -gt 0 ]; do
   case $1 in
     --long) is_long=true ;;
     --out) out=${2:?} && shift ;;
     --only) only=${2:?} && shift ;;
+    --jobs) parallel=${2:?} && shift ;;
+    --limit) limit=${2:?} && shift ;;
     *) usage ;;
   esac
   shift
@@ -160,8 +162,7 @@ mkdir -p "$out" && out=$(cd "$out" && pwd) || exit 2
 bin=$build/tests
 short=--short every=16 runs=2 seeds=1
 if $is_long; then short="" every=8 runs=20 seeds=8; fi
-limit=1500
-if $is_long; then limit=14400; fi
+if [ -z "$limit" ]; then $is_long && limit=14400 || limit=1500; fi  # of one program [s]
 
 # The longest first. The edge table is split, so that its parts run beside other programs.
 for part in 0 1; do
