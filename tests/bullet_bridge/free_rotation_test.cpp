@@ -8,6 +8,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "bullet_bridge/world.h"
+
 namespace vps::bullet {
 namespace {
 
@@ -44,6 +46,46 @@ TEST(FreeRotation, ABodyAtRestRestsExactly) {
 
 TEST(FreeRotation, AVelocityThatIsNotFiniteIsReturned) {
   EXPECT_TRUE(std::isnan(meanAngularVelocity(kInertia, Vec3(0, std::nan(""), 0), 1e-3).y()));
+}
+
+// No body has these inertias: one is above the sum of the others. What is returned solves the equation, or is
+// the velocity itself.
+TEST(FreeRotation, InertiasThatNoBodyHasGiveNoJump) {
+  const double dt_s = 1e-2;
+  for (const Vec3& J : {Vec3(1, 1e3, 1e-3), Vec3(1e-4, 1, 30), Vec3(1, 1e-6, 1e2)})
+    for (const double speed_rad_s : {10.0, 70.0, 1000.0})
+      for (const Vec3& axis : {Vec3(1, 1, 1), Vec3(1, 0.1, -2), Vec3(-0.2, 1, 0.7)}) {
+        const Vec3 w = speed_rad_s * axis.normalized(), W = meanAngularVelocity(J, w, dt_s);
+        const double angle_rad = std::min(W.norm() * dt_s, std::numbers::pi / 4);
+        const Vec3 L = J.cwiseProduct(w), JW = J.cwiseProduct(W),
+                   rest = JW - L + std::tan(angle_rad / 2) / W.norm() * W.cross(JW);
+        EXPECT_TRUE(W == w || rest.norm() <= 1e-8 * L.norm()) << J.transpose() << " at " << w.transpose();
+      }
+}
+
+// btCollisionObject::setWorldTransform() leaves Bullet's inertia tensor as it was.
+TEST(FreeRotation, ABodyPlacedBySetWorldTransformKeepsItsSpin) {
+  const test::Built box = test::build(makeBox(Vec3(20e-3, 30e-3, 60e-3)), 7850, 1e-3, 2e-3);
+  for (const auto kind : {test::SolverKind::Constraint, test::SolverKind::Penalty}) {
+    test::World world(kind);
+    world.world->setGravity(btVector3(0, 0, 0));
+    btRigidBody& body = world.add(box, Pose());
+    btTransform to = body.getWorldTransform();
+    const Mat3 R = rotationFromVector(Vec3(0.5, -1, 0.7)) * fromBt(to).R;
+    to.setBasis(toBt(Pose(R, Vec3::Zero())).getBasis());
+    body.setWorldTransform(to);
+    body.setAngularVelocity(btVector3(5, 3, -2));
+    const Vec3 J = fromBt(body.getInvInertiaDiagLocal()).cwiseInverse();
+    const auto momentum = [&] {
+      const Mat3 now = fromBt(body.getWorldTransform()).R;
+      return Vec3(now * J.cwiseProduct(now.transpose() * fromBt(body.getAngularVelocity())));
+    };
+    const Vec3 start = momentum();
+    for (int i = 0; i < 3; ++i) {
+      world.step();
+      EXPECT_LE((momentum() - start).norm(), (test::kIsDouble ? 1e-9 : 1e-5) * start.norm());
+    }
+  }
 }
 
 }  // namespace

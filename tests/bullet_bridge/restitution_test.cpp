@@ -71,6 +71,51 @@ TEST(Restitution, ABodyAtRestUnderGravityDoesNotBounce) {
   }
 }
 
+// With gravity: each bounce ends at the height of the drop, whatever the step's phase is.
+TEST(Restitution, UnderGravityNoHeightIsLost) {
+  for (const double height_m : {20e-3, 21.3e-3}) {
+    Fall fall(1);
+    fall.world.world->setGravity(btVector3(0, 0, toBt(-9.81)));
+    fall.body->setLinearVelocity(btVector3(0, 0, 0));
+    btTransform start = btTransform::getIdentity();
+    start.setOrigin(btVector3(0, 0, toBt(0.005 + height_m)));
+    fall.body->setWorldTransform(start);
+    double peak_m = 0, last_m = 0;
+    int bounces = 0;
+    bool was_rising = false;
+    for (int i = 0; i < 700; ++i) {
+      const double before_m = fall.height_m();
+      fall.world.step();
+      const bool is_rising = fall.height_m() > before_m;
+      if (is_rising && !was_rising && ++bounces > 1) last_m = peak_m;
+      if (is_rising && !was_rising) peak_m = 0;
+      peak_m = std::max(peak_m, fall.height_m());
+      was_rising = is_rising;
+    }
+    EXPECT_GE(bounces, 5);
+    EXPECT_NEAR(last_m, height_m, 0.01 * height_m);
+  }
+}
+
+// What rests on a plate is not thrown up by its weight where another part hits it.
+TEST(Restitution, APartAtRestStaysWhereAnotherBouncesOnIt) {
+  Fall fall(1);
+  fall.world.world->setGravity(btVector3(0, 0, toBt(-9.81)));
+  const Built wide = plate();
+  btRigidBody& under = fall.world.add(wide, Pose::translation(Vec3(0, 0, 0.005)), false, 0);
+  under.setRestitution(1);
+  fall.world.bodies.front()->setRestitution(0);
+  btTransform start = btTransform::getIdentity();
+  start.setOrigin(btVector3(0, 0, toBt(0.015 + kGap_m)));
+  fall.body->setWorldTransform(start);
+  fall.body->setRestitution(1);
+  for (int i = 0; i < 50; ++i) {
+    fall.world.step();
+    EXPECT_NEAR(under.getWorldTransform().getOrigin().z(), 0.005, 1e-6) << i;
+    EXPECT_LE(std::abs(under.getLinearVelocity().z()), kIsDouble ? 1e-6 : 1e-4) << i;
+  }
+}
+
 // Friction at the impact: at most mu times the normal impulse m (1 + e) v.
 TEST(Restitution, FrictionAtTheImpactIsThatOfTheWholeImpulse) {
   constexpr double mu = 0.1, e = 0.5, slide_m_s = 1;

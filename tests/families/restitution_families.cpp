@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "bounce_families.h"
 #include "family.h"
 #include "impact_world.h"
 #include "search/random.h"
@@ -256,7 +257,7 @@ auto wordsOf() {
 std::vector<Family> restitutionFamilies() {
   const std::string gained = "energy gained over that at the start [m g dt v]";
   const std::string error = "greatest error of a velocity, of the first one's";
-  return {
+  std::vector<Family> all{
       {"B_cubes", gained, 1, 100, 5, [](int i) { return Drop(i).gained(Mode::Constraint); }, wordsOf<Drop>()},
       {"B_heaps", gained, 1, 50, 10, [](int i) { return Drop(i, true).gained(Mode::Constraint); },
        [](int i) { return Drop(i, true).words(); }},
@@ -270,6 +271,8 @@ std::vector<Family> restitutionFamilies() {
       {"B_free_energy", "kinetic energy gained, relative", 1e-9, 60, 6,
        [](int i) { return Swarm(i).energyRise(); }, wordsOf<Swarm>()},
   };
+  for (Family& family : bounceFamilies()) all.push_back(std::move(family));
+  return all;
 }
 
 }  // namespace vps::families

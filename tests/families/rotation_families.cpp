@@ -10,6 +10,7 @@
 #include "impact_world.h"
 #include "search/random.h"
 #include "vps_bullet/convert.h"
+#include "vps_scenes/simulate.h"
 
 namespace vps::families {
 namespace {
@@ -88,10 +89,42 @@ double angleError(int member) {
   return rotationVector(turned * wanted.transpose()).norm() / (speed_rad_s * steps * dt_s);
 }
 
+/// A part of a scene that is turned at the start and spins: greatest change of its angular momentum,
+/// relative.
+double sceneError(int member) {
+  Random random(0xd2 + static_cast<std::uint64_t>(member));
+  const Vec3 size_m(20e-3, 30e-3, 60e-3);
+  const double x2 = size_m.x() * size_m.x(), y2 = size_m.y() * size_m.y(), z2 = size_m.z() * size_m.z();
+  const Vec3 inertia(y2 + z2, x2 + z2, x2 + y2);
+  scenes::ScenePart part;
+  part.part.name = part.file = "box";
+  part.part.mesh = makeBox(size_m);
+  if (member > 0) part.X_WP.R = random.rotation();
+  part.V_WP_W.w = member == 0 ? Vec3(20, 0, 0) : Vec3(random.uniform(5, 50) * random.direction());
+  scenes::Scene scene;
+  scene.file = scene.name = "spin";
+  scene.fidelity.voxel_m = 1e-3;
+  scene.fidelity.spacing_m = 2e-3;
+  scene.parts.push_back(part);
+  const auto momentum = [&](const Mat3& R, const Vec3& w) {
+    return Vec3(R * inertia.cwiseProduct(R.transpose() * w));
+  };
+  const Vec3 start = momentum(part.X_WP.R, part.V_WP_W.w);
+  double worst = 0;
+  scenes::SimulateOptions options;
+  options.trace = [&](double, const std::vector<scenes::BodyState>& bodies, double) {
+    const scenes::BodyState& body = bodies.front();
+    worst = std::max(worst, (momentum(body.X_WP.R, body.V_WP_W.w) - start).norm() / start.norm());
+  };
+  scenes::simulate(scene, 0.05, options);
+  return worst;
+}
+
 std::vector<Family> freeRotationFamilies() {
   return {
       {"D_torque_free", "change of energy or angular momentum, relative", 1e-4, 60, 6,
        [](int i) { return Spin(i).error(); }, [](int i) { return Spin(i).words(); }},
+      {"D_scene_spin", "change of angular momentum of a scene's part, relative", 1e-6, 50, 10, sceneError},
       {"D_principal_axis", "error of the angle turned, relative", 1e-9, 50, 5, angleError},
   };
 }

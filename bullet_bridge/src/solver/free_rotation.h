@@ -23,7 +23,8 @@ namespace vps::bullet::inline v0 {
 ///
 /// @param inertia_kg_m2  principal moments J, positive
 /// @param w_B            angular velocity before the step, with the torques that act in it [rad/s]
-/// @return W [rad/s]; w_B itself if it is zero, or if no W is found (then a value is not finite)
+/// @return W [rad/s]; w_B itself if it is zero, or if no W is found: where a value is not
+/// finite, or for inertias that no body has (one above the sum of the others)
 /// Newton's method: two to four iterations of a 3x3 system below 100 rad/s at 1 kHz.
 Vec3 meanAngularVelocity(const Vec3& inertia_kg_m2, const Vec3& w_B, double dt_s);
 

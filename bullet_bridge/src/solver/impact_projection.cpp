@@ -150,7 +150,7 @@ void ImpactProjection::solve(std::span<const std::uint8_t> chosen, double tolera
   p_Ns.assign(rows_.size(), 0);
   // Far more than are needed; rounding may let rows join and leave again.
   const std::size_t most = 20 + 4 * rows_.size();
-  for (std::size_t step = 0; step < most; ++step) {
+  for (std::size_t step = 0; step < most && work_ < most_work_; ++step) {
     work_ += rows_.size();
     const int row = mostViolated(chosen, tolerance_m_s, v);
     if (row < 0) break;

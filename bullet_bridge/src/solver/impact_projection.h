@@ -49,6 +49,8 @@ class ImpactProjection {
              std::vector<double>& p_Ns);
   /// Steps of all solutions so far, each weighted by its cost in products.
   [[nodiscard]] std::size_t work() const { return work_; }
+  /// Solutions end early, with violations, where all work so far reaches this.
+  void limitWork(std::size_t most) { most_work_ = most; }
 
  private:
   struct Active {
@@ -68,7 +70,7 @@ class ImpactProjection {
   std::vector<Active> active_;
   std::vector<std::uint8_t> is_active_, is_skipped_;
   Eigen::MatrixXd factor_;  // Cholesky's of the active rows' products, in its lower triangle
-  std::size_t work_ = 0;
+  std::size_t work_ = 0, most_work_ = std::numeric_limits<std::size_t>::max();
 };
 
 }  // namespace vps::bullet::inline v0

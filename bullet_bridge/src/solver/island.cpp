@@ -15,10 +15,9 @@
 namespace vps::bullet::inline v0 {
 namespace {
 
-// As initSolverBody of the stock solver.
-Vec6 externalVelocity(const btRigidBody& b, double dt_s) {
-  return stacked(fromBt(b.getInvInertiaTensorWorld() * b.getTotalTorque()) * dt_s,
-                 fromBt(b.getTotalForce()) * b.getInvMass() * dt_s);
+// Angular, then linear.
+Vec6 externalImpulse(const btRigidBody& b, double dt_s) {
+  return dt_s * stacked(fromBt(b.getTotalTorque()), fromBt(b.getTotalForce()));
 }
 
 // Bullet has three approximations of one torque, of which each takes or makes energy; with any of them the
@@ -31,6 +30,17 @@ bool turnsFreely(const btRigidBody& b) {
 
 Vec3 inertia_kg_m2(const btRigidBody& b) {
   return fromBt(b.getInvInertiaDiagLocal()).cwiseInverse();
+}
+
+// Mass of a body with this orientation and its inverse. Not Bullet's own tensor: a body that was placed by
+// setWorldTransform() has that of its orientation before.
+void setMass(const btRigidBody& b, const Mat3& R, Mat6& mass, Mat6& inverse_mass) {
+  const Vec3 inertia = inertia_kg_m2(b);
+  mass = inverse_mass = Mat6::Zero();
+  mass.topLeftCorner<3, 3>() = R * inertia.asDiagonal() * R.transpose();
+  inverse_mass.topLeftCorner<3, 3>() = R * inertia.cwiseInverse().asDiagonal() * R.transpose();
+  mass.bottomRightCorner<3, 3>() = Mat3::Identity() / b.getInvMass();
+  inverse_mass.bottomRightCorner<3, 3>() = Mat3::Identity() * double(b.getInvMass());
 }
 
 btTransform moved(const btTransform& X, const Vec6& by, double dt_s) {
@@ -66,15 +76,16 @@ void Island::clear() {
 void Island::add(btRigidBody& rigid, double dt_s) {
   IslandBody b;
   b.rigid = &rigid;
-  b.mass.topLeftCorner<3, 3>() = fromBt(rigid.getInvInertiaTensorWorld()).inverse();
-  b.mass.bottomRightCorner<3, 3>() = Mat3::Identity() / rigid.getInvMass();
+  const Mat3 R = fromBt(rigid.getWorldTransform()).R;
+  Mat6 inverse_mass;
+  setMass(rigid, R, b.mass, inverse_mass);
   b.reach_m = reach_m(rigid);
   b.u = velocityOf(rigid);
   b.start = b.u;
-  Vec6 undisturbed = b.u + externalVelocity(rigid, dt_s);
+  b.external_Ns = externalImpulse(rigid, dt_s);
+  Vec6 undisturbed = b.u + inverse_mass * b.external_Ns;
   b.turns_freely = turnsFreely(rigid);
   if (b.turns_freely) {
-    const Mat3 R = fromBt(rigid.getWorldTransform()).R;
     const Vec3 w_B = R.transpose() * undisturbed.head<3>();
     const Vec3 change_W = R * (meanAngularVelocity(inertia_kg_m2(rigid), w_B, dt_s) - w_B);
     undisturbed.head<3>() += change_W;
@@ -117,12 +128,7 @@ void Island::readEnds(std::span<const Vec6> push, double dt_s, std::vector<BodyE
     const IslandBody& b = bodies[i];
     BodyEnd end;
     end.X_WB = fromBt(endTransform(i, push, dt_s));
-    const Mat3& R = end.X_WB.R;
-    const Vec3 inertia = inertia_kg_m2(*b.rigid);
-    end.mass = b.mass;
-    end.mass.topLeftCorner<3, 3>() = R * inertia.asDiagonal() * R.transpose();
-    end.inverse_mass.topLeftCorner<3, 3>() = R * inertia.cwiseInverse().asDiagonal() * R.transpose();
-    end.inverse_mass.bottomRightCorner<3, 3>() = Mat3::Identity() * double(b.rigid->getInvMass());
+    setMass(*b.rigid, end.X_WB.R, end.mass, end.inverse_mass);
     end.v = b.u;
     // The end velocity w1 of the momentum that u and the rest have: I1 w1 = I0 w + rest.
     const Mat3 turned = b.mass.topLeftCorner<3, 3>() - end.mass.topLeftCorner<3, 3>();

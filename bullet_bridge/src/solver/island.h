@@ -44,8 +44,9 @@ struct IslandBody {
   double reach_m = 0;         ///< greatest distance of its points from its centre
   Vec6 start = Vec6::Zero();  ///< velocity before the step
   Mat6 mass = Mat6::Zero();
-  Vec6 momentum = Vec6::Zero();  ///< mass times the velocity of its displacement by external forces alone
-  bool turns_freely = true;      ///< keeps its angular momentum; false if Bullet's gyroscopic flags are off
+  Vec6 external_Ns = Vec6::Zero();  ///< impulse of gravity and of the user's forces in the step
+  Vec6 momentum = Vec6::Zero();     ///< mass times the velocity of its displacement by external forces alone
+  bool turns_freely = true;  ///< keeps its angular momentum; false if Bullet's gyroscopic flags are off
   Vec3 rest_momentum_Nms =
       Vec3::Zero();  ///< its angular momentum with external torques, less that in `momentum`
   Mat6 effective_mass = Mat6::Zero();  ///< mass plus the implicit part of its couplings

@@ -3,12 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace vps::bullet::inline v0 {
 namespace {
 
-// Products of rows in one v(t), about 0.1 s. A body between two others of R times its mass takes pi sqrt(R)
-// impacts.
+// Products of rows in all v(t) of one impact, about 0.1 s. A body between two others of R times its mass
+// takes pi sqrt(R) impacts.
 constexpr std::size_t kMostWork = 10'000'000;
 // Shares of the fastest approach. A slower one is no impact of its own, but is stopped in the end: contacts
 // of flush faces that rest on each other would otherwise be reflected or not by the sign of their rounding,
@@ -25,20 +26,36 @@ class Impact {
       if (isContact(row)) fastest_m_s_ = std::max(fastest_m_s_, -row.velocity(before));
   }
 
-  /// v(t) of the header.
-  [[nodiscard]] ImpactState at(double t, const std::vector<Vec6>& before) {
+  /// v(t) of the header. With others that are still to come, it gets a share of the work that is left.
+  [[nodiscard]] ImpactState at(double t, const std::vector<Vec6>& before, std::size_t others) {
+    if (projection_.work() >= kMostWork) return inelastic(before);
     ImpactState state{before, std::vector<double>(rows_.size(), 0)};
-    for (const std::size_t start = projection_.work(); projection_.work() < start + kMostWork;) {
+    const std::size_t end = projection_.work() + (kMostWork - projection_.work()) / (others + 1);
+    projection_.limitWork(end);
+    while (projection_.work() < end) {
       if (chooseInelastic(t)) project(1, state);
       if (!addApproaching(t, state.v)) break;
       project(2, state);
     }
-    chosen_.assign(rows_.size(), 1);
-    project(1, state);
+    stop(state);
     return state;
   }
 
  private:
+  // Computed once, after which it costs nothing.
+  const ImpactState& inelastic(const std::vector<Vec6>& before) {
+    if (inelastic_.v.empty()) {
+      inelastic_ = {before, std::vector<double>(rows_.size(), 0)};
+      stop(inelastic_);
+    }
+    return inelastic_;
+  }
+  // Whatever work it takes: one projection.
+  void stop(ImpactState& state) {
+    projection_.limitWork(std::numeric_limits<std::size_t>::max());
+    chosen_.assign(rows_.size(), 1);
+    project(1, state);
+  }
   static bool isContact(const ImpactRow& row) { return row.lower_Ns == 0 && row.upper_Ns > 0; }
 
   bool chooseInelastic(double t) {
@@ -72,6 +89,7 @@ class Impact {
   }
   std::span<const ImpactRow> rows_;
   ImpactProjection projection_;
+  ImpactState inelastic_;
   double fastest_m_s_ = 0;
   std::vector<std::uint8_t> chosen_;
   std::vector<double> lambda_;
@@ -94,8 +112,9 @@ ImpactState afterImpact(std::span<const ImpactRow> rows, const std::vector<Vec6>
   Impact impact(rows, before);
   ImpactState mean{std::vector<Vec6>(before.size(), Vec6::Zero()), std::vector<double>(rows.size(), 0)};
   double from = 0;
-  for (const double to : ends) {
-    if (to > from) addShare(to - from, impact.at(from, before), mean);
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    const double to = ends[i];
+    if (to > from) addShare(to - from, impact.at(from, before, ends.size() - i - 1), mean);
     from = to;
   }
   return mean;

@@ -48,7 +48,7 @@ struct ImpactState {
 /// @return has no approach. What is slower than 1e-2 of the fastest approach in `before` is stopped without
 /// restitution, and so is what a chain of impacts leaves that does not end within a budget of work: a body of
 /// 1e-8 of the mass of its neighbours takes 3e4 impacts. Cost: about 1 us for each impact of two bodies, at
-/// most 0.1 s for each value of restitution; a row of n bodies has some n impacts.
+/// most some 0.1 s for all values of restitution together; a row of n bodies has some n impacts.
 ImpactState afterImpact(std::span<const ImpactRow> rows, const std::vector<Vec6>& before);
 
 }  // namespace vps::bullet::inline v0

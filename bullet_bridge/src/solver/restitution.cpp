@@ -164,19 +164,11 @@ void Restitution::takeExternal() {
     }
   for (const JointRow* joint : group_.joints)
     for (int i = 0; i < 2; ++i) take(joint->body[i], joint->J[i], joint->impulse_Ns);
-  for (std::size_t i = 0; i < external.size(); ++i)
+  for (std::size_t i = 0; i < external.size(); ++i) {
+    const IslandBody& body = island_.bodies[static_cast<std::size_t>(group_.bodies[i])];
     group_.external.push_back(group_.inverse_mass[i] * external[i]);
-}
-
-void Restitution::bounce() {
-  std::vector<Vec6> before = group_.solved;
-  for (std::size_t i = 0; i < before.size(); ++i) before[i] -= group_.external[i];
-  for (std::size_t k = 0; k < group_.rows.size(); ++k) group_.rows[k].apply(-group_.solved_Ns[k], before);
-  for (const Contact& c : group_.contacts)
-    for (int t = 0; t < 2; ++t) c.tangent[t].apply(-c.of->p_t[t], before);
-  ImpactState after = afterImpact(group_.rows, before);
-  group_.v = std::move(after.v);
-  group_.bounced_Ns = std::move(after.p_Ns);
+    group_.kick.push_back(group_.inverse_mass[i] * body.external_Ns);
+  }
 }
 
 void Restitution::settleFriction(Contact& c, double limit_Ns, double& most_m_s) {
@@ -196,13 +188,15 @@ void Restitution::settle() {
   constexpr int kMostSweeps = 400;
   constexpr double kSettled_m_s = 1e-8;
   Group& g = group_;
-  for (std::size_t i = 0; i < g.v.size(); ++i) g.v[i] += g.external[i];
   // Without friction first: exactly, also where flush faces have dozens of contacts.
   std::vector<double> p;
   ImpactProjection(g.rows).solve(std::vector<std::uint8_t>(g.rows.size(), 1), kSettled_m_s, g.v, p);
+  const auto limitOf_Ns = [&](std::size_t k) {
+    return g.contacts[k].of->mu * std::max(p[k] + g.bounced_Ns[k], 0.0);
+  };
   for (std::size_t k = 0; k < g.contacts.size(); ++k) {
     Contact& c = g.contacts[k];
-    limitToCone(c.p_t[0], c.p_t[1], c.of->mu * (p[k] + g.bounced_Ns[k]));
+    limitToCone(c.p_t[0], c.p_t[1], limitOf_Ns(k));
     for (int t = 0; t < 2; ++t) c.tangent[t].apply(c.p_t[t], g.v);
   }
   for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
@@ -215,8 +209,7 @@ void Restitution::settle() {
         most_m_s = std::max(most_m_s, std::abs(to_Ns - p[k]) * row.W);
         p[k] = to_Ns;
       }
-      if (k < g.contacts.size())
-        settleFriction(g.contacts[k], g.contacts[k].of->mu * (p[k] + g.bounced_Ns[k]), most_m_s);
+      if (k < g.contacts.size()) settleFriction(g.contacts[k], limitOf_Ns(k), most_m_s);
     }
     if (!(most_m_s > kSettled_m_s)) break;
   }
@@ -233,10 +226,14 @@ double Restitution::shareWithoutGain(std::span<const BodyEnd> ends) const {
     const auto at = static_cast<std::size_t>(g.bodies[i]);
     const IslandBody& body = island_.bodies[at];
     const Vec6 change = g.v[i] - g.solved[i], momentum = ends[at].mass * change;
-    const double before_J = 0.5 * body.start.dot(body.mass * body.start);
+    // The velocities of the poses, half a kick from those that Bullet stores: their energy is what a step
+    // keeps.
+    const Vec6 start = body.start + 0.5 * body.mass.llt().solve(body.external_Ns),
+               solved = g.solved[i] + 0.5 * g.kick[i];
+    const double before_J = 0.5 * start.dot(body.mass * start);
     a += 0.5 * momentum.dot(change);
-    b += momentum.dot(g.solved[i]);
-    c += 0.5 * g.solved[i].dot(ends[at].mass * g.solved[i]) - before_J - g.impulse[i].dot(body.u);
+    b += momentum.dot(solved);
+    c += 0.5 * solved.dot(ends[at].mass * solved) - before_J - g.impulse[i].dot(body.u);
     scale_J += before_J;
   }
   // Contacts work against bodies that they do not move only; their other work is not allowed.
@@ -266,7 +263,7 @@ void Restitution::write(double share, std::span<BodyEnd> ends) {
         share < 1 ? Vec6(g.solved[i] + share * (g.v[i] - g.solved[i])) : g.v[i];
   for (std::size_t k = 0; k < g.contacts.size(); ++k) {
     RigidContact& c = *g.contacts[k].of;
-    c.p_n = part(c.p_n, g.p_Ns[k]);
+    c.p_n = std::max(part(c.p_n, g.p_Ns[k]), 0.0);
     for (int t = 0; t < 2; ++t) c.p_t[t] = part(c.p_t[t], g.contacts[k].p_t[t]);
   }
   for (std::size_t k = 0; k < g.joints.size(); ++k) {
@@ -287,7 +284,7 @@ void Restitution::apply(std::span<RigidContact> contacts, std::span<BodyEnd> end
   for (const int root : roots) {
     gather(root, contacts, ends);
     takeExternal();
-    bounce();
+    bounce(info.m_timeStep);
     settle();
     if (const double share = shareWithoutGain(ends); share > 0) write(share, ends);
   }

@@ -87,6 +87,7 @@ struct Solver::Work {
   SolveOutcome solveRigid(const SolverSettings& settings, double dt_s);
   SolveOutcome solveWithLaws(const SolverSettings& settings, double dt_s);
   bool addMissed(const btContactSolverInfo& info, bool is_first);
+  [[nodiscard]] bool hasOutside() const;
   [[nodiscard]] Vec6 commonVelocity() const;
   bool shorten(double dt_s);
 };
@@ -328,12 +329,26 @@ bool Solver::Work::addMissed(const btContactSolverInfo& info, bool is_first) {
   return std::any_of(missed.begin(), missed.end(), [](const MissedContact& m) { return m.point != nullptr; });
 }
 
+// True if the bodies touch, can meet, or hang on something that is not in the island.
+bool Solver::Work::hasOutside() const {
+  const auto isOutside = [&](const btCollisionObject* object) { return island.indexOf(object) < 0; };
+  return std::any_of(
+             checks.begin(), checks.end(),
+             [&](const StepCheck* c) { return isOutside(c->object(0)) || isOutside(c->object(1)); }) ||
+         std::any_of(manifolds.begin(), manifolds.end(),
+                     [&](const PenaltyManifold& m) {
+                       return m.manifold->getNumContacts() > 0 &&
+                              (isOutside(m.manifold->getBody0()) || isOutside(m.manifold->getBody1()));
+                     }) ||
+         std::any_of(joints.rows.begin(), joints.rows.end(),
+                     [](const JointRow& row) { return row.body[0] < 0 || row.body[1] < 0; });
+}
+
 // The velocity of the centre of mass of bodies that can meet each other only; zero for others.
 Vec6 Solver::Work::commonVelocity() const {
   Vec6 momentum = Vec6::Zero();
   double mass_kg = 0;
-  for (const StepCheck* check : checks)
-    if (island.indexOf(check->object(0)) < 0 || island.indexOf(check->object(1)) < 0) return momentum;
+  if (hasOutside()) return momentum;
   for (const IslandBody& b : island.bodies) {
     momentum.tail<3>() += b.mass(3, 3) * b.u.tail<3>();
     mass_kg += b.mass(3, 3);
@@ -358,7 +373,10 @@ bool Solver::Work::shorten(double dt_s) {
     is_shortened = true;
     share = k < kMost ? kShort * share : 0;
     const Vec6 common = commonVelocity();
-    for (IslandBody& b : island.bodies) b.u = common + share * (b.u - common);
+    for (IslandBody& b : island.bodies) {
+      b.u = common + share * (b.u - common);
+      b.rest_momentum_Nms *= share;
+    }
     rigid.scalePush(share);
   }
   return is_shortened;

@@ -255,8 +255,8 @@ double Simulation::addBody(std::size_t part, const Pose& X_WP, double most_kg) {
   added.body = std::make_unique<btRigidBody>(
       btRigidBody::btRigidBodyConstructionInfo(static_cast<btScalar>(added.frame.mass_kg), nullptr,
                                                added.shape.get(), bullet::toBt(added.frame.inertia_kg_m2)));
-  added.body->setWorldTransform(bullet::toBt(X_WP * added.frame.X_PB));
-  added.body->setInterpolationWorldTransform(added.body->getWorldTransform());
+  // Sets the interpolation's pose too, and the inertia about W's axes.
+  added.body->setCenterOfMassTransform(bullet::toBt(X_WP * added.frame.X_PB));
   added.body->setActivationState(DISABLE_DEACTIVATION);
   added.body->setUserIndex(static_cast<int>(part));
   w.world.addRigidBody(added.body.get());

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The bounce of a group: when it is, from what velocity, and what acts after it.
+#include <BulletDynamics/ConstraintSolver/btContactSolverInfo.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "solver/restitution.h"
+
+namespace vps::bullet::inline v0 {
+
+std::vector<Vec6> Restitution::beforeStep() const {
+  std::vector<Vec6> before = group_.solved;
+  for (std::size_t i = 0; i < before.size(); ++i) before[i] -= group_.external[i];
+  for (std::size_t k = 0; k < group_.rows.size(); ++k) group_.rows[k].apply(-group_.solved_Ns[k], before);
+  for (const Contact& c : group_.contacts)
+    for (int t = 0; t < 2; ++t) c.tangent[t].apply(-c.of->p_t[t], before);
+  return before;
+}
+
+// When in the step the group's impact is, as a share of it: the mean over its contacts, by their impulses.
+double Restitution::shareOfImpact(const std::vector<Vec6>& before, double dt_s) const {
+  double sum = 0, weight = 0;
+  for (std::size_t k = 0; k < group_.contacts.size(); ++k) {
+    const RigidContact& c = *group_.contacts[k].of;
+    if (!(c.restitution > 0) || !(c.p_n > 0)) continue;
+    const double kick_m_s = kickAlong(k), approach_m_s = -group_.rows[k].velocity(before) - 0.5 * kick_m_s;
+    if (!(approach_m_s > 0)) continue;
+    // gap = approach t + kick t^2 / (2 dt)
+    const double gap_m_s = std::max(c.gap_m, 0.0) / dt_s;
+    const double root = approach_m_s * approach_m_s - 2 * kick_m_s * gap_m_s;
+    const double share = 2 * gap_m_s / (approach_m_s + std::sqrt(std::max(root, 0.0)));
+    sum += c.p_n * approach_m_s * std::clamp(share, 0.0, 1.0);
+    weight += c.p_n * approach_m_s;
+  }
+  return weight > 0 ? sum / weight : 0;
+}
+
+// Rows that hold bodies before the impact: joints, and contacts that touch and have no approach but the
+// kick's.
+std::vector<std::uint8_t> Restitution::holding(const std::vector<Vec6>& before, double dt_s) const {
+  constexpr double kKicks = 2;       // above the 3/2 of the reflected velocity
+  constexpr double kTouch_m = 1e-7;  // as at the end of the step
+  std::vector<std::uint8_t> rows(group_.rows.size(), 1);
+  for (std::size_t k = 0; k < group_.contacts.size(); ++k) {
+    const double kick_m_s = kKicks * std::abs(kickAlong(k));
+    rows[k] = group_.rows[k].velocity(before) >= -kick_m_s &&
+              group_.contacts[k].of->gap_m <= kTouch_m + kick_m_s * dt_s;
+  }
+  return rows;
+}
+
+double Restitution::kickAlong(std::size_t row) const {
+  return group_.rows[row].velocity(group_.kick) - group_.rows[row].fixed_velocity;
+}
+
+// What is left of the kick after the impact, without what would change the velocities of contacts that were
+// hit. Their impulses for that are added to those of the bounce.
+std::vector<Vec6> Restitution::restOfKick(double share) {
+  std::vector<Vec6> rest = group_.kick;
+  for (Vec6& v : rest) v *= 1 - share;
+  std::vector<ImpactRow> rows = group_.rows;
+  std::vector<std::uint8_t> chosen(rows.size(), 0);
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    chosen[k] = group_.bounced_Ns[k] != 0;
+    rows[k].fixed_velocity = 0;
+    rows[k].lower_Ns = -std::numeric_limits<double>::infinity();
+    rows[k].upper_Ns = std::numeric_limits<double>::infinity();
+  }
+  constexpr double kSettled_m_s = 1e-10;
+  std::vector<double> held_Ns;
+  ImpactProjection(rows).solve(chosen, kSettled_m_s, rest, held_Ns);
+  for (std::size_t k = 0; k < rows.size(); ++k) group_.bounced_Ns[k] += held_Ns[k];
+  return rest;
+}
+
+// Sets the velocities with all external impulses and those of the bounce, before contacts settle.
+void Restitution::bounce(double dt_s) {
+  const std::vector<Vec6> start = beforeStep();
+  const bool has_kick =
+      std::any_of(group_.kick.begin(), group_.kick.end(), [](const Vec6& kick) { return !kick.isZero(0); });
+  const double share = has_kick ? shareOfImpact(start, dt_s) : 0;
+  std::vector<Vec6> before = start;
+  if (has_kick) {
+    for (std::size_t i = 0; i < before.size(); ++i) before[i] += (0.5 + share) * group_.kick[i];
+    std::vector<double> held_Ns;
+    ImpactProjection(group_.rows).solve(holding(start, dt_s), 1e-10, before, held_Ns);
+  }
+  ImpactState after = afterImpact(group_.rows, before);
+  group_.bounced_Ns = std::move(after.p_Ns);
+  std::vector<Vec6> rest(before.size(), Vec6::Zero());
+  if (has_kick) rest = restOfKick(share);
+  group_.v = start;
+  for (std::size_t i = 0; i < before.size(); ++i)
+    group_.v[i] += (after.v[i] - before[i]) + (group_.external[i] - (1 - share) * group_.kick[i]) + rest[i];
+}
+
+}  // namespace vps::bullet::inline v0

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// B: a body that bounces loses and gains no height by the step's length or phase.
+//
+// An impact leaves e of the speed, and so e^2 of the height.
+#include "bounce_families.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include "impact_world.h"
+#include "search/random.h"
+
+namespace vps::families {
+namespace {
+
+using dynamics::Placed;
+using search::Random;
+
+constexpr double kGravity_m_s2 = dynamics::World::kGravity_m_s2;
+const Vec3 kCube_m(20e-3, 20e-3, 10e-3);
+
+/// A cube dropped onto a plate. After k bounces it rises to e^(2k) of its height.
+struct Bounces {
+  double e = 1, height_m = 20e-3, dt_s = 1e-3;
+
+  static constexpr std::array<double, 3> kRates_hz{240, 1000, 4000};
+
+  explicit Bounces(int member) {
+    Random random(0xb4 + static_cast<std::uint64_t>(member));
+    dt_s = 1 / kRates_hz[static_cast<std::size_t>(member % 3)];
+    if (member < 3) return;
+    height_m = random.uniform(10e-3, 40e-3);
+    e = random.chance(0.3) ? 1 : random.uniform(0.3, 1);
+  }
+  // At 240 Hz a step is about as long as the way to the plate is deep; Bullet's threshold is 0.2 m/s.
+  [[nodiscard]] int count() const {
+    const double least_m_s = 0.2 + 2 * kGravity_m_s2 * dt_s;
+    int k = 0;
+    for (double v_m_s = std::sqrt(2 * kGravity_m_s2 * height_m); k < 5 && v_m_s > least_m_s; v_m_s *= e) ++k;
+    return k;
+  }
+  /// Height of each peak over e^(2k) of the start, less 1. A body's places in flight lie on a parabola, whose
+  /// peak three of them give.
+  [[nodiscard]] std::vector<double> errors() const {
+    ImpactWorld scene;
+    scene.addFixed(boxPart(Vec3(0.2, 0.2, 0.02)), Pose::translation(Vec3(0, 0, -0.01)), 1, 0);
+    const double half_m = 0.5 * kCube_m.z();
+    const Placed body = scene.add(boxPart(kCube_m), Pose::translation(Vec3(0, 0, half_m + height_m)), e, 0);
+    std::array<double, 3> z_m{height_m, height_m, height_m};
+    std::vector<double> found;
+    const int most = static_cast<int>(2 / dt_s);
+    for (int i = 0; i < most && static_cast<int>(found.size()) < count(); ++i) {
+      scene.world.step(1, dt_s);
+      z_m = {z_m[1], z_m[2], body.pose().p.z() - half_m};
+      const double bend_m = z_m[2] - 2 * z_m[1] + z_m[0], rise_m = z_m[2] - z_m[0];
+      if (i < 3 || !(z_m[1] > z_m[0]) || !(z_m[1] >= z_m[2])) continue;
+      const double peak_m = z_m[1] - rise_m * rise_m / (8 * bend_m);
+      found.push_back(peak_m / (height_m * std::pow(e, 2.0 * static_cast<double>(found.size() + 1))) - 1);
+    }
+    found.resize(static_cast<std::size_t>(count()), -1);
+    return found;
+  }
+  /// Greatest error, to either side.
+  [[nodiscard]] double error() const {
+    double worst = 0;
+    for (const double one : errors()) worst = std::max(worst, std::abs(one));
+    return worst;
+  }
+  [[nodiscard]] std::string words() const {
+    char text[200];
+    int length =
+        std::snprintf(text, sizeof text, "from %.3f mm, e %.2f, %.3g ms:", 1e3 * height_m, e, 1e3 * dt_s);
+    for (const double one : errors())
+      length += std::snprintf(text + length, sizeof text - static_cast<std::size_t>(length), " %+.2g", one);
+    return text;
+  }
+};
+
+/// The mean of the signed errors over 12 heights: no phase of the step gains or loses.
+double meanBounceError(int member) {
+  double sum = 0;
+  int count = 0;
+  for (int i = 0; i < 12; ++i) {
+    Bounces bounces(3 + i);
+    bounces.dt_s = 1 / Bounces::kRates_hz[static_cast<std::size_t>(member % 3)];
+    bounces.e = std::array<double, 3>{0.5, 0.8, 1}[static_cast<std::size_t>(member / 3)];
+    for (const double one : bounces.errors()) sum += one, ++count;
+  }
+  return std::abs(sum / std::max(count, 1));
+}
+
+}  // namespace
+
+std::vector<Family> bounceFamilies() {
+  return {
+      {"B_heights", "error of a height after 1 to 5 bounces, of e^(2k) h", 0.01, 60, 4,
+       [](int i) { return Bounces(i).error(); }, [](int i) { return Bounces(i).words(); }},
+      {"B_mean_heights", "mean error of heights, of e^(2k) h", 1e-3, 9, 4, meanBounceError},
+  };
+}
+
+}  // namespace vps::families
