@@ -3,6 +3,10 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <array>
+#include <cmath>
+#include <numbers>
+
 #include "support/analytic.h"
 #include "vps/mesh_repair.h"
 #include "vps/solid.h"
@@ -106,6 +110,72 @@ TEST(ShellUnion, HasTheSameBitsForAnyNumberOfThreads) {
   EXPECT_EQ(many.report().united_shells, 3u);
   EXPECT_EQ(many.mesh().vertices, single.mesh().vertices);
   EXPECT_EQ(many.mesh().triangles, single.mesh().triangles);
+}
+
+/// Facet 0 of the mesh is cut at the middle of its first side, whose other facet is not: a facet without area
+/// fills the gap.
+Mesh withFlatFacet(Mesh mesh) {
+  const std::array<std::uint32_t, 3> t = mesh.triangles[0];
+  const auto middle = static_cast<std::uint32_t>(mesh.vertices.size());
+  mesh.vertices.push_back(0.5 * (mesh.vertices[t[0]] + mesh.vertices[t[1]]));
+  mesh.triangles[0] = {t[0], middle, t[2]};
+  mesh.triangles.push_back({middle, t[1], t[2]});
+  mesh.triangles.push_back({t[1], middle, t[0]});
+  return mesh;
+}
+
+TEST(ShellUnion, AFacetWithoutAreaDoesNotPreventIt) {
+  for (const double overlap_m : {0.0, 1e-4}) {
+    const Solid solid(withFlatFacet(welded(channel(overlap_m))));
+    EXPECT_EQ(solid.report().degenerate_triangles, 1u);
+    EXPECT_EQ(solid.report().united_shells, 3u);
+    EXPECT_FALSE(solid.report().is_union_incomplete);
+    EXPECT_NEAR(solid.mass().volume_m3 / kChannel_m3, 1, 1e-12);
+    EXPECT_NEAR(solid.signedDistance({0.004, 0.01, 0.01}), -0.004, 1e-12);
+  }
+}
+
+TEST(ShellUnion, AnOpenPatchElsewhereDoesNotPreventIt) {
+  Mesh sheet = makeBox({0.01, 0.01, 0.01});
+  sheet.triangles.resize(2);
+  const Solid solid(joined(channel(1e-4), transformed(sheet, Pose::translation({0.03, 0.01, 0.08}))));
+  EXPECT_EQ(solid.report().united_shells, 3u);
+  EXPECT_FALSE(solid.report().is_union_incomplete);
+  EXPECT_EQ(solid.report().sheet_facets, 2u);
+  EXPECT_NEAR(solid.mass().volume_m3 / kChannel_m3, 1, 1e-9);
+  EXPECT_NEAR(solid.signedDistance({0.004, 0.01, 0.01}), -0.004, 1e-12);
+}
+
+/// The side of one arm is parted from the rest by a crack that is too wide to be joined, and narrow enough
+/// for the shell to be taken as closed.
+TEST(ShellUnion, ShellsThatTouchButHaveCracksAreSaidNotToBeUnited) {
+  Mesh arm = block({0, 0, 0.009}, {0.01, 0.02, 0.04});
+  Mesh cut = arm;
+  cut.triangles.resize(2);
+  arm.triangles.erase(arm.triangles.begin(), arm.triangles.begin() + 2);
+  const Vec3 n = (cut.vertices[cut.triangles[0][1]] - cut.vertices[cut.triangles[0][0]])
+                     .cross(cut.vertices[cut.triangles[0][2]] - cut.vertices[cut.triangles[0][0]])
+                     .normalized();
+  append(arm, transformed(cut, Pose::translation(1e-5 * n)));
+  const Solid solid(joined(block({0, 0, 0}, {0.06, 0.02, 0.01}), arm));
+  EXPECT_EQ(solid.report().united_shells, 0u);
+  EXPECT_TRUE(solid.report().is_union_incomplete) << describe(solid.report());
+}
+
+/// Pins that stand on one plate: all have a share of its two facets.
+TEST(ShellUnion, ManyPinsOnAPlateAreOneSolid) {
+  constexpr int kRow = 10, kSides = 16;
+  constexpr double kPitch_m = 4e-3, kRadius_m = 1e-3, kHigh_m = 10e-3;
+  Mesh mesh = block({0, 0, -5e-3}, {kRow * kPitch_m, kRow * kPitch_m, 0});
+  for (int i = 0; i < kRow * kRow; ++i)
+    append(mesh, transformed(makeCylinder(kRadius_m, kHigh_m, kSides),
+                             Pose::translation(
+                                 {(i % kRow + 0.5) * kPitch_m, (i / kRow + 0.5) * kPitch_m, 0.5 * kHigh_m})));
+  const Solid solid(mesh);
+  const double pin_m2 = 0.5 * kSides * kRadius_m * kRadius_m * std::sin(2 * std::numbers::pi / kSides);
+  const double truth_m3 = std::pow(kRow * kPitch_m, 2) * 5e-3 + kRow * kRow * pin_m2 * kHigh_m;
+  EXPECT_EQ(solid.report().united_shells, kRow * kRow + 1u);
+  EXPECT_NEAR(solid.mass().volume_m3 / truth_m3, 1, 1e-10);
 }
 
 TEST(ShellUnion, WhatCouldNotBeUnitedIsSaid) {

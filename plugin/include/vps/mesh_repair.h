@@ -36,10 +36,10 @@ enum class Crossing { Unknown, Seen };
 ///   out. Shells within a turned shell are turned with it.
 /// - Open patches are turned where the rest of the mesh shows clearly on which side the solid is.
 /// - Closed shells that touch or cross each other are united: facets are cut along the intersections, and
-/// what
-///   has solid on both sides, or on neither, is left out. Shells touch within 2.4e-7 of the greatest
-///   coordinate, four roundings of a float. Where that finds no closed surface, as where other faults are,
-///   nothing is cut and the report says so.
+///   what has solid on both sides, or on neither, is left out. Facets without area are left out first;
+///   patches that are open stay beside the union. Shells touch within 2.4e-7 of the greatest coordinate, four
+///   roundings of a float. Where that finds no closed surface or would take more than about half a minute,
+///   and where cracks part a shell that touches another, nothing is cut and the report says so.
 /// - Facets with a winding number above 0.5 on both sides are removed from the surface. So a shell within
 ///   another one that faces out too is solid within solid, and is left out; a cavity is a shell that faces
 ///   in.
@@ -52,6 +52,7 @@ VPS_API RepairedMesh repairCrossing(const RepairedMesh& sound);
 
 /// Volume, centre and inertia of the repaired solid: of its surface where that is closed; else of all shells,
 /// with flat lids over their holes. The volume is 0 where it is within rounding of that, as of a flat sheet.
+/// What a single shell that crosses itself encloses twice counts twice, also after repairCrossing().
 VPS_API MassProperties massOf(const RepairedMesh& repaired);
 
 /// Volume, centre and inertia of the solid that a mesh stands for: as `Solid(mesh).mass()`, to the bit,

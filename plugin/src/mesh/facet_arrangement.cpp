@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <unordered_map>
 #include <unordered_set>
 #include <utility>
 
+#include "mesh/box_tree.h"
 #include "mesh/mesh_edges.h"
 #include "mesh/planar_triangulation.h"
 
@@ -47,8 +49,9 @@ double distanceToSegment(const Vec3& p, const Vec3& a, const Vec3& b) {
 
 class Arranger {
  public:
-  Arranger(const Mesh& mesh, std::span<const std::array<std::uint32_t, 2>> pairs, double touch_m)
-      : mesh_(mesh), points_(mesh.vertices), touch_m_(touch_m) {
+  Arranger(const Mesh& mesh, std::span<const std::array<std::uint32_t, 2>> pairs, double touch_m,
+           std::int64_t& work_left)
+      : mesh_(mesh), points_(mesh.vertices), touch_m_(touch_m), work_left_(work_left) {
     mergeVertices(pairs);
     for (const auto& [f, g] : pairs)
       if (!isGone(f) && !isGone(g)) pairs_.push_back({f, g});
@@ -61,7 +64,7 @@ class Arranger {
     for (const auto& [f, g] : pairs_) crossSides(f, g);
     forEachOrderedPair([&](std::uint32_t f, std::uint32_t g) { verticesInFacet(f, g); });
     forEachOrderedPair([&](std::uint32_t f, std::uint32_t g) { sidesThroughFacet(f, g); });
-    for (const auto& [f, g] : pairs_) addSections(f, g);
+    addSections();
     if (!settleSections()) return std::nullopt;
     return triangulated();
   }
@@ -114,22 +117,27 @@ class Arranger {
     const Vec3 cell = (p / touch_m_).array().floor();
     return {std::llround(cell.x()), std::llround(cell.y()), std::llround(cell.z())};
   }
-  static std::uint64_t hashOf(const Cell& cell) {
-    std::uint64_t hash = 0;
+  static std::uint64_t hashOf(const Cell& cell, std::uint64_t hash = 0) {
     for (const std::int64_t k : cell) hash = (hash ^ static_cast<std::uint64_t>(k)) * 0x9E3779B97F4A7C15u;
     return hash;
   }
   void keep(std::uint32_t p) { cells_[hashOf(cellOf(points_[p]))].push_back(p); }
   [[nodiscard]] std::optional<std::uint32_t> nearPoint(const Vec3& p) const {
+    std::optional<std::uint32_t> near;
+    forEachCellAround(p, [&](const Cell& at) {
+      const auto cell = near ? cells_.end() : cells_.find(hashOf(at));
+      if (cell == cells_.end()) return;
+      const auto found = std::find_if(cell->second.begin(), cell->second.end(),
+                                      [&](std::uint32_t q) { return isNear(q, p); });
+      if (found != cell->second.end()) near = *found;
+    });
+    return near;
+  }
+  template <typename Visit>
+  void forEachCellAround(const Vec3& p, Visit visit) const {
     const Cell home = cellOf(p);
-    for (int n = 0; n < 27; ++n) {
-      const auto cell =
-          cells_.find(hashOf({home[0] + n / 9 - 1, home[1] + n / 3 % 3 - 1, home[2] + n % 3 - 1}));
-      if (cell == cells_.end()) continue;
-      for (const std::uint32_t q : cell->second)
-        if (isNear(q, p)) return q;
-    }
-    return std::nullopt;
+    for (int n = 0; n < 27; ++n)
+      visit(Cell{home[0] + n / 9 - 1, home[1] + n / 3 % 3 - 1, home[2] + n % 3 - 1});
   }
   [[nodiscard]] bool isNear(std::uint32_t p, const Vec3& q) const {
     return (points_[p] - q).norm() <= touch_m_;
@@ -179,6 +187,10 @@ class Arranger {
     facets_.push_back(std::move(facet));
   }
   Facet& facet(std::uint32_t f) { return facets_[facet_of_.at(f)]; }
+  [[nodiscard]] std::uint64_t numberOf(const Facet& f) const {
+    return static_cast<std::uint64_t>(&f - facets_.data());
+  }
+  [[nodiscard]] std::uint64_t keyOf(const Facet& f, std::uint32_t of) const { return numberOf(f) << 32 | of; }
   [[nodiscard]] double height(const Facet& f, const Vec3& p) const {
     return f.n.dot(p - points_[f.corners[0]]);
   }
@@ -199,7 +211,7 @@ class Arranger {
   void verticesOnSides(std::uint32_t f, std::uint32_t g) {
     for (const std::uint32_t v : facet(f).corners)
       for (const std::uint32_t s : facet(g).sides)
-        if (!isOn(segments_[s], v) && isNearSegment(segments_[s], points_[v])) put(s, v);
+        if (isNearSegment(segments_[s], points_[v])) put(s, v);
   }
 
   void crossSides(std::uint32_t f, std::uint32_t g) {
@@ -245,8 +257,22 @@ class Arranger {
     }
   }
   void putInner(Facet& f, std::uint32_t p) {
-    const auto is = [&](std::uint32_t q) { return find(q) == find(p); };
-    if (std::none_of(f.inner.begin(), f.inner.end(), is)) f.inner.push_back(p);
+    if (!inner_.insert(keyOf(f, find(p))).second) return;
+    inner_near_[hashOf(cellOf(points_[p]), numberOf(f))].push_back(
+        static_cast<std::uint32_t>(f.inner.size()));
+    f.inner.push_back(p);
+  }
+  /// Of the facet's inner points that are near p the first.
+  [[nodiscard]] std::optional<std::uint32_t> innerNear(const Facet& f, const Vec3& p) const {
+    std::uint32_t first = UINT32_MAX;
+    forEachCellAround(p, [&](const Cell& cell) {
+      const auto found = inner_near_.find(hashOf(cell, numberOf(f)));
+      if (found == inner_near_.end()) return;
+      for (const std::uint32_t i : found->second)
+        if (i < first && i < f.inner.size() && isNear(f.inner[i], p)) first = i;
+    });
+    if (first == UINT32_MAX) return std::nullopt;
+    return f.inner[first];
   }
 
   void sidesThroughFacet(std::uint32_t f, std::uint32_t g) {
@@ -258,8 +284,7 @@ class Arranger {
       const Vec3 p = a + at_a / (at_a - at_b) * (b - a);
       if (!isAbove(in, p) || isNearSide(in, p)) continue;
       std::optional<std::uint32_t> point = pointAt(segments_[s], p);
-      for (const std::uint32_t q : in.inner)
-        if (!point && isNear(q, p)) point = q;
+      if (!point) point = innerNear(in, p);
       if (!point) point = newPoint(p);
       put(s, *point);
       putInner(in, *point);
@@ -287,8 +312,7 @@ class Arranger {
     const std::uint32_t s = segment(a, b);
     Facet& in = facet(f);
     if (std::find(in.sides.begin(), in.sides.end(), s) != in.sides.end()) return;
-    if (std::find(in.sections.begin(), in.sections.end(), s) != in.sections.end()) return;
-    in.sections.push_back(s);
+    if (sections_.insert(keyOf(in, s)).second) in.sections.push_back(s);
   }
 
   /// All corners of one lie in the plane of the other.
@@ -310,10 +334,18 @@ class Arranger {
     }
   }
 
-  void addSections(std::uint32_t f, std::uint32_t g) {
-    const std::vector<std::uint32_t> of_f = ownPoints(f), of_g = ownPoints(g);
+  /// Sections do not change what two facets have in common.
+  void addSections() {
+    std::vector<std::vector<std::uint32_t>> own;
+    for (const Facet& f : facets_) own.push_back(pointsOf(f));
+    for (const auto& [f, g] : pairs_) addSections(f, g, own[facet_of_.at(f)], own[facet_of_.at(g)]);
+  }
+  void addSections(std::uint32_t f, std::uint32_t g, const std::vector<std::uint32_t>& of_f,
+                   const std::vector<std::uint32_t>& of_g) {
+    const auto& [few, many] = of_f.size() < of_g.size() ? std::tie(of_f, of_g) : std::tie(of_g, of_f);
     std::vector<std::uint32_t> common;
-    std::set_intersection(of_f.begin(), of_f.end(), of_g.begin(), of_g.end(), std::back_inserter(common));
+    for (const std::uint32_t p : few)
+      if (std::binary_search(many.begin(), many.end(), p)) common.push_back(p);
     if (common.size() < 2) return;
     if (areFlush(facet(f), facet(g))) {
       for (const std::uint32_t of : {f, g})
@@ -332,20 +364,15 @@ class Arranger {
     }
     addRow(f, g, common, along);
   }
-  /// Without those of sections, which do not change what two facets have in common.
-  std::vector<std::uint32_t> ownPoints(std::uint32_t f) {
-    Facet bare = facet(f);
-    bare.sections.clear();
-    return pointsOf(bare);
-  }
 
   /// Where three facets meet, segments cross or touch within a facet.
   bool settleSections() {
     constexpr int kRounds = 8;
     for (int round = 0; round < kRounds; ++round) {
       bool has_changed = false;
-      for (std::size_t i = 0; i < facets_.size(); ++i)
+      for (std::size_t i = 0; i < facets_.size() && work_left_ >= 0; ++i)
         if (!facets_[i].sections.empty()) has_changed |= settle(facets_[i]);
+      if (work_left_ < 0) return false;
       if (!has_changed) return true;
     }
     return false;
@@ -362,17 +389,31 @@ class Arranger {
       boxes.push_back({box.min.array() - touch_m_, box.max.array() + touch_m_});
     }
     const std::vector<std::uint32_t> points = pointsOf(f);
-    for (std::size_t i = 0; i < all.size(); ++i)
-      for (const std::uint32_t p : points)
-        if (isWithin(points_[p], boxes[i]) && !isOn(segments_[all[i]], p) &&
-            isNearSegment(segments_[all[i]], points_[p]))
-          has_changed |= put(all[i], p);
-    for (std::size_t i = 3; i < all.size(); ++i)
-      for (std::size_t k = 3; k < i; ++k)
-        if ((boxes[i].min.array() <= boxes[k].max.array()).all() &&
-            (boxes[k].min.array() <= boxes[i].max.array()).all())
-          has_changed |= crossSegments(all[k], all[i]);
+    std::vector<Box> places;
+    for (const std::uint32_t p : points) places.push_back({points_[p], points_[p]});
+    const BoxTree tree_of_points(places), tree(boxes);
+    std::vector<std::uint32_t> near;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      findOverlaps(tree_of_points, boxes[i], near);
+      for (const std::uint32_t k : near)
+        if (isNearSegment(segments_[all[i]], points_[points[k]])) has_changed |= put(all[i], points[k]);
+    }
+    for (std::size_t i = 3; i < all.size(); ++i) {
+      findOverlaps(tree, boxes[i], near);
+      for (const std::uint32_t k : near)
+        if (k >= 3 && k < i) has_changed |= crossSegments(all[k], all[i]);
+    }
     return has_changed;
+  }
+  /// In ascending order. Counts them as work.
+  void findOverlaps(const BoxTree& tree, const Box& box, std::vector<std::uint32_t>& found) {
+    found.clear();
+    tree.forEachOverlap(box, [&](std::uint32_t i) {
+      found.push_back(i);
+      return true;
+    });
+    std::sort(found.begin(), found.end());
+    work_left_ -= static_cast<std::int64_t>(found.size() + 1);
   }
 
   // ---- pieces
@@ -450,12 +491,15 @@ class Arranger {
   std::vector<std::uint32_t> alias_;
   std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> cells_;  // of points, by place
   const double touch_m_;
+  std::int64_t& work_left_;
   std::vector<std::array<std::uint32_t, 2>> pairs_;
   std::vector<Segment> segments_;
   std::unordered_map<std::uint64_t, std::uint32_t> segment_of_;
   std::unordered_set<std::uint64_t> crossed_;
   std::unordered_map<std::uint32_t, std::uint32_t> facet_of_;
   std::vector<Facet> facets_;
+  std::unordered_set<std::uint64_t> inner_, sections_;                        // of facets, by keyOf()
+  std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> inner_near_;  // by facet and place
 };
 
 }  // namespace
@@ -474,8 +518,8 @@ bool mayTouch(const Mesh& mesh, std::uint32_t f, std::uint32_t g, double touch_m
 }
 
 std::optional<Arrangement> arrange(const Mesh& mesh, std::span<const std::array<std::uint32_t, 2>> pairs,
-                                   double touch_m) {
-  return Arranger(mesh, pairs, touch_m).run();
+                                   double touch_m, std::int64_t& work_left) {
+  return Arranger(mesh, pairs, touch_m, work_left).run();
 }
 
 }  // namespace vps::inline v0

@@ -25,8 +25,10 @@ bool mayTouch(const Mesh& mesh, std::uint32_t f, std::uint32_t g, double touch_m
 /// vertices are merged, vertices near an edge or a facet become part of it, edges that nearly meet get a
 /// common point. Facets that lie on each other are both cut along each other's edges. As in: OpenCASCADE,
 /// Boolean operations, General Fuse (vertices first, then edges, then faces). Nothing if some facet cannot be
-/// triangulated. O(pairs) and, in each facet, O(points x segments).
+/// triangulated, or if work_left falls below 0: from it what is tested for being near within facets is
+/// subtracted, a microsecond each. O(pairs) and, in each facet, O(n log n) for points and segments with few
+/// others near.
 std::optional<Arrangement> arrange(const Mesh& mesh, std::span<const std::array<std::uint32_t, 2>> pairs,
-                                   double touch_m);
+                                   double touch_m, std::int64_t& work_left);
 
 }  // namespace vps::inline v0

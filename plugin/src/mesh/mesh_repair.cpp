@@ -12,6 +12,7 @@
 
 #include "mesh/box_tree.h"
 #include "mesh/closed_cracks.h"
+#include "mesh/flat_facets.h"
 #include "mesh/joined_edges.h"
 #include "mesh/mesh_edges.h"
 #include "mesh/mesh_survey.h"
@@ -65,7 +66,7 @@ double determinant(const Mesh& mesh, std::uint32_t triangle, const Vec3& o) {
   return a.dot(b.cross(c));
 }
 
-bool haveContact(std::vector<Box> boxes, double touch_m) {
+bool boxesTouch(std::vector<Box> boxes, double touch_m) {
   if (boxes.size() < 2) return false;
   for (Box& box : boxes) box = {box.min.array() - touch_m, box.max.array() + touch_m};
   return BoxTree(boxes).hasOverlap();
@@ -81,7 +82,7 @@ bool areSound(const Mesh& mesh, const std::vector<std::uint32_t>& shell_of, std:
   for (std::uint32_t i = 0; i < shell_of.size(); ++i)
     volume_m3[shell_of[i]] += determinant(mesh, i, boxes[shell_of[i]].center()) / 6;
   return std::all_of(volume_m3.begin(), volume_m3.end(), [](double v) { return v > 0; }) &&
-         !haveContact(boxes, touchDistance(mesh));
+         !boxesTouch(boxes, touchDistance(mesh));
 }
 
 class Repairer {
@@ -106,6 +107,7 @@ class Repairer {
     surveyOpenEdges(mesh(), edges_, report());
     findPatches();
     turnClosed();
+    if (mayNeedUnion() && haveContact(closedFacets())) report().is_union_incomplete = true;
     is_kept_.assign(mesh().triangles.size(), Keep::Both);
     const bool has_open =
         std::any_of(patches_.begin(), patches_.end(), [](const Patch& p) { return !p.is_closed; });
@@ -131,38 +133,102 @@ class Repairer {
 
   enum class Keep : std::uint8_t { Both, Solid, Surface, None };
 
-  /// The union of closed shells, if some of them touch. Duplicates come first: if these are the only fault,
-  /// they are copies of facets.
+  /// The union of closed shells, if some of them touch, with the other patches repaired beside it.
+  /// Duplicates come first: if these are the only fault, they are copies of facets.
   std::optional<RepairedMesh> unitedShells() {
-    if (is_crossing_ || is_single_ || report().open_edges > 0 || report().degenerate_triangles > 0)
-      return std::nullopt;
+    if (is_crossing_ || is_single_) return std::nullopt;
     if (report().duplicate_triangles > 0 && Repairer(mesh(), true).run().is_sound) return std::nullopt;
-    Repairer closed(mesh(), true);
+    std::optional<Mesh> solid = report().degenerate_triangles > 0 ? withoutFlatFacets(mesh()) : mesh();
+    if (!solid) return std::nullopt;
+    Repairer closed(*solid, true);
     std::optional<ShellUnion> found = closed.uniteClosed();
-    if (!found || found->united_shells == 0) return std::nullopt;
+    if (!found) return std::nullopt;
+    const Mesh others = closed.otherFacets();
+    is_contact_known_ = others.triangles.empty();
+    if (found->united_shells == 0) return std::nullopt;
     if (found->mesh.triangles.empty()) {
       report().is_union_incomplete = true;
       return std::nullopt;
     }
-    RepairedMesh united{found->mesh, std::move(found->mesh), closed.report(), false};
+    RepairedMesh united = beside(std::move(found->mesh), others);
+    united.report = reportOf(closed.report(), united.report);
     united.report.united_shells = found->united_shells;
-    united.report.overlapping_shells = found->covered_shells;
-    united.report.internal_facets = found->covered_facets;
+    united.report.overlapping_shells += found->covered_shells;
+    united.report.internal_facets += found->covered_facets;
     return united;
   }
 
-  /// Nothing if some shell is not closed. Turns shells that face in.
+  /// Repairs the facets that were not united, with the union as one part of the mesh.
+  static RepairedMesh beside(Mesh united, const Mesh& others) {
+    if (others.triangles.empty()) return {united, united, {}, false};
+    const std::size_t count = united.triangles.size();
+    append(united, others);
+    Repairer all(welded(united), true);
+    all.united_facets_ = count;
+    RepairedMesh repaired = all.run();
+    repaired.is_sound = false;
+    return repaired;
+  }
+  /// Counts of the mesh as it was given, and what was repaired before and after the union.
+  [[nodiscard]] MeshReport reportOf(const MeshReport& before, const MeshReport& after) const {
+    MeshReport all = before;
+    all.triangles = result_.report.triangles;
+    all.degenerate_triangles = result_.report.degenerate_triangles;
+    all.joined_corners = result_.report.joined_corners + after.joined_corners;
+    all.joined_m = std::max(result_.report.joined_m, after.joined_m);
+    all.holes = after.holes, all.t_junctions = after.t_junctions;
+    all.flipped_facets += after.flipped_facets, all.turned_shells += after.turned_shells;
+    all.overlapping_shells = after.overlapping_shells, all.internal_facets = after.internal_facets;
+    all.sheet_facets = after.sheet_facets, all.is_union_incomplete = after.is_union_incomplete;
+    return all;
+  }
+
+  /// Nothing if there are no two closed shells whose boxes touch. Turns shells that face in.
   std::optional<ShellUnion> uniteClosed() {
     edges_ = sortedHalfEdges(mesh());
     result_.report = checkMesh(mesh(), edges_);
     joined_ = joinFacets(mesh(), edges_, kWidestBetweenCopies);
     findPatches();
-    const auto isOpen = [](const Patch& p) { return !p.is_closed; };
-    if (patches_.size() < 2 || std::any_of(patches_.begin(), patches_.end(), isOpen) ||
-        !haveContact(boxesOfClosed(), touchDistance(mesh())))
-      return std::nullopt;
+    markOpen(edges_);  // cracks stay open in the union
+    if (!boxesTouch(boxesOfClosed(), touchDistance(mesh()))) return std::nullopt;
     turnClosed();
-    return unite(mesh(), patch_of_);
+    const ShellFacets closed = closedFacets();
+    return unite(closed.mesh, closed.shell_of);
+  }
+
+  struct ShellFacets {
+    Mesh mesh;
+    std::vector<std::uint32_t> shell_of;  // by triangle
+  };
+  static bool haveContact(const ShellFacets& facets) {
+    return facets.mesh.triangles.size() > 1 && v0::haveContact(facets.mesh, facets.shell_of);
+  }
+
+  /// The facets of closed patches, with area; what was united before is one shell.
+  ShellFacets closedFacets() {
+    ShellFacets out{{mesh().vertices, {}}, {}};
+    std::vector<std::uint32_t> number(patches_.size() + 1, UINT32_MAX);
+    std::uint32_t count = 0;
+    for (std::uint32_t i = 0; i < patch_of_.size(); ++i) {
+      if (!patches_[patch_of_[i]].is_closed || !(facetOf(mesh(), i).area_m2 > 0)) continue;
+      std::uint32_t& shell = number[i < united_facets_ ? patches_.size() : patch_of_[i]];
+      if (shell == UINT32_MAX) shell = count++;
+      out.mesh.triangles.push_back(mesh().triangles[i]);
+      out.shell_of.push_back(shell);
+    }
+    return out;
+  }
+  [[nodiscard]] Mesh otherFacets() {
+    Mesh others = {mesh().vertices, {}};
+    for (std::uint32_t i = 0; i < patch_of_.size(); ++i)
+      if (!patches_[patch_of_[i]].is_closed) others.triangles.push_back(mesh().triangles[i]);
+    return others;
+  }
+  /// Closed shells touch that were not united, as far as their boxes tell.
+  bool mayNeedUnion() {
+    if (is_crossing_ || is_contact_known_ || report().is_union_incomplete) return false;
+    if (is_single_ && united_facets_ == 0) return false;
+    return boxesTouch(boxesOfClosed(), touchDistance(mesh()));
   }
 
   Mesh& mesh() { return result_.solid; }
@@ -307,8 +373,13 @@ class Repairer {
       const Vec3 o = patch.box.center();
       for (const std::uint32_t i : patch.triangles) patch.volume_m3 += determinant(mesh(), i, o) / 6;
     }
+    markOpen(joined_.edges);
+  }
+
+  /// Patches some of whose edges have more facets in one direction than in the other are not closed.
+  void markOpen(const std::vector<HalfEdge>& edges) {
     std::vector<std::pair<std::uint32_t, int>> uses;  // of an edge: by which patch, and in which direction
-    forEachEdge(joined_.edges, [&](std::span<const HalfEdge> same) {
+    forEachEdge(edges, [&](std::span<const HalfEdge> same) {
       uses.clear();
       for (const HalfEdge& e : same) uses.emplace_back(patch_of_[e.triangle], isForward(e) ? 1 : -1);
       std::sort(uses.begin(), uses.end());
@@ -575,6 +646,8 @@ class Repairer {
   }
 
   const bool is_crossing_, is_single_;
+  bool is_contact_known_ = false;  // all closed shells were looked at, and none touch
+  std::size_t united_facets_ = 0;  // the first ones, which were united before
   RepairedMesh result_;
   std::vector<HalfEdge> edges_;  // as the facets were at first
   JoinedFacets joined_;          // as the facets were at first
@@ -635,7 +708,7 @@ std::string describe(const MeshReport& report) {
   say(report.degenerate_triangles, "facet without area", "facets without area");
   say(report.flipped_facets, "flipped facet turned", "flipped facets turned");
   say(report.turned_shells, "shell that faced in turned", "shells that faced in turned");
-  say(report.united_shells, "touching shell united", "touching or overlapping shells united");
+  say(report.united_shells, "touching or overlapping shell united", "touching or overlapping shells united");
   if (report.united_shells == 0) say(report.overlapping_shells, "overlapping shell", "overlapping shells");
   say(report.internal_facets, "facet within the solid left out", "facets within the solid left out");
   say(report.sheet_facets, "facet of a sheet without an inside", "facets of sheets without an inside");

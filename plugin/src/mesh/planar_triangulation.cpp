@@ -191,12 +191,27 @@ class Triangulation {
     return ((at_c > 0) != (at_d > 0)) && ((at_a > 0) != (at_b > 0));
   }
 
+  /// The edges that segment ab crosses, in ascending order, found by walking along it.
+  [[nodiscard]] std::vector<Edge> crossed(std::uint32_t a, std::uint32_t b) const {
+    std::vector<Edge> found;
+    Edge next = {a, a};
+    for (auto side = third_.lower_bound({a, 0}); side != third_.end() && side->first.first == a; ++side)
+      if (crosses(a, b, {side->first.second, side->second})) next = {side->first.second, side->second};
+    while (next.first != a && found.size() < third_.size()) {
+      found.push_back(undirected(next.first, next.second));
+      const std::uint32_t* apex = across({next.second, next.first});
+      if (apex == nullptr || *apex == b) break;
+      const Edge left = {next.first, *apex}, right = {*apex, next.second};
+      next = crosses(a, b, left) ? left : crosses(a, b, right) ? right : Edge{a, a};
+    }
+    std::sort(found.begin(), found.end());
+    return found;
+  }
+
   bool constrain(std::uint32_t a, std::uint32_t b) {
     fixed_.insert(undirected(a, b));
     if (across({a, b}) != nullptr || across({b, a}) != nullptr) return true;
-    std::vector<Edge> crossing;
-    for (const auto& [edge, c] : third_)
-      if (edge.first < edge.second && crosses(a, b, edge)) crossing.push_back(edge);
+    std::vector<Edge> crossing = crossed(a, b);
     const std::size_t most = 64 + 16 * crossing.size() * crossing.size();
     for (std::size_t i = 0; i < crossing.size(); ++i) {
       if (i > most || fixed_.count(crossing[i]) > 0) return false;

@@ -7,12 +7,14 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <span>
 
 #include "mesh/box_tree.h"
 #include "mesh/facet_arrangement.h"
 #include "mesh/mesh_edges.h"
 #include "mesh/triangle_distance.h"
+#include "vps/winding_number.h"
 
 namespace vps::inline v0 {
 namespace {
@@ -21,6 +23,9 @@ using Pair = std::array<std::uint32_t, 2>;
 
 /// More pairs of near facets than these are not cut. Assumed: a minute.
 constexpr std::size_t kMostPairs = 4'000'000;
+/// Steps of about a microsecond on one core: half a minute, for all tries together.
+constexpr std::int64_t kMostWork = 30'000'000;
+constexpr std::int64_t kAnglesInStep = 16;  ///< solid angles of triangles that are as much work
 
 Box boxOf(const Mesh& mesh, std::uint32_t triangle, double margin_m) {
   Box box;
@@ -74,50 +79,119 @@ double solidAngle(const Vec3& a, const Vec3& b, const Vec3& c) {
 /// Where the solid is, around points of the shells' surfaces.
 class Shells {
  public:
+  /// How the facets of other shells lie at a point of a facet.
+  struct Flush {
+    int same = 0, opposite = 0;  ///< shells with a facet there that faces the same way, or the other way
+    bool is_first = true;        ///< no shell before the facet's own has one that faces the same way
+  };
+
   Shells(const Mesh& mesh, const std::vector<std::uint32_t>& shell_of, double touch_m)
-      : mesh_(mesh), shell_of_(shell_of), touch_m_(touch_m), boxes_(boxesOf(mesh, shell_of, touch_m)) {
+      : mesh_(mesh),
+        shell_of_(shell_of),
+        touch_m_(touch_m),
+        boxes_(boxesOf(mesh, shell_of, touch_m)),
+        facet_boxes_(facetBoxes(mesh)),
+        tree_(boxes_),
+        facets_(facet_boxes_),
+        winding_(mesh, kClusterError) {
     triangles_.resize(boxes_.size());
     for (std::uint32_t i = 0; i < shell_of.size(); ++i) triangles_[shell_of[i]].push_back(i);
   }
 
   /// Whether the surface of the union has a piece of facet f at p, of f's own orientation: then of all flush
-  /// facets of that orientation the one of the first shell stands for it.
-  [[nodiscard]] bool isKept(std::uint32_t f, const Vec3& p) const {
-    const Vec3 n = normal(f);
+  /// facets of that orientation the one of the first shell stands for it. Nothing if it takes a sum over the
+  /// triangles of all shells around.
+  [[nodiscard]] std::optional<bool> isKeptBySeries(std::uint32_t f, const Vec3& p) const {
+    const Vec3 up = kBeside * touch_m_ * normal(f);
+    if (hasFacetBeside(f, p)) return std::nullopt;
+    // Half a turn more behind a flush facet and half a turn less in front of it: in the mean it has no share.
+    const WindingNumber::Value front = winding_.at(p + up), back = winding_.at(p - up);
+    constexpr double kMostError = 0.2;  // of a margin of 0.5
+    if (0.5 * (front.error + back.error) > kMostError) return std::nullopt;
+    return isKept(flushAt(f, p), 0.5 * (front.w + back.w));
+  }
+  /// The same, by that sum.
+  [[nodiscard]] bool isKeptBySum(std::uint32_t f, const Vec3& p) const {
     double w = 0;
-    int same = 0, opposite = 0;
-    bool is_first = true;
-    for (std::uint32_t shell = 0; shell < boxes_.size(); ++shell) {
-      if (!isWithin(p, boxes_[shell])) continue;
-      bool is_same = shell == shell_of_[f], is_opposite = false;
-      for (const std::uint32_t i : triangles_[shell]) {
-        if (i == f) continue;
-        if (isFlush(i, p)) {
-          if (shell == shell_of_[f]) continue;  // a neighbour, beyond p's nearest side
-          (normal(i).dot(n) > 0 ? is_same : is_opposite) = true;
-        } else {
-          w += solidAngleOf(i, p);
-        }
-      }
-      same += is_same;
-      opposite += is_opposite;
-      is_first = is_first && (!is_same || shell >= shell_of_[f]);
-    }
-    const double step = 0.5 * (same - opposite);
-    return w - step < 0.5 && w + step > 0.5 && is_first;
+    for (const std::uint32_t shell : around(p))
+      for (const std::uint32_t i : triangles_[shell])
+        if (i != f && !isFlush(i, p)) w += solidAngleOf(i, p);
+    return isKept(flushAt(f, p), w);
+  }
+  /// The number of triangles of that sum.
+  [[nodiscard]] std::int64_t sizeOfSum(const Vec3& p) const {
+    std::int64_t size = 0;
+    for (const std::uint32_t shell : around(p)) size += static_cast<std::int64_t>(triangles_[shell].size());
+    return size;
   }
 
   [[nodiscard]] std::size_t count() const { return boxes_.size(); }
 
   [[nodiscard]] bool isInside(const Vec3& p) const {
     double w = 0;
-    for (std::uint32_t shell = 0; shell < boxes_.size(); ++shell)
-      if (isWithin(p, boxes_[shell]))
-        for (const std::uint32_t i : triangles_[shell]) w += solidAngleOf(i, p);
+    for (const std::uint32_t shell : around(p))
+      for (const std::uint32_t i : triangles_[shell]) w += solidAngleOf(i, p);
     return w > 0.5;
   }
 
  private:
+  static constexpr double kClusterError = 1e-4;
+  /// Where the winding number is taken beside a facet, in touch_m_. Flush facets are at most 2 away.
+  static constexpr double kBeside = 8;
+
+  static std::vector<Box> facetBoxes(const Mesh& mesh) {
+    std::vector<Box> boxes;
+    for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) boxes.push_back(boxOf(mesh, i, 0));
+    return boxes;
+  }
+  static bool isKept(const Flush& flush, double w) {
+    const double step = 0.5 * (flush.same - flush.opposite);
+    return w - step < 0.5 && w + step > 0.5 && flush.is_first;
+  }
+
+  /// The shells in whose boxes p is, in ascending order.
+  [[nodiscard]] std::vector<std::uint32_t> around(const Vec3& p) const {
+    std::vector<std::uint32_t> shells;
+    tree_.forEachOverlap({p, p}, [&](std::uint32_t shell) {
+      shells.push_back(shell);
+      return true;
+    });
+    std::sort(shells.begin(), shells.end());
+    return shells;
+  }
+  /// Calls visit for facets that may be nearer to p than a distance, until it returns false.
+  template <typename Visit>
+  bool forEachNear(const Vec3& p, double distance_m, Visit visit) const {
+    return facets_.forEachOverlap({p.array() - distance_m, p.array() + distance_m}, visit);
+  }
+  [[nodiscard]] Flush flushAt(std::uint32_t f, const Vec3& p) const {
+    std::vector<std::uint32_t> same = {shell_of_[f]}, opposite;
+    const Vec3 n = normal(f);
+    forEachNear(p, 2 * touch_m_, [&](std::uint32_t i) {
+      // Of its own shell it is a neighbour, beyond p's nearest side.
+      if (shell_of_[i] != shell_of_[f] && isWithin(p, boxes_[shell_of_[i]]) && isFlush(i, p))
+        (normal(i).dot(n) > 0 ? same : opposite).push_back(shell_of_[i]);
+      return true;
+    });
+    const auto countOf = [](std::vector<std::uint32_t>& shells) {
+      std::sort(shells.begin(), shells.end());
+      return static_cast<int>(std::unique(shells.begin(), shells.end()) - shells.begin());
+    };
+    Flush flush;
+    flush.same = countOf(same), flush.opposite = countOf(opposite);
+    flush.is_first = same.front() == shell_of_[f];
+    return flush;
+  }
+  /// Whether a facet that is not flush at p is so near that it might be between p and where the winding
+  /// number is taken: a neighbour, or a shell whose distance is a few times touch_m_.
+  [[nodiscard]] bool hasFacetBeside(std::uint32_t f, const Vec3& p) const {
+    const double near_m = 2 * kBeside * touch_m_;
+    return !forEachNear(p, near_m, [&](std::uint32_t i) {
+      const double away_m = distance(i, p);
+      return i == f || away_m > near_m || (away_m <= 2 * touch_m_ && shell_of_[i] != shell_of_[f]);
+    });
+  }
+
   [[nodiscard]] const Vec3& corner(std::uint32_t i, std::size_t k) const {
     return mesh_.vertices[mesh_.triangles[i][k]];
   }
@@ -127,15 +201,19 @@ class Shells {
   [[nodiscard]] double solidAngleOf(std::uint32_t i, const Vec3& p) const {
     return solidAngle(corner(i, 0) - p, corner(i, 1) - p, corner(i, 2) - p);
   }
+  [[nodiscard]] double distance(std::uint32_t i, const Vec3& p) const {
+    return (closestOnTriangle(p, corner(i, 0), corner(i, 1), corner(i, 2)).q - p).norm();
+  }
   [[nodiscard]] bool isFlush(std::uint32_t i, const Vec3& p) const {
-    return isWithin(p, boxOf(mesh_, i, 2 * touch_m_)) &&
-           (closestOnTriangle(p, corner(i, 0), corner(i, 1), corner(i, 2)).q - p).norm() <= 2 * touch_m_;
+    return isWithin(p, boxOf(mesh_, i, 2 * touch_m_)) && distance(i, p) <= 2 * touch_m_;
   }
 
   const Mesh& mesh_;
   const std::vector<std::uint32_t>& shell_of_;
   const double touch_m_;
-  std::vector<Box> boxes_;
+  const std::vector<Box> boxes_, facet_boxes_;  // of shells, and of facets
+  const BoxTree tree_, facets_;
+  const WindingNumber winding_;
   std::vector<std::vector<std::uint32_t>> triangles_;
 };
 
@@ -181,7 +259,8 @@ double halton(int i, int base) {
 /// Whether at points spread over the box both have the same inside.
 bool agree(const Mesh& mesh, const Shells& shells) {
   constexpr int kPoints = 64;
-  const Shells united(mesh, std::vector<std::uint32_t>(mesh.triangles.size(), 0), 0);
+  const std::vector<std::uint32_t> all(mesh.triangles.size(), 0);
+  const Shells united(mesh, all, 0);
   const Box box = bounds(mesh);
   std::array<char, kPoints> agrees{};
   tbb::parallel_for(0, kPoints, [&](int i) {
@@ -243,14 +322,33 @@ std::vector<std::uint32_t> widestOf(const Mesh& pieces, const std::vector<std::u
   return widest;
 }
 
-/// The pieces that bound the union. Counts what is left out.
-Mesh surfaceOf(const Arrangement& cut, const std::vector<std::uint32_t>& shell_of, const Shells& shells,
-               ShellUnion& out) {
-  const std::vector<std::uint32_t> patch_of = patchesOf(cut.mesh), widest = widestOf(cut.mesh, patch_of);
+/// Which patches bound the union, each by its widest piece; nothing if that is too much work.
+std::optional<std::vector<char>> keptPatches(const Arrangement& cut, const std::vector<std::uint32_t>& widest,
+                                             const Shells& shells, std::int64_t& work_left) {
+  constexpr char kOpen = 2;
   std::vector<char> is_kept(widest.size());
   tbb::parallel_for(std::size_t{0}, widest.size(), [&](std::size_t patch) {
-    is_kept[patch] = shells.isKept(cut.source[widest[patch]], middle(cut.mesh, widest[patch]));
+    const auto kept = shells.isKeptBySeries(cut.source[widest[patch]], middle(cut.mesh, widest[patch]));
+    is_kept[patch] = kept ? static_cast<char>(*kept) : kOpen;
   });
+  for (std::size_t patch = 0; patch < widest.size(); ++patch)
+    if (is_kept[patch] == kOpen)
+      work_left -= 1 + shells.sizeOfSum(middle(cut.mesh, widest[patch])) / kAnglesInStep;
+  if (work_left < 0) return std::nullopt;
+  tbb::parallel_for(std::size_t{0}, widest.size(), [&](std::size_t patch) {
+    if (is_kept[patch] == kOpen)
+      is_kept[patch] = shells.isKeptBySum(cut.source[widest[patch]], middle(cut.mesh, widest[patch]));
+  });
+  return is_kept;
+}
+
+/// The pieces that bound the union; none if that is too much work. Counts what is left out.
+Mesh surfaceOf(const Arrangement& cut, const std::vector<std::uint32_t>& shell_of, const Shells& shells,
+               ShellUnion& out, std::int64_t& work_left) {
+  const std::vector<std::uint32_t> patch_of = patchesOf(cut.mesh), widest = widestOf(cut.mesh, patch_of);
+  const auto found = keptPatches(cut, widest, shells, work_left);
+  if (!found) return {};
+  const std::vector<char>& is_kept = *found;
   Mesh kept = {cut.mesh.vertices, {}};
   std::vector<char> has_piece(shell_of.size(), 0), loses(shells.count(), 0);
   for (std::uint32_t i = 0; i < patch_of.size(); ++i) {
@@ -266,18 +364,20 @@ Mesh surfaceOf(const Arrangement& cut, const std::vector<std::uint32_t>& shell_o
   return kept;
 }
 
-ShellUnion uniteWithin(const Mesh& mesh, const std::vector<std::uint32_t>& shell_of, double touch_m) {
+ShellUnion uniteWithin(const Mesh& mesh, const std::vector<std::uint32_t>& shell_of, double touch_m,
+                       std::int64_t& work_left) {
   ShellUnion out;
   const std::vector<Pair> pairs = nearPairs(mesh, shell_of, touch_m);
   if (pairs.empty()) return out;
   out.united_shells = 2;  // at least, if the rest fails
-  if (pairs.size() > kMostPairs) return out;
-  const std::optional<Arrangement> cut = arrange(mesh, pairs, touch_m);
+  if (pairs.size() > kMostPairs) work_left = -1;
+  if (work_left < 0) return out;
+  const std::optional<Arrangement> cut = arrange(mesh, pairs, touch_m, work_left);
   if (!cut) return out;
   out.united_shells = countMet(*cut, shell_of);
   if (out.united_shells == 0) return out;
   const Shells shells(mesh, shell_of, touch_m);
-  const Mesh surface = surfaceOf(*cut, shell_of, shells, out);
+  const Mesh surface = surfaceOf(*cut, shell_of, shells, out, work_left);
   if (isClosed(surface) && agree(surface, shells)) out.mesh = compacted(surface);
   return out;
 }
@@ -290,13 +390,25 @@ ShellUnion unite(const Mesh& mesh, const std::vector<std::uint32_t>& shell_of) {
   // metre.
   constexpr double kOtherShares[] = {8, 1.0 / 32, 1.0 / 1024};
   const double touch_m = touchDistance(mesh);
-  ShellUnion first = uniteWithin(mesh, shell_of, touch_m);
+  std::int64_t work_left = kMostWork;
+  ShellUnion first = uniteWithin(mesh, shell_of, touch_m, work_left);
   if (first.united_shells == 0 || !first.mesh.triangles.empty()) return first;
   for (const double share : kOtherShares) {
-    ShellUnion other = uniteWithin(mesh, shell_of, share * touch_m);
+    if (work_left < 0) break;
+    ShellUnion other = uniteWithin(mesh, shell_of, share * touch_m, work_left);
     if (!other.mesh.triangles.empty()) return other;
   }
   return first;
+}
+
+bool haveContact(const Mesh& mesh, const std::vector<std::uint32_t>& shell_of) {
+  const double touch_m = touchDistance(mesh);
+  const std::vector<Pair> pairs = nearPairs(mesh, shell_of, touch_m);
+  if (pairs.empty()) return false;
+  std::int64_t work_left = pairs.size() > kMostPairs ? -1 : kMostWork;
+  if (work_left < 0) return true;
+  const std::optional<Arrangement> cut = arrange(mesh, pairs, touch_m, work_left);
+  return !cut || countMet(*cut, shell_of) > 0;
 }
 
 }  // namespace vps::inline v0

@@ -10,8 +10,8 @@ namespace vps::scenes::inline v0 {
 
 /// Volume, centre and inertia of the solid that a part's mesh stands for (see massOf() in vps/mesh_repair.h),
 /// in the part's frame: the one source of them for simulation, grasp, sound and reports. The same with and
-/// without models. Of a part that is pressed in, as it is drawn. Cheap if the part has a Solid, else O(n log
-/// n).
+/// without models. Of a part that is pressed in, as it is drawn. Cheap if the part has a Solid; else O(n log
+/// n) the first time, and a hash of the mesh after that. Thread-safe.
 VPS_SCENES_API MassProperties partMass(const ScenePart& part);
 
 }  // namespace vps::scenes::inline v0

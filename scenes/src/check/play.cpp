@@ -20,7 +20,7 @@ bool isOf(const CheckedFit& fit, const PlacedSurface& part) {
 
 Vec3 centreOf(const PlacedSurface& part) {
   const Box& box = part.surface->box();
-  const MassProperties mass = massProperties(part.surface->mesh());
+  const MassProperties mass = part.surface->solid().mass();
   // The centre of mass of an open mesh can be anywhere.
   const bool is_within = mass.volume_m3 > 0 && isWithin(mass.com, box);
   return part.X_WP * (is_within ? mass.com : box.center());

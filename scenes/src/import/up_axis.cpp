@@ -10,6 +10,7 @@
 #include "import/readers.h"
 #include "vps/box.h"
 #include "vps/mesh.h"
+#include "vps/mesh_repair.h"
 
 namespace vps::scenes::inline v0 {
 
@@ -37,8 +38,9 @@ double tipsAt_deg(const ImportedCad& cad, int axis) {
   std::vector<Vec3> points;
   for (const ImportedPart& part : cad.parts) {
     for (const Vec3& p : part.mesh.vertices) points.push_back(part.X_WP * p);
-    const MassProperties mass = massProperties(part.mesh);
-    if (!(mass.volume_m3 > 0)) continue;  // an open surface
+    // Of the repaired solid: facets may face in.
+    const MassProperties mass = area(part.mesh) > 0 ? solidMass(part.mesh, part.name) : MassProperties();
+    if (!(mass.volume_m3 > 0)) continue;  // a surface without an inside
     com += mass.volume_m3 * (part.X_WP * mass.com);
     volume_m3 += mass.volume_m3;
   }

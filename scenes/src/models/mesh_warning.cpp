@@ -14,7 +14,10 @@ std::string meshWarning(const MeshReport& report) {
                           report.sheet_facets > 0 || report.duplicate_triangles > 0 ||
                           report.united_shells > 0 || report.is_union_incomplete;
   if (!has_faults && report.certain_share >= 1) return {};
-  std::string words = report.isClosed() ? "is repaired: " : "is not a closed surface: ";
+  const bool is_as_given = report.is_union_incomplete && !report.signed_by_winding;
+  std::string words = !report.isClosed() ? "is not a closed surface: "
+                      : is_as_given      ? "has shells that meet: "
+                                         : "is repaired: ";
   const std::string found = describe(report);
   words += found.substr(0, found.rfind(';'));
   char certain[96];

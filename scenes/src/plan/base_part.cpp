@@ -11,7 +11,7 @@ namespace {
 double volumeOf(const PlacedSurface& part) {
   const Box& box = part.surface->box();
   if (!part.surface->solid().report().isClosed()) return box.size().prod();
-  return std::abs(massProperties(part.surface->mesh()).volume_m3);
+  return std::abs(part.surface->solid().mass().volume_m3);
 }
 
 }  // namespace

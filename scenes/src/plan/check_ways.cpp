@@ -47,9 +47,7 @@ class WayCheck {
  public:
   WayCheck(const Scene& scene, const std::vector<PlacedSurface>& placed, std::size_t step,
            std::vector<std::size_t> held)
-      : step_(scene.steps[step]),
-        part_(placed[step_.part]),
-        center_P_(massProperties(part_.surface->mesh()).com) {
+      : step_(scene.steps[step]), part_(placed[step_.part]), center_P_(part_.surface->solid().mass().com) {
     std::vector<const PlacedSurface*> standing;
     for (const std::size_t i : held) {
       standing.push_back(&placed[i]);

@@ -104,7 +104,7 @@ bool tipsOver(const PairMotions& motions, std::size_t part, const std::vector<st
   }
   // Where nothing is found, or too much to tell, what carries it when it sinks is believed.
   if (supports.empty() || supports.size() > kMostSupports) return false;
-  const Vec3 center_W = placed.X_WP * massProperties(placed.surface->mesh()).com;
+  const Vec3 center_W = placed.X_WP * placed.surface->solid().mass().com;
   return !canCarry(supports, center_W, up_W, placed.box_W.size().norm());
 }
 
@@ -157,7 +157,7 @@ bool leansInHole(const PairMotions& motions, std::size_t part, const std::vector
     return isHeld(name) && std::ranges::find(holes, name) == holes.end();
   });
   if (holes.empty() || has_other) return false;
-  const double center_m = axis_W.dot(placed.X_WP * massProperties(placed.surface->mesh()).com);
+  const double center_m = axis_W.dot(placed.X_WP * placed.surface->solid().mass().com);
   return center_m < from_m || center_m > to_m;
 }
 

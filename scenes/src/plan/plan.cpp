@@ -165,7 +165,7 @@ class Planner {
     }
     const std::vector<Pose> corners = cornersOf(way);
     const PlacedSurface& part = motions_.parts()[removal.parts.front()];
-    const Vec3 center_W = part.X_WP * massProperties(part.surface->mesh()).com;
+    const Vec3 center_W = part.X_WP * part.surface->solid().mass().com;
     step.before_W = {Pose::translation(out_m * out_W) * corners.back()};
     for (std::size_t i = corners.size(); i-- > 1;) {
       step.before_W.push_back(corners[i]);

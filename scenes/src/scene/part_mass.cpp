@@ -1,14 +1,46 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vps_scenes/part_mass.h"
 
+#include <mutex>
+#include <string>
+#include <unordered_map>
+
+#include "record/scene_archive.h"
 #include "vps/mesh_repair.h"
 
 namespace vps::scenes::inline v0 {
+namespace {
+
+/// Masses of meshes that have no Solid, by content: callers ask for the same parts again, some for each frame
+/// that is drawn, and a repair may take seconds.
+class KnownMasses {
+ public:
+  MassProperties of(const Mesh& mesh, const std::string& part) {
+    const std::string key = contentHash(mesh);
+    {
+      const std::scoped_lock lock(mutex_);
+      if (const auto found = known_.find(key); found != known_.end()) return found->second;
+    }
+    const MassProperties mass = solidMass(mesh, part);
+    const std::scoped_lock lock(mutex_);
+    if (known_.size() >= kMost) known_.clear();
+    known_.emplace(key, mass);
+    return mass;
+  }
+
+ private:
+  static constexpr std::size_t kMost = 10000;  // more than a scene has parts
+  std::mutex mutex_;
+  std::unordered_map<std::string, MassProperties> known_;
+};
+
+}  // namespace
 
 MassProperties partMass(const ScenePart& part) {
+  static KnownMasses known;
   // The solid of a part that is pressed in is smaller than the part.
   const bool has_own_solid = part.model && part.model->solid && !(part.press_fit_m > 0);
-  return has_own_solid ? part.model->solid->mass() : solidMass(part.part.mesh, part.part.name);
+  return has_own_solid ? part.model->solid->mass() : known.of(part.part.mesh, part.part.name);
 }
 
 }  // namespace vps::scenes::inline v0

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Facets without area, which come from T-junctions that a program filled: three corners in a line.
+#pragma once
+
+#include <optional>
+
+#include "vps/mesh.h"
+
+namespace vps::inline v0 {
+
+/// The mesh without facets of no area. The facet across the longest side of each is split at its middle
+/// corner, so that a closed mesh stays closed. Vertices stay. Nothing if some could not be left out. O(n log
+/// n).
+std::optional<Mesh> withoutFlatFacets(Mesh mesh);
+
+}  // namespace vps::inline v0
