@@ -164,7 +164,7 @@ TEST(OverlapRecord, APassageBetweenTwoSamplesOfAStepIsFound) {
   const OverlapVerdict verdict = judgeSamples(judge, body("ball", kBall), samples, 200);
   EXPECT_NEAR(verdict.worst.depth_m, 1 * kMm, MotionJudge::toleranceOf(1 * kMm));
   EXPECT_EQ(verdict.worst.against, 0U);
-  EXPECT_EQ(verdict.unsearched_m, 0);
+  EXPECT_LT(verdict.unsearched_m, 1.2 * kMm);  // it is as deep all along its way through the plate
 }
 
 /// Over the edge of a plate and down beside it, in two legs, then at rest.

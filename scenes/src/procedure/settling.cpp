@@ -64,7 +64,7 @@ void reportVerdict(const OverlapVerdict& verdict, const OverlapJudge& judge, Ste
   result.deepest_at_W = verdict.worst.p_W;
   result.deepest_time_s = verdict.time_s;
   if (verdict.worst.depth_m > 0) result.deepest_against = judge.name(verdict.worst.against);
-  if (verdict.unsearched_m <= result.penetration_limit_m) return;
+  if (!isWithinLimit(result) || verdict.unsearched_m <= result.penetration_limit_m) return;
   if (!result.mesh_doubt.empty()) result.mesh_doubt += "; and ";
   result.mesh_doubt +=
       "a passage on the way, between the poses of two steps, was not searched to its end: it "
