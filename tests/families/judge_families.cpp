@@ -106,11 +106,6 @@ void move(Passage& passage, Random& random, const Vec3& p_W, const Mat3& R, cons
       Pose(Mat3(rotationFromVector((1 - share) * kStep_s * w_W) * R), p_W + (1 - share) * kStep_s * v_W);
 }
 
-/// Speeds from the slowest that is apart before and after, to 5000 m/s.
-double passingSpeed(Random& random, double reach_m) {
-  return random.logUniform(20 * reach_m / kStep_s * 1.1, 5000);
-}
-
 Passage passageThrough(int member) {
   Random random(1000 + static_cast<std::uint64_t>(member));
   Passage passage;

@@ -191,7 +191,7 @@ std::vector<Box> channelMember(int i) {
   return boxes;
 }
 
-std::string describeChannel(int i) {
+[[maybe_unused]] std::string describeChannel(int i) {
   return std::to_string(channelMember(i).size()) + " boxes" + (i % 5 == 0 ? "" : ", rotated");
 }
 

@@ -217,6 +217,20 @@ TEST_F(Program, AFailedRunLeavesEarlierResultsAlone) {
   EXPECT_EQ(slurp(folder_ / "out/assemble.json"), "{}");
 }
 
+TEST_F(Program, QuerySaysWhichVoxelsItChoseAndThoseOfB) {
+  const std::string call = "query plate.stl pin.stl --repeats 1 --json ";
+  ASSERT_EQ(run(call + "mm.json --units mm").status, 0);
+  EXPECT_FALSE(json::parse(slurp(folder_ / "mm.json")).contains("voxel_b_m"));
+  const Ran small = run(call + "um.json --units um");
+  ASSERT_EQ(small.status, 0) << small.err;
+  EXPECT_NE(small.err.find("vps: chosen by the sizes of the parts: voxels of "), std::string::npos)
+      << small.err;
+  for (const char* name : {"'plate.stl'", "'pin.stl'"})
+    EXPECT_NE(small.err.find(name), std::string::npos) << small.err;
+  const json answer = json::parse(slurp(folder_ / "um.json"));
+  EXPECT_NE(answer["voxel_m"].get<double>(), answer.value("voxel_b_m", 0.0)) << small.err;
+}
+
 TEST_F(Program, QueryWritesTheDocumentedKeys) {
   // The pin's foot is at -4 mm, the plate's top at 5 mm: 9.01 mm leave 10 um, 8.99 mm press 10 um.
   write("poses.txt", "0,0,0.00901,0,0,0,1\n0,0,0.00899,0,0,0,1\n0,0,1,0,0,0,1\n");

@@ -7,6 +7,7 @@
 #include "scenes/assemblies_to_plan.h"
 #include "vps_scenes/explain.h"
 #include "vps_scenes/plan.h"
+#include "vps_scenes/resolution.h"
 
 namespace vps::scenes {
 namespace {
@@ -63,6 +64,17 @@ TEST(FitFidelity, WhereMemoryLeavesASmallPartTooFewVoxelsItIsNamed) {
   const std::string small_words = fitFidelity(scene, 5 * preset_bytes);
   EXPECT_EQ(scene.fidelity.voxel_m, Fidelity().voxel_m);
   EXPECT_NE(small_words.find("'part', 1.00 mm across"), std::string::npos) << small_words;
+}
+
+TEST(FitFidelity, OfASceneThatStatesOnlyTheSpacingTheVoxelIsChosen) {
+  Scene scene = blockOnPlate(1e-3);
+  scene.chooses_voxel = true;
+  scene.chooses_spacing = false;
+  scene.fidelity.spacing_m = 0.7e-3;
+  chooseResolution(scene);
+  EXPECT_DOUBLE_EQ(scene.fidelity.voxel_m, 0.125e-3);
+  EXPECT_EQ(scene.fidelity.spacing_m, 0.7e-3);
+  EXPECT_NE(scene.resolution_choice, "");
 }
 
 TEST(FitFidelity, WhatASceneStatesIsKept) {

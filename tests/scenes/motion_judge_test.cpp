@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "judge/overlap_record.h"
+#include "procedure/step_rows.h"
 #include "scenes/scene_part.h"
 #include "simulation/body_overlaps.h"
 #include "vps_scenes/simulate.h"
@@ -163,6 +164,61 @@ TEST(OverlapRecord, APassageBetweenTwoSamplesOfAStepIsFound) {
   const OverlapVerdict verdict = judgeSamples(judge, body("ball", kBall), samples, 200);
   EXPECT_NEAR(verdict.worst.depth_m, 1 * kMm, MotionJudge::toleranceOf(1 * kMm));
   EXPECT_EQ(verdict.worst.against, 0U);
+  EXPECT_LT(verdict.unsearched_m, 1.2 * kMm);  // it is as deep all along its way through the plate
+}
+
+/// Over the edge of a plate and down beside it, in two legs, then at rest.
+std::vector<OverlapSample> aroundAnEdge(int rest) {
+  StepRows rows(1000);
+  rows.beginStep(bounds(kBall));
+  const Vec3 corner(56 * kMm, 0, 7 * kMm), from(4.16 * kMm, 0, 7 * kMm), to(56 * kMm, 0, -44.84 * kMm);
+  constexpr int kLeg = 576;  // steps of 0.09 mm; the corner is amid two samples
+  for (int i = 0; i < 2 * kLeg + rest; ++i) {
+    const double share = std::min(1.0, static_cast<double>(i % kLeg) / kLeg);
+    const Vec3 p = i < kLeg       ? Vec3(from + share * (corner - from))
+                   : i < 2 * kLeg ? Vec3(corner + share * (to - corner))
+                                  : to;
+    rows.add({}, {i * 1e-3, Pose::translation(p), 0});
+  }
+  return rows.takeSamples();
+}
+
+// The chord of two samples that are 128 steps apart leads through the plate, and the way does not.
+TEST(OverlapRecord, AThinnedWayAroundAnEdgeIsFree) {
+  VoxMapSettings voxels;
+  voxels.voxel_m = 0.5 * kMm;
+  PointShellSettings points;
+  points.spacing_m = 1 * kMm;
+  const auto body = [&](const char* name, const Mesh& mesh) {
+    return makeJudgedBody(buildPartModel(name, mesh, voxels, points));
+  };
+  OverlapJudge judge;
+  judge.mount(body("plate", kPlate), {});
+  const std::vector<OverlapSample> samples = aroundAnEdge(63'000);
+  ASSERT_LE(samples.size(), 1000U);
+  std::vector<OverlapSample> as_one_way = samples;
+  for (OverlapSample& sample : as_one_way) sample.follows = true;
+  const JudgedBody ball = body("ball", kBall);
+  EXPECT_GT(judgeSamples(judge, ball, as_one_way, 200).worst.depth_m, 0.1 * kMm);
+  const OverlapVerdict verdict = judgeSamples(judge, ball, samples, 200);
+  EXPECT_EQ(verdict.worst.depth_m, 0);
+  EXPECT_EQ(verdict.unsearched_m, 0);
+}
+
+TEST(OverlapRecord, APassageThatIsNotSearchedIsTold) {
+  VoxMapSettings voxels;
+  voxels.voxel_m = 0.5 * kMm;
+  PointShellSettings points;
+  points.spacing_m = 1 * kMm;
+  const auto body = [&](const char* name, const Mesh& mesh) {
+    return makeJudgedBody(buildPartModel(name, mesh, voxels, points));
+  };
+  OverlapJudge judge;
+  judge.mount(body("plate", kPlate), {});
+  const std::vector<OverlapSample> samples = {{0, Pose::translation({0, 0, 20 * kMm}), 0},
+                                              {1e-3, Pose::translation({0, 0, -30 * kMm}), 0}};
+  const std::atomic<bool> stop = true;
+  EXPECT_GT(judgeSamples(judge, body("ball", kBall), samples, 200, &stop).unsearched_m, 0.9 * kMm);
 }
 
 // Facets of 5.6 degrees are no sharp edges, and the shell's points lie on their faces and not at vertices.

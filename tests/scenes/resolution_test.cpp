@@ -11,6 +11,7 @@
 #include "simulation/scaled_scene.h"
 #include "vps/load_error.h"
 #include "vps_scenes/explain.h"
+#include "vps_scenes/plan.h"
 #include "vps_scenes/simulate.h"
 
 namespace vps::scenes {
@@ -77,6 +78,30 @@ TEST(Resolution, TheModelsOfALargePartTakeNoMoreThanThoseOfACubeOf150Mm) {
   }
 }
 
+// Each is at its cap, and together they would take 50 times that.
+TEST(Resolution, TheModelsOfManyLargePartsTakeNoMoreThanThoseOfAPlannedScene) {
+  Scene scene = cubeOnPlate(0.4);
+  for (int i = 0; i < 50; ++i)
+    scene.parts.push_back(scenePart("cube " + std::to_string(i), makeBox({0.4, 0.4, 0.4 + 0.001 * i}),
+                                    {0.6 * (i + 1), 0, 0.3}, false));
+  scene.parts.push_back(scenePart("small", makeBox(Vec3::Constant(20 * kMm)), {0, 1, 0.3}, false));
+  chooseResolution(scene);
+  EXPECT_LE(static_cast<double>(estimate(scene, ModelPurpose::Simulate, {}).cost.most.bytes),
+            kMostModels_bytes);
+  EXPECT_EQ(voxelOf(scene, scene.parts.size() - 1), Fidelity().voxel_m);
+  EXPECT_NE(scene.resolution_choice.find("all models would take some"), std::string::npos)
+      << scene.resolution_choice;
+}
+
+TEST(Resolution, PartsOfTheSameVoxelAreOneClauseThatNamesThree) {
+  Scene scene = cubeOnPlate(10 * kMm);
+  for (int i = 0; i < 500; ++i)
+    scene.parts.push_back(scenePart("screw " + std::to_string(i), makeBox(Vec3::Constant(0.5 * kMm)),
+                                    {0.1 + 0.001 * i, 0, 0}, false));
+  chooseResolution(scene);
+  EXPECT_EQ(scene.resolution_choice, "voxels of 62.5 um for 'screw 0', 'screw 1', 'screw 2' and 497 others");
+}
+
 TEST(Resolution, WhatIsStatedIsKept) {
   Scene scene = cubeOnPlate(0.1 * kMm);
   scene.chooses_voxel = false;
@@ -124,6 +149,49 @@ TEST(WallSizes, AreThoseOfTubesAndBoxes) {
   EXPECT_TRUE(plate.gaps_m.empty());
 }
 
+/// The faces of a box, each divided into n x n squares.
+Mesh dividedBox(const Vec3& size, int n) {
+  Mesh mesh;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double side : {-1.0, 1.0}) {
+      const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+      const auto base = static_cast<std::uint32_t>(mesh.vertices.size());
+      for (int i = 0; i <= n; ++i)
+        for (int k = 0; k <= n; ++k) {
+          Vec3 p;
+          p[axis] = 0.5 * side * size[axis];
+          p[u] = size[u] * (static_cast<double>(i) / n - 0.5);
+          p[v] = size[v] * (static_cast<double>(k) / n - 0.5);
+          mesh.vertices.push_back(p);
+        }
+      for (int i = 0; i < n; ++i)
+        for (int k = 0; k < n; ++k) {
+          const auto a = base + static_cast<std::uint32_t>(i * (n + 1) + k),
+                     b = a + static_cast<std::uint32_t>(n) + 1;
+          if (side > 0)
+            mesh.triangles.insert(mesh.triangles.end(), {{a, b, b + 1}, {a, b + 1, a + 1}});
+          else
+            mesh.triangles.insert(mesh.triangles.end(), {{a, b + 1, b}, {a, a + 1, b + 1}});
+        }
+    }
+  return mesh;
+}
+
+// The bore is a shell of its own in the middle of the list: a part of its kind need not be one solid here.
+TEST(WallSizes, ABoreOfAFewFacetsInAVeryFinePartIsFound) {
+  for (const int facets : {12, 24, 64})
+    for (const int n : {40, 150}) {  // 19200 and 270000 facets
+      Mesh mesh = dividedBox({40 * kMm, 30 * kMm, 20 * kMm}, n);
+      const Mesh tube = makeTube(3 * kMm, 0.5 * kMm, 5 * kMm, facets);
+      append(mesh, transformed(tube, Pose::translation({30 * kMm, 1.3 * kMm, 0.7 * kMm})));
+      append(mesh,
+             transformed(dividedBox({40 * kMm, 30 * kMm, 20 * kMm}, n), Pose::translation({0, 60 * kMm, 0})));
+      const WallSizes sizes = wallSizes(mesh, 2 * kMm);
+      ASSERT_FALSE(sizes.gaps_m.empty()) << facets << ' ' << n;
+      EXPECT_NEAR(sizes.gaps_m.front(), 1 * kMm, 0.05 * kMm) << facets << ' ' << n;
+    }
+}
+
 TEST(WallSizes, BadMeshesHaveNone) {
   EXPECT_TRUE(wallSizes(Mesh(), 1).gaps_m.empty());
   Mesh damaged = makeBox({1, 1, 1});
@@ -151,6 +219,34 @@ TEST(Resolution, ATooLargeModelIsRefusedBeforeAnyIsBuiltWithTheKeyToSet) {
   }
   EXPECT_GT(scene.fidelity.voxel_m, Fidelity().voxel_m);
   EXPECT_LT(scene.fidelity.voxel_m, 2 * Fidelity().voxel_m);
+}
+
+// The voxel that is named is for all parts, and with it the models fit, though parts had their own.
+TEST(Resolution, TheVoxelThatIsNamedWhereMemoryIsShortFits) {
+  Scene scene = cubeOnPlate(0.3);
+  chooseResolution(scene);
+  ASSERT_GT(scene.parts[1].voxel_m, 0);
+  SimulateOptions options;
+  options.memory_bytes = 20e6;
+  double voxel_mm = 0, spacing_mm = 0;
+  try {
+    simulate(scene, 0.01, options);
+    FAIL() << "was not refused";
+  } catch (const LoadError& error) {
+    const std::string words = error.what();
+    const auto at = words.find("voxel = \"");
+    ASSERT_NE(at, std::string::npos) << words;
+    ASSERT_EQ(
+        std::sscanf(words.c_str() + at, "voxel = \"%lfmm\", spacing = \"%lfmm\"", &voxel_mm, &spacing_mm), 2)
+        << words;
+  }
+  for (ScenePart& part : scene.parts) part.voxel_m = part.spacing_m = 0;
+  scene.fidelity.voxel_m = voxel_mm * kMm;
+  scene.fidelity.spacing_m = spacing_mm * kMm;
+  EXPECT_NO_THROW(simulate(scene, 0.002, options)) << voxel_mm;
+  scene.fidelity.voxel_m *= 0.85;
+  scene.fidelity.spacing_m *= 0.85;
+  EXPECT_THROW(simulate(scene, 0.002, options), LoadError) << voxel_mm;
 }
 
 // All numbers of the two runs differ by powers of two.

@@ -9,6 +9,8 @@
 namespace vps::scenes {
 namespace {
 
+const Box kBox{Vec3::Constant(-1e-3), Vec3::Constant(1e-3)};
+
 TraceRow rowAt(double time_s) {
   TraceRow row;
   row.time_s = time_s;
@@ -17,12 +19,12 @@ TraceRow rowAt(double time_s) {
 
 TEST(StepRows, AllRowsOfAShortStepAreKept) {
   StepRows rows(10);
-  rows.beginStep();
+  rows.beginStep(kBox);
   for (int i = 0; i < 10; ++i) rows.add(rowAt(i), {0.5 + i, {}, 0});
   ASSERT_EQ(rows.rows().size(), 10u);
   EXPECT_EQ(rows.rows()[9].time_s, 9);
   EXPECT_EQ(rows.takeSamples().size(), 10u);
-  rows.beginStep();
+  rows.beginStep(kBox);
   rows.add(rowAt(10), {});
   EXPECT_EQ(rows.rows().size(), 1u);
   EXPECT_EQ(rows.takeRows().size(), 11u);
@@ -34,7 +36,7 @@ TEST(StepRows, OfALongStepRowsAtEqualDistancesAndTheDeepestSampleAreKept) {
   for (int count = 11; count < 500; ++count)
     for (const int deepest : {0, 1, count / 2, count - 1}) {
       StepRows rows(10);
-      rows.beginStep();
+      rows.beginStep(kBox);
       for (int i = 0; i < count; ++i)
         rows.add(rowAt(i), {static_cast<double>(i), {}, i == deepest ? 1e-6 : 0});
       const auto kept = rows.rows();
@@ -49,6 +51,24 @@ TEST(StepRows, OfALongStepRowsAtEqualDistancesAndTheDeepestSampleAreKept) {
       const auto found = std::max_element(samples.begin(), samples.end(),
                                           [](const auto& a, const auto& b) { return a.depth_m < b.depth_m; });
       ASSERT_EQ(found->time_s, deepest) << count;
+    }
+}
+
+// Of a thinned step no sample follows the one before it, but both of a fast physics step are kept.
+TEST(StepRows, OfALongStepTheTwoSamplesOfEachFastPhysicsStepAreKept) {
+  for (int count = 11; count < 200; ++count)
+    for (const int fast : {1, count / 2, count - 1}) {
+      StepRows rows(10);
+      rows.beginStep(kBox);
+      for (int i = 0; i < count; ++i)
+        rows.add(rowAt(i), {static_cast<double>(i), Pose::translation({i < fast ? 0 : 0.2e-3, 0, 0}), 0});
+      const std::size_t kept = rows.rows().size();
+      const auto samples = rows.takeSamples();
+      ASSERT_EQ(samples.size(), kept + 2) << count;
+      for (std::size_t i = 0; i <= kept; ++i) ASSERT_FALSE(samples[i].follows) << count;
+      EXPECT_TRUE(samples[kept + 1].follows);
+      EXPECT_EQ(samples[kept].time_s, fast - 1) << count;
+      EXPECT_EQ(samples[kept + 1].time_s, fast) << count;
     }
 }
 

@@ -67,7 +67,9 @@ Source sourceFrom(const ExportArguments& given) {
     return {{}, loadLevelSet(given.source), {}};
   }
   Mesh mesh = readMesh(given.source, unitFrom(given.units));
-  const Fidelity fidelity = fidelityFrom(given.fidelity, mesh, nullptr);
+  std::string choice;
+  const Fidelity fidelity = fidelityFrom(given.fidelity, {mesh, given.source}, nullptr, choice);
+  sayChoice(choice);
   return {std::move(mesh), {}, fidelity};
 }
 

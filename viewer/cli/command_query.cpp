@@ -258,11 +258,16 @@ int runQuery(const QueryArguments& given) {
 
   Operands operands = loadOperands(given);
   const bool is_two_sided = isTwoSided(operands, usual, given);
-  const auto fidelityOf = [&](const std::optional<Mesh>& mesh, const std::optional<Mesh>& other) {
-    return mesh ? fidelityFrom(given.fidelity, *mesh, other ? &*other : nullptr) : usual;
+  std::optional<NamedMesh> a, b;
+  if (operands.mesh_a) a.emplace(NamedMesh{*operands.mesh_a, given.mesh_a});
+  if (operands.mesh_b) b.emplace(NamedMesh{*operands.mesh_b, given.mesh_b});
+  std::string choice;  // the same for both, where both are meshes
+  const auto fidelityOf = [&](const std::optional<NamedMesh>& mesh, const std::optional<NamedMesh>& other) {
+    return mesh ? fidelityFrom(given.fidelity, *mesh, other ? &*other : nullptr, choice) : usual;
   };
-  Fidelity of_a = fidelityOf(operands.mesh_a, operands.mesh_b);
-  Fidelity of_b = fidelityOf(operands.mesh_b, operands.mesh_a);
+  Fidelity of_b = fidelityOf(b, a);
+  Fidelity of_a = fidelityOf(a, b);
+  sayChoice(choice);
   if (operands.mesh_a) warnIfThin(*operands.mesh_a, of_a.voxel_m, given.mesh_a);
   if (is_two_sided) warnIfThin(*operands.mesh_b, of_b.voxel_m, given.mesh_b);
   if (operands.mesh_b && given.fidelity.points > 0)
@@ -288,6 +293,7 @@ int runQuery(const QueryArguments& given) {
   answer.mesh_a = given.mesh_a;
   answer.mesh_b = given.mesh_b;
   answer.voxel_m = b_in_a.map.voxel_m();
+  if (a_in_b) answer.voxel_b_m = a_in_b->map.voxel_m();
   answer.point_spacing_m = b_in_a.shell.spacing_m;
   answer.points_total = b_in_a.shell.size() + (a_in_b ? a_in_b->shell.size() : 0);
   answer.memory_bytes = b_in_a.memoryBytes() + (a_in_b ? a_in_b->memoryBytes() : 0);

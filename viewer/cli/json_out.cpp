@@ -127,13 +127,15 @@ std::string toJson(const QueryAnswer& answer) {
     if (pose.is_beyond) entry["beyond_m"] = pose.min_distance_m;
     poses.push_back(std::move(entry));
   }
-  return text({{"wall", {{"build_s", answer.build_wall_s}, {"time_us", shortTimes(answer.time)}}},
-               {"mesh_a", answer.mesh_a},
-               {"mesh_b", answer.mesh_b},
-               {"voxel_m", answer.voxel_m},
-               {"point_spacing_m", answer.point_spacing_m},
-               {"memory_bytes", answer.memory_bytes},
-               {"poses", poses}});
+  Json all = {{"wall", {{"build_s", answer.build_wall_s}, {"time_us", shortTimes(answer.time)}}},
+              {"mesh_a", answer.mesh_a},
+              {"mesh_b", answer.mesh_b},
+              {"voxel_m", answer.voxel_m},
+              {"point_spacing_m", answer.point_spacing_m},
+              {"memory_bytes", answer.memory_bytes},
+              {"poses", poses}};
+  if (answer.voxel_b_m > 0 && answer.voxel_b_m != answer.voxel_m) all["voxel_b_m"] = answer.voxel_b_m;
+  return text(all);
 }
 
 std::string toJson(const ImportAnswer& answer) {

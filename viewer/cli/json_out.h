@@ -51,7 +51,8 @@ struct QueryAnswer {
   std::string mesh_a, mesh_b;
   std::vector<PoseAnswer> poses;
   std::size_t points_total = 0, memory_bytes = 0;
-  double voxel_m = 0, point_spacing_m = 0;
+  double voxel_m = 0, point_spacing_m = 0;  ///< of A's voxmap and B's points
+  double voxel_b_m = 0;                     ///< of B's voxmap; 0: one-sided
   scenes::TickTimes time;
   double build_wall_s = 0;
 };

@@ -55,19 +55,30 @@ Fidelity fidelityFrom(const FidelityArguments& given, Fidelity base) {
   return base;
 }
 
-Fidelity fidelityFrom(const FidelityArguments& given, const Mesh& mesh, const Mesh* other) {
+Fidelity fidelityFrom(const FidelityArguments& given, const NamedMesh& mesh, const NamedMesh* other,
+                      std::string& choice) {
+  choice.clear();
   Fidelity base = fidelityPreset("normal");
   if (given.preset.empty() && given.voxel.empty()) {
     scenes::Scene scene;
     scene.chooses_voxel = true;
-    for (const Mesh* part : {&mesh, other})
-      if (part != nullptr) scene.parts.emplace_back().part.mesh = *part;
+    for (const NamedMesh* named : {&mesh, other}) {
+      if (named == nullptr) continue;
+      scenes::Part& part = scene.parts.emplace_back().part;
+      part.mesh = named->mesh;
+      part.name = named->name;
+    }
     scenes::chooseResolution(scene);
+    choice = scene.resolution_choice;
     const double points_per_voxel = base.spacing_m / base.voxel_m;
     if (const double voxel_m = scene.parts[0].voxel_m; voxel_m > 0)
       base.spacing_m = points_per_voxel * (base.voxel_m = voxel_m);
   }
   return fidelityFrom(given, base);
+}
+
+void sayChoice(const std::string& resolution_choice) {
+  if (!resolution_choice.empty()) say("chosen by the sizes of the parts: " + resolution_choice);
 }
 
 void addSceneArgument(CLI::App& command, std::string& scene) {
@@ -197,7 +208,7 @@ scenes::Scene sceneFrom(const std::string& file, const FidelityArguments& given,
   if (!given.preset.empty() || !given.voxel.empty()) scene.chooses_voxel = scene.chooses_spacing = false;
   if (!given.spacing.empty()) scene.chooses_spacing = false;
   scenes::resolveFidelity(scene);
-  if (!scene.resolution_choice.empty()) say("chosen by the sizes of the parts: " + scene.resolution_choice);
+  sayChoice(scene.resolution_choice);
   const Fidelity own = scene.fidelity;
   scene.fidelity = fidelityFrom(given, own);
   if (scene.fidelity_choice.empty()) return scene;

@@ -32,10 +32,18 @@ void addFidelityOptions(CLI::App& command, FidelityArguments& given);
 void addPointsOption(CLI::App& command, FidelityArguments& given);
 /// `base` with what was given on the command line. Throws LoadError naming the option.
 Fidelity fidelityFrom(const FidelityArguments& given, Fidelity base);
+struct NamedMesh {
+  const Mesh& mesh;
+  std::string name;  ///< for the words
+};
 /// The same for a mesh that no scene states a fidelity for: where neither preset nor voxel is given, by its
 /// size and that of what it meets (vps_scenes/resolution.h).
-/// @param other  may be null
-Fidelity fidelityFrom(const FidelityArguments& given, const Mesh& mesh, const Mesh* other);
+/// @param other   may be null
+/// @param choice  is set to what was chosen for both, in words; empty: the preset serves
+Fidelity fidelityFrom(const FidelityArguments& given, const NamedMesh& mesh, const NamedMesh* other,
+                      std::string& choice);
+/// Says what was chosen, if anything was.
+void sayChoice(const std::string& resolution_choice);
 
 /// Where models and the parts of CAD files are kept between runs.
 struct CacheArguments {

@@ -23,7 +23,9 @@ inline constexpr double kLargestUsual_m = 0.15;
 ///   (meeting sizes: parts across, bores and slots, and the walls that fit into them), if that is less,
 /// - but not so small that the part's voxmap takes more than that of a cube of kLargestUsual_m.
 /// In a scene without steps each part that moves has its own voxel, and the fixed parts have one together. In
-/// a scene with steps all parts have the same, as fitFidelity() chooses it. Depends on the scene alone. Notes
+/// a scene with steps all parts have the same, as fitFidelity() chooses it. A spacing that is stated is kept.
+/// Where many parts are so large that memory chooses their voxels, these are coarser by one more factor, so
+/// that all models together take no more than kMostModels_bytes. Depends on the scene alone. Notes
 /// the choice in Scene::resolution_choice, also where memory does not allow what has to be resolved.
 /// O(triangles log triangles); nothing is built.
 VPS_SCENES_API void chooseResolution(Scene& scene);

@@ -47,9 +47,10 @@ inline constexpr auto kStepFields = std::make_tuple(
     field("stuck_at_m", &StepResult::stuck_at_W, "where they touched, in the world"),
     field("stands_on", &StepResult::stands_on,
           "an earlier part that did not reach its target and was put there for this step; empty if none"),
-    field("mesh_doubt", &StepResult::mesh_doubt,
-          "why the meshes cannot show that it fits: their known error is more than its clearance; empty: "
-          "they can"),
+    field(
+        "mesh_doubt", &StepResult::mesh_doubt,
+        "why it is not shown that it fits, though the hand brought it home: the known error of the meshes is "
+        "more than its clearance, or a passage on the way was not searched to its end; empty: nothing"),
     field("aligned_by", &StepResult::aligned_by,
           "a later part that fits into it and takes it from where the hand left it to where it belongs; "
           "empty if none"),
@@ -63,11 +64,12 @@ inline constexpr auto kStepFields = std::make_tuple(
     field("failure_reason", &StepResult::failure_reason, "empty when completed"),
     field("start_s", &StepResult::start_s, "simulated time at which the step began"),
     field("duration_s", &StepResult::duration_s, "simulated time that it took"),
-    field(
-        "max_penetration_m", &StepResult::max_penetration_m,
-        "deepest penetration over the step and the rest after it, by exact distance along all sharp edges, "
-        "at the vertices of curved faces and at the shells' points on faces, at every 200th pose and the "
-        "fifty with the deepest contacts; also of passages between samples that are more than 0.1 mm apart"),
+    field("max_penetration_m", &StepResult::max_penetration_m,
+          "deepest penetration over the step and the rest after it, by exact distance along all sharp edges, "
+          "at the vertices of curved faces and at the shells' points on faces, at every 200th pose and the "
+          "fifty with the deepest contacts; also of passages between the poses of two physics steps that are "
+          "more "
+          "than 0.1 mm apart"),
     field("penetration_limit_m", &StepResult::penetration_limit_m,
           "min(10 um, clearance / 4); of a part that is taken off, beyond the overlap as drawn"),
     field("deepest_against", &StepResult::deepest_against, "name of the part that was penetrated deepest"),

@@ -11,7 +11,7 @@ namespace vps::scenes::inline v0 {
 
 namespace {
 
-/// Paid in advance: a passage takes about fifty measures of some ten microseconds.
+/// Paid in advance: a passage takes about fifty measures of some ten units.
 constexpr double kFirstCredit = 50e3;
 /// What is not used is kept up to this.
 constexpr double kMostCredit = 200e3;
@@ -107,7 +107,6 @@ void MotionJudge::allow(const Pair& pair, double depth_m) {
   most_allowed_m_ = std::max(most_allowed_m_, depth_m);
 }
 
-/// A bound of the depth at one moment by the boxes alone: no point is deeper in a box than half its least
 /// No point is deeper in a body than half the least side of its box.
 double MotionJudge::mostDepth_m(const Pair& pair) const {
   const auto half_m = [&](std::size_t i) { return 0.5 * bodies_[i].box_P.size().minCoeff(); };

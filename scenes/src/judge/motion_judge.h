@@ -54,7 +54,7 @@ class MotionJudge {
   static double toleranceOf(double depth_m) { return 1e-6 + depth_m / 50; }
 
   /// Adds a step that ends at these poses; every kSteps steps are searched at once.
-  /// @param credit  measures that may be paid, as Overlap::work
+  /// @param credit  work that may be spent, in the unit of Overlap::work
   void addStep(double time_s, const std::vector<Pose>& X_WP, double credit,
                const std::atomic<bool>* stop = nullptr);
   /// The bodies are put at these poses, without a motion.

@@ -15,10 +15,9 @@ namespace {
 
 constexpr std::size_t kSuspects = 50;  ///< poses that are judged whatever the stride
 
-/// A passage between two samples is at most half as deep as the part moves between them. A hand moves by less
-/// than this in a step of physics; samples of long steps are thinned.
-constexpr double kFast_m = 0.1e-3;
-constexpr double kCredit = 100;  ///< for each fast sample, see MotionJudge
+/// For each passage, as Overlap::work. The run is over, so that a passage is searched to its end, which takes
+/// about fifty measures of some ten units; this is the bound.
+constexpr double kCredit = 200e3;
 
 std::vector<MovingBody> bodiesOf(const OverlapJudge& judge, const JudgedBody& moving) {
   const auto body = [](const std::shared_ptr<const PartModel>& model, bool is_fixed) {
@@ -33,7 +32,14 @@ std::vector<MovingBody> bodiesOf(const OverlapJudge& judge, const JudgedBody& mo
   return bodies;
 }
 
-/// Looks for passages between samples that are far from each other.
+/// What is left by searches with enough credit is not above what they look for; 0 then.
+double unsearched_m(const MotionJudge& motions, double least_m) {
+  const double decided_m = std::max(motions.deepestOfAll().depth_m, least_m);
+  const double bound_m = motions.bound_m();
+  return bound_m > decided_m + MotionJudge::toleranceOf(decided_m) ? bound_m : 0;
+}
+
+/// Looks for passages between samples that follow each other and are far from each other.
 void judgeBetween(const OverlapJudge& judge, const JudgedBody& moving,
                   const std::vector<OverlapSample>& samples, const std::atomic<bool>* stop,
                   OverlapVerdict& verdict) {
@@ -42,19 +48,23 @@ void judgeBetween(const OverlapJudge& judge, const JudgedBody& moving,
   for (const OverlapJudge::Mounted& mounted : judge.mounted()) X_WP.push_back(mounted.X_WB);
   X_WP.emplace_back();
   std::optional<MotionJudge> motions;
+  const double least_m = std::max(verdict.worst.depth_m, kFast_m / 2);
   for (std::size_t i = 1; i < samples.size(); ++i) {
+    if (!samples[i].follows) continue;
     if (greatestDisplacement(box, samples[i - 1].X_WP, samples[i].X_WP) <= kFast_m) continue;
     X_WP.back() = samples[i - 1].X_WP;
     if (!motions) {
       motions.emplace(bodiesOf(judge, moving), X_WP, samples[i - 1].time_s);
-      motions->setLeast(std::max(verdict.worst.depth_m, kFast_m / 2));
+      motions->setLeast(least_m);
     }
     motions->place(samples[i - 1].time_s, X_WP);
     X_WP.back() = samples[i].X_WP;
     motions->addStep(samples[i].time_s, X_WP, kCredit, stop);
     motions->search(stop);
   }
-  if (!motions || !(motions->deepest().depth_m > verdict.worst.depth_m)) return;
+  if (!motions) return;
+  verdict.unsearched_m = unsearched_m(*motions, least_m);
+  if (!(motions->deepest().depth_m > verdict.worst.depth_m)) return;
   const DeepestOverlap& deepest = motions->deepest();
   verdict.worst = {deepest.depth_m, deepest.p_W, deepest.a};
   verdict.time_s = deepest.time_s;

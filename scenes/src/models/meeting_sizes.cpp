@@ -5,7 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <numeric>
 #include <optional>
+#include <unordered_map>
+#include <utility>
 
 #include "core/length_words.h"
 #include "vps/box.h"
@@ -15,7 +19,8 @@ namespace vps::scenes::inline v0 {
 
 namespace {
 
-constexpr std::size_t kFacets = 4096;  // assumed: a bore has 12 facets or more, and one of them is enough
+constexpr std::size_t kFacets = 4096;  // samples of a mesh, assumed: one facet of a bore is enough
+constexpr std::uint32_t kCells = 12;   // along each axis of the mesh, assumed
 /// Of walls that face each other: within 45 degrees of opposite. The flanks of gear teeth (2 x 20 degrees)
 /// are; those of a metric thread (60 degrees) are not.
 constexpr double kOpposite = -0.7;
@@ -54,15 +59,58 @@ class WallSearch {
   std::vector<double> crossings_;
 };
 
-/// Calls visit(point, normal) for the middle of each facet, and three more points of it in a coarse mesh.
+Vec3 normalTimesArea(const Mesh& mesh, std::size_t t) {
+  const auto& [a, b, c] = mesh.triangles[t];
+  return 0.5 * (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]);
+}
+
+/// Facets of about the same place, size and direction have the same number.
+std::uint32_t kindOf(const Mesh& mesh, std::size_t t, const Box& box) {
+  const Vec3 normal = normalTimesArea(mesh, t);
+  const double side_m = std::max(1e-300, box.size().maxCoeff() / kCells);
+  const Vec3 at = (mesh.vertices[mesh.triangles[t][0]] - box.min) / side_m;
+  std::uint32_t kind = 0;
+  for (const double cell : at)
+    kind = kind * kCells + static_cast<std::uint32_t>(std::clamp(cell, 0.0, kCells - 1.0));
+  int axis = 0;
+  normal.cwiseAbs().maxCoeff(&axis);
+  kind = kind * 6 + static_cast<std::uint32_t>(2 * axis + (normal[axis] > 0 ? 1 : 0));
+  const double size = std::log2(std::max(1e-18, normal.norm() / (side_m * side_m))) / 2;  // of its side
+  return kind * 32 + static_cast<std::uint32_t>(std::clamp(size + 30, 0.0, 31.0));
+}
+
+/// All facets of a mesh of up to kFacets. Of a finer one, a facet of each kind, the rarest kinds first, so
+/// that the walls of a small bore are among them.
+std::vector<std::size_t> sampledFacets(const Mesh& mesh) {
+  const std::size_t count = mesh.triangles.size();
+  std::vector<std::size_t> facets(count);
+  std::iota(facets.begin(), facets.end(), std::size_t{0});
+  if (count <= kFacets) return facets;
+  const Box box = bounds(mesh);
+  struct Kind {
+    std::size_t first, count;
+  };
+  std::unordered_map<std::uint32_t, Kind> kinds;
+  for (const std::size_t t : facets)
+    ++kinds.try_emplace(kindOf(mesh, t, box), Kind{t, 0}).first->second.count;
+  std::vector<Kind> by_count;
+  for (const auto& [number, kind] : kinds) by_count.push_back(kind);
+  std::ranges::sort(by_count, {}, [](const Kind& kind) { return std::pair(kind.count, kind.first); });
+  facets.clear();
+  for (const Kind& kind : by_count)
+    if (facets.size() < kFacets) facets.push_back(kind.first);
+  return facets;
+}
+
+/// Calls visit(point, normal) for the middle of each sampled facet, and three more points of it in a coarse
+/// mesh.
 template <class Visit>
 void forEachSample(const Mesh& mesh, const Visit& visit) {
-  const std::size_t count = mesh.triangles.size(), stride = 1 + count / kFacets;
-  const bool is_coarse = 4 * count <= kFacets;
-  for (std::size_t t = 0; t < count; t += stride) {
+  const bool is_coarse = 4 * mesh.triangles.size() <= kFacets;
+  for (const std::size_t t : sampledFacets(mesh)) {
     const auto& [a, b, c] = mesh.triangles[t];
     const Vec3 &p = mesh.vertices[a], &q = mesh.vertices[b], &r = mesh.vertices[c];
-    const Vec3 normal = (q - p).cross(r - p);
+    const Vec3 normal = normalTimesArea(mesh, t);
     if (!(normal.norm() > 0)) continue;
     const Vec3 middle = (p + q + r) / 3;
     visit(middle, Vec3(normal.normalized()));

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstdio>
 #include <exception>
+#include <functional>
 #include <mutex>
 #include <numeric>
 #include <set>
@@ -133,66 +134,107 @@ bool isBuilt(const ModelPlan& plan, std::size_t part) {
   return !planned.same_as && (planned.has_map || planned.has_shell || isCooked(plan, part));
 }
 
+/// A part that is only in the fixed field has its map there.
+bool needsMap(const ModelPlan& plan, std::size_t part) {
+  return isBuilt(plan, part) && (plan.parts[part].has_map || isCooked(plan, part));
+}
+
+/// To two digits, never down.
+double roundedUp(double value) {
+  const double digit = std::pow(10.0, std::floor(std::log10(value)) - 1);
+  return digit * std::ceil(value / digit * (1 - 1e-12));
+}
+
 /// Refuses a map that would not be built, before the others are: some take minutes. O(triangles).
 void requireMaps(const Scene& scene, const ModelPlan& plan) {
   for (std::size_t i = 0; i < scene.parts.size(); ++i) {
     const ScenePart& part = scene.parts[i];
-    if (!isBuilt(plan, i) || (part.model && part.model->map)) continue;
+    if (!needsMap(plan, i) || (part.model && part.model->map)) continue;
     const VoxMapSettings voxels = voxMapSettings(fidelityOf(part, scene.fidelity));
     const double bytes = expectedMapBytes(part.part.mesh, voxels);
     if (bytes <= largestMapBytes()) continue;
     const Vec3 size_mm = 1e3 * bounds(part.part.mesh).size();
-    constexpr double kGiB = 1024.0 * 1024 * 1024, kRoundedUp = 1.05;
+    constexpr double kGiB = 1024.0 * 1024 * 1024, kCertain = 1.001;  // see fittingVoxel_m()
     std::array<char, 300> words{};
     std::snprintf(
         words.data(), words.size(),
         "of %.4g x %.4g x %.4g mm needs about %.3g GiB of memory for voxels of %.3g mm, and a voxmap "
-        "takes at most %.0f; set larger ones in the scene file: [fidelity] voxel = \"%.2gmm\"",
+        "takes at most %.0f; set larger ones in the scene file: [fidelity] voxel = \"%.6gmm\"",
         size_mm.x(), size_mm.y(), size_mm.z(), bytes / kGiB, 1e3 * voxels.voxel_m, largestMapBytes() / kGiB,
-        1e3 * kRoundedUp * fittingVoxel_m(part.part.mesh, voxels, largestMapBytes()));
+        roundedUp(1e3 * kCertain * fittingVoxel_m(part.part.mesh, voxels, largestMapBytes())));
     throw LoadError(part.file, part.part.name, words.data());
   }
+}
+
+using FidelityOf = std::function<Fidelity(const ScenePart&)>;
+
+/// At least what the models of a plan take, by the areas alone.
+double mostModelBytes(const Scene& scene, const ModelPlan& plan) {
+  constexpr double kDensest = 2;  // points for each square of the spacing; more where edges are near
+  double bytes = 0;
+  for (std::size_t i = 0; i < scene.parts.size(); ++i) {
+    if (!isBuilt(plan, i)) continue;
+    const Mesh& mesh = scene.parts[i].part.mesh;
+    const Fidelity fidelity = fidelityOf(scene.parts[i], scene.fidelity);
+    if (needsMap(plan, i)) bytes += expectedMapBytes(mesh, voxMapSettings(fidelity));
+    bytes += ModelEstimate::shellBytes(kDensest * area(mesh) / (fidelity.spacing_m * fidelity.spacing_m));
+  }
+  return bytes;
+}
+
+double modelBytes(const Scene& scene, const ModelPlan& plan, const FidelityOf& of) {
+  double bytes = 0;
+  for (std::size_t i = 0; i < scene.parts.size(); ++i) {
+    if (!isBuilt(plan, i)) continue;
+    const Fidelity fidelity = of(scene.parts[i]);
+    const PartModelPlan& planned = plan.parts[i];
+    const ModelEstimate estimate(scene.parts[i].part.mesh, voxMapSettings(fidelity),
+                                 pointShellSettings(fidelity));
+    if (needsMap(plan, i)) bytes += estimate.mapBytes(planned.kept_P);
+    if (planned.has_shell) bytes += ModelEstimate::shellBytes(estimate.pointCount(planned.kept_P));
+  }
+  return bytes;
+}
+
+Fidelity withVoxel(Fidelity fidelity, double voxel_m) {
+  fidelity.spacing_m *= voxel_m / fidelity.voxel_m;
+  fidelity.voxel_m = voxel_m;
+  return fidelity;
+}
+
+/// The least voxel, to two digits, with which the models of all parts fit, where none has one of its own, as
+/// where a scene states one.
+double remedy_m(const Scene& scene, const ModelPlan& plan, double most_bytes) {
+  const auto fits = [&](double voxel_m) {
+    const Fidelity all = withVoxel(scene.fidelity, voxel_m);
+    return modelBytes(scene, plan, [&](const ScenePart&) { return all; }) <= most_bytes;
+  };
+  double high_m = scene.fidelity.voxel_m;
+  for (int i = 0; i < 40 && !fits(high_m); ++i) high_m *= 2;
+  double low_m = high_m;
+  for (int i = 0; i < 10 && fits(low_m); ++i) low_m /= 2;
+  while (high_m > 1.02 * low_m) {
+    const double middle_m = std::sqrt(low_m * high_m);
+    (fits(middle_m) ? high_m : low_m) = middle_m;
+  }
+  return 1e-3 * roundedUp(1e3 * high_m);
 }
 
 /// Refuses a plan whose models need more memory than there is, since the system would end the program without
 /// a word. The exact estimate is only made where the areas alone do not tell. O(triangles).
 void requireMemory(const Scene& scene, const ModelPlan& plan, const ModelOptions& options) {
   const double most_bytes = options.memory_bytes > 0 ? options.memory_bytes : machineMemoryBytes();
-  if (!(most_bytes > 0)) return;
-  const auto sum = [&](auto bytesOf) {
-    double bytes = 0;
-    for (std::size_t i = 0; i < scene.parts.size(); ++i) {
-      const Fidelity fidelity = fidelityOf(scene.parts[i], scene.fidelity);
-      if (isBuilt(plan, i))
-        bytes += bytesOf(scene.parts[i].part.mesh, plan.parts[i], voxMapSettings(fidelity),
-                         pointShellSettings(fidelity));
-    }
-    return bytes;
-  };
-  constexpr double kDensest = 2;  // points for each square of the spacing; more where edges are near
-  const double at_most = sum([&](const Mesh& mesh, const PartModelPlan&, const VoxMapSettings& voxels,
-                                 const PointShellSettings& points) {
-    return expectedMapBytes(mesh, voxels) +
-           ModelEstimate::shellBytes(kDensest * area(mesh) / (points.spacing_m * points.spacing_m));
-  });
-  if (at_most <= most_bytes) return;
-  // A part that is only in the fixed field has its map there.
-  const bool is_simulation = plan.purpose == ModelPurpose::Simulate;
-  const double about = sum([&](const Mesh& mesh, const PartModelPlan& planned, const VoxMapSettings& voxels,
-                               const PointShellSettings& points) {
-    const ModelEstimate estimate(mesh, voxels, points);
-    return (planned.has_map || is_simulation ? estimate.mapBytes(planned.kept_P) : 0) +
-           (planned.has_shell ? ModelEstimate::shellBytes(estimate.pointCount(planned.kept_P)) : 0);
-  });
+  if (!(most_bytes > 0) || mostModelBytes(scene, plan) <= most_bytes) return;
+  const double about =
+      modelBytes(scene, plan, [&](const ScenePart& part) { return fidelityOf(part, scene.fidelity); });
   if (about <= most_bytes) return;
-  const double larger_mm = 1e3 * scene.fidelity.voxel_m * std::sqrt(1.1 * about / most_bytes);
+  const Fidelity remedy = withVoxel(scene.fidelity, remedy_m(scene, plan, most_bytes));
   std::array<char, 300> words{};
-  std::snprintf(
-      words.data(), words.size(),
-      "its models need about %.3g MB of memory, and there are %.3g MB; choose larger voxels and "
-      "spacing ([fidelity] voxel = \"%.2gmm\"), or leave parts out that nothing touches (vps explain "
-      "lists what each part needs)",
-      1e-6 * about, 1e-6 * most_bytes, larger_mm);
+  std::snprintf(words.data(), words.size(),
+                "its models need about %.3g MB of memory, and there are %.3g MB; choose larger voxels and "
+                "spacing ([fidelity] voxel = \"%.6gmm\", spacing = \"%.6gmm\"), or leave parts out that "
+                "nothing touches (vps explain lists what each part needs)",
+                1e-6 * about, 1e-6 * most_bytes, 1e3 * remedy.voxel_m, roundedUp(1e3 * remedy.spacing_m));
   throw LoadError(scene.file, "", words.data());
 }
 

@@ -25,9 +25,14 @@ double modelBytes(const Scene& scene) {
   return static_cast<double>(estimate(scene, ModelPurpose::Assemble, {}).cost.most.bytes);
 }
 
+/// A scene file that leaves the voxel open may state the spacing.
+bool keepsSpacing(const Scene& scene) {
+  return scene.chooses_voxel && !scene.chooses_spacing;
+}
+
 void setVoxel(Scene& scene, double voxel_m) {
   scene.fidelity.voxel_m = voxel_m;
-  scene.fidelity.spacing_m = usualSpacing_m(scene);
+  if (!keepsSpacing(scene)) scene.fidelity.spacing_m = usualSpacing_m(scene);
 }
 
 /// Coarser voxels, in steps up to the limit, until the models fit; the memory goes with the square of the
@@ -81,8 +86,9 @@ std::string megabytes(double bytes) {
 std::string fitFidelity(Scene& scene, double most_bytes) {
   const Fidelity usual;
   const double spacing_m = scene.fidelity.spacing_m;
-  const bool is_usual = !scene.fidelity_wish && scene.fidelity.voxel_m == usual.voxel_m &&
-                        (spacing_m == usual.spacing_m || spacing_m == usualSpacing_m(scene));
+  const bool is_usual =
+      !scene.fidelity_wish && scene.fidelity.voxel_m == usual.voxel_m &&
+      (keepsSpacing(scene) || spacing_m == usual.spacing_m || spacing_m == usualSpacing_m(scene));
   if (!is_usual || scene.steps.empty()) return "";
   setVoxel(scene, usual.voxel_m);
   const LeastSize least = leastSize(scene);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/insertion_axis.h"
+#include "vps/box.h"
 
 namespace vps::scenes::inline v0 {
 
@@ -48,7 +49,8 @@ RunTrace::RunTrace(const Scene& scene, device::RunLog* log)
       log_stride_(std::max(1L, std::lround(scene.fidelity.physics_rate_hz / scene.record.csv_rate_hz))) {}
 
 void RunTrace::beginStep(const AssemblyWorld& world) {
-  rows_.beginStep();
+  const std::size_t part = world.state().moving.part;
+  rows_.beginStep(bounds(world.scene().parts[part].model->solid->mesh()));
   peak_contact_N_ = guide_N_ = 0;
   const SceneStep& step = world.scene().steps[static_cast<std::size_t>(world.state().step)];
   axis_W_ = insertionAxis(step, world.state().moving.X_PG);

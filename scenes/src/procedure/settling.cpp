@@ -8,6 +8,7 @@
 #include <thread>
 #include <utility>
 
+#include "core/length_words.h"
 #include "core/wall_clock.h"
 #include "vps_device/periodic_thread.h"
 
@@ -24,7 +25,9 @@ bool isReady(const std::future<T>& future) {
 
 /// The placed parts must not be changed before it is ready, except for PlacedParts::add().
 std::future<OverlapVerdict> judgeAsync(AssemblyWorld& world, std::vector<OverlapSample> samples) {
-  samples.push_back({world.state().time_s, world.movingPose(), 0});
+  const double time_s = world.state().time_s;
+  const bool follows = !samples.empty() && time_s - samples.back().time_s < 1.5 * world.dt_s();
+  samples.push_back({time_s, world.movingPose(), 0, follows});
   const JudgedBody& body = world.placed().judgedBody(world.state().moving.part);
   const OverlapJudge& judge = world.placed().judge();
   const bool is_one_sided = world.scene().fidelity.sides == Sides::One;
@@ -61,6 +64,12 @@ void reportVerdict(const OverlapVerdict& verdict, const OverlapJudge& judge, Ste
   result.deepest_at_W = verdict.worst.p_W;
   result.deepest_time_s = verdict.time_s;
   if (verdict.worst.depth_m > 0) result.deepest_against = judge.name(verdict.worst.against);
+  if (!isWithinLimit(result) || verdict.unsearched_m <= result.penetration_limit_m) return;
+  if (!result.mesh_doubt.empty()) result.mesh_doubt += "; and ";
+  result.mesh_doubt +=
+      "a passage on the way, between the poses of two steps, was not searched to its end: it "
+      "may be up to " +
+      lengthInWords(verdict.unsearched_m) + " deep";
 }
 
 /// What is in place for the next step.
