@@ -36,7 +36,7 @@ struct BodyTurn {
   const btRigidBody* body = nullptr;
   bool is_in_contact = false;  ///< the rotation is that against a body in contact
   double w_rad_s = 0;
-  /// Greatest acceleration with which a contact that carried load leaves its plane, by the rotation of the
+  /// Greatest acceleration with which a contact leaves its plane, by the rotation of the
   /// two bodies about the axis of their relative motion: of all pairs of the body. In a step of dt_s it
   /// leaves by half of it times dt_s^2.
   double leaving_m_s2 = 0;

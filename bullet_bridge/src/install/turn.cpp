@@ -37,7 +37,6 @@ double leaving_m_s2(const btPersistentManifold& manifold) {
   double most_m_s2 = 0;
   for (int i = 0; i < manifold.getNumContacts(); ++i) {
     const btManifoldPoint& point = manifold.getContactPoint(i);
-    if (!(point.getAppliedImpulse() > 0)) continue;
     const btVector3& p_W = point.getPositionWorldOnB();
     const Vec3 v = velocityAt(manifold.getBody0(), p_W) - velocityAt(manifold.getBody1(), p_W);
     most_m_s2 = std::max(most_m_s2, std::abs(fromBt(point.m_normalWorldOnB).dot(w.cross(v))));

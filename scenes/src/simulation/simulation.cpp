@@ -66,9 +66,9 @@ class Turns {
     return turn.w_rad_s * dt_s > turn.limit_rad() * (1 + kRounding);
   }
 
-  /// Teeth that skip carry load in some steps only. So a step in which they do counts as one of those in a
-  /// row (bullet::kTurnsInRow), and each step without takes a quarter of one away: what carries load in more
-  /// than a fifth of the steps is reported, and blows of a part that tumbles are not.
+  /// Teeth that skip are in contact in some steps only. So a step in which they are counts as one of those in
+  /// a row (bullet::kTurnsInRow), and each step without takes a quarter of one away: what is in contact in
+  /// more than a fifth of the steps is reported, and blows of a part that tumbles are not.
   bool lasts(std::size_t part, bool is_now) {
     constexpr int kOne = 4;
     const auto known = quarters_.find(part);
