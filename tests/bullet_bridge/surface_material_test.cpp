@@ -4,6 +4,9 @@
 
 #include <array>
 #include <cmath>
+#include <optional>
+#include <stdexcept>
+#include <string>
 
 #include "bullet_bridge/world.h"
 
@@ -194,6 +197,39 @@ TEST(SurfaceMaterial, EqualToTheBodysGivesTheSameBits) {
     end[is_own ? 1 : 0] = world.bodies[2]->getWorldTransform().getOrigin();
   }
   EXPECT_EQ(end[0], end[1]);
+}
+
+TEST(SurfaceMaterial, WhatIsNoMaterialIsRefusedInWords) {
+  const double nan = std::nan(""), infinite = HUGE_VAL;
+  const auto refused = [](std::optional<double> friction, std::optional<double> restitution,
+                          std::optional<double> stiffness) -> std::string {
+    try {
+      TwoPlates({SurfaceMaterial{}, SurfaceMaterial{friction, restitution, stiffness}}, false);
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return {};
+  };
+  for (const double bad : {-0.1, nan, infinite}) {
+    EXPECT_NE(refused(bad, {}, {}).find("friction"), std::string::npos) << bad;
+    EXPECT_NE(refused({}, bad, {}).find("restitution"), std::string::npos) << bad;
+    EXPECT_NE(refused({}, {}, bad).find("stiffness"), std::string::npos) << bad;
+  }
+  EXPECT_NE(refused({}, 1.1, {}).find("restitution"), std::string::npos);
+  EXPECT_NE(refused({}, {}, 0.0).find("stiffness"), std::string::npos);
+  EXPECT_EQ(refused(0.0, 0.0, 1.0), "");
+  EXPECT_EQ(refused(2.0, 1.0, {}), "");
+}
+
+// As where repair has moved a surface.
+TEST(SurfaceMaterial, APointBesideItsSurfaceBelongsToTheNearest) {
+  const TwoPlates plates({SurfaceMaterial{}, SurfaceMaterial{}}, false);
+  ShapeModels models = plates.shape->models();
+  for (Surface& surface : models.surfaces) surface.X_MP.p.z() -= 5e-6;
+  const Shape moved(std::move(models));
+  const PointShell& shell = *moved.models().shell;
+  for (std::uint32_t i = 0; i < shell.size(); ++i)
+    EXPECT_EQ(moved.surfaceAt(i), shell.points[i].y() > kPlaceY_m / 2 ? 1 : 0) << i;
 }
 
 }  // namespace

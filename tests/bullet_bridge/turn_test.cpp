@@ -113,6 +113,47 @@ TEST(Turn, ATimeIsDividedByTheFastestBody) {
   EXPECT_EQ(parts(1e7, true), 1000);  // the most
 }
 
+// A ball that rolls turns about the point that it touches.
+TEST(Turn, ABallThatRollsIsNotReported) {
+  const Messages messages;
+  static const Built ground = test::plate(), ball = test::build(makeSphere(0.005, 3), 7850, 0.5e-3, 1e-3);
+  World world;
+  world.add(ground, Pose::translation({0, 0, -0.005}), true, 1);
+  btRigidBody& body = world.add(ball, Pose::translation({-0.02, 0, 0.005}), false, 1);
+  body.setAngularVelocity({0, toBt(150), 0});  // 0.15 rad in a step
+  body.setLinearVelocity({toBt(150 * 0.005), 0, 0});
+  world.step(20);
+  EXPECT_GT(body.getAngularVelocity().y(), 110);
+  EXPECT_EQ(messages.count(kInContact), 0);
+}
+
+TEST(Turn, OneStepIsNotReported) {
+  const Messages messages;
+  SpinningDisc spinning(200, true);
+  spinning.world.step(kTurnsInRow - 1);
+  spinning.body->setAngularVelocity({0, 0, 0});
+  spinning.world.step(5);
+  EXPECT_EQ(messages.count(kInContact), 0);
+}
+
+TEST(Turn, PairsThatDoNotCollideDivideNoStep) {
+  SpinningDisc trigger(1047, true);
+  trigger.body->setCollisionFlags(trigger.body->getCollisionFlags() |
+                                  btCollisionObject::CF_NO_CONTACT_RESPONSE);
+  trigger.world.world->performDiscreteCollisionDetection();
+  EXPECT_EQ(substepsFor(*trigger.world.world, 1e-3, 1000), 2);
+  std::vector<BodyTurn> turns;
+  findTurns(*trigger.world.world, turns);
+  ASSERT_EQ(turns.size(), 1U);
+  EXPECT_FALSE(turns[0].is_in_contact);
+
+  SpinningDisc linked(1047, true);
+  linked.world.world->performDiscreteCollisionDetection();
+  EXPECT_EQ(substepsFor(*linked.world.world, 1e-3, 1000), 11);
+  linked.body->setIgnoreCollisionCheck(linked.world.bodies[0].get(), true);
+  EXPECT_EQ(substepsFor(*linked.world.world, 1e-3, 1000), 2);
+}
+
 // Two bodies that turn together do not turn against each other.
 TEST(Turn, BodiesThatTurnTogetherAreLimitedByBulletAlone) {
   World world;

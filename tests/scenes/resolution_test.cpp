@@ -251,15 +251,31 @@ TEST(Resolution, TheVoxelThatIsNamedWhereMemoryIsShortFits) {
 
 // All numbers of the two runs differ by powers of two.
 TEST(ScaledScene, ASmallSceneHasTheAnswersOfTheSimilarOneToTheLastBit) {
-  const auto run = [](double factor) {
+  const auto run = [](double factor, double gap_mm = 0.1) {
     Scene scene = cubeOnPlate(0.8 * kMm * factor);
-    scene.parts[1].X_WP.p.z() += 0.1 * kMm * factor;
+    scene.parts[1].X_WP.p.z() += gap_mm * kMm * factor;
     scene.parts[1].V_WP_W.v = Vec3(0.02, 0, 0) * factor;
     scene.gravity_W *= factor;
     chooseResolution(scene);
-    return simulate(scene, 0.05, {});
+    SimulateOptions options;
+    options.judge_every = 1;
+    return simulate(scene, 0.05, options);
   };
   const SimulateResult one = run(1), small = run(0x1p-6);
+  ASSERT_TRUE(one.exact && small.exact && small.overlap);
+  EXPECT_EQ(small.contact_depth_m * 0x1p6, one.contact_depth_m);
+  EXPECT_EQ(small.exact->deepest.depth_m, small.max_penetration_m);
+  EXPECT_EQ(small.exact->deepest.depth_m * 0x1p6, one.exact->deepest.depth_m);
+  EXPECT_EQ(Vec3(small.exact->deepest.at_W * 0x1p6), one.exact->deepest.at_W);
+  EXPECT_EQ(small.exact->bound_m * 0x1p6, one.exact->bound_m);
+  const SimulateResult deep = run(1, -0.004), small_deep = run(0x1p-6, -0.004);
+  EXPECT_GT(deep.exact->deepest.depth_m, 0);
+  EXPECT_EQ(small_deep.exact->deepest.depth_m, small_deep.max_penetration_m);
+  EXPECT_EQ(small_deep.exact->deepest.depth_m * 0x1p6, deep.exact->deepest.depth_m);
+  EXPECT_GT(deep.contact_depth_m, 0);
+  EXPECT_EQ(small_deep.contact_depth_m * 0x1p6, deep.contact_depth_m);
+  EXPECT_EQ(small.overlap->limit_m, 10e-6);  // drawn lengths, whatever the scene is simulated in
+  EXPECT_EQ(one.overlap->limit_m, 10e-6);
   EXPECT_EQ(Vec3(small.bodies[0].X_WP.p * 0x1p6), one.bodies[0].X_WP.p);
   EXPECT_EQ(small.bodies[0].X_WP.R, one.bodies[0].X_WP.R);
   EXPECT_EQ(small.kinetic_energy_J * 0x1p30, one.kinetic_energy_J);

@@ -216,6 +216,7 @@ TEST_F(SceneFile, TheSubstepsOfAStepAreANumberOrAuto) {
   EXPECT_EQ(load(kPin + "[fidelity]\nsubsteps = 12\n").fidelity.substeps, 12);
   EXPECT_THROW(load(kPin + "[fidelity]\nsubsteps = 'many'\n"), LoadError);
   EXPECT_THROW(load(kPin + "[fidelity]\nsubsteps = -1\n"), LoadError);
+  EXPECT_THROW(load(kPin + "[fidelity]\nsubsteps = 0\n"), LoadError);
 }
 
 TEST_F(SceneFile, AScrewHasAPitchWithASign) {

@@ -2,10 +2,13 @@
 // Parts that turn farther in a step than it can hold: what is said of them, and steps that are divided.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "models/scene_models.h"
 #include "scenes/scene_part.h"
+#include "simulation/simulation.h"
 #include "vps_scenes/simulate.h"
 
 namespace vps::scenes {
@@ -81,6 +84,53 @@ TEST(Substeps, ANumberOfThemIsTheSameAsAHigherRate) {
   EXPECT_EQ(a.bodies[0].X_WP.p, b.bodies[0].X_WP.p);
   EXPECT_EQ(a.bodies[0].X_WP.R, b.bodies[0].X_WP.R);
   EXPECT_EQ(a.step.count * 8, b.step.count);
+}
+
+// The judge is told where bodies are after each part: between the ends of a whole step they may have been
+// anywhere.
+TEST(Substeps, EachPartOfAStepIsShown) {
+  Scene scene = shaftScene(60'000, false);  // a whole turn in a step
+  scene.fidelity.substeps = 0;
+  const ModelPlan plan = makeModelPlan(scene, ModelPurpose::Simulate);
+  buildModels(scene, plan, {});
+  Simulation simulation(scene, plan);
+  simulation.addBody(0, Pose());
+  simulation.setTwist(0, scene.parts[0].V_WP_W);
+  int shown = 0, count = 0;
+  double least_x = 1;
+  simulation.step(1e-3, [&](int number, int parts) {
+    EXPECT_EQ(number, ++shown);
+    count = parts;
+    least_x = std::min(least_x, simulation.pose(0).R(0, 0));
+  });
+  EXPECT_EQ(shown, count);
+  EXPECT_GE(count, 8);  // of 0.785 rad at most
+  EXPECT_LT(least_x, -0.9);
+  EXPECT_GT(simulation.pose(0).R(0, 0), 0.99);
+}
+
+// A cube that tips over turns fast for a moment, about the edge on which it stands.
+TEST(Substeps, NothingIsSaidOfACubeThatTipsOver) {
+  Scene scene;
+  scene.file = scene.name = "cube";
+  scene.parts = {scenePart("plate", makeBox({80 * kMm, 80 * kMm, 10 * kMm}), {0, 0, -5 * kMm}, true),
+                 scenePart("cube", makeBox({20 * kMm, 20 * kMm, 20 * kMm}), {0, 0, 37 * kMm}, false)};
+  scene.parts[1].X_WP.R = rotationFromVector(Vec3(0.6, 0.3, 0));
+  scene.parts[1].V_WP_W.w = {8, 0, 0};
+  scene.fidelity.physics_rate_hz = 240;
+  EXPECT_TRUE(simulate(scene, 0.4).fast_turns.empty());
+}
+
+TEST(Substeps, TheWorstPartIsNamedAndTheOthersAreCounted) {
+  const FastTurn slow{"slow", true, 200, 0.2, 0.1, 2000}, fast{"fast", true, 400, 0.4, 0.1, 4000};
+  Fidelity fidelity;
+  const std::string words = inWords({slow, fast, slow}, fidelity);
+  EXPECT_NE(words.find("'fast' turns"), std::string::npos) << words;
+  EXPECT_NE(words.find("and 2 other parts"), std::string::npos) << words;
+  EXPECT_NE(words.find("\"auto\""), std::string::npos) << words;
+  fidelity.substeps = 0;  // is set already
+  EXPECT_EQ(inWords({slow, fast}, fidelity).find("\"auto\""), std::string::npos);
+  EXPECT_EQ(inWords(std::vector<FastTurn>(), fidelity), "");
 }
 
 }  // namespace

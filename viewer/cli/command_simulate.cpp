@@ -74,10 +74,13 @@ std::string depthInWords(const scenes::SimulateResult& result) {
   const std::string which = deepest.depth_m > 0 ? ", '" + deepest.a + "' in '" + deepest.b + "' at " +
                                                       fixed(deepest.time_s, 4) + " s"
                                                 : "";
-  const bool is_complete = result.exact->bound_m <= 2e-6 + 1.05 * deepest.depth_m;
-  return "deepest " + um(deepest.depth_m) + " by exact distance" + which +
-         (is_complete ? ", at no time more than " : "; not searched at all times: at most ") +
-         um(result.exact->bound_m);
+  const std::string found = "deepest " + um(deepest.depth_m) + " by exact distance" + which;
+  const std::string bound = um(result.exact->bound_m);
+  if (!result.exact->is_searched) return found + "; not searched at all times: at most " + bound;
+  if (result.exact->bound_m <= 2e-6 + 1.05 * deepest.depth_m)
+    return found + ", at no time more than " + bound;
+  return found + "; parts that start inside each other may be deeper for a moment, by no more than " + bound +
+         " in all";
 }
 
 int runSimulate(const SimulateArguments& given) {
@@ -119,7 +122,7 @@ int runSimulate(const SimulateArguments& given) {
     std::printf(
         "steps shortened: bodies in contact were stopped within a step %zu times, which takes energy\n",
         result.shortened_steps);
-  for (const scenes::FastTurn& turn : result.fast_turns) warn(inWords(turn));
+  if (!result.fast_turns.empty()) warn(inWords(result.fast_turns, scene.fidelity));
   const bool is_good = !result.overlap || printOverlap(*result.overlap);
   if (!result.real_time) return is_good ? kGood : kBad;
   for (const std::string& words : result.real_time->warnings) warn(words);

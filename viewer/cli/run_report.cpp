@@ -10,6 +10,7 @@
 #include "vps_scenes/ergonomics.h"
 #include "vps_scenes/load_level.h"
 #include "vps_scenes/result_fields.h"
+#include "vps_scenes/simulate.h"
 #include "vps_viewer/csv.h"
 #include "vps_viewer/report.h"
 #include "vps_viewer/verdict_words.h"
@@ -86,7 +87,7 @@ std::string fidelityWords(const Fidelity& fidelity) {
          fixed(1e3 * fidelity.spacing_m, 3) + " mm";
 }
 
-void printSteps(const scenes::AssembleResult& result) {
+void printSteps(const scenes::AssembleResult& result, const Fidelity& fidelity) {
   std::fputs(tableOf(result.steps).c_str(), stdout);
   for (const scenes::StepResult& step : result.steps) {
     const char* name = step.part.c_str();
@@ -109,13 +110,13 @@ void printSteps(const scenes::AssembleResult& result) {
   if (result.contacts_left_out > 0)
     warn(std::to_string(result.contacts_left_out) +
          " near points found no room in a query; choose a coarser spacing");
-  for (const scenes::FastTurn& turn : result.fast_turns) warn(inWords(turn));
+  if (!result.fast_turns.empty()) warn(inWords(result.fast_turns, fidelity));
 }
 
 void printOutcome(const scenes::Scene& scene, const scenes::AssembleResult& result,
                   const std::vector<std::string>& notes, const std::string& record, const std::string& out) {
   std::printf("%s: %s\n", scene.name.c_str(), fidelityWords(scene.fidelity).c_str());
-  printSteps(result);
+  printSteps(result, scene.fidelity);
   for (const std::string& note : notes) warn(note);
   if (result.real_time) {
     for (const std::string& words : result.real_time->warnings) warn(words);

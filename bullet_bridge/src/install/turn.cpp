@@ -25,6 +25,25 @@ Vec3 rotation(const btCollisionObject* object) {
   return body && !body->isStaticObject() ? fromBt(body->getAngularVelocity()) : Vec3(Vec3::Zero());
 }
 
+Vec3 velocityAt(const btCollisionObject* object, const btVector3& p_W) {
+  const btRigidBody* body = btRigidBody::upcast(object);
+  return body && !body->isStaticObject()
+             ? fromBt(body->getVelocityInLocalPoint(p_W - body->getCenterOfMassPosition()))
+             : Vec3(Vec3::Zero());
+}
+
+double leaving_m_s2(const btPersistentManifold& manifold) {
+  const Vec3 w = rotation(manifold.getBody0()) - rotation(manifold.getBody1());
+  double most_m_s2 = 0;
+  for (int i = 0; i < manifold.getNumContacts(); ++i) {
+    const btManifoldPoint& point = manifold.getContactPoint(i);
+    const btVector3& p_W = point.getPositionWorldOnB();
+    const Vec3 v = velocityAt(manifold.getBody0(), p_W) - velocityAt(manifold.getBody1(), p_W);
+    most_m_s2 = std::max(most_m_s2, std::abs(fromBt(point.m_normalWorldOnB).dot(w.cross(v))));
+  }
+  return most_m_s2;
+}
+
 double relativeTurn_rad_s(const btCollisionObject* a, const btCollisionObject* b) {
   return (rotation(a) - rotation(b)).norm();
 }
@@ -41,25 +60,26 @@ bool boxesOverlap(const btCollisionObject& a, const btCollisionObject& b) {
 }  // namespace
 
 void findTurns(btCollisionWorld& world, std::vector<BodyTurn>& out) {
-  constexpr std::size_t kNone = ~std::size_t{0};
-  std::vector<std::size_t> place(static_cast<std::size_t>(world.getNumCollisionObjects()), kNone);
+  const auto first = static_cast<std::ptrdiff_t>(out.size());
   for (int i = 0; i < world.getNumCollisionObjects(); ++i)
-    if (const btRigidBody* body = dynamicBody(world.getCollisionObjectArray()[i])) {
-      place[static_cast<std::size_t>(i)] = out.size();
+    if (const btRigidBody* body = dynamicBody(world.getCollisionObjectArray()[i]))
       out.push_back({body, false, rotation(body).norm()});
-    }
+  const auto indexOf = [](const BodyTurn& turn) { return turn.body->getWorldArrayIndex(); };
   btDispatcher& dispatcher = *world.getDispatcher();
   for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
     const btPersistentManifold& manifold = *dispatcher.getManifoldByIndexInternal(i);
-    if (manifold.getNumContacts() == 0) continue;
     const btCollisionObject* const object[2] = {manifold.getBody0(), manifold.getBody1()};
+    if (manifold.getNumContacts() == 0 || !dispatcher.needsResponse(object[0], object[1])) continue;
     const double w_rad_s = relativeTurn_rad_s(object[0], object[1]);
+    const double leaving = leaving_m_s2(manifold);
     for (const btCollisionObject* each : object) {
-      const auto index = static_cast<std::size_t>(each->getWorldArrayIndex());
-      if (index >= place.size() || place[index] == kNone) continue;
-      BodyTurn& turn = out[place[index]];
-      if (const BodyTurn in_contact{turn.body, true, w_rad_s}; in_contact.rate_hz() > turn.rate_hz())
-        turn = in_contact;
+      const auto found =
+          std::ranges::lower_bound(out.begin() + first, out.end(), each->getWorldArrayIndex(), {}, indexOf);
+      if (found == out.end() || found->body != each) continue;
+      found->leaving_m_s2 = std::max(found->leaving_m_s2, leaving);
+      if (const BodyTurn in_contact{found->body, true, w_rad_s, found->leaving_m_s2};
+          in_contact.rate_hz() > found->rate_hz())
+        *found = in_contact;
     }
   }
 }
@@ -69,12 +89,15 @@ int substepsFor(btCollisionWorld& world, double dt_s, int most) {
   for (int i = 0; i < world.getNumCollisionObjects(); ++i)
     if (const btRigidBody* body = dynamicBody(world.getCollisionObjectArray()[i]))
       rate_hz = std::max(rate_hz, rotation(body).norm() / kBulletTurn_rad);
+  btDispatcher& dispatcher = *world.getDispatcher();
   const btBroadphasePairArray& pairs = world.getPairCache()->getOverlappingPairArray();
   for (int i = 0; i < pairs.size(); ++i) {
     const auto* a = static_cast<const btCollisionObject*>(pairs[i].m_pProxy0->m_clientObject);
     const auto* b = static_cast<const btCollisionObject*>(pairs[i].m_pProxy1->m_clientObject);
     const double needed_hz = relativeTurn_rad_s(a, b) / kContactTurn_rad;
-    if (needed_hz > rate_hz && boxesOverlap(*a, *b)) rate_hz = needed_hz;
+    if (needed_hz > rate_hz && dispatcher.needsCollision(a, b) && dispatcher.needsResponse(a, b) &&
+        boxesOverlap(*a, *b))
+      rate_hz = needed_hz;
   }
   const double count = std::ceil(rate_hz * dt_s);
   return count < most ? std::max(1, static_cast<int>(count)) : std::max(1, most);

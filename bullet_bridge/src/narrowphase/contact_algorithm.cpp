@@ -101,12 +101,25 @@ void warnWithoutSolver() {
            "as rigid");
 }
 
+// Greatest way by which a contact point leaves a plane in the step; none where bodies roll on each other.
+double sagitta_m(const PairState& state) {
+  const RelativeMotion& motion = state.motion;
+  double most_m = 0;
+  for (const Candidate& c : state.contacts)
+    most_m =
+        std::max(most_m, 0.5 * motion.V.w.cross(motion.velocityAt(c.p_W)).norm() * motion.dt_s * motion.dt_s);
+  return most_m;
+}
+
 // Points are not checked any more where bodies turn farther (PairCheck::findMissed()), and planes are off.
-void warnOfTurn(const PairState& state, const PairView& pair) {
+void warnOfTurn(PairState& state, const PairView& pair) {
   const double w_rad_s = state.motion.V.w.norm(), dt_s = state.motion.dt_s;
-  if (state.contacts.empty() || !(w_rad_s * dt_s > kContactTurn_rad)) return;
+  const bool is_fast = w_rad_s * dt_s > kContactTurn_rad && sagitta_m(state) > kContactSagitta_m;
+  state.turns_in_row = is_fast ? state.turns_in_row + 1 : 0;
+  state.fastest_rad_s = is_fast ? std::max(state.fastest_rad_s, w_rad_s) : 0;
+  if (state.turns_in_row < kTurnsInRow) return;
   reportContactTurn(*state.context->turn_reports, *pair.wrapper[0]->getCollisionObject(),
-                    *pair.wrapper[1]->getCollisionObject(), w_rad_s, dt_s);
+                    *pair.wrapper[1]->getCollisionObject(), state.fastest_rad_s, dt_s);
 }
 
 // Pairs without penalty points, as all pairs of constraint contact, leave nothing for the solver.

@@ -43,6 +43,8 @@ struct PairState {
   std::vector<Candidate> contacts;  ///< of the coming step
   RelativeMotion motion;
   bool is_prepared = false;
+  int turns_in_row = 0;              ///< steps in which the bodies turned too far against each other
+  double fastest_rad_s = 0;          ///< their greatest rotation in these
   bool was_queried = false;          ///< in an earlier step
   bool is_incomplete = false;        ///< the solved step needed more contacts than the selection has
   std::unique_ptr<StepCheck> check;  ///< with rigid contact

@@ -41,9 +41,19 @@ Mat3 shiftedInertia(const Mat3& about_com, double mass_kg, const Vec3& p) {
   return about_com + mass_kg * (p.squaredNorm() * Mat3::Identity() - p * p.transpose());
 }
 
+void requireUsable(const SurfaceMaterial& m) {
+  if (m.friction && (!(*m.friction >= 0) || !std::isfinite(*m.friction)))
+    throw std::invalid_argument("Shape: a surface's friction must not be negative, and must be finite");
+  if (m.restitution && !(*m.restitution >= 0 && *m.restitution <= 1))
+    throw std::invalid_argument("Shape: a surface's restitution must be from 0 to 1");
+  if (m.stiffness_N_per_m3 && (!(*m.stiffness_N_per_m3 > 0) || !std::isfinite(*m.stiffness_N_per_m3)))
+    throw std::invalid_argument("Shape: a surface's stiffness_N_per_m3 must be positive and finite");
+}
+
 void requireModels(const ShapeModels& models) {
   if (!models.map && !models.shell && !models.mesh)
     throw std::invalid_argument("Shape: it has no models; give it a map, a shell or a mesh (makeModels)");
+  for (const Surface& surface : models.surfaces) requireUsable(surface.material);
 }
 
 /// Of the solid that the mesh stands for.
@@ -68,6 +78,20 @@ struct PointNormals {
 
 constexpr double kOnSurface_m = 1e-6;
 
+// Where repair has moved a part's surface, its points are not on that of its solid.
+std::uint16_t nearestSurface(const ShapeModels& models, const Vec3& p_M) {
+  std::uint16_t nearest = 0;
+  double least_m = models.shell->spacing_m;
+  for (std::size_t s = 0; s < models.surfaces.size(); ++s) {
+    const Surface& surface = models.surfaces[s];
+    const MeshDistance::Closest closest = surface.distance->closest(surface.X_MP.inverse() * p_M, least_m);
+    if (!closest.found) continue;
+    least_m = closest.distance_m;
+    nearest = static_cast<std::uint16_t>(s);
+  }
+  return nearest;
+}
+
 // A point on a face has the normal of that face; a point on an edge has the mean of several.
 PointNormals findNormals(const ShapeModels& models) {
   constexpr double kCosFace =
@@ -77,13 +101,15 @@ PointNormals findNormals(const ShapeModels& models) {
   PointNormals normals{
       std::vector<std::uint8_t>(count, 1), models.shell->inward, std::vector<Shape::PointFace>(count), {}};
   if (models.surfaces.size() > 1) normals.surfaces.resize(count);
-  for (std::size_t i = 0; i < count; ++i)
+  for (std::size_t i = 0; i < count; ++i) {
+    bool is_found = false;
     for (std::uint32_t s = 0; s < models.surfaces.size(); ++s) {
       const Surface& surface = models.surfaces[s];
       const Pose X_PM = surface.X_MP.inverse();
       const MeshDistance::Closest closest =
           surface.distance->closest(X_PM * models.shell->points[i], kOnSurface_m);
       if (!closest.found) continue;
+      is_found = true;
       if (!normals.surfaces.empty() && normals.is_edge[i] != 0)
         normals.surfaces[i] = static_cast<std::uint16_t>(s);
       const Vec3 outward = -(X_PM.R * models.shell->inward[i]);
@@ -94,6 +120,9 @@ PointNormals findNormals(const ShapeModels& models) {
       normals.faces[i] = {s, closest.triangle};
       if (!normals.surfaces.empty()) normals.surfaces[i] = static_cast<std::uint16_t>(s);
     }
+    if (!is_found && !normals.surfaces.empty())
+      normals.surfaces[i] = nearestSurface(models, models.shell->points[i]);
+  }
   return normals;
 }
 

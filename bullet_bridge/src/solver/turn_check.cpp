@@ -41,7 +41,7 @@ void reportClampedTurn(TurnReports& reports, std::span<btCollisionObject* const>
                   "turns no body by more than %.3g: %.0f steps a second or more hold it (substepsFor() of "
                   "turn.h). Further such bodies are not reported.",
                   at.x(), at.y(), at.z(), spin.rpm, spin.degrees, spin.limit_degrees,
-                  std::ceil(spin.rate_hz));
+                  std::ceil(spin.rate_hz * (1 - 1e-9)));
     report(LogLevel::Warning, words);
   }
 }
@@ -60,7 +60,7 @@ void reportContactTurn(TurnReports& reports, const btCollisionObject& body0, con
       "be missed: %.0f steps a second or more hold them (substepsFor() of turn.h). Further such "
       "bodies are not reported.",
       at[0].x(), at[0].y(), at[0].z(), at[1].x(), at[1].y(), at[1].z(), spin.rpm, spin.degrees,
-      spin.limit_degrees, std::ceil(spin.rate_hz));
+      spin.limit_degrees, std::ceil(spin.rate_hz * (1 - 1e-9)));
   report(LogLevel::Warning, words);
 }
 

@@ -58,6 +58,9 @@ struct JudgedDepth {
   PairOverlap deepest;       ///< depth 0: nothing overlapped
   double bound_m = 0;        ///< no overlap was deeper at any time, between the steps' poses too
   std::size_t measures = 0;  ///< of single pairs between start and end
+  /// False: bound_m is that of a stretch of time that was left, since searching it would have cost too much.
+  /// Where it is true, bound_m may exceed the deepest by what parts that start in each other may overlap.
+  bool is_searched = true;
 };
 
 struct SimulateOptions : ModelOptions {
@@ -95,6 +98,10 @@ struct SimulateResult {
   };
   std::optional<RealTime> real_time;  ///< of a run in real time
 };
+
+/// The part that turns fastest, by what it needs, with the remedy, and how many others there are. Empty for
+/// none.
+VPS_SCENES_API std::string inWords(const std::vector<FastTurn>& turns, const Fidelity& fidelity);
 
 /// Every part that is not fixed is a dynamic body at its designed pose. The limit of overlap is 10 um, or a
 /// quarter of the least clearance that a step states. Throws LoadError as assemble() does.

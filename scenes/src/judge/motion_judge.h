@@ -78,6 +78,8 @@ class MotionJudge {
   [[nodiscard]] const DeepestOverlap& deepestOfAll() const { return deepest_of_all_; }
   /// No depth is more than this, along all steps that were searched.
   [[nodiscard]] double bound_m() const;
+  /// False if credit was missing: then bound_m() is that of a stretch of time which was left.
+  [[nodiscard]] bool isSearched() const { return left_m_ == 0 || left_m_ < bound_m(); }
   [[nodiscard]] std::size_t measured() const { return measured_; }  ///< measures of pairs
 
  private:

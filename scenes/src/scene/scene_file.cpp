@@ -371,6 +371,8 @@ class SceneReader {
     std::size_t index = 1;
     if (keys.word("preset", presets, index)) scene_.fidelity = fidelityPreset(presets[index]);
     readFields(keys, scene_.fidelity, kFidelityFields);
+    if (scene_.fidelity.substeps == 0 && !keys.isText("substeps"))
+      keys.fail("substeps", "must be a number from 1 to 10000, or \"auto\": 0 parts are no step");
     readFidelityWish(keys);
     const bool is_open = !keys.has("preset") && !scene_.fidelity_wish;
     scene_.chooses_voxel = is_open && !keys.has("voxel");

@@ -9,8 +9,8 @@ namespace {
 
 constexpr double kLimit_m = 10e-6;  // as for steps of a procedure
 
-double limitOf(const Scene& scene) {
-  double limit_m = kLimit_m;
+double limitOf(const Scene& scene, double scale) {
+  double limit_m = kLimit_m * scale;
   for (const SceneStep& step : scene.steps)
     if (step.clearance_m > 0) limit_m = std::min(limit_m, step.clearance_m / 4);
   return limit_m;
@@ -47,10 +47,10 @@ std::vector<MovingBody> bodiesOf(const Scene& scene, const std::vector<Vec3>& ce
 
 }  // namespace
 
-BodyOverlaps::BodyOverlaps(const Scene& scene, const std::vector<Vec3>& centers_P)
+BodyOverlaps::BodyOverlaps(const Scene& scene, const std::vector<Vec3>& centers_P, double scale)
     : scene_(scene), X_WP_(posesOf(scene)), motions_(bodiesOf(scene, centers_P), X_WP_, 0) {
   for (const ScenePart& part : scene.parts) boxes_P_.push_back(bounds(part.part.mesh));
-  judged_.limit_m = limitOf(scene);
+  judged_.limit_m = limitOf(scene, scale);
 }
 
 template <typename Visit>
@@ -118,7 +118,7 @@ JudgedOverlap BodyOverlaps::result() const {
 }
 
 JudgedDepth BodyOverlaps::deepest() const {
-  return {describe(motions_.deepestOfAll()), motions_.bound_m(), motions_.measured()};
+  return {describe(motions_.deepestOfAll()), motions_.bound_m(), motions_.measured(), motions_.isSearched()};
 }
 
 }  // namespace vps::scenes::inline v0

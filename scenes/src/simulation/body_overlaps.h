@@ -19,7 +19,8 @@ class BodyOverlaps {
  public:
   /// Takes the parts at their designed poses. A part's surface is prepared when another one comes near.
   /// @param centers_P  centres of mass, by part; empty: the middles of the parts' boxes
-  explicit BodyOverlaps(const Scene& scene, const std::vector<Vec3>& centers_P = {});
+  /// @param scale  lengths of the scene, by those of the person who asks: the limit is one in the latter
+  explicit BodyOverlaps(const Scene& scene, const std::vector<Vec3>& centers_P = {}, double scale = 1);
   void move(std::size_t part, const Pose& X_WP) { X_WP_[part] = X_WP; }
   /// Records the pairs that overlap by more than the limit.
   void judgeStart();

@@ -20,6 +20,12 @@ PairOverlap scaledBack(PairOverlap overlap, double factor) {
   return overlap;
 }
 
+JudgedDepth scaledBack(JudgedDepth judged, double factor) {
+  judged.deepest = scaledBack(judged.deepest, factor);
+  judged.bound_m /= factor;
+  return judged;
+}
+
 JudgedOverlap scaledBack(JudgedOverlap judged, double factor) {
   judged.limit_m /= factor;
   judged.deepest = scaledBack(judged.deepest, factor);
@@ -77,6 +83,8 @@ std::vector<BodyState> scaledBack(std::vector<BodyState> bodies, double factor) 
 SimulateResult scaledBack(SimulateResult result, double factor) {
   result.bodies = scaledBack(std::move(result.bodies), factor);
   result.max_penetration_m /= factor;
+  result.contact_depth_m /= factor;
+  if (result.exact) result.exact = scaledBack(*result.exact, factor);
   if (result.overlap) result.overlap = scaledBack(*result.overlap, factor);
   result.kinetic_energy_J /= std::pow(factor, 5);  // a mass times the square of a velocity
   return result;

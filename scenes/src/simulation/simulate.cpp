@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 
 #include "core/tick_times.h"
 #include "core/wall_clock.h"
@@ -43,6 +44,17 @@ double creditOf(const TouchState& touch, const SimulateOptions& options) {
   return (kStep + kContact * touch.contacts) * (options.judge_every > 0 ? kAsked : 1);
 }
 
+double microsecondsSince(std::chrono::steady_clock::time_point begun) {
+  return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begun).count();
+}
+
+/// Warnings of meshes state widths of cracks.
+std::string inLengthsOf(double factor) {
+  char words[100];
+  std::snprintf(words, sizeof words, " (lengths here are %.0f times those drawn)", factor);
+  return words;
+}
+
 /// In real time, waits for each step to be due; else does nothing.
 class StepPacer {
  public:
@@ -73,7 +85,8 @@ class StepPacer {
   std::optional<SimulateResult::RealTime> real_time_;
 };
 
-SimulateResult simulateAsDrawn(Scene& scene, double seconds, const SimulateOptions& options) {
+/// @param scale  of the scene's lengths, by those that were drawn
+SimulateResult simulateAsGiven(Scene& scene, double seconds, const SimulateOptions& options, double scale) {
   const double begun_s = wallSeconds();
   const ModelPlan plan = makeModelPlan(scene, ModelPurpose::Simulate, options.models_everything);
   buildModels(scene, plan, options);
@@ -100,26 +113,36 @@ SimulateResult simulateAsDrawn(Scene& scene, double seconds, const SimulateOptio
   const auto steps = static_cast<long>(std::lround(seconds / dt_s));
   std::optional<BodyOverlaps> overlaps;
   if (!options.is_real_time) {
-    overlaps.emplace(scene, centersOfMass(scene, simulation));
+    overlaps.emplace(scene, centersOfMass(scene, simulation), scale);
     overlaps->judgeStart();
   }
+  long i = 0;
+  double judged_us = 0;  // of the step
+  const Simulation::AfterPart after_part = [&](int number, int parts) {
+    const auto begun = std::chrono::steady_clock::now();
+    const TouchState touch = simulation.touch();
+    result.contact_depth_m = std::max(result.contact_depth_m, touch.depth_m);
+    if (!overlaps) return;
+    for (const std::size_t part : moving) overlaps->move(part, simulation.pose(part));
+    const double time_s = number == parts
+                              ? static_cast<double>(i + 1) * dt_s
+                              : (static_cast<double>(i) + static_cast<double>(number) / parts) * dt_s;
+    overlaps->endStep(time_s, creditOf(touch, options) / parts, options.stop);
+    judged_us += microsecondsSince(begun);
+  };
   StepPacer pacer(dt_s, options.is_real_time);
-  for (long i = 0; i < steps && !(options.stop != nullptr && options.stop->load()); ++i) {
+  for (; i < steps && !(options.stop != nullptr && options.stop->load()); ++i) {
     pacer.wait();
     const auto step_begun = std::chrono::steady_clock::now();
-    simulation.step(dt_s);
-    const double us =
-        std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - step_begun).count();
+    judged_us = 0;
+    simulation.step(dt_s, after_part);
+    const double us = microsecondsSince(step_begun) - judged_us;
     const TouchState touch = simulation.touch();
     all.add(us);
     if (touch.contacts > 0) in_contact.add(us);
-    result.contact_depth_m = std::max(result.contact_depth_m, touch.depth_m);
     if (overlaps) {
-      const double time_s = static_cast<double>(i + 1) * dt_s;
-      for (const std::size_t part : moving) overlaps->move(part, simulation.pose(part));
-      overlaps->endStep(time_s, creditOf(touch, options), options.stop);
       const bool is_instant = options.judge_every > 0 && (i + 1) % options.judge_every == 0;
-      if (is_instant || i + 1 == steps) overlaps->judge(time_s);
+      if (is_instant || i + 1 == steps) overlaps->judge(static_cast<double>(i + 1) * dt_s);
     }
     if (options.trace) options.trace(static_cast<double>(i + 1) * dt_s, states(), touch.depth_m);
     if (options.progress)
@@ -152,15 +175,17 @@ SimulateResult simulate(Scene& scene, double seconds, const SimulateOptions& opt
   if (options.judge_every > 0 && options.is_real_time)
     throw LoadError(scene.file, "", "overlap is measured between the steps, which real time has no time for");
   const double factor = simulationScale(scene);
-  if (factor == 1) return simulateAsDrawn(scene, seconds, options);
+  if (factor == 1) return simulateAsGiven(scene, seconds, options, 1);
   requireModelsFit(scene, makeModelPlan(scene, ModelPurpose::Simulate, options.models_everything), options);
   Scene larger = scaledScene(scene, factor);
   SimulateOptions larger_options = options;
+  if (options.warn)
+    larger_options.warn = [&](const std::string& text) { options.warn(text + inLengthsOf(factor)); };
   if (options.trace)
     larger_options.trace = [&](double time_s, const std::vector<BodyState>& bodies, double max_depth_m) {
       options.trace(time_s, scaledBack(bodies, factor), max_depth_m / factor);
     };
-  return scaledBack(simulateAsDrawn(larger, seconds, larger_options), factor);
+  return scaledBack(simulateAsGiven(larger, seconds, larger_options, factor), factor);
 }
 
 }  // namespace vps::scenes::inline v0

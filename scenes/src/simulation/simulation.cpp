@@ -51,16 +51,50 @@ class Turns {
  public:
   /// @param dt_s  of the step
   void add(const bullet::BodyTurn& turn, double dt_s) {
-    if (!(turn.w_rad_s * dt_s > turn.limit_rad())) return;
-    FastTurn& known = by_part_[static_cast<std::size_t>(turn.body->getUserIndex())];
-    if (!(turn.rate_hz() > known.needed_hz)) return;
-    known = {"", turn.is_in_contact, turn.w_rad_s, turn.w_rad_s * dt_s, turn.limit_rad(), turn.rate_hz()};
+    const auto part = static_cast<std::size_t>(turn.body->getUserIndex());
+    if (lasts(part, turn.is_in_contact && isTooFar(turn, dt_s) &&
+                        0.5 * turn.leaving_m_s2 * dt_s * dt_s > bullet::kContactSagitta_m))
+      return note(part, turn, dt_s);
+    const bullet::BodyTurn alone{turn.body, false, turn.body->getAngularVelocity().length()};
+    if (isTooFar(alone, dt_s)) note(part, alone, dt_s);
   }
   [[nodiscard]] const std::map<std::size_t, FastTurn>& byPart() const { return by_part_; }
 
  private:
+  static bool isTooFar(const bullet::BodyTurn& turn, double dt_s) {
+    constexpr double kRounding = 1e-9;  // of a step that was divided so that the limit is met
+    return turn.w_rad_s * dt_s > turn.limit_rad() * (1 + kRounding);
+  }
+
+  /// Teeth that skip are in contact in some steps only. So a step in which they are counts as one of those in
+  /// a row (bullet::kTurnsInRow), and each step without takes a quarter of one away: what is in contact in
+  /// more than a fifth of the steps is reported, and blows of a part that tumbles are not.
+  bool lasts(std::size_t part, bool is_now) {
+    constexpr int kOne = 4;
+    const auto known = quarters_.find(part);
+    if (!is_now) {
+      if (known != quarters_.end()) known->second = std::max(0, known->second - 1);
+      return false;
+    }
+    int& quarters = known != quarters_.end() ? known->second : quarters_[part];
+    quarters = std::min(quarters + kOne, kOne * bullet::kTurnsInRow);
+    return quarters == kOne * bullet::kTurnsInRow;
+  }
+
+  void note(std::size_t part, const bullet::BodyTurn& turn, double dt_s) {
+    FastTurn& known = by_part_[part];
+    if (!(turn.rate_hz() > known.needed_hz)) return;
+    known = {"", turn.is_in_contact, turn.w_rad_s, turn.w_rad_s * dt_s, turn.limit_rad(), turn.rate_hz()};
+  }
+
   std::map<std::size_t, FastTurn> by_part_;
+  std::map<std::size_t, int> quarters_;  // by part
 };
+
+void setMaterial(btRigidBody& body, const Material& material) {
+  body.setFriction(bullet::toBt(frictionFactor(material.friction)));
+  body.setRestitution(bullet::toBt(material.restitution));
+}
 
 }  // namespace
 
@@ -141,6 +175,14 @@ struct Simulation::World {
     for (const bullet::BodyTurn& turn : body_turns) turns.add(turn, dt_s);
   }
 
+  void requireFinite() const {
+    for (const auto& [part, b] : bodies)
+      if (!bullet::fromBt(b.body->getWorldTransform()).isFinite())
+        throw LoadError(scene.file, scene.parts[part].part.name,
+                        "its pose is not finite any more; check its mass and size, or choose a finer "
+                        "fidelity");
+  }
+
   void remove(std::size_t part) {
     const auto found = bodies.find(part);
     if (found == bodies.end()) return;
@@ -191,6 +233,9 @@ void Simulation::setField(CookedField field) {
   w.field = std::move(field);
   w.fixed_body = std::make_unique<btRigidBody>(
       btRigidBody::btRigidBodyConstructionInfo(0, nullptr, w.field.shape.get()));
+  // Contacts have the material of the surface that they touch; this is for what has none.
+  if (!w.field.parts.empty())
+    setMaterial(*w.fixed_body, w.scene.parts[w.field.parts.front().part].part.material);
   w.world.addRigidBody(w.fixed_body.get());
 }
 
@@ -257,6 +302,7 @@ double Simulation::addBody(std::size_t part, const Pose& X_WP, double most_kg) {
                                                added.shape.get(), bullet::toBt(added.frame.inertia_kg_m2)));
   // Sets the interpolation's pose too, and the inertia about W's axes.
   added.body->setCenterOfMassTransform(bullet::toBt(X_WP * added.frame.X_PB));
+  setMaterial(*added.body, scene_part.part.material);
   added.body->setActivationState(DISABLE_DEACTIVATION);
   added.body->setUserIndex(static_cast<int>(part));
   w.world.addRigidBody(added.body.get());
@@ -317,7 +363,7 @@ CouplingState Simulation::graspState() const {
   return world_->coupling ? world_->coupling->partState() : CouplingState{};
 }
 
-void Simulation::step(double dt_s) {
+void Simulation::step(double dt_s, const AfterPart& after) {
   World& w = *world_;
   constexpr int kMost = 10'000;  // as of the setting
   const int set = w.scene.fidelity.substeps;
@@ -327,16 +373,15 @@ void Simulation::step(double dt_s) {
   for (int k = 1; k <= parts; ++k) {
     w.aimCoupling(static_cast<double>(k) / parts);
     w.applyPush();
+    if (set == 0) w.noteTurns();
     // No sub-steps of Bullet's: each call is exactly one step, so that a run is a fixed sequence.
     w.world.stepSimulation(static_cast<btScalar>(w.dt_s), 0);
-    w.noteTurns();
+    if (set > 0) w.noteTurns();
+    w.requireFinite();
+    if (after) after(k, parts);
   }
   if (w.next_target) w.target = w.next_target;
   w.push_G_W = {};
-  for (const auto& [part, b] : w.bodies)
-    if (!bullet::fromBt(b.body->getWorldTransform()).isFinite())
-      throw LoadError(world_->scene.file, world_->scene.parts[part].part.name,
-                      "its pose is not finite any more; check its mass and size, or choose a finer fidelity");
 }
 
 Pose Simulation::pose(std::size_t part) const {

@@ -2,6 +2,7 @@
 // The Bullet world of a scene: one cooked fixed body, dynamic parts, and the coupling to the device's proxy.
 #pragma once
 
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -81,9 +82,11 @@ class Simulation {
   /// The part's grasp frame now, to which the haptic loop couples.
   [[nodiscard]] CouplingState graspState() const;
 
+  /// Called after each part of a step, with its number from 1 on and how many there are.
+  using AfterPart = std::function<void(int number, int parts)>;
   /// In as many parts of equal length as Fidelity::substeps says. The proxy moves evenly from part to part.
   /// Throws LoadError naming the part whose pose is not finite any more.
-  void step(double dt_s);
+  void step(double dt_s, const AfterPart& after = {});
 
   [[nodiscard]] Pose pose(std::size_t part) const;
   /// Velocity of the part's origin, in W.
@@ -113,7 +116,10 @@ class Simulation {
   [[nodiscard]] std::size_t contactsLeftOut() const;
   /// How often bodies were stopped within a step so far, see bullet::Solver.
   [[nodiscard]] std::size_t shortenedSteps() const;
-  /// Parts that turned farther in a step, or part of one, than it can hold; one entry for each, by part.
+  /// Parts that turned farther in a step, or part of one, than it can hold; one entry for each, by part. Of
+  /// bodies in contact only where that lasts and the contact leaves its plane by more than
+  /// bullet::kContactSagitta_m. Where Fidelity::substeps is "auto" speeds at the start of each part count:
+  /// those at its end are what the next step is divided by.
   [[nodiscard]] std::vector<FastTurn> fastTurns() const;
   /// Greatest number of parts of a step so far.
   [[nodiscard]] int mostSubsteps() const;
