@@ -91,7 +91,7 @@ scenes::Verdict runScene(const AssembleArguments& given) {
   } catch (const Stopped&) {
     bar.clear();
     if (so_far) {
-      printSteps(*so_far);
+      printSteps(*so_far, scene.fidelity);
       std::printf("stopped; results so far: %s\n", unfinished.c_str());
     }
     throw;

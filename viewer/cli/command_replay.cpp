@@ -83,7 +83,7 @@ int runReplay(const ReplayArguments& given) {
   }
   json.write(toJson(replayed.result));
   bar.clear();
-  printSteps(replayed.result);
+  printSteps(replayed.result, replayed.scene.fidelity);
   for (const std::string& note : notes) warn(note);
   return verdict(recorded, replayed);
 }

@@ -26,7 +26,8 @@ std::vector<std::string> fillFolder(const OutputFolder& out, const scenes::Scene
 std::string fidelityWords(const Fidelity& fidelity);
 
 /// Prints the table of steps, and a line for each problem of a step.
-void printSteps(const scenes::AssembleResult& result);
+/// @param fidelity  with which the scene was run
+void printSteps(const scenes::AssembleResult& result, const Fidelity& fidelity);
 
 /// Prints what a run came to: fidelity, steps, notes of fillFolder(), timing of a run by the clock,
 /// recording, verdict.
