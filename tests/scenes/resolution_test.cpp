@@ -264,14 +264,14 @@ TEST(ScaledScene, ASmallSceneHasTheAnswersOfTheSimilarOneToTheLastBit) {
   const SimulateResult one = run(1), small = run(0x1p-6);
   ASSERT_TRUE(one.exact && small.exact && small.overlap);
   EXPECT_EQ(small.contact_depth_m * 0x1p6, one.contact_depth_m);
-  EXPECT_EQ(small.exact->deepest.depth_m, small.max_penetration_m);
-  EXPECT_EQ(small.exact->deepest.depth_m * 0x1p6, one.exact->deepest.depth_m);
-  EXPECT_EQ(Vec3(small.exact->deepest.at_W * 0x1p6), one.exact->deepest.at_W);
-  EXPECT_EQ(small.exact->bound_m * 0x1p6, one.exact->bound_m);
+  EXPECT_EQ(small.exact.deepest.depth_m, small.max_penetration_m);
+  EXPECT_EQ(small.exact.deepest.depth_m * 0x1p6, one.exact.deepest.depth_m);
+  EXPECT_EQ(Vec3(small.exact.deepest.at_W * 0x1p6), one.exact.deepest.at_W);
+  EXPECT_EQ(small.exact.bound_m * 0x1p6, one.exact.bound_m);
   const SimulateResult deep = run(1, -0.004), small_deep = run(0x1p-6, -0.004);
-  EXPECT_GT(deep.exact->deepest.depth_m, 0);
-  EXPECT_EQ(small_deep.exact->deepest.depth_m, small_deep.max_penetration_m);
-  EXPECT_EQ(small_deep.exact->deepest.depth_m * 0x1p6, deep.exact->deepest.depth_m);
+  EXPECT_GT(deep.exact.deepest.depth_m, 0);
+  EXPECT_EQ(small_deep.exact.deepest.depth_m, small_deep.max_penetration_m);
+  EXPECT_EQ(small_deep.exact.deepest.depth_m * 0x1p6, deep.exact.deepest.depth_m);
   EXPECT_GT(deep.contact_depth_m, 0);
   EXPECT_EQ(small_deep.contact_depth_m * 0x1p6, deep.contact_depth_m);
   EXPECT_EQ(small.overlap->limit_m, 10e-6);  // drawn lengths, whatever the scene is simulated in

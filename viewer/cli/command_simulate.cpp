@@ -66,19 +66,17 @@ bool printOverlap(const scenes::JudgedOverlap& judged) {
   return judged.isWithinLimit();
 }
 
-/// The deepest overlap of the run, and what it is at most at any time. In real time only contacts are known.
+/// The deepest overlap of the run, and what it is at most at any time.
 std::string depthInWords(const scenes::SimulateResult& result) {
   const auto um = [](double length_m) { return fixed(length_m * 1e6, 2) + " um"; };
-  if (!result.exact) return "deepest contact " + um(result.contact_depth_m) + " as the solver saw it";
-  const scenes::PairOverlap& deepest = result.exact->deepest;
+  const scenes::PairOverlap& deepest = result.exact.deepest;
   const std::string which = deepest.depth_m > 0 ? ", '" + deepest.a + "' in '" + deepest.b + "' at " +
                                                       fixed(deepest.time_s, 4) + " s"
                                                 : "";
   const std::string found = "deepest " + um(deepest.depth_m) + " by exact distance" + which;
-  const std::string bound = um(result.exact->bound_m);
-  if (!result.exact->is_searched) return found + "; not searched at all times: at most " + bound;
-  if (result.exact->bound_m <= 2e-6 + 1.05 * deepest.depth_m)
-    return found + ", at no time more than " + bound;
+  const std::string bound = um(result.exact.bound_m);
+  if (!result.exact.is_searched) return found + "; not searched at all times: at most " + bound;
+  if (result.exact.bound_m <= 2e-6 + 1.05 * deepest.depth_m) return found + ", at no time more than " + bound;
   return found + "; parts that start inside each other may be deeper for a moment, by no more than " + bound +
          " in all";
 }

@@ -97,7 +97,7 @@ std::string toJson(const std::string& scene, double seconds, const scenes::Simul
                {"contact_steps", result.contact_step.count},
                {"bodies", bodies},
                {"max_penetration_m", result.max_penetration_m},
-               {"max_penetration_by", result.exact ? "exact_distance" : "contacts"},
+               {"max_penetration_by", "exact_distance"},
                {"contact_depth_m", result.contact_depth_m},
                {"kinetic_energy_J", result.kinetic_energy_J},
                {"shortened_steps", result.shortened_steps},
@@ -106,7 +106,7 @@ std::string toJson(const std::string& scene, double seconds, const scenes::Simul
             std::make_tuple(
                 scenes::list("fast_turns", &scenes::SimulateResult::fast_turns, scenes::kFastTurnFields)));
   json["most_substeps"] = result.most_substeps;
-  json["exact"] = result.exact ? exactDepth(*result.exact) : Json(nullptr);
+  json["exact"] = exactDepth(result.exact);
   if (result.overlap) json["overlap"] = overlap(*result.overlap);
   return text(json);
 }

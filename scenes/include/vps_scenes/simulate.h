@@ -76,10 +76,10 @@ struct SimulateOptions : ModelOptions {
 
 struct SimulateResult {
   std::vector<BodyState> bodies;
-  /// Deepest overlap of the run: exact->deepest.depth_m, but in real time contact_depth_m.
+  /// Deepest overlap of the run: exact.deepest.depth_m.
   double max_penetration_m = 0;
-  double contact_depth_m = 0;        ///< deepest contact of the run as the solver saw it
-  std::optional<JudgedDepth> exact;  ///< not in real time, which leaves no time for it
+  double contact_depth_m = 0;  ///< deepest contact of the run as the solver saw it
+  JudgedDepth exact;           ///< a run in real time is judged after it
   std::optional<JudgedOverlap> overlap;
   double kinetic_energy_J = 0;  ///< at the end
   /// How often bodies in contact were stopped within a step, because no contact force was found that keeps

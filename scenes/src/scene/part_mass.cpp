@@ -1,22 +1,36 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vps_scenes/part_mass.h"
 
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+#include <cstdint>
+#include <map>
 #include <mutex>
 #include <string>
-#include <unordered_map>
+#include <utility>
 
-#include "record/scene_archive.h"
 #include "vps/mesh_repair.h"
 
 namespace vps::scenes::inline v0 {
 namespace {
+
+using MeshKey = std::pair<std::uint64_t, std::uint64_t>;
+
+// 128 bits of the mesh's content.
+MeshKey keyOf(const Mesh& mesh) {
+  const auto bytes = [](const auto& list) { return list.size() * sizeof(list[0]); };
+  const std::uint64_t vertices = XXH3_64bits(mesh.vertices.data(), bytes(mesh.vertices));
+  const XXH128_hash_t all = XXH3_128bits_withSeed(mesh.triangles.data(), bytes(mesh.triangles), vertices);
+  return {all.low64, all.high64 ^ vertices};
+}
 
 /// Masses of meshes that have no Solid, by content: callers ask for the same parts again, some for each frame
 /// that is drawn, and a repair may take seconds.
 class KnownMasses {
  public:
   MassProperties of(const Mesh& mesh, const std::string& part) {
-    const std::string key = contentHash(mesh);
+    const MeshKey key = keyOf(mesh);
     {
       const std::scoped_lock lock(mutex_);
       if (const auto found = known_.find(key); found != known_.end()) return found->second;
@@ -31,7 +45,7 @@ class KnownMasses {
  private:
   static constexpr std::size_t kMost = 10000;  // more than a scene has parts
   std::mutex mutex_;
-  std::unordered_map<std::string, MassProperties> known_;
+  std::map<MeshKey, MassProperties> known_;
 };
 
 }  // namespace

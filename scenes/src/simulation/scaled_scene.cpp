@@ -84,7 +84,7 @@ SimulateResult scaledBack(SimulateResult result, double factor) {
   result.bodies = scaledBack(std::move(result.bodies), factor);
   result.max_penetration_m /= factor;
   result.contact_depth_m /= factor;
-  if (result.exact) result.exact = scaledBack(*result.exact, factor);
+  result.exact = scaledBack(result.exact, factor);
   if (result.overlap) result.overlap = scaledBack(*result.overlap, factor);
   result.kinetic_energy_J /= std::pow(factor, 5);  // a mass times the square of a velocity
   return result;

@@ -85,6 +85,13 @@ class StepPacer {
   std::optional<SimulateResult::RealTime> real_time_;
 };
 
+/// What the judge sees of a step or part of one.
+struct StepEnd {
+  double time_s = 0;
+  double credit = 0;  ///< see BodyOverlaps::endStep()
+  std::vector<Pose> X_WP;
+};
+
 /// @param scale  of the scene's lengths, by those that were drawn
 SimulateResult simulateAsGiven(Scene& scene, double seconds, const SimulateOptions& options, double scale) {
   const double begun_s = wallSeconds();
@@ -111,23 +118,29 @@ SimulateResult simulateAsGiven(Scene& scene, double seconds, const SimulateOptio
     return bodies;
   };
   const auto steps = static_cast<long>(std::lround(seconds / dt_s));
-  std::optional<BodyOverlaps> overlaps;
-  if (!options.is_real_time) {
-    overlaps.emplace(scene, centersOfMass(scene, simulation), scale);
-    overlaps->judgeStart();
-  }
+  BodyOverlaps overlaps(scene, centersOfMass(scene, simulation), scale);
+  overlaps.judgeStart();
+  const auto judge = [&](const StepEnd& end) {
+    for (std::size_t k = 0; k < moving.size(); ++k) overlaps.move(moving[k], end.X_WP[k]);
+    overlaps.endStep(end.time_s, end.credit, options.stop);
+  };
+  std::vector<StepEnd> left;  // to be judged after the run
+  if (options.is_real_time) left.reserve(static_cast<std::size_t>(std::clamp(steps, 0L, 1000000L)));
   long i = 0;
   double judged_us = 0;  // of the step
   const Simulation::AfterPart after_part = [&](int number, int parts) {
     const auto begun = std::chrono::steady_clock::now();
     const TouchState touch = simulation.touch();
     result.contact_depth_m = std::max(result.contact_depth_m, touch.depth_m);
-    if (!overlaps) return;
-    for (const std::size_t part : moving) overlaps->move(part, simulation.pose(part));
-    const double time_s = number == parts
-                              ? static_cast<double>(i + 1) * dt_s
-                              : (static_cast<double>(i) + static_cast<double>(number) / parts) * dt_s;
-    overlaps->endStep(time_s, creditOf(touch, options) / parts, options.stop);
+    StepEnd end;
+    end.time_s = number == parts ? static_cast<double>(i + 1) * dt_s
+                                 : (static_cast<double>(i) + static_cast<double>(number) / parts) * dt_s;
+    end.credit = creditOf(touch, options) / parts;
+    for (const std::size_t part : moving) end.X_WP.push_back(simulation.pose(part));
+    if (options.is_real_time)
+      left.push_back(std::move(end));
+    else
+      judge(end);
     judged_us += microsecondsSince(begun);
   };
   StepPacer pacer(dt_s, options.is_real_time);
@@ -140,22 +153,20 @@ SimulateResult simulateAsGiven(Scene& scene, double seconds, const SimulateOptio
     const TouchState touch = simulation.touch();
     all.add(us);
     if (touch.contacts > 0) in_contact.add(us);
-    if (overlaps) {
-      const bool is_instant = options.judge_every > 0 && (i + 1) % options.judge_every == 0;
-      if (is_instant || i + 1 == steps) overlaps->judge(static_cast<double>(i + 1) * dt_s);
-    }
+    const bool is_instant = options.judge_every > 0 && (i + 1) % options.judge_every == 0;
+    if (!options.is_real_time && (is_instant || i + 1 == steps))
+      overlaps.judge(static_cast<double>(i + 1) * dt_s);
     if (options.trace) options.trace(static_cast<double>(i + 1) * dt_s, states(), touch.depth_m);
     if (options.progress)
       options.progress("simulating", static_cast<double>(i + 1) / static_cast<double>(steps));
   }
   result.real_time = pacer.finish();
   result.bodies = states();
-  result.max_penetration_m = result.contact_depth_m;
-  if (overlaps) {
-    result.exact = overlaps->deepest();
-    result.max_penetration_m = result.exact->deepest.depth_m;
-    if (options.judge_every > 0) result.overlap = overlaps->result();
-  }
+  for (const StepEnd& end : left) judge(end);
+  if (options.is_real_time && i == steps) overlaps.judge(static_cast<double>(i) * dt_s);
+  result.exact = overlaps.deepest();
+  result.max_penetration_m = result.exact.deepest.depth_m;
+  if (options.judge_every > 0) result.overlap = overlaps.result();
   result.kinetic_energy_J = simulation.kineticEnergy();
   result.shortened_steps = simulation.shortenedSteps();
   result.fast_turns = simulation.fastTurns();
