@@ -326,10 +326,10 @@ std::vector<Family> judgeFamilies() {
   out.push_back({"C_judge_beside", "depth reported where a body passes 10 um beside [um]", 0.01, 100, 4,
                  [](int member) { return falseDepth_um(passageBeside(member)); },
                  [](int member) { return passageBeside(member).words; }});
-  // Along a bore no direction separates the hulls, and the search ends when its credit is spent.
+  // Along a bore no direction separates the hulls.
   out.push_back({"C_judge_bound", "excess of the bound where a body passes 10 um beside [um]", 0.01, 100, 4,
                  [](int member) { return boundExcess_um(passageBeside(member)); },
-                 [](int member) { return passageBeside(member).words; }, 638.9, 491.4});
+                 [](int member) { return passageBeside(member).words; }});
   out.push_back({"G_depth", "error of the judge's depth of sphere meshes [um]", 0.11, 100, 4,
                  [](int member) { return depthError_um(placedSphere(member)); }});
   out.push_back({"G_printed", "error of the depth that simulate prints [um]", 3, 50, 10, printedError_um});

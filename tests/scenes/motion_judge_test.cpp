@@ -47,6 +47,36 @@ TEST(MotionJudge, APassageThroughAPlateIsAsDeepAsHalfThePlateAndHasItsTime) {
   }
 }
 
+// A ball in a bore lies within the bore's hull: its triangles do not meet the bore's on the way.
+TEST(MotionJudge, WhatFliesAlongABoreIsExcludedByItsFacets) {
+  constexpr int kSides = 48;
+  const Mesh bore = makeTube(10 * kMm, 5 * kMm / std::cos(M_PI / kSides) + 10 * kUm, 40 * kMm, kSides);
+  for (const double speed_m_s : {5.0, 50.0, 500.0, 5000.0})
+    for (const double turn_rad : {0.0, 0.02}) {
+      const double from_m = 0.5 * speed_m_s * 1e-3 + 30 * kMm;
+      MotionJudge judge = judgeOf(bore, kBall, Pose::translation({0, 0, from_m}));
+      const Pose end(rotationFromVector({0, 0, turn_rad}), Vec3(0, 0, from_m - speed_m_s * 1e-3 - 60 * kMm));
+      judge.addStep(1e-3, {Pose(), end}, 100e3);
+      judge.search();
+      EXPECT_EQ(judge.deepest().depth_m, 0) << speed_m_s;
+      EXPECT_EQ(judge.bound_m(), MotionJudge::toleranceOf(0)) << speed_m_s << " m/s, " << turn_rad;
+      EXPECT_LT(judge.measured(), 30U) << speed_m_s << " m/s, " << turn_rad;
+    }
+}
+
+TEST(MotionJudge, APinAcrossABoreIsSeenFromTheBall) {
+  Mesh bore = makeTube(10 * kMm, 5.1 * kMm, 40 * kMm, 48);
+  const Mesh pin = transformed(makeCylinder(1 * kMm, 14 * kMm, 24),
+                               Pose(rotationFromVector({M_PI / 2, 0, 0}), Vec3(0, 0, 3 * kMm)));
+  const auto first = static_cast<std::uint32_t>(bore.vertices.size());
+  bore.vertices.insert(bore.vertices.end(), pin.vertices.begin(), pin.vertices.end());
+  for (const auto& t : pin.triangles) bore.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+  MotionJudge judge = judgeOf(bore, kBall, Pose::translation({0, 0, 300 * kMm}));
+  judge.addStep(1e-3, {Pose(), Pose::translation({0, 0, -300 * kMm})}, 100e3);
+  judge.search();
+  EXPECT_NEAR(judge.deepest().depth_m, 1 * kMm, 0.1 * kMm);
+}
+
 TEST(MotionJudge, WhatSlidesAndRollsOnAPlateIsExcludedWithoutMeasures) {
   const double r_m = 5 * kMm;
   MotionJudge judge = judgeOf(kPlate, kBall, Pose::translation({-20 * kMm, 0, r_m + 1 * kMm + 0.1 * kUm}));

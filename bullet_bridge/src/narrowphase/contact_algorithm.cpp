@@ -111,7 +111,7 @@ double sagitta_m(const PairState& state) {
   return most_m;
 }
 
-// Points are not checked any more where bodies turn farther (PairCheck::findMissed()), and planes are off.
+// Planes are off where bodies turn farther, and a check no longer carries them along (PairCheck).
 void warnOfTurn(PairState& state, const PairView& pair) {
   const double w_rad_s = state.motion.V.w.norm(), dt_s = state.motion.dt_s;
   const bool is_fast = w_rad_s * dt_s > kContactTurn_rad && sagitta_m(state) > kContactSagitta_m;

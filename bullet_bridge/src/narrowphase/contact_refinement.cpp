@@ -305,7 +305,7 @@ void refine(std::vector<Candidate>& candidates, const SideView& side, const Side
     else if (exact.is_contact && exact.is_own_face && !is_primitive)
       moveToFoot(c, side, exact.from_q);
     if (exact.is_contact && exact.is_smooth && !is_primitive)
-      moveToNearest(c, side, other, exact.face, motion.contact_margin_m);
+      moveToNearest(c, side, other, exact.face, motion.contact_margin_m + kUsualError * field_error_m);
   }
 }
 

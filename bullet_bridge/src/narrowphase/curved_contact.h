@@ -31,8 +31,8 @@ inline constexpr double kTouching_m = 1e-6;
 /// @param c           refined, of a point on a face: its normal is the other surface's at the point's foot
 /// @param their       that foot, on a face
 /// @param max_gain_m  greatest accepted decrease of the gap: candidates are searched by the gaps of their
-///                    points, so a contact that is nearer by more than the contact margin would appear and
-///                    disappear
+///                    points, so a contact that is nearer by more than the search reaches beyond what touches
+///                    would appear and disappear
 /// @return false: unchanged. Flat and conforming faces (a peg in its bore) need no surface query, others two
 /// to four.
 /// Source: Newton's method for the common normal, with the curvature of both (Johnson, Contact Mechanics,

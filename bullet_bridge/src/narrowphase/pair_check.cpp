@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "narrowphase/contact_selection.h"
+#include "narrowphase/facet_corners.h"
 #include "narrowphase/feature_check.h"
 #include "native_shapes/primitive.h"
 #include "vps_bullet/turn.h"
@@ -136,6 +137,10 @@ struct PairCheck::Motion {
   double deviation_m = 0;  ///< greatest from where the selection predicted the point
   double turn_rad = 0, turn_deviation_rad = 0;  ///< the same of the rotation
   double bend_m = 0;                            ///< how far a point's path may bend from its tangent
+
+  /// True if the bodies turn too far against each other from a share of the step to its end for a plane to be
+  /// carried along: on a curved face another plane is the nearest one then.
+  [[nodiscard]] bool turnsFar(double share) const { return (1 - share) * turn_rad > kContactTurn_rad; }
 };
 
 void PairCheck::setBodies(const PairView& pair) {
@@ -186,9 +191,7 @@ void PairCheck::findMissed(const Pose (&X_WB_end)[2], bool is_first, std::vector
     addFeatureContacts(at_start.pair, {{m.end[0], m.end[1]}}, is_first, state_, out);
     if (out.size() > had) state_.is_incomplete = true;
   }
-  // A plane that is carried along by a body that turns so far says nothing about where the bodies are then.
-  // Sharp features were looked at above, however fast they turn.
-  if (m.travel_m <= m.tolerated_m || m.turn_rad > kContactTurn_rad) return;
+  if (m.travel_m <= m.tolerated_m) return;
   const double dt_s = state_.motion.dt_s;
   const Vec3 predicted = dt_s * (selection.V.v + selection.V.w.cross(center_W));
   m.turn_deviation_rad = (turned - dt_s * selection.V.w).norm();
@@ -202,7 +205,7 @@ void PairCheck::findMissed(const Pose (&X_WB_end)[2], bool is_first, std::vector
   thread_local std::vector<Candidate> missed;
   missed.clear();
   findAmongRefined(m, missed);
-  if (missed.empty() && out.size() == had && mayMissPoints(m)) findAlongPath(m, missed);
+  if (missed.empty() && out.size() == had && mayMissPoints(m, at_start.pair)) findAlongPath(m, missed);
   if (missed.empty()) return;
   emit(m, missed, out);
   state_.is_incomplete = true;
@@ -221,17 +224,20 @@ double PairCheck::freeShare(const Pose (&X_WB_end)[2]) {
 
 // Points out of reach had a greater gap than this at the predicted end of the step, so they do not touch if
 // the deviation is less. Or they were out of reach of this motion in any direction.
-bool PairCheck::mayMissPoints(const Motion& m) const {
+bool PairCheck::mayMissPoints(const Motion& m, const PairView& at_start) const {
   const double margin_m = state_.context->settings.contact_margin_m;
   const bool is_in_reach = !state_.selection.is_of_path &&
                            (m.deviation_m <= margin_m || m.travel_m <= margin_m + state_.selection.any_way_m);
   // Among neighbours, those nearest now and at the predicted end were selected; another becomes nearer if the
   // part turns otherwise.
   const double sampling_m = state_.selection.sampling_m * std::min(m.turn_rad, m.turn_deviation_rad);
-  return !is_in_reach || sampling_m > m.tolerated_m;
+  if (!is_in_reach || sampling_m > m.tolerated_m) return true;
+  // Vertices of curved faces are no points.
+  return haveFacetCorners(at_start, state_.selection.refined);
 }
 
 void PairCheck::findAmongRefined(const Motion& m, std::vector<Candidate>& missed) const {
+  if (m.turnsFar(0)) return;
   if (!state_.selection.leaves_out && m.bend_m <= m.tolerated_m) return;
   const Placed at_end(*this, m.end);
   const SideView side[2] = {at_end.pair.side(0), at_end.pair.side(1)};
@@ -266,6 +272,7 @@ void PairCheck::findOverlaps(const Motion& m, const PairView& start, const PairV
   const std::size_t limit = 4 * static_cast<std::size_t>(context.settings.contact_limit);
   reduceByCell(found, limit, radius_m / 16, radius_m);
   refineAll(pair, still, context.settings, found);
+  moveToFacetCorners(pair, found);
   std::erase_if(found, [&](const Candidate& c) { return c.distance_m >= -m.tolerated_m; });
 }
 
@@ -285,8 +292,11 @@ void PairCheck::findAlongPath(const Motion& m, std::vector<Candidate>& missed) c
     entered.clear();
     for (const Candidate& c : missed) {
       Candidate start = back.moved(c), end = onward.moved(c);
+      if (m.turnsFar(share)) continue;  // later places tell
       if (c.isCrossing()) {
         start.distance_m = overlapOf(start, at_start.pair);
+      } else if (m.turnsFar(0)) {
+        if (!measureAtStart(m, at_start.pair, start)) continue;
       } else if (start.distance_m < -m.tolerated_m) {
         // It was behind this plane before, so it did not enter through it. The plane that it had then
         // decides.
@@ -297,6 +307,14 @@ void PairCheck::findAlongPath(const Motion& m, std::vector<Candidate>& missed) c
     }
     missed.swap(entered);
   }
+}
+
+// The gap that a point had before the step, of whatever was nearest to it then. False: it was inside, deeper
+// than the step's motion.
+bool PairCheck::measureAtStart(const Motion& m, const PairView& at_start, Candidate& start) const {
+  if (refineAt(at_start, m.travel_m, state_.context->settings, start)) return true;
+  start.distance_m = m.travel_m;
+  return !isInside(start.p_W, at_start.side(1 - start.side), m.travel_m, m.tolerated_m);
 }
 
 void PairCheck::emit(const Motion& m, std::vector<Candidate>& missed, std::vector<MissedContact>& out) {
@@ -315,7 +333,8 @@ void PairCheck::emit(const Motion& m, std::vector<Candidate>& missed, std::vecto
         Pose(Mat3(Mat3::Identity()), (m.start[i] * X_BS_inverse).p - (m.end[i] * X_BS_inverse).p);
   }
   for (const Candidate& end : missed) {
-    const Candidate start = back.moved(end);
+    Candidate start = back.moved(end);
+    if (m.turnsFar(0) && !end.isCrossing()) measureAtStart(m, at_start.pair, start);
     Candidate acting = with_body.moved(end);
     acting.distance_m = start.distance_m;
     MissedContact added;

@@ -23,7 +23,12 @@ namespace vps::bullet::inline v0 {
 ///      gaps of their planes at the end of the step, exactly. (The solver's are to first order in the
 ///      motion.)
 ///   3. The exact motion of corners, sharp edges and facets (feature_check.h).
-///   4. A query of all points at the end of the step, and of a fast body at places on its way.
+///   4. A query of all points at the end of the step, and of a fast body at places on its way; and of the
+///      vertices of facets that protrude from the points on these (facet_corners.h).
+///
+/// Bodies that turn against each other by more than kContactTurn_rad are checked in stages 3 and 4 only:
+/// planes are not carried along then, and a point's gaps before the step and after it are each measured where
+/// it is.
 ///
 /// A contact that is missing gets the plane through which the point entered.
 class PairCheck final : public StepCheck {
@@ -46,7 +51,8 @@ class PairCheck final : public StepCheck {
   void findOverlaps(const Motion& motion, const PairView& start, const PairView& pair, const PairView& end,
                     std::vector<Candidate>& found) const;
   void findAlongPath(const Motion& motion, std::vector<Candidate>& missed) const;
-  [[nodiscard]] bool mayMissPoints(const Motion& motion) const;
+  [[nodiscard]] bool mayMissPoints(const Motion& motion, const PairView& at_start) const;
+  bool measureAtStart(const Motion& motion, const PairView& at_start, Candidate& start) const;
   void emit(const Motion& motion, std::vector<Candidate>& missed, std::vector<MissedContact>& out);
 
   PairState& state_;

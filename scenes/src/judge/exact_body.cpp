@@ -4,20 +4,12 @@
 #include <algorithm>
 #include <utility>
 
-#include "check/triangle_gap.h"
-
 namespace vps::scenes::inline v0 {
 
 namespace {
 
 /// A gap is known to within this share: boxes that can only shorten it by less are not opened.
 constexpr double kShare = 0.8;
-constexpr std::size_t kBoxesPerWork = 8;  ///< measured: so many pairs of boxes take a microsecond
-
-Triangle triangleOf(const Mesh& mesh, std::uint32_t i) {
-  const auto& t = mesh.triangles[i];
-  return {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
-}
 
 double highestOf(const Box& box, const Vec3& n) {
   return box.center().dot(n) + 0.5 * box.size().dot(n.cwiseAbs());
@@ -43,9 +35,8 @@ Gap gapOf(const ExactBody& a, const ExactBody& b, const Pose& X_AB, double near_
         return best.distance_m <= kOverlapCertain_m ? -1 : least_m * least_m;
       },
       [&](std::uint32_t i, std::uint32_t k) {
-        const Triangle of_b = triangleOf(b.mesh(), k);
-        const TriangleGap gap =
-            triangleGap(triangleOf(a.mesh(), i), {X_AB * of_b[0], X_AB * of_b[1], X_AB * of_b[2]});
+        const Triangle of_b = b.triangle(k);
+        const TriangleGap gap = triangleGap(a.triangle(i), {X_AB * of_b[0], X_AB * of_b[1], X_AB * of_b[2]});
         if (gap.distance_m >= best.distance_m) return;
         best.distance_m = gap.distance_m;
         best.n_A = gap.distance_m > 0 ? Vec3((gap.p_b - gap.p_a).normalized()) : Vec3(Vec3::Zero());

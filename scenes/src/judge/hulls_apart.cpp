@@ -12,9 +12,6 @@ namespace {
 
 /// A direction along which hulls are apart is looked for until so many searches of one pair were in vain.
 constexpr int kSearches = 3;
-/// Arcs are replaced by chords that leave them by at most this.
-constexpr double kChord_m = 0.25e-6;
-constexpr double kMostChords = 64;
 
 }  // namespace
 
@@ -35,7 +32,7 @@ bool MotionJudge::areApartAlong(PairPath& path, const Vec3& n_A, double from, do
   for (double begin = from; begin < to;) {
     const double end = std::min(to, std::floor(begin) + 1), share = end - begin;
     const double sagitta_m = path.sagitta_m[static_cast<std::size_t>(begin)] * share * share;
-    const double chords = std::min(kMostChords, std::max(1.0, std::ceil(std::sqrt(sagitta_m / kChord_m))));
+    const double chords = std::min(kMostChords, chordsOf(sagitta_m));
     for (double i = 0; i < chords; ++i)
       if (!isApartAt(std::lerp(begin, end, i / chords), sagitta_m / (chords * chords))) return false;
     begin = end;

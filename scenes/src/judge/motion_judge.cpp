@@ -18,6 +18,8 @@ constexpr double kMostCredit = 200e3;
 /// A search may spend this share, so that something is left for a passage in a later one; or what its steps
 /// gave.
 constexpr double kShareOfCredit = 0.25;
+/// Of what a search may spend, for proofs that surfaces do not meet, which may be in vain.
+constexpr double kShareOfProofs = 0.25;
 
 Box unionOf(Box a, const Box& b) {
   a.add(b.min);
@@ -144,7 +146,7 @@ PairPath MotionJudge::pathOf(const Pair& pair) {
   const auto size2 = [&](std::size_t i) { return bodies_[i].box_P.size().squaredNorm(); };
   const bool is_second_first = !bodies_[pair.first].is_fixed &&
                                (bodies_[pair.second].is_fixed || size2(pair.second) > size2(pair.first));
-  PairPath path{pair, pair.first, pair.second, {0}, {}, 0, 0};
+  PairPath path{pair, pair.first, pair.second, {0}, {}, 0, 0, 0};
   if (is_second_first) std::swap(path.a, path.b);
   for (std::size_t step = 0; step + 1 < time_s_.size(); ++step) {
     const RelativeMotion moved = relativeMotion(motion(path.a, step), bodies_[path.a].box_P,
@@ -203,6 +205,8 @@ void MotionJudge::searchPaths(std::vector<PairPath>& paths, const std::atomic<bo
     PairPath& path = paths[now.path];
     const double enough = enough_m(path.pair);
     if (now.bound_m <= enough || areHullsApart(path, now.from, now.to, enough)) continue;
+    // An end that is apart is so by a bound of its depth.
+    if (std::min(now.from_m, now.to_m) <= 0 && areSurfacesApart(path, now.from, now.to)) continue;
     if (may_spend_ <= 0 || (stop != nullptr && stop->load())) {
       left_m_ = std::max(left_m_, now.bound_m);
       continue;
@@ -228,6 +232,7 @@ void MotionJudge::search(const std::atomic<bool>* stop) {
                                         boxDepth_m(pair, static_cast<double>(time_s_.size() - 1)));
   }
   may_spend_ = std::min(credit_, std::max(income_, kShareOfCredit * credit_));
+  may_prove_ = kShareOfProofs * may_spend_;
   searchPaths(paths, stop);
   income_ = 0;
   depth_m_.clear();

@@ -39,7 +39,9 @@ struct DeepestOverlap {
 /// that has not moved by its gap is so never measured, one at rest once, and a passage is found however fast
 /// it is. Stretches in which the bodies' convex hulls stay apart, or overlap by less than the tolerance,
 /// along a direction that is fixed in one of them are not divided either: so sliding and rolling on a convex
-/// body costs little.
+/// body costs little. Nor are those in which no two triangles of them meet on the way, if the bodies are
+/// apart at one of its ends: so a ball that flies along a bore, which lies within the bore's hull, is known
+/// to be apart by the distance of the facets that it passes, and not by its whole travel.
 ///
 /// The cost is bounded by counts: each step gives a credit, and stretches that are left when it is used up
 /// count in bound_m(). Same input, same bits.
@@ -98,6 +100,7 @@ class MotionJudge {
   /// The depth, or less a lower bound of the gap.
   double measure(PairPath& path, double step, double near_m);
   [[nodiscard]] bool areHullsApart(PairPath& path, double from, double to, double enough_m);
+  [[nodiscard]] bool areSurfacesApart(PairPath& path, double from, double to);
   [[nodiscard]] bool areApartAlong(PairPath& path, const Vec3& n_A, double from, double to, double enough_m);
   void spend(double work) {
     credit_ -= work;
@@ -118,6 +121,7 @@ class MotionJudge {
   double least_m_ = 0, most_allowed_m_ = 0;
   double left_m_ = 0;                           ///< greatest bound of a stretch that was not divided further
   double credit_, income_ = 0, may_spend_ = 0;  ///< in all; of the steps to be searched; for this search
+  double may_prove_ = 0;  ///< the share of may_spend_ for proofs that surfaces do not meet
   std::size_t measured_ = 0;
 };
 

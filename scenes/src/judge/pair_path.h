@@ -9,6 +9,14 @@
 
 namespace vps::scenes::inline v0 {
 
+/// Arcs are replaced by chords that leave them by at most this, a fraction of the tolerance.
+inline constexpr double kChord_m = 0.25e-6;
+inline constexpr double kMostChords = 64;
+/// Into how many chords an arc is divided that leaves its own by so much.
+inline double chordsOf(double sagitta_m) {
+  return std::max(1.0, std::ceil(std::sqrt(sagitta_m / kChord_m)));
+}
+
 struct PairPath {
   std::pair<std::size_t, std::size_t> pair;
   std::size_t a, b;               ///< the one that is fixed, or else the larger one, first
@@ -16,6 +24,7 @@ struct PairPath {
   std::vector<double> sagitta_m;  ///< see RelativeMotion; by step
   double end_depth_m = 0;         ///< upper bound at the last moment
   int searches = 0;               ///< of a direction that separates their hulls, in vain
+  int failures = 0;               ///< of proofs that their surfaces do not meet, beyond those that succeeded
 
   [[nodiscard]] double travelAt(double step) const {
     const auto i = std::min(static_cast<std::size_t>(step), travel_m.size() - 1);
