@@ -8,10 +8,10 @@ namespace vps::families {
 
 std::vector<Family> allFamilies() {
   std::vector<Family> all;
-  for (const auto make :
-       {materialFamilies, restitutionFamilies, narrowGapFamilies, rotationFamilies, shellFamilies,
-        resolutionFamilies, roundBodyFamilies, rollingFamilies, flushStartFamilies, openSurfaceFamilies,
-        spinningFaceFamilies, penaltyFallFamilies, loadedThreadFamilies, mechanismFamilies, judgeFamilies})
+  for (const auto make : {materialFamilies, restitutionFamilies, narrowGapFamilies, nutGapFamilies,
+                          rotationFamilies, shellFamilies, resolutionFamilies, roundBodyFamilies,
+                          rollingFamilies, flushStartFamilies, openSurfaceFamilies, spinningFaceFamilies,
+                          penaltyFallFamilies, loadedThreadFamilies, mechanismFamilies, judgeFamilies})
     for (Family& family : make()) all.push_back(std::move(family));
   return all;
 }

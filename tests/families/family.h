@@ -32,6 +32,7 @@ struct Family {
 std::vector<Family> materialFamilies();      // A: each fixed part has its own material
 std::vector<Family> restitutionFamilies();   // B: restitution never makes energy
 std::vector<Family> narrowGapFamilies();     // C: restitution in gaps below a step's travel
+std::vector<Family> nutGapFamilies();        // C: the same of nuts on their rods
 std::vector<Family> rotationFamilies();      // D: free rotation, fast rotation
 std::vector<Family> shellFamilies();         // E: several shells in one mesh; mass of a repaired mesh
 std::vector<Family> resolutionFamilies();    // F: resolution by the part's and its neighbours' size
