@@ -42,7 +42,7 @@ struct NutHit {
     if (member % 2 == 1) size = dynamics::kM10;
     restitution = kRestitutions[i / 2 % 4];
     push = static_cast<Push>(i / 8 % 3);
-    speed_m_s = push == Push::Gravity ? 0 : random.logUniform(0.2, 5);
+    speed_m_s = push == Push::Gravity ? 0 : random.logUniform(0.2, 20);
     const double angle_rad = random.uniform(0, 6.2);
     if (push == Push::Sideways) direction = Vec3(std::cos(angle_rad), std::sin(angle_rad), 0.1);
     if (push == Push::Along) direction = Vec3(0.05, 0, random.chance(0.5) ? 1 : -1);

@@ -74,7 +74,7 @@ TEST(MotionJudge, APinAcrossABoreIsSeenFromTheBall) {
   MotionJudge judge = judgeOf(bore, kBall, Pose::translation({0, 0, 300 * kMm}));
   judge.addStep(1e-3, {Pose(), Pose::translation({0, 0, -300 * kMm})}, 100e3);
   judge.search();
-  EXPECT_NEAR(judge.deepest().depth_m, 1 * kMm, 0.1 * kMm);
+  EXPECT_GT(judge.deepest().depth_m, 4 * kMm);  // the pin in the middle of the ball
 }
 
 TEST(MotionJudge, WhatSlidesAndRollsOnAPlateIsExcludedWithoutMeasures) {
