@@ -43,16 +43,17 @@ bool moveTo(const Vec3& vertex_W, const SideView& other, double reach_m, Candida
   return is_moved;
 }
 
-// True if a vertex is higher than the middle of its facet by kFacetCorner_m, along the normal of the curved
+// True if a vertex is higher than the middle of its facet by height_m, along the normal of the curved
 // surface. In a hollow it is lower.
-bool protrudes(const Surface& surface, std::uint32_t triangle) {
+bool protrudes(const Surface& surface, std::uint32_t triangle, double height_m) {
+  if (surface.sheet) return false;
   const Mesh& mesh = surface.distance->mesh();
   const auto& t = mesh.triangles[triangle];
   const Vec3 middle = (mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]) / 3;
   const Mat3 turn_per_m = surface.distance->smoothCurvature(triangle);
   return std::any_of(t.begin(), t.end(), [&](std::uint32_t v) {
     const Vec3 way = mesh.vertices[v] - middle;
-    return 0.5 * way.dot(turn_per_m * way) > kFacetCorner_m;
+    return 0.5 * way.dot(turn_per_m * way) > height_m;
   });
 }
 
@@ -63,17 +64,18 @@ bool haveSurfaces(const PairView& pair) {
 
 }  // namespace
 
-bool haveFacetCorners(const PairView& pair, std::span<const Candidate> candidates) {
+bool haveFacetCorners(const PairView& pair, double contact_margin_m, std::span<const Candidate> candidates) {
+  const double height_m = kFacetCornerShare * contact_margin_m;
   return haveSurfaces(pair) && std::any_of(candidates.begin(), candidates.end(), [&](const Candidate& c) {
            const Shape& own = *pair.shape[c.side];
            if (c.isCrossing() || own.isEdgePoint(c.id)) return false;
            const Shape::PointFace face = own.faceAt(c.id);
            return own.features().isCurved(face.surface, face.triangle) &&
-                  protrudes(own.models().surfaces[face.surface], face.triangle);
+                  protrudes(own.models().surfaces[face.surface], face.triangle, height_m);
          });
 }
 
-void moveToFacetCorners(const PairView& pair, std::vector<Candidate>& candidates) {
+void moveToFacetCorners(const PairView& pair, double contact_margin_m, std::vector<Candidate>& candidates) {
   if (!haveSurfaces(pair)) return;
   thread_local std::vector<Vec3> taken_W;
   taken_W.clear();
@@ -87,7 +89,7 @@ void moveToFacetCorners(const PairView& pair, std::vector<Candidate>& candidates
     const std::optional<std::uint32_t> facet = facetOf(c, side);
     if (!facet) continue;
     const Surface& surface = own.models().surfaces[c.surface[c.side]];
-    if (!protrudes(surface, *facet)) continue;
+    if (!protrudes(surface, *facet, kFacetCornerShare * contact_margin_m)) continue;
     for (const std::uint32_t v : surface.distance->mesh().triangles[*facet]) {
       const Vec3 vertex_W = side.X_WM * (surface.X_MP * surface.distance->mesh().vertices[v]);
       if (std::find(taken_W.begin(), taken_W.end(), vertex_W) != taken_W.end()) continue;

@@ -10,18 +10,19 @@
 
 namespace vps::bullet::inline v0 {
 
-/// A vertex that is less deep than this is left to the contact of its facet [m]: a quarter of the default
-/// contact margin. A ball of 14 mm with facets of 1 mm has vertices that are 14 um higher than the middle of
-/// its facets, and a ball of 5 mm with 0.2 mm 1 um.
-inline constexpr double kFacetCorner_m = 5e-6;
+/// A vertex that is higher than the middle of its facet by less than this share of the contact margin is no
+/// feature of its own. With 20 um: facets of 1 mm on a ball of 14 mm have vertices 14 um high, which are;
+/// those of 0.2 mm on a ball of 5 mm 1 um high. The families C_balls and G_impact need it.
+inline constexpr double kFacetCornerShare = 0.25;
 
-/// Moves candidates of curved faces to the deepest vertex of the facet where they are, if that is deeper in
-/// the other body than the candidate and than kFacetCorner_m. Distance and normal become those of the vertex.
+/// Moves candidates of curved faces to the deepest vertex of the facet where they are, if that is high enough
+/// and deeper in the other body than the candidate. Distance and normal become those of the vertex, exactly.
 /// Each vertex takes one candidate.
-/// @param candidates  refined where the bodies are
-void moveToFacetCorners(const PairView& pair, std::vector<Candidate>& candidates);
+/// @param candidates        refined where the bodies are
+/// @param contact_margin_m  of the settings
+void moveToFacetCorners(const PairView& pair, double contact_margin_m, std::vector<Candidate>& candidates);
 
-/// True if one of the points lies on a facet whose vertices may be deeper than its middle by kFacetCorner_m.
-bool haveFacetCorners(const PairView& pair, std::span<const Candidate> candidates);
+/// True if one of the points lies on a facet with vertices high enough to be features.
+bool haveFacetCorners(const PairView& pair, double contact_margin_m, std::span<const Candidate> candidates);
 
 }  // namespace vps::bullet::inline v0

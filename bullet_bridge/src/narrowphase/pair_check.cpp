@@ -233,7 +233,7 @@ bool PairCheck::mayMissPoints(const Motion& m, const PairView& at_start) const {
   const double sampling_m = state_.selection.sampling_m * std::min(m.turn_rad, m.turn_deviation_rad);
   if (!is_in_reach || sampling_m > m.tolerated_m) return true;
   // Vertices of curved faces are no points.
-  return haveFacetCorners(at_start, state_.selection.refined);
+  return haveFacetCorners(at_start, margin_m, state_.selection.refined);
 }
 
 void PairCheck::findAmongRefined(const Motion& m, std::vector<Candidate>& missed) const {
@@ -272,7 +272,7 @@ void PairCheck::findOverlaps(const Motion& m, const PairView& start, const PairV
   const std::size_t limit = 4 * static_cast<std::size_t>(context.settings.contact_limit);
   reduceByCell(found, limit, radius_m / 16, radius_m);
   refineAll(pair, still, context.settings, found);
-  moveToFacetCorners(pair, found);
+  moveToFacetCorners(pair, still.contact_margin_m, found);
   std::erase_if(found, [&](const Candidate& c) { return c.distance_m >= -m.tolerated_m; });
 }
 
