@@ -213,7 +213,7 @@ std::vector<Family> roundBodyFamilies() {
   rest.bar = 1;
   rest.members = 60;
   rest.expected_failure = 5.271;
-  rest.expected_failure_short = 2.525;
+  rest.expected_failure_short = 2.105;
   rest.every = 8;
   rest.measured = [](int member) { return 1e6 * depthsOf(member).rest_m; };
   rest.describe = describe;
