@@ -263,7 +263,7 @@ std::vector<Family> restitutionFamilies() {
        [](int i) { return Drop(i, true).words(); }},
       {"B_rows", error, 0.01, 100, 5, [](int i) { return Row(i).error(Mode::Constraint); }, wordsOf<Row>()},
       {"B_corners", error, 0.01, 99, 5, [](int i) { return Corner(i).error(Mode::Constraint); },
-       wordsOf<Corner>(), 0.11086},
+       wordsOf<Corner>()},
       {"B_momentum", "change of momentum, relative", 1e-9, 60, 6,
        [](int i) { return Swarm(i).momentumError(false); }, wordsOf<Swarm>()},
       {"B_angular_momentum", "change of angular momentum, relative", 1e-9, 60, 6,
