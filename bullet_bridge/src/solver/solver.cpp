@@ -465,6 +465,7 @@ btScalar Solver::solveGroup(btCollisionObject** bodies, int body_count, btPersis
   if (is_shortened) work.turnTogether(1 - kept);
   // A step that was cut short did not end at its contacts.
   if (!work.is_penalty && !is_shortened) work.restitution.apply(work.rigid.contacts(), work.ends, info);
+  work.joints.hold(work.island, work.ends);
   if (work.is_penalty) work.penalty.finish();
   work.joints.finish(dt_s);
   work.is_penalty ? writeImpulses(work.manifolds, dt_s) : work.rigid.finish();
