@@ -157,6 +157,37 @@ TEST_P(JointsWithSolver, AJointBreaksAboveItsBreakingImpulse) {
   world.world->removeConstraint(&joint);
 }
 
+// Free, the body would turn away from the axis. The hinge holds it with the torque w x I w.
+TEST(Joints, ABodyThatSpinsAboutAnAxisThatIsNotPrincipalStaysOnItsHinge) {
+  constexpr double kSpin_rad_s = 50;
+  const Vec3 axis = Vec3(1, 0, 1).normalized();
+  for (const SolverKind kind : {SolverKind::Constraint, SolverKind::Penalty}) {
+    World world(kind);
+    world.world->setGravity(btVector3(0, 0, 0));
+    const Built box = steelBox();
+    btRigidBody& body = world.add(box, Pose());
+    body.setAngularVelocity(toBt(Vec3(kSpin_rad_s * axis)));
+    btHingeConstraint hinge(body, inBody(box, Vec3::Zero()), axisInBody(box, axis));
+    btJointFeedback feedback;
+    hinge.setJointFeedback(&feedback);
+    hinge.enableFeedback(true);
+    world.world->addConstraint(&hinge);
+    const Vec3 axis_B = box.frame.X_PB.R.transpose() * axis;
+    const Vec3 I_axis = box.frame.inertia_kg_m2.cwiseProduct(axis_B);
+    const double torque_Nm = axis_B.cross(I_axis).norm() * kSpin_rad_s * kSpin_rad_s;
+    for (int i = 0; i < 200; ++i) {
+      world.step();
+      const Vec3 w = fromBt(body.getAngularVelocity());
+      EXPECT_LE((w - w.dot(axis) * axis).norm(), 1e-6 * kSpin_rad_s) << test::nameOf(kind) << ", " << i;
+      EXPECT_NEAR(w.dot(axis), kSpin_rad_s, 1e-3 * kSpin_rad_s) << test::nameOf(kind) << ", " << i;
+      EXPECT_NEAR(fromBt(feedback.m_appliedTorqueBodyA).norm(), torque_Nm, 0.01 * torque_Nm)
+          << test::nameOf(kind) << ", " << i;
+      if (HasFailure()) break;
+    }
+    world.world->removeConstraint(&hinge);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Each, JointsWithSolver,
                          testing::Values(SolverKind::Stock, SolverKind::Constraint, SolverKind::Penalty),
                          [](const auto& info) { return test::nameOf(info.param); });

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "bullet_bridge/world.h"
 
@@ -95,6 +96,41 @@ TEST(Restitution, UnderGravityNoHeightIsLost) {
     EXPECT_GE(bounces, 5);
     EXPECT_NEAR(last_m, height_m, 0.01 * height_m);
   }
+}
+
+// A plate that the host moves: e times the speed of approach, relative to the plate.
+TEST(Restitution, APlateThatIsMovedThrowsBack) {
+  for (const double plate_m_s : {-0.6, -0.2, 0.5, 2.0})
+    for (const double e : {0.3, 1.0}) {
+      Fall fall(e);
+      btRigidBody& plate = *fall.world.bodies.front();
+      plate.setCollisionFlags(btCollisionObject::CF_KINEMATIC_OBJECT);
+      for (int i = 0; i < 8; ++i) {
+        btTransform X = plate.getWorldTransform();
+        X.getOrigin() += btVector3(0, 0, toBt(1e-3 * plate_m_s));
+        plate.setWorldTransform(X);
+        fall.world.step();
+      }
+      EXPECT_NEAR(fall.speed_m_s(), plate_m_s + e * (plate_m_s + kSpeed_m_s), 2e-3) << plate_m_s << ", " << e;
+      EXPECT_LE(fall.body->getAngularVelocity().length(), 0.1);
+    }
+}
+
+// Flush on two walls, of which one has no restitution: the edges rest at a gap, the faces between them a
+// little farther, and the box leaves without a turn.
+TEST(Restitution, ABoxThatLandsFlushDoesNotTurn) {
+  Fall fall(0.4);
+  fall.world
+      .add(fall.ground, Pose(rotationFromVector(Vec3(0, 0.5 * std::numbers::pi, 0)), Vec3(-0.0153, 0, 0)),
+           true, 0)
+      .setRestitution(0);
+  fall.body->setLinearVelocity(btVector3(toBt(-2.1), toBt(0.7), toBt(-kSpeed_m_s)));
+  fall.world.step(4);
+  const btVector3 v = fall.body->getLinearVelocity();
+  EXPECT_NEAR(v.x(), 0, 2e-3);
+  EXPECT_NEAR(v.y(), 0.7, 2e-3);
+  EXPECT_NEAR(v.z(), 0.4 * kSpeed_m_s, 2e-3);
+  EXPECT_LE(fall.body->getAngularVelocity().length(), 0.1);
 }
 
 // What rests on a plate is not thrown up by its weight where another part hits it.

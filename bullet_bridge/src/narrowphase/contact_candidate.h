@@ -29,6 +29,7 @@ struct Candidate {
   double area_m2 = 0;                 ///< surface that the point represents
   double impulse_Ns = 0;              ///< its normal impulse in the last step
   double rest_m = 0;                  ///< gap at which sharp features rest
+  double met_s = 0;                   ///< time in the step, on the way of a fast body, at which it was found
   bool is_flush = false;              ///< curved surfaces of both parts lie flush around it
   bool bounces = false;               ///< restitution acts on it in this step
   bool was_contact = false;           ///< was given to the solver in the last step

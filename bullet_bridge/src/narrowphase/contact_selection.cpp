@@ -78,14 +78,6 @@ SideQuery sideQueryOf(const PairView& pair, int i, PairState& state, const Relat
   return {&queryStateOf(pair, i, state), {way_s * motion.V.w, way_s * motion.V.v}, always, pair.radius_m()};
 }
 
-// In penalty contact the points of faces press along their own normals.
-void useOwnNormalsForPenalty(const PairView& pair, const Settings& settings,
-                             std::vector<Candidate>& candidates) {
-  for (int i = 0; i < 2; ++i)
-    if (settings.contact_method == ContactMethod::Penalty && pair.hasShell(i))
-      useOwnNormals(candidates, pair.side(i));
-}
-
 }  // namespace
 
 bool isQueriedOnce(const PairView& pair, const RelativeMotion& motion) {
@@ -130,55 +122,6 @@ void findEnteredCrossings(const PairView& pair, const PairView& start, const Pai
   const EnteredRange range{overlap_m, depth_m, start_depth_m, start.X_01_models(), end.X_01_models()};
   context.left_out +=
       findEnteredCandidates(pair.side(0), pair.side(1), range, context.settings, state.entered, out);
-}
-
-void findStepCandidates(const PairView& pair, const RelativeMotion& motion, PairState& state,
-                        std::vector<Candidate>& out) {
-  Context& context = *state.context;
-  const double range_m = queryRange_m(pair);
-  const double travel_m = motion.speed_m_s * motion.dt_s;
-  // Bullet's broadphase widens boxes of moving bodies by 50 mm (gDbvtMargin), so most pairs are far apart.
-  // This is as far as canTouch() and crossingRange() look.
-  const double way_m = std::max(travel_m, motion.anyWay_m());
-  if (pair.leastDistance_m() > motion.contact_margin_m + way_m) return;
-  if (isQueriedOnce(pair, motion)) {
-    const double seen_m = isExact(context.settings) ? fieldError_m(pair) : 0;
-    findCandidates(pair, std::min(motion.contact_margin_m + travel_m + seen_m, range_m), context, out, &state,
-                   &motion);
-    useOwnNormalsForPenalty(pair, context.settings, out);
-    return;
-  }
-  const double stride_m = std::max(0.5 * (range_m - motion.contact_margin_m), 0.25 * range_m);
-  constexpr double kMaxStrides = 1000;  // 0.5 m a step at a voxel of 0.25 mm
-  const int strides = static_cast<int>(std::ceil(std::min(travel_m / stride_m, kMaxStrides)));
-  PairView later = pair;
-  thread_local std::vector<Candidate> met;
-  thread_local std::vector<std::uint64_t> met_before;
-  met_before.clear();
-  for (int k = 0; k < strides; ++k) {
-    const double t_s = motion.dt_s * k / strides;
-    if (k > 0) advance(later, pair, motion.dt_s, t_s);
-    met.clear();
-    findCandidates(later, std::min(motion.contact_margin_m + travel_m / strides, range_m), context, met);
-    useOwnNormalsForPenalty(later, context.settings, met);
-    // Keep what a point meets first, as planes relative to where the bodies are now. A point that is behind a
-    // plane when the stride begins has met another before.
-    std::erase_if(met, [&](Candidate& c) {
-      const Vec3 moved = motion.velocityAt(c.p_W) * t_s;
-      const double approach_m = -c.n_W.dot(motion.velocityAt(c.p_W)) * motion.dt_s / strides;
-      if (c.distance_m - approach_m > motion.contact_margin_m) return true;
-      if (k > 0 && (c.distance_m < -motion.contact_margin_m ||
-                    std::binary_search(met_before.begin(), met_before.end(), c.key())))
-        return true;
-      c.distance_m -= c.n_W.dot(moved);
-      const Pose& X_then = later.X_WS[c.side];
-      c.p_W = pair.X_WS[c.side] * (X_then.inverse() * c.p_W);
-      return false;
-    });
-    for (const Candidate& c : met) met_before.push_back(c.key());
-    std::sort(met_before.begin(), met_before.end());
-    out.insert(out.end(), met.begin(), met.end());
-  }
 }
 
 void refineAll(const PairView& pair, const RelativeMotion& motion, const Settings& settings,
@@ -229,7 +172,7 @@ void selectContacts(const PairView& pair, const RelativeMotion& motion, const Se
   // The others apart, so that they take no room from those.
   reduceByCell(doubtful, 2 * limit, radius_m / 16, radius_m);
   candidates.insert(candidates.end(), doubtful.begin(), doubtful.end());
-  refineAll(pair, motion, settings, candidates);
+  refineOnWay(pair, motion, settings, candidates);
   if (isQueriedOnce(pair, motion)) measureAtEnd(pair, motion, settings, candidates);
   dropUnreachable(motion, candidates);
   if (settings.use_surfaces && isQueriedOnce(pair, motion))

@@ -41,6 +41,11 @@ bool isQueriedOnce(const PairView& pair, const RelativeMotion& motion);
 void refineAll(const PairView& pair, const RelativeMotion& motion, const Settings& settings,
                std::vector<Candidate>& candidates);
 
+/// The same for those of findStepCandidates(), each where it was found: from where a fast body is now,
+/// another surface may be the nearest, or none within reach.
+void refineOnWay(const PairView& pair, const RelativeMotion& motion, const Settings& settings,
+                 std::vector<Candidate>& candidates);
+
 /// Replaces the distances of refined contacts that slide along a face by those that give the right gap at the
 /// end of the step in free motion.
 void measureAtEnd(const PairView& pair, const RelativeMotion& motion, const Settings& settings,

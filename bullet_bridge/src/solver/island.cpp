@@ -66,7 +66,38 @@ Vec6 velocityOf(const btRigidBody& rigid) {
   return stacked(fromBt(rigid.getAngularVelocity()), fromBt(rigid.getLinearVelocity()));
 }
 
+Vec3 centerOfMass(std::span<const BodyEnd> ends) {
+  Vec3 sum = Vec3::Zero();
+  double mass_kg = 0;
+  for (const BodyEnd& end : ends) {
+    sum += end.mass(3, 3) * end.X_WB.p;
+    mass_kg += end.mass(3, 3);
+  }
+  return sum / mass_kg;
+}
+
 }  // namespace
+
+Vec3 commonTurn(std::span<const Vec6> momenta, std::span<const BodyEnd> ends) {
+  const Vec3 center_W = centerOfMass(ends);
+  Vec3 L = Vec3::Zero();
+  Mat3 inertia = Mat3::Zero();
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    const Vec3 r = ends[i].X_WB.p - center_W;
+    L += momenta[i].head<3>() + r.cross(Vec3(momenta[i].tail<3>()));
+    inertia += ends[i].mass.topLeftCorner<3, 3>() +
+               ends[i].mass(3, 3) * (r.squaredNorm() * Mat3::Identity() - r * r.transpose());
+  }
+  return inertia.llt().solve(L);
+}
+
+void addTurn(const Vec3& w_W, std::span<BodyEnd> ends) {
+  const Vec3 center_W = centerOfMass(ends);
+  for (BodyEnd& end : ends) {
+    end.v.head<3>() += w_W;
+    end.v.tail<3>() += w_W.cross(end.X_WB.p - center_W);
+  }
+}
 
 void Island::clear() {
   bodies.clear();

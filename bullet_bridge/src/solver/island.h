@@ -54,6 +54,12 @@ struct IslandBody {
   Vec6 coupling_impulse = Vec6::Zero();  ///< constant part of its couplings
   Vec6 u = Vec6::Zero();                 ///< initially that of the last step
 
+  /// Momentum at the end of the step: angular about its centre, then linear.
+  [[nodiscard]] Vec6 ended() const {
+    Vec6 sum = mass * u;
+    sum.head<3>() += rest_momentum_Nms;
+    return sum;
+  }
   /// Change of momentum in the step, by all impulses.
   [[nodiscard]] Vec6 gained() const {
     Vec6 sum = mass * (u - start);
@@ -68,6 +74,14 @@ struct BodyEnd {
   Mat6 mass = Mat6::Zero(), inverse_mass = Mat6::Zero();
   Vec6 v = Vec6::Zero();  ///< the end velocity
 };
+
+/// Angular velocity about their common centre of mass with which bodies at these poses have these momenta as
+/// one rigid body.
+/// @param momenta  each body's: angular about its centre, then linear
+Vec3 commonTurn(std::span<const Vec6> momenta, std::span<const BodyEnd> ends);
+
+/// Adds an angular velocity of all bodies about their common centre of mass.
+void addTurn(const Vec3& w_W, std::span<BodyEnd> ends);
 
 /// Result of an iterative solution of the island.
 struct SolveOutcome {

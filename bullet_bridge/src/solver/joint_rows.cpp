@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "vps_bullet/convert.h"
 
@@ -92,6 +93,34 @@ void JointRows::add(btTypedConstraint& joint, const Island& island, const btCont
       if (row.body[side] < 0) row.fixed_velocity += row.J[side].dot(Island::fixedVelocity(objects[side]));
     }
     if (row.body[0] >= 0 || row.body[1] >= 0) rows.push_back(row);
+  }
+}
+
+void JointRows::hold(const Island& island, std::span<BodyEnd> ends) {
+  constexpr int kMostSweeps = 50;
+  constexpr double kSettled =
+      1e-9;  // m/s or rad/s; above rounding, so that what is held already keeps its bits
+  constexpr double kAny_Ns = 1e15;  // Bullet's infinity is 1e18 or 1e30
+  double most = std::numeric_limits<double>::infinity();
+  for (int sweep = 0; sweep < kMostSweeps && most > kSettled; ++sweep) {
+    most = 0;
+    for (JointRow& row : rows) {
+      if (row.lower_Ns > -kAny_Ns || row.upper_Ns < kAny_Ns) continue;
+      double error = 0, W = 0;
+      Vec6 MinvJ[2];
+      for (int i = 0; i < 2; ++i) {
+        if (row.body[i] < 0) continue;
+        const auto body = static_cast<std::size_t>(row.body[i]);
+        error += row.J[i].dot(island.bodies[body].u - ends[body].v);
+        MinvJ[i] = ends[body].inverse_mass * row.J[i];
+        W += row.J[i].dot(MinvJ[i]);
+      }
+      if (!(std::abs(error) > kSettled) || !(W > 0)) continue;
+      row.impulse_Ns += error / W;
+      for (int i = 0; i < 2; ++i)
+        if (row.body[i] >= 0) ends[static_cast<std::size_t>(row.body[i])].v += error / W * MinvJ[i];
+      most = std::max(most, std::abs(error));
+    }
   }
 }
 

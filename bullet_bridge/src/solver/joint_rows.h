@@ -2,6 +2,7 @@
 // Bullet's joints, motors and limits as rows of one island.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "solver/island.h"
@@ -43,6 +44,10 @@ class JointRows {
   void clear() { rows.clear(); }
   /// Adds the rows of an enabled joint.
   void add(btTypedConstraint& joint, const Island& island, const btContactSolverInfo& info);
+  /// Gives the end velocities along the rows that no limit bounds those of the displacement, and adds the
+  /// impulses. They differ where a body's inertia turns with it: free, it would leave its hinge, by half of
+  /// what the hinge's torque holds in a step.
+  void hold(const Island& island, std::span<BodyEnd> ends);
   /// Writes the impulses to the joints and to their feedback, and disables joints that broke.
   void finish(double dt_s);
 

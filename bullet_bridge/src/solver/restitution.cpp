@@ -6,8 +6,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
+#include <utility>
 
+#include "solver/contact_key.h"
 #include "vps/friction.h"
 #include "vps_bullet/convert.h"
 
@@ -35,9 +38,8 @@ bool boundsOf(const JointRow& row, double& lower_Ns, double& upper_Ns) {
 }
 
 // True if its bodies touch there at the end of the step.
-bool touchesAtEnd(const RigidContact& c, double velocity_m_s, double dt_s) {
-  constexpr double kTouch_m = 1e-7;  // assumed: far above what the solver leaves open, far below what matters
-  return c.p_n > 0 || std::min(velocity_m_s - c.target_m_s, velocity_m_s + c.gap_m / dt_s) * dt_s <= kTouch_m;
+bool touchesAtEnd(const RigidContact& c, double touch_m, double velocity_m_s, double dt_s) {
+  return c.p_n > 0 || std::min(velocity_m_s - c.target_m_s, velocity_m_s + c.gap_m / dt_s) * dt_s <= touch_m;
 }
 
 }  // namespace
@@ -53,6 +55,19 @@ int Restitution::rootOf(int body) const {
   return body;
 }
 
+// Sharp features rest at a gap, and hold the faces between them at it. So all contacts of a face touch that
+// are no farther apart: with its edges alone, of which one side may have been left out, a face that lands
+// flush would turn.
+void Restitution::findTouch(std::span<const RigidContact> contacts) {
+  constexpr double kTouch_m = 1e-7;  // assumed: far above what the solver leaves open, far below what matters
+  std::map<std::pair<const btCollisionObject*, const btCollisionObject*>, double> rest_m;
+  const auto restOf_m = [&](const RigidContact& c) -> double& { return rest_m[{c.object[0], c.object[1]}]; };
+  for (const RigidContact& c : contacts) restOf_m(c) = std::max(restOf_m(c), restGap_m(*c.point));
+  touch_m_.clear();
+  for (const RigidContact& c : contacts)
+    touch_m_.push_back(kTouch_m + std::max(restOf_m(c) - restGap_m(*c.point), 0.0));
+}
+
 void Restitution::connect(std::span<RigidContact> contacts, double dt_s) {
   parent_.resize(island_.bodies.size());
   std::iota(parent_.begin(), parent_.end(), 0);
@@ -61,10 +76,12 @@ void Restitution::connect(std::span<RigidContact> contacts, double dt_s) {
     const int root_a = rootOf(a), root_b = rootOf(b);
     parent_[static_cast<std::size_t>(std::max(root_a, root_b))] = std::min(root_a, root_b);
   };
+  findTouch(contacts);
   touches_.clear();
-  for (const RigidContact& c : contacts) {
+  for (std::size_t k = 0; k < contacts.size(); ++k) {
+    const RigidContact& c = contacts[k];
     const double v = velocityOf(c.normal, [&](std::size_t i) -> const Vec6& { return island_.bodies[i].u; });
-    touches_.push_back(touchesAtEnd(c, v, dt_s));
+    touches_.push_back(touchesAtEnd(c, touch_m_[k], v, dt_s));
     if (touches_.back()) join(c.normal.side[0].body, c.normal.side[1].body);
   }
   for (const JointRow& row : joints_.rows) {
@@ -123,7 +140,7 @@ void Restitution::gather(int root, std::span<RigidContact> contacts, std::span<c
     RigidContact& c = contacts[k];
     if (!touches_[k] || !isOfGroup(c.normal.side[0].body, c.normal.side[1].body)) continue;
     const Vec3 at_W = placeOf(c, ends);
-    Contact contact{&c, {}, {c.p_t[0], c.p_t[1]}, 0};
+    Contact contact{&c, {}, {c.p_t[0], c.p_t[1]}, 0, touch_m_[k]};
     for (int t = 0; t < 2; ++t) contact.tangent[t] = rowOf(c.tangent[t], at_W, c.tangent_W(t), ends);
     contact.W_t = contact.tangent[0].W + contact.tangent[1].W;
     group_.contacts.push_back(contact);

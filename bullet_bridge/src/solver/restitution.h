@@ -71,6 +71,7 @@ class Restitution {
     ImpactRow tangent[2];
     double p_t[2] = {0, 0};  // in all
     double W_t = 0;          // at least the greatest eigenvalue of its tangent block
+    double touch_m = 0;      // its bodies touch at this gap
   };
   struct Group {
     std::vector<int> bodies;  // of the island
@@ -89,6 +90,7 @@ class Restitution {
   };
 
   [[nodiscard]] bool isImpact(const RigidContact& c, double threshold_m_s) const;
+  void findTouch(std::span<const RigidContact> contacts);
   void connect(std::span<RigidContact> contacts, double dt_s);
   [[nodiscard]] int rootOf(int body) const;
   [[nodiscard]] Vec3 placeOf(const RigidContact& c, std::span<const BodyEnd> ends) const;
@@ -111,6 +113,7 @@ class Restitution {
   JointRows& joints_;
   std::vector<int> parent_;            // of each body, towards the root of its group
   std::vector<int> local_;             // index of each body in group_; -1: of another group
+  std::vector<double> touch_m_;        // of each contact, the gap at which its bodies touch
   std::vector<std::uint8_t> touches_;  // of each contact
   Group group_;
 };

@@ -40,13 +40,12 @@ double Restitution::shareOfImpact(const std::vector<Vec6>& before, double dt_s) 
 // Rows that hold bodies before the impact: joints, and contacts that touch and have no approach but the
 // kick's.
 std::vector<std::uint8_t> Restitution::holding(const std::vector<Vec6>& before, double dt_s) const {
-  constexpr double kKicks = 2;       // above the 3/2 of the reflected velocity
-  constexpr double kTouch_m = 1e-7;  // as at the end of the step
+  constexpr double kKicks = 2;  // above the 3/2 of the reflected velocity
   std::vector<std::uint8_t> rows(group_.rows.size(), 1);
   for (std::size_t k = 0; k < group_.contacts.size(); ++k) {
     const double kick_m_s = kKicks * std::abs(kickAlong(k));
     rows[k] = group_.rows[k].velocity(before) >= -kick_m_s &&
-              group_.contacts[k].of->gap_m <= kTouch_m + kick_m_s * dt_s;
+              group_.contacts[k].of->gap_m <= group_.contacts[k].touch_m + kick_m_s * dt_s;
   }
   return rows;
 }

@@ -65,6 +65,7 @@ struct Solver::Work {
   std::vector<StepCheck*> checks;          // of rigid contact, one for each pair
   std::vector<MissedContact> missed;       // scratch
   std::vector<Vec6> u;                     // scratch
+  std::vector<Vec6> momenta;               // of each body, before a step is cut short
   /// Bodies that hang together by contacts.
   struct Group {
     int root = 0;  // a body of the group; the group's own if it is this body
@@ -89,7 +90,8 @@ struct Solver::Work {
   bool addMissed(const btContactSolverInfo& info, bool is_first);
   [[nodiscard]] bool hasOutside() const;
   [[nodiscard]] Vec6 commonVelocity() const;
-  bool shorten(double dt_s);
+  double shorten(double dt_s);
+  void turnTogether(double stopped);
 };
 
 namespace {
@@ -358,10 +360,13 @@ Vec6 Solver::Work::commonVelocity() const {
 
 // The bodies stop, relative to each other, before sharp features come too near to each other, where no
 // contacts were found that prevent it. This takes energy and is the last resort. Kinematic bodies go on.
-bool Solver::Work::shorten(double dt_s) {
+// Returns the share of their motion that they keep.
+double Solver::Work::shorten(double dt_s) {
   constexpr double kShort = 0.9;  // assumed: not quite up to the place
   constexpr int kMost = 6;        // assumed; then the bodies stand for this step
-  bool is_shortened = false;
+  double kept = 1;
+  momenta.clear();
+  for (const IslandBody& b : island.bodies) momenta.push_back(b.ended());
   for (int k = 0; k <= kMost; ++k) {
     double share = 1;
     for (StepCheck* check : checks) {
@@ -370,8 +375,8 @@ bool Solver::Work::shorten(double dt_s) {
       share = std::min(share, check->freeShare(X_WB_end));
     }
     if (share >= 1) break;
-    is_shortened = true;
     share = k < kMost ? kShort * share : 0;
+    kept *= share;
     const Vec6 common = commonVelocity();
     for (IslandBody& b : island.bodies) {
       b.u = common + share * (b.u - common);
@@ -379,7 +384,15 @@ bool Solver::Work::shorten(double dt_s) {
     }
     rigid.scalePush(share);
   }
-  return is_shortened;
+  return kept;
+}
+
+// Bodies that stop relative to each other, and touch nothing else, go on as one rigid body: as such they keep
+// what angular momentum they had. The displacement has no such turn, so that it leads to no new overlap.
+// Scaled are the velocities relative to that rigid motion, at the end pose; so the step takes energy all the
+// same.
+void Solver::Work::turnTogether(double stopped) {
+  if (!hasOutside()) addTurn(stopped * commonTurn(momenta, ends), ends);
 }
 
 Solver::Solver(const SolverSettings& settings) : settings_(settings), work_(std::make_unique<Work>()) {
@@ -438,7 +451,8 @@ btScalar Solver::solveGroup(btCollisionObject** bodies, int body_count, btPersis
     work.rigid.solvePush(info, settings_.iteration_limit);
     if (checked == kMaxChecks || !work.addMissed(info, checked == 0)) break;
   }
-  const bool is_shortened = !work.is_penalty && !work.missed.empty() && work.shorten(dt_s);
+  const double kept = work.is_penalty || work.missed.empty() ? 1 : work.shorten(dt_s);
+  const bool is_shortened = kept < 1;
   if (is_shortened) ++shortened_steps_;
   for (const Work::ActiveCoupling& h : work.active_couplings) {
     const Vec6 V_G = h.J * work.island.bodies[static_cast<std::size_t>(h.body)].u;
@@ -446,9 +460,12 @@ btScalar Solver::solveGroup(btCollisionObject** bodies, int body_count, btPersis
   }
   for (StepCheck* check : work.checks) check->endStep();
   const std::span<const Vec6> push = work.is_penalty ? std::span<const Vec6>() : work.rigid.push();
+  if (!push.empty()) ++pushed_steps_;
   work.island.readEnds(push, dt_s, work.ends);
+  if (is_shortened) work.turnTogether(1 - kept);
   // A step that was cut short did not end at its contacts.
   if (!work.is_penalty && !is_shortened) work.restitution.apply(work.rigid.contacts(), work.ends, info);
+  work.joints.hold(work.island, work.ends);
   if (work.is_penalty) work.penalty.finish();
   work.joints.finish(dt_s);
   work.is_penalty ? writeImpulses(work.manifolds, dt_s) : work.rigid.finish();
