@@ -12,6 +12,7 @@
 #include "log/report.h"
 #include "shape/forgotten_install.h"
 #include "shape/scaled_models.h"
+#include "shape/sheet_border.h"
 #include "shape/triangle_tree.h"
 #include "vps/feature_motion.h"
 #include "vps/load_error.h"
@@ -126,10 +127,13 @@ PointNormals findNormals(const ShapeModels& models) {
   return normals;
 }
 
+// Whether an edge of a sheet is a ridge or a groove depends on the side from which it is met: its points and
+// features act there.
 EdgeSet edgesOf(const std::vector<Surface>& surfaces) {
   std::vector<EdgeSegment> segments;
   for (std::size_t i = 0; i < surfaces.size(); ++i)
-    appendEdges(surfaces[i].distance->mesh(), surfaces[i].X_MP, static_cast<std::uint16_t>(i), segments);
+    if (!surfaces[i].sheet)
+      appendEdges(surfaces[i].distance->mesh(), surfaces[i].X_MP, static_cast<std::uint16_t>(i), segments);
   return EdgeSet(std::move(segments));
 }
 
@@ -164,6 +168,8 @@ ShapeModels makeModels(const PartModel& part) {
   models.shell = part.shell;
   models.mesh = part.mesh;
   if (part.solid) models.surfaces = {{part.solid, Pose()}};
+  if (part.solid && part.solid->isSheet())
+    models.surfaces[0].sheet = std::make_shared<const SheetBorder>(part.solid->mesh());
   return models;
 }
 
