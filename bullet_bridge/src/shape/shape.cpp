@@ -114,10 +114,12 @@ PointNormals findNormals(const ShapeModels& models) {
       if (!normals.surfaces.empty() && normals.is_edge[i] != 0)
         normals.surfaces[i] = static_cast<std::uint16_t>(s);
       const Vec3 outward = -(X_PM.R * models.shell->inward[i]);
-      if (outward.dot(surface.distance->featureNormal(closest.triangle, 0)) <= kCosFace) continue;
+      const Vec3 face = surface.distance->featureNormal(closest.triangle, 0);
+      const double side = surface.sheet && outward.dot(face) < 0 ? -1 : 1;  // a sheet has points on both
+      if (side * outward.dot(face) <= kCosFace) continue;
       normals.is_edge[i] = 0;
       normals.smooth_inward[i] =
-          -(surface.X_MP.R * surface.distance->smoothNormal(closest.triangle, closest.q));
+          -side * (surface.X_MP.R * surface.distance->smoothNormal(closest.triangle, closest.q));
       normals.faces[i] = {s, closest.triangle};
       if (!normals.surfaces.empty()) normals.surfaces[i] = static_cast<std::uint16_t>(s);
     }
