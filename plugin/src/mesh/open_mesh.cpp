@@ -8,6 +8,7 @@
 #include "mesh/closed_cracks.h"
 #include "mesh/joined_edges.h"
 #include "mesh/mesh_edges.h"
+#include "vps/mesh_repair.h"
 
 namespace vps::inline v0 {
 
@@ -40,12 +41,7 @@ bool isMissingFacet(Hole& hole) {
          std::adjacent_find(hole.facets.begin(), hole.facets.end()) == hole.facets.end();
 }
 
-}  // namespace
-
-double widestHole_m(const Mesh& mesh) {
-  const Mesh once = joinedOnce(mesh);
-  const JoinedFacets joined = joinFacets(once, sortedHalfEdges(once), kWidestCrack);
-  if (!(joined.open_m > 0)) return 0;
+double widestHole_m(const Mesh& once, const JoinedFacets& joined) {
   std::vector<HalfEdge> open;
   forEachEdge(joined.edges, [&](std::span<const HalfEdge> same) {
     if (same.size() == 1) open.push_back(same[0]);
@@ -71,6 +67,29 @@ double widestHole_m(const Mesh& mesh) {
   for (auto& [group, hole] : holes)
     if (!isMissingFacet(hole)) widest_m = std::max(widest_m, 4 * hole.lid_m2 / hole.length_m);
   return widest_m;
+}
+
+/// True if every open shell is a sheet for itself beside closed ones.
+bool isSolidBesideSheets(const Mesh& once, const JoinedFacets& joined) {
+  Groups shells(once.triangles.size());
+  std::vector<std::uint32_t> at_border;
+  forEachEdge(joined.edges, [&](std::span<const HalfEdge> same) {
+    for (const HalfEdge& e : same) shells.join(e.triangle, same[0].triangle);
+    if (same.size() == 1) at_border.push_back(same[0].triangle);
+  });
+  std::vector<std::uint8_t> is_open(once.triangles.size(), 0);
+  for (const std::uint32_t t : at_border) is_open[shells.find(t)] = 1;
+  std::size_t open_facets = 0;
+  for (std::uint32_t t = 0; t < once.triangles.size(); ++t) open_facets += is_open[shells.find(t)];
+  return open_facets < once.triangles.size() && repairMesh(once).report.sheet_facets >= open_facets;
+}
+
+}  // namespace
+
+bool isOpenSurface(const Mesh& mesh, double wider_than_m) {
+  const Mesh once = joinedOnce(mesh);
+  const JoinedFacets joined = joinFacets(once, sortedHalfEdges(once), kWidestCrack);
+  return joined.open_m > 0 && widestHole_m(once, joined) > wider_than_m && !isSolidBesideSheets(once, joined);
 }
 
 namespace {

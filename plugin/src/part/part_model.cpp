@@ -27,7 +27,7 @@ std::shared_ptr<const PartModel> buildPartModel(const std::string& name, Mesh me
   model->name = name;
   model->material = material;
   requireUsable(mesh, "", name);
-  if (open == OpenMesh::Sheet && widestHole_m(mesh) > points.spacing_m) {
+  if (open == OpenMesh::Sheet && isOpenSurface(mesh, points.spacing_m)) {
     buildSheet(*model, std::move(mesh), points);
     return model;
   }

@@ -169,6 +169,15 @@ double distanceAt(const FeatureSet& part0, const FeatureSet& part1, const Featur
   return nearestOf(contact.kind, f.a, f.b).distance_m();
 }
 
+// The distance at the start; in a face's plane the height above it: a corner may be far and slide onto it.
+double startOf(const FeatureSet& part0, const FeatureSet& part1, const FeatureContact& contact,
+               double distance_m, const Pose& start) {
+  if (contact.kind == Kind::EdgeOnEdge) return distance_m;
+  const Vec3& n = contact.plane_of == 1 ? part1.normal(contact.feature[1]) : part0.normal(contact.feature[0]);
+  if (contact.n != n && contact.n != -n) return distance_m;
+  return std::min(distance_m, std::max(contact.gap_m(start), kTouching_m));
+}
+
 /// The piece of the way in which features reach a distance first.
 struct Met {
   std::size_t piece = 0;
@@ -233,7 +242,7 @@ void FeatureMotion::check(const FeatureSet& part0, const FeatureSet& part1, cons
     from = to;
     for (std::size_t i = found; i < out.size(); ++i) {
       out[i].share = (k + out[i].share) / stretches;
-      out[i].start_m = distanceAt(part0, part1, out[i], start);
+      out[i].start_m = startOf(part0, part1, out[i], distanceAt(part0, part1, out[i], start), start);
     }
   }
 }
@@ -282,8 +291,7 @@ void FeatureMotion::checkStretch(const FeatureSet& part0, const FeatureSet& part
       continue;
     contact.share =
         (static_cast<double>(met.piece) + met.reach.share) / static_cast<double>(way_10_.size() - 1);
-    // A corner that slides onto a face is above its plane before it is near it.
-    contact.start_m = std::min(near.distance_m, std::max(contact.gap_m(start), kTouching_m));
+    contact.start_m = startOf(part0, part1, contact, near.distance_m, start);
     if (is_held || contact.gap_m(end) < std::min(gap_m, contact.start_m) - kRounding_m)
       out.push_back(contact);
   }
