@@ -13,6 +13,7 @@
 #include <optional>
 
 #include "native_shapes/primitive.h"
+#include "shape/sheet_border.h"
 #include "vps_bullet/convert.h"
 
 namespace vps::bullet::inline v0 {
@@ -143,8 +144,9 @@ OwnFoot footOnOwn(const ShapeModels& models, const Vec3& x_M, const Vec3& inward
     const Vec3 x = surface.X_MP.inverse() * x_M;
     const MeshDistance::Closest closest = surface.distance->closest(x, max_m);
     if (!closest.found) continue;
-    const bool is_behind = surface.sheet && (surface.X_MP.R * closest.normal).dot(inward_M) > 0;
-    const Vec3 n = is_behind ? Vec3(-closest.normal) : closest.normal;
+    Vec3 n = closest.normal;
+    if (surface.sheet)
+      n = surface.sheet->seenFrom(x, -(surface.X_MP.R.transpose() * inward_M), closest).normal;
     const double d = n.dot(x - closest.q) < 0 ? -closest.distance_m : closest.distance_m;
     if (d < nearest.distance_m) nearest = {d, surface.X_MP * closest.q, surface.X_MP.R * n};
   }

@@ -117,6 +117,8 @@ PointNormals findNormals(const ShapeModels& models) {
       const Vec3 face = surface.distance->featureNormal(closest.triangle, 0);
       const double side = surface.sheet && outward.dot(face) < 0 ? -1 : 1;  // a sheet has points on both
       if (side * outward.dot(face) <= kCosFace) continue;
+      // A face's plane goes on beyond its border, and the sheet does not.
+      if (surface.sheet && surface.sheet->isOnBorder(closest.triangle, closest.q)) continue;
       normals.is_edge[i] = 0;
       normals.smooth_inward[i] =
           -side * (surface.X_MP.R * surface.distance->smoothNormal(closest.triangle, closest.q));
