@@ -207,7 +207,6 @@ std::vector<Family> openSurfaceFamilies() {
   family.measure = "distance from rest, over 10 um, 1e-6 of the size or Bullet's own";
   family.bar = 1;
   family.members = 60;
-  family.expected_failure = 20'653;
   family.every = 7;
   family.measured = error;
   family.describe = describe;

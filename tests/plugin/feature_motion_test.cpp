@@ -228,6 +228,28 @@ TEST(FeatureMotion, SlidingAtTheRestGapMeetsNothing) {
   }
 }
 
+// A block that comes from beyond an edge, within half of the rest gap above the face behind it, slides onto
+// that face: the line from its corner to the edge, along its way, would stop it. Lower, it hits the side.
+TEST(FeatureMotion, ACornerThatPassesAnEdgeFlushMeetsTheFaceBehindIt) {
+  const Body floor(box(Vec3(20e-3, 20e-3, 5e-3))), block(box(Vec3(4e-3, 3e-3, 2e-3)));
+  const Mat3 R = rotationFromVector(Vec3(0, 0, 0.3));
+  const double leads_m = -(R * Vec3(-4e-3, 3e-3, 0)).x();
+  for (const double height_m : {0.15e-6, 0.1e-6, 0.02e-6, 0.0, -1e-6}) {
+    const Pose start(R, Vec3(20e-3 + leads_m + 0.05e-3, 1e-3, 7e-3 + height_m));
+    const Pose end(R, start.p + Vec3(-0.1e-3, 0.02e-3, 0));
+    const bool is_stopped = height_m < 0;
+    for (const bool is_swapped : {false, true}) {
+      const auto found =
+          is_swapped ? check(floor, block, start, end) : check(block, floor, start.inverse(), end.inverse());
+      EXPECT_TRUE(!found.empty() || !is_stopped) << is_swapped;
+      for (const FeatureContact& c : found) {
+        const Vec3 n = is_swapped ? Vec3(-c.normal_0(start)) : Vec3(R * c.normal_0(start.inverse()));
+        EXPECT_LE((n - (is_stopped ? Vec3::UnitX() : Vec3::UnitZ())).norm(), 1e-6) << height_m << is_swapped;
+      }
+    }
+  }
+}
+
 // Whenever two tetrahedra overlap at the end of a step, and did not at its start, the way there is reported.
 TEST(FeatureMotion, NoOverlapIsMissed) {
   std::mt19937 random(7);

@@ -46,6 +46,8 @@ struct BodySettings {
   Pose X_WP;              ///< where the part's frame is at the start
   bool is_fixed = false;  ///< without mass: it may be a sheet, and its density is not used
   std::string name = "part";
+  /// What a mesh with wide holes stands for; a message (LogLevel::Info) says that it is a sheet.
+  OpenMesh open_mesh = OpenMesh::Sheet;
 };
 
 /// Where a part is, in the frame of its mesh. Bullet's bodies have their frame at the centre of mass.

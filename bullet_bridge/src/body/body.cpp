@@ -30,8 +30,17 @@ void say(const Mesh& mesh, const PartModel& part, const Resolution& chosen, cons
       "built in %.2g s; BodySettings::fidelity chooses otherwise",
       settings.name.c_str(), 1e3 * size.x(), 1e3 * size.y(), 1e3 * size.z(), 1e3 * chosen.voxel_m,
       1e3 * chosen.spacing_m, part.shell->size(), settings.point_budget,
-      1e-6 * static_cast<double>(part.map->memoryBytes() + part.shell->memoryBytes()), build_s);
+      1e-6 * static_cast<double>((part.map ? part.map->memoryBytes() : 0) + part.shell->memoryBytes()),
+      build_s);
   report(LogLevel::Info, words);
+}
+
+void sayIfSheet(const PartModel& part) {
+  if (part.solid->isSheet())
+    report(LogLevel::Info, part.name +
+                               " has holes wider than the spacing of its points: it collides as the surface "
+                               "that is drawn, from both sides; BodySettings::open_mesh = OpenMesh::Solid "
+                               "closes them");
 }
 
 void requireUsable(const Material& material) {
@@ -119,7 +128,8 @@ Body makeBody(const Mesh& mesh, const BodySettings& settings) {
   PointShellSettings points;
   points.spacing_m = chosen.spacing_m;
   Body body;
-  body.model = buildPartModel(settings.name, mesh, voxels, points, settings.material);
+  body.model = buildPartModel(settings.name, mesh, voxels, points, settings.material, settings.open_mesh);
+  sayIfSheet(*body.model);
   body.frame = frameOf(*body.model, settings);
   body.shape = std::make_shared<Shape>(makeModels(*body.model), body.frame.X_PB.inverse());
   body.motion = std::make_unique<PartMotionState>(settings.X_WP, body.frame.X_PB);

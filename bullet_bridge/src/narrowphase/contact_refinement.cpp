@@ -9,6 +9,7 @@
 #include "native_shapes/native_shape_adapter.h"
 #include "native_shapes/primitive.h"
 #include "shape/sheet_border.h"
+#include "vps/feature_motion.h"
 
 namespace vps::bullet::inline v0 {
 
@@ -240,7 +241,8 @@ Exact besideEdge(const Refiner& refiner, const OwnPoint& own, double reach_m) {
       if (distance_m > kTouching_m || r.dot(s.into[face]) < -kTouching_m ||
           (best.found && distance_m <= best.distance_m))
         continue;
-      if (!own.isFirstAlong(X_WM.R * n)) continue;
+      // An edge that runs through the face's plane goes on behind it.
+      if (!own.isFirstAlong(X_WM.R * n) || own.runsAlong(X_WM.R * n)) continue;
       best.found = best.is_contact = best.is_their_face = true;
       best.distance_m = distance_m;
       best.n = X_WM.R * n;
@@ -250,6 +252,17 @@ Exact besideEdge(const Refiner& refiner, const OwnPoint& own, double reach_m) {
   return best;
 }
 
+// True if a point beside an edge passes that edge no lower than the rest gap below the plane that it meets at
+// the end of the step: it slides onto the face, and sinks into it only if nothing holds it there.
+bool slidesOnto(const Exact& end, const Exact& now, const Vec3& way_W) {
+  const double height_m = end.distance_m - end.n.dot(way_W);
+  const Vec3 beside = now.from_q - now.from_q.dot(end.n) * end.n;
+  const double nearer_m2 = -way_W.dot(beside);
+  if (height_m < -FeatureMotion::kRest_m || !(nearer_m2 > 0)) return false;
+  const double share = std::min(beside.squaredNorm() / nearer_m2, 1.0);
+  return height_m + share * end.n.dot(way_W) >= -FeatureMotion::kRest_m;
+}
+
 // The line between two edges turns fast as they pass each other, and would stop a point that is about to pass
 // without contact. So the surface that the point meets at the end of the step counts, unless that is an
 // overlap. Its plane may lie beyond where the point is now, by as much as the bodies would move if nothing
@@ -257,7 +270,7 @@ Exact besideEdge(const Refiner& refiner, const OwnPoint& own, double reach_m) {
 Exact atEndOfStep(const Exact& now, const Refiner& refiner, const OwnPoint& own, const Vec3& way_W,
                   double max_m) {
   Exact end = refiner.at(own.movedTo(own.p_W + way_W), max_m + way_W.norm());
-  if (end.found && !(end.is_contact && end.distance_m >= 0)) return now;
+  if (end.found && !(end.is_contact && (end.distance_m >= 0 || slidesOnto(end, now, way_W)))) return now;
   end.distance_m = std::max(end.distance_m - end.n.dot(way_W), std::min(0.0, now.distance_m));
   return end;
 }

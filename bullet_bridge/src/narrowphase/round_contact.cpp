@@ -13,6 +13,7 @@
 #include <optional>
 
 #include "native_shapes/primitive.h"
+#include "shape/sheet_border.h"
 #include "vps_bullet/convert.h"
 
 namespace vps::bullet::inline v0 {
@@ -132,18 +133,22 @@ double leastRadius_m(const btCollisionShape& shape) {
 
 /// The nearest point of the part's exact surface to x, in the models' frame.
 struct OwnFoot {
-  double distance_m = 1e30;  ///< of x, negative inside the part
+  double distance_m = 1e30;  ///< of x, negative inside the part, or behind a sheet
   Vec3 q = Vec3::Zero(), outward = Vec3::Zero();
 };
 
-OwnFoot footOnOwn(const ShapeModels& models, const Vec3& x_M, double max_m) {
+// A sheet is seen from the side that a point with this inward normal faces.
+OwnFoot footOnOwn(const ShapeModels& models, const Vec3& x_M, const Vec3& inward_M, double max_m) {
   OwnFoot nearest;
   for (const Surface& surface : models.surfaces) {
     const Vec3 x = surface.X_MP.inverse() * x_M;
     const MeshDistance::Closest closest = surface.distance->closest(x, max_m);
     if (!closest.found) continue;
-    const double d = closest.normal.dot(x - closest.q) < 0 ? -closest.distance_m : closest.distance_m;
-    if (d < nearest.distance_m) nearest = {d, surface.X_MP * closest.q, surface.X_MP.R * closest.normal};
+    Vec3 n = closest.normal;
+    if (surface.sheet)
+      n = surface.sheet->seenFrom(x, -(surface.X_MP.R.transpose() * inward_M), closest).normal;
+    const double d = n.dot(x - closest.q) < 0 ? -closest.distance_m : closest.distance_m;
+    if (d < nearest.distance_m) nearest = {d, surface.X_MP * closest.q, surface.X_MP.R * n};
   }
   return nearest;
 }
@@ -171,7 +176,8 @@ bool refineOnRound(Candidate& c, const SideView& side, const SideView& other,
   constexpr double kGain_m = 1e-7;
   if (!x || at.distance_m - (p - *x).dot(inward) < kGain_m) return false;
   const Vec3 x_M = X_SM.inverse() * *x;
-  const OwnFoot foot = footOnOwn(models, x_M, 1.001 * (x_M - p_M).norm());  // p itself is on the surface
+  const OwnFoot foot =
+      footOnOwn(models, x_M, inward_M, 1.001 * (x_M - p_M).norm());  // p itself is on the surface
   if (!(foot.distance_m < at.distance_m)) return false;
   constexpr double kTouching_m = 1e-9;
   const Vec3 n_M =

@@ -118,8 +118,10 @@ std::unique_ptr<Shape> restoreShape(const char* saved_as, const btStridingMeshIn
   PointShellSettings points;
   if (saved.voxel_m != 0) voxels = {saved.voxel_m, saved.band_voxels};
   if (saved.spacing_m != 0) points.spacing_m = saved.spacing_m;
-  const auto part =
-      buildPartModel("saved shape", transformed(meshOf(triangles), saved.X_SM.inverse()), voxels, points);
+  // Only a sheet has a shell and no map.
+  const OpenMesh open = saved.voxel_m != 0 ? OpenMesh::Solid : OpenMesh::Sheet;
+  const auto part = buildPartModel("saved shape", transformed(meshOf(triangles), saved.X_SM.inverse()),
+                                   voxels, points, {}, open);
   ShapeModels models = makeModels(*part);
   if (saved.voxel_m == 0) models.map = nullptr;
   if (saved.spacing_m == 0) models.shell = nullptr;

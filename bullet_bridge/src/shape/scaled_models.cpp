@@ -3,6 +3,8 @@
 
 #include <stdexcept>
 
+#include "shape/sheet_border.h"
+
 namespace vps::bullet::inline v0 {
 
 namespace {
@@ -42,9 +44,11 @@ std::shared_ptr<const PointShell> scaled(const PointShell& shell, double factor)
 
 std::vector<Surface> scaled(const std::vector<Surface>& surfaces, double factor) {
   std::vector<Surface> larger;
-  for (const Surface& surface : surfaces)
-    larger.push_back({std::make_shared<const Solid>(surface.distance->scaled(factor)),
-                      Pose(surface.X_MP.R, factor * surface.X_MP.p), surface.sheet, surface.material});
+  for (const Surface& surface : surfaces) {
+    const auto solid = std::make_shared<const Solid>(surface.distance->scaled(factor));
+    const auto border = surface.sheet ? std::make_shared<const SheetBorder>(solid->mesh()) : nullptr;
+    larger.push_back({solid, Pose(surface.X_MP.R, factor * surface.X_MP.p), border, surface.material});
+  }
   return larger;
 }
 

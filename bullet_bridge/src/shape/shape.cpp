@@ -12,6 +12,7 @@
 #include "log/report.h"
 #include "shape/forgotten_install.h"
 #include "shape/scaled_models.h"
+#include "shape/sheet_border.h"
 #include "shape/triangle_tree.h"
 #include "vps/feature_motion.h"
 #include "vps/load_error.h"
@@ -113,10 +114,14 @@ PointNormals findNormals(const ShapeModels& models) {
       if (!normals.surfaces.empty() && normals.is_edge[i] != 0)
         normals.surfaces[i] = static_cast<std::uint16_t>(s);
       const Vec3 outward = -(X_PM.R * models.shell->inward[i]);
-      if (outward.dot(surface.distance->featureNormal(closest.triangle, 0)) <= kCosFace) continue;
+      const Vec3 face = surface.distance->featureNormal(closest.triangle, 0);
+      const double side = surface.sheet && outward.dot(face) < 0 ? -1 : 1;  // a sheet has points on both
+      if (side * outward.dot(face) <= kCosFace) continue;
+      // A face's plane goes on beyond its border, and the sheet does not.
+      if (surface.sheet && surface.sheet->isOnBorder(closest.triangle, closest.q)) continue;
       normals.is_edge[i] = 0;
       normals.smooth_inward[i] =
-          -(surface.X_MP.R * surface.distance->smoothNormal(closest.triangle, closest.q));
+          -side * (surface.X_MP.R * surface.distance->smoothNormal(closest.triangle, closest.q));
       normals.faces[i] = {s, closest.triangle};
       if (!normals.surfaces.empty()) normals.surfaces[i] = static_cast<std::uint16_t>(s);
     }
@@ -126,10 +131,13 @@ PointNormals findNormals(const ShapeModels& models) {
   return normals;
 }
 
+// Whether an edge of a sheet is a ridge or a groove depends on the side from which it is met: its points and
+// features act there.
 EdgeSet edgesOf(const std::vector<Surface>& surfaces) {
   std::vector<EdgeSegment> segments;
   for (std::size_t i = 0; i < surfaces.size(); ++i)
-    appendEdges(surfaces[i].distance->mesh(), surfaces[i].X_MP, static_cast<std::uint16_t>(i), segments);
+    if (!surfaces[i].sheet)
+      appendEdges(surfaces[i].distance->mesh(), surfaces[i].X_MP, static_cast<std::uint16_t>(i), segments);
   return EdgeSet(std::move(segments));
 }
 
@@ -164,6 +172,8 @@ ShapeModels makeModels(const PartModel& part) {
   models.shell = part.shell;
   models.mesh = part.mesh;
   if (part.solid) models.surfaces = {{part.solid, Pose()}};
+  if (part.solid && part.solid->isSheet())
+    models.surfaces[0].sheet = std::make_shared<const SheetBorder>(part.solid->mesh());
   return models;
 }
 

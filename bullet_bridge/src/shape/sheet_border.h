@@ -25,12 +25,13 @@ class SheetBorder {
   /// the mesh's frame.
   [[nodiscard]] SheetFoot seenFrom(const Vec3& p, const Vec3& inward,
                                    const MeshDistance::Closest& foot) const;
+  /// True if a point q of a triangle lies on the border.
+  [[nodiscard]] bool isOnBorder(std::uint32_t triangle, const Vec3& q) const;
 
  private:
   struct Edge {
     Vec3 a, b;
   };
-  [[nodiscard]] bool isOnBorder(std::uint32_t triangle, const Vec3& q) const;
   /// By triangle: index of its first entry in edges_, followed by that of the next triangle. Entries are the
   /// border's edges that share a corner with the triangle.
   std::vector<std::uint32_t> first_;

@@ -21,6 +21,13 @@ struct Material {
   double stiffness_N_per_m3 = 1e12;  ///< penalty stiffness per area (paper, section 4.1)
 };
 
+/// What a mesh with a hole that is wider than the spacing of its points stands for. Narrower holes, cracks,
+/// T-junctions and single missing facets are faults of a solid in either case.
+enum class OpenMesh {
+  Sheet,  ///< for what is drawn: a surface that is met from both sides, and never closed over
+  Solid,  ///< for the solid that it would be without the hole
+};
+
 /// The models of one part, all in the part's own frame P. It is held as `std::shared_ptr<const PartModel>` by
 /// everything that needs the part's models (collision shape, fixed field, overlap judge), on any thread.
 /// Parts of equal geometry share mesh, map, shell and solid and differ in name and material. Each pointer
@@ -29,17 +36,20 @@ struct PartModel {
   std::string name;
   std::shared_ptr<const Mesh> mesh;
   Material material;
-  std::shared_ptr<const VoxMap> map;
+  std::shared_ptr<const VoxMap> map;  ///< null for a sheet, which has no inside
   std::shared_ptr<const PointShell> shell;
   std::shared_ptr<const Solid> solid;  ///< what map and shell are built from
 };
 
 /// Builds all models of a part, from one Solid. `mesh` is the given one, or the solid's where facets had to
-/// be turned, so that it has a positive volume. Throws LoadError as buildVoxMap() and buildPointShell().
+/// be turned, so that it has a positive volume; that of a sheet is as given. Throws LoadError as buildVoxMap()
+/// and buildPointShell().
+/// @param open  what a mesh with a wide hole stands for; of a sheet, `solid` is a Solid::sheet()
 VPS_API std::shared_ptr<const PartModel> buildPartModel(const std::string& name, Mesh mesh,
                                                         const VoxMapSettings& voxels = {},
                                                         const PointShellSettings& points = {},
-                                                        const Material& material = {});
+                                                        const Material& material = {},
+                                                        OpenMesh open = OpenMesh::Sheet);
 
 /// The same part with another sampling of its surface. Everything else stays shared.
 VPS_API std::shared_ptr<const PartModel> withShell(const PartModel& model,

@@ -60,7 +60,8 @@ struct VPS_API PointShell {
 VPS_API PointShell buildPointShell(const Mesh& mesh, const PointShellSettings& settings,
                                    const std::string& part = "", const Progress& progress = {});
 
-/// As above, of a solid's repaired surface: the normals point into the solid.
+/// As above, of a solid's repaired surface: the normals point into the solid. A sheet has each point twice,
+/// once for each side, with its whole area, and points of its border whose normals point into the sheet.
 VPS_API PointShell buildPointShell(const Solid& solid, const PointShellSettings& settings,
                                    const std::string& part = "", const Progress& progress = {});
 

@@ -91,7 +91,9 @@ std::vector<ShellNode> joinedNodes(const std::vector<const PointShell*>& shells,
 }
 
 /// The shell of a mesh with shared vertices.
-PointShell sampled(const Mesh& mesh, const PointShellSettings& settings, const Progress& progress) {
+/// @param is_sheet  the surface is met from both sides, and at its border
+PointShell sampled(const Mesh& mesh, const PointShellSettings& settings, const Progress& progress,
+                   bool is_sheet = false) {
   const auto report = [&progress](double share) {
     if (progress) progress("sampling points", share);
   };
@@ -102,6 +104,7 @@ PointShell sampled(const Mesh& mesh, const PointShellSettings& settings, const P
                      settings.edge_angle_rad);
   report(0.1);
   sampleFaces(mesh, normals, settings.spacing_m, samples);
+  if (is_sheet) addOtherSides(mesh, kEdgeStep * settings.spacing_m, samples);
   report(0.8);
   PointShell shell = laidOut(samples, settings.spacing_m);
   report(1);
@@ -126,7 +129,7 @@ PointShell buildPointShell(const Mesh& mesh, const PointShellSettings& settings,
 PointShell buildPointShell(const Solid& solid, const PointShellSettings& settings, const std::string& part,
                            const Progress& progress) {
   requireSettings(solid.mesh(), settings, part);
-  return sampled(solid.mesh(), settings, progress);
+  return sampled(solid.mesh(), settings, progress, solid.isSheet());
 }
 
 PointShell mergedShells(const std::vector<const PointShell*>& shells, const std::vector<Pose>& X_MPs) {

@@ -44,4 +44,9 @@ std::vector<ShellSample> sampleFeatures(const Mesh& mesh, const std::vector<Vec3
 void sampleFaces(const Mesh& mesh, const std::vector<Vec3>& normals, double spacing_m,
                  std::vector<ShellSample>& samples);
 
+/// For a sheet: adds each sample once more, facing the other way, and samples of the border, at most step_m
+/// apart, that face away from the sheet in its plane. Edges of one facet at the place of another's, where
+/// sheets meet, are no border.
+void addOtherSides(const Mesh& mesh, double step_m, std::vector<ShellSample>& samples);
+
 }  // namespace vps::inline v0

@@ -7,6 +7,7 @@
 #include "query/flush_features.h"
 #include "query/motion_tube.h"
 #include "query/moving_features.h"
+#include "query/passed_edge.h"
 
 namespace vps::inline v0 {
 
@@ -112,16 +113,39 @@ FeatureContact contactAt(Kind kind, const std::uint32_t (&feature)[2], const Fea
   return contact;
 }
 
-// The same with its plane, where the features touch along the line between their nearest points. False: other
-// features are met there first, or points stand for these.
+// Whose contact it is, where features that were carried a share of their way come within the rest gap.
+BorderOwner ownerOf(const FeatureSet& part0, const FeatureSet& part1, const FeatureContact& contact,
+                    const Features& f, const Reach& reach, const Mat3& R_10) {
+  const auto [p, q] = std::pair(reach.nearest.p, reach.nearest.q);
+  if (contact.kind == Kind::EdgeOnEdge || !((p - q).norm() < FeatureMotion::kRest_m))
+    return BorderOwner::Edge;
+  Vec3 at[3];
+  f.moveTo(reach.share, at);
+  const Vec3 way = inOwnFrame(contact.kind, f.way, at, p);
+  constexpr double kTolerated_m = FeatureMotion::kLeastShare * FeatureMotion::kRest_m;
+  if (contact.kind == Kind::CornerOnFacet)
+    return ownerAtBorder(part1, contact.feature[1], q, p - q, way, kTolerated_m);
+  const Mat3 R_01 = R_10.transpose();
+  return ownerAtBorder(part0, contact.feature[0], contact.p[0], R_01 * (q - p), -(R_01 * way), kTolerated_m);
+}
+
+// The same with its plane, where the features touch along the line between their nearest points, or, near an
+// edge, in the plane of the face that they slide onto. False: other features are met there first, or points
+// stand for these.
 bool findContact(const FeatureSet& part0, const FeatureSet& part1, Kind kind,
                  const std::uint32_t (&feature)[2], const Features& f, const Reach& reach, const Mat3& R_10,
                  FeatureContact& contact) {
   const Nearest& nearest = reach.nearest;
   if (kind == Kind::EdgeOnEdge && nearest.is_end) return false;  // a corner and a facet
-  const Vec3 n_1 = (nearest.p - nearest.q).normalized(), n_0 = R_10.transpose() * n_1;
   contact = contactAt(kind, feature, f, reach);
   contact.plane_of = kind == Kind::FacetOnCorner ? 0 : 1;
+  Vec3 n_1 = (nearest.p - nearest.q).normalized(), n_0 = R_10.transpose() * n_1;
+  const BorderOwner owner = ownerOf(part0, part1, contact, f, reach, R_10);
+  if (owner == BorderOwner::Neighbour) return false;
+  if (owner == BorderOwner::Facet) {
+    n_1 = contact.plane_of == 1 ? part1.normal(feature[1]) : Vec3(-(R_10 * part0.normal(feature[0])));
+    n_0 = contact.plane_of == 1 ? Vec3(R_10.transpose() * n_1) : Vec3(-part0.normal(feature[0]));
+  }
   contact.n = contact.plane_of == 0 ? n_0 : n_1;
   return isMetFromOutside(part0, kind, 0, feature[0], contact.p[0], n_0) &&
          isMetFromOutside(part1, kind, 1, feature[1], contact.p[1], n_1) &&
@@ -143,6 +167,15 @@ double distanceAt(const FeatureSet& part0, const FeatureSet& part1, const Featur
                   const Pose& X_01) {
   const Features f = featuresAt(part0, part1, contact.kind, contact.feature, X_01.inverse());
   return nearestOf(contact.kind, f.a, f.b).distance_m();
+}
+
+// The distance at the start; in a face's plane the height above it: a corner may be far and slide onto it.
+double startOf(const FeatureSet& part0, const FeatureSet& part1, const FeatureContact& contact,
+               double distance_m, const Pose& start) {
+  if (contact.kind == Kind::EdgeOnEdge) return distance_m;
+  const Vec3& n = contact.plane_of == 1 ? part1.normal(contact.feature[1]) : part0.normal(contact.feature[0]);
+  if (contact.n != n && contact.n != -n) return distance_m;
+  return std::min(distance_m, std::max(contact.gap_m(start), kTouching_m));
 }
 
 /// The piece of the way in which features reach a distance first.
@@ -209,7 +242,7 @@ void FeatureMotion::check(const FeatureSet& part0, const FeatureSet& part1, cons
     from = to;
     for (std::size_t i = found; i < out.size(); ++i) {
       out[i].share = (k + out[i].share) / stretches;
-      out[i].start_m = distanceAt(part0, part1, out[i], start);
+      out[i].start_m = startOf(part0, part1, out[i], distanceAt(part0, part1, out[i], start), start);
     }
   }
 }
@@ -258,8 +291,8 @@ void FeatureMotion::checkStretch(const FeatureSet& part0, const FeatureSet& part
       continue;
     contact.share =
         (static_cast<double>(met.piece) + met.reach.share) / static_cast<double>(way_10_.size() - 1);
-    contact.start_m = near.distance_m;
-    if (is_held || contact.gap_m(end) < std::min(gap_m, near.distance_m) - kRounding_m)
+    contact.start_m = startOf(part0, part1, contact, near.distance_m, start);
+    if (is_held || contact.gap_m(end) < std::min(gap_m, contact.start_m) - kRounding_m)
       out.push_back(contact);
   }
 }

@@ -90,6 +90,8 @@ void FeatureSet::append(const Mesh& mesh, const Pose& X_MP, bool is_sheet) {
       const Vec3 into = vertex(mesh.triangles[triangle][(same[i].side + 2U) % 3]) - vertices_[edge.from];
       edge.into[i] = (into - along * along.dot(into)).normalized();
     }
+    const bool is_joined = same.size() == 2 && same[0].is_forward != same[1].is_forward;
+    if (is_sheet && is_joined && isSmoothEdge(edge.normal[0], edge.normal[1], false)) return;
     if (edge.has_faces) {
       const bool is_one_curved = is_curved[same[0].triangle] != 0 || is_curved[same[1].triangle] != 0;
       if (isSmoothEdge(edge.normal[0], edge.normal[1], is_one_curved)) return;
