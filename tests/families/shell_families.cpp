@@ -13,7 +13,8 @@
 namespace vps::families {
 namespace {
 
-constexpr int kBoxMembers = 90, kNestedMembers = 54, kRoundMembers = 60, kRestMembers = 54;
+constexpr int kBoxMembers = 90, kNestedMembers = 54, kRoundMembers = 60, kRestMembers = 54,
+              kCrossingMembers = 120, kCopyMembers = 72, kLevelMembers = 60;
 
 /// The pose in which member i's mesh is: of every fifth without a rotation.
 Pose poseOf(int i) {
@@ -124,6 +125,230 @@ double massOfNested(int i) {
   return std::max(difference(Solid(mesh).mass(), truth, size_m), difference(solidMass(mesh), truth, size_m));
 }
 
+// ---- shells that cross each other
+
+/// Two or three shells that cross.
+struct Crossing {
+  std::string kind;
+  std::vector<Box> boxes;  ///< none: tetrahedra
+};
+
+Crossing crossingMember(int i) {
+  search::Random random(8800 + static_cast<std::uint64_t>(i));
+  const auto mm = [](double a, double b, double c, double d, double e, double f) {
+    return Box{1e-3 * Vec3(a, b, c), 1e-3 * Vec3(d, e, f)};
+  };
+  const auto round = [&](int low, int high) { return low + random.index(high - low + 1); };
+  switch (i % 6) {
+    case 0: {  // member 0 is the case that was found
+      const double o = i == 0 ? 2 : random.uniform(0.5, 19);
+      return {"cubes of 20 mm, one moved along its diagonal",
+              {mm(0, 0, 0, 20, 20, 20), mm(o, o, o, 20 + o, 20 + o, 20 + o)}};
+    }
+    case 1: {  // round numbers: faces lie in planes of points that are spread evenly
+      const double l = i == 1 ? 20 : round(6, 25), w = i == 1 ? 5 : round(2, 5), h = i == 1 ? 5 : round(1, 5);
+      return {"bars that cross as a plus, faces in one plane",
+              {mm(-l, -w, -5, l, w, 5), mm(-w, -l, -h, w, l, h)}};
+    }
+    case 2: {
+      const double l = i == 2 ? 8 : random.uniform(5.1, 20);
+      return {"a bar through a bar", {mm(-20, -5, -5, 20, 5, 5), mm(-5, -l, -3, 5, l, 3)}};
+    }
+    case 3: {
+      Crossing member{"boxes centred in one point", {}};
+      const int count = 2 + random.index(2);
+      for (int k = 0; k < count; ++k) {
+        const Vec3 half = 1e-3 * Vec3(round(1, 20), round(1, 20), round(1, 20));
+        member.boxes.push_back({-half, half});
+      }
+      return member;
+    }
+    case 4: {
+      const double sunk = i == 4 ? 9 : random.uniform(0.5, 9.9);
+      return {"a boss sunk into a plate",
+              {mm(-20, -20, -5, 20, 20, 5), mm(-5, -5, 5 - sunk, 5, 5, 15 - sunk)}};
+    }
+    default:
+      return {"two tetrahedra in a cube", {}};
+  }
+}
+
+/// A box within another one would be a void if it faced the other way.
+bool isNested(const std::vector<Box>& boxes) {
+  for (const Box& inner : boxes)
+    for (const Box& outer : boxes)
+      if (&inner != &outer && isWithin(inner, outer)) return true;
+  return false;
+}
+
+std::vector<bool> crossingFacesIn(int i, std::size_t count) {
+  std::vector<bool> faces_in;
+  for (std::size_t k = 0; k < count; ++k) faces_in.push_back((i / 6 + 1) >> k & 1);
+  return faces_in;
+}
+
+Mesh tetrahedron(double half_m, bool is_mirrored, bool faces_in) {
+  Mesh mesh;
+  mesh.vertices = {Vec3(1, 1, 1), Vec3(1, -1, -1), Vec3(-1, 1, -1), Vec3(-1, -1, 1)};
+  mesh.triangles = {{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}};
+  for (Vec3& v : mesh.vertices) v *= is_mirrored ? -half_m : half_m;
+  if ((massProperties(mesh).volume_m3 < 0) != faces_in)
+    for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
+  return mesh;
+}
+
+/// Error of volume, centre and inertia; of tetrahedra, whose union is 4 h^3, of volume and centre.
+double massOfCrossing(int i) {
+  const Crossing member = crossingMember(i);
+  search::Random random(8900 + static_cast<std::uint64_t>(i));
+  const Pose X = i % 4 == 0 ? Pose(random.rotation(), random.inBox(Vec3::Constant(0.05))) : Pose();
+  if (member.boxes.empty()) {
+    const std::vector<bool> faces_in = crossingFacesIn(i, 2);
+    const double h = random.uniform(2e-3, 20e-3);
+    Mesh mesh = tetrahedron(h, false, faces_in[0]);
+    append(mesh, tetrahedron(h, true, faces_in[1]));
+    const MassProperties mass = Solid(transformed(mesh, X)).mass();
+    return std::max(std::abs(mass.volume_m3 / (4 * h * h * h) - 1), (mass.com - X.p).norm() / h);
+  }
+  std::vector<bool> faces_in = crossingFacesIn(i, member.boxes.size());
+  if (isNested(member.boxes)) faces_in.assign(member.boxes.size(), i / 6 % 2 == 0);
+  const Mesh mesh = transformed(shellsOf(member.boxes, faces_in), X);
+  const MassProperties truth = moved(BoxUnion(member.boxes).mass(), X);
+  const double size_m = bounds(mesh).size().norm();
+  return std::max(difference(Solid(mesh).mass(), truth, size_m), difference(solidMass(mesh), truth, size_m));
+}
+
+// ---- a solid given twice
+
+/// A box whose faces have a grid of n facets' sides.
+Mesh gridBox(const Box& box, const std::array<int, 3>& n) {
+  Mesh mesh;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const bool is_high : {false, true}) {
+      const int b = (axis + 1) % 3, c = (axis + 2) % 3;
+      const int rows = n[static_cast<std::size_t>(b)], columns = n[static_cast<std::size_t>(c)];
+      const auto base = static_cast<std::uint32_t>(mesh.vertices.size());
+      for (int i = 0; i <= rows; ++i)
+        for (int k = 0; k <= columns; ++k) {
+          Vec3 p = is_high ? box.max : box.min;
+          p[b] = i == rows ? box.max[b] : box.min[b] + box.size()[b] * i / rows;
+          p[c] = k == columns ? box.max[c] : box.min[c] + box.size()[c] * k / columns;
+          mesh.vertices.push_back(p);
+        }
+      for (int i = 0; i < rows; ++i)
+        for (int k = 0; k < columns; ++k) {
+          const std::uint32_t p = base + static_cast<std::uint32_t>(i * (columns + 1) + k),
+                              q = p + static_cast<std::uint32_t>(columns) + 1;
+          mesh.triangles.push_back({p, q, q + 1});
+          mesh.triangles.push_back({p, q + 1, p + 1});
+          if (!is_high)
+            for (std::size_t t = mesh.triangles.size() - 2; t < mesh.triangles.size(); ++t)
+              std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
+        }
+    }
+  return mesh;
+}
+
+struct Copies {
+  Box box;
+  std::vector<std::array<int, 3>> grids;
+  std::vector<bool> faces_in;
+};
+
+/// Members 0 to 3 are cases that were found.
+Copies copiesMember(int i) {
+  search::Random random(9200 + static_cast<std::uint64_t>(i));
+  const auto half = [&] { return random.uniform(3e-3, 20e-3); };
+  const Vec3 size(half(), half(), half());
+  Copies member{{-size, size}, {{1, 1, 1}}, {i % 4 == 3}};
+  const std::array<int, 3> found[] = {{2, 2, 2}, {3, 4, 5}, {1, 1, 2}, {1, 1, 1}};
+  const int count = i < 4 ? 1 : 1 + random.index(3);
+  for (int k = 0; k < count; ++k) {
+    const std::array<int, 3> drawn = {1 + random.index(5), 1 + random.index(5), 1 + random.index(5)};
+    member.grids.push_back(i < 4 ? found[i] : drawn);
+    member.faces_in.push_back(k == 0 ? i % 4 < 3 : random.chance(0.5));
+  }
+  return member;
+}
+
+std::string describeCopies(int i) {
+  const Copies member = copiesMember(i);
+  std::string text = "a box given " + std::to_string(member.grids.size()) + " times, grids";
+  for (std::size_t k = 0; k < member.grids.size(); ++k) {
+    for (const int n : member.grids[k]) text += " " + std::to_string(n);
+    text += member.faces_in[k] ? " inverted," : ",";
+  }
+  return text + (i / 4 % 2 == 0 ? "" : " rotated");
+}
+
+double massOfCopies(int i) {
+  const Copies member = copiesMember(i);
+  Mesh mesh;
+  for (std::size_t k = 0; k < member.grids.size(); ++k) {
+    Mesh box = gridBox(member.box, member.grids[k]);
+    if (member.faces_in[k])
+      for (auto& t : box.triangles) std::swap(t[1], t[2]);
+    append(mesh, box);
+  }
+  const Pose X = i / 4 % 2 == 0 ? Pose() : poseOf(i % 5 == 0 ? i + 1 : i);
+  mesh = transformed(mesh, X);
+  const MassProperties truth = moved(BoxUnion({member.box}).mass(), X);
+  const double size_m = bounds(mesh).size().norm();
+  const Solid solid(mesh);
+  const bool is_there = solid.isInside(X * Vec3(0.3 * member.box.max));
+  return std::max({is_there ? 0.0 : 1.0, difference(solid.mass(), truth, size_m),
+                   difference(solidMass(mesh), truth, size_m)});
+}
+
+// ---- three to six shells, each within the one before
+
+/// Which shells face in, the outermost first. That one faces out after the repair.
+std::vector<bool> levelFacesIn(int i) {
+  search::Random random(9300 + static_cast<std::uint64_t>(i));
+  if (i == 0) return {false, true, true};  // the case that was found
+  std::vector<bool> faces_in;
+  for (int k = 0, n = 3 + random.index(4); k < n; ++k) faces_in.push_back(random.chance(0.5));
+  return faces_in;
+}
+
+std::string describeLevels(int i) {
+  std::string text = "shells that face, from the outermost:";
+  for (const bool faces_in : levelFacesIn(i)) text += faces_in ? " in" : " out";
+  return text;
+}
+
+/// Error of mass properties, or the number of gaps between shells that are on the wrong side. Shells that
+/// face as the outermost add one to the winding number within them, others take one away; solid is where it
+/// is above 0.
+double massOfLevels(int i) {
+  const std::vector<bool> faces_in = levelFacesIn(i);
+  search::Random random(9350 + static_cast<std::uint64_t>(i));
+  const Vec3 half(random.uniform(20e-3, 40e-3), random.uniform(20e-3, 40e-3), random.uniform(20e-3, 40e-3));
+  std::vector<Box> boxes;
+  for (std::size_t k = 0; k < faces_in.size(); ++k)
+    boxes.push_back(
+        {-half * (1 - 0.14 * static_cast<double>(k)), half * (1 - 0.14 * static_cast<double>(k))});
+  MassProperties truth;
+  std::vector<bool> is_solid;
+  int winding = 0;
+  for (std::size_t k = 0; k < boxes.size(); ++k) {
+    winding += faces_in[k] == faces_in[0] ? 1 : -1;
+    is_solid.push_back(winding > 0);
+    if (k == 0) truth = BoxUnion({boxes[0]}).mass();
+    if (k > 0 && is_solid[k] != is_solid[k - 1])
+      truth = plus(truth, BoxUnion({boxes[k]}).mass(), is_solid[k] ? 1 : -1);
+  }
+  const Pose X = poseOf(i);
+  const Mesh mesh = transformed(shellsOf(boxes, faces_in), X);
+  const double size_m = bounds(mesh).size().norm();
+  const Solid solid(mesh);
+  double wrong = 0;
+  for (std::size_t k = 0; k < boxes.size(); ++k)
+    wrong += solid.isInside(X * Vec3(0.93 * boxes[k].max.x(), 0, 0)) != is_solid[k];
+  return std::max({wrong, difference(solid.mass(), moved(truth, X), size_m),
+                   difference(solidMass(mesh), moved(truth, X), size_m)});
+}
+
 // ---- round shells
 
 /// A prism over a regular polygon, in a round number of ways half sunk into a box, stacked on it, or beside
@@ -230,6 +455,12 @@ std::vector<Family> shellFamilies() {
        distanceToBoxes, describeBoxes},
       {"E_nested_mass", "relative error of mass properties of shells apart and in each other", 1e-9,
        kNestedMembers, 1, massOfNested, kindOf(nestedMember)},
+      {"E_crossing_mass", "relative error of mass properties of shells that cross, some inverted", 1e-9,
+       kCrossingMembers, 2, massOfCrossing, kindOf(crossingMember)},
+      {"E_copies_mass", "the same of solids given two to four times with other facets, or 1 if none is there",
+       1e-9, kCopyMembers, 1, massOfCopies, describeCopies},
+      {"E_levels_mass", "the same of three to six shells in each other; points on the wrong side", 1e-9,
+       kLevelMembers, 1, massOfLevels, describeLevels},
       {"E_round_volume", "relative error of the volume of cylinders and spheres sunk into boxes", 1e-9,
        kRoundMembers, 2, massOfRound, kindOf(roundMember)},
       {"E_ball_rests", "depth of a ball of 10 mm that rests on shells, voxels of 1 mm [um]", 1, kRestMembers,

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -89,6 +90,74 @@ TEST(SolidMass, AnInnerShellIsACavityOnlyIfItFacesTheOtherWay) {
   EXPECT_NEAR(solidMass(joined(outer, turned(inner))).volume_m3 / 56e-6, 1, 1e-12);
   EXPECT_NEAR(solidMass(turned(joined(outer, inner))).volume_m3 / 64e-6, 1, 1e-12);
   EXPECT_NEAR(solidMass(turned(joined(outer, turned(inner)))).volume_m3 / 56e-6, 1, 1e-12);
+}
+
+TEST(ShellUnion, AnInvertedShellThatCrossesAnotherIsASolid) {
+  const Mesh a = block({0, 0, 0}, {0.02, 0.02, 0.02}), b = block({2e-3, 2e-3, 2e-3}, {0.022, 0.022, 0.022});
+  const double union_m3 = 2 * 8e-6 - std::pow(0.018, 3);
+  for (const Mesh& mesh : {joined(a, b), joined(a, turned(b)), joined(turned(a), b), turned(joined(a, b))})
+    EXPECT_NEAR(Solid(mesh).mass().volume_m3 / union_m3, 1, 1e-12);
+  const double sunk_m = 1e-3;  // a void may touch the outer shell; one that reaches through it is a solid
+  const Mesh plate = block({0, 0, 0}, {0.04, 0.04, 0.01});
+  const auto boss = [](double top_m) { return block({0.01, 0.01, 2e-3}, {0.02, 0.02, top_m}); };
+  EXPECT_NEAR(solidMass(joined(plate, turned(boss(0.01)))).volume_m3 / (16e-6 - 0.8e-6), 1, 1e-12);
+  EXPECT_NEAR(solidMass(joined(plate, turned(boss(0.01 + sunk_m)))).volume_m3 / (16e-6 + 0.1e-6), 1, 1e-12);
+}
+
+/// All corners of the bar are on the channel or in it; its middle is in the open.
+TEST(ShellUnion, AnInvertedShellThatCrossesTheOpenPartOfAnotherIsASolid) {
+  const Solid united(channel(0));
+  const Mesh channel = united.mesh(), across = block({0.005, 5e-3, 0.02}, {0.055, 15e-3, 0.03});
+  const double union_m3 = kChannel_m3 + 0.04 * 0.01 * 0.01;
+  for (const Mesh& bar : {across, turned(across)})
+    EXPECT_NEAR(solidMass(joined(channel, bar)).volume_m3 / union_m3, 1, 1e-12);
+  const Mesh lid = block({0, 0, 0.03}, {0.06, 0.02, 0.04});
+  for (const Mesh& bar : {lid, turned(lid)})
+    EXPECT_NEAR(solidMass(joined(channel, bar)).volume_m3 / (kChannel_m3 + 0.04 * 0.02 * 0.01), 1, 1e-12);
+}
+
+/// The block's faces are those of a block, but for a line around its middle.
+Mesh blockOfTwoHalves(const Vec3& min, const Vec3& max) {
+  const double middle_m = 0.5 * (min.z() + max.z());
+  Mesh mesh =
+      welded(joined(block(min, {max.x(), max.y(), middle_m}), block({min.x(), min.y(), middle_m}, max)));
+  std::erase_if(mesh.triangles, [&](const auto& t) {
+    return std::all_of(t.begin(), t.end(),
+                       [&](std::uint32_t v) { return std::abs(mesh.vertices[v].z() - middle_m) < 1e-9; });
+  });
+  return mesh;
+}
+
+/// Without the ends, which both have in common, the rest would close to a solid without volume.
+TEST(ShellUnion, AnInvertedCopyWithOtherFacetsIsTheSameSolid) {
+  const Mesh one = block({0, 0, 0}, {0.02, 0.02, 0.02}),
+             two = blockOfTwoHalves({0, 0, 0}, {0.02, 0.02, 0.02});
+  for (const Mesh& mesh : {joined(one, turned(two)), joined(two, turned(one)), joined(turned(one), two)})
+    for (const Pose& X : {Pose(), RandomPoints(3).pose(0.05)}) {
+      const Solid solid(transformed(mesh, X));
+      EXPECT_NEAR(solid.mass().volume_m3 / 8e-6, 1, 1e-12) << describe(solid.report());
+      EXPECT_TRUE(solid.isInside(X * Vec3(8e-3, 9e-3, 7e-3)));
+      EXPECT_NEAR(solid.signedDistance(X * Vec3(0.01, 0.01, 5e-3)), -5e-3, 1e-12);
+    }
+}
+
+TEST(ShellUnion, BoxesOfRoundSizesInTheSameFrameAreUnited) {
+  const Solid plus(joined(makeBox({0.04, 0.01, 0.01}), makeBox({0.01, 0.04, 0.01})));
+  EXPECT_FALSE(plus.report().is_union_incomplete);
+  EXPECT_NEAR(plus.mass().volume_m3 / 7e-6, 1, 1e-12);
+  EXPECT_NEAR(plus.signedDistance({0.012, 0.002, 0}), -0.003, 1e-12);
+}
+
+TEST(SolidMass, AVoidWithinAVoidAddsNothing) {
+  const Mesh outer = makeBox({0.06, 0.06, 0.06}), cavity = makeBox({0.04, 0.04, 0.04}),
+             inner = makeBox({0.02, 0.02, 0.02});
+  const Solid solid(joined(joined(outer, turned(cavity)), turned(inner)));
+  EXPECT_NEAR(solid.mass().volume_m3 / 152e-6, 1, 1e-12);
+  EXPECT_FALSE(solid.isInside({0, 0, 0}));
+  EXPECT_NEAR(solid.signedDistance({0, 0, 0}), 0.02, 1e-12);
+  const Solid core(joined(joined(outer, turned(cavity)), inner));
+  EXPECT_NEAR(core.mass().volume_m3 / 160e-6, 1, 1e-12);
+  EXPECT_TRUE(core.isInside({0, 0, 0}));
 }
 
 TEST(SolidMass, ALidClosesAnOpenBoxAndAFlatSheetHasNoVolume) {

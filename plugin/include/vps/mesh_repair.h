@@ -32,17 +32,17 @@ enum class Crossing { Unknown, Seen };
 ///   exported for both sides, or given twice and turned once).
 /// - Facets are turned to agree across edges of two facets, also where a crack or a T-junction parts them;
 ///   the minority is turned. Cracks may be 1/600 of the mesh's size and a quarter of the edges beside them.
-/// - Closed shells that face in are turned, unless they are a cavity, which lies within a shell that faces
-///   out. Shells within a turned shell are turned with it.
+/// - Closed shells that face in are turned, with all within them, except voids: those wholly within a shell
+///   that faces out, which they may touch. Shells that cross or copy another are solids, and turned first.
 /// - Open patches are turned where the rest of the mesh shows clearly on which side the solid is.
 /// - Closed shells that touch or cross each other are united: facets are cut along the intersections, and
 ///   what has solid on both sides, or on neither, is left out. Facets without area are left out first;
 ///   patches that are open stay beside the union. Shells touch within 2.4e-7 of the greatest coordinate, four
 ///   roundings of a float. Where that finds no closed surface or would take more than about half a minute,
 ///   and where cracks part a shell that touches another, nothing is cut and the report says so.
-/// - Facets with a winding number above 0.5 on both sides are removed from the surface. So a shell within
-///   another one that faces out too is solid within solid, and is left out; a cavity is a shell that faces
-///   in.
+/// - Facets (of closed shells) with a winding number above 0.5 on both sides (or neither) leave the surface:
+///   solid within solid adds nothing, nor does a void within a void, for voids unite as solids do, crossing
+///   or nested. So within a cavity a shell that faces out is a solid, and one that faces in is nothing.
 /// A sound mesh is returned unchanged: O(n). Others need about two winding numbers a triangle.
 /// `surface` is never empty.
 VPS_API RepairedMesh repairMesh(Mesh mesh, Crossing crossing = Crossing::Unknown);

@@ -16,6 +16,7 @@
 #include "mesh/joined_edges.h"
 #include "mesh/mesh_edges.h"
 #include "mesh/mesh_survey.h"
+#include "mesh/shell_nesting.h"
 #include "mesh/shell_union.h"
 #include "vps/lids.h"
 #include "vps/mesh_distance.h"
@@ -37,6 +38,8 @@ constexpr std::size_t kMaxCopies = 32;
 /// Winding number in a facet's plane above which both sides are clearly inside: it is 0.5 more behind the
 /// facet and 0.5 less in front, and a threshold of 0.75 leaves a quarter of margin on both sides.
 constexpr double kInternal = 1.25;
+/// In the same way, below it both sides are clearly outside.
+constexpr double kExternal = -0.25;
 
 /// Facets that are connected by edges of two facets, and so must have one orientation.
 struct Patch {
@@ -137,10 +140,11 @@ class Repairer {
   /// Duplicates come first: if these are the only fault, they are copies of facets.
   std::optional<RepairedMesh> unitedShells() {
     if (is_crossing_ || is_single_) return std::nullopt;
-    if (report().duplicate_triangles > 0 && Repairer(mesh(), true).run().is_sound) return std::nullopt;
     std::optional<Mesh> solid = report().degenerate_triangles > 0 ? withoutFlatFacets(mesh()) : mesh();
     if (!solid) return std::nullopt;
     Repairer closed(*solid, true);
+    closed.findClosed();
+    if (report().duplicate_triangles > 0 && areOnlyCopies(closed)) return std::nullopt;
     std::optional<ShellUnion> found = closed.uniteClosed();
     if (!found) return std::nullopt;
     const Mesh others = closed.otherFacets();
@@ -156,6 +160,19 @@ class Repairer {
     united.report.overlapping_shells += found->covered_shells;
     united.report.internal_facets += found->covered_facets;
     return united;
+  }
+
+  /// Without one facet of each set of duplicates nothing is wrong. If a shell faces in, back-to-back facets
+  /// may be the same surface of two solids rather than a wall between them, so that none may be lost.
+  bool areOnlyCopies(const Repairer& shells) {
+    Repairer single(mesh(), true);
+    return single.run().is_sound && !(single.has_cancelled_ && shells.hasShellFacingIn());
+  }
+  [[nodiscard]] bool hasShellFacingIn() const {
+    constexpr double kFlat = 1e-9;  // of the box: rounding, as of a facet and its copy
+    return std::any_of(patches_.begin(), patches_.end(), [](const Patch& p) {
+      return p.is_closed && p.volume_m3 < -kFlat * std::pow(p.box.size().norm(), 3);
+    });
   }
 
   /// Repairs the facets that were not united, with the union as one part of the mesh.
@@ -183,13 +200,17 @@ class Repairer {
     return all;
   }
 
-  /// Nothing if there are no two closed shells whose boxes touch. Turns shells that face in.
-  std::optional<ShellUnion> uniteClosed() {
+  /// Finds patches, and which of them are closed without cracks.
+  void findClosed() {
     edges_ = sortedHalfEdges(mesh());
     result_.report = checkMesh(mesh(), edges_);
     joined_ = joinFacets(mesh(), edges_, kWidestBetweenCopies);
     findPatches();
     markOpen(edges_);  // cracks stay open in the union
+  }
+  /// After findClosed(). Nothing if there are no two closed shells whose boxes touch. Turns shells that face
+  /// in.
+  std::optional<ShellUnion> uniteClosed() {
     if (!boxesTouch(boxesOfClosed(), touchDistance(mesh()))) return std::nullopt;
     turnClosed();
     const ShellFacets closed = closedFacets();
@@ -280,6 +301,11 @@ class Repairer {
     const std::vector<std::uint8_t> is_dropped = findDuplicates(joined_.triangles, joined_.edges);
     const auto count = static_cast<std::size_t>(std::count(is_dropped.begin(), is_dropped.end(), 1));
     if (count == 0) return false;
+    std::size_t copies = 0;
+    forEachTwin(joined_.triangles, [&](std::span<const Twin> same) {
+      if (!hasRepeatedCorner(same[0].corners)) copies += same.size() - 1;
+    });
+    has_cancelled_ = count > copies;
     report().duplicate_triangles = std::max(report().duplicate_triangles, count);
     std::size_t next = 0;
     for (std::size_t i = 0; i < is_dropped.size(); ++i)
@@ -397,17 +423,8 @@ class Repairer {
     return e.is_forward != (is_flipped_[e.triangle] != 0);
   }
 
-  /// True if most of a patch lies within a shell: it may touch its surface, or reach through.
-  bool liesIn(const Patch& patch, const WindingNumber& shell) {
-    constexpr std::size_t kPlaces = 9;
-    std::size_t within = 0;
-    const std::vector<Facet> samples = samplesOf(patch, kPlaces);
-    for (const Facet& f : samples) within += shell.at(f.center).w > 0.75;
-    return 2 * within > samples.size();
-  }
-
-  /// Turns closed patches that face in and lie in no other patch, with everything inside them.
-  void turnClosed() {
+  /// Closed patches, the largest volume first.
+  [[nodiscard]] std::vector<std::size_t> closedByVolume() const {
     std::vector<std::size_t> closed;
     for (std::size_t i = 0; i < patches_.size(); ++i)
       if (patches_[i].is_closed) closed.push_back(i);
@@ -415,24 +432,49 @@ class Repairer {
       const double va = std::abs(patches_[a].volume_m3), vb = std::abs(patches_[b].volume_m3);
       return va != vb ? va > vb : a < b;
     });
+    return closed;
+  }
+
+  /// These patches' facets with area; shells are numbered as in the list.
+  ShellFacets facetsOf(const std::vector<std::size_t>& closed) {
+    ShellFacets facets{{mesh().vertices, {}}, {}};
+    for (std::uint32_t shell = 0; shell < closed.size(); ++shell)
+      for (const std::uint32_t i : patches_[closed[shell]].triangles) {
+        if (!(facetOf(mesh(), i).area_m2 > 0)) continue;
+        facets.mesh.triangles.push_back(mesh().triangles[i]);
+        facets.shell_of.push_back(shell);
+      }
+    return facets;
+  }
+
+  /// Turns closed patches that face in and lie within no other patch, with everything that lies within them.
+  /// Patches that cross each other lie within none, and neither do copies, so that all of them face out
+  /// before coincident facets cancel each other.
+  void turnClosed() {
+    const std::vector<std::size_t> closed = closedByVolume();
+    if (std::none_of(closed.begin(), closed.end(), [&](std::size_t i) { return patches_[i].volume_m3 < 0; }))
+      return;
+    const double touch_m = touchDistance(mesh());
     std::vector<Box> boxes;
     for (const std::size_t i : closed) boxes.push_back(patches_[i].box);
     const BoxTree tree(boxes);
     std::vector<char> is_turned(closed.size(), 0), is_outermost(closed.size(), 0);
-    std::vector<std::optional<WindingNumber>> windings(closed.size());
+    std::optional<ShellNesting> nesting;
     std::vector<std::uint32_t> around;
     for (std::uint32_t i = 0; i < closed.size(); ++i) {
       Patch& patch = patches_[closed[i]];
       around.clear();
       tree.forEachOverlap(patch.box, [&](std::uint32_t k) {
-        if (is_outermost[k]) around.push_back(k);
+        if (is_outermost[k] && isWithin(patch.box, grown(boxes[k], touch_m))) around.push_back(k);
         return true;
       });
       std::sort(around.begin(), around.end());
-      const auto outer = std::find_if(around.begin(), around.end(), [&](std::uint32_t k) {
-        if (!windings[k]) windings[k].emplace(mesh(), patches_[closed[k]].triangles);
-        return liesIn(patch, *windings[k]);
-      });
+      if (!around.empty() && !nesting) {
+        ShellFacets facets = facetsOf(closed);
+        nesting.emplace(std::move(facets.mesh), std::move(facets.shell_of));
+      }
+      const auto outer = std::find_if(around.begin(), around.end(),
+                                      [&](std::uint32_t k) { return nesting->liesWithin(i, k); });
       is_outermost[i] = outer == around.end();
       is_turned[i] = is_outermost[i] ? patch.volume_m3 < 0 : is_turned[*outer];
       if (is_turned[i]) flip(patch);
@@ -577,7 +619,7 @@ class Repairer {
     if (!mayOverlap(w)) return;
     const double size_m = bounds(mesh()).size().norm();
     tbb::parallel_for(std::size_t{0}, bounding.size(), [&](std::size_t k) {
-      if (isInternal(w, bounding[k], size_m)) is_kept_[bounding[k]] = Keep::Solid;
+      if (isWithinSolidOrVoid(w, bounding[k], size_m)) is_kept_[bounding[k]] = Keep::Solid;
     });
     std::vector<char> is_overlapping(patches_.size(), 0);
     for (const std::uint32_t i : bounding) {
@@ -599,16 +641,22 @@ class Repairer {
     return false;
   }
 
-  /// At its middle, near its corners and, for a facet that is large enough to pass through several shells, on
-  /// a grid: corners and middle of a floor can be in the walls of a box whose inside is free.
-  bool isInternal(const WindingNumber& w, std::uint32_t triangle, double size_m) {
+  /// Whether both sides are solid, or, of a closed shell, neither: a void within a void. Judged at its
+  /// middle, near its corners and, for a facet that is large enough to pass through several shells, on a
+  /// grid: corners and middle of a floor can be in the walls of a box whose inside is free.
+  bool isWithinSolidOrVoid(const WindingNumber& w, std::uint32_t triangle, double size_m) {
     Facet f = facetOf(mesh(), triangle);
     if (!(f.area_m2 > 0)) return false;
-    if (inPlane(w, f) < kInternal) return false;
+    const bool is_closed = patches_[patch_of_[triangle]].is_closed;
+    const auto isSurface = [&] {
+      const double value = inPlane(w, f);
+      return value < kInternal && (value > kExternal || !is_closed);
+    };
+    if (isSurface()) return false;
     const Vec3 middle = f.center;
     for (const std::uint32_t v : mesh().triangles[triangle]) {
       f.center = middle + 0.9 * (mesh().vertices[v] - middle);
-      if (inPlane(w, f) < kInternal) return false;
+      if (isSurface()) return false;
     }
     constexpr double kLarge = 0.05;  // of the mesh, for each division of a side
     constexpr int kMostDivisions = 24;
@@ -621,7 +669,7 @@ class Repairer {
     for (int i = 0; i <= n && n > 0; ++i)
       for (int k = 0; k <= n - i; ++k) {
         f.center = corner + static_cast<double>(i) / n * u + static_cast<double>(k) / n * v;
-        if (inPlane(w, f) < kInternal) return false;
+        if (isSurface()) return false;
       }
     return true;
   }
@@ -646,6 +694,7 @@ class Repairer {
   }
 
   const bool is_crossing_, is_single_;
+  bool has_cancelled_ = false;     // of some duplicates, which are back to back, none was kept
   bool is_contact_known_ = false;  // all closed shells were looked at, and none touch
   std::size_t united_facets_ = 0;  // the first ones, which were united before
   RepairedMesh result_;

@@ -11,63 +11,17 @@
 #include <span>
 
 #include "mesh/box_tree.h"
+#include "mesh/cut_patches.h"
 #include "mesh/facet_arrangement.h"
 #include "mesh/mesh_edges.h"
+#include "mesh/shell_contacts.h"
 #include "mesh/triangle_distance.h"
 #include "vps/winding_number.h"
 
 namespace vps::inline v0 {
 namespace {
 
-using Pair = std::array<std::uint32_t, 2>;
-
-/// More pairs of near facets than these are not cut. Assumed: a minute.
-constexpr std::size_t kMostPairs = 4'000'000;
-/// Steps of about a microsecond on one core: half a minute, for all tries together.
-constexpr std::int64_t kMostWork = 30'000'000;
 constexpr std::int64_t kAnglesInStep = 16;  ///< solid angles of triangles that are as much work
-
-Box boxOf(const Mesh& mesh, std::uint32_t triangle, double margin_m) {
-  Box box;
-  for (const std::uint32_t v : mesh.triangles[triangle]) box.add(mesh.vertices[v]);
-  return {box.min.array() - margin_m, box.max.array() + margin_m};
-}
-
-std::vector<Box> boxesOf(const Mesh& mesh, const std::vector<std::uint32_t>& shell_of, double margin_m) {
-  std::vector<Box> boxes;
-  for (std::uint32_t i = 0; i < shell_of.size(); ++i) {
-    if (shell_of[i] >= boxes.size()) boxes.resize(shell_of[i] + 1);
-    const Box own = boxOf(mesh, i, margin_m);
-    boxes[shell_of[i]].add(own.min);
-    boxes[shell_of[i]].add(own.max);
-  }
-  return boxes;
-}
-
-/// Pairs of facets of different shells that may touch, in ascending order; more than kMostPairs if there are
-/// too many.
-std::vector<Pair> nearPairs(const Mesh& mesh, const std::vector<std::uint32_t>& shell_of, double touch_m) {
-  const std::vector<Box> shells = boxesOf(mesh, shell_of, touch_m);
-  const BoxTree tree(shells);
-  std::vector<std::uint32_t> near;  // facets in the box of another shell
-  std::vector<Box> boxes;
-  for (std::uint32_t i = 0; i < shell_of.size(); ++i) {
-    const Box box = boxOf(mesh, i, touch_m);
-    if (tree.forEachOverlap(box, [&](std::uint32_t shell) { return shell == shell_of[i]; })) continue;
-    near.push_back(i);
-    boxes.push_back(box);
-  }
-  const BoxTree facets(boxes);
-  std::vector<Pair> pairs;
-  for (std::uint32_t k = 0; k < near.size() && pairs.size() <= kMostPairs; ++k)
-    facets.forEachOverlap(boxes[k], [&](std::uint32_t other) {
-      const std::uint32_t f = near[k], g = near[other];
-      if (f < g && shell_of[f] != shell_of[g] && mayTouch(mesh, f, g, touch_m)) pairs.push_back({f, g});
-      return pairs.size() <= kMostPairs;
-    });
-  std::sort(pairs.begin(), pairs.end());
-  return pairs;
-}
 
 /// Over 4 pi. Source: van Oosterom and Strackee 1983.
 double solidAngle(const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -132,6 +86,11 @@ class Shells {
     for (const std::uint32_t shell : around(p))
       for (const std::uint32_t i : triangles_[shell]) w += solidAngleOf(i, p);
     return w > 0.5;
+  }
+  /// Whether p is so near to a facet that rounding decides on which side it is.
+  [[nodiscard]] bool isOnSurface(const Vec3& p) const {
+    const double near_m = kBeside * touch_m_;
+    return !forEachNear(p, near_m, [&](std::uint32_t i) { return distance(i, p) > near_m; });
   }
 
  private:
@@ -217,28 +176,6 @@ class Shells {
   std::vector<std::vector<std::uint32_t>> triangles_;
 };
 
-/// Pieces that are connected by edges at which no others end, numbered from 0.
-std::vector<std::uint32_t> patchesOf(const Mesh& pieces) {
-  Groups groups(pieces.triangles.size());
-  forEachEdge(sortedHalfEdges(pieces), [&](std::span<const HalfEdge> same) {
-    if (same.size() == 2) groups.join(same[0].triangle, same[1].triangle);
-  });
-  return groups.numbered();
-}
-
-/// The height of a triangle over its longest side.
-double width(const Mesh& mesh, std::uint32_t i) {
-  const auto& t = mesh.triangles[i];
-  const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
-  const double longest_m = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
-  return longest_m > 0 ? (b - a).cross(c - a).norm() / longest_m : 0;
-}
-
-Vec3 middle(const Mesh& mesh, std::uint32_t i) {
-  const auto& t = mesh.triangles[i];
-  return (mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]) / 3;
-}
-
 bool isClosed(const Mesh& mesh) {
   bool is_closed = !mesh.triangles.empty();
   forEachEdge(sortedHalfEdges(mesh), [&](std::span<const HalfEdge> same) {
@@ -256,7 +193,8 @@ double halton(int i, int base) {
   return value;
 }
 
-/// Whether at points spread over the box both have the same inside.
+/// Whether at points spread over the box both have the same inside. Points on a surface tell nothing; where
+/// faces lie in planes of round coordinates some of the points do too.
 bool agree(const Mesh& mesh, const Shells& shells) {
   constexpr int kPoints = 64;
   const std::vector<std::uint32_t> all(mesh.triangles.size(), 0);
@@ -266,7 +204,7 @@ bool agree(const Mesh& mesh, const Shells& shells) {
   tbb::parallel_for(0, kPoints, [&](int i) {
     const Vec3 share(halton(i + 1, 2), halton(i + 1, 3), halton(i + 1, 5));
     const Vec3 p = box.min + share.cwiseProduct(box.size());
-    agrees[static_cast<std::size_t>(i)] = united.isInside(p) == shells.isInside(p);
+    agrees[static_cast<std::size_t>(i)] = shells.isOnSurface(p) || united.isInside(p) == shells.isInside(p);
   });
   return std::find(agrees.begin(), agrees.end(), 0) == agrees.end();
 }
@@ -310,34 +248,22 @@ double touchDistance(const Mesh& mesh) {
 
 namespace {
 
-/// Of each patch the piece that is widest, where rounding matters least.
-std::vector<std::uint32_t> widestOf(const Mesh& pieces, const std::vector<std::uint32_t>& patch_of) {
-  std::vector<std::uint32_t> widest;
-  std::vector<double> width_m;
-  for (std::uint32_t i = 0; i < patch_of.size(); ++i) {
-    const double own_m = width(pieces, i);
-    if (patch_of[i] == widest.size()) widest.push_back(i), width_m.push_back(own_m);
-    if (own_m > width_m[patch_of[i]]) widest[patch_of[i]] = i, width_m[patch_of[i]] = own_m;
-  }
-  return widest;
-}
-
 /// Which patches bound the union, each by its widest piece; nothing if that is too much work.
 std::optional<std::vector<char>> keptPatches(const Arrangement& cut, const std::vector<std::uint32_t>& widest,
                                              const Shells& shells, std::int64_t& work_left) {
   constexpr char kOpen = 2;
   std::vector<char> is_kept(widest.size());
   tbb::parallel_for(std::size_t{0}, widest.size(), [&](std::size_t patch) {
-    const auto kept = shells.isKeptBySeries(cut.source[widest[patch]], middle(cut.mesh, widest[patch]));
+    const auto kept = shells.isKeptBySeries(cut.source[widest[patch]], middleOf(cut.mesh, widest[patch]));
     is_kept[patch] = kept ? static_cast<char>(*kept) : kOpen;
   });
   for (std::size_t patch = 0; patch < widest.size(); ++patch)
     if (is_kept[patch] == kOpen)
-      work_left -= 1 + shells.sizeOfSum(middle(cut.mesh, widest[patch])) / kAnglesInStep;
+      work_left -= 1 + shells.sizeOfSum(middleOf(cut.mesh, widest[patch])) / kAnglesInStep;
   if (work_left < 0) return std::nullopt;
   tbb::parallel_for(std::size_t{0}, widest.size(), [&](std::size_t patch) {
     if (is_kept[patch] == kOpen)
-      is_kept[patch] = shells.isKeptBySum(cut.source[widest[patch]], middle(cut.mesh, widest[patch]));
+      is_kept[patch] = shells.isKeptBySum(cut.source[widest[patch]], middleOf(cut.mesh, widest[patch]));
   });
   return is_kept;
 }
@@ -345,7 +271,7 @@ std::optional<std::vector<char>> keptPatches(const Arrangement& cut, const std::
 /// The pieces that bound the union; none if that is too much work. Counts what is left out.
 Mesh surfaceOf(const Arrangement& cut, const std::vector<std::uint32_t>& shell_of, const Shells& shells,
                ShellUnion& out, std::int64_t& work_left) {
-  const std::vector<std::uint32_t> patch_of = patchesOf(cut.mesh), widest = widestOf(cut.mesh, patch_of);
+  const auto [patch_of, widest] = patchesOf(cut.mesh);
   const auto found = keptPatches(cut, widest, shells, work_left);
   if (!found) return {};
   const std::vector<char>& is_kept = *found;
@@ -367,7 +293,7 @@ Mesh surfaceOf(const Arrangement& cut, const std::vector<std::uint32_t>& shell_o
 ShellUnion uniteWithin(const Mesh& mesh, const std::vector<std::uint32_t>& shell_of, double touch_m,
                        std::int64_t& work_left) {
   ShellUnion out;
-  const std::vector<Pair> pairs = nearPairs(mesh, shell_of, touch_m);
+  const std::vector<FacetPair> pairs = nearPairs(mesh, shell_of, touch_m);
   if (pairs.empty()) return out;
   out.united_shells = 2;  // at least, if the rest fails
   if (pairs.size() > kMostPairs) work_left = -1;
@@ -390,7 +316,7 @@ ShellUnion unite(const Mesh& mesh, const std::vector<std::uint32_t>& shell_of) {
   // metre.
   constexpr double kOtherShares[] = {8, 1.0 / 32, 1.0 / 1024};
   const double touch_m = touchDistance(mesh);
-  std::int64_t work_left = kMostWork;
+  std::int64_t work_left = kMostUnionWork;
   ShellUnion first = uniteWithin(mesh, shell_of, touch_m, work_left);
   if (first.united_shells == 0 || !first.mesh.triangles.empty()) return first;
   for (const double share : kOtherShares) {
@@ -403,9 +329,9 @@ ShellUnion unite(const Mesh& mesh, const std::vector<std::uint32_t>& shell_of) {
 
 bool haveContact(const Mesh& mesh, const std::vector<std::uint32_t>& shell_of) {
   const double touch_m = touchDistance(mesh);
-  const std::vector<Pair> pairs = nearPairs(mesh, shell_of, touch_m);
+  const std::vector<FacetPair> pairs = nearPairs(mesh, shell_of, touch_m);
   if (pairs.empty()) return false;
-  std::int64_t work_left = pairs.size() > kMostPairs ? -1 : kMostWork;
+  std::int64_t work_left = pairs.size() > kMostPairs ? -1 : kMostUnionWork;
   if (work_left < 0) return true;
   const std::optional<Arrangement> cut = arrange(mesh, pairs, touch_m, work_left);
   return !cut || countMet(*cut, shell_of) > 0;

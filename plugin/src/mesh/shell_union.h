@@ -15,6 +15,9 @@ namespace vps::inline v0 {
 inline constexpr double kTouchShare = 0x1p-22;
 double touchDistance(const Mesh& mesh);
 
+/// Steps of about a microsecond on one core: half a minute, for all tries to unite shells together.
+inline constexpr std::int64_t kMostUnionWork = 30'000'000;
+
 struct ShellUnion {
   Mesh mesh;                       ///< closed, without facets inside; empty if it was not found
   std::size_t united_shells = 0;   ///< that touch or cross others; 0: there is nothing to unite
@@ -26,10 +29,10 @@ struct ShellUnion {
 /// where shells cross or touch [arrangement; Zhou, Grinspun, Zorin and Jacobson 2016]; the pieces fall into
 /// patches, between edges where more than two pieces meet; of each patch one point decides. Of flush pieces
 /// one is kept where they face the same way, and none where two shells touch. The result is checked: its
-/// edges are closed, and at spread points it is inside where the shells are. Much is left as it is: shells
-/// that touch nothing are only looked at. Parallel; the same bits for any number of threads. O(n log n) for
-/// the boxes of shells that overlap, and one winding number for each patch. The work is counted, and none is
-/// found where it would take more than about half a minute.
+/// edges are closed, and at spread points that are not on a surface it is inside where the shells are. Much
+/// is left as it is: shells that touch nothing are only looked at. Parallel; the same bits for any number of
+/// threads. O(n log n) for the boxes of shells that overlap, and one winding number for each patch. The work
+/// is counted, and none is found where it would take more than about half a minute.
 /// @param shell_of  by triangle, counted from 0; each shell is closed and has one orientation
 ShellUnion unite(const Mesh& mesh, const std::vector<std::uint32_t>& shell_of);
 

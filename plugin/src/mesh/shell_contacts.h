@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Facets of different shells that are near each other.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "vps/box.h"
+#include "vps/mesh.h"
+
+namespace vps::inline v0 {
+
+using FacetPair = std::array<std::uint32_t, 2>;
+
+/// More pairs of near facets than these are not cut. Assumed: a minute.
+inline constexpr std::size_t kMostPairs = 4'000'000;
+
+/// The box of one facet, grown by a margin on every side.
+Box boxOf(const Mesh& mesh, std::uint32_t triangle, double margin_m);
+/// By shell, grown by a margin.
+std::vector<Box> boxesOf(const Mesh& mesh, const std::vector<std::uint32_t>& shell_of, double margin_m);
+
+/// Pairs of facets of different shells that may touch, in ascending order; more than kMostPairs if there are
+/// too many.
+/// @param shell_of  by triangle, counted from 0
+std::vector<FacetPair> nearPairs(const Mesh& mesh, const std::vector<std::uint32_t>& shell_of,
+                                 double touch_m);
+
+}  // namespace vps::inline v0
