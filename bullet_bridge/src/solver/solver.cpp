@@ -86,6 +86,7 @@ struct Solver::Work {
   [[nodiscard]] bool isHeap();
   SolveOutcome solveRigid(const SolverSettings& settings, double dt_s);
   SolveOutcome solveWithLaws(const SolverSettings& settings, double dt_s);
+  void linearise(const btContactSolverInfo& info);
   bool addMissed(const btContactSolverInfo& info, bool is_first);
   [[nodiscard]] bool hasOutside() const;
   [[nodiscard]] Vec6 commonVelocity() const;
@@ -316,10 +317,22 @@ SolveOutcome Solver::Work::solveWithLaws(const SolverSettings& settings, double 
   return {most_steps, last.is_converged};
 }
 
+// The contacts that carried load get their rows where the bodies will be if they go on as they do.
+void Solver::Work::linearise(const btContactSolverInfo& info) {
+  missed.clear();
+  for (StepCheck* check : checks) {
+    const Pose X_WB_end[2] = {island.endPose(check->object(0), {}, info.m_timeStep),
+                              island.endPose(check->object(1), {}, info.m_timeStep)};
+    check->linearise(X_WB_end, missed);
+  }
+  rigid.addMissed(missed, info);
+}
+
 // True if contacts were added, so that the step must be solved again.
 bool Solver::Work::addMissed(const btContactSolverInfo& info, bool is_first) {
   const double dt_s = info.m_timeStep;
   missed.clear();
+  rigid.finish();  // a check asks which contacts carry load
   for (StepCheck* check : checks) {
     const Pose X_WB_end[2] = {island.endPose(check->object(0), rigid.push(), dt_s),
                               island.endPose(check->object(1), rigid.push(), dt_s)};
@@ -428,6 +441,7 @@ btScalar Solver::solveGroup(btCollisionObject** bodies, int body_count, btPersis
   work.gatherConstraints(spanOf(constraints, constraint_count), info);
   work.gatherCouplings(dt_s);
 
+  if (!work.is_penalty) work.linearise(info);
   constexpr int kMaxChecks = 8;  // assumed; two or three find all
   iterations_used_ = 0;
   for (int checked = 0;; ++checked) {
@@ -436,7 +450,17 @@ btScalar Solver::solveGroup(btCollisionObject** bodies, int body_count, btPersis
     is_converged_ = outcome.is_converged;
     if (work.is_penalty) break;
     work.rigid.solvePush(info, settings_.iteration_limit);
-    if (checked == kMaxChecks || !work.addMissed(info, checked == 0)) break;
+    if (checked == kMaxChecks || !work.addMissed(info, checked == 0)) { if (getenv("DBG")) fprintf(stderr, "checks %d conv %d\n", checked, is_converged_); break; }
+  }
+  if (getenv("DBG")) {
+    static int step = 0;
+    ++step;
+    for (const auto& b : work.island.bodies) fprintf(stderr, "step %d body u w %.6g %.6g %.6g v %.6g %.6g %.6g\n", step, b.u[0], b.u[1], b.u[2], b.u[3], b.u[4], b.u[5]);
+    for (const auto& c : work.rigid.contacts()) if (c.p_n > 0) {
+      const Vec3 x = c.position_W(), n = c.normal_W(), o = fromBt((work.island.indexOf(c.object[0])>=0?c.object[0]:c.object[1])->getWorldTransform().getOrigin());
+      const Vec3 r = x - o;
+      fprintf(stderr, "  load p %.4g pt %.3g %.3g at %.5f %.5f %.5f mm n %.6f %.6f %.6f gap %.4f um target %.6g id %d %d\n", c.p_n, c.p_t[0], c.p_t[1], 1e3*r.x(), 1e3*r.y(), 1e3*r.z(), n.x(), n.y(), n.z(), 1e6*c.gap_m, c.target_m_s, c.point->m_index0, c.point->m_index1);
+    }
   }
   const bool is_shortened = !work.is_penalty && !work.missed.empty() && work.shorten(dt_s);
   if (is_shortened) ++shortened_steps_;
