@@ -116,15 +116,19 @@ bool refineAt(const PairView& pair, double max_m, const Settings& settings, Cand
   return std::abs(c.distance_m) < max_m;
 }
 
-// The contacts of shell points that carry load, as they are in the step and where the bodies are `there`.
-void findLoaded(const PairView& there, const PairState& state, std::vector<Candidate>& loaded,
-                std::vector<Candidate>& ends) {
+// The contacts of shell points, as they are in the step and where the bodies are `there`.
+// @param only_loaded  those that carry load
+void findThere(const PairView& there, const PairState& state, bool only_loaded, std::vector<Candidate>& loaded,
+               std::vector<Candidate>& ends) {
   const Settings& settings = state.context->settings;
   loaded.clear();
   for (const Candidate& c : state.contacts) {
     if (c.isCrossing() || !there.shape[c.side]) continue;
-    const btManifoldPoint* point = state.writer->find(c.key());
-    if (point && point->m_appliedImpulse > 0) loaded.push_back(c);
+    if (only_loaded) {
+      const btManifoldPoint* point = state.writer->find(c.key());
+      if (!point || !(point->m_appliedImpulse > 0)) continue;
+    }
+    loaded.push_back(c);
   }
   ends = loaded;
   for (Candidate& end : ends) {
@@ -228,7 +232,8 @@ void PairCheck::linearise(const Pose (&X_WB_end)[2], std::vector<MissedContact>&
   measure(at_start.pair, m);
   constexpr double kNothing_m = 1e-9;
   if (!(m.bend_m > kNothing_m) || m.turn_rad > kContactTurn_rad) return;
-  relinearise(m, at_start, -kNever_m, out);
+  const double apart_m = kApartShare * state_.context->settings.contact_margin_m;
+  relinearise(m, at_start, -kNever_m, m.bend_m <= apart_m, out);
 }
 
 void PairCheck::findMissed(const Pose (&X_WB_end)[2], bool is_first, std::vector<MissedContact>& out) {
@@ -264,12 +269,12 @@ void PairCheck::findMissed(const Pose (&X_WB_end)[2], bool is_first, std::vector
     return;
   }
   const double apart_m = kApartShare * state_.context->settings.contact_margin_m;
-  if (out.size() == had && m.bend_m > apart_m) relinearise(m, at_start, apart_m, out);
+  if (out.size() == had && m.bend_m > apart_m) relinearise(m, at_start, apart_m, true, out);
 }
 
 // Contacts with load that end the step farther apart than apart_m get the planes that they have there. Of a
 // body that rolls these are those in front of it, which come down but do not arrive, and those that it leaves.
-void PairCheck::relinearise(const Motion& m, const Placed& at_start, double apart_m,
+void PairCheck::relinearise(const Motion& m, const Placed& at_start, double apart_m, bool only_loaded,
                             std::vector<MissedContact>& out) {
   const Settings& settings = state_.context->settings;
   if (hasFeatures(at_start.pair, settings))
@@ -277,7 +282,7 @@ void PairCheck::relinearise(const Motion& m, const Placed& at_start, double apar
   if (settings.use_surfaces) {
     const Placed at_end(*this, m.end);
     thread_local std::vector<Candidate> loaded, ends;
-    findLoaded(at_end.pair, state_, loaded, ends);
+    findThere(at_end.pair, state_, only_loaded, loaded, ends);
     for (std::size_t k = 0; k < ends.size(); ++k) {
       const bool is_same = ends[k].n_W.dot(m.step.normal(loaded[k])) > kCosFlush &&
                            ends[k].distance_m < settings.contact_margin_m + m.travel_m;

@@ -42,7 +42,7 @@ double StepPath::normalWay_m(const Vec3& p_W, const Vec3& n_W) const {
 Candidate StepPath::acting(const Candidate& start, const Candidate& end) const {
   const Vec3 p1_W = end.p_W - common_way_W_;
   const double bend_m = normalWay_m(p1_W, end.n_W) - normalWay_m(start.p_W, start.n_W);
-  const double closed_m = start.distance_m - end.distance_m;
+  const double closed_m = start.distance_m - start.rest_m;
   double tau = closed_m > 0 ? 1 : 0.5;
   if (bend_m > 0) tau = std::clamp(0.5 + closed_m / bend_m, 0.5, 1.0);
   Candidate acting = end;

@@ -14,9 +14,10 @@ namespace vps::bullet::inline v0 {
 /// contact's normal velocity changes with them, from s0 at the start to s1 at the end (here as displacements).
 /// The row takes them at the time at which that velocity is zero, so that the contact does no work:
 ///
-///     tau = 1/2 + (g0 - g1) / (s1 - s0),  within [1/2, 1]
+///     tau = 1/2 + g0 / (s1 - s0),  within [1/2, 1]
 ///
-/// A body that turns about a corner (g0 = g1 = 0) has it in the middle of the step. A wheel that rolls meets the
+/// where g0 is the gap at the start (above the one at which it rests), which a contact with load closes. A body
+/// that turns about a corner (g0 = 0) has it in the middle of the step. A wheel that rolls meets the
 /// place that is lowest at the end, tau = 1. With the lever of the start the contact would brake what rolls,
 /// with that of the end it would drive what turns about a corner.
 ///

@@ -339,6 +339,11 @@ bool Solver::Work::addMissed(const btContactSolverInfo& info, bool is_first) {
     check->findMissed(X_WB_end, is_first, missed);
   }
   rigid.addMissed(missed, info);
+  if (getenv("DBG2")) {
+    fprintf(stderr, " round u w %.5g v %.5g %.5g\n", island.bodies[0].u[1], island.bodies[0].u[3], island.bodies[0].u[5]);
+    for (auto& q : missed) if (q.point) { Vec3 r = fromBt(q.point->getPositionWorldOnA() - island.bodies[0].rigid->getWorldTransform().getOrigin());
+      fprintf(stderr, "   missed %d %d end %.4f kept %.4f rest %.4f sharp %d at %.4f %.4f %.4f load %.3g\n", q.point->m_index0, q.point->m_index1, 1e6*q.end_gap_m, 1e6*q.kept_m, 1e6*q.rest_m, q.is_sharp, 1e3*r.x(), 1e3*r.y(), 1e3*r.z(), q.point->m_appliedImpulse);}
+  }
   return std::any_of(missed.begin(), missed.end(), [](const MissedContact& m) { return m.point != nullptr; });
 }
 
@@ -464,6 +469,7 @@ btScalar Solver::solveGroup(btCollisionObject** bodies, int body_count, btPersis
   }
   const bool is_shortened = !work.is_penalty && !work.missed.empty() && work.shorten(dt_s);
   if (is_shortened) ++shortened_steps_;
+  if (getenv("DBG") && is_shortened) { fprintf(stderr, "SHORTENED missed %zu\n", work.missed.size()); for (auto& q : work.missed) fprintf(stderr, "   missed point %p end %.4f kept %.4f rest %.4f sharp %d\n", (void*)q.point, 1e6*q.end_gap_m, 1e6*q.kept_m, 1e6*q.rest_m, q.is_sharp);}
   for (const Work::ActiveCoupling& h : work.active_couplings) {
     const Vec6 V_G = h.J * work.island.bodies[static_cast<std::size_t>(h.body)].u;
     h.coupling->setImpulse(h.law.c - h.law.D.cwiseProduct(V_G), dt_s);
