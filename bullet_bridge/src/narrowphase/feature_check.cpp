@@ -122,11 +122,12 @@ class Linearised {
     missed.is_sharp = !isOnSheet(c, start_);
     return missed;
   }
-  [[nodiscard]] bool isHeldOff(const FeatureContact& c, double apart_m, const PairState& state) const {
+  [[nodiscard]] bool isOutOfPlace(const FeatureContact& c, double apart_m, bool only_loaded,
+                                  const PairState& state) const {
     const Candidate end = at_end_(c);
     if (!(end.distance_m > at_end_.rest_m + apart_m)) return false;
     const btManifoldPoint* point = state.writer->find(end.key());
-    return point && point->m_appliedImpulse > 0;
+    return point && (point->m_appliedImpulse > 0 || !only_loaded);
   }
 
  private:
@@ -168,11 +169,11 @@ void addFeatureContacts(const PairView& start, const EndPoses& end, bool is_firs
   }
 }
 
-void addHeldFeatures(const PairView& start, const EndPoses& end, double apart_m, PairState& state,
-                     std::vector<MissedContact>& out) {
+void lineariseFeatures(const PairView& start, const EndPoses& end, double apart_m, bool only_loaded,
+                       PairState& state, std::vector<MissedContact>& out) {
   const Linearised at_end(start, end);
   for (const FeatureContact& c : state.missed_features)
-    if (at_end.isHeldOff(c, apart_m, state)) out.push_back(at_end(c, state));
+    if (at_end.isOutOfPlace(c, apart_m, only_loaded, state)) out.push_back(at_end(c, state));
 }
 
 void addMissedFeatures(const PairView& pair, const Settings& settings, PairState& state,

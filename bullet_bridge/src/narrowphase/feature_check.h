@@ -40,9 +40,10 @@ struct EndPoses {
 void addFeatureContacts(const PairView& start, const EndPoses& end, bool is_first, PairState& state,
                         std::vector<MissedContact>& out);
 
-/// Appends the features' contacts that carry load although they end the step apart by more than `apart_m`.
-void addHeldFeatures(const PairView& start, const EndPoses& end, double apart_m, PairState& state,
-                     std::vector<MissedContact>& out);
+/// Appends the contacts of features that end the step apart by more than `apart_m`, with their rows there.
+/// @param only_loaded  those that carry load
+void lineariseFeatures(const PairView& start, const EndPoses& end, double apart_m, bool only_loaded,
+                       PairState& state, std::vector<MissedContact>& out);
 
 /// The share of the motion up to which no features come too near; 1 if none do.
 double freeShareOf(const PairView& start, const EndPoses& end, PairState& state);

@@ -278,7 +278,7 @@ void PairCheck::relinearise(const Motion& m, const Placed& at_start, double apar
                             std::vector<MissedContact>& out) {
   const Settings& settings = state_.context->settings;
   if (hasFeatures(at_start.pair, settings))
-    addHeldFeatures(at_start.pair, {{m.end[0], m.end[1]}, m.path}, apart_m, state_, out);
+    lineariseFeatures(at_start.pair, {{m.end[0], m.end[1]}, m.path}, apart_m, only_loaded, state_, out);
   if (settings.use_surfaces) {
     const Placed at_end(*this, m.end);
     thread_local std::vector<Candidate> loaded, ends;

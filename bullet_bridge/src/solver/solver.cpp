@@ -326,6 +326,11 @@ void Solver::Work::linearise(const btContactSolverInfo& info) {
     check->linearise(X_WB_end, missed);
   }
   rigid.addMissed(missed, info);
+  if (getenv("DBG2")) {
+    fprintf(stderr, " coast u w %.5g v %.5g %.5g\n", island.bodies[0].u[1], island.bodies[0].u[3], island.bodies[0].u[5]);
+    for (auto& q : missed) if (q.point) { Vec3 r = fromBt(q.point->getPositionWorldOnA() - island.bodies[0].rigid->getWorldTransform().getOrigin());
+      fprintf(stderr, "   lin %d %d end %.4f kept %.4f rest %.4f sharp %d at %.4f %.4f %.4f load %.3g\n", q.point->m_index0, q.point->m_index1, 1e6*q.end_gap_m, 1e6*q.kept_m, 1e6*q.rest_m, q.is_sharp, 1e3*r.x(), 1e3*r.y(), 1e3*r.z(), q.point->m_appliedImpulse);}
+  }
 }
 
 // True if contacts were added, so that the step must be solved again.
