@@ -326,11 +326,6 @@ void Solver::Work::linearise(const btContactSolverInfo& info) {
     check->linearise(X_WB_end, missed);
   }
   rigid.addMissed(missed, info);
-  if (getenv("DBG2")) {
-    fprintf(stderr, " coast u w %.5g v %.5g %.5g\n", island.bodies[0].u[1], island.bodies[0].u[3], island.bodies[0].u[5]);
-    for (auto& q : missed) if (q.point) { Vec3 r = fromBt(q.point->getPositionWorldOnA() - island.bodies[0].rigid->getWorldTransform().getOrigin());
-      fprintf(stderr, "   lin %d %d end %.4f kept %.4f rest %.4f sharp %d at %.4f %.4f %.4f load %.3g\n", q.point->m_index0, q.point->m_index1, 1e6*q.end_gap_m, 1e6*q.kept_m, 1e6*q.rest_m, q.is_sharp, 1e3*r.x(), 1e3*r.y(), 1e3*r.z(), q.point->m_appliedImpulse);}
-  }
 }
 
 // True if contacts were added, so that the step must be solved again.
@@ -344,11 +339,6 @@ bool Solver::Work::addMissed(const btContactSolverInfo& info, bool is_first) {
     check->findMissed(X_WB_end, is_first, missed);
   }
   rigid.addMissed(missed, info);
-  if (getenv("DBG2")) {
-    fprintf(stderr, " round u w %.5g v %.5g %.5g\n", island.bodies[0].u[1], island.bodies[0].u[3], island.bodies[0].u[5]);
-    for (auto& q : missed) if (q.point) { Vec3 r = fromBt(q.point->getPositionWorldOnA() - island.bodies[0].rigid->getWorldTransform().getOrigin());
-      fprintf(stderr, "   missed %d %d end %.4f kept %.4f rest %.4f sharp %d at %.4f %.4f %.4f load %.3g\n", q.point->m_index0, q.point->m_index1, 1e6*q.end_gap_m, 1e6*q.kept_m, 1e6*q.rest_m, q.is_sharp, 1e3*r.x(), 1e3*r.y(), 1e3*r.z(), q.point->m_appliedImpulse);}
-  }
   return std::any_of(missed.begin(), missed.end(), [](const MissedContact& m) { return m.point != nullptr; });
 }
 
@@ -460,21 +450,10 @@ btScalar Solver::solveGroup(btCollisionObject** bodies, int body_count, btPersis
     is_converged_ = outcome.is_converged;
     if (work.is_penalty) break;
     work.rigid.solvePush(info, settings_.iteration_limit);
-    if (checked == kMaxChecks || !work.addMissed(info, checked == 0)) { if (getenv("DBG")) fprintf(stderr, "checks %d conv %d\n", checked, is_converged_); break; }
-  }
-  if (getenv("DBG")) {
-    static int step = 0;
-    ++step;
-    for (const auto& b : work.island.bodies) fprintf(stderr, "step %d body u w %.6g %.6g %.6g v %.6g %.6g %.6g\n", step, b.u[0], b.u[1], b.u[2], b.u[3], b.u[4], b.u[5]);
-    for (const auto& c : work.rigid.contacts()) if (c.p_n > 0) {
-      const Vec3 x = c.position_W(), n = c.normal_W(), o = fromBt((work.island.indexOf(c.object[0])>=0?c.object[0]:c.object[1])->getWorldTransform().getOrigin());
-      const Vec3 r = x - o;
-      fprintf(stderr, "  load p %.4g pt %.3g %.3g at %.5f %.5f %.5f mm n %.6f %.6f %.6f gap %.4f um target %.6g id %d %d\n", c.p_n, c.p_t[0], c.p_t[1], 1e3*r.x(), 1e3*r.y(), 1e3*r.z(), n.x(), n.y(), n.z(), 1e6*c.gap_m, c.target_m_s, c.point->m_index0, c.point->m_index1);
-    }
+    if (checked == kMaxChecks || !work.addMissed(info, checked == 0)) break;
   }
   const bool is_shortened = !work.is_penalty && !work.missed.empty() && work.shorten(dt_s);
   if (is_shortened) ++shortened_steps_;
-  if (getenv("DBG") && is_shortened) { fprintf(stderr, "SHORTENED missed %zu\n", work.missed.size()); for (auto& q : work.missed) fprintf(stderr, "   missed point %p end %.4f kept %.4f rest %.4f sharp %d\n", (void*)q.point, 1e6*q.end_gap_m, 1e6*q.kept_m, 1e6*q.rest_m, q.is_sharp);}
   for (const Work::ActiveCoupling& h : work.active_couplings) {
     const Vec6 V_G = h.J * work.island.bodies[static_cast<std::size_t>(h.body)].u;
     h.coupling->setImpulse(h.law.c - h.law.D.cwiseProduct(V_G), dt_s);
