@@ -286,7 +286,7 @@ void PairCheck::relinearise(const Motion& m, const Placed& at_start, double apar
     for (std::size_t k = 0; k < ends.size(); ++k) {
       const bool is_same = ends[k].n_W.dot(m.step.normal(loaded[k])) > kCosFlush &&
                            ends[k].distance_m < settings.contact_margin_m + m.travel_m;
-      if (is_same && ends[k].distance_m > apart_m) put(m, at_start, ends[k], out);
+      if (is_same && ends[k].distance_m > apart_m) put(m, at_start, loaded[k], ends[k], out);
     }
   }
 }
@@ -386,16 +386,15 @@ void PairCheck::emit(const Motion& m, std::vector<Candidate>& missed, std::vecto
   for (Candidate& c : missed) c.predicted_m = c.distance_m;
   const Placed at_start(*this, m.start);
   reduceBySpread(missed, kMostAdded, at_start.pair.radius_m(), state_.context->settings.contact_margin_m);
-  for (const Candidate& end : missed) put(m, at_start, end, out);
+  for (const Candidate& end : missed) put(m, at_start, m.step.inverse().moved(end), end, out);
 }
 
 // The contact acts where it is on the way of the step: with its lever and normal there. With the point moved
 // back and the plane of the other body as it is, the lever would be turned against the normal by the step's
 // rotation, and contact would brake a screw that turns by 2 degrees a step by two thirds of the slope of its
 // thread.
-void PairCheck::put(const Motion& m, const Placed& at_start, const Candidate& end,
+void PairCheck::put(const Motion& m, const Placed& at_start, const Candidate& start, const Candidate& end,
                     std::vector<MissedContact>& out) {
-  const Candidate start = m.step.inverse().moved(end);
   MissedContact added;
   added.point = state_.writer->put(m.path.acting(start, end), at_start.pair.wrapper, state_.motion);
   if (!added.point) return;

@@ -54,7 +54,8 @@ class PairCheck final : public StepCheck {
   void findOverlaps(const Motion& motion, const PairView& start, const PairView& pair, const PairView& end,
                     std::vector<Candidate>& found) const;
   void findAlongPath(const Motion& motion, std::vector<Candidate>& missed) const;
-  void put(const Motion& motion, const Placed& at_start, const Candidate& end, std::vector<MissedContact>& out);
+  void put(const Motion& motion, const Placed& at_start, const Candidate& start, const Candidate& end,
+           std::vector<MissedContact>& out);
   [[nodiscard]] bool mayMissPoints(const Motion& motion) const;
   void emit(const Motion& motion, std::vector<Candidate>& missed, std::vector<MissedContact>& out);
 
