@@ -205,7 +205,7 @@ bool PairCheck::read(const Pose (&X_WB_end)[2], Motion& m) const {
     m.since_selected.D[i] = m.end[i] * selected[i].inverse();
   }
   const Pose X_WB[2] = {fromBt(object_[0]->getWorldTransform()), fromBt(object_[1]->getWorldTransform())};
-  m.path = StepPath(object_, X_WB, X_WB_end);
+  m.path = StepPath(object_, X_WB, X_WB_end, state_.motion.dt_s);
   return true;
 }
 

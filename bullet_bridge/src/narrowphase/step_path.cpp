@@ -8,46 +8,72 @@
 #include "vps_bullet/convert.h"
 
 namespace vps::bullet::inline v0 {
-namespace {
 
-// Trace of the inverse inertia; 0 for what contact does not turn.
-double easeOfTurning(const btCollisionObject& object) {
-  const btRigidBody* body = btRigidBody::upcast(&object);
-  if (!body || body->isStaticOrKinematicObject()) return 0;
-  return fromBt(body->getInvInertiaDiagLocal()).sum();
-}
-
-}  // namespace
-
-StepPath::StepPath(const btCollisionObject* const (&objects)[2], const Pose (&start)[2],
-                   const Pose (&end)[2]) {
+StepPath::StepPath(const btCollisionObject* const (&objects)[2], const Pose (&start)[2], const Pose (&end)[2],
+                   double dt_s) {
   double sum = 0;
   for (int i = 0; i < 2; ++i) {
-    center_W_[i] = start[i].p;
-    way_W_[i] = end[i].p - start[i].p;
-    turn_[i] = rotationVector(end[i].R * start[i].R.transpose());
-    const double ease = easeOfTurning(*objects[i]);
-    common_way_W_ += ease * way_W_[i];
-    sum += ease;
+    Body& b = body_[i];
+    b.center_W = start[i].p;
+    b.way_W = end[i].p - start[i].p;
+    b.turn = rotationVector(end[i].R * start[i].R.transpose());
+    const btRigidBody* rigid = btRigidBody::upcast(objects[i]);
+    if (!rigid || rigid->isStaticOrKinematicObject()) continue;
+    b.inverse_mass = rigid->getInvMass();
+    const Vec3 inverse = fromBt(rigid->getInvInertiaDiagLocal());
+    b.inverse_inertia_W = start[i].R * inverse.asDiagonal() * start[i].R.transpose();
+    b.kick_W = dt_s * dt_s * b.inverse_mass * fromBt(rigid->getTotalForce());
+    common_way_W_ += inverse.sum() * b.way_W;
+    sum += inverse.sum();
   }
   if (sum > 0) common_way_W_ /= sum;
 }
 
-// How far the bodies part along n in the step, by a row with the lever of p.
-double StepPath::normalWay_m(const Vec3& p_W, const Vec3& n_W) const {
-  const auto wayOf = [&](int i) { return Vec3(way_W_[i] + turn_[i].cross(p_W - center_W_[i])); };
-  return n_W.dot(wayOf(0) - wayOf(1));
+// How far the bodies part along a row in the step.
+double StepPath::way_m(const Row& row) const {
+  const auto wayOf = [&](const Body& b) { return Vec3(b.way_W + b.turn.cross(row.p_W - b.center_W)); };
+  return row.n_W.dot(wayOf(body_[0]) - wayOf(body_[1]));
+}
+
+// Velocity along one row by a unit impulse on another.
+double StepPath::effect(const Row& of, const Row& on) const {
+  double sum = 0;
+  for (const Body& b : body_) {
+    const Vec3 turn = b.inverse_inertia_W * (of.p_W - b.center_W).cross(of.n_W);
+    sum += b.inverse_mass * of.n_W.dot(on.n_W) + turn.dot((on.p_W - b.center_W).cross(on.n_W));
+  }
+  return sum;
+}
+
+namespace {
+
+template <typename Row>
+Row between(const Row& start, const Row& end, double tau) {
+  return {(1 - tau) * start.p_W + tau * end.p_W, ((1 - tau) * start.n_W + tau * end.n_W).normalized()};
+}
+
+}  // namespace
+
+double StepPath::timeOf(const Row& start, const Row& end, double closed_m) const {
+  const double bend_m = way_m(end) - way_m(start);
+  if (!(bend_m > 0)) return closed_m > 0 ? 1 : 0.5;
+  double tau = std::max(0.5, 0.5 + closed_m / bend_m);
+  if (tau <= 1) return tau;
+  const double kick_m = -end.n_W.dot(body_[0].kick_W - body_[1].kick_W);
+  if (!(closed_m < kick_m)) return 1;
+  constexpr int kMost = 8;
+  const double own = effect(end, end);
+  for (int k = 0; k < kMost; ++k, tau = 0.5 * (1 + tau))
+    if (effect(between(start, end, tau), end) >= 0.5 * own) return tau;
+  return 1;
 }
 
 Candidate StepPath::acting(const Candidate& start, const Candidate& end) const {
-  const Vec3 p1_W = end.p_W - common_way_W_;
-  const double bend_m = normalWay_m(p1_W, end.n_W) - normalWay_m(start.p_W, start.n_W);
-  const double closed_m = start.distance_m - start.rest_m;
-  double tau = closed_m > 0 ? 1 : 0.5;
-  if (bend_m > 0) tau = std::clamp(0.5 + closed_m / bend_m, 0.5, 1.0);
+  const Row from{start.p_W, start.n_W}, to{end.p_W - common_way_W_, end.n_W};
+  const Row row = between(from, to, timeOf(from, to, start.distance_m - start.rest_m));
   Candidate acting = end;
-  acting.p_W = (1 - tau) * start.p_W + tau * p1_W;
-  acting.n_W = ((1 - tau) * start.n_W + tau * end.n_W).normalized();
+  acting.p_W = row.p_W;
+  acting.n_W = row.n_W;
   acting.distance_m = start.distance_m;
   return acting;
 }
