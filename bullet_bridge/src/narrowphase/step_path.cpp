@@ -55,10 +55,12 @@ Row between(const Row& start, const Row& end, double tau) {
 }  // namespace
 
 double StepPath::timeOf(const Row& start, const Row& end, double closed_m) const {
-  const double bend_m = way_m(end) - way_m(start);
-  if (!(bend_m > 0)) return closed_m > 0 ? 1 : 0.5;
+  // Below this neither the bend nor the gap is known well enough to tell when the contact acts.
+  constexpr double kKnown_m = 1e-8;
+  const double bend_m = std::max(way_m(end) - way_m(start), kKnown_m);
   double tau = std::max(0.5, 0.5 + closed_m / bend_m);
   if (tau <= 1) return tau;
+  if (!(bend_m > kKnown_m)) return 1;
   const double kick_m = -end.n_W.dot(body_[0].kick_W - body_[1].kick_W);
   if (!(closed_m < kick_m)) return 1;
   constexpr int kMost = 8;

@@ -98,6 +98,7 @@ void FeatureSet::append(const Mesh& mesh, const Pose& X_MP, bool is_sheet) {
       };
       const double width_m = std::min(heightOf_m(same[0]), heightOf_m(same[1]));
       if (isSmoothEdge(edge.normal[0], edge.normal[1], is_one_curved, width_m)) return;
+      edge.is_slight = isSmoothEdge(edge.normal[0], edge.normal[1], is_one_curved, 0);
       if (!(edge.normal[0].dot(edge.into[1]) < 0)) return;  // a groove
     }
     for (std::size_t i = 0; i < 2 && i < same.size(); ++i)
