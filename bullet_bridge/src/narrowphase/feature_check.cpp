@@ -57,15 +57,16 @@ bool isOnSheet(const FeatureContact& c, const PairView& pair) {
   return pair.shape[with_facet]->features().isTwoSided(c.feature[with_facet]);
 }
 
-/// Contacts of features, where both bodies are at the start of a step.
+/// Contacts of features, where both bodies are at the start or at the end of a step.
 struct FeaturePlacer {
   Pose X_01, X_WM0;
   const Shape* shape[2];
   double rest_m;
 
-  explicit FeaturePlacer(const PairView& start)
-      : X_01(start.X_01_models()),
-        X_WM0(start.X_WS[0] * start.shape[0]->X_SM()),
+  explicit FeaturePlacer(const PairView& start) : FeaturePlacer(start, start.X_WS) {}
+  FeaturePlacer(const PairView& start, const Pose (&X_WS)[2])
+      : X_01(poseBetween(start, X_WS)),
+        X_WM0(X_WS[0] * start.shape[0]->X_SM()),
         shape{start.shape[0], start.shape[1]},
         rest_m(FeatureMotion::rest_m(start.shape[0]->features(), start.shape[1]->features())) {}
   [[nodiscard]] Candidate operator()(const FeatureContact& c) const {
@@ -104,6 +105,37 @@ void remember(const FeatureContact& c, std::vector<FeatureContact>& known) {
   known.push_back(c);
 }
 
+/// Contacts of features as rows of the solver: gap, lever and normal are those at the end of the step.
+class Linearised {
+ public:
+  Linearised(const PairView& start, const EndPoses& end)
+      : start_(start), at_start_(start), at_end_(start, end.X_WS), path_(end.path) {}
+
+  MissedContact operator()(const FeatureContact& c, PairState& state) const {
+    const Candidate end = at_end_(c);
+    MissedContact missed;
+    missed.point = state.writer->put(path_.acting(at_start_(c), end), start_.wrapper, state.motion);
+    for (int i = 0; i < 2; ++i) missed.object[i] = start_.wrapper[i]->getCollisionObject();
+    missed.end_gap_m = end.distance_m;
+    missed.kept_m = std::min(at_end_.rest_m, c.start_m);
+    missed.rest_m = at_end_.rest_m;
+    missed.is_sharp = !isOnSheet(c, start_);
+    return missed;
+  }
+  [[nodiscard]] bool isOutOfPlace(const FeatureContact& c, double apart_m, bool only_loaded,
+                                  const PairState& state) const {
+    const Candidate end = at_end_(c);
+    if (!(end.distance_m > at_end_.rest_m + apart_m)) return false;
+    const btManifoldPoint* point = state.writer->find(end.key());
+    return point && (point->m_appliedImpulse > 0 || !only_loaded);
+  }
+
+ private:
+  const PairView& start_;
+  FeaturePlacer at_start_, at_end_;
+  const StepPath& path_;
+};
+
 }  // namespace
 
 bool hasFeatures(const PairView& pair, const Settings& settings) {
@@ -129,19 +161,19 @@ void addFeatureContacts(const PairView& start, const EndPoses& end, bool is_firs
                    [](const FeatureContact& a, const FeatureContact& b) { return a.share < b.share; });
   for (const FeatureContact& c : found)
     if (chosen.size() < kMostAdded && !isRepeated(c, chosen)) chosen.push_back(&c);
-  const Pose X_01_end = poseBetween(start, end.X_WS);
-  const FeaturePlacer place(start);
+  const Linearised at_end(start, end);
   for (const FeatureContact* c : chosen) {
-    MissedContact missed;
-    missed.point = state.writer->put(place(*c), start.wrapper, state.motion);
-    for (int i = 0; i < 2; ++i) missed.object[i] = start.wrapper[i]->getCollisionObject();
-    missed.end_gap_m = c->gap_m(X_01_end);
-    missed.kept_m = std::min(place.rest_m, c->start_m);
-    missed.rest_m = place.rest_m;
-    missed.is_sharp = !isOnSheet(*c, start);
+    const MissedContact missed = at_end(*c, state);
     if (missed.is_sharp) remember(*c, state.missed_features);
     out.push_back(missed);
   }
+}
+
+void lineariseFeatures(const PairView& start, const EndPoses& end, double apart_m, bool only_loaded,
+                       PairState& state, std::vector<MissedContact>& out) {
+  const Linearised at_end(start, end);
+  for (const FeatureContact& c : state.missed_features)
+    if (at_end.isOutOfPlace(c, apart_m, only_loaded, state)) out.push_back(at_end(c, state));
 }
 
 void addMissedFeatures(const PairView& pair, const Settings& settings, PairState& state,

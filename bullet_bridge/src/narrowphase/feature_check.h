@@ -6,6 +6,7 @@
 
 #include "narrowphase/pair_state.h"
 #include "narrowphase/pair_view.h"
+#include "narrowphase/step_path.h"
 #include "solver/step_check.h"
 
 namespace vps::bullet::inline v0 {
@@ -30,6 +31,7 @@ void markSharp(const PairView& pair, const Settings& settings, std::vector<Candi
 /// Both bodies' shapes at the end of a step.
 struct EndPoses {
   Pose X_WS[2];
+  StepPath path = {};
 };
 
 /// Appends a contact for each pair of features that the motion brings too near to each other, up to a limit.
@@ -37,6 +39,11 @@ struct EndPoses {
 /// @param is_first  in the first check of a step, small gaps are restored too: FeatureMotion::check()
 void addFeatureContacts(const PairView& start, const EndPoses& end, bool is_first, PairState& state,
                         std::vector<MissedContact>& out);
+
+/// Appends the contacts of features that end the step apart by more than `apart_m`, with their rows there.
+/// @param only_loaded  those that carry load
+void lineariseFeatures(const PairView& start, const EndPoses& end, double apart_m, bool only_loaded,
+                       PairState& state, std::vector<MissedContact>& out);
 
 /// The share of the motion up to which no features come too near; 1 if none do.
 double freeShareOf(const PairView& start, const EndPoses& end, PairState& state);

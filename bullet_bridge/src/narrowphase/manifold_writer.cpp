@@ -286,6 +286,13 @@ btManifoldPoint* ManifoldWriter::put(const Candidate& contact,
   return &(free->getContactPoint(i) = makePoint(contact, material, bodies, motion));
 }
 
+const btManifoldPoint* ManifoldWriter::find(std::uint64_t key) const {
+  for (const btPersistentManifold* manifold : manifolds_)
+    for (int i = 0; i < manifold->getNumContacts(); ++i)
+      if (keyOf(manifold->getContactPoint(i)) == key) return &manifold->getContactPoint(i);
+  return nullptr;
+}
+
 void reportContacts(std::span<const Candidate> contacts, const btCollisionObjectWrapper* const (&bodies)[2],
                     btManifoldResult& result) {
   // Bullet's query results read the order of the bodies from a manifold, and a query has none of its own.

@@ -36,6 +36,8 @@ class ManifoldWriter {
   /// stays where it is until the next write().
   btManifoldPoint* put(const Candidate& contact, const btCollisionObjectWrapper* const (&bodies)[2],
                        const RelativeMotion& motion);
+  /// The contact with this key, as it is now; null if there is none.
+  [[nodiscard]] const btManifoldPoint* find(std::uint64_t key) const;
   /// To be called when ids refer to other points: no impulse passes from the old contacts to new ones.
   void invalidateIds();
   void append(btAlignedObjectArray<btPersistentManifold*>& manifolds) const;

@@ -7,8 +7,10 @@
 #include <cmath>
 
 #include "narrowphase/contact_selection.h"
+#include "narrowphase/curved_contact.h"
 #include "narrowphase/facet_corners.h"
 #include "narrowphase/feature_check.h"
+#include "narrowphase/step_path.h"
 #include "native_shapes/primitive.h"
 #include "vps_bullet/turn.h"
 
@@ -18,6 +20,11 @@ namespace {
 
 // An overlap that existed before the step may grow by this share of that: rounding.
 constexpr double kGrowthShare = 0.1;
+
+constexpr double kNever_m = 1;  // farther than any step moves
+
+// A contact that carries load ends the step no farther apart than this share of the contact margin.
+constexpr double kApartShare = 0.0025;
 
 double turn_rad(const Mat3& R) {
   return rotationVector(R).norm();
@@ -110,6 +117,30 @@ bool refineAt(const PairView& pair, double max_m, const Settings& settings, Cand
   return std::abs(c.distance_m) < max_m;
 }
 
+// The contacts of shell points, as they are in the step and where the bodies are `there`.
+// @param only_loaded  those that carry load
+void findThere(const PairView& there, const PairState& state, bool only_loaded, std::vector<Candidate>& loaded,
+               std::vector<Candidate>& ends) {
+  const Settings& settings = state.context->settings;
+  loaded.clear();
+  for (const Candidate& c : state.contacts) {
+    if (c.isCrossing() || !there.shape[c.side]) continue;
+    if (only_loaded) {
+      const btManifoldPoint* point = state.writer->find(c.key());
+      if (!point || !(point->m_appliedImpulse > 0)) continue;
+    }
+    loaded.push_back(c);
+  }
+  ends = loaded;
+  for (Candidate& end : ends) {
+    end.p_W = there.side(end.side).X_WM * there.shape[end.side]->models().shell->points[end.id];
+    end.n_W.setZero();  // stays so if the point is then out of reach
+  }
+  RelativeMotion still;
+  still.contact_margin_m = settings.contact_margin_m;
+  refineAll(there, still, settings, ends);
+}
+
 }  // namespace
 
 /// Both bodies at other poses than Bullet's.
@@ -136,6 +167,10 @@ struct PairCheck::Motion {
   double travel_m = 0;     ///< greatest of a point of the smaller body relative to the other body
   double deviation_m = 0;  ///< greatest from where the selection predicted the point
   double turn_rad = 0, turn_deviation_rad = 0;  ///< the same of the rotation
+  StepPath path;
+  Vec3 center_W = Vec3::Zero();                 ///< of the smaller body at the start
+  double radius_m = 0;                          ///< of the smaller body
+  Vec3 moved_W = Vec3::Zero(), turned = Vec3::Zero();  ///< of body 0 relative to body 1
   double bend_m = 0;                            ///< how far a point's path may bend from its tangent
 
   /// True if the bodies turn too far against each other from a share of the step to its end for a plane to be
@@ -163,32 +198,61 @@ bool PairCheck::isValid() const {
   return true;
 }
 
-void PairCheck::findMissed(const Pose (&X_WB_end)[2], bool is_first, std::vector<MissedContact>& out) {
+bool PairCheck::read(const Pose (&X_WB_end)[2], Motion& m) const {
   const Selection& selection = state_.selection;
-  if (!isValid()) return;
-  Motion m;
-  m.tolerated_m = kToleratedShare * state_.context->settings.contact_margin_m;
   const Pose selected[2] = {selection.X_W0, selection.X_W0 * selection.X_01};
+  m.tolerated_m = kToleratedShare * state_.context->settings.contact_margin_m;
   for (int i = 0; i < 2; ++i) {
     m.start[i] = fromBt(object_[i]->getWorldTransform()) * X_BS_[i];
     m.end[i] = X_WB_end[i] * X_BS_[i];
-    if (!m.end[i].isFinite()) return;
+    if (!m.end[i].isFinite()) return false;
     m.step.D[i] = m.end[i] * m.start[i].inverse();
     m.since_selected.D[i] = m.end[i] * selected[i].inverse();
   }
+  const Pose X_WB[2] = {fromBt(object_[0]->getWorldTransform()), fromBt(object_[1]->getWorldTransform())};
+  m.path = StepPath(object_, X_WB, X_WB_end, state_.motion.dt_s);
+  return true;
+}
+
+void PairCheck::measure(const PairView& start, Motion& m) const {
+  m.center_W = start.center_W();
+  m.radius_m = start.radius_m();
+  m.moved_W = m.step.D[0] * m.center_W - m.step.D[1] * m.center_W;
+  m.turned = rotationVector(m.step.D[0].R * m.step.D[1].R.transpose());
+  m.turn_rad = m.turned.norm();
+  m.travel_m = m.moved_W.norm() + m.turn_rad * m.radius_m;
+  for (int i = 0; i < 2; ++i) {
+    const double angle_rad = vps::bullet::turn_rad(m.step.D[i].R);
+    const double lever_m =
+        m.radius_m + (m.center_W - fromBt(object_[i]->getWorldTransform().getOrigin())).norm();
+    m.bend_m += 0.5 * angle_rad * angle_rad * lever_m + angle_rad * m.travel_m;
+  }
+}
+
+void PairCheck::linearise(const Pose (&X_WB_end)[2], std::vector<MissedContact>& out) {
+  if (!isValid()) return;
+  Motion m;
+  if (!read(X_WB_end, m)) return;
   const Placed at_start(*this, m.start);
-  const Vec3 center_W = at_start.pair.center_W();
-  const double radius_m = at_start.pair.radius_m();
-  const Vec3 moved = m.step.D[0] * center_W - m.step.D[1] * center_W;
-  const Vec3 turned = rotationVector(m.step.D[0].R * m.step.D[1].R.transpose());
-  m.turn_rad = turned.norm();
-  m.travel_m = moved.norm() + m.turn_rad * radius_m;
+  measure(at_start.pair, m);
+  constexpr double kNothing_m = 1e-9;
+  if (!(m.bend_m > kNothing_m) || m.turn_rad > kContactTurn_rad) return;
+  const double apart_m = kApartShare * state_.context->settings.contact_margin_m;
+  relinearise(m, at_start, -kNever_m, m.bend_m <= apart_m, out);
+}
+
+void PairCheck::findMissed(const Pose (&X_WB_end)[2], bool is_first, std::vector<MissedContact>& out) {
+  if (!isValid()) return;
+  Motion m;
+  if (!read(X_WB_end, m)) return;
+  const Placed at_start(*this, m.start);
+  measure(at_start.pair, m);
   if (!(m.travel_m > 0)) return;
   const double near_m = std::max(state_.context->settings.contact_margin_m, FeatureMotion::kRest_m);
   if (at_start.pair.leastDistance_m() > m.travel_m + near_m) return;
   const std::size_t had = out.size();
   if (hasFeatures(at_start.pair, state_.context->settings)) {
-    addFeatureContacts(at_start.pair, {{m.end[0], m.end[1]}}, is_first, state_, out);
+    addFeatureContacts(at_start.pair, {{m.end[0], m.end[1]}, m.path}, is_first, state_, out);
     if (out.size() > had) state_.is_incomplete = true;
   }
   if (m.travel_m <= m.tolerated_m) return;
@@ -196,22 +260,41 @@ void PairCheck::findMissed(const Pose (&X_WB_end)[2], bool is_first, std::vector
   // them brake a shaft in its bore. What may protrude from a facet elsewhere is tolerated here.
   if (m.turnsFar(0)) m.tolerated_m = kFacetCornerShare * state_.context->settings.contact_margin_m;
   const double dt_s = state_.motion.dt_s;
-  const Vec3 predicted = dt_s * (selection.V.v + selection.V.w.cross(center_W));
-  m.turn_deviation_rad = (turned - dt_s * selection.V.w).norm();
-  for (int i = 0; i < 2; ++i) {
-    const double angle_rad = vps::bullet::turn_rad(m.step.D[i].R);
-    const double lever_m = radius_m + (center_W - fromBt(object_[i]->getWorldTransform().getOrigin())).norm();
-    m.bend_m += 0.5 * angle_rad * angle_rad * lever_m + angle_rad * m.travel_m;
-  }
-  m.deviation_m = (moved - predicted).norm() + m.turn_deviation_rad * radius_m + m.bend_m;
+  const Twist& V = state_.selection.V;
+  const Vec3 predicted = dt_s * (V.v + V.w.cross(m.center_W));
+  m.turn_deviation_rad = (m.turned - dt_s * V.w).norm();
+  m.deviation_m = (m.moved_W - predicted).norm() + m.turn_deviation_rad * m.radius_m + m.bend_m;
 
   thread_local std::vector<Candidate> missed;
   missed.clear();
   findAmongRefined(m, missed);
   if (missed.empty() && out.size() == had && mayMissPoints(m, at_start.pair)) findAlongPath(m, missed);
-  if (missed.empty()) return;
-  emit(m, missed, out);
-  state_.is_incomplete = true;
+  if (!missed.empty()) {
+    emit(m, missed, out);
+    state_.is_incomplete = true;
+    return;
+  }
+  const double apart_m = kApartShare * state_.context->settings.contact_margin_m;
+  if (out.size() == had && m.bend_m > apart_m && !m.turnsFar(0)) relinearise(m, at_start, apart_m, true, out);
+}
+
+// Contacts with load that end the step farther apart than apart_m get the planes that they have there. Of a
+// body that rolls these are those in front of it, which come down but do not arrive, and those that it leaves.
+void PairCheck::relinearise(const Motion& m, const Placed& at_start, double apart_m, bool only_loaded,
+                            std::vector<MissedContact>& out) {
+  const Settings& settings = state_.context->settings;
+  if (hasFeatures(at_start.pair, settings))
+    lineariseFeatures(at_start.pair, {{m.end[0], m.end[1]}, m.path}, apart_m, only_loaded, state_, out);
+  if (settings.use_surfaces) {
+    const Placed at_end(*this, m.end);
+    thread_local std::vector<Candidate> loaded, ends;
+    findThere(at_end.pair, state_, only_loaded, loaded, ends);
+    for (std::size_t k = 0; k < ends.size(); ++k) {
+      const bool is_same = ends[k].n_W.dot(m.step.normal(loaded[k])) > kCosFlush &&
+                           ends[k].distance_m < settings.contact_margin_m + m.travel_m;
+      if (is_same && ends[k].distance_m > apart_m) put(m, at_start, loaded[k], ends[k], out);
+    }
+  }
 }
 
 double PairCheck::freeShare(const Pose (&X_WB_end)[2]) {
@@ -324,30 +407,26 @@ void PairCheck::emit(const Motion& m, std::vector<Candidate>& missed, std::vecto
   for (Candidate& c : missed) c.predicted_m = c.distance_m;
   const Placed at_start(*this, m.start);
   reduceBySpread(missed, kMostAdded, at_start.pair.radius_m(), state_.context->settings.contact_margin_m);
-  const Displacement back = m.step.inverse();
-  // The contact acts where it is at the end of the step: with its lever and normal there. With the point
-  // moved back and the plane of the other body as it is, the lever would be turned against the normal by the
-  // step's rotation, and contact would brake a screw that turns by 2 degrees a step by two thirds of the
-  // slope of its thread.
-  Displacement with_body;
-  for (int i = 0; i < 2; ++i) {
-    const Pose X_BS_inverse = X_BS_[i].inverse();
-    with_body.D[i] =
-        Pose(Mat3(Mat3::Identity()), (m.start[i] * X_BS_inverse).p - (m.end[i] * X_BS_inverse).p);
-  }
   for (const Candidate& end : missed) {
-    Candidate start = back.moved(end);
+    Candidate start = m.step.inverse().moved(end);
     if (m.turnsFar(0) && !end.isCrossing()) measureAtStart(m, at_start.pair, start);
-    Candidate acting = with_body.moved(end);
-    acting.distance_m = start.distance_m;
-    MissedContact added;
-    added.point = state_.writer->put(acting, at_start.pair.wrapper, state_.motion);
-    if (!added.point) continue;
-    for (int i = 0; i < 2; ++i) added.object[i] = object_[i];
-    added.end_gap_m = end.distance_m;
-    added.kept_m = overlapOf(start, at_start.pair);
-    out.push_back(added);
+    put(m, at_start, start, end, out);
   }
+}
+
+// The contact acts where it is on the way of the step: with its lever and normal there. With the point moved
+// back and the plane of the other body as it is, the lever would be turned against the normal by the step's
+// rotation, and contact would brake a screw that turns by 2 degrees a step by two thirds of the slope of its
+// thread.
+void PairCheck::put(const Motion& m, const Placed& at_start, const Candidate& start, const Candidate& end,
+                    std::vector<MissedContact>& out) {
+  MissedContact added;
+  added.point = state_.writer->put(m.path.acting(start, end), at_start.pair.wrapper, state_.motion);
+  if (!added.point) return;
+  for (int i = 0; i < 2; ++i) added.object[i] = object_[i];
+  added.end_gap_m = end.distance_m;
+  added.kept_m = overlapOf(start, at_start.pair);
+  out.push_back(added);
 }
 
 }  // namespace vps::bullet::inline v0

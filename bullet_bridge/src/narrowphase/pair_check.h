@@ -31,6 +31,9 @@ namespace vps::bullet::inline v0 {
 /// it is.
 ///
 /// A contact that is missing gets the plane through which the point entered.
+///
+/// The reverse is looked at as well: a contact that carries load although it ends the step apart. Its plane is
+/// to first order in the motion, and the step turned it away. It gets the plane that it has at the end.
 class PairCheck final : public StepCheck {
  public:
   explicit PairCheck(PairState& state) : state_(state) {}
@@ -40,6 +43,7 @@ class PairCheck final : public StepCheck {
   /// False in a pair that Bullet did not process in this step: its shapes may be others by now, or gone.
   [[nodiscard]] bool isValid() const;
   [[nodiscard]] const btCollisionObject* object(int i) const override { return object_[i]; }
+  void linearise(const Pose (&X_WB_end)[2], std::vector<MissedContact>& out) override;
   void findMissed(const Pose (&X_WB_end)[2], bool is_first, std::vector<MissedContact>& out) override;
   double freeShare(const Pose (&X_WB_end)[2]) override;
   void endStep() override { is_of_this_step_ = false; }
@@ -47,12 +51,18 @@ class PairCheck final : public StepCheck {
  private:
   struct Placed;
   struct Motion;
+  [[nodiscard]] bool read(const Pose (&X_WB_end)[2], Motion& motion) const;
+  void measure(const PairView& start, Motion& motion) const;
+  void relinearise(const Motion& motion, const Placed& at_start, double apart_m, bool only_loaded,
+                   std::vector<MissedContact>& out);
   void findAmongRefined(const Motion& motion, std::vector<Candidate>& missed) const;
   void findOverlaps(const Motion& motion, const PairView& start, const PairView& pair, const PairView& end,
                     std::vector<Candidate>& found) const;
   void findAlongPath(const Motion& motion, std::vector<Candidate>& missed) const;
   [[nodiscard]] bool mayMissPoints(const Motion& motion, const PairView& at_start) const;
   bool measureAtStart(const Motion& motion, const PairView& at_start, Candidate& start) const;
+  void put(const Motion& motion, const Placed& at_start, const Candidate& start, const Candidate& end,
+           std::vector<MissedContact>& out);
   void emit(const Motion& motion, std::vector<Candidate>& missed, std::vector<MissedContact>& out);
 
   PairState& state_;

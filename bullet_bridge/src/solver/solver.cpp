@@ -87,6 +87,7 @@ struct Solver::Work {
   [[nodiscard]] bool isHeap();
   SolveOutcome solveRigid(const SolverSettings& settings, double dt_s);
   SolveOutcome solveWithLaws(const SolverSettings& settings, double dt_s);
+  void linearise(const btContactSolverInfo& info);
   bool addMissed(const btContactSolverInfo& info, bool is_first);
   [[nodiscard]] bool hasOutside() const;
   [[nodiscard]] Vec6 commonVelocity() const;
@@ -318,10 +319,22 @@ SolveOutcome Solver::Work::solveWithLaws(const SolverSettings& settings, double 
   return {most_steps, last.is_converged};
 }
 
+// The contacts that carried load get their rows where the bodies will be if they go on as they do.
+void Solver::Work::linearise(const btContactSolverInfo& info) {
+  missed.clear();
+  for (StepCheck* check : checks) {
+    const Pose X_WB_end[2] = {island.endPose(check->object(0), {}, info.m_timeStep),
+                              island.endPose(check->object(1), {}, info.m_timeStep)};
+    check->linearise(X_WB_end, missed);
+  }
+  rigid.addMissed(missed, info);
+}
+
 // True if contacts were added, so that the step must be solved again.
 bool Solver::Work::addMissed(const btContactSolverInfo& info, bool is_first) {
   const double dt_s = info.m_timeStep;
   missed.clear();
+  rigid.finish();  // a check asks which contacts carry load
   for (StepCheck* check : checks) {
     const Pose X_WB_end[2] = {island.endPose(check->object(0), rigid.push(), dt_s),
                               island.endPose(check->object(1), rigid.push(), dt_s)};
@@ -441,6 +454,7 @@ btScalar Solver::solveGroup(btCollisionObject** bodies, int body_count, btPersis
   work.gatherConstraints(spanOf(constraints, constraint_count), info);
   work.gatherCouplings(dt_s);
 
+  if (!work.is_penalty) work.linearise(info);
   constexpr int kMaxChecks = 8;  // assumed; two or three find all
   iterations_used_ = 0;
   for (int checked = 0;; ++checked) {

@@ -48,7 +48,7 @@ class VPS_API FeatureMotion {
   /// radius.
   [[nodiscard]] static double rest_m(const FeatureSet& part0, const FeatureSet& part1);
   /// Features that come nearer than this share of it on the way are looked at, or than half of what they had.
-  static constexpr double kLeastShare = 0.4;
+  static constexpr double kLeastShare = 0.9;
 
   /// Appends the features that come too near on the way from `start` to `end` (poses of part 1 in part 0) and
   /// whose gap at the end is less than the rest gap and less than at the start, each with the plane in which

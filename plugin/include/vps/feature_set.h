@@ -17,13 +17,16 @@ struct CornerTree;
 struct FacetTree;
 
 /// A sharp edge that is not a groove, or an edge that does not have exactly two facets. Sharp are edges that
-/// turn by 8 degrees or more, and lone kinks between two planes.
+/// turn by 8 degrees or more, lone kinks between two planes, and edges that stand out by more than 0.25 um from
+/// the curved surface that their facets stand for.
 struct FeatureEdge {
   std::uint32_t from = 0, to = 0;               ///< vertices
   Vec3 into[2] = {Vec3::Zero(), Vec3::Zero()};  ///< unit, across the edge into each facet
   bool has_faces = false;                       ///< false: `into` is unknown
   /// At an end it goes on in one other edge, which turns by less than 8 degrees.
   bool is_curved = false;
+  /// Between two facets of one curved surface, from which it stands out.
+  bool is_slight = false;
   Vec3 normal[2] = {Vec3::Zero(), Vec3::Zero()};  ///< of each facet, outward, unit; zero if unknown
   bool has_curved_face[2] = {false, false};       ///< the facet stands for a curved surface
 };

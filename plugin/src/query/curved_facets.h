@@ -19,7 +19,9 @@ namespace vps::inline v0 {
 /// @return for each triangle whether it stands for a curved surface
 std::vector<std::uint8_t> findCurvedFacets(std::span<const HalfEdge> edges, std::span<const Vec3> normals);
 
-/// True if two triangles that meet at an edge are parts of one surface: of a plane, or of a curved one.
-bool isSmoothEdge(const Vec3& normal0, const Vec3& normal1, bool is_one_curved);
+/// True if two triangles that meet at an edge are parts of one surface: of a plane, or of a curved one from
+/// which the edge stands out by less than kLeastProtrusion_m.
+/// @param width_m  of the narrower one, across the edge
+bool isSmoothEdge(const Vec3& normal0, const Vec3& normal1, bool is_one_curved, double width_m);
 
 }  // namespace vps::inline v0

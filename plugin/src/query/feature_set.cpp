@@ -94,7 +94,13 @@ void FeatureSet::append(const Mesh& mesh, const Pose& X_MP, bool is_sheet) {
     if (is_sheet && is_joined && isSmoothEdge(edge.normal[0], edge.normal[1], false)) return;
     if (edge.has_faces) {
       const bool is_one_curved = is_curved[same[0].triangle] != 0 || is_curved[same[1].triangle] != 0;
-      if (isSmoothEdge(edge.normal[0], edge.normal[1], is_one_curved)) return;
+      const auto heightOf_m = [&](const HalfEdge& e) {
+        const Vec3 into = vertex(mesh.triangles[e.triangle][(e.side + 2U) % 3]) - vertices_[edge.from];
+        return (into - along * along.dot(into)).norm();
+      };
+      const double width_m = std::min(heightOf_m(same[0]), heightOf_m(same[1]));
+      if (isSmoothEdge(edge.normal[0], edge.normal[1], is_one_curved, width_m)) return;
+      edge.is_slight = isSmoothEdge(edge.normal[0], edge.normal[1], is_one_curved, 0);
       if (!(edge.normal[0].dot(edge.into[1]) < 0)) return;  // a groove
     }
     for (std::size_t i = 0; i < 2 && i < same.size(); ++i)

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Where a contact acts in a step: the row of a contact whose lever and normal turn on the way.
+#pragma once
+
+#include "narrowphase/contact_candidate.h"
+
+class btCollisionObject;
+
+namespace vps::bullet::inline v0 {
+
+/// The way of both bodies in a solved step.
+///
+/// A row of the solver is linear: one lever and one normal for the whole step. On the way they turn, and the
+/// contact's normal velocity changes with them, from s0 at the start to s1 at the end (here as displacements).
+/// The row takes them at the time at which that velocity is zero, so that the contact does no work:
+///
+///     tau = 1/2 + g0 / (s1 - s0),  at least 1/2
+///
+/// where g0 is the gap at the start (above the one at which it rests), which a contact with load closes. A body
+/// that turns about a corner (g0 = 0) has it in the middle of the step. A wheel that rolls meets the place that
+/// is lowest at the end, tau = 1. With the lever of the start the contact would brake what rolls, with that of
+/// the end it would drive what turns about a corner.
+///
+/// A greater tau than 1 belongs to a corner that lands within the step, before which another one carried the
+/// load: the lever of both together lies between them. It is taken where the bodies approach each other by less
+/// than their weight moves them in a step; what comes faster is an impact, which acts at the corner. And it is
+/// taken only as far as the row still closes half of a gap, so that the rounds of the solver end.
+///
+/// Both bodies' levers pass through one point of the world, so that angular momentum is kept. It goes with the
+/// body that turns more easily, whose lever is then exact.
+class StepPath {
+ public:
+  StepPath() = default;
+  /// @param start, end  of the bodies' frames, which are at their centres
+  StepPath(const btCollisionObject* const (&objects)[2], const Pose (&start)[2], const Pose (&end)[2],
+           double dt_s);
+
+  /// The contact as a row of the solver: where the bodies are at the start, with the gap that it has there.
+  /// @param start, end  the same contact at both ends of the step
+  [[nodiscard]] Candidate acting(const Candidate& start, const Candidate& end) const;
+
+ private:
+  struct Body {
+    Vec3 center_W = Vec3::Zero(), way_W = Vec3::Zero(), turn = Vec3::Zero();
+    Vec3 kick_W = Vec3::Zero();  ///< how far gravity and other forces move it in a step
+    double inverse_mass = 0;     ///< 0: contact does not move it
+    Mat3 inverse_inertia_W = Mat3::Zero();
+  };
+  /// A contact's lever and normal.
+  struct Row {
+    Vec3 p_W, n_W;
+  };
+  [[nodiscard]] double way_m(const Row& row) const;
+  [[nodiscard]] double effect(const Row& of, const Row& on) const;
+  [[nodiscard]] double timeOf(const Row& start, const Row& end, double closed_m) const;
+
+  Body body_[2];
+  Vec3 common_way_W_ = Vec3::Zero();
+};
+
+}  // namespace vps::bullet::inline v0
