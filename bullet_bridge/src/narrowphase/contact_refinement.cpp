@@ -92,7 +92,7 @@ struct Foot {
   Vec3 normal = Vec3::Zero();  ///< outward at q; at an edge the mean of the normals of its faces
   Vec3 smooth = Vec3::Zero();  ///< normal of the curved surface that the mesh approximates
   bool is_edge = false;
-  bool is_sheet = false;             ///< its edges may be wound either way, so crossings do not cover them
+  bool is_sheet = false;             ///< its edges may be wound either way, so that features cover them
   const Surface* surface = nullptr;  ///< null: a primitive
   Mat3 R_WP = Mat3::Identity();      ///< of the surface's part
   std::uint32_t triangle = 0;
@@ -189,7 +189,7 @@ Exact contactAt(const Foot& foot, const OwnPoint& own) {
   exact.distance_m = sign * distance_m;
   exact.n = distance_m > kTouching_m ? Vec3(sign / distance_m * foot.from_q) : foot.normal;
   exact.is_edge_on_edge = is_edge_on_edge;
-  if (is_edge_on_edge && !foot.is_sheet && own.runsAlong(exact.n)) exact.is_contact = false;
+  if (is_edge_on_edge && own.runsAlong(exact.n)) exact.is_contact = false;
   return exact;
 }
 
