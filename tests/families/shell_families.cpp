@@ -458,7 +458,7 @@ std::vector<Family> shellFamilies() {
       {"E_crossing_mass", "relative error of mass properties of shells that cross, some inverted", 1e-9,
        kCrossingMembers, 2, massOfCrossing, kindOf(crossingMember)},
       {"E_copies_mass", "the same of solids given two to four times with other facets, or 1 if none is there",
-       1e-9, kCopyMembers, 1, massOfCopies, describeCopies},
+       1e-9, kCopyMembers, 3, massOfCopies, describeCopies},
       {"E_levels_mass", "the same of three to six shells in each other; points on the wrong side", 1e-9,
        kLevelMembers, 1, massOfLevels, describeLevels},
       {"E_round_volume", "relative error of the volume of cylinders and spheres sunk into boxes", 1e-9,

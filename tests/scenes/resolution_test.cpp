@@ -4,9 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <ctime>
 
 #include "models/meeting_sizes.h"
+#include "models/scene_models.h"
 #include "scenes/scene_part.h"
 #include "simulation/scaled_scene.h"
 #include "vps/load_error.h"
@@ -247,6 +250,44 @@ TEST(Resolution, TheVoxelThatIsNamedWhereMemoryIsShortFits) {
   scene.fidelity.voxel_m *= 0.85;
   scene.fidelity.spacing_m *= 0.85;
   EXPECT_THROW(simulate(scene, 0.002, options), LoadError) << voxel_mm;
+}
+
+// Spacings far too small, a plate of 15 m, and voxels of a micrometre: by the voxmap's limit, the
+// pointshell's, and the memory's.
+TEST(Resolution, WhatIsNamedWhereModelsAreRefusedIsAcceptedAndFoundInASecond) {
+  const std::array<double, 3> cases[] = {// cube, voxel, spacing [m]
+                                         {10 * kMm, 0.25 * kMm, 1e-5}, {10 * kMm, 0.25 * kMm, 1e-6},
+                                         {10 * kMm, 0.25 * kMm, 1e-7}, {10 * kMm, 1.2 * kMm, 4.8e-6},
+                                         {10 * kMm, 1e-6, 0.5 * kMm},  {5, 0.25 * kMm, 1 * kMm},
+                                         {0.5, 8 * kMm, 0.01 * kMm}};
+  for (const double memory_bytes : {1e9, 16e9})
+    for (const auto& [cube_m, voxel_m, spacing_m] : cases) {
+      Scene scene = cubeOnPlate(cube_m);
+      scene.chooses_voxel = scene.chooses_spacing = false;
+      scene.fidelity.voxel_m = voxel_m;
+      scene.fidelity.spacing_m = spacing_m;
+      const ModelPlan plan = makeModelPlan(scene, ModelPurpose::Simulate, false);
+      ModelOptions options;
+      options.memory_bytes = memory_bytes;
+      const std::clock_t begun = std::clock();
+      try {
+        requireModelsFit(scene, plan, options);
+        ADD_FAILURE() << "was not refused: " << cube_m << " " << voxel_m << " " << spacing_m;
+      } catch (const LoadError& error) {
+        EXPECT_LT(static_cast<double>(std::clock() - begun) / CLOCKS_PER_SEC, 1.0) << error.what();
+        const std::string words = error.what();
+        const auto at = words.find("voxel = \"");
+        ASSERT_NE(at, std::string::npos) << words;
+        double voxel_mm = 0, spacing_mm = 0;
+        ASSERT_EQ(
+            std::sscanf(words.c_str() + at, "voxel = \"%lfmm\", spacing = \"%lfmm\"", &voxel_mm, &spacing_mm),
+            2)
+            << words;
+        scene.fidelity.voxel_m = voxel_mm * kMm;
+        scene.fidelity.spacing_m = spacing_mm * kMm;
+        EXPECT_NO_THROW(requireModelsFit(scene, plan, options)) << words;
+      }
+    }
 }
 
 // All numbers of the two runs differ by powers of two.

@@ -9,6 +9,7 @@
 #include "pointshell/shell_samples.h"
 #include "vps/assert.h"
 #include "vps/load_error.h"
+#include "vps/shell_estimate.h"
 #include "vps/solid.h"
 
 namespace vps::inline v0 {
@@ -19,6 +20,19 @@ constexpr double kDensity = 1.3;
 /// Assumed: about 1.5 GB of shell.
 constexpr double kMaxPoints = 16e6;
 
+}  // namespace
+
+double fittingSpacing_m(const Mesh& mesh, double spacing_m) {
+  // A needle has little area: the edges of its box replace its own.
+  const double by_area = kDensity * area(mesh) / (spacing_m * spacing_m);
+  const double by_length = bounds(mesh).size().sum() / spacing_m;
+  constexpr double kRounding = 1 + 1e-9;
+  if (!(std::max(by_area, by_length) > kMaxPoints)) return spacing_m;
+  return kRounding * spacing_m * std::max(std::sqrt(by_area / kMaxPoints), by_length / kMaxPoints);
+}
+
+namespace {
+
 void requireSettings(const Mesh& mesh, const PointShellSettings& settings, const std::string& part) {
   const auto microns = [](double length_m) { return std::to_string(std::lround(length_m * 1e6)) + " um"; };
   if (!(std::isfinite(settings.spacing_m) && settings.spacing_m > 0))
@@ -28,16 +42,10 @@ void requireSettings(const Mesh& mesh, const PointShellSettings& settings, const
   if (!(settings.edge_angle_rad > 0 && settings.edge_angle_rad <= std::numbers::pi))
     throw LoadError("", part,
                     "edge angle must lie between 0 and pi, not " + std::to_string(settings.edge_angle_rad));
-  // A needle has little area: the edges of its box replace its own.
-  const double by_area = kDensity * area(mesh) / (settings.spacing_m * settings.spacing_m);
-  const double by_length = bounds(mesh).size().sum() / settings.spacing_m;
-  if (std::max(by_area, by_length) > kMaxPoints) {
-    const double enough_m =
-        settings.spacing_m * std::max(std::sqrt(by_area / kMaxPoints), by_length / kMaxPoints);
+  if (const double enough_m = fittingSpacing_m(mesh, settings.spacing_m); enough_m > settings.spacing_m)
     throw LoadError("", part,
                     "a point spacing of " + microns(settings.spacing_m) + " gives too many points; " +
                         microns(std::ceil(enough_m * 1e6) * 1e-6) + " would do, or check the units");
-  }
 }
 
 PointShell laidOut(const std::vector<ShellSample>& samples, double spacing_m) {

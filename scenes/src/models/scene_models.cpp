@@ -25,6 +25,7 @@
 #include "vps/map_estimate.h"
 #include "vps/model_estimate.h"
 #include "vps/shell_crop.h"
+#include "vps/shell_estimate.h"
 #include "vps/voxmap_crop.h"
 #include "vps_scenes/mesh_warning.h"
 
@@ -145,37 +146,20 @@ double roundedUp(double value) {
   return digit * std::ceil(value / digit * (1 - 1e-12));
 }
 
-/// Refuses a map that would not be built, before the others are: some take minutes. O(triangles).
-void requireMaps(const Scene& scene, const ModelPlan& plan) {
-  for (std::size_t i = 0; i < scene.parts.size(); ++i) {
-    const ScenePart& part = scene.parts[i];
-    if (!needsMap(plan, i) || (part.model && part.model->map)) continue;
-    const VoxMapSettings voxels = voxMapSettings(fidelityOf(part, scene.fidelity));
-    const double bytes = expectedMapBytes(part.part.mesh, voxels);
-    if (bytes <= largestMapBytes()) continue;
-    const Vec3 size_mm = 1e3 * bounds(part.part.mesh).size();
-    constexpr double kGiB = 1024.0 * 1024 * 1024, kCertain = 1.001;  // see fittingVoxel_m()
-    std::array<char, 300> words{};
-    std::snprintf(
-        words.data(), words.size(),
-        "of %.4g x %.4g x %.4g mm needs about %.3g GiB of memory for voxels of %.3g mm, and a voxmap "
-        "takes at most %.0f; set larger ones in the scene file: [fidelity] voxel = \"%.6gmm\"",
-        size_mm.x(), size_mm.y(), size_mm.z(), bytes / kGiB, 1e3 * voxels.voxel_m, largestMapBytes() / kGiB,
-        roundedUp(1e3 * kCertain * fittingVoxel_m(part.part.mesh, voxels, largestMapBytes())));
-    throw LoadError(part.file, part.part.name, words.data());
-  }
+bool needsShell(const ModelPlan& plan, std::size_t part) {
+  return isBuilt(plan, part) && plan.parts[part].has_shell;
 }
 
 using FidelityOf = std::function<Fidelity(const ScenePart&)>;
 
-/// At least what the models of a plan take, by the areas alone.
-double mostModelBytes(const Scene& scene, const ModelPlan& plan) {
+/// About what whole models of a plan take, by areas alone: seldom less than they do take.
+double mostModelBytes(const Scene& scene, const ModelPlan& plan, const FidelityOf& of) {
   constexpr double kDensest = 2;  // points for each square of the spacing; more where edges are near
   double bytes = 0;
   for (std::size_t i = 0; i < scene.parts.size(); ++i) {
     if (!isBuilt(plan, i)) continue;
     const Mesh& mesh = scene.parts[i].part.mesh;
-    const Fidelity fidelity = fidelityOf(scene.parts[i], scene.fidelity);
+    const Fidelity fidelity = of(scene.parts[i]);
     if (needsMap(plan, i)) bytes += expectedMapBytes(mesh, voxMapSettings(fidelity));
     bytes += ModelEstimate::shellBytes(kDensest * area(mesh) / (fidelity.spacing_m * fidelity.spacing_m));
   }
@@ -188,54 +172,153 @@ double modelBytes(const Scene& scene, const ModelPlan& plan, const FidelityOf& o
     if (!isBuilt(plan, i)) continue;
     const Fidelity fidelity = of(scene.parts[i]);
     const PartModelPlan& planned = plan.parts[i];
-    const ModelEstimate estimate(scene.parts[i].part.mesh, voxMapSettings(fidelity),
-                                 pointShellSettings(fidelity));
+    const ModelEstimate estimate(
+        scene.parts[i].part.mesh, voxMapSettings(fidelity), pointShellSettings(fidelity),
+        planned.kept_P.empty() ? ModelEstimate::Extent::WholeOnly : ModelEstimate::Extent::Any);
     if (needsMap(plan, i)) bytes += estimate.mapBytes(planned.kept_P);
     if (planned.has_shell) bytes += ModelEstimate::shellBytes(estimate.pointCount(planned.kept_P));
   }
   return bytes;
 }
 
-Fidelity withVoxel(Fidelity fidelity, double voxel_m) {
-  fidelity.spacing_m *= voxel_m / fidelity.voxel_m;
-  fidelity.voxel_m = voxel_m;
+/// The models' memory where it may be less than some limit, else about that. The first takes points on all
+/// edges, which are many where the spacing is far too small; the second O(triangles).
+double aboutModelBytes(const Scene& scene, const ModelPlan& plan, const FidelityOf& of, double most_bytes) {
+  constexpr double kFar = 8;  // by areas alone at most twice as much; then cropped models keep a share
+  const double by_areas = mostModelBytes(scene, plan, of);
+  const bool is_known = by_areas <= most_bytes || by_areas > kFar * most_bytes;
+  const bool is_cropped =
+      std::ranges::any_of(plan.parts, [](const PartModelPlan& part) { return !part.kept_P.empty(); });
+  return is_known && !(is_cropped && by_areas > most_bytes) ? by_areas : modelBytes(scene, plan, of);
+}
+
+/// To two digits, never down, in millimetres.
+double roundedLength_m(double length_m) {
+  constexpr double kRounding = 1 + 1e-12;
+  return 1e-3 * roundedUp(1e3 * length_m * kRounding);
+}
+
+Fidelity scaled(Fidelity fidelity, double factor) {
+  fidelity.voxel_m = roundedLength_m(factor * fidelity.voxel_m);
+  fidelity.spacing_m = roundedLength_m(factor * fidelity.spacing_m);
   return fidelity;
 }
 
-/// The least voxel, to two digits, with which the models of all parts fit, where none has one of its own, as
-/// where a scene states one.
-double remedy_m(const Scene& scene, const ModelPlan& plan, double most_bytes) {
-  const auto fits = [&](double voxel_m) {
-    const Fidelity all = withVoxel(scene.fidelity, voxel_m);
-    return modelBytes(scene, plan, [&](const ScenePart&) { return all; }) <= most_bytes;
-  };
-  double high_m = scene.fidelity.voxel_m;
-  for (int i = 0; i < 40 && !fits(high_m); ++i) high_m *= 2;
-  double low_m = high_m;
-  for (int i = 0; i < 10 && fits(low_m); ++i) low_m /= 2;
-  while (high_m > 1.02 * low_m) {
-    const double middle_m = std::sqrt(low_m * high_m);
-    (fits(middle_m) ? high_m : low_m) = middle_m;
+/// Finds a voxel and a spacing with which the models of a plan are built, all with the same, as where a scene
+/// states them. What is found passes the checks below.
+class Remedy {
+ public:
+  Remedy(const Scene& scene, const ModelPlan& plan, double most_bytes)
+      : scene_(scene), plan_(plan), most_bytes_(most_bytes > 0 ? most_bytes : kNoLimit) {}
+
+  /// The least, to two digits.
+  [[nodiscard]] Fidelity find() const {
+    const Fidelity least = leastOfParts();
+    double high = 1;
+    for (int i = 0; i < 40 && !fits(scaled(least, high)); ++i) high *= 2;
+    double low = high;
+    for (int i = 0; i < 10 && fits(scaled(least, low)); ++i) low /= 2;
+    while (high > 1.02 * low) {
+      const double middle = std::sqrt(low * high);
+      (fits(scaled(least, middle)) ? high : low) = middle;
+    }
+    return scaled(least, high);
   }
-  return 1e-3 * roundedUp(1e3 * high_m);
+  [[nodiscard]] std::string words() const {
+    const Fidelity found = find();
+    std::array<char, 120> words{};
+    std::snprintf(words.data(), words.size(), "[fidelity] voxel = \"%.6gmm\", spacing = \"%.6gmm\"",
+                  1e3 * found.voxel_m, 1e3 * found.spacing_m);
+    return words.data();
+  }
+
+ private:
+  static constexpr double kNoLimit = 1e300;
+
+  /// The scene's, made larger where a map or a shell would not be built: of these the other one need not be.
+  [[nodiscard]] Fidelity leastOfParts() const {
+    constexpr double kCertain = 1.001;  // see fittingVoxel_m()
+    Fidelity least = scene_.fidelity;
+    forEachBuilt([&](std::size_t i, const Mesh& mesh) {
+      const double voxel_m = fittingVoxel_m(mesh, voxMapSettings(scene_.fidelity), largestMapBytes());
+      if (needsMap(plan_, i) && voxel_m > scene_.fidelity.voxel_m && std::isfinite(voxel_m))
+        least.voxel_m = std::max(least.voxel_m, kCertain * voxel_m);
+    });
+    if (scene_.chooses_spacing) least.spacing_m *= least.voxel_m / scene_.fidelity.voxel_m;
+    const double spacing_m = least.spacing_m;
+    forEachBuilt([&](std::size_t i, const Mesh& mesh) {
+      if (needsShell(plan_, i))
+        least.spacing_m = std::max(least.spacing_m, fittingSpacing_m(mesh, spacing_m));
+    });
+    return least;
+  }
+
+  [[nodiscard]] bool fits(const Fidelity& all) const {
+    bool are_built = true;
+    forEachBuilt([&](std::size_t i, const Mesh& mesh) {
+      if (needsMap(plan_, i)) are_built &= expectedMapBytes(mesh, voxMapSettings(all)) <= largestMapBytes();
+      if (needsShell(plan_, i)) are_built &= fittingSpacing_m(mesh, all.spacing_m) <= all.spacing_m;
+    });
+    const auto same = [&](const ScenePart&) { return all; };
+    return are_built && aboutModelBytes(scene_, plan_, same, most_bytes_) <= most_bytes_;
+  }
+
+  template <typename Visit>
+  void forEachBuilt(Visit visit) const {
+    for (std::size_t i = 0; i < scene_.parts.size(); ++i)
+      if (isBuilt(plan_, i)) visit(i, scene_.parts[i].part.mesh);
+  }
+
+  const Scene& scene_;
+  const ModelPlan& plan_;
+  const double most_bytes_;
+};
+
+/// Refuses a map or a shell that would not be built, before the others are: some take minutes. O(triangles).
+void requireParts(const Scene& scene, const ModelPlan& plan, double most_bytes) {
+  for (std::size_t i = 0; i < scene.parts.size(); ++i) {
+    const ScenePart& part = scene.parts[i];
+    const Mesh& mesh = part.part.mesh;
+    const Fidelity fidelity = fidelityOf(part, scene.fidelity);
+    const Vec3 size_mm = 1e3 * bounds(mesh).size();
+    std::array<char, 300> words{};
+    if (needsMap(plan, i) && !(part.model && part.model->map)) {
+      const VoxMapSettings voxels = voxMapSettings(fidelity);
+      constexpr double kGiB = 1024.0 * 1024 * 1024;
+      if (const double bytes = expectedMapBytes(mesh, voxels); bytes > largestMapBytes())
+        std::snprintf(words.data(), words.size(),
+                      "of %.4g x %.4g x %.4g mm needs about %.3g GiB of memory for voxels of %.3g mm, and a "
+                      "voxmap takes at most %.0f; set larger ones in the scene file: ",
+                      size_mm.x(), size_mm.y(), size_mm.z(), bytes / kGiB, 1e3 * voxels.voxel_m,
+                      largestMapBytes() / kGiB);
+    }
+    if (words[0] == 0 && needsShell(plan, i) && !(part.model && part.model->shell) &&
+        fittingSpacing_m(mesh, fidelity.spacing_m) > fidelity.spacing_m)
+      std::snprintf(
+          words.data(), words.size(),
+          "of %.4g x %.4g x %.4g mm has too many points for a pointshell with a spacing of %.3g mm; "
+          "set a larger one in the scene file: ",
+          size_mm.x(), size_mm.y(), size_mm.z(), 1e3 * fidelity.spacing_m);
+    if (words[0] != 0)
+      throw LoadError(part.file, part.part.name, words.data() + Remedy(scene, plan, most_bytes).words());
+  }
 }
 
 /// Refuses a plan whose models need more memory than there is, since the system would end the program without
 /// a word. The exact estimate is only made where the areas alone do not tell. O(triangles).
-void requireMemory(const Scene& scene, const ModelPlan& plan, const ModelOptions& options) {
-  const double most_bytes = options.memory_bytes > 0 ? options.memory_bytes : machineMemoryBytes();
-  if (!(most_bytes > 0) || mostModelBytes(scene, plan) <= most_bytes) return;
-  const double about =
-      modelBytes(scene, plan, [&](const ScenePart& part) { return fidelityOf(part, scene.fidelity); });
+void requireMemory(const Scene& scene, const ModelPlan& plan, double most_bytes) {
+  if (!(most_bytes > 0)) return;
+  const double about = aboutModelBytes(
+      scene, plan, [&](const ScenePart& part) { return fidelityOf(part, scene.fidelity); }, most_bytes);
   if (about <= most_bytes) return;
-  const Fidelity remedy = withVoxel(scene.fidelity, remedy_m(scene, plan, most_bytes));
-  std::array<char, 300> words{};
+  std::array<char, 200> words{};
   std::snprintf(words.data(), words.size(),
                 "its models need about %.3g MB of memory, and there are %.3g MB; choose larger voxels and "
-                "spacing ([fidelity] voxel = \"%.6gmm\", spacing = \"%.6gmm\"), or leave parts out that "
-                "nothing touches (vps explain lists what each part needs)",
-                1e-6 * about, 1e-6 * most_bytes, 1e3 * remedy.voxel_m, roundedUp(1e3 * remedy.spacing_m));
-  throw LoadError(scene.file, "", words.data());
+                "spacing (",
+                1e-6 * about, 1e-6 * most_bytes);
+  throw LoadError(scene.file, "",
+                  words.data() + Remedy(scene, plan, most_bytes).words() +
+                      "), or leave parts out that nothing touches (vps explain lists what each part needs)");
 }
 
 /// Builds the models of a scene's parts on all cores. Each part's models depend on that part alone, and
@@ -345,8 +428,9 @@ class ModelBuilder {
 }  // namespace
 
 void requireModelsFit(const Scene& scene, const ModelPlan& plan, const ModelOptions& options) {
-  requireMaps(scene, plan);
-  requireMemory(scene, plan, options);
+  const double most_bytes = options.memory_bytes > 0 ? options.memory_bytes : machineMemoryBytes();
+  requireParts(scene, plan, most_bytes);
+  requireMemory(scene, plan, most_bytes);
 }
 
 std::vector<BuildTimes> buildModels(Scene& scene, const ModelPlan& plan, const ModelOptions& options) {
