@@ -91,7 +91,7 @@ void FeatureSet::append(const Mesh& mesh, const Pose& X_MP, bool is_sheet) {
       edge.into[i] = (into - along * along.dot(into)).normalized();
     }
     const bool is_joined = same.size() == 2 && same[0].is_forward != same[1].is_forward;
-    if (is_sheet && is_joined && isSmoothEdge(edge.normal[0], edge.normal[1], false)) return;
+    if (is_sheet && is_joined && isSmoothEdge(edge.normal[0], edge.normal[1], false, 0)) return;
     if (edge.has_faces) {
       const bool is_one_curved = is_curved[same[0].triangle] != 0 || is_curved[same[1].triangle] != 0;
       const auto heightOf_m = [&](const HalfEdge& e) {
