@@ -104,7 +104,6 @@ std::vector<Family> flushStartFamilies() {
   // The gap itself; and while it closes, a hundredth of a step's friction is missing, 1 um in 30 steps.
   family.bar = 2e-6;
   family.members = 60;
-  family.expected_failure = 3.932e-3;
   family.every = 6;
   family.measured = difference_m;
   family.describe = describe;
