@@ -291,7 +291,7 @@ std::vector<Family> restitutionFamilies() {
       {"B_fast_corners", error, 0.01, 99, 5, [](int i) { return fastCorner(i).error(Mode::Constraint); },
        [](int i) { return fastCorner(i).words(); }},
       {"B_faster_corners", error, 0.01, 99, 4, [](int i) { return fasterCorner(i).error(Mode::Constraint); },
-       [](int i) { return fasterCorner(i).words(); }, 0.59572},
+       [](int i) { return fasterCorner(i).words(); }},
       {"B_momentum", "change of momentum, relative", 1e-9, 60, 6,
        [](int i) { return Swarm(i).changes().linear; }, wordsOf<Swarm>()},
       {"B_angular_momentum", "change of angular momentum in steps without a push, relative", 1e-9, 60, 6,

@@ -122,12 +122,12 @@ class Linearised {
     missed.is_sharp = !isOnSheet(c, start_);
     return missed;
   }
-  [[nodiscard]] bool isOutOfPlace(const FeatureContact& c, double apart_m, bool only_loaded,
+  [[nodiscard]] bool isOutOfPlace(const FeatureContact& c, const Relinearising& which,
                                   const PairState& state) const {
     const Candidate end = at_end_(c);
-    if (!(end.distance_m > at_end_.rest_m + apart_m)) return false;
     const btManifoldPoint* point = state.writer->find(end.key());
-    return point && (point->m_appliedImpulse > 0 || !only_loaded);
+    return point && (point->m_appliedImpulse > 0 || which.is_before) &&
+           vps::bullet::isOutOfPlace(at_start_(c), end, path_, which, state.context->settings);
   }
 
  private:
@@ -169,11 +169,17 @@ void addFeatureContacts(const PairView& start, const EndPoses& end, bool is_firs
   }
 }
 
-void lineariseFeatures(const PairView& start, const EndPoses& end, double apart_m, bool only_loaded,
-                       PairState& state, std::vector<MissedContact>& out) {
+bool isOutOfPlace(const Candidate& start, const Candidate& end, const StepPath& path, const Relinearising& which,
+                  const Settings& settings) {
+  if (which.is_before) return end.distance_m > -settings.contact_margin_m && path.bends(start, end);
+  return end.distance_m > end.rest_m + which.apart_m;
+}
+
+void lineariseFeatures(const PairView& start, const EndPoses& end, const Relinearising& which, PairState& state,
+                       std::vector<MissedContact>& out) {
   const Linearised at_end(start, end);
   for (const FeatureContact& c : state.missed_features)
-    if (at_end.isOutOfPlace(c, apart_m, only_loaded, state)) out.push_back(at_end(c, state));
+    if (at_end.isOutOfPlace(c, which, state)) out.push_back(at_end(c, state));
 }
 
 void addMissedFeatures(const PairView& pair, const Settings& settings, PairState& state,

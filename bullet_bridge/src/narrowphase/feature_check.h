@@ -40,10 +40,20 @@ struct EndPoses {
 void addFeatureContacts(const PairView& start, const EndPoses& end, bool is_first, PairState& state,
                         std::vector<MissedContact>& out);
 
-/// Appends the contacts of features that end the step apart by more than `apart_m`, with their rows there.
-/// @param only_loaded  those that carry load
-void lineariseFeatures(const PairView& start, const EndPoses& end, double apart_m, bool only_loaded,
-                       PairState& state, std::vector<MissedContact>& out);
+/// Which rows are taken where the bodies end a step.
+struct Relinearising {
+  bool is_before = false;  ///< the step is not solved yet: rows of the motion that goes on as it is
+  double apart_m = 0;      ///< after it: rows with load whose contacts end the step apart by more
+};
+
+/// True if the row of a contact is to be taken at the end of the step. Where the bodies would go on into each
+/// other, the end is no place to look at.
+bool isOutOfPlace(const Candidate& start, const Candidate& end, const StepPath& path, const Relinearising& which,
+                  const Settings& settings);
+
+/// Appends the contacts of features whose rows are to be taken at the end of the step.
+void lineariseFeatures(const PairView& start, const EndPoses& end, const Relinearising& which, PairState& state,
+                       std::vector<MissedContact>& out);
 
 /// The share of the motion up to which no features come too near; 1 if none do.
 double freeShareOf(const PairView& start, const EndPoses& end, PairState& state);

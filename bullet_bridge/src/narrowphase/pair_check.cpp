@@ -21,10 +21,11 @@ namespace {
 // An overlap that existed before the step may grow by this share of that: rounding.
 constexpr double kGrowthShare = 0.1;
 
-constexpr double kNever_m = 1;  // farther than any step moves
-
-// A contact that carries load ends the step no farther apart than this share of the contact margin.
-constexpr double kApartShare = 0.0025;
+// A contact that carries load ends the step no farther apart than this.
+double apartOf_m(const Settings& settings) {
+  constexpr double kShare = 0.0025;  // of the contact margin. assumed: a tenth of the gap at which edges rest
+  return kShare * settings.contact_margin_m;
+}
 
 double turn_rad(const Mat3& R) {
   return rotationVector(R).norm();
@@ -237,8 +238,7 @@ void PairCheck::linearise(const Pose (&X_WB_end)[2], std::vector<MissedContact>&
   measure(at_start.pair, m);
   constexpr double kNothing_m = 1e-9;
   if (!(m.bend_m > kNothing_m) || m.turn_rad > kContactTurn_rad) return;
-  const double apart_m = kApartShare * state_.context->settings.contact_margin_m;
-  relinearise(m, at_start, -kNever_m, m.bend_m <= apart_m, out);
+  relinearise(m, at_start, true, out);
 }
 
 void PairCheck::findMissed(const Pose (&X_WB_end)[2], bool is_first, std::vector<MissedContact>& out) {
@@ -274,26 +274,29 @@ void PairCheck::findMissed(const Pose (&X_WB_end)[2], bool is_first, std::vector
     state_.is_incomplete = true;
     return;
   }
-  const double apart_m = kApartShare * state_.context->settings.contact_margin_m;
-  if (out.size() == had && m.bend_m > apart_m && !m.turnsFar(0)) relinearise(m, at_start, apart_m, true, out);
+  if (out.size() == had && m.bend_m > apartOf_m(state_.context->settings) && !m.turnsFar(0))
+    relinearise(m, at_start, false, out);
 }
 
-// Contacts with load that end the step farther apart than apart_m get the planes that they have there. Of a
-// body that rolls these are those in front of it, which come down but do not arrive, and those that it leaves.
-void PairCheck::relinearise(const Motion& m, const Placed& at_start, double apart_m, bool only_loaded,
+// The rows of the step's contacts as they are at the end of a motion.
+// @param is_before  before the step is solved: those for which it matters where they are taken. Otherwise those
+// that carry load and end the step apart: of a body that rolls, the contacts in front of it, which come down but
+// do not arrive, and those that it leaves.
+void PairCheck::relinearise(const Motion& m, const Placed& at_start, bool is_before,
                             std::vector<MissedContact>& out) {
   const Settings& settings = state_.context->settings;
+  const double apart_m = apartOf_m(settings);
   if (hasFeatures(at_start.pair, settings))
-    lineariseFeatures(at_start.pair, {{m.end[0], m.end[1]}, m.path}, apart_m, only_loaded, state_, out);
-  if (settings.use_surfaces) {
-    const Placed at_end(*this, m.end);
-    thread_local std::vector<Candidate> loaded, ends;
-    findThere(at_end.pair, state_, only_loaded, loaded, ends);
-    for (std::size_t k = 0; k < ends.size(); ++k) {
-      const bool is_same = ends[k].n_W.dot(m.step.normal(loaded[k])) > kCosFlush &&
-                           ends[k].distance_m < settings.contact_margin_m + m.travel_m;
-      if (is_same && ends[k].distance_m > apart_m) put(m, at_start, loaded[k], ends[k], out);
-    }
+    lineariseFeatures(at_start.pair, {{m.end[0], m.end[1]}, m.path}, {is_before, apart_m}, state_, out);
+  if (!settings.use_surfaces) return;
+  const Placed at_end(*this, m.end);
+  thread_local std::vector<Candidate> now, ends;
+  findThere(at_end.pair, state_, !is_before || m.bend_m <= apart_m, now, ends);
+  for (std::size_t k = 0; k < ends.size(); ++k) {
+    const bool is_same = ends[k].n_W.dot(m.step.normal(now[k])) > kCosFlush &&
+                         ends[k].distance_m < settings.contact_margin_m + m.travel_m;
+    if (is_same && isOutOfPlace(now[k], ends[k], m.path, {is_before, apart_m}, settings))
+      put(m, at_start, now[k], ends[k], out);
   }
 }
 

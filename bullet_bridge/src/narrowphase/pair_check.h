@@ -53,8 +53,7 @@ class PairCheck final : public StepCheck {
   struct Motion;
   [[nodiscard]] bool read(const Pose (&X_WB_end)[2], Motion& motion) const;
   void measure(const PairView& start, Motion& motion) const;
-  void relinearise(const Motion& motion, const Placed& at_start, double apart_m, bool only_loaded,
-                   std::vector<MissedContact>& out);
+  void relinearise(const Motion& motion, const Placed& at_start, bool is_before, std::vector<MissedContact>& out);
   void findAmongRefined(const Motion& motion, std::vector<Candidate>& missed) const;
   void findOverlaps(const Motion& motion, const PairView& start, const PairView& pair, const PairView& end,
                     std::vector<Candidate>& found) const;

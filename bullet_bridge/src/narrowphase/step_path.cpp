@@ -4,6 +4,7 @@
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "vps_bullet/convert.h"
 
@@ -47,6 +48,9 @@ double StepPath::effect(const Row& of, const Row& on) const {
 
 namespace {
 
+// Below this neither the bend nor the gap is known well enough to tell when the contact acts.
+constexpr double kKnown_m = 1e-8;
+
 template <typename Row>
 Row between(const Row& start, const Row& end, double tau) {
   return {(1 - tau) * start.p_W + tau * end.p_W, ((1 - tau) * start.n_W + tau * end.n_W).normalized()};
@@ -55,8 +59,6 @@ Row between(const Row& start, const Row& end, double tau) {
 }  // namespace
 
 double StepPath::timeOf(const Row& start, const Row& end, double closed_m) const {
-  // Below this neither the bend nor the gap is known well enough to tell when the contact acts.
-  constexpr double kKnown_m = 1e-8;
   const double bend_m = std::max(way_m(end) - way_m(start), kKnown_m);
   double tau = std::max(0.5, 0.5 + closed_m / bend_m);
   if (tau <= 1) return tau;
@@ -71,13 +73,17 @@ double StepPath::timeOf(const Row& start, const Row& end, double closed_m) const
 }
 
 Candidate StepPath::acting(const Candidate& start, const Candidate& end) const {
-  const Row from{start.p_W, start.n_W}, to{end.p_W - common_way_W_, end.n_W};
+  const Row from{start.p_W, start.n_W}, to = atEnd(end);
   const Row row = between(from, to, timeOf(from, to, start.distance_m - start.rest_m));
   Candidate acting = end;
   acting.p_W = row.p_W;
   acting.n_W = row.n_W;
   acting.distance_m = start.distance_m;
   return acting;
+}
+
+bool StepPath::bends(const Candidate& start, const Candidate& end) const {
+  return std::abs(way_m(atEnd(end)) - way_m({start.p_W, start.n_W})) > kKnown_m;
 }
 
 }  // namespace vps::bullet::inline v0

@@ -38,6 +38,8 @@ class StepPath {
   /// The contact as a row of the solver: where the bodies are at the start, with the gap that it has there.
   /// @param start, end  the same contact at both ends of the step
   [[nodiscard]] Candidate acting(const Candidate& start, const Candidate& end) const;
+  /// True if the contact's normal velocity changes on the way, so that it matters where its row is taken.
+  [[nodiscard]] bool bends(const Candidate& start, const Candidate& end) const;
 
  private:
   struct Body {
@@ -50,6 +52,7 @@ class StepPath {
   struct Row {
     Vec3 p_W, n_W;
   };
+  [[nodiscard]] Row atEnd(const Candidate& end) const { return {end.p_W - common_way_W_, end.n_W}; }
   [[nodiscard]] double way_m(const Row& row) const;
   [[nodiscard]] double effect(const Row& of, const Row& on) const;
   [[nodiscard]] double timeOf(const Row& start, const Row& end, double closed_m) const;
