@@ -212,7 +212,8 @@ std::vector<Family> roundBodyFamilies() {
   rest.measure = "depth at rest [um]";
   rest.bar = 1;
   rest.members = 60;
-  rest.expected_failure = 1.6828;  // of one member: a lens of 0.4 mm, whose facets stand out by less than 0.1 um
+  rest.expected_failure =
+      1.6828;  // of one member: a lens of 0.4 mm, whose facets stand out by less than 0.1 um
   rest.every = 6;
   rest.measured = [](int member) { return 1e6 * depthsOf(member).rest_m; };
   rest.describe = describe;

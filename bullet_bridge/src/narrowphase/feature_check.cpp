@@ -169,14 +169,14 @@ void addFeatureContacts(const PairView& start, const EndPoses& end, bool is_firs
   }
 }
 
-bool isOutOfPlace(const Candidate& start, const Candidate& end, const StepPath& path, const Relinearising& which,
-                  const Settings& settings) {
+bool isOutOfPlace(const Candidate& start, const Candidate& end, const StepPath& path,
+                  const Relinearising& which, const Settings& settings) {
   if (which.is_before) return end.distance_m > -settings.contact_margin_m && path.bends(start, end);
   return end.distance_m > end.rest_m + which.apart_m;
 }
 
-void lineariseFeatures(const PairView& start, const EndPoses& end, const Relinearising& which, PairState& state,
-                       std::vector<MissedContact>& out) {
+void lineariseFeatures(const PairView& start, const EndPoses& end, const Relinearising& which,
+                       PairState& state, std::vector<MissedContact>& out) {
   const Linearised at_end(start, end);
   for (const FeatureContact& c : state.missed_features)
     if (at_end.isOutOfPlace(c, which, state)) out.push_back(at_end(c, state));

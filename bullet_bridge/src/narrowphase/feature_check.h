@@ -48,12 +48,12 @@ struct Relinearising {
 
 /// True if the row of a contact is to be taken at the end of the step. Where the bodies would go on into each
 /// other, the end is no place to look at.
-bool isOutOfPlace(const Candidate& start, const Candidate& end, const StepPath& path, const Relinearising& which,
-                  const Settings& settings);
+bool isOutOfPlace(const Candidate& start, const Candidate& end, const StepPath& path,
+                  const Relinearising& which, const Settings& settings);
 
 /// Appends the contacts of features whose rows are to be taken at the end of the step.
-void lineariseFeatures(const PairView& start, const EndPoses& end, const Relinearising& which, PairState& state,
-                       std::vector<MissedContact>& out);
+void lineariseFeatures(const PairView& start, const EndPoses& end, const Relinearising& which,
+                       PairState& state, std::vector<MissedContact>& out);
 
 /// The share of the motion up to which no features come too near; 1 if none do.
 double freeShareOf(const PairView& start, const EndPoses& end, PairState& state);

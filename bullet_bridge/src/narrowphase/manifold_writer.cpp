@@ -286,7 +286,12 @@ btManifoldPoint* ManifoldWriter::put(const Candidate& contact,
   return &(free->getContactPoint(i) = makePoint(contact, material, bodies, motion));
 }
 
-const btManifoldPoint* ManifoldWriter::find(std::uint64_t key) const {
+const btManifoldPoint* ManifoldWriter::find(std::uint64_t key, std::size_t place) const {
+  if (const std::size_t m = place / kPerManifold; m < manifolds_.size()) {
+    const int i = static_cast<int>(place % kPerManifold);
+    if (i < manifolds_[m]->getNumContacts() && keyOf(manifolds_[m]->getContactPoint(i)) == key)
+      return &manifolds_[m]->getContactPoint(i);
+  }
   for (const btPersistentManifold* manifold : manifolds_)
     for (int i = 0; i < manifold->getNumContacts(); ++i)
       if (keyOf(manifold->getContactPoint(i)) == key) return &manifold->getContactPoint(i);

@@ -37,7 +37,8 @@ class ManifoldWriter {
   btManifoldPoint* put(const Candidate& contact, const btCollisionObjectWrapper* const (&bodies)[2],
                        const RelativeMotion& motion);
   /// The contact with this key, as it is now; null if there is none.
-  [[nodiscard]] const btManifoldPoint* find(std::uint64_t key) const;
+  /// @param place  where it probably is: its index among those that write() was given
+  [[nodiscard]] const btManifoldPoint* find(std::uint64_t key, std::size_t place = 0) const;
   /// To be called when ids refer to other points: no impulse passes from the old contacts to new ones.
   void invalidateIds();
   void append(btAlignedObjectArray<btPersistentManifold*>& manifolds) const;

@@ -120,14 +120,15 @@ bool refineAt(const PairView& pair, double max_m, const Settings& settings, Cand
 
 // The contacts of shell points, as they are in the step and where the bodies are `there`.
 // @param only_loaded  those that carry load
-void findThere(const PairView& there, const PairState& state, bool only_loaded, std::vector<Candidate>& loaded,
-               std::vector<Candidate>& ends) {
+void findThere(const PairView& there, const PairState& state, bool only_loaded,
+               std::vector<Candidate>& loaded, std::vector<Candidate>& ends) {
   const Settings& settings = state.context->settings;
   loaded.clear();
-  for (const Candidate& c : state.contacts) {
+  for (std::size_t k = 0; k < state.contacts.size(); ++k) {
+    const Candidate& c = state.contacts[k];
     if (c.isCrossing() || !there.shape[c.side]) continue;
     if (only_loaded) {
-      const btManifoldPoint* point = state.writer->find(c.key());
+      const btManifoldPoint* point = state.writer->find(c.key(), k);
       if (!point || !(point->m_appliedImpulse > 0)) continue;
     }
     loaded.push_back(c);
@@ -169,10 +170,10 @@ struct PairCheck::Motion {
   double deviation_m = 0;  ///< greatest from where the selection predicted the point
   double turn_rad = 0, turn_deviation_rad = 0;  ///< the same of the rotation
   StepPath path;
-  Vec3 center_W = Vec3::Zero();                 ///< of the smaller body at the start
-  double radius_m = 0;                          ///< of the smaller body
+  Vec3 center_W = Vec3::Zero();                        ///< of the smaller body at the start
+  double radius_m = 0;                                 ///< of the smaller body
   Vec3 moved_W = Vec3::Zero(), turned = Vec3::Zero();  ///< of body 0 relative to body 1
-  double bend_m = 0;                            ///< how far a point's path may bend from its tangent
+  double bend_m = 0;                                   ///< how far a point's path may bend from its tangent
 
   /// True if the bodies turn too far against each other from a share of the step to its end for a plane to be
   /// carried along: on a curved face another plane is the nearest one then.
@@ -231,7 +232,7 @@ void PairCheck::measure(const PairView& start, Motion& m) const {
 }
 
 void PairCheck::linearise(const Pose (&X_WB_end)[2], std::vector<MissedContact>& out) {
-  if (!isValid()) return;
+  if (state_.contacts.empty() || !isValid()) return;
   Motion m;
   if (!read(X_WB_end, m)) return;
   const Placed at_start(*this, m.start);
@@ -279,9 +280,9 @@ void PairCheck::findMissed(const Pose (&X_WB_end)[2], bool is_first, std::vector
 }
 
 // The rows of the step's contacts as they are at the end of a motion.
-// @param is_before  before the step is solved: those for which it matters where they are taken. Otherwise those
-// that carry load and end the step apart: of a body that rolls, the contacts in front of it, which come down but
-// do not arrive, and those that it leaves.
+// @param is_before  before the step is solved: those for which it matters where they are taken. Otherwise
+// those that carry load and end the step apart: of a body that rolls, the contacts in front of it, which come
+// down but do not arrive, and those that it leaves.
 void PairCheck::relinearise(const Motion& m, const Placed& at_start, bool is_before,
                             std::vector<MissedContact>& out) {
   const Settings& settings = state_.context->settings;

@@ -32,8 +32,8 @@ namespace vps::bullet::inline v0 {
 ///
 /// A contact that is missing gets the plane through which the point entered.
 ///
-/// The reverse is looked at as well: a contact that carries load although it ends the step apart. Its plane is
-/// to first order in the motion, and the step turned it away. It gets the plane that it has at the end.
+/// The reverse is looked at as well: a contact that carries load although it ends the step apart. Its plane
+/// is to first order in the motion, and the step turned it away. It gets the plane that it has at the end.
 class PairCheck final : public StepCheck {
  public:
   explicit PairCheck(PairState& state) : state_(state) {}
@@ -53,7 +53,8 @@ class PairCheck final : public StepCheck {
   struct Motion;
   [[nodiscard]] bool read(const Pose (&X_WB_end)[2], Motion& motion) const;
   void measure(const PairView& start, Motion& motion) const;
-  void relinearise(const Motion& motion, const Placed& at_start, bool is_before, std::vector<MissedContact>& out);
+  void relinearise(const Motion& motion, const Placed& at_start, bool is_before,
+                   std::vector<MissedContact>& out);
   void findAmongRefined(const Motion& motion, std::vector<Candidate>& missed) const;
   void findOverlaps(const Motion& motion, const PairView& start, const PairView& pair, const PairView& end,
                     std::vector<Candidate>& found) const;

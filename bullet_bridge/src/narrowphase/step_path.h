@@ -11,23 +11,24 @@ namespace vps::bullet::inline v0 {
 /// The way of both bodies in a solved step.
 ///
 /// A row of the solver is linear: one lever and one normal for the whole step. On the way they turn, and the
-/// contact's normal velocity changes with them, from s0 at the start to s1 at the end (here as displacements).
-/// The row takes them at the time at which that velocity is zero, so that the contact does no work:
+/// contact's normal velocity changes with them, from s0 at the start to s1 at the end (here as
+/// displacements). The row takes them at the time at which that velocity is zero, so that the contact does no
+/// work:
 ///
 ///     tau = 1/2 + g0 / (s1 - s0),  at least 1/2
 ///
-/// where g0 is the gap at the start (above the one at which it rests), which a contact with load closes. A body
-/// that turns about a corner (g0 = 0) has it in the middle of the step. A wheel that rolls meets the place that
-/// is lowest at the end, tau = 1. With the lever of the start the contact would brake what rolls, with that of
-/// the end it would drive what turns about a corner.
+/// where g0 is the gap at the start (above the one at which it rests), which a contact with load closes. A
+/// body that turns about a corner (g0 = 0) has it in the middle of the step. A wheel that rolls meets the
+/// place that is lowest at the end, tau = 1. With the lever of the start the contact would brake what rolls,
+/// with that of the end it would drive what turns about a corner.
 ///
 /// A greater tau than 1 belongs to a corner that lands within the step, before which another one carried the
-/// load: the lever of both together lies between them. It is taken where the bodies approach each other by less
-/// than their weight moves them in a step; what comes faster is an impact, which acts at the corner. And it is
-/// taken only as far as the row still closes half of a gap, so that the rounds of the solver end.
+/// load: the lever of both together lies between them. It is taken where the bodies approach each other by
+/// less than their weight moves them in a step; what comes faster is an impact, which acts at the corner. And
+/// it is taken only as far as the row still closes half of a gap, so that the rounds of the solver end.
 ///
-/// Both bodies' levers pass through one point of the world, so that angular momentum is kept. It goes with the
-/// body that turns more easily, whose lever is then exact.
+/// Both bodies' levers pass through one point of the world, so that angular momentum is kept. It goes with
+/// the body that turns more easily, whose lever is then exact.
 class StepPath {
  public:
   StepPath() = default;

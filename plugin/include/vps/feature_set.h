@@ -17,8 +17,8 @@ struct CornerTree;
 struct FacetTree;
 
 /// A sharp edge that is not a groove, or an edge that does not have exactly two facets. Sharp are edges that
-/// turn by 8 degrees or more, lone kinks between two planes, and edges that stand out by more than 0.25 um from
-/// the curved surface that their facets stand for.
+/// turn by 8 degrees or more, lone kinks between two planes, and edges that stand out by more than 0.25 um
+/// from the curved surface that their facets stand for.
 struct FeatureEdge {
   std::uint32_t from = 0, to = 0;               ///< vertices
   Vec3 into[2] = {Vec3::Zero(), Vec3::Zero()};  ///< unit, across the edge into each facet

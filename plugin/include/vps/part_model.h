@@ -42,8 +42,8 @@ struct PartModel {
 };
 
 /// Builds all models of a part, from one Solid. `mesh` is the given one, or the solid's where facets had to
-/// be turned, so that it has a positive volume; that of a sheet is as given. Throws LoadError as buildVoxMap()
-/// and buildPointShell().
+/// be turned, so that it has a positive volume; that of a sheet is as given. Throws LoadError as
+/// buildVoxMap() and buildPointShell().
 /// @param open  what a mesh with a wide hole stands for; of a sheet, `solid` is a Solid::sheet()
 VPS_API std::shared_ptr<const PartModel> buildPartModel(const std::string& name, Mesh mesh,
                                                         const VoxMapSettings& voxels = {},

@@ -43,10 +43,9 @@ bool isFlushOn(const CornerAndFacet& pair, std::uint32_t facet) {
   return false;
 }
 
-// True if curved surfaces lie flush in each other beside two curved edges, or edges within them, and the edges
-// meet across them.
-// Where a round peg's rim comes down on that of its hole, the walls are opposite too, but the edges meet
-// along them.
+// True if curved surfaces lie flush in each other beside two curved edges, or edges within them, and the
+// edges meet across them. Where a round peg's rim comes down on that of its hole, the walls are opposite too,
+// but the edges meet along them.
 // @param n_1  direction between the edges, in the frame of part 1
 bool isFlush(const FeatureEdge& edge0, const FeatureEdge& edge1, const Mat3& R_10, const Vec3& n_1) {
   constexpr double kAcross = 0.7;  // assumed: within 45 degrees
