@@ -181,7 +181,7 @@ std::vector<Family> rollingFamilies() {
   constraint.bar = 0.01;
   constraint.members = 54;
   constraint.expected_failure = 0.9363;
-  constraint.expected_failure_short = 0.5541;
+  constraint.expected_failure_short = 0.785;
   constraint.every = 6;
   constraint.measured = [](int member) { return error(dynamics::Mode::Constraint, member); };
   constraint.describe = describe;

@@ -109,12 +109,14 @@ void remember(const FeatureContact& c, std::vector<FeatureContact>& known) {
 class Linearised {
  public:
   Linearised(const PairView& start, const EndPoses& end)
-      : start_(start), at_start_(start), at_end_(start, end.X_WS), path_(end.path) {}
+      : start_(start), at_start_(start), at_end_(start, end.X_WS), end_(end) {}
 
   MissedContact operator()(const FeatureContact& c, PairState& state) const {
-    const Candidate end = at_end_(c);
+    const Candidate start = at_start_(c), end = at_end_(c);
+    // In a far turn no single lever stands for the way.
+    const Candidate acting = end_.turns_far ? start : end_.path.acting(start, end);
     MissedContact missed;
-    missed.point = state.writer->put(path_.acting(at_start_(c), end), start_.wrapper, state.motion);
+    missed.point = state.writer->put(acting, start_.wrapper, state.motion);
     for (int i = 0; i < 2; ++i) missed.object[i] = start_.wrapper[i]->getCollisionObject();
     missed.end_gap_m = end.distance_m;
     missed.kept_m = std::min(at_end_.rest_m, c.start_m);
@@ -127,13 +129,13 @@ class Linearised {
     const Candidate end = at_end_(c);
     const btManifoldPoint* point = state.writer->find(end.key());
     return point && (point->m_appliedImpulse > 0 || which.is_before) &&
-           vps::bullet::isOutOfPlace(at_start_(c), end, path_, which, state.context->settings);
+           vps::bullet::isOutOfPlace(at_start_(c), end, end_.path, which, state.context->settings);
   }
 
  private:
   const PairView& start_;
   FeaturePlacer at_start_, at_end_;
-  const StepPath& path_;
+  const EndPoses& end_;
 };
 
 }  // namespace

@@ -32,6 +32,7 @@ void markSharp(const PairView& pair, const Settings& settings, std::vector<Candi
 struct EndPoses {
   Pose X_WS[2];
   StepPath path = {};
+  bool turns_far = false;  ///< the bodies turn by more than kContactTurn_rad against each other
 };
 
 /// Appends a contact for each pair of features that the motion brings too near to each other, up to a limit.

@@ -253,7 +253,7 @@ void PairCheck::findMissed(const Pose (&X_WB_end)[2], bool is_first, std::vector
   if (at_start.pair.leastDistance_m() > m.travel_m + near_m) return;
   const std::size_t had = out.size();
   if (hasFeatures(at_start.pair, state_.context->settings)) {
-    addFeatureContacts(at_start.pair, {{m.end[0], m.end[1]}, m.path}, is_first, state_, out);
+    addFeatureContacts(at_start.pair, {{m.end[0], m.end[1]}, m.path, m.turnsFar(0)}, is_first, state_, out);
     if (out.size() > had) state_.is_incomplete = true;
   }
   if (m.travel_m <= m.tolerated_m) return;
@@ -288,7 +288,8 @@ void PairCheck::relinearise(const Motion& m, const Placed& at_start, bool is_bef
   const Settings& settings = state_.context->settings;
   const double apart_m = apartOf_m(settings);
   if (hasFeatures(at_start.pair, settings))
-    lineariseFeatures(at_start.pair, {{m.end[0], m.end[1]}, m.path}, {is_before, apart_m}, state_, out);
+    lineariseFeatures(at_start.pair, {{m.end[0], m.end[1]}, m.path, m.turnsFar(0)}, {is_before, apart_m},
+                      state_, out);
   if (!settings.use_surfaces) return;
   const Placed at_end(*this, m.end);
   thread_local std::vector<Candidate> now, ends;
