@@ -96,9 +96,14 @@ TEST(StepPath, ACornerThatLandsSlowlyDoesNoWork) {
   const Vec3 corner(angle_rad * kRadius_m + 0.5 * side_m, 0, 0);
   const Vec3 before = scene.start[0] * (scene.end[0].inverse() * corner);
   ASSERT_LT(before.z(), 9.81 * kStep_s * kStep_s);
-  const Candidate acting = scene.path().acting(at(before, before.z()), at(corner, 0));
+  Candidate landed = at(corner, 0);
+  landed.crossed = 1;  // a corner on a facet of the plate
+  landed.plane_of = 1;
+  const Candidate acting = scene.path().acting(at(before, before.z()), landed);
   EXPECT_NEAR(scene.way_m(acting.p_W), 0, 0.02 * before.z());
   EXPECT_LT(acting.p_W.x(), 0.5 * side_m);
+  // A point of a face acts where it lands.
+  EXPECT_NEAR(scene.path().acting(at(before, before.z()), at(corner, 0)).p_W.x(), 0.5 * side_m, 1e-12);
 }
 
 /// Both bodies' levers pass through one point, whichever turns.

@@ -213,15 +213,15 @@ std::vector<Family> roundBodyFamilies() {
   rest.bar = 1;
   rest.members = 60;
   rest.expected_failure =
-      1.6828;  // of one member: a lens of 0.4 mm, whose facets stand out by less than 0.1 um
-  rest.every = 6;
+      1.711;  // of one member: a lens of 0.4 mm, whose facets stand out by less than 0.1 um
+  rest.every = 3;
   rest.measured = [](int member) { return 1e6 * depthsOf(member).rest_m; };
   rest.describe = describe;
   Family impact = rest;
   impact.key = "G_impact";
   impact.measure = "depth in and after the impact [um]";
   impact.bar = 10;
-  impact.expected_failure = std::nullopt;
+  impact.expected_failure = 10.06;  // of one member: a torus on its like
   impact.measured = [](int member) { return 1e6 * depthsOf(member).impact_m; };
   return {rest, impact};
 }

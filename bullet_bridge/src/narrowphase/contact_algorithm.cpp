@@ -36,6 +36,7 @@ void resetIfModelsChanged(PairState& state, const PairView& pair) {
     state.selection = {};
     state.penalty.points.clear();
     state.features.reset();
+    state.are_both_curved.reset();
     state.missed_features.clear();
     state.crossings.reset();
     state.entered.reset();

@@ -118,6 +118,20 @@ bool refineAt(const PairView& pair, double max_m, const Settings& settings, Cand
   return std::abs(c.distance_m) < max_m;
 }
 
+// Where curved faces may lie flush in each other, as in threads and bearings, gaps differ from facet to facet
+// by more than the motion bends them, and rows that follow them would drive a screw.
+bool areBothCurved(const PairView& pair, PairState& state) {
+  const auto hasCurves = [](const Shape* shape) {
+    if (!shape) return true;
+    const FeatureSet& features = shape->features();
+    for (std::uint32_t i = 0; i < features.facets().size(); ++i)
+      if (features.isCurved(i)) return true;
+    return false;
+  };
+  if (!state.are_both_curved) state.are_both_curved = hasCurves(pair.shape[0]) && hasCurves(pair.shape[1]);
+  return *state.are_both_curved;
+}
+
 // The contacts of shell points, as they are in the step and where the bodies are `there`.
 // @param only_loaded  those that carry load
 void findThere(const PairView& there, const PairState& state, bool only_loaded,
@@ -290,7 +304,7 @@ void PairCheck::relinearise(const Motion& m, const Placed& at_start, bool is_bef
   if (hasFeatures(at_start.pair, settings))
     lineariseFeatures(at_start.pair, {{m.end[0], m.end[1]}, m.path, m.turnsFar(0)}, {is_before, apart_m},
                       state_, out);
-  if (!settings.use_surfaces) return;
+  if (!settings.use_surfaces || (is_before && areBothCurved(at_start.pair, state_))) return;
   const Placed at_end(*this, m.end);
   thread_local std::vector<Candidate> now, ends;
   findThere(at_end.pair, state_, !is_before || m.bend_m <= apart_m, now, ends);

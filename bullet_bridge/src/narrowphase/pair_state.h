@@ -56,6 +56,7 @@ struct PairState {
   bool is_registered = false;                   ///< penalty is in the context's PenaltyContacts
   std::optional<QueryState> query_state[2];     ///< of side 0's points in side 1's map, and the reverse
   std::vector<std::uint32_t> always[2];         ///< ids of the points last selected, for the query
+  std::optional<bool> are_both_curved;          ///< both shapes have facets that stand for curved surfaces
   std::uint64_t revision[2] = {0, 0};  ///< of the shapes that the ids in writer and selection belong to
 };
 

@@ -58,11 +58,11 @@ Row between(const Row& start, const Row& end, double tau) {
 
 }  // namespace
 
-double StepPath::timeOf(const Row& start, const Row& end, double closed_m) const {
+double StepPath::timeOf(const Row& start, const Row& end, double closed_m, bool is_corner) const {
   const double bend_m = std::max(way_m(end) - way_m(start), kKnown_m);
   double tau = std::max(0.5, 0.5 + closed_m / bend_m);
   if (tau <= 1) return tau;
-  if (!(bend_m > kKnown_m)) return 1;
+  if (!(bend_m > kKnown_m) || !is_corner) return 1;
   const double kick_m = -end.n_W.dot(body_[0].kick_W - body_[1].kick_W);
   if (!(closed_m < kick_m)) return 1;
   constexpr int kMost = 8;
@@ -74,7 +74,9 @@ double StepPath::timeOf(const Row& start, const Row& end, double closed_m) const
 
 Candidate StepPath::acting(const Candidate& start, const Candidate& end) const {
   const Row from{start.p_W, start.n_W}, to = atEnd(end);
-  const Row row = between(from, to, timeOf(from, to, start.distance_m - start.rest_m));
+  const Row row = between(from, to,
+                          timeOf(from, to, start.distance_m - start.rest_m,
+                                 end.plane_of != Candidate::kBetween && end.isCrossing()));
   Candidate acting = end;
   acting.p_W = row.p_W;
   acting.n_W = row.n_W;

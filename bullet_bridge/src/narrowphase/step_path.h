@@ -26,6 +26,7 @@ namespace vps::bullet::inline v0 {
 /// load: the lever of both together lies between them. It is taken where the bodies approach each other by
 /// less than their weight moves them in a step; what comes faster is an impact, which acts at the corner. And
 /// it is taken only as far as the row still closes half of a gap, so that the rounds of the solver end.
+/// Points of faces have none: what their gaps differ by from facet to facet would drive a screw.
 ///
 /// Both bodies' levers pass through one point of the world, so that angular momentum is kept. It goes with
 /// the body that turns more easily, whose lever is then exact.
@@ -56,7 +57,7 @@ class StepPath {
   [[nodiscard]] Row atEnd(const Candidate& end) const { return {end.p_W - common_way_W_, end.n_W}; }
   [[nodiscard]] double way_m(const Row& row) const;
   [[nodiscard]] double effect(const Row& of, const Row& on) const;
-  [[nodiscard]] double timeOf(const Row& start, const Row& end, double closed_m) const;
+  [[nodiscard]] double timeOf(const Row& start, const Row& end, double closed_m, bool is_corner) const;
 
   Body body_[2];
   Vec3 common_way_W_ = Vec3::Zero();
