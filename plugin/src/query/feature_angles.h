@@ -11,10 +11,10 @@ inline constexpr double kCosSharp = 0.94;
 /// a polygon of 45 corners. A coarser one is met as it is: chain links of 10 corners gained energy along the
 /// normals of curves, since their gap is that of the segments.
 inline constexpr double kCosCurved = 0.9903;
-/// An edge that stands out by less between two facets is left to the points of shells: a quarter of what
+/// An edge that stands out by less between two facets is left to the points of shells: half of what
 /// parts may overlap, 1 um. By angle alone a finely meshed ball would sink into a plate by what its corners
 /// stand out between the points.
-inline constexpr double kLeastProtrusion_m = 0.25e-6;
+inline constexpr double kLeastProtrusion_m = 0.5e-6;
 
 /// Sine; assumed: above the rounding of files in single precision.
 inline constexpr double kFlat = 1e-4;
