@@ -17,7 +17,7 @@ struct CornerTree;
 struct FacetTree;
 
 /// A sharp edge that is not a groove, or an edge that does not have exactly two facets. Sharp are edges that
-/// turn by 8 degrees or more, lone kinks between two planes, and edges that stand out by more than 0.25 um
+/// turn by 8 degrees or more, lone kinks between two planes, and edges that stand out by more than 0.5 um
 /// from the curved surface that their facets stand for.
 struct FeatureEdge {
   std::uint32_t from = 0, to = 0;               ///< vertices
