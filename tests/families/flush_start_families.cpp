@@ -143,24 +143,12 @@ double slideError(int member) {
 }  // namespace
 
 std::vector<Family> flushStartFamilies() {
-  Family family;
-  family.key = "I_flush";
-  family.measure = "distance from a start 0.1 um above, 30 steps [m]";
   // The gap itself; and while it closes, a hundredth of a step's friction is missing, 1 um in 30 steps.
-  family.bar = 2e-6;
-  family.members = 60;
-  family.every = 6;
-  family.measured = difference_m;
-  family.describe = describe;
-  Family slides;
-  slides.key = "I_slides";
-  slides.measure = "change of velocity of what slides without friction, share";
-  slides.bar = 1e-3;
-  slides.members = 60;
-  slides.every = 6;
-  slides.measured = slideError;
-  slides.describe = describeSlide;
-  return {family, slides};
+  constexpr double kFlush_m = 2e-6;
+  return {{"I_flush", "distance from a start 0.1 um above, 30 steps [m]", kFlush_m, 60, 6, difference_m,
+           describe},
+          {"I_slides", "change of velocity of what slides without friction, share", 1e-3, 60, 6, slideError,
+           describeSlide}};
 }
 
 }  // namespace vps::families

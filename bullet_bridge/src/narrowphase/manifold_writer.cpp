@@ -269,30 +269,28 @@ btManifoldPoint* ManifoldWriter::put(const Candidate& contact,
                                      const btCollisionObjectWrapper* const (&bodies)[2],
                                      const RelativeMotion& motion) {
   const PairMaterial material(bodies);
-  btPersistentManifold* free = nullptr;
-  for (btPersistentManifold* manifold : manifolds_) {
-    for (int i = 0; i < manifold->getNumContacts(); ++i)
-      if (btManifoldPoint& point = manifold->getContactPoint(i); keyOf(point) == contact.key()) {
-        const btManifoldPoint old = point;
-        point = makePoint(contact, material, bodies, motion);
-        copyImpulses(point, old);
-        return &point;
-      }
-    if (!free && manifold->getNumContacts() < kPerManifold) free = manifold;
+  if (btManifoldPoint* had = find(contact.key())) {
+    const btManifoldPoint old = *had;
+    *had = makePoint(contact, material, bodies, motion);
+    copyImpulses(*had, old);
+    return had;
   }
-  if (!free) return nullptr;
-  const int i = free->getNumContacts();
-  free->setNumContacts(i + 1);
-  return &(free->getContactPoint(i) = makePoint(contact, material, bodies, motion));
+  const auto free = std::find_if(manifolds_.begin(), manifolds_.end(), [](const btPersistentManifold* m) {
+    return m->getNumContacts() < kPerManifold;
+  });
+  if (free == manifolds_.end()) return nullptr;
+  const int i = (*free)->getNumContacts();
+  (*free)->setNumContacts(i + 1);
+  return &((*free)->getContactPoint(i) = makePoint(contact, material, bodies, motion));
 }
 
-const btManifoldPoint* ManifoldWriter::find(std::uint64_t key, std::size_t place) const {
+btManifoldPoint* ManifoldWriter::find(std::uint64_t key, std::size_t place) const {
   if (const std::size_t m = place / kPerManifold; m < manifolds_.size()) {
     const int i = static_cast<int>(place % kPerManifold);
     if (i < manifolds_[m]->getNumContacts() && keyOf(manifolds_[m]->getContactPoint(i)) == key)
       return &manifolds_[m]->getContactPoint(i);
   }
-  for (const btPersistentManifold* manifold : manifolds_)
+  for (btPersistentManifold* manifold : manifolds_)
     for (int i = 0; i < manifold->getNumContacts(); ++i)
       if (keyOf(manifold->getContactPoint(i)) == key) return &manifold->getContactPoint(i);
   return nullptr;

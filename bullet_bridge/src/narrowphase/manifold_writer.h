@@ -38,7 +38,7 @@ class ManifoldWriter {
                        const RelativeMotion& motion);
   /// The contact with this key, as it is now; null if there is none.
   /// @param place  where it probably is: its index among those that write() was given
-  [[nodiscard]] const btManifoldPoint* find(std::uint64_t key, std::size_t place = 0) const;
+  [[nodiscard]] btManifoldPoint* find(std::uint64_t key, std::size_t place = 0) const;
   /// To be called when ids refer to other points: no impulse passes from the old contacts to new ones.
   void invalidateIds();
   void append(btAlignedObjectArray<btPersistentManifold*>& manifolds) const;

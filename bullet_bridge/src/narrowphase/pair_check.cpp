@@ -134,10 +134,10 @@ bool areBothCurved(const PairView& pair, PairState& state) {
 
 // The contacts of shell points, as they are in the step and where the bodies are `there`.
 // @param only_loaded  those that carry load
-void findThere(const PairView& there, const PairState& state, bool only_loaded,
-               std::vector<Candidate>& loaded, std::vector<Candidate>& ends) {
+void findThere(const PairView& there, const PairState& state, bool only_loaded, std::vector<Candidate>& now,
+               std::vector<Candidate>& ends) {
   const Settings& settings = state.context->settings;
-  loaded.clear();
+  now.clear();
   for (std::size_t k = 0; k < state.contacts.size(); ++k) {
     const Candidate& c = state.contacts[k];
     if (c.isCrossing() || !there.shape[c.side]) continue;
@@ -145,9 +145,9 @@ void findThere(const PairView& there, const PairState& state, bool only_loaded,
       const btManifoldPoint* point = state.writer->find(c.key(), k);
       if (!point || !(point->m_appliedImpulse > 0)) continue;
     }
-    loaded.push_back(c);
+    now.push_back(c);
   }
-  ends = loaded;
+  ends = now;
   for (Candidate& end : ends) {
     end.p_W = there.side(end.side).X_WM * there.shape[end.side]->models().shell->points[end.id];
     end.n_W.setZero();  // stays so if the point is then out of reach
@@ -252,7 +252,7 @@ void PairCheck::linearise(const Pose (&X_WB_end)[2], std::vector<MissedContact>&
   const Placed at_start(*this, m.start);
   measure(at_start.pair, m);
   constexpr double kNothing_m = 1e-9;
-  if (!(m.bend_m > kNothing_m) || m.turn_rad > kContactTurn_rad) return;
+  if (!(m.bend_m > kNothing_m) || m.turnsFar(0)) return;
   relinearise(m, at_start, true, out);
 }
 

@@ -267,8 +267,7 @@ SolveOutcome ContactSweeps::sweep(double residual_m_s, int limit) {
 // A joint resists the push; a motor or limit, whose impulse is bounded, does not.
 void ContactSweeps::pushJoint(const JointState& joint) {
   const JointRow& row = *joint.row;
-  constexpr double kAny_Ns = 1e15;  // Bullet's infinity is 1e18 or 1e30
-  if (row.lower_Ns > -kAny_Ns || row.upper_Ns < kAny_Ns) return;
+  if (row.isBounded()) return;
   const double impulse_Ns = (row.fixed_velocity - row.velocity(island_)) / joint.W;
   for (int i = 0; i < 2; ++i)
     if (row.body[i] >= 0)

@@ -100,12 +100,11 @@ void JointRows::hold(const Island& island, std::span<BodyEnd> ends) {
   constexpr int kMostSweeps = 50;
   constexpr double kSettled =
       1e-9;  // m/s or rad/s; above rounding, so that what is held already keeps its bits
-  constexpr double kAny_Ns = 1e15;  // Bullet's infinity is 1e18 or 1e30
   double most = std::numeric_limits<double>::infinity();
   for (int sweep = 0; sweep < kMostSweeps && most > kSettled; ++sweep) {
     most = 0;
     for (JointRow& row : rows) {
-      if (row.lower_Ns > -kAny_Ns || row.upper_Ns < kAny_Ns) continue;
+      if (row.isBounded()) continue;
       double error = 0, W = 0;
       Vec6 MinvJ[2];
       for (int i = 0; i < 2; ++i) {

@@ -24,6 +24,11 @@ struct JointRow {
   double lower_Ns = 0, upper_Ns = 0;
   double impulse_Ns = 0;
 
+  /// An impulse of this size bounds nothing: Bullet's infinity is 1e18 or 1e30.
+  static constexpr double kAny_Ns = 1e15;
+  /// True for motors, limits and joints that break.
+  [[nodiscard]] bool isBounded() const { return lower_Ns > -kAny_Ns || upper_Ns < kAny_Ns; }
+
   /// @param twistOf  a body's twist by its index
   template <typename TwistOf>
   [[nodiscard]] double velocity(const TwistOf& twistOf) const {

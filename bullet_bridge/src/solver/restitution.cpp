@@ -29,8 +29,9 @@ double velocityOf(const ContactRow& row, const TwistOf& twistOf) {
 
 // Rows of joints with a bounded impulse, motors, are no part of an impact. False: such a row.
 bool boundsOf(const JointRow& row, double& lower_Ns, double& upper_Ns) {
-  constexpr double kAny_Ns = 1e15;  // Bullet's infinity is 1e18 or 1e30
-  const auto isBound = [](double limit_Ns) { return limit_Ns == 0 || std::abs(limit_Ns) >= kAny_Ns; };
+  const auto isBound = [](double limit_Ns) {
+    return limit_Ns == 0 || std::abs(limit_Ns) >= JointRow::kAny_Ns;
+  };
   if (!isBound(row.lower_Ns) || !isBound(row.upper_Ns)) return false;
   lower_Ns = row.lower_Ns == 0 ? 0 : -kInfinity;
   upper_Ns = row.upper_Ns == 0 ? 0 : kInfinity;

@@ -87,6 +87,15 @@ struct Solver::Work {
   [[nodiscard]] bool isHeap();
   SolveOutcome solveRigid(const SolverSettings& settings, double dt_s);
   SolveOutcome solveWithLaws(const SolverSettings& settings, double dt_s);
+  /// visit(check, where its bodies are at the end of the step)
+  template <typename Visit>
+  void forEachCheck(std::span<const Vec6> push, double dt_s, const Visit& visit) const {
+    for (StepCheck* check : checks) {
+      const Pose X_WB_end[2] = {island.endPose(check->object(0), push, dt_s),
+                                island.endPose(check->object(1), push, dt_s)};
+      visit(*check, X_WB_end);
+    }
+  }
   void linearise(const btContactSolverInfo& info);
   bool addMissed(const btContactSolverInfo& info, bool is_first);
   [[nodiscard]] bool hasOutside() const;
@@ -319,27 +328,22 @@ SolveOutcome Solver::Work::solveWithLaws(const SolverSettings& settings, double 
   return {most_steps, last.is_converged};
 }
 
-// The contacts that carried load get their rows where the bodies will be if they go on as they do.
+// Contacts whose lever or normal turns on the way get their rows where the bodies will be if they go on as
+// they do.
 void Solver::Work::linearise(const btContactSolverInfo& info) {
   missed.clear();
-  for (StepCheck* check : checks) {
-    const Pose X_WB_end[2] = {island.endPose(check->object(0), {}, info.m_timeStep),
-                              island.endPose(check->object(1), {}, info.m_timeStep)};
-    check->linearise(X_WB_end, missed);
-  }
+  forEachCheck({}, info.m_timeStep,
+               [&](StepCheck& check, const Pose(&X_WB_end)[2]) { check.linearise(X_WB_end, missed); });
   rigid.addMissed(missed, info);
 }
 
 // True if contacts were added, so that the step must be solved again.
 bool Solver::Work::addMissed(const btContactSolverInfo& info, bool is_first) {
-  const double dt_s = info.m_timeStep;
   missed.clear();
   rigid.finish();  // a check asks which contacts carry load
-  for (StepCheck* check : checks) {
-    const Pose X_WB_end[2] = {island.endPose(check->object(0), rigid.push(), dt_s),
-                              island.endPose(check->object(1), rigid.push(), dt_s)};
-    check->findMissed(X_WB_end, is_first, missed);
-  }
+  forEachCheck(rigid.push(), info.m_timeStep, [&](StepCheck& check, const Pose(&X_WB_end)[2]) {
+    check.findMissed(X_WB_end, is_first, missed);
+  });
   rigid.addMissed(missed, info);
   return std::any_of(missed.begin(), missed.end(), [](const MissedContact& m) { return m.point != nullptr; });
 }
@@ -382,11 +386,9 @@ double Solver::Work::shorten(double dt_s) {
   for (const IslandBody& b : island.bodies) momenta.push_back(b.ended());
   for (int k = 0; k <= kMost; ++k) {
     double share = 1;
-    for (StepCheck* check : checks) {
-      const Pose X_WB_end[2] = {island.endPose(check->object(0), rigid.push(), dt_s),
-                                island.endPose(check->object(1), rigid.push(), dt_s)};
-      share = std::min(share, check->freeShare(X_WB_end));
-    }
+    forEachCheck(rigid.push(), dt_s, [&](StepCheck& check, const Pose(&X_WB_end)[2]) {
+      share = std::min(share, check.freeShare(X_WB_end));
+    });
     if (share >= 1) break;
     share = k < kMost ? kShort * share : 0;
     kept *= share;

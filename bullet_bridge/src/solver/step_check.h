@@ -40,9 +40,9 @@ class StepCheck {
  public:
   virtual ~StepCheck() = default;
   [[nodiscard]] virtual const btCollisionObject* object(int i) const = 0;
-  /// Appends the contacts that carried load in the last step, as they are where the bodies would be at the
-  /// end of this one at the velocities of the last: gap, lever and normal. Rows from the start pose brake and
-  /// drive what rolls.
+  /// Appends the contacts whose lever or normal turns on the way, as they are where the bodies would be at
+  /// the end of the step at the velocities of the last one. Where they turn by next to nothing, only those
+  /// that carried load. Rows from the start pose would brake and drive what rolls.
   virtual void linearise(const Pose (&X_WB_end)[2], std::vector<MissedContact>& out) = 0;
   /// Appends the contacts that the step lacks, and those that carry load although they end it apart.
   /// @param X_WB_end  where the bodies' frames are at the end of the step

@@ -252,7 +252,7 @@ void FeatureMotion::checkStretch(const FeatureSet& part0, const FeatureSet& part
                                  const Pose& to, const Pose& end, bool holds_close,
                                  std::vector<FeatureContact>& out) {
   constexpr double kRounding_m = 20e-9;  // assumed: above what solvers leave, far below the rest gap
-  constexpr double kHeldShare = 0.2;     // assumed: half of what is looked at on the way
+  constexpr double kHeldShare = 0.2;     // assumed: far below what is looked at on the way
   const double step_m = travel_m(part0, part1, start, to);
   const double gap_m = rest_m(part0, part1), looked_at_m = kLeastShare * gap_m;
   if (is_valid_) path_m_ += travel_m(part0, part1, last_, start);

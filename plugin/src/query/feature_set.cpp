@@ -2,6 +2,7 @@
 #include "vps/feature_set.h"
 
 #include <algorithm>
+#include <limits>
 #include <span>
 
 #include "mesh/box_tree.h"
@@ -80,6 +81,7 @@ void FeatureSet::append(const Mesh& mesh, const Pose& X_MP, bool is_sheet) {
     if (!(way.squaredNorm() > 0)) return;
     const Vec3 along = way.normalized();
     edge.has_faces = same.size() == 2 && same[0].is_forward != same[1].is_forward && !is_sheet;
+    double width_m = std::numeric_limits<double>::infinity();  // of the narrower facet, across the edge
     for (std::size_t i = 0; i < 2 && i < same.size(); ++i) {
       const std::uint32_t triangle = same[i].triangle;
       if (facet_of[triangle] == kNone) {
@@ -88,17 +90,14 @@ void FeatureSet::append(const Mesh& mesh, const Pose& X_MP, bool is_sheet) {
       }
       edge.normal[i] = normals[triangle];
       const Vec3 into = vertex(mesh.triangles[triangle][(same[i].side + 2U) % 3]) - vertices_[edge.from];
-      edge.into[i] = (into - along * along.dot(into)).normalized();
+      const Vec3 across = into - along * along.dot(into);
+      edge.into[i] = across.normalized();
+      width_m = std::min(width_m, across.norm());
     }
     const bool is_joined = same.size() == 2 && same[0].is_forward != same[1].is_forward;
     if (is_sheet && is_joined && isSmoothEdge(edge.normal[0], edge.normal[1], false, 0)) return;
     if (edge.has_faces) {
       const bool is_one_curved = is_curved[same[0].triangle] != 0 || is_curved[same[1].triangle] != 0;
-      const auto heightOf_m = [&](const HalfEdge& e) {
-        const Vec3 into = vertex(mesh.triangles[e.triangle][(e.side + 2U) % 3]) - vertices_[edge.from];
-        return (into - along * along.dot(into)).norm();
-      };
-      const double width_m = std::min(heightOf_m(same[0]), heightOf_m(same[1]));
       if (isSmoothEdge(edge.normal[0], edge.normal[1], is_one_curved, width_m)) return;
       edge.is_slight = isSmoothEdge(edge.normal[0], edge.normal[1], is_one_curved, 0);
       if (!(edge.normal[0].dot(edge.into[1]) < 0)) return;  // a groove
