@@ -24,13 +24,12 @@
 #include <vector>
 
 #include "log/report.h"
+#include "solver/contact_newton.h"
 #include "solver/contact_sweeps.h"
 #include "solver/island.h"
 #include "solver/penalty_contacts.h"
 #include "solver/penalty_newton.h"
 #include "solver/restitution.h"
-#include "solver/rigid_admm.h"
-#include "solver/rigid_newton.h"
 #include "solver/step_check.h"
 #include "solver/turn_check.h"
 #include "vps_bullet/convert.h"
@@ -50,8 +49,7 @@ struct Solver::Work {
   Island island;
   JointRows joints;
   ContactSweeps rigid{island, joints};
-  RigidNewton rigid_newton{island, joints};
-  RigidAdmm rigid_admm{island};
+  ContactNewton newton{island, joints};
   PenaltyNewton penalty{island, joints};
   Restitution restitution{island, joints};
   std::vector<BodyEnd> ends;
@@ -66,14 +64,6 @@ struct Solver::Work {
   std::vector<MissedContact> missed;       // scratch
   std::vector<Vec6> u;                     // scratch
   std::vector<Vec6> momenta;               // of each body, before a step is cut short
-  /// Bodies that hang together by contacts.
-  struct Group {
-    int root = 0;  // a body of the group; the group's own if it is this body
-    std::size_t bodies = 0, pairs = 0;
-  };
-  std::vector<Group> groups;                  // scratch, one for each body
-  std::vector<std::pair<int, int>> touching;  // scratch
-
   bool gatherBodies(std::span<btCollisionObject*> objects, double dt_s);
   void gatherConstraints(std::span<btTypedConstraint*> constraints, const btContactSolverInfo& info);
   bool gatherContacts(std::span<btPersistentManifold*> manifolds, const ContactCreateFunction* stores,
@@ -82,11 +72,9 @@ struct Solver::Work {
   void gatherCouplings(double dt_s);
   void applyLaws();
   bool updateLaws();
-  SolveOutcome solveContacts(const SolverSettings& settings, double dt_s);
-  bool hasLoops(std::size_t few);
-  [[nodiscard]] bool isHeap();
-  SolveOutcome solveRigid(const SolverSettings& settings, double dt_s);
-  SolveOutcome solveWithLaws(const SolverSettings& settings, double dt_s);
+  SolveOutcome solveContacts(const SolverSettings& settings);
+  SolveOutcome solveRigid(const SolverSettings& settings);
+  SolveOutcome solveWithLaws(const SolverSettings& settings);
   /// visit(check, where its bodies are at the end of the step)
   template <typename Visit>
   void forEachCheck(std::span<const Vec6> push, double dt_s, const Visit& visit) const {
@@ -228,55 +216,14 @@ bool Solver::Work::updateLaws() {
   return is_converged;
 }
 
-// True if over `few` bodies hang together by contacts of which some close a loop. In a tower, or a lid on
-// pins, none does.
-bool Solver::Work::hasLoops(std::size_t few) {
-  touching.clear();
-  for (const RigidContact& c : rigid.contacts()) {
-    const int a = c.normal.side[0].body, b = c.normal.side[1].body;
-    if (a >= 0 && b >= 0) touching.emplace_back(std::min(a, b), std::max(a, b));
-  }
-  std::sort(touching.begin(), touching.end());
-  touching.erase(std::unique(touching.begin(), touching.end()), touching.end());
-  groups.assign(island.bodies.size(), {});
-  for (std::size_t i = 0; i < groups.size(); ++i) groups[i].root = static_cast<int>(i);
-  const auto groupOf = [&](int i) -> Group& {
-    while (groups[static_cast<std::size_t>(i)].root != i) i = groups[static_cast<std::size_t>(i)].root;
-    return groups[static_cast<std::size_t>(i)];
-  };
-  for (const auto& [a, b] : touching) groupOf(b).root = groupOf(a).root;
-  for (std::size_t i = 0; i < groups.size(); ++i) ++groupOf(static_cast<int>(i)).bodies;
-  for (const auto& [a, b] : touching) ++groupOf(a).pairs;
-  return std::any_of(groups.begin(), groups.end(),
-                     [&](const Group& g) { return g.bodies > few && g.pairs >= g.bodies; });
-}
-
-// Many bodies that touch, of masses that are not too different. In a heap of 50 parts Newton's method hardly
-// ever converges; 70 iterations of RigidAdmm leave a third of its error (median of 24 problems) for a quarter
-// of the work. For a few bodies and for towers Newton's method is better. So it is where a body lies on one
-// of a thousandth of its mass; a hundredth is no trouble for RigidAdmm.
-bool Solver::Work::isHeap() {
-  constexpr std::size_t kFewBodies = 12;
-  constexpr double kMassRatio = 100;
-  if (!joints.rows.empty() || island.bodies.size() <= kFewBodies) return false;
-  const auto mass = [](const IslandBody& b) { return b.mass(3, 3); };
-  const auto [least, most] =
-      std::minmax_element(island.bodies.begin(), island.bodies.end(),
-                          [&](const IslandBody& a, const IslandBody& b) { return mass(a) < mass(b); });
-  return mass(*most) <= kMassRatio * mass(*least) && hasLoops(kFewBodies);
-}
-
-// For parts near rest sweeps converge within a few microseconds; otherwise a method follows that sees the
-// whole island: for heaps with a fixed amount of work, otherwise Newton's.
-SolveOutcome Solver::Work::solveRigid(const SolverSettings& settings, double dt_s) {
+// For parts near rest sweeps converge within a few microseconds; otherwise Newton's method follows, which
+// sees the whole island.
+SolveOutcome Solver::Work::solveRigid(const SolverSettings& settings) {
   constexpr int kSweepsFirst = 30, kSweepsPerNewtonStep = 10;  // assumed; the second: ratio of their costs
   constexpr double kShareOfSpeed = 1e-5;  // assumed: a micrometre on a path of a decimetre
-  // Where it is cut short, a heavy body presses a light one through a third, and each such step is solved
-  // again and again for the contacts that it misses: that takes longer than to converge. Mass ratios up to
-  // 8e5 took up to 40 steps on impact and 20 afterwards.
+  // Where it is cut short, each step is solved again and again for the contacts that it misses: that takes
+  // longer than to converge.
   constexpr int kNewtonAtLeast = 60;
-  // Measured in a heap of 50 parts: 40 iterations leave 2.4 times the error of 80 (median of 16 problems).
-  constexpr int kAllAtOnce = 60, kShareForHeaps = 6;
   const int newton_share = std::max(0, settings.iteration_limit - kSweepsFirst) / kSweepsPerNewtonStep;
   const int newton_limit = newton_share > 0 ? std::max(kNewtonAtLeast, newton_share) : 0;
   rigid.start();
@@ -285,31 +232,23 @@ SolveOutcome Solver::Work::solveRigid(const SolverSettings& settings, double dt_
   if (outcome.is_converged || newton_limit == 0) return outcome;
   island.readVelocities(u);
   const double near_m_s = std::max(settings.residual_m_s, kShareOfSpeed * island.topSpeed(u));
-  if (std::isfinite(near_m_s) && isHeap()) {
-    const int limit = std::max(kAllAtOnce, (settings.iteration_limit - outcome.steps) / kShareForHeaps);
-    const SolveOutcome admm = rigid_admm.solve(rigid.contacts(), near_m_s, limit);
-    rigid.applyImpulses();
-    const SolveOutcome end = rigid.sweep(settings.residual_m_s, kSweepsFirst);
-    return {outcome.steps + admm.steps + end.steps, admm.is_converged || end.is_converged};
-  }
-  const SolveOutcome newton = rigid_newton.solve(rigid.contacts(), dt_s, near_m_s, newton_limit);
-  outcome.steps += kSweepsPerNewtonStep * newton.steps;
-  outcome.is_converged = newton.is_converged;
+  const SolveOutcome solved = newton.solve(rigid.contacts(), near_m_s, newton_limit);
+  outcome.steps += kSweepsPerNewtonStep * solved.steps;
+  outcome.is_converged = solved.is_converged;
   rigid.applyImpulses();  // even without convergence, velocities are those of the impulses
-  if (newton.is_converged) return outcome;
+  if (solved.is_converged) return outcome;
   const SolveOutcome end =
       rigid.sweep(settings.residual_m_s, std::max(kSweepsFirst, settings.iteration_limit - outcome.steps));
   return {outcome.steps + end.steps, end.is_converged};
 }
 
-SolveOutcome Solver::Work::solveContacts(const SolverSettings& settings, double dt_s) {
-  return is_penalty ? penalty.solve(settings.residual_m_s, settings.iteration_limit)
-                    : solveRigid(settings, dt_s);
+SolveOutcome Solver::Work::solveContacts(const SolverSettings& settings) {
+  return is_penalty ? penalty.solve(settings.residual_m_s, settings.iteration_limit) : solveRigid(settings);
 }
 
 // The law of a coupling at its limit depends on the solution, and so do the limits of friction: solves,
 // updates both, and solves again if they changed.
-SolveOutcome Solver::Work::solveWithLaws(const SolverSettings& settings, double dt_s) {
+SolveOutcome Solver::Work::solveWithLaws(const SolverSettings& settings) {
   const int rounds = is_penalty ? 20 : 6;  // assumed; limits of couplings converge in two or three
   constexpr double kSettled = 1e-6;        // share of the greatest limit of friction
   SolveOutcome last;
@@ -317,7 +256,7 @@ SolveOutcome Solver::Work::solveWithLaws(const SolverSettings& settings, double 
   SolverSettings left = settings;
   for (int round = 0; round < rounds; ++round) {
     applyLaws();
-    last = solveContacts(left, dt_s);
+    last = solveContacts(left);
     most_steps = std::max(most_steps, last.steps);
     if (is_penalty) left.iteration_limit -= last.steps;  // each evaluates thousands of points
     if (round == rounds - 1 || left.iteration_limit <= 0)
@@ -460,7 +399,7 @@ btScalar Solver::solveGroup(btCollisionObject** bodies, int body_count, btPersis
   constexpr int kMaxChecks = 8;  // assumed; two or three find all
   iterations_used_ = 0;
   for (int checked = 0;; ++checked) {
-    const SolveOutcome outcome = work.solveWithLaws(settings_, dt_s);
+    const SolveOutcome outcome = work.solveWithLaws(settings_);
     iterations_used_ = std::max(iterations_used_, outcome.steps);
     is_converged_ = outcome.is_converged;
     if (work.is_penalty) break;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The method of multipliers for rigid contacts, by the laws of contact and where sweeps would take very long.
-#include "solver/rigid_newton.h"
+#include "solver/contact_newton.h"
 
 #include <gtest/gtest.h>
 
@@ -15,49 +15,49 @@ constexpr double kNear_m_s = 1e-9;
 constexpr int kMany = 2000;
 constexpr std::uint64_t kSeeds = 40;
 
-bool solve(SmallIsland& made) {
-  RigidNewton newton(made.island, made.joints);
-  const bool is_converged = newton.solve(made.sweeps.contacts(), kDt_s, kNear_m_s, kMany).is_converged;
+bool solveCone(SmallIsland& made) {
+  ContactNewton newton(made.island, made.joints);
+  const bool is_converged = newton.solve(made.sweeps.contacts(), kNear_m_s, kMany).is_converged;
   made.sweeps.applyImpulses();
   return is_converged;
 }
 
-TEST(RigidNewton, WithoutFrictionFindsTheNearestVelocitiesThatObeyAllContacts) {
+TEST(ContactNewton, WithoutFrictionFindsTheNearestVelocitiesThatObeyAllContacts) {
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
     SmallIsland made;
     makeRandom(made, seed, 0);
-    ASSERT_TRUE(solve(made)) << seed;
+    ASSERT_TRUE(solveCone(made)) << seed;
     const std::vector<Vec6> exact = bruteForce(made);
     ASSERT_FALSE(exact.empty()) << seed;
     EXPECT_LE(difference_m_s(made.solved(), exact), 1e-6) << seed;
   }
 }
 
-TEST(RigidNewton, ObeysSignoriniAndCoulombWhereItSaysThatItHasConverged) {
+TEST(ContactNewton, ObeysSignoriniAndCoulombWhereItSaysThatItHasConverged) {
   int converged = 0;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
     SCOPED_TRACE(seed);
     SmallIsland made;
     makeRandom(made, seed, 0.4);
-    if (!solve(made)) continue;
+    if (!solveCone(made)) continue;
     ++converged;
     made.expectLaws(1e-6);
   }
   EXPECT_GE(converged, static_cast<int>(kSeeds) * 9 / 10);
 }
 
-TEST(RigidNewton, NeverAddsEnergy) {
+TEST(ContactNewton, NeverAddsEnergy) {
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed)
     for (const double mu : {0.0, 0.4}) {
       SmallIsland made;
       makeRandom(made, seed, mu);
-      if (!solve(made)) continue;
+      if (!solveCone(made)) continue;
       EXPECT_LE(made.energy_J(made.solved()), made.energy_J(made.free) * (1 + 1e-6)) << seed << ' ' << mu;
     }
 }
 
 // A heavy block on a light one: sweeps pass on a share of a thousandth in each.
-TEST(RigidNewton, CarriesAHeavyBodyOnALightOne) {
+TEST(ContactNewton, CarriesAHeavyBodyOnALightOne) {
   constexpr double kRatio = 1e4, kGravity_m_s2 = 9.81;
   SmallIsland made;
   btRigidBody& low = made.add(0.01, Vec3(0, 0, 5e-3), Vec3::Zero());
@@ -70,7 +70,7 @@ TEST(RigidNewton, CarriesAHeavyBodyOnALightOne) {
       made.touch(high, low, Vec3(x, y, 10e-3), Vec3(0, 0, 1), 0, 0.3);
     }
   made.start();
-  ASSERT_TRUE(solve(made));
+  ASSERT_TRUE(solveCone(made));
   for (const Vec6& u : made.solved()) EXPECT_LE(u.norm(), 1e-6);
   double floor_Ns = 0;
   for (std::size_t k = 0; k < made.given.size(); ++k)

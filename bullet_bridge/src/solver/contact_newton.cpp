@@ -1,0 +1,356 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "solver/contact_newton.h"
+
+#include <BulletCollision/CollisionDispatch/btCollisionObject.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "solver/patch_math.h"
+#include "vps_bullet/convert.h"
+
+namespace vps::bullet::inline v0 {
+namespace {
+
+// Compliance of a contact relative to that of a free body: initial and least value. A stiff contact leaves
+// little error in a round, but Newton's method needs many steps from a distant start; for a compliant one it
+// is the reverse. So a round that has not reduced the error to kGoodReduction of the previous round's is
+// followed by stiffer ones [Bertsekas 1982, ch. 2], unless it is the terms of slip that change.
+constexpr double kMaxCompliance = 1e-2, kMinCompliance = 1e-7, kStiffer = 0.1, kGoodReduction = 0.1;
+// A round need not be more accurate than this share of the previous round's error.
+constexpr double kShareOfError = 0.1, kFirstError_m_s = 1e-2;
+// What is left has the same sign from step to step, and drives what accelerates slowly: with the whole
+// residual a nut whose weight turns it gained 2 %. A term of slip moves a body that slides off its face by a
+// tenth of a nanometre a step.
+constexpr double kLawShare = 0.1, kSlipShare = 1;
+// Joints are springs on the velocity, so stiff that they miss their target by a millionth of the change. They
+// have no multipliers: rows of joints often contradict each other.
+constexpr double kJointCompliance = 1e-6;
+
+double sumOfProducts(const std::vector<Vec6>& a, const std::vector<Vec6>& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i].dot(b[i]);
+  return sum;
+}
+
+}  // namespace
+
+void ContactNewton::addPatch(const RigidContact& first) {
+  Patch& patch = patches_.emplace_back();
+  patch.first = patch.end = points_.size();
+  patch.center = first.position_W();
+  for (int i = 0; i < 2; ++i) {
+    const btCollisionObject* object = first.object[i];
+    patch.body[i] = first.normal.side[i].body;
+    const double sign = i == 0 ? 1 : -1;
+    patch.X[i] = sign * twistShift(fromBt(object->getWorldTransform().getOrigin()), patch.center);
+    if (patch.body[i] < 0) patch.fixed += patch.X[i] * Island::fixedVelocity(object);
+  }
+}
+
+void ContactNewton::gather(std::span<const RigidContact> contacts) {
+  points_.clear();
+  patches_.clear();
+  const RigidContact* last = nullptr;
+  for (const RigidContact& c : contacts) {
+    if (!last || !std::equal(c.object, c.object + 2, last->object)) addPatch(c);
+    last = &c;
+    Point p;
+    p.r = c.position_W() - patches_.back().center;
+    p.n = c.normal_W();
+    p.mu = c.mu;
+    p.W = (c.normal.W + c.tangent[0].W + c.tangent[1].W) / 3;
+    p.softness = 0;
+    p.target = c.target_m_s;
+    p.slip = 0;
+    p.impulse = c.p_n * p.n + c.p_t[0] * c.tangent_W(0) + c.p_t[1] * c.tangent_W(1);
+    p.next = p.impulse;
+    p.slides = false;
+    points_.push_back(p);
+    patches_.back().end = points_.size();
+  }
+  joint_states_.clear();
+  for (JointRow& row : joints_.rows) {
+    const double W = row.inverseMass(island_);
+    if (W > 0) joint_states_.push_back({&row, W * std::max(row.cfm, kJointCompliance), 0, true});
+  }
+}
+
+void ContactNewton::setCompliance(double compliance) {
+  for (Point& p : points_) p.softness = compliance * p.W;
+}
+
+Vec6 ContactNewton::twistOf(const Patch& patch, const std::vector<Vec6>& u) const {
+  Vec6 twist = patch.fixed;
+  for (int i = 0; i < 2; ++i)
+    if (patch.body[i] >= 0) twist += patch.X[i] * u[static_cast<std::size_t>(patch.body[i])];
+  return twist;
+}
+
+// mu |v_t|
+double ContactNewton::slipOf(const Point& p, const Vec6& twist) {
+  const Vec3 v = twist.tail<3>() + Vec3(twist.head<3>()).cross(p.r);
+  return p.mu * (v - p.n.dot(v) * p.n).norm();
+}
+
+// The impulse at a relative velocity: the projection onto the cone; with its derivative, times -1.
+void ContactNewton::project(Point& p, const Vec3& v, SymmetricSum* hessian) {
+  const double k = 1 / p.softness;
+  const Vec3 y = p.impulse + k * ((p.target - p.slip) * p.n - v);
+  const double y_n = p.n.dot(y);
+  const Vec3 y_t = y - y_n * p.n;
+  const double length = y_t.norm();
+  p.slides = false;
+  if (y_n > 0 && length <= p.mu * y_n) {  // sticks
+    p.next = y;
+    if (hessian) hessian->addEven(k, p.r);
+    return;
+  }
+  const double along = y_n + p.mu * length;
+  if (!(along > 0)) {  // apart
+    p.next.setZero();
+    return;
+  }
+  p.slides = true;
+  const double share = 1 / (1 + p.mu * p.mu), p_n = share * along;
+  const Vec3 t = length > 0 ? Vec3(y_t / length) : Vec3(Vec3::Zero()), edge = p.n + p.mu * t;
+  p.next = p_n * edge;
+  if (!hessian) return;
+  hessian->add(k * share, wrenchOf(p.r, edge));
+  if (p.mu > 0 && length > 0) hessian->add(k * p.mu * p_n / length, wrenchOf(p.r, p.n.cross(t)));
+}
+
+void ContactNewton::evaluateJoints(const std::vector<Vec6>& u, std::vector<Vec6>& gradient) {
+  for (Joint& joint : joint_states_) {
+    const JointRow& row = *joint.row;
+    const double v = row.velocity([&](std::size_t i) -> const Vec6& { return u[i]; });
+    const double wanted_Ns = (row.target - v) / joint.softness;
+    joint.next_Ns = std::clamp(wanted_Ns, row.lower_Ns, row.upper_Ns);
+    joint.is_free = joint.next_Ns == wanted_Ns;
+    for (int i = 0; i < 2; ++i)
+      if (row.body[i] >= 0) gradient[static_cast<std::size_t>(row.body[i])] -= joint.next_Ns * row.J[i];
+  }
+}
+
+// The gradient of the round's function at u; with_hessian: also the Hessians of the patches.
+void ContactNewton::evaluate(const std::vector<Vec6>& u, bool with_hessian, std::vector<Vec6>& gradient) {
+  gradient.resize(u.size());
+  for (std::size_t i = 0; i < u.size(); ++i) {
+    const IslandBody& b = island_.bodies[i];
+    gradient[i] = b.effective_mass * u[i] - b.momentum - b.coupling_impulse;
+  }
+  evaluateJoints(u, gradient);
+  for (Patch& patch : patches_) {
+    const Vec6 twist = twistOf(patch, u);
+    const Vec3 w = twist.head<3>(), v = twist.tail<3>();
+    SymmetricSum hessian;
+    Vec6 wrench = Vec6::Zero();
+    for (std::size_t i = patch.first; i < patch.end; ++i) {
+      Point& p = points_[i];
+      project(p, v + w.cross(p.r), with_hessian ? &hessian : nullptr);
+      wrench += wrenchOf(p.r, p.next);
+    }
+    if (with_hessian) patch.hessian = hessian.total();
+    for (int i = 0; i < 2; ++i)
+      if (patch.body[i] >= 0)
+        gradient[static_cast<std::size_t>(patch.body[i])] -= patch.X[i].transpose() * wrench;
+  }
+}
+
+// False: the matrix is not positive definite.
+bool ContactNewton::findStep() {
+  step_.resize(u_.size());
+  if (u_.size() == 1) {
+    Mat6 H = island_.bodies[0].effective_mass;
+    for (const Patch& patch : patches_) {
+      const Mat6& X = patch.X[patch.body[0] == 0 ? 0 : 1];
+      H += X.transpose() * patch.hessian * X;
+    }
+    for (const Joint& joint : joint_states_) {
+      if (!joint.is_free) continue;
+      const Vec6& J = joint.row->J[joint.row->body[0] == 0 ? 0 : 1];
+      H += 1 / joint.softness * J * J.transpose();
+    }
+    const Eigen::LLT<Mat6> factor(H);
+    step_[0] = -factor.solve(gradient_[0]);
+    return factor.info() == Eigen::Success;
+  }
+  matrix_.start(u_.size(), touching_);
+  for (std::size_t i = 0; i < u_.size(); ++i)
+    matrix_.add(static_cast<int>(i), static_cast<int>(i), island_.bodies[i].effective_mass);
+  // Lower blocks only: the factorisation reads no others.
+  const auto addPair = [this](const int(&body)[2], const auto& blockOf) {
+    for (int i = 0; i < 2; ++i)
+      for (int j = 0; j < 2; ++j)
+        if (body[i] >= body[j] && body[j] >= 0) matrix_.add(body[i], body[j], blockOf(i, j));
+  };
+  for (const Patch& patch : patches_)
+    addPair(patch.body,
+            [&](int i, int j) -> Mat6 { return patch.X[i].transpose() * patch.hessian * patch.X[j]; });
+  for (const Joint& joint : joint_states_) {
+    const double k = 1 / joint.softness;
+    const auto& J = joint.row->J;
+    if (joint.is_free)
+      addPair(joint.row->body, [&](int i, int j) -> Mat6 { return k * J[i] * J[j].transpose(); });
+  }
+  if (!matrix_.factorise()) return false;
+  x_.resize(static_cast<Eigen::Index>(6 * u_.size()));
+  for (std::size_t i = 0; i < u_.size(); ++i) x_.segment<6>(static_cast<Eigen::Index>(6 * i)) = -gradient_[i];
+  matrix_.solve(x_);
+  for (std::size_t i = 0; i < u_.size(); ++i) step_[i] = x_.segment<6>(static_cast<Eigen::Index>(6 * i));
+  return true;
+}
+
+// The function is convex, so its slope along the step increases: the minimum is where it is zero.
+double ContactNewton::lineSearch(double slope) {
+  constexpr double kFlat = 0.1;  // of the initial slope; a more accurate minimum would not save a step
+  trial_.resize(u_.size());
+  const auto slopeAt = [&](double share) {
+    for (std::size_t i = 0; i < u_.size(); ++i) trial_[i] = u_[i] + share * step_[i];
+    evaluate(trial_, false, trial_gradient_);
+    return sumOfProducts(trial_gradient_, step_);
+  };
+  double low = 0, low_slope = slope, high = 1, high_slope = slopeAt(1);
+  if (high_slope <= -kFlat * slope) return 1;
+  double share = 1;
+  for (int k = 0; k < 20; ++k) {
+    const double room = high - low;
+    share =
+        std::clamp(low - low_slope * room / (high_slope - low_slope), low + 0.05 * room, high - 0.05 * room);
+    const double here = slopeAt(share);
+    if (std::abs(here) <= -kFlat * slope) break;
+    (here < 0 ? low : high) = share;
+    (here < 0 ? low_slope : high_slope) = here;
+  }
+  return share;
+}
+
+// Change of the bodies' velocities by the momentum that is missing at u.
+double ContactNewton::imbalance_m_s() {
+  scratch_.resize(u_.size());
+  for (std::size_t i = 0; i < u_.size(); ++i)
+    scratch_[i] = island_.bodies[i].effective_inverse * gradient_[i];
+  return island_.topSpeed(scratch_);
+}
+
+SolveOutcome ContactNewton::minimise(double near_m_s, int step_limit) {
+  SolveOutcome outcome;
+  for (;;) {
+    evaluate(u_, true, gradient_);
+    const double off_m_s = imbalance_m_s();
+    outcome.is_converged = off_m_s <= near_m_s;
+    if (outcome.is_converged || outcome.steps >= step_limit || !std::isfinite(off_m_s)) return outcome;
+    if (!findStep()) return outcome;
+    const double slope = sumOfProducts(gradient_, step_);
+    if (!(slope < 0)) {  // balanced as well as rounding allows
+      constexpr double kGoodEnough = 10;
+      outcome.is_converged = slope >= 0 && off_m_s < kGoodEnough * near_m_s;
+      return outcome;
+    }
+    const double share = lineSearch(slope);
+    for (std::size_t i = 0; i < u_.size(); ++i) u_[i] += share * step_[i];
+    ++outcome.steps;
+  }
+}
+
+// The slip at the velocities at the start.
+void ContactNewton::startSlips() {
+  for (const Patch& patch : patches_) {
+    const Vec6 twist = twistOf(patch, u_);
+    for (std::size_t i = patch.first; i < patch.end; ++i) points_[i].slip = slipOf(points_[i], twist);
+  }
+}
+
+// Takes the round's impulses. The slip of each contact at its end is left in `slips_`.
+ContactNewton::Miss ContactNewton::endRound() {
+  Miss miss;
+  slips_.resize(static_cast<Eigen::Index>(points_.size()));
+  for (const Patch& patch : patches_) {
+    const Vec6 twist = twistOf(patch, u_);
+    for (std::size_t i = patch.first; i < patch.end; ++i) {
+      Point& p = points_[i];
+      miss.law_m_s = std::max(miss.law_m_s, p.softness * (p.next - p.impulse).norm());
+      const double slip = slipOf(p, twist);
+      if (!p.next.isZero(0)) miss.slip_m_s = std::max(miss.slip_m_s, std::abs(slip - p.slip));
+      slips_[static_cast<Eigen::Index>(i)] = slip;
+      p.impulse = p.next;
+    }
+  }
+  for (const Joint& joint : joint_states_) joint.row->impulse_Ns = joint.next_Ns;
+  return miss;
+}
+
+// The next round's terms of slip, from those that rounds began with and ended with: Anderson's extrapolation
+// of a fixed point. The same again would approach it by a constant factor only, up to 0.8.
+void ContactNewton::updateSlips(bool starts_anew) {
+  const auto n = slips_.size();
+  Eigen::VectorXd from(n);
+  for (Eigen::Index i = 0; i < n; ++i) from[i] = points_[static_cast<std::size_t>(i)].slip;
+  const Eigen::VectorXd change = slips_ - from;
+  if (starts_anew) had_ = 0;
+  Eigen::VectorXd next = slips_;
+  if (had_ > 0) {
+    const int columns = std::min(had_, kHistory), last = (had_ - 1) % kHistory;
+    changes_.col(last) = change - last_change_;
+    ends_.col(last) = slips_ - last_end_;
+    const Eigen::MatrixXd A = changes_.leftCols(columns);
+    const Eigen::VectorXd weights = A.colPivHouseholderQr().solve(change);
+    if (weights.allFinite()) next -= ends_.leftCols(columns) * weights;
+  } else {
+    changes_.resize(n, kHistory);
+    ends_.resize(n, kHistory);
+  }
+  last_change_ = change;
+  last_end_ = slips_;
+  ++had_;
+  for (Eigen::Index i = 0; i < n; ++i) points_[static_cast<std::size_t>(i)].slip = std::max(0.0, next[i]);
+}
+
+void ContactNewton::writeImpulses(std::span<RigidContact> contacts) const {
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    RigidContact& c = contacts[i];
+    const Vec3& impulse = points_[i].impulse;
+    c.p_n = points_[i].n.dot(impulse);
+    for (int k = 0; k < 2; ++k) c.p_t[k] = c.tangent_W(k).dot(impulse);
+  }
+}
+
+SolveOutcome ContactNewton::solve(std::span<RigidContact> contacts, double residual_m_s, int step_limit) {
+  SolveOutcome outcome;
+  gather(contacts);
+  touching_.clear();
+  const auto touch = [&](const int(&body)[2]) {
+    if (body[0] >= 0 && body[1] >= 0) touching_.emplace_back(body[0], body[1]);
+  };
+  for (const Patch& patch : patches_) touch(patch.body);
+  for (const Joint& joint : joint_states_) touch(joint.row->body);
+  island_.readVelocities(u_);
+  double compliance = kMaxCompliance;
+  had_ = 0;
+  startSlips();
+  Miss last = {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+  for (;;) {
+    setCompliance(compliance);
+    const double error_m_s = std::max(last.law_m_s, last.slip_m_s);
+    const double near_m_s = kShareOfError * std::clamp(error_m_s, kLawShare * residual_m_s, kFirstError_m_s);
+    const SolveOutcome round = minimise(near_m_s, step_limit - outcome.steps);
+    outcome.steps += std::max(1, round.steps);
+    if (!round.is_converged) break;
+    const Miss now = endRound();
+    outcome.is_converged =
+        now.law_m_s <= kLawShare * residual_m_s && now.slip_m_s <= kSlipShare * residual_m_s;
+    if (outcome.is_converged || outcome.steps >= step_limit) break;
+    updateSlips(now.slip_m_s > last.slip_m_s);
+    if (now.law_m_s > kGoodReduction * last.law_m_s && now.law_m_s > kGoodReduction * now.slip_m_s)
+      compliance = std::max(kMinCompliance, kStiffer * compliance);
+    last = now;
+  }
+  for (const Vec6& u : u_)
+    if (!u.allFinite()) return {outcome.steps, false};
+  writeImpulses(contacts);
+  for (std::size_t i = 0; i < u_.size(); ++i) island_.bodies[i].u = u_[i];
+  return outcome;
+}
+
+}  // namespace vps::bullet::inline v0
