@@ -394,11 +394,10 @@ class CrossingTest {
   std::vector<EdgeCrossing>& out_;
 };
 
-/// With balls around all edges of both sets.
+/// Around all edges of a set.
 template <typename Node>
-MotionTube tubeOf(const Node& root0, const Node& root1, const Pose& X_01, const Pose& X_01_end,
-                  double width) {
-  return {{root0.center, root0.radius_m}, {root1.center, root1.radius_m}, X_01, X_01_end, width};
+Ball ballOf(const Node& root) {
+  return {root.center, root.radius_m};
 }
 
 void sortByEdges(std::vector<EdgeCrossing>& out, std::ptrdiff_t first) {
@@ -425,10 +424,13 @@ void CrossingMemory::search(const EdgeSet& edges0, const EdgeSet& edges1, double
 
 void CrossingMemory::find(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_01,
                           const Pose& X_01_end, double reach_m) {
-  constexpr double kMore = 1.5;  // assumed: the cutoff follows the speed
-  if (is_valid_ && reach_m <= reach_m_ && tube_->holds(X_01) && tube_->holds(X_01_end)) return;
+  constexpr double kMore = 1.2;  // assumed: the cutoff follows the speed
+  if (is_valid_ && reach_m <= reach_m_ && tube_->holds(X_01) && tube_->holds(X_01_end))
+    return tube_->see(X_01);
+  const Pose last = is_valid_ ? tube_->seen() : X_01;
   const auto searchWithin = [&](double width) {
-    *tube_ = tubeOf(edges0.nodes_[0], edges1.nodes_[0], X_01, X_01_end, width);
+    *tube_ = MotionTube::following(ballOf(edges0.nodes_[0]), ballOf(edges1.nodes_[0]), last, X_01, X_01_end,
+                                   width);
     search(edges0, edges1, kMore * reach_m);
   };
   searchWithin(tube_->nextWidth(near_.size()));
@@ -443,7 +445,7 @@ void findCrossings(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_0
   const double reach_m = reachOfCrossing_m(std::max(range.cutoff_m, range.depth_m));
   CrossingTest test(edges0, edges1, X_01, range, out);
   if (memory == nullptr) {
-    const MotionTube once = tubeOf(edges0.nodes_[0], edges1.nodes_[0], X_01, range.X_01_end, 1);
+    const MotionTube once(ballOf(edges0.nodes_[0]), ballOf(edges1.nodes_[0]), X_01, range.X_01_end);
     EdgePairSearch(edges0, edges1, once, reach_m).run([&](std::uint32_t i0, std::uint32_t i1) {
       test.cross(i0, i1);
     });

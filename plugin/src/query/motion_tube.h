@@ -21,8 +21,10 @@ class MotionTube {
   MotionTube(const Ball& ball0, const Ball& ball1, const Pose& start, const Pose& end, double width = 1)
       : ball0_(ball0), ball1_(ball1), width_(width) {
     // assumed, by measurement on threads, gears and a heap: a wider margin lasts longer, but more is near.
-    constexpr double kLeast_m = 25e-6, kMost_m = 150e-6, kOfStep = 0.5;
-    constexpr double kLongest = 8;
+    // The margin is for what the expectation lacks, which does not grow with the step: gears whose teeth roll
+    // on each other have steps of half a millimetre.
+    constexpr double kLeast_m = 50e-6, kMost_m = 150e-6, kOfStep = 0.1;
+    constexpr double kLongest = 24;
     const double step_m = travel_m(ball0, ball1, start, end);
     slack_m_ = width * std::clamp(kOfStep * step_m, kLeast_m, kMost_m);
     const double step_rad = Way(ball0, ball1, start, end).turn_rad();
@@ -33,10 +35,23 @@ class MotionTube {
     Pose to = end;
     const Pose once = start.inverse() * end;
     for (int k = 2; k <= static_cast<int>(steps); ++k) to = to * once;
-    from_ = start;
+    from_ = seen_ = start;
     to_ = to;
     way_ = Way(ball0, ball1, start, to);
     bend_m_ = bendOf(travel_m(ball0, ball1, start, to), way_.turn_rad());
+  }
+
+  /// The same, where the parts are expected to go on as they came from their last pose, if the tube then
+  /// holds `end` as well: the motion of a step that is not solved yet has the fall and the pull that contact
+  /// takes.
+  static MotionTube following(const Ball& ball0, const Ball& ball1, const Pose& last, const Pose& start,
+                              const Pose& end, double width) {
+    const Pose onward = start * (last.inverse() * start);
+    if (travel_m(ball0, ball1, last, start) > 0) {
+      const MotionTube tube(ball0, ball1, start, onward, width);
+      if (tube.holds(start) && tube.holds(end)) return tube;
+    }
+    return {ball0, ball1, start, end, width};
   }
 
   /// A wider tube lasts longer, but each pair of its list costs time in each step. The width for the next
@@ -46,6 +61,10 @@ class MotionTube {
     return isTooWide(pairs) ? std::max(0.5 * width_, 1.0) : width_;
   }
   [[nodiscard]] bool isTooWide(std::size_t pairs) const { return width_ > 1 && pairs > kManyPairs; }
+  /// Notes where part 1 is in part 0.
+  void see(const Pose& X_01) { seen_ = X_01; }
+  /// Where it was when that was last noted, or when the tube was made.
+  [[nodiscard]] const Pose& seen() const { return seen_; }
   /// Poses of part 1 in part 0.
   [[nodiscard]] const Pose& from() const { return from_; }
   [[nodiscard]] const Pose& to() const { return to_; }
@@ -78,6 +97,7 @@ class MotionTube {
 
   Ball ball0_, ball1_;
   Pose from_, to_;
+  Pose seen_;
   Way way_;
   double width_ = 1;
   double slack_m_ = 0, bend_m_ = 0;
