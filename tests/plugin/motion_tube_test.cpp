@@ -84,5 +84,21 @@ TEST(MotionTube, DoesNotHoldWhatLeavesIt) {
   EXPECT_FALSE(tube.holds(Pose::translation({20e-3, 10e-3, 0})));
 }
 
+// A nut's steps of 40 um, each expected to fall by another 10 um, which the thread does not let it do.
+TEST(MotionTube, FollowsTheMotionThatThePartsHad) {
+  const Ball ball{Vec3::Zero(), 10e-3};
+  const auto at = [](double way_m, double fall_m) { return Pose::translation({20e-3, way_m, -fall_m}); };
+  const Pose last = at(-40e-6, 0), start = at(0, 0), end = at(40e-6, 10e-6), later = at(320e-6, 0);
+  EXPECT_FALSE(MotionTube(ball, ball, start, end).holds(later));
+  const MotionTube tube = MotionTube::following(ball, ball, last, start, end, 1);
+  for (const Pose& X : {start, end, later}) EXPECT_TRUE(tube.holds(X));
+  // Where the parts were elsewhere, or did not move, the step's own motion counts.
+  for (const Pose& before : {at(0.5e-3, 0), start}) {
+    const MotionTube other = MotionTube::following(ball, ball, before, start, end, 1);
+    for (const Pose& X : {start, end}) EXPECT_TRUE(other.holds(X));
+    EXPECT_FALSE(other.holds(later));
+  }
+}
+
 }  // namespace
 }  // namespace vps
