@@ -113,6 +113,36 @@ TEST(Turn, ATimeIsDividedByTheFastestBody) {
   EXPECT_EQ(parts(1e7, true), 1000);  // the most
 }
 
+// The step in which it lands is the first in which it must not turn too far.
+TEST(Turn, AStepIsDividedBeforeABodyLands) {
+  for (const auto& [gap_m, expected] : {std::pair(0.9e-3, 11), std::pair(1.1e-3, 2)}) {
+    SpinningDisc spinning(1047, true);
+    spinning.body->translate(btVector3(0, 0, toBt(gap_m)));
+    spinning.body->setLinearVelocity(btVector3(0, 0, -1));  // 1.00 mm and 10 um by its weight
+    spinning.world.world->performDiscreteCollisionDetection();
+    EXPECT_EQ(substepsFor(*spinning.world.world, 1e-3, 1000), expected) << gap_m;
+  }
+}
+
+// The points of the plate beside the box come near to its edges, but not below them: they are no contacts.
+TEST(Turn, ABoxThatSpinsFlatIsHeldByItsFaceAlone) {
+  static const Built ground = test::build(makeBox(Vec3(60e-3, 60e-3, 6e-3)), 7850, 0.25e-3, 0.5e-3);
+  static const Built cube = test::build(makeBox(Vec3::Constant(10e-3)), 7850, 0.25e-3, 0.5e-3);
+  const double w_rad_s = 400;
+  Settings quiet;
+  quiet.warns_of_turns = false;
+  for (int k = 0; k < 8; ++k) {
+    World world(SolverKind::Constraint, quiet);
+    world.add(ground, Pose::translation({1e-3 * k, 0, -3e-3}), true, 0);
+    btRigidBody& body = world.add(cube, Pose::translation({0, 0, 5e-3}), false, 0);
+    body.setAngularVelocity({0, 0, toBt(w_rad_s)});
+    world.step(10);
+    EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), 5e-3, 1e-6) << k;
+    EXPECT_NEAR(body.getLinearVelocity().length(), 0, 1e-3) << k;
+    EXPECT_NEAR(body.getAngularVelocity().z(), w_rad_s, 1e-6 * w_rad_s) << k;
+  }
+}
+
 // A ball that rolls turns about the point that it touches.
 TEST(Turn, ABallThatRollsIsNotReported) {
   const Messages messages;

@@ -10,6 +10,7 @@
 #include "bounce_families.h"
 #include "family.h"
 #include "impact_world.h"
+#include "mass_ratio_families.h"
 #include "search/random.h"
 #include "vps_bullet/convert.h"
 #include "vps_bullet/solver.h"
@@ -297,11 +298,12 @@ std::vector<Family> restitutionFamilies() {
       {"B_angular_momentum", "change of angular momentum in steps without a push, relative", 1e-9, 60, 6,
        [](int i) { return Swarm(i).changes().angular; }, wordsOf<Swarm>()},
       {"B_angular_pushes", "change of angular momentum in steps with a push, relative", 1e-9, 60, 6,
-       [](int i) { return Swarm(i).changes().angular_of_pushes; }, wordsOf<Swarm>(), 8.5654e-7, 8.5654e-7},
+       [](int i) { return Swarm(i).changes().angular_of_pushes; }, wordsOf<Swarm>(), 2.4052e-7, 2.4052e-7},
       {"B_free_energy", "kinetic energy gained, relative", 1e-9, 60, 6,
        [](int i) { return Swarm(i).energyRise(); }, wordsOf<Swarm>()},
   };
   for (Family& family : bounceFamilies()) all.push_back(std::move(family));
+  for (Family& family : massRatioFamilies()) all.push_back(std::move(family));
   return all;
 }
 

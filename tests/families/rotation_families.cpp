@@ -7,6 +7,7 @@
 
 #include "family.h"
 #include "fast_rotation_families.h"
+#include "flat_spin_families.h"
 #include "impact_world.h"
 #include "search/random.h"
 #include "vps_bullet/convert.h"
@@ -134,6 +135,7 @@ std::vector<Family> freeRotationFamilies() {
 std::vector<Family> rotationFamilies() {
   std::vector<Family> all = freeRotationFamilies();
   for (Family& family : fastRotationFamilies()) all.push_back(std::move(family));
+  for (Family& family : flatSpinFamilies()) all.push_back(std::move(family));
   return all;
 }
 

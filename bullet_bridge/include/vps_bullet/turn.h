@@ -52,9 +52,10 @@ struct BodyTurn {
 VPS_BULLET_API void findTurns(btCollisionWorld& world, std::vector<BodyTurn>& out);
 
 /// Into how many steps of equal length the next dt_s must be divided so that no body turns too far, at its
-/// present speed. Bodies whose bounding boxes overlap count as in contact, since they may come to be, if the
-/// dispatcher lets them collide and respond (filters, joints, triggers). At
-/// least 1, at most `most`. O(pairs of the broadphase); the same for the same state of the world.
+/// present speed. Bodies whose bounding boxes overlap on their way in dt_s, at their velocity and weight,
+/// count as in contact, since they may come to be, if the dispatcher lets them collide and respond (filters,
+/// joints, triggers). At least 1, at most `most`. O(pairs of the broadphase); the same for the same state of
+/// the world.
 VPS_BULLET_API int substepsFor(btCollisionWorld& world, double dt_s, int most);
 
 }  // namespace vps::bullet::inline v0

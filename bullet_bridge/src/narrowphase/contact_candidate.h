@@ -149,7 +149,7 @@ void reduceBySpread(std::vector<Candidate>& candidates, std::size_t limit, doubl
 
 /// Replaces distance and normal of the candidates of `side` by the exact ones: of the other Shape's surfaces
 /// (if it has any) or of the primitive `theirs`. Candidates on curved faces that touch flush, and on a
-/// primitive's round side, move to the nearest place. Where no surface is near, the field's values remain.
+/// primitive's round side, move to the nearest place. Where none is in reach, the field's values remain.
 /// @param motion  of no duration in a query: distances are then those between points, not of planes
 /// @param is_two_sided  the other side's points are queried too: a contact found by one of them is left to it
 void refine(std::vector<Candidate>& candidates, const SideView& side, const SideView& other,

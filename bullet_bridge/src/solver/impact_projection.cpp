@@ -142,12 +142,58 @@ bool ImpactProjection::join(std::size_t row, std::vector<Vec6>& v) {
   }
 }
 
+// True: active_ is the solution, and v are its velocities. Otherwise v stays.
+bool ImpactProjection::solveAsBefore(const Known& known, double tolerance_m_s, std::vector<Vec6>& v) {
+  const auto n = static_cast<Eigen::Index>(known.active.size());
+  Eigen::VectorXd p(n);
+  const auto velocityOf = [&](const Active& a) { return a.sign * rows_[a.row].velocity(v); };
+  for (Eigen::Index k = 0; k < n; ++k) p[k] = -velocityOf(known.active[static_cast<std::size_t>(k)]);
+  const auto factor = known.factor.triangularView<Eigen::Lower>();
+  factor.solveInPlace(p);
+  factor.transpose().solveInPlace(p);
+  work_ += static_cast<std::size_t>(n * n) + rows_.size();
+  for (Eigen::Index k = 0; k < n; ++k)
+    if (!(p[k] >= 0) && !rows_[known.active[static_cast<std::size_t>(k)].row].isTwoSided()) return false;
+  const std::vector<Vec6> before = v;
+  active_ = known.active;
+  for (std::size_t k = 0; k < active_.size(); ++k) {
+    active_[k].p_Ns = p[static_cast<Eigen::Index>(k)];
+    rows_[active_[k].row].apply(active_[k].sign * active_[k].p_Ns, v);
+  }
+  // Active rows too: nearly dependent ones may be left with a velocity.
+  if (std::all_of(active_.begin(), active_.end(),
+                  [&](const Active& a) { return std::abs(velocityOf(a)) <= tolerance_m_s; }) &&
+      mostViolated(known.chosen, tolerance_m_s, v) < 0)
+    return true;
+  active_.clear();
+  v = before;
+  return false;
+}
+
+void ImpactProjection::remember(std::span<const std::uint8_t> chosen) {
+  constexpr std::size_t kMost = 4;  // assumed; a body that bounces between two others alternates between two
+  const auto n = static_cast<Eigen::Index>(active_.size());
+  Known now{{chosen.begin(), chosen.end()}, active_, factor_.topLeftCorner(n, n)};
+  for (Known& known : known_)
+    if (known.chosen == now.chosen) return std::swap(known, now);
+  if (known_.size() < kMost) return known_.push_back(std::move(now));
+  known_[oldest_] = std::move(now);
+  oldest_ = (oldest_ + 1) % kMost;
+}
+
 void ImpactProjection::solve(std::span<const std::uint8_t> chosen, double tolerance_m_s, std::vector<Vec6>& v,
                              std::vector<double>& p_Ns) {
   active_.clear();
   is_active_.assign(rows_.size(), 0);
   is_skipped_.assign(rows_.size(), 0);
   p_Ns.assign(rows_.size(), 0);
+  const auto known = std::find_if(known_.begin(), known_.end(), [&](const Known& k) {
+    return std::equal(chosen.begin(), chosen.end(), k.chosen.begin(), k.chosen.end());
+  });
+  if (known != known_.end() && solveAsBefore(*known, tolerance_m_s, v)) {
+    for (const Active& a : active_) p_Ns[a.row] = a.sign * a.p_Ns;
+    return;
+  }
   // Far more than are needed; rounding may let rows join and leave again.
   const std::size_t most = 20 + 4 * rows_.size();
   for (std::size_t step = 0; step < most && work_ < most_work_; ++step) {
@@ -157,6 +203,7 @@ void ImpactProjection::solve(std::span<const std::uint8_t> chosen, double tolera
     if (!join(static_cast<std::size_t>(row), v)) is_skipped_[static_cast<std::size_t>(row)] = 1;
   }
   for (const Active& a : active_) p_Ns[a.row] = a.sign * a.p_Ns;
+  remember(chosen);
 }
 
 }  // namespace vps::bullet::inline v0

@@ -202,4 +202,10 @@ void Island::readVelocities(std::vector<Vec6>& u) const {
   for (const IslandBody& b : bodies) u.push_back(b.u);
 }
 
+void Island::readSolution(StepSolution& solution) const {
+  readVelocities(solution.u);
+  solution.momenta.clear();
+  for (const IslandBody& b : bodies) solution.momenta.push_back(b.ended());
+}
+
 }  // namespace vps::bullet::inline v0

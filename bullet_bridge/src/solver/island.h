@@ -60,12 +60,13 @@ struct IslandBody {
     sum.head<3>() += rest_momentum_Nms;
     return sum;
   }
-  /// Change of momentum in the step, by all impulses.
-  [[nodiscard]] Vec6 gained() const {
-    Vec6 sum = mass * (u - start);
-    sum.head<3>() += rest_momentum_Nms;
-    return sum;
-  }
+};
+
+/// What was solved for each body, also where the step is then cut short.
+struct StepSolution {
+  std::vector<Vec6> u;
+  std::vector<Vec6> momenta;  ///< at the end of the step: angular about the body's centre, then linear
+  bool is_cut_short = false;
 };
 
 /// Where and how fast a body is at the end of the step, about its centre.
@@ -106,6 +107,7 @@ class Island {
   /// Writes the end velocities, and moves the bodies so that Bullet takes them to their end poses.
   void finish(std::span<const Vec6> push, double dt_s, std::span<const BodyEnd> ends) const;
   void readVelocities(std::vector<Vec6>& u) const;
+  void readSolution(StepSolution& solution) const;
   /// Greatest speed of any point at these twists, one for each body [m/s]; infinite if one is not finite.
   [[nodiscard]] double topSpeed(std::span<const Vec6> twists) const;
 

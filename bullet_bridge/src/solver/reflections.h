@@ -46,8 +46,9 @@ struct ImpactState {
 /// The velocities after an impact of bodies at `before`, and the rows' impulses.
 /// @param rows  prepared; their bodies are those of `before`
 /// @return has no approach. What is slower than 1e-2 of the fastest approach in `before` is stopped without
-/// restitution, and so is what a chain of impacts leaves that does not end within a budget of work: a body of
-/// 1e-8 of the mass of its neighbours takes 3e4 impacts. Cost: about 1 us for each impact of two bodies, at
+/// restitution. A chain of impacts that does not end within a budget of work, as with a body of less than
+/// some 1e-9 of the mass of its neighbours, is replaced by its limit for bodies without mass, which keeps the
+/// energy as well: all contacts are reflected at once. Cost: about 1 us for each impact of two bodies, at
 /// most some 0.1 s for all values of restitution together; a row of n bodies has some n impacts.
 ImpactState afterImpact(std::span<const ImpactRow> rows, const std::vector<Vec6>& before);
 

@@ -69,7 +69,7 @@ void Restitution::findTouch(std::span<const RigidContact> contacts) {
     touch_m_.push_back(kTouch_m + std::max(restOf_m(c) - restGap_m(*c.point), 0.0));
 }
 
-void Restitution::connect(std::span<RigidContact> contacts, double dt_s) {
+void Restitution::connect(std::span<RigidContact> contacts, const StepSolution& solution, double dt_s) {
   parent_.resize(island_.bodies.size());
   std::iota(parent_.begin(), parent_.end(), 0);
   const auto join = [&](int a, int b) {
@@ -81,7 +81,7 @@ void Restitution::connect(std::span<RigidContact> contacts, double dt_s) {
   touches_.clear();
   for (std::size_t k = 0; k < contacts.size(); ++k) {
     const RigidContact& c = contacts[k];
-    const double v = velocityOf(c.normal, [&](std::size_t i) -> const Vec6& { return island_.bodies[i].u; });
+    const double v = velocityOf(c.normal, [&](std::size_t i) -> const Vec6& { return solution.u[i]; });
     touches_.push_back(touchesAtEnd(c, touch_m_[k], v, dt_s));
     if (touches_.back()) join(c.normal.side[0].body, c.normal.side[1].body);
   }
@@ -91,8 +91,11 @@ void Restitution::connect(std::span<RigidContact> contacts, double dt_s) {
   }
 }
 
-// Where a contact acts at the end of the step: it goes with the body that turns more easily.
-Vec3 Restitution::placeOf(const RigidContact& c, std::span<const BodyEnd> ends) const {
+// Where a contact acts at the end of the step: it goes with the body that turns more easily. A light body
+// between others, for which the solver found no place, may be anywhere: in a step that was cut short the
+// contact goes with the heavier one.
+Vec3 Restitution::placeOf(const RigidContact& c, const StepSolution& solution,
+                          std::span<const BodyEnd> ends) const {
   const Vec3 x_W = c.position_W();
   Vec3 way_W = Vec3::Zero();
   double sum = 0;
@@ -101,7 +104,8 @@ Vec3 Restitution::placeOf(const RigidContact& c, std::span<const BodyEnd> ends) 
     if (body < 0) continue;
     const BodyEnd& end = ends[static_cast<std::size_t>(body)];
     const Pose X_WB = fromBt(c.object[i]->getWorldTransform());
-    const double ease = end.inverse_mass.topLeftCorner<3, 3>().trace();
+    const double ease =
+        solution.is_cut_short ? end.mass(3, 3) : end.inverse_mass.topLeftCorner<3, 3>().trace();
     way_W += ease * (end.X_WB * (X_WB.inverse() * x_W) - x_W);
     sum += ease;
   }
@@ -123,7 +127,8 @@ ImpactRow Restitution::rowOf(const ContactRow& row, const Vec3& at_W, const Vec3
   return to;
 }
 
-void Restitution::gather(int root, std::span<RigidContact> contacts, std::span<const BodyEnd> ends) {
+void Restitution::gather(int root, std::span<RigidContact> contacts, const StepSolution& solution,
+                         std::span<const BodyEnd> ends) {
   group_ = {};
   local_.assign(island_.bodies.size(), -1);
   for (std::size_t i = 0; i < island_.bodies.size(); ++i) {
@@ -140,7 +145,7 @@ void Restitution::gather(int root, std::span<RigidContact> contacts, std::span<c
   for (std::size_t k = 0; k < contacts.size(); ++k) {
     RigidContact& c = contacts[k];
     if (!touches_[k] || !isOfGroup(c.normal.side[0].body, c.normal.side[1].body)) continue;
-    const Vec3 at_W = placeOf(c, ends);
+    const Vec3 at_W = placeOf(c, solution, ends);
     Contact contact{&c, {}, {c.p_t[0], c.p_t[1]}, 0, touch_m_[k]};
     for (int t = 0; t < 2; ++t) contact.tangent[t] = rowOf(c.tangent[t], at_W, c.tangent_W(t), ends);
     contact.W_t = contact.tangent[0].W + contact.tangent[1].W;
@@ -166,9 +171,11 @@ void Restitution::gather(int root, std::span<RigidContact> contacts, std::span<c
 
 // The change of momentum in the step without the impulses of contacts and joints, which acted at the poses
 // before it.
-void Restitution::takeExternal() {
-  for (const int i : group_.bodies)
-    group_.impulse.push_back(island_.bodies[static_cast<std::size_t>(i)].gained());
+void Restitution::takeExternal(const StepSolution& solution) {
+  for (const int i : group_.bodies) {
+    const IslandBody& body = island_.bodies[static_cast<std::size_t>(i)];
+    group_.impulse.push_back(solution.momenta[static_cast<std::size_t>(i)] - body.mass * body.start);
+  }
   std::vector<Vec6> external = group_.impulse;
   const auto take = [&](int body, const Vec6& J, double impulse_Ns) {
     if (body >= 0)
@@ -236,7 +243,7 @@ void Restitution::settle() {
 }
 
 // The greatest share s of the change of velocities for which a s^2 + b s + c, the energy above what is
-// allowed, is not positive.
+// allowed, is not positive, or else least.
 double Restitution::shareWithoutGain(std::span<const BodyEnd> ends) const {
   const Group& g = group_;
   double a = 0, b = 0, c = 0, scale_J = 0;
@@ -268,8 +275,10 @@ double Restitution::shareWithoutGain(std::span<const BodyEnd> ends) const {
   }
   constexpr double kRounding = 1e-13;
   if (a + b + c <= kRounding * scale_J) return 1;
-  const double root = b * b - 4 * a * c;
-  if (!(root >= 0) || !(a > 0)) return 0;  // also where a value is not finite
+  if (!(a > 0)) return 0;  // also where a value is not finite
+  // A solution that has not converged may have more energy than is allowed by itself: then the share with the
+  // least.
+  const double root = std::max(b * b - 4 * a * c, 0.0);
   return std::clamp((-b + std::sqrt(root)) / (2 * a), 0.0, 1.0);
 }
 
@@ -290,19 +299,24 @@ void Restitution::write(double share, std::span<BodyEnd> ends) {
   }
 }
 
-void Restitution::apply(std::span<RigidContact> contacts, std::span<BodyEnd> ends,
-                        const btContactSolverInfo& info) {
+bool Restitution::hasImpact(std::span<const RigidContact> contacts, const btContactSolverInfo& info) const {
+  return std::any_of(contacts.begin(), contacts.end(),
+                     [&](const RigidContact& c) { return isImpact(c, info.m_restitutionVelocityThreshold); });
+}
+
+void Restitution::apply(std::span<RigidContact> contacts, const StepSolution& solution,
+                        std::span<BodyEnd> ends, const btContactSolverInfo& info) {
   std::vector<int> roots;
   for (const RigidContact& c : contacts) {
     if (!isImpact(c, info.m_restitutionVelocityThreshold)) continue;
-    if (roots.empty()) connect(contacts, info.m_timeStep);
+    if (roots.empty()) connect(contacts, solution, info.m_timeStep);
     const int root = rootOf(std::max(c.normal.side[0].body, c.normal.side[1].body));
     if (std::find(roots.begin(), roots.end(), root) == roots.end()) roots.push_back(root);
   }
   for (const int root : roots) {
-    gather(root, contacts, ends);
-    takeExternal();
-    bounce(info.m_timeStep);
+    gather(root, contacts, solution, ends);
+    takeExternal(solution);
+    bounce(ends, info.m_timeStep);
     settle();
     if (const double share = shareWithoutGain(ends); share > 0) write(share, ends);
   }

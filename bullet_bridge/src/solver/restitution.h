@@ -11,10 +11,10 @@
 //             bodies approached each other before it, faster than the threshold of Bullet's
 //             btContactSolverInfo. Gravity of the step itself is no approach, so a body at rest does not
 //             bounce.
-//   bounce    From the end velocities, the impulses of the contacts and joints and the external impulses are
-//   taken away
-//             again. What is left are the velocities before the step, at the end pose. With the kick of the
-//             time up to the impact they are reflected (reflections.h).
+//   bounce    The velocities before the step, at the end pose, with the kick of the time up to the impact,
+//             are reflected (reflections.h). The solution's impulses acted at the lines of the start: what
+//             angular momentum the displacement changes by that is given back as one rotation of the group,
+//             not to single bodies, of which a light one between heavy ones would spin without bound.
 //   settle    The external impulses are given back, and what then approaches (a part that rests on another)
 //   is stopped,
 //             with Coulomb's friction, whose limit is that of the whole normal impulse of the step: sweeps
@@ -40,6 +40,10 @@
 // which contact does not move. So no group ever gains energy by restitution, whatever has not converged. The
 // masses are those of the bodies, not the effective ones: a coupling's spring and damper have no share in an
 // impact.
+//
+// A step that was cut short, because its solution would leave overlaps, bounces as well. Its end poses are
+// not quite those of the contacts, but the velocities before the step and the contacts that carry load are
+// known, and these are all that a bounce needs: momentum and energy are kept as above.
 #pragma once
 
 #include <cstdint>
@@ -59,11 +63,16 @@ class Restitution {
  public:
   Restitution(const Island& island, JointRows& joints) : island_(island), joints_(joints) {}
 
+  /// True if a contact of the solved island is an impact.
+  [[nodiscard]] bool hasImpact(std::span<const RigidContact> contacts, const btContactSolverInfo& info) const;
   /// Changes the end velocities of groups with an impact, and adds the impulses to those of contacts and
   /// joints.
   /// @param contacts  of the solved island
+  /// @param solution  of the island. A step that was cut short has other displacements, but the end
+  /// velocities are those of the solution's momenta.
   /// @param ends      from Island::readEnds()
-  void apply(std::span<RigidContact> contacts, std::span<BodyEnd> ends, const btContactSolverInfo& info);
+  void apply(std::span<RigidContact> contacts, const StepSolution& solution, std::span<BodyEnd> ends,
+             const btContactSolverInfo& info);
 
  private:
   struct Contact {
@@ -91,19 +100,21 @@ class Restitution {
 
   [[nodiscard]] bool isImpact(const RigidContact& c, double threshold_m_s) const;
   void findTouch(std::span<const RigidContact> contacts);
-  void connect(std::span<RigidContact> contacts, double dt_s);
+  void connect(std::span<RigidContact> contacts, const StepSolution& solution, double dt_s);
   [[nodiscard]] int rootOf(int body) const;
-  [[nodiscard]] Vec3 placeOf(const RigidContact& c, std::span<const BodyEnd> ends) const;
+  [[nodiscard]] Vec3 placeOf(const RigidContact& c, const StepSolution& solution,
+                             std::span<const BodyEnd> ends) const;
   [[nodiscard]] ImpactRow rowOf(const ContactRow& row, const Vec3& at_W, const Vec3& d_W,
                                 std::span<const BodyEnd> ends) const;
-  void gather(int root, std::span<RigidContact> contacts, std::span<const BodyEnd> ends);
-  void takeExternal();
-  [[nodiscard]] std::vector<Vec6> beforeStep() const;
+  void gather(int root, std::span<RigidContact> contacts, const StepSolution& solution,
+              std::span<const BodyEnd> ends);
+  void takeExternal(const StepSolution& solution);
+  [[nodiscard]] std::vector<Vec6> beforeStep(std::span<const BodyEnd> ends, double dt_s) const;
   [[nodiscard]] double shareOfImpact(const std::vector<Vec6>& before, double dt_s) const;
   [[nodiscard]] double kickAlong(std::size_t row) const;
   [[nodiscard]] std::vector<std::uint8_t> holding(const std::vector<Vec6>& before, double dt_s) const;
   std::vector<Vec6> restOfKick(double share);
-  void bounce(double dt_s);
+  void bounce(std::span<const BodyEnd> ends, double dt_s);
   void settle();
   void settleFriction(Contact& c, double limit_Ns, double& most_m_s);
   [[nodiscard]] double shareWithoutGain(std::span<const BodyEnd> ends) const;

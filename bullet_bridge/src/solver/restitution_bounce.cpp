@@ -1,21 +1,53 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The bounce of a group: when it is, from what velocity, and what acts after it.
 #include <BulletDynamics/ConstraintSolver/btContactSolverInfo.h>
+#include <BulletDynamics/Dynamics/btRigidBody.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "solver/restitution.h"
+#include "vps_bullet/convert.h"
 
 namespace vps::bullet::inline v0 {
 
-std::vector<Vec6> Restitution::beforeStep() const {
-  std::vector<Vec6> before = group_.solved;
-  for (std::size_t i = 0; i < before.size(); ++i) before[i] -= group_.external[i];
-  for (std::size_t k = 0; k < group_.rows.size(); ++k) group_.rows[k].apply(-group_.solved_Ns[k], before);
-  for (const Contact& c : group_.contacts)
-    for (int t = 0; t < 2; ++t) c.tangent[t].apply(-c.of->p_t[t], before);
+// The velocities before the step, at the end pose. The bodies moved there by the solution's velocities, whose
+// impulses act at the lines of the start: the group's angular momentum differs by those from what it was. The
+// difference is given back as a rotation of the whole group. Given to each body by its own contacts, it would
+// spin a light one between heavy ones without bound: 1 um times the impulse of bodies of 1e5 times its
+// inertia.
+std::vector<Vec6> Restitution::beforeStep(std::span<const BodyEnd> ends, double dt_s) const {
+  std::vector<BodyEnd> group_ends;
+  std::vector<Vec6> lost(group_.bodies.size(), Vec6::Zero());
+  for (const int i : group_.bodies) {
+    const IslandBody& body = island_.bodies[static_cast<std::size_t>(i)];
+    group_ends.push_back(ends[static_cast<std::size_t>(i)]);
+    BodyEnd& end = group_ends.back();
+    end.v = body.turns_freely ? Vec6(end.inverse_mass * (body.mass * body.start)) : body.start;
+  }
+  const auto add = [&](const ContactRow& at_start, const ImpactRow& at_end, double impulse_Ns) {
+    if (at_end.body[0] < 0 || at_end.body[1] < 0) return;
+    for (int i = 0; i < 2; ++i)
+      lost[static_cast<std::size_t>(at_end.body[i])] += impulse_Ns * (at_start.side[i].J - at_end.J[i]);
+  };
+  for (std::size_t k = 0; k < group_.contacts.size(); ++k) {
+    const Contact& c = group_.contacts[k];
+    add(c.of->normal, group_.rows[k], c.of->p_n);
+    for (int t = 0; t < 2; ++t) add(c.of->tangent[t], c.tangent[t], c.of->p_t[t]);
+  }
+  const bool is_free = std::all_of(group_.rows.begin(), group_.rows.end(),
+                                   [](const ImpactRow& row) { return row.body[0] >= 0 && row.body[1] >= 0; });
+  // A push moves bodies past their momenta.
+  for (std::size_t i = 0; is_free && i < group_ends.size(); ++i) {
+    const IslandBody& body = island_.bodies[static_cast<std::size_t>(group_.bodies[i])];
+    const Vec3 pushed_W =
+        group_ends[i].X_WB.p - fromBt(body.rigid->getWorldTransform()).p - dt_s * body.u.tail<3>();
+    lost[i].head<3>() -= pushed_W.cross(body.mass(3, 3) * group_.solved[i].tail<3>());
+  }
+  addTurn(commonTurn(lost, group_ends), group_ends);
+  std::vector<Vec6> before;
+  for (const BodyEnd& end : group_ends) before.push_back(end.v);
   return before;
 }
 
@@ -75,8 +107,8 @@ std::vector<Vec6> Restitution::restOfKick(double share) {
 }
 
 // Sets the velocities with all external impulses and those of the bounce, before contacts settle.
-void Restitution::bounce(double dt_s) {
-  const std::vector<Vec6> start = beforeStep();
+void Restitution::bounce(std::span<const BodyEnd> ends, double dt_s) {
+  const std::vector<Vec6> start = beforeStep(ends, dt_s);
   const bool has_kick =
       std::any_of(group_.kick.begin(), group_.kick.end(), [](const Vec6& kick) { return !kick.isZero(0); });
   const double share = has_kick ? shareOfImpact(start, dt_s) : 0;

@@ -63,7 +63,8 @@ struct Solver::Work {
   std::vector<StepCheck*> checks;          // of rigid contact, one for each pair
   std::vector<MissedContact> missed;       // scratch
   std::vector<Vec6> u;                     // scratch
-  std::vector<Vec6> momenta;               // of each body, before a step is cut short
+  StepSolution solution;                   // before a step is cut short
+
   bool gatherBodies(std::span<btCollisionObject*> objects, double dt_s);
   void gatherConstraints(std::span<btTypedConstraint*> constraints, const btContactSolverInfo& info);
   bool gatherContacts(std::span<btPersistentManifold*> manifolds, const ContactCreateFunction* stores,
@@ -90,6 +91,7 @@ struct Solver::Work {
   [[nodiscard]] Vec6 commonVelocity() const;
   double shorten(double dt_s);
   void turnTogether(double stopped);
+  void endShortened(double kept, const btContactSolverInfo& info);
 };
 
 namespace {
@@ -321,8 +323,6 @@ double Solver::Work::shorten(double dt_s) {
   constexpr double kShort = 0.9;  // assumed: not quite up to the place
   constexpr int kMost = 6;        // assumed; then the bodies stand for this step
   double kept = 1;
-  momenta.clear();
-  for (const IslandBody& b : island.bodies) momenta.push_back(b.ended());
   for (int k = 0; k <= kMost; ++k) {
     double share = 1;
     forEachCheck(rigid.push(), dt_s, [&](StepCheck& check, const Pose(&X_WB_end)[2]) {
@@ -346,7 +346,17 @@ double Solver::Work::shorten(double dt_s) {
 // Scaled are the velocities relative to that rigid motion, at the end pose; so the step takes energy all the
 // same.
 void Solver::Work::turnTogether(double stopped) {
-  if (!hasOutside()) addTurn(stopped * commonTurn(momenta, ends), ends);
+  if (!hasOutside()) addTurn(stopped * commonTurn(solution.momenta, ends), ends);
+}
+
+// What a step that was cut short leaves to its bodies. After an impact that is their whole momentum: contacts
+// that were hit reverse it, and it is not their displacement that tells how fast the bodies met. The
+// displacements relative to the common motion all have one share, which turns no momentum.
+void Solver::Work::endShortened(double kept, const btContactSolverInfo& info) {
+  if (!restitution.hasImpact(rigid.contacts(), info)) return turnTogether(1 - kept);
+  for (std::size_t i = 0; i < ends.size(); ++i)
+    ends[i].v =
+        island.bodies[i].turns_freely ? Vec6(ends[i].inverse_mass * solution.momenta[i]) : solution.u[i];
 }
 
 Solver::Solver(const SolverSettings& settings) : settings_(settings), work_(std::make_unique<Work>()) {
@@ -406,8 +416,9 @@ btScalar Solver::solveGroup(btCollisionObject** bodies, int body_count, btPersis
     work.rigid.solvePush(info, settings_.iteration_limit);
     if (checked == kMaxChecks || !work.addMissed(info, checked == 0)) break;
   }
+  work.island.readSolution(work.solution);
   const double kept = work.is_penalty || work.missed.empty() ? 1 : work.shorten(dt_s);
-  const bool is_shortened = kept < 1;
+  const bool is_shortened = work.solution.is_cut_short = kept < 1;
   if (is_shortened) ++shortened_steps_;
   for (const Work::ActiveCoupling& h : work.active_couplings) {
     const Vec6 V_G = h.J * work.island.bodies[static_cast<std::size_t>(h.body)].u;
@@ -417,9 +428,8 @@ btScalar Solver::solveGroup(btCollisionObject** bodies, int body_count, btPersis
   const std::span<const Vec6> push = work.is_penalty ? std::span<const Vec6>() : work.rigid.push();
   if (!push.empty()) ++pushed_steps_;
   work.island.readEnds(push, dt_s, work.ends);
-  if (is_shortened) work.turnTogether(1 - kept);
-  // A step that was cut short did not end at its contacts.
-  if (!work.is_penalty && !is_shortened) work.restitution.apply(work.rigid.contacts(), work.ends, info);
+  if (is_shortened) work.endShortened(kept, info);
+  if (!work.is_penalty) work.restitution.apply(work.rigid.contacts(), work.solution, work.ends, info);
   work.joints.hold(work.island, work.ends);
   if (work.is_penalty) work.penalty.finish();
   work.joints.finish(dt_s);

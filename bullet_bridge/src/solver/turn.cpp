@@ -48,10 +48,22 @@ double relativeTurn_rad_s(const btCollisionObject* a, const btCollisionObject* b
   return (rotation(a) - rotation(b)).norm();
 }
 
-bool boxesOverlap(const btCollisionObject& a, const btCollisionObject& b) {
+// The box of a body on its way in a step.
+void readBox(const btCollisionObject& object, double dt_s, btVector3& min, btVector3& max) {
+  object.getCollisionShape()->getAabb(object.getWorldTransform(), min, max);
+  const btRigidBody* body = btRigidBody::upcast(&object);
+  if (!body || body->isStaticObject()) return;
+  const btScalar dt = toBt(dt_s);
+  const btVector3 way = dt * (body->getLinearVelocity() +
+                              dt * (body->getGravity() + body->getInvMass() * body->getTotalForce()));
+  min.setMin(min + way);
+  max.setMax(max + way);
+}
+
+bool boxesMeet(const btCollisionObject& a, const btCollisionObject& b, double dt_s) {
   btVector3 min[2], max[2];
-  a.getCollisionShape()->getAabb(a.getWorldTransform(), min[0], max[0]);
-  b.getCollisionShape()->getAabb(b.getWorldTransform(), min[1], max[1]);
+  readBox(a, dt_s, min[0], max[0]);
+  readBox(b, dt_s, min[1], max[1]);
   for (int i = 0; i < 3; ++i)
     if (min[0][i] > max[1][i] || min[1][i] > max[0][i]) return false;
   return true;
@@ -96,7 +108,7 @@ int substepsFor(btCollisionWorld& world, double dt_s, int most) {
     const auto* b = static_cast<const btCollisionObject*>(pairs[i].m_pProxy1->m_clientObject);
     const double needed_hz = relativeTurn_rad_s(a, b) / kContactTurn_rad;
     if (needed_hz > rate_hz && dispatcher.needsCollision(a, b) && dispatcher.needsResponse(a, b) &&
-        boxesOverlap(*a, *b))
+        boxesMeet(*a, *b, dt_s))
       rate_hz = needed_hz;
   }
   const double count = std::ceil(rate_hz * dt_s);
