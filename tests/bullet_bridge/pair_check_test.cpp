@@ -51,7 +51,7 @@ struct BoxAbovePlate {
   std::vector<MissedContact> missedAt(const Pose& X_end) {
     std::vector<MissedContact> missed;
     const Pose ends[2] = {plate == 0 ? X_WB[0] : X_end, plate == 0 ? X_end : X_WB[0]};
-    check->findMissed(ends, true, missed);
+    check->findMissed(ends, 0, missed);
     return missed;
   }
   double freeShareTo(const Pose& X_end) {

@@ -44,8 +44,9 @@ class PairCheck final : public StepCheck {
   [[nodiscard]] bool isValid() const;
   [[nodiscard]] const btCollisionObject* object(int i) const override { return object_[i]; }
   void linearise(const Pose (&X_WB_end)[2], std::vector<MissedContact>& out) override;
-  void findMissed(const Pose (&X_WB_end)[2], bool is_first, std::vector<MissedContact>& out) override;
+  void findMissed(const Pose (&X_WB_end)[2], int round, std::vector<MissedContact>& out) override;
   double freeShare(const Pose (&X_WB_end)[2]) override;
+  double freeShareOfPoints(const Pose (&X_WB_end)[2]) override;
   void endStep() override { is_of_this_step_ = false; }
 
  private:
@@ -60,6 +61,7 @@ class PairCheck final : public StepCheck {
                     std::vector<Candidate>& found) const;
   void findAlongPath(const Motion& motion, std::vector<Candidate>& missed) const;
   [[nodiscard]] bool mayMissPoints(const Motion& motion, const PairView& at_start) const;
+  [[nodiscard]] bool leavesCurve(const Motion& motion, const PairView& at_start, const Candidate& c) const;
   bool measureAtStart(const Motion& motion, const PairView& at_start, Candidate& start) const;
   void put(const Motion& motion, const Placed& at_start, const Candidate& start, const Candidate& end,
            std::vector<MissedContact>& out);
