@@ -352,6 +352,7 @@ double PairCheck::freeShareOfPoints(const Pose (&X_WB_end)[2]) {
     Candidate start = m.step.inverse().moved(end);
     if (m.turnsFar(0) && !end.isCrossing()) measureAtStart(m, at_start.pair, start);
     const double way_m = start.distance_m - end.distance_m;
+    if (!(way_m > slack_m)) continue;  // along another plane it went in, or not at all
     share = std::min(share, std::max(start.distance_m + m.tolerated_m, slack_m) / way_m);
   }
   return share;

@@ -24,7 +24,8 @@ namespace vps::bullet::inline v0 {
 ///      motion.)
 ///   3. The exact motion of corners, sharp edges and facets (feature_check.h).
 ///   4. A query of all points at the end of the step, and of a fast body at places on its way; and of the
-///      vertices of facets that protrude from the points on these (facet_corners.h).
+///      vertices of facets that protrude from the points on these (facet_corners.h). Curved faces are looked
+///      at between their points as well (sampling_error.h).
 ///
 /// Bodies that turn against each other by more than kContactTurn_rad are checked in stages 3 and 4 only:
 /// planes are not carried along then, and a point's gaps before the step and after it are each measured where

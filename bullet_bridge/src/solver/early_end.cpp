@@ -58,7 +58,7 @@ bool endEarly(Island& island, std::span<const RigidContact> contacts, const Join
       const Pose X_WB_end[2] = {island.endPose(check->object(0), push, dt_s),
                                 island.endPose(check->object(1), push, dt_s)};
       const double own = check->freeShareOfPoints(X_WB_end);
-      if (own >= 1) continue;
+      if (!(own > 0 && own < 1)) continue;
       share = std::min(share, kShort * own);
       for (const int i : body) held.add(i);
     }
