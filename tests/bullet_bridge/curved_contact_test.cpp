@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include "bullet_bridge/world.h"
+#include "support/lathe.h"
 
 namespace vps::bullet {
 namespace {
@@ -114,6 +116,31 @@ void expectFound(const Built& below, const std::function<Truth(int)>& at) {
 
 double gapAt(int i) {
   return (i - 5) * 1e-6;
+}
+
+// At the pole of a lathe's mesh 144 facets meet in a fan, whose normals are not those of the ball.
+TEST(CurvedContact, PointsBesideTheHubOfAFanFindIt) {
+  constexpr double kPi = std::numbers::pi, kRadius_m = 0.5e-3;
+  std::vector<std::array<double, 2>> profile;
+  for (int i = 0; i <= 72; ++i) {
+    const double a_rad = (i / 72.0 - 0.5) * kPi;
+    profile.push_back({i == 0 || i == 72 ? 0 : kRadius_m * std::cos(a_rad), kRadius_m * std::sin(a_rad)});
+  }
+  const Built fan = test::build(test::lathe(profile, 144), 7850, 0.05e-3, 0.1e-3);
+  const Built plate = test::build(makeBox(Vec3(4e-3, 4e-3, 1e-3)), 7850, 0.1e-3, 0.2e-3);
+  const SideView sides[2] = {viewOf(fan, Pose::translation({0, 0, 0.5e-3 + kRadius_m}), 0),
+                             viewOf(plate, Pose(), 1)};
+  int near = 0;
+  for (std::uint32_t id = 0; id < fan.shape->models().shell->size(); ++id) {
+    const Vec3 p_W = sides[0].X_WM * fan.shape->models().shell->points[id];
+    if ((p_W - Vec3(0, 0, 0.5e-3)).norm() > 0.08e-3) continue;
+    std::optional<FlushPoint> flush = corrected(sides[0], sides[1], id);
+    if (!flush) continue;
+    ++near;
+    flush->move(sides);
+    EXPECT_LE(flush->point.distance_m, 0.2e-6) << id;
+  }
+  EXPECT_GE(near, 2);
 }
 
 TEST(CurvedContact, PointsOfABallAndAPlateFindTheLowestPoint) {

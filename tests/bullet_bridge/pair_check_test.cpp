@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "bullet_bridge/world.h"
@@ -51,7 +52,7 @@ struct BoxAbovePlate {
   std::vector<MissedContact> missedAt(const Pose& X_end) {
     std::vector<MissedContact> missed;
     const Pose ends[2] = {plate == 0 ? X_WB[0] : X_end, plate == 0 ? X_end : X_WB[0]};
-    check->findMissed(ends, true, missed);
+    check->findMissed(ends, 0, missed);
     return missed;
   }
   double freeShareTo(const Pose& X_end) {
@@ -115,6 +116,104 @@ TEST(PairCheck, TheFreeShareEndsWhereACornerMeetsTheFace) {
     EXPECT_LE(share, gap_m / way_m * (1 + 1e-6)) << i;
     EXPECT_GE(share, 0.9 * gap_m / way_m - 1e-6 / way_m) << i;
   }
+}
+
+/// A ball in a bore, which a step takes along the wall to where it overlaps by a given depth. The points of
+/// both are 1.3 mm apart.
+struct BallInBore {
+  static constexpr double kBall_m = 4e-3, kBore_m = 5e-3;
+  test::World world;
+  Pose X_WB[2];  ///< of the tube's and the ball's body
+  StepCheck* check = nullptr;
+  int tube = 0;  ///< which of the check's two bodies it is
+  const Built& built = sharedBall();
+
+  static const Built& sharedBall() {
+    static const Built ball = test::build(makeSphere(kBall_m, 4), 7850, 0.5e-3, 1.3e-3);
+    return ball;
+  }
+  static const Built& sharedTube() {
+    static const Built tube = test::build(makeTube(10e-3, kBore_m, 20e-3, 128), 7850, 0.5e-3, 1.3e-3);
+    return tube;
+  }
+  BallInBore(const Mat3& R, const Vec3& at, const Vec3& v) {
+    world.world->setGravity(btVector3(0, 0, 0));
+    btRigidBody& low = world.add(sharedTube(), Pose(), true);
+    btRigidBody& high = world.add(built, Pose(R, at));
+    high.clearForces();
+    high.setLinearVelocity(toBt(v));
+    X_WB[0] = fromBt(low.getWorldTransform());
+    X_WB[1] = fromBt(high.getWorldTransform());
+    world.world->performDiscreteCollisionDetection();
+    const ContactCreateFunction* stores = contactFunctionOf(&world.dispatcher);
+    for (int i = 0; stores && i < world.dispatcher.getNumManifolds(); ++i)
+      if (StepCheck* found = stores->step_checks->find(world.dispatcher.getManifoldByIndexInternal(i)))
+        check = found;
+    if (check && check->object(0) != &low) tube = 1;
+  }
+  [[nodiscard]] double deepestAt(const Pose& X_end) {
+    std::vector<MissedContact> missed;
+    const Pose ends[2] = {tube == 0 ? X_WB[0] : X_end, tube == 0 ? X_end : X_WB[0]};
+    check->findMissed(ends, 0, missed);
+    double deepest_m = 0;
+    for (const MissedContact& m : missed) deepest_m = std::max(deepest_m, -m.end_gap_m);
+    return deepest_m;
+  }
+  double freeShareOfPointsTo(const Pose& X_end) {
+    const Pose ends[2] = {tube == 0 ? X_WB[0] : X_end, tube == 0 ? X_end : X_WB[0]};
+    return check->freeShareOfPoints(ends);
+  }
+  [[nodiscard]] double depthAt(const Pose& X_end) const {
+    return test::penetration_m(built, X_end * built.frame.X_PB.inverse(), sharedTube(), Pose());
+  }
+};
+
+// Along a hollow wall, by more than a facet: planes of the points known before the step say that there is
+// room, and all points may be above what the faces between them touch.
+TEST(PairCheck, ReportsWhatGoesInBetweenThePointsOfCurvedFaces) {
+  search::Random random(3);
+  const double play_m = BallInBore::kBore_m - BallInBore::kBall_m;
+  for (int i = 0; i < 40; ++i) {
+    const double angle_rad = random.uniform(0, 6), turn_rad = random.uniform(0.15, 0.3);
+    const auto at = [&](double a, double r) { return Vec3(r * std::cos(a), r * std::sin(a), 0); };
+    const Vec3 from = at(angle_rad, play_m - 4e-6),
+               to = at(angle_rad + turn_rad, play_m + random.uniform(6e-6, 12e-6));
+    BallInBore scene(random.rotation(), from, (at(angle_rad + turn_rad, play_m + 0.03e-3) - from) / 1e-3);
+    ASSERT_TRUE(scene.check);
+    const Pose X_end(scene.X_WB[1].R, scene.X_WB[1].p + to - from);
+    EXPECT_NEAR(scene.deepestAt(X_end), scene.depthAt(X_end), 6e-6) << i;  // of facets
+  }
+}
+
+// A ball flies into the wall: the share ends no deeper than 10 um, and not much before.
+TEST(PairCheck, TheFreeShareOfPointsEndsWhereTheyAreDeep) {
+  search::Random random(4);
+  const double play_m = BallInBore::kBore_m - BallInBore::kBall_m, allowed_m = 10e-6;
+  for (int i = 0; i < 40; ++i) {
+    const double angle_rad = random.uniform(0, 6), gap_m = random.uniform(5e-6, 0.3e-3),
+                 depth_m = random.uniform(20e-6, 60e-6);
+    const Vec3 out(std::cos(angle_rad), std::sin(angle_rad), 0);
+    BallInBore scene(random.rotation(), (play_m - gap_m) * out, (gap_m + depth_m) / 1e-3 * out);
+    ASSERT_TRUE(scene.check);
+    const auto posesAt = [&](double share) {
+      return Pose(scene.X_WB[1].R, scene.X_WB[1].p + share * (gap_m + depth_m) * out);
+    };
+    const double share = scene.freeShareOfPointsTo(posesAt(1));
+    ASSERT_LT(share, 1) << i;
+    EXPECT_NEAR(scene.depthAt(posesAt(share)), allowed_m, 4e-6) << i;
+    EXPECT_EQ(scene.freeShareOfPointsTo(posesAt(0.9 * share)), 1) << i;
+  }
+}
+
+// What is deep before the step may go on by a little, so that it is not held for ever.
+TEST(PairCheck, TheFreeShareOfWhatIsDeepIsNotZero) {
+  const double play_m = BallInBore::kBore_m - BallInBore::kBall_m;
+  BallInBore scene(Mat3::Identity(), Vec3(play_m + 15e-6, 0, 0), Vec3(50e-3, 0, 0));
+  ASSERT_TRUE(scene.check);
+  const Pose X_end(scene.X_WB[1].R, scene.X_WB[1].p + Vec3(50e-6, 0, 0));
+  const double share = scene.freeShareOfPointsTo(X_end);
+  EXPECT_GT(share, 0.01);
+  EXPECT_LT(share * 50e-6, 2e-6);
 }
 
 // Until the narrow phase has looked at the pair again, there is nothing to check.

@@ -127,7 +127,7 @@ double pinDepth_um(int member) {
 std::vector<Family> narrowGapFamilies() {
   const std::string depth = "depth, also on the way [um]";
   return {
-      {"C_balls", depth, 10, 80, 13, ballDepth_um, [](int i) { return Bore(i, false).words(); }, 14.886},
+      {"C_balls", depth, 10, 80, 13, ballDepth_um, [](int i) { return Bore(i, false).words(); }},
       {"C_pins", depth, 10, 50, 10, pinDepth_um, [](int i) { return Bore(i, true).words(); }},
   };
 }

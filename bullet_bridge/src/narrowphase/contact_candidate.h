@@ -30,6 +30,8 @@ struct Candidate {
   double impulse_Ns = 0;              ///< its normal impulse in the last step
   double rest_m = 0;                  ///< gap at which sharp features rest
   double met_s = 0;                   ///< time in the step, on the way of a fast body, at which it was found
+  double curvature_per_m = 0;         ///< of faces that touch flush: the greatest sum of both curvatures
+  double hollow_per_m = 0;            ///< by how much the face bends towards the point that the plane is of
   bool is_flush = false;              ///< curved surfaces of both parts lie flush around it
   bool bounces = false;               ///< restitution acts on it in this step
   bool was_contact = false;           ///< was given to the solver in the last step

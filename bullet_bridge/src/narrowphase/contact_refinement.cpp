@@ -6,6 +6,7 @@
 #include "narrowphase/contact_candidate.h"
 #include "narrowphase/curved_contact.h"
 #include "narrowphase/round_contact.h"
+#include "narrowphase/sampling_error.h"
 #include "native_shapes/native_shape_adapter.h"
 #include "native_shapes/primitive.h"
 #include "shape/sheet_border.h"
@@ -110,7 +111,7 @@ struct Exact {
   bool is_smooth = false;                           ///< two faces touch flush
   bool is_own_face = false, is_their_face = false;  ///< whose the plane is
   bool is_curved = false;                           ///< the other's face stands for a curved surface
-  FacePoint face;                                   ///< if is_smooth: the other's
+  FacePoint face;                                   ///< if is_their_face, and no primitive's: the other's
   std::uint16_t surface = 0;                        ///< index of the other's surface
   Vec3 from_q = Vec3::Zero();                       ///< the point minus its foot
 };
@@ -180,7 +181,7 @@ Exact contactAt(const Foot& foot, const OwnPoint& own) {
     exact.is_own_face = !exact.is_their_face;
     exact.n = exact.is_their_face ? foot.smooth : own.inward_W;
     exact.distance_m = foot.from_q.dot(exact.n);
-    if (exact.is_smooth)
+    if (exact.is_their_face && foot.surface)
       exact.face = {own.p_W - foot.from_q, foot.smooth, foot.surface, foot.R_WP, foot.triangle};
     return exact;
   }
@@ -275,6 +276,18 @@ Exact atEndOfStep(const Exact& now, const Refiner& refiner, const OwnPoint& own,
   return end;
 }
 
+// How the faces around a contact curve: see Candidate.
+void setCurvature(Candidate& c, const Exact& exact, const SideView& side) {
+  c.curvature_per_m = c.hollow_per_m = 0;
+  if (!exact.is_contact || !exact.is_their_face || !exact.face.surface) return;
+  const Mat3 theirs = exact.face.curvature_W();
+  if (exact.is_curved) c.hollow_per_m = std::max(-Curvature(theirs).least_per_m, 0.0);
+  if (!exact.is_smooth || side.shape->models().surfaces.empty()) return;
+  const FacePoint own = ownFace(c, side);
+  if (!own.surface->sheet)
+    c.curvature_per_m = std::max(Curvature(theirs + own.curvature_W()).most_per_m, 0.0);
+}
+
 }  // namespace
 
 void refine(std::vector<Candidate>& candidates, const SideView& side, const SideView& other,
@@ -316,6 +329,7 @@ void refine(std::vector<Candidate>& candidates, const SideView& side, const Side
     c.plane_of = exact.is_own_face     ? side.side
                  : exact.is_their_face ? static_cast<std::uint8_t>(1 - side.side)
                                        : Candidate::kBetween;
+    setCurvature(c, exact, side);
     const bool is_query = motion.dt_s == 0;
     if (exact.is_contact && exact.is_own_face && is_query && !exact.is_inside)
       moveToClosest(c, side, exact.from_q);

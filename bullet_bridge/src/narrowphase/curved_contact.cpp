@@ -45,20 +45,16 @@ std::optional<FacePoint> nearestFace(const SideView& side, const Vec3& p_W, doub
   return nearest;
 }
 
-// The shell point on its own face.
-FacePoint ownFace(const Candidate& c, const SideView& side) {
-  const Shape::PointFace face = side.shape->faceAt(c.id);
-  const Surface& surface = side.shape->models().surfaces[face.surface];
-  return {c.p_W, -(side.X_WM.R * side.shape->smoothInward(c.id)), &surface, side.X_WM.R * surface.X_MP.R,
-          face.triangle};
-}
-
 /// Two orthonormal directions normal to n.
 Eigen::Matrix<double, 3, 2> across(const Vec3& n) {
   Eigen::Matrix<double, 3, 2> T;
   T.col(0) = n.unitOrthogonal();
   T.col(1) = n.cross(T.col(0));
   return T;
+}
+
+double gapBetween_m(const FacePoint& own, const FacePoint& their) {
+  return (own.q_W - their.q_W).dot(their.outward_W);
 }
 
 // Displacement in the tangent plane to the minimum of the gap's parabola; zero where it is too flat to
@@ -80,6 +76,13 @@ Vec3 wayToLeast(const FacePoint& own, const FacePoint& their, double reach_m) {
 
 }  // namespace
 
+FacePoint ownFace(const Candidate& c, const SideView& side) {
+  const Shape::PointFace face = side.shape->faceAt(c.id);
+  const Surface& surface = side.shape->models().surfaces[face.surface];
+  return {c.p_W, -(side.X_WM.R * side.shape->smoothInward(c.id)), &surface, side.X_WM.R * surface.X_MP.R,
+          face.triangle};
+}
+
 bool moveToNearest(Candidate& c, const SideView& side, const SideView& other, const FacePoint& foot,
                    double max_gain_m) {
   if (side.shape->models().surfaces.empty()) return false;  // its faces are not known
@@ -89,18 +92,31 @@ bool moveToNearest(Candidate& c, const SideView& side, const SideView& other, co
   if (!((own->outward_W + their->outward_W).norm() * reach_m > kGain_m)) return false;
   constexpr int kSteps = 5;        // most need one or two
   constexpr double kThere = 5e-3;  // of the reach: the normals then differ by less than a thousandth
+  FacePoint nearest[2] = {*own, *their};
+  double nearest_m = gapBetween_m(*own, *their);
   for (int i = 0; i < kSteps; ++i) {
     const Vec3 way = wayToLeast(*own, *their, reach_m);
     if (way.norm() < kThere * reach_m) break;
     // Beyond the reach another shell point is nearer, and finds the same place.
     const Vec3 to_W = own->q_W + way;
-    if (i == kSteps - 1 || (to_W - c.p_W).norm() > reach_m) return false;
-    const double gap_m = std::abs((own->q_W - their->q_W).dot(their->outward_W));
+    if ((to_W - c.p_W).norm() > reach_m) return false;
+    if (i == kSteps - 1) {
+      // The normals of a fan of facets are not known well enough at its hub to find the exact place.
+      own = nearest[0];
+      their = nearest[1];
+      break;
+    }
+    const double gap_m = std::abs(gapBetween_m(*own, *their));
     own = nearestFace(side, to_W, way.norm(), &*own);
     if (own) their = nearestFace(other, own->q_W, gap_m + 2 * way.norm(), &*their);
     if (!own || !their || !(own->outward_W.dot(their->outward_W) < -kCosFlush)) return false;
+    if (const double now_m = gapBetween_m(*own, *their); now_m < nearest_m) {
+      nearest_m = now_m;
+      nearest[0] = *own;
+      nearest[1] = *their;
+    }
   }
-  const double gap_m = (own->q_W - their->q_W).dot(their->outward_W);
+  const double gap_m = gapBetween_m(*own, *their);
   if (c.distance_m - gap_m > max_gain_m) return false;
   c.p_W = own->q_W;
   c.n_W = (side.side == 0 ? 1 : -1) * their->outward_W;

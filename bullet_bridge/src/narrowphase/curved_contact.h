@@ -21,6 +21,9 @@ struct FacePoint {
   }
 };
 
+/// The place of a candidate's shell point on its own face. Requires surfaces and a point on a face.
+FacePoint ownFace(const Candidate& c, const SideView& side);
+
 /// Below this distance, p - q is too short to be trusted as a direction.
 inline constexpr double kTouching_m = 1e-6;
 
@@ -33,6 +36,8 @@ inline constexpr double kTouching_m = 1e-6;
 /// @param max_gain_m  greatest accepted decrease of the gap: candidates are searched by the gaps of their
 ///                    points, so a contact that is nearer by more than the search reaches beyond what touches
 ///                    would appear and disappear
+/// Where Newton's method does not settle, as at the hub of a fan, whose normals are those of its facets, it
+/// is the nearest of the places that were tried.
 /// @return false: unchanged. Flat and conforming faces (a peg in its bore) need no surface query, others two
 /// to four.
 /// Source: Newton's method for the common normal, with the curvature of both (Johnson, Contact Mechanics,

@@ -10,6 +10,7 @@
 #include "narrowphase/curved_contact.h"
 #include "narrowphase/facet_corners.h"
 #include "narrowphase/feature_check.h"
+#include "narrowphase/sampling_error.h"
 #include "narrowphase/step_path.h"
 #include "native_shapes/primitive.h"
 #include "vps_bullet/turn.h"
@@ -20,6 +21,11 @@ namespace {
 
 // An overlap that existed before the step may grow by this share of that: rounding.
 constexpr double kGrowthShare = 0.1;
+
+// A step whose rounds did not end goes on as far as points are no deeper than this share of the contact
+// margin. assumed: 10 um of 20, what an impact may leave; with less, steps would end early for what the push
+// removes in a few steps.
+constexpr double kAllowedShare = 0.5;
 
 // A contact that carries load ends the step no farther apart than this.
 double apartOf_m(const Settings& settings) {
@@ -243,6 +249,11 @@ void PairCheck::measure(const PairView& start, Motion& m) const {
         m.radius_m + (m.center_W - fromBt(object_[i]->getWorldTransform().getOrigin())).norm();
     m.bend_m += 0.5 * angle_rad * angle_rad * lever_m + angle_rad * m.travel_m;
   }
+  const double dt_s = state_.motion.dt_s;
+  const Twist& V = state_.selection.V;
+  const Vec3 predicted = dt_s * (V.v + V.w.cross(m.center_W));
+  m.turn_deviation_rad = (m.turned - dt_s * V.w).norm();
+  m.deviation_m = (m.moved_W - predicted).norm() + m.turn_deviation_rad * m.radius_m + m.bend_m;
 }
 
 void PairCheck::linearise(const Pose (&X_WB_end)[2], std::vector<MissedContact>& out) {
@@ -256,7 +267,7 @@ void PairCheck::linearise(const Pose (&X_WB_end)[2], std::vector<MissedContact>&
   relinearise(m, at_start, true, out);
 }
 
-void PairCheck::findMissed(const Pose (&X_WB_end)[2], bool is_first, std::vector<MissedContact>& out) {
+void PairCheck::findMissed(const Pose (&X_WB_end)[2], int round, std::vector<MissedContact>& out) {
   if (!isValid()) return;
   Motion m;
   if (!read(X_WB_end, m)) return;
@@ -267,19 +278,13 @@ void PairCheck::findMissed(const Pose (&X_WB_end)[2], bool is_first, std::vector
   if (at_start.pair.leastDistance_m() > m.travel_m + near_m) return;
   const std::size_t had = out.size();
   if (hasFeatures(at_start.pair, state_.context->settings)) {
-    addFeatureContacts(at_start.pair, {{m.end[0], m.end[1]}, m.path, m.turnsFar(0)}, is_first, state_, out);
+    addFeatureContacts(at_start.pair, {{m.end[0], m.end[1]}, m.path, m.turnsFar(0)}, round == 0, state_, out);
     if (out.size() > had) state_.is_incomplete = true;
   }
   if (m.travel_m <= m.tolerated_m) return;
   // In a step with so much rotation many facets of round parts pass each other: contacts that follow each of
   // them brake a shaft in its bore. What may protrude from a facet elsewhere is tolerated here.
   if (m.turnsFar(0)) m.tolerated_m = kFacetCornerShare * state_.context->settings.contact_margin_m;
-  const double dt_s = state_.motion.dt_s;
-  const Twist& V = state_.selection.V;
-  const Vec3 predicted = dt_s * (V.v + V.w.cross(m.center_W));
-  m.turn_deviation_rad = (m.turned - dt_s * V.w).norm();
-  m.deviation_m = (m.moved_W - predicted).norm() + m.turn_deviation_rad * m.radius_m + m.bend_m;
-
   thread_local std::vector<Candidate> missed;
   missed.clear();
   findAmongRefined(m, missed);
@@ -289,7 +294,8 @@ void PairCheck::findMissed(const Pose (&X_WB_end)[2], bool is_first, std::vector
     state_.is_incomplete = true;
     return;
   }
-  if (out.size() == had && m.bend_m > apartOf_m(state_.context->settings) && !m.turnsFar(0))
+  if (round < kRetakingRounds && out.size() == had && m.bend_m > apartOf_m(state_.context->settings) &&
+      !m.turnsFar(0))
     relinearise(m, at_start, false, out);
 }
 
@@ -327,6 +333,31 @@ double PairCheck::freeShare(const Pose (&X_WB_end)[2]) {
   return freeShareOf(at_start.pair, end, state_);
 }
 
+// Of points that are deeper before the step than allowed, a share that lets them go a little deeper: what is
+// jammed goes on.
+double PairCheck::freeShareOfPoints(const Pose (&X_WB_end)[2]) {
+  Motion m;
+  if (!isValid() || !read(X_WB_end, m)) return 1;
+  const Placed at_start(*this, m.start);
+  measure(at_start.pair, m);
+  m.tolerated_m = kAllowedShare * state_.context->settings.contact_margin_m;
+  const double slack_m = kGrowthShare * m.tolerated_m;
+  if (m.travel_m <= slack_m) return 1;
+  thread_local std::vector<Candidate> missed;
+  missed.clear();
+  findAmongRefined(m, missed);
+  if (missed.empty() && mayMissPoints(m, at_start.pair)) findAlongPath(m, missed);
+  double share = 1;
+  for (const Candidate& end : missed) {
+    Candidate start = m.step.inverse().moved(end);
+    if (m.turnsFar(0) && !end.isCrossing()) measureAtStart(m, at_start.pair, start);
+    const double way_m = start.distance_m - end.distance_m;
+    if (!(way_m > slack_m)) continue;  // along another plane it went in, or not at all
+    share = std::min(share, std::max(start.distance_m + m.tolerated_m, slack_m) / way_m);
+  }
+  return share;
+}
+
 // Points out of reach had a greater gap than this at the predicted end of the step, so they do not touch if
 // the deviation is less. Or they were out of reach of this motion in any direction.
 bool PairCheck::mayMissPoints(const Motion& m, const PairView& at_start) const {
@@ -337,8 +368,23 @@ bool PairCheck::mayMissPoints(const Motion& m, const PairView& at_start) const {
   // part turns otherwise.
   const double sampling_m = state_.selection.sampling_m * std::min(m.turn_rad, m.turn_deviation_rad);
   if (!is_in_reach || sampling_m > m.tolerated_m) return true;
+  if (std::any_of(state_.selection.refined.begin(), state_.selection.refined.end(),
+                  [&](const Candidate& c) { return leavesCurve(m, at_start, c); }))
+    return true;
   // Vertices of curved faces are no points.
   return haveFacetCorners(at_start, margin_m, state_.selection.refined);
+}
+
+// True where the step takes the bodies so far along curved faces that the planes of known points do not tell:
+// a hollow face bends off its plane towards the point, and between the points of round faces gaps are smaller
+// by more than what is left of the margin.
+bool PairCheck::leavesCurve(const Motion& m, const PairView& at_start, const Candidate& c) const {
+  if (c.isCrossing() || (!(c.hollow_per_m > 0) && !(c.curvature_per_m > 0))) return false;
+  const double margin_m = state_.context->settings.contact_margin_m;
+  const double spacing_m = at_start.shape[c.side]->models().shell->spacing_m;
+  if (m.deviation_m + samplingError_m(spacing_m, c.curvature_per_m) > margin_m) return true;
+  const Vec3 way = m.step.D[0] * c.p_W - m.step.D[1] * c.p_W;
+  return 0.5 * c.hollow_per_m * (way - c.n_W.dot(way) * c.n_W).squaredNorm() > m.tolerated_m;
 }
 
 void PairCheck::findAmongRefined(const Motion& m, std::vector<Candidate>& missed) const {
@@ -369,9 +415,10 @@ void PairCheck::findOverlaps(const Motion& m, const PairView& start, const PairV
   still.contact_margin_m = context.settings.contact_margin_m;
   findPointCandidates(pair, cutoff_m, context, found, &state_, &still);
   findEnteredCrossings(pair, start, end, m.tolerated_m, m.travel_m, state_, found);
+  const SamplingError sampling(pair, found);
   std::erase_if(found, [&](Candidate& c) {
     c.predicted_m = c.distance_m;
-    return !c.isCrossing() && c.distance_m > fieldError_m(pair, c);
+    return !c.isCrossing() && c.distance_m > fieldError_m(pair, c) + sampling.of_m(c);
   });
   const double radius_m = pair.radius_m();
   const std::size_t limit = 4 * static_cast<std::size_t>(context.settings.contact_limit);

@@ -24,7 +24,8 @@ namespace vps::bullet::inline v0 {
 ///      motion.)
 ///   3. The exact motion of corners, sharp edges and facets (feature_check.h).
 ///   4. A query of all points at the end of the step, and of a fast body at places on its way; and of the
-///      vertices of facets that protrude from the points on these (facet_corners.h).
+///      vertices of facets that protrude from the points on these (facet_corners.h). Curved faces are looked
+///      at between their points as well (sampling_error.h).
 ///
 /// Bodies that turn against each other by more than kContactTurn_rad are checked in stages 3 and 4 only:
 /// planes are not carried along then, and a point's gaps before the step and after it are each measured where
@@ -44,8 +45,9 @@ class PairCheck final : public StepCheck {
   [[nodiscard]] bool isValid() const;
   [[nodiscard]] const btCollisionObject* object(int i) const override { return object_[i]; }
   void linearise(const Pose (&X_WB_end)[2], std::vector<MissedContact>& out) override;
-  void findMissed(const Pose (&X_WB_end)[2], bool is_first, std::vector<MissedContact>& out) override;
+  void findMissed(const Pose (&X_WB_end)[2], int round, std::vector<MissedContact>& out) override;
   double freeShare(const Pose (&X_WB_end)[2]) override;
+  double freeShareOfPoints(const Pose (&X_WB_end)[2]) override;
   void endStep() override { is_of_this_step_ = false; }
 
  private:
@@ -60,6 +62,7 @@ class PairCheck final : public StepCheck {
                     std::vector<Candidate>& found) const;
   void findAlongPath(const Motion& motion, std::vector<Candidate>& missed) const;
   [[nodiscard]] bool mayMissPoints(const Motion& motion, const PairView& at_start) const;
+  [[nodiscard]] bool leavesCurve(const Motion& motion, const PairView& at_start, const Candidate& c) const;
   bool measureAtStart(const Motion& motion, const PairView& at_start, Candidate& start) const;
   void put(const Motion& motion, const Placed& at_start, const Candidate& start, const Candidate& end,
            std::vector<MissedContact>& out);

@@ -139,11 +139,11 @@ Vec6 Island::fixedVelocity(const btCollisionObject* object) {
 
 btTransform Island::pushed(std::size_t i, std::span<const Vec6> push, double dt_s) const {
   const btTransform& X_WB = bodies[i].rigid->getWorldTransform();
-  return push.empty() || push[i].isZero(0) ? X_WB : moved(X_WB, push[i], dt_s);
+  return push.empty() || push[i].isZero(0) ? X_WB : moved(X_WB, bodies[i].way_share * push[i], dt_s);
 }
 
 btTransform Island::endTransform(std::size_t i, std::span<const Vec6> push, double dt_s) const {
-  return moved(pushed(i, push, dt_s), bodies[i].u, dt_s);
+  return moved(pushed(i, push, dt_s), bodies[i].way_share * bodies[i].u, dt_s);
 }
 
 Pose Island::endPose(const btCollisionObject* object, std::span<const Vec6> push, double dt_s) const {
@@ -174,7 +174,7 @@ void Island::readEnds(std::span<const Vec6> push, double dt_s, std::vector<BodyE
 void Island::finish(std::span<const Vec6> push, double dt_s, std::span<const BodyEnd> ends) const {
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     btRigidBody& rigid = *bodies[i].rigid;
-    const Vec6 &u = bodies[i].u, &v = ends[i].v;
+    const Vec6 u = bodies[i].way_share * bodies[i].u, &v = ends[i].v;
     rigid.setAngularVelocity(toBt(Vec3(v.head<3>())));
     rigid.setLinearVelocity(toBt(Vec3(v.tail<3>())));
     btTransform start = pushed(i, push, dt_s);

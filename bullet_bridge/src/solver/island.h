@@ -53,6 +53,7 @@ struct IslandBody {
   Mat6 effective_inverse = Mat6::Zero();
   Vec6 coupling_impulse = Vec6::Zero();  ///< constant part of its couplings
   Vec6 u = Vec6::Zero();                 ///< initially that of the last step
+  double way_share = 1;                  ///< of the step's motion, u and the push, that it makes: endEarly()
 
   /// Momentum at the end of the step: angular about its centre, then linear.
   [[nodiscard]] Vec6 ended() const {

@@ -26,6 +26,7 @@
 #include "log/report.h"
 #include "solver/contact_newton.h"
 #include "solver/contact_sweeps.h"
+#include "solver/early_end.h"
 #include "solver/island.h"
 #include "solver/penalty_contacts.h"
 #include "solver/penalty_newton.h"
@@ -86,7 +87,7 @@ struct Solver::Work {
     }
   }
   void linearise(const btContactSolverInfo& info);
-  bool addMissed(const btContactSolverInfo& info, bool is_first);
+  bool addMissed(const btContactSolverInfo& info, int round);
   [[nodiscard]] bool hasOutside() const;
   [[nodiscard]] Vec6 commonVelocity() const;
   double shorten(double dt_s);
@@ -279,11 +280,11 @@ void Solver::Work::linearise(const btContactSolverInfo& info) {
 }
 
 // True if contacts were added, so that the step must be solved again.
-bool Solver::Work::addMissed(const btContactSolverInfo& info, bool is_first) {
+bool Solver::Work::addMissed(const btContactSolverInfo& info, int round) {
   missed.clear();
   rigid.finish();  // a check asks which contacts carry load
   forEachCheck(rigid.push(), info.m_timeStep, [&](StepCheck& check, const Pose(&X_WB_end)[2]) {
-    check.findMissed(X_WB_end, is_first, missed);
+    check.findMissed(X_WB_end, round, missed);
   });
   rigid.addMissed(missed, info);
   return std::any_of(missed.begin(), missed.end(), [](const MissedContact& m) { return m.point != nullptr; });
@@ -407,6 +408,7 @@ btScalar Solver::solveGroup(btCollisionObject** bodies, int body_count, btPersis
 
   if (!work.is_penalty) work.linearise(info);
   constexpr int kMaxChecks = 8;  // assumed; two or three find all
+  bool is_open = false;          // the last solution was not checked
   iterations_used_ = 0;
   for (int checked = 0;; ++checked) {
     const SolveOutcome outcome = work.solveWithLaws(settings_);
@@ -414,21 +416,26 @@ btScalar Solver::solveGroup(btCollisionObject** bodies, int body_count, btPersis
     is_converged_ = outcome.is_converged;
     if (work.is_penalty) break;
     work.rigid.solvePush(info, settings_.iteration_limit);
-    if (checked == kMaxChecks || !work.addMissed(info, checked == 0)) break;
+    is_open = checked == kMaxChecks;
+    if (is_open || !work.addMissed(info, checked)) break;
   }
   work.island.readSolution(work.solution);
   const double kept = work.is_penalty || work.missed.empty() ? 1 : work.shorten(dt_s);
-  const bool is_shortened = work.solution.is_cut_short = kept < 1;
-  if (is_shortened) ++shortened_steps_;
+  bool is_shortened = kept < 1;
   for (const Work::ActiveCoupling& h : work.active_couplings) {
     const Vec6 V_G = h.J * work.island.bodies[static_cast<std::size_t>(h.body)].u;
     h.coupling->setImpulse(h.law.c - h.law.D.cwiseProduct(V_G), dt_s);
   }
+  if (!is_shortened && is_open &&
+      endEarly(work.island, work.rigid.contacts(), work.joints, work.checks, work.rigid.push(), dt_s))
+    is_shortened = true;
+  work.solution.is_cut_short = is_shortened;
+  if (is_shortened) ++shortened_steps_;
   for (StepCheck* check : work.checks) check->endStep();
   const std::span<const Vec6> push = work.is_penalty ? std::span<const Vec6>() : work.rigid.push();
   if (!push.empty()) ++pushed_steps_;
   work.island.readEnds(push, dt_s, work.ends);
-  if (is_shortened) work.endShortened(kept, info);
+  if (kept < 1) work.endShortened(kept, info);
   if (!work.is_penalty) work.restitution.apply(work.rigid.contacts(), work.solution, work.ends, info);
   work.joints.hold(work.island, work.ends);
   if (work.is_penalty) work.penalty.finish();

@@ -35,6 +35,9 @@ struct MissedContact {
 /// check adds more.
 inline constexpr std::size_t kMostAdded = 8;
 
+/// assumed: a row that leaves its contact apart is mostly right when it is taken a second time.
+inline constexpr int kRetakingRounds = 3;
+
 /// A pair of bodies that checks a solved step.
 class StepCheck {
  public:
@@ -44,12 +47,16 @@ class StepCheck {
   /// the end of the step at the velocities of the last one. Where they turn by next to nothing, only those
   /// that carried load. Rows from the start pose would brake and drive what rolls.
   virtual void linearise(const Pose (&X_WB_end)[2], std::vector<MissedContact>& out) = 0;
-  /// Appends the contacts that the step lacks, and those that carry load although they end it apart.
+  /// Appends the contacts that the step lacks, and in its first kRetakingRounds checks those that carry load
+  /// although they end it apart. Later a row is never taken back, so that the rounds end.
   /// @param X_WB_end  where the bodies' frames are at the end of the step
-  /// @param is_first  the first check of this step
-  virtual void findMissed(const Pose (&X_WB_end)[2], bool is_first, std::vector<MissedContact>& out) = 0;
+  /// @param round     0 in the first check of this step
+  virtual void findMissed(const Pose (&X_WB_end)[2], int round, std::vector<MissedContact>& out) = 0;
   /// The share of the step after which sharp features of the bodies would come too near; 1: they do not.
   virtual double freeShare(const Pose (&X_WB_end)[2]) = 0;
+  /// The share of the step, positive, up to which points of the bodies are nowhere much deeper than allowed,
+  /// or than they were before it; 1: they are not at its end either.
+  virtual double freeShareOfPoints(const Pose (&X_WB_end)[2]) = 0;
   /// The step is solved: until the narrow phase visits the pair again, there is nothing to check. It may not
   /// do so, where the user made the bodies ignore each other.
   virtual void endStep() = 0;
