@@ -60,7 +60,10 @@ class ContactSweeps {
  public:
   ContactSweeps(Island& island, JointRows& joints) : island_(island), joints_(joints) {}
 
-  void clear() { contacts_.clear(); }
+  void clear() {
+    contacts_.clear();
+    push_.clear();  // of another island
+  }
   void add(btPersistentManifold& manifold, btManifoldPoint& point, const btContactSolverInfo& info);
   /// Starts from last step's impulses, with the bodies' effective masses.
   void start();
@@ -77,10 +80,6 @@ class ContactSweeps {
   void addMissed(std::span<const MissedContact> missed, const btContactSolverInfo& info);
   /// Velocities of the push, one for each body; empty: none is needed.
   [[nodiscard]] std::span<const Vec6> push() const { return push_; }
-  /// Shortens the push to a share of it.
-  void scalePush(double share) {
-    for (Vec6& push : push_) push *= share;
-  }
   /// Writes the impulses to the manifolds.
   void finish() const;
 

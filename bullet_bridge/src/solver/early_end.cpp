@@ -43,7 +43,7 @@ class Held {
 bool endEarly(Island& island, std::span<const RigidContact> contacts, const JointRows& joints,
               std::span<StepCheck* const> checks, std::span<const Vec6> push, double dt_s) {
   constexpr double kShort = 0.9;   // assumed: not quite up to the place
-  constexpr int kMost = 6;         // assumed, as where sharp features stop
+  constexpr int kMost = 6;         // assumed
   constexpr double kStops = 0.05;  // assumed: what is stopped and still too deep is moved by the other body
   bool is_short = false;
   for (int k = 0; k < kMost; ++k) {
@@ -57,8 +57,8 @@ bool endEarly(Island& island, std::span<const RigidContact> contacts, const Join
       if (stands(body[0]) && stands(body[1])) continue;
       const Pose X_WB_end[2] = {island.endPose(check->object(0), push, dt_s),
                                 island.endPose(check->object(1), push, dt_s)};
-      const double own = check->freeShareOfPoints(X_WB_end);
-      if (!(own > 0 && own < 1)) continue;
+      const double own = std::min(check->freeShare(X_WB_end), check->freeShareOfPoints(X_WB_end));
+      if (!(own < 1)) continue;
       share = std::min(share, kShort * own);
       for (const int i : body) held.add(i);
     }

@@ -88,11 +88,6 @@ struct Solver::Work {
   }
   void linearise(const btContactSolverInfo& info);
   bool addMissed(const btContactSolverInfo& info, int round);
-  [[nodiscard]] bool hasOutside() const;
-  [[nodiscard]] Vec6 commonVelocity() const;
-  double shorten(double dt_s);
-  void turnTogether(double stopped);
-  void endShortened(double kept, const btContactSolverInfo& info);
 };
 
 namespace {
@@ -290,76 +285,6 @@ bool Solver::Work::addMissed(const btContactSolverInfo& info, int round) {
   return std::any_of(missed.begin(), missed.end(), [](const MissedContact& m) { return m.point != nullptr; });
 }
 
-// True if the bodies touch, can meet, or hang on something that is not in the island.
-bool Solver::Work::hasOutside() const {
-  const auto isOutside = [&](const btCollisionObject* object) { return island.indexOf(object) < 0; };
-  return std::any_of(
-             checks.begin(), checks.end(),
-             [&](const StepCheck* c) { return isOutside(c->object(0)) || isOutside(c->object(1)); }) ||
-         std::any_of(manifolds.begin(), manifolds.end(),
-                     [&](const PenaltyManifold& m) {
-                       return m.manifold->getNumContacts() > 0 &&
-                              (isOutside(m.manifold->getBody0()) || isOutside(m.manifold->getBody1()));
-                     }) ||
-         std::any_of(joints.rows.begin(), joints.rows.end(),
-                     [](const JointRow& row) { return row.body[0] < 0 || row.body[1] < 0; });
-}
-
-// The velocity of the centre of mass of bodies that can meet each other only; zero for others.
-Vec6 Solver::Work::commonVelocity() const {
-  Vec6 momentum = Vec6::Zero();
-  double mass_kg = 0;
-  if (hasOutside()) return momentum;
-  for (const IslandBody& b : island.bodies) {
-    momentum.tail<3>() += b.mass(3, 3) * b.u.tail<3>();
-    mass_kg += b.mass(3, 3);
-  }
-  return momentum / mass_kg;
-}
-
-// The bodies stop, relative to each other, before sharp features come too near to each other, where no
-// contacts were found that prevent it. This takes energy and is the last resort. Kinematic bodies go on.
-// Returns the share of their motion that they keep.
-double Solver::Work::shorten(double dt_s) {
-  constexpr double kShort = 0.9;  // assumed: not quite up to the place
-  constexpr int kMost = 6;        // assumed; then the bodies stand for this step
-  double kept = 1;
-  for (int k = 0; k <= kMost; ++k) {
-    double share = 1;
-    forEachCheck(rigid.push(), dt_s, [&](StepCheck& check, const Pose(&X_WB_end)[2]) {
-      share = std::min(share, check.freeShare(X_WB_end));
-    });
-    if (share >= 1) break;
-    share = k < kMost ? kShort * share : 0;
-    kept *= share;
-    const Vec6 common = commonVelocity();
-    for (IslandBody& b : island.bodies) {
-      b.u = common + share * (b.u - common);
-      b.rest_momentum_Nms *= share;
-    }
-    rigid.scalePush(share);
-  }
-  return kept;
-}
-
-// Bodies that stop relative to each other, and touch nothing else, go on as one rigid body: as such they keep
-// what angular momentum they had. The displacement has no such turn, so that it leads to no new overlap.
-// Scaled are the velocities relative to that rigid motion, at the end pose; so the step takes energy all the
-// same.
-void Solver::Work::turnTogether(double stopped) {
-  if (!hasOutside()) addTurn(stopped * commonTurn(solution.momenta, ends), ends);
-}
-
-// What a step that was cut short leaves to its bodies. After an impact that is their whole momentum: contacts
-// that were hit reverse it, and it is not their displacement that tells how fast the bodies met. The
-// displacements relative to the common motion all have one share, which turns no momentum.
-void Solver::Work::endShortened(double kept, const btContactSolverInfo& info) {
-  if (!restitution.hasImpact(rigid.contacts(), info)) return turnTogether(1 - kept);
-  for (std::size_t i = 0; i < ends.size(); ++i)
-    ends[i].v =
-        island.bodies[i].turns_freely ? Vec6(ends[i].inverse_mass * solution.momenta[i]) : solution.u[i];
-}
-
 Solver::Solver(const SolverSettings& settings) : settings_(settings), work_(std::make_unique<Work>()) {
   if (settings.iteration_limit < 1)
     throw std::invalid_argument("Solver: iteration_limit must be at least 1, not " +
@@ -408,7 +333,6 @@ btScalar Solver::solveGroup(btCollisionObject** bodies, int body_count, btPersis
 
   if (!work.is_penalty) work.linearise(info);
   constexpr int kMaxChecks = 8;  // assumed; two or three find all
-  bool is_open = false;          // the last solution was not checked
   iterations_used_ = 0;
   for (int checked = 0;; ++checked) {
     const SolveOutcome outcome = work.solveWithLaws(settings_);
@@ -416,26 +340,21 @@ btScalar Solver::solveGroup(btCollisionObject** bodies, int body_count, btPersis
     is_converged_ = outcome.is_converged;
     if (work.is_penalty) break;
     work.rigid.solvePush(info, settings_.iteration_limit);
-    is_open = checked == kMaxChecks;
-    if (is_open || !work.addMissed(info, checked)) break;
+    if (checked == kMaxChecks || !work.addMissed(info, checked)) break;
   }
   work.island.readSolution(work.solution);
-  const double kept = work.is_penalty || work.missed.empty() ? 1 : work.shorten(dt_s);
-  bool is_shortened = kept < 1;
   for (const Work::ActiveCoupling& h : work.active_couplings) {
     const Vec6 V_G = h.J * work.island.bodies[static_cast<std::size_t>(h.body)].u;
     h.coupling->setImpulse(h.law.c - h.law.D.cwiseProduct(V_G), dt_s);
   }
-  if (!is_shortened && is_open &&
-      endEarly(work.island, work.rigid.contacts(), work.joints, work.checks, work.rigid.push(), dt_s))
-    is_shortened = true;
-  work.solution.is_cut_short = is_shortened;
-  if (is_shortened) ++shortened_steps_;
+  work.solution.is_cut_short =
+      !work.is_penalty && !work.missed.empty() &&
+      endEarly(work.island, work.rigid.contacts(), work.joints, work.checks, work.rigid.push(), dt_s);
+  if (work.solution.is_cut_short) ++shortened_steps_;
   for (StepCheck* check : work.checks) check->endStep();
   const std::span<const Vec6> push = work.is_penalty ? std::span<const Vec6>() : work.rigid.push();
   if (!push.empty()) ++pushed_steps_;
   work.island.readEnds(push, dt_s, work.ends);
-  if (kept < 1) work.endShortened(kept, info);
   if (!work.is_penalty) work.restitution.apply(work.rigid.contacts(), work.solution, work.ends, info);
   work.joints.hold(work.island, work.ends);
   if (work.is_penalty) work.penalty.finish();
