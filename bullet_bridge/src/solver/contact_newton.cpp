@@ -18,6 +18,8 @@ namespace {
 // is the reverse. So a round that has not reduced the error to kGoodReduction of the previous round's is
 // followed by stiffer ones [Bertsekas 1982, ch. 2], unless it is the terms of slip that change.
 constexpr double kMaxCompliance = 1e-2, kMinCompliance = 1e-7, kStiffer = 0.1, kGoodReduction = 0.1;
+// Slips that do not shrink by this factor wait for impulses that are still too small.
+constexpr double kSettling = 0.5;
 // A round need not be more accurate than this share of the previous round's error.
 constexpr double kShareOfError = 0.1, kFirstError_m_s = 1e-2;
 // What is left has the same sign from step to step, and drives what accelerates slowly: with the whole
@@ -342,7 +344,9 @@ SolveOutcome ContactNewton::solve(std::span<RigidContact> contacts, double resid
         now.law_m_s <= kLawShare * residual_m_s && now.slip_m_s <= kSlipShare * residual_m_s;
     if (outcome.is_converged || outcome.steps >= step_limit) break;
     updateSlips(now.slip_m_s > last.slip_m_s);
-    if (now.law_m_s > kGoodReduction * last.law_m_s && now.law_m_s > kGoodReduction * now.slip_m_s)
+    const bool is_slip =
+        now.slip_m_s < kSettling * last.slip_m_s && now.law_m_s < kGoodReduction * now.slip_m_s;
+    if (now.law_m_s > kGoodReduction * last.law_m_s && !is_slip)
       compliance = std::max(kMinCompliance, kStiffer * compliance);
     last = now;
   }
