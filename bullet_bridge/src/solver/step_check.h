@@ -36,7 +36,7 @@ struct MissedContact {
 inline constexpr std::size_t kMostAdded = 8;
 
 /// assumed: a row that leaves its contact apart is mostly right when it is taken a second time.
-inline constexpr int kRetakingRounds = 3;
+inline constexpr int kRetakingRounds = 5;
 
 /// A pair of bodies that checks a solved step.
 class StepCheck {
