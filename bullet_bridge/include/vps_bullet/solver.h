@@ -51,8 +51,8 @@ class VPS_BULLET_API Solver : public btSequentialImpulseConstraintSolver {
   [[nodiscard]] std::size_t pointsNear() const { return points_near_; }
   /// True if that island reached the residual, or 1e-5 of the bodies' greatest speed if that is more.
   [[nodiscard]] bool hasConverged() const { return is_converged_; }
-  /// How often an island was stopped within a step, because no contacts were found that keep its bodies'
-  /// sharp edges and corners apart. Each takes energy.
+  /// How often bodies of an island made only a share of a step's way, because no contacts were found that
+  /// keep them apart at its end. They keep their velocities.
   [[nodiscard]] std::size_t shortenedSteps() const { return shortened_steps_; }
   /// How often bodies of an island were moved apart without a velocity, because they overlapped or their
   /// sharp features were nearer than they rest at. Such a step does not keep the angular momentum: that

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "solver/line_search.h"
 #include "solver/patch_math.h"
 #include "vps_bullet/convert.h"
 
@@ -163,21 +164,26 @@ void ContactNewton::evaluate(const std::vector<Vec6>& u, bool with_hessian, std:
 // False: the matrix is not positive definite.
 bool ContactNewton::findStep() {
   step_.resize(u_.size());
-  if (u_.size() == 1) {
-    Mat6 H = island_.bodies[0].effective_mass;
-    for (const Patch& patch : patches_) {
-      const Mat6& X = patch.X[patch.body[0] == 0 ? 0 : 1];
-      H += X.transpose() * patch.hessian * X;
-    }
-    for (const Joint& joint : joint_states_) {
-      if (!joint.is_free) continue;
-      const Vec6& J = joint.row->J[joint.row->body[0] == 0 ? 0 : 1];
-      H += 1 / joint.softness * J * J.transpose();
-    }
-    const Eigen::LLT<Mat6> factor(H);
-    step_[0] = -factor.solve(gradient_[0]);
-    return factor.info() == Eigen::Success;
+  return u_.size() == 1 ? findStepOfOne() : findStepOfAll();
+}
+
+bool ContactNewton::findStepOfOne() {
+  Mat6 H = island_.bodies[0].effective_mass;
+  for (const Patch& patch : patches_) {
+    const Mat6& X = patch.X[patch.body[0] == 0 ? 0 : 1];
+    H += X.transpose() * patch.hessian * X;
   }
+  for (const Joint& joint : joint_states_) {
+    if (!joint.is_free) continue;
+    const Vec6& J = joint.row->J[joint.row->body[0] == 0 ? 0 : 1];
+    H += 1 / joint.softness * J * J.transpose();
+  }
+  const Eigen::LLT<Mat6> factor(H);
+  step_[0] = -factor.solve(gradient_[0]);
+  return factor.info() == Eigen::Success;
+}
+
+bool ContactNewton::findStepOfAll() {
   matrix_.start(u_.size(), touching_);
   for (std::size_t i = 0; i < u_.size(); ++i)
     matrix_.add(static_cast<int>(i), static_cast<int>(i), island_.bodies[i].effective_mass);
@@ -204,28 +210,13 @@ bool ContactNewton::findStep() {
   return true;
 }
 
-// The function is convex, so its slope along the step increases: the minimum is where it is zero.
-double ContactNewton::lineSearch(double slope) {
-  constexpr double kFlat = 0.1;  // of the initial slope; a more accurate minimum would not save a step
+double ContactNewton::shareOfStep(double slope) {
   trial_.resize(u_.size());
-  const auto slopeAt = [&](double share) {
+  return lineSearch(slope, [&](double share) {
     for (std::size_t i = 0; i < u_.size(); ++i) trial_[i] = u_[i] + share * step_[i];
     evaluate(trial_, false, trial_gradient_);
     return sumOfProducts(trial_gradient_, step_);
-  };
-  double low = 0, low_slope = slope, high = 1, high_slope = slopeAt(1);
-  if (high_slope <= -kFlat * slope) return 1;
-  double share = 1;
-  for (int k = 0; k < 20; ++k) {
-    const double room = high - low;
-    share =
-        std::clamp(low - low_slope * room / (high_slope - low_slope), low + 0.05 * room, high - 0.05 * room);
-    const double here = slopeAt(share);
-    if (std::abs(here) <= -kFlat * slope) break;
-    (here < 0 ? low : high) = share;
-    (here < 0 ? low_slope : high_slope) = here;
-  }
-  return share;
+  });
 }
 
 // Change of the bodies' velocities by the momentum that is missing at u.
@@ -250,7 +241,7 @@ SolveOutcome ContactNewton::minimise(double near_m_s, int step_limit) {
       outcome.is_converged = slope >= 0 && off_m_s < kGoodEnough * near_m_s;
       return outcome;
     }
-    const double share = lineSearch(slope);
+    const double share = shareOfStep(slope);
     for (std::size_t i = 0; i < u_.size(); ++i) u_[i] += share * step_[i];
     ++outcome.steps;
   }
@@ -262,6 +253,11 @@ void ContactNewton::startSlips() {
     const Vec6 twist = twistOf(patch, u_);
     for (std::size_t i = patch.first; i < patch.end; ++i) points_[i].slip = slipOf(points_[i], twist);
   }
+}
+
+// True where the impulses only wait for the terms of slip, which settle.
+bool ContactNewton::Miss::isOfSlip(const Miss& last) const {
+  return slip_m_s < kSettling * last.slip_m_s && law_m_s < kGoodReduction * slip_m_s;
 }
 
 // Takes the round's impulses. The slip of each contact at its end is left in `slips_`.
@@ -283,30 +279,14 @@ ContactNewton::Miss ContactNewton::endRound() {
   return miss;
 }
 
-// The next round's terms of slip, from those that rounds began with and ended with: Anderson's extrapolation
-// of a fixed point. The same again would approach it by a constant factor only, up to 0.8.
-void ContactNewton::updateSlips(bool starts_anew) {
-  const auto n = slips_.size();
-  Eigen::VectorXd from(n);
-  for (Eigen::Index i = 0; i < n; ++i) from[i] = points_[static_cast<std::size_t>(i)].slip;
-  const Eigen::VectorXd change = slips_ - from;
-  if (starts_anew) had_ = 0;
-  Eigen::VectorXd next = slips_;
-  if (had_ > 0) {
-    const int columns = std::min(had_, kHistory), last = (had_ - 1) % kHistory;
-    changes_.col(last) = change - last_change_;
-    ends_.col(last) = slips_ - last_end_;
-    const Eigen::MatrixXd A = changes_.leftCols(columns);
-    const Eigen::VectorXd weights = A.colPivHouseholderQr().solve(change);
-    if (weights.allFinite()) next -= ends_.leftCols(columns) * weights;
-  } else {
-    changes_.resize(n, kHistory);
-    ends_.resize(n, kHistory);
-  }
-  last_change_ = change;
-  last_end_ = slips_;
-  ++had_;
-  for (Eigen::Index i = 0; i < n; ++i) points_[static_cast<std::size_t>(i)].slip = std::max(0.0, next[i]);
+// The next round's terms of slip. Those with which a round ended would approach the solution by a constant
+// factor only, up to 0.8.
+void ContactNewton::updateSlips() {
+  Eigen::VectorXd from(slips_.size());
+  for (Eigen::Index i = 0; i < from.size(); ++i) from[i] = points_[static_cast<std::size_t>(i)].slip;
+  const Eigen::VectorXd next = extrapolation_.next(from, slips_);
+  for (Eigen::Index i = 0; i < next.size(); ++i)
+    points_[static_cast<std::size_t>(i)].slip = std::max(0.0, next[i]);
 }
 
 void ContactNewton::writeImpulses(std::span<RigidContact> contacts) const {
@@ -318,8 +298,7 @@ void ContactNewton::writeImpulses(std::span<RigidContact> contacts) const {
   }
 }
 
-SolveOutcome ContactNewton::solve(std::span<RigidContact> contacts, double residual_m_s, int step_limit) {
-  SolveOutcome outcome;
+void ContactNewton::start(std::span<const RigidContact> contacts) {
   gather(contacts);
   touching_.clear();
   const auto touch = [&](const int(&body)[2]) {
@@ -328,9 +307,14 @@ SolveOutcome ContactNewton::solve(std::span<RigidContact> contacts, double resid
   for (const Patch& patch : patches_) touch(patch.body);
   for (const Joint& joint : joint_states_) touch(joint.row->body);
   island_.readVelocities(u_);
-  double compliance = kMaxCompliance;
-  had_ = 0;
+  extrapolation_.clear();
   startSlips();
+}
+
+SolveOutcome ContactNewton::solve(std::span<RigidContact> contacts, double residual_m_s, int step_limit) {
+  SolveOutcome outcome;
+  start(contacts);
+  double compliance = kMaxCompliance;
   Miss last = {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
   for (;;) {
     setCompliance(compliance);
@@ -343,15 +327,14 @@ SolveOutcome ContactNewton::solve(std::span<RigidContact> contacts, double resid
     outcome.is_converged =
         now.law_m_s <= kLawShare * residual_m_s && now.slip_m_s <= kSlipShare * residual_m_s;
     if (outcome.is_converged || outcome.steps >= step_limit) break;
-    updateSlips(now.slip_m_s > last.slip_m_s);
-    const bool is_slip =
-        now.slip_m_s < kSettling * last.slip_m_s && now.law_m_s < kGoodReduction * now.slip_m_s;
-    if (now.law_m_s > kGoodReduction * last.law_m_s && !is_slip)
+    if (now.slip_m_s > last.slip_m_s) extrapolation_.clear();
+    updateSlips();
+    if (now.law_m_s > kGoodReduction * last.law_m_s && !now.isOfSlip(last))
       compliance = std::max(kMinCompliance, kStiffer * compliance);
     last = now;
   }
-  for (const Vec6& u : u_)
-    if (!u.allFinite()) return {outcome.steps, false};
+  if (!std::all_of(u_.begin(), u_.end(), [](const Vec6& u) { return u.allFinite(); }))
+    return {outcome.steps, false};
   writeImpulses(contacts);
   for (std::size_t i = 0; i < u_.size(); ++i) island_.bodies[i].u = u_[i];
   return outcome;

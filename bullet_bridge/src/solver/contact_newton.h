@@ -25,6 +25,7 @@
 #include <vector>
 
 #include "solver/contact_sweeps.h"
+#include "solver/fixed_point.h"
 #include "solver/island_matrix.h"
 
 namespace vps::bullet::inline v0 {
@@ -72,6 +73,7 @@ class ContactNewton {
     double softness, next_Ns;  ///< velocity per impulse; impulse at the velocities that were evaluated last
     bool is_free;              ///< within its limits there
   };
+  void start(std::span<const RigidContact> contacts);
   void gather(std::span<const RigidContact> contacts);
   void setCompliance(double compliance);
   void addPatch(const RigidContact& first);
@@ -80,17 +82,21 @@ class ContactNewton {
   static void project(Point& point, const Vec3& v, SymmetricSum* hessian);
   void evaluateJoints(const std::vector<Vec6>& u, std::vector<Vec6>& gradient);
   bool findStep();
-  [[nodiscard]] double lineSearch(double slope);
+  bool findStepOfOne();
+  bool findStepOfAll();
+  [[nodiscard]] double shareOfStep(double slope);
   [[nodiscard]] double imbalance_m_s();
   SolveOutcome minimise(double near_m_s, int step_limit);
   /// How far the round's laws were missed [m/s].
   struct Miss {
     double law_m_s = 0, slip_m_s = 0;
+
+    [[nodiscard]] bool isOfSlip(const Miss& last) const;
   };
   [[nodiscard]] static double slipOf(const Point& point, const Vec6& twist);
   void startSlips();
   Miss endRound();
-  void updateSlips(bool starts_anew);
+  void updateSlips();
   void writeImpulses(std::span<RigidContact> contacts) const;
 
   Island& island_;
@@ -101,10 +107,8 @@ class ContactNewton {
   std::vector<Joint> joint_states_;
   std::vector<Vec6> u_, gradient_, step_, trial_, trial_gradient_, scratch_;
   Eigen::VectorXd x_;
-  static constexpr int kHistory = 5;  // rounds that the extrapolation of slips looks back to; assumed
-  int had_ = 0;
-  Eigen::VectorXd slips_, last_change_, last_end_;
-  Eigen::MatrixXd changes_, ends_;
+  FixedPoint extrapolation_;  // of slips
+  Eigen::VectorXd slips_;     // at the end of the last round
   std::vector<std::pair<int, int>> touching_;
 };
 

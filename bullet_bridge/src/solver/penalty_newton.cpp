@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solver/line_search.h"
 #include "solver/patch_math.h"
 #include "vps_bullet/convert.h"
 
@@ -143,29 +144,14 @@ bool PenaltyNewton::newtonStep(const std::vector<Vec6>& gradient, std::vector<Ve
   return true;
 }
 
-// The potential is convex, so its slope along the step increases: the minimum is where it is zero.
-double PenaltyNewton::lineSearch(const std::vector<Vec6>& u, const std::vector<Vec6>& step, double slope) {
-  constexpr double kFlat = 0.1;  // of the initial slope; a more accurate minimum would not save an iteration
+double PenaltyNewton::shareOfStep(const std::vector<Vec6>& u, const std::vector<Vec6>& step, double slope) {
   trial_.resize(u.size());
   trial_gradient_.resize(u.size());
-  const auto slopeAt = [&](double share) {
+  return lineSearch(slope, [&](double share) {
     for (std::size_t i = 0; i < u.size(); ++i) trial_[i] = u[i] + share * step[i];
     evaluateAll(trial_, false, trial_gradient_);
     return sumOfProducts(trial_gradient_, step);
-  };
-  double low = 0, low_slope = slope, high = 1, high_slope = slopeAt(1);
-  if (high_slope <= -kFlat * slope) return 1;
-  double share = 1;
-  for (int k = 0; k < 20; ++k) {
-    const double room = high - low;
-    share =
-        std::clamp(low - low_slope * room / (high_slope - low_slope), low + 0.05 * room, high - 0.05 * room);
-    const double here = slopeAt(share);
-    if (std::abs(here) <= -kFlat * slope) break;
-    (here < 0 ? low : high) = share;
-    (here < 0 ? low_slope : high_slope) = here;
-  }
-  return share;
+  });
 }
 
 double PenaltyNewton::greatestSpeed(const std::vector<Vec6>& step) const {
@@ -208,7 +194,7 @@ SolveOutcome PenaltyNewton::solve(double residual_m_s, int iteration_limit, End 
     }
     // The last step is so short that a line search does not matter.
     outcome.is_converged = end == End::Short && greatestSpeed(step_) < residual_m_s;
-    const double share = outcome.is_converged ? 1 : lineSearch(u_, step_, slope);
+    const double share = outcome.is_converged ? 1 : shareOfStep(u_, step_, slope);
     for (std::size_t i = 0; i < u_.size(); ++i) u_[i] += share * step_[i];
   }
   for (std::size_t i = 0; i < u_.size(); ++i) island_.bodies[i].u = u_[i];

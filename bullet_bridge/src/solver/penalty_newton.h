@@ -62,7 +62,7 @@ class PenaltyNewton {
   void startMatrix();
   /// False: the matrix is not positive definite.
   [[nodiscard]] bool newtonStep(const std::vector<Vec6>& gradient, std::vector<Vec6>& step);
-  [[nodiscard]] double lineSearch(const std::vector<Vec6>& u, const std::vector<Vec6>& step, double slope);
+  [[nodiscard]] double shareOfStep(const std::vector<Vec6>& u, const std::vector<Vec6>& step, double slope);
   [[nodiscard]] double greatestSpeed(const std::vector<Vec6>& step) const;
 
   /// Joints are springs on the velocity, so stiff that they miss their target by a millionth. At their limits

@@ -299,11 +299,6 @@ void Restitution::write(double share, std::span<BodyEnd> ends) {
   }
 }
 
-bool Restitution::hasImpact(std::span<const RigidContact> contacts, const btContactSolverInfo& info) const {
-  return std::any_of(contacts.begin(), contacts.end(),
-                     [&](const RigidContact& c) { return isImpact(c, info.m_restitutionVelocityThreshold); });
-}
-
 void Restitution::apply(std::span<RigidContact> contacts, const StepSolution& solution,
                         std::span<BodyEnd> ends, const btContactSolverInfo& info) {
   std::vector<int> roots;

@@ -63,8 +63,6 @@ class Restitution {
  public:
   Restitution(const Island& island, JointRows& joints) : island_(island), joints_(joints) {}
 
-  /// True if a contact of the solved island is an impact.
-  [[nodiscard]] bool hasImpact(std::span<const RigidContact> contacts, const btContactSolverInfo& info) const;
   /// Changes the end velocities of groups with an impact, and adds the impulses to those of contacts and
   /// joints.
   /// @param contacts  of the solved island
