@@ -69,7 +69,6 @@ void ContactNewton::gather(std::span<const RigidContact> contacts) {
     p.slip = 0;
     p.impulse = c.p_n * p.n + c.p_t[0] * c.tangent_W(0) + c.p_t[1] * c.tangent_W(1);
     p.next = p.impulse;
-    p.slides = false;
     points_.push_back(p);
     patches_.back().end = points_.size();
   }
@@ -104,7 +103,6 @@ void ContactNewton::project(Point& p, const Vec3& v, SymmetricSum* hessian) {
   const double y_n = p.n.dot(y);
   const Vec3 y_t = y - y_n * p.n;
   const double length = y_t.norm();
-  p.slides = false;
   if (y_n > 0 && length <= p.mu * y_n) {  // sticks
     p.next = y;
     if (hessian) hessian->addEven(k, p.r);
@@ -115,7 +113,6 @@ void ContactNewton::project(Point& p, const Vec3& v, SymmetricSum* hessian) {
     p.next.setZero();
     return;
   }
-  p.slides = true;
   const double share = 1 / (1 + p.mu * p.mu), p_n = share * along;
   const Vec3 t = length > 0 ? Vec3(y_t / length) : Vec3(Vec3::Zero()), edge = p.n + p.mu * t;
   p.next = p_n * edge;

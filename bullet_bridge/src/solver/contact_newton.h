@@ -39,9 +39,9 @@ class ContactNewton {
   /// Updates the impulses of contacts and joints and the bodies' velocities. The contacts' rows must be
   /// prepared. Where it does not converge, the impulses are within their cones all the same. Cost of a step:
   /// a factorisation of 6n x 6n for n bodies, sparse if n is large, and about 0.1 us a contact.
-  /// @param residual_m_s  converged: no contact misses its law by a greater velocity, and the velocities are
-  /// those of
-  ///                      the impulses up to a tenth of it
+  /// @param residual_m_s  converged: no contact misses its law by a tenth of this velocity, and no slip
+  /// changes
+  ///                      by more
   /// @param step_limit    Newton's steps, over all rounds
   SolveOutcome solve(std::span<RigidContact> contacts, double residual_m_s, int step_limit);
 
@@ -56,7 +56,6 @@ class ContactNewton {
     double slip;      ///< mu |v_t| of the round before [m/s]
     Vec3 impulse;     ///< p
     Vec3 next;        ///< p at the velocities that were evaluated last
-    bool slides;      ///< there
   };
   /// Consecutive contacts of one pair of bodies.
   struct Patch {
