@@ -101,6 +101,7 @@ TEST_F(AskProgram, PartsAreTakenAndReleasedOnRequest) {
 }
 
 TEST_F(AskProgram, AnotherSceneIsSentOnceRunsAndIsRecorded) {
+  fs::remove(fs::current_path() / "run_2.mcap");  // of a run that was stopped
   startRender({"--stay"});
   startDevice();
   ASSERT_TRUE(whoSays("step 1 of 2")) << texts();
