@@ -11,11 +11,11 @@
 
 namespace vps::bullet::inline v0 {
 
-/// Where points would be too deep at the end of the step, or sharp features too near to each other, the bodies of the pair, and those that hang
-/// together with them by joints and by contacts with load, move only a share of their way:
-/// IslandBody::way_share. They keep the velocities of the solution, and the rest of the step is spent in
-/// place. So they hit nothing harder than was solved, and the next step begins near contacts that it then
-/// knows. A kinematic body goes on; what it comes to is not stopped for it in vain.
+/// Where points would be too deep at the end of the step, or sharp features too near to each other, the
+/// bodies of the pair, and those that hang together with them by joints and by contacts with load, move only
+/// a share of their way: IslandBody::way_share. They keep the velocities of the solution, and the rest of the
+/// step is spent in place. So they hit nothing harder than was solved, and the next step begins near contacts
+/// that it then knows. A kinematic body goes on; what it comes to is not stopped for it in vain.
 /// @param contacts, joints  of the solved island
 /// @param push              its velocities, as ContactSweeps::push()
 /// @return true if a body's way is shorter
