@@ -1,71 +1,35 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Newton's method for many bodies at once, on problems whose impulses are known.
 
-#include <BulletCollision/CollisionShapes/btBoxShape.h>
-#include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
-#include <BulletDynamics/ConstraintSolver/btContactSolverInfo.h>
-#include <BulletDynamics/Dynamics/btRigidBody.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <deque>
 #include <random>
 #include <utility>
 
+#include "bullet_bridge/small_island.h"
 #include "solver/contact_newton.h"
-#include "vps_bullet/convert.h"
 
 namespace vps::bullet {
 namespace {
 
-constexpr double kDt_s = 1e-3, kHalf_m = 5e-3, kMass_kg = 0.02, kGravity_m_s2 = 9.81;
+using test_island::kDt_s;
+constexpr double kHalf_m = 5e-3, kMass_kg = 0.02, kGravity_m_s2 = 9.81;
 constexpr int kLong = 1000;
 
 /// Cubes of 10 mm with four contacts on each face that touches another.
-struct Cubes {
-  btBoxShape shape{btVector3(kHalf_m, kHalf_m, kHalf_m)};
-  std::deque<btRigidBody> bodies;
-  std::deque<btPersistentManifold> manifolds;
-  btRigidBody floor{btRigidBody::btRigidBodyConstructionInfo(0, nullptr, &shape, btVector3(0, 0, 0))};
-  Island island;
-  JointRows joints;
-  ContactSweeps sweeps{island, joints};
-  btContactSolverInfo info;
-
-  Cubes() { info.m_timeStep = kDt_s; }
-
+struct Cubes : test_island::SmallIsland {
   btRigidBody& add(const Vec3& center, const Vec3& force_N) {
-    btVector3 inertia;
-    shape.calculateLocalInertia(kMass_kg, inertia);
-    btRigidBody& body =
-        bodies.emplace_back(btRigidBody::btRigidBodyConstructionInfo(kMass_kg, nullptr, &shape, inertia));
-    body.setWorldTransform(btTransform(btMatrix3x3::getIdentity(), toBt(center)));
-    body.updateInertiaTensor();
+    btRigidBody& body = SmallIsland::add(kMass_kg, center, Vec3::Zero());
     body.applyCentralForce(toBt(force_N));
     return body;
   }
   // Of `upper` on what is below it.
   void touch(btRigidBody& upper, btRigidBody& lower, double mu) {
-    btPersistentManifold& manifold = manifolds.emplace_back(&upper, &lower, 0, 1e-3, 1e-3);
     for (const double x : {-kHalf_m, kHalf_m})
-      for (const double y : {-kHalf_m, kHalf_m}) {
-        const btVector3 at = upper.getWorldTransform() * btVector3(x, y, -kHalf_m);
-        btManifoldPoint point(btVector3(0, 0, 0), btVector3(0, 0, 0), btVector3(0, 0, 1), 0);
-        point.m_positionWorldOnA = point.m_positionWorldOnB = at;
-        point.m_combinedFriction = toBt(mu);
-        manifold.addManifoldPoint(point);
-      }
-  }
-  void start() {
-    for (btRigidBody& body : bodies) island.add(body, kDt_s);
-    for (IslandBody& b : island.bodies) {
-      b.effective_mass = b.mass;
-      b.effective_inverse = b.mass.inverse();
-    }
-    for (btPersistentManifold& manifold : manifolds)
-      for (int i = 0; i < manifold.getNumContacts(); ++i)
-        sweeps.add(manifold, manifold.getContactPoint(i), info);
-    sweeps.start();
+      for (const double y : {-kHalf_m, kHalf_m})
+        SmallIsland::touch(upper, lower, fromBt(upper.getWorldTransform()) * Vec3(x, y, -kHalf_m),
+                           Vec3(0, 0, 1), 0, mu);
   }
   SolveOutcome solve(int limit) {
     ContactNewton newton(island, joints);
@@ -146,15 +110,9 @@ struct Random : Cubes {
         btRigidBody& other = k % 5 == 0 ? floor : bodies[static_cast<std::size_t>(k - 1)];
         btRigidBody* pair[2] = {&bodies[static_cast<std::size_t>(k)], &other};
         if (k % 2) std::swap(pair[0], pair[1]);
-        btPersistentManifold& manifold = manifolds.emplace_back(pair[0], pair[1], 0, 1e-3, 1e-3);
         for (int i = 0; i < 2; ++i) {
-          const Vec3 n = (vector() + Vec3(0, 0, k % 2 ? -2 : 2)).normalized();
-          const btVector3 at = toBt(Vec3(0.03 * vector()));
-          btManifoldPoint point(btVector3(0, 0, 0), btVector3(0, 0, 0), toBt(n),
-                                toBt(1e-6 * (1 + in(engine))));
-          point.m_positionWorldOnA = point.m_positionWorldOnB = at;
-          point.m_combinedFriction = toBt(0.2);
-          manifold.addManifoldPoint(point);
+          const Vec3 n = (vector() + Vec3(0, 0, k % 2 ? -2 : 2)).normalized(), at = 0.03 * vector();
+          SmallIsland::touch(*pair[0], *pair[1], at, n, 1e-6 * (1 + in(engine)), 0.2);
         }
       }
     start();

@@ -17,13 +17,45 @@ namespace {
 
 using test::Built;
 
-/// A box above a plate, after the narrow phase of a step.
-struct BoxAbovePlate {
+/// A fixed body and another one, after the narrow phase of a step.
+struct CheckedPair {
   test::World world;
-  const Built& box = sharedBox();
-  Pose X_WB[2];  ///< of the plate's and the box's body
+  Pose X_WB[2];  ///< of the fixed and of the other body
   StepCheck* check = nullptr;
-  int plate = 0;  ///< which of the check's two bodies it is
+
+  void detect(btRigidBody& fixed, btRigidBody& other) {
+    X_WB[0] = fromBt(fixed.getWorldTransform());
+    X_WB[1] = fromBt(other.getWorldTransform());
+    world.world->performDiscreteCollisionDetection();
+    const ContactCreateFunction* stores = contactFunctionOf(&world.dispatcher);
+    for (int i = 0; stores && i < world.dispatcher.getNumManifolds(); ++i)
+      if (StepCheck* found = stores->step_checks->find(world.dispatcher.getManifoldByIndexInternal(i)))
+        check = found;
+    if (check && check->object(0) != &fixed) fixed_ = 1;
+  }
+  std::vector<MissedContact> missedAt(const Pose& X_end) {
+    std::vector<MissedContact> missed;
+    check->findMissed(Ends(*this, X_end).X_WB, 0, missed);
+    return missed;
+  }
+  double freeShareTo(const Pose& X_end) { return check->freeShare(Ends(*this, X_end).X_WB); }
+  double freeShareOfPointsTo(const Pose& X_end) { return check->freeShareOfPoints(Ends(*this, X_end).X_WB); }
+
+ private:
+  /// The end poses in the check's order.
+  struct Ends {
+    Pose X_WB[2];
+    Ends(const CheckedPair& pair, const Pose& X_end) {
+      X_WB[pair.fixed_] = pair.X_WB[0];
+      X_WB[1 - pair.fixed_] = X_end;
+    }
+  };
+  int fixed_ = 0;  ///< which of the check's two bodies it is
+};
+
+/// A box above a plate.
+struct BoxAbovePlate : CheckedPair {
+  const Built& box = sharedBox();
 
   static const Built& sharedBox() {
     static const Built box = test::steelBox();
@@ -39,25 +71,7 @@ struct BoxAbovePlate {
     for (const Vec3& v : box.mesh.vertices) lowest_m = std::min(lowest_m, (R * v).z());
     btRigidBody& low = world.add(sharedPlate(), Pose::translation({0, 0, -5e-3}), true);
     btRigidBody& high = world.add(box, Pose(R, Vec3(0, 0, gap_m - lowest_m)));
-    X_WB[0] = fromBt(low.getWorldTransform());
-    X_WB[1] = fromBt(high.getWorldTransform());
-    world.world->performDiscreteCollisionDetection();
-    const ContactCreateFunction* stores = contactFunctionOf(&world.dispatcher);
-    for (int i = 0; stores && i < world.dispatcher.getNumManifolds(); ++i)
-      if (StepCheck* found = stores->step_checks->find(world.dispatcher.getManifoldByIndexInternal(i)))
-        check = found;
-    if (check && check->object(0) != &low) plate = 1;
-  }
-  /// The box moved by a displacement of its body and a turn about its centre.
-  std::vector<MissedContact> missedAt(const Pose& X_end) {
-    std::vector<MissedContact> missed;
-    const Pose ends[2] = {plate == 0 ? X_WB[0] : X_end, plate == 0 ? X_end : X_WB[0]};
-    check->findMissed(ends, 0, missed);
-    return missed;
-  }
-  double freeShareTo(const Pose& X_end) {
-    const Pose ends[2] = {plate == 0 ? X_WB[0] : X_end, plate == 0 ? X_end : X_WB[0]};
-    return check->freeShare(ends);
+    detect(low, high);
   }
   [[nodiscard]] Pose moved(const Vec3& by_W, const Vec3& turn = Vec3::Zero()) const {
     return {rotationFromVector(turn) * X_WB[1].R, X_WB[1].p + by_W};
@@ -120,12 +134,8 @@ TEST(PairCheck, TheFreeShareEndsWhereACornerMeetsTheFace) {
 
 /// A ball in a bore, which a step takes along the wall to where it overlaps by a given depth. The points of
 /// both are 1.3 mm apart.
-struct BallInBore {
+struct BallInBore : CheckedPair {
   static constexpr double kBall_m = 4e-3, kBore_m = 5e-3;
-  test::World world;
-  Pose X_WB[2];  ///< of the tube's and the ball's body
-  StepCheck* check = nullptr;
-  int tube = 0;  ///< which of the check's two bodies it is
   const Built& built = sharedBall();
 
   static const Built& sharedBall() {
@@ -142,26 +152,12 @@ struct BallInBore {
     btRigidBody& high = world.add(built, Pose(R, at));
     high.clearForces();
     high.setLinearVelocity(toBt(v));
-    X_WB[0] = fromBt(low.getWorldTransform());
-    X_WB[1] = fromBt(high.getWorldTransform());
-    world.world->performDiscreteCollisionDetection();
-    const ContactCreateFunction* stores = contactFunctionOf(&world.dispatcher);
-    for (int i = 0; stores && i < world.dispatcher.getNumManifolds(); ++i)
-      if (StepCheck* found = stores->step_checks->find(world.dispatcher.getManifoldByIndexInternal(i)))
-        check = found;
-    if (check && check->object(0) != &low) tube = 1;
+    detect(low, high);
   }
   [[nodiscard]] double deepestAt(const Pose& X_end) {
-    std::vector<MissedContact> missed;
-    const Pose ends[2] = {tube == 0 ? X_WB[0] : X_end, tube == 0 ? X_end : X_WB[0]};
-    check->findMissed(ends, 0, missed);
     double deepest_m = 0;
-    for (const MissedContact& m : missed) deepest_m = std::max(deepest_m, -m.end_gap_m);
+    for (const MissedContact& m : missedAt(X_end)) deepest_m = std::max(deepest_m, -m.end_gap_m);
     return deepest_m;
-  }
-  double freeShareOfPointsTo(const Pose& X_end) {
-    const Pose ends[2] = {tube == 0 ? X_WB[0] : X_end, tube == 0 ? X_end : X_WB[0]};
-    return check->freeShareOfPoints(ends);
   }
   [[nodiscard]] double depthAt(const Pose& X_end) const {
     return test::penetration_m(built, X_end * built.frame.X_PB.inverse(), sharedTube(), Pose());

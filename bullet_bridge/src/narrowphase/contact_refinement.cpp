@@ -315,8 +315,9 @@ void refine(std::vector<Candidate>& candidates, const SideView& side, const Side
     if (!exact.is_contact && !exact.found_all) exact = refiner.at(own, max_m);
     // Outside an edge the field may read less than half of the distance, along a normal of its own: such a
     // plane would stop or lift a body that does not come near the point.
-    if (Candidate by_field = c; !exact.found && motion.canTouch(by_field))
-      exact = refiner.at(own, max_m + motion.dt_s * motion.velocityAt(c.p_W).norm());
+    if (!exact.found)
+      if (Candidate by_field = c; motion.canTouch(by_field))
+        exact = refiner.at(own, max_m + motion.dt_s * motion.velocityAt(c.p_W).norm());
     if (!exact.found) continue;  // only the field is known
     if (!exact.is_contact && exact.is_inside && !own.edges.empty())
       if (const Exact beside = besideEdge(refiner, own, max_m); beside.found) exact = beside;

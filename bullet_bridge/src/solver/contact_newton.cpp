@@ -31,12 +31,6 @@ constexpr double kLawShare = 0.1, kSlipShare = 1;
 // have no multipliers: rows of joints often contradict each other.
 constexpr double kJointCompliance = 1e-6;
 
-double sumOfProducts(const std::vector<Vec6>& a, const std::vector<Vec6>& b) {
-  double sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i].dot(b[i]);
-  return sum;
-}
-
 }  // namespace
 
 void ContactNewton::addPatch(const RigidContact& first) {
@@ -184,26 +178,18 @@ bool ContactNewton::findStepOfAll() {
   matrix_.start(u_.size(), touching_);
   for (std::size_t i = 0; i < u_.size(); ++i)
     matrix_.add(static_cast<int>(i), static_cast<int>(i), island_.bodies[i].effective_mass);
-  // Lower blocks only: the factorisation reads no others.
-  const auto addPair = [this](const int(&body)[2], const auto& blockOf) {
-    for (int i = 0; i < 2; ++i)
-      for (int j = 0; j < 2; ++j)
-        if (body[i] >= body[j] && body[j] >= 0) matrix_.add(body[i], body[j], blockOf(i, j));
-  };
   for (const Patch& patch : patches_)
-    addPair(patch.body,
-            [&](int i, int j) -> Mat6 { return patch.X[i].transpose() * patch.hessian * patch.X[j]; });
+    matrix_.addPair(patch.body, [&](int i, int j) -> Mat6 {
+      return patch.X[i].transpose() * patch.hessian * patch.X[j];
+    });
   for (const Joint& joint : joint_states_) {
     const double k = 1 / joint.softness;
     const auto& J = joint.row->J;
     if (joint.is_free)
-      addPair(joint.row->body, [&](int i, int j) -> Mat6 { return k * J[i] * J[j].transpose(); });
+      matrix_.addPair(joint.row->body, [&](int i, int j) -> Mat6 { return k * J[i] * J[j].transpose(); });
   }
   if (!matrix_.factorise()) return false;
-  x_.resize(static_cast<Eigen::Index>(6 * u_.size()));
-  for (std::size_t i = 0; i < u_.size(); ++i) x_.segment<6>(static_cast<Eigen::Index>(6 * i)) = -gradient_[i];
-  matrix_.solve(x_);
-  for (std::size_t i = 0; i < u_.size(); ++i) step_[i] = x_.segment<6>(static_cast<Eigen::Index>(6 * i));
+  matrix_.solve(gradient_, step_);
   return true;
 }
 

@@ -105,7 +105,6 @@ class ContactNewton {
   std::vector<Patch> patches_;
   std::vector<Joint> joint_states_;
   std::vector<Vec6> u_, gradient_, step_, trial_, trial_gradient_, scratch_;
-  Eigen::VectorXd x_;
   FixedPoint extrapolation_;  // of slips
   Eigen::VectorXd slips_;     // at the end of the last round
   std::vector<std::pair<int, int>> touching_;

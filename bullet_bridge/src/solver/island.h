@@ -37,6 +37,13 @@ inline Vec6 stacked(const Vec3& w, const Vec3& v) {
   return u;
 }
 
+/// Of vectors of all bodies.
+inline double sumOfProducts(std::span<const Vec6> a, std::span<const Vec6> b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i].dot(b[i]);
+  return sum;
+}
+
 /// A dynamic body; twists are about its centre. Its velocity u solves
 /// effective_mass u = momentum + coupling_impulse + the contacts' impulses.
 struct IslandBody {

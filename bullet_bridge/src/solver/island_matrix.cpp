@@ -83,11 +83,16 @@ bool IslandMatrix::factorise() {
   return sparse_factor_.info() == Eigen::Success;
 }
 
-void IslandMatrix::solve(Eigen::VectorXd& x) const {
+void IslandMatrix::solve(std::span<const Vec6> gradient, std::vector<Vec6>& step) {
+  x_.resize(static_cast<Eigen::Index>(6 * gradient.size()));
+  for (std::size_t i = 0; i < gradient.size(); ++i)
+    x_.segment<6>(static_cast<Eigen::Index>(6 * i)) = -gradient[i];
   if (isDense())
-    dense_factor_.solveInPlace(x);
+    dense_factor_.solveInPlace(x_);
   else
-    x = sparse_factor_.solve(x);
+    x_ = sparse_factor_.solve(x_);
+  step.resize(gradient.size());
+  for (std::size_t i = 0; i < step.size(); ++i) step[i] = x_.segment<6>(static_cast<Eigen::Index>(6 * i));
 }
 
 }  // namespace vps::bullet::inline v0

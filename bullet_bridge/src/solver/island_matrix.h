@@ -23,8 +23,16 @@ class IslandMatrix {
   void add(int row_body, int column_body, const Mat6& block);
   /// False: the matrix is not positive definite.
   [[nodiscard]] bool factorise();
-  /// Replaces x by the inverse of the factorised matrix times x.
-  void solve(Eigen::VectorXd& x) const;
+  /// Adds to the blocks of one pair of bodies, each with itself and with the other, those that are read.
+  /// @param blockOf  (i, j): block of sides i and j; a side whose body is -1 has none
+  template <typename BlockOf>
+  void addPair(const int (&body)[2], const BlockOf& blockOf) {
+    for (int i = 0; i < 2; ++i)
+      for (int j = 0; j < 2; ++j)
+        if (body[i] >= body[j] && body[j] >= 0) add(body[i], body[j], blockOf(i, j));
+  }
+  /// Newton's step: minus the inverse of the factorised matrix times the gradient.
+  void solve(std::span<const Vec6> gradient, std::vector<Vec6>& step);
 
  private:
   static constexpr std::size_t kDense = 12;  // assumed: greatest number of bodies for which dense is faster
@@ -32,6 +40,7 @@ class IslandMatrix {
   void makePattern();
 
   std::size_t body_count_ = 0;
+  Eigen::VectorXd x_;
   Eigen::MatrixXd dense_;
   Eigen::LLT<Eigen::MatrixXd> dense_factor_;
   std::vector<std::uint64_t> blocks_, wanted_;  // column body, then row body; ascending

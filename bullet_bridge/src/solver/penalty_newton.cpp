@@ -11,16 +11,6 @@
 #include "vps_bullet/convert.h"
 
 namespace vps::bullet::inline v0 {
-namespace {
-
-double sumOfProducts(const std::vector<Vec6>& a, const std::vector<Vec6>& b) {
-  double sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i].dot(b[i]);
-  return sum;
-}
-
-}  // namespace
-
 void PenaltyNewton::add(PenaltyPair& pair, int level, bool follows_rotation) {
   if (pair.points.empty()) return;
   const int body[2] = {island_.indexOf(pair.object[0]), island_.indexOf(pair.object[1])};
@@ -121,26 +111,18 @@ bool PenaltyNewton::newtonStep(const std::vector<Vec6>& gradient, std::vector<Ve
   startMatrix();
   for (std::size_t i = 0; i < gradient.size(); ++i)
     hessian_.add(static_cast<int>(i), static_cast<int>(i), island_.bodies[i].effective_mass);
-  // Lower blocks only: the factorisation reads no others.
-  const auto addPair = [this](const int(&body)[2], const auto& blockOf) {
-    for (int i = 0; i < 2; ++i)
-      for (int j = 0; j < 2; ++j)
-        if (body[i] >= body[j] && body[j] >= 0) hessian_.add(body[i], body[j], blockOf(i, j));
-  };
   for (const PenaltyPatch& patch : patches())
-    addPair(patch.body,
-            [&](int i, int j) -> Mat6 { return patch.X[i].transpose() * patch.hessian * patch.X[j]; });
+    hessian_.addPair(patch.body, [&](int i, int j) -> Mat6 {
+      return patch.X[i].transpose() * patch.hessian * patch.X[j];
+    });
   for (std::size_t r = 0; r < joint_kg_.size(); ++r) {
     const JointRow& row = joints_.rows[r];
     if (is_free_[r])
-      addPair(row.body, [&](int i, int j) -> Mat6 { return joint_kg_[r] * row.J[i] * row.J[j].transpose(); });
+      hessian_.addPair(row.body,
+                       [&](int i, int j) -> Mat6 { return joint_kg_[r] * row.J[i] * row.J[j].transpose(); });
   }
   if (!hessian_.factorise()) return false;
-  Eigen::VectorXd x(static_cast<Eigen::Index>(6 * gradient.size()));
-  for (std::size_t i = 0; i < gradient.size(); ++i)
-    x.segment<6>(static_cast<Eigen::Index>(6 * i)) = -gradient[i];
-  hessian_.solve(x);
-  for (std::size_t i = 0; i < step.size(); ++i) step[i] = x.segment<6>(static_cast<Eigen::Index>(6 * i));
+  hessian_.solve(gradient, step);
   return true;
 }
 
