@@ -131,6 +131,30 @@ std::vector<Vec3> drive(HapticDriver& driver, int steps) {
   return seen;
 }
 
+TEST(RealTimeDriver, ARecordedEventComesWithWhatPhysicsKnewOfTheHandThen) {
+  const auto event = [](device::SyncEventKind kind) {
+    device::SyncEvent e;
+    e.kind = kind;
+    return e;
+  };
+  const auto phase = [](device::OperatorPhase to) {
+    device::RunEvent e;
+    e.kind = device::RunEventKind::Phase;
+    e.phase = device::toByte({to, device::OperatorStrategy::None});
+    return e;
+  };
+  using enum device::SyncEventKind;
+  using device::OperatorPhase;
+  // Two steps without a tick between them; what is logged after a tick still belongs to the step before.
+  const std::vector<RecordedEvent> events =
+      recordedEvents({event(Begin), phase(OperatorPhase::Reach), event(Tick), event(Step), event(Step),
+                      phase(OperatorPhase::Done), event(Tick), event(Step), event(LetGo)});
+  std::vector<OperatorPhase> phases;
+  for (const RecordedEvent& e : events) phases.push_back(e.hand.phase);
+  using enum device::OperatorPhase;
+  EXPECT_EQ(phases, (std::vector{Reach, Reach, Reach, Done, Done, Done, Done}));
+}
+
 TEST(RealTimeDriver, AReplayOnOneThreadRepeatsARunOfTwoThreads) {
   test::KeptLog log;
   device::CouplingPort port, replay_port;
@@ -143,14 +167,11 @@ TEST(RealTimeDriver, AReplayOnOneThreadRepeatsARunOfTwoThreads) {
 
   device::RecordedRun run;
   run.entries = log.entries;
-  std::vector<device::SyncEvent> sync_events;
-  for (const device::LogEntry& entry : run.entries)
-    if (const auto* event = std::get_if<device::SyncEvent>(&entry)) sync_events.push_back(*event);
   device::ReplayCheck check(run);
   RepeatedSamples recorded(run.entries);
   device::TappedDevice tapped(recorded, check);
-  const auto replay =
-      makeReplayedDriver(recorded, sync_events, tapped, replay_port, settings(), ignore, check);
+  const auto replay = makeReplayedDriver(recorded, recordedEvents(run.entries), tapped, replay_port,
+                                         settings(), ignore, check);
   EXPECT_EQ(drive(*replay, 60), seen);
   EXPECT_EQ(check.departure(), "");
   EXPECT_EQ(check.left(), 0u);

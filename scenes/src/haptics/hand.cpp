@@ -311,11 +311,8 @@ class RecordedHand final : public Hand {
   [[nodiscard]] device::OperatorStrategy strategy() const override {
     return device::stateFromByte(recording_.phase().value_or(0)).strategy;
   }
-  [[nodiscard]] std::vector<device::SyncEvent> sync_events() const override {
-    std::vector<device::SyncEvent> all;
-    for (const device::LogEntry& entry : recording_.run().entries)
-      if (const auto* sync_event = std::get_if<device::SyncEvent>(&entry)) all.push_back(*sync_event);
-    return all;
+  [[nodiscard]] std::vector<RecordedEvent> events() const override {
+    return recordedEvents(recording_.run().entries);
   }
   [[nodiscard]] bool canGoOn(int ticks) const override {
     return recording_.left() >= static_cast<std::size_t>(ticks);

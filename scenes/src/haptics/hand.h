@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "haptics/recorded_events.h"
 #include "vps_device/loop.h"
 #include "vps_device/operator.h"
 #include "vps_device/pulled_handle.h"
@@ -52,7 +53,7 @@ class Hand {
   [[nodiscard]] virtual device::OperatorStrategy strategy() const { return device::OperatorStrategy::None; }
   [[nodiscard]] device::OperatorState state() const { return {phase(), strategy()}; }
   /// The recorded events of a real-time run that is replayed; empty otherwise.
-  [[nodiscard]] virtual std::vector<device::SyncEvent> sync_events() const { return {}; }
+  [[nodiscard]] virtual std::vector<RecordedEvent> events() const { return {}; }
   /// Whether this many ticks are left.
   [[nodiscard]] virtual bool canGoOn(int ticks) const = 0;
 };

@@ -91,10 +91,10 @@ std::unique_ptr<HapticDriver> makeRealTimeDriver(Hand& hand, device::CouplingPor
                                                  const device::LoopSettings& settings, double physics_s,
                                                  const ReportFault& report, device::RunLog* log);
 /// Repeats a run of makeRealTimeDriver() in simulated time.
-/// @param sync_events  as recorded
+/// @param events    as recorded
 /// @param device    the recording, tapped
 /// @param settings  of the recorded loop, with physicsLimit_s()
-std::unique_ptr<HapticDriver> makeReplayedDriver(Hand& hand, std::vector<device::SyncEvent> sync_events,
+std::unique_ptr<HapticDriver> makeReplayedDriver(Hand& hand, std::vector<RecordedEvent> events,
                                                  device::Device& device, device::CouplingPort& port,
                                                  const device::LoopSettings& settings,
                                                  const ReportFault& report, device::RunLog& log);

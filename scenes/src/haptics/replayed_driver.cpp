@@ -13,7 +13,7 @@ namespace {
 
 class ReplayedDriver final : public ClockedDriver {
  public:
-  ReplayedDriver(Hand& hand, std::vector<device::SyncEvent> sync_events, device::Device& device,
+  ReplayedDriver(Hand& hand, std::vector<RecordedEvent> events, device::Device& device,
                  device::CouplingPort& port, const device::LoopSettings& settings, const ReportFault& report,
                  device::RunLog& log)
       : ClockedDriver(settings, report),
@@ -21,7 +21,7 @@ class ReplayedDriver final : public ClockedDriver {
         port_(port),
         loop_(device, port, settings),
         device_(device),
-        sync_events_(std::move(sync_events)),
+        events_(std::move(events)),
         log_(log),
         clock_(settings.period_s) {}
 
@@ -41,7 +41,7 @@ class ReplayedDriver final : public ClockedDriver {
   bool advance() override {
     // A loop in another process was re-armed while physics went on. After a departure from the recording,
     // events that do not fit are skipped.
-    while (next_ < sync_events_.size() && !tickUntil(device::SyncEventKind::Step)) {
+    while (next_ < events_.size() && !tickUntil(device::SyncEventKind::Step)) {
       if (isAt(device::SyncEventKind::Rearm))
         command({device::SyncEventKind::Rearm, {}, 0, 0, {}});
       else
@@ -61,7 +61,7 @@ class ReplayedDriver final : public ClockedDriver {
     using enum device::SyncEventKind;
     if (isAt(SnapOn) || isAt(SnapOff)) {
       snaps_ = isAt(SnapOn);
-      logEvent(sync_events_[next_].kind);
+      logEvent(events_[next_].event.kind);
     }
     return snaps_;
   }
@@ -70,7 +70,7 @@ class ReplayedDriver final : public ClockedDriver {
     logEvent(device::SyncEventKind::GiveUp);
     return true;
   }
-  device::OperatorState state() override { return hand_.state(); }
+  device::OperatorState state() override { return hand_state_; }
   std::uint64_t missed() override { return 0; }
   TickTimes times() override { return clock_.summary(); }
   std::optional<RealTimeResult> realTime() override { return {}; }
@@ -86,7 +86,7 @@ class ReplayedDriver final : public ClockedDriver {
 
  private:
   [[nodiscard]] bool isAt(device::SyncEventKind kind) const {
-    return next_ < sync_events_.size() && sync_events_[next_].kind == kind;
+    return next_ < events_.size() && events_[next_].event.kind == kind;
   }
 
   /// Runs the ticks before the next event of the physics thread. True if that event is of this kind. A
@@ -99,10 +99,10 @@ class ReplayedDriver final : public ClockedDriver {
         continue;
       }
       if (!hand_.canGoOn(1)) {
-        next_ = sync_events_.size();
+        next_ = events_.size();
         return false;
       }
-      tick(sync_events_[next_]);
+      tick(events_[next_].event);
     }
     return isAt(kind);
   }
@@ -119,7 +119,8 @@ class ReplayedDriver final : public ClockedDriver {
 
   /// Logs the next recorded event, as this run has it.
   void logEvent(device::SyncEventKind kind) {
-    const device::SyncEvent& event = sync_events_[next_++];
+    hand_state_ = events_[next_].hand;
+    const device::SyncEvent& event = events_[next_++].event;
     const std::uint64_t ticks = loop_.ticks() + (kind == device::SyncEventKind::Tick ? 1 : 0);
     log_.add(device::SyncEvent{loop_.last().time_s, static_cast<std::int32_t>(ticks), event.periods,
                                event.snapshot, kind});
@@ -129,21 +130,22 @@ class ReplayedDriver final : public ClockedDriver {
   device::CouplingPort& port_;
   device::HapticLoop loop_;
   device::Device& device_;
-  std::vector<device::SyncEvent> sync_events_;
+  std::vector<RecordedEvent> events_;
   std::size_t next_ = 0;
   device::RunLog& log_;
   std::deque<device::PhysicsState> states_;  ///< published, not yet used by a tick
   TickClock clock_;
+  device::OperatorState hand_state_;  ///< as of the last event
   bool is_running_ = false, snaps_ = false;
 };
 
 }  // namespace
 
-std::unique_ptr<HapticDriver> makeReplayedDriver(Hand& hand, std::vector<device::SyncEvent> sync_events,
+std::unique_ptr<HapticDriver> makeReplayedDriver(Hand& hand, std::vector<RecordedEvent> events,
                                                  device::Device& device, device::CouplingPort& port,
                                                  const device::LoopSettings& settings,
                                                  const ReportFault& report, device::RunLog& log) {
-  return std::make_unique<ReplayedDriver>(hand, std::move(sync_events), device, port, settings, report, log);
+  return std::make_unique<ReplayedDriver>(hand, std::move(events), device, port, settings, report, log);
 }
 
 }  // namespace vps::scenes::inline v0

@@ -91,10 +91,9 @@ std::unique_ptr<HapticDriver> AssemblyWorld::makeDriver(Hand& hand, device::Loop
   if (options_.has_local_contact) settings.local = &local_;
   if (options_.is_real_time) return makeRealTimeDriver(hand, port_, settings, dt_s_, on_fault, log_);
   device::Device& device = log_ != nullptr ? tapped_ : hand.device();
-  if (std::vector<device::SyncEvent> sync_events = hand.sync_events();
-      !sync_events.empty() && log_ != nullptr) {
+  if (std::vector<RecordedEvent> events = hand.events(); !events.empty() && log_ != nullptr) {
     if (!(settings.physics_limit_s > 0)) settings.physics_limit_s = physicsLimit_s(dt_s_);
-    return makeReplayedDriver(hand, std::move(sync_events), device, port_, settings, on_fault, *log_);
+    return makeReplayedDriver(hand, std::move(events), device, port_, settings, on_fault, *log_);
   }
   return makeLockstepDriver(hand, device, port_, settings, ticksPerStep(scene_), on_fault);
 }
