@@ -191,7 +191,7 @@ void PairCheck::relinearise(const Motion& m, const Placed& at_start, bool is_bef
   if (hasFeatures(at_start.pair, settings))
     lineariseFeatures(at_start.pair, {{m.end[0], m.end[1]}, m.path, m.turnsFar(0)}, {is_before, apart_m},
                       state_, out);
-  if (!settings.use_surfaces || (is_before && areBothCurved(at_start.pair, state_))) return;
+  if (!settings.use_surfaces || areBothCurved(at_start.pair, state_)) return;
   const Placed at_end(*this, m.end);
   thread_local std::vector<Candidate> now, ends;
   findThere(at_end.pair, state_, !is_before || m.bend_m <= apart_m, now, ends);
