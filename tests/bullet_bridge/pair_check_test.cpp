@@ -181,6 +181,23 @@ TEST(PairCheck, ReportsWhatGoesInBetweenThePointsOfCurvedFaces) {
   }
 }
 
+// The ball turns to another side from round to round, until no contact has room: that what goes in is missed
+// is said all the same, or the step would end with it.
+TEST(PairCheck, SaysWhatItMissesAlsoWithoutRoom) {
+  const double play_m = BallInBore::kBore_m - BallInBore::kBall_m;
+  BallInBore scene(Mat3::Identity(), {play_m - 4e-6, 0, 0}, Vec3::Zero());
+  ASSERT_TRUE(scene.check);
+  search::Random random(5);
+  bool was_full = false;
+  for (int i = 0; i < 60; ++i) {
+    const std::vector<MissedContact> missed =
+        scene.missedAt({random.rotation(), Vec3(play_m + 40e-6, 0, random.uniform(-4e-3, 4e-3))});
+    EXPECT_FALSE(missed.empty()) << i;
+    for (const MissedContact& m : missed) was_full = was_full || m.point == nullptr;
+  }
+  EXPECT_TRUE(was_full);
+}
+
 // A ball flies into the wall: the share ends no deeper than 10 um, and not much before.
 TEST(PairCheck, TheFreeShareOfPointsEndsWhereTheyAreDeep) {
   search::Random random(4);

@@ -54,7 +54,7 @@ struct SpinningDisc {
   }
 };
 
-const char* const kClamped = "turns no body by more than";
+const char* const kClamped = "Bullet turns a body by less";
 const char* const kInContact = "touch and turn against each other";
 
 TEST(Turn, ABodyThatBulletTurnsLessThanItsSpeedIsReportedOnce) {

@@ -28,7 +28,8 @@ inline constexpr double kContactSagitta_m = 10e-6;
 /// In so many steps in a row, before it is reported: an impact and its rebound last one or two steps each,
 /// and give no more than that step's error.
 inline constexpr int kTurnsInRow = 5;
-/// Bullet turns no body farther in a step (btTransformUtil::integrateTransform) [rad].
+/// Above this Bullet turns a body by less than its speed in a step (btTransformUtil::integrateTransform)
+/// [rad].
 inline constexpr double kBulletTurn_rad = std::numbers::pi / 4;
 
 /// How fast a body turns, by the bound that asks for the shortest step.

@@ -25,9 +25,9 @@ namespace {
 constexpr double kGrowthShare = 0.1;
 
 // A step whose rounds did not end goes on as far as points are no deeper than this share of the contact
-// margin. assumed: 10 um of 20, what an impact may leave; with less, steps would end early for what the push
-// removes in a few steps.
-constexpr double kAllowedShare = 0.5;
+// margin: with their growth 10 um of 20, what an impact may leave. With less, steps would end early for what
+// the push removes in a few steps.
+constexpr double kAllowedShare = 0.5 / (1 + kGrowthShare);
 
 // A contact that carries load ends the step no farther apart than this.
 double apartOf_m(const Settings& settings) {
@@ -377,7 +377,6 @@ void PairCheck::put(const Motion& m, const Placed& at_start, const Candidate& st
                     std::vector<MissedContact>& out) {
   MissedContact added;
   added.point = state_.writer->put(m.path.acting(start, end), at_start.pair.wrapper, state_.motion);
-  if (!added.point) return;
   for (int i = 0; i < 2; ++i) added.object[i] = object_[i];
   added.end_gap_m = end.distance_m;
   added.kept_m = overlapOf(start, at_start.pair);

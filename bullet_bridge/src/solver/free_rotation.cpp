@@ -10,43 +10,59 @@
 namespace vps::bullet::inline v0 {
 namespace {
 
-// h of the header, for a speed of rotation.
+constexpr double kThreshold_rad = std::numbers::pi / 4;  // ANGULAR_MOTION_THRESHOLD of btTransformUtil.h
+
+// h of the header, for a speed of rotation. Beyond the threshold Bullet limits the angle in sine and cosine,
+// but not the length of the axis: the turn goes on growing, by half its tangent.
 double halfTangent_s(double speed_rad_s, double dt_s) {
-  constexpr double kMostTurn_rad = std::numbers::pi / 4;  // ANGULAR_MOTION_THRESHOLD of btTransformUtil.h
-  const double angle_rad = std::min(speed_rad_s * dt_s, kMostTurn_rad);
-  return speed_rad_s > 0 ? std::tan(0.5 * angle_rad) / speed_rad_s : 0.5 * dt_s;
+  const double angle_rad = std::min(speed_rad_s * dt_s, kThreshold_rad);
+  return angle_rad > 0 ? dt_s * std::tan(0.5 * angle_rad) / angle_rad : 0.5 * dt_s;
 }
+
+/// The equation of the header for one body.
+struct MeanVelocity {
+  Vec3 inertia_kg_m2, L;
+
+  [[nodiscard]] Vec3 rest(const Vec3& W, double dt_s) const {
+    const Vec3 JW = inertia_kg_m2.cwiseProduct(W);
+    return JW - L + halfTangent_s(W.norm(), dt_s) * W.cross(JW);
+  }
+  /// Newton's method from W. The dependence of h on W is of second order in the step, and is left out of the
+  /// slope.
+  [[nodiscard]] Vec3 solve(Vec3 W, double dt_s) const {
+    constexpr int kMostIterations = 30;
+    constexpr double kClose = 1e-9;  // share of W. Below the rounding changes no longer fall
+    double last_change_rad_s = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < kMostIterations; ++i) {
+      const Vec3 rest_Nms = rest(W, dt_s);
+      if (rest_Nms.isZero(0)) break;
+      const Mat3 J = inertia_kg_m2.asDiagonal();
+      const Mat3 slope = J + halfTangent_s(W.norm(), dt_s) *
+                                 (crossMatrix(W) * J - crossMatrix(inertia_kg_m2.cwiseProduct(W)));
+      const Vec3 change = slope.inverse() * rest_Nms;
+      const double change_rad_s = change.norm();
+      if (change_rad_s <= kClose * W.norm() && !(change_rad_s < last_change_rad_s)) break;
+      last_change_rad_s = change_rad_s;
+      W -= change;
+    }
+    return W;
+  }
+};
 
 }  // namespace
 
 Vec3 meanAngularVelocity(const Vec3& inertia_kg_m2, const Vec3& w_B, double dt_s) {
-  constexpr int kMostIterations = 30;
   constexpr double kConverged = 1e-9;  // share of the momentum
-  const auto momentumOf = [&](const Vec3& w) { return Vec3(inertia_kg_m2.cwiseProduct(w)); };
-  const Vec3 L = momentumOf(w_B);
+  const MeanVelocity mean{inertia_kg_m2, inertia_kg_m2.cwiseProduct(w_B)};
+  // A turn of more than the threshold in steps that double: from W = w alone, Newton's method may go astray.
+  constexpr double kMostTurn_rad = 1e6;
+  const double turn_rad = w_B.norm() * dt_s;
   Vec3 W = w_B;
-  double last_change_rad_s = std::numeric_limits<double>::infinity();
-  const auto restOf = [&](const Vec3& of) {
-    const Vec3 J_of = momentumOf(of);
-    return Vec3(J_of - L + halfTangent_s(of.norm(), dt_s) * of.cross(J_of));
-  };
-  for (int i = 0; i < kMostIterations; ++i) {
-    const double h = halfTangent_s(W.norm(), dt_s);
-    const Vec3 JW = momentumOf(W);
-    const Vec3 rest = restOf(W);
-    if (rest.isZero(0)) break;
-    // The dependence of h on W is of second order in the step, and is left out of the slope.
-    const Mat3 slope = Mat3(inertia_kg_m2.asDiagonal()) +
-                       h * (crossMatrix(W) * Mat3(inertia_kg_m2.asDiagonal()) - crossMatrix(JW));
-    const Vec3 change = slope.inverse() * rest;
-    // Below the rounding changes no longer fall.
-    constexpr double kClose = 1e-9;
-    const double change_rad_s = change.norm();
-    if (change_rad_s <= kClose * W.norm() && !(change_rad_s < last_change_rad_s)) break;
-    last_change_rad_s = change_rad_s;
-    W -= change;
-  }
-  return restOf(W).norm() <= kConverged * L.norm() ? W : w_B;  // w_B also where a value is not finite
+  if (turn_rad < kMostTurn_rad)
+    for (double share = kThreshold_rad / turn_rad; share < 1; share *= 2) W = mean.solve(W, share * dt_s);
+  W = mean.solve(W, dt_s);
+  // w_B also where a value is not finite
+  return mean.rest(W, dt_s).norm() <= kConverged * mean.L.norm() ? W : w_B;
 }
 
 }  // namespace vps::bullet::inline v0

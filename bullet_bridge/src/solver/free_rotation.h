@@ -18,8 +18,8 @@ namespace vps::bullet::inline v0 {
 /// + w) / 2 = W, and the product with w1 + w gives w1 J w1 = w J w: the energy is kept for any h. [Simo and
 /// Wong 1991; with h = dt / 2 their ALGO_C1, which turns a spinning disc too slowly by (w dt)^2 / 12.]
 ///
-/// Bullet turns a body by pi / 4 in a step at most. Then h = tan(pi / 8) / |W|, so that momentum and energy
-/// are kept all the same.
+/// Where |W| dt is above pi / 4, Bullet turns a body by less: by 2 atan(h |W|) with h = tan(pi / 8) / (pi /
+/// 4) dt. With that h momentum and energy are kept all the same.
 ///
 /// @param inertia_kg_m2  principal moments J, positive
 /// @param w_B            angular velocity before the step, with the torques that act in it [rad/s]

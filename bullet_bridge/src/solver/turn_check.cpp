@@ -37,8 +37,9 @@ void reportClampedTurn(TurnReports& reports, std::span<btCollisionObject* const>
     const Vec3 at = fromBt(body->getWorldTransform().getOrigin());
     char words[400];
     std::snprintf(words, sizeof words,
-                  "the body at (%.4g, %.4g, %.4g) m turns with %.4g rpm, %.3g degrees in a step, and Bullet "
-                  "turns no body by more than %.3g: %.0f steps a second or more hold it (substepsFor() of "
+                  "the body at (%.4g, %.4g, %.4g) m turns with %.4g rpm, %.3g degrees in a step, and above "
+                  "%.3g Bullet turns a body by less than its speed: %.0f steps a second or more hold it "
+                  "(substepsFor() of "
                   "turn.h). Further such bodies are not reported.",
                   at.x(), at.y(), at.z(), spin.rpm, spin.degrees, spin.limit_degrees,
                   std::ceil(spin.rate_hz * (1 - 1e-9)));

@@ -127,7 +127,8 @@ struct EnergyLedger {
 };
 
 /// A part that turned farther in a step than the step can hold: contacts that turn by more than 0.1 rad
-/// against each other miss teeth and corners, and Bullet turns no body by more than 45 degrees.
+/// against each other miss teeth and corners, and above 45 degrees Bullet turns a body by less than its
+/// speed.
 struct FastTurn {
   std::string part;
   bool is_in_contact = false;  ///< the rotation is that against what it touches

@@ -14,11 +14,11 @@ std::string found(const FastTurn& turn) {
   constexpr double kDegrees = 180 / std::numbers::pi;
   char words[400];
   std::snprintf(words, sizeof words,
-                "'%s' turns %swith %.0f rpm, %.3g degrees in a step; %s more than %.3g: ", turn.part.c_str(),
+                "'%s' turns %swith %.0f rpm, %.3g degrees in a step; %s %.3g: ", turn.part.c_str(),
                 turn.is_in_contact ? "against what it touches " : "", turn.w_rad_s * 30 / std::numbers::pi,
                 turn.turn_rad * kDegrees,
-                turn.is_in_contact ? "contacts may miss teeth and corners where bodies turn by"
-                                   : "Bullet turns no body by",
+                turn.is_in_contact ? "contacts may miss teeth and corners where bodies turn by more than"
+                                   : "Bullet turns a body by less than its speed above",
                 turn.limit_rad * kDegrees);
   return words;
 }
