@@ -14,7 +14,6 @@
 #include "vps/edge_crossing.h"
 #include "vps/feature_set.h"
 #include "vps/part_model.h"
-#include "vps_bullet/edge_neighbours.h"
 #include "vps_bullet/export.h"
 #include "vps_bullet/precision.h"
 
@@ -108,8 +107,6 @@ class VPS_BULLET_API Shape : public btConcaveShape {
   }
   /// The same by point; empty if there are no surfaces.
   [[nodiscard]] std::span<const std::uint8_t> edgePoints() const { return is_edge_point_; }
-  /// The edge points next to each edge point.
-  [[nodiscard]] const EdgeNeighbours& edgeNeighbours() const { return edge_neighbours_; }
   /// Inward unit normal at a shell point on a face, of the curved surface that the facets approximate, in the
   /// models' frame. On edges, and without surfaces, the shell's own normal.
   [[nodiscard]] const Vec3& smoothInward(std::uint32_t id) const {
@@ -178,7 +175,6 @@ class VPS_BULLET_API Shape : public btConcaveShape {
   Box bounds_S_;
   std::uint64_t revision_ = 0;
   std::vector<std::uint8_t> is_edge_point_;
-  EdgeNeighbours edge_neighbours_;
   std::vector<Vec3> smooth_inward_;
   std::vector<PointFace> face_at_;         // by point
   std::vector<std::uint16_t> surface_at_;  // by point; empty: there is one surface or none

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "narrowphase/deeper_neighbours.h"
 #include "native_shapes/primitive.h"
 
 namespace vps::bullet::inline v0 {
@@ -175,8 +174,6 @@ void selectContacts(const PairView& pair, const RelativeMotion& motion, const Se
   refineOnWay(pair, motion, settings, candidates);
   if (isQueriedOnce(pair, motion)) measureAtEnd(pair, motion, settings, candidates);
   dropUnreachable(motion, candidates);
-  if (settings.use_surfaces && isQueriedOnce(pair, motion))
-    addDeeperNeighbours(pair, motion, settings, writer, candidates);
   if (selection) {
     selection->refined = candidates;
     selection->leaves_out = candidates.size() > limit;

@@ -213,7 +213,6 @@ void Shape::use(ShapeModels models, const Pose& X_SM) {
                          [this](std::uint32_t segment) { edges_at_.push_back(segment); });
     first_edge_.push_back(static_cast<std::uint32_t>(edges_at_.size()));
   }
-  edge_neighbours_ = models_.shell ? EdgeNeighbours(*models_.shell, is_edge_point_) : EdgeNeighbours();
   Box box_M;
   const auto include = [&box_M](const Box& box) {
     if (box.isEmpty()) return;
