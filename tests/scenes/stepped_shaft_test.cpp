@@ -47,7 +47,8 @@ Scene ringOverTwoLands(std::uint64_t seed) {
 }
 
 TEST(SteppedShaft, TakesARingOverItsFirstLandToItsSecond) {
-  // One of sixty aims is still searching when its time is over; after a change of rounding it is another one.
+  // One of sixty aims is still searching, or not pressed home yet, when its time is over; after a change of
+  // rounding it is another one.
   constexpr std::uint64_t kAims = 8, kMostLate = 1;
   std::uint64_t late = 0;
   std::ostringstream said;
@@ -59,7 +60,7 @@ TEST(SteppedShaft, TakesARingOverItsFirstLandToItsSecond) {
     said << "aim " << seed << ": " << step.reason << ": ";
     for (const auto& span : step.strategies)
       said << span.strategy << ' ' << span.start_s << '+' << span.duration_s << "; ";
-    EXPECT_NE(step.reason.find("gave up after its time was over"), std::string::npos) << said.str();
+    EXPECT_NE(step.reason.find("was over"), std::string::npos) << said.str();
     ++late;
   }
   EXPECT_LE(late, kMostLate) << said.str();
