@@ -181,8 +181,9 @@ void PairCheck::findMissed(const Pose (&X_WB_end)[2], int round, std::vector<Mis
 }
 
 // Between two curved bodies a row is taken anew only in the plane that it had: the plane of the next facet is
-// another contact, and rows that go from facet to facet never settle. 0.8 degrees: less than between the
-// facets of a round face of 400, more than a step turns a plane along a thread.
+// another contact, and rows that go from facet to facet never settle. assumed: 0.8 degrees, less
+// than between the facets of a round face of 400. Without rows taken anew a frictionless bolt loses 2.2 % of
+// its acceleration; with those of the next facet a peg in a bore of 10 um clearance stays out.
 constexpr double kCosSamePlane = 0.9999;
 
 // The rows of the step's contacts as they are at the end of a motion.

@@ -5,17 +5,16 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
+
+#include "vps_bullet/turn.h"
 
 namespace vps::bullet::inline v0 {
 namespace {
 
-constexpr double kThreshold_rad = std::numbers::pi / 4;  // ANGULAR_MOTION_THRESHOLD of btTransformUtil.h
-
-// h of the header, for a speed of rotation. Beyond the threshold Bullet limits the angle in sine and cosine,
+// h of the header, for a speed of rotation. Above kBulletTurn_rad Bullet limits the angle in sine and cosine,
 // but not the length of the axis: the turn goes on growing, by half its tangent.
 double halfTangent_s(double speed_rad_s, double dt_s) {
-  const double angle_rad = std::min(speed_rad_s * dt_s, kThreshold_rad);
+  const double angle_rad = std::min(speed_rad_s * dt_s, kBulletTurn_rad);
   return angle_rad > 0 ? dt_s * std::tan(0.5 * angle_rad) / angle_rad : 0.5 * dt_s;
 }
 
@@ -54,12 +53,11 @@ struct MeanVelocity {
 Vec3 meanAngularVelocity(const Vec3& inertia_kg_m2, const Vec3& w_B, double dt_s) {
   constexpr double kConverged = 1e-9;  // share of the momentum
   const MeanVelocity mean{inertia_kg_m2, inertia_kg_m2.cwiseProduct(w_B)};
-  // A turn of more than the threshold in steps that double: from W = w alone, Newton's method may go astray.
-  constexpr double kMostTurn_rad = 1e6;
+  // A longer step is solved from the solution of half of it: from W = w, Newton's method may find none.
   const double turn_rad = w_B.norm() * dt_s;
   Vec3 W = w_B;
-  if (turn_rad < kMostTurn_rad)
-    for (double share = kThreshold_rad / turn_rad; share < 1; share *= 2) W = mean.solve(W, share * dt_s);
+  if (std::isfinite(turn_rad))
+    for (double share = kBulletTurn_rad / turn_rad; share < 1; share *= 2) W = mean.solve(W, share * dt_s);
   W = mean.solve(W, dt_s);
   // w_B also where a value is not finite
   return mean.rest(W, dt_s).norm() <= kConverged * mean.L.norm() ? W : w_B;

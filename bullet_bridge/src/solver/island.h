@@ -37,7 +37,7 @@ inline Vec6 stacked(const Vec3& w, const Vec3& v) {
   return u;
 }
 
-/// Of vectors of all bodies.
+/// The scalar product of two lists with one vector for each body.
 inline double sumOfProducts(std::span<const Vec6> a, std::span<const Vec6> b) {
   double sum = 0;
   for (std::size_t i = 0; i < a.size(); ++i) sum += a[i].dot(b[i]);

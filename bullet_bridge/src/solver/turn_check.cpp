@@ -39,8 +39,7 @@ void reportClampedTurn(TurnReports& reports, std::span<btCollisionObject* const>
     std::snprintf(words, sizeof words,
                   "the body at (%.4g, %.4g, %.4g) m turns with %.4g rpm, %.3g degrees in a step, and above "
                   "%.3g Bullet turns a body by less than its speed: %.0f steps a second or more hold it "
-                  "(substepsFor() of "
-                  "turn.h). Further such bodies are not reported.",
+                  "(substepsFor() of turn.h). Further such bodies are not reported.",
                   at.x(), at.y(), at.z(), spin.rpm, spin.degrees, spin.limit_degrees,
                   std::ceil(spin.rate_hz * (1 - 1e-9)));
     report(LogLevel::Warning, words);

@@ -11,8 +11,9 @@ namespace vps::scenes::inline v0 {
 
 struct RecordedEvent {
   device::SyncEvent event;
-  /// As the run logged it between this event of the physics thread and the next one. Not by samples: physics
-  /// may take two steps between two ticks of a loop that is late, and learn of a new phase in the second.
+  /// As the run logged it between this event of the physics thread and the next one. The loop's samples do
+  /// not tell it: physics may take two steps between two ticks of a loop that is late, and learn of a new
+  /// phase in the second.
   device::OperatorState hand;
 };
 
