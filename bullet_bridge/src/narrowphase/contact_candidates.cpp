@@ -14,6 +14,9 @@ namespace vps::bullet::inline v0 {
 
 namespace {
 
+// A cell of merged groups is at most this share of the smaller body's radius. assumed
+constexpr double kMostCellShare = 0.5;
+
 std::size_t limitOf(const Settings& settings, const PointShell& shell) {
   return settings.candidate_limit > 0 ? static_cast<std::size_t>(settings.candidate_limit) : shell.size();
 }
@@ -138,8 +141,12 @@ std::size_t findMapCandidates(const SideView& side, const SideView& other, doubl
   options.gradient = settings.gradient;
   const Pose X_MW = other.X_WM.inverse(), X_MP = X_MW * side.X_WM;
   QueryMemory* memory = query.state ? &query.state->query : nullptr;
-  const RepresentativePoints::Request leaders{options, aboutMap(query.step_W, X_MW), query.always,
-                                              smallQueryLimit(settings)};
+  const RepresentativePoints::Request leaders{options,
+                                              aboutMap(query.step_W, X_MW),
+                                              query.always,
+                                              smallQueryLimit(settings),
+                                              refinedLimit(settings),
+                                              kMostCellShare * query.radius_m};
   if (!query.state || !query.state->leading) {
     points_tested += queryContacts(*theirs.map, shell, X_MP, options, near, memory).points_tested;
     if (query.state && needsLeading(near.contacts.size(), shell, settings))

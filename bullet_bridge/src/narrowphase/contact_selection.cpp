@@ -165,9 +165,7 @@ void selectContacts(const PairView& pair, const RelativeMotion& motion, const Se
   }
   const auto limit = static_cast<std::size_t>(settings.contact_limit);
   const double radius_m = pair.radius_m();
-  // Four times the limit are refined by the exact surfaces: enough although some turn out to be out of reach.
-  // With twice the limit a shaft in its bushings had to be solved again in most steps, which cost more.
-  const double sampling_m = reduceByCell(candidates, 4 * limit, radius_m / 16, radius_m);
+  const double sampling_m = reduceByCell(candidates, refinedLimit(settings), radius_m / 16, radius_m);
   // The others apart, so that they take no room from those.
   reduceByCell(doubtful, 2 * limit, radius_m / 16, radius_m);
   candidates.insert(candidates.end(), doubtful.begin(), doubtful.end());

@@ -28,6 +28,10 @@ bool needsLeading(std::size_t near_points, const PointShell& shell, const Settin
          shell.spacing_m > 0;
 }
 
+std::size_t refinedLimit(const Settings& settings) {
+  return 4 * static_cast<std::size_t>(settings.contact_limit);
+}
+
 std::size_t smallQueryLimit(const Settings& settings) {
   return kTilePoints * static_cast<std::size_t>(settings.contact_limit);
 }

@@ -25,6 +25,9 @@ struct QueryState {
 
 /// Up to this number of near points of one side, all of them are examined.
 std::size_t smallQueryLimit(const Settings& settings);
+/// About this number of candidates is refined by the exact surfaces: enough although some turn out to be out
+/// of reach. With half of it a shaft in its bushings had to be solved again in most steps, which cost more.
+std::size_t refinedLimit(const Settings& settings);
 /// True if representative points serve for so many near points.
 bool needsLeading(std::size_t near_points, const PointShell& shell, const Settings& settings);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Constraint contact: few points, each a constraint of the solver.
+#include <algorithm>
 #include <utility>
 
 #include "narrowphase/contact_selection.h"
@@ -26,6 +27,14 @@ bool reuseSelection(const PairView& pair, PairState& state) {
   return true;
 }
 
+// The size of the areas from which the queries of both sides reported only the most urgent points.
+double mergedTo_m(const PairState& state) {
+  double most_m = 0;
+  for (const auto& query : state.query_state)
+    if (query && query->leading) most_m = std::max(most_m, query->leading->mergedTo_m());
+  return most_m;
+}
+
 // Contacts that meet within the step. Bullet's own solver then lets the bodies bounce at once: early by less
 // than a step's travel, with the right speed. bullet::Solver solves for the gap, and has restitution.h.
 void markBounces(std::vector<Candidate>& candidates, const RelativeMotion& motion,
@@ -46,6 +55,7 @@ void selectRigid(const PairView& pair, PairState& state) {
     context.candidates += state.contacts.size();
     selectContacts(pair, state.motion, context.settings, state.writer.get(), state.contacts,
                    &state.selection);
+    state.selection.sampling_m = std::max(state.selection.sampling_m, mergedTo_m(state));
     addMissedFeatures(pair, context.settings, state, state.contacts);
     storeSelection(state.contacts, pair, state.motion, state.selection);
   }

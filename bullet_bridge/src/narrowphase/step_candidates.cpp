@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "narrowphase/contact_selection.h"
+#include "solver/penalty_contacts.h"
 
 namespace vps::bullet::inline v0 {
 
@@ -16,6 +17,15 @@ void useOwnNormalsForPenalty(const PairView& pair, const Settings& settings,
   for (int i = 0; i < 2; ++i)
     if (settings.contact_method == ContactMethod::Penalty && pair.hasShell(i))
       useOwnNormals(candidates, pair.side(i));
+}
+
+// bullet::Solver finds in the solved step where edges cross; with others they are candidates.
+void find(const PairView& pair, double cutoff_m, Context& context, std::vector<Candidate>& out,
+          PairState* state = nullptr, const RelativeMotion* motion = nullptr) {
+  if (context.penalty_contacts->hasSolver())
+    findPointCandidates(pair, cutoff_m, context, out, state, motion);
+  else
+    findCandidates(pair, cutoff_m, context, out, state, motion);
 }
 
 constexpr double kAtStart_s =
@@ -65,8 +75,7 @@ void findStepCandidates(const PairView& pair, const RelativeMotion& motion, Pair
   if (pair.leastDistance_m() > motion.contact_margin_m + way_m) return;
   if (isQueriedOnce(pair, motion)) {
     const double seen_m = isExact(context.settings) ? fieldError_m(pair) : 0;
-    findCandidates(pair, std::min(motion.contact_margin_m + travel_m + seen_m, range_m), context, out, &state,
-                   &motion);
+    find(pair, std::min(motion.contact_margin_m + travel_m + seen_m, range_m), context, out, &state, &motion);
     useOwnNormalsForPenalty(pair, context.settings, out);
     return;
   }
@@ -79,7 +88,7 @@ void findStepCandidates(const PairView& pair, const RelativeMotion& motion, Pair
   for (int k = 0; k < strides; ++k) {
     const Later later(pair, motion, motion.dt_s * k / strides);
     met.clear();
-    findCandidates(later.pair, std::min(motion.contact_margin_m + travel_m / strides, range_m), context, met);
+    find(later.pair, std::min(motion.contact_margin_m + travel_m / strides, range_m), context, met);
     useOwnNormalsForPenalty(later.pair, context.settings, met);
     // Keep what a point meets first, as planes relative to where the bodies are now. A point that is behind a
     // plane when the stride begins has met another before.

@@ -77,6 +77,10 @@ class VPS_API FeatureSet {
   [[nodiscard]] std::span<const Vec3> raysAt(std::uint32_t corner) const {
     return std::span(rays_).subspan(first_ray_[corner], first_ray_[corner + 1] - first_ray_[corner]);
   }
+  /// True if the surface around the corner at a vertex lies behind the plane through it with this normal, to
+  /// within a slope of a thousandth. O(log n).
+  /// @param n  unit, away from the part
+  [[nodiscard]] bool isOutermostAt(std::uint32_t vertex, const Vec3& n) const;
   [[nodiscard]] const Box& box() const { return box_; }
   [[nodiscard]] double radius_m() const { return 0.5 * box_.size().norm(); }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -28,6 +29,10 @@ class VPS_API RepresentativePoints {
     /// With this many near points or fewer (counted in leaves of sixteen) all are reported, as by
     /// queryContacts().
     std::size_t full_count = 0;
+    /// With more groups than this, those whose centres and mean normals lie in the same cell are merged,
+    /// cells being doubled as long as they are no larger than most_cell_m. 0: groups are never merged.
+    std::size_t most_groups = 0;
+    double most_cell_m = 0;
   };
 
   /// The shell must outlive this object and not change. O(points); about 200 bytes for each group and 2 for
@@ -47,9 +52,13 @@ class VPS_API RepresentativePoints {
 
   /// As queryContacts(), with fewer points; the reported contacts have the same bits. For each point left
   /// out, a reported point of the same group is as near now, to 1/16384 voxel, and a reported point is as
-  /// near after the step (to first order), or less than kSame_m farther. Never throws, allocates or locks.
+  /// near after the step (to first order), or less than kSame_m farther. Where groups were merged, the
+  /// reported point is of the same cell. Never throws, allocates or locks.
   QueryResult find(const VoxMap& map, const Pose& X_MP, const Request& request, ContactSet& out,
                    QueryMemory* memory = nullptr) noexcept;
+
+  /// Edge of the cells in which the last find() merged groups; 0: it merged none.
+  [[nodiscard]] double mergedTo_m() const noexcept { return merged_to_m_; }
 
   /// Gaps that differ by less are treated as equal [m]. assumed: well below what matters, above rounding
   static constexpr double kSame_m = 0.1e-6;
@@ -61,6 +70,12 @@ class VPS_API RepresentativePoints {
     Vec3 inward = Vec3::Zero();  ///< mean inward normal of its points, not of unit length
     Mat3 bend = Mat3::Zero();    ///< derivative of the normal with respect to position [1/m]
     double radius_m = 0;         ///< greatest distance of its points from the centre
+    bool is_edge = false;        ///< its points are on sharp edges
+  };
+  /// A grid of cells, by position in P, direction of the normal and whether on an edge.
+  struct Level {
+    double cell_m = 0;
+    std::vector<std::uint32_t> cell_of_group;
   };
   struct Tile {
     std::uint32_t first_group = 0, group_count = 0;
@@ -69,12 +84,29 @@ class VPS_API RepresentativePoints {
   struct Chosen {
     std::uint32_t leaf, id;
   };
+  struct Best {
+    float value = std::numeric_limits<float>::infinity();  ///< [quanta]
+    Chosen point{kNone, kNone};
+  };
+  /// The nearest points of a group, or of a cell of groups, now and after the step.
+  struct Nearest {
+    std::uint32_t of = kNone;
+    Best now, then;
+    void take(const Nearest& other) noexcept {
+      if (other.now.value < now.value) now = other.now;
+      if (other.then.value < then.value) then = other.then;
+    }
+  };
   class Grouping;
   class Search;
 
   void addTile(std::size_t first_leaf, std::size_t end_leaf, double tile_size_m,
                std::span<const std::uint8_t> on_edge);
   void addLoose(std::size_t leaf);
+  void addLevels(double tile_size_m);
+  void merge(const Request& request) noexcept;
+  void mergeTo(const Level& level) noexcept;
+  void choose(std::span<const Nearest> nearest) noexcept;
   [[nodiscard]] Group fitted(std::span<const std::uint32_t> ids) const;
 
   const PointShell* shell_;
@@ -83,7 +115,12 @@ class VPS_API RepresentativePoints {
   std::vector<std::uint32_t> tile_of_leaf_;
   std::vector<std::uint8_t> group_of_;       ///< by point: in its tile, or kNoGroup
   std::vector<std::uint8_t> group_of_leaf_;  ///< that of all its points, or kMixed
-  std::vector<Chosen> chosen_;               ///< with capacity for all points
+  std::vector<Level> levels_;                ///< by size
+  // Of a find(), with capacity for all points or groups:
+  std::vector<Chosen> chosen_;
+  std::vector<Nearest> of_groups_, of_cells_;
+  std::vector<std::uint32_t> place_of_cell_;  ///< in of_cells_
+  double merged_to_m_ = 0;
   bool reduces_contacts_ = false;
 };
 

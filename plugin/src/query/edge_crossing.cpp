@@ -385,7 +385,8 @@ class CrossingTest {
   // True for edges that overlap then, or are near: not for those that have passed each other's ends.
   [[nodiscard]] bool meetsInStep(const EdgeSegment& s0, const EdgeSegment& s1, const Vec3& n) const {
     const Nearest then = nearestOfSegments(s0.from, s0.to, X_01_end_ * s1.from, X_01_end_ * s1.to);
-    return (!then.is_end && n.dot(then.p - then.q) < 0) || then.distance_m() <= reachOfCrossing_m(cutoff_m_);
+    const bool is_between = then.end[0] == Nearest::kBetween && then.end[1] == Nearest::kBetween;
+    return (is_between && n.dot(then.p - then.q) < 0) || then.distance_m() <= reachOfCrossing_m(cutoff_m_);
   }
 
   const std::vector<EdgeSegment>&segments0_, &segments1_;

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 
 #include "query/flush_features.h"
 #include "query/motion_tube.h"
@@ -129,6 +131,20 @@ BorderOwner ownerOf(const FeatureSet& part0, const FeatureSet& part1, const Feat
   return ownerAtBorder(part0, contact.feature[0], contact.p[0], R_01 * (q - p), -(R_01 * way), kTolerated_m);
 }
 
+// True if two edges are nearest at a corner that meets the other part by itself. A corner in a valley does
+// not: inside a ring, at the joint of two of its sections, an edge of another ring slides from one section to
+// the next.
+// @param n_1, n_0  from part 1 to part 0, in each part's frame
+bool isLeftToCorner(const FeatureSet& part0, const FeatureSet& part1, const std::uint32_t (&feature)[2],
+                    const Nearest& nearest, const Vec3& n_0, const Vec3& n_1) {
+  const auto isOutermost = [&](const FeatureSet& part, int i, const Vec3& n) {
+    if (nearest.end[i] == Nearest::kBetween) return false;
+    const FeatureEdge& edge = part.edges()[feature[i]];
+    return part.isOutermostAt(nearest.end[i] == 0 ? edge.from : edge.to, n);
+  };
+  return isOutermost(part0, 0, -n_0) || isOutermost(part1, 1, n_1);
+}
+
 // The same with its plane, where the features touch along the line between their nearest points, or, near an
 // edge, in the plane of the face that they slide onto. False: other features are met there first, or points
 // stand for these.
@@ -136,10 +152,10 @@ bool findContact(const FeatureSet& part0, const FeatureSet& part1, Kind kind,
                  const std::uint32_t (&feature)[2], const Features& f, const Reach& reach, const Mat3& R_10,
                  FeatureContact& contact) {
   const Nearest& nearest = reach.nearest;
-  if (kind == Kind::EdgeOnEdge && nearest.is_end) return false;  // a corner and a facet
   contact = contactAt(kind, feature, f, reach);
   contact.plane_of = kind == Kind::FacetOnCorner ? 0 : 1;
   Vec3 n_1 = (nearest.p - nearest.q).normalized(), n_0 = R_10.transpose() * n_1;
+  if (kind == Kind::EdgeOnEdge && isLeftToCorner(part0, part1, feature, nearest, n_0, n_1)) return false;
   const BorderOwner owner = ownerOf(part0, part1, contact, f, reach, R_10);
   if (owner == BorderOwner::Neighbour) return false;
   if (owner == BorderOwner::Facet) {
@@ -150,6 +166,33 @@ bool findContact(const FeatureSet& part0, const FeatureSet& part1, Kind kind,
   return isMetFromOutside(part0, kind, 0, feature[0], contact.p[0], n_0) &&
          isMetFromOutside(part1, kind, 1, feature[1], contact.p[1], n_1) &&
          !isLeftToPoints(part0, part1, contact, R_10, n_1);
+}
+
+// The contact of two edges that came near each other where one of them ends, and lie across each other at the
+// end of the motion: they passed the corner on the way.
+// @param n_1  from part 1 to part 0 where they came near
+bool findCrossing(const FeatureSet& part0, const FeatureSet& part1, const std::uint32_t (&feature)[2],
+                  const Features& f, const Pose& end_10, const Vec3& n_1, FeatureContact& contact) {
+  const Vec3 a = end_10 * f.own[0], way_a = end_10.R * (f.own[1] - f.own[0]);
+  const Vec3 &b = f.b[0], way_b = f.b[1] - f.b[0], across = way_a.cross(way_b);
+  constexpr double kParallel = 1e-3;  // as in FeatureContact::normal_0()
+  if (!(across.norm() > kParallel * way_a.norm() * way_b.norm())) return false;
+  const double share_a = (b - a).cross(way_b).dot(across) / across.squaredNorm(),
+               share_b = (b - a).cross(way_a).dot(across) / across.squaredNorm();
+  if (!(share_a > 0 && share_a < 1 && share_b > 0 && share_b < 1)) return false;
+  contact.kind = Kind::EdgeOnEdge;
+  for (int i = 0; i < 2; ++i) contact.feature[i] = feature[i];
+  contact.plane_of = 1;
+  contact.p[0] = f.own[0] + share_a * (f.own[1] - f.own[0]);
+  contact.p[1] = b + share_b * way_b;
+  contact.along[0] = (f.own[1] - f.own[0]).normalized();
+  contact.along[1] = way_b.normalized();
+  contact.n = (across.dot(n_1) < 0 ? -1 : 1) * across.normalized();
+  const Vec3 n_0 = end_10.R.transpose() * contact.n;
+  return contact.n.dot(end_10 * contact.p[0] - contact.p[1]) < 0 &&
+         isMetFromOutside(part0, Kind::EdgeOnEdge, 0, feature[0], contact.p[0], n_0) &&
+         isMetFromOutside(part1, Kind::EdgeOnEdge, 1, feature[1], contact.p[1], contact.n) &&
+         !isLeftToPoints(part0, part1, contact, end_10.R, contact.n);
 }
 
 // Two features at rest, part 0 at X_10.
@@ -259,6 +302,9 @@ void FeatureMotion::checkStretch(const FeatureSet& part0, const FeatureSet& part
   if (!is_valid_ || !tube_->holds(start) || !tube_->holds(to)) {
     *tube_ = MotionTube(ballAround(part0), ballAround(part1), start, to, tube_->nextWidth(near_.size()));
     search(part0, part1);
+    if (std::getenv("VPS_DBG"))
+      std::fprintf(stderr, "SEARCH near %zu step %.3g um margin %.3g um turn %.3g valid %d hold %d\n",
+                   near_.size(), 1e6 * step_m, 1e6 * tube_->margin_m(), tube_->turn_rad(), is_valid_, 0);
   }
   is_valid_ = true;
   last_ = start;
@@ -287,7 +333,10 @@ void FeatureMotion::checkStretch(const FeatureSet& part0, const FeatureSet& part
     }
     // Within a piece the rotation changes little; the plane is that of its start.
     FeatureContact contact;
-    if (!findContact(part0, part1, near.kind, near.feature, f, met.reach, way_10_[met.piece].R, contact))
+    if (!findContact(part0, part1, near.kind, near.feature, f, met.reach, way_10_[met.piece].R, contact) &&
+        !(near.kind == FeatureContact::Kind::EdgeOnEdge &&
+          findCrossing(part0, part1, near.feature, f, way_10_.back(),
+                       met.reach.nearest.p - met.reach.nearest.q, contact)))
       continue;
     contact.share =
         (static_cast<double>(met.piece) + met.reach.share) / static_cast<double>(way_10_.size() - 1);

@@ -20,7 +20,10 @@ Nearest nearestOfSegments(const Vec3& p1, const Vec3& q1, const Vec3& p2, const 
     t = 1;
     s = std::clamp((b - c) / a, 0.0, 1.0);
   }
-  return {p1 + s * d1, p2 + t * d2, s <= 0 || s >= 1 || t <= 0 || t >= 1};
+  const auto endAt = [](double share) {
+    return share <= 0 ? std::int8_t{0} : share >= 1 ? std::int8_t{1} : Nearest::kBetween;
+  };
+  return {p1 + s * d1, p2 + t * d2, {endAt(s), endAt(t)}};
 }
 
 using Kind = FeatureContact::Kind;

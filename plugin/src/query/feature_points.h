@@ -2,6 +2,8 @@
 // The points of a pair of features, and where two features are nearest.
 #pragma once
 
+#include <cstdint>
+
 #include "vps/feature_motion.h"
 
 namespace vps::inline v0 {
@@ -9,7 +11,9 @@ namespace vps::inline v0 {
 /// The nearest points of two features.
 struct Nearest {
   Vec3 p = Vec3::Zero(), q = Vec3::Zero();  ///< on part 0, on part 1
-  bool is_end = false;                      ///< of two edges: at an end of one of them
+  /// Of two edges: that end of each, 0 or 1, at which its point is.
+  std::int8_t end[2] = {kBetween, kBetween};
+  static constexpr std::int8_t kBetween = -1;
 
   [[nodiscard]] double distance_m() const { return (p - q).norm(); }
 };

@@ -190,6 +190,14 @@ void FeatureSet::findEdges(const Box& box, std::vector<std::uint32_t>& found) co
   });
 }
 
+bool FeatureSet::isOutermostAt(std::uint32_t vertex, const Vec3& n) const {
+  constexpr double kSlope = 1e-3;  // assumed: far above rounding; far below the turns of curved edges
+  const auto corner = std::lower_bound(corners_.begin(), corners_.end(), vertex);
+  if (corner == corners_.end() || *corner != vertex) return false;
+  const std::span<const Vec3> rays = raysAt(static_cast<std::uint32_t>(corner - corners_.begin()));
+  return std::all_of(rays.begin(), rays.end(), [&](const Vec3& ray) { return n.dot(ray) < kSlope; });
+}
+
 const CornerTree& FeatureSet::cornerTree() const {
   return trees_->corners;
 }

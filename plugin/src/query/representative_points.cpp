@@ -2,98 +2,13 @@
 #include "vps/representative_points.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
-#include <stdexcept>
 #include <utility>
 
 #include "query/coherent_walk.h"
 #include "query/contact_collector.h"
 
 namespace vps::inline v0 {
-namespace {
-
-constexpr double kCosSameNormal = 0.94;  // 20 degrees, as PointShellSettings::edge_angle_rad
-
-constexpr std::size_t kMostGroups = 254;  // of a tile
-constexpr double kEdgeShare = 0.25;       // of a tile's size. assumed
-
-}  // namespace
-
-/// Sorts the points of a tile into groups: each joins the first that takes it.
-class RepresentativePoints::Grouping {
- public:
-  Grouping(const PointShell& shell, double size_m, std::span<const std::uint8_t> on_edge)
-      : shell_(shell), edge_size_m_(kEdgeShare * size_m), on_edge_(on_edge) {}
-
-  std::uint8_t add(std::uint32_t id) {
-    const bool is_edge = !on_edge_.empty() && on_edge_[id] != 0;
-    for (std::size_t g = 0; g < members_.size(); ++g)
-      if (takes(members_[g], id, is_edge)) return join(g, id);
-    if (members_.size() == kMostGroups) return kNoGroup;
-    members_.push_back({shell_.inward[id], is_edge, {}, {}});
-    return join(members_.size() - 1, id);
-  }
-  [[nodiscard]] std::size_t size() const { return members_.size(); }
-  [[nodiscard]] std::span<const std::uint32_t> ids(std::size_t g) const { return members_[g].ids; }
-
- private:
-  struct Members {
-    Vec3 normal;
-    bool is_edge;
-    Box box;
-    std::vector<std::uint32_t> ids;
-  };
-
-  [[nodiscard]] bool takes(const Members& group, std::uint32_t id, bool is_edge) const {
-    if (group.is_edge != is_edge || group.normal.dot(shell_.inward[id]) < kCosSameNormal) return false;
-    if (!is_edge) return true;
-    Box grown = group.box;
-    grown.add(shell_.points[id]);
-    return grown.size().norm() <= edge_size_m_;
-  }
-  std::uint8_t join(std::size_t g, std::uint32_t id) {
-    members_[g].box.add(shell_.points[id]);
-    members_[g].ids.push_back(id);
-    return static_cast<std::uint8_t>(g);
-  }
-
-  const PointShell& shell_;
-  const double edge_size_m_;
-  std::span<const std::uint8_t> on_edge_;
-  std::vector<Members> members_;
-};
-
-RepresentativePoints::RepresentativePoints(const PointShell& shell, double tile_size_m,
-                                           std::span<const std::uint8_t> on_edge)
-    : shell_(&shell),
-      tile_of_leaf_(shell.leaf_blocks, kNone),
-      group_of_(shell.size(), kNoGroup),
-      group_of_leaf_(shell.leaf_blocks, kMixed) {
-  if (!(tile_size_m > 0)) throw std::invalid_argument("RepresentativePoints: a tile's size must be positive");
-  chosen_.reserve(2 * shell.size() + 2 * kMostGroups);  // a tile's may be there twice until sorted
-  // Nodes of the hierarchy keep their size when a shell is cropped, so that the tiles of what is left are the
-  // same.
-  std::size_t leaf = 0;
-  for (std::size_t i = 0; i < shell.nodes.size();) {
-    const ShellNode& node = shell.nodes[i];
-    const std::size_t first = leaf;
-    if (2 * node.radius_m <= tile_size_m) {
-      while (leaf < shell.leaf_blocks && shell.blocks[leaf].first < node.first + node.count) ++leaf;
-      addTile(first, leaf, tile_size_m, on_edge);
-      i = node.skip;
-    } else {
-      if (node.is_leaf) addLoose(leaf++);
-      ++i;
-    }
-  }
-}
-
-// A leaf that is larger than a tile may be: its points stand for themselves.
-void RepresentativePoints::addLoose(std::size_t leaf) {
-  tile_of_leaf_[leaf] = static_cast<std::uint32_t>(tiles_.size());
-  tiles_.push_back({static_cast<std::uint32_t>(groups_.size()), 0});
-}
 
 std::uint32_t RepresentativePoints::groupOf(std::uint32_t id) const noexcept {
   if (group_of_[id] == kNoGroup) return kNone;
@@ -102,48 +17,6 @@ std::uint32_t RepresentativePoints::groupOf(std::uint32_t id) const noexcept {
       [id](const ShellBlock& block) { return block.first + block.count <= id; });
   const auto index = static_cast<std::size_t>(leaf - shell_->blocks.begin());
   return tiles_[tile_of_leaf_[index]].first_group + group_of_[id];
-}
-
-void RepresentativePoints::addTile(std::size_t first_leaf, std::size_t end_leaf, double tile_size_m,
-                                   std::span<const std::uint8_t> on_edge) {
-  Grouping grouping(*shell_, tile_size_m, on_edge);
-  for (std::size_t leaf = first_leaf; leaf < end_leaf; ++leaf) {
-    const ShellBlock& block = shell_->blocks[leaf];
-    tile_of_leaf_[leaf] = static_cast<std::uint32_t>(tiles_.size());
-    for (std::uint32_t id = block.first; id < block.first + block.count; ++id)
-      group_of_[id] = grouping.add(id);
-    const std::uint8_t first = group_of_[block.first];
-    const auto begin = group_of_.begin() + block.first;
-    if (std::all_of(begin, begin + block.count, [first](std::uint8_t g) { return g == first; }))
-      group_of_leaf_[leaf] = first;
-  }
-  tiles_.push_back({static_cast<std::uint32_t>(groups_.size()), static_cast<std::uint32_t>(grouping.size())});
-  for (std::size_t g = 0; g < grouping.size(); ++g) {
-    groups_.push_back(fitted(grouping.ids(g)));
-    reduces_contacts_ |= grouping.ids(g).size() > 2;
-  }
-}
-
-RepresentativePoints::Group RepresentativePoints::fitted(std::span<const std::uint32_t> ids) const {
-  Group group;
-  const auto count = static_cast<double>(ids.size());
-  for (const std::uint32_t id : ids) {
-    group.center += shell_->points[id] / count;
-    group.inward += shell_->inward[id] / count;
-  }
-  // Least squares: bend = sum(dn dp^T) sum(dp dp^T)^-1. A flat group does not determine the derivative along
-  // its own normal; the ridge makes it zero.
-  Mat3 places = Mat3::Zero(), turns = Mat3::Zero();
-  for (const std::uint32_t id : ids) {
-    const Vec3 dp = shell_->points[id] - group.center;
-    places += dp * dp.transpose();
-    turns += (shell_->inward[id] - group.inward) * dp.transpose();
-    group.radius_m = std::max(group.radius_m, dp.norm());
-  }
-  constexpr double kRidge = 1e-3;
-  if (const double size = places.trace(); size > 0)
-    group.bend = turns * (places + kRidge * size * Mat3::Identity()).inverse();
-  return group;
 }
 
 /// One walk over the near leaves.
@@ -158,6 +31,7 @@ class RepresentativePoints::Search {
         shift_P_(X_MP.R.transpose() * (request.step_M.v + request.step_M.w.cross(X_MP.p))),
         required_(request.required) {
     self_.chosen_.clear();
+    self_.of_groups_.clear();
   }
 
   void take(const ReadLeaf& leaf) noexcept {
@@ -178,15 +52,14 @@ class RepresentativePoints::Search {
   /// After the last leaf.
   void finish() noexcept {
     if (tile_ == kNone) return;
-    auto& chosen = self_.chosen_;
-    for (std::size_t g = 0; g < self_.tiles_[tile_].group_count; ++g)
-      for (const Best* best : {&best_[g].now, &best_[g].then})
-        if (best->point.id != kNone) chosen.push_back(best->point);
-    const auto first = chosen.begin() + static_cast<std::ptrdiff_t>(first_chosen_);
-    std::sort(first, chosen.end(), [](const Chosen& a, const Chosen& b) { return a.id < b.id; });
-    chosen.erase(
-        std::unique(first, chosen.end(), [](const Chosen& a, const Chosen& b) { return a.id == b.id; }),
-        chosen.end());
+    const Tile& tile = self_.tiles_[tile_];
+    for (std::uint32_t g = 0; g < tile.group_count; ++g) {
+      const GroupBest& best = best_[g];
+      if (best.now.point.id == kNone) continue;
+      Nearest nearest{tile.first_group + g, best.now, best.has_slope ? best.then : best.now};
+      nearest.then.value += best.common;
+      self_.of_groups_.push_back(nearest);
+    }
     tile_ = kNone;
   }
 
@@ -194,14 +67,10 @@ class RepresentativePoints::Search {
   [[nodiscard]] std::size_t near() const noexcept { return near_; }
 
  private:
-  struct Best {
-    float value = std::numeric_limits<float>::infinity();
-    Chosen point{kNone, kNone};
-  };
-
   /// The nearest points of a group, now and after the step.
   struct GroupBest {
-    Best now, then;
+    Best now, then;    ///< the latter without what the group has in common
+    float common = 0;  ///< change of the gap at its centre in the step
     bool has_slope = false;
     Vec3 center;
     Eigen::Vector3f slope;  ///< of the change of the gap in the step [quanta/m]
@@ -210,15 +79,15 @@ class RepresentativePoints::Search {
 
   void begin(std::uint32_t index) noexcept {
     tile_ = index;
-    first_chosen_ = self_.chosen_.size();
     const Tile& tile = self_.tiles_[index];
     for (std::size_t g = 0; g < tile.group_count; ++g) {
       const Group& group = self_.groups_[tile.first_group + g];
       GroupBest& best = best_[g];
-      const Vec3 slope =
-          group.bend.transpose() * (shift_P_ + turn_P_.cross(group.center)) + group.inward.cross(turn_P_);
+      const Vec3 way = shift_P_ + turn_P_.cross(group.center);
+      const Vec3 slope = group.bend.transpose() * way + group.inward.cross(turn_P_);
       const double length = slope.norm();
       best.now = best.then = {};
+      best.common = static_cast<float>(group.inward.dot(way) / quantum_m_);
       best.has_slope = length * group.radius_m > kSame_m;
       best.center = group.center;
       best.slope = (slope / quantum_m_).cast<float>();
@@ -297,15 +166,52 @@ class RepresentativePoints::Search {
   const Vec3 turn_P_, shift_P_;  ///< the step, about P's origin, in P
   std::span<const std::uint32_t> required_;
   std::uint32_t tile_ = kNone;
-  std::size_t first_chosen_ = 0;  ///< of the tile
-  GroupBest best_[kMostGroups];   ///< of the tile
+  GroupBest best_[kNoGroup];  ///< of the tile
   float least_ = std::numeric_limits<float>::infinity();
   std::size_t near_ = 0;
 };
 
+void RepresentativePoints::choose(std::span<const Nearest> nearest) noexcept {
+  for (const Nearest& n : nearest) {
+    chosen_.push_back(n.now.point);
+    if (n.then.point.id != n.now.point.id) chosen_.push_back(n.then.point);
+  }
+}
+
+void RepresentativePoints::mergeTo(const Level& level) noexcept {
+  of_cells_.clear();
+  for (const Nearest& n : of_groups_) {
+    const std::uint32_t cell = level.cell_of_group[n.of];
+    const std::uint32_t place = place_of_cell_[cell];
+    if (place < of_cells_.size() && of_cells_[place].of == cell) {
+      of_cells_[place].take(n);
+      continue;
+    }
+    place_of_cell_[cell] = static_cast<std::uint32_t>(of_cells_.size());
+    of_cells_.push_back(n);
+    of_cells_.back().of = cell;
+  }
+}
+
+// Adds the nearest points of the groups, or of the smallest cells of which there are no more than wanted.
+void RepresentativePoints::merge(const Request& request) noexcept {
+  if (request.most_groups > 0 && of_groups_.size() > request.most_groups)
+    for (const Level& level : levels_) {
+      if (level.cell_m > request.most_cell_m) break;
+      mergeTo(level);
+      merged_to_m_ = level.cell_m;
+      if (of_cells_.size() <= request.most_groups) break;
+    }
+  choose(merged_to_m_ > 0 ? of_cells_ : of_groups_);
+  std::sort(chosen_.begin(), chosen_.end(), [](const Chosen& a, const Chosen& b) { return a.id < b.id; });
+  const auto isSame = [](const Chosen& a, const Chosen& b) { return a.id == b.id; };
+  chosen_.erase(std::unique(chosen_.begin(), chosen_.end(), isSame), chosen_.end());
+}
+
 QueryResult RepresentativePoints::find(const VoxMap& map, const Pose& X_MP, const Request& request,
                                        ContactSet& out, QueryMemory* memory) noexcept {
   const QueryOptions& options = request.options;
+  merged_to_m_ = 0;
   if (!X_MP.isFinite() || !reduces_contacts_) return queryContacts(map, *shell_, X_MP, options, out, memory);
   out.contacts.clear();
   out.left_out = 0;
@@ -318,6 +224,7 @@ QueryResult RepresentativePoints::find(const VoxMap& map, const Pose& X_MP, cons
                      [&](const ReadLeaf& leaf) { search.take(leaf); });
   if (search.near() <= request.full_count) return queryContacts(map, *shell_, X_MP, options, out, memory);
   search.finish();
+  merge(request);
 
   // The chosen points are in few leaves, which are read again: a batch keeps its readings only until the
   // next.
