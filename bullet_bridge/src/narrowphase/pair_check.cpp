@@ -284,12 +284,11 @@ void PairCheck::findAmongRefined(const Motion& m, std::vector<Candidate>& missed
   const SideView side[2] = {at_end.pair.side(0), at_end.pair.side(1)};
   for (const Candidate& c : state_.selection.refined) {
     Candidate end = m.since_selected.moved(c);
+    // Where edges cross, the normal turns otherwise than the bodies do.
+    if (c.isCrossing() && !crossAt(end, side[0], side[1])) continue;
     if (!isMissed(c.distance_m, end.distance_m, m.tolerated_m)) continue;
     const double near_m = std::abs(end.distance_m) + at_end.pair.voxel_m(1 - c.side);
-    if (c.isCrossing() ? !crossAt(end, side[0], side[1])
-                       : !isInside(end.p_W, side[1 - c.side], near_m, m.tolerated_m))
-      continue;
-    if (!isMissed(c.distance_m, end.distance_m, m.tolerated_m)) continue;
+    if (!c.isCrossing() && !isInside(end.p_W, side[1 - c.side], near_m, m.tolerated_m)) continue;
     missed.push_back(end);
   }
 }
