@@ -15,6 +15,7 @@
 #include "narrowphase/contact_selection.h"
 #include "narrowphase/far_points.h"
 #include "narrowphase/pair_check.h"
+#include "narrowphase/pair_loop.h"
 #include "solver/penalty_contacts.h"
 #include "solver/step_check.h"
 #include "solver/turn_check.h"
@@ -221,6 +222,7 @@ void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* body0,
   warnOfTurn(*state_, pair);
   state_->writer->write(state_->contacts, pair.wrapper, state_->motion, mayNeedMore(pair, *state_));
   registerCheck(pair, *state_);
+  addMissedAlone(*m_dispatcher, pair, *state_);
   passToSolver(*state_);
 }
 

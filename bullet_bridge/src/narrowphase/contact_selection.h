@@ -75,6 +75,12 @@ double motionChange_m(const Selection& selection, const PairView& pair, const Re
 /// Carries a selection's planes to where the bodies are now. Within kUnmoved_m that is as good as a query.
 CandidateMotion motionSince(const Selection& selection, const PairView& pair);
 
+/// True if bodies meet within the step at a contact with restitution. Bullet's own solver then lets them
+/// bounce at once: early by less than a step's travel, with the right speed. bullet::Solver solves for the
+/// gap, and has restitution.h.
+/// @param gap_m, predicted_m  now, and at the end of the step in free motion
+bool meetsWithBounce(double restitution, double gap_m, double predicted_m, double dt_s);
+
 // The two contact methods: set state.contacts for the coming step; with penalty, state.penalty as well.
 
 void selectRigid(const PairView& pair, PairState& state);
