@@ -40,7 +40,6 @@ void resetIfModelsChanged(PairState& state, const PairView& pair) {
     state.are_both_curved.reset();
     state.missed_features.clear();
     state.crossings.reset();
-    state.entered.reset();
     for (auto& query_state : state.query_state) query_state.reset();
     for (auto& ids : state.always) ids.clear();
     state.writer->invalidateIds();

@@ -19,11 +19,6 @@ namespace vps::bullet::inline v0 {
 void findPointCandidates(const PairView& pair, double cutoff_m, Context& context, std::vector<Candidate>& out,
                          PairState* state = nullptr, const RelativeMotion* motion = nullptr);
 
-/// Adds crossings of edges that met on the way from `start` to `end`, on which the bodies are, and that
-/// overlap by overlap_m to depth_m there.
-void findEnteredCrossings(const PairView& pair, const PairView& start, const PairView& end, double overlap_m,
-                          double depth_m, PairState& state, std::vector<Candidate>& out);
-
 /// Adds points, as findPointCandidates(), and crossings of edges.
 void findCandidates(const PairView& pair, double cutoff_m, Context& context, std::vector<Candidate>& out,
                     PairState* state = nullptr, const RelativeMotion* motion = nullptr);

@@ -53,7 +53,6 @@ struct PairState {
   FeatureMotion features;             ///< with rigid contact: of the models
   std::vector<FeatureContact> missed_features;  ///< with rigid contact: what earlier steps lacked, still near
   CrossingMemory crossings;                     ///< with rigid contact: of the models' edges
-  CrossingMemory entered;                       ///< the same, on the way of the solved step
   PenaltyPair penalty;                          ///< with penalty contact
   bool is_registered = false;                   ///< penalty is in the context's PenaltyContacts
   std::optional<QueryState> query_state[2];     ///< of side 0's points in side 1's map, and the reverse
