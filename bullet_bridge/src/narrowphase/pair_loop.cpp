@@ -9,6 +9,7 @@
 #include <algorithm>
 
 #include "narrowphase/contact_selection.h"
+#include "narrowphase/feature_check.h"
 #include "solver/contact_loop.h"
 #include "solver/penalty_contacts.h"
 #include "vps_bullet/convert.h"
@@ -173,7 +174,8 @@ void addMissedAlone(btDispatcher& dispatcher, const PairView& pair, PairState& s
     for (int i = 0; i < manifold->getNumContacts(); ++i)
       loop.contacts.add(*manifold, manifold->getContactPoint(i), info);
   loop.checks.assign(1, state.check.get());
-  const SolverSettings settings;
+  SolverSettings settings;  // end poses to a hundredth of what a check tolerates
+  settings.residual_m_s = 0.01 * kToleratedShare * state.motion.contact_margin_m / dt_s;
   // The rows stay where they were selected: the motion of the pair alone is not that of the world.
   loop.run(info, settings.iteration_limit, false, [&] { return loop.solveContacts(settings); });
   loop.contacts.finish();
