@@ -153,11 +153,11 @@ TEST(MissedContact, OfABlockThatAnotherOneThrows) {
 
 // A wall stands on a floor, as a part of its own: its lower rim is in the plane in which a corner slides. The
 // nearest surface to the corner is then the wall's underside, which the corner does not face.
-TEST(MissedContact, OfACornerThatSlidesOverAFloorIntoAWall) {
+TEST_P(MissedContact, OfACornerThatSlidesOverAFloorIntoAWall) {
   // Lying on a face, a corner ahead.
   const Mesh tetrahedron = cornerTetrahedron(12e-3);
   for (const double side_m : {0.0, 0.7e-3, 1.3e-3}) {
-    Measured scene;
+    Measured scene(GetParam());
     scene.add(makeBox({60e-3, 60e-3, 6e-3}), Pose::translation({0, 0, -3e-3}), true);
     scene.add(makeBox({6e-3, 60e-3, 20e-3}), Pose::translation({23e-3, 0, 10e-3}), true);
     scene.addMoving(tetrahedron, Pose(rotationFromVector({0, 0, -0.3}), Vec3(6e-3, side_m, 0)), {0.3, 0, 0});
@@ -171,14 +171,14 @@ Mesh lyingPrism(const Polygon& section, double length_m) {
 }
 
 // The edges between sides of a coarse cylinder turn by 15 degrees, and were met at sampled points only.
-TEST(MissedContact, OfTheSidesOfTwoCoarseCylinders) {
+TEST_P(MissedContact, OfTheSidesOfTwoCoarseCylinders) {
   Polygon section;
   for (int i = 0; i < 24; ++i) {
     const double angle_rad = 2 * std::numbers::pi * i / 24;
     section.push_back({40e-3 * std::cos(angle_rad), 40e-3 * std::sin(angle_rad)});
   }
   const Mesh cylinder = lyingPrism(section, 60e-3);
-  Measured scene;
+  Measured scene(GetParam());
   scene.add(cylinder, Pose::translation({0, 0, -40e-3}), true);
   scene.addMoving(cylinder,
                   Pose(rotationFromVector({0, 0, std::numbers::pi / 2}), Vec3(0.3e-3, 0.2e-3, 40.5e-3)),
@@ -187,12 +187,12 @@ TEST(MissedContact, OfTheSidesOfTwoCoarseCylinders) {
 }
 
 // A roof of 5 degrees was taken for a curved surface, whose edges are left to sampled points.
-TEST(MissedContact, OfTwoFlatRoofsThatCross) {
+TEST_P(MissedContact, OfTwoFlatRoofsThatCross) {
   const double rise_m = 10e-3 * std::tan(2.5 * std::numbers::pi / 180);
   const Mesh roof =
       lyingPrism({{0, -10e-3}, {rise_m, 0}, {0, 10e-3}, {-5e-3, 10e-3}, {-5e-3, -10e-3}}, 20e-3);
   const double top_m = -lowest_m(roof, Mat3::Identity());
-  Measured scene;
+  Measured scene(GetParam());
   scene.add(roof, Pose(rotationFromVector({std::numbers::pi, 0, 0}), Vec3(0, 0, -top_m)), true);
   scene.addMoving(roof, Pose(rotationFromVector({0, 0, 1}), Vec3(0.3e-3, 0.2e-3, top_m + 0.2e-3)),
                   {0, 0, -0.5}, {0, 0, 20});
@@ -214,11 +214,11 @@ Mesh pocketed(double a_m, double b_m, double deep_m) {
 // Forces that would move a light key by a millimetre in one step, if nothing stopped it. Its edges then met
 // the pocket's where they would have been at the end of that step, and the contacts there, up to 0.7 mm deep,
 // pushed a key aside that was not deep at all.
-TEST(MissedContact, OfAKeyThatStrongForcesTurnInItsPocket) {
+TEST_P(MissedContact, OfAKeyThatStrongForcesTurnInItsPocket) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> uniform(-1, 1);
   const auto drawn = [&] { return Vec3(uniform(random), uniform(random), uniform(random)); };
-  Measured scene;
+  Measured scene(GetParam());
   scene.add(pocketed(3.025e-3, 10.05e-3, 5e-3), Pose(), true);
   btRigidBody& key = scene.add(makeBox({6e-3, 20e-3, 6e-3}), Pose::translation({0, 0, -2e-3}));
   double deepest_m = 0, deepest_contact_m = 0;

@@ -361,55 +361,5 @@ TEST(FindCrossings, AMemoryDoesNotChangeTheAnswer) {
   EXPECT_GT(count, 50u);
 }
 
-// A thread's rod that is pushed into its nut from where it is free, by steps much longer than what counts as
-// near: what an exhaustive search finds at places on the way, of the edges that met.
-TEST(FindEntered, AreTheCrossingsWhoseEdgesMetOnTheWay) {
-  const NutAndRod parts;
-  const test::ThreadShape& thread = parts.thread;
-  const EdgeSet &nut = parts.nut, &rod = parts.rod;
-  std::mt19937 random(7);
-  std::normal_distribution<double> normal;
-  const double least_m = 1e-6, start_depth_m = 30e-6;
-  const auto distanceAt = [&](const EdgeCrossing& c, const Pose& X) {
-    const EdgeSegment &a = nut.segments()[c.edge[0]], &b = rod.segments()[c.edge[1]];
-    return nearestOfSegments(a.from, a.to, X * b.from, X * b.to).distance_m();
-  };
-  CrossingMemory memory;
-  std::size_t count = 0, left_out = 0;
-  for (int i = 0; i < 200; ++i) {
-    const double turn_rad = 0.02 * i;
-    const Pose start{turned(Vec3::UnitZ(), turn_rad),
-                     Vec3(0, 0, turn_rad / (2 * std::numbers::pi) * thread.pitch_m)};
-    // Every tenth is far away; of the others two in a row are nearly the same, as when a step is solved
-    // again.
-    const double way_m = i % 10 == 9 ? 5e-3 : 0.4e-3;
-    std::mt19937 same(static_cast<unsigned>(i / 2));
-    const Vec3 way =
-        way_m * test::drawnVector(normal, same).normalized() + 1e-6 * test::drawnVector(normal, random);
-    const Pose end{turned(Vec3::UnitX(), 5e-3) * start.R, start.p + way};
-    for (const double share : {0.4, 1.0}) {
-      const Pose X = interpolate(start, end, share);
-      std::vector<EdgeCrossing> found, all;
-      findEntered(nut, rod, X, {least_m, way_m, start_depth_m, start, end}, found, memory);
-      findCrossings(nut, rod, X, {-least_m, way_m, X}, all);
-      auto next = found.begin();
-      for (const EdgeCrossing& c : all) {
-        if (next != found.end() && next->edge[0] == c.edge[0] && next->edge[1] == c.edge[1]) {
-          EXPECT_EQ(next->gap_m, c.gap_m);
-          ++next;
-          ++count;
-          continue;
-        }
-        ++left_out;
-        for (int k = 0; k <= 50; ++k)
-          ASSERT_GT(distanceAt(c, interpolate(start, end, 0.02 * k)), start_depth_m) << i;
-      }
-      ASSERT_EQ(next, found.end()) << i;
-    }
-  }
-  EXPECT_GT(count, 50u);
-  EXPECT_GT(left_out, 200u);
-}
-
 }  // namespace
 }  // namespace vps

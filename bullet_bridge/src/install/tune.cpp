@@ -10,7 +10,9 @@
 #include <stdexcept>
 #include <type_traits>
 
+#include "solver/penalty_contacts.h"
 #include "vps_bullet/convert.h"
+#include "vps_bullet/solver.h"
 
 namespace vps::bullet::inline v0 {
 
@@ -73,6 +75,9 @@ WorldTuning tuneWorld(btDiscreteDynamicsWorld& world, int solver_iterations) {
   if (solver_iterations < 1)
     throw std::invalid_argument("tuneWorld: the solver needs at least one iteration, not " +
                                 std::to_string(solver_iterations));
+  // The narrow phase would know it from the second step on.
+  const ContactCreateFunction* stores = contactFunctionOf(world.getDispatcher());
+  if (stores && dynamic_cast<Solver*>(world.getConstraintSolver())) stores->penalty_contacts->setHasSolver();
   WorldTuning tuning;
   forEachParameter(world, solver_iterations, [&tuning](auto& value, auto wanted, const char* name) {
     tuning.values.emplace_back(value, wanted);

@@ -15,6 +15,7 @@
 #include "narrowphase/contact_selection.h"
 #include "narrowphase/far_points.h"
 #include "narrowphase/pair_check.h"
+#include "narrowphase/pair_loop.h"
 #include "solver/penalty_contacts.h"
 #include "solver/step_check.h"
 #include "solver/turn_check.h"
@@ -39,7 +40,6 @@ void resetIfModelsChanged(PairState& state, const PairView& pair) {
     state.are_both_curved.reset();
     state.missed_features.clear();
     state.crossings.reset();
-    state.entered.reset();
     for (auto& query_state : state.query_state) query_state.reset();
     for (auto& ids : state.always) ids.clear();
     state.writer->invalidateIds();
@@ -221,6 +221,7 @@ void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* body0,
   warnOfTurn(*state_, pair);
   state_->writer->write(state_->contacts, pair.wrapper, state_->motion, mayNeedMore(pair, *state_));
   registerCheck(pair, *state_);
+  addMissedAlone(*m_dispatcher, pair, *state_);
   passToSolver(*state_);
 }
 

@@ -126,10 +126,6 @@ std::size_t findSurfaceCandidates(const SideView& side, const SideView& other, d
 std::size_t findCrossingCandidates(const SideView& body0, const SideView& body1, const CrossingRange& range,
                                    const Settings& settings, CrossingMemory* memory,
                                    std::vector<Candidate>& out);
-/// The same, at a place on the way of a motion, for edges that met on it.
-std::size_t findEnteredCandidates(const SideView& body0, const SideView& body1, const EnteredRange& range,
-                                  const Settings& settings, CrossingMemory& memory,
-                                  std::vector<Candidate>& out);
 
 // Reducing.
 

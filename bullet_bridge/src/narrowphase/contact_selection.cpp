@@ -113,16 +113,6 @@ void findCandidates(const PairView& pair, double cutoff_m, Context& context, std
                                context.settings, state ? &state->crossings : nullptr, out);
 }
 
-void findEnteredCrossings(const PairView& pair, const PairView& start, const PairView& end, double overlap_m,
-                          double depth_m, PairState& state, std::vector<Candidate>& out) {
-  Context& context = *state.context;
-  if (!haveCrossings(pair, context.settings)) return;
-  const double start_depth_m = edgeDepth_m(start, state.selection, context.settings.contact_margin_m);
-  const EnteredRange range{overlap_m, depth_m, start_depth_m, start.X_01_models(), end.X_01_models()};
-  context.left_out +=
-      findEnteredCandidates(pair.side(0), pair.side(1), range, context.settings, state.entered, out);
-}
-
 void refineAll(const PairView& pair, const RelativeMotion& motion, const Settings& settings,
                std::vector<Candidate>& candidates) {
   if (!settings.use_surfaces) return;

@@ -19,11 +19,6 @@ namespace vps::bullet::inline v0 {
 void findPointCandidates(const PairView& pair, double cutoff_m, Context& context, std::vector<Candidate>& out,
                          PairState* state = nullptr, const RelativeMotion* motion = nullptr);
 
-/// Adds crossings of edges that met on the way from `start` to `end`, on which the bodies are, and that
-/// overlap by overlap_m to depth_m there.
-void findEnteredCrossings(const PairView& pair, const PairView& start, const PairView& end, double overlap_m,
-                          double depth_m, PairState& state, std::vector<Candidate>& out);
-
 /// Adds points, as findPointCandidates(), and crossings of edges.
 void findCandidates(const PairView& pair, double cutoff_m, Context& context, std::vector<Candidate>& out,
                     PairState* state = nullptr, const RelativeMotion* motion = nullptr);
@@ -74,6 +69,12 @@ double motionChange_m(const Selection& selection, const PairView& pair, const Re
 
 /// Carries a selection's planes to where the bodies are now. Within kUnmoved_m that is as good as a query.
 CandidateMotion motionSince(const Selection& selection, const PairView& pair);
+
+/// True if bodies meet within the step at a contact with restitution. Bullet's own solver then lets them
+/// bounce at once: early by less than a step's travel, with the right speed. bullet::Solver solves for the
+/// gap, and has restitution.h.
+/// @param gap_m, predicted_m  now, and at the end of the step in free motion
+bool meetsWithBounce(double restitution, double gap_m, double predicted_m, double dt_s);
 
 // The two contact methods: set state.contacts for the coming step; with penalty, state.penalty as well.
 

@@ -89,15 +89,16 @@ bool isFlush(const EdgeSegment& s0, const EdgeSegment& s1, const Mat3& R_01) {
   return false;
 }
 
-// Adds what find(edges0, edges1, X_01, crossings) appends and no other part of a merged body covers.
-template <typename Find>
-std::size_t addCandidates(const SideView& body0, const SideView& body1, const Settings& settings,
-                          const Find& find, std::vector<Candidate>& out) {
+}  // namespace
+
+std::size_t findCrossingCandidates(const SideView& body0, const SideView& body1, const CrossingRange& range,
+                                   const Settings& settings, CrossingMemory* memory,
+                                   std::vector<Candidate>& out) {
   const EdgeSet &edges0 = body0.shape->edges(), &edges1 = body1.shape->edges();
   thread_local std::vector<EdgeCrossing> crossings;
   crossings.clear();
   const Pose X_01 = body0.X_WM.inverse() * body1.X_WM;
-  find(edges0, edges1, X_01, crossings);
+  findCrossings(edges0, edges1, X_01, range, crossings, memory);
   std::erase_if(crossings, [&, X_10 = X_01.inverse()](const EdgeCrossing& at) {
     return isCovered(at, body0, body1, X_10);
   });
@@ -117,26 +118,6 @@ std::size_t addCandidates(const SideView& body0, const SideView& body1, const Se
     out.push_back(c);
   }
   return crossings.size() - room;
-}
-
-}  // namespace
-
-std::size_t findCrossingCandidates(const SideView& body0, const SideView& body1, const CrossingRange& range,
-                                   const Settings& settings, CrossingMemory* memory,
-                                   std::vector<Candidate>& out) {
-  const auto find = [&](const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_01, auto& crossings) {
-    findCrossings(edges0, edges1, X_01, range, crossings, memory);
-  };
-  return addCandidates(body0, body1, settings, find, out);
-}
-
-std::size_t findEnteredCandidates(const SideView& body0, const SideView& body1, const EnteredRange& range,
-                                  const Settings& settings, CrossingMemory& memory,
-                                  std::vector<Candidate>& out) {
-  const auto find = [&](const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_01, auto& crossings) {
-    findEntered(edges0, edges1, X_01, range, crossings, memory);
-  };
-  return addCandidates(body0, body1, settings, find, out);
 }
 
 }  // namespace vps::bullet::inline v0

@@ -145,11 +145,13 @@ bool hasFeatures(const PairView& pair, const Settings& settings) {
          !pair.shape[1]->features().isEmpty();
 }
 
-void markSharp(const PairView& pair, const Settings& settings, std::vector<Candidate>& contacts) {
+void markSharp(const PairView& pair, const Settings& settings, bool is_own,
+               std::vector<Candidate>& contacts) {
   if (!hasFeatures(pair, settings)) return;
   const double rest_m = FeatureMotion::rest_m(pair.shape[0]->features(), pair.shape[1]->features());
   for (Candidate& c : contacts)
-    if (!c.is_flush && (c.isCrossing() || pair.shape[c.side]->isEdgePoint(c.id))) c.rest_m = rest_m;
+    if (!c.is_flush && (!is_own || c.isCrossing() || pair.shape[c.side]->isEdgePoint(c.id)))
+      c.rest_m = rest_m;
 }
 
 void addFeatureContacts(const PairView& start, const EndPoses& end, bool is_first, PairState& state,

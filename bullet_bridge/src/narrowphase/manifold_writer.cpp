@@ -208,6 +208,8 @@ void ManifoldWriter::write(std::span<const Candidate> contacts,
   // Bullet's own algorithms add up to four points again in each step, and keep what others have: so do we,
   // one manifold after the other.
   const std::size_t added_again = used > 0 ? turn_++ % used : 0;
+  lost_load_Ns_ = 0;
+  for (const Old& had : old_) lost_load_Ns_ += had.point.m_appliedImpulse;
   std::vector<Old>::iterator old = old_.begin();
   for (std::size_t m = 0; m < manifolds_.size(); ++m) {
     btPersistentManifold& manifold = *manifolds_[m];
@@ -225,6 +227,7 @@ void ManifoldWriter::write(std::span<const Candidate> contacts,
       bool is_kept = false;
       if (old != old_.end() && old->key == c.key()) {
         copyImpulses(point, old->point);
+        lost_load_Ns_ -= point.m_appliedImpulse;
         is_kept = m != added_again && (old->point.m_contactPointFlags & kWasAdded) != 0;
         if (is_custom && is_kept) keepMaterial(point, old->point);
         old->point.m_userPersistentData = nullptr;

@@ -39,6 +39,8 @@ class ManifoldWriter {
   /// The contact with this key, as it is now; null if there is none.
   /// @param place  where it probably is: its index among those that write() was given
   [[nodiscard]] btManifoldPoint* find(std::uint64_t key, std::size_t place = 0) const;
+  /// Normal impulse of the contacts that the last write() left out.
+  [[nodiscard]] double lostLoad_Ns() const { return lost_load_Ns_; }
   /// To be called when ids refer to other points: no impulse passes from the old contacts to new ones.
   void invalidateIds();
   void append(btAlignedObjectArray<btPersistentManifold*>& manifolds) const;
@@ -59,7 +61,8 @@ class ManifoldWriter {
   std::vector<btPersistentManifold*> manifolds_;
   std::vector<Old> old_;      // last step's points, ascending by key
   bool has_started_ = false;  // gContactStartedCallback was due, and gContactEndedCallback is not yet
-  std::size_t turn_ = 0;      // of the manifold whose points are added again in this step
+  double lost_load_Ns_ = 0;
+  std::size_t turn_ = 0;  // of the manifold whose points are added again in this step
 };
 
 /// Passes contacts to a contactTest's result, one by one.

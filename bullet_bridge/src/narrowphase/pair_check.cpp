@@ -284,31 +284,27 @@ void PairCheck::findAmongRefined(const Motion& m, std::vector<Candidate>& missed
   const SideView side[2] = {at_end.pair.side(0), at_end.pair.side(1)};
   for (const Candidate& c : state_.selection.refined) {
     Candidate end = m.since_selected.moved(c);
+    // Where edges cross, the normal turns otherwise than the bodies do.
+    if (c.isCrossing() && !crossAt(end, side[0], side[1])) continue;
     if (!isMissed(c.distance_m, end.distance_m, m.tolerated_m)) continue;
     const double near_m = std::abs(end.distance_m) + at_end.pair.voxel_m(1 - c.side);
-    if (c.isCrossing() ? !crossAt(end, side[0], side[1])
-                       : !isInside(end.p_W, side[1 - c.side], near_m, m.tolerated_m))
-      continue;
-    if (!isMissed(c.distance_m, end.distance_m, m.tolerated_m)) continue;
+    if (!c.isCrossing() && !isInside(end.p_W, side[1 - c.side], near_m, m.tolerated_m)) continue;
     missed.push_back(end);
   }
 }
 
-// Points and crossings that overlap by more than tolerated. Crossings may be left out whose edges did not
-// meet on the way, or that are deeper than the bodies moved.
-void PairCheck::findOverlaps(const Motion& m, const PairView& start, const PairView& pair,
-                             const PairView& end, std::vector<Candidate>& found) const {
+// Points that overlap by more than tolerated.
+void PairCheck::findOverlaps(const Motion& m, const PairView& pair, std::vector<Candidate>& found) const {
   found.clear();
   Context& context = *state_.context;
   const double cutoff_m = std::min(std::max(m.tolerated_m, fieldError_m(pair)), queryRange_m(pair));
   RelativeMotion still;
   still.contact_margin_m = context.settings.contact_margin_m;
   findPointCandidates(pair, cutoff_m, context, found, &state_, &still);
-  findEnteredCrossings(pair, start, end, m.tolerated_m, m.travel_m, state_, found);
   const SamplingError sampling(pair, found);
   std::erase_if(found, [&](Candidate& c) {
     c.predicted_m = c.distance_m;
-    return !c.isCrossing() && c.distance_m > fieldError_m(pair, c) + sampling.of_m(c);
+    return c.distance_m > fieldError_m(pair, c) + sampling.of_m(c);
   });
   const double radius_m = pair.radius_m();
   const std::size_t limit = 4 * static_cast<std::size_t>(context.settings.contact_limit);
@@ -319,7 +315,7 @@ void PairCheck::findOverlaps(const Motion& m, const PairView& start, const PairV
 }
 
 void PairCheck::findAlongPath(const Motion& m, std::vector<Candidate>& missed) const {
-  const Placed at_start(*this, m.start), at_end(*this, m.end);
+  const Placed at_start(*this, m.start);
   const double range_m = std::max(queryRange_m(at_start.pair), m.tolerated_m);
   constexpr double kMaxPlaces = 16;
   const int places = static_cast<int>(std::ceil(std::min(m.travel_m / range_m, kMaxPlaces)));
@@ -328,16 +324,14 @@ void PairCheck::findAlongPath(const Motion& m, std::vector<Candidate>& missed) c
     const double share = static_cast<double>(k) / places;
     const Pose then[2] = {interpolate(m.start[0], m.end[0], share), interpolate(m.start[1], m.end[1], share)};
     const Placed placed(*this, then);
-    findOverlaps(m, at_start.pair, placed.pair, at_end.pair, missed);
+    findOverlaps(m, placed.pair, missed);
     const Displacement back = {{m.start[0] * then[0].inverse(), m.start[1] * then[1].inverse()}};
     const Displacement onward = {{m.end[0] * then[0].inverse(), m.end[1] * then[1].inverse()}};
     entered.clear();
     for (const Candidate& c : missed) {
       Candidate start = back.moved(c), end = onward.moved(c);
       if (m.turnsFar(share)) continue;  // later places tell
-      if (c.isCrossing()) {
-        start.distance_m = overlapOf(start, at_start.pair);
-      } else if (m.turnsFar(0)) {
+      if (m.turnsFar(0)) {
         if (!measureAtStart(m, at_start.pair, start)) continue;
       } else if (start.distance_m < -m.tolerated_m) {
         // It was behind this plane before, so it did not enter through it. The plane that it had then

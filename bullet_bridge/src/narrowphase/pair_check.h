@@ -58,8 +58,7 @@ class PairCheck final : public StepCheck {
   void relinearise(const Motion& motion, const Placed& at_start, bool is_before,
                    std::vector<MissedContact>& out);
   void findAmongRefined(const Motion& motion, std::vector<Candidate>& missed) const;
-  void findOverlaps(const Motion& motion, const PairView& start, const PairView& pair, const PairView& end,
-                    std::vector<Candidate>& found) const;
+  void findOverlaps(const Motion& motion, const PairView& pair, std::vector<Candidate>& found) const;
   void findAlongPath(const Motion& motion, std::vector<Candidate>& missed) const;
   [[nodiscard]] bool mayMissPoints(const Motion& motion, const PairView& at_start) const;
   [[nodiscard]] bool leavesCurve(const Motion& motion, const PairView& at_start, const Candidate& c) const;

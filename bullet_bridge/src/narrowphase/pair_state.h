@@ -12,6 +12,7 @@
 #include "narrowphase/motion.h"
 #include "narrowphase/query_state.h"
 #include "native_shapes/shape_key.h"
+#include "solver/contact_loop.h"
 #include "solver/penalty_pair.h"
 #include "solver/step_check.h"
 #include "vps/edge_crossing.h"
@@ -43,15 +44,15 @@ struct PairState {
   std::vector<Candidate> contacts;  ///< of the coming step
   RelativeMotion motion;
   bool is_prepared = false;
-  int turns_in_row = 0;              ///< steps in which the bodies turned too far against each other
-  double fastest_rad_s = 0;          ///< their greatest rotation in these
-  bool was_queried = false;          ///< in an earlier step
-  bool is_incomplete = false;        ///< the solved step needed more contacts than the selection has
-  std::unique_ptr<StepCheck> check;  ///< with rigid contact
-  FeatureMotion features;            ///< with rigid contact: of the models
+  int turns_in_row = 0;               ///< steps in which the bodies turned too far against each other
+  double fastest_rad_s = 0;           ///< their greatest rotation in these
+  bool was_queried = false;           ///< in an earlier step
+  bool is_incomplete = false;         ///< the solved step needed more contacts than the selection has
+  std::unique_ptr<StepCheck> check;   ///< with rigid contact
+  std::unique_ptr<ContactLoop> loop;  ///< with rigid contact, in a world whose solver asks no check
+  FeatureMotion features;             ///< with rigid contact: of the models
   std::vector<FeatureContact> missed_features;  ///< with rigid contact: what earlier steps lacked, still near
   CrossingMemory crossings;                     ///< with rigid contact: of the models' edges
-  CrossingMemory entered;                       ///< the same, on the way of the solved step
   PenaltyPair penalty;                          ///< with penalty contact
   bool is_registered = false;                   ///< penalty is in the context's PenaltyContacts
   std::optional<QueryState> query_state[2];     ///< of side 0's points in side 1's map, and the reverse

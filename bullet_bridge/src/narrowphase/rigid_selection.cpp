@@ -5,6 +5,7 @@
 
 #include "narrowphase/contact_selection.h"
 #include "narrowphase/feature_check.h"
+#include "narrowphase/pair_loop.h"
 #include "narrowphase/pair_material.h"
 
 namespace vps::bullet::inline v0 {
@@ -35,17 +36,18 @@ double mergedTo_m(const PairState& state) {
   return most_m;
 }
 
-// Contacts that meet within the step. Bullet's own solver then lets the bodies bounce at once: early by less
-// than a step's travel, with the right speed. bullet::Solver solves for the gap, and has restitution.h.
 void markBounces(std::vector<Candidate>& candidates, const RelativeMotion& motion,
                  const PairMaterial& material) {
-  constexpr double kThreshold_m_s = 0.2;  // btContactSolverInfo::m_restitutionVelocityThreshold
   for (Candidate& c : candidates)
-    c.bounces = material.restitution(c) > 0 && c.distance_m > 0 && c.predicted_m < 0 &&
-                c.predicted_m < c.distance_m - kThreshold_m_s * motion.dt_s;
+    c.bounces = meetsWithBounce(material.restitution(c), c.distance_m, c.predicted_m, motion.dt_s);
 }
 
 }  // namespace
+
+bool meetsWithBounce(double restitution, double gap_m, double predicted_m, double dt_s) {
+  constexpr double kThreshold_m_s = 0.2;  // btContactSolverInfo::m_restitutionVelocityThreshold
+  return restitution > 0 && gap_m > 0 && predicted_m < 0 && predicted_m < gap_m - kThreshold_m_s * dt_s;
+}
 
 void selectRigid(const PairView& pair, PairState& state) {
   Context& context = *state.context;
@@ -59,7 +61,7 @@ void selectRigid(const PairView& pair, PairState& state) {
     addMissedFeatures(pair, context.settings, state, state.contacts);
     storeSelection(state.contacts, pair, state.motion, state.selection);
   }
-  markSharp(pair, context.settings, state.contacts);
+  markSharp(pair, context.settings, !checksAlone(pair, state), state.contacts);
   markBounces(state.contacts, state.motion, PairMaterial(pair.wrapper));
 }
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "narrowphase/contact_selection.h"
-#include "solver/penalty_contacts.h"
+#include "narrowphase/pair_loop.h"
 
 namespace vps::bullet::inline v0 {
 
@@ -19,13 +19,12 @@ void useOwnNormalsForPenalty(const PairView& pair, const Settings& settings,
       useOwnNormals(candidates, pair.side(i));
 }
 
-// bullet::Solver finds in the solved step where edges cross; with others they are candidates.
-void find(const PairView& pair, double cutoff_m, Context& context, std::vector<Candidate>& out,
-          PairState* state = nullptr, const RelativeMotion* motion = nullptr) {
-  if (context.penalty_contacts->hasSolver())
-    findPointCandidates(pair, cutoff_m, context, out, state, motion);
-  else
-    findCandidates(pair, cutoff_m, context, out, state, motion);
+// bullet::Solver finds in the solved step where edges cross; with others, which know neither joints nor other
+// bodies there, crossings are candidates.
+using Find = void (*)(const PairView&, double cutoff_m, Context&, std::vector<Candidate>&, PairState*,
+                      const RelativeMotion*);
+Find findingFor(const PairView& pair, const PairState& state) {
+  return isCheckedBySolver(pair, state) ? findPointCandidates : findCandidates;
 }
 
 constexpr double kAtStart_s =
@@ -67,6 +66,7 @@ struct Later {
 void findStepCandidates(const PairView& pair, const RelativeMotion& motion, PairState& state,
                         std::vector<Candidate>& out) {
   Context& context = *state.context;
+  const Find find = findingFor(pair, state);
   const double range_m = queryRange_m(pair);
   const double travel_m = motion.speed_m_s * motion.dt_s;
   // Bullet's broadphase widens boxes of moving bodies by 50 mm (gDbvtMargin), so most pairs are far apart.
@@ -88,7 +88,8 @@ void findStepCandidates(const PairView& pair, const RelativeMotion& motion, Pair
   for (int k = 0; k < strides; ++k) {
     const Later later(pair, motion, motion.dt_s * k / strides);
     met.clear();
-    find(later.pair, std::min(motion.contact_margin_m + travel_m / strides, range_m), context, met);
+    find(later.pair, std::min(motion.contact_margin_m + travel_m / strides, range_m), context, met, nullptr,
+         nullptr);
     useOwnNormalsForPenalty(later.pair, context.settings, met);
     // Keep what a point meets first, as planes relative to where the bodies are now. A point that is behind a
     // plane when the stride begins has met another before.

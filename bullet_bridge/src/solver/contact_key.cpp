@@ -28,8 +28,12 @@ void setBounces(btManifoldPoint& point) {
   point.m_distance1 = 0;
 }
 
+bool bounces(const btManifoldPoint& point) {
+  return (point.m_contactPointFlags & kBounces) != 0;
+}
+
 double solvedDistance_m(const btManifoldPoint& point) {
-  if ((point.m_contactPointFlags & kBounces) == 0) return point.getDistance();
+  if (!bounces(point)) return point.getDistance();
   return point.m_normalWorldOnB.dot(point.getPositionWorldOnA() - point.getPositionWorldOnB());
 }
 

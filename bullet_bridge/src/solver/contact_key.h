@@ -26,6 +26,7 @@ double restGap_m(const btManifoldPoint& point);
 /// the speed of the rebound, which would suppress a bounce within the step; so it is given no gap. The two
 /// positions keep it.
 void setBounces(btManifoldPoint& point);
+bool bounces(const btManifoldPoint& point);
 /// The distance that bullet::Solver solves for: getDistance(), except where setBounces() removed it.
 double solvedDistance_m(const btManifoldPoint& point);
 

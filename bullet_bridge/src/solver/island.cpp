@@ -99,6 +99,13 @@ void addTurn(const Vec3& w_W, std::span<BodyEnd> ends) {
   }
 }
 
+bool Island::takes(const btRigidBody& rigid) {
+  const btVector3 one(1, 1, 1), &inverse = rigid.getInvInertiaDiagLocal();
+  if (rigid.getLinearFactor() != one || rigid.getAngularFactor() != one) return false;
+  // In Bullet a body that cannot rotate has zero inertia.
+  return !(rigid.getInvMass() > 0) || (inverse.x() > 0 && inverse.y() > 0 && inverse.z() > 0);
+}
+
 void Island::clear() {
   bodies.clear();
   index_.clear();

@@ -100,6 +100,9 @@ struct SolveOutcome {
 
 class Island {
  public:
+  /// False for a body with linear or angular factors, or that cannot turn: its mass is no matrix that can be
+  /// inverted.
+  [[nodiscard]] static bool takes(const btRigidBody& rigid);
   void clear();
   void add(btRigidBody& rigid, double dt_s);
   /// -1: contact does not move it.

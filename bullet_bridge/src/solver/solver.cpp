@@ -24,8 +24,7 @@
 #include <vector>
 
 #include "log/report.h"
-#include "solver/contact_newton.h"
-#include "solver/contact_sweeps.h"
+#include "solver/contact_loop.h"
 #include "solver/early_end.h"
 #include "solver/island.h"
 #include "solver/penalty_contacts.h"
@@ -47,10 +46,10 @@ struct Solver::Work {
     Mat6 J;  // body's twist -> grasp point's
     CouplingConstraint::Law law;
   };
-  Island island;
-  JointRows joints;
-  ContactSweeps rigid{island, joints};
-  ContactNewton newton{island, joints};
+  ContactLoop loop;
+  Island& island = loop.island;
+  JointRows& joints = loop.joints;
+  ContactSweeps& rigid = loop.contacts;
   PenaltyNewton penalty{island, joints};
   Restitution restitution{island, joints};
   std::vector<BodyEnd> ends;
@@ -61,9 +60,6 @@ struct Solver::Work {
   std::deque<PenaltyPair> converted;       // of manifolds without VPS contact
   std::vector<PenaltyPair*> pairs;         // each once
   std::size_t points_near = 0;             // of all pairs
-  std::vector<StepCheck*> checks;          // of rigid contact, one for each pair
-  std::vector<MissedContact> missed;       // scratch
-  std::vector<Vec6> u;                     // scratch
   StepSolution solution;                   // before a step is cut short
 
   bool gatherBodies(std::span<btCollisionObject*> objects, double dt_s);
@@ -75,33 +71,11 @@ struct Solver::Work {
   void applyLaws();
   bool updateLaws();
   SolveOutcome solveContacts(const SolverSettings& settings);
-  SolveOutcome solveRigid(const SolverSettings& settings);
   SolveOutcome solveWithLaws(const SolverSettings& settings);
-  /// visit(check, where its bodies are at the end of the step)
-  template <typename Visit>
-  void forEachCheck(std::span<const Vec6> push, double dt_s, const Visit& visit) const {
-    for (StepCheck* check : checks) {
-      const Pose X_WB_end[2] = {island.endPose(check->object(0), push, dt_s),
-                                island.endPose(check->object(1), push, dt_s)};
-      visit(*check, X_WB_end);
-    }
-  }
-  void linearise(const btContactSolverInfo& info);
-  bool addMissed(const btContactSolverInfo& info, int round);
+  SolveOutcome solve(const SolverSettings& settings, const btContactSolverInfo& info);
 };
 
 namespace {
-
-bool hasUnitFactors(const btRigidBody& b) {
-  const btVector3 one(1, 1, 1);
-  return b.getLinearFactor() == one && b.getAngularFactor() == one;
-}
-
-// In Bullet a body that cannot rotate has zero inertia; our mass matrices do not allow that.
-bool canTurn(const btRigidBody& b) {
-  const btVector3& inverse = b.getInvInertiaDiagLocal();
-  return !(b.getInvMass() > 0) || (inverse.x() > 0 && inverse.y() > 0 && inverse.z() > 0);
-}
 
 bool isPlain(const btManifoldPoint& point) {
   constexpr int kSoft = BT_CONTACT_FLAG_HAS_CONTACT_CFM | BT_CONTACT_FLAG_HAS_CONTACT_ERP |
@@ -116,7 +90,7 @@ bool Solver::Work::gatherBodies(std::span<btCollisionObject*> objects, double dt
   island.clear();
   for (btCollisionObject* object : objects) {
     btRigidBody* rigid = btRigidBody::upcast(object);
-    if (!rigid || !hasUnitFactors(*rigid) || !canTurn(*rigid)) return false;
+    if (!rigid || !Island::takes(*rigid)) return false;
     if (rigid->getInvMass() > 0 && !rigid->isKinematicObject()) island.add(*rigid, dt_s);
   }
   return true;
@@ -141,14 +115,15 @@ bool Solver::Work::gatherContacts(std::span<btPersistentManifold*> from, const C
   penalty.clear(info.m_timeStep);
   manifolds.clear();
   converted.clear();
-  checks.clear();
+  loop.checks.clear();
   for (btPersistentManifold* manifold : from) {
     if (manifold->getBody0()->hasAnisotropicFriction() || manifold->getBody1()->hasAnisotropicFriction())
       return false;
     for (int i = 0; i < manifold->getNumContacts(); ++i)
       if (!isPlain(manifold->getContactPoint(i))) return false;
     manifolds.push_back({manifold, stores ? stores->penalty_contacts->find(manifold) : nullptr});
-    if (StepCheck* check = stores ? stores->step_checks->find(manifold) : nullptr) checks.push_back(check);
+    if (StepCheck* check = stores ? stores->step_checks->find(manifold) : nullptr)
+      loop.checks.push_back(check);
   }
   is_penalty =
       std::any_of(manifolds.begin(), manifolds.end(), [](const auto& m) { return m.pair != nullptr; });
@@ -214,34 +189,9 @@ bool Solver::Work::updateLaws() {
   return is_converged;
 }
 
-// For parts near rest sweeps converge within a few microseconds; otherwise Newton's method follows, which
-// sees the whole island.
-SolveOutcome Solver::Work::solveRigid(const SolverSettings& settings) {
-  constexpr int kSweepsFirst = 30, kSweepsPerNewtonStep = 10;  // assumed; the second: ratio of their costs
-  constexpr double kShareOfSpeed = 1e-5;  // assumed: a micrometre on a path of a decimetre
-  // Where it is cut short, each step is solved again and again for the contacts that it misses: that takes
-  // longer than to converge.
-  constexpr int kNewtonAtLeast = 60;
-  const int newton_share = std::max(0, settings.iteration_limit - kSweepsFirst) / kSweepsPerNewtonStep;
-  const int newton_limit = newton_share > 0 ? std::max(kNewtonAtLeast, newton_share) : 0;
-  rigid.start();
-  SolveOutcome outcome =
-      rigid.sweep(settings.residual_m_s, newton_limit > 0 ? kSweepsFirst : settings.iteration_limit);
-  if (outcome.is_converged || newton_limit == 0) return outcome;
-  island.readVelocities(u);
-  const double near_m_s = std::max(settings.residual_m_s, kShareOfSpeed * island.topSpeed(u));
-  const SolveOutcome solved = newton.solve(rigid.contacts(), near_m_s, newton_limit);
-  outcome.steps += kSweepsPerNewtonStep * solved.steps;
-  outcome.is_converged = solved.is_converged;
-  rigid.applyImpulses();  // even without convergence, velocities are those of the impulses
-  if (solved.is_converged) return outcome;
-  const SolveOutcome end =
-      rigid.sweep(settings.residual_m_s, std::max(kSweepsFirst, settings.iteration_limit - outcome.steps));
-  return {outcome.steps + end.steps, end.is_converged};
-}
-
 SolveOutcome Solver::Work::solveContacts(const SolverSettings& settings) {
-  return is_penalty ? penalty.solve(settings.residual_m_s, settings.iteration_limit) : solveRigid(settings);
+  return is_penalty ? penalty.solve(settings.residual_m_s, settings.iteration_limit)
+                    : loop.solveContacts(settings);
 }
 
 // The law of a coupling at its limit depends on the solution, and so do the limits of friction: solves,
@@ -265,24 +215,9 @@ SolveOutcome Solver::Work::solveWithLaws(const SolverSettings& settings) {
   return {most_steps, last.is_converged};
 }
 
-// Contacts whose lever or normal turns on the way get their rows where the bodies will be if they go on as
-// they do.
-void Solver::Work::linearise(const btContactSolverInfo& info) {
-  missed.clear();
-  forEachCheck({}, info.m_timeStep,
-               [&](StepCheck& check, const Pose(&X_WB_end)[2]) { check.linearise(X_WB_end, missed); });
-  rigid.addMissed(missed, info);
-}
-
-// True if contacts were added, so that the step must be solved again.
-bool Solver::Work::addMissed(const btContactSolverInfo& info, int round) {
-  missed.clear();
-  rigid.finish();  // a check asks which contacts carry load
-  forEachCheck(rigid.push(), info.m_timeStep, [&](StepCheck& check, const Pose(&X_WB_end)[2]) {
-    check.findMissed(X_WB_end, round, missed);
-  });
-  rigid.addMissed(missed, info);
-  return std::any_of(missed.begin(), missed.end(), [](const MissedContact& m) { return m.point != nullptr; });
+SolveOutcome Solver::Work::solve(const SolverSettings& settings, const btContactSolverInfo& info) {
+  if (is_penalty) return solveWithLaws(settings);
+  return loop.run(info, settings.iteration_limit, true, [&] { return solveWithLaws(settings); });
 }
 
 Solver::Solver(const SolverSettings& settings) : settings_(settings), work_(std::make_unique<Work>()) {
@@ -331,27 +266,19 @@ btScalar Solver::solveGroup(btCollisionObject** bodies, int body_count, btPersis
   work.gatherConstraints(spanOf(constraints, constraint_count), info);
   work.gatherCouplings(dt_s);
 
-  if (!work.is_penalty) work.linearise(info);
-  constexpr int kMaxChecks = 8;  // assumed; two or three find all
-  iterations_used_ = 0;
-  for (int checked = 0;; ++checked) {
-    const SolveOutcome outcome = work.solveWithLaws(settings_);
-    iterations_used_ = std::max(iterations_used_, outcome.steps);
-    is_converged_ = outcome.is_converged;
-    if (work.is_penalty) break;
-    work.rigid.solvePush(info, settings_.iteration_limit);
-    if (checked == kMaxChecks || !work.addMissed(info, checked)) break;
-  }
+  const SolveOutcome outcome = work.solve(settings_, info);
+  iterations_used_ = outcome.steps;
+  is_converged_ = outcome.is_converged;
   work.island.readSolution(work.solution);
   for (const Work::ActiveCoupling& h : work.active_couplings) {
     const Vec6 V_G = h.J * work.island.bodies[static_cast<std::size_t>(h.body)].u;
     h.coupling->setImpulse(h.law.c - h.law.D.cwiseProduct(V_G), dt_s);
   }
   work.solution.is_cut_short =
-      !work.is_penalty && !work.missed.empty() &&
-      endEarly(work.island, work.rigid.contacts(), work.joints, work.checks, work.rigid.push(), dt_s);
+      !work.is_penalty && work.loop.hasMissed() &&
+      endEarly(work.island, work.rigid.contacts(), work.joints, work.loop.checks, work.rigid.push(), dt_s);
   if (work.solution.is_cut_short) ++shortened_steps_;
-  for (StepCheck* check : work.checks) check->endStep();
+  for (StepCheck* check : work.loop.checks) check->endStep();
   const std::span<const Vec6> push = work.is_penalty ? std::span<const Vec6>() : work.rigid.push();
   if (!push.empty()) ++pushed_steps_;
   work.island.readEnds(push, dt_s, work.ends);

@@ -119,14 +119,6 @@ struct CrossingRange {
   Pose X_01_end;        ///< set 1 in set 0 after the step
 };
 
-/// Which crossings a motion has led to.
-struct EnteredRange {
-  double overlap_m = 0;       ///< least overlap
-  double depth_m = 0;         ///< greatest overlap
-  double start_depth_m = 0;   ///< edges that are never nearer than this did not meet
-  Pose X_01_start, X_01_end;  ///< set 1 in set 0
-};
-
 /// The pairs of edges that come near each other, kept while two parts move as expected.
 class VPS_API CrossingMemory {
  public:
@@ -141,9 +133,6 @@ class VPS_API CrossingMemory {
   friend VPS_API void findCrossings(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_01,
                                     const CrossingRange& range, std::vector<EdgeCrossing>& out,
                                     CrossingMemory* memory);
-  friend VPS_API void findEntered(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_01,
-                                  const EnteredRange& range, std::vector<EdgeCrossing>& out,
-                                  CrossingMemory& memory);
   struct Pair {
     std::uint32_t edge[2];
   };
@@ -169,12 +158,5 @@ class VPS_API CrossingMemory {
 VPS_API void findCrossings(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_01,
                            const CrossingRange& range, std::vector<EdgeCrossing>& out,
                            CrossingMemory* memory = nullptr);
-
-/// Appends the crossings that overlap by overlap_m to depth_m at X_01, which lies on the way of a motion.
-/// Those whose segments are farther apart than start_depth_m all the way may be left out, so that the search
-/// does not reach as far as overlaps are deep; a memory of earlier motions may find more of them. Order and
-/// cost: as findCrossings().
-VPS_API void findEntered(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_01,
-                         const EnteredRange& range, std::vector<EdgeCrossing>& out, CrossingMemory& memory);
 
 }  // namespace vps::inline v0

@@ -457,15 +457,4 @@ void findCrossings(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_0
   sortByEdges(out, first);
 }
 
-void findEntered(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_01, const EnteredRange& range,
-                 std::vector<EdgeCrossing>& out, CrossingMemory& memory) {
-  if (edges0.segments().empty() || edges1.segments().empty()) return;
-  const auto first = static_cast<std::ptrdiff_t>(out.size());
-  memory.find(edges0, edges1, range.X_01_start, range.X_01_end, reachOfCrossing_m(range.start_depth_m));
-  const CrossingRange here{-range.overlap_m, range.depth_m, X_01};
-  CrossingTest test(edges0, edges1, X_01, here, out);
-  for (const CrossingMemory::Pair& pair : memory.near_) test.cross(pair.edge[0], pair.edge[1]);
-  sortByEdges(out, first);
-}
-
 }  // namespace vps::inline v0

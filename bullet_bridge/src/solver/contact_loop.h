@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The rounds of a step with rigid contact: it is solved with the contacts that are known, each pair is asked
+// which ones the solution lacks (step_check.h), these are added, and it is solved again.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "solver/contact_newton.h"
+#include "solver/contact_sweeps.h"
+#include "solver/island.h"
+#include "solver/joint_rows.h"
+#include "solver/step_check.h"
+#include "vps_bullet/solver.h"
+
+struct btContactSolverInfo;
+
+namespace vps::bullet::inline v0 {
+
+/// Bodies, joints and contacts of one problem, and the pairs that check its solution. The caller fills them;
+/// the memory is kept from one problem to the next.
+class ContactLoop {
+ public:
+  Island island;
+  JointRows joints;
+  ContactSweeps contacts{island, joints};
+  std::vector<StepCheck*> checks;  ///< one for each pair
+
+  /// Solves contacts and joints once, with the bodies' effective masses.
+  SolveOutcome solveContacts(const SolverSettings& settings);
+
+  /// Solves the step until no pair lacks a contact, at most nine times.
+  /// @param solve  called without arguments in each round: solveContacts(), with what depends on its result
+  /// @param retakes_rows  contacts get the rows that they have at the end of the step, where these differ
+  /// @return the most steps of a round, and whether the last one converged
+  template <typename Solve>
+  SolveOutcome run(const btContactSolverInfo& info, int push_sweeps, bool retakes_rows, const Solve& solve) {
+    if (retakes_rows) linearise(info);
+    constexpr int kMaxChecks = 8;  // assumed; two or three find all
+    SolveOutcome outcome;
+    for (int checked = 0;; ++checked) {
+      const SolveOutcome round = solve();
+      outcome = {std::max(outcome.steps, round.steps), round.is_converged};
+      contacts.solvePush(info, push_sweeps);
+      const int number = retakes_rows ? checked : checked + kRetakingRounds;
+      if (checked == kMaxChecks || !addMissed(info, number)) return outcome;
+    }
+  }
+  /// True if the rounds were used up, or no room was left, with contacts still missed.
+  [[nodiscard]] bool hasMissed() const { return !missed_.empty(); }
+
+ private:
+  template <typename Visit>
+  void forEachCheck(std::span<const Vec6> push, double dt_s, const Visit& visit) const;
+  void linearise(const btContactSolverInfo& info);
+  bool addMissed(const btContactSolverInfo& info, int round);
+
+  ContactNewton newton_{island, joints};
+  std::vector<MissedContact> missed_;  // of the last check
+  std::vector<Vec6> u_;                // scratch
+};
+
+}  // namespace vps::bullet::inline v0
