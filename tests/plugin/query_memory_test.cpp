@@ -280,6 +280,35 @@ TEST(QueryMemory, AtRestOnlyNearPointsAreRead) {
   EXPECT_LT(again.points_tested, first.points_tested / 4);
 }
 
+TEST_P(QueryMemoryTest, EveryInstructionSetGivesTheSameBits) {
+  constexpr Simd kSets[] = {Simd::Scalar, Simd::Avx2, Simd::Avx512};
+  std::vector<QueryMemory> memories;
+  for ([[maybe_unused]] const Simd simd : kSets) memories.emplace_back(scene.map, scene.shell);
+  std::size_t touching = 0;
+  for (const Pose& X_MP : motion(scene, 400, 21))
+    for (const Gradient gradient : {Gradient::Continuous, Gradient::Trilinear}) {
+      TouchSummary sums[3];
+      ContactSet sets[3] = {ContactSet(scene.shell.size()), ContactSet(scene.shell.size()),
+                            ContactSet(scene.shell.size())};
+      for (std::size_t k = 0; k < 3; ++k) {
+        const QueryOptions options{10 * kUm, false, gradient, kSets[k]};
+        queryWrench(scene.map, scene.shell, X_MP, options, kStiffness, Vec3::Zero(), sums[k], &memories[k]);
+        queryContacts(scene.map, scene.shell, X_MP, options, sets[k], &memories[k]);
+        ASSERT_EQ(sums[k].count, sums[0].count);
+        ASSERT_EQ(sums[k].volume_m3, sums[0].volume_m3);
+        ASSERT_EQ(sums[k].F_O_M.f, sums[0].F_O_M.f);
+        ASSERT_EQ(sums[k].F_O_M.tau, sums[0].F_O_M.tau);
+        ASSERT_EQ(sets[k].contacts.size(), sets[0].contacts.size());
+        for (std::size_t i = 0; i < sets[0].contacts.size(); ++i) {
+          const Contact &c = sets[k].contacts[i], &e = sets[0].contacts[i];
+          ASSERT_TRUE(c.id == e.id && c.distance_m == e.distance_m && c.n_M == e.n_M && c.p_M == e.p_M);
+        }
+      }
+      touching += sums[0].count;
+    }
+  EXPECT_GT(touching, 100u);
+}
+
 TEST(QueryMemory, NothingAllocates) {
   const Scene& scene = scenes()[0];
   QueryMemory memory(scene.map, scene.shell);

@@ -311,6 +311,28 @@ TEST_P(EveryPair, DistanceIsTheLeastReadingOrALowerBound) {
   EXPECT_LT(tested, poses.size() * pair.shell.size());
 }
 
+TEST_P(EveryPair, WhereNothingIsNearTheExhaustiveQueryReadsTheBandAtEveryPoint) {
+  // From far away to the rim of the map's directory: groups, rows and leaves are known to be outside.
+  const Vec3 aside = Vec3(1, 0.3, 0.2).normalized();
+  std::size_t beyond = 0;
+  for (double way_m = 0; way_m < 200 * kMm; way_m += 0.7 * kMm) {
+    const Pose X_MP(rotationFromVector({0.1, 0.2, 0.3}), way_m * aside);
+    double least_m = pair.map.band_m();
+    for (const Vec3& p : pair.shell.points) least_m = std::min(least_m, pair.map.distance(X_MP * p));
+    ContactSet set(pair.shell.size());
+    const QueryResult result = queryContacts(pair.map, pair.shell, X_MP, {0, true}, set);
+    ASSERT_EQ(result.points_tested, pair.shell.size());
+    ASSERT_NEAR(result.min_distance_m, least_m, readingTolerance(pair.map)) << way_m;
+    if (least_m < pair.map.band_m() - readingTolerance(pair.map)) {
+      ASSERT_FALSE(result.is_beyond_band) << way_m;
+    } else if (result.is_beyond_band) {
+      ASSERT_EQ(result.min_distance_m, pair.map.band_m());
+      ++beyond;
+    }
+  }
+  EXPECT_GT(beyond, 50u);
+}
+
 TEST(Query, OnlyPointsNearContactAreRead) {
   const VoxMap map = buildVoxMap(makeBox({30 * kMm, 30 * kMm, 10 * kMm}), {0.25 * kMm, 4});
   const PointShell shell = shellOf(makeBox({10 * kMm, 10 * kMm, 10 * kMm}), 0.2 * kMm);

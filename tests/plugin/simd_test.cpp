@@ -44,7 +44,7 @@ class SteepField {
     view_.nodes = layout_.pool->nodes(0);
     view_.bricks = layout_.bricks.data();
     view_.centers_m = layout_.centers_m.data();
-    view_.is_far = layout_.is_far.data();
+    view_.far_cells = layout_.far_cells.data();
     view_.voxels_per_m = static_cast<float>(1 / voxel_m);
     view_.quantum = view_.band / kFullBand;
     view_.quantum_m = static_cast<double>(view_.quantum) * voxel_m;
@@ -226,7 +226,7 @@ TEST(SimdKernels, LeavesInEmptySurroundingsReadTheSameWithoutPlacement) {
   for (unsigned seed = 0; seed < kTrials; ++seed) {
     const Trial trial(seed);
     FieldView unknown = trial.field.view();
-    unknown.is_far = nullptr;
+    unknown.far_cells = nullptr;
     const auto known = trial.read(Simd::Best), placed = trial.read(Simd::Best, unknown);
     ASSERT_TRUE(sameBits(known->value, placed->value) && sameBits(known->least, placed->least));
     for (int i = 0; i < kBatch; ++i) saved += placed->is_read[i] && !known->is_read[i];
@@ -254,20 +254,22 @@ TEST(SimdKernels, ALeafThatReachesBeyondTheNeighbourCellsIsRead) {
   }
 }
 
-TEST(SimdKernels, AFarCellHasOnlyOuterCellsAround) {
-  const SteepField field(5, 1);
-  const VoxLayout& layout = field.layout();
-  std::size_t far = 0;
-  for (std::size_t i = 0; i < layout.bricks.size(); ++i) {
-    bool is_far = true;
-    for (int part = 0; part < 27; ++part) {
-      const Index3 cell = layout.cellAt(i) + Index3(part / 9 - 1, part / 3 % 3 - 1, part % 3 - 1);
-      is_far = is_far && (!layout.holds(cell) || layout.bricks[layout.cellIndex(cell)] == kOutside);
+TEST(SimdKernels, AFarCellHasAsManyOuterCellsAroundAsItSays) {
+  const Index3 lone(2, 4, 1);
+  int most = 0;
+  for (const bool is_lone : {false, true}) {
+    const SteepField field(5, 1, is_lone ? &lone : nullptr);
+    const VoxLayout& layout = field.layout();
+    for (std::size_t i = 0; i < layout.bricks.size(); ++i) {
+      int nearest = kMostFarCells + 1;  // used cell, in cells along the axis on which it is farthest
+      for (std::size_t k = 0; k < layout.bricks.size(); ++k)
+        if (layout.bricks[k] != kOutside)
+          nearest = std::min(nearest, (layout.cellAt(k) - layout.cellAt(i)).cwiseAbs().maxCoeff());
+      ASSERT_EQ(layout.far_cells[i], std::max(0, nearest - 1));
+      most = std::max(most, nearest - 1);
     }
-    ASSERT_EQ(layout.is_far[i] != 0, is_far);
-    far += is_far;
   }
-  EXPECT_GT(far, 0u);
+  EXPECT_GT(most, 3);
 }
 
 TEST(SimdKernels, SumsOfTouchingPointsHaveTheSameBitsOnEveryPath) {
@@ -338,6 +340,13 @@ TEST(SimdKernels, ReadsAtGivenPlacesHaveTheSameBitsOnEveryPath) {
       ASSERT_TRUE(sameBits(plain, wide)) << toText(availableSimd(simd)) << ", " << count;
     }
   }
+}
+
+TEST(SimdKernels, TheBestIsOneOfTheTwoWidest) {
+  const Simd best = availableSimd(), widest = availableSimd(Simd::Avx512);
+  EXPECT_EQ(best, availableSimd(Simd::Best));
+  EXPECT_TRUE(best == widest || (best == Simd::Avx2 && widest == Simd::Avx512)) << toText(best);
+  EXPECT_STREQ(toText(best), toText(availableSimd(best)));
 }
 
 }  // namespace

@@ -6,8 +6,9 @@
 
 namespace vps::inline v0 {
 
-/// `Best` is the widest set that the processor has. The others are for tests and measurements; a set that the
-/// processor lacks falls back to the next narrower one.
+/// `Best` is the faster one of the two widest sets that the processor has, by a measurement of 0.1 ms when
+/// the program starts. The others are for tests and measurements; a set that the processor lacks falls back
+/// to the next narrower one.
 enum class Simd { Best, Scalar, Avx2, Avx512 };
 
 /// The set that `wanted` selects on this processor; never `Best`.

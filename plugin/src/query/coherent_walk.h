@@ -234,7 +234,7 @@ double readNearLeaves(const Reading& reading, const Pose& X_MP, const QueryOptio
   }
   LeafReader<Consume> reader(reading, consume);
   if (options.is_exhaustive)
-    for (std::uint32_t leaf = 0; leaf < reading.shell.leaf_blocks; ++leaf) reader.add(leaf);
+    least = readEverything(reading, reader);
   else
     least = walkNear(reading, static_cast<std::uint32_t>(reading.shell.blocks.size() - 1),
                      static_cast<float>(cutoff), [&](std::uint32_t leaf) { reader.add(leaf); });

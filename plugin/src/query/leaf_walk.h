@@ -2,11 +2,13 @@
 // Finds the leaves of a shell that may matter at a pose, and reads them in batches in ascending order.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "voxmap/read_kernel.h"
 #include "vps/pointshell.h"
+#include "vps/voxmap.h"
 
 namespace vps::inline v0 {
 
@@ -38,6 +40,24 @@ struct ReadLeaf {
   [[nodiscard]] float value(int lane) const { return batch.value[kLanes * slot + lane]; }
 };
 
+/// True if every point under a block lies where all cells are the outer constant: its reading is the band.
+inline bool isFarOutside(const Reading& reading, const ShellBlock& block) noexcept {
+  const FieldView& f = reading.field;
+  const double reach = block.radius_m / f.voxel_m + 1;  // as in read()
+  bool is_within = true;
+  std::int64_t cell = 0;
+  for (int k = 0; k < 3; ++k) {
+    const double* R = reading.motion.R + 3 * k;
+    const double at =
+        reading.motion.p[k] + R[0] * block.center[0] + R[1] * block.center[1] + R[2] * block.center[2];
+    const double end = VoxMap::kBrick * f.size[k];
+    if (at < -reach || at > end + reach) return true;
+    is_within = is_within && at >= 0 && at < end;
+    cell = cell * f.size[k] + (is_within ? static_cast<std::int64_t>(at) / VoxMap::kBrick : 0);
+  }
+  return is_within && f.far_cells != nullptr && reach <= VoxMap::kBrick * f.far_cells[cell];
+}
+
 /// Collects leaves until a batch is full, reads them, and hands each to `consume(const ReadLeaf&)`.
 template <typename Consume>
 class LeafReader {
@@ -64,6 +84,8 @@ class LeafReader {
     count_ = 0;
   }
 
+  /// Counts the points of leaves whose reading is known.
+  void countKnown(std::size_t points) noexcept { points_ += points; }
   [[nodiscard]] std::size_t pointsRead() const noexcept { return points_; }
 
  private:
@@ -109,6 +131,33 @@ inline std::size_t rowCount(const PointShell& shell) noexcept {
 inline std::size_t groupCount(const PointShell& shell) noexcept {
   return (shell.leaf_blocks + kGroupLeaves - 1) / kGroupLeaves;
 }
+
+/// Hands every leaf to a reader, except groups and rows where all cells are the outer constant. Returns a
+/// lower bound of the readings of those [voxels]; above the band, which is what they read.
+template <typename Reader>
+double readEverything(const Reading& reading, Reader& reader) noexcept {
+  const auto& blocks = reading.shell.blocks;
+  const std::size_t leaves = reading.shell.leaf_blocks, rows = rowCount(reading.shell);
+  double least = std::numeric_limits<double>::infinity();
+  // The leaves from `first` on have the block `parent` above them, if there is one.
+  const auto isKnown = [&](std::size_t parent, std::size_t first, std::size_t count) {
+    if (parent >= blocks.size() || !isFarOutside(reading, blocks[parent])) return false;
+    const ShellBlock& last = blocks[std::min(first + count, leaves) - 1];
+    reader.countKnown(last.first + last.count - blocks[first].first);
+    least = 2 * static_cast<double>(reading.field.band);
+    return true;
+  };
+  for (std::size_t g = 0; g < groupCount(reading.shell); ++g) {
+    if (isKnown(leaves + rows + g, g * kGroupLeaves, kGroupLeaves)) continue;
+    for (std::size_t row = g * kGroupRows; row < std::min(rows, (g + 1) * kGroupRows); ++row) {
+      if (isKnown(leaves + row, row * kLanes, kLanes)) continue;
+      for (std::size_t leaf = row * kLanes; leaf < std::min(leaves, (row + 1) * kLanes); ++leaf)
+        reader.add(static_cast<std::uint32_t>(leaf));
+    }
+  }
+  return least;
+}
+
 /// Walks the spheres under a block and calls `take(leaf)` for the leaves in which the field may reach the
 /// cutoff [voxels]; returns the least bound of the other leaves [voxels].
 template <typename Take>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Cells whose neighbours are all empty: the sixteen points of a leaf in such a cell need not be read.
+// Cells with only empty cells around them: points near such a cell need not be read.
 #include "voxmap/voxmap_layout.h"
 
 namespace vps::inline v0 {
@@ -20,18 +20,21 @@ void spread(const std::vector<std::uint8_t>& from, std::size_t stride, std::size
 }  // namespace
 
 void markFarCells(VoxLayout& layout) {
-  std::vector<std::uint8_t> is_used(layout.bricks.size());
+  std::vector<std::uint8_t> is_used(layout.bricks.size()), wider;
   for (std::size_t i = 0; i < is_used.size(); ++i) is_used[i] = layout.bricks[i] != kOutside;
-  std::size_t stride = 1;
-  for (int axis = 2; axis >= 0; --axis) {
-    const std::size_t length = stride * static_cast<std::size_t>(layout.size[axis]);
-    std::vector<std::uint8_t> wider = is_used;
-    spread(is_used, stride, length, wider);
-    is_used = std::move(wider);
-    stride = length;
+  layout.far_cells.assign(is_used.size(), 0);
+  for (int away = 1; away <= kMostFarCells; ++away) {
+    std::size_t stride = 1;
+    for (int axis = 2; axis >= 0; --axis) {
+      const std::size_t length = stride * static_cast<std::size_t>(layout.size[axis]);
+      wider = is_used;
+      spread(is_used, stride, length, wider);
+      is_used.swap(wider);
+      stride = length;
+    }
+    for (std::size_t i = 0; i < is_used.size(); ++i)
+      layout.far_cells[i] = static_cast<std::uint8_t>(layout.far_cells[i] + (is_used[i] == 0 ? 1 : 0));
   }
-  for (std::uint8_t& is_far : is_used) is_far = !is_far;
-  layout.is_far = std::move(is_used);
 }
 
 }  // namespace vps::inline v0

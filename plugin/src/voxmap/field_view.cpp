@@ -19,7 +19,7 @@ FieldView::FieldView(const VoxMap& map) noexcept : voxel_m(map.voxel_m()), quant
   nodes = layout.pool->nodes(0);
   bricks = layout.bricks.data();
   centers_m = layout.centers_m.data();
-  is_far = layout.is_far.empty() ? nullptr : layout.is_far.data();
+  far_cells = layout.far_cells.empty() ? nullptr : layout.far_cells.data();
   for (int k = 0; k < 3; ++k) {
     size[k] = layout.size[k];
     low[k] = static_cast<double>(VoxMap::kBrick) * layout.low[k];

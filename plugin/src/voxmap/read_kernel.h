@@ -20,13 +20,13 @@ namespace vps::inline v0 {
 /// The data of a map that kernels read. The map must outlive the view.
 struct FieldView {
   const std::int16_t* nodes = nullptr;
-  const std::uint32_t* bricks = nullptr;  ///< of each directory cell
-  const float* centers_m = nullptr;       ///< of each directory cell, see VoxLayout
-  const std::uint8_t* is_far = nullptr;   ///< of each directory cell, see VoxLayout; may be null
-  std::int32_t size[3] = {0, 0, 0};       ///< of the directory, in cells
-  alignas(32) double half[4] = {};        ///< the directory's middle, in voxels; and 0
-  double low[3] = {0, 0, 0};              ///< the directory's corner from the map's origin, in voxels
-  float box[2][3] = {};                   ///< of the surface, lowest and highest corner [voxels]
+  const std::uint32_t* bricks = nullptr;    ///< of each directory cell
+  const float* centers_m = nullptr;         ///< of each directory cell, see VoxLayout
+  const std::uint8_t* far_cells = nullptr;  ///< of each directory cell, see VoxLayout; may be null
+  std::int32_t size[3] = {0, 0, 0};         ///< of the directory, in cells
+  alignas(32) double half[4] = {};          ///< the directory's middle, in voxels; and 0
+  double low[3] = {0, 0, 0};                ///< the directory's corner from the map's origin, in voxels
+  float box[2][3] = {};                     ///< of the surface, lowest and highest corner [voxels]
   double voxel_m = 0, quantum_m = 0;
   float voxels_per_m = 0, quantum = 0;  ///< quantum in voxels
   float band = 0;                       ///< in voxels

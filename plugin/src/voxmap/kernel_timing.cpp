@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "voxmap/kernel_timing.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "voxmap/voxmap_layout.h"
+#include "vps/voxmap.h"
+
+namespace vps::inline v0 {
+namespace {
+
+constexpr int kCells = 4;  // of the field, along each axis; the outermost are empty
+
+/// A plane through the middle of a small field, and sixteen leaves of points around it. A reading's time does
+/// not depend on the values, only on where the nodes are.
+class Workload {
+ public:
+  Workload() : nodes_(kBrickStride * (kCells * kCells * kCells + 2), NodeValue{0}) {
+    for (int cell = 0; cell < kCells * kCells * kCells; ++cell) {
+      const int at[3] = {cell / (kCells * kCells), cell / kCells % kCells, cell % kCells};
+      const bool is_rim = std::any_of(at, at + 3, [](int k) { return k == 0 || k == kCells - 1; });
+      bricks_[cell] = is_rim ? kOutside : kBrickStride * static_cast<std::uint32_t>(cell + 2);
+      for (int i = 0; i < kBrickNodes && !is_rim; ++i)
+        nodes_[bricks_[cell] + static_cast<std::uint32_t>(i)] =
+            static_cast<NodeValue>(500 * (VoxMap::kBrick * at[2] + nodeAt(i).z() - kMiddle));
+    }
+    std::fill_n(nodes_.begin(), kBrickStride, NodeValue{kFullBand});
+    view_.nodes = nodes_.data();
+    view_.bricks = bricks_;
+    view_.voxel_m = view_.voxels_per_m = 1;
+    for (int k = 0; k < 3; ++k) {
+      view_.size[k] = kCells;
+      view_.half[k] = kMiddle;
+    }
+    for (int i = 0; i < kBatch; ++i) addBlock(i);
+  }
+
+  /// Seconds for one batch: all its leaves read, and every fourth one's touching points added.
+  double run(const ReadKernels& kernels) {
+    const Motion motion(view_, Pose());
+    const std::int32_t reference[3] = {0, 0, 0};
+    RowSums sums;
+    const auto start = std::chrono::steady_clock::now();
+    kernels.read(view_, motion, pointers_, kBatch, batch_);
+    for (int i = 0; i < kBatch; i += 4) kernels.touch(motion, batch_, i, blocks_[i], reference, sums);
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  }
+
+ private:
+  static constexpr int kMiddle = VoxMap::kBrick * kCells / 2;
+
+  /// Leaves of four by four points on tilted planes, as far from each other as in a dense shell.
+  void addBlock(int i) {
+    ShellBlock& block = blocks_[i];
+    const double away[3] = {i % 4 - 1.5, i / 4 - 1.5, 0.1 * (i % 3)};
+    for (int k = 0; k < 3; ++k) block.center[k] = kMiddle + 3 * away[k];
+    block.radius_m = 3;
+    block.count = kLanes;
+    block.is_leaf = 1;
+    for (int lane = 0; lane < kLanes; ++lane) {
+      block.x[lane] = static_cast<float>(0.7 * (lane % 4) - 1);
+      block.y[lane] = static_cast<float>(0.7 * (lane / 4) - 1);
+      block.z[lane] = 0.3f * block.x[lane];
+      block.weight[lane] = 1;
+    }
+    pointers_[i] = &block;
+  }
+
+  std::vector<NodeValue> nodes_;
+  std::uint32_t bricks_[kCells * kCells * kCells];
+  FieldView view_{VoxMap()};
+  ShellBlock blocks_[kBatch];
+  const ShellBlock* pointers_[kBatch];
+  ReadBatch batch_;
+};
+
+}  // namespace
+
+bool isFaster(const ReadKernels& a, const ReadKernels& b) {
+  constexpr int kRuns = 25;  // the first ones fill the caches and wake the wide vector units
+  const auto work = std::make_unique<Workload>();
+  double a_s = work->run(a), b_s = work->run(b);
+  for (int run = 0; run < kRuns; ++run) {
+    a_s = std::min(a_s, work->run(a));
+    b_s = std::min(b_s, work->run(b));
+  }
+  return a_s <= b_s;
+}
+
+}  // namespace vps::inline v0
