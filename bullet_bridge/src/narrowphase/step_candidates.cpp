@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "narrowphase/contact_selection.h"
+#include "narrowphase/feature_check.h"
 #include "narrowphase/pair_loop.h"
 
 namespace vps::bullet::inline v0 {
@@ -19,12 +20,22 @@ void useOwnNormalsForPenalty(const PairView& pair, const Settings& settings,
       useOwnNormals(candidates, pair.side(i));
 }
 
-// bullet::Solver finds in the solved step where edges cross; with others, which know neither joints nor other
-// bodies there, crossings are candidates.
+// True where edges may overlap already: in a pair's first step, or where contacts were found to overlap.
+// Edges that come to overlap in a step are found in its solution.
+bool mayOverlap(const Selection& last, const Settings& settings) {
+  const double tolerated_m = kToleratedShare * settings.contact_margin_m;
+  return !last.is_valid || std::any_of(last.contacts.begin(), last.contacts.end(),
+                                       [&](const Candidate& c) { return c.distance_m < -tolerated_m; });
+}
+
+// Crossings of edges are candidates only there, and with solvers that do not know joints and other bodies
+// when they look for what a step lacks.
 using Find = void (*)(const PairView&, double cutoff_m, Context&, std::vector<Candidate>&, PairState*,
                       const RelativeMotion*);
 Find findingFor(const PairView& pair, const PairState& state) {
-  return isCheckedBySolver(pair, state) ? findPointCandidates : findCandidates;
+  const bool finds_later =
+      isCheckedBySolver(pair, state) && !mayOverlap(state.selection, state.context->settings);
+  return finds_later ? findPointCandidates : findCandidates;
 }
 
 constexpr double kAtStart_s =
