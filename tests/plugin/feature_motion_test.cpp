@@ -9,6 +9,7 @@
 #include <numbers>
 #include <random>
 
+#include "support/fit.h"
 #include "support/random_draw.h"
 #include "vps/mesh_overlap.h"
 
@@ -289,6 +290,35 @@ TEST(FeatureMotion, NoOverlapIsMissed) {
   EXPECT_GT(overlaps, 200);
   // What comes near and goes on past is not reported: its gap at the end is large enough.
   EXPECT_LT(reported_in_vain, overlaps);
+}
+
+// Two rings of straight sections hang in each other where sections meet: inside the ring that is a valley,
+// and the place of contact slides from one section to the next within a step, of both rings at once.
+TEST(FeatureMotion, RingsThatSlideOverTheJointsOfTheirSectionsAreNotMissed) {
+  constexpr double kInner_m = 9e-3, kTube_m = 3e-3;
+  constexpr int kSections = 20;
+  FeatureSet ring;
+  ring.append(test::makeTorus(kInner_m + kTube_m, kTube_m, kSections, 10), Pose(), false);
+  ring.build();
+  const double slope = std::tan(std::numbers::pi / kSections);
+  std::mt19937 random(5);
+  const auto draw = [&](double from, double to) { return std::uniform_real_distribution(from, to)(random); };
+  int missed = 0;
+  for (int i = 0; i < 400; ++i) {
+    // Where the valleys of both rings lie beside each other by y and z, their edges are nearer by the slope.
+    const auto poseOf = [&](double gap_m, double y_m, double z_m) {
+      const double apart_m = 2 * kInner_m - gap_m - slope * (std::abs(y_m) + std::abs(z_m));
+      return Pose(rotationFromVector(std::numbers::pi / 2 * Vec3::UnitX()), {apart_m, y_m, z_m});
+    };
+    const Pose start = poseOf(draw(0.5e-6, 3e-6), draw(-5e-6, 5e-6), draw(-5e-6, 5e-6));
+    const Pose end = poseOf(draw(-30e-6, -1e-6), draw(-30e-6, 30e-6), draw(-30e-6, 30e-6));
+    FeatureMotion motion;
+    std::vector<FeatureContact> found;
+    motion.check(ring, ring, start, end, true, found);
+    missed += std::none_of(found.begin(), found.end(),
+                           [&](const FeatureContact& c) { return c.gap_m(end) < -0.1e-6; });
+  }
+  EXPECT_EQ(missed, 0);
 }
 
 TEST(FeatureMotion, ListsKeptFromStepToStepChangeNoAnswer) {

@@ -147,6 +147,41 @@ TEST(RepresentativePoints, RequiredPointsAreReportedIfTheyAreNear) {
   EXPECT_EQ(more.size(), few.size() + near);
 }
 
+TEST(RepresentativePoints, MergedGroupsLeaveFewerPointsAndEachOmittedPointHasANearerOneInItsCell) {
+  Fit& f = fit();
+  RepresentativePoints::Request few = f.request;
+  few.most_groups = 200;
+  few.most_cell_m = kRadius_m;
+  ContactSet set(f.shell.size());
+  f.leading.find(f.map, f.X_MP, few, set);
+  const double cell_m = f.leading.mergedTo_m();
+  ASSERT_GE(cell_m, kTile_m);
+  EXPECT_LT(set.contacts.size(), f.lead(f.X_MP).size() / 2);
+  EXPECT_LE(set.contacts.size(), 2 * few.most_groups);
+  EXPECT_EQ(f.leading.mergedTo_m(), 0) << "the last find() merged nothing";
+  const std::vector<Contact> all = f.all(f.X_MP);
+  const double tol_m = kVoxel_m / 16384;
+  // Cells are of the groups' centres, which a tile's size parts from its points at most; directions of one
+  // cell are less than 110 degrees apart, groups within 20.
+  const double far_m = std::sqrt(3.0) * cell_m + 2 * kTile_m;
+  for (const Contact& c : all)
+    EXPECT_TRUE(std::any_of(set.contacts.begin(), set.contacts.end(), [&](const Contact& kept) {
+      const double cos = f.shell.inward[kept.id].dot(f.shell.inward[c.id]);
+      return kept.distance_m <= c.distance_m + tol_m && (kept.p_M - c.p_M).norm() <= far_m && cos > -0.8;
+    })) << c.id;
+}
+
+TEST(RepresentativePoints, CellsGrowNoLargerThanTheyMay) {
+  Fit& f = fit();
+  RepresentativePoints::Request few = f.request;
+  few.most_groups = 1;
+  few.most_cell_m = 2 * kTile_m;
+  ContactSet set(f.shell.size());
+  f.leading.find(f.map, f.X_MP, few, set);
+  EXPECT_EQ(f.leading.mergedTo_m(), 2 * kTile_m);
+  EXPECT_GT(set.contacts.size(), 2U);
+}
+
 TEST(RepresentativePoints, FewNearPointsAreAllReported) {
   // Lifted along x, the peg touches along a line.
   const Pose X_MP(fit().X_MP.R, {kAir_m, 0, 1e-3});
