@@ -138,8 +138,7 @@ void dropUnreachableByField(const PairView& pair, const RelativeMotion& motion, 
     if (!settings.use_surfaces) return true;
     Candidate nearer = c;
     nearer.distance_m -= fieldError_m(pair, c);
-    if (!motion.canTouch(nearer)) return true;
-    doubtful.push_back(c);
+    if (motion.canTouch(nearer)) doubtful.push_back(c);
     return true;
   });
 }
@@ -148,24 +147,24 @@ void dropUnreachableByField(const PairView& pair, const RelativeMotion& motion, 
 
 void selectContacts(const PairView& pair, const RelativeMotion& motion, const Settings& settings,
                     ManifoldWriter* writer, std::vector<Candidate>& candidates, Selection* selection) {
-  if (writer) writer->markExistingContacts(candidates);
   thread_local std::vector<Candidate> doubtful;
   dropUnreachableByField(pair, motion, settings, candidates, doubtful);
+  if (writer) {
+    writer->markExistingContacts(candidates);
+    writer->markExistingContacts(doubtful);
+  }
   const auto limit = static_cast<std::size_t>(settings.contact_limit);
   const double radius_m = pair.radius_m();
   const double sampling_m = reduceByCell(candidates, refinedLimit(settings), radius_m / 16, radius_m);
+  // The others apart, so that they take no room from those.
   reduceByCell(doubtful, 2 * limit, radius_m / 16, radius_m);
-  if (!selection) candidates.insert(candidates.end(), doubtful.begin(), doubtful.end());
+  candidates.insert(candidates.end(), doubtful.begin(), doubtful.end());
   refineOnWay(pair, motion, settings, candidates);
   if (isQueriedOnce(pair, motion)) measureAtEnd(pair, motion, settings, candidates);
   dropUnreachable(motion, candidates);
   if (selection) {
-    // Doubtful points are no contacts, but they are known exactly when the solved step is checked.
-    refineOnWay(pair, motion, settings, doubtful);
-    dropUnreachable(motion, doubtful);
     selection->refined = candidates;
-    selection->refined.insert(selection->refined.end(), doubtful.begin(), doubtful.end());
-    selection->leaves_out = selection->refined.size() > limit || !doubtful.empty();
+    selection->leaves_out = candidates.size() > limit;
     selection->sampling_m = sampling_m;
     selection->is_of_path = !isQueriedOnce(pair, motion);
     selection->any_way_m = motion.anyWay_m();

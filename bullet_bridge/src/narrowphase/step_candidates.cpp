@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "narrowphase/contact_selection.h"
-#include "narrowphase/feature_check.h"
 #include "narrowphase/pair_loop.h"
 
 namespace vps::bullet::inline v0 {
@@ -20,12 +19,13 @@ void useOwnNormalsForPenalty(const PairView& pair, const Settings& settings,
       useOwnNormals(candidates, pair.side(i));
 }
 
-// True where edges may overlap already: in a pair's first step, or where contacts were found to overlap.
-// Edges that come to overlap in a step are found in its solution.
+// True where edges may overlap already, so that their distance is not known: in a pair's first step, and
+// where contacts overlap by more than an impact may leave. Edges that come to overlap in a step are found in
+// its solution.
 bool mayOverlap(const Selection& last, const Settings& settings) {
-  const double tolerated_m = kToleratedShare * settings.contact_margin_m;
+  const double left_m = 0.5 * settings.contact_margin_m;  // as in PairCheck
   return !last.is_valid || std::any_of(last.contacts.begin(), last.contacts.end(),
-                                       [&](const Candidate& c) { return c.distance_m < -tolerated_m; });
+                                       [&](const Candidate& c) { return c.distance_m < -left_m; });
 }
 
 // Crossings of edges are candidates only there, and with solvers that do not know joints and other bodies
