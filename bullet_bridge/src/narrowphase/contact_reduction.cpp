@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "narrowphase/contact_candidate.h"
+#include "vps/direction_cell.h"
 
 namespace vps::bullet::inline v0 {
 
@@ -33,14 +34,6 @@ double urgency(const Candidate& c) {
 bool isMoreUrgent(const Candidate& a, const Candidate& b, Measure measure) {
   const double ua = urgency(a, measure), ub = urgency(b, measure);
   return ua != ub ? ua < ub : a.key() < b.key();
-}
-
-// The cell of a direction, among 6 x 2 x 2 cells of a cube's surface.
-std::uint32_t directionCell(const Vec3& n) {
-  int axis = 0;
-  n.cwiseAbs().maxCoeff(&axis);
-  const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-  return static_cast<std::uint32_t>(((axis * 2 + (n[axis] > 0)) * 2 + (n[u] > 0)) * 2 + (n[v] > 0));
 }
 
 /// What the reduction needs to know of a candidate, so that each pass reads half of its size.

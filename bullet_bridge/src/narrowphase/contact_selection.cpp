@@ -29,10 +29,7 @@ double edgeDepth_m(const PairView& pair, double cutoff_m) {
 // or in a pair's first step, can they be deep.
 double edgeDepth_m(const PairView& pair, const Selection& last, double cutoff_m) {
   constexpr double kShare = 0.25;
-  const bool may_be_deep =
-      !last.is_valid || std::any_of(last.contacts.begin(), last.contacts.end(),
-                                    [&](const Candidate& c) { return c.distance_m < -kShare * cutoff_m; });
-  return may_be_deep ? edgeDepth_m(pair, cutoff_m) : cutoff_m;
+  return mayOverlap(last, kShare * cutoff_m) ? edgeDepth_m(pair, cutoff_m) : cutoff_m;
 }
 
 // Body 1 in body 0, in their models' frames, after the step's motion.
@@ -78,6 +75,11 @@ SideQuery sideQueryOf(const PairView& pair, int i, PairState& state, const Relat
 }
 
 }  // namespace
+
+bool mayOverlap(const Selection& last, double depth_m) {
+  return !last.is_valid || std::any_of(last.contacts.begin(), last.contacts.end(),
+                                       [&](const Candidate& c) { return c.distance_m < -depth_m; });
+}
 
 bool isQueriedOnce(const PairView& pair, const RelativeMotion& motion) {
   return motion.contact_margin_m + motion.speed_m_s * motion.dt_s <= queryRange_m(pair);

@@ -19,6 +19,9 @@ namespace vps::bullet::inline v0 {
 void findPointCandidates(const PairView& pair, double cutoff_m, Context& context, std::vector<Candidate>& out,
                          PairState* state = nullptr, const RelativeMotion* motion = nullptr);
 
+/// True in a pair's first step, and where contacts of the last selection overlap by more than depth_m.
+bool mayOverlap(const Selection& last, double depth_m);
+
 /// Adds points, as findPointCandidates(), and crossings of edges.
 void findCandidates(const PairView& pair, double cutoff_m, Context& context, std::vector<Candidate>& out,
                     PairState* state = nullptr, const RelativeMotion* motion = nullptr);

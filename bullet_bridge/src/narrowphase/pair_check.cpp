@@ -307,8 +307,7 @@ void PairCheck::findOverlaps(const Motion& m, const PairView& pair, std::vector<
     return c.distance_m > fieldError_m(pair, c) + sampling.of_m(c);
   });
   const double radius_m = pair.radius_m();
-  const std::size_t limit = 4 * static_cast<std::size_t>(context.settings.contact_limit);
-  reduceByCell(found, limit, radius_m / 16, radius_m);
+  reduceByCell(found, refinedLimit(context.settings), radius_m / 16, radius_m);
   refineAll(pair, still, context.settings, found);
   moveToFacetCorners(pair, still.contact_margin_m, found);
   std::erase_if(found, [&](const Candidate& c) { return c.distance_m >= -m.tolerated_m; });

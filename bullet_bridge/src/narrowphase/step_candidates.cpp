@@ -19,22 +19,14 @@ void useOwnNormalsForPenalty(const PairView& pair, const Settings& settings,
       useOwnNormals(candidates, pair.side(i));
 }
 
-// True where edges may overlap already, so that their distance is not known: in a pair's first step, and
-// where contacts overlap by more than an impact may leave. Edges that come to overlap in a step are found in
-// its solution.
-bool mayOverlap(const Selection& last, const Settings& settings) {
-  const double left_m = 0.5 * settings.contact_margin_m;  // as in PairCheck
-  return !last.is_valid || std::any_of(last.contacts.begin(), last.contacts.end(),
-                                       [&](const Candidate& c) { return c.distance_m < -left_m; });
-}
-
-// Crossings of edges are candidates only there, and with solvers that do not know joints and other bodies
-// when they look for what a step lacks.
+// Edges that come to overlap in a step are found in its solution; edges that overlap already have no distance
+// there. So crossings are candidates only where edges may overlap, by more than an impact may leave (as in
+// PairCheck), and with solvers that do not know joints and other bodies when they look for what a step lacks.
 using Find = void (*)(const PairView&, double cutoff_m, Context&, std::vector<Candidate>&, PairState*,
                       const RelativeMotion*);
 Find findingFor(const PairView& pair, const PairState& state) {
-  const bool finds_later =
-      isCheckedBySolver(pair, state) && !mayOverlap(state.selection, state.context->settings);
+  const double left_m = 0.5 * state.context->settings.contact_margin_m;
+  const bool finds_later = isCheckedBySolver(pair, state) && !mayOverlap(state.selection, left_m);
   return finds_later ? findPointCandidates : findCandidates;
 }
 

@@ -98,20 +98,27 @@ Vec3 inOwnFrame(Kind kind, const Vec3 (&own)[3], const Vec3 (&at)[3], const Vec3
   return own[0] + s * (own[1] - own[0]) + t * (own[2] - own[0]);
 }
 
-// The plane in which features touch that were carried a share of their way.
-FeatureContact contactAt(Kind kind, const std::uint32_t (&feature)[2], const Features& f,
-                         const Reach& reach) {
+// A contact of features, without its place.
+FeatureContact contactOf(Kind kind, const std::uint32_t (&feature)[2], const Features& f) {
   FeatureContact contact;
   contact.kind = kind;
+  contact.plane_of = kind == Kind::FacetOnCorner ? 0 : 1;
   for (int i = 0; i < 2; ++i) contact.feature[i] = feature[i];
-  Vec3 at[3];
-  f.moveTo(reach.share, at);
-  contact.p[0] = inOwnFrame(kind, f.own, at, reach.nearest.p);
-  contact.p[1] = reach.nearest.q;
   if (kind == Kind::EdgeOnEdge) {
     contact.along[0] = (f.own[1] - f.own[0]).normalized();
     contact.along[1] = (f.b[1] - f.b[0]).normalized();
   }
+  return contact;
+}
+
+// The plane in which features touch that were carried a share of their way.
+FeatureContact contactAt(Kind kind, const std::uint32_t (&feature)[2], const Features& f,
+                         const Reach& reach) {
+  FeatureContact contact = contactOf(kind, feature, f);
+  Vec3 at[3];
+  f.moveTo(reach.share, at);
+  contact.p[0] = inOwnFrame(kind, f.own, at, reach.nearest.p);
+  contact.p[1] = reach.nearest.q;
   return contact;
 }
 
@@ -153,7 +160,6 @@ bool findContact(const FeatureSet& part0, const FeatureSet& part1, Kind kind,
                  FeatureContact& contact) {
   const Nearest& nearest = reach.nearest;
   contact = contactAt(kind, feature, f, reach);
-  contact.plane_of = kind == Kind::FacetOnCorner ? 0 : 1;
   Vec3 n_1 = (nearest.p - nearest.q).normalized(), n_0 = R_10.transpose() * n_1;
   if (kind == Kind::EdgeOnEdge && isLeftToCorner(part0, part1, feature, nearest, n_0, n_1)) return false;
   const BorderOwner owner = ownerOf(part0, part1, contact, f, reach, R_10);
@@ -180,13 +186,9 @@ bool findCrossing(const FeatureSet& part0, const FeatureSet& part1, const std::u
   const double share_a = (b - a).cross(way_b).dot(across) / across.squaredNorm(),
                share_b = (b - a).cross(way_a).dot(across) / across.squaredNorm();
   if (!(share_a > 0 && share_a < 1 && share_b > 0 && share_b < 1)) return false;
-  contact.kind = Kind::EdgeOnEdge;
-  for (int i = 0; i < 2; ++i) contact.feature[i] = feature[i];
-  contact.plane_of = 1;
+  contact = contactOf(Kind::EdgeOnEdge, feature, f);
   contact.p[0] = f.own[0] + share_a * (f.own[1] - f.own[0]);
   contact.p[1] = b + share_b * way_b;
-  contact.along[0] = (f.own[1] - f.own[0]).normalized();
-  contact.along[1] = way_b.normalized();
   contact.n = (across.dot(n_1) < 0 ? -1 : 1) * across.normalized();
   const Vec3 n_0 = end_10.R.transpose() * contact.n;
   return contact.n.dot(end_10 * contact.p[0] - contact.p[1]) < 0 &&

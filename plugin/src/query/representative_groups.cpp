@@ -6,6 +6,7 @@
 #include <map>
 #include <stdexcept>
 
+#include "vps/direction_cell.h"
 #include "vps/representative_points.h"
 
 namespace vps::inline v0 {
@@ -13,14 +14,6 @@ namespace {
 
 constexpr double kCosSameNormal = 0.94;  // 20 degrees, as PointShellSettings::edge_angle_rad
 constexpr double kEdgeShare = 0.25;      // of a tile's size. assumed
-
-// The cell of a direction, among 6 x 2 x 2 cells of a cube's surface.
-std::int64_t directionCell(const Vec3& n) {
-  int axis = 0;
-  n.cwiseAbs().maxCoeff(&axis);
-  const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-  return ((axis * 2 + (n[axis] > 0)) * 2 + (n[u] > 0)) * 2 + (n[v] > 0);
-}
 
 }  // namespace
 
