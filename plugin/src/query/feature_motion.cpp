@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 
 #include "query/flush_features.h"
 #include "query/motion_tube.h"
@@ -304,9 +302,6 @@ void FeatureMotion::checkStretch(const FeatureSet& part0, const FeatureSet& part
   if (!is_valid_ || !tube_->holds(start) || !tube_->holds(to)) {
     *tube_ = MotionTube(ballAround(part0), ballAround(part1), start, to, tube_->nextWidth(near_.size()));
     search(part0, part1);
-    if (std::getenv("VPS_DBG"))
-      std::fprintf(stderr, "SEARCH near %zu step %.3g um margin %.3g um turn %.3g valid %d hold %d\n",
-                   near_.size(), 1e6 * step_m, 1e6 * tube_->margin_m(), tube_->turn_rad(), is_valid_, 0);
   }
   is_valid_ = true;
   last_ = start;
