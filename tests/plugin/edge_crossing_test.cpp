@@ -60,43 +60,12 @@ TEST(EdgeSet, FindsTheSegmentsAtAPoint) {
   const EdgeSet edges = edgesOf(makeBox({1, 2, 3}));
   const auto countAt = [&](const Vec3& p) {
     int count = 0;
-    edges.forEachNear(p, 1e-9, [&](std::uint32_t) { ++count; });
+    edges.tree().forEachNear(p, 1e-9, [&](std::uint32_t) { ++count; });
     return count;
   };
   EXPECT_EQ(countAt({0.5, 0.3, 1.5}), 1);
   EXPECT_EQ(countAt({0.5, 1, 1.5}), 3) << "a corner";
   EXPECT_EQ(countAt({0.5, 0, 0}), 0) << "the middle of a face";
-}
-
-// Spokes far from the origin, and points that are beyond a spoke's end in its own direction: there the
-// spheres are tight, so that rounding them to floats without a margin would lose some. The visit of all
-// segments is exact.
-TEST(EdgeSet, ThatAnyEdgeIsNearIsExact) {
-  constexpr double kInner_m = 5e-3, kOuter_m = 5.1e-3, kNear_m = 125e-6;
-  const Vec3 center(1.5, -0.7, 0.2);
-  const auto out = [](int spoke) {
-    const double angle_rad = 2 * std::numbers::pi * spoke / 100;
-    return Vec3(std::cos(angle_rad), std::sin(angle_rad), 0);
-  };
-  std::vector<EdgeSegment> spokes(100);
-  for (int i = 0; i < 100; ++i) {
-    spokes[static_cast<std::size_t>(i)].from = center + kInner_m * out(i);
-    spokes[static_cast<std::size_t>(i)].to = center + kOuter_m * out(i);
-  }
-  const EdgeSet edges(spokes);
-  std::mt19937 random(3);
-  std::uniform_real_distribution<double> off_m(-2e-9, 2e-9);
-  int near = 0;
-  for (int i = 0; i < 20000; ++i) {
-    const Vec3 p = center + (kOuter_m + kNear_m + off_m(random)) * out(i % 100);
-    int count = 0;
-    edges.forEachNear(p, kNear_m, [&](std::uint32_t) { ++count; });
-    near += count > 0 ? 1 : 0;
-    ASSERT_EQ(edges.isAnyNear(p, kNear_m), count > 0) << i;
-  }
-  EXPECT_GT(near, 5000);
-  EXPECT_LT(near, 15000);
-  EXPECT_FALSE(EdgeSet().isAnyNear(Vec3::Zero(), 1));
 }
 
 // Two bars standing on edge, one across the other.

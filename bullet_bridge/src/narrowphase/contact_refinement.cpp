@@ -232,7 +232,7 @@ Exact besideEdge(const Refiner& refiner, const OwnPoint& own, double reach_m) {
   const EdgeSet& edges = refiner.other.shape->edges();
   const Pose& X_WM = refiner.other.X_WM;
   const Vec3 p = X_WM.inverse() * own.p_W;
-  edges.forEachNear(p, reach_m, [&](std::uint32_t i) {
+  edges.tree().forEachNear(p, reach_m, [&](std::uint32_t i) {
     const EdgeSegment& s = edges.segments()[i];
     const Vec3 r = p - s.from, way = s.to - s.from;
     if (r.dot(way) < 0 || r.dot(way) > way.squaredNorm()) return;

@@ -45,7 +45,7 @@ Vec3 directionAt(const EdgeSet& edges, const EdgeSegment& s, int end) {
   const Vec3& joint = end == 0 ? s.from : s.to;
   Vec3 direction = way;
   double most_cos = 0;
-  edges.forEachNear(joint, kSame_m, [&](std::uint32_t i) {
+  edges.tree().forEachNear(joint, kSame_m, [&](std::uint32_t i) {
     const EdgeSegment& other = edges.segments()[i];
     if (&other == &s) return;
     // The other segment, in the direction of this one.

@@ -209,8 +209,8 @@ void Shape::use(ShapeModels models, const Pose& X_SM) {
   first_edge_.assign(is_edge_point_.empty() ? 0 : 1, 0);
   for (std::size_t i = 0; i < is_edge_point_.size(); ++i) {
     if (is_edge_point_[i] != 0)
-      edges_.forEachNear(models_.shell->points[i], kOnSurface_m,
-                         [this](std::uint32_t segment) { edges_at_.push_back(segment); });
+      edges_.tree().forEachNear(models_.shell->points[i], kOnSurface_m,
+                                [this](std::uint32_t segment) { edges_at_.push_back(segment); });
     first_edge_.push_back(static_cast<std::uint32_t>(edges_at_.size()));
   }
   Box box_M;

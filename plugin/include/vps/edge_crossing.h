@@ -7,9 +7,9 @@
 
 #include <cstdint>
 #include <memory>
-#include <span>
 #include <vector>
 
+#include "vps/edge_tree.h"
 #include "vps/export.h"
 #include "vps/mesh.h"
 
@@ -42,63 +42,18 @@ struct CrossingRange;
 class CrossingMemory;
 class MotionTube;
 
-/// Edges with a hierarchy of bounding spheres.
+/// Edges with a tree over them.
 class VPS_API EdgeSet {
  public:
   EdgeSet() = default;
   /// O(n log n).
   explicit EdgeSet(std::vector<EdgeSegment> segments);
   [[nodiscard]] const std::vector<EdgeSegment>& segments() const noexcept { return segments_; }
-  /// Calls visit(index) for each segment within radius_m of a point. The order is fixed but not ascending.
-  template <typename Visit>
-  void forEachNear(const Vec3& p, double radius_m, Visit&& visit) const {
-    if (!nodes_.empty()) visitNear(0, p, radius_m, visit);
-  }
-  /// True if there is a segment within radius_m of a point. Ends with the first that is found.
-  [[nodiscard]] bool isAnyNear(const Vec3& p, double radius_m) const noexcept;
+  [[nodiscard]] const EdgeTree& tree() const noexcept { return tree_; }  ///< of the segments
 
  private:
-  friend class EdgePairSearch;
-  friend VPS_API void findCrossings(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_01,
-                                    const CrossingRange& range, std::vector<EdgeCrossing>& out,
-                                    CrossingMemory* memory);
-  friend class CrossingMemory;
-  struct Node {
-    Vec3 center = Vec3::Zero();
-    double radius_m = 0;
-    Vec3 from = Vec3::Zero(), to = Vec3::Zero();  ///< each place is within width_m of the line between these
-    double width_m = 0;
-    Vec3 along = Vec3::Zero();  ///< unit, either way: each segment of the node is within spread_rad of it
-    double spread_rad = 0;
-    std::uint32_t first = 0;    ///< left child, the right one after it; of a leaf its segment
-    std::uint32_t is_leaf = 0;  ///< 1 or 0
-  };
-  /// The sphere of a node, slightly larger, and what it leads to: all that a search from a point reads, in a
-  /// sixth of a node's memory.
-  struct Ball {
-    Eigen::Vector3f center = Eigen::Vector3f::Zero();
-    float radius_m = 0;
-    std::uint32_t first = 0;  ///< as Node::first
-    std::uint32_t is_leaf = 0;
-  };
-  void build();
-  void bound(Node& node, std::span<const std::uint32_t> own) const;
-  [[nodiscard]] bool isNear(std::uint32_t segment, const Vec3& p, double radius_m) const noexcept;
-  template <typename Visit>
-  void visitNear(std::uint32_t at, const Vec3& p, double radius_m, Visit& visit) const {
-    const Node& node = nodes_[at];
-    if ((p - node.center).norm() > node.radius_m + radius_m) return;
-    if (node.is_leaf != 0) {
-      if (isNear(node.first, p, radius_m)) visit(node.first);
-      return;
-    }
-    visitNear(node.first, p, radius_m, visit);
-    visitNear(node.first + 1, p, radius_m, visit);
-  }
-
   std::vector<EdgeSegment> segments_;
-  std::vector<Node> nodes_;
-  std::vector<Ball> balls_;  ///< by node
+  EdgeTree tree_;
 };
 
 /// An edge of one set crosses an edge of another such that near the crossing each part lies on its own side

@@ -14,6 +14,7 @@
 namespace vps::inline v0 {
 
 struct CornerTree;
+class EdgeTree;
 struct FacetTree;
 
 /// A sharp edge that is not a groove, or an edge that does not have exactly two facets. Sharp are edges that
@@ -84,9 +85,8 @@ class VPS_API FeatureSet {
   [[nodiscard]] const Box& box() const { return box_; }
   [[nodiscard]] double radius_m() const { return 0.5 * box_.size().norm(); }
 
-  /// The edges whose own boxes overlap `box`, in a fixed order; what `found` held is lost.
-  void findEdges(const Box& box, std::vector<std::uint32_t>& found) const;
   /// For searches of FeatureMotion.
+  [[nodiscard]] const EdgeTree& edgeTree() const;
   [[nodiscard]] const CornerTree& cornerTree() const;
   [[nodiscard]] const FacetTree& facetTree() const;
 

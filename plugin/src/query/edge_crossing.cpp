@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include "mesh/directions.h"
 #include "mesh/mesh_edges.h"
 #include "query/edge_joints.h"
+#include "query/edge_pair_search.h"
 #include "query/feature_angles.h"
 #include "query/feature_points.h"
 #include "query/motion_tube.h"
@@ -29,11 +29,6 @@ constexpr double kLean = 0.02;
 constexpr double kPast_m = 1e-6, kPastShare = 0.18;
 /// The same at a true end, before the edges touch. assumed.
 constexpr double kEndShare = 0.1;
-
-/// Of a coordinate, a radius and the square of a distance in floats, with room to spare: 2^-21.
-constexpr double kFloatRounding = 4.8e-7;
-/// Halves by count limit the depth to 32, with one waiting half on each level.
-constexpr int kStack = 64;
 
 struct Face {
   Vec3 normal, apex;
@@ -92,209 +87,44 @@ void appendEdges(const Mesh& mesh, const Pose& X_MP, std::uint16_t owner, std::v
 }
 
 EdgeSet::EdgeSet(std::vector<EdgeSegment> segments) : segments_(std::move(segments)) {
-  if (!segments_.empty()) build();
+  std::vector<EdgeTree::Line> lines;
+  for (const EdgeSegment& s : segments_) lines.push_back({s.from, s.to});
+  tree_ = EdgeTree(std::move(lines));
 }
 
-// The direction of a node's segments, and the line along it that they are near to.
-void EdgeSet::bound(Node& node, std::span<const std::uint32_t> own) const {
-  const auto along = [&](std::uint32_t i) {
-    return Vec3((segments_[i].to - segments_[i].from).normalized());
-  };
-  Vec3 middle = Vec3::Zero();
-  for (const std::uint32_t i : own) {
-    const Vec3 d = along(i);
-    node.along += node.along.dot(d) < 0 ? Vec3(-d) : d;
-    middle += 0.5 / static_cast<double>(own.size()) * (segments_[i].from + segments_[i].to);
-  }
-  node.along.normalize();
-  double first_m = 0, last_m = 0;
-  for (const std::uint32_t i : own) {
-    node.spread_rad = std::max(node.spread_rad, std::acos(std::min(1.0, std::abs(node.along.dot(along(i))))));
-    for (const Vec3& end : {segments_[i].from, segments_[i].to}) {
-      const double at_m = node.along.dot(end - middle);
-      first_m = std::min(first_m, at_m);
-      last_m = std::max(last_m, at_m);
-      node.width_m = std::max(node.width_m, (end - middle - at_m * node.along).norm());
-    }
-  }
-  node.from = middle + first_m * node.along;
-  node.to = middle + last_m * node.along;
-}
+namespace {
 
-void EdgeSet::build() {
-  struct Range {
-    std::uint32_t node, first, count;
-  };
-  std::vector<std::uint32_t> order(segments_.size());
-  std::iota(order.begin(), order.end(), 0u);
-  nodes_.reserve(2 * segments_.size());
-  nodes_.emplace_back();
-  std::vector<Range> waiting{{0, 0, static_cast<std::uint32_t>(segments_.size())}};
-  while (!waiting.empty()) {
-    const Range range = waiting.back();
-    waiting.pop_back();
-    const std::span<std::uint32_t> own(order.data() + range.first, range.count);
-    Box box;
-    for (const std::uint32_t i : own) {
-      box.add(segments_[i].from);
-      box.add(segments_[i].to);
-    }
-    Node node;
-    bound(node, own);
-    node.center = box.center();
-    for (const std::uint32_t i : own)
-      node.radius_m = std::max(
-          {node.radius_m, (segments_[i].from - node.center).norm(), (segments_[i].to - node.center).norm()});
-    node.is_leaf = range.count == 1 ? 1 : 0;
-    node.first = node.is_leaf != 0 ? own[0] : static_cast<std::uint32_t>(nodes_.size());
-    nodes_[range.node] = node;
-    if (node.is_leaf != 0) continue;
-    int axis = 0;
-    box.size().maxCoeff(&axis);
-    const std::uint32_t half = range.count / 2;
-    std::nth_element(own.begin(), own.begin() + half, own.end(), [&](std::uint32_t a, std::uint32_t b) {
-      const double at_a = segments_[a].from[axis] + segments_[a].to[axis],
-                   at_b = segments_[b].from[axis] + segments_[b].to[axis];
-      return at_a != at_b ? at_a < at_b
-                          : a < b;  // a strict order, so that the tree is the same with every library
-    });
-    nodes_.emplace_back();
-    nodes_.emplace_back();
-    waiting.push_back({node.first, range.first, half});
-    waiting.push_back({node.first + 1, range.first + half, range.count - half});
-  }
-  for (const Node& node : nodes_) {
-    const double rounding_m = kFloatRounding * (node.center.cwiseAbs().maxCoeff() + node.radius_m);
-    balls_.push_back({node.center.cast<float>(), static_cast<float>(node.radius_m + rounding_m), node.first,
-                      node.is_leaf});
-  }
-}
-
-bool EdgeSet::isNear(std::uint32_t segment, const Vec3& p, double radius_m) const noexcept {
-  const EdgeSegment& s = segments_[segment];
-  const Vec3 way = s.to - s.from;
-  const double share = std::clamp((p - s.from).dot(way) / way.squaredNorm(), 0.0, 1.0);
-  return (p - s.from - share * way).norm() <= radius_m;
-}
-
-bool EdgeSet::isAnyNear(const Vec3& p, double radius_m) const noexcept {
-  if (balls_.empty()) return false;
-  const Eigen::Vector3f at = p.cast<float>();
-  const auto reach_m =
-      static_cast<float>(radius_m + kFloatRounding * (p.cwiseAbs().maxCoeff() + std::abs(radius_m)));
-  std::uint32_t stack[kStack];
-  int waiting = 0;
-  stack[waiting++] = 0;
-  while (waiting > 0) {
-    const Ball& ball = balls_[stack[--waiting]];
-    const float within_m = ball.radius_m + reach_m;
-    if ((at - ball.center).squaredNorm() > within_m * within_m) continue;
-    if (ball.is_leaf == 0) {
-      stack[waiting++] = ball.first + 1;
-      stack[waiting++] = ball.first;
-    } else if (isNear(ball.first, p, radius_m)) {
-      return true;
-    }
-  }
-  return false;
-}
-
-/// Descends both hierarchies at once; calls visit(i0, i1) for each pair of segments that can cross and come
-/// within reach_m while those of set 1 move in a tube.
-class EdgePairSearch {
+/// Looks for the pairs of segments that can cross and come within reach_m while those of set 1 move in a
+/// tube.
+class CrossingSearch {
  public:
-  EdgePairSearch(const EdgeSet& edges0, const EdgeSet& edges1, const MotionTube& tube, double reach_m)
+  CrossingSearch(const EdgeSet& edges0, const EdgeSet& edges1, const MotionTube& tube, double reach_m)
       : edges0_(edges0),
         edges1_(edges1),
-        from_01_(tube.from()),
-        to_01_(tube.to()),
+        X_01_{tube.from(), tube.to()},
         turn_rad_(tube.turn_rad()),
         reach_m_(reach_m + tube.margin_m()) {}
 
+  /// Calls found(i0, i1) for each.
   template <typename Visit>
   void run(const Visit& found) const {
-    if (edges0_.nodes_.empty() || edges1_.nodes_.empty()) return;
-    Placed root = place(edges1_.nodes_[0]);
-    visit(edges0_.nodes_[0], root, found);
+    EdgePairSearch(edges0_.tree(), edges1_.tree(), X_01_, turn_rad_, reach_m_, kMinSine)
+        .run([&](std::uint32_t i0, std::uint32_t i1) {
+          const EdgeSegment &s0 = edges0_.segments()[i0], &s1 = edges1_.segments()[i1];
+          if (mayCross(s0, s1) && comeNear(s0, s1)) found(i0, i1);
+        });
   }
 
  private:
-  using Node = EdgeSet::Node;
-
-  /// A node of set 1 in the frame of set 0.
-  struct Placed {
-    const Node& node;
-    Vec3 center, way;  ///< of the sphere's centre
-    double way2_m2;
-    // Computed when first needed: most nodes are far away.
-    bool has_line = false;
-    Vec3 from, to;       ///< of the line, at the start
-    double reach_m = 0;  ///< how far from it any place comes, and what counts as near
-  };
-  [[nodiscard]] Placed place(const Node& b) const {
-    Placed at{b, from_01_ * b.center, Vec3(), 0, false, Vec3(), Vec3(), 0};
-    at.way = to_01_ * b.center - at.center;
-    at.way2_m2 = at.way.squaredNorm();
-    return at;
-  }
-
-  // Depth: both trees halve by count, so at most some 2 x 32 deep.
-  template <typename Visit>
-  void visit(const Node& a, Placed& at, const Visit& found) const {
-    const Node& b = at.node;
-    if (!spheresComeNear(a, at) || areParallel(a, b) || !linesComeNear(a, at)) return;
-    if (a.is_leaf != 0 && b.is_leaf != 0) {
-      const EdgeSegment &s0 = edges0_.segments_[a.first], &s1 = edges1_.segments_[b.first];
-      if (mayCross(s0, s1) && comeNear(s0, s1)) found(a.first, b.first);
-    } else if (b.is_leaf != 0 || (a.is_leaf == 0 && a.radius_m >= b.radius_m)) {
-      for (std::uint32_t i = 0; i < 2; ++i) visit(edges0_.nodes_[a.first + i], at, found);
-    } else {
-      for (std::uint32_t i = 0; i < 2; ++i) {
-        Placed child = place(edges1_.nodes_[b.first + i]);
-        visit(a, child, found);
-      }
-    }
-  }
-
-  [[nodiscard]] bool spheresComeNear(const Node& a, const Placed& at) const {
-    const Vec3 off = a.center - at.center;
-    const double share = at.way2_m2 > 0 ? std::clamp(off.dot(at.way) / at.way2_m2, 0.0, 1.0) : 0;
-    const double near_m = a.radius_m + at.node.radius_m + reach_m_;
-    return (off - share * at.way).squaredNorm() <= near_m * near_m;
-  }
-  // The sphere of a long segment, or of an arc, contains much space that is far from it.
-  [[nodiscard]] bool linesComeNear(const Node& a, Placed& at) const {
-    const Node& b = at.node;
-    constexpr double kThin = 0.5;  // assumed; wider nodes are hardly ever told apart so
-    if (a.width_m + b.width_m + reach_m_ > kThin * (a.radius_m + b.radius_m + reach_m_)) return true;
-    if (!at.has_line) {
-      at.has_line = true;
-      at.from = at.center + from_01_.R * (b.from - b.center);
-      at.to = at.center + from_01_.R * (b.to - b.center);
-      // No place moves farther than the centre, and by the turn around it.
-      at.reach_m = std::sqrt(at.way2_m2) + turn_rad_ * b.radius_m + b.width_m + reach_m_;
-    }
-    const double near_m = a.width_m + at.reach_m;
-    const Nearest nearest = nearestOfSegments(a.from, a.to, at.from, at.to);
-    return (nearest.p - nearest.q).squaredNorm() <= near_m * near_m;
-  }
-
-  // True if no two of the nodes' segments are far enough from parallel at any pose of the tube: as for two
-  // segments in mayCross(), since the sine of a sum is at most the sine of one angle plus the others.
-  [[nodiscard]] bool areParallel(const Node& a, const Node& b) const {
-    const double least = kMinSine - turn_rad_ - a.spread_rad - b.spread_rad;
-    return least > 0 && a.along.cross(from_01_.R * b.along).squaredNorm() <= least * least;
-  }
-
   // False if no pose of the tube turns the segments so that CrossingTest takes them for a crossing. A turn by
   // t moves unit vectors and their product by up to t.
   [[nodiscard]] bool mayCross(const EdgeSegment& s0, const EdgeSegment& s1) const {
-    const Vec3 d0 = (s0.to - s0.from).normalized(), d1 = from_01_.R * (s1.to - s1.from).normalized();
+    const Vec3 d0 = (s0.to - s0.from).normalized(), d1 = X_01_.from.R * (s1.to - s1.from).normalized();
     const Vec3 n = d0.cross(d1);
     const double sine = n.norm();
     if (sine + turn_rad_ <= kMinSine) return false;
     const double lean = kLean * (sine + turn_rad_) + 2 * turn_rad_;  // times the sine
-    const Vec3 into1[2] = {from_01_.R * s1.into[0], from_01_.R * s1.into[1]};
+    const Vec3 into1[2] = {X_01_.from.R * s1.into[0], X_01_.from.R * s1.into[1]};
     const auto isOutside = [&](double sign) {
       for (int k = 0; k < 2; ++k)
         if (-sign * n.dot(s0.into[k]) > lean || sign * n.dot(into1[k]) > lean) return false;
@@ -310,7 +140,7 @@ class EdgePairSearch {
     f.own[1] = s1.to;
     f.b[0] = s0.from;
     f.b[1] = s0.to;
-    f.moveFrom(from_01_, to_01_);
+    f.moveFrom(X_01_.from, X_01_.to);
     Reach reach;
     reach.nearest = nearestOf(FeatureContact::Kind::EdgeOnEdge, f.a, f.b);
     const double distance_m = reach.nearest.distance_m();
@@ -319,11 +149,9 @@ class EdgePairSearch {
   }
 
   const EdgeSet &edges0_, &edges1_;
-  const Pose &from_01_, &to_01_;
+  const Sweep X_01_;
   double turn_rad_, reach_m_;
 };
-
-namespace {
 
 // Segments that cross with this gap are within this distance of each other: both points may lie past an end.
 double reachOfCrossing_m(double gap_m) {
@@ -396,8 +224,8 @@ class CrossingTest {
 };
 
 /// Around all edges of a set.
-template <typename Node>
-Ball ballOf(const Node& root) {
+Ball ballOf(const EdgeSet& edges) {
+  const EdgeTree::Node& root = edges.tree().nodes()[0];
   return {root.center, root.radius_m};
 }
 
@@ -416,7 +244,7 @@ CrossingMemory& CrossingMemory::operator=(CrossingMemory&&) noexcept = default;
 
 void CrossingMemory::search(const EdgeSet& edges0, const EdgeSet& edges1, double reach_m) {
   near_.clear();
-  EdgePairSearch(edges0, edges1, *tube_, reach_m).run([&](std::uint32_t i0, std::uint32_t i1) {
+  CrossingSearch(edges0, edges1, *tube_, reach_m).run([&](std::uint32_t i0, std::uint32_t i1) {
     near_.push_back({{i0, i1}});
   });
   reach_m_ = reach_m;
@@ -430,8 +258,7 @@ void CrossingMemory::find(const EdgeSet& edges0, const EdgeSet& edges1, const Po
     return tube_->see(X_01);
   const Pose last = is_valid_ ? tube_->seen() : X_01;
   const auto searchWithin = [&](double width) {
-    *tube_ = MotionTube::following(ballOf(edges0.nodes_[0]), ballOf(edges1.nodes_[0]), last, X_01, X_01_end,
-                                   width);
+    *tube_ = MotionTube::following(ballOf(edges0), ballOf(edges1), last, X_01, X_01_end, width);
     search(edges0, edges1, kMore * reach_m);
   };
   searchWithin(tube_->nextWidth(near_.size()));
@@ -446,8 +273,8 @@ void findCrossings(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_0
   const double reach_m = reachOfCrossing_m(std::max(range.cutoff_m, range.depth_m));
   CrossingTest test(edges0, edges1, X_01, range, out);
   if (memory == nullptr) {
-    const MotionTube once(ballOf(edges0.nodes_[0]), ballOf(edges1.nodes_[0]), X_01, range.X_01_end);
-    EdgePairSearch(edges0, edges1, once, reach_m).run([&](std::uint32_t i0, std::uint32_t i1) {
+    const MotionTube once(ballOf(edges0), ballOf(edges1), X_01, range.X_01_end);
+    CrossingSearch(edges0, edges1, once, reach_m).run([&](std::uint32_t i0, std::uint32_t i1) {
       test.cross(i0, i1);
     });
   } else {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <algorithm>
-
 #include "query/motion_tube.h"
 #include "query/moving_features.h"
 #include "query/touch_search.h"
@@ -29,19 +27,8 @@ void FeatureMotion::search(const FeatureSet& part0, const FeatureSet& part1) {
   for (const auto& [corner, facet] : pairs) addIfNear(Kind::CornerOnFacet, corner, facet);
   findTouchPairs(part1, part0, X_01, margin_m, tube_->turn_rad(), pairs);
   for (const auto& [corner, facet] : pairs) addIfNear(Kind::FacetOnCorner, facet, corner);
-  thread_local std::vector<std::uint32_t> items, others;
-  Box reached = moved(part1.box(), X_01.from);
-  const Box later = moved(part1.box(), X_01.to);
-  reached.add(later.min);
-  reached.add(later.max);
-  part0.findEdges(grown(reached, margin_m), items);
-  for (const std::uint32_t i : items) {
-    Box box;
-    for (const std::uint32_t v : {part0.edges()[i].from, part0.edges()[i].to})
-      for (const Pose& X : {X_10.from, X_10.to}) box.add(X * part0.vertices()[v]);
-    part1.findEdges(grown(box, margin_m), others);
-    for (const std::uint32_t j : others) addIfNear(Kind::EdgeOnEdge, i, j);
-  }
+  EdgePairSearch(part1.edgeTree(), part0.edgeTree(), X_10, tube_->turn_rad(), margin_m)
+      .run([&](std::uint32_t j, std::uint32_t i) { addIfNear(Kind::EdgeOnEdge, i, j); });
 }
 
 }  // namespace vps::inline v0

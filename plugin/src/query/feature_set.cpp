@@ -5,31 +5,29 @@
 #include <limits>
 #include <span>
 
-#include "mesh/box_tree.h"
 #include "mesh/directions.h"
 #include "mesh/mesh_edges.h"
 #include "query/curved_facets.h"
 #include "query/edge_joints.h"
 #include "query/feature_angles.h"
 #include "query/touch_search.h"
+#include "vps/edge_tree.h"
 
 namespace vps::inline v0 {
 
 struct FeatureSet::Trees {
-  explicit Trees(const FeatureSet& part) : edge_boxes(boxesOfEdges(part)), edges(edge_boxes) {
+  explicit Trees(const FeatureSet& part) : edges(linesOf(part)) {
     corners.build(part);
     facets.build(part);
   }
-  static std::vector<Box> boxesOfEdges(const FeatureSet& part) {
-    std::vector<Box> boxes(part.edges().size());
-    for (std::size_t i = 0; i < boxes.size(); ++i)
-      for (const std::uint32_t v : {part.edges()[i].from, part.edges()[i].to})
-        boxes[i].add(part.vertices()[v]);
-    return boxes;
+  static std::vector<EdgeTree::Line> linesOf(const FeatureSet& part) {
+    std::vector<EdgeTree::Line> lines;
+    for (const FeatureEdge& edge : part.edges())
+      lines.push_back({part.vertices()[edge.from], part.vertices()[edge.to]});
+    return lines;
   }
 
-  std::vector<Box> edge_boxes;
-  BoxTree edges;
+  EdgeTree edges;
   CornerTree corners;
   FacetTree facets;
 };
@@ -182,20 +180,16 @@ void FeatureSet::buildRays(const std::vector<std::uint32_t>& corner_of) {
   for (std::size_t i = 1; i < first_ray_.size(); ++i) first_ray_[i] += first_ray_[i - 1];
 }
 
-void FeatureSet::findEdges(const Box& box, std::vector<std::uint32_t>& found) const {
-  found.clear();
-  trees_->edges.forEachOverlap(box, [&](std::uint32_t i) {
-    found.push_back(i);
-    return true;
-  });
-}
-
 bool FeatureSet::isOutermostAt(std::uint32_t vertex, const Vec3& n) const {
   constexpr double kSlope = 1e-3;  // assumed: far above rounding; far below the turns of curved edges
   const auto corner = std::lower_bound(corners_.begin(), corners_.end(), vertex);
   if (corner == corners_.end() || *corner != vertex) return false;
   const std::span<const Vec3> rays = raysAt(static_cast<std::uint32_t>(corner - corners_.begin()));
   return std::all_of(rays.begin(), rays.end(), [&](const Vec3& ray) { return n.dot(ray) < kSlope; });
+}
+
+const EdgeTree& FeatureSet::edgeTree() const {
+  return trees_->edges;
 }
 
 const CornerTree& FeatureSet::cornerTree() const {

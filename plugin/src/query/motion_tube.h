@@ -88,11 +88,13 @@ class MotionTube {
   static constexpr std::size_t kFewPairs = 128, kManyPairs = 512;
   static constexpr double kWidest = 8;
   // How far a point leaves the straight line from its first to its last place, on a way of this length and
-  // turn. Of a point q of the larger part, seen from the smaller one, whose centre is at c: R'(q - c) has a
-  // second derivative of at most turn^2 |q - c| + 2 turn |c'|. With turn |q - c| <= way + turn (slack + way),
-  // and turns below 1, an eighth of that is at most this.
+  // turn: an eighth of its second derivative. Of a point of the smaller part, which turns about its centre c,
+  // that is turn^2 radius. Of a point q of the larger part, seen from the smaller one: R'(q - c) has
+  // turn^2 |q - c| + 2 turn |c'| at most, and q is near the smaller part.
   [[nodiscard]] double bendOf(double way_m, double turn_rad) const {
-    return turn_rad * (3 * way_m + slack_m_) / 8;
+    const double radius_m = std::min(ball0_.radius_m, ball1_.radius_m);
+    const double center_way_m = way_m - turn_rad * radius_m;  // see travel_m()
+    return turn_rad * (turn_rad * (radius_m + slack_m_ + way_m) + 2 * center_way_m) / 8;
   }
 
   Ball ball0_, ball1_;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "query/direction_cone.h"
+#include "query/edge_pair_search.h"
 #include "vps/mesh.h"
 
 namespace vps::inline v0 {
@@ -59,11 +60,6 @@ struct CornerTree {
 /// A corner of one part and a facet of another.
 struct TouchPair {
   std::uint32_t corner, facet;
-};
-
-/// Two poses of the part with the corners in that with the facets; its points move on straight lines.
-struct Sweep {
-  Pose from, to;
 };
 
 /// Lists the corners of a part and the facets of another that can touch while the parts turn by less than

@@ -30,7 +30,9 @@ EdgeSet edgesOf(const Mesh& mesh) {
 FieldError::FieldError(const Model& part) : part_(part), edges_(edgesOf(*part->mesh)) {}
 
 bool FieldError::isBesideEdge(const Vec3& p_M) const {
-  return edges_.isAnyNear(p_M, part_->map->voxel_m());
+  bool is_any = false;
+  edges_.tree().forEachNear(p_M, part_->map->voxel_m(), [&](std::uint32_t) { is_any = true; });
+  return is_any;
 }
 
 double FieldError::bound_m(Bound bound, const Vec3& p_M) {
