@@ -37,6 +37,7 @@ void resetIfModelsChanged(PairState& state, const PairView& pair) {
     state.selection = {};
     state.penalty.points.clear();
     state.features.reset();
+    state.spin.reset();
     state.are_both_curved.reset();
     state.missed_features.clear();
     state.crossings.reset();
@@ -102,13 +103,15 @@ void warnWithoutSolver() {
            "as rigid");
 }
 
-// Greatest way by which a contact point leaves a plane in the step; none where bodies roll on each other.
+// Greatest way by which a point that touches leaves its plane in the step; none where bodies roll on each
+// other.
 double sagitta_m(const PairState& state) {
   const RelativeMotion& motion = state.motion;
   double most_m = 0;
   for (const Candidate& c : state.contacts)
-    most_m =
-        std::max(most_m, 0.5 * motion.V.w.cross(motion.velocityAt(c.p_W)).norm() * motion.dt_s * motion.dt_s);
+    if (c.distance_m <= motion.contact_margin_m)
+      most_m = std::max(most_m,
+                        0.5 * motion.V.w.cross(motion.velocityAt(c.p_W)).norm() * motion.dt_s * motion.dt_s);
   return most_m;
 }
 

@@ -85,6 +85,11 @@ bool isQueriedOnce(const PairView& pair, const RelativeMotion& motion) {
   return motion.contact_margin_m + motion.speed_m_s * motion.dt_s <= queryRange_m(pair);
 }
 
+bool turnsInPlace(const PairView& pair, const RelativeMotion& motion) {
+  const double way_m = motion.velocityAt(pair.center_W()).norm() * motion.dt_s;
+  return !isQueriedOnce(pair, motion) && motion.contact_margin_m + way_m <= queryRange_m(pair);
+}
+
 void findPointCandidates(const PairView& pair, double cutoff_m, Context& context, std::vector<Candidate>& out,
                          PairState* state, const RelativeMotion* motion) {
   std::size_t tested = 0, left_out = 0;
@@ -130,6 +135,26 @@ void dropUnreachable(const RelativeMotion& motion, std::vector<Candidate>& candi
 
 namespace {
 
+// Of a body that turns fast where it is, drops the points that do not come to the surface on their way.
+template <typename Error>
+void dropUnmet(const PairView& pair, const RelativeMotion& motion, const Error& error_m,
+               std::vector<Candidate>& candidates) {
+  if (!turnsInPlace(pair, motion)) return;
+  constexpr int kPlaces = 4;  // assumed: within half a turn, ways bend to one side
+  const Vec3 center = pair.center_W();
+  Pose way[kPlaces];
+  for (int k = 0; k < kPlaces; ++k) {
+    const double t_s = motion.dt_s * (k + 1) / kPlaces;
+    const Mat3 R = rotationFromVector(t_s * motion.V.w);
+    way[k] = {R, center + t_s * motion.velocityAt(center) - R * center};
+  }
+  std::erase_if(candidates, [&](const Candidate& c) {
+    double nearest_m = c.distance_m;
+    for (const Pose& X : way) nearest_m = std::min(nearest_m, c.distance_m + c.n_W.dot(X * c.p_W - c.p_W));
+    return nearest_m > motion.contact_margin_m + error_m(c);
+  });
+}
+
 // Drops candidates that are out of reach even if the field reads too much. Those that are in reach only then
 // are moved to `doubtful`.
 void dropUnreachableByField(const PairView& pair, const RelativeMotion& motion, const Settings& settings,
@@ -150,6 +175,8 @@ void dropUnreachableByField(const PairView& pair, const RelativeMotion& motion, 
 void selectContacts(const PairView& pair, const RelativeMotion& motion, const Settings& settings,
                     ManifoldWriter* writer, std::vector<Candidate>& candidates, Selection* selection) {
   thread_local std::vector<Candidate> doubtful;
+  dropUnmet(
+      pair, motion, [&](const Candidate& c) { return fieldError_m(pair, c); }, candidates);
   dropUnreachableByField(pair, motion, settings, candidates, doubtful);
   if (writer) {
     writer->markExistingContacts(candidates);
@@ -164,6 +191,8 @@ void selectContacts(const PairView& pair, const RelativeMotion& motion, const Se
   refineOnWay(pair, motion, settings, candidates);
   if (isQueriedOnce(pair, motion)) measureAtEnd(pair, motion, settings, candidates);
   dropUnreachable(motion, candidates);
+  dropUnmet(
+      pair, motion, [](const Candidate&) { return 0.0; }, candidates);
   if (selection) {
     selection->refined = candidates;
     selection->leaves_out = candidates.size() > limit;

@@ -27,13 +27,17 @@ void findCandidates(const PairView& pair, double cutoff_m, Context& context, std
                     PairState* state = nullptr, const RelativeMotion* motion = nullptr);
 
 /// Adds the candidates of the step. A body that moves less than the query range is queried once, where it is.
-/// A faster one is queried at several places along its path, so that it cannot tunnel; the plane that it
-/// meets first then holds for the whole step.
+/// So is one that is fast only because it turns: what it needs beside the points that come to the surface on
+/// their way from there, the check of the solved step finds. Another fast one is queried at several places
+/// along its path, so that it cannot tunnel; the plane that it meets first then holds for the whole step.
 void findStepCandidates(const PairView& pair, const RelativeMotion& motion, PairState& state,
                         std::vector<Candidate>& out);
 
 /// True if a body is so slow that it cannot leave the query range within the step.
 bool isQueriedOnce(const PairView& pair, const RelativeMotion& motion);
+
+/// True if it could, but only by its turn: its centre stays within the query range.
+bool turnsInPlace(const PairView& pair, const RelativeMotion& motion);
 
 /// Refines the candidates by the exact surfaces, if the settings say so.
 void refineAll(const PairView& pair, const RelativeMotion& motion, const Settings& settings,

@@ -145,6 +145,13 @@ bool hasFeatures(const PairView& pair, const Settings& settings) {
          !pair.shape[1]->features().isEmpty();
 }
 
+bool spinsFreely(const PairView& start, const Pose (&X_WS_end)[2], PairState& state) {
+  const Settings& settings = state.context->settings;
+  return hasFeatures(start, settings) &&
+         state.spin.staysApart(start.shape[0]->features(), start.shape[1]->features(), start.X_01_models(),
+                               poseBetween(start, X_WS_end), kToleratedShare * settings.contact_margin_m);
+}
+
 void markSharp(const PairView& pair, const Settings& settings, bool is_own,
                std::vector<Candidate>& contacts) {
   if (!hasFeatures(pair, settings)) return;

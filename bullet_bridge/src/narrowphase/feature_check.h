@@ -39,6 +39,10 @@ struct EndPoses {
   bool turns_far = false;  ///< the bodies turn by more than kContactTurn_rad against each other
 };
 
+/// True if nothing of the bodies comes to overlap on the way, because they only turn about an axis around
+/// which there is room at any angle.
+bool spinsFreely(const PairView& start, const Pose (&X_WS_end)[2], PairState& state);
+
 /// Appends a contact for each pair of features that the motion brings too near to each other, up to a limit.
 /// @param start     at the start of the step
 /// @param is_first  in the first check of a step, small gaps are restored too: FeatureMotion::check()

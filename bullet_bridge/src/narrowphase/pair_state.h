@@ -17,6 +17,7 @@
 #include "solver/step_check.h"
 #include "vps/edge_crossing.h"
 #include "vps/feature_motion.h"
+#include "vps/spin_clearance.h"
 
 namespace vps::bullet::inline v0 {
 
@@ -52,6 +53,7 @@ struct PairState {
   std::unique_ptr<ContactLoop> loop;  ///< with rigid contact, in a world whose solver asks no check
   FeatureMotion features;             ///< with rigid contact: of the models
   std::vector<FeatureContact> missed_features;  ///< with rigid contact: what earlier steps lacked, still near
+  SpinClearance spin;                           ///< with rigid contact: of the models
   CrossingMemory crossings;                     ///< with rigid contact: of the models' edges
   PenaltyPair penalty;                          ///< with penalty contact
   bool is_registered = false;                   ///< penalty is in the context's PenaltyContacts

@@ -42,6 +42,14 @@ void markBounces(std::vector<Candidate>& candidates, const RelativeMotion& motio
     c.bounces = meetsWithBounce(material.restitution(c), c.distance_m, c.predicted_m, motion.dt_s);
 }
 
+// The solved step is checked, so contacts to which other bodies lead are found then.
+bool needsNoContacts(const PairView& pair, PairState& state) {
+  if (!isCheckedBySolver(pair, state) && !checksAlone(pair, state)) return false;
+  PairView end = pair;
+  advance(end, pair, state.motion.dt_s, state.motion.dt_s);
+  return spinsFreely(pair, end.X_WS, state);
+}
+
 }  // namespace
 
 bool meetsWithBounce(double restitution, double gap_m, double predicted_m, double dt_s) {
@@ -51,6 +59,14 @@ bool meetsWithBounce(double restitution, double gap_m, double predicted_m, doubl
 
 void selectRigid(const PairView& pair, PairState& state) {
   Context& context = *state.context;
+  if (needsNoContacts(pair, state)) {
+    state.contacts.clear();
+    state.missed_features.clear();
+    state.selection.refined.clear();
+    state.selection.is_of_path = true;
+    storeSelection(state.contacts, pair, state.motion, state.selection);
+    return;
+  }
   if (!reuseSelection(pair, state)) {
     findStepCandidates(pair, state.motion, state, state.contacts);
     ++context.pair_updates;

@@ -76,7 +76,7 @@ void findStepCandidates(const PairView& pair, const RelativeMotion& motion, Pair
   // This is as far as canTouch() and crossingRange() look.
   const double way_m = std::max(travel_m, motion.anyWay_m());
   if (pair.leastDistance_m() > motion.contact_margin_m + way_m) return;
-  if (isQueriedOnce(pair, motion)) {
+  if (isQueriedOnce(pair, motion) || turnsInPlace(pair, motion)) {
     const double seen_m = isExact(context.settings) ? fieldError_m(pair) : 0;
     find(pair, std::min(motion.contact_margin_m + travel_m + seen_m, range_m), context, out, &state, &motion);
     useOwnNormalsForPenalty(pair, context.settings, out);
@@ -114,7 +114,7 @@ void findStepCandidates(const PairView& pair, const RelativeMotion& motion, Pair
 
 void refineOnWay(const PairView& pair, const RelativeMotion& motion, const Settings& settings,
                  std::vector<Candidate>& candidates) {
-  if (isQueriedOnce(pair, motion) || !isStraight(pair, motion))
+  if (isQueriedOnce(pair, motion) || turnsInPlace(pair, motion) || !isStraight(pair, motion))
     return refineAll(pair, motion, settings, candidates);
   thread_local std::vector<double> times_s;
   times_s.clear();

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vps/spin_clearance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "mesh/box_tree.h"
+
+namespace vps::inline v0 {
+
+namespace {
+
+// Of a triangle's projection along the axis: the least distance from the axis, which the triangle may
+// surround.
+double leastRadius_m(const Eigen::Vector2d (&corner)[3]) {
+  const auto cross = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+    return a.x() * b.y() - a.y() * b.x();
+  };
+  double least_m = corner[0].norm();
+  int left = 0, right = 0;
+  for (int k = 0; k < 3; ++k) {
+    const Eigen::Vector2d &a = corner[k], &b = corner[(k + 1) % 3], way = b - a;
+    const double side = cross(a, b), length2 = way.squaredNorm();
+    left += side > 0 ? 1 : 0;
+    right += side < 0 ? 1 : 0;
+    const double share = length2 > 0 ? std::clamp(-a.dot(way) / length2, 0.0, 1.0) : 0;
+    least_m = std::min(least_m, (a + share * way).norm());
+  }
+  return left == 3 || right == 3 ? 0 : least_m;
+}
+
+// What each facet sweeps about an axis: ranges of the radius and of the height above the place on the axis,
+// as boxes without extent in the third direction.
+std::vector<Box> sweptAbout(const FeatureSet& part, const Vec3& p, const Vec3& along) {
+  const Vec3 u = along.unitOrthogonal(), v = along.cross(u);
+  std::vector<Box> swept;
+  swept.reserve(part.facets().size());
+  for (const auto& facet : part.facets()) {
+    Eigen::Vector2d corner[3];
+    Box box;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3 r = part.vertices()[facet[k]] - p;
+      corner[k] = {u.dot(r), v.dot(r)};
+      box.add(Vec3(corner[k].norm(), along.dot(r), 0));
+    }
+    box.min.x() = leastRadius_m(corner);
+    swept.push_back(box);
+  }
+  return swept;
+}
+
+// True if boxes of both parts come nearer than this, in radius and in height.
+bool comeNear(const std::vector<Box>& boxes, const BoxTree& others, double distance_m) {
+  return std::any_of(boxes.begin(), boxes.end(), [&](const Box& box) {
+    return !others.forEachOverlap(grown(box, distance_m), [](std::uint32_t) { return false; });
+  });
+}
+
+// A lower bound, to within a sixteenth, of the distance between what two parts sweep; 0 below most_m / 1024.
+double clearance_m(const std::vector<Box>& a, const std::vector<Box>& b, double most_m) {
+  const BoxTree tree(b);
+  double near_m = most_m;
+  for (int k = 0; comeNear(a, tree, near_m); ++k) {
+    if (k == 10) return 0;
+    near_m *= 0.5;
+  }
+  double far_m = 2 * near_m;
+  for (int k = 0; k < 4 && near_m < most_m; ++k) {
+    const double middle_m = 0.5 * (near_m + far_m);
+    (comeNear(a, tree, middle_m) ? far_m : near_m) = middle_m;
+  }
+  return near_m;
+}
+
+}  // namespace
+
+// How far any point of the smaller part is from where it would be with the axes in line, on the way between
+// two of its poses in the larger one. A turn by less than half a turn takes the axis no farther from its
+// first direction than its last direction is.
+double SpinClearance::deviation_m(const Pose& start, const Pose& end) const {
+  const Vec3 from = start * smaller_.p, to = end * smaller_.p;
+  const Vec3 before = start.R * smaller_.along, after = end.R * smaller_.along;
+  return (from - larger_.p).norm() + (to - from).norm() +
+         far_m_ * ((before - larger_.along).norm() + (after - before).norm());
+}
+
+// Finds the axis of the screw that takes the smaller part from one pose in the larger one to another, and
+// what both sweep about it.
+void SpinClearance::search(const FeatureSet& smaller, const FeatureSet& larger, const Pose& start,
+                           const Pose& end, const Vec3& turn) {
+  constexpr double kOfRadius = 0.1;  // assumed: a greater clearance is not needed
+  larger_.along = turn.normalized();
+  const Vec3 from = start * smaller.box().center(), way = end * smaller.box().center() - from;
+  const Vec3 across = way - larger_.along.dot(way) * larger_.along;
+  larger_.p = from + 0.5 * across + larger_.along.cross(across) / (2 * std::tan(0.5 * turn.norm()));
+  smaller_ = {start.inverse() * larger_.p, start.R.transpose() * larger_.along};
+  far_m_ = 0;
+  for (const Vec3& v : smaller.vertices()) far_m_ = std::max(far_m_, (v - smaller_.p).norm());
+  clearance_m_ = clearance_m(sweptAbout(smaller, smaller_.p, smaller_.along),
+                             sweptAbout(larger, larger_.p, larger_.along), kOfRadius * smaller.radius_m());
+}
+
+bool SpinClearance::staysApart(const FeatureSet& part0, const FeatureSet& part1, const Pose& start,
+                               const Pose& end, double least_m) {
+  if (part0.isEmpty() || part1.isEmpty()) return false;
+  const bool is_first = part0.radius_m() <= part1.radius_m();
+  const Pose from = is_first ? start.inverse() : start, to = is_first ? end.inverse() : end;
+  const auto isApart = [&] { return deviation_m(from, to) + least_m < clearance_m_; };
+  if (isApart()) return true;
+  const Vec3 turn = rotationVector(to.R * from.R.transpose());
+  if (!(turn.squaredNorm() > kLeast_rad * kLeast_rad) || ++waits_ < wait_) return false;
+  waits_ = 0;
+  search(is_first ? part0 : part1, is_first ? part1 : part0, from, to, turn);
+  const bool has_found = isApart();
+  wait_ = has_found ? kWait : std::min(2 * wait_, kMostWait);
+  return has_found;
+}
+
+}  // namespace vps::inline v0
