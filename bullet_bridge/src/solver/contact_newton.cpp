@@ -30,6 +30,9 @@ constexpr double kLawShare = 0.1, kSlipShare = 1;
 // Joints are springs on the velocity, so stiff that they miss their target by a millionth of the change. They
 // have no multipliers: rows of joints often contradict each other.
 constexpr double kJointCompliance = 1e-6;
+// An impulse is refined by no less than this share of it: above the rounding of doubles, so that these keep
+// their bits.
+constexpr double kSettled = 1e-9;
 
 }  // namespace
 
@@ -276,8 +279,15 @@ void ContactNewton::writeImpulses(std::span<RigidContact> contacts) const {
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     RigidContact& c = contacts[i];
     const Vec3& impulse = points_[i].impulse;
-    c.p_n = points_[i].n.dot(impulse);
-    for (int k = 0; k < 2; ++k) c.p_t[k] = c.tangent_W(k).dot(impulse);
+    const Vec3 &n = points_[i].n, t[2] = {c.tangent_W(0), c.tangent_W(1)};
+    c.p_n = n.dot(impulse);
+    for (int k = 0; k < 2; ++k) c.p_t[k] = t[k].dot(impulse);
+    // Directions of floats are not quite of unit length, nor quite at right angles. Where a light body is
+    // between heavy ones, the rest of an impulse moves it by a micrometre a second.
+    const Vec3 rest = impulse - (c.p_n * n + c.p_t[0] * t[0] + c.p_t[1] * t[1]);
+    if (rest.norm() <= kSettled * impulse.norm()) continue;
+    c.p_n += n.dot(rest);
+    for (int k = 0; k < 2; ++k) c.p_t[k] += t[k].dot(rest);
   }
 }
 

@@ -20,10 +20,14 @@ double restitutionOf(const btManifoldPoint& point) {
   return e > 0 ? std::min(e, 1.0) : 0.0;
 }
 
+Vec3 middle_W(const btManifoldPoint& point) {
+  return 0.5 * fromBt(point.getPositionWorldOnA() + point.getPositionWorldOnB());
+}
+
 }  // namespace
 
 Vec3 RigidContact::position_W() const {
-  return 0.5 * fromBt(point->getPositionWorldOnA() + point->getPositionWorldOnB());
+  return middle_W(*point);
 }
 Vec3 RigidContact::normal_W() const {
   return fromBt(point->m_normalWorldOnB);
@@ -47,10 +51,11 @@ void ContactSweeps::apply(const ContactRow& row, double impulse) {
 ContactRow ContactSweeps::makeRow(const btCollisionObject* const (&objects)[2], const btManifoldPoint& point,
                                   const Vec3& d) const {
   ContactRow row;
-  // Both forces act at the middle of the gap: forces in one line preserve the angular momentum.
-  const btVector3 at = (point.getPositionWorldOnA() + point.getPositionWorldOnB()) * btScalar(0.5);
+  // Both forces act at the middle of the gap: forces in one line preserve the angular momentum. The levers
+  // are doubles, since floats would round each on its own, and move the two forces apart.
+  const Vec3 at = middle_W(point);
   for (int i = 0; i < 2; ++i) {
-    const Vec3 r = fromBt(at - objects[i]->getWorldTransform().getOrigin());
+    const Vec3 r = at - fromBt(objects[i]->getWorldTransform().getOrigin());
     const Vec3 direction = i == 0 ? d : Vec3(-d);
     row.side[i].body = island_.indexOf(objects[i]);
     row.side[i].J = stacked(r.cross(direction), direction);
