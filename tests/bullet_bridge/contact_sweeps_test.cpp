@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "bullet_bridge/small_island.h"
 
 namespace vps::bullet {
@@ -75,7 +77,9 @@ TEST(ContactSweeps, ABodyInAGrooveKeepsItsVelocityAlongIt) {
     made.touch(made.bodies[0], made.floor, Vec3::Zero(), Vec3(0, side, 1).normalized(), 0, 0);
   made.start();
   made.sweeps.sweep(kConverged_m_s, kMany);
-  EXPECT_LE((made.solved()[0] - stacked(Vec3::Zero(), Vec3(0.3, 0, 0))).norm(), 1e-10);
+  // The engine holds the velocity along the groove rounded; across it, the walls' normals mirror each other.
+  EXPECT_LE((made.solved()[0] - stacked(Vec3::Zero(), Vec3(0.3, 0, 0))).norm(),
+            std::max(1e-10, 0.3 * kRounding));
 }
 
 // Two blocks hit without restitution: they go on together.
@@ -87,7 +91,10 @@ TEST(ContactSweeps, AnImpactWithoutRestitutionEndsAtTheCommonVelocity) {
     made.touch(made.bodies[1], made.bodies[0], Vec3::Zero(), Vec3(1, 0, 0), 0, 0.3);
     made.start();
     made.sweeps.sweep(kConverged_m_s, kMany);
-    for (const Vec6& u : made.solved()) EXPECT_NEAR(u[3], 1 / (1 + ratio), 1e-12) << ratio;
+    // The engine rounds both masses and then their inverses. An error d of the ratio r changes the velocity
+    // by r / (1 + r)^2 d, at most a quarter of d.
+    for (const Vec6& u : made.solved())
+      EXPECT_NEAR(u[3], 1 / (1 + ratio), std::max(1e-12, 4 * kRounding / 4)) << ratio;
   }
 }
 
@@ -98,7 +105,8 @@ TEST(ContactSweeps, ABodyMayUseUpItsGap) {
   made.touch(made.bodies[0], made.floor, Vec3::Zero(), Vec3(0, 0, 1), 0.4e-3, 0);
   made.start();
   made.sweeps.sweep(kConverged_m_s, kMany);
-  EXPECT_NEAR(made.solved()[0][5], -0.4, 1e-12);
+  // The engine rounds the gap and the time of the step.
+  EXPECT_NEAR(made.solved()[0][5], -0.4, std::max(1e-12, 0.4 * 2 * kRounding));
 }
 
 }  // namespace

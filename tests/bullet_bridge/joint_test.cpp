@@ -2,7 +2,9 @@
 // Parts held by Bullet's joints, together with contact and couplings.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "bullet_bridge/world.h"
 #include "vps/feature_motion.h"
@@ -158,8 +160,15 @@ TEST_P(JointsWithSolver, AJointBreaksAboveItsBreakingImpulse) {
 }
 
 // Free, the body would turn away from the axis. The hinge holds it with the torque w x I w.
+//
+// A step takes the pose through a quaternion and back, which tilts it by some eight roundings of epsilon / 2.
+// The joint takes back the share erp of the tilt in each step, so that tilts add up to 1 / erp of one step's,
+// and the speed with which they are taken back is one step's tilt in the time of a step. Measured with
+// floats: a third.
 TEST(Joints, ABodyThatSpinsAboutAnAxisThatIsNotPrincipalStaysOnItsHinge) {
-  constexpr double kSpin_rad_s = 50;
+  constexpr double kSpin_rad_s = 50, kStep_s = 1e-3;
+  constexpr double kOff_rad_s =
+      std::max(1e-6 * kSpin_rad_s, 4 * double{std::numeric_limits<btScalar>::epsilon()} / kStep_s);
   const Vec3 axis = Vec3(1, 0, 1).normalized();
   for (const SolverKind kind : {SolverKind::Constraint, SolverKind::Penalty}) {
     World world(kind);
@@ -178,7 +187,7 @@ TEST(Joints, ABodyThatSpinsAboutAnAxisThatIsNotPrincipalStaysOnItsHinge) {
     for (int i = 0; i < 200; ++i) {
       world.step();
       const Vec3 w = fromBt(body.getAngularVelocity());
-      EXPECT_LE((w - w.dot(axis) * axis).norm(), 1e-6 * kSpin_rad_s) << test::nameOf(kind) << ", " << i;
+      EXPECT_LE((w - w.dot(axis) * axis).norm(), kOff_rad_s) << test::nameOf(kind) << ", " << i;
       EXPECT_NEAR(w.dot(axis), kSpin_rad_s, 1e-3 * kSpin_rad_s) << test::nameOf(kind) << ", " << i;
       EXPECT_NEAR(fromBt(feedback.m_appliedTorqueBodyA).norm(), torque_Nm, 0.01 * torque_Nm)
           << test::nameOf(kind) << ", " << i;
