@@ -175,7 +175,7 @@ TEST_P(PegInBore, PushedThroughTheCouplingItSeatsAndHolds) {
   EXPECT_LE(tilt_rad, (1.2 * GetParam().clearance_m + soft_m) / (kDepth_m - 1.5e-3));
   EXPECT_NEAR(rest.p.z(), -kDepth_m + (kRadius_m - 1e-3) * tilt_rad, 3e-6 + 0.5 * soft_m);
   EXPECT_LE(deepest_m, kDeepest_m + soft_m);
-  // A part keeps its contacts' planes until it has moved by 1 um (kUnmoved_m), and is then put right by one
+  // A part keeps its contacts' planes until it has moved by 1 um (kSamePlace_m), and is then put right by one
   // step: by at most what the plane of the next facet, turned by 2 pi / 256, differs after such a way. 25 nm.
   const double kept_m = GetParam().solver == SolverKind::Constraint ? 1e-6 * 2 * M_PI / kSegments : 0;
   EXPECT_LE(speed_m_s, std::max(1e-5, kept_m / 1e-3));

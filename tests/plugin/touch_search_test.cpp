@@ -12,6 +12,7 @@
 #include "query/touch_cone.h"
 #include "support/random_draw.h"
 #include "support/screw.h"
+#include "vps/contact_tolerances.h"
 #include "vps/feature_set.h"
 #include "vps/mesh.h"
 #include "vps/mesh_distance.h"
@@ -39,12 +40,12 @@ TEST(TouchCone, HoldsEveryDirectionThatAllRaysAllow) {
     std::vector<Vec3> rays;
     for (int i = 0; i < 3 + trial % 6; ++i) rays.push_back((axis + spread * direction(random)).normalized());
     if (trial % 3 == 0) rays.push_back(-rays[0]);  // an edge goes straight on
-    const auto cone = touchCone(rays, kTouchSlope);
+    const auto cone = touchCone(rays, kSinTouch);
     if (!cone) ++empty;
     if (cone && cone->angle_rad < 1.5) ++narrow;
     for (int k = 0; k < 3000; ++k) {
       const Vec3 n = direction(random);
-      if (!isAllowed(rays, n, kTouchSlope)) continue;
+      if (!isAllowed(rays, n, kSinTouch)) continue;
       ASSERT_TRUE(cone) << trial;
       ASSERT_LE(std::acos(std::clamp(n.dot(cone->axis), -1.0, 1.0)), cone->angle_rad + 1e-12) << trial;
     }
@@ -79,7 +80,7 @@ bool isNear(const FeatureSet& facets, std::uint32_t f, const Vec3& p, double mar
 // @param slack_rad  for sines and cosines
 Pairs searchAll(const FeatureSet& corners, const FeatureSet& facets, const Pose& X, double margin_m,
                 Near near, const Mat3& turn, double slack_rad) {
-  const double surely_flush = -std::cos(std::acos(kCosFlush) - slack_rad);
+  const double surely_flush = -std::cos(std::acos(kCosSameFace) - slack_rad);
   const Mat3 R = turn * X.R;
   Pairs found;
   for (std::uint32_t c = 0; c < corners.corners().size(); ++c) {
@@ -88,7 +89,7 @@ Pairs searchAll(const FeatureSet& corners, const FeatureSet& facets, const Pose&
       const Vec3& n = facets.normal(f);
       bool can_touch = isNear(facets, f, p, margin_m, near);
       for (const Vec3& ray : corners.raysAt(c))
-        can_touch = can_touch && n.dot(R * ray) >= -kTouchSlope - slack_rad;
+        can_touch = can_touch && n.dot(R * ray) >= -kSinTouch - slack_rad;
       if (facets.isCurved(f))
         for (const std::uint32_t edge : corners.edgesAt(c))
           for (const Vec3& own : corners.edges()[edge].normal)

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vps/contact_tolerances.h"
+
 namespace vps::bullet::inline v0 {
 
 namespace {
@@ -17,8 +19,7 @@ void pointsOf(const Candidate& c, Vec3 (&on)[2]) {
 // True if a place on an edge, as a share of its length, is not beyond its end. Where a curved edge goes on in
 // another segment, a crossing may lie past the joint, as findCrossings() allows.
 bool isOn(const EdgeSegment& s, double at, double gap_m) {
-  constexpr double kPastShare = 0.18;
-  const double past = kPastShare * std::abs(gap_m) / (s.to - s.from).norm();
+  const double past = kTanPastEnd * std::abs(gap_m) / (s.to - s.from).norm();
   return at >= (s.ends[0] ? 0 : -past) && at <= 1 + (s.ends[1] ? 0 : past);
 }
 
@@ -47,7 +48,7 @@ bool crossAt(Candidate& c, const SideView& body0, const SideView& body1) {
   const Vec3 d0 = body0.X_WM.R * (s0.to - s0.from), d1 = body1.X_WM.R * (s1.to - s1.from);
   Vec3 n = d0.cross(d1);
   const double square = n.squaredNorm();
-  if (!(square > 1e-6 * d0.squaredNorm() * d1.squaredNorm())) return false;
+  if (!(square > kSinParallel * kSinParallel * d0.squaredNorm() * d1.squaredNorm())) return false;
   const Vec3 r = from1 - from0;
   const double at0 = r.cross(d1).dot(n) / square, at1 = r.cross(d0).dot(n) / square;
   n /= std::sqrt(square);

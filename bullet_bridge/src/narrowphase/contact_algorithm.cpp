@@ -19,6 +19,7 @@
 #include "solver/penalty_contacts.h"
 #include "solver/step_check.h"
 #include "solver/turn_check.h"
+#include "vps/contact_tolerances.h"
 #include "vps_bullet/turn.h"
 
 namespace vps::bullet::inline v0 {
@@ -193,9 +194,8 @@ void ContactAlgorithm::prepare(const btCollisionObjectWrapper* body0, const btCo
   if (!pair.X_WS[0].isFinite() || !pair.X_WS[1].isFinite() || !is_penalty) state.penalty.points.clear();
   if (!pair.X_WS[0].isFinite() || !pair.X_WS[1].isFinite()) return;
   // Penalty points press from the first touch on, so points beyond the step's travel are not needed.
-  constexpr double kPenaltyMargin_m = 2e-6;  // assumed: contact changes the motion within the step
   const double contact_margin_m =
-      is_penalty ? std::min(kPenaltyMargin_m, settings.contact_margin_m) : settings.contact_margin_m;
+      is_penalty ? std::min(2 * kSamePlace_m, settings.contact_margin_m) : settings.contact_margin_m;
   const bool is_held = !is_penalty && state.selection.is_valid && !state.selection.contacts.empty();
   state.motion = relativeMotion(pair, info.m_timeStep, contact_margin_m, is_held);
   is_penalty ? selectPenalty(pair, state) : selectRigid(pair, state);

@@ -9,6 +9,7 @@
 #include "narrowphase/surface_view.h"
 #include "native_shapes/native_shape_adapter.h"
 #include "native_shapes/primitive.h"
+#include "vps/contact_tolerances.h"
 
 namespace vps::bullet::inline v0 {
 
@@ -77,10 +78,9 @@ void mergeOnRound(const SideView& side, const SideView& other, const btCollision
     const bool is_moved = refineOnRound(c, side, other, primitive);
     if (c.distance_m > cutoff_m) continue;
     if (is_moved) {
-      constexpr double kSame_m = 1e-6;
       const double way_m = (c.p_W - out[i].p_W).norm();
       const auto same = std::find_if(moved.begin(), moved.end(), [&](const Moved& m) {
-        return (out[m.index].p_W - c.p_W).squaredNorm() < kSame_m * kSame_m;
+        return (out[m.index].p_W - c.p_W).squaredNorm() < kSamePlace_m * kSamePlace_m;
       });
       if (same != moved.end()) {
         if (way_m < same->way_m) {

@@ -6,15 +6,12 @@
 #include <limits>
 
 #include "narrowphase/contact_candidate.h"
+#include "vps/contact_tolerances.h"
 #include "vps/direction_cell.h"
 
 namespace vps::bullet::inline v0 {
 
 namespace {
-
-// Hysteresis: a candidate that was a contact is preferred to one that is nearer by less than this. Well above
-// the noise of a resting part (1 nm), below any depth that matters. Assumed.
-constexpr double kStickiness_m = 1e-6;
 
 constexpr std::uint64_t kEmpty = ~std::uint64_t{0};
 
@@ -24,7 +21,7 @@ constexpr std::uint64_t kEmpty = ~std::uint64_t{0};
 enum class Measure { Now, EndOfStep };
 
 double urgency(const Candidate& c, Measure measure) {
-  return (measure == Measure::Now ? c.distance_m : c.predicted_m) - (c.was_contact ? kStickiness_m : 0);
+  return (measure == Measure::Now ? c.distance_m : c.predicted_m) - (c.was_contact ? kSamePlace_m : 0);
 }
 
 double urgency(const Candidate& c) {

@@ -10,23 +10,14 @@
 #include "native_shapes/native_shape_adapter.h"
 #include "native_shapes/primitive.h"
 #include "shape/sheet_border.h"
+#include "vps/contact_tolerances.h"
 #include "vps/feature_motion.h"
 
 namespace vps::bullet::inline v0 {
 
 namespace {
 
-// A face's point and a surface that does not face it do not touch, however near they are: for example a
-// table's top and the side of a box that stands on it. 0.2: about 78 degrees, so that a corner's mean normal
-// still faces each of its faces.
-constexpr double kFacing = 0.2;
-constexpr double kCosEdge = 0.94;  // 20 degrees, as in PointShellSettings::edge_angle_rad
-constexpr double kAlong = 0.087;   // 5 degrees, as findCrossings()
-constexpr double kInto = 0.17;     // 10 degrees. assumed: more than the angle between facets of a round face
-constexpr double kNever_m = 1;     // farther than any step moves
-// The cost of the search for the nearest triangle grows with the distance searched. Except at sharp edges,
-// the field's error is a small part of a voxel.
-constexpr double kUsualError = 0.05;
+constexpr double kNever_m = 1;  // farther than any step moves
 
 /// A shell point and its own part's surface around it.
 struct OwnPoint {
@@ -49,7 +40,8 @@ struct OwnPoint {
   [[nodiscard]] bool isFlushOn(const Vec3& n_W) const {
     const Vec3 n = inModel(n_W);
     for (const std::uint32_t i : edges)
-      if (n.dot(segment(i).normal(0)) < -kCosFlush || n.dot(segment(i).normal(1)) < -kCosFlush) return true;
+      if (n.dot(segment(i).normal(0)) < -kCosSameFace || n.dot(segment(i).normal(1)) < -kCosSameFace)
+        return true;
     return false;
   }
   [[nodiscard]] Vec3 inModel(const Vec3& n_W) const { return side->X_WM.R.transpose() * n_W; }
@@ -63,10 +55,10 @@ struct OwnPoint {
     const bool is_corner = edges.size() >= 3;
     for (const std::uint32_t i : edges) {
       const EdgeSegment& s = segment(i);
-      if (!is_corner && std::min(n.dot(s.into[0]), n.dot(s.into[1])) < -kInto) return false;
+      if (!is_corner && std::min(n.dot(s.into[0]), n.dot(s.into[1])) < -kSinGrazing) return false;
       const Vec3 along = (s.to - s.from).normalized();
-      if ((p_M - s.from).norm() < kTouching_m && n.dot(along) < -kInto) return false;
-      if ((p_M - s.to).norm() < kTouching_m && n.dot(along) > kInto) return false;
+      if ((p_M - s.from).norm() < kSamePlace_m && n.dot(along) < -kSinGrazing) return false;
+      if ((p_M - s.to).norm() < kSamePlace_m && n.dot(along) > kSinGrazing) return false;
     }
     return true;
   }
@@ -82,7 +74,7 @@ struct OwnPoint {
   [[nodiscard]] bool runsAlong(const Vec3& n_W) const {
     if (edges.size() != 1) return false;
     const EdgeSegment& s = segment(edges[0]);
-    return std::abs(inModel(n_W).dot((s.to - s.from).normalized())) > kAlong;
+    return std::abs(inModel(n_W).dot((s.to - s.from).normalized())) > kSinLean;
   }
 };
 
@@ -121,7 +113,8 @@ Foot footOn(const Surface& surface, const Pose& X_WM, const OwnPoint& own, doubl
   const Vec3 p = X_WP.inverse() * own.p_W;
   const MeshDistance::Closest closest = surface.distance->closest(p, max_m);
   if (!closest.found) return {};
-  const bool is_edge = surface.distance->featureNormal(closest.triangle, 0).dot(closest.normal) < kCosEdge;
+  const bool is_edge =
+      surface.distance->featureNormal(closest.triangle, 0).dot(closest.normal) < kCosSameFace;
   Foot foot{true,
             X_WP.R * (p - closest.q),
             X_WP.R * closest.normal,
@@ -161,10 +154,10 @@ Exact contactAt(const Foot& foot, const OwnPoint& own) {
   exact.found = exact.found_all = foot.found;
   exact.from_q = foot.from_q;
   if (!foot.found) return exact;
-  exact.is_inside = foot.from_q.dot(foot.normal) < kTouching_m && !foot.is_sheet;
+  exact.is_inside = foot.from_q.dot(foot.normal) < kSamePlace_m && !foot.is_sheet;
   const double cos_facing = own.inward_W.dot(foot.normal);
   const bool is_edge_on_edge = own.is_edge && foot.is_edge;
-  const bool is_facing = cos_facing > kFacing;
+  const bool is_facing = cos_facing > kSinGrazing;
   exact.is_contact = own.edges.empty() || is_edge_on_edge
                          ? is_facing
                          : own.isFirstAlong(foot.normal) || (is_facing && !own.is_two_sided);
@@ -175,7 +168,7 @@ Exact contactAt(const Foot& foot, const OwnPoint& own) {
     exact.is_contact = false;
   exact.is_curved = foot.is_curved;
   if (exact.is_contact && !is_edge_on_edge) {
-    const bool is_flush = !foot.is_edge && cos_facing > kCosFlush;
+    const bool is_flush = !foot.is_edge && cos_facing > kCosSameFace;
     exact.is_smooth = is_flush && !own.is_edge;
     exact.is_their_face = own.is_edge || is_flush;
     exact.is_own_face = !exact.is_their_face;
@@ -188,7 +181,7 @@ Exact contactAt(const Foot& foot, const OwnPoint& own) {
   const double sign = foot.from_q.dot(foot.normal) < 0 ? -1 : 1;
   const double distance_m = foot.from_q.norm();
   exact.distance_m = sign * distance_m;
-  exact.n = distance_m > kTouching_m ? Vec3(sign / distance_m * foot.from_q) : foot.normal;
+  exact.n = distance_m > kSamePlace_m ? Vec3(sign / distance_m * foot.from_q) : foot.normal;
   exact.is_edge_on_edge = is_edge_on_edge;
   if (is_edge_on_edge && own.runsAlong(exact.n)) exact.is_contact = false;
   return exact;
@@ -239,7 +232,7 @@ Exact besideEdge(const Refiner& refiner, const OwnPoint& own, double reach_m) {
     for (const int face : {0, 1}) {
       const Vec3 n = s.normal(face);
       const double distance_m = n.dot(r);
-      if (distance_m > kTouching_m || r.dot(s.into[face]) < -kTouching_m ||
+      if (distance_m > kSamePlace_m || r.dot(s.into[face]) < -kSamePlace_m ||
           (best.found && distance_m <= best.distance_m))
         continue;
       // An edge that runs through the face's plane goes on behind it.
@@ -299,7 +292,7 @@ void refine(std::vector<Candidate>& candidates, const SideView& side, const Side
   const double sign = side.side == 0 ? 1 : -1;
   // The field's error is below a voxel; a surface farther away is not the one that the field measured.
   const double field_error_m =
-      other.shape && other.shape->models().map ? other.shape->models().map->voxel_m() : kTouching_m;
+      other.shape && other.shape->models().map ? other.shape->models().map->voxel_m() : kSamePlace_m;
   for (Candidate& c : candidates) {
     if (c.side != side.side || c.isCrossing()) continue;
     if (is_primitive && refineOnRound(c, side, other, refiner.theirs)) continue;
@@ -311,7 +304,7 @@ void refine(std::vector<Candidate>& candidates, const SideView& side, const Side
                        shell.points[c.id],
                        is_two_sided};
     const double max_m = std::abs(c.distance_m) + field_error_m;
-    Exact exact = refiner.at(own, std::abs(c.distance_m) + kUsualError * field_error_m);
+    Exact exact = refiner.at(own, std::abs(c.distance_m) + kFaceError_voxels * field_error_m);
     if (!exact.is_contact && !exact.found_all) exact = refiner.at(own, max_m);
     // Outside an edge the field may read less than half of the distance, along a normal of its own: such a
     // plane would stop or lift a body that does not come near the point.
@@ -337,7 +330,7 @@ void refine(std::vector<Candidate>& candidates, const SideView& side, const Side
     else if (exact.is_contact && exact.is_own_face && !is_primitive)
       moveToFoot(c, side, exact.from_q);
     if (exact.is_contact && exact.is_smooth && !is_primitive)
-      moveToNearest(c, side, other, exact.face, motion.contact_margin_m + kUsualError * field_error_m);
+      moveToNearest(c, side, other, exact.face, motion.contact_margin_m + kFaceError_voxels * field_error_m);
   }
 }
 
@@ -346,7 +339,7 @@ namespace {
 Exact nearFieldDistance(const Refiner& refiner, const Vec3& p_W, const Vec3& inward, double field_m,
                         double voxel_m) {
   const OwnPoint own{p_W, inward, true};  // penalty contact has no crossings, only the points of edges
-  Exact exact = refiner.at(own, std::abs(field_m) + kUsualError * voxel_m);
+  Exact exact = refiner.at(own, std::abs(field_m) + kFaceError_voxels * voxel_m);
   if (!exact.found) exact = refiner.at(own, std::abs(field_m) + voxel_m);
   return exact;
 }
@@ -362,13 +355,12 @@ void refineEdges(std::vector<Candidate>& candidates, const SideView& side, const
   const int i = side.side, j = 1 - i;
   const SideView other_then{other.shape, way[j] * other.X_WM, other.side};
   const Pose X_MW = other_then.X_WM.inverse();
-  constexpr double kFieldError = 0.3;  // of a voxel; a point farther away does not touch
   const Refiner now{side, other, theirs, false}, then{side, other_then, theirs, false};
   for (Candidate& c : candidates) {
     if (c.side != side.side || !side.shape->isEdgePoint(c.id)) continue;
     const Vec3 inward = side.X_WM.R * shell.inward[c.id], p_then_W = way[i] * c.p_W;
     const double field_m = map.distance(X_MW * p_then_W);
-    if (field_m > kFieldError * map.voxel_m()) continue;
+    if (field_m > kEdgeError_voxels * map.voxel_m()) continue;
     Exact exact = nearFieldDistance(then, p_then_W, way[i].R * inward, field_m, map.voxel_m());
     if (exact.found && exact.is_contact &&
         exact.distance_m >= std::min(0.0, c.distance_m) - motion.contact_margin_m) {
@@ -389,7 +381,7 @@ void useOwnNormals(std::vector<Candidate>& candidates, const SideView& side) {
     if (c.side != side.side || side.shape->isEdgePoint(c.id)) return false;
     const Vec3 own = sign * (side.X_WM.R * side.shape->smoothInward(c.id));
     const double facing = own.dot(c.n_W);
-    if (facing <= kFacing) return true;
+    if (facing <= kSinGrazing) return true;
     c.distance_m *= facing;  // distance of the tangent plane at the nearest point
     c.n_W = own;
     return false;

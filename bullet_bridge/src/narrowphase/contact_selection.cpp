@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "native_shapes/primitive.h"
+#include "vps/contact_tolerances.h"
 
 namespace vps::bullet::inline v0 {
 
@@ -13,23 +14,22 @@ namespace {
 // Rounds up to a geometric series of lengths: a larger cutoff than the last one's costs a QueryMemory
 // readings.
 double roundedUp(double cutoff_m, double most_m) {
-  constexpr double kStep = 1.5, kUnit_m = 1e-6;
-  const double steps = std::ceil(std::log(cutoff_m / kUnit_m) / std::log(kStep));
-  return std::min(kUnit_m * std::pow(kStep, steps), most_m);
+  constexpr double kStep = 1.5;
+  const double steps = std::ceil(std::log(cutoff_m / kSamePlace_m) / std::log(kStep));
+  return std::min(kSamePlace_m * std::pow(kStep, steps), most_m);
 }
 
 // Greatest overlap of edges that counts as a crossing, as a share of the query range. assumed: at greater
 // depth shell points lie inside and act instead.
 double edgeDepth_m(const PairView& pair, double cutoff_m) {
-  constexpr double kShare = 0.25;
-  return pair.hasMap(0) || pair.hasMap(1) ? std::max(cutoff_m, kShare * queryRange_m(pair)) : cutoff_m;
+  return pair.hasMap(0) || pair.hasMap(1) ? std::max(cutoff_m, kEdgeDepthShare * queryRange_m(pair))
+                                          : cutoff_m;
 }
 
 // Edges do not come to overlap by more than the cutoff in a step: only where contacts were found to overlap,
 // or in a pair's first step, can they be deep.
 double edgeDepth_m(const PairView& pair, const Selection& last, double cutoff_m) {
-  constexpr double kShare = 0.25;
-  return mayOverlap(last, kShare * cutoff_m) ? edgeDepth_m(pair, cutoff_m) : cutoff_m;
+  return mayOverlap(last, kEdgeDepthShare * cutoff_m) ? edgeDepth_m(pair, cutoff_m) : cutoff_m;
 }
 
 // Body 1 in body 0, in their models' frames, after the step's motion.
@@ -218,12 +218,12 @@ bool hasNotMoved(const Selection& selection, const PairView& pair, const Relativ
   if (!selection.is_valid) return false;
   for (int i = 0; i < 2; ++i)
     if (!(selection.key[i] == pair.key(i))) return false;
-  if (reach_m(motion) > selection.reach_m + kUnmoved_m) return false;
+  if (reach_m(motion) > selection.reach_m + kSamePlace_m) return false;
   const Pose X_01 = pair.X_WS[0].inverse() * pair.X_WS[1];
   const Pose moved = X_01 * selection.X_01.inverse();  // of body 1, in body 0
   const Vec3 center_0 = pair.X_WS[0].inverse() * pair.center_W();
   const double turned_rad = (moved.R - Mat3::Identity()).norm();
-  return (moved * center_0 - center_0).norm() + turned_rad * pair.radius_m() <= kUnmoved_m;
+  return (moved * center_0 - center_0).norm() + turned_rad * pair.radius_m() <= kSamePlace_m;
 }
 
 double motionChange_m(const Selection& selection, const PairView& pair, const RelativeMotion& motion) {

@@ -7,6 +7,7 @@
 
 #include "narrowphase/pair_state.h"
 #include "narrowphase/pair_view.h"
+#include "vps/contact_tolerances.h"
 
 namespace vps::bullet::inline v0 {
 
@@ -66,15 +67,13 @@ void selectContacts(const PairView& pair, const RelativeMotion& motion, const Se
 void storeSelection(const std::vector<Candidate>& contacts, const PairView& pair,
                     const RelativeMotion& motion, Selection& selection);
 
-/// assumed: no other points would be better contacts for a part that has moved by less [m]
-constexpr double kUnmoved_m = 1e-6;
 /// True if the stored selection is still valid for this step.
 bool hasNotMoved(const Selection& selection, const PairView& pair, const RelativeMotion& motion);
 
 /// How much farther than at the time of the selection any point of the smaller body may go in the step [m].
 double motionChange_m(const Selection& selection, const PairView& pair, const RelativeMotion& motion);
 
-/// Carries a selection's planes to where the bodies are now. Within kUnmoved_m that is as good as a query.
+/// Carries a selection's planes to where the bodies are now. Within kSamePlace_m that is as good as a query.
 CandidateMotion motionSince(const Selection& selection, const PairView& pair);
 
 /// True if bodies meet within the step at a contact with restitution. Bullet's own solver then lets them

@@ -5,6 +5,7 @@
 
 #include "narrowphase/contact_candidate.h"
 #include "narrowphase/curved_contact.h"
+#include "vps/contact_tolerances.h"
 #include "vps/edge_crossing.h"
 
 namespace vps::bullet::inline v0 {
@@ -14,12 +15,11 @@ namespace {
 // A merged body is the union of its parts: an edge that another part covers is not an edge of the body.
 // @param out_M  direction out of the body at the edge's point p_M
 bool isCovered(const Shape& shape, std::uint16_t owner, const Vec3& p_M, const Vec3& out_M) {
-  constexpr double kOff_m = 10e-6;  // assumed: more than the seam between parts mounted on each other
   const std::vector<Surface>& surfaces = shape.models().surfaces;
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
     if (i == owner || surfaces[i].sheet) continue;
-    const Vec3 p = surfaces[i].X_MP.inverse() * (p_M + kOff_m * out_M);
-    if (surfaces[i].distance->signedDistance(p, kOff_m) < 0.5 * kOff_m) return true;
+    const Vec3 p = surfaces[i].X_MP.inverse() * (p_M + kSeam_m * out_M);
+    if (surfaces[i].distance->signedDistance(p, kSeam_m) < 0.5 * kSeam_m) return true;
   }
   return false;
 }
@@ -41,15 +41,14 @@ bool isCurved(const EdgeSegment& s) {
 Vec3 directionAt(const EdgeSet& edges, const EdgeSegment& s, int end) {
   const Vec3 way = s.to - s.from;
   if (!s.is_curved[end]) return way;
-  constexpr double kSame_m = 1e-9;
   const Vec3& joint = end == 0 ? s.from : s.to;
   Vec3 direction = way;
   double most_cos = 0;
-  edges.tree().forEachNear(joint, kSame_m, [&](std::uint32_t i) {
+  edges.tree().forEachNear(joint, kRounding_m, [&](std::uint32_t i) {
     const EdgeSegment& other = edges.segments()[i];
     if (&other == &s) return;
     // The other segment, in the direction of this one.
-    const bool is_reversed = ((end == 0 ? other.from : other.to) - joint).norm() <= kSame_m;
+    const bool is_reversed = ((end == 0 ? other.from : other.to) - joint).norm() <= kRounding_m;
     const Vec3 goes_on = is_reversed ? Vec3(other.from - other.to) : Vec3(other.to - other.from);
     const double cos = way.dot(goes_on) / (way.norm() * goes_on.norm());
     if (!(cos > most_cos)) return;
@@ -72,12 +71,11 @@ Vec3 smoothDirection(const EdgeSet& edges, std::uint32_t i, const Vec3& p) {
 // screw's crest would seem to approach the rim of its nut's thread at each joint. That of the curved edges
 // does not.
 Vec3 smoothNormal(const EdgeCrossing& at, const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_01) {
-  constexpr double kCosNear = 0.94;  // 20 degrees, as between the segments of a curved edge
   const Vec3 n = smoothDirection(edges0, at.edge[0], at.p[0])
                      .cross(X_01.R * smoothDirection(edges1, at.edge[1], X_01.inverse() * at.p[1]))
                      .normalized();
   const double cos = n.dot(at.n);
-  return std::abs(cos) > kCosNear ? Vec3(cos < 0 ? -n : n) : at.n;
+  return std::abs(cos) > kCosSameFace ? Vec3(cos < 0 ? -n : n) : at.n;
 }
 
 // True if curved faces beside both edges lie flush, as those of a thread and its nut.
@@ -85,7 +83,7 @@ bool isFlush(const EdgeSegment& s0, const EdgeSegment& s1, const Mat3& R_01) {
   if (!isCurved(s0) || !isCurved(s1)) return false;
   for (const int i : {0, 1})
     for (const int j : {0, 1})
-      if (s0.normal(i).dot(R_01 * s1.normal(j)) < -kCosFlush) return true;
+      if (s0.normal(i).dot(R_01 * s1.normal(j)) < -kCosSameFace) return true;
   return false;
 }
 

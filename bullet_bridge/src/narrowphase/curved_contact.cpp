@@ -6,22 +6,21 @@
 #include <cmath>
 #include <optional>
 
+#include "vps/contact_tolerances.h"
+
 namespace vps::bullet::inline v0 {
 
 namespace {
-
-constexpr double kGain_m = 1e-7;  // a smaller decrease is not worth a query of the surfaces
 
 // How far a point is from the triangle of a face. The nearest triangle is mostly that one or one beside it,
 // so the search of the mesh need not look farther; with the search's own rounding as a margin, its answer is
 // the same to the bit.
 double distanceTo(const FacePoint& face, const Pose& X_WM, const Vec3& p_W) {
-  constexpr double kRounding = 1e-9;
   const Mesh& mesh = face.surface->distance->mesh();
   const auto& t = mesh.triangles[face.triangle];
   const Vec3 p = (X_WM * face.surface->X_MP).inverse() * p_W;
   const Vec3 q = closestOnTriangle(p, mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]).q;
-  return (1 + kRounding) * (p - q).norm() + kRounding * kGain_m;
+  return (1 + kRoundingShare) * (p - q).norm() + kRoundingShare * kSameGap_m;
 }
 
 // The face nearest to p; none where an edge or an open surface is nearer.
@@ -41,7 +40,7 @@ std::optional<FacePoint> nearestFace(const SideView& side, const Vec3& p_W, doub
   }
   if (!nearest) return {};
   const Vec3 face = nearest->surface->distance->featureNormal(nearest->triangle, 0);
-  if (nearest->surface->sheet || face.dot(best.normal) < kCosFlush) return {};
+  if (nearest->surface->sheet || face.dot(best.normal) < kCosSameFace) return {};
   return nearest;
 }
 
@@ -65,7 +64,7 @@ Vec3 wayToLeast(const FacePoint& own, const FacePoint& their, double reach_m) {
   const Eigen::Matrix2d K = T.transpose() * (own.curvature_W() + their.curvature_W()) * T;
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen;
   eigen.computeDirect(K);
-  const double least_per_m = 2 * kGain_m / (reach_m * reach_m);
+  const double least_per_m = 2 * kSameGap_m / (reach_m * reach_m);
   Eigen::Vector2d way = Eigen::Vector2d::Zero();
   for (int i = 0; i < 2; ++i) {
     const Eigen::Vector2d along = eigen.eigenvectors().col(i);
@@ -89,18 +88,16 @@ bool moveToNearest(Candidate& c, const SideView& side, const SideView& other, co
   const double reach_m = side.shape->models().shell->spacing_m;
   std::optional<FacePoint> own = ownFace(c, side), their = foot;
   if (own->surface->sheet || their->surface->sheet) return false;
-  if (!((own->outward_W + their->outward_W).norm() * reach_m > kGain_m)) return false;
-  constexpr int kSteps = 5;        // most need one or two
-  constexpr double kThere = 5e-3;  // of the reach: the normals then differ by less than a thousandth
+  if (!((own->outward_W + their->outward_W).norm() * reach_m > kSameGap_m)) return false;
   FacePoint nearest[2] = {*own, *their};
   double nearest_m = gapBetween_m(*own, *their);
-  for (int i = 0; i < kSteps; ++i) {
+  for (int i = 0; i < kMostRetakes; ++i) {
     const Vec3 way = wayToLeast(*own, *their, reach_m);
-    if (way.norm() < kThere * reach_m) break;
+    if (way.norm() < kNearestShare * reach_m) break;
     // Beyond the reach another shell point is nearer, and finds the same place.
     const Vec3 to_W = own->q_W + way;
     if ((to_W - c.p_W).norm() > reach_m) return false;
-    if (i == kSteps - 1) {
+    if (i == kMostRetakes - 1) {
       // The normals of a fan of facets are not known well enough at its hub to find the exact place.
       own = nearest[0];
       their = nearest[1];
@@ -109,7 +106,7 @@ bool moveToNearest(Candidate& c, const SideView& side, const SideView& other, co
     const double gap_m = std::abs(gapBetween_m(*own, *their));
     own = nearestFace(side, to_W, way.norm(), &*own);
     if (own) their = nearestFace(other, own->q_W, gap_m + 2 * way.norm(), &*their);
-    if (!own || !their || !(own->outward_W.dot(their->outward_W) < -kCosFlush)) return false;
+    if (!own || !their || !(own->outward_W.dot(their->outward_W) < -kCosSameFace)) return false;
     if (const double now_m = gapBetween_m(*own, *their); now_m < nearest_m) {
       nearest_m = now_m;
       nearest[0] = *own;
@@ -128,10 +125,10 @@ bool moveToNearest(Candidate& c, const SideView& side, const SideView& other, co
 
 bool moveToFoot(Candidate& c, const SideView& side, const Vec3& from_q_W) {
   const Vec3 q_W = c.p_W - from_q_W;
-  const std::optional<FacePoint> own = nearestFace(side, q_W, from_q_W.norm() + kGain_m);
+  const std::optional<FacePoint> own = nearestFace(side, q_W, from_q_W.norm() + kSameGap_m);
   if (!own) return false;
   const Vec3 n_W = (side.side == 0 ? -1 : 1) * own->outward_W;
-  if ((n_W - c.n_W).norm() * from_q_W.norm() < kGain_m) return false;  // flat
+  if ((n_W - c.n_W).norm() * from_q_W.norm() < kSameGap_m) return false;  // flat
   c.p_W = own->q_W;
   c.n_W = n_W;
   c.distance_m = (q_W - own->q_W).dot(own->outward_W);
@@ -149,7 +146,7 @@ void moveToClosest(Candidate& c, const SideView& side, const Vec3& from_q_W) {
     nearest_W = X_WP * closest.q;
     distance_m = (nearest_W - q_W).norm();
   }
-  if (distance_m < kTouching_m) return;
+  if (distance_m < kSamePlace_m) return;
   c.p_W = nearest_W;
   c.n_W = (side.side == 0 ? 1 : -1) / distance_m * (nearest_W - q_W);
   c.distance_m = distance_m;

@@ -6,9 +6,6 @@
 
 namespace vps::bullet::inline v0 {
 
-/// Faces whose normals are within 20 degrees of opposite touch flush.
-inline constexpr double kCosFlush = 0.94;
-
 /// A point of a face, on the curved surface that the facets approximate.
 struct FacePoint {
   Vec3 q_W = Vec3::Zero(), outward_W = Vec3::Zero();
@@ -23,9 +20,6 @@ struct FacePoint {
 
 /// The place of a candidate's shell point on its own face. Requires surfaces and a point on a face.
 FacePoint ownFace(const Candidate& c, const SideView& side);
-
-/// Below this distance, p - q is too short to be trusted as a direction.
-inline constexpr double kTouching_m = 1e-6;
 
 /// Moves a face's point along its part's surface to where the gap to the other curved surface is least, if
 /// that is within the shell's spacing: p_W, distance and normal become those at that place, on the exact

@@ -9,14 +9,11 @@
 
 #include "narrowphase/contact_selection.h"
 #include "narrowphase/curved_contact.h"
+#include "vps/contact_tolerances.h"
 
 namespace vps::bullet::inline v0 {
 
 namespace {
-
-// A contact whose point moves along its plane within 11 degrees slides. Others meet the plane: where they
-// would be at the end of the step is no place to look at.
-constexpr double kSlope = 0.2;
 
 // With the share of the pull of couplings that the motion has.
 Pose freeWay(const btCollisionObject& object, const RelativeMotion& motion) {
@@ -29,17 +26,18 @@ Pose freeWay(const btCollisionObject& object, const RelativeMotion& motion) {
   return displacement(object, V, dt_s);
 }
 
+// Contacts whose points move along their planes. Others meet the plane: where they would be at the end of the
+// step is no place to look at.
 bool slides(const Candidate& c, const Vec3& way_W, double contact_margin_m) {
   return !c.isCrossing() && c.plane_of != Candidate::kBetween && way_W.norm() > contact_margin_m &&
-         std::abs(c.n_W.dot(way_W)) < kSlope * way_W.norm();
+         std::abs(c.n_W.dot(way_W)) < kSinGrazing * way_W.norm();
 }
 
 // True if the point is then on the same curved face, or on one that goes on from it. On a flat face its plane
 // says all.
 bool isOnCurve(const Candidate& now, const Candidate& end, const Pose (&way)[2], double contact_margin_m) {
-  constexpr double kFlat = 1e-6;  // far below the turn of any facet that matters, far above rounding
-  return end.plane_of == now.plane_of && (end.n_W - way[now.plane_of].R * now.n_W).norm() > kFlat &&
-         end.n_W.dot(now.n_W) > kCosFlush &&
+  return end.plane_of == now.plane_of && (end.n_W - way[now.plane_of].R * now.n_W).norm() > kNoDirection &&
+         end.n_W.dot(now.n_W) > kCosSameFace &&
          std::abs(end.distance_m) < std::abs(now.distance_m) + contact_margin_m;
 }
 

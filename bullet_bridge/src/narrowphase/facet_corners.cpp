@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "narrowphase/curved_contact.h"
+#include "vps/contact_tolerances.h"
 
 namespace vps::bullet::inline v0 {
 
@@ -32,7 +33,7 @@ bool moveTo(const Vec3& vertex_W, const SideView& other, double reach_m, Candida
     const MeshDistance::Closest closest = surfaces[i].distance->closest(p, reach_m);
     const double depth_m = closest.distance_m;
     if (!closest.found || closest.normal.dot(p - closest.q) >= 0) continue;
-    if (depth_m <= kTouching_m || depth_m <= -c.distance_m) continue;
+    if (depth_m <= kSamePlace_m || depth_m <= -c.distance_m) continue;
     c.p_W = vertex_W;
     c.n_W = (c.side == 0 ? 1 : -1) / depth_m * (X_WP.R * (closest.q - p));
     c.distance_m = -depth_m;

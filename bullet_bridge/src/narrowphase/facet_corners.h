@@ -10,11 +10,6 @@
 
 namespace vps::bullet::inline v0 {
 
-/// A vertex that is higher than the middle of its facet by less than this share of the contact margin is no
-/// feature of its own. With 20 um: facets of 1 mm on a ball of 14 mm have vertices 14 um high, which are;
-/// those of 0.2 mm on a ball of 5 mm 1 um high. The families C_balls and G_impact need it.
-inline constexpr double kFacetCornerShare = 0.25;
-
 /// Moves candidates of curved faces to the deepest vertex of the facet where they are, if that is high enough
 /// and deeper in the other body than the candidate. Distance and normal become those of the vertex, exactly.
 /// Each vertex takes one candidate.

@@ -9,6 +9,7 @@
 #include "narrowphase/surface_view.h"
 #include "native_shapes/native_shape_adapter.h"
 #include "native_shapes/primitive.h"
+#include "vps/contact_tolerances.h"
 
 namespace vps::bullet::inline v0 {
 
@@ -119,22 +120,18 @@ void findWithin(const PairView& pair, double distance_m, Context& context, std::
 // Points that are farther than the nearest by no more than this are reported too: those of a face that lies
 // opposite a face.
 double beyond_m(const PairView& pair) {
-  constexpr double kShare = 0.1;        // of the spacing. assumed
-  constexpr double kRounding_m = 1e-9;  // of a distance that is measured twice
   double spacing_m = 0;
   for (const Shape* shape : pair.shape)
     if (shape && shape->models().shell) spacing_m = std::max(spacing_m, shape->models().shell->spacing_m);
-  return kShare * spacing_m + kRounding_m;
+  return kBeyondShare * spacing_m + kRounding_m;
 }
 
 /// The nearest of two surfaces around a candidate: each point moves to the one nearest to the other, in turn.
 Candidate polished(Candidate c, const PairView& pair) {
   const int i = c.side, j = 1 - i;
   if (!pair.shape[i] || !pair.shape[j] || isPrimitive(*pair.wrapper[j]->getCollisionShape())) return c;
-  constexpr int kRounds = 32;         // two faces that lean by 20 degrees: the error falls to 0.88 in each
-  constexpr double kThere_m = 1e-10;  // below the rounding of what is reported
   const double sign = i == 0 ? 1 : -1;
-  for (int k = 0; k < kRounds && c.distance_m > kThere_m; ++k) {
+  for (int k = 0; k < kMostIterations && c.distance_m > kRounding_m; ++k) {
     const double before_m = c.distance_m;
     const Vec3 q_W = c.p_W - sign * c.distance_m * c.n_W;
     moveToClosest(c, pair.side(i), c.p_W - q_W);
@@ -144,7 +141,7 @@ Candidate polished(Candidate c, const PairView& pair) {
     moveToClosest(foot, pair.side(j), q_W - c.p_W);
     c.distance_m = foot.distance_m;
     c.n_W = foot.n_W;
-    if (before_m - c.distance_m < kThere_m) break;
+    if (before_m - c.distance_m < kRoundingShare * before_m) break;
   }
   return c;
 }

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "vps/contact_tolerances.h"
+
 namespace vps::bullet::inline v0 {
 
 namespace {
@@ -43,10 +45,9 @@ std::uint16_t surfaceOf(const FeatureContact& c, int i, const Shape& shape) {
 
 // Facets of one plane, and edges that meet in a corner, give the same contact several times.
 bool isRepeated(const FeatureContact& c, const std::vector<const FeatureContact*>& chosen) {
-  constexpr double kNear_m = 1e-6, kCosSame = 0.99999;  // assumed; a quarter of a degree
   return std::any_of(chosen.begin(), chosen.end(), [&](const FeatureContact* other) {
-    return other->plane_of == c.plane_of && other->n.dot(c.n) > kCosSame &&
-           (other->p[0] - c.p[0]).norm() < kNear_m;
+    return other->plane_of == c.plane_of && other->n.dot(c.n) > kCosSamePlane &&
+           (other->p[0] - c.p[0]).norm() < kSamePlace_m;
   });
 }
 
@@ -86,12 +87,11 @@ struct FeaturePlacer {
 // A point of a shell or a crossing at the same place of the same plane: its own point may be the one of the
 // other body, across the gap. Null: there is none.
 Candidate* findAt(std::vector<Candidate>& contacts, const Candidate& at) {
-  constexpr double kNear_m = 1e-6, kCosSame = 0.99999;  // assumed, as in isRepeated()
   const auto found = std::find_if(contacts.begin(), contacts.end(), [&](const Candidate& c) {
     const Vec3 to = c.p_W - at.p_W;
     const double height_m = at.n_W.dot(to);
-    return at.n_W.dot(c.n_W) > kCosSame && std::abs(height_m) < std::abs(at.distance_m) + kNear_m &&
-           (to - height_m * at.n_W).squaredNorm() < kNear_m * kNear_m;
+    return at.n_W.dot(c.n_W) > kCosSamePlane && std::abs(height_m) < std::abs(at.distance_m) + kSamePlace_m &&
+           (to - height_m * at.n_W).squaredNorm() < kSamePlace_m * kSamePlace_m;
   });
   return found != contacts.end() ? &*found : nullptr;
 }

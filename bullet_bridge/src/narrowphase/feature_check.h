@@ -11,10 +11,6 @@
 
 namespace vps::bullet::inline v0 {
 
-/// Overlaps below this share of the contact margin are left to the solver's push. assumed: 1 um of 20 um, far
-/// above what the solver leaves and below what matters.
-constexpr double kToleratedShare = 0.05;
-
 /// True if both bodies have exact surfaces, whose features can be compared.
 bool hasFeatures(const PairView& pair, const Settings& settings);
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "narrowphase/pair_material.h"
+#include "vps/contact_tolerances.h"
 #include "vps_bullet/convert.h"
 
 namespace vps::bullet::inline v0 {
@@ -35,11 +36,9 @@ int indexOn(const Candidate& c, int side) {
 // Along the slip, so that the solver's friction pyramid is exact for a sliding part; for a part at rest,
 // along a direction that depends on the normal only, so that it does not turn with noise.
 void setFrictionDirections(btManifoldPoint& point, const Vec3& n, const Vec3& velocity) {
-  constexpr double kSlip_m_s =
-      1e-4;  // assumed: far above a resting part's jitter, far below motion one can see
   const Vec3 slip = velocity - n * n.dot(velocity);
   Vec3 t1;
-  if (slip.norm() > kSlip_m_s) {
+  if (slip.norm() > kSliding_m_s) {
     t1 = slip.normalized();
   } else {
     int least = 0;

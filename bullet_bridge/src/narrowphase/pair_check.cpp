@@ -15,24 +15,16 @@
 #include "narrowphase/sampling_error.h"
 #include "narrowphase/step_path.h"
 #include "native_shapes/primitive.h"
+#include "vps/contact_tolerances.h"
 #include "vps_bullet/turn.h"
 
 namespace vps::bullet::inline v0 {
 
 namespace {
 
-// An overlap that existed before the step may grow by this share of that: rounding.
-constexpr double kGrowthShare = 0.1;
-
-// A step whose rounds did not end goes on as far as points are no deeper than this share of the contact
-// margin: with their growth 10 um of 20, what an impact may leave. With less, steps would end early for what
-// the push removes in a few steps.
-constexpr double kAllowedShare = 0.5 / (1 + kGrowthShare);
-
 // A contact that carries load ends the step no farther apart than this.
 double apartOf_m(const Settings& settings) {
-  constexpr double kShare = 0.0025;  // of the contact margin. assumed: a tenth of the gap at which edges rest
-  return kShare * settings.contact_margin_m;
+  return kApartShare * settings.contact_margin_m;
 }
 
 double turn_rad(const Mat3& R) {
@@ -143,8 +135,7 @@ void PairCheck::linearise(const Pose (&X_WB_end)[2], std::vector<MissedContact>&
   if (!read(X_WB_end, m)) return;
   const Placed at_start(*this, m.start);
   measure(at_start.pair, m);
-  constexpr double kNothing_m = 1e-9;
-  if (!(m.bend_m > kNothing_m) || m.turnsFar(0)) return;
+  if (!(m.bend_m > kRounding_m) || m.turnsFar(0)) return;
   relinearise(m, at_start, true, out);
 }
 
@@ -176,17 +167,16 @@ void PairCheck::findMissed(const Pose (&X_WB_end)[2], int round, std::vector<Mis
     state_.is_incomplete = true;
     return;
   }
-  if (round < kRetakingRounds && out.size() == had && m.bend_m > apartOf_m(state_.context->settings) &&
+  if (round < kMostRetakes && out.size() == had && m.bend_m > apartOf_m(state_.context->settings) &&
       !m.turnsFar(0))
     relinearise(m, at_start, false, out);
 }
 
 // Between two curved bodies a row is taken anew only in the plane that it had: the plane of the next facet is
-// another contact, and rows that go from facet to facet never settle. assumed: 0.8 degrees, less
-// than between the facets of a round face of 400. Without rows taken anew a frictionless bolt loses 2.2 % of
-// its acceleration; with those of the next facet a peg in a bore of 10 um clearance stays out.
-constexpr double kCosSamePlane = 0.9999;
-
+// another contact, and rows that go from facet to facet never settle. Without rows taken anew a frictionless
+// bolt loses 2.2 % of its acceleration; with those of the next facet a peg in a bore of 10 um clearance stays
+// out.
+//
 // The rows of the step's contacts as they are at the end of a motion.
 // @param is_before  before the step is solved: those for which it matters where they are taken. Otherwise
 // those that carry load and end the step apart: of a body that rolls, the contacts in front of it, which come
@@ -201,7 +191,7 @@ void PairCheck::relinearise(const Motion& m, const Placed& at_start, bool is_bef
   if (!settings.use_surfaces) return;
   const bool are_both_curved = areBothCurved(at_start.pair, state_);
   if (is_before && are_both_curved) return;
-  const double least_cos = are_both_curved ? kCosSamePlane : kCosFlush;
+  const double least_cos = are_both_curved ? kCosSamePlane : kCosSameFace;
   const Placed at_end(*this, m.end);
   thread_local std::vector<Candidate> now, ends;
   findThere(at_end.pair, state_, !is_before || m.bend_m <= apart_m, now, ends);
@@ -231,7 +221,7 @@ double PairCheck::freeShareOfPoints(const Pose (&X_WB_end)[2]) {
   if (!isValid() || !read(X_WB_end, m)) return 1;
   const Placed at_start(*this, m.start);
   measure(at_start.pair, m);
-  m.tolerated_m = kAllowedShare * state_.context->settings.contact_margin_m;
+  m.tolerated_m = kUnsolvedShare * state_.context->settings.contact_margin_m;
   const double slack_m = kGrowthShare * m.tolerated_m;
   if (m.travel_m <= slack_m) return 1;
   thread_local std::vector<Candidate> missed;
@@ -317,8 +307,7 @@ void PairCheck::findOverlaps(const Motion& m, const PairView& pair, std::vector<
 void PairCheck::findAlongPath(const Motion& m, std::vector<Candidate>& missed) const {
   const Placed at_start(*this, m.start);
   const double range_m = std::max(queryRange_m(at_start.pair), m.tolerated_m);
-  constexpr double kMaxPlaces = 16;
-  const int places = static_cast<int>(std::ceil(std::min(m.travel_m / range_m, kMaxPlaces)));
+  const int places = static_cast<int>(std::ceil(std::min<double>(m.travel_m / range_m, kMostPlaces)));
   thread_local std::vector<Candidate> entered;
   for (int k = 1; k <= places && missed.empty(); ++k) {
     const double share = static_cast<double>(k) / places;

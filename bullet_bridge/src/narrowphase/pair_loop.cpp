@@ -12,6 +12,7 @@
 #include "narrowphase/feature_check.h"
 #include "solver/contact_loop.h"
 #include "solver/penalty_contacts.h"
+#include "vps/contact_tolerances.h"
 #include "vps_bullet/convert.h"
 
 namespace vps::bullet::inline v0 {
@@ -30,10 +31,9 @@ bool isTaken(const btCollisionObject& object) {
 // What moves a body in Bullet: its linear and angular factors, or an inertia of zero, hold it in some
 // directions. There it is a million times as heavy.
 Mat6 massWithFactors(const btRigidBody& body, double reach_m) {
-  constexpr double kHeavy = 1e6;
   const Mat3 R = fromBt(body.getWorldTransform()).R;
   const Vec3 v_factor = fromBt(body.getLinearFactor()), w_factor = fromBt(body.getAngularFactor());
-  const double light = 1 / (kHeavy * body.getMass());
+  const double light = 1 / (kRigidRatio * body.getMass());
   Mat6 inverse = Mat6::Zero();
   inverse.topLeftCorner<3, 3>() = w_factor.asDiagonal() * R *
                                   fromBt(body.getInvInertiaDiagLocal()).asDiagonal() * R.transpose() *

@@ -3,6 +3,8 @@
 
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
 
+#include "vps/contact_tolerances.h"
+
 namespace vps::bullet::inline v0 {
 
 RelativeMotion relativeMotion(const PairView& pair, double dt_s, double contact_margin_m, bool is_held) {
@@ -40,21 +42,14 @@ double queryRange_m(const PairView& pair) {
   return range_m;
 }
 
-namespace {
-
-// In voxels, of points of edges and of faces. assumed, by measurement: 0.40 of an edge's point beside an
-// edge.
-constexpr double kEdgeError = 0.45, kFaceError = 0.05;
-
-}  // namespace
-
 double fieldError_m(const PairView& pair, const Candidate& c) {
   if (c.isCrossing()) return 0;
-  return (pair.shape[c.side]->isEdgePoint(c.id) ? kEdgeError : kFaceError) * pair.voxel_m(1 - c.side);
+  return (pair.shape[c.side]->isEdgePoint(c.id) ? kEdgeError_voxels : kFaceError_voxels) *
+         pair.voxel_m(1 - c.side);
 }
 
 double fieldError_m(const PairView& pair) {
-  return kEdgeError * std::max(pair.voxel_m(0), pair.voxel_m(1));
+  return kEdgeError_voxels * std::max(pair.voxel_m(0), pair.voxel_m(1));
 }
 
 bool queriesPoints(const PairView& pair, int i, Sides sides) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "vps/contact_tolerances.h"
 #include "vps_bullet/convert.h"
 
 namespace vps::bullet::inline v0 {
@@ -12,7 +13,6 @@ namespace vps::bullet::inline v0 {
 void updatePenaltyPoints(PenaltyPair& pair, std::span<const Candidate> candidates,
                          const PairMaterial& material, double usual_N_per_m3, int sides,
                          const RelativeMotion& motion, const CandidateMotion& moved) {
-  constexpr double kSeparation_m_s = 0.05;  // assumed: bodies that start inside each other separate gently
   const double separation_m = kSeparation_m_s * motion.dt_s;
   const Mat3 R_W1 = fromBt(pair.object[1]->getWorldTransform().getBasis());
   const Mat3 turned = R_W1 * pair.R_W1.transpose();

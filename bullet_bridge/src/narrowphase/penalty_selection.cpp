@@ -2,6 +2,7 @@
 // Penalty contact: every point that can touch presses.
 #include "narrowphase/contact_selection.h"
 #include "narrowphase/penalty_points.h"
+#include "vps/contact_tolerances.h"
 
 namespace vps::bullet::inline v0 {
 
@@ -48,7 +49,7 @@ void selectPenaltyPoints(const PairView& pair, PairState& state) {
 bool reusePenaltyPoints(const PairView& pair, PairState& state, CandidateMotion& moved) {
   const Selection& selection = state.selection;
   const RelativeMotion& motion = state.motion;
-  if (!(motionChange_m(selection, pair, motion) <= kUnmoved_m) || !hasNotMoved(selection, pair, motion))
+  if (!(motionChange_m(selection, pair, motion) <= kSamePlace_m) || !hasNotMoved(selection, pair, motion))
     return false;
   moved = motionSince(selection, pair);
   state.contacts = selection.contacts;

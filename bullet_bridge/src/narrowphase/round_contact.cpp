@@ -14,6 +14,7 @@
 
 #include "native_shapes/primitive.h"
 #include "shape/sheet_border.h"
+#include "vps/contact_tolerances.h"
 #include "vps_bullet/convert.h"
 
 namespace vps::bullet::inline v0 {
@@ -25,10 +26,9 @@ using Point = std::optional<Vec3>;
 // The farthest point in a direction on the circle of radius r about the axis at height h. None for a
 // direction along the axis.
 Point onCircle(int axis, double radius_m, double height_m, const Vec3& direction) {
-  constexpr double kMinRadial = 0.2;
   Vec3 radial = direction;
   radial[axis] = 0;
-  if (!(radial.norm() > kMinRadial)) return {};
+  if (!(radial.norm() > kSinGrazing)) return {};
   return Vec3(radius_m * radial.normalized() + height_m * Vec3(Vec3::Unit(axis)));
 }
 
@@ -56,8 +56,7 @@ Point onMultiSphere(const btMultiSphereShape& shape, const SurfaceDistance& at, 
   for (int i = 0; i < shape.getSphereCount(); ++i) {
     const Vec3 center = scale * fromBt(shape.getSpherePosition(i));
     const double radius_m = scale * shape.getSphereRadius(i);
-    constexpr double kEqual_m = 1e-9;
-    if (at.n.dot(p - center) - radius_m > at.distance_m + kEqual_m) continue;
+    if (at.n.dot(p - center) - radius_m > at.distance_m + kRounding_m) continue;
     if (active == 2) return {};
     centers[active] = center;
     radii_m[active++] = radius_m;
@@ -168,20 +167,16 @@ bool refineOnRound(Candidate& c, const SideView& side, const SideView& other,
   const Vec3 &p_M = models.shell->points[c.id], &inward_M = models.shell->inward[c.id];
   const Vec3 p = X_SM * p_M, inward = X_SM.R * inward_M;
   const SurfaceDistance at = primitiveDistance(primitive, p);
-  constexpr double kFacing =
-      0.2;  // as in contact_refinement.cpp: beyond 78 degrees a face and a surface do not touch
-  if (at.n.dot(inward) < kFacing) return false;
+  if (at.n.dot(inward) < kSinGrazing) return false;
   const Point x = farthestPoint(primitive, at, p, inward);
   // In a socket of nearly its own radius a face touches at its point; the query of the surface is then saved.
-  constexpr double kGain_m = 1e-7;
-  if (!x || at.distance_m - (p - *x).dot(inward) < kGain_m) return false;
+  if (!x || at.distance_m - (p - *x).dot(inward) < kSameGap_m) return false;
   const Vec3 x_M = X_SM.inverse() * *x;
   const OwnFoot foot =
       footOnOwn(models, x_M, inward_M, 1.001 * (x_M - p_M).norm());  // p itself is on the surface
   if (!(foot.distance_m < at.distance_m)) return false;
-  constexpr double kTouching_m = 1e-9;
   const Vec3 n_M =
-      std::abs(foot.distance_m) > kTouching_m ? Vec3((foot.q - x_M) / foot.distance_m) : Vec3(-foot.outward);
+      std::abs(foot.distance_m) > kRounding_m ? Vec3((foot.q - x_M) / foot.distance_m) : Vec3(-foot.outward);
   c.p_W = side.X_WM * foot.q;
   c.n_W = (side.side == 0 ? 1 : -1) * (side.X_WM.R * n_M);
   c.distance_m = foot.distance_m;

@@ -6,6 +6,7 @@
 
 #include "narrowphase/contact_selection.h"
 #include "narrowphase/pair_loop.h"
+#include "vps/contact_tolerances.h"
 
 namespace vps::bullet::inline v0 {
 
@@ -83,8 +84,7 @@ void findStepCandidates(const PairView& pair, const RelativeMotion& motion, Pair
     return;
   }
   const double stride_m = std::max(0.5 * (range_m - motion.contact_margin_m), 0.25 * range_m);
-  constexpr double kMaxStrides = 1000;  // 0.5 m a step at a voxel of 0.25 mm
-  const int strides = static_cast<int>(std::ceil(std::min(travel_m / stride_m, kMaxStrides)));
+  const int strides = static_cast<int>(std::ceil(std::min(travel_m / stride_m, kMostStretches)));
   thread_local std::vector<Candidate> met;
   thread_local std::vector<std::uint64_t> met_before;
   met_before.clear();

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vps/contact_tolerances.h"
 #include "vps_bullet/convert.h"
 
 namespace vps::bullet::inline v0 {
@@ -48,9 +49,6 @@ double StepPath::effect(const Row& of, const Row& on) const {
 
 namespace {
 
-// Below this neither the bend nor the gap is known well enough to tell when the contact acts.
-constexpr double kKnown_m = 1e-8;
-
 template <typename Row>
 Row between(const Row& start, const Row& end, double tau) {
   return {(1 - tau) * start.p_W + tau * end.p_W, ((1 - tau) * start.n_W + tau * end.n_W).normalized()};
@@ -59,15 +57,14 @@ Row between(const Row& start, const Row& end, double tau) {
 }  // namespace
 
 double StepPath::timeOf(const Row& start, const Row& end, double closed_m, bool is_corner) const {
-  const double bend_m = std::max(way_m(end) - way_m(start), kKnown_m);
+  const double bend_m = std::max(way_m(end) - way_m(start), kRounding_m);
   double tau = std::max(0.5, 0.5 + closed_m / bend_m);
   if (tau <= 1) return tau;
-  if (!(bend_m > kKnown_m) || !is_corner) return 1;
+  if (!(bend_m > kRounding_m) || !is_corner) return 1;
   const double kick_m = -end.n_W.dot(body_[0].kick_W - body_[1].kick_W);
   if (!(closed_m < kick_m)) return 1;
-  constexpr int kMost = 8;
   const double own = effect(end, end);
-  for (int k = 0; k < kMost; ++k, tau = 0.5 * (1 + tau))
+  for (int k = 0; k < kMostRounds; ++k, tau = 0.5 * (1 + tau))
     if (effect(between(start, end, tau), end) >= 0.5 * own) return tau;
   return 1;
 }
@@ -85,7 +82,7 @@ Candidate StepPath::acting(const Candidate& start, const Candidate& end) const {
 }
 
 bool StepPath::bends(const Candidate& start, const Candidate& end) const {
-  return std::abs(way_m(atEnd(end)) - way_m({start.p_W, start.n_W})) > kKnown_m;
+  return std::abs(way_m(atEnd(end)) - way_m({start.p_W, start.n_W})) > kRounding_m;
 }
 
 }  // namespace vps::bullet::inline v0

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "shape/sheet_border.h"
+#include "vps/contact_tolerances.h"
 
 namespace vps::bullet::inline v0 {
 
@@ -12,9 +13,8 @@ namespace {
 SurfaceDistance make(const MeshDistance::Closest& closest, const Vec3& p, const Vec3& normal,
                      const Surface& surface) {
   const double sign = normal.dot(p - closest.q) < 0 ? -1 : 1;
-  constexpr double kTouching_m = 1e-9;  // too short to be a direction
   const Vec3 n =
-      closest.distance_m > kTouching_m ? Vec3(sign / closest.distance_m * (p - closest.q)) : normal;
+      closest.distance_m > kRounding_m ? Vec3(sign / closest.distance_m * (p - closest.q)) : normal;
   return {sign * closest.distance_m, surface.X_MP.R * n};
 }
 
@@ -49,13 +49,13 @@ SurfaceDistance SurfaceView::at(const Vec3& p_M, const Vec3& inward_M, double cu
 }
 
 double SurfaceView::searchLimit_m(const Surface& surface, const Vec3& p, double max_m, const Known& known) {
-  constexpr double kRounding = 1 + 1e-9, kLeast_m = 1e-12;
   if (!known.is_set) return 1e300;
   const double way_m = (p - known.p).norm();
-  const double limit_m = (p - known.q).norm() * kRounding + kLeast_m;
-  if (surface.distance->isByWinding() || known.distance_m <= way_m * kRounding + kLeast_m) return limit_m;
-  if (known.distance_m - way_m * kRounding - kLeast_m > max_m) return 0;
-  return std::min(limit_m, std::max(max_m, 0.0) * kRounding + kLeast_m);
+  const double limit_m = (p - known.q).norm() * (1 + kRoundingShare) + kRounding_m;
+  if (surface.distance->isByWinding() || known.distance_m <= way_m * (1 + kRoundingShare) + kRounding_m)
+    return limit_m;
+  if (known.distance_m - way_m * (1 + kRoundingShare) - kRounding_m > max_m) return 0;
+  return std::min(limit_m, std::max(max_m, 0.0) * (1 + kRoundingShare) + kRounding_m);
 }
 
 double SurfaceView::solidDistance(const Surface& surface, const Vec3& p, double max_m, Known& known) {
@@ -100,8 +100,7 @@ SurfaceDistance SurfaceView::atSheet(const Surface& surface, const Vec3& p_M, co
   const SheetFoot foot = surface.sheet->seenFrom(p, inward, closest);
   const Vec3 normal = foot.normal;
   // Where the point looks nearly along the sheet, its side depends on rounding; such points do not touch.
-  constexpr double kEdgeOn = 0.05;
-  if (inward.dot(normal) < kEdgeOn) return never;
+  if (inward.dot(normal) < kSinLean) return never;
   const SurfaceDistance d = make(closest, p, normal, surface);
   return d.distance_m < 0 && !hasEnteredBy(-d.distance_m, X_PM.inverse() * closest.q) ? never : d;
 }

@@ -3,24 +3,24 @@
 
 #include <BulletDynamics/ConstraintSolver/btContactSolverInfo.h>
 
+#include "vps/contact_tolerances.h"
+
 namespace vps::bullet::inline v0 {
 
 // For parts near rest sweeps converge within a few microseconds; otherwise Newton's method follows, which
 // sees the whole island.
 SolveOutcome ContactLoop::solveContacts(const SolverSettings& settings) {
   constexpr int kSweepsFirst = 30, kSweepsPerNewtonStep = 10;  // assumed; the second: ratio of their costs
-  constexpr double kShareOfSpeed = 1e-5;  // assumed: a micrometre on a path of a decimetre
   // Where it is cut short, each step is solved again and again for the contacts that it misses: that takes
   // longer than to converge.
-  constexpr int kNewtonAtLeast = 60;
   const int newton_share = std::max(0, settings.iteration_limit - kSweepsFirst) / kSweepsPerNewtonStep;
-  const int newton_limit = newton_share > 0 ? std::max(kNewtonAtLeast, newton_share) : 0;
+  const int newton_limit = newton_share > 0 ? std::max(kMostIterations, newton_share) : 0;
   contacts.start();
   SolveOutcome outcome =
       contacts.sweep(settings.residual_m_s, newton_limit > 0 ? kSweepsFirst : settings.iteration_limit);
   if (outcome.is_converged || newton_limit == 0) return outcome;
   island.readVelocities(u_);
-  const double near_m_s = std::max(settings.residual_m_s, kShareOfSpeed * island.topSpeed(u_));
+  const double near_m_s = std::max(settings.residual_m_s, kSpeedErrorShare * island.topSpeed(u_));
   const SolveOutcome solved = newton_.solve(contacts.contacts(), near_m_s, newton_limit);
   outcome.steps += kSweepsPerNewtonStep * solved.steps;
   outcome.is_converged = solved.is_converged;

@@ -11,6 +11,7 @@
 #include "solver/island.h"
 #include "solver/joint_rows.h"
 #include "solver/step_check.h"
+#include "vps/contact_tolerances.h"
 #include "vps_bullet/solver.h"
 
 struct btContactSolverInfo;
@@ -36,14 +37,13 @@ class ContactLoop {
   template <typename Solve>
   SolveOutcome run(const btContactSolverInfo& info, int push_sweeps, bool retakes_rows, const Solve& solve) {
     if (retakes_rows) linearise(info);
-    constexpr int kMaxChecks = 8;  // assumed; two or three find all
     SolveOutcome outcome;
     for (int checked = 0;; ++checked) {
       const SolveOutcome round = solve();
       outcome = {std::max(outcome.steps, round.steps), round.is_converged};
       contacts.solvePush(info, push_sweeps);
-      const int number = retakes_rows ? checked : checked + kRetakingRounds;
-      if (checked == kMaxChecks || !addMissed(info, number)) return outcome;
+      const int number = retakes_rows ? checked : checked + kMostRetakes;
+      if (checked == kMostRounds || !addMissed(info, number)) return outcome;
     }
   }
   /// True if the rounds were used up, or no room was left, with contacts still missed.

@@ -9,32 +9,10 @@
 
 #include "solver/line_search.h"
 #include "solver/patch_math.h"
+#include "vps/contact_tolerances.h"
 #include "vps_bullet/convert.h"
 
 namespace vps::bullet::inline v0 {
-namespace {
-
-// Compliance of a contact relative to that of a free body: initial and least value. A stiff contact leaves
-// little error in a round, but Newton's method needs many steps from a distant start; for a compliant one it
-// is the reverse. So a round that has not reduced the error to kGoodReduction of the previous round's is
-// followed by stiffer ones [Bertsekas 1982, ch. 2], unless it is the terms of slip that change.
-constexpr double kMaxCompliance = 1e-2, kMinCompliance = 1e-7, kStiffer = 0.1, kGoodReduction = 0.1;
-// Slips that do not shrink by this factor wait for impulses that are still too small.
-constexpr double kSettling = 0.5;
-// A round need not be more accurate than this share of the previous round's error.
-constexpr double kShareOfError = 0.1, kFirstError_m_s = 1e-2;
-// What is left has the same sign from step to step, and drives what accelerates slowly: with the whole
-// residual a nut whose weight turns it gained 2 %. A term of slip moves a body that slides off its face by a
-// tenth of a nanometre a step.
-constexpr double kLawShare = 0.1, kSlipShare = 1;
-// Joints are springs on the velocity, so stiff that they miss their target by a millionth of the change. They
-// have no multipliers: rows of joints often contradict each other.
-constexpr double kJointCompliance = 1e-6;
-// An impulse is refined by no less than this share of it: above the rounding of doubles, so that these keep
-// their bits.
-constexpr double kSettled = 1e-9;
-
-}  // namespace
 
 void ContactNewton::addPatch(const RigidContact& first) {
   Patch& patch = patches_.emplace_back();
@@ -72,7 +50,7 @@ void ContactNewton::gather(std::span<const RigidContact> contacts) {
   joint_states_.clear();
   for (JointRow& row : joints_.rows) {
     const double W = row.inverseMass(island_);
-    if (W > 0) joint_states_.push_back({&row, W * std::max(row.cfm, kJointCompliance), 0, true});
+    if (W > 0) joint_states_.push_back({&row, W * std::max(row.cfm, 1 / kRigidRatio), 0, true});
   }
 }
 
@@ -223,8 +201,7 @@ SolveOutcome ContactNewton::minimise(double near_m_s, int step_limit) {
     if (!findStep()) return outcome;
     const double slope = sumOfProducts(gradient_, step_);
     if (!(slope < 0)) {  // balanced as well as rounding allows
-      constexpr double kGoodEnough = 10;
-      outcome.is_converged = slope >= 0 && off_m_s < kGoodEnough * near_m_s;
+      outcome.is_converged = slope >= 0 && off_m_s < near_m_s / kAccuracyShare;
       return outcome;
     }
     const double share = shareOfStep(slope);
@@ -243,7 +220,7 @@ void ContactNewton::startSlips() {
 
 // True where the impulses only wait for the terms of slip, which settle.
 bool ContactNewton::Miss::isOfSlip(const Miss& last) const {
-  return slip_m_s < kSettling * last.slip_m_s && law_m_s < kGoodReduction * slip_m_s;
+  return slip_m_s < kSlipReduction * last.slip_m_s && law_m_s < kAccuracyShare * slip_m_s;
 }
 
 // Takes the round's impulses. The slip of each contact at its end is left in `slips_`.
@@ -285,7 +262,8 @@ void ContactNewton::writeImpulses(std::span<RigidContact> contacts) const {
     // Directions of floats are not quite of unit length, nor quite at right angles. Where a light body is
     // between heavy ones, the rest of an impulse moves it by a micrometre a second.
     const Vec3 rest = impulse - (c.p_n * n + c.p_t[0] * t[0] + c.p_t[1] * t[1]);
-    if (rest.norm() <= kSettled * impulse.norm()) continue;
+    // Above the rounding of doubles, so that these keep their bits.
+    if (rest.norm() <= kRoundingShare * impulse.norm()) continue;
     c.p_n += n.dot(rest);
     for (int k = 0; k < 2; ++k) c.p_t[k] += t[k].dot(rest);
   }
@@ -307,23 +285,23 @@ void ContactNewton::start(std::span<const RigidContact> contacts) {
 SolveOutcome ContactNewton::solve(std::span<RigidContact> contacts, double residual_m_s, int step_limit) {
   SolveOutcome outcome;
   start(contacts);
-  double compliance = kMaxCompliance;
+  double compliance = kFirstCompliance;
   Miss last = {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
   for (;;) {
     setCompliance(compliance);
     const double error_m_s = std::max(last.law_m_s, last.slip_m_s);
-    const double near_m_s = kShareOfError * std::clamp(error_m_s, kLawShare * residual_m_s, kFirstError_m_s);
+    const double near_m_s =
+        kAccuracyShare * std::clamp(error_m_s, kAccuracyShare * residual_m_s, kFirstError_m_s);
     const SolveOutcome round = minimise(near_m_s, step_limit - outcome.steps);
     outcome.steps += std::max(1, round.steps);
     if (!round.is_converged) break;
     const Miss now = endRound();
-    outcome.is_converged =
-        now.law_m_s <= kLawShare * residual_m_s && now.slip_m_s <= kSlipShare * residual_m_s;
+    outcome.is_converged = now.law_m_s <= kAccuracyShare * residual_m_s && now.slip_m_s <= residual_m_s;
     if (outcome.is_converged || outcome.steps >= step_limit) break;
     if (now.slip_m_s > last.slip_m_s) extrapolation_.clear();
     updateSlips();
-    if (now.law_m_s > kGoodReduction * last.law_m_s && !now.isOfSlip(last))
-      compliance = std::max(kMinCompliance, kStiffer * compliance);
+    if (now.law_m_s > kAccuracyShare * last.law_m_s && !now.isOfSlip(last))
+      compliance = std::max(kLeastCompliance, kAccuracyShare * compliance);
     last = now;
   }
   if (!std::all_of(u_.begin(), u_.end(), [](const Vec6& u) { return u.allFinite(); }))

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "solver/contact_key.h"
+#include "vps/contact_tolerances.h"
 #include "vps/friction.h"
 #include "vps_bullet/convert.h"
 
@@ -280,15 +281,12 @@ void ContactSweeps::pushJoint(const JointState& joint) {
 }
 
 void ContactSweeps::solvePush(const btContactSolverInfo& info, int sweep_limit) {
-  constexpr double kMaxPush_m_s = 0.05;  // assumed: parts that start inside each other separate gently
-  constexpr double kNothing_m = 1e-9;
-  constexpr double kSoftness = 0.1;  // assumed: a tenth less is removed in a step
   const double dt = info.m_timeStep;
   bool is_needed = false;
   for (RigidContact& c : contacts_) {
     const double left_m = c.gap_m + velocity(c.normal) * dt;
-    is_needed |= left_m < -kNothing_m;
-    c.push_m_s = left_m < 0 ? std::min(-info.m_erp2 * left_m / dt, kMaxPush_m_s) : -left_m / dt;
+    is_needed |= left_m < -kRounding_m;
+    c.push_m_s = left_m < 0 ? std::min(-info.m_erp2 * left_m / dt, kSeparation_m_s) : -left_m / dt;
     c.p_push = 0;
   }
   push_.clear();
@@ -307,7 +305,8 @@ void ContactSweeps::solvePush(const btContactSolverInfo& info, int sweep_limit) 
       const double W = c.normal.W;
       double p = c.push_m_s <= 0 || c.is_sharp ? c.p_push + (std::min(0.0, c.push_m_s) - v) / W : 0;
       if (c.push_m_s > 0)
-        p = std::max(p, c.p_push + (c.push_m_s - v - kSoftness * W * c.p_push) / ((1 + kSoftness) * W));
+        p = std::max(p,
+                     c.p_push + (c.push_m_s - v - kPushSoftness * W * c.p_push) / ((1 + kPushSoftness) * W));
       p = std::max(0.0, p);
       if (p == c.p_push) continue;
       apply(c.normal, p - c.p_push);
@@ -316,7 +315,7 @@ void ContactSweeps::solvePush(const btContactSolverInfo& info, int sweep_limit) 
     }
     // With ten times this tolerance, each step's velocity lowered a heavy load on light bodies as much as
     // each push had raised it.
-    if (residual_m_s * dt < kNothing_m) break;
+    if (residual_m_s * dt < kRounding_m) break;
   }
   for (std::size_t i = 0; i < push_.size(); ++i) {
     IslandBody& b = island_.bodies[i];
@@ -324,7 +323,7 @@ void ContactSweeps::solvePush(const btContactSolverInfo& info, int sweep_limit) 
     std::swap(b.u, push);
     // Each row's push is limited, but contradictory rows add up.
     const double fastest_m_s = push.tail<3>().norm() + push.head<3>().norm() * b.reach_m;
-    if (fastest_m_s > kMaxPush_m_s) push *= kMaxPush_m_s / fastest_m_s;
+    if (fastest_m_s > kSeparation_m_s) push *= kSeparation_m_s / fastest_m_s;
   }
 }
 

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "vps/contact_tolerances.h"
+
 namespace vps::bullet::inline v0 {
 
 namespace {
@@ -42,24 +44,21 @@ class Held {
 
 bool endEarly(Island& island, std::span<const RigidContact> contacts, const JointRows& joints,
               std::span<StepCheck* const> checks, std::span<const Vec6> push, double dt_s) {
-  constexpr double kShort = 0.9;   // assumed: not quite up to the place
-  constexpr int kMost = 6;         // assumed
-  constexpr double kStops = 0.05;  // assumed: what is stopped and still too deep is moved by the other body
   bool is_short = false;
-  for (int k = 0; k < kMost; ++k) {
+  for (int k = 0; k < kMostRounds; ++k) {
     double share = 1;
     Held held(island.bodies.size());
     for (StepCheck* check : checks) {
       const int body[2] = {island.indexOf(check->object(0)), island.indexOf(check->object(1))};
       const auto stands = [&](int i) {
-        return i < 0 || island.bodies[static_cast<std::size_t>(i)].way_share < kStops;
+        return i < 0 || island.bodies[static_cast<std::size_t>(i)].way_share < 1 - kShortShare;
       };
       if (stands(body[0]) && stands(body[1])) continue;
       const Pose X_WB_end[2] = {island.endPose(check->object(0), push, dt_s),
                                 island.endPose(check->object(1), push, dt_s)};
       const double own = std::min(check->freeShare(X_WB_end), check->freeShareOfPoints(X_WB_end));
       if (!(own < 1)) continue;
-      share = std::min(share, kShort * own);
+      share = std::min(share, kShortShare * own);
       for (const int i : body) held.add(i);
     }
     if (share >= 1) break;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "vps/contact_tolerances.h"
 #include "vps_bullet/turn.h"
 
 namespace vps::bullet::inline v0 {
@@ -29,8 +30,6 @@ struct MeanVelocity {
   /// Newton's method from W. The dependence of h on W is of second order in the step, and is left out of the
   /// slope.
   [[nodiscard]] Vec3 solve(Vec3 W, double dt_s) const {
-    constexpr int kMostIterations = 30;
-    constexpr double kClose = 1e-9;  // share of W. Below the rounding changes no longer fall
     double last_change_rad_s = std::numeric_limits<double>::infinity();
     for (int i = 0; i < kMostIterations; ++i) {
       const Vec3 rest_Nms = rest(W, dt_s);
@@ -40,7 +39,7 @@ struct MeanVelocity {
                                  (crossMatrix(W) * J - crossMatrix(inertia_kg_m2.cwiseProduct(W)));
       const Vec3 change = slope.inverse() * rest_Nms;
       const double change_rad_s = change.norm();
-      if (change_rad_s <= kClose * W.norm() && !(change_rad_s < last_change_rad_s)) break;
+      if (change_rad_s <= kRoundingShare * W.norm() && !(change_rad_s < last_change_rad_s)) break;
       last_change_rad_s = change_rad_s;
       W -= change;
     }
@@ -51,7 +50,6 @@ struct MeanVelocity {
 }  // namespace
 
 Vec3 meanAngularVelocity(const Vec3& inertia_kg_m2, const Vec3& w_B, double dt_s) {
-  constexpr double kConverged = 1e-9;  // share of the momentum
   const MeanVelocity mean{inertia_kg_m2, inertia_kg_m2.cwiseProduct(w_B)};
   // A longer step is solved from the solution of half of it: from W = w, Newton's method may find none.
   const double turn_rad = w_B.norm() * dt_s;
@@ -60,7 +58,7 @@ Vec3 meanAngularVelocity(const Vec3& inertia_kg_m2, const Vec3& w_B, double dt_s
     for (double share = kBulletTurn_rad / turn_rad; share < 1; share *= 2) W = mean.solve(W, share * dt_s);
   W = mean.solve(W, dt_s);
   // w_B also where a value is not finite
-  return mean.rest(W, dt_s).norm() <= kConverged * mean.L.norm() ? W : w_B;
+  return mean.rest(W, dt_s).norm() <= kRoundingShare * mean.L.norm() ? W : w_B;
 }
 
 }  // namespace vps::bullet::inline v0

@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include "vps/contact_tolerances.h"
 
 namespace vps::bullet::inline v0 {
 
@@ -89,8 +92,8 @@ void ImpactProjection::leave(std::size_t k) {
       y[i] = a.sign * other.sign * product(a.row, other.row);
     }
     factor_.topLeftCorner(n, n).triangularView<Eigen::Lower>().solveInPlace(y);
-    constexpr double kLeast = 1e-14;  // rounding must not end the run
-    append(y, std::max(rows_[a.row].W - y.squaredNorm(), kLeast * rows_[a.row].W));
+    append(y, std::max(rows_[a.row].W - y.squaredNorm(),
+                       std::numeric_limits<double>::epsilon() * rows_[a.row].W));
     active_.push_back(a);
     work_ += static_cast<std::size_t>(n * n);
   }
@@ -98,7 +101,6 @@ void ImpactProjection::leave(std::size_t k) {
 
 // False: the row depends on the active ones, of which none can leave.
 bool ImpactProjection::join(std::size_t row, std::vector<Vec6>& v) {
-  constexpr double kDependent = 1e-11;  // share of a row that the active ones do not have
   const double velocity_m_s = rows_[row].velocity(v);
   Active joining{row, velocity_m_s < 0 ? 1.0 : -1.0, 0};
   for (;;) {
@@ -114,7 +116,7 @@ bool ImpactProjection::join(std::size_t row, std::vector<Vec6>& v) {
     factor.transpose().solveInPlace(r);
     work_ += static_cast<std::size_t>(n * n) + rows_.size();
     const double rest = rows_[row].W - y.squaredNorm();
-    const bool is_dependent = !(rest > kDependent * rows_[row].W);
+    const bool is_dependent = !(rest > kSumRounding * rows_[row].W);
     const double full = is_dependent ? std::numeric_limits<double>::infinity()
                                      : -joining.sign * rows_[row].velocity(v) / rest;
     double t = std::max(full, 0.0);

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 
+#include "vps/contact_tolerances.h"
 #include "vps_bullet/convert.h"
 
 namespace vps::bullet::inline v0 {
@@ -97,11 +98,8 @@ void JointRows::add(btTypedConstraint& joint, const Island& island, const btCont
 }
 
 void JointRows::hold(const Island& island, std::span<BodyEnd> ends) {
-  constexpr int kMostSweeps = 50;
-  constexpr double kSettled =
-      1e-9;  // m/s or rad/s; above rounding, so that what is held already keeps its bits
   double most = std::numeric_limits<double>::infinity();
-  for (int sweep = 0; sweep < kMostSweeps && most > kSettled; ++sweep) {
+  for (int sweep = 0; sweep < kMostIterations && most > kRoundingSpeed_m_s; ++sweep) {
     most = 0;
     for (JointRow& row : rows) {
       if (row.isBounded()) continue;
@@ -114,7 +112,7 @@ void JointRows::hold(const Island& island, std::span<BodyEnd> ends) {
         MinvJ[i] = ends[body].inverse_mass * row.J[i];
         W += row.J[i].dot(MinvJ[i]);
       }
-      if (!(std::abs(error) > kSettled) || !(W > 0)) continue;
+      if (!(std::abs(error) > kRoundingSpeed_m_s) || !(W > 0)) continue;
       row.impulse_Ns += error / W;
       for (int i = 0; i < 2; ++i)
         if (row.body[i] >= 0) ends[static_cast<std::size_t>(row.body[i])].v += error / W * MinvJ[i];

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vps/contact_tolerances.h"
+
 namespace vps::bullet::inline v0 {
 
 /// How much of a step to take: 1, or the share at which the function is nearly least. The function is convex,
@@ -13,17 +15,15 @@ namespace vps::bullet::inline v0 {
 /// @param slopeAt  the slope at a share of the step
 template <typename SlopeAt>
 double lineSearch(double slope, const SlopeAt& slopeAt) {
-  constexpr double kFlat = 0.1;  // of the initial slope; a more accurate minimum would not save a step
-  constexpr int kMost = 20;
   double low = 0, low_slope = slope, high = 1, high_slope = slopeAt(1);
-  if (high_slope <= -kFlat * slope) return 1;
+  if (high_slope <= -kAccuracyShare * slope) return 1;
   double share = 1;
-  for (int k = 0; k < kMost; ++k) {
+  for (int k = 0; k < kMostPlaces; ++k) {
     const double room = high - low;
     share =
         std::clamp(low - low_slope * room / (high_slope - low_slope), low + 0.05 * room, high - 0.05 * room);
     const double here = slopeAt(share);
-    if (std::abs(here) <= -kFlat * slope) break;
+    if (std::abs(here) <= -kAccuracyShare * slope) break;
     (here < 0 ? low : high) = share;
     (here < 0 ? low_slope : high_slope) = here;
   }

@@ -8,6 +8,7 @@
 
 #include "solver/line_search.h"
 #include "solver/patch_math.h"
+#include "vps/contact_tolerances.h"
 #include "vps_bullet/convert.h"
 
 namespace vps::bullet::inline v0 {
@@ -71,11 +72,10 @@ void PenaltyNewton::evaluateAll(const std::vector<Vec6>& u, bool with_hessian, s
 }
 
 void PenaltyNewton::prepareJoints() {
-  constexpr double kStiffer = 1e6;  // relative to the inverse of the bodies' inverse mass
   joint_kg_.clear();
   for (const JointRow& row : joints_.rows) {
     const double W = row.inverseMass(island_);
-    joint_kg_.push_back(W > 0 ? 1 / (W * std::max(row.cfm, 1 / kStiffer)) : 0);
+    joint_kg_.push_back(W > 0 ? 1 / (W * std::max(row.cfm, 1 / kRigidRatio)) : 0);
   }
   is_free_.assign(joints_.rows.size(), 0);
 }
@@ -169,9 +169,8 @@ SolveOutcome PenaltyNewton::solve(double residual_m_s, int iteration_limit, End 
     if (!newtonStep(gradient_, step_)) break;
     const double slope = sumOfProducts(gradient_, step_);
     if (!(slope < 0)) {  // balanced as well as rounding allows, or not finite
-      constexpr double kGoodEnough = 10;
       outcome.is_converged =
-          slope >= 0 && (end == End::Short || imbalance_m_s() < kGoodEnough * residual_m_s);
+          slope >= 0 && (end == End::Short || imbalance_m_s() < residual_m_s / kAccuracyShare);
       break;
     }
     // The last step is so short that a line search does not matter.

@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "solver/point_groups.h"
 
+#include "vps/contact_tolerances.h"
+
 namespace vps::bullet::inline v0 {
 namespace {
 
-// A leader keeps its role against one that is deeper by less. Assumed: a tenth of what a part may move
-// before its points are sought again.
-constexpr double kClearly_m = 1e-7;
 double leadGap_m(const PenaltyPoint& p) {
-  return p.is_leader ? p.gap_m - kClearly_m : p.gap_m;
+  return p.is_leader ? p.gap_m - kSameGap_m : p.gap_m;
 }
-
-constexpr double kSameWay = 0.7;  // 45 degrees
 
 /// Calls visit(first, end) for each group.
 template <typename Visit>
@@ -21,7 +18,7 @@ void forEachGroup(const PenaltyPair& pair, int level, const Visit& visit) {
     std::size_t end = first + 1;
     if (!pair.is_of_manifold && level > 0)
       while (end < points.size() && points[end].key >> level == points[first].key >> level &&
-             points[end].mu == points[first].mu && points[end].n_W.dot(points[first].n_W) > kSameWay)
+             points[end].mu == points[first].mu && points[end].n_W.dot(points[first].n_W) > kCosAlike)
         ++end;
     visit(first, end);
     first = end;

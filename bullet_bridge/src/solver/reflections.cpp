@@ -5,18 +5,10 @@
 #include <cmath>
 #include <limits>
 
+#include "vps/contact_tolerances.h"
+
 namespace vps::bullet::inline v0 {
 namespace {
-
-// Products of rows in all v(t) of one impact, about 0.1 s. A body between two others of R times its mass
-// takes pi sqrt(R / 2) impacts, of some 300 products each between flush faces.
-constexpr std::size_t kMostWork = 10'000'000;
-// Shares of the fastest approach. A slower one is no impact of its own, but is stopped in the end: contacts
-// of flush faces that rest on each other would otherwise be reflected or not by the sign of their rounding,
-// half of a face with one impact and half with the next, and the bodies would turn. It costs at most the
-// square of this in energy.
-constexpr double kNoImpact = 1e-2;
-constexpr double kConverged = 1e-10;  // a projection leaves no more
 
 /// Iterations over the rows of one impact.
 class Impact {
@@ -28,9 +20,9 @@ class Impact {
 
   /// v(t) of the header. With others that are still to come, it gets a share of the work that is left.
   [[nodiscard]] ImpactState at(double t, const std::vector<Vec6>& before, std::size_t others) {
-    if (projection_.work() >= kMostWork) return inelastic(before);
+    if (projection_.work() >= kMostImpactWork) return inelastic(before);
     ImpactState state{before, std::vector<double>(rows_.size(), 0)};
-    const std::size_t end = projection_.work() + (kMostWork - projection_.work()) / (others + 1);
+    const std::size_t end = projection_.work() + (kMostImpactWork - projection_.work()) / (others + 1);
     projection_.limitWork(end);
     bool has_ended = false;
     while (!has_ended && projection_.work() < end) {
@@ -47,10 +39,9 @@ class Impact {
   // The limit of bodies without mass between others, to which the impacts go one after the other: all
   // contacts are reflected at once, and what lies between two bodies passes their impact on as a spacer.
   ImpactState together(double t, const std::vector<Vec6>& before) {
-    constexpr int kMost = 50;  // assumed; one or two for a row of bodies
     projection_.limitWork(std::numeric_limits<std::size_t>::max());
     ImpactState state{before, std::vector<double>(rows_.size(), 0)};
-    for (int k = 0; k < kMost; ++k) {
+    for (int k = 0; k < kMostIterations; ++k) {
       if (chooseInelastic(t)) project(1, state);
       if (!addApproaching(t, state.v)) break;
       chosen_.assign(rows_.size(), 1);
@@ -82,7 +73,8 @@ class Impact {
   bool addApproaching(double t, const std::vector<Vec6>& v) {
     bool is_any = false;
     for (std::size_t i = 0; i < rows_.size(); ++i) {
-      if (!(rows_[i].restitution > t) || !(rows_[i].velocity(v) < -kNoImpact * fastest_m_s_)) continue;
+      if (!(rows_[i].restitution > t) || !(rows_[i].velocity(v) < -kSlowApproachShare * fastest_m_s_))
+        continue;
       chosen_[i] = is_any = true;
     }
     return is_any;
@@ -92,7 +84,7 @@ class Impact {
   // / 2, with the impulses' work a at the velocities before them and b after them.
   void project(double times, ImpactState& state) {
     before_ = state.v;
-    projection_.solve(chosen_, kConverged * fastest_m_s_, state.v, lambda_);
+    projection_.solve(chosen_, kRoundingShare * fastest_m_s_, state.v, lambda_);
     double a = 0, b = 0;
     for (std::size_t i = 0; i < rows_.size(); ++i)
       if (lambda_[i] != 0) {

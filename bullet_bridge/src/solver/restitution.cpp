@@ -6,18 +6,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <utility>
 
 #include "solver/contact_key.h"
+#include "vps/contact_tolerances.h"
 #include "vps/friction.h"
 #include "vps_bullet/convert.h"
 
 namespace vps::bullet::inline v0 {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 template <typename TwistOf>
 double velocityOf(const ContactRow& row, const TwistOf& twistOf) {
@@ -33,8 +33,8 @@ bool boundsOf(const JointRow& row, double& lower_Ns, double& upper_Ns) {
     return limit_Ns == 0 || std::abs(limit_Ns) >= JointRow::kAny_Ns;
   };
   if (!isBound(row.lower_Ns) || !isBound(row.upper_Ns)) return false;
-  lower_Ns = row.lower_Ns == 0 ? 0 : -kInfinity;
-  upper_Ns = row.upper_Ns == 0 ? 0 : kInfinity;
+  lower_Ns = row.lower_Ns == 0 ? 0 : -std::numeric_limits<double>::infinity();
+  upper_Ns = row.upper_Ns == 0 ? 0 : std::numeric_limits<double>::infinity();
   return lower_Ns < upper_Ns;
 }
 
@@ -60,13 +60,12 @@ int Restitution::rootOf(int body) const {
 // are no farther apart: with its edges alone, of which one side may have been left out, a face that lands
 // flush would turn.
 void Restitution::findTouch(std::span<const RigidContact> contacts) {
-  constexpr double kTouch_m = 1e-7;  // assumed: far above what the solver leaves open, far below what matters
   std::map<std::pair<const btCollisionObject*, const btCollisionObject*>, double> rest_m;
   const auto restOf_m = [&](const RigidContact& c) -> double& { return rest_m[{c.object[0], c.object[1]}]; };
   for (const RigidContact& c : contacts) restOf_m(c) = std::max(restOf_m(c), restGap_m(*c.point));
   touch_m_.clear();
   for (const RigidContact& c : contacts)
-    touch_m_.push_back(kTouch_m + std::max(restOf_m(c) - restGap_m(*c.point), 0.0));
+    touch_m_.push_back(kSameGap_m + std::max(restOf_m(c) - restGap_m(*c.point), 0.0));
 }
 
 void Restitution::connect(std::span<RigidContact> contacts, const StepSolution& solution, double dt_s) {
@@ -210,12 +209,10 @@ void Restitution::settleFriction(Contact& c, double limit_Ns, double& most_m_s) 
 }
 
 void Restitution::settle() {
-  constexpr int kMostSweeps = 400;
-  constexpr double kSettled_m_s = 1e-8;
   Group& g = group_;
   // Without friction first: exactly, also where flush faces have dozens of contacts.
   std::vector<double> p;
-  ImpactProjection(g.rows).solve(std::vector<std::uint8_t>(g.rows.size(), 1), kSettled_m_s, g.v, p);
+  ImpactProjection(g.rows).solve(std::vector<std::uint8_t>(g.rows.size(), 1), kRoundingSpeed_m_s, g.v, p);
   const auto limitOf_Ns = [&](std::size_t k) {
     return g.contacts[k].of->mu * std::max(p[k] + g.bounced_Ns[k], 0.0);
   };
@@ -224,7 +221,7 @@ void Restitution::settle() {
     limitToCone(c.p_t[0], c.p_t[1], limitOf_Ns(k));
     for (int t = 0; t < 2; ++t) c.tangent[t].apply(c.p_t[t], g.v);
   }
-  for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
+  for (int sweep = 0; sweep < kMostImpactSweeps; ++sweep) {
     double most_m_s = 0;
     for (std::size_t k = 0; k < p.size(); ++k) {
       const ImpactRow& row = g.rows[k];
@@ -236,7 +233,7 @@ void Restitution::settle() {
       }
       if (k < g.contacts.size()) settleFriction(g.contacts[k], limitOf_Ns(k), most_m_s);
     }
-    if (!(most_m_s > kSettled_m_s)) break;
+    if (!(most_m_s > kRoundingSpeed_m_s)) break;
   }
   g.p_Ns = g.bounced_Ns;
   for (std::size_t k = 0; k < p.size(); ++k) g.p_Ns[k] += p[k];
@@ -273,8 +270,7 @@ double Restitution::shareWithoutGain(std::span<const BodyEnd> ends) const {
       b += of.tangent[t].fixed_velocity * (contact.p_t[t] - of.p_t[t]);
     }
   }
-  constexpr double kRounding = 1e-13;
-  if (a + b + c <= kRounding * scale_J) return 1;
+  if (a + b + c <= kSumRounding * scale_J) return 1;
   if (!(a > 0)) return 0;  // also where a value is not finite
   // A solution that has not converged may have more energy than is allowed by itself: then the share with the
   // least.

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "solver/restitution.h"
+#include "vps/contact_tolerances.h"
 #include "vps_bullet/convert.h"
 
 namespace vps::bullet::inline v0 {
@@ -72,10 +73,9 @@ double Restitution::shareOfImpact(const std::vector<Vec6>& before, double dt_s) 
 // Rows that hold bodies before the impact: joints, and contacts that touch and have no approach but the
 // kick's.
 std::vector<std::uint8_t> Restitution::holding(const std::vector<Vec6>& before, double dt_s) const {
-  constexpr double kKicks = 2;  // above the 3/2 of the reflected velocity
   std::vector<std::uint8_t> rows(group_.rows.size(), 1);
   for (std::size_t k = 0; k < group_.contacts.size(); ++k) {
-    const double kick_m_s = kKicks * std::abs(kickAlong(k));
+    const double kick_m_s = 2 * std::abs(kickAlong(k));  // above the 3/2 of the reflected velocity
     rows[k] = group_.rows[k].velocity(before) >= -kick_m_s &&
               group_.contacts[k].of->gap_m <= group_.contacts[k].touch_m + kick_m_s * dt_s;
   }
@@ -99,9 +99,8 @@ std::vector<Vec6> Restitution::restOfKick(double share) {
     rows[k].lower_Ns = -std::numeric_limits<double>::infinity();
     rows[k].upper_Ns = std::numeric_limits<double>::infinity();
   }
-  constexpr double kSettled_m_s = 1e-10;
   std::vector<double> held_Ns;
-  ImpactProjection(rows).solve(chosen, kSettled_m_s, rest, held_Ns);
+  ImpactProjection(rows).solve(chosen, kRoundingSpeed_m_s, rest, held_Ns);
   for (std::size_t k = 0; k < rows.size(); ++k) group_.bounced_Ns[k] += held_Ns[k];
   return rest;
 }
@@ -116,7 +115,7 @@ void Restitution::bounce(std::span<const BodyEnd> ends, double dt_s) {
   if (has_kick) {
     for (std::size_t i = 0; i < before.size(); ++i) before[i] += (0.5 + share) * group_.kick[i];
     std::vector<double> held_Ns;
-    ImpactProjection(group_.rows).solve(holding(start, dt_s), 1e-10, before, held_Ns);
+    ImpactProjection(group_.rows).solve(holding(start, dt_s), kRoundingSpeed_m_s, before, held_Ns);
   }
   ImpactState after = afterImpact(group_.rows, before);
   group_.bounced_Ns = std::move(after.p_Ns);

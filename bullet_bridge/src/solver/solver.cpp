@@ -32,6 +32,7 @@
 #include "solver/restitution.h"
 #include "solver/step_check.h"
 #include "solver/turn_check.h"
+#include "vps/contact_tolerances.h"
 #include "vps_bullet/convert.h"
 #include "vps_bullet/coupling.h"
 
@@ -183,7 +184,7 @@ bool Solver::Work::updateLaws() {
     const Vec6 V_G = h.J * island.bodies[static_cast<std::size_t>(h.body)].u;
     const CouplingConstraint::Law law = h.coupling->lawAt(h.coupling->step_, V_G);
     const double change = (law.c - h.law.c).norm();
-    if (law.limited != h.law.limited || change > 1e-6 * law.c.norm()) is_converged = false;
+    if (law.limited != h.law.limited || change > kSettledShare * law.c.norm()) is_converged = false;
     if (!is_converged) h.law = law;
   }
   return is_converged;
@@ -198,7 +199,6 @@ SolveOutcome Solver::Work::solveContacts(const SolverSettings& settings) {
 // updates both, and solves again if they changed.
 SolveOutcome Solver::Work::solveWithLaws(const SolverSettings& settings) {
   const int rounds = is_penalty ? 20 : 6;  // assumed; limits of couplings converge in two or three
-  constexpr double kSettled = 1e-6;        // share of the greatest limit of friction
   SolveOutcome last;
   int most_steps = 0;
   SolverSettings left = settings;
@@ -209,7 +209,7 @@ SolveOutcome Solver::Work::solveWithLaws(const SolverSettings& settings) {
     if (is_penalty) left.iteration_limit -= last.steps;  // each evaluates thousands of points
     if (round == rounds - 1 || left.iteration_limit <= 0)
       break;  // not converged: laws and limits stay those of the last solution
-    const bool has_settled_friction = !is_penalty || penalty.updateLimits() < kSettled;
+    const bool has_settled_friction = !is_penalty || penalty.updateLimits() < kSettledShare;
     if (updateLaws() && has_settled_friction) break;
   }
   return {most_steps, last.is_converged};

@@ -13,6 +13,7 @@
 #include <mutex>
 #include <vector>
 
+#include "vps/contact_tolerances.h"
 #include "vps/pose.h"
 
 class btCollisionObject;
@@ -31,13 +32,6 @@ struct MissedContact {
   bool is_sharp = false;  ///< no other contact's push may take the gap
 };
 
-/// Contacts of a kind that are added for a pair in one check. assumed: a body is held by six, and the next
-/// check adds more.
-inline constexpr std::size_t kMostAdded = 8;
-
-/// assumed: a row that leaves its contact apart is mostly right when it is taken a second time.
-inline constexpr int kRetakingRounds = 5;
-
 /// A pair of bodies that checks a solved step.
 class StepCheck {
  public:
@@ -47,7 +41,7 @@ class StepCheck {
   /// the end of the step at the velocities of the last one. Where they turn by next to nothing, only those
   /// that carried load. Rows from the start pose would brake and drive what rolls.
   virtual void linearise(const Pose (&X_WB_end)[2], std::vector<MissedContact>& out) = 0;
-  /// Appends the contacts that the step lacks, and in its first kRetakingRounds checks those that carry load
+  /// Appends the contacts that the step lacks, and in its first kMostRetakes checks those that carry load
   /// although they end it apart. Later a row is never taken back, so that the rounds end.
   /// @param X_WB_end  where the bodies' frames are at the end of the step
   /// @param round     0 in the first check of this step

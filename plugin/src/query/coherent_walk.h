@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "query/leaf_walk.h"
+#include "vps/contact_tolerances.h"
 #include "vps/query.h"
 #include "vps/query_memory.h"
 
@@ -40,7 +41,8 @@ class CoherentWalk {
     if (last == QueryMemory::kNoQuery || cutoff <= last) return;
     const double shift =
         std::max((cutoff - last) / reading.field.slope, beyond(reading, cutoff) - beyond(reading, last));
-    for (QueryMemory::Group& group : memory.groups_) group.odometer += shift * (1 + 1e-9) + kRoundingOfSum;
+    for (QueryMemory::Group& group : memory.groups_)
+      group.odometer += shift * (1 + kRoundingShare) + kRoundingOfSum;
   }
   /// Call after the last group of a pose.
   static void end(QueryMemory& memory, const Pose& X_MP) noexcept { memory.X_MP_ = X_MP; }
@@ -54,7 +56,7 @@ class CoherentWalk {
   /// A generous bound of the rounding of positions, readings and sums; it costs only a little culling.
   static constexpr double kRounding = 3e-4;
   /// Where odometers are reset [voxels], and half the last place of a double there.
-  static constexpr double kFarthest = 1 << 20, kRoundingOfSum = 1.3e-10;
+  static constexpr double kFarthest = 1 << 20, kRoundingOfSum = kFarthest * 0x1p-53;
   static constexpr double kNever = std::numeric_limits<double>::infinity();
 
   /// A true distance above this gives readings above the cutoff.
@@ -88,7 +90,7 @@ class CoherentWalk {
     QueryMemory::Group& group = memory_.groups_[g];
     const double moved_m = (turn_ * group.center + shift_).norm() + turn_norm_ * group.radius_m;
     // The last term covers the rounding of the sum, below kFarthest.
-    group.odometer += moved_m / reading_.field.voxel_m * (1 + 1e-9) + kRoundingOfSum;
+    group.odometer += moved_m / reading_.field.voxel_m * (1 + kRoundingShare) + kRoundingOfSum;
     if (!(group.odometer < kFarthest)) restart(g);
     if (group.odometer < group.next) return;
     group.next = kNever;

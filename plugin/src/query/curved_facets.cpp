@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "query/feature_angles.h"
+#include "vps/contact_tolerances.h"
 
 namespace vps::inline v0 {
 
@@ -13,7 +13,7 @@ enum class Turn { Flat, Slight, Sharp };
 
 Turn turnBetween(const Vec3& a, const Vec3& b) {
   if (!(a.dot(b) > kCosCurved)) return Turn::Sharp;
-  return a.cross(b).norm() > kFlat ? Turn::Slight : Turn::Flat;
+  return a.cross(b).norm() > kSinFlat ? Turn::Slight : Turn::Flat;
 }
 
 }  // namespace
@@ -23,7 +23,7 @@ bool isSmoothEdge(const Vec3& normal0, const Vec3& normal1, bool is_one_curved, 
   // An arc whose chord has this width, and which turns by this angle, rises above it by width times angle
   // / 8.
   const double rise_m = width_m * normal0.cross(normal1).norm() / 8;
-  return turn == Turn::Flat || (turn == Turn::Slight && is_one_curved && rise_m < kLeastProtrusion_m);
+  return turn == Turn::Flat || (turn == Turn::Slight && is_one_curved && rise_m < 0.5 * kSamePlace_m);
 }
 
 std::vector<std::uint8_t> findCurvedFacets(std::span<const HalfEdge> edges, std::span<const Vec3> normals) {

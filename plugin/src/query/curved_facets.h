@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mesh/mesh_edges.h"
+#include "vps/contact_tolerances.h"
 #include "vps/pose.h"
 
 namespace vps::inline v0 {
@@ -20,7 +21,7 @@ namespace vps::inline v0 {
 std::vector<std::uint8_t> findCurvedFacets(std::span<const HalfEdge> edges, std::span<const Vec3> normals);
 
 /// True if two triangles that meet at an edge are parts of one surface: of a plane, or of a curved one from
-/// which the edge stands out by less than kLeastProtrusion_m.
+/// which the edge stands out by less than 0.5 * kSamePlace_m.
 /// @param width_m  of the narrower one, across the edge
 bool isSmoothEdge(const Vec3& normal0, const Vec3& normal1, bool is_one_curved, double width_m);
 

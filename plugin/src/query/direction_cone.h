@@ -7,6 +7,7 @@
 #include <numbers>
 #include <span>
 
+#include "vps/contact_tolerances.h"
 #include "vps/pose.h"
 
 namespace vps::inline v0 {
@@ -32,7 +33,7 @@ struct DirectionCone {
 inline DirectionCone coneOver(std::span<const DirectionCone> cones) {
   Vec3 sum = Vec3::Zero();
   for (const DirectionCone& c : cones) sum += c.axis;
-  if (!(sum.norm() > 1e-6)) return DirectionCone::everywhere();
+  if (!(sum.norm() > kNoDirection)) return DirectionCone::everywhere();
   const Vec3 axis = sum.normalized();
   double angle_rad = 0;
   for (const DirectionCone& c : cones) angle_rad = std::max(angle_rad, c.farthest_rad(axis));

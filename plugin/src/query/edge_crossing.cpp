@@ -9,26 +9,14 @@
 #include "mesh/mesh_edges.h"
 #include "query/edge_joints.h"
 #include "query/edge_pair_search.h"
-#include "query/feature_angles.h"
 #include "query/feature_points.h"
 #include "query/motion_tube.h"
 #include "query/moving_features.h"
+#include "vps/contact_tolerances.h"
 
 namespace vps::inline v0 {
 
 namespace {
-
-constexpr double kMinSine = 0.087;  // 5 degrees: below it the crossing of lines is mostly rounding
-/// How far the plane may lean into a face, as a sine: so an edge that passes from one edge of a fine polygon
-/// to the next stays a crossing meanwhile. Assumed.
-constexpr double kLean = 0.02;
-/// How far beyond its end a segment still crosses, as a share of the gap: at the joints of a curved edge the
-/// crossing falls between two segments, by the gap times the tangent of half their turn, of at most 20
-/// degrees. At a true end, separating along the edge must not be shorter than separating across: the rim of a
-/// square peg in a square hole has long passed the hole's rim.
-constexpr double kPast_m = 1e-6, kPastShare = 0.18;
-/// The same at a true end, before the edges touch. assumed.
-constexpr double kEndShare = 0.1;
 
 struct Face {
   Vec3 normal, apex;
@@ -47,8 +35,8 @@ Face faceOf(const Mesh& mesh, const Pose& X_MP, const HalfEdge& e) {
 void joinEnds(std::vector<EdgeEnd>& ends, std::vector<EdgeSegment>& segments) {
   forEachJoint(ends, [&](const EdgeEnd& a, const EdgeEnd& b) {
     const double cos = -a.away.dot(b.away);
-    if (!(cos > kCosSharp)) return;
-    const bool is_curved = cos > kCosCurved && a.away.cross(b.away).norm() > kFlat;
+    if (!(cos > kCosSameFace)) return;
+    const bool is_curved = cos > kCosCurved && a.away.cross(b.away).norm() > kSinFlat;
     for (const EdgeEnd* e : {&a, &b}) {
       segments[e->edge].ends[e->end] = false;
       segments[e->edge].is_curved[e->end] = is_curved;
@@ -67,7 +55,7 @@ void appendEdges(const Mesh& mesh, const Pose& X_MP, std::uint16_t owner, std::v
     s.from = X_MP * mesh.vertices[same[0].low];
     s.to = X_MP * mesh.vertices[same[0].high];
     const Face face[2] = {faceOf(mesh, X_MP, same[0]), faceOf(mesh, X_MP, same[1])};
-    if (!face[0].is_good || !face[1].is_good || !(face[0].normal.dot(face[1].normal) < kCosSharp)) return;
+    if (!face[0].is_good || !face[1].is_good || !(face[0].normal.dot(face[1].normal) < kCosSameFace)) return;
     const Vec3 along = (s.to - s.from).normalized();
     for (int i = 0; i < 2; ++i) {
       const Vec3 way = face[i].apex - s.from;
@@ -77,7 +65,7 @@ void appendEdges(const Mesh& mesh, const Pose& X_MP, std::uint16_t owner, std::v
     // The normals of a blade with faces back to back cancel; the direction away from both faces is still
     // outward.
     const Vec3 mean = face[0].normal + face[1].normal;
-    s.outward = mean.norm() > 1e-6 ? mean.normalized() : Vec3(-(s.into[0] + s.into[1]).normalized());
+    s.outward = mean.norm() > kNoDirection ? mean.normalized() : Vec3(-(s.into[0] + s.into[1]).normalized());
     s.owner = owner;
     ends.push_back({same[0].low, static_cast<std::uint32_t>(out.size()), 0, along});
     ends.push_back({same[0].high, static_cast<std::uint32_t>(out.size()), 1, -along});
@@ -108,7 +96,7 @@ class CrossingSearch {
   /// Calls found(i0, i1) for each.
   template <typename Visit>
   void run(const Visit& found) const {
-    EdgePairSearch(edges0_.tree(), edges1_.tree(), X_01_, turn_rad_, reach_m_, kMinSine)
+    EdgePairSearch(edges0_.tree(), edges1_.tree(), X_01_, turn_rad_, reach_m_, kSinLean)
         .run([&](std::uint32_t i0, std::uint32_t i1) {
           const EdgeSegment &s0 = edges0_.segments()[i0], &s1 = edges1_.segments()[i1];
           if (mayCross(s0, s1) && comeNear(s0, s1)) found(i0, i1);
@@ -122,8 +110,8 @@ class CrossingSearch {
     const Vec3 d0 = (s0.to - s0.from).normalized(), d1 = X_01_.from.R * (s1.to - s1.from).normalized();
     const Vec3 n = d0.cross(d1);
     const double sine = n.norm();
-    if (sine + turn_rad_ <= kMinSine) return false;
-    const double lean = kLean * (sine + turn_rad_) + 2 * turn_rad_;  // times the sine
+    if (sine + turn_rad_ <= kSinLean) return false;
+    const double lean = kSinLean * (sine + turn_rad_) + 2 * turn_rad_;  // times the sine
     const Vec3 into1[2] = {X_01_.from.R * s1.into[0], X_01_.from.R * s1.into[1]};
     const auto isOutside = [&](double sign) {
       for (int k = 0; k < 2; ++k)
@@ -155,7 +143,7 @@ class CrossingSearch {
 
 // Segments that cross with this gap are within this distance of each other: both points may lie past an end.
 double reachOfCrossing_m(double gap_m) {
-  return gap_m + 2 * (kPast_m + kPastShare * gap_m);
+  return gap_m + 2 * (kSamePlace_m + kTanPastEnd * gap_m);
 }
 
 /// Tests pairs of segments.
@@ -180,7 +168,7 @@ class CrossingTest {
     EdgeCrossing c;
     c.n = d0.cross(d1);
     const double sine = c.n.norm();
-    if (!(sine > kMinSine)) return;
+    if (!(sine > kSinLean)) return;
     c.n *= (c.n.dot(X_01_.R * s1.outward) < 0 ? -1 : 1) / sine;
     const Vec3 r = s0.from - from1;
     c.gap_m = c.n.dot(r);
@@ -188,14 +176,14 @@ class CrossingTest {
     // The nearest points of two lines [Ericson 2005, section 5.1.8].
     const double b = d0.dot(d1), x0 = d0.dot(r), x1 = d1.dot(r);
     const double at0_m = (b * x1 - x0) / (sine * sine), at1_m = (x1 - b * x0) / (sine * sine);
-    const double joint_m = kPast_m + kPastShare * std::abs(c.gap_m);
-    const double end_m = kPast_m + (c.gap_m >= 0 ? kEndShare * c.gap_m : c.gap_m);
+    const double joint_m = kSamePlace_m + kTanPastEnd * std::abs(c.gap_m);
+    const double end_m = kSamePlace_m + (c.gap_m >= 0 ? kSinLean * c.gap_m : c.gap_m);
     const auto isOn = [&](const EdgeSegment& s, double at_m, double length_m) {
       return at_m >= -(s.ends[0] ? end_m : joint_m) && at_m <= length_m + (s.ends[1] ? end_m : joint_m);
     };
     if (!isOn(s0, at0_m, length0_m) || !isOn(s1, at1_m, length1_m)) return;
     for (int k = 0; k < 2; ++k)
-      if (-c.n.dot(s0.into[k]) > kLean || c.n.dot(X_01_.R * s1.into[k]) > kLean) return;
+      if (-c.n.dot(s0.into[k]) > kSinLean || c.n.dot(X_01_.R * s1.into[k]) > kSinLean) return;
     if (c.gap_m > cutoff_m_ && !meetsInStep(s0, s1, c.n)) return;
     c.edge[0] = i0;
     c.edge[1] = i1;

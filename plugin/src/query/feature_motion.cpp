@@ -8,6 +8,7 @@
 #include "query/motion_tube.h"
 #include "query/moving_features.h"
 #include "query/passed_edge.h"
+#include "vps/contact_tolerances.h"
 
 namespace vps::inline v0 {
 
@@ -27,12 +28,11 @@ Vec3 apexOf(const FeatureSet& part, std::uint32_t facet, std::uint32_t other) {
 // the neighbour's own contact counts. A nut's corner that slides on a flank passes below the crest's facets,
 // which end there, and does not touch them.
 bool isNeighbourNearer(const FeatureSet& part, std::uint32_t facet, const Vec3& p, const Vec3& n) {
-  constexpr double kLean = 0.1, kOn_m = 1e-9;  // assumed: as for edges; far below the rest gap
   for (std::size_t k = 0; k < 3; ++k) {
     const std::uint32_t other = part.neighbours(facet)[k];
-    if (other == FeatureSet::kNone || distanceToSide(part, facet, k, p) > kOn_m) continue;
+    if (other == FeatureSet::kNone || distanceToSide(part, facet, k, p) > kRounding_m) continue;
     const Vec3 into = apexOf(part, other, facet) - p;
-    if (n.dot(into) > kLean * into.norm()) return true;
+    if (n.dot(into) > kSinLean * into.norm()) return true;
   }
   return false;
 }
@@ -42,11 +42,11 @@ bool isNeighbourNearer(const FeatureSet& part, std::uint32_t facet, const Vec3& 
 // @param p  the nearest point, in the part's frame
 bool isMetFromOutside(const FeatureSet& part, Kind kind, int i, std::uint32_t feature, const Vec3& p,
                       const Vec3& n) {
-  constexpr double kLean = 0.1;         // assumed; while the features touch, other features may be as near
   const double sign = i == 1 ? 1 : -1;  // n points out of part 1 and into part 0
   if (kind == Kind::EdgeOnEdge) {
     const FeatureEdge& edge = part.edges()[feature];
-    return !edge.has_faces || (sign * n.dot(edge.into[0]) <= kLean && sign * n.dot(edge.into[1]) <= kLean);
+    return !edge.has_faces ||
+           (sign * n.dot(edge.into[0]) <= kSinLean && sign * n.dot(edge.into[1]) <= kSinLean);
   }
   if ((kind == Kind::CornerOnFacet) == (i == 0) || part.isTwoSided(feature)) return true;
   return sign * n.dot(part.normal(feature)) > 0 && !isNeighbourNearer(part, feature, p, sign * n);
@@ -67,8 +67,7 @@ Vec3 FeatureContact::normal_0(const Pose& X_01) const {
   const Vec3 fixed = plane_of == 0 ? n : Vec3(X_01.R * n);
   if (kind != Kind::EdgeOnEdge) return fixed;
   const Vec3 across = along[0].cross(X_01.R * along[1]);
-  constexpr double kParallel = 1e-3;  // assumed: edges in line have no plane of their own
-  if (!(across.norm() > kParallel)) return fixed;
+  if (!(across.norm() > kSinParallel)) return fixed;
   return (across.dot(fixed) < 0 ? -1 : 1) * across.normalized();
 }
 
@@ -77,8 +76,7 @@ double FeatureContact::gap_m(const Pose& X_01) const {
 }
 
 double FeatureMotion::rest_m(const FeatureSet& part0, const FeatureSet& part1) {
-  constexpr double kShareOfRadius = 1e-3;  // assumed
-  return std::min(kRest_m, kShareOfRadius * std::min(part0.radius_m(), part1.radius_m()));
+  return std::min(kRest_m, 1e-3 * std::min(part0.radius_m(), part1.radius_m()));
 }
 
 namespace {
@@ -179,8 +177,7 @@ bool findCrossing(const FeatureSet& part0, const FeatureSet& part1, const std::u
                   const Features& f, const Pose& end_10, const Vec3& n_1, FeatureContact& contact) {
   const Vec3 a = end_10 * f.own[0], way_a = end_10.R * (f.own[1] - f.own[0]);
   const Vec3 &b = f.b[0], way_b = f.b[1] - f.b[0], across = way_a.cross(way_b);
-  constexpr double kParallel = 1e-3;  // as in FeatureContact::normal_0()
-  if (!(across.norm() > kParallel * way_a.norm() * way_b.norm())) return false;
+  if (!(across.norm() > kSinParallel * way_a.norm() * way_b.norm())) return false;
   const double share_a = (b - a).cross(way_b).dot(across) / across.squaredNorm(),
                share_b = (b - a).cross(way_a).dot(across) / across.squaredNorm();
   if (!(share_a > 0 && share_a < 1 && share_b > 0 && share_b < 1)) return false;
@@ -204,8 +201,6 @@ Features featuresAt(const FeatureSet& part0, const FeatureSet& part1, Kind kind,
   return f;
 }
 
-constexpr double kTouching_m = 1e-9;  // below this the direction between the features is not known
-
 double distanceAt(const FeatureSet& part0, const FeatureSet& part1, const FeatureContact& contact,
                   const Pose& X_01) {
   const Features f = featuresAt(part0, part1, contact.kind, contact.feature, X_01.inverse());
@@ -218,7 +213,7 @@ double startOf(const FeatureSet& part0, const FeatureSet& part1, const FeatureCo
   if (contact.kind == Kind::EdgeOnEdge) return distance_m;
   const Vec3& n = contact.plane_of == 1 ? part1.normal(contact.feature[1]) : part0.normal(contact.feature[0]);
   if (contact.n != n && contact.n != -n) return distance_m;
-  return std::min(distance_m, std::max(contact.gap_m(start), kTouching_m));
+  return std::min(distance_m, std::max(contact.gap_m(start), kRounding_m));
 }
 
 /// The piece of the way in which features reach a distance first.
@@ -256,7 +251,7 @@ bool measureAgain(const FeatureSet& part0, const FeatureSet& part1, const Pose& 
   const Features f = featuresAt(part0, part1, last.kind, last.feature, X_10);
   const Reach reach = {0, nearestOf(last.kind, f.a, f.b)};
   const double distance_m = reach.nearest.distance_m();
-  if (!(distance_m > kTouching_m && distance_m < most_m)) return false;
+  if (!(distance_m > kRounding_m && distance_m < most_m)) return false;
   if (!findContact(part0, part1, last.kind, last.feature, f, reach, X_10.R, contact)) return false;
   contact.start_m = distance_m;
   return true;
@@ -270,15 +265,14 @@ FeatureMotion& FeatureMotion::operator=(FeatureMotion&&) noexcept = default;
 void FeatureMotion::check(const FeatureSet& part0, const FeatureSet& part1, const Pose& start,
                           const Pose& end, bool holds_close, std::vector<FeatureContact>& out) {
   const double stretch_m = longestStretch_m(ballAround(part0), ballAround(part1));
-  constexpr double kMost = 1e4;         // assumed: some metres of a small part
-  constexpr std::size_t kEnough = 256;  // assumed: more than a solver adds at once
-  const int stretches =
-      static_cast<int>(std::clamp(std::ceil(travel_m(part0, part1, start, end) / stretch_m), 1.0, kMost));
+  const int stretches = static_cast<int>(
+      std::clamp(std::ceil(travel_m(part0, part1, start, end) / stretch_m), 1.0, kMostStretches));
   if (stretches == 1) return checkStretch(part0, part1, start, end, end, holds_close, out);
   const Way way(ballAround(part0), ballAround(part1), start, end);
   const std::size_t first = out.size();
   Pose from = start;
-  for (int k = 0; k < stretches && out.size() < first + kEnough; ++k) {
+  // The last: more than a solver adds at once.
+  for (int k = 0; k < stretches && out.size() < first + 32 * kMostAdded; ++k) {
     const Pose to = k + 1 < stretches ? way.at((k + 1.0) / stretches).inverse() : end;
     const std::size_t found = out.size();
     checkStretch(part0, part1, from, to, end, holds_close && k == 0, out);
@@ -294,8 +288,6 @@ void FeatureMotion::check(const FeatureSet& part0, const FeatureSet& part1, cons
 void FeatureMotion::checkStretch(const FeatureSet& part0, const FeatureSet& part1, const Pose& start,
                                  const Pose& to, const Pose& end, bool holds_close,
                                  std::vector<FeatureContact>& out) {
-  constexpr double kRounding_m = 20e-9;  // assumed: above what solvers leave, far below the rest gap
-  constexpr double kHeldShare = 0.2;     // assumed: far below what is looked at on the way
   const double step_m = travel_m(part0, part1, start, to);
   const double gap_m = rest_m(part0, part1), looked_at_m = kLeastShare * gap_m;
   if (is_valid_) path_m_ += travel_m(part0, part1, last_, start);
@@ -317,7 +309,7 @@ void FeatureMotion::checkStretch(const FeatureSet& part0, const FeatureSet& part
     nearest = nearestOf(near.kind, f.a, f.b);
     near.distance_m = nearest.distance_m();
     near.path_m = path_m_;
-    if (near.distance_m > step_m + looked_at_m || near.distance_m < kTouching_m) continue;
+    if (near.distance_m > step_m + looked_at_m || near.distance_m < kRounding_m) continue;
     if (way_10_.empty()) Way(ballAround(part0), ballAround(part1), start, to).divide(way_10_);
     const double least_m = std::min(looked_at_m, 0.5 * near.distance_m);
     const bool is_held = holds_close && near.distance_m < kHeldShare * gap_m;

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "mesh/triangle_distance.h"
+#include "vps/contact_tolerances.h"
 
 namespace vps::inline v0 {
 
@@ -11,7 +12,8 @@ Nearest nearestOfSegments(const Vec3& p1, const Vec3& q1, const Vec3& p2, const 
   const Vec3 d1 = q1 - p1, d2 = q2 - p2, r = p1 - p2;
   const double a = d1.squaredNorm(), e = d2.squaredNorm(), f = d2.dot(r), c = d1.dot(r), b = d1.dot(d2);
   const double square = a * e - b * b;
-  double s = square > 1e-12 * a * e ? std::clamp((b * f - c * e) / square, 0.0, 1.0) : 0.0;
+  double s =
+      square > kNoDirection * kNoDirection * a * e ? std::clamp((b * f - c * e) / square, 0.0, 1.0) : 0.0;
   double t = (b * s + f) / e;
   if (t < 0) {
     t = 0;

@@ -9,8 +9,8 @@
 #include "mesh/mesh_edges.h"
 #include "query/curved_facets.h"
 #include "query/edge_joints.h"
-#include "query/feature_angles.h"
 #include "query/touch_search.h"
+#include "vps/contact_tolerances.h"
 #include "vps/edge_tree.h"
 
 namespace vps::inline v0 {
@@ -123,7 +123,7 @@ void FeatureSet::markCurvedEdges(std::size_t first) {
   }
   forEachJoint(ends, [&](const EdgeEnd& a, const EdgeEnd& b) {
     const double sine = a.away.cross(b.away).norm();
-    if (!(sine > kFlat && a.away.dot(b.away) < -kCosCurved)) return;
+    if (!(sine > kSinFlat && a.away.dot(b.away) < -kCosCurved)) return;
     double length_m = 0;
     for (const EdgeEnd* e : {&a, &b}) {
       FeatureEdge& edge = edges_[e->edge];
@@ -181,11 +181,10 @@ void FeatureSet::buildRays(const std::vector<std::uint32_t>& corner_of) {
 }
 
 bool FeatureSet::isOutermostAt(std::uint32_t vertex, const Vec3& n) const {
-  constexpr double kSlope = 1e-3;  // assumed: far above rounding; far below the turns of curved edges
   const auto corner = std::lower_bound(corners_.begin(), corners_.end(), vertex);
   if (corner == corners_.end() || *corner != vertex) return false;
   const std::span<const Vec3> rays = raysAt(static_cast<std::uint32_t>(corner - corners_.begin()));
-  return std::all_of(rays.begin(), rays.end(), [&](const Vec3& ray) { return n.dot(ray) < kSlope; });
+  return std::all_of(rays.begin(), rays.end(), [&](const Vec3& ray) { return n.dot(ray) < kSinParallel; });
 }
 
 const EdgeTree& FeatureSet::edgeTree() const {

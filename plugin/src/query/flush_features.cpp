@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vps/contact_tolerances.h"
+
 namespace vps::inline v0 {
 
 double distanceToSide(const FeatureSet& part, std::uint32_t facet, std::size_t k, const Vec3& p) {
@@ -39,7 +41,7 @@ bool isFlushOn(const CornerAndFacet& pair, std::uint32_t facet) {
   const Vec3 n = pair.R.transpose() * pair.with_facet.normal(facet);
   for (const std::uint32_t edge : pair.with_corner.edgesAt(pair.corner))
     for (const Vec3& own : pair.with_corner.edges()[edge].normal)
-      if (own.dot(n) < -kCosFlush) return true;
+      if (own.dot(n) < -kCosSameFace) return true;
   return false;
 }
 
@@ -48,14 +50,13 @@ bool isFlushOn(const CornerAndFacet& pair, std::uint32_t facet) {
 // but the edges meet along them.
 // @param n_1  direction between the edges, in the frame of part 1
 bool isFlush(const FeatureEdge& edge0, const FeatureEdge& edge1, const Mat3& R_10, const Vec3& n_1) {
-  constexpr double kAcross = 0.7;  // assumed: within 45 degrees
   const auto isOnCurve = [](const FeatureEdge& edge) { return edge.is_curved || edge.is_slight; };
   if (!isOnCurve(edge0) || !isOnCurve(edge1)) return false;
   for (int i = 0; i < 2; ++i)
     for (int j = 0; j < 2; ++j)
       if (edge0.has_curved_face[i] && edge1.has_curved_face[j] &&
-          (R_10 * edge0.normal[i]).dot(edge1.normal[j]) < -kCosFlush &&
-          std::abs(edge1.normal[j].dot(n_1)) > kAcross)
+          (R_10 * edge0.normal[i]).dot(edge1.normal[j]) < -kCosSameFace &&
+          std::abs(edge1.normal[j].dot(n_1)) > kCosAlike)
         return true;
   return false;
 }

@@ -7,9 +7,6 @@
 
 namespace vps::inline v0 {
 
-/// Faces whose normals are opposite within 20 degrees lie flush.
-inline constexpr double kCosFlush = 0.94;
-
 /// True for features that are left to the points.
 /// @param R_10  rotation from the frame of part 0 to that of part 1
 /// @param n_1  direction between the features, unit, in the frame of part 1

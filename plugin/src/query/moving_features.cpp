@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "vps/contact_tolerances.h"
+
 namespace vps::inline v0 {
 
 namespace {
@@ -63,9 +65,8 @@ bool staysApart(Kind kind, const Features& f, double from, double to, double lea
 
 // The share up to which they are known to stay apart in that sense; at least `least_share`.
 double planeShare(Kind kind, const Features& f, double from, double least_share, double least_m) {
-  constexpr int kMost = 6;
   double to = 1;
-  for (int k = 0; k < kMost && to > least_share; ++k, to = 0.5 * (from + to))
+  for (int k = 0; k < kMostRounds && to > least_share; ++k, to = 0.5 * (from + to))
     if (staysApart(kind, f, from, to, least_m)) return to;
   return least_share;
 }
@@ -73,12 +74,11 @@ double planeShare(Kind kind, const Features& f, double from, double least_share,
 }  // namespace
 
 bool findReach(Kind kind, const Features& f, double least_m, double start_m, Reach& reach) {
-  constexpr int kMost = 60;  // assumed; most need two or three
   const double near_m = 1.1 * least_m;
   double distance_m = start_m;
   double fastest_m = 0;
   for (int i = 0; i < f.a_count; ++i) fastest_m = std::max(fastest_m, f.way[i].norm());
-  for (int k = 0; k < kMost; ++k) {
+  for (int k = 0; k < kMostIterations; ++k) {
     const Vec3 n = (reach.nearest.p - reach.nearest.q) / distance_m;
     // The slab is as wide as the distance, so it lasts at least as long as the fastest point needs for that.
     const double least_step = fastest_m > 0 ? (distance_m - least_m) / fastest_m : 2;

@@ -4,32 +4,28 @@
 #include <limits>
 
 #include "query/flush_features.h"
+#include "vps/contact_tolerances.h"
 
 namespace vps::inline v0 {
 
 namespace {
 
-constexpr double kOn_m = 1e-9;     // as isNeighbourNearer()
-constexpr double kCosEdge = 0.94;  // 20 degrees: facets that turn by less have nearly one plane
-
-constexpr double kNever = std::numeric_limits<double>::infinity();
-
 // When the corner passes a plane, as a multiple of its way.
 double passes(double height_m, double way_m) {
-  return way_m < 0 ? std::max(height_m, 0.0) / -way_m : kNever;
+  return way_m < 0 ? std::max(height_m, 0.0) / -way_m : std::numeric_limits<double>::infinity();
 }
 
 // A neighbour across a convex sharp edge on which q lies; kNone: there is none.
 std::uint32_t neighbourAt(const FeatureSet& part, std::uint32_t facet, const Vec3& q) {
   for (std::size_t k = 0; k < 3; ++k) {
     const std::uint32_t other = part.neighbours(facet)[k];
-    if (other == FeatureSet::kNone || distanceToSide(part, facet, k, q) > kOn_m) continue;
-    if (part.normal(facet).dot(part.normal(other)) > kCosEdge) continue;
+    if (other == FeatureSet::kNone || distanceToSide(part, facet, k, q) > kRounding_m) continue;
+    if (part.normal(facet).dot(part.normal(other)) > kCosSameFace) continue;
     const auto& t = part.facets()[other];
     double highest_m = 0;
     for (const std::uint32_t v : t)
       highest_m = std::max(highest_m, part.normal(facet).dot(part.vertices()[v] - q));
-    if (!(highest_m > kOn_m)) return other;
+    if (!(highest_m > kRounding_m)) return other;
   }
   return FeatureSet::kNone;
 }
@@ -46,7 +42,7 @@ BorderOwner ownerAtBorder(const FeatureSet& part, std::uint32_t facet, const Vec
   const double at[2] = {passes(height_m[0], way_m[0]), passes(height_m[1], way_m[1])};
   const auto isOver = [&](int i) {
     const double then = at[1 - i];
-    return then < kNever && height_m[i] + then * way_m[i] >= -tolerated_m;
+    return then < std::numeric_limits<double>::infinity() && height_m[i] + then * way_m[i] >= -tolerated_m;
   };
   if (isOver(0) && (!isOver(1) || at[1] < at[0])) return BorderOwner::Facet;
   return isOver(1) ? BorderOwner::Neighbour : BorderOwner::Edge;

@@ -17,8 +17,6 @@
 namespace vps::inline v0 {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 /// The least lower bound of the true distance over a shell that is entirely beyond the band: spheres are
 /// opened until they are small compared with their distance; a quarter is precise enough.
 double farBound(const VoxSampler& sampler, const PointShell& shell, const Pose& X_MP) noexcept {
@@ -27,7 +25,7 @@ double farBound(const VoxSampler& sampler, const PointShell& shell, const Pose& 
     const Vec3 p_M = X_MP * p_P;
     return sampler.leastDistance(p_M, sampler.place(p_M));
   };
-  double least_m = kInfinity;
+  double least_m = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < shell.nodes.size();) {
     const ShellNode& node = shell.nodes[i];
     const double center_m = least(node.center);

@@ -6,14 +6,17 @@
 #include <map>
 #include <stdexcept>
 
+#include "vps/contact_tolerances.h"
 #include "vps/direction_cell.h"
 #include "vps/representative_points.h"
 
 namespace vps::inline v0 {
 namespace {
 
-constexpr double kCosSameNormal = 0.94;  // 20 degrees, as PointShellSettings::edge_angle_rad
-constexpr double kEdgeShare = 0.25;      // of a tile's size. assumed
+constexpr double kEdgeShare = 0.25;  // of a tile's size. assumed
+// Of the spread of a tile's points: it bounds the bend in directions in which they do not spread. The
+// recorded peg depends on it (Replay.TheCommittedRecordingRunsAgainBitForBit).
+constexpr double kRidge = 1e-3;
 
 }  // namespace
 
@@ -44,7 +47,7 @@ class RepresentativePoints::Grouping {
   };
 
   [[nodiscard]] bool takes(const Members& group, std::uint32_t id, bool is_edge) const {
-    if (group.is_edge != is_edge || group.normal.dot(shell_.inward[id]) < kCosSameNormal) return false;
+    if (group.is_edge != is_edge || group.normal.dot(shell_.inward[id]) < kCosSameFace) return false;
     if (!is_edge) return true;
     Box grown = group.box;
     grown.add(shell_.points[id]);
@@ -134,7 +137,6 @@ RepresentativePoints::Group RepresentativePoints::fitted(std::span<const std::ui
     turns += (shell_->inward[id] - group.inward) * dp.transpose();
     group.radius_m = std::max(group.radius_m, dp.norm());
   }
-  constexpr double kRidge = 1e-3;
   if (const double size = places.trace(); size > 0)
     group.bend = turns * (places + kRidge * size * Mat3::Identity()).inverse();
   return group;

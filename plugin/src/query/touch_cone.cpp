@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "vps/contact_tolerances.h"
+
 namespace vps::inline v0 {
 
 namespace {
@@ -15,9 +17,8 @@ class Allowed {
   Allowed(std::span<const Vec3> rays, double least) : rays_(rays), least_(least) {}
 
   [[nodiscard]] bool has(const Vec3& n) const {
-    constexpr double kRounding = 1e-4;  // above what is between rays that count as one line below
     return std::all_of(rays_.begin(), rays_.end(),
-                       [&](const Vec3& ray) { return n.dot(ray) >= least_ - kRounding; });
+                       [&](const Vec3& ray) { return n.dot(ray) >= least_ - kSinFlat; });
   }
 
   // The places where two of the circles cross.
@@ -26,7 +27,7 @@ class Allowed {
     for (std::size_t i = 0; i < rays_.size(); ++i)
       for (std::size_t j = i + 1; j < rays_.size(); ++j) {
         const double dot = rays_[i].dot(rays_[j]);
-        if (!(1 + dot > 1e-9) || !(1 - dot > 1e-9)) continue;  // circles around one line
+        if (!(1 + dot > kRoundingShare) || !(1 - dot > kRoundingShare)) continue;  // circles around one line
         const Vec3 middle = least_ / (1 + dot) * (rays_[i] + rays_[j]);
         const double rest = 1 - middle.squaredNorm();
         if (rest < 0) continue;
@@ -40,7 +41,7 @@ class Allowed {
   // The place of the circle around a ray that is farthest from an axis.
   [[nodiscard]] Vec3 farthest(const Vec3& ray, const Vec3& axis) const {
     Vec3 away = ray * ray.dot(axis) - axis;
-    if (!(away.norm() > 1e-9)) away = ray.unitOrthogonal();
+    if (!(away.norm() > kRoundingShare)) away = ray.unitOrthogonal();
     return least_ * ray + std::sqrt(1 - least_ * least_) * away.normalized();
   }
 
@@ -53,23 +54,22 @@ class Allowed {
 
 std::optional<DirectionCone> touchCone(std::span<const Vec3> rays, double slope) {
   constexpr std::size_t kMost = 12;
-  constexpr double kRounding_rad = 2e-3;  // above what crossings of circles lose that nearly touch
   if (rays.empty()) return DirectionCone::everywhere();
   rays = rays.first(std::min(rays.size(), kMost));
   const Allowed allowed(rays, -slope);
   std::vector<Vec3> border = allowed.vertices();
   Vec3 sum = Vec3::Zero();
   for (const Vec3& n : border) sum += n;
-  if (!(sum.norm() > 1e-6))
+  if (!(sum.norm() > kNoDirection))
     for (const Vec3& ray : rays) sum += ray;
-  const Vec3 axis = sum.norm() > 1e-6 ? sum.normalized() : rays[0];
+  const Vec3 axis = sum.norm() > kNoDirection ? sum.normalized() : rays[0];
   for (const Vec3& ray : rays)
     if (const Vec3 n = allowed.farthest(ray, axis); allowed.has(n)) border.push_back(n);
   if (border.empty()) return std::nullopt;
   if (allowed.has(-axis)) return DirectionCone::everywhere();
   double least = 1;
   for (const Vec3& n : border) least = std::min(least, n.dot(axis));
-  return DirectionCone::around(axis, std::acos(std::clamp(least, -1.0, 1.0)) + kRounding_rad);
+  return DirectionCone::around(axis, std::acos(std::clamp(least, -1.0, 1.0)) + kSinParallel);
 }
 
 }  // namespace vps::inline v0

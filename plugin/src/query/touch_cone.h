@@ -10,11 +10,9 @@
 namespace vps::inline v0 {
 
 /// A corner touches a facet of another part only where its own surface rises from the facet all around: a
-/// nut's crest cannot touch the flank it faces away from. Slopes down to this sine are left in, since facets
-/// of curved surfaces stand for each other there. assumed: twice the 8 degrees by which those turn, so that a
-/// corner between two of them is kept.
-inline constexpr double kTouchSlope = 0.28;
-
+/// nut's crest cannot touch the flank it faces away from. Slopes down to kSinTouch are left in, since facets
+/// of curved surfaces stand for each other there.
+///
 /// A cone that holds every unit vector n with n . ray >= -slope for all rays; nothing if there is none.
 /// O(rays^3), of which the first twelve are used.
 std::optional<DirectionCone> touchCone(std::span<const Vec3> rays, double slope);

@@ -10,6 +10,7 @@
 
 #include "query/flush_features.h"
 #include "query/touch_cone.h"
+#include "vps/contact_tolerances.h"
 #include "vps/feature_set.h"
 
 namespace vps::inline v0 {
@@ -122,13 +123,12 @@ struct Faces {
 };
 
 Faces facesAt(const FeatureSet& part, std::uint32_t corner) {
-  constexpr double kCosSame = 0.9;  // assumed: 26 degrees; a thread's crest and flank are 60 apart
   std::vector<DirectionCone> groups[2];
   for (const std::uint32_t edge : part.edgesAt(corner))
     for (const Vec3& n : part.edges()[edge].normal) {
       if (!(n.squaredNorm() > 0)) continue;
       for (std::vector<DirectionCone>& group : groups)
-        if (group.empty() || group[0].axis.dot(n) > kCosSame) {
+        if (group.empty() || group[0].axis.dot(n) > kCosSameFace) {
           group.push_back(DirectionCone::around(n, 0));
           break;
         }
@@ -154,7 +154,7 @@ void CornerTree::build(const FeatureSet& part) {
   std::vector<DirectionCone> touch;
   std::vector<Faces> faces;
   for (std::uint32_t i = 0; i < part.corners().size(); ++i) {
-    const std::optional<DirectionCone> cone = touchCone(part.raysAt(i), kTouchSlope);
+    const std::optional<DirectionCone> cone = touchCone(part.raysAt(i), kSinTouch);
     if (!cone) continue;
     corners.push_back(i);
     items.push_back({part.vertices()[part.corners()[i]], cone->axis});
@@ -187,7 +187,7 @@ void CornerTree::build(const FeatureSet& part) {
 
 namespace {
 
-const double kFlush_rad = std::acos(kCosFlush);
+const double kFlush_rad = std::acos(kCosSameFace);
 
 /// A straight way, in the frame of the facets.
 struct Track {
@@ -308,7 +308,7 @@ class TouchSearch {
     const Vec3& n = facets_of_.normal(facet);
     if (!facets_of_.isTwoSided(facet))
       for (const Vec3& ray : rays_)
-        if (n.dot(ray) < -kTouchSlope - slack_rad_) return false;
+        if (n.dot(ray) < -kSinTouch - slack_rad_) return false;
     return !facets_of_.isCurved(facet) || std::none_of(faces_.begin(), faces_.end(), [&](const Vec3& own) {
       return own.dot(n) < surely_flush_;
     });

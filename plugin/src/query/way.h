@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "vps/contact_tolerances.h"
 #include "vps/pose.h"
 
 namespace vps::inline v0 {
@@ -60,10 +61,10 @@ class Way {
 
   /// Poses of part 0 in part 1 between which vertices move on nearly straight lines.
   void divide(std::vector<Pose>& way_10) const {
-    constexpr double kSagitta_m = 0.05e-6;  // assumed: a quarter of what is looked at
-    constexpr double kMost = 128;           // assumed: a part of 20 mm at 8000 rpm, in steps of 1 ms
+    // Half of kSameGap_m: a quarter of what is looked at.
     const double sagitta_m = turn_.squaredNorm() * radius_m_ / 8;
-    const int pieces = static_cast<int>(std::clamp(std::ceil(std::sqrt(sagitta_m / kSagitta_m)), 1.0, kMost));
+    const int pieces = static_cast<int>(
+        std::clamp(std::ceil(std::sqrt(sagitta_m / (0.5 * kSameGap_m))), 1.0, kMostStretches));
     way_10.clear();
     for (int k = 0; k <= pieces; ++k) way_10.push_back(at(static_cast<double>(k) / pieces));
   }
