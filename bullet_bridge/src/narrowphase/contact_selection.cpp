@@ -87,7 +87,8 @@ bool isQueriedOnce(const PairView& pair, const RelativeMotion& motion) {
 
 bool turnsInPlace(const PairView& pair, const RelativeMotion& motion) {
   const double way_m = motion.velocityAt(pair.center_W()).norm() * motion.dt_s;
-  return !isQueriedOnce(pair, motion) && motion.contact_margin_m + way_m <= queryRange_m(pair);
+  return motion.is_checked && !isQueriedOnce(pair, motion) &&
+         motion.contact_margin_m + way_m <= queryRange_m(pair);
 }
 
 void findPointCandidates(const PairView& pair, double cutoff_m, Context& context, std::vector<Candidate>& out,

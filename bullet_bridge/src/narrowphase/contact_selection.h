@@ -37,7 +37,8 @@ void findStepCandidates(const PairView& pair, const RelativeMotion& motion, Pair
 /// True if a body is so slow that it cannot leave the query range within the step.
 bool isQueriedOnce(const PairView& pair, const RelativeMotion& motion);
 
-/// True if it could, but only by its turn: its centre stays within the query range.
+/// True if it could, but only by its turn, its centre stays within the query range, and the solved step is
+/// checked.
 bool turnsInPlace(const PairView& pair, const RelativeMotion& motion);
 
 /// Refines the candidates by the exact surfaces, if the settings say so.

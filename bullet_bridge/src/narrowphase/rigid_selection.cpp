@@ -42,9 +42,9 @@ void markBounces(std::vector<Candidate>& candidates, const RelativeMotion& motio
     c.bounces = meetsWithBounce(material.restitution(c), c.distance_m, c.predicted_m, motion.dt_s);
 }
 
-// The solved step is checked, so contacts to which other bodies lead are found then.
+// Contacts to which other bodies lead are found in the solved step.
 bool needsNoContacts(const PairView& pair, PairState& state) {
-  if (!isCheckedBySolver(pair, state) && !checksAlone(pair, state)) return false;
+  if (!state.motion.is_checked) return false;
   PairView end = pair;
   advance(end, pair, state.motion.dt_s, state.motion.dt_s);
   return spinsFreely(pair, end.X_WS, state);
@@ -59,11 +59,14 @@ bool meetsWithBounce(double restitution, double gap_m, double predicted_m, doubl
 
 void selectRigid(const PairView& pair, PairState& state) {
   Context& context = *state.context;
+  state.motion.is_checked = isCheckedBySolver(pair, state) || checksAlone(pair, state);
   if (needsNoContacts(pair, state)) {
     state.contacts.clear();
     state.missed_features.clear();
     state.selection.refined.clear();
+    state.selection.leaves_out = false;
     state.selection.is_of_path = true;
+    state.is_incomplete = true;  // not to be used again where there is no room
     storeSelection(state.contacts, pair, state.motion, state.selection);
     return;
   }
