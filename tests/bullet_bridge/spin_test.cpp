@@ -72,5 +72,36 @@ TEST_P(Spin, AShaftThatLeavesItsAxisIsHeld) {
   EXPECT_LT(farthest_m, kBore_m - kShaft_m + 5e-6);
 }
 
+// Two blocks hit it in its middle, from one side, which its own motion does not say.
+TEST(Spin, AShaftThatOthersHitIsHeld) {
+  SpinningShaft shaft(SolverKind::Constraint);
+  static const Built block = test::build(makeBox({2e-3, 2e-3, 2e-3}), 7850);
+  for (int i = 0; i < 50; ++i) shaft.world.step();
+  for (const double z_m : {-9e-3, 9e-3})
+    shaft.world.add(block, Pose::translation({-kShaft_m - 1.5e-3, 0, z_m}), false, 0)
+        .setLinearVelocity(btVector3(1, 0, 0));
+  double farthest_m = 0;
+  for (int i = 0; i < 30; ++i) {
+    shaft.world.step();
+    farthest_m = std::max(farthest_m, shaft.aside_m());
+  }
+  EXPECT_GT(farthest_m, 20e-6);
+  EXPECT_LT(farthest_m, kBore_m - kShaft_m + 5e-6);
+}
+
+// Bullet's own solver takes islands with anisotropic friction, and asks no pair what its solution lacks.
+TEST(Spin, ABarThatTurnsFastMeetsAWallWithAnisotropicFriction) {
+  World world(SolverKind::Constraint);
+  world.world->setGravity(btVector3(0, 0, 0));
+  const Built bar = test::build(makeBox({60e-3, 4e-3, 4e-3}), 7850, 0.5e-3, 1e-3),
+              wall = test::build(makeBox({20e-3, 1e-3, 10e-3}), 7850, 0.25e-3, 0.5e-3);
+  world.add(wall, Pose::translation({25e-3, 15e-3, 0}), true, 0)
+      .setAnisotropicFriction(btVector3(1, toBt(0.5), 1));
+  btRigidBody& body = world.add(bar, Pose(), false, 0);
+  body.setAngularVelocity(btVector3(0, 0, 300));
+  for (int i = 0; i < 20; ++i) world.step();
+  EXPECT_LT(body.getAngularVelocity().length(), 200);
+}
+
 }  // namespace
 }  // namespace vps::bullet

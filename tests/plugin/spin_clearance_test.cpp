@@ -132,6 +132,39 @@ TEST(SpinClearance, NeverCallsApartWhatOverlaps) {
   EXPECT_GT(overlapping, 100);
 }
 
+TEST(SpinClearance, SweepsEdgesOfFacetsWithoutArea) {
+  const Body outer(ring(5.5e-3));
+  Mesh mesh = shaft(5e-3, 48);
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  for (const double x_m : {4e-3, 5.5e-3, 7e-3}) mesh.vertices.emplace_back(x_m, 0, 0);
+  FeatureSet features;
+  features.append(mesh, Pose(), false);
+  features.build();
+  SpinClearance without, with;
+  const Pose end = turnedAbout(Pose(), kTurn_rad);
+  bool is_apart = false;
+  for (int i = 0; i < 8; ++i) is_apart = without.staysApart(outer.features, features, Pose(), end, kLeast_m);
+  EXPECT_TRUE(is_apart);
+  mesh.triangles.push_back({first, first + 1, first + 2});
+  FeatureSet with_edge;
+  with_edge.append(mesh, Pose(), false);
+  with_edge.build();
+  for (int i = 0; i < 8; ++i) EXPECT_FALSE(with.staysApart(outer.features, with_edge, Pose(), end, kLeast_m));
+}
+
+// One step in which it is pushed aside does not make it look for another axis that is of no use.
+TEST(SpinClearance, KeepsTheAxisThatItKnows) {
+  const Body outer(ring(5.1e-3)), inner(shaft(5e-3, 48));
+  SpinClearance spin;
+  const Pose end = turnedAbout(Pose(), kTurn_rad);
+  EXPECT_TRUE(staysApart(spin, outer, inner, Pose(), end));
+  const Pose aside(Mat3::Identity(), Vec3(95e-6, 0, 0));
+  for (int i = 0; i < 100; ++i)
+    EXPECT_FALSE(
+        spin.staysApart(outer.features, inner.features, aside, turnedAbout(aside, kTurn_rad), kLeast_m));
+  EXPECT_TRUE(spin.staysApart(outer.features, inner.features, Pose(), end, kLeast_m));
+}
+
 TEST(SpinClearance, SaysNothingOfPartsThatDoNotTurn) {
   const Body outer(ring(5.1e-3)), inner(shaft(5e-3, 48));
   SpinClearance spin;

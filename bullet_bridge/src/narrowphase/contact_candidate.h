@@ -54,7 +54,7 @@ struct RelativeMotion {
   double speed_m_s = 0;      ///< upper bound of the relative speed of the smaller body's points
   double own_speed_m_s = 0;  ///< the same without the pull of couplings
   double pull_share = 1;     ///< the share of that pull which V has
-  bool is_checked = false;   ///< the solved step is looked at, so that contacts it lacks are found then
+  bool is_checked = false;   ///< isSurelyChecked(): contacts that the first guess lacks are found later
 
   [[nodiscard]] Vec3 velocityAt(const Vec3& p_W) const { return V.v + V.w.cross(p_W); }
   /// How far points are taken to move in any direction.

@@ -136,13 +136,14 @@ void dropUnreachable(const RelativeMotion& motion, std::vector<Candidate>& candi
 
 namespace {
 
-// Of a body that turns fast where it is, drops the points that do not come to the surface on their way.
+// Of a body that turns fast in place, drops the points that stay away from the surface on their way.
 template <typename Error>
-void dropUnmet(const PairView& pair, const RelativeMotion& motion, const Error& error_m,
-               std::vector<Candidate>& candidates) {
+void dropStayingAway(const PairView& pair, const RelativeMotion& motion, const Error& error_m,
+                     std::vector<Candidate>& candidates) {
   if (!turnsInPlace(pair, motion)) return;
-  constexpr int kPlaces = 4;  // assumed: within half a turn, ways bend to one side
+  constexpr int kPlaces = 4;
   const Vec3 center = pair.center_W();
+  const double between_rad = motion.dt_s * motion.V.w.norm() / kPlaces;
   Pose way[kPlaces];
   for (int k = 0; k < kPlaces; ++k) {
     const double t_s = motion.dt_s * (k + 1) / kPlaces;
@@ -151,8 +152,13 @@ void dropUnmet(const PairView& pair, const RelativeMotion& motion, const Error& 
   }
   std::erase_if(candidates, [&](const Candidate& c) {
     double nearest_m = c.distance_m;
-    for (const Pose& X : way) nearest_m = std::min(nearest_m, c.distance_m + c.n_W.dot(X * c.p_W - c.p_W));
-    return nearest_m > motion.contact_margin_m + error_m(c);
+    // A point of body 1 is met by a plane that turns with body 0.
+    for (const Pose& X : way)
+      nearest_m = std::min(nearest_m,
+                           c.distance_m + (c.side == 1 ? Vec3(X.R * c.n_W) : c.n_W).dot(X * c.p_W - c.p_W));
+    // The arc between two places leaves its chord by this.
+    const double sagitta_m = between_rad * between_rad / 8 * (c.p_W - center).norm();
+    return nearest_m - sagitta_m > motion.contact_margin_m + error_m(c);
   });
 }
 
@@ -176,7 +182,7 @@ void dropUnreachableByField(const PairView& pair, const RelativeMotion& motion, 
 void selectContacts(const PairView& pair, const RelativeMotion& motion, const Settings& settings,
                     ManifoldWriter* writer, std::vector<Candidate>& candidates, Selection* selection) {
   thread_local std::vector<Candidate> doubtful;
-  dropUnmet(
+  dropStayingAway(
       pair, motion, [&](const Candidate& c) { return fieldError_m(pair, c); }, candidates);
   dropUnreachableByField(pair, motion, settings, candidates, doubtful);
   if (writer) {
@@ -192,7 +198,7 @@ void selectContacts(const PairView& pair, const RelativeMotion& motion, const Se
   refineOnWay(pair, motion, settings, candidates);
   if (isQueriedOnce(pair, motion)) measureAtEnd(pair, motion, settings, candidates);
   dropUnreachable(motion, candidates);
-  dropUnmet(
+  dropStayingAway(
       pair, motion, [](const Candidate&) { return 0.0; }, candidates);
   if (selection) {
     selection->refined = candidates;

@@ -35,8 +35,9 @@ struct EndPoses {
   bool turns_far = false;  ///< the bodies turn by more than kContactTurn_rad against each other
 };
 
-/// True if nothing of the bodies comes to overlap on the way, because they only turn about an axis around
-/// which there is room at any angle.
+/// True if no surfaces of the bodies come to overlap where these turn about an axis with room around it at
+/// any angle, or rest there. The axis is taken to move on a straight way in the step, also where the bodies'
+/// centres are beside it, as a crank's.
 bool spinsFreely(const PairView& start, const Pose (&X_WS_end)[2], PairState& state);
 
 /// Appends a contact for each pair of features that the motion brings too near to each other, up to a limit.

@@ -148,6 +148,14 @@ bool isCheckedBySolver(const PairView& pair, const PairState& state) {
                      [](const btCollisionObjectWrapper* w) { return isTaken(*w->getCollisionObject()); });
 }
 
+bool isSurelyChecked(const PairView& pair, const PairState& state) {
+  return isCheckedBySolver(pair, state) && !state.context->penalty_contacts->hasLeftIslands() &&
+         std::all_of(pair.wrapper, pair.wrapper + 2, [](const btCollisionObjectWrapper* w) {
+           return w->getCollisionObject()->hasContactResponse() &&
+                  !w->getCollisionObject()->hasAnisotropicFriction();
+         });
+}
+
 bool checksAlone(const PairView& pair, const PairState& state) {
   const auto any = [&](auto&& is) {
     return std::any_of(pair.wrapper, pair.wrapper + 2,

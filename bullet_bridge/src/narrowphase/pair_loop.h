@@ -13,6 +13,11 @@ namespace vps::bullet::inline v0 {
 /// True if bullet::Solver asks the pair for its missing contacts.
 bool isCheckedBySolver(const PairView& pair, const PairState& state);
 
+/// True if, moreover, nothing suggests that the solver may leave the pair's island to Bullet's own: no body
+/// with anisotropic friction, and no island that was left to it before. Contacts that arise because other
+/// bodies push this pair are found then, so that the first guess need not have them. False for sensors.
+bool isSurelyChecked(const PairView& pair, const PairState& state);
+
 /// True if no solver asks the pair for its missing contacts: in a world that bullet::Solver does not solve,
 /// and for bodies with linear or angular factors, or without inertia, which it passes to Bullet's. In the
 /// first step of a world that tuneWorld() has not seen the solver is not known yet. False for links of a

@@ -42,9 +42,9 @@ void markBounces(std::vector<Candidate>& candidates, const RelativeMotion& motio
     c.bounces = meetsWithBounce(material.restitution(c), c.distance_m, c.predicted_m, motion.dt_s);
 }
 
-// Contacts to which other bodies lead are found in the solved step.
+// Contacts that arise because other bodies push the pair are found in the solved step.
 bool needsNoContacts(const PairView& pair, PairState& state) {
-  if (!state.motion.is_checked) return false;
+  if (!state.motion.is_checked || mayOverlap(state.selection, 0)) return false;
   PairView end = pair;
   advance(end, pair, state.motion.dt_s, state.motion.dt_s);
   return spinsFreely(pair, end.X_WS, state);
@@ -59,7 +59,7 @@ bool meetsWithBounce(double restitution, double gap_m, double predicted_m, doubl
 
 void selectRigid(const PairView& pair, PairState& state) {
   Context& context = *state.context;
-  state.motion.is_checked = isCheckedBySolver(pair, state) || checksAlone(pair, state);
+  state.motion.is_checked = isSurelyChecked(pair, state);
   if (needsNoContacts(pair, state)) {
     state.contacts.clear();
     state.missed_features.clear();

@@ -49,6 +49,10 @@ double StepPath::effect(const Row& of, const Row& on) const {
 
 namespace {
 
+// Neither the bend nor the gap is known better: with floats, differences of places a decimetre from the
+// centre.
+constexpr double kKnown_m = 10 * kRounding_m;
+
 template <typename Row>
 Row between(const Row& start, const Row& end, double tau) {
   return {(1 - tau) * start.p_W + tau * end.p_W, ((1 - tau) * start.n_W + tau * end.n_W).normalized()};
@@ -57,10 +61,10 @@ Row between(const Row& start, const Row& end, double tau) {
 }  // namespace
 
 double StepPath::timeOf(const Row& start, const Row& end, double closed_m, bool is_corner) const {
-  const double bend_m = std::max(way_m(end) - way_m(start), kRounding_m);
+  const double bend_m = std::max(way_m(end) - way_m(start), kKnown_m);
   double tau = std::max(0.5, 0.5 + closed_m / bend_m);
   if (tau <= 1) return tau;
-  if (!(bend_m > kRounding_m) || !is_corner) return 1;
+  if (!(bend_m > kKnown_m) || !is_corner) return 1;
   const double kick_m = -end.n_W.dot(body_[0].kick_W - body_[1].kick_W);
   if (!(closed_m < kick_m)) return 1;
   const double own = effect(end, end);
@@ -82,7 +86,7 @@ Candidate StepPath::acting(const Candidate& start, const Candidate& end) const {
 }
 
 bool StepPath::bends(const Candidate& start, const Candidate& end) const {
-  return std::abs(way_m(atEnd(end)) - way_m({start.p_W, start.n_W})) > kRounding_m;
+  return std::abs(way_m(atEnd(end)) - way_m({start.p_W, start.n_W})) > kKnown_m;
 }
 
 }  // namespace vps::bullet::inline v0

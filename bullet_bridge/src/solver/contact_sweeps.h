@@ -33,6 +33,16 @@ struct ContactRow {
   Side side[2];
   double fixed_velocity = 0;  ///< of a kinematic body, along the direction
   double W = 0;               ///< J effective_mass^-1 J'
+
+  /// Along the direction.
+  /// @param twistOf  velocity of a body, by its index
+  template <typename TwistOf>
+  [[nodiscard]] double velocity(const TwistOf& twistOf) const {
+    double v = fixed_velocity;
+    for (const Side& each : side)
+      if (each.body >= 0) v += each.J.dot(twistOf(static_cast<std::size_t>(each.body)));
+    return v;
+  }
 };
 
 /// A contact of a manifold, with its rows.

@@ -36,11 +36,14 @@ class PenaltyContacts {
   /// True once a Solver has used this store.
   [[nodiscard]] bool hasSolver() const { return has_solver_; }
   void setHasSolver() { has_solver_ = true; }
+  /// True once it has left an island to Bullet's own solver, which asks no pair for its missing contacts.
+  [[nodiscard]] bool hasLeftIslands() const { return has_left_islands_; }
+  void setHasLeftIslands() { has_left_islands_ = true; }
 
  private:
   std::mutex mutex_;
   std::map<const btPersistentManifold*, PenaltyPair*> pairs_;
-  std::atomic<bool> has_solver_{false};
+  std::atomic<bool> has_solver_{false}, has_left_islands_{false};
 };
 
 /// Base of the create function that install() registers.

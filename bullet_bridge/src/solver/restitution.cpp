@@ -19,14 +19,6 @@
 namespace vps::bullet::inline v0 {
 namespace {
 
-template <typename TwistOf>
-double velocityOf(const ContactRow& row, const TwistOf& twistOf) {
-  double v = row.fixed_velocity;
-  for (const ContactRow::Side& side : row.side)
-    if (side.body >= 0) v += side.J.dot(twistOf(static_cast<std::size_t>(side.body)));
-  return v;
-}
-
 // Rows of joints with a bounded impulse, motors, are no part of an impact. False: such a row.
 bool boundsOf(const JointRow& row, double& lower_Ns, double& upper_Ns) {
   const auto isBound = [](double limit_Ns) {
@@ -47,7 +39,7 @@ bool touchesAtEnd(const RigidContact& c, double touch_m, double velocity_m_s, do
 
 bool Restitution::isImpact(const RigidContact& c, double threshold_m_s) const {
   if (!(c.restitution > 0) || !(c.p_n > 0)) return false;
-  return velocityOf(c.normal, [&](std::size_t i) -> const Vec6& { return island_.bodies[i].start; }) <
+  return c.normal.velocity([&](std::size_t i) -> const Vec6& { return island_.bodies[i].start; }) <
          -threshold_m_s;
 }
 
@@ -80,7 +72,7 @@ void Restitution::connect(std::span<RigidContact> contacts, const StepSolution& 
   touches_.clear();
   for (std::size_t k = 0; k < contacts.size(); ++k) {
     const RigidContact& c = contacts[k];
-    const double v = velocityOf(c.normal, [&](std::size_t i) -> const Vec6& { return solution.u[i]; });
+    const double v = c.normal.velocity([&](std::size_t i) -> const Vec6& { return solution.u[i]; });
     touches_.push_back(touchesAtEnd(c, touch_m_[k], v, dt_s));
     if (touches_.back()) join(c.normal.side[0].body, c.normal.side[1].body);
   }
@@ -237,45 +229,6 @@ void Restitution::settle() {
   }
   g.p_Ns = g.bounced_Ns;
   for (std::size_t k = 0; k < p.size(); ++k) g.p_Ns[k] += p[k];
-}
-
-// The greatest share s of the change of velocities for which a s^2 + b s + c, the energy above what is
-// allowed, is not positive, or else least.
-double Restitution::shareWithoutGain(std::span<const BodyEnd> ends) const {
-  const Group& g = group_;
-  double a = 0, b = 0, c = 0, scale_J = 0;
-  for (std::size_t i = 0; i < g.bodies.size(); ++i) {
-    const auto at = static_cast<std::size_t>(g.bodies[i]);
-    const IslandBody& body = island_.bodies[at];
-    const Vec6 change = g.v[i] - g.solved[i], momentum = ends[at].mass * change;
-    // The velocities of the poses, half a kick from those that Bullet stores: their energy is what a step
-    // keeps.
-    const Vec6 start = body.start + 0.5 * body.mass.llt().solve(body.external_Ns),
-               solved = g.solved[i] + 0.5 * g.kick[i];
-    const double before_J = 0.5 * start.dot(body.mass * start);
-    a += 0.5 * momentum.dot(change);
-    b += momentum.dot(solved);
-    c += 0.5 * solved.dot(ends[at].mass * solved) - before_J - g.impulse[i].dot(body.u);
-    scale_J += before_J;
-  }
-  // Contacts work against bodies that they do not move only; their other work is not allowed.
-  const auto twistOf = [&](std::size_t i) -> const Vec6& { return island_.bodies[i].u; };
-  for (std::size_t k = 0; k < g.rows.size(); ++k)
-    b += g.rows[k].fixed_velocity * (g.p_Ns[k] - g.solved_Ns[k]);
-  for (const Contact& contact : g.contacts) {
-    const RigidContact& of = *contact.of;
-    c += of.p_n * velocityOf(of.normal, twistOf);
-    for (int t = 0; t < 2; ++t) {
-      c += of.p_t[t] * velocityOf(of.tangent[t], twistOf);
-      b += of.tangent[t].fixed_velocity * (contact.p_t[t] - of.p_t[t]);
-    }
-  }
-  if (a + b + c <= kSumRounding * scale_J) return 1;
-  if (!(a > 0)) return 0;  // also where a value is not finite
-  // A solution that has not converged may have more energy than is allowed by itself: then the share with the
-  // least.
-  const double root = std::max(b * b - 4 * a * c, 0.0);
-  return std::clamp((-b + std::sqrt(root)) / (2 * a), 0.0, 1.0);
 }
 
 void Restitution::write(double share, std::span<BodyEnd> ends) {

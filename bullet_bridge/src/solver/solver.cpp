@@ -252,9 +252,11 @@ btScalar Solver::solveGroup(btCollisionObject** bodies, int body_count, btPersis
   if (stores) stores->penalty_contacts->setHasSolver();
   if (stores) reportClampedTurn(*stores->turn_reports, spanOf(bodies, body_count), dt_s);
   if (!work.gatherBodies(spanOf(bodies, body_count), dt_s) ||
-      !work.gatherContacts(spanOf(manifolds, manifold_count), stores, info))
+      !work.gatherContacts(spanOf(manifolds, manifold_count), stores, info)) {
+    if (stores) stores->penalty_contacts->setHasLeftIslands();
     return btSequentialImpulseConstraintSolver::solveGroup(
         bodies, body_count, manifolds, manifold_count, constraints, constraint_count, info, draw, dispatcher);
+  }
   if (work.island.bodies.empty()) return 0;  // Bullet ends each step with a call without bodies
   points_near_ = points_solved_ = 0;
   if (work.is_penalty) {

@@ -2,6 +2,7 @@
 #include "vps/spin_clearance.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -36,17 +37,21 @@ std::vector<Box> sweptAbout(const FeatureSet& part, const Vec3& p, const Vec3& a
   const Vec3 u = along.unitOrthogonal(), v = along.cross(u);
   std::vector<Box> swept;
   swept.reserve(part.facets().size());
-  for (const auto& facet : part.facets()) {
+  const auto sweep = [&](const std::array<std::uint32_t, 3>& triangle) {
     Eigen::Vector2d corner[3];
     Box box;
     for (std::size_t k = 0; k < 3; ++k) {
-      const Vec3 r = part.vertices()[facet[k]] - p;
+      const Vec3 r = part.vertices()[triangle[k]] - p;
       corner[k] = {u.dot(r), v.dot(r)};
       box.add(Vec3(corner[k].norm(), along.dot(r), 0));
     }
     box.min.x() = leastRadius_m(corner);
     swept.push_back(box);
-  }
+  };
+  for (const auto& facet : part.facets()) sweep(facet);
+  // Facets without area are left out, but not their edges.
+  for (const FeatureEdge& edge : part.edges())
+    if (!edge.has_faces) sweep({edge.from, edge.to, edge.to});
   return swept;
 }
 
@@ -82,7 +87,7 @@ double SpinClearance::deviation_m(const Pose& start, const Pose& end) const {
   const Vec3 from = start * smaller_.p, to = end * smaller_.p;
   const Vec3 before = start.R * smaller_.along, after = end.R * smaller_.along;
   return (from - larger_.p).norm() + (to - from).norm() +
-         far_m_ * ((before - larger_.along).norm() + (after - before).norm());
+         lever_m_ * ((before - larger_.along).norm() + (after - before).norm());
 }
 
 // Finds the axis of the screw that takes the smaller part from one pose in the larger one to another, and
@@ -95,8 +100,8 @@ void SpinClearance::search(const FeatureSet& smaller, const FeatureSet& larger, 
   const Vec3 across = way - larger_.along.dot(way) * larger_.along;
   larger_.p = from + 0.5 * across + larger_.along.cross(across) / (2 * std::tan(0.5 * turn.norm()));
   smaller_ = {start.inverse() * larger_.p, start.R.transpose() * larger_.along};
-  far_m_ = 0;
-  for (const Vec3& v : smaller.vertices()) far_m_ = std::max(far_m_, (v - smaller_.p).norm());
+  lever_m_ = 0;
+  for (const Vec3& v : smaller.vertices()) lever_m_ = std::max(lever_m_, (v - smaller_.p).norm());
   clearance_m_ = clearance_m(sweptAbout(smaller, smaller_.p, smaller_.along),
                              sweptAbout(larger, larger_.p, larger_.along), kOfRadius * smaller.radius_m());
 }
@@ -106,15 +111,19 @@ bool SpinClearance::staysApart(const FeatureSet& part0, const FeatureSet& part1,
   if (part0.isEmpty() || part1.isEmpty()) return false;
   const bool is_first = part0.radius_m() <= part1.radius_m();
   const Pose from = is_first ? start.inverse() : start, to = is_first ? end.inverse() : end;
-  const auto isApart = [&] { return deviation_m(from, to) + least_m < clearance_m_; };
-  if (isApart()) return true;
+  const auto isApart = [&](const SpinClearance& known) {
+    return known.clearance_m_ > 0 && known.deviation_m(from, to) + least_m < known.clearance_m_;
+  };
+  if (isApart(*this)) return true;
   const Vec3 turn = rotationVector(to.R * from.R.transpose());
   if (!(turn.squaredNorm() > kLeast_rad * kLeast_rad) || ++waits_ < wait_) return false;
   waits_ = 0;
-  search(is_first ? part0 : part1, is_first ? part1 : part0, from, to, turn);
-  const bool has_found = isApart();
-  wait_ = has_found ? kWait : std::min(2 * wait_, kMostWait);
-  return has_found;
+  SpinClearance found;  // an axis that is known is kept where the new one does not help
+  found.search(is_first ? part0 : part1, is_first ? part1 : part0, from, to, turn);
+  const bool helps = isApart(found);
+  if (helps) *this = found;
+  wait_ = helps ? kWait : std::min(2 * wait_, kMostWait);
+  return helps;
 }
 
 }  // namespace vps::inline v0
