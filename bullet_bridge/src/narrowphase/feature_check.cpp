@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "narrowphase/contact_selection.h"
 #include "vps/contact_tolerances.h"
 
 namespace vps::bullet::inline v0 {
@@ -147,9 +148,11 @@ bool hasFeatures(const PairView& pair, const Settings& settings) {
 
 bool spinsFreely(const PairView& start, const Pose (&X_WS_end)[2], PairState& state) {
   const Settings& settings = state.context->settings;
-  return hasFeatures(start, settings) &&
-         state.spin.staysApart(start.shape[0]->features(), start.shape[1]->features(), start.X_01_models(),
-                               poseBetween(start, X_WS_end), kToleratedShare * settings.contact_margin_m);
+  const double least_m = kToleratedShare * settings.contact_margin_m;
+  // Where bodies touch there is no room, and a search for it would take as long as many steps.
+  if (!hasFeatures(start, settings) || mayOverlap(state.selection, -least_m)) return false;
+  return state.spin.staysApart(start.shape[0]->features(), start.shape[1]->features(), start.X_01_models(),
+                               poseBetween(start, X_WS_end), least_m);
 }
 
 void markSharp(const PairView& pair, const Settings& settings, bool is_own,

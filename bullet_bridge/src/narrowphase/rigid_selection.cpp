@@ -44,7 +44,7 @@ void markBounces(std::vector<Candidate>& candidates, const RelativeMotion& motio
 
 // Contacts that arise because other bodies push the pair are found in the solved step.
 bool needsNoContacts(const PairView& pair, PairState& state) {
-  if (!state.motion.is_checked || mayOverlap(state.selection, 0)) return false;
+  if (!state.motion.is_checked) return false;
   PairView end = pair;
   advance(end, pair, state.motion.dt_s, state.motion.dt_s);
   return spinsFreely(pair, end.X_WS, state);
