@@ -5,10 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <numbers>
 #include <random>
 
+#include "support/feature_body.h"
 #include "support/fit.h"
 #include "support/random_draw.h"
 #include "vps/mesh_overlap.h"
@@ -18,16 +18,7 @@ namespace {
 
 constexpr double kLeast_m = FeatureMotion::kLeastShare * FeatureMotion::kRest_m;
 
-/// A solid as features and for exact overlap.
-struct Body {
-  FeatureSet features;
-  OverlapMesh exact;
-
-  explicit Body(const Mesh& mesh) : exact(std::make_shared<const Solid>(mesh)) {
-    features.append(exact.mesh(), Pose(), false);
-    features.build();
-  }
-};
+using Body = test::FeatureBody;
 
 Mesh box(const Vec3& half) {
   return makeBox(2 * half);

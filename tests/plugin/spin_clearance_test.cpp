@@ -4,13 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <memory>
 #include <numbers>
 #include <random>
 
+#include "support/feature_body.h"
 #include "support/lathe.h"
 #include "support/random_draw.h"
-#include "vps/mesh_overlap.h"
 
 namespace vps {
 namespace {
@@ -18,15 +17,7 @@ namespace {
 constexpr double kTurn_rad = 0.3;
 constexpr double kLeast_m = 1e-6;
 
-struct Body {
-  FeatureSet features;
-  OverlapMesh exact;
-
-  explicit Body(const Mesh& mesh) : exact(std::make_shared<const Solid>(mesh)) {
-    features.append(exact.mesh(), Pose(), false);
-    features.build();
-  }
-};
+using Body = test::FeatureBody;
 
 /// A turned ring with facets of 7.5 degrees, so that its bore is narrower than its vertices say.
 Mesh ring(double bore_m) {

@@ -32,11 +32,16 @@ double edgeDepth_m(const PairView& pair, const Selection& last, double cutoff_m)
   return mayOverlap(last, kEdgeDepthShare * cutoff_m) ? edgeDepth_m(pair, cutoff_m) : cutoff_m;
 }
 
+// The motion of body 0 relative to body 1 in a time of the step, in W.
+Pose displacementIn(const PairView& pair, const RelativeMotion& motion, double t_s) {
+  const Vec3 center = pair.center_W();
+  const Mat3 R = rotationFromVector(t_s * motion.V.w);
+  return {R, center + t_s * motion.velocityAt(center) - R * center};
+}
+
 // Body 1 in body 0, in their models' frames, after the step's motion.
 Pose poseAfterStep(const PairView& pair, const RelativeMotion& motion) {
-  const Vec3 center = pair.center_W();
-  const Mat3 R = rotationFromVector(motion.dt_s * motion.V.w);
-  const Pose step(R, center + motion.dt_s * motion.velocityAt(center) - R * center);
+  const Pose step = displacementIn(pair, motion, motion.dt_s);
   return (step * pair.side(0).X_WM).inverse() * pair.side(1).X_WM;
 }
 
@@ -145,11 +150,7 @@ void dropStayingAway(const PairView& pair, const RelativeMotion& motion, const E
   const Vec3 center = pair.center_W();
   const double between_rad = motion.dt_s * motion.V.w.norm() / kPlaces;
   Pose way[kPlaces];
-  for (int k = 0; k < kPlaces; ++k) {
-    const double t_s = motion.dt_s * (k + 1) / kPlaces;
-    const Mat3 R = rotationFromVector(t_s * motion.V.w);
-    way[k] = {R, center + t_s * motion.velocityAt(center) - R * center};
-  }
+  for (int k = 0; k < kPlaces; ++k) way[k] = displacementIn(pair, motion, motion.dt_s * (k + 1) / kPlaces);
   std::erase_if(candidates, [&](const Candidate& c) {
     double nearest_m = c.distance_m;
     // A point of body 1 is met by a plane that turns with body 0.

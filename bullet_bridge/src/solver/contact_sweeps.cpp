@@ -38,10 +38,7 @@ Vec3 RigidContact::tangent_W(int k) const {
 }
 
 double ContactSweeps::velocity(const ContactRow& row) const {
-  double v = row.fixed_velocity;
-  for (const ContactRow::Side& side : row.side)
-    if (side.body >= 0) v += side.J.dot(body(side).u);
-  return v;
+  return row.velocity([this](std::size_t i) -> const Vec6& { return island_.bodies[i].u; });
 }
 
 void ContactSweeps::apply(const ContactRow& row, double impulse) {
