@@ -3,6 +3,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "vps/query.h"
@@ -30,9 +31,22 @@ bool isSurelyOutside(const JudgedBody& solid, const Vec3& a, const Vec3& b) {
   return solid.model->map->leastDistance(0.5 * (a + b)) > 0.5 * (b - a).norm();
 }
 
+/// Numbers of the boxes of a tree in the other's frame that may reach into the solid, in ascending order.
+std::vector<std::uint32_t> mayReachInto(const JudgedBody& solid, const BoxTree& tree, const Pose& X_SO) {
+  std::vector<std::uint32_t> found;
+  tree.forEach(
+      [&](const Box& box_O) {
+        return !isSurelyOutside(solid, X_SO * Vec3(box_O.min), X_SO * Vec3(box_O.max));
+      },
+      [&](std::uint32_t i) { found.push_back(i); });
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
 PointDepth deepestEdge(const JudgedBody& solid, const JudgedBody& other, const Pose& X_SO) {
   std::vector<SharpEdge> near;
-  for (const SharpEdge& edge : *other.edges) {
+  for (const std::uint32_t i : mayReachInto(solid, *other.edge_tree, X_SO)) {
+    const SharpEdge& edge = (*other.edges)[i];
     const SharpEdge edge_S = {X_SO * edge.a, X_SO * edge.b};
     if (!isSurelyOutside(solid, edge_S.a, edge_S.b)) near.push_back(edge_S);
   }
@@ -67,8 +81,8 @@ PointDepth deepestPoint(const JudgedBody& solid, const JudgedBody& other, const 
 
 PointDepth deepestVertex(const JudgedBody& solid, const JudgedBody& other, const Pose& X_SO) {
   std::vector<Vec3> near;
-  for (const Vec3& vertex : *other.vertices)
-    if (const Vec3 p_S = X_SO * vertex; !isSurelyOutside(solid, p_S, p_S)) near.push_back(p_S);
+  for (const std::uint32_t i : mayReachInto(solid, *other.vertex_tree, X_SO))
+    if (const Vec3 p_S = X_SO * (*other.vertices)[i]; !isSurelyOutside(solid, p_S, p_S)) near.push_back(p_S);
   std::vector<double> depths(near.size());
   tbb::parallel_for(std::size_t{0}, near.size(),
                     [&](std::size_t i) { depths[i] = -solid.model->solid->signedDistance(near[i]); });
@@ -99,8 +113,13 @@ JudgedBody makeJudgedBody(std::shared_ptr<const PartModel> model) {
   std::vector<Vec3> vertices;
   for (std::size_t i = 0; i < is_curved.size(); ++i)
     if (is_curved[i]) vertices.push_back(mesh.vertices[i]);
+  std::vector<Box> edge_boxes, vertex_boxes;
+  for (const SharpEdge& e : edges) edge_boxes.push_back({e.a.cwiseMin(e.b), e.a.cwiseMax(e.b)});
+  for (const Vec3& v : vertices) vertex_boxes.push_back({v, v});
   return {std::move(model), std::make_shared<const std::vector<SharpEdge>>(std::move(edges)),
-          std::make_shared<const std::vector<Vec3>>(std::move(vertices))};
+          std::make_shared<const BoxTree>(edge_boxes),
+          std::make_shared<const std::vector<Vec3>>(std::move(vertices)),
+          std::make_shared<const BoxTree>(vertex_boxes)};
 }
 
 void OverlapJudge::mount(JudgedBody body, const Pose& X_WB) {

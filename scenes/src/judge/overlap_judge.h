@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "check/box_tree.h"
 #include "vps/part_model.h"
 
 namespace vps::scenes::inline v0 {
@@ -20,8 +21,10 @@ struct SharpEdge {
 struct JudgedBody {
   std::shared_ptr<const PartModel> model;
   std::shared_ptr<const std::vector<SharpEdge>> edges;  ///< where faces meet at more than 20 degrees
+  std::shared_ptr<const BoxTree> edge_tree;
   /// Vertices of curved faces, which protrude from the chords between the shell's points.
   std::shared_ptr<const std::vector<Vec3>> vertices;
+  std::shared_ptr<const BoxTree> vertex_tree;
 };
 
 /// Finds the part's sharp edges and the vertices of its curved faces. O(n log n).
