@@ -103,7 +103,7 @@ TEST_P(JointsWithSolver, AHingedPartLeansOnItsStopWithItsTorque) {
   const Pose before = test::partPose(body, box);
   world.step(500);
   const Pose after = test::partPose(body, box);
-  // The hinge holds the lower edge where the plate is, and contact of sharp edges rests at 0.5 um: the push
+  // The hinge holds the lower edge where the plate is, and contact of sharp edges rests at 0.1 um: the push
   // raises the other edge instead, by a few times that.
   EXPECT_LE((after.p - before.p).norm(), 1e-7);
   EXPECT_NEAR(after.p.z(), 0.005, 4 * FeatureMotion::kRest_m);

@@ -13,6 +13,7 @@
 #include "bullet_bridge/world.h"
 #include "search/prism.h"
 #include "support/random_draw.h"
+#include "vps/feature_motion.h"
 #include "vps/mesh_overlap.h"
 
 namespace vps::bullet {
@@ -165,7 +166,7 @@ double distanceLessGap_m(World& world, const Vec3& angular_factor = Vec3::Ones()
 // Bullet's solvers are given distances that are less by the rest gap, for which bullet::Solver has a place of
 // its own: also in the first step, and not for bodies that it passes to Bullet's.
 TEST_P(PairLoop, GivesBulletsSolversTheRestGap) {
-  constexpr double kRest_m = 0.5e-6;
+  constexpr double kRest_m = FeatureMotion::kRest_m;
   StockWorld stock(GetParam());
   EXPECT_NEAR(distanceLessGap_m(stock.world), -kRest_m, 1e-9);
   World own(SolverKind::Constraint), held(SolverKind::Constraint);

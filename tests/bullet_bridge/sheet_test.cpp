@@ -18,7 +18,7 @@ using test::kIsDouble;
 using test::World;
 
 constexpr double kHalf_m = 8e-3;       ///< of the cube; radius of the ball
-constexpr double kTolerance_m = 2e-6;  ///< edges rest 0.5 um above faces, and a step of gravity is 10 um
+constexpr double kTolerance_m = 2e-6;  ///< edges rest 0.1 um above faces, and a step of gravity is 10 um
 
 void addQuad(Mesh& mesh, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   const auto first = static_cast<std::uint32_t>(mesh.vertices.size());

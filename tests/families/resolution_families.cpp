@@ -212,7 +212,7 @@ std::vector<Family> resolutionFamilies() {
        .every = 13,
        .measured = [](int member) { return run(member).begins_apart ? run(member).depth : 1.0; },
        .describe = describe});
-  // Parts rest 0.5 um apart or less, in lengths in which they are 1 mm across or more; the rest is rounding.
+  // Parts rest 0.1 um apart or less, in lengths in which they are 1 mm across or more; the rest is rounding.
   families.push_back({.key = "F_place",
                       .measure = "distance from where the part comes to rest, over its size",
                       .bar = 5.1e-4,

@@ -223,6 +223,27 @@ TEST(FeatureMotion, AnEdgeMeetsAnEdge) {
   EXPECT_NEAR(found[0].gap_m(end), -30e-6, 1e-12);
 }
 
+// An edge that passes over another one lower than it may is raised by what is missing, and its way is not
+// turned: where the edges come near first, the line between them leans against the way.
+TEST(FeatureMotion, EdgesThatPassEachOtherTouchWhereTheyAreNearest) {
+  const Body floor(box(Vec3(20e-3, 20e-3, 5e-3))), block(box(Vec3(4e-3, 3e-3, 2e-3)));
+  int found = 0;
+  for (const double height : {0.3, 0.6, 0.8, 0.89})
+    for (const double turn_rad : {1e-6, 1e-4, 1e-2, 0.3}) {
+      const double gap_m = height * FeatureMotion::kRest_m;
+      // The block stands out over the floor's rim, and slides inward until it doesn't.
+      const Pose start(rotationFromVector(Vec3(0, 0, turn_rad)), Vec3(16.2e-3, 0, 7e-3 + gap_m));
+      const Pose end(start.R, start.p - Vec3(3e-3, 0.2e-3, 0));
+      for (const FeatureContact& c : check(floor, block, start, end)) {
+        found += c.kind == FeatureContact::Kind::EdgeOnEdge ? 1 : 0;
+        EXPECT_LE(c.normal_0(start).head<2>().norm(), 1e-6) << height << ' ' << turn_rad;
+        EXPECT_NEAR(c.gap_m(end), gap_m, 4e-9)  // that times the way
+            << height << ' ' << turn_rad;
+      }
+    }
+  EXPECT_GE(found, 8);
+}
+
 TEST(FeatureMotion, SlidingAtTheRestGapMeetsNothing) {
   const Body floor(box(Vec3(50e-3, 50e-3, 5e-3))), block(box(Vec3(5e-3, 5e-3, 5e-3)));
   FeatureMotion motion;

@@ -296,7 +296,7 @@ void HostileWorld::finish() {
   slots_[1].body->setWorldTransform(toBt(Pose::translation(Vec3(0, 0, 0.0062))));
   for (int i = 0; i < 40; ++i) world_.stepSimulation(toBt(1e-3), 0);
   const double z_m = slots_[1].body->getWorldTransform().getOrigin().z();
-  // Half of both heights; sharp features rest at a gap of 0.5 um.
+  // Half of both heights; sharp features rest at a gap of 0.1 um.
   require_(std::abs(z_m - 0.006) < 5e-6, "a part still rests on a plate");
 }
 

@@ -4,6 +4,7 @@
 #include <BulletDynamics/ConstraintSolver/btContactSolverInfo.h>
 
 #include "vps/contact_tolerances.h"
+#include "vps/feature_motion.h"
 
 namespace vps::bullet::inline v0 {
 
@@ -19,8 +20,10 @@ SolveOutcome ContactLoop::solveContacts(const SolverSettings& settings) {
   SolveOutcome outcome =
       contacts.sweep(settings.residual_m_s, newton_limit > 0 ? kSweepsFirst : settings.iteration_limit);
   if (outcome.is_converged || newton_limit == 0) return outcome;
-  island.readVelocities(u_);
-  const double near_m_s = std::max(settings.residual_m_s, kSpeedErrorShare * island.topSpeed(u_));
+  // A check allows a tenth of the rest gap: with a greater error it would find contacts again and again.
+  const double allowed_m_s = kAccuracyShare * FeatureMotion::kRest_m / dt_s_;
+  const double near_m_s =
+      std::max(settings.residual_m_s, std::min(kSpeedErrorShare * topSpeed(), allowed_m_s));
   const SolveOutcome solved = newton_.solve(contacts.contacts(), near_m_s, newton_limit);
   outcome.steps += kSweepsPerNewtonStep * solved.steps;
   outcome.is_converged = solved.is_converged;
@@ -29,6 +32,19 @@ SolveOutcome ContactLoop::solveContacts(const SolverSettings& settings) {
   const SolveOutcome end =
       contacts.sweep(settings.residual_m_s, std::max(kSweepsFirst, settings.iteration_limit - outcome.steps));
   return {outcome.steps + end.steps, end.is_converged};
+}
+
+// A body that flies by does not blur those that rest.
+double ContactLoop::topSpeed() {
+  u_.assign(island.bodies.size(), Vec6::Zero());
+  const auto read = [&](int body) {
+    if (body >= 0) u_[static_cast<std::size_t>(body)] = island.bodies[static_cast<std::size_t>(body)].u;
+  };
+  for (int k : {0, 1}) {
+    for (const RigidContact& c : contacts.contacts()) read(c.normal.side[k].body);
+    for (const JointRow& joint : joints.rows) read(joint.body[k]);
+  }
+  return island.topSpeed(u_);
 }
 
 /// visit(check, where its bodies are at the end of the step)

@@ -36,6 +36,7 @@ class ContactLoop {
   /// @return the most steps of a round, and whether the last one converged
   template <typename Solve>
   SolveOutcome run(const btContactSolverInfo& info, int push_sweeps, bool retakes_rows, const Solve& solve) {
+    dt_s_ = info.m_timeStep;
     if (retakes_rows) linearise(info);
     SolveOutcome outcome;
     for (int checked = 0;; ++checked) {
@@ -50,6 +51,8 @@ class ContactLoop {
   [[nodiscard]] bool hasMissed() const { return !missed_.empty(); }
 
  private:
+  /// Of the bodies that contacts and joints act on.
+  [[nodiscard]] double topSpeed();
   template <typename Visit>
   void forEachCheck(std::span<const Vec6> push, double dt_s, const Visit& visit) const;
   void linearise(const btContactSolverInfo& info);
@@ -58,6 +61,7 @@ class ContactLoop {
   ContactNewton newton_{island, joints};
   std::vector<MissedContact> missed_;  // of the last check
   std::vector<Vec6> u_;                // scratch
+  double dt_s_ = 0;
 };
 
 }  // namespace vps::bullet::inline v0

@@ -195,13 +195,13 @@ SolveOutcome ContactNewton::minimise(double near_m_s, int step_limit) {
   SolveOutcome outcome;
   for (;;) {
     evaluate(u_, true, gradient_);
-    const double off_m_s = imbalance_m_s();
-    outcome.is_converged = off_m_s <= near_m_s;
-    if (outcome.is_converged || outcome.steps >= step_limit || !std::isfinite(off_m_s)) return outcome;
+    off_m_s_ = imbalance_m_s();
+    outcome.is_converged = off_m_s_ <= near_m_s;
+    if (outcome.is_converged || outcome.steps >= step_limit || !std::isfinite(off_m_s_)) return outcome;
     if (!findStep()) return outcome;
     const double slope = sumOfProducts(gradient_, step_);
     if (!(slope < 0)) {  // balanced as well as rounding allows
-      outcome.is_converged = slope >= 0 && off_m_s < near_m_s / kAccuracyShare;
+      outcome.is_converged = slope >= 0 && off_m_s_ < near_m_s / kAccuracyShare;
       return outcome;
     }
     const double share = shareOfStep(slope);
@@ -254,7 +254,9 @@ SolveOutcome ContactNewton::solve(std::span<RigidContact> contacts, double resid
     outcome.steps += std::max(1, round.steps);
     if (!round.is_converged) break;
     const Miss now = endRound();
-    outcome.is_converged = now.law_m_s <= kAccuracyShare * residual_m_s && now.slip_m_s <= residual_m_s;
+    // The bodies get the velocities of the impulses, which differ from those of the laws by the imbalance.
+    outcome.is_converged = off_m_s_ <= residual_m_s && now.law_m_s <= kAccuracyShare * residual_m_s &&
+                           now.slip_m_s <= residual_m_s;
     if (outcome.is_converged || outcome.steps >= step_limit) break;
     if (now.slip_m_s > last.slip_m_s) extrapolation_.clear();
     updateSlips();

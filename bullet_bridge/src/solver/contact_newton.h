@@ -104,6 +104,7 @@ class ContactNewton {
   std::vector<Point> points_;
   std::vector<Patch> patches_;
   std::vector<Joint> joint_states_;
+  double off_m_s_ = 0;  // imbalance at the end of the round
   std::vector<Vec6> u_, gradient_, step_, trial_, trial_gradient_, scratch_;
   FixedPoint extrapolation_;  // of slips
   Eigen::VectorXd slips_;     // at the end of the last round

@@ -42,8 +42,9 @@ class VPS_API FeatureMotion {
   FeatureMotion& operator=(FeatureMotion&&) noexcept;
 
   /// Sharp features rest at this gap instead of at zero, so that the direction between them is always known.
-  /// assumed: far below what a fit's clearance is measured to, and 500 times what the solver leaves.
-  static constexpr double kRest_m = 0.5e-6;
+  /// A polygon that rolls is stopped by a corner in front of it that is higher than the lowest one by less;
+  /// the rest gap is as small as rounding allows, 100 times what the solver leaves.
+  static constexpr double kRest_m = 0.1e-6;
   /// The same for two parts: less for parts smaller than a millimetre, a thousandth of the smaller one's
   /// radius.
   [[nodiscard]] static double rest_m(const FeatureSet& part0, const FeatureSet& part1);
@@ -54,7 +55,7 @@ class VPS_API FeatureMotion {
   /// whose gap at the end is less than the rest gap and less than at the start, each with the plane in which
   /// they touch first. On the way the smaller part's centre moves on a straight line in the frame of the
   /// other, and it turns evenly; between places on it, vertices move on straight lines, which leave their
-  /// arcs by at most 0.05 um.
+  /// arcs by at most a tenth of the rest gap.
   ///
   /// @param holds_close  also those nearer than a fifth of the rest gap at the start that do not come nearer:
   /// held by contacts, the gap is restored, and does not creep to nothing by less than rounding in each step

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "vps/contact_tolerances.h"
+#include "vps/feature_motion.h"
 #include "vps/pose.h"
 
 namespace vps::inline v0 {
@@ -61,10 +62,11 @@ class Way {
 
   /// Poses of part 0 in part 1 between which vertices move on nearly straight lines.
   void divide(std::vector<Pose>& way_10) const {
-    // Half of kSameGap_m: a quarter of what is looked at.
+    // What a check allows of the rest gap.
+    constexpr double kMost_m = (1 - FeatureMotion::kLeastShare) * FeatureMotion::kRest_m;
     const double sagitta_m = turn_.squaredNorm() * radius_m_ / 8;
-    const int pieces = static_cast<int>(
-        std::clamp(std::ceil(std::sqrt(sagitta_m / (0.5 * kSameGap_m))), 1.0, kMostStretches));
+    const int pieces =
+        static_cast<int>(std::clamp(std::ceil(std::sqrt(sagitta_m / kMost_m)), 1.0, kMostStretches));
     way_10.clear();
     for (int k = 0; k <= pieces; ++k) way_10.push_back(at(static_cast<double>(k) / pieces));
   }
