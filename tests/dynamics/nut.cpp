@@ -80,6 +80,18 @@ const PartMesh& rodPart(const NutSize& size, int columns) {
   });
 }
 
+NutSpinResult spinNut(const SceneSettings& settings, const NutSize& size, double rad_s, int steps) {
+  constexpr int kLandingSteps = 100;
+  Thread thread(settings, size, 0);
+  thread.world.step(kLandingSteps);
+  const double lead_m = size.pitch_m / (2 * std::numbers::pi);
+  thread.nut.body->setAngularVelocity(btVector3(0, 0, btScalar(-rad_s)));
+  thread.nut.body->setLinearVelocity(btVector3(0, 0, btScalar(-rad_s * lead_m)));
+  thread.world.step(steps);
+  const double gain_m_s = theory_m_s2(thread.nut.part, size) * steps * World::kStep_s;
+  return {-static_cast<double>(thread.nut.body->getAngularVelocity().z()), rad_s + gain_m_s / lead_m};
+}
+
 NutRunResult runNut(const SceneSettings& settings, const NutSize& size) {
   constexpr double kLanding_s = 0.05;  // it first falls through the clearance
   Thread thread(settings, size, 0);

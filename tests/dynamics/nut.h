@@ -33,6 +33,12 @@ struct NutRunResult {
 /// Without friction, under gravity, until it has turned once.
 NutRunResult runNut(const SceneSettings& settings, const NutSize& size);
 
+/// Without friction, spun downwards after it has come to lie on its thread.
+struct NutSpinResult {
+  double end_rad_s = 0, theory_rad_s = 0;  ///< about the axis, after `steps`
+};
+NutSpinResult spinNut(const SceneSettings& settings, const NutSize& size, double rad_s, int steps);
+
 /// tan(lead angle at the pitch diameter) cos(30 degrees).
 double selfLockTheory(const NutSize& size);
 
