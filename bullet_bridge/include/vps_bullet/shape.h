@@ -138,7 +138,7 @@ class VPS_BULLET_API Shape : public btConcaveShape {
   /// Bounding box of all models in the shape's frame.
   [[nodiscard]] const Box& bounds() const { return bounds_S_; }
 
-  /// Larger than bounds() by 1 um on each side: parts rest on each other with a gap of 0.1 um.
+  /// Larger than bounds() by 0.2 um on each side: parts rest on each other with a gap of 0.1 um.
   void getAabb(const btTransform& X_WS, btVector3& min, btVector3& max) const override;
   /// Diagonal of the inertia of the solid mesh about the shape's origin (exact if X_SM comes from
   /// makeBodyFrame); of the bounding box if there is no closed mesh. Zero for a mass of zero, Bullet's

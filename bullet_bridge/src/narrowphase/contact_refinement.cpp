@@ -94,6 +94,11 @@ void refine(std::vector<Candidate>& candidates, const SideView& side, const Side
   // The field's error is below a voxel; a surface farther away is not the one that the field measured.
   const double field_error_m =
       other.shape && other.shape->models().map ? other.shape->models().map->voxel_m() : kSamePlace_m;
+  // The line between edges that do not touch yet turns as they pass each other: as a plane it would stop a
+  // body that slides over the seam of two plates. The check of the solved step finds edges that meet.
+  const bool leaves_edges = motion.is_checked && side.shape && other.shape &&
+                            !side.shape->features().isEmpty() && !other.shape->features().isEmpty();
+  constexpr double kResting_m = 4 * FeatureMotion::kRest_m;  // as far as features are kept from step to step
   for (Candidate& c : candidates) {
     if (c.side != side.side || c.isCrossing()) continue;
     if (is_primitive && refineOnRound(c, side, other, refiner.theirs)) continue;
@@ -115,6 +120,8 @@ void refine(std::vector<Candidate>& candidates, const SideView& side, const Side
     if (!exact.found) continue;  // only the field is known
     if (!exact.is_contact && exact.is_inside && !own.edges.empty())
       if (const Exact beside = besideEdge(refiner, own, max_m); beside.found) exact = beside;
+    if (exact.is_contact && exact.is_edge_on_edge && leaves_edges && exact.distance_m > kResting_m)
+      exact.is_contact = false;
     if (exact.is_contact && exact.is_edge_on_edge)
       exact = atEndOfStep(exact, refiner, own, sign * motion.dt_s * motion.velocityAt(c.p_W), max_m);
     c.distance_m = exact.is_contact ? exact.distance_m : kNever_m;

@@ -185,7 +185,7 @@ void addMissedAlone(btDispatcher& dispatcher, const PairView& pair, PairState& s
     for (int i = 0; i < manifold->getNumContacts(); ++i)
       loop.contacts.add(*manifold, manifold->getContactPoint(i), info);
   loop.checks.assign(1, state.check.get());
-  SolverSettings settings;  // end poses to a hundredth of what a check tolerates
+  SolverSettings settings;  // end poses to a hundredth of the overlap that a check tolerates
   settings.residual_m_s = 0.01 * kToleratedShare * state.motion.contact_margin_m / dt_s;
   // The rows stay where they were selected: the motion of the pair alone is not that of the world.
   loop.run(info, settings.iteration_limit, false, [&] { return loop.solveContacts(settings); });

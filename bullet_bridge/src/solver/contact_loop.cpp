@@ -4,7 +4,6 @@
 #include <BulletDynamics/ConstraintSolver/btContactSolverInfo.h>
 
 #include "vps/contact_tolerances.h"
-#include "vps/feature_motion.h"
 
 namespace vps::bullet::inline v0 {
 
@@ -20,10 +19,8 @@ SolveOutcome ContactLoop::solveContacts(const SolverSettings& settings) {
   SolveOutcome outcome =
       contacts.sweep(settings.residual_m_s, newton_limit > 0 ? kSweepsFirst : settings.iteration_limit);
   if (outcome.is_converged || newton_limit == 0) return outcome;
-  // A check allows a tenth of the rest gap: with a greater error it would find contacts again and again.
-  const double allowed_m_s = kAccuracyShare * FeatureMotion::kRest_m / dt_s_;
   const double near_m_s =
-      std::max(settings.residual_m_s, std::min(kSpeedErrorShare * topSpeed(), allowed_m_s));
+      std::max(settings.residual_m_s, std::min(kSpeedErrorShare * topSpeed(), allowedError_m_s(dt_s_)));
   const SolveOutcome solved = newton_.solve(contacts.contacts(), near_m_s, newton_limit);
   outcome.steps += kSweepsPerNewtonStep * solved.steps;
   outcome.is_converged = solved.is_converged;

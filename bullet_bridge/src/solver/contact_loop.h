@@ -12,6 +12,7 @@
 #include "solver/joint_rows.h"
 #include "solver/step_check.h"
 #include "vps/contact_tolerances.h"
+#include "vps/feature_motion.h"
 #include "vps_bullet/solver.h"
 
 struct btContactSolverInfo;
@@ -27,6 +28,11 @@ class ContactLoop {
   ContactSweeps contacts{island, joints};
   std::vector<StepCheck*> checks;  ///< one for each pair
 
+  /// Error of a solution with which no check finds again what was solved: a row misses its target by twice
+  /// the bodies' imbalance, and by a tenth of the residual. See FeatureMotion::kMissedShare.
+  [[nodiscard]] static double allowedError_m_s(double dt_s) {
+    return FeatureMotion::kMissedShare * FeatureMotion::kRest_m / (2.1 * dt_s);
+  }
   /// Solves contacts and joints once, with the bodies' effective masses.
   SolveOutcome solveContacts(const SolverSettings& settings);
 

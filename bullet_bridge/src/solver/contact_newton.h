@@ -40,8 +40,7 @@ class ContactNewton {
   /// prepared. Where it does not converge, the impulses are within their cones all the same. Cost of a step:
   /// a factorisation of 6n x 6n for n bodies, sparse if n is large, and about 0.1 us a contact.
   /// @param residual_m_s  converged: no contact misses its law by a tenth of this velocity, and no slip
-  /// changes
-  ///                      by more
+  ///                      changes by more, nor does any point of a body when it gets the impulses' velocity
   /// @param step_limit    Newton's steps, over all rounds
   SolveOutcome solve(std::span<RigidContact> contacts, double residual_m_s, int step_limit);
 

@@ -45,17 +45,18 @@ class VPS_API FeatureMotion {
   /// A polygon that rolls is stopped by a corner in front of it that is higher than the lowest one by less;
   /// the rest gap is as small as rounding allows, 100 times what the solver leaves.
   static constexpr double kRest_m = 0.1e-6;
-  /// The same for two parts: less for parts smaller than a millimetre, a thousandth of the smaller one's
-  /// radius.
+  /// The same for two parts: less where the smaller one's radius is less than 0.1 mm, a thousandth of that.
   [[nodiscard]] static double rest_m(const FeatureSet& part0, const FeatureSet& part1);
   /// Features that come nearer than this share of it on the way are looked at, or than half of what they had.
   static constexpr double kLeastShare = 0.9;
+  /// Features that end the way nearer than they may, by less than this share of it, are not reported.
+  static constexpr double kMissedShare = 0.5 * (1 - kLeastShare);
 
   /// Appends the features that come too near on the way from `start` to `end` (poses of part 1 in part 0) and
   /// whose gap at the end is less than the rest gap and less than at the start, each with the plane in which
-  /// they touch first. On the way the smaller part's centre moves on a straight line in the frame of the
-  /// other, and it turns evenly; between places on it, vertices move on straight lines, which leave their
-  /// arcs by at most a tenth of the rest gap.
+  /// they touch first, or, where they pass each other, in which they are nearest. On the way the smaller
+  /// part's centre moves on a straight line in the frame of the other, and it turns evenly; between places on
+  /// it, vertices move on straight lines, which leave their arcs by at most a tenth of the rest gap.
   ///
   /// @param holds_close  also those nearer than a fifth of the rest gap at the start that do not come nearer:
   /// held by contacts, the gap is restored, and does not creep to nothing by less than rounding in each step
@@ -67,10 +68,10 @@ class VPS_API FeatureMotion {
   /// in each other, as a thread in its nut: points of pointshells meet these along the normals of the curved
   /// surfaces, so that they slide smoothly.
   ///
-  /// Cost: some 50 ns for each pair of features that come near, and a search for these pairs when the parts
-  /// have left the motion for which the last one was made, or reached its end. Allocates where the lists
-  /// grow. Source: conservative advancement (Mirtich 1996), here along the separating plane of the nearest
-  /// points, which sliding features never reach.
+  /// Cost: some 50 ns for each pair of features that may come near, 3 us for one that does, and a search for
+  /// these pairs when the parts have left the motion for which the last one was made, or reached its end.
+  /// Allocates where the lists grow. Source: conservative advancement (Mirtich 1996), here along the
+  /// separating plane of the nearest points, which sliding features never reach.
   void check(const FeatureSet& part0, const FeatureSet& part1, const Pose& start, const Pose& end,
              bool holds_close, std::vector<FeatureContact>& out);
   /// To be called when a part's features change.

@@ -67,31 +67,41 @@ bool findFirst(Kind kind, const std::vector<Pose>& way_10, double least_m, doubl
   return false;
 }
 
-// How fast the distance of two edges grows at a place of a piece, times the distance.
-double opening(const Features& f, double share, Nearest& nearest) {
+// True if the distance of two edges grows there, by more than rounding.
+bool opensAt(const Features& f, double share, Nearest& nearest) {
   Vec3 at[3];
   f.moveTo(share, at);
   nearest = nearestOf(Kind::EdgeOnEdge, at, f.b);
-  const Vec3 along = at[1] - at[0];
+  const Vec3 along = at[1] - at[0], apart = nearest.p - nearest.q;
   const double t = std::clamp(along.dot(nearest.p - at[0]) / along.squaredNorm(), 0.0, 1.0);
-  return (nearest.p - nearest.q).dot(f.way[0] + t * (f.way[1] - f.way[0]));
+  const Vec3 way = f.way[0] + t * (f.way[1] - f.way[0]);
+  return apart.dot(way) > kRoundingShare * apart.norm() * way.norm();
 }
 
 // Edges that pass each other at a distance touch where they are nearest. Where they first come near, the line
 // between them still leans against the way, and over the rest of a fast step a plane that leans would throw
-// them apart.
-void moveToNearest(double least_m, Met& met) {
+// them apart. Edges that meet, and so change sides, touch where they come near first. The nearest
+// place may be beyond the end of the piece: the next one goes on in nearly the same way.
+void moveToNearest(Met& met) {
   constexpr int kHalvings = 40;  // to a picometre of a way of a metre
-  Nearest nearest;
+  Nearest before = met.reach.nearest, after;
   double closes = met.reach.share, opens = 1;
-  if (!(opening(met.features, opens, nearest) > 0)) return;
+  if (!opensAt(met.features, opens, after) && !opensAt(met.features, opens = 2, after)) return;
   for (int k = 0; k < kHalvings; ++k) {
     const double share = 0.5 * (closes + opens);
-    (opening(met.features, share, nearest) < 0 ? closes : opens) = share;
+    Nearest here;
+    if (opensAt(met.features, share, here)) {
+      opens = share;
+      after = here;
+    } else {
+      closes = share;
+      before = here;
+    }
   }
-  opening(met.features, opens, nearest);
-  const bool do_meet = nearest.distance_m() < kAccuracyShare * least_m;
-  if (!do_meet) met.reach = {opens, nearest};
+  const bool do_meet = (before.p - before.q).dot(after.p - after.q) <= 0 || after.distance_m() < kRounding_m;
+  // Along a plateau the place would be one of rounding; and a turn may lead to a place that is farther.
+  const bool is_nearer = after.distance_m() < (1 - kRoundingShare) * met.reach.nearest.distance_m();
+  if (!do_meet && is_nearer) met.reach = {std::min(opens, 1.0), after};
 }
 
 }  // namespace
@@ -128,7 +138,6 @@ void FeatureMotion::checkStretch(const FeatureSet& part0, const FeatureSet& part
                                  const Pose& to, const Pose& end, bool holds_close,
                                  std::vector<FeatureContact>& out) {
   const double step_m = travel_m(part0, part1, start, to);
-  constexpr double kMissedShare = 0.5 * (1 - kLeastShare);
   const double gap_m = rest_m(part0, part1), looked_at_m = kLeastShare * gap_m;
   if (is_valid_) path_m_ += travel_m(part0, part1, last_, start);
   if (!is_valid_ || !tube_->holds(start) || !tube_->holds(to)) {
@@ -153,13 +162,14 @@ void FeatureMotion::checkStretch(const FeatureSet& part0, const FeatureSet& part
     if (way_10_.empty()) Way(ballAround(part0), ballAround(part1), start, to).divide(way_10_);
     const double least_m = std::min(looked_at_m, 0.5 * near.distance_m);
     const bool is_held = holds_close && near.distance_m < kHeldShare * gap_m;
-    const Met at_start = met;
+    const Nearest at_start = nearest;
     if (findFirst(near.kind, way_10_, least_m, near.distance_m, met)) {
-      if (near.kind == Kind::EdgeOnEdge) moveToNearest(least_m, met);
+      if (near.kind == Kind::EdgeOnEdge) moveToNearest(met);
     } else {
       if (!is_held) continue;
-      met = at_start;
       placeAt(f, way_10_, 0);
+      met.piece = 0;
+      met.reach = {0, at_start};
     }
     // Within a piece the rotation changes little; the plane is that of its start.
     FeatureContact contact;

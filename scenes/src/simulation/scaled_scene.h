@@ -7,7 +7,7 @@
 
 namespace vps::scenes::inline v0 {
 
-/// Contact has lengths and speeds of its own (a rest gap of 0.5 um, a margin of 20 um, ...: vps_bullet),
+/// Contact has lengths and speeds of its own (a rest gap of 0.1 um, a margin of 20 um, ...: vps_bullet),
 /// which are right for parts of millimetres and more. A scene whose smallest moving part is less than
 /// kLeastAcross_m across is therefore simulated in lengths that are larger by this factor, a power of two, so
 /// that nothing is rounded; times stay. 1 for all other scenes.
