@@ -17,7 +17,7 @@ namespace {
 constexpr double kMm = 1e-3, kRpm = std::numbers::pi / 30;
 
 /// Without gravity and friction: a shaft in a bore, or alone. With 5.03 mm there is room at any angle; in a
-/// bore of 5.005 mm and 64 sides, the corners of the shaft pass through the sides.
+/// bore of 5.0064 mm and 64 sides, the corners of the shaft pass the sides at 0.4 um.
 Scene shaftScene(double rpm, bool is_in_bore, double bore_m = 5.03 * kMm) {
   Scene scene;
   scene.file = scene.name = "shaft";
@@ -32,7 +32,7 @@ Scene shaftScene(double rpm, bool is_in_bore, double bore_m = 5.03 * kMm) {
 
 TEST(Substeps, APartThatTurnsTooFastIsNamedOnceWithWhatHoldsIt) {
   for (const bool is_in_bore : {false, true}) {
-    Scene scene = shaftScene(10'000, is_in_bore, 5.005 * kMm);
+    Scene scene = shaftScene(10'000, is_in_bore, 5.0064 * kMm);
     const SimulateResult result = simulate(scene, 0.02);
     ASSERT_EQ(result.fast_turns.size(), 1U);
     const FastTurn& turn = result.fast_turns[0];
@@ -44,7 +44,7 @@ TEST(Substeps, APartThatTurnsTooFastIsNamedOnceWithWhatHoldsIt) {
     EXPECT_NE(words.find("'shaft' turns"), std::string::npos) << words;
     EXPECT_NE(words.find("10000 rpm"), std::string::npos) << words;
     // At the rate that it states nothing is said any more.
-    Scene fine = shaftScene(10'000, is_in_bore, 5.005 * kMm);
+    Scene fine = shaftScene(10'000, is_in_bore, 5.0064 * kMm);
     fine.fidelity.physics_rate_hz = std::ceil(turn.needed_hz) + 1;
     EXPECT_TRUE(simulate(fine, 0.02).fast_turns.empty());
   }
