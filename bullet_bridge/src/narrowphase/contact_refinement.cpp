@@ -98,7 +98,7 @@ void refine(std::vector<Candidate>& candidates, const SideView& side, const Side
   // body that slides over the seam of two plates. The check of the solved step finds edges that meet.
   const bool leaves_edges = motion.is_checked && side.shape && other.shape &&
                             !side.shape->features().isEmpty() && !other.shape->features().isEmpty();
-  constexpr double kResting_m = 4 * FeatureMotion::kRest_m;  // as far as features are kept from step to step
+  constexpr double kResting_m = FeatureMotion::kKeptGaps * FeatureMotion::kRest_m;
   for (Candidate& c : candidates) {
     if (c.side != side.side || c.isCrossing()) continue;
     if (is_primitive && refineOnRound(c, side, other, refiner.theirs)) continue;

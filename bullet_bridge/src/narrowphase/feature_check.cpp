@@ -201,9 +201,7 @@ void addMissedFeatures(const PairView& pair, const Settings& settings, PairState
   if (state.missed_features.empty()) return;
   if (!hasFeatures(pair, settings)) return state.missed_features.clear();
   const FeaturePlacer place(pair);
-  // assumed: farther apart, the line between the nearest points is not the direction in which they will
-  // touch.
-  const double most_m = 4 * place.rest_m;
+  const double most_m = FeatureMotion::kKeptGaps * place.rest_m;
   std::erase_if(state.missed_features, [&](FeatureContact& c) {
     return !measureAgain(pair.shape[0]->features(), pair.shape[1]->features(), place.X_01, most_m, c);
   });

@@ -49,6 +49,9 @@ class VPS_API FeatureMotion {
   [[nodiscard]] static double rest_m(const FeatureSet& part0, const FeatureSet& part1);
   /// Features that come nearer than this share of it on the way are looked at, or than half of what they had.
   static constexpr double kLeastShare = 0.9;
+  /// Features nearer than so many rest gaps are kept as contacts from step to step: between features that are
+  /// farther apart, the direction of the nearest points is not the one in which they will touch. Assumed.
+  static constexpr double kKeptGaps = 4;
   /// Features that end the way nearer than they may, by less than this share of it, are not reported.
   static constexpr double kMissedShare = 0.5 * (1 - kLeastShare);
 
