@@ -14,8 +14,6 @@ namespace vps::bullet::inline v0 {
 
 namespace {
 
-constexpr double kNever_m = 1;  // farther than any step moves
-
 // A point that is inside near an edge of the other side, and is not first along the nearest face there: a
 // corner that slides down a wall, a micrometre inside, to the wall's lower rim. The face that it entered
 // through is one of the others at that edge. Or a point on it: where edges lie flush, rounding decides on

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "narrowphase/contact_selection.h"
+#include "narrowphase/surface_view.h"
 #include "vps/contact_tolerances.h"
 
 namespace vps::bullet::inline v0 {
@@ -125,15 +126,43 @@ class Linearised {
     missed.is_sharp = !isOnSheet(c, start_);
     return missed;
   }
+  // As if nothing were there.
+  MissedContact without(const FeatureContact& c, PairState& state) const {
+    MissedContact missed = (*this)(c, state);
+    missed.end_gap_m = kNever_m;
+    return missed;
+  }
   [[nodiscard]] bool isOutOfPlace(const FeatureContact& c, const Relinearising& which,
                                   const PairState& state) const {
     const Candidate end = at_end_(c);
     const btManifoldPoint* point = state.writer->find(end.key());
-    return point && (point->m_appliedImpulse > 0 || which.is_before) &&
-           vps::bullet::isOutOfPlace(at_start_(c), end, end_.path, which, state.context->settings);
+    if (!point) return false;
+    const bool is_loaded = point->m_appliedImpulse > 0;
+    if (!which.isBefore() && is_loaded != (which.rows == Relinearising::Rows::Loaded)) return false;
+    return vps::bullet::isOutOfPlace(at_start_(c), end, end_.path, which, state.context->settings);
+  }
+  // True if a corner carries load and ends the step where nothing faces it along its plane: one that has left
+  // a face, or passes its rim, would go on along a plane that does not.
+  [[nodiscard]] bool hasLeft(const FeatureContact& c, const Relinearising& which,
+                             const PairState& state) const {
+    if (which.rows != Relinearising::Rows::Loaded || c.kind == FeatureContact::Kind::EdgeOnEdge ||
+        isOnSheet(c, start_))
+      return false;
+    const btManifoldPoint* point = state.writer->find(at_start_(c).key());
+    if (!point || !(point->m_appliedImpulse > 0)) return false;
+    const int i = c.kind == FeatureContact::Kind::CornerOnFacet ? 0 : 1;
+    const SideView own = sideAtEnd(i), other = sideAtEnd(1 - i);
+    const double near_m = at_end_.rest_m + which.apart_m;
+    const SurfaceDistance there = SurfaceView(own, other).at(c.p[i], Vec3::Zero(), near_m);
+    const Vec3 n_W = (i == 0 ? 1 : -1) * (other.X_WM.R * there.n);
+    return there.distance_m > near_m || n_W.dot(at_end_(c).n_W) <= kCosSameFace;
   }
 
  private:
+  [[nodiscard]] SideView sideAtEnd(int i) const {
+    return {start_.shape[i], end_.X_WS[i] * start_.shape[i]->X_SM(), static_cast<std::uint8_t>(i)};
+  }
+
   const PairView& start_;
   FeaturePlacer at_start_, at_end_;
   const EndPoses& end_;
@@ -185,15 +214,25 @@ void addFeatureContacts(const PairView& start, const EndPoses& end, bool is_firs
 
 bool isOutOfPlace(const Candidate& start, const Candidate& end, const StepPath& path,
                   const Relinearising& which, const Settings& settings) {
-  if (which.is_before) return end.distance_m > -settings.contact_margin_m && path.bends(start, end);
-  return end.distance_m > end.rest_m + which.apart_m;
+  switch (which.rows) {
+    case Relinearising::Rows::Predicted:
+      return end.distance_m > -settings.contact_margin_m && path.bends(start, end);
+    case Relinearising::Rows::Loaded:
+      return end.distance_m > end.rest_m + which.apart_m;
+    case Relinearising::Rows::Others:
+      return end.distance_m > path.endGap_m(start) + which.apart_m;
+  }
+  return false;
 }
 
 void lineariseFeatures(const PairView& start, const EndPoses& end, const Relinearising& which,
                        PairState& state, std::vector<MissedContact>& out) {
   const Linearised at_end(start, end);
   for (const FeatureContact& c : state.missed_features)
-    if (at_end.isOutOfPlace(c, which, state)) out.push_back(at_end(c, state));
+    if (at_end.hasLeft(c, which, state))
+      out.push_back(at_end.without(c, state));
+    else if (at_end.isOutOfPlace(c, which, state))
+      out.push_back(at_end(c, state));
 }
 
 void addMissedFeatures(const PairView& pair, const Settings& settings, PairState& state,

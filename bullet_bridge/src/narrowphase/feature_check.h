@@ -48,8 +48,15 @@ void addFeatureContacts(const PairView& start, const EndPoses& end, bool is_firs
 
 /// Which rows are taken where the bodies end a step.
 struct Relinearising {
-  bool is_before = false;  ///< the step is not solved yet: rows of the motion that goes on as it is
-  double apart_m = 0;      ///< after it: rows with load whose contacts end the step apart by more
+  enum class Rows : std::uint8_t {
+    Predicted,  ///< the step is not solved yet: rows of the motion that goes on as it is
+    Loaded,     ///< it is: rows with load whose contacts end the step apart
+    Others      ///< and those whose rows tell a smaller gap there than there is: they would get the load next
+  };
+  Rows rows = Rows::Predicted;
+  double apart_m = 0;  ///< a smaller gap does not matter
+
+  [[nodiscard]] bool isBefore() const { return rows == Rows::Predicted; }
 };
 
 /// True if the row of a contact is to be taken at the end of the step. Where the bodies would go on into each

@@ -96,7 +96,7 @@ void PairCheck::linearise(const Pose (&X_WB_end)[2], std::vector<MissedContact>&
   const Placed at_start(*this, m.start);
   measure(at_start.pair, m);
   if (!(m.bend_m > kRounding_m) || m.turnsFar(0)) return;
-  relinearise(m, at_start, true, out);
+  relinearise(m, at_start, {Relinearising::Rows::Predicted, apartOf_m(state_.context->settings)}, out);
 }
 
 void PairCheck::findMissed(const Pose (&X_WB_end)[2], int round, std::vector<MissedContact>& out) {
@@ -127,9 +127,12 @@ void PairCheck::findMissed(const Pose (&X_WB_end)[2], int round, std::vector<Mis
     state_.is_incomplete = true;
     return;
   }
-  if (round < kMostRetakes && out.size() == had && m.bend_m > apartOf_m(state_.context->settings) &&
-      !m.turnsFar(0))
-    relinearise(m, at_start, false, out);
+  const double apart_m = apartOf_m(state_.context->settings);
+  if (round >= kMostRetakes || out.size() != had || !(m.bend_m > apart_m)) return;
+  if (m.turnsFar(0) && areBothCurved(at_start.pair, state_)) return;
+  relinearise(m, at_start, {Relinearising::Rows::Loaded, apart_m}, out);
+  // A row that is taken anew leaves its load to those beside it, which are as wrong.
+  if (out.size() != had) relinearise(m, at_start, {Relinearising::Rows::Others, apart_m}, out);
 }
 
 // Between two curved bodies a row is taken anew only in the plane that it had: the plane of the next facet is
@@ -137,29 +140,36 @@ void PairCheck::findMissed(const Pose (&X_WB_end)[2], int round, std::vector<Mis
 // bolt loses 2.2 % of its acceleration; with those of the next facet a peg in a bore of 10 um clearance stays
 // out.
 //
-// The rows of the step's contacts as they are at the end of a motion.
-// @param is_before  before the step is solved: those for which it matters where they are taken. Otherwise
-// those that carry load and end the step apart: of a body that rolls, the contacts in front of it, which come
-// down but do not arrive, and those that it leaves.
-void PairCheck::relinearise(const Motion& m, const Placed& at_start, bool is_before,
+// The rows of the step's contacts as they are at the end of a motion: before the step is solved, those for
+// which it matters where they are taken; after it, those that carry load and end the step apart: of a body
+// that rolls, the contacts in front of it, which come down but do not arrive, and those that it leaves; and
+// those that would get their load.
+void PairCheck::relinearise(const Motion& m, const Placed& at_start, const Relinearising& which,
                             std::vector<MissedContact>& out) {
   const Settings& settings = state_.context->settings;
-  const double apart_m = apartOf_m(settings);
   if (hasFeatures(at_start.pair, settings))
-    lineariseFeatures(at_start.pair, {{m.end[0], m.end[1]}, m.path, m.turnsFar(0)}, {is_before, apart_m},
-                      state_, out);
+    lineariseFeatures(at_start.pair, {{m.end[0], m.end[1]}, m.path, m.turnsFar(0)}, which, state_, out);
   if (!settings.use_surfaces) return;
   const bool are_both_curved = areBothCurved(at_start.pair, state_);
-  if (is_before && are_both_curved) return;
+  if (which.isBefore() && are_both_curved) return;
   const double least_cos = are_both_curved ? kCosSamePlane : kCosSameFace;
   const Placed at_end(*this, m.end);
   thread_local std::vector<Candidate> now, ends;
-  findThere(at_end.pair, state_, !is_before || m.bend_m <= apart_m, now, ends);
+  const bool only_loaded =
+      which.isBefore() ? m.bend_m <= which.apart_m : which.rows == Relinearising::Rows::Loaded;
+  findThere(at_end.pair, state_, only_loaded, now, ends);
   for (std::size_t k = 0; k < ends.size(); ++k) {
     const bool is_same = ends[k].n_W.dot(m.step.normal(now[k])) > least_cos &&
                          ends[k].distance_m < settings.contact_margin_m + m.travel_m;
-    if (is_same && isOutOfPlace(now[k], ends[k], m.path, {is_before, apart_m}, settings))
-      put(m, at_start, now[k], ends[k], out);
+    if (is_same) {
+      if (isOutOfPlace(now[k], ends[k], m.path, which, settings)) put(m, at_start, now[k], ends[k], out);
+    } else if (which.rows == Relinearising::Rows::Loaded && !are_both_curved &&
+               ends[k].distance_m > ends[k].rest_m + which.apart_m) {
+      // It carries load, and nothing is there: its plane goes beyond the face that it was taken from.
+      Candidate end = m.step.moved(now[k]);
+      end.distance_m = kNever_m;
+      put(m, at_start, now[k], end, out);
+    }
   }
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "narrowphase/contact_candidate.h"
+#include "narrowphase/feature_check.h"
 #include "narrowphase/pair_state.h"
 #include "narrowphase/pair_view.h"
 #include "solver/step_check.h"
@@ -55,7 +56,7 @@ class PairCheck final : public StepCheck {
   struct Motion;
   [[nodiscard]] bool read(const Pose (&X_WB_end)[2], Motion& motion) const;
   void measure(const PairView& start, Motion& motion) const;
-  void relinearise(const Motion& motion, const Placed& at_start, bool is_before,
+  void relinearise(const Motion& motion, const Placed& at_start, const Relinearising& which,
                    std::vector<MissedContact>& out);
   void findAmongRefined(const Motion& motion, std::vector<Candidate>& missed) const;
   void findOverlaps(const Motion& motion, const PairView& pair, std::vector<Candidate>& found) const;

@@ -42,6 +42,10 @@ class StepPath {
   [[nodiscard]] Candidate acting(const Candidate& start, const Candidate& end) const;
   /// True if the contact's normal velocity changes on the way, so that it matters where its row is taken.
   [[nodiscard]] bool bends(const Candidate& start, const Candidate& end) const;
+  /// The gap at the end of the step that the contact's plane at the start tells.
+  [[nodiscard]] double endGap_m(const Candidate& start) const {
+    return start.distance_m + way_m({start.p_W, start.n_W});
+  }
 
  private:
   struct Body {

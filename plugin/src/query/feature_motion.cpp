@@ -52,6 +52,12 @@ void placeAt(Features& f, const std::vector<Pose>& way_10, std::size_t piece) {
   f.moveFrom(way_10[piece], way_10[piece + 1]);
 }
 
+// Rotation from part 0 to part 1 where the features met.
+Mat3 rotationAt(const std::vector<Pose>& way_10, const Met& met) {
+  const Mat3 &from = way_10[met.piece].R, &to = way_10[met.piece + 1].R;
+  return rotationFromVector(met.reach.share * rotationVector(to * from.transpose())) * from;
+}
+
 bool findFirst(Kind kind, const std::vector<Pose>& way_10, double least_m, double distance_m, Met& met) {
   Features& f = met.features;
   for (std::size_t k = 0; k + 1 < way_10.size(); ++k) {
@@ -67,6 +73,14 @@ bool findFirst(Kind kind, const std::vector<Pose>& way_10, double least_m, doubl
   return false;
 }
 
+constexpr int kHalvings = 40;  // to a picometre of a way of a metre
+
+Nearest nearestAt(const Features& f, double share) {
+  Vec3 at[3];
+  f.moveTo(share, at);
+  return nearestOf(Kind::EdgeOnEdge, at, f.b);
+}
+
 // True if the distance of two edges grows there, by more than rounding.
 bool opensAt(const Features& f, double share, Nearest& nearest) {
   Vec3 at[3];
@@ -78,30 +92,61 @@ bool opensAt(const Features& f, double share, Nearest& nearest) {
   return apart.dot(way) > kRoundingShare * apart.norm() * way.norm();
 }
 
+// Signed distance of the lines of two edges; zero if they are parallel.
+double lineGap_m(const Features& f, double share) {
+  Vec3 at[3];
+  f.moveTo(share, at);
+  const Vec3 across = (at[1] - at[0]).cross(f.b[1] - f.b[0]);
+  return across.isZero(0) ? 0 : across.normalized().dot(at[0] - f.b[0]);
+}
+
+bool isBetweenEnds(const Nearest& at) {
+  return at.end[0] == Nearest::kBetween && at.end[1] == Nearest::kBetween;
+}
+
+// True if edges whose lines cross within a range of shares meet there, between their ends or within rounding
+// of one: where two edges of either part meet in a corner, each pair of them may miss the other by that. The
+// place is then moved to before they do, where both are nearest between their ends: the line from an end
+// still leans.
+bool doMeet(const Features& f, double last, Reach& reach) {
+  const double before_m = lineGap_m(f, reach.share);
+  if (before_m == 0 || before_m * lineGap_m(f, last) > 0) return false;
+  double low = reach.share, high = last;
+  for (int k = 0; k < kHalvings; ++k) {
+    const double share = 0.5 * (low + high);
+    (before_m * lineGap_m(f, share) > 0 ? low : high) = share;
+  }
+  if (const Nearest there = nearestAt(f, low); !isBetweenEnds(there) && there.distance_m() > 2 * kRounding_m)
+    return false;
+  double rest = low - reach.share;
+  for (int k = 0; k < kMostPlaces && !isBetweenEnds(reach.nearest); ++k, rest *= 0.5)
+    if (const Nearest here = nearestAt(f, low - rest); isBetweenEnds(here) && here.distance_m() > kRounding_m)
+      reach = {low - rest, here};
+  return true;
+}
+
 // Edges that pass each other at a distance touch where they are nearest. Where they first come near, the line
 // between them still leans against the way, and over the rest of a fast step a plane that leans would throw
-// them apart. Edges that meet, and so change sides, touch where they come near first. The nearest
-// place may be beyond the end of the piece: the next one goes on in nearly the same way.
-void moveToNearest(Met& met) {
-  constexpr int kHalvings = 40;  // to a picometre of a way of a metre
-  Nearest before = met.reach.nearest, after;
+// them apart. Edges that meet touch where they come near first. The nearest place may be beyond the end of
+// the piece: the next one goes on in nearly the same way.
+void moveToTouch(Met& met) {
+  Nearest after;
   double closes = met.reach.share, opens = 1;
   if (!opensAt(met.features, opens, after) && !opensAt(met.features, opens = 2, after)) return;
+  if (doMeet(met.features, opens, met.reach)) return;
   for (int k = 0; k < kHalvings; ++k) {
     const double share = 0.5 * (closes + opens);
     Nearest here;
-    if (opensAt(met.features, share, here)) {
-      opens = share;
-      after = here;
-    } else {
+    if (!opensAt(met.features, share, here)) {
       closes = share;
-      before = here;
+      continue;
     }
+    opens = share;
+    after = here;
   }
-  const bool do_meet = (before.p - before.q).dot(after.p - after.q) <= 0 || after.distance_m() < kRounding_m;
   // Along a plateau the place would be one of rounding; and a turn may lead to a place that is farther.
   const bool is_nearer = after.distance_m() < (1 - kRoundingShare) * met.reach.nearest.distance_m();
-  if (!do_meet && is_nearer) met.reach = {std::min(opens, 1.0), after};
+  if (after.distance_m() > kRounding_m && is_nearer) met.reach = {std::min(opens, 1.0), after};
 }
 
 }  // namespace
@@ -164,16 +209,16 @@ void FeatureMotion::checkStretch(const FeatureSet& part0, const FeatureSet& part
     const bool is_held = holds_close && near.distance_m < kHeldShare * gap_m;
     const Nearest at_start = nearest;
     if (findFirst(near.kind, way_10_, least_m, near.distance_m, met)) {
-      if (near.kind == Kind::EdgeOnEdge) moveToNearest(met);
+      if (near.kind == Kind::EdgeOnEdge) moveToTouch(met);
     } else {
       if (!is_held) continue;
       placeAt(f, way_10_, 0);
       met.piece = 0;
       met.reach = {0, at_start};
     }
-    // Within a piece the rotation changes little; the plane is that of its start.
     FeatureContact contact;
-    if (!findContact(part0, part1, near.kind, near.feature, f, met.reach, way_10_[met.piece].R, contact) &&
+    if (!findContact(part0, part1, near.kind, near.feature, f, met.reach, rotationAt(way_10_, met),
+                     contact) &&
         !(near.kind == FeatureContact::Kind::EdgeOnEdge &&
           findCrossing(part0, part1, near.feature, f, way_10_.back(),
                        met.reach.nearest.p - met.reach.nearest.q, contact)))
