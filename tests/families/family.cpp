@@ -57,7 +57,7 @@ Verdict judge(const Family& family, const Outcome& outcome, bool is_short) {
   constexpr double kSame = 1.05;
   const std::optional<double>& today =
       is_short && family.expected_failure_short ? family.expected_failure_short : family.expected_failure;
-  if (!today) return outcome.worst <= family.bar ? Verdict::Holds : Verdict::Fails;
+  if (!today || *today == 0) return outcome.worst <= family.bar ? Verdict::Holds : Verdict::Fails;
   if (outcome.worst <= family.bar) return Verdict::HoldsUnexpectedly;
   return outcome.worst <= kSame * *today ? Verdict::ExpectedFailure : Verdict::Worse;
 }

@@ -24,7 +24,7 @@ struct Family {
   /// A family that does not hold today: its greatest value today, over all members. The run then fails if a
   /// value is above it, and also if all values are below the bar, until the expectation is removed here.
   std::optional<double> expected_failure = std::nullopt;
-  /// The same for the members of the short form, where these do not include the worst one.
+  /// The same for the members of the short form, where these do not include the worst one; 0: they hold.
   std::optional<double> expected_failure_short = std::nullopt;
 };
 
