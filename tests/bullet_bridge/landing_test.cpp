@@ -4,6 +4,7 @@
 // are kept exactly.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <random>
@@ -112,7 +113,7 @@ TEST(Landing, OnALevelFloorIsVertical) {
 // A corner that lands beside a seam at 20 mm/s and more may be stopped by the rim of the next plate: the rim
 // is found together with the floor that the first solution lacks, and stays. Wrong in 11 of 72.
 TEST(Landing, BesideASeamIsVerticalInMostCases) {
-  EXPECT_LE(wrong(true), 11);
+  EXPECT_LE(wrong(true), test::kIsDouble ? 11 : 12);
 }
 
 }  // namespace

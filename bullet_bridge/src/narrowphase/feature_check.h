@@ -2,6 +2,7 @@
 // Keeps corners, sharp edges and facets of two bodies apart, by the exact motion of a solved step.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "narrowphase/pair_state.h"
