@@ -20,6 +20,8 @@ using test::Built;
 using test::SolverKind;
 using test::World;
 
+constexpr double kDt_s = 1e-3;
+
 /// Cuboid, prism of six sides, tetrahedron.
 const std::vector<Built>& bodies() {
   static const std::vector<Built> built = [] {
@@ -49,8 +51,7 @@ struct Landing {
   double turn_m_s = 0;      ///< of what the angular momentum about the vertical makes, at the body's reach
 };
 
-Landing land(const Built& part, bool is_tiled, double speed_m_s, double sideways_m_s, double dt_s,
-             unsigned seed) {
+Landing land(const Built& part, bool is_tiled, double speed_m_s, double sideways_m_s, unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> draw(-1, 1);
@@ -64,16 +65,16 @@ Landing land(const Built& part, bool is_tiled, double speed_m_s, double sideways
     least_m = std::min(least_m, (X_WP * p).z());
     reach_m = std::max(reach_m, (p - part.frame.X_PB.p).norm());
   }
-  const double way_m = speed_m_s * dt_s * (2 + 0.5 * draw(random));
+  const double way_m = speed_m_s * kDt_s * (2 + 0.5 * draw(random));
   X_WP.p = Vec3(1e-3 * draw(random), 1e-3 * draw(random), way_m - least_m) - Vec3(center.x(), center.y(), 0);
   btRigidBody& body = world.add(part, X_WP, false, 0);
   const Vec3 v(sideways_m_s, 0.3 * sideways_m_s, -speed_m_s);
   body.setLinearVelocity(toBt(v));
   Landing landing;
   const double inertia = part.frame.inertia_kg_m2.maxCoeff();
-  const int steps = std::min(80, static_cast<int>(15e-3 / (std::max(sideways_m_s, 0.1) * dt_s)));
+  const int steps = std::min(80, static_cast<int>(15e-3 / (std::max(sideways_m_s, 0.1) * kDt_s)));
   for (int k = 0; k < steps; ++k) {
-    world.step(1, dt_s);
+    world.step(1, kDt_s);
     const Vec3 now = fromBt(body.getLinearVelocity()), w = fromBt(body.getAngularVelocity());
     const Mat3 R = fromBt(body.getWorldTransform()).R;
     const Vec3 L = R * part.frame.inertia_kg_m2.cwiseProduct(R.transpose() * w);
@@ -83,14 +84,15 @@ Landing land(const Built& part, bool is_tiled, double speed_m_s, double sideways
   return landing;
 }
 
-/// How many of the landings at 1 ms, in which no body turns by more than 4 degrees a step, are not vertical.
+/// How many of the landings are not vertical. In none does a body turn by more than contact promises, 5.7
+/// degrees a step.
 int wrong(bool is_tiled) {
   int count = 0;
   for (const double speed_m_s : {0.05, 0.3, 1.0})
     for (std::size_t k = 0; k < bodies().size(); ++k)
       for (const double sideways_m_s : {0.0, 0.5})
         for (unsigned seed = 1; seed <= 4; ++seed) {
-          const Landing landing = land(bodies()[k], is_tiled, speed_m_s, sideways_m_s, 1e-3, seed);
+          const Landing landing = land(bodies()[k], is_tiled, speed_m_s, sideways_m_s, seed);
           // Rows are right to half the rest gap over a step of 1 ms, 50 um/s, of which a body that ends flush
           // on the floor may lean over its length.
           const double bound_m_s = 1e-3 * std::max(speed_m_s, sideways_m_s) + 50e-6;

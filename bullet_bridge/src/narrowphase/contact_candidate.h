@@ -20,7 +20,7 @@ namespace vps::bullet::inline v0 {
 struct QueryState;
 
 /// Gap of a contact that does not act: farther than any step moves.
-inline constexpr double kNever_m = 1;
+inline constexpr double kOutOfReach_m = 1;
 
 /// A point that can touch within the step: a point of one side's shell, or a crossing of an edge of body 0
 /// with an edge of body 1.

@@ -122,7 +122,7 @@ void refine(std::vector<Candidate>& candidates, const SideView& side, const Side
       exact.is_contact = false;
     if (exact.is_contact && exact.is_edge_on_edge)
       exact = atEndOfStep(exact, refiner, own, sign * motion.dt_s * motion.velocityAt(c.p_W), max_m);
-    c.distance_m = exact.is_contact ? exact.distance_m : kNever_m;
+    c.distance_m = exact.is_contact ? exact.distance_m : kOutOfReach_m;
     c.n_W = sign * exact.n;
     if (exact.is_contact) c.surface[1 - c.side] = exact.surface;
     c.is_flush = exact.is_curved && own.isFlushOn(exact.n);
@@ -175,7 +175,7 @@ void refineEdges(std::vector<Candidate>& candidates, const SideView& side, const
       exact = nearFieldDistance(now, c.p_W, inward, c.distance_m, map.voxel_m());
       if (!exact.found) continue;
     }
-    c.distance_m = exact.is_contact ? exact.distance_m : kNever_m;
+    c.distance_m = exact.is_contact ? exact.distance_m : kOutOfReach_m;
     c.n_W = sign * exact.n;
     if (exact.is_contact) c.surface[1 - c.side] = exact.surface;
   }

@@ -107,6 +107,10 @@ void remember(const FeatureContact& c, std::vector<FeatureContact>& known) {
   known.push_back(c);
 }
 
+bool isLoaded(const btManifoldPoint& point) {
+  return point.m_appliedImpulse > 0;
+}
+
 /// Contacts of features as rows of the solver: gap, lever and normal are those at the end of the step.
 class Linearised {
  public:
@@ -129,33 +133,30 @@ class Linearised {
   // As if nothing were there.
   MissedContact without(const FeatureContact& c, PairState& state) const {
     MissedContact missed = (*this)(c, state);
-    missed.end_gap_m = kNever_m;
+    missed.end_gap_m = kOutOfReach_m;
     return missed;
   }
   [[nodiscard]] bool isOutOfPlace(const FeatureContact& c, const Relinearising& which,
                                   const PairState& state) const {
     const Candidate end = at_end_(c);
     const btManifoldPoint* point = state.writer->find(end.key());
-    if (!point) return false;
-    const bool is_loaded = point->m_appliedImpulse > 0;
-    if (!which.isBefore() && is_loaded != (which.rows == Relinearising::Rows::Loaded)) return false;
+    if (!point || (!which.isBefore() && isLoaded(*point) != which.isOfLoad())) return false;
     return vps::bullet::isOutOfPlace(at_start_(c), end, end_.path, which, state.context->settings);
   }
   // True if a corner carries load and ends the step where nothing faces it along its plane: one that has left
   // a face, or passes its rim, would go on along a plane that does not.
   [[nodiscard]] bool hasLeft(const FeatureContact& c, const Relinearising& which,
                              const PairState& state) const {
-    if (which.rows != Relinearising::Rows::Loaded || c.kind == FeatureContact::Kind::EdgeOnEdge ||
-        isOnSheet(c, start_))
-      return false;
-    const btManifoldPoint* point = state.writer->find(at_start_(c).key());
-    if (!point || !(point->m_appliedImpulse > 0)) return false;
+    if (!which.isOfLoad() || c.kind == FeatureContact::Kind::EdgeOnEdge || isOnSheet(c, start_)) return false;
+    const Candidate end = at_end_(c);
+    const btManifoldPoint* point = state.writer->find(end.key());
+    if (!point || !isLoaded(*point)) return false;
     const int i = c.kind == FeatureContact::Kind::CornerOnFacet ? 0 : 1;
     const SideView own = sideAtEnd(i), other = sideAtEnd(1 - i);
     const double near_m = at_end_.rest_m + which.apart_m;
     const SurfaceDistance there = SurfaceView(own, other).at(c.p[i], Vec3::Zero(), near_m);
     const Vec3 n_W = (i == 0 ? 1 : -1) * (other.X_WM.R * there.n);
-    return there.distance_m > near_m || n_W.dot(at_end_(c).n_W) <= kCosSameFace;
+    return there.distance_m > near_m || n_W.dot(end.n_W) <= kCosSameFace;
   }
 
  private:

@@ -58,6 +58,7 @@ struct Relinearising {
   double apart_m = 0;  ///< a smaller gap does not matter
 
   [[nodiscard]] bool isBefore() const { return rows == Rows::Predicted; }
+  [[nodiscard]] bool isOfLoad() const { return rows == Rows::Loaded; }
 };
 
 /// True if the row of a contact is to be taken at the end of the step. Where the bodies would go on into each

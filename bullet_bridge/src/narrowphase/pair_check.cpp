@@ -155,19 +155,17 @@ void PairCheck::relinearise(const Motion& m, const Placed& at_start, const Relin
   const double least_cos = are_both_curved ? kCosSamePlane : kCosSameFace;
   const Placed at_end(*this, m.end);
   thread_local std::vector<Candidate> now, ends;
-  const bool only_loaded =
-      which.isBefore() ? m.bend_m <= which.apart_m : which.rows == Relinearising::Rows::Loaded;
+  const bool only_loaded = which.isBefore() ? m.bend_m <= which.apart_m : which.isOfLoad();
   findThere(at_end.pair, state_, only_loaded, now, ends);
   for (std::size_t k = 0; k < ends.size(); ++k) {
     const bool is_same = ends[k].n_W.dot(m.step.normal(now[k])) > least_cos &&
                          ends[k].distance_m < settings.contact_margin_m + m.travel_m;
     if (is_same) {
       if (isOutOfPlace(now[k], ends[k], m.path, which, settings)) put(m, at_start, now[k], ends[k], out);
-    } else if (which.rows == Relinearising::Rows::Loaded && !are_both_curved &&
-               ends[k].distance_m > ends[k].rest_m + which.apart_m) {
+    } else if (which.isOfLoad() && !are_both_curved && ends[k].distance_m > ends[k].rest_m + which.apart_m) {
       // It carries load, and nothing is there: its plane goes beyond the face that it was taken from.
       Candidate end = m.step.moved(now[k]);
-      end.distance_m = kNever_m;
+      end.distance_m = kOutOfReach_m;
       put(m, at_start, now[k], end, out);
     }
   }
