@@ -65,22 +65,35 @@ Vec6 ContactNewton::twistOf(const Patch& patch, const std::vector<Vec6>& u) cons
   return twist;
 }
 
-// mu |v_t|
-double ContactNewton::slipOf(const Point& p, const Vec6& twist) {
-  const Vec3 v = twist.tail<3>() + Vec3(twist.head<3>()).cross(p.r);
-  return p.mu * (v - p.n.dot(v) * p.n).norm();
+namespace {
+
+// Adds factor times the wrench of a force a at r, times that of c transposed.
+void addProduct(Mat6& sum, double factor, const Vec3& r, const Vec3& a, const Vec3& c) {
+  const Vec6 row = wrenchOf(r, c), column = factor * wrenchOf(r, a);
+  for (int k = 0; k < 6; ++k) sum.col(k) += row[k] * column;
 }
 
-// The impulse at a relative velocity: the projection onto the cone; with its derivative, times -1.
-void ContactNewton::project(Point& p, const Vec3& v, SymmetricSum* hessian) {
+}  // namespace
+
+// The impulse at a relative velocity: the projection onto the cone; with minus its derivative.
+void ContactNewton::project(Point& p, const Vec3& v, Slips slips, Mat6* jacobian) {
   const double k = 1 / p.softness;
+  const Vec3 v_t = v - p.n.dot(v) * p.n;
+  const double speed = v_t.norm();
+  if (slips == Slips::Follow) p.slip = p.mu * speed;
   const Vec3 y = p.impulse + k * ((p.target - p.slip) * p.n - v);
   const double y_n = p.n.dot(y);
   const Vec3 y_t = y - y_n * p.n;
   const double length = y_t.norm();
+  // Derivative of the slip by the velocity.
+  const Vec3 slip_v = slips == Slips::Follow && speed > 0 ? Vec3(p.mu / speed * v_t) : Vec3(Vec3::Zero());
   if (y_n > 0 && length <= p.mu * y_n) {  // sticks
     p.next = y;
-    if (hessian) hessian->addEven(k, p.r);
+    if (!jacobian) return;
+    SymmetricSum spring;
+    spring.addEven(k, p.r);
+    *jacobian += spring.total();
+    if (speed > 0) addProduct(*jacobian, k, p.r, p.n, slip_v);
     return;
   }
   const double along = y_n + p.mu * length;
@@ -91,12 +104,15 @@ void ContactNewton::project(Point& p, const Vec3& v, SymmetricSum* hessian) {
   const double share = 1 / (1 + p.mu * p.mu), p_n = share * along;
   const Vec3 t = length > 0 ? Vec3(y_t / length) : Vec3(Vec3::Zero()), edge = p.n + p.mu * t;
   p.next = p_n * edge;
-  if (!hessian) return;
-  hessian->add(k * share, wrenchOf(p.r, edge));
-  if (p.mu > 0 && length > 0) hessian->add(k * p.mu * p_n / length, wrenchOf(p.r, p.n.cross(t)));
+  if (!jacobian) return;
+  addProduct(*jacobian, k * share, p.r, edge, edge + slip_v);
+  if (p.mu > 0 && length > 0) {
+    const Vec3 across = p.n.cross(t);
+    addProduct(*jacobian, k * p.mu * p_n / length, p.r, across, across);
+  }
 }
 
-void ContactNewton::evaluateJoints(const std::vector<Vec6>& u, std::vector<Vec6>& gradient) {
+void ContactNewton::evaluateJoints(const std::vector<Vec6>& u, std::vector<Vec6>& missing) {
   for (Joint& joint : joint_states_) {
     const JointRow& row = *joint.row;
     const double v = row.velocity([&](std::size_t i) -> const Vec6& { return u[i]; });
@@ -104,64 +120,43 @@ void ContactNewton::evaluateJoints(const std::vector<Vec6>& u, std::vector<Vec6>
     joint.next_Ns = std::clamp(wanted_Ns, row.lower_Ns, row.upper_Ns);
     joint.is_free = joint.next_Ns == wanted_Ns;
     for (int i = 0; i < 2; ++i)
-      if (row.body[i] >= 0) gradient[static_cast<std::size_t>(row.body[i])] -= joint.next_Ns * row.J[i];
+      if (row.body[i] >= 0) missing[static_cast<std::size_t>(row.body[i])] -= joint.next_Ns * row.J[i];
   }
 }
 
-// The gradient of the round's function at u; with_hessian: also the Hessians of the patches.
-void ContactNewton::evaluate(const std::vector<Vec6>& u, bool with_hessian, std::vector<Vec6>& gradient) {
-  gradient.resize(u.size());
+// The momentum that is missing at u; with_jacobian: also its derivatives.
+void ContactNewton::evaluate(const std::vector<Vec6>& u, Slips slips, bool with_jacobian,
+                             std::vector<Vec6>& missing) {
+  missing.resize(u.size());
   for (std::size_t i = 0; i < u.size(); ++i) {
     const IslandBody& b = island_.bodies[i];
-    gradient[i] = b.effective_mass * u[i] - b.momentum - b.coupling_impulse;
+    missing[i] = b.effective_mass * u[i] - b.momentum - b.coupling_impulse;
   }
-  evaluateJoints(u, gradient);
+  evaluateJoints(u, missing);
   for (Patch& patch : patches_) {
     const Vec6 twist = twistOf(patch, u);
     const Vec3 w = twist.head<3>(), v = twist.tail<3>();
-    SymmetricSum hessian;
     Vec6 wrench = Vec6::Zero();
+    if (with_jacobian) patch.jacobian.setZero();
     for (std::size_t i = patch.first; i < patch.end; ++i) {
       Point& p = points_[i];
-      project(p, v + w.cross(p.r), with_hessian ? &hessian : nullptr);
+      project(p, v + w.cross(p.r), slips, with_jacobian ? &patch.jacobian : nullptr);
       wrench += wrenchOf(p.r, p.next);
     }
-    if (with_hessian) patch.hessian = hessian.total();
     for (int i = 0; i < 2; ++i)
       if (patch.body[i] >= 0)
-        gradient[static_cast<std::size_t>(patch.body[i])] -= patch.X[i].transpose() * wrench;
+        missing[static_cast<std::size_t>(patch.body[i])] -= patch.X[i].transpose() * wrench;
   }
 }
 
-// False: the matrix is not positive definite.
+// False: the matrix has no inverse.
 bool ContactNewton::findStep() {
-  step_.resize(u_.size());
-  return u_.size() == 1 ? findStepOfOne() : findStepOfAll();
-}
-
-bool ContactNewton::findStepOfOne() {
-  Mat6 H = island_.bodies[0].effective_mass;
-  for (const Patch& patch : patches_) {
-    const Mat6& X = patch.X[patch.body[0] == 0 ? 0 : 1];
-    H += X.transpose() * patch.hessian * X;
-  }
-  for (const Joint& joint : joint_states_) {
-    if (!joint.is_free) continue;
-    const Vec6& J = joint.row->J[joint.row->body[0] == 0 ? 0 : 1];
-    H += 1 / joint.softness * J * J.transpose();
-  }
-  const Eigen::LLT<Mat6> factor(H);
-  step_[0] = -factor.solve(gradient_[0]);
-  return factor.info() == Eigen::Success;
-}
-
-bool ContactNewton::findStepOfAll() {
   matrix_.start(u_.size(), touching_);
   for (std::size_t i = 0; i < u_.size(); ++i)
     matrix_.add(static_cast<int>(i), static_cast<int>(i), island_.bodies[i].effective_mass);
   for (const Patch& patch : patches_)
     matrix_.addPair(patch.body, [&](int i, int j) -> Mat6 {
-      return patch.X[i].transpose() * patch.hessian * patch.X[j];
+      return patch.X[i].transpose() * patch.jacobian * patch.X[j];
     });
   for (const Joint& joint : joint_states_) {
     const double k = 1 / joint.softness;
@@ -170,43 +165,77 @@ bool ContactNewton::findStepOfAll() {
       matrix_.addPair(joint.row->body, [&](int i, int j) -> Mat6 { return k * J[i] * J[j].transpose(); });
   }
   if (!matrix_.factorise()) return false;
-  matrix_.solve(gradient_, step_);
+  matrix_.solve(missing_, step_);
   return true;
 }
 
-double ContactNewton::shareOfStep(double slope) {
+// Square of the missing momentum, in the metric of the bodies' energy.
+double ContactNewton::sizeOf(const std::vector<Vec6>& missing) {
+  double sum = 0;
+  for (std::size_t i = 0; i < missing.size(); ++i)
+    sum += missing[i].dot(island_.bodies[i].effective_inverse * missing[i]);
+  return sum;
+}
+
+void ContactNewton::moveTo(double share) {
   trial_.resize(u_.size());
-  return lineSearch(slope, [&](double share) {
-    for (std::size_t i = 0; i < u_.size(); ++i) trial_[i] = u_[i] + share * step_[i];
-    evaluate(trial_, false, trial_gradient_);
-    return sumOfProducts(trial_gradient_, step_);
+  for (std::size_t i = 0; i < u_.size(); ++i) trial_[i] = u_[i] + share * step_[i];
+}
+
+// Newton's step, or a share of it. False: none of these shares reduces what is missing.
+bool ContactNewton::step() {
+  constexpr double kSufficient = 1e-2;  // of the reduction that a linear equation would have
+  if (!findStep()) return false;
+  const double size = sizeOf(missing_);
+  double share = 1;
+  for (int k = 0; k < kMostRounds; ++k, share *= 0.5) {
+    moveTo(share);
+    evaluate(trial_, Slips::Follow, false, trial_missing_);
+    if (!(sizeOf(trial_missing_) <= (1 - kSufficient * share) * size)) continue;
+    u_.swap(trial_);
+    return true;
+  }
+  return false;
+}
+
+// A step of the convex problem in which the terms of slip stay as they are. False: there is no way down.
+bool ContactNewton::convexStep() {
+  evaluate(u_, Slips::Follow, false, missing_);
+  evaluate(u_, Slips::Stay, true, missing_);
+  if (!findStep()) return false;
+  const double slope = sumOfProducts(missing_, step_);
+  if (!(slope < 0)) return false;
+  const double share = lineSearch(slope, [&](double at) {
+    moveTo(at);
+    evaluate(trial_, Slips::Stay, false, trial_missing_);
+    return sumOfProducts(trial_missing_, step_);
   });
+  moveTo(share);
+  u_.swap(trial_);
+  return true;
 }
 
 // Change of the bodies' velocities by the momentum that is missing at u.
 double ContactNewton::imbalance_m_s() {
   scratch_.resize(u_.size());
-  for (std::size_t i = 0; i < u_.size(); ++i)
-    scratch_[i] = island_.bodies[i].effective_inverse * gradient_[i];
+  for (std::size_t i = 0; i < u_.size(); ++i) scratch_[i] = island_.bodies[i].effective_inverse * missing_[i];
   return island_.topSpeed(scratch_);
 }
 
 SolveOutcome ContactNewton::minimise(double near_m_s, int step_limit) {
   SolveOutcome outcome;
   for (;;) {
-    evaluate(u_, true, gradient_);
+    evaluate(u_, Slips::Follow, true, missing_);
     off_m_s_ = imbalance_m_s();
     outcome.is_converged = off_m_s_ <= near_m_s;
     if (outcome.is_converged || outcome.steps >= step_limit || !std::isfinite(off_m_s_)) return outcome;
-    if (!findStep()) return outcome;
-    const double slope = sumOfProducts(gradient_, step_);
-    if (!(slope < 0)) {  // balanced as well as rounding allows
-      outcome.is_converged = slope >= 0 && off_m_s_ < near_m_s / kAccuracyShare;
-      return outcome;
-    }
-    const double share = shareOfStep(slope);
-    for (std::size_t i = 0; i < u_.size(); ++i) u_[i] += share * step_[i];
     ++outcome.steps;
+    if (step()) continue;
+    ++outcome.steps;
+    if (convexStep()) continue;
+    evaluate(u_, Slips::Follow, false, missing_);
+    outcome.is_converged = off_m_s_ < near_m_s / kAccuracyShare;  // balanced as well as rounding allows
+    return outcome;
   }
 }
 
@@ -236,33 +265,41 @@ void ContactNewton::start(std::span<const RigidContact> contacts) {
   for (const Patch& patch : patches_) touch(patch.body);
   for (const Joint& joint : joint_states_) touch(joint.row->body);
   island_.readVelocities(u_);
-  extrapolation_.clear();
-  startSlips();
+}
+
+// Takes the round's impulses. Returns by how much a contact misses its law at most [m/s].
+double ContactNewton::endRound() {
+  double law_m_s = 0;
+  for (Point& p : points_) {
+    law_m_s = std::max(law_m_s, p.softness * (p.next - p.impulse).norm());
+    p.impulse = p.next;
+  }
+  for (const Joint& joint : joint_states_) joint.row->impulse_Ns = joint.next_Ns;
+  return law_m_s;
 }
 
 SolveOutcome ContactNewton::solve(std::span<RigidContact> contacts, double residual_m_s, int step_limit) {
+  constexpr int kRoundSteps = 8;  // assumed
   SolveOutcome outcome;
   start(contacts);
-  double compliance = kFirstCompliance;
-  Miss last = {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+  double compliance = kFirstCompliance, last_m_s = std::numeric_limits<double>::infinity();
   for (;;) {
     setCompliance(compliance);
-    const double error_m_s = std::max(last.law_m_s, last.slip_m_s);
     const double near_m_s =
-        kAccuracyShare * std::clamp(error_m_s, kAccuracyShare * residual_m_s, kFirstError_m_s);
-    const SolveOutcome round = minimise(near_m_s, step_limit - outcome.steps);
+        kAccuracyShare * std::clamp(last_m_s, kAccuracyShare * residual_m_s, kFirstError_m_s);
+    const SolveOutcome round = minimise(near_m_s, std::min(kRoundSteps, step_limit - outcome.steps));
     outcome.steps += std::max(1, round.steps);
-    if (!round.is_converged) break;
-    const Miss now = endRound();
+    if (!round.is_converged) {
+      if (outcome.steps >= step_limit || !std::isfinite(off_m_s_)) break;
+      compliance = std::min(1.0, compliance / kAccuracyShare);
+      continue;
+    }
+    const double law_m_s = endRound();
     // The bodies get the velocities of the impulses, which differ from those of the laws by the imbalance.
-    outcome.is_converged = off_m_s_ <= residual_m_s && now.law_m_s <= kAccuracyShare * residual_m_s &&
-                           now.slip_m_s <= residual_m_s;
+    outcome.is_converged = off_m_s_ <= residual_m_s && law_m_s <= kAccuracyShare * residual_m_s;
     if (outcome.is_converged || outcome.steps >= step_limit) break;
-    if (now.slip_m_s > last.slip_m_s) extrapolation_.clear();
-    updateSlips();
-    if (now.law_m_s > kAccuracyShare * last.law_m_s && !now.isOfSlip(last))
-      compliance = std::max(kLeastCompliance, kAccuracyShare * compliance);
-    last = now;
+    if (law_m_s > kAccuracyShare * last_m_s) compliance = std::max(kLeastCompliance, kStiffer * compliance);
+    last_m_s = law_m_s;
   }
   if (!std::all_of(u_.begin(), u_.end(), [](const Vec6& u) { return u.allFinite(); }))
     return {outcome.steps, false};

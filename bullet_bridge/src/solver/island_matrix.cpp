@@ -1,98 +1,110 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "solver/island_matrix.h"
 
+#include <Eigen/OrderingMethods>
+#include <Eigen/SparseCore>
 #include <algorithm>
+#include <set>
 
 namespace vps::bullet::inline v0 {
-namespace {
-
-std::uint64_t blockKey(int row, int column) {
-  return static_cast<std::uint64_t>(column) << 32 | static_cast<std::uint32_t>(row);
-}
-int rowOf(std::uint64_t key) {
-  return static_cast<int>(key & 0xffffffffu);
-}
-int columnOf(std::uint64_t key) {
-  return static_cast<int>(key >> 32);
-}
-
-}  // namespace
 
 void IslandMatrix::start(std::size_t body_count, std::span<const std::pair<int, int>> pairs) {
-  const bool is_as_large = body_count == body_count_;
-  body_count_ = body_count;
-  const auto size = static_cast<Eigen::Index>(6 * body_count);
-  if (isDense()) {
-    dense_.setZero(size, size);
-    return;
-  }
   wanted_.clear();
-  for (int i = 0; i < static_cast<int>(body_count); ++i) wanted_.push_back(blockKey(i, i));
-  for (const auto& [i, j] : pairs) wanted_.push_back(blockKey(std::max(i, j), std::min(i, j)));
+  for (const auto& [i, j] : pairs)
+    if (i != j) wanted_.emplace_back(std::min(i, j), std::max(i, j));
   std::sort(wanted_.begin(), wanted_.end());
   wanted_.erase(std::unique(wanted_.begin(), wanted_.end()), wanted_.end());
-  if (!is_as_large || wanted_ != blocks_) {
-    blocks_ = wanted_;
+  if (body_count != body_count_ || wanted_ != pairs_) {
+    body_count_ = body_count;
+    pairs_ = wanted_;
     makePattern();
   }
-  std::fill_n(sparse_.valuePtr(), sparse_.nonZeros(), 0.0);
+  for (std::vector<Mat6>* blocks : {&diagonal_, &below_, &beside_})
+    for (Mat6& block : *blocks) block.setZero();
 }
 
-// Blocks are stored completely, also on the diagonal; the factorisation reads the lower half.
 void IslandMatrix::makePattern() {
-  first_.assign(body_count_ + 1, 0);
-  for (const std::uint64_t key : blocks_) ++first_[static_cast<std::size_t>(columnOf(key)) + 1];
-  for (std::size_t i = 0; i < body_count_; ++i) first_[i + 1] += first_[i];
-  const auto size = static_cast<Eigen::Index>(6 * body_count_);
-  sparse_.resize(size, size);
-  sparse_.resizeNonZeros(static_cast<Eigen::Index>(36 * blocks_.size()));
-  int next = 0;
-  for (std::size_t body = 0; body < body_count_; ++body)
-    for (int c = 0; c < 6; ++c) {
-      sparse_.outerIndexPtr()[6 * body + static_cast<std::size_t>(c)] = next;
-      for (int b = first_[body]; b < first_[body + 1]; ++b)
-        for (int r = 0; r < 6; ++r)
-          sparse_.innerIndexPtr()[next++] = 6 * rowOf(blocks_[static_cast<std::size_t>(b)]) + r;
-    }
-  sparse_.outerIndexPtr()[size] = next;
-  sparse_factor_.analyzePattern(sparse_);
+  const auto n = static_cast<int>(body_count_);
+  std::vector<Eigen::Triplet<double>> entries;
+  for (const auto& [i, j] : pairs_) {
+    entries.emplace_back(i, j, 1.0);
+    entries.emplace_back(j, i, 1.0);
+  }
+  for (int i = 0; i < n; ++i) entries.emplace_back(i, i, 1.0);
+  Eigen::SparseMatrix<double> graph(n, n);
+  graph.setFromTriplets(entries.begin(), entries.end());
+  Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order;
+  Eigen::AMDOrdering<int>()(graph, order);
+  body_.assign(order.indices().data(), order.indices().data() + n);
+  place_.resize(body_count_);
+  for (int k = 0; k < n; ++k) place_[static_cast<std::size_t>(body_[static_cast<std::size_t>(k)])] = k;
+
+  std::vector<std::set<int>> later(body_count_);
+  for (const auto& [i, j] : pairs_) {
+    const auto [a, b] = std::minmax(place_[static_cast<std::size_t>(i)], place_[static_cast<std::size_t>(j)]);
+    later[static_cast<std::size_t>(a)].insert(b);
+  }
+  first_.assign(1, 0);
+  later_.clear();
+  for (std::size_t k = 0; k < body_count_; ++k) {
+    for (auto a = later[k].begin(); a != later[k].end(); ++a)
+      later[static_cast<std::size_t>(*a)].insert(std::next(a), later[k].end());
+    later_.insert(later_.end(), later[k].begin(), later[k].end());
+    first_.push_back(later_.size());
+  }
+  diagonal_.resize(body_count_);
+  inverse_.resize(body_count_);
+  below_.resize(later_.size());
+  beside_.resize(later_.size());
+  targets_.clear();
+  for (std::size_t k = 0; k < body_count_; ++k)
+    for (std::size_t s = first_[k]; s < first_[k + 1]; ++s)
+      for (std::size_t t = first_[k]; t < first_[k + 1]; ++t)
+        targets_.push_back(&blockAt(later_[s], later_[t]));
+}
+
+// @param row, column  places
+Mat6& IslandMatrix::blockAt(int row, int column) {
+  if (row == column) return diagonal_[static_cast<std::size_t>(row)];
+  const auto place = static_cast<std::size_t>(std::min(row, column));
+  const auto begin = later_.begin() + static_cast<std::ptrdiff_t>(first_[place]),
+             end = later_.begin() + static_cast<std::ptrdiff_t>(first_[place + 1]);
+  const auto at =
+      static_cast<std::size_t>(std::lower_bound(begin, end, std::max(row, column)) - later_.begin());
+  return row > column ? below_[at] : beside_[at];
 }
 
 void IslandMatrix::add(int row_body, int column_body, const Mat6& block) {
-  if (row_body < column_body) return;
-  if (isDense()) {
-    dense_.block<6, 6>(6 * row_body, 6 * column_body) += block;
-    return;
-  }
-  const auto column = static_cast<std::size_t>(column_body);
-  const auto begin = blocks_.begin() + first_[column], end = blocks_.begin() + first_[column + 1];
-  const auto at = std::lower_bound(begin, end, blockKey(row_body, column_body));
-  const auto in_column = static_cast<Eigen::Index>(at - begin);
-  for (int c = 0; c < 6; ++c) {
-    double* to = sparse_.valuePtr() + sparse_.outerIndexPtr()[6 * column_body + c] + 6 * in_column;
-    for (int r = 0; r < 6; ++r) to[r] += block(r, c);
-  }
+  blockAt(place_[static_cast<std::size_t>(row_body)], place_[static_cast<std::size_t>(column_body)]) += block;
 }
 
 bool IslandMatrix::factorise() {
-  if (isDense()) {
-    dense_factor_.compute(dense_);
-    return dense_factor_.info() == Eigen::Success;
+  auto target = targets_.begin();
+  for (std::size_t k = 0; k < body_count_; ++k) {
+    inverse_[k] = diagonal_[k].inverse();
+    if (!inverse_[k].allFinite()) return false;
+    for (std::size_t s = first_[k]; s < first_[k + 1]; ++s) {
+      below_[s] = (below_[s] * inverse_[k]).eval();
+      for (std::size_t t = first_[k]; t < first_[k + 1]; ++t)
+        (*target++)->noalias() -= below_[s] * beside_[t];
+    }
   }
-  sparse_factor_.factorize(sparse_);
-  return sparse_factor_.info() == Eigen::Success;
+  return true;
 }
 
 void IslandMatrix::solve(std::span<const Vec6> gradient, std::vector<Vec6>& step) {
-  x_.resize(static_cast<Eigen::Index>(6 * gradient.size()));
-  for (std::size_t i = 0; i < gradient.size(); ++i)
-    x_.segment<6>(static_cast<Eigen::Index>(6 * i)) = -gradient[i];
-  if (isDense())
-    dense_factor_.solveInPlace(x_);
-  else
-    x_ = sparse_factor_.solve(x_);
-  step.resize(gradient.size());
-  for (std::size_t i = 0; i < step.size(); ++i) step[i] = x_.segment<6>(static_cast<Eigen::Index>(6 * i));
+  x_.resize(body_count_);
+  step.resize(body_count_);
+  for (std::size_t k = 0; k < body_count_; ++k) x_[k] = -gradient[static_cast<std::size_t>(body_[k])];
+  for (std::size_t k = 0; k < body_count_; ++k)
+    for (std::size_t s = first_[k]; s < first_[k + 1]; ++s)
+      x_[static_cast<std::size_t>(later_[s])] -= below_[s] * x_[k];
+  for (std::size_t k = body_count_; k-- > 0;) {
+    for (std::size_t s = first_[k]; s < first_[k + 1]; ++s)
+      x_[k] -= beside_[s] * x_[static_cast<std::size_t>(later_[s])];
+    x_[k] = (inverse_[k] * x_[k]).eval();
+    step[static_cast<std::size_t>(body_[k])] = x_[k];
+  }
 }
 
 }  // namespace vps::bullet::inline v0

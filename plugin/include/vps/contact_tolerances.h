@@ -165,9 +165,6 @@ inline constexpr double kSpeedErrorShare = 1e-5;
 /// stiffer contacts follow a round that reduced its error by less [Bertsekas 1982, ch. 2].
 /// Test: B_mass_ratio_turns.
 inline constexpr double kAccuracyShare = 0.1;
-/// Slips that do not shrink by this factor wait for impulses that are still too small.
-/// Test: Replay.
-inline constexpr double kSlipReduction = 0.5;
 /// Error that the first round is solved for [m/s].
 /// Test: Replay.
 inline constexpr double kFirstError_m_s = 1e-2;
@@ -175,9 +172,11 @@ inline constexpr double kFirstError_m_s = 1e-2;
 /// in a round, but Newton's method needs many steps from a distant start; for a compliant one it is the
 /// reverse.
 /// Test: B_mass_ratio_turns.
-inline constexpr double kFirstCompliance = 1e-2;
+inline constexpr double kFirstCompliance = 0.1;
 /// Test: Replay and B_mass_ratio_turns, at ten times.
 inline constexpr double kLeastCompliance = 1e-7;
+/// By how much stiffer contacts become from one round to the next.
+inline constexpr double kStiffer = 0.3;
 /// Stiffness of a joint, and mass of a body in directions in which it is held, relative to that of a free
 /// body: joints are springs that miss their target by a millionth. They have no multipliers, since rows of
 /// joints often contradict each other.
