@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <random>
 #include <utility>
 
@@ -129,6 +131,55 @@ TEST(ContactNewton, RandomContactsHaveTheVelocitiesOfManySweeps) {
       EXPECT_LE(off.tail<3>().norm() + kHalf_m * off.head<3>().norm(), 1e-6) << seed << ' ' << k;
     }
   }
+}
+
+// Bodies with faces on each other all around, which hold each other by friction: where one slips changes the
+// load of all.
+struct Heap : Cubes {
+  explicit Heap(unsigned seed) {
+    constexpr int kCubes = 12, kFaces = 16;
+    std::mt19937 engine(seed);
+    std::uniform_real_distribution<double> in(-1, 1);
+    const auto vector = [&] { return Vec3(in(engine), in(engine), in(engine)); };
+    for (int k = 0; k < kCubes; ++k) {
+      btRigidBody& cube = add(0.02 * vector(), Vec3(0, 0, -kMass_kg * kGravity_m_s2));
+      cube.setLinearVelocity(toBt(Vec3(-10 * fromBt(cube.getWorldTransform()).p + 0.05 * vector())));
+    }
+    for (int k = 0; k < kFaces; ++k) {
+      const auto any = [&] {
+        return std::min(static_cast<int>(0.5 * (1 + in(engine)) * (kCubes + 1)), kCubes);
+      };
+      const int i = any(), j = any();
+      if (i == j) continue;
+      btRigidBody* pair[2];
+      for (int m : {0, 1})
+        pair[m] = (m ? j : i) < kCubes ? &bodies[static_cast<std::size_t>(m ? j : i)] : &floor;
+      const Vec3 from = fromBt(pair[1]->getWorldTransform()).p, to = fromBt(pair[0]->getWorldTransform()).p;
+      const Vec3 n = ((to - from).normalized() + 0.3 * vector()).normalized(), u = n.unitOrthogonal(),
+                 v = n.cross(u);
+      for (const double a : {-kHalf_m, kHalf_m})
+        for (const double b : {-kHalf_m, kHalf_m})
+          SmallIsland::touch(*pair[0], *pair[1], 0.5 * (from + to) + a * u + b * v, n, 0, 0.3);
+    }
+    start();
+  }
+};
+
+// With terms of slip from the round before, half of them are not solved in as many steps.
+TEST(ContactNewton, SettlesTheFrictionOfAHeapInFewSteps) {
+  constexpr int kHeaps = 50, kMost = 60;
+  int converged = 0, steps = 0;
+  for (unsigned seed = 1; seed <= kHeaps; ++seed) {
+    Heap heap(seed);
+    heap.sweeps.sweep(1e-6, 30);
+    ContactNewton newton(heap.island, heap.joints);
+    const SolveOutcome outcome = newton.solve(heap.sweeps.contacts(), 1e-6, kMost);
+    converged += outcome.is_converged;
+    steps += outcome.steps;
+  }
+  EXPECT_GE(converged, kHeaps - 1);
+  EXPECT_LE(steps, 30 * kHeaps);
+  std::printf("[ measured ] %d of %d, %.1f steps\n", converged, kHeaps, 1.0 * steps / kHeaps);
 }
 
 TEST(ContactNewton, LeavesTheImpulsesWhereAVelocityIsNotFinite) {

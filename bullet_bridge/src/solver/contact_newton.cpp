@@ -279,14 +279,14 @@ double ContactNewton::endRound() {
 }
 
 SolveOutcome ContactNewton::solve(std::span<RigidContact> contacts, double residual_m_s, int step_limit) {
-  constexpr int kRoundSteps = 8;  // assumed
+  constexpr int kRoundSteps = 12;  // assumed
   SolveOutcome outcome;
   start(contacts);
   double compliance = kFirstCompliance, last_m_s = std::numeric_limits<double>::infinity();
   for (;;) {
     setCompliance(compliance);
     const double near_m_s =
-        kAccuracyShare * std::clamp(last_m_s, kAccuracyShare * residual_m_s, kFirstError_m_s);
+        kRoundShare * std::clamp(last_m_s, kAccuracyShare * residual_m_s, kFirstError_m_s);
     const SolveOutcome round = minimise(near_m_s, std::min(kRoundSteps, step_limit - outcome.steps));
     outcome.steps += std::max(1, round.steps);
     if (!round.is_converged) {
@@ -298,7 +298,8 @@ SolveOutcome ContactNewton::solve(std::span<RigidContact> contacts, double resid
     // The bodies get the velocities of the impulses, which differ from those of the laws by the imbalance.
     outcome.is_converged = off_m_s_ <= residual_m_s && law_m_s <= kAccuracyShare * residual_m_s;
     if (outcome.is_converged || outcome.steps >= step_limit) break;
-    if (law_m_s > kAccuracyShare * last_m_s) compliance = std::max(kLeastCompliance, kStiffer * compliance);
+    if (law_m_s > kAccuracyShare * last_m_s)
+      compliance = std::max(kLeastCompliance, kRoundShare * compliance);
     last_m_s = law_m_s;
   }
   if (!std::all_of(u_.begin(), u_.end(), [](const Vec6& u) { return u.allFinite(); }))
