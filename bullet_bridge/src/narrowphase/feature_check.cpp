@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "narrowphase/contact_selection.h"
+#include "narrowphase/contacts_there.h"
 #include "narrowphase/surface_view.h"
 #include "vps/contact_tolerances.h"
 
@@ -19,12 +20,32 @@ Pose poseBetween(const PairView& pair, const Pose (&X_WS)[2]) {
   return (X_WS[0] * pair.shape[0]->X_SM()).inverse() * (X_WS[1] * pair.shape[1]->X_SM());
 }
 
+// True if the corner of a contact goes no deeper into the other body than tolerated, from where they meet to
+// the end of the step. In a far turn a corner that grazes a curved face would be held by the plane of one
+// facet of it, which leads away from that face.
+bool grazes(const FeatureContact& c, const PairView& start, const EndPoses& end, double tolerated_m) {
+  if (c.kind == FeatureContact::Kind::EdgeOnEdge) return false;
+  const int i = c.kind == FeatureContact::Kind::CornerOnFacet ? 0 : 1;
+  for (int k = 1; k <= kMostPlaces; ++k) {
+    const double share = c.share + (1 - c.share) * k / kMostPlaces;
+    SideView side[2];
+    for (const int j : {0, 1})
+      side[j] = {start.shape[j], interpolate(start.X_WS[j], end.X_WS[j], share) * start.shape[j]->X_SM(),
+                 static_cast<std::uint8_t>(j)};
+    if (isInside(side[i].X_WM * c.p[i], side[1 - i], start.radius_m(), tolerated_m)) return false;
+  }
+  return true;
+}
+
 void findContacts(const PairView& start, const EndPoses& end, bool holds_close, PairState& state,
                   std::vector<FeatureContact>& found) {
   found.clear();
   const Pose X_01_end = poseBetween(start, end.X_WS);
   state.features.check(start.shape[0]->features(), start.shape[1]->features(), start.X_01_models(), X_01_end,
                        holds_close, found);
+  if (!end.turns_far) return;
+  const double tolerated_m = kFacetCornerShare * state.context->settings.contact_margin_m;
+  std::erase_if(found, [&](const FeatureContact& c) { return grazes(c, start, end, tolerated_m); });
 }
 
 std::uint32_t codeOf(const FeatureContact& c, int i) {

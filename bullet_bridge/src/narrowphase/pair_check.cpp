@@ -172,14 +172,12 @@ void PairCheck::relinearise(const Motion& m, const Placed& at_start, const Relin
 }
 
 double PairCheck::freeShare(const Pose (&X_WB_end)[2]) {
-  if (!isValid()) return 1;
-  const Pose start[2] = {fromBt(object_[0]->getWorldTransform()) * X_BS_[0],
-                         fromBt(object_[1]->getWorldTransform()) * X_BS_[1]};
-  const EndPoses end = {{X_WB_end[0] * X_BS_[0], X_WB_end[1] * X_BS_[1]}};
-  const Placed at_start(*this, start);
-  if (!end.X_WS[0].isFinite() || !end.X_WS[1].isFinite()) return 1;
+  Motion m;
+  if (!isValid() || !read(X_WB_end, m)) return 1;
+  const Placed at_start(*this, m.start);
+  measure(at_start.pair, m);
   if (!hasFeatures(at_start.pair, state_.context->settings)) return 1;
-  return freeShareOf(at_start.pair, end, state_);
+  return freeShareOf(at_start.pair, {{m.end[0], m.end[1]}, m.path, m.turnsFar(0)}, state_);
 }
 
 // Of points that are deeper before the step than allowed, a share that lets them go a little deeper: what is
