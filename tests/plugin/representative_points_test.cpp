@@ -77,6 +77,32 @@ TEST(RepresentativePoints, EachEqualsTheQuerysContactAndTheyAreFew) {
   }
 }
 
+// A leaf of sixteen points counts as a whole, so that the border is known to a leaf's size, four spacings: of
+// the peg's side that is within the bore's mouth, here all of it.
+TEST(RepresentativePoints, TheirSurfacesHaveTheMomentsOfTheNearPoints) {
+  const std::vector<Contact> few = fit().lead(fit().X_MP);
+  const auto surfaces = fit().leading.surfaces();
+  ASSERT_EQ(surfaces.size(), few.size());
+  const auto add = [](Mat3& second, Vec3& first, double& area_m2, double part_m2, const Vec3& at) {
+    area_m2 += part_m2;
+    first += part_m2 * at;
+    second += part_m2 * at * at.transpose();
+  };
+  double got_m2 = 0, want_m2 = 0;
+  Vec3 got_first = Vec3::Zero(), want_first = Vec3::Zero();
+  Mat3 got = Mat3::Zero(), want = Mat3::Zero();
+  for (const RepresentativePoints::Surface& s : surfaces) {
+    add(got, got_first, got_m2, s.area_m2, s.center);
+    got += s.area_m2 * s.spread;
+  }
+  for (const Contact& c : fit().all(fit().X_MP))
+    add(want, want_first, want_m2, c.area_m2, fit().shell.points[c.id]);
+  const double border = 4 * kSpacing_m / 5e-3;  // of the height
+  EXPECT_NEAR(got_m2 / want_m2, 1, border);
+  EXPECT_LE((got_first - want_first).norm(), border * want_m2 * kRadius_m);
+  EXPECT_LE((got - want).norm(), border * want.norm());
+}
+
 TEST(RepresentativePoints, EachOmittedPointHasANearerOneInItsGroupNowAndAfterTheStep) {
   std::map<std::uint32_t, std::pair<double, double>> led;  // least gaps by group, now and after the step
   std::map<std::uint32_t, bool> is_given;

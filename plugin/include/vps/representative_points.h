@@ -57,6 +57,16 @@ class VPS_API RepresentativePoints {
   QueryResult find(const VoxMap& map, const Pose& X_MP, const Request& request, ContactSet& out,
                    QueryMemory* memory = nullptr) noexcept;
 
+  /// A part of the surface.
+  struct Surface {
+    double area_m2 = 0;
+    Vec3 center = Vec3::Zero();  ///< in P [m]
+    Mat3 spread = Mat3::Zero();  ///< mean of d d', d a point's place from the centre [m2]
+  };
+  /// The near surface that each contact of the last find() stands for, to a leaf of sixteen points at its
+  /// border. Empty if each stands for itself.
+  [[nodiscard]] std::span<const Surface> surfaces() const noexcept { return surfaces_; }
+
   /// Edge of the cells in which the last find() merged groups; 0: it merged none.
   [[nodiscard]] double mergedTo_m() const noexcept { return merged_to_m_; }
 
@@ -81,8 +91,28 @@ class VPS_API RepresentativePoints {
     std::uint32_t first_group = 0, group_count = 0;
   };
   static constexpr std::uint8_t kNoGroup = 255, kMixed = 255;
+  /// Surface of the near points that a reported point stands for: its size, and its first and second moments
+  /// about P's origin.
+  struct Area {
+    float size = 0;
+    Eigen::Vector3f first = Eigen::Vector3f::Zero();
+    Eigen::Matrix3f second = Eigen::Matrix3f::Zero();
+    void add(const ShellBlock& leaf, int lane) noexcept {
+      Eigen::Vector3f at(leaf.x[lane], leaf.y[lane], leaf.z[lane]);
+      for (int k = 0; k < 3; ++k) at[k] += static_cast<float>(leaf.center[k]);
+      size += leaf.weight[lane];
+      first += leaf.weight[lane] * at;
+      second += leaf.weight[lane] * at * at.transpose();
+    }
+    void add(const Area& other) noexcept {
+      size += other.size;
+      first += other.first;
+      second += other.second;
+    }
+  };
   struct Chosen {
     std::uint32_t leaf, id;
+    Area area = {};
   };
   struct Best {
     float value = std::numeric_limits<float>::infinity();  ///< [quanta]
@@ -92,7 +122,9 @@ class VPS_API RepresentativePoints {
   struct Nearest {
     std::uint32_t of = kNone;
     Best now, then;
+    Area area;
     void take(const Nearest& other) noexcept {
+      area.add(other.area);
       if (other.now.value < now.value) now = other.now;
       if (other.then.value < then.value) then = other.then;
     }
@@ -100,6 +132,7 @@ class VPS_API RepresentativePoints {
   class Grouping;
   class Search;
 
+  [[nodiscard]] Surface surfaceOf(const Chosen& chosen) const noexcept;
   void addTile(std::size_t first_leaf, std::size_t end_leaf, double tile_size_m,
                std::span<const std::uint8_t> on_edge);
   void addLoose(std::size_t leaf);
@@ -113,11 +146,13 @@ class VPS_API RepresentativePoints {
   std::vector<Tile> tiles_;
   std::vector<Group> groups_;
   std::vector<std::uint32_t> tile_of_leaf_;
+  std::vector<Area> area_of_leaf_;
   std::vector<std::uint8_t> group_of_;       ///< by point: in its tile, or kNoGroup
   std::vector<std::uint8_t> group_of_leaf_;  ///< that of all its points, or kMixed
   std::vector<Level> levels_;                ///< by size
   // Of a find(), with capacity for all points or groups:
   std::vector<Chosen> chosen_;
+  std::vector<Surface> surfaces_;
   std::vector<Nearest> of_groups_, of_cells_;
   std::vector<std::uint32_t> place_of_cell_;  ///< in of_cells_
   double merged_to_m_ = 0;

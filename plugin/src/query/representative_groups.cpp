@@ -72,6 +72,12 @@ RepresentativePoints::RepresentativePoints(const PointShell& shell, double tile_
       group_of_(shell.size(), kNoGroup),
       group_of_leaf_(shell.leaf_blocks, kMixed) {
   if (!(tile_size_m > 0)) throw std::invalid_argument("RepresentativePoints: a tile's size must be positive");
+  for (std::size_t leaf = 0; leaf < shell.leaf_blocks; ++leaf) {
+    Area& area = area_of_leaf_.emplace_back();
+    for (std::uint32_t lane = 0; lane < shell.blocks[leaf].count; ++lane)
+      area.add(shell.blocks[leaf], static_cast<int>(lane));
+  }
+  surfaces_.reserve(4 * shell.size());
   chosen_.reserve(4 * shell.size());  // a point may be there as required, loose, and nearest twice
   // Nodes of the hierarchy keep their size when a shell is cropped, so that the tiles of what is left are the
   // same.

@@ -45,6 +45,7 @@ class RepresentativePoints::Search {
     takeRequired(leaf);
     const std::uint8_t group = self_.group_of_leaf_[leaf.index];
     if (group == kMixed) return takeMixed(leaf);
+    best_[group].area.add(self_.area_of_leaf_[leaf.index]);
     updateNow(leaf, best_[group]);
     if (best_[group].has_slope) updateThen(leaf, best_[group]);
   }
@@ -56,7 +57,7 @@ class RepresentativePoints::Search {
     for (std::uint32_t g = 0; g < tile.group_count; ++g) {
       const GroupBest& best = best_[g];
       if (best.now.point.id == kNone) continue;
-      Nearest nearest{tile.first_group + g, best.now, best.has_slope ? best.then : best.now};
+      Nearest nearest{tile.first_group + g, best.now, best.has_slope ? best.then : best.now, best.area};
       nearest.then.value += best.common;
       self_.of_groups_.push_back(nearest);
     }
@@ -71,6 +72,7 @@ class RepresentativePoints::Search {
   struct GroupBest {
     Best now, then;    ///< the latter without what the group has in common
     float common = 0;  ///< change of the gap at its centre in the step
+    Area area;
     bool has_slope = false;
     Vec3 center;
     Eigen::Vector3f slope;  ///< of the change of the gap in the step [quanta/m]
@@ -87,6 +89,7 @@ class RepresentativePoints::Search {
       const Vec3 slope = group.bend.transpose() * way + group.inward.cross(turn_P_);
       const double length = slope.norm();
       best.now = best.then = {};
+      best.area = {};
       best.common = static_cast<float>(group.inward.dot(way) / quantum_m_);
       best.has_slope = length * group.radius_m > kSame_m;
       best.center = group.center;
@@ -140,9 +143,11 @@ class RepresentativePoints::Search {
       const Chosen point{leaf.index, block.first + lane};
       if (group == kNoGroup) {
         self_.chosen_.push_back(point);
+        self_.chosen_.back().area.add(block, i);
         continue;
       }
       GroupBest& best = best_[group];
+      best.area.add(block, i);
       if (now < best.now.value) best.now = {now, point};
       if (!best.has_slope) continue;
       if (std::exchange(last, group) != group) at_center = slopeAt(best, block);
@@ -174,6 +179,7 @@ class RepresentativePoints::Search {
 void RepresentativePoints::choose(std::span<const Nearest> nearest) noexcept {
   for (const Nearest& n : nearest) {
     chosen_.push_back(n.now.point);
+    chosen_.back().area = n.area;
     if (n.then.point.id != n.now.point.id) chosen_.push_back(n.then.point);
   }
 }
@@ -203,15 +209,26 @@ void RepresentativePoints::merge(const Request& request) noexcept {
       if (of_cells_.size() <= request.most_groups) break;
     }
   choose(merged_to_m_ > 0 ? of_cells_ : of_groups_);
-  std::sort(chosen_.begin(), chosen_.end(), [](const Chosen& a, const Chosen& b) { return a.id < b.id; });
+  // Of two entries for a point, the one with an area comes first.
+  std::sort(chosen_.begin(), chosen_.end(), [](const Chosen& a, const Chosen& b) {
+    return a.id != b.id ? a.id < b.id : a.area.size > b.area.size;
+  });
   const auto isSame = [](const Chosen& a, const Chosen& b) { return a.id == b.id; };
   chosen_.erase(std::unique(chosen_.begin(), chosen_.end(), isSame), chosen_.end());
+}
+
+RepresentativePoints::Surface RepresentativePoints::surfaceOf(const Chosen& chosen) const noexcept {
+  if (!(chosen.area.size > 0)) return {0, shell_->points[chosen.id], Mat3::Zero()};
+  const double area_m2 = chosen.area.size;
+  const Vec3 center = chosen.area.first.cast<double>() / area_m2;
+  return {area_m2, center, chosen.area.second.cast<double>() / area_m2 - center * center.transpose()};
 }
 
 QueryResult RepresentativePoints::find(const VoxMap& map, const Pose& X_MP, const Request& request,
                                        ContactSet& out, QueryMemory* memory) noexcept {
   const QueryOptions& options = request.options;
   merged_to_m_ = 0;
+  surfaces_.clear();
   if (!X_MP.isFinite() || !reduces_contacts_) return queryContacts(map, *shell_, X_MP, options, out, memory);
   out.contacts.clear();
   out.left_out = 0;
@@ -247,7 +264,10 @@ QueryResult RepresentativePoints::find(const VoxMap& map, const Pose& X_MP, cons
     if (std::exchange(last, point.leaf) != point.leaf) reader.add(point.leaf);
   reader.flush();
   collector.finish();
-  if (out.left_out > 0) result.status = Status::Truncated;
+  if (out.left_out > 0)
+    result.status = Status::Truncated;
+  else
+    for (const Chosen& c : chosen_) surfaces_.push_back(surfaceOf(c));
   setDistance(map, reading, search.least(), least_skipped, result);
   return result;
 }
