@@ -149,14 +149,11 @@ std::vector<Family> spinningFaceFamilies() {
   constraint.measure = "error of the deceleration by even pressure";
   constraint.bar = 0.05;
   constraint.members = 60;
-  constraint.expected_failure = 0.8057;
-  constraint.expected_failure_short = 0.6844;
   constraint.every = 7;  // coprime to the number of parts
   constraint.measured = [](int member) { return error(dynamics::Mode::Constraint, member); };
   constraint.describe = describe;
   Family penalty = constraint;
   penalty.key = "K_penalty";
-  penalty.expected_failure = penalty.expected_failure_short = std::nullopt;
   penalty.measured = [](int member) { return error(dynamics::Mode::Penalty, member); };
   return {constraint, penalty};
 }

@@ -206,7 +206,7 @@ std::vector<Row> shapeRows() {
        "blocks in a tower, every face, edge and corner on its like",
        "rest, place",
        {1, 2, 5, 8, 10, 20, 40},
-       3,
+       6,
        tower,
        {99, 99},
        toText},

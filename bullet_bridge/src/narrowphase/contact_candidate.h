@@ -25,13 +25,15 @@ inline constexpr double kOutOfReach_m = 1;
 /// A point that can touch within the step: a point of one side's shell, or a crossing of an edge of body 0
 /// with an edge of body 1.
 struct Candidate {
-  Vec3 p_W = Vec3::Zero();            ///< the shell's point now; at a crossing the point on body 0's edge
-  Vec3 n_W = Vec3::Zero();            ///< unit, from body 1 to body 0
-  double distance_m = 0;              ///< signed gap now
-  double predicted_m = 0;             ///< gap at the end of the step in free motion
-  double area_m2 = 0;                 ///< surface that the point represents
-  double impulse_Ns = 0;              ///< its normal impulse in the last step
-  double rest_m = 0;                  ///< gap at which sharp features rest
+  Vec3 p_W = Vec3::Zero();        ///< the shell's point now; at a crossing the point on body 0's edge
+  Vec3 n_W = Vec3::Zero();        ///< unit, from body 1 to body 0
+  double distance_m = 0;          ///< signed gap now
+  double predicted_m = 0;         ///< gap at the end of the step in free motion
+  double area_m2 = 0;             ///< surface that the point represents
+  Vec3 area_at_W = Vec3::Zero();  ///< its centre
+  Eigen::Matrix3f area_spread = Eigen::Matrix3f::Zero();  ///< mean of d d', d from the centre, in W [m2]
+  double impulse_Ns = 0;                                  ///< its normal impulse in the last step
+  double rest_m = 0;                                      ///< gap at which sharp features rest
   double met_s = 0;                   ///< time in the step, on the way of a fast body, at which it was found
   double curvature_per_m = 0;         ///< of faces that touch flush: the greatest sum of both curvatures
   double hollow_per_m = 0;            ///< by how much the face bends towards the point that the plane is of
@@ -136,16 +138,20 @@ std::size_t findCrossingCandidates(const SideView& body0, const SideView& body1,
 /// Keeps the most urgent candidates of each cell of position and direction, now and at the end of the step:
 /// depth, extent and every direction of contact are preserved. Last step's contacts are kept, so that the set
 /// does not flicker. Where more than `limit` are left, cells are doubled, as long as they are smaller than
-/// most_m. The grid is fixed in the world, so that the cells of a resting part do not shift.
+/// most_m.
 /// @param cell_m  edge of the first cells, a fraction of the smaller body's size
+/// @param X_GW    the grid is fixed in a frame G of one of the bodies, so that a scene that is moved or
+/// turned as
+///                a whole keeps its contacts
 /// @return edge of the last cells; 0 if there were no more than `limit`
-double reduceByCell(std::vector<Candidate>& candidates, std::size_t limit, double cell_m, double most_m);
+double reduceByCell(std::vector<Candidate>& candidates, std::size_t limit, double cell_m, double most_m,
+                    const Pose& X_GW = Pose());
 
 /// Keeps at most `limit`: those that carried load, then the deepest, then repeatedly the one farthest from
 /// all selected, in position (in units of length_m) and direction. The result is in ascending key order, so
 /// that equal sets have equal bits.
 void reduceBySpread(std::vector<Candidate>& candidates, std::size_t limit, double length_m,
-                    double contact_margin_m);
+                    double contact_margin_m, const Mat3& R_GW = Mat3::Identity());
 
 // Refining.
 

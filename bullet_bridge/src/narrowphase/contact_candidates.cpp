@@ -52,6 +52,7 @@ std::size_t findByDistance(const SideView& side, const Pose& X_WS, double cutoff
       c.n_W = sign * (X_WS.R * surface.n);
       c.distance_m = surface.distance_m;
       c.area_m2 = shell.area_m2[id];
+      c.area_at_W = c.p_W;
       c.id = id;
       c.side = side.side;
       c.surface[c.side] = side.shape->surfaceAt(id);
@@ -121,6 +122,7 @@ Candidate candidateOf(const Contact& contact, const SideView& side, const SideVi
   c.n_W = sign * (other.X_WM.R * contact.n_M);
   c.distance_m = contact.distance_m;
   c.area_m2 = contact.area_m2;
+  c.area_at_W = c.p_W;
   c.id = contact.id;
   c.side = side.side;
   c.surface[c.side] = side.shape->surfaceAt(c.id);
@@ -158,6 +160,15 @@ std::size_t findMapCandidates(const SideView& side, const SideView& other, doubl
   const std::size_t count = std::min(near.contacts.size(), limitOf(settings, shell));
   for (const Contact& contact : std::span(near.contacts).first(count))
     out.push_back(candidateOf(contact, side, other));
+  if (query.state && query.state->leading) {
+    const auto surfaces = query.state->leading->surfaces();
+    for (std::size_t i = 0; i < std::min(count, surfaces.size()); ++i) {
+      Candidate& c = out[out.size() - count + i];
+      c.area_m2 = surfaces[i].area_m2;
+      c.area_at_W = side.X_WM * surfaces[i].center;
+      c.area_spread = (side.X_WM.R * surfaces[i].spread * side.X_WM.R.transpose()).cast<float>();
+    }
+  }
   return near.contacts.size() - count;
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "narrowphase/contact_area.h"
 #include "narrowphase/contact_candidate.h"
 #include "vps/contact_tolerances.h"
 #include "vps/direction_cell.h"
@@ -35,7 +36,7 @@ bool isMoreUrgent(const Candidate& a, const Candidate& b, Measure measure) {
 
 /// What the reduction needs to know of a candidate, so that each pass reads half of its size.
 struct Brief {
-  std::int32_t at[3];   // cell of the finest grid, which is fixed in the world
+  std::int32_t at[3];   // cell of the finest grid
   std::uint32_t kind;   // direction, side, crossing or point
   double urgency[2];    // by Measure
   std::uint64_t key;    // of the candidate
@@ -55,24 +56,25 @@ struct Brief {
   }
 };
 
-Brief briefOf(const Candidate& c, double cell_m, std::uint32_t index) {
+Brief briefOf(const Candidate& c, double cell_m, const Pose& X_GW, std::uint32_t index) {
   Brief brief{{0, 0, 0},
-              (directionCell(c.n_W) << 2) | (c.isCrossing() ? 2U : 0U) | c.side,
+              (directionCell(X_GW.R * c.n_W) << 2) | (c.isCrossing() ? 2U : 0U) | c.side,
               {urgency(c, Measure::Now), urgency(c, Measure::EndOfStep)},
               c.key(),
               index,
               c.was_contact};
   constexpr double kMost = 1e9;  // cells; beyond them positions are no longer told apart
+  const Vec3 p_G = X_GW * c.p_W;
   for (int k = 0; k < 3; ++k)
-    brief.at[k] = static_cast<std::int32_t>(std::floor(std::clamp(c.p_W[k] / cell_m, -kMost, kMost)));
+    brief.at[k] = static_cast<std::int32_t>(std::floor(std::clamp(p_G[k] / cell_m, -kMost, kMost)));
   return brief;
 }
 
 // Keeps the most urgent of each cell, by both measures, and last step's contacts. A small open-addressed
 // table from cell to its best candidate so far needs one pass; sorting 5000 candidates took five times as
 // long. The table is at most half full where there are fewer than 2048 candidates; one that finds
-// no place in 16 probes is kept.
-void keepMostUrgent(std::vector<Brief>& briefs, int level) {
+// no place in 16 probes is kept. The area of the others goes to the most urgent one of their cell.
+void keepMostUrgent(std::vector<Brief>& briefs, int level, std::vector<Candidate>& candidates) {
   constexpr std::size_t kFewestSlots = 64, kMostSlots = 4096, kProbes = 16;
   const std::size_t slot_count = std::clamp(std::bit_ceil(2 * briefs.size()), kFewestSlots, kMostSlots);
   const int unused_bits = 64 - std::countr_zero(slot_count);
@@ -82,8 +84,10 @@ void keepMostUrgent(std::vector<Brief>& briefs, int level) {
   };
   thread_local std::vector<Slot> slots;
   thread_local std::vector<std::uint8_t> is_kept;
+  thread_local std::vector<std::size_t> slot_of;
   slots.assign(slot_count, Slot{});
   is_kept.assign(briefs.size(), 0);
+  slot_of.resize(briefs.size());
   for (std::uint32_t i = 0; i < briefs.size(); ++i) {
     const Brief& brief = briefs[i];
     const std::uint64_t cell = brief.cell(level);
@@ -91,6 +95,7 @@ void keepMostUrgent(std::vector<Brief>& briefs, int level) {
     std::size_t probe = 0;
     for (; probe < kProbes && slots[at].cell != cell && slots[at].cell != kEmpty; ++probe)
       at = (at + 1) % slot_count;
+    slot_of[i] = at;
     if (brief.was_contact || probe == kProbes) is_kept[i] = 1;
     if (probe == kProbes) continue;
     Slot& slot = slots[at];
@@ -102,7 +107,10 @@ void keepMostUrgent(std::vector<Brief>& briefs, int level) {
     if (slot.cell != kEmpty) is_kept[slot.now] = is_kept[slot.end_of_step] = 1;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < briefs.size(); ++i)
-    if (is_kept[i]) briefs[kept++] = briefs[i];
+    if (is_kept[i])
+      briefs[kept++] = briefs[i];
+    else
+      addArea(candidates[briefs[i].index], candidates[briefs[slots[slot_of[i]].now].index]);
   briefs.resize(kept);
 }
 
@@ -113,7 +121,8 @@ struct Spread {
   Eigen::ArrayXf urgency;                        // -1 to 1, in contact margins
   Eigen::Index size = 0;                         // entries in use
 
-  void assign(const std::vector<Candidate>& candidates, double length_m, double contact_margin_m) {
+  void assign(const std::vector<Candidate>& candidates, double length_m, double contact_margin_m,
+              const Mat3& R_GW) {
     const auto count = static_cast<Eigen::Index>(candidates.size());
     if (place.rows() < count) place.resize(count, 6);
     if (urgency.size() < count) urgency.resize(count);
@@ -124,10 +133,10 @@ struct Spread {
     const Vec3 origin = candidates.front().p_W;
     for (Eigen::Index i = 0; i < count; ++i) {
       const Candidate& c = candidates[static_cast<std::size_t>(i)];
-      const Vec3 p = (c.p_W - origin) / length_m;
+      const Vec3 p = R_GW * (c.p_W - origin) / length_m, n = R_GW * c.n_W;
       for (int k = 0; k < 3; ++k) {
         place(i, k) = static_cast<float>(p[k]);
-        place(i, 3 + k) = static_cast<float>(c.n_W[k]);
+        place(i, 3 + k) = static_cast<float>(n[k]);
       }
       urgency[i] = static_cast<float>(std::clamp(vps::bullet::urgency(c) / contact_margin_m, -1.0, 1.0));
     }
@@ -165,15 +174,17 @@ struct Spread {
 
 }  // namespace
 
-double reduceByCell(std::vector<Candidate>& candidates, std::size_t limit, double cell_m, double most_m) {
+double reduceByCell(std::vector<Candidate>& candidates, std::size_t limit, double cell_m, double most_m,
+                    const Pose& X_GW) {
   if (candidates.size() <= limit) return 0;
   thread_local std::vector<Brief> briefs;
   briefs.clear();
-  for (std::uint32_t i = 0; i < candidates.size(); ++i) briefs.push_back(briefOf(candidates[i], cell_m, i));
+  for (std::uint32_t i = 0; i < candidates.size(); ++i)
+    briefs.push_back(briefOf(candidates[i], cell_m, X_GW, i));
   double used_m = 0;
   double size_m = cell_m;
   for (int level = 0; briefs.size() > limit && size_m < most_m; ++level, size_m *= 2) {
-    keepMostUrgent(briefs, level);
+    keepMostUrgent(briefs, level, candidates);
     used_m = size_m;
   }
   // In ascending order: each moves to the front of its own place, or stays.
@@ -184,11 +195,11 @@ double reduceByCell(std::vector<Candidate>& candidates, std::size_t limit, doubl
 }
 
 void reduceBySpread(std::vector<Candidate>& candidates, std::size_t limit, double length_m,
-                    double contact_margin_m) {
+                    double contact_margin_m, const Mat3& R_GW) {
   const std::size_t count = candidates.size();
   if (count > limit) {
     thread_local Spread spread;
-    spread.assign(candidates, length_m, contact_margin_m);
+    spread.assign(candidates, length_m, contact_margin_m, R_GW);
     thread_local std::vector<Candidate> selected;
     selected.clear();
     const auto select = [&](std::size_t i) {
@@ -207,6 +218,7 @@ void reduceBySpread(std::vector<Candidate>& candidates, std::size_t limit, doubl
       if (!spread.isSelected(first)) select(first);
     }
     while (selected.size() < limit) select(spread.best());
+    shareAreas(candidates, length_m, selected);
     candidates.swap(selected);
   }
   std::sort(candidates.begin(), candidates.end(),

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "narrowphase/contact_area.h"
 #include "native_shapes/primitive.h"
 #include "vps/contact_tolerances.h"
 
@@ -192,9 +193,11 @@ void selectContacts(const PairView& pair, const RelativeMotion& motion, const Se
   }
   const auto limit = static_cast<std::size_t>(settings.contact_limit);
   const double radius_m = pair.radius_m();
-  const double sampling_m = reduceByCell(candidates, refinedLimit(settings), radius_m / 16, radius_m);
+  const Pose X_GW = pair.X_WS[1].inverse();
+  keepFacingShares(pair, candidates);
+  const double sampling_m = reduceByCell(candidates, refinedLimit(settings), radius_m / 16, radius_m, X_GW);
   // The others apart, so that they take no room from those.
-  reduceByCell(doubtful, 2 * limit, radius_m / 16, radius_m);
+  reduceByCell(doubtful, 2 * limit, radius_m / 16, radius_m, X_GW);
   candidates.insert(candidates.end(), doubtful.begin(), doubtful.end());
   refineOnWay(pair, motion, settings, candidates);
   if (isQueriedOnce(pair, motion)) measureAtEnd(pair, motion, settings, candidates);
@@ -208,7 +211,7 @@ void selectContacts(const PairView& pair, const RelativeMotion& motion, const Se
     selection->is_of_path = !isQueriedOnce(pair, motion);
     selection->any_way_m = motion.anyWay_m();
   }
-  reduceBySpread(candidates, limit, radius_m, settings.contact_margin_m);
+  reduceBySpread(candidates, limit, radius_m, settings.contact_margin_m, X_GW.R);
 }
 
 void storeSelection(const std::vector<Candidate>& chosen, const PairView& pair, const RelativeMotion& motion,

@@ -2,6 +2,8 @@
 #include "narrowphase/feature_check.h"
 
 #include <algorithm>
+#include <cstdio>
+#include <cstdlib>
 
 #include "narrowphase/contact_selection.h"
 #include "narrowphase/contacts_there.h"
@@ -206,13 +208,24 @@ bool spinsFreely(const PairView& start, const Pose (&X_WS_end)[2], PairState& st
                                poseBetween(start, X_WS_end), least_m);
 }
 
+namespace {
+
+bool isSharp(const PairView& pair, const Candidate& c) {
+  return !c.is_flush && (c.isCrossing() || pair.shape[c.side]->isEdgePoint(c.id));
+}
+
+bool isFlat(const Candidate& c) {
+  return !c.is_flush && c.curvature_per_m == 0 && c.hollow_per_m == 0;
+}
+
+}  // namespace
+
 void markSharp(const PairView& pair, const Settings& settings, bool is_own,
                std::vector<Candidate>& contacts) {
   if (!hasFeatures(pair, settings)) return;
   const double rest_m = FeatureMotion::rest_m(pair.shape[0]->features(), pair.shape[1]->features());
   for (Candidate& c : contacts)
-    if (!c.is_flush && (!is_own || c.isCrossing() || pair.shape[c.side]->isEdgePoint(c.id)))
-      c.rest_m = rest_m;
+    if (is_own ? isSharp(pair, c) || isFlat(c) : !c.is_flush) c.rest_m = rest_m;
 }
 
 void addFeatureContacts(const PairView& start, const EndPoses& end, bool is_first, PairState& state,

@@ -22,10 +22,10 @@ bool hasFeatures(const PairView& pair, const Settings& settings);
 void addMissedFeatures(const PairView& pair, const Settings& settings, PairState& state,
                        std::vector<Candidate>& contacts);
 
-/// Marks the contacts that are kept at a rest gap: those at sharp features. Bullet's own solvers keep the
-/// friction of contacts that lose their load while they iterate, so where contacts of a face lay deeper than
-/// those of its edges, it would slide too slowly: with these, all have the rest gap that are not flush on
-/// curved faces.
+/// Marks the contacts that are kept at a rest gap, as sharp features are: those, and those of flat faces.
+/// Where contacts of a face lay deeper than those of its edges, the edges would carry its load alone.
+/// Bullet's own solvers keep the friction of contacts that lose their load while they iterate: with these,
+/// all have the rest gap that are not flush on curved faces, so that none lies deeper.
 /// @param is_own  bullet::Solver solves the pair, not one of Bullet's
 void markSharp(const PairView& pair, const Settings& settings, bool is_own, std::vector<Candidate>& contacts);
 

@@ -77,6 +77,7 @@ btManifoldPoint makePoint(const Candidate& c, const PairMaterial& material,
   point.m_partId1 = c.surface[1];
   setMaterial(point, c, material, bodies[0]->getCollisionObject(), bodies[1]->getCollisionObject());
   if (c.rest_m > 0) setRestGap(point, c.rest_m);
+  setArea(point, c.area_m2);
   if (c.bounces) setBounces(point);
   setFrictionDirections(point, c.n_W, motion.velocityAt(c.p_W));
   // Bullet's solver scales the directions by the bodies' factors, but only those that it chooses itself.

@@ -70,7 +70,7 @@ void PairCheck::findOverlaps(const Motion& m, const PairView& pair, std::vector<
     return c.distance_m > fieldError_m(pair, c) + sampling.of_m(c);
   });
   const double radius_m = pair.radius_m();
-  reduceByCell(found, refinedLimit(context.settings), radius_m / 16, radius_m);
+  reduceByCell(found, refinedLimit(context.settings), radius_m / 16, radius_m, pair.X_WS[1].inverse());
   refineAll(pair, still, context.settings, found);
   moveToFacetCorners(pair, still.contact_margin_m, found);
   std::erase_if(found, [&](const Candidate& c) { return c.distance_m >= -m.tolerated_m; });
@@ -117,7 +117,8 @@ bool PairCheck::measureAtStart(const Motion& m, const PairView& at_start, Candid
 void PairCheck::emit(const Motion& m, std::vector<Candidate>& missed, std::vector<MissedContact>& out) {
   for (Candidate& c : missed) c.predicted_m = c.distance_m;
   const Placed at_start(*this, m.start);
-  reduceBySpread(missed, kMostAdded, at_start.pair.radius_m(), state_.context->settings.contact_margin_m);
+  reduceBySpread(missed, kMostAdded, at_start.pair.radius_m(), state_.context->settings.contact_margin_m,
+                 m.start[1].R.transpose());
   for (const Candidate& end : missed) {
     Candidate start = m.step.inverse().moved(end);
     if (m.turnsFar(0) && !end.isCrossing()) measureAtStart(m, at_start.pair, start);

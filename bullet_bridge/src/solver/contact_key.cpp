@@ -8,7 +8,7 @@ namespace vps::bullet::inline v0 {
 namespace {
 
 // Bits of m_contactPointFlags far above Bullet's own.
-constexpr int kHasRestGap = 1 << 24, kBounces = 1 << 28;
+constexpr int kHasRestGap = 1 << 24, kBounces = 1 << 28, kHasArea = 1 << 29;
 constexpr int kIsSoft = BT_CONTACT_FLAG_HAS_CONTACT_CFM | BT_CONTACT_FLAG_CONTACT_STIFFNESS_DAMPING;
 
 }  // namespace
@@ -21,6 +21,17 @@ void setRestGap(btManifoldPoint& point, double rest_m) {
 
 double restGap_m(const btManifoldPoint& point) {
   return (point.m_contactPointFlags & kHasRestGap) != 0 ? point.m_contactCFM : 0;
+}
+
+void setArea(btManifoldPoint& point, double area_m2) {
+  constexpr int kOwn = BT_CONTACT_FLAG_HAS_CONTACT_ERP | BT_CONTACT_FLAG_CONTACT_STIFFNESS_DAMPING;
+  if ((point.m_contactPointFlags & kOwn) != 0) return;
+  point.m_contactPointFlags |= kHasArea;
+  point.m_contactERP = static_cast<btScalar>(area_m2);
+}
+
+double area_m2(const btManifoldPoint& point) {
+  return (point.m_contactPointFlags & kHasArea) != 0 ? point.m_contactERP : 0;
 }
 
 void setBounces(btManifoldPoint& point) {

@@ -22,6 +22,11 @@ void setRestGap(btManifoldPoint& point, double rest_m);
 /// 0: it has none.
 double restGap_m(const btManifoldPoint& point);
 
+/// Sets how much of a touching face the contact stands for; kept as the gap is.
+void setArea(btManifoldPoint& point, double area_m2);
+/// 0: it stands for none.
+double area_m2(const btManifoldPoint& point);
+
 /// Marks a contact at which the bodies will bounce within the step. Bullet's solver subtracts the gap from
 /// the speed of the rebound, which would suppress a bounce within the step; so it is given no gap. The two
 /// positions keep it.

@@ -8,6 +8,7 @@
 
 #include "solver/contact_newton.h"
 #include "solver/contact_sweeps.h"
+#include "solver/even_pressure.h"
 #include "solver/island.h"
 #include "solver/joint_rows.h"
 #include "solver/step_check.h"
@@ -38,18 +39,20 @@ class ContactLoop {
 
   /// Solves the step until no pair lacks a contact, at most nine times.
   /// @param solve  called without arguments in each round: solveContacts(), with what depends on its result
-  /// @param retakes_rows  contacts get the rows that they have at the end of the step, where these differ
+  /// @param is_own  bullet::Solver solves the step: contacts get the rows that they have at its end, where
+  /// these differ, and flush faces an even pressure to start from
   /// @return the most steps of a round, and whether the last one converged
   template <typename Solve>
-  SolveOutcome run(const btContactSolverInfo& info, int push_sweeps, bool retakes_rows, const Solve& solve) {
+  SolveOutcome run(const btContactSolverInfo& info, int push_sweeps, bool is_own, const Solve& solve) {
     dt_s_ = info.m_timeStep;
-    if (retakes_rows) linearise(info);
+    if (is_own) linearise(info);
+    if (is_own) pressure_.spread(contacts.contacts());
     SolveOutcome outcome;
     for (int checked = 0;; ++checked) {
       const SolveOutcome round = solve();
       outcome = {std::max(outcome.steps, round.steps), round.is_converged};
       contacts.solvePush(info, push_sweeps);
-      const int number = retakes_rows ? checked : checked + kMostRetakes;
+      const int number = is_own ? checked : checked + kMostRetakes;
       if (checked == kMostRounds || !addMissed(info, number)) return outcome;
     }
   }
@@ -64,6 +67,7 @@ class ContactLoop {
   void linearise(const btContactSolverInfo& info);
   bool addMissed(const btContactSolverInfo& info, int round);
 
+  EvenPressure pressure_{island};
   ContactNewton newton_{island, joints};
   std::vector<MissedContact> missed_;  // of the last check
   std::vector<Vec6> u_;                // scratch

@@ -75,8 +75,8 @@ void addProduct(Mat6& sum, double factor, const Vec3& r, const Vec3& a, const Ve
 
 }  // namespace
 
-// The impulse at a relative velocity: the projection onto the cone; with minus its derivative.
-void ContactNewton::project(Point& p, const Vec3& v, Slips slips, Mat6* jacobian) {
+// The impulse at a relative velocity: the projection onto the cone.
+void ContactNewton::project(Point& p, const Vec3& v, Slips slips, Stiffness* stiffness) {
   const double k = 1 / p.softness;
   const Vec3 v_t = v - p.n.dot(v) * p.n;
   const double speed = v_t.norm();
@@ -89,11 +89,9 @@ void ContactNewton::project(Point& p, const Vec3& v, Slips slips, Mat6* jacobian
   const Vec3 slip_v = slips == Slips::Follow && speed > 0 ? Vec3(p.mu / speed * v_t) : Vec3(Vec3::Zero());
   if (y_n > 0 && length <= p.mu * y_n) {  // sticks
     p.next = y;
-    if (!jacobian) return;
-    SymmetricSum spring;
-    spring.addEven(k, p.r);
-    *jacobian += spring.total();
-    if (speed > 0) addProduct(*jacobian, k, p.r, p.n, slip_v);
+    if (!stiffness) return;
+    stiffness->springs.addEven(k, p.r);
+    if (speed > 0) addProduct(stiffness->rest, k, p.r, p.n, slip_v);
     return;
   }
   const double along = y_n + p.mu * length;
@@ -104,11 +102,11 @@ void ContactNewton::project(Point& p, const Vec3& v, Slips slips, Mat6* jacobian
   const double share = 1 / (1 + p.mu * p.mu), p_n = share * along;
   const Vec3 t = length > 0 ? Vec3(y_t / length) : Vec3(Vec3::Zero()), edge = p.n + p.mu * t;
   p.next = p_n * edge;
-  if (!jacobian) return;
-  addProduct(*jacobian, k * share, p.r, edge, edge + slip_v);
+  if (!stiffness) return;
+  addProduct(stiffness->rest, k * share, p.r, edge, edge + slip_v);
   if (p.mu > 0 && length > 0) {
     const Vec3 across = p.n.cross(t);
-    addProduct(*jacobian, k * p.mu * p_n / length, p.r, across, across);
+    addProduct(stiffness->rest, k * p.mu * p_n / length, p.r, across, across);
   }
 }
 
@@ -137,12 +135,13 @@ void ContactNewton::evaluate(const std::vector<Vec6>& u, Slips slips, bool with_
     const Vec6 twist = twistOf(patch, u);
     const Vec3 w = twist.head<3>(), v = twist.tail<3>();
     Vec6 wrench = Vec6::Zero();
-    if (with_jacobian) patch.jacobian.setZero();
+    Stiffness stiffness;
     for (std::size_t i = patch.first; i < patch.end; ++i) {
       Point& p = points_[i];
-      project(p, v + w.cross(p.r), slips, with_jacobian ? &patch.jacobian : nullptr);
+      project(p, v + w.cross(p.r), slips, with_jacobian ? &stiffness : nullptr);
       wrench += wrenchOf(p.r, p.next);
     }
+    if (with_jacobian) patch.jacobian = stiffness.springs.total() + stiffness.rest;
     for (int i = 0; i < 2; ++i)
       if (patch.body[i] >= 0)
         missing[static_cast<std::size_t>(patch.body[i])] -= patch.X[i].transpose() * wrench;
@@ -182,7 +181,8 @@ void ContactNewton::moveTo(double share) {
   for (std::size_t i = 0; i < u_.size(); ++i) trial_[i] = u_[i] + share * step_[i];
 }
 
-// Newton's step, or a share of it. False: none of these shares reduces what is missing.
+// Newton's step, or a share of it. False: none of these shares reduces what is missing. Mostly the whole step
+// does, so that the next one's derivatives are found with it.
 bool ContactNewton::step() {
   constexpr double kSufficient = 1e-2;  // of the reduction that a linear equation would have
   if (!findStep()) return false;
@@ -190,9 +190,13 @@ bool ContactNewton::step() {
   double share = 1;
   for (int k = 0; k < kMostRounds; ++k, share *= 0.5) {
     moveTo(share);
-    evaluate(trial_, Slips::Follow, false, trial_missing_);
+    evaluate(trial_, Slips::Follow, k == 0, trial_missing_);
     if (!(sizeOf(trial_missing_) <= (1 - kSufficient * share) * size)) continue;
     u_.swap(trial_);
+    if (k == 0)
+      missing_.swap(trial_missing_);
+    else
+      evaluate(u_, Slips::Follow, true, missing_);
     return true;
   }
   return false;
@@ -212,6 +216,7 @@ bool ContactNewton::convexStep() {
   });
   moveTo(share);
   u_.swap(trial_);
+  evaluate(u_, Slips::Follow, true, missing_);
   return true;
 }
 
@@ -224,8 +229,8 @@ double ContactNewton::imbalance_m_s() {
 
 SolveOutcome ContactNewton::minimise(double near_m_s, int step_limit) {
   SolveOutcome outcome;
+  evaluate(u_, Slips::Follow, true, missing_);
   for (;;) {
-    evaluate(u_, Slips::Follow, true, missing_);
     off_m_s_ = imbalance_m_s();
     outcome.is_converged = off_m_s_ <= near_m_s;
     if (outcome.is_converged || outcome.steps >= step_limit || !std::isfinite(off_m_s_)) return outcome;

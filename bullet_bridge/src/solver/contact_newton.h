@@ -29,6 +29,7 @@
 
 #include "solver/contact_sweeps.h"
 #include "solver/island_matrix.h"
+#include "solver/patch_math.h"
 
 namespace vps::bullet::inline v0 {
 
@@ -66,6 +67,11 @@ class ContactNewton {
     std::size_t first = 0, end = 0;  ///< in points_
     Mat6 jacobian;                   ///< of the wrench that it misses, by the relative twist
   };
+  /// Minus the derivative of a patch's wrench: of the contacts that stick, and the rest.
+  struct Stiffness {
+    SymmetricSum springs;
+    Mat6 rest = Mat6::Zero();
+  };
   /// Whether the terms of slip follow the velocities, or stay.
   enum class Slips : std::uint8_t { Follow, Stay };
   /// A row of a joint.
@@ -80,7 +86,7 @@ class ContactNewton {
   void addPatch(const RigidContact& first);
   [[nodiscard]] Vec6 twistOf(const Patch& patch, const std::vector<Vec6>& u) const;
   void evaluate(const std::vector<Vec6>& u, Slips slips, bool with_jacobian, std::vector<Vec6>& missing);
-  static void project(Point& point, const Vec3& v, Slips slips, Mat6* jacobian);
+  static void project(Point& point, const Vec3& v, Slips slips, Stiffness* stiffness);
   void evaluateJoints(const std::vector<Vec6>& u, std::vector<Vec6>& missing);
   bool findStep();
   [[nodiscard]] double sizeOf(const std::vector<Vec6>& missing);

@@ -78,6 +78,7 @@ void ContactSweeps::add(btPersistentManifold& manifold, btManifoldPoint& point,
   c.point = &point;
   for (int i = 0; i < 2; ++i) c.object[i] = objects[i];
   c.mu = point.m_combinedFriction;
+  c.area_m2 = area_m2(point);
   const double distance_m = solvedDistance_m(point);
   c.gap_m = distance_m + info.m_linearSlop - restGap_m(point);
   c.is_sharp = restGap_m(point) > 0 && distance_m > 0;
@@ -110,6 +111,7 @@ void ContactSweeps::addMissed(std::span<const MissedContact> missed, const btCon
     c.point = m.point;
     for (int i = 0; i < 2; ++i) c.object[i] = m.object[i];
     c.mu = m.point->m_combinedFriction;
+    c.area_m2 = area_m2(*m.point);
     c.normal = makeRow(m.object, *m.point, fromBt(m.point->m_normalWorldOnB));
     c.tangent[0] = makeRow(m.object, *m.point, fromBt(m.point->m_lateralFrictionDir1));
     c.tangent[1] = makeRow(m.object, *m.point, fromBt(m.point->m_lateralFrictionDir2));

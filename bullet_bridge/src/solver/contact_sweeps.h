@@ -53,6 +53,7 @@ struct RigidContact {
   double target_m_s = 0;  ///< least normal velocity
   double push_m_s = 0;    ///< least normal velocity of the push
   double gap_m = 0;
+  double area_m2 = 0;  ///< of a touching face, that it stands for
   double mu = 0;
   double restitution = 0;                       ///< 0 to 1
   bool is_sharp = false;                        ///< of sharp features apart, whose gap no push may take
