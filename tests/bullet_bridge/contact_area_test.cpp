@@ -28,7 +28,7 @@ std::vector<Candidate> faceOf(int kind, std::uint64_t seed, const Pose& X_WF) {
     if (kind < 2 && !(p.norm() < kSize_m && p.norm() >= kind * 0.6 * kSize_m)) continue;
     Candidate& c = points.emplace_back();
     c.id = static_cast<std::uint32_t>(points.size());
-    c.p_W = c.area_at_W = X_WF * p;
+    c.p_W = X_WF * p;
     c.n_W = X_WF.R.col(2);
     c.area_m2 = 1e-7;
   }
@@ -59,6 +59,7 @@ TEST(ContactArea, ThirtyTwoContactsHaveTheMomentsOfTheWholeFace) {
     const std::vector<Candidate> all = faceOf(static_cast<int>(seed % 3), seed, X_WF);
     std::vector<Candidate> chosen = all;
     reduceBySpread(chosen, 32, kSize_m, kMargin_m);
+    shareAreas(all, kSize_m, chosen);
     ASSERT_EQ(chosen.size(), 32u);
     const Sums want = sumsOf(all, X_WF), got = sumsOf(chosen, X_WF);
     // The least change is found to kSettledShare; an area that would be negative is left a little.
@@ -76,10 +77,36 @@ TEST(ContactArea, MergedPointsKeepTheirMoments) {
   for (std::size_t i = 1; i < all.size(); ++i) addArea(all[i], sum);
   const Sums want = sumsOf(all, Pose());
   EXPECT_NEAR(sum.area_m2, want.area_m2, 1e-9 * want.area_m2);
-  EXPECT_LE((sum.area_at_W * sum.area_m2 - want.first).norm(), 1e-9 * want.area_m2 * kSize_m);
+  EXPECT_LE((sum.areaCenter_W() * sum.area_m2 - want.first).norm(), 1e-9 * want.area_m2 * kSize_m);
   const Mat3 second =
-      sum.area_m2 * (sum.area_spread.cast<double>() + sum.area_at_W * sum.area_at_W.transpose());
+      sum.area_m2 * (sum.area_spread.cast<double>() + sum.areaCenter_W() * sum.areaCenter_W().transpose());
   EXPECT_LE((second - want.second).norm(), 1e-5 * want.second.norm());  // its spread is in floats
+}
+
+// Two faces that face each other's way: what is dropped goes to its own.
+TEST(ContactArea, ReductionByCellsKeepsTheMomentsOfEachFace) {
+  std::vector<Candidate> points = faceOf(0, 1, Pose());
+  const std::vector<Candidate> up = points;
+  const Pose down(rotationFromVector({std::numbers::pi, 0, 0}), Vec3(0, 0, 1e-3));
+  for (Candidate c : faceOf(2, 2, down)) {
+    c.id += 1000;
+    points.push_back(c);
+  }
+  const std::vector<Candidate> all = points;
+  reduceByCell(points, 60, kSize_m / 16, kSize_m);
+  ASSERT_LT(points.size(), 300u);
+  for (const double side : {1.0, -1.0}) {
+    const auto momentsOf = [&](const std::vector<Candidate>& of) {
+      Candidate sum;
+      for (const Candidate& c : of)
+        if (c.n_W.z() * side > 0) addArea(c, sum);
+      return sum;
+    };
+    const Candidate want = momentsOf(all), got = momentsOf(points);
+    EXPECT_NEAR(got.area_m2, want.area_m2, 1e-9 * want.area_m2);
+    EXPECT_LE((got.areaCenter_W() - want.areaCenter_W()).norm(), 1e-9);
+    EXPECT_LE((got.area_spread - want.area_spread).norm(), 1e-4F * want.area_spread.norm());
+  }
 }
 
 /// A cube of 10 mm on a floor with n x n contacts of areas that the test sets.

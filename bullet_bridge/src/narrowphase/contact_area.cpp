@@ -13,11 +13,12 @@ void addArea(const Candidate& from, Candidate& to) {
   const double sum_m2 = to.area_m2 + from.area_m2;
   if (!(sum_m2 > 0)) return;
   const double share = from.area_m2 / sum_m2;
-  const Eigen::Vector3f apart = (from.area_at_W - to.area_at_W).cast<float>();
+  const Vec3 apart_W = from.areaCenter_W() - to.areaCenter_W();
+  const Eigen::Vector3f apart = apart_W.cast<float>();
   const auto part = static_cast<float>(share);
   to.area_spread +=
       part * (from.area_spread - to.area_spread) + part * (1 - part) * apart * apart.transpose();
-  to.area_at_W += share * (from.area_at_W - to.area_at_W);
+  to.area_off_W += share * apart_W;
   to.area_m2 = sum_m2;
 }
 
@@ -35,7 +36,7 @@ Moments momentsAt(const Vec3& r) {
 // The same of the surface that a point represents, about its mean.
 Moments momentsOf(const Candidate& c, const Vec3& center, double length_m) {
   const Mat3 spread = c.area_spread.cast<double>() / (length_m * length_m);
-  Moments m = momentsAt((c.area_at_W - center) / length_m);
+  Moments m = momentsAt((c.areaCenter_W() - center) / length_m);
   m.tail<6>() +=
       (Eigen::Matrix<double, 6, 1>() << spread.diagonal(), spread(0, 1), spread(1, 2), spread(2, 0))
           .finished();
@@ -43,7 +44,7 @@ Moments momentsOf(const Candidate& c, const Vec3& center, double length_m) {
 }
 
 bool touches(const Candidate& c) {
-  return c.distance_m < c.rest_m + kSamePlace_m;
+  return c.distance_m < kSamePlace_m;
 }
 
 std::size_t nearestOf(const std::vector<Candidate>& chosen, const Vec3& p_W, const Vec3& n_W) {
@@ -71,15 +72,16 @@ std::uint8_t sideOfLess(const std::vector<Candidate>& all) {
 // friction than the thread does.
 void moveToMiddle(const std::vector<Candidate>& all, const std::vector<Candidate>& areas,
                   std::vector<Candidate>& chosen) {
+  if (std::none_of(chosen.begin(), chosen.end(), [](const Candidate& c) { return c.is_flush; })) return;
   const std::vector<Candidate> from = chosen;
   std::vector<double> nearest_m2;
   for (std::size_t k = 0; k < chosen.size(); ++k)
-    nearest_m2.push_back((from[k].p_W - areas[k].area_at_W).squaredNorm());
+    nearest_m2.push_back((from[k].p_W - areas[k].areaCenter_W()).squaredNorm());
   for (const Candidate& c : all) {
     if (!c.is_flush) continue;
     const std::size_t k = nearestOf(from, c.p_W, c.n_W);
     if (k == from.size() || !from[k].is_flush || !(areas[k].area_m2 > 0)) continue;
-    const double here_m2 = (c.p_W - areas[k].area_at_W).squaredNorm();
+    const double here_m2 = (c.p_W - areas[k].areaCenter_W()).squaredNorm();
     if (!(here_m2 < nearest_m2[k]) || c.distance_m > from[k].distance_m + kSamePlace_m) continue;
     nearest_m2[k] = here_m2;
     chosen[k] = c;
@@ -124,7 +126,7 @@ void shareAreas(const std::vector<Candidate>& all, double length_m, std::vector<
   Moments wanted = Moments::Zero();
   for (const Candidate& c : all) {
     if (c.side != side || !touches(c)) continue;
-    const std::size_t k = nearestOf(chosen, c.area_at_W, c.n_W);
+    const std::size_t k = nearestOf(chosen, c.areaCenter_W(), c.n_W);
     if (k == chosen.size()) continue;
     addArea(c, areas[k]);
     wanted += momentsOf(c, center, length_m);
@@ -132,6 +134,8 @@ void shareAreas(const std::vector<Candidate>& all, double length_m, std::vector<
   moveToMiddle(all, areas, chosen);
   for (std::size_t k = 0; k < chosen.size(); ++k) chosen[k].area_m2 = areas[k].area_m2;
   if (wanted[0] > 0) correct(chosen, center, length_m, wanted);
+  std::sort(chosen.begin(), chosen.end(),
+            [](const Candidate& a, const Candidate& b) { return a.key() < b.key(); });
 }
 
 }  // namespace vps::bullet::inline v0

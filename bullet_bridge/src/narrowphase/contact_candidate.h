@@ -25,12 +25,12 @@ inline constexpr double kOutOfReach_m = 1;
 /// A point that can touch within the step: a point of one side's shell, or a crossing of an edge of body 0
 /// with an edge of body 1.
 struct Candidate {
-  Vec3 p_W = Vec3::Zero();        ///< the shell's point now; at a crossing the point on body 0's edge
-  Vec3 n_W = Vec3::Zero();        ///< unit, from body 1 to body 0
-  double distance_m = 0;          ///< signed gap now
-  double predicted_m = 0;         ///< gap at the end of the step in free motion
-  double area_m2 = 0;             ///< surface that the point represents
-  Vec3 area_at_W = Vec3::Zero();  ///< its centre
+  Vec3 p_W = Vec3::Zero();         ///< the shell's point now; at a crossing the point on body 0's edge
+  Vec3 n_W = Vec3::Zero();         ///< unit, from body 1 to body 0
+  double distance_m = 0;           ///< signed gap now
+  double predicted_m = 0;          ///< gap at the end of the step in free motion
+  double area_m2 = 0;              ///< surface that the point represents
+  Vec3 area_off_W = Vec3::Zero();  ///< its centre from p_W
   Eigen::Matrix3f area_spread = Eigen::Matrix3f::Zero();  ///< mean of d d', d from the centre, in W [m2]
   double impulse_Ns = 0;                                  ///< its normal impulse in the last step
   double rest_m = 0;                                      ///< gap at which sharp features rest
@@ -47,6 +47,7 @@ struct Candidate {
   std::uint8_t plane_of = kBetween;   ///< body whose face the plane is: 0 or 1
   static constexpr std::uint8_t kBetween = 2;  ///< the plane lies between edges, or is only the field's
 
+  [[nodiscard]] Vec3 areaCenter_W() const { return p_W + area_off_W; }
   [[nodiscard]] bool isCrossing() const { return crossed != 0; }
   [[nodiscard]] std::uint64_t key() const { return contactKey(side, crossed, id); }
 };

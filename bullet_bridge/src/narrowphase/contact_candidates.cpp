@@ -52,7 +52,6 @@ std::size_t findByDistance(const SideView& side, const Pose& X_WS, double cutoff
       c.n_W = sign * (X_WS.R * surface.n);
       c.distance_m = surface.distance_m;
       c.area_m2 = shell.area_m2[id];
-      c.area_at_W = c.p_W;
       c.id = id;
       c.side = side.side;
       c.surface[c.side] = side.shape->surfaceAt(id);
@@ -122,7 +121,6 @@ Candidate candidateOf(const Contact& contact, const SideView& side, const SideVi
   c.n_W = sign * (other.X_WM.R * contact.n_M);
   c.distance_m = contact.distance_m;
   c.area_m2 = contact.area_m2;
-  c.area_at_W = c.p_W;
   c.id = contact.id;
   c.side = side.side;
   c.surface[c.side] = side.shape->surfaceAt(c.id);
@@ -165,7 +163,7 @@ std::size_t findMapCandidates(const SideView& side, const SideView& other, doubl
     for (std::size_t i = 0; i < std::min(count, surfaces.size()); ++i) {
       Candidate& c = out[out.size() - count + i];
       c.area_m2 = surfaces[i].area_m2;
-      c.area_at_W = side.X_WM * surfaces[i].center;
+      c.area_off_W = side.X_WM * surfaces[i].center - c.p_W;
       c.area_spread = (side.X_WM.R * surfaces[i].spread * side.X_WM.R.transpose()).cast<float>();
     }
   }

@@ -105,12 +105,11 @@ void keepMostUrgent(std::vector<Brief>& briefs, int level, std::vector<Candidate
   }
   for (const Slot& slot : slots)
     if (slot.cell != kEmpty) is_kept[slot.now] = is_kept[slot.end_of_step] = 1;
+  for (std::size_t i = 0; i < briefs.size(); ++i)
+    if (!is_kept[i]) addArea(candidates[briefs[i].index], candidates[briefs[slots[slot_of[i]].now].index]);
   std::size_t kept = 0;
   for (std::size_t i = 0; i < briefs.size(); ++i)
-    if (is_kept[i])
-      briefs[kept++] = briefs[i];
-    else
-      addArea(candidates[briefs[i].index], candidates[briefs[slots[slot_of[i]].now].index]);
+    if (is_kept[i]) briefs[kept++] = briefs[i];
   briefs.resize(kept);
 }
 
@@ -218,7 +217,6 @@ void reduceBySpread(std::vector<Candidate>& candidates, std::size_t limit, doubl
       if (!spread.isSelected(first)) select(first);
     }
     while (selected.size() < limit) select(spread.best());
-    shareAreas(candidates, length_m, selected);
     candidates.swap(selected);
   }
   std::sort(candidates.begin(), candidates.end(),

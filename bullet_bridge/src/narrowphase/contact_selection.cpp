@@ -195,6 +195,7 @@ void selectContacts(const PairView& pair, const RelativeMotion& motion, const Se
   const double radius_m = pair.radius_m();
   const Pose X_GW = pair.X_WS[1].inverse();
   keepFacingShares(pair, candidates);
+  keepFacingShares(pair, doubtful);
   const double sampling_m = reduceByCell(candidates, refinedLimit(settings), radius_m / 16, radius_m, X_GW);
   // The others apart, so that they take no room from those.
   reduceByCell(doubtful, 2 * limit, radius_m / 16, radius_m, X_GW);
@@ -212,6 +213,7 @@ void selectContacts(const PairView& pair, const RelativeMotion& motion, const Se
     selection->any_way_m = motion.anyWay_m();
   }
   reduceBySpread(candidates, limit, radius_m, settings.contact_margin_m, X_GW.R);
+  if (selection) shareAreas(selection->refined, radius_m, candidates);
 }
 
 void storeSelection(const std::vector<Candidate>& chosen, const PairView& pair, const RelativeMotion& motion,

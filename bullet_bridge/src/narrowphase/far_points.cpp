@@ -164,8 +164,9 @@ std::vector<Candidate> nearestFarPoints(const PairView& pair, double wanted_m, C
   // Not refined, as contacts are: the plane of a curved face is no distance from a point that is far away.
   const auto limit = static_cast<std::size_t>(context.settings.contact_limit);
   const double radius_m = pair.radius_m();
-  reduceByCell(points, 4 * limit, radius_m / 16, radius_m);
-  reduceBySpread(points, limit, radius_m, still.contact_margin_m);
+  const Pose X_GW = pair.X_WS[1].inverse();
+  reduceByCell(points, 4 * limit, radius_m / 16, radius_m, X_GW);
+  reduceBySpread(points, limit, radius_m, still.contact_margin_m, X_GW.R);
   Candidate& first = *std::min_element(points.begin(), points.end(), isNearer);
   first = polished(first, pair);
   return points;

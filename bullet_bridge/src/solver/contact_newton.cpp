@@ -291,7 +291,7 @@ SolveOutcome ContactNewton::solve(std::span<RigidContact> contacts, double resid
   for (;;) {
     setCompliance(compliance);
     const double near_m_s =
-        kRoundShare * std::clamp(last_m_s, kAccuracyShare * residual_m_s, kFirstError_m_s);
+        kRoundShare * std::max(kAccuracyShare * residual_m_s, std::min(last_m_s, kFirstError_m_s));
     const SolveOutcome round = minimise(near_m_s, std::min(kRoundSteps, step_limit - outcome.steps));
     outcome.steps += std::max(1, round.steps);
     if (!round.is_converged) {

@@ -14,7 +14,7 @@ namespace vps::bullet::inline v0 {
 /// Spreads the normal impulses of each pair of bodies over its contacts that touch, so that force and moment
 /// stay and the sum of p^2 / area is least: as under a body on an even, soft layer. Friction is spread
 /// likewise. A solver that starts from them goes to the solution nearest to them, so that the even pressure
-/// stays wherever it is one. Where contacts hold bodies in a single way, or none of these impulses would all
+/// stays wherever it is one. Where contacts hold bodies in a single way, or no such impulses all
 /// press, they stay. Cost: some 50 ns a contact and 1 us a pair.
 class EvenPressure {
  public:

@@ -159,11 +159,10 @@ inline constexpr double kSettledShare = 1e-6;
 /// Of the island's fastest speed: the solver's error. A micrometre on a path of a decimetre.
 /// Test: I_flush.
 inline constexpr double kSpeedErrorShare = 1e-5;
-/// What the terms of a sum or the rounds of an iteration gain on each other. Of the error of a round, how
-/// accurate the next need be; of the residual, how accurate a contact's law is (the whole one turned a nut by
-/// 2 %, since it has one sign from step to step); of a slope, when a line search ends; and by how much
-/// stiffer contacts follow a round that reduced its error by less [Bertsekas 1982, ch. 2].
-/// Test: B_mass_ratio_turns.
+/// What the terms of a sum gain on each other. Of the residual, how accurate a contact's law is (the whole
+/// one turned a nut by 2 %, since it has one sign from step to step); of a slope, when a line search ends;
+/// how much less a round's error must be than the last one's for the contacts not to become stiffer, and by
+/// how much softer they are after a round that did not end [Bertsekas 1982, ch. 2]. Test: B_mass_ratio_turns.
 inline constexpr double kAccuracyShare = 0.1;
 /// Error that the first round is solved for [m/s].
 /// Test: Replay.

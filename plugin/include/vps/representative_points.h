@@ -91,18 +91,18 @@ class VPS_API RepresentativePoints {
     std::uint32_t first_group = 0, group_count = 0;
   };
   static constexpr std::uint8_t kNoGroup = 255, kMixed = 255;
-  /// Surface of the near points that a reported point stands for: its size, and its first and second moments
-  /// about P's origin.
+  /// Surface of near points: its size, and its first and second moments about P's origin.
   struct Area {
-    float size = 0;
-    Eigen::Vector3f first = Eigen::Vector3f::Zero();
-    Eigen::Matrix3f second = Eigen::Matrix3f::Zero();
+    double size = 0;
+    Vec3 first = Vec3::Zero();
+    Mat3 second = Mat3::Zero();
     void add(const ShellBlock& leaf, int lane) noexcept {
-      Eigen::Vector3f at(leaf.x[lane], leaf.y[lane], leaf.z[lane]);
-      for (int k = 0; k < 3; ++k) at[k] += static_cast<float>(leaf.center[k]);
-      size += leaf.weight[lane];
-      first += leaf.weight[lane] * at;
-      second += leaf.weight[lane] * at * at.transpose();
+      const Vec3 at(leaf.center[0] + leaf.x[lane], leaf.center[1] + leaf.y[lane],
+                    leaf.center[2] + leaf.z[lane]);
+      const double area_m2 = leaf.weight[lane];
+      size += area_m2;
+      first += area_m2 * at;
+      second += area_m2 * at * at.transpose();
     }
     void add(const Area& other) noexcept {
       size += other.size;
@@ -112,7 +112,7 @@ class VPS_API RepresentativePoints {
   };
   struct Chosen {
     std::uint32_t leaf, id;
-    Area area = {};
+    std::uint32_t area = kNone;  ///< index in areas_
   };
   struct Best {
     float value = std::numeric_limits<float>::infinity();  ///< [quanta]
@@ -152,6 +152,7 @@ class VPS_API RepresentativePoints {
   std::vector<Level> levels_;                ///< by size
   // Of a find(), with capacity for all points or groups:
   std::vector<Chosen> chosen_;
+  std::vector<Area> areas_;
   std::vector<Surface> surfaces_;
   std::vector<Nearest> of_groups_, of_cells_;
   std::vector<std::uint32_t> place_of_cell_;  ///< in of_cells_

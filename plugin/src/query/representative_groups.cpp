@@ -77,7 +77,7 @@ RepresentativePoints::RepresentativePoints(const PointShell& shell, double tile_
     for (std::uint32_t lane = 0; lane < shell.blocks[leaf].count; ++lane)
       area.add(shell.blocks[leaf], static_cast<int>(lane));
   }
-  surfaces_.reserve(4 * shell.size());
+  surfaces_.reserve(shell.size());
   chosen_.reserve(4 * shell.size());  // a point may be there as required, loose, and nearest twice
   // Nodes of the hierarchy keep their size when a shell is cropped, so that the tiles of what is left are the
   // same.
@@ -97,6 +97,7 @@ RepresentativePoints::RepresentativePoints(const PointShell& shell, double tile_
   addLevels(tile_size_m);
   of_groups_.reserve(groups_.size());
   of_cells_.reserve(groups_.size());
+  areas_.reserve(groups_.size());
   place_of_cell_.resize(groups_.size());
 }
 

@@ -45,7 +45,11 @@ class RepresentativePoints::Search {
     takeRequired(leaf);
     const std::uint8_t group = self_.group_of_leaf_[leaf.index];
     if (group == kMixed) return takeMixed(leaf);
-    best_[group].area.add(self_.area_of_leaf_[leaf.index]);
+    // A leaf whose points were read one by one comes in as many parts.
+    if (leaf.block.count == self_.shell_->blocks[leaf.index].count)
+      best_[group].area.add(self_.area_of_leaf_[leaf.index]);
+    else
+      best_[group].area.add(leaf.block, 0);
     updateNow(leaf, best_[group]);
     if (best_[group].has_slope) updateThen(leaf, best_[group]);
   }
@@ -143,7 +147,6 @@ class RepresentativePoints::Search {
       const Chosen point{leaf.index, block.first + lane};
       if (group == kNoGroup) {
         self_.chosen_.push_back(point);
-        self_.chosen_.back().area.add(block, i);
         continue;
       }
       GroupBest& best = best_[group];
@@ -179,7 +182,8 @@ class RepresentativePoints::Search {
 void RepresentativePoints::choose(std::span<const Nearest> nearest) noexcept {
   for (const Nearest& n : nearest) {
     chosen_.push_back(n.now.point);
-    chosen_.back().area = n.area;
+    chosen_.back().area = static_cast<std::uint32_t>(areas_.size());
+    areas_.push_back(n.area);
     if (n.then.point.id != n.now.point.id) chosen_.push_back(n.then.point);
   }
 }
@@ -210,18 +214,22 @@ void RepresentativePoints::merge(const Request& request) noexcept {
     }
   choose(merged_to_m_ > 0 ? of_cells_ : of_groups_);
   // Of two entries for a point, the one with an area comes first.
-  std::sort(chosen_.begin(), chosen_.end(), [](const Chosen& a, const Chosen& b) {
-    return a.id != b.id ? a.id < b.id : a.area.size > b.area.size;
-  });
+  std::sort(chosen_.begin(), chosen_.end(),
+            [](const Chosen& a, const Chosen& b) { return a.id != b.id ? a.id < b.id : a.area < b.area; });
   const auto isSame = [](const Chosen& a, const Chosen& b) { return a.id == b.id; };
   chosen_.erase(std::unique(chosen_.begin(), chosen_.end(), isSame), chosen_.end());
 }
 
+// A point that only had to be reported stands for no surface: its group's nearest one does.
 RepresentativePoints::Surface RepresentativePoints::surfaceOf(const Chosen& chosen) const noexcept {
-  if (!(chosen.area.size > 0)) return {0, shell_->points[chosen.id], Mat3::Zero()};
-  const double area_m2 = chosen.area.size;
-  const Vec3 center = chosen.area.first.cast<double>() / area_m2;
-  return {area_m2, center, chosen.area.second.cast<double>() / area_m2 - center * center.transpose()};
+  if (chosen.area == kNone) {
+    const double own_m2 = group_of_[chosen.id] == kNoGroup ? shell_->area_m2[chosen.id] : 0;
+    return {own_m2, shell_->points[chosen.id], Mat3::Zero()};
+  }
+  const Area& area = areas_[chosen.area];
+  if (!(area.size > 0)) return {0, shell_->points[chosen.id], Mat3::Zero()};
+  const Vec3 center = area.first / area.size;
+  return {area.size, center, area.second / area.size - center * center.transpose()};
 }
 
 QueryResult RepresentativePoints::find(const VoxMap& map, const Pose& X_MP, const Request& request,
@@ -229,6 +237,7 @@ QueryResult RepresentativePoints::find(const VoxMap& map, const Pose& X_MP, cons
   const QueryOptions& options = request.options;
   merged_to_m_ = 0;
   surfaces_.clear();
+  areas_.clear();
   if (!X_MP.isFinite() || !reduces_contacts_) return queryContacts(map, *shell_, X_MP, options, out, memory);
   out.contacts.clear();
   out.left_out = 0;
