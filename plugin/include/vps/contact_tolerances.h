@@ -175,9 +175,9 @@ inline constexpr double kFirstError_m_s = 1e-2;
 inline constexpr double kFirstCompliance = 0.1;
 /// Test: Replay and B_mass_ratio_turns, at ten times.
 inline constexpr double kLeastCompliance = 1e-7;
-/// From one round to the next: of the compliance, and of the error of the last one, to which it is solved. With a tenth,
-/// a third of the problems of a pile end in a round that does not; with 0.8 there are too many rounds.
-/// Test: ContactNewton.SettlesTheFrictionOfAHeapInFewSteps.
+/// From one round to the next: of the compliance, and of the error of the last one, to which it is solved.
+/// With a tenth, a third of the problems of a pile end in a round that does not; with 0.8 there are too many
+/// rounds. Test: ContactNewton.SettlesTheFrictionOfAHeapInFewSteps.
 inline constexpr double kRoundShare = 0.5;
 /// Stiffness of a joint, and mass of a body in directions in which it is held, relative to that of a free
 /// body: joints are springs that miss their target by a millionth. They have no multipliers, since rows of
