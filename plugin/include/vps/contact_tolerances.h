@@ -159,10 +159,10 @@ inline constexpr double kSettledShare = 1e-6;
 /// Of the island's fastest speed: the solver's error. A micrometre on a path of a decimetre.
 /// Test: I_flush.
 inline constexpr double kSpeedErrorShare = 1e-5;
-/// What the terms of a sum or the rounds of an iteration gain on each other. Of the error of a round, how
-/// accurate the next need be; of the residual, how accurate a contact's law is (the whole one turned a nut by
-/// 2 %, since it has one sign from step to step); of a slope, when a line search ends; and by how much
-/// stiffer contacts follow a round that reduced its error by less [Bertsekas 1982, ch. 2].
+/// What the terms of a sum gain on each other. Of the residual, how accurate a contact's law is (the whole
+/// one turned a nut by 2 %, since it has one sign from step to step); of a slope, when a line search ends; of
+/// the last round's error, above which a round's makes contacts stiffer; and by how much softer they are
+/// after a round that did not end [Bertsekas 1982, ch. 2].
 /// Test: B_mass_ratio_turns.
 inline constexpr double kAccuracyShare = 0.1;
 /// Error that the first round is solved for [m/s].
@@ -176,8 +176,9 @@ inline constexpr double kFirstCompliance = 0.1;
 /// Test: Replay and B_mass_ratio_turns, at ten times.
 inline constexpr double kLeastCompliance = 1e-7;
 /// From one round to the next: of the compliance, and of the error of the last one, to which it is solved.
-/// With a tenth, a third of the problems of a pile end in a round that does not; with 0.8 there are too many
-/// rounds. Test: ContactNewton.SettlesTheFrictionOfAHeapInFewSteps.
+/// With a tenth, a third of the problems of a pile end in a round that does not end; with 0.8 there are too
+/// many rounds.
+/// Test: ContactNewton.SettlesTheFrictionOfAHeapInFewSteps.
 inline constexpr double kRoundShare = 0.5;
 /// Stiffness of a joint, and mass of a body in directions in which it is held, relative to that of a free
 /// body: joints are springs that miss their target by a millionth. They have no multipliers, since rows of
