@@ -305,6 +305,51 @@ TEST(FeatureMotion, NoOverlapIsMissed) {
   EXPECT_LT(reported_in_vain, overlaps);
 }
 
+// A corner comes within the rest gap of an edge between two faces and goes on into the solid, by a way in which
+// it may pass either face's plane first; its own surface may keep it from touching one of the faces.
+TEST(FeatureMotion, NoCornerThatPassesAnEdgeIsMissed) {
+  const Vec3 half(3e-3, 2e-3, 2e-3);
+  const Body a(box(half));
+  std::mt19937 random(3);
+  const auto draw = [&](double from, double to) { return std::uniform_real_distribution(from, to)(random); };
+  int overlaps = 0, missed = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const Body b(tetrahedron(random));
+    const Mat3 R = rotationFromVector(draw(0, std::numbers::pi) * direction(random));
+    const Vec3 corner = R * b.exact.mesh().vertices[0];
+    // Beside the box's edge along x, within the rest gap of both faces' planes, on either side of them.
+    const Vec3 beside(draw(-2e-3, 2e-3), half.y() + draw(-90e-9, 90e-9), half.z() + draw(-90e-9, 90e-9));
+    const Vec3 way(draw(-1, 1), draw(-1, 1), draw(-1, 1));
+    const Vec3 turn = draw(0, 0.05) * direction(random);
+    const Mat3 R_start = rotationFromVector(-turn) * R, R_end = rotationFromVector(turn) * R;
+    const Vec3 own = R.transpose() * corner;
+    const Pose start(R_start, beside - R_start * own - draw(5e-6, 50e-6) * way);
+    const Pose end(R_end, beside - R_end * own + draw(5e-6, 50e-6) * way);
+    if (deepestOverlap(a.exact, Pose(), b.exact, start).depth_m > 0) continue;
+    if (!(deepestOverlap(a.exact, Pose(), b.exact, end).depth_m > 0.2e-6)) continue;
+    ++overlaps;
+    missed += check(a, b, start, end).empty();
+  }
+  EXPECT_GT(overlaps, 500);
+  EXPECT_EQ(missed, 0);
+}
+
+// A block's corner starts nearer to a floor than the rest gap, rises on an arc and comes down again not as near:
+// nothing is missed, though the last of the stretches that the way is looked at in begins farther from the floor.
+TEST(FeatureMotion, AWayThatEndsAsNearAsItBeganMeetsNothing) {
+  const Vec3 half(4e-3, 2e-3, 1e-3);
+  const Body floor(box(Vec3(20e-3, 20e-3, 5e-3))), block(box(half));
+  const Mat3 R_start = rotationFromVector(Vec3(0.3, -0.3, 0));
+  const Mat3 R_end = rotationFromVector(0.1 * Vec3(1, 0, 1).normalized()) * R_start;
+  const auto poseAt = [&](const Mat3& R, double gap_m) {
+    return Pose(R, Vec3(0, 0, 5e-3 + (R * half).z() + gap_m));
+  };
+  const Pose start = poseAt(R_start, 1.5e-9), end = poseAt(R_end, 50e-9);
+  ASSERT_GT(travel_m(floor.features, block.features, start, end), block.features.radius_m() / 20);
+  EXPECT_TRUE(check(floor, block, start, end).empty());
+  EXPECT_FALSE(check(floor, block, start, poseAt(R_end, -50e-9)).empty());
+}
+
 // Two rings of straight sections hang in each other where sections meet: inside the ring that is a valley,
 // and the place of contact slides from one section to the next within a step, of both rings at once.
 TEST(FeatureMotion, RingsThatSlideOverTheJointsOfTheirSectionsAreNotMissed) {

@@ -71,13 +71,16 @@ Exact atEndOfStep(const Exact& now, const Refiner& refiner, const OwnPoint& own,
 // How the faces around a contact curve: see Candidate.
 void setCurvature(Candidate& c, const Exact& exact, const SideView& side) {
   c.curvature_per_m = c.hollow_per_m = 0;
+  c.is_flat = false;
   if (!exact.is_contact || !exact.is_their_face || !exact.face.surface) return;
   const Mat3 theirs = exact.face.curvature_W();
   if (exact.is_curved) c.hollow_per_m = std::max(-Curvature(theirs).least_per_m, 0.0);
   if (!exact.is_smooth || side.shape->models().surfaces.empty()) return;
   const FacePoint own = ownFace(c, side);
-  if (!own.surface->sheet)
-    c.curvature_per_m = std::max(Curvature(theirs + own.curvature_W()).most_per_m, 0.0);
+  if (own.surface->sheet) return;
+  const Mat3 ours = own.curvature_W();
+  c.curvature_per_m = std::max(Curvature(theirs + ours).most_per_m, 0.0);
+  c.is_flat = !exact.is_curved && theirs.isZero(kNoDirection) && ours.isZero(kNoDirection);
 }
 
 }  // namespace

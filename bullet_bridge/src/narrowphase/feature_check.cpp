@@ -40,12 +40,19 @@ bool grazes(const FeatureContact& c, const PairView& start, const EndPoses& end,
   return true;
 }
 
-void findContacts(const PairView& start, const EndPoses& end, bool holds_close, PairState& state,
+// With a round in which rows are no longer taken back, a gap that is as small as one that is kept will do.
+void findContacts(const PairView& start, const EndPoses& end, int round, PairState& state,
                   std::vector<FeatureContact>& found) {
   found.clear();
   const Pose X_01_end = poseBetween(start, end.X_WS);
   state.features.check(start.shape[0]->features(), start.shape[1]->features(), start.X_01_models(), X_01_end,
-                       holds_close, found);
+                       round == 0, found);
+  if (round >= kMostRetakes) {
+    const double rest_m = FeatureMotion::rest_m(start.shape[0]->features(), start.shape[1]->features());
+    std::erase_if(found, [&](const FeatureContact& c) {
+      return c.gap_m(X_01_end) >= kHeldShare * std::min(rest_m, c.start_m);
+    });
+  }
   if (!end.turns_far) return;
   const double tolerated_m = kFacetCornerShare * state.context->settings.contact_margin_m;
   std::erase_if(found, [&](const FeatureContact& c) { return grazes(c, start, end, tolerated_m); });
@@ -144,7 +151,7 @@ class Linearised {
   MissedContact operator()(const FeatureContact& c, PairState& state) const {
     const Candidate start = at_start_(c), end = at_end_(c);
     // In a far turn no single lever stands for the way.
-    const Candidate acting = end_.turns_far ? start : end_.path.acting(start, end);
+    const Candidate acting = end_.turns_far && !end_.path.isSettled() ? start : end_.path.acting(start, end);
     MissedContact missed;
     missed.point = state.writer->put(acting, start_.wrapper, state.motion);
     for (int i = 0; i < 2; ++i) missed.object[i] = start_.wrapper[i]->getCollisionObject();
@@ -157,7 +164,7 @@ class Linearised {
   // As if nothing were there.
   MissedContact without(const FeatureContact& c, PairState& state) const {
     MissedContact missed = (*this)(c, state);
-    missed.end_gap_m = kOutOfReach_m;
+    missed.end_gap_m = MissedContact::kNothingThere_m;
     return missed;
   }
   [[nodiscard]] bool isOutOfPlace(const FeatureContact& c, const Relinearising& which,
@@ -215,10 +222,6 @@ bool isSharp(const PairView& pair, const Candidate& c) {
   return !c.is_flush && (c.isCrossing() || pair.shape[c.side]->isEdgePoint(c.id));
 }
 
-bool isFlat(const Candidate& c) {
-  return !c.is_flush && c.curvature_per_m == 0 && c.hollow_per_m == 0;
-}
-
 }  // namespace
 
 void markSharp(const PairView& pair, const Settings& settings, bool is_own,
@@ -226,13 +229,13 @@ void markSharp(const PairView& pair, const Settings& settings, bool is_own,
   if (!hasFeatures(pair, settings)) return;
   const double rest_m = FeatureMotion::rest_m(pair.shape[0]->features(), pair.shape[1]->features());
   for (Candidate& c : contacts)
-    if (is_own ? isSharp(pair, c) || isFlat(c) : !c.is_flush) c.rest_m = rest_m;
+    if (is_own ? isSharp(pair, c) || c.is_flat : !c.is_flush) c.rest_m = rest_m;
 }
 
-void addFeatureContacts(const PairView& start, const EndPoses& end, bool is_first, PairState& state,
+void addFeatureContacts(const PairView& start, const EndPoses& end, int round, PairState& state,
                         std::vector<MissedContact>& out) {
   thread_local std::vector<FeatureContact> found;
-  findContacts(start, end, is_first, state, found);
+  findContacts(start, end, round, state, found);
   if (found.empty()) return;
   thread_local std::vector<const FeatureContact*> chosen;
   chosen.clear();
@@ -299,7 +302,7 @@ void addMissedFeatures(const PairView& pair, const Settings& settings, PairState
 
 double freeShareOf(const PairView& start, const EndPoses& end, PairState& state) {
   thread_local std::vector<FeatureContact> found;
-  findContacts(start, end, false, state, found);
+  findContacts(start, end, kMostRounds, state, found);
   double share = 1;
   for (const FeatureContact& c : found) share = std::min(share, c.share);
   return share;

@@ -44,7 +44,7 @@ bool spinsFreely(const PairView& start, const Pose (&X_WS_end)[2], PairState& st
 /// Appends a contact for each pair of features that the motion brings too near to each other, up to a limit.
 /// @param start     at the start of the step
 /// @param is_first  in the first check of a step, small gaps are restored too: FeatureMotion::check()
-void addFeatureContacts(const PairView& start, const EndPoses& end, bool is_first, PairState& state,
+void addFeatureContacts(const PairView& start, const EndPoses& end, int round, PairState& state,
                         std::vector<MissedContact>& out);
 
 /// Which rows are taken where the bodies end a step.

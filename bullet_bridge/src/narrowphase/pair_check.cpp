@@ -109,9 +109,10 @@ void PairCheck::findMissed(const Pose (&X_WB_end)[2], int round, std::vector<Mis
   const double near_m = std::max(state_.context->settings.contact_margin_m, FeatureMotion::kRest_m);
   if (at_start.pair.leastDistance_m() > m.travel_m + near_m) return;
   if (spinsFreely(at_start.pair, m.end, state_)) return;
+  if (round >= kMostRetakes) m.path.settle();
   const std::size_t had = out.size();
   if (hasFeatures(at_start.pair, state_.context->settings)) {
-    addFeatureContacts(at_start.pair, {{m.end[0], m.end[1]}, m.path, m.turnsFar(0)}, round == 0, state_, out);
+    addFeatureContacts(at_start.pair, {{m.end[0], m.end[1]}, m.path, m.turnsFar(0)}, round, state_, out);
     if (out.size() > had) state_.is_incomplete = true;
   }
   if (m.travel_m <= m.tolerated_m) return;
@@ -165,7 +166,7 @@ void PairCheck::relinearise(const Motion& m, const Placed& at_start, const Relin
     } else if (which.isOfLoad() && !are_both_curved && ends[k].distance_m > ends[k].rest_m + which.apart_m) {
       // It carries load, and nothing is there: its plane goes beyond the face that it was taken from.
       Candidate end = m.step.moved(now[k]);
-      end.distance_m = kOutOfReach_m;
+      end.distance_m = MissedContact::kNothingThere_m;
       put(m, at_start, now[k], end, out);
     }
   }

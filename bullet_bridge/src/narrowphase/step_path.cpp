@@ -75,9 +75,9 @@ double StepPath::timeOf(const Row& start, const Row& end, double closed_m, bool 
 
 Candidate StepPath::acting(const Candidate& start, const Candidate& end) const {
   const Row from{start.p_W, start.n_W}, to = atEnd(end);
-  const Row row = between(from, to,
-                          timeOf(from, to, start.distance_m - start.rest_m,
-                                 end.plane_of != Candidate::kBetween && end.isCrossing()));
+  const bool is_corner = end.plane_of != Candidate::kBetween && end.isCrossing();
+  const Row row =
+      is_settled_ ? to : between(from, to, timeOf(from, to, start.distance_m - start.rest_m, is_corner));
   Candidate acting = end;
   acting.p_W = row.p_W;
   acting.n_W = row.n_W;

@@ -37,6 +37,11 @@ class StepPath {
   StepPath(const btCollisionObject* const (&objects)[2], const Pose (&start)[2], const Pose (&end)[2],
            double dt_s);
 
+  /// From now on rows are taken at the end of the step: they are the gaps' own derivatives. Where others hold a
+  /// body so that a contact's push hardly opens its gap, the turn of their levers may close it by more than
+  /// that. Pushed ever harder, it then ends ever deeper; with the derivatives rounds converge as Newton's method.
+  void settle() { is_settled_ = true; }
+  [[nodiscard]] bool isSettled() const { return is_settled_; }
   /// The contact as a row of the solver: where the bodies are at the start, with the gap that it has there.
   /// @param start, end  the same contact at both ends of the step
   [[nodiscard]] Candidate acting(const Candidate& start, const Candidate& end) const;
@@ -65,6 +70,7 @@ class StepPath {
 
   Body body_[2];
   Vec3 common_way_W_ = Vec3::Zero();
+  bool is_settled_ = false;
 };
 
 }  // namespace vps::bullet::inline v0

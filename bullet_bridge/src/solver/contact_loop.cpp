@@ -73,9 +73,10 @@ bool ContactLoop::addMissed(const btContactSolverInfo& info, int round) {
   forEachCheck(contacts.push(), info.m_timeStep, [&](StepCheck& check, const Pose(&X_WB_end)[2]) {
     check.findMissed(X_WB_end, round, missed_);
   });
-  contacts.addMissed(missed_, info);
-  return std::any_of(missed_.begin(), missed_.end(),
-                     [](const MissedContact& m) { return m.point != nullptr; });
+  const bool has_changed = contacts.addMissed(missed_, info);
+  is_complete_ = !has_changed && std::all_of(missed_.begin(), missed_.end(),
+                                             [](const MissedContact& m) { return m.point != nullptr; });
+  return has_changed;
 }
 
 }  // namespace vps::bullet::inline v0

@@ -57,7 +57,7 @@ class ContactLoop {
     }
   }
   /// True if the rounds were used up, or no room was left, with contacts still missed.
-  [[nodiscard]] bool hasMissed() const { return !missed_.empty(); }
+  [[nodiscard]] bool hasMissed() const { return !is_complete_; }
 
  private:
   /// Of the bodies that contacts and joints act on.
@@ -71,6 +71,7 @@ class ContactLoop {
   ContactNewton newton_{island, joints};
   std::vector<MissedContact> missed_;  // of the last check
   std::vector<Vec6> u_;                // scratch
+  bool is_complete_ = true;
   double dt_s_ = 0;
 };
 

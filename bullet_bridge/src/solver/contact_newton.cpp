@@ -150,7 +150,7 @@ void ContactNewton::evaluate(const std::vector<Vec6>& u, Slips slips, bool with_
 
 // False: the matrix has no inverse.
 bool ContactNewton::findStep() {
-  matrix_.start(u_.size(), touching_);
+  matrix_.setZero();
   for (std::size_t i = 0; i < u_.size(); ++i)
     matrix_.add(static_cast<int>(i), static_cast<int>(i), island_.bodies[i].effective_mass);
   for (const Patch& patch : patches_)
@@ -227,7 +227,7 @@ double ContactNewton::imbalance_m_s() {
   return island_.topSpeed(scratch_);
 }
 
-SolveOutcome ContactNewton::minimise(double near_m_s, int step_limit) {
+SolveOutcome ContactNewton::solveRound(double near_m_s, int step_limit) {
   SolveOutcome outcome;
   evaluate(u_, Slips::Follow, true, missing_);
   for (;;) {
@@ -269,6 +269,7 @@ void ContactNewton::start(std::span<const RigidContact> contacts) {
   };
   for (const Patch& patch : patches_) touch(patch.body);
   for (const Joint& joint : joint_states_) touch(joint.row->body);
+  matrix_.setPattern(island_.bodies.size(), touching_);
   island_.readVelocities(u_);
 }
 
@@ -292,7 +293,7 @@ SolveOutcome ContactNewton::solve(std::span<RigidContact> contacts, double resid
     setCompliance(compliance);
     const double near_m_s =
         kRoundShare * std::max(kAccuracyShare * residual_m_s, std::min(last_m_s, kFirstError_m_s));
-    const SolveOutcome round = minimise(near_m_s, std::min(kRoundSteps, step_limit - outcome.steps));
+    const SolveOutcome round = solveRound(near_m_s, std::min(kRoundSteps, step_limit - outcome.steps));
     outcome.steps += std::max(1, round.steps);
     if (!round.is_converged) {
       if (outcome.steps >= step_limit || !std::isfinite(off_m_s_)) break;

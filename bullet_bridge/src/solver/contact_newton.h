@@ -40,9 +40,8 @@ class ContactNewton {
   /// Updates the impulses of contacts and joints and the bodies' velocities. The contacts' rows must be
   /// prepared. Where it does not converge, the impulses are within their cones all the same. Cost of a step:
   /// a factorisation (IslandMatrix), and about 0.2 us a contact.
-  /// @param residual_m_s  converged: no contact misses its law by a tenth of this velocity, nor does any
-  /// point of a
-  ///                      body by more when it gets the impulses' velocity
+  /// @param residual_m_s  converged: no contact misses its law by a tenth of this velocity, nor does
+  ///                      any point of a body by more when it gets the impulses' velocity
   /// @param step_limit    Newton's steps, over all rounds
   SolveOutcome solve(std::span<RigidContact> contacts, double residual_m_s, int step_limit);
 
@@ -94,7 +93,7 @@ class ContactNewton {
   bool convexStep();
   void moveTo(double share);
   [[nodiscard]] double imbalance_m_s();
-  SolveOutcome minimise(double near_m_s, int step_limit);
+  SolveOutcome solveRound(double near_m_s, int step_limit);
   double endRound();
   void writeImpulses(std::span<RigidContact> contacts) const;
 

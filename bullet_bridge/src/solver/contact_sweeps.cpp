@@ -103,10 +103,15 @@ void ContactSweeps::add(btPersistentManifold& manifold, btManifoldPoint& point,
   contacts_.push_back(c);
 }
 
-void ContactSweeps::addMissed(std::span<const MissedContact> missed, const btContactSolverInfo& info) {
+bool ContactSweeps::addMissed(std::span<const MissedContact> missed, const btContactSolverInfo& info) {
   const double dt_s = info.m_timeStep;
+  bool has_changed = false;
   for (const MissedContact& m : missed) {
     if (!m.point) continue;
+    const auto same = std::find_if(contacts_.begin(), contacts_.end(),
+                                   [&](const RigidContact& had) { return had.point == m.point; });
+    const bool is_let_go = m.end_gap_m == MissedContact::kNothingThere_m;
+    if (is_let_go && same != contacts_.end() && same->was_let_go) continue;
     RigidContact c;
     c.point = m.point;
     for (int i = 0; i < 2; ++i) c.object[i] = m.object[i];
@@ -122,8 +127,8 @@ void ContactSweeps::addMissed(std::span<const MissedContact> missed, const btCon
     c.is_sharp = m.is_sharp;
     c.target_m_s = -(gap_m - m.kept_m) / dt_s;
     c.restitution = restitutionOf(*m.point);
-    const auto same = std::find_if(contacts_.begin(), contacts_.end(),
-                                   [&](const RigidContact& had) { return had.point == m.point; });
+    c.was_let_go = is_let_go;
+    has_changed = true;
     if (same == contacts_.end()) {
       contacts_.push_back(c);
       continue;
@@ -131,8 +136,10 @@ void ContactSweeps::addMissed(std::span<const MissedContact> missed, const btCon
     c.p_n = same->p_n;
     c.p_t[0] = same->p_t[0];
     c.p_t[1] = same->p_t[1];
+    c.was_let_go |= same->was_let_go;
     *same = c;
   }
+  return has_changed;
 }
 
 void ContactSweeps::prepare() {

@@ -8,17 +8,19 @@
 
 namespace vps::bullet::inline v0 {
 
-void IslandMatrix::start(std::size_t body_count, std::span<const std::pair<int, int>> pairs) {
+void IslandMatrix::setPattern(std::size_t body_count, std::span<const std::pair<int, int>> pairs) {
   wanted_.clear();
   for (const auto& [i, j] : pairs)
     if (i != j) wanted_.emplace_back(std::min(i, j), std::max(i, j));
   std::sort(wanted_.begin(), wanted_.end());
   wanted_.erase(std::unique(wanted_.begin(), wanted_.end()), wanted_.end());
-  if (body_count != body_count_ || wanted_ != pairs_) {
-    body_count_ = body_count;
-    pairs_ = wanted_;
-    makePattern();
-  }
+  if (body_count == body_count_ && wanted_ == pairs_) return;
+  body_count_ = body_count;
+  pairs_ = wanted_;
+  makePattern();
+}
+
+void IslandMatrix::setZero() {
   for (std::vector<Mat6>* blocks : {&diagonal_, &below_, &beside_})
     for (Mat6& block : *blocks) block.setZero();
 }

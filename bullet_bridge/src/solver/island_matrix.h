@@ -4,7 +4,6 @@
 
 #include <Eigen/Dense>
 #include <Eigen/StdVector>
-#include <cstdint>
 #include <span>
 #include <utility>
 #include <vector>
@@ -20,9 +19,9 @@ namespace vps::bullet::inline v0 {
 /// Cost: some 70 ns for each product of two blocks, d^2 of them for a body that d later ones touch.
 class IslandMatrix {
  public:
-  /// Sets all entries to zero. Afterwards add() accepts the blocks of `pairs` (any order, repeats allowed)
-  /// and the diagonal.
-  void start(std::size_t body_count, std::span<const std::pair<int, int>> pairs);
+  /// The blocks that there are: the diagonal, and those of `pairs` (any order, repeats allowed).
+  void setPattern(std::size_t body_count, std::span<const std::pair<int, int>> pairs);
+  void setZero();
   /// Adds to the block of two bodies.
   void add(int row_body, int column_body, const Mat6& block);
   /// Adds to the blocks of one pair of bodies, each with itself and with the other.

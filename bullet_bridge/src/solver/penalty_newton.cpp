@@ -94,7 +94,8 @@ void PenaltyNewton::startMatrix() {
   };
   for (const PenaltyPatch& patch : patches()) touch(patch.body);
   for (const JointRow& row : joints_.rows) touch(row.body);
-  hessian_.start(island_.bodies.size(), touching);
+  hessian_.setPattern(island_.bodies.size(), touching);
+  hessian_.setZero();
 }
 
 bool PenaltyNewton::newtonStep(const std::vector<Vec6>& gradient, std::vector<Vec6>& step) {

@@ -26,10 +26,14 @@ namespace vps::bullet::inline v0 {
 struct MissedContact {
   btManifoldPoint* point = nullptr;  ///< new, or one that the solver has, with another plane; null: no room
   const btCollisionObject* object[2] = {nullptr, nullptr};
-  double end_gap_m = 0;  ///< at the end of the step, in the motion that was checked; negative
+  double end_gap_m = 0;  ///< at the end of the step, in the motion that was checked
   double kept_m = 0;  ///< least gap at the end of the step; negative: an overlap that existed before the step
   double rest_m = 0;  ///< the gap that the push restores
   bool is_sharp = false;  ///< no other contact's push may take the gap
+
+  /// end_gap_m of a contact whose point faces nothing any more. It is let go once in a step: where it is found
+  /// again without its row, it stays.
+  static constexpr double kNothingThere_m = 1;
 };
 
 /// A pair of bodies that checks a solved step.

@@ -162,7 +162,8 @@ inline constexpr double kSpeedErrorShare = 1e-5;
 /// What the terms of a sum gain on each other. Of the residual, how accurate a contact's law is (the whole
 /// one turned a nut by 2 %, since it has one sign from step to step); of a slope, when a line search ends;
 /// how much less a round's error must be than the last one's for the contacts not to become stiffer, and by
-/// how much softer they are after a round that did not end [Bertsekas 1982, ch. 2]. Test: B_mass_ratio_turns.
+/// how much softer they are after a round that did not end [Bertsekas 1982, ch. 2].
+/// Test: B_mass_ratio_turns.
 inline constexpr double kAccuracyShare = 0.1;
 /// Error that the first round is solved for [m/s].
 /// Test: Replay.
@@ -175,8 +176,9 @@ inline constexpr double kFirstCompliance = 0.1;
 /// Test: Replay and B_mass_ratio_turns, at ten times.
 inline constexpr double kLeastCompliance = 1e-7;
 /// From one round to the next: of the compliance, and of the error of the last one, to which it is solved.
-/// With a tenth, a third of the problems of a pile end in a round that does not; with 0.8 there are too many
-/// rounds. Test: ContactNewton.SettlesTheFrictionOfAHeapInFewSteps.
+/// With a tenth, a third of the problems of a pile end in a round that does not end; with 0.8 there are too
+/// many rounds.
+/// Test: ContactNewton.SettlesTheFrictionOfAHeapInFewSteps.
 inline constexpr double kRoundShare = 0.5;
 /// Of a face's load: contacts that share it evenly but for less are left as they are, so that what rests
 /// needs no new solution in each step. Test: EvenPressure.LeavesWhatIsEvenAndWhatIsHeldInOneWay, and piles at

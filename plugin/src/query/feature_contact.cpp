@@ -114,10 +114,13 @@ BorderOwner ownerOf(const FeatureSet& part0, const FeatureSet& part1, const Feat
   f.moveTo(reach.share, at);
   const Vec3 way = inOwnFrame(contact.kind, f.way, at, p);
   constexpr double kTolerated_m = FeatureMotion::kLeastShare * FeatureMotion::kRest_m;
-  if (contact.kind == Kind::CornerOnFacet)
-    return ownerAtBorder(part1, contact.feature[1], q, p - q, way, kTolerated_m);
+  if (contact.kind == Kind::CornerOnFacet) {
+    const PassingCorner corner{p - q, way, part0.raysAt(contact.feature[0]), R_10};
+    return ownerAtBorder(part1, contact.feature[1], q, corner, kTolerated_m);
+  }
   const Mat3 R_01 = R_10.transpose();
-  return ownerAtBorder(part0, contact.feature[0], contact.p[0], R_01 * (q - p), -(R_01 * way), kTolerated_m);
+  const PassingCorner corner{R_01 * (q - p), -(R_01 * way), part1.raysAt(contact.feature[1]), R_01};
+  return ownerAtBorder(part0, contact.feature[0], contact.p[0], corner, kTolerated_m);
 }
 
 // True if two edges are nearest at a corner that meets the other part by itself. A corner in a valley does

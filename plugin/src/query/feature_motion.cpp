@@ -100,6 +100,11 @@ double lineGap_m(const Features& f, double share) {
   return across.isZero(0) ? 0 : across.normalized().dot(at[0] - f.b[0]);
 }
 
+// True if a way ends with a gap that is less than the rest gap, and less than at its start.
+bool endsTooNear(const FeatureContact& contact, const Pose& end, double rest_m) {
+  return contact.gap_m(end) < std::min(rest_m, contact.start_m) - FeatureMotion::kMissedShare * rest_m;
+}
+
 bool isBetweenEnds(const Nearest& at) {
   return at.end[0] == Nearest::kBetween && at.end[1] == Nearest::kBetween;
 }
@@ -163,6 +168,7 @@ void FeatureMotion::check(const FeatureSet& part0, const FeatureSet& part1, cons
       std::clamp(std::ceil(travel_m(part0, part1, start, end) / stretch_m), 1.0, 10 * kMostStretches));
   if (stretches == 1) return checkStretch(part0, part1, start, end, end, holds_close, out);
   const Way way(ballAround(part0), ballAround(part1), start, end);
+  const double gap_m = rest_m(part0, part1);
   const std::size_t first = out.size();
   Pose from = start;
   // The last: more than a solver adds at once.
@@ -175,6 +181,12 @@ void FeatureMotion::check(const FeatureSet& part0, const FeatureSet& part1, cons
       out[i].share = (k + out[i].share) / stretches;
       out[i].start_m = startOf(part0, part1, out[i], distanceAt(part0, part1, out[i], start), start);
     }
+    if (k == 0) continue;
+    // A stretch may begin farther apart than the way did, whose end may be as near as its start.
+    const auto first_of_stretch = out.begin() + static_cast<std::ptrdiff_t>(found);
+    out.erase(std::remove_if(first_of_stretch, out.end(),
+                             [&](const FeatureContact& c) { return !endsTooNear(c, end, gap_m); }),
+              out.end());
   }
 }
 
@@ -226,8 +238,7 @@ void FeatureMotion::checkStretch(const FeatureSet& part0, const FeatureSet& part
     contact.share =
         (static_cast<double>(met.piece) + met.reach.share) / static_cast<double>(way_10_.size() - 1);
     contact.start_m = startOf(part0, part1, contact, near.distance_m, start);
-    if (is_held || contact.gap_m(end) < std::min(gap_m, contact.start_m) - kMissedShare * gap_m)
-      out.push_back(contact);
+    if (is_held || endsTooNear(contact, end, gap_m)) out.push_back(contact);
   }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "query/passed_edge.h"
 
+#include <algorithm>
 #include <limits>
 
 #include "query/flush_features.h"
@@ -13,6 +14,13 @@ namespace {
 // When the corner passes a plane, as a multiple of its way.
 double passes(double height_m, double way_m) {
   return way_m < 0 ? std::max(height_m, 0.0) / -way_m : std::numeric_limits<double>::infinity();
+}
+
+// What the search for corners and facets surely finds.
+bool canTouch(const PassingCorner& corner, const Vec3& n) {
+  const Vec3 own = corner.R.transpose() * n;
+  return std::all_of(corner.rays.begin(), corner.rays.end(),
+                     [&](const Vec3& ray) { return own.dot(ray) >= -kSinTouch; });
 }
 
 // A neighbour across a convex sharp edge on which q lies; kNone: there is none.
@@ -32,20 +40,21 @@ std::uint32_t neighbourAt(const FeatureSet& part, std::uint32_t facet, const Vec
 
 }  // namespace
 
-BorderOwner ownerAtBorder(const FeatureSet& part, std::uint32_t facet, const Vec3& q, const Vec3& r,
-                          const Vec3& way, double tolerated_m) {
+BorderOwner ownerAtBorder(const FeatureSet& part, std::uint32_t facet, const Vec3& q,
+                          const PassingCorner& corner, double tolerated_m) {
   if (part.isTwoSided(facet)) return BorderOwner::Edge;
   const std::uint32_t other = neighbourAt(part, facet, q);
   if (other == FeatureSet::kNone) return BorderOwner::Edge;
   const Vec3 n[2] = {part.normal(facet), part.normal(other)};
-  const double height_m[2] = {n[0].dot(r), n[1].dot(r)}, way_m[2] = {n[0].dot(way), n[1].dot(way)};
+  const double height_m[2] = {n[0].dot(corner.r), n[1].dot(corner.r)},
+               way_m[2] = {n[0].dot(corner.way), n[1].dot(corner.way)};
   const double at[2] = {passes(height_m[0], way_m[0]), passes(height_m[1], way_m[1])};
   const auto isOver = [&](int i) {
     const double then = at[1 - i];
     return then < std::numeric_limits<double>::infinity() && height_m[i] + then * way_m[i] >= -tolerated_m;
   };
   if (isOver(0) && (!isOver(1) || at[1] < at[0])) return BorderOwner::Facet;
-  return isOver(1) ? BorderOwner::Neighbour : BorderOwner::Edge;
+  return isOver(1) && canTouch(corner, n[1]) ? BorderOwner::Neighbour : BorderOwner::Edge;
 }
 
 }  // namespace vps::inline v0
