@@ -26,6 +26,7 @@ Pose poseBetween(const PairView& pair, const Pose (&X_WS)[2]) {
 bool grazes(const FeatureContact& c, const PairView& start, const EndPoses& end, double tolerated_m) {
   if (c.kind == FeatureContact::Kind::EdgeOnEdge) return false;
   const int i = c.kind == FeatureContact::Kind::CornerOnFacet ? 0 : 1;
+  if (!start.shape[1 - i]->features().isCurved(c.feature[1 - i])) return false;
   for (int k = 1; k <= kMostPlaces; ++k) {
     const double share = c.share + (1 - c.share) * k / kMostPlaces;
     SideView side[2];
