@@ -36,7 +36,7 @@ class FakeCheck : public StepCheck {
     MissedContact m;
     m.point = missed;
     for (int i = 0; i < 2; ++i) m.object[i] = object_[i];
-    m.end_gap_m = m.kept_m = 1;  // a row that holds nothing
+    m.end_gap_m = m.kept_m = 0.5;  // a row that holds nothing
     out.push_back(m);
   }
   double freeShare(const Pose (&)[2]) override { return 1; }

@@ -109,7 +109,7 @@ void PairCheck::findMissed(const Pose (&X_WB_end)[2], int round, std::vector<Mis
   const double near_m = std::max(state_.context->settings.contact_margin_m, FeatureMotion::kRest_m);
   if (at_start.pair.leastDistance_m() > m.travel_m + near_m) return;
   if (spinsFreely(at_start.pair, m.end, state_)) return;
-  if (round >= kMostRetakes) m.path.settle();
+  if (round >= kMostRetakes && m.turnsFar(0)) m.path.settle();
   const std::size_t had = out.size();
   if (hasFeatures(at_start.pair, state_.context->settings)) {
     addFeatureContacts(at_start.pair, {{m.end[0], m.end[1]}, m.path, m.turnsFar(0)}, round, state_, out);

@@ -37,9 +37,10 @@ class StepPath {
   StepPath(const btCollisionObject* const (&objects)[2], const Pose (&start)[2], const Pose (&end)[2],
            double dt_s);
 
-  /// From now on rows are taken at the end of the step: they are the gaps' own derivatives. Where others
-  /// hold a body so that a contact's push hardly opens its gap, the turn of their levers may close it by
-  /// more than that: pushed ever harder, it then ends ever deeper. With derivatives rounds converge.
+  /// From now on rows are taken at the end of the step: they are the gaps' own derivatives. In a far turn,
+  /// where others hold a body so that a contact's push hardly opens its gap, the turn of their levers may
+  /// close it by more than that: pushed ever harder, it then ends ever deeper. With derivatives rounds
+  /// converge.
   void settle() { is_settled_ = true; }
   [[nodiscard]] bool isSettled() const { return is_settled_; }
   /// The contact as a row of the solver: where the bodies are at the start, with the gap that it has there.
