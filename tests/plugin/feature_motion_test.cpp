@@ -305,8 +305,8 @@ TEST(FeatureMotion, NoOverlapIsMissed) {
   EXPECT_LT(reported_in_vain, overlaps);
 }
 
-// A corner comes within the rest gap of an edge between two faces and goes on into the solid, by a way in which
-// it may pass either face's plane first; its own surface may keep it from touching one of the faces.
+// A corner comes within the rest gap of an edge between two faces and goes on into the solid, by a way in
+// which it may pass either face's plane first; its own surface may keep it from touching one of the faces.
 TEST(FeatureMotion, NoCornerThatPassesAnEdgeIsMissed) {
   const Vec3 half(3e-3, 2e-3, 2e-3);
   const Body a(box(half));
@@ -334,8 +334,9 @@ TEST(FeatureMotion, NoCornerThatPassesAnEdgeIsMissed) {
   EXPECT_EQ(missed, 0);
 }
 
-// A block's corner starts nearer to a floor than the rest gap, rises on an arc and comes down again not as near:
-// nothing is missed, though the last of the stretches that the way is looked at in begins farther from the floor.
+// A block's corner starts nearer to a floor than the rest gap, rises on an arc and comes down again not as
+// near: nothing is missed, though the last of the stretches that the way is looked at in begins farther from
+// the floor.
 TEST(FeatureMotion, AWayThatEndsAsNearAsItBeganMeetsNothing) {
   const Vec3 half(4e-3, 2e-3, 1e-3);
   const Body floor(box(Vec3(20e-3, 20e-3, 5e-3))), block(box(half));
