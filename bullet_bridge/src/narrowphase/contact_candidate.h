@@ -38,7 +38,7 @@ struct Candidate {
   double curvature_per_m = 0;         ///< of faces that touch flush: the greatest sum of both curvatures
   double hollow_per_m = 0;            ///< by how much the face bends towards the point that the plane is of
   bool is_flush = false;              ///< curved surfaces of both parts lie flush around it
-  bool is_flat = false;               ///< flat faces of both parts do: measured
+  bool is_flat = false;               ///< flat faces of both parts do, or one on an edge: measured
   bool bounces = false;               ///< restitution acts on it in this step
   bool was_contact = false;           ///< was given to the solver in the last step
   std::uint32_t id = 0;               ///< of the point in its shell; at a crossing body 0's edge

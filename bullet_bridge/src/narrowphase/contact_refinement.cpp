@@ -72,10 +72,15 @@ Exact atEndOfStep(const Exact& now, const Refiner& refiner, const OwnPoint& own,
 void setCurvature(Candidate& c, const Exact& exact, const SideView& side) {
   c.curvature_per_m = c.hollow_per_m = 0;
   c.is_flat = false;
+  const bool has_face = !side.shape->models().surfaces.empty();
+  if (exact.is_contact && exact.is_own_face && exact.is_on_edge && has_face) {
+    const FacePoint own = ownFace(c, side);
+    c.is_flat = !own.surface->sheet && own.curvature_W().isZero(kNoDirection);
+  }
   if (!exact.is_contact || !exact.is_their_face || !exact.face.surface) return;
   const Mat3 theirs = exact.face.curvature_W();
   if (exact.is_curved) c.hollow_per_m = std::max(-Curvature(theirs).least_per_m, 0.0);
-  if (!exact.is_smooth || side.shape->models().surfaces.empty()) return;
+  if (!exact.is_smooth || !has_face) return;
   const FacePoint own = ownFace(c, side);
   if (own.surface->sheet) return;
   const Mat3 ours = own.curvature_W();

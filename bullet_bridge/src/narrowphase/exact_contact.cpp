@@ -122,6 +122,7 @@ Exact contactAt(const Foot& foot, const OwnPoint& own) {
   if (own.is_edge && !foot.is_edge && !foot.is_sheet && !foot.is_curved && own.leadsOn(foot.normal))
     exact.is_contact = false;
   exact.is_curved = foot.is_curved;
+  exact.is_on_edge = foot.is_edge;
   if (exact.is_contact && !is_edge_on_edge) {
     const bool is_flush = !foot.is_edge && cos_facing > kCosSameFace;
     exact.is_smooth = is_flush && !own.is_edge;

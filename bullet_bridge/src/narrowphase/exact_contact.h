@@ -49,6 +49,7 @@ struct Exact {
   bool is_inside = false;   ///< the point is behind the nearest surface, or on it
   double distance_m = 0;
   Vec3 n = Vec3::Zero();
+  bool is_on_edge = false;  ///< the nearest place of the other surface lies on a sharp edge
   bool is_edge_on_edge = false;
   bool is_smooth = false;                           ///< two faces touch flush
   bool is_own_face = false, is_their_face = false;  ///< whose the plane is
