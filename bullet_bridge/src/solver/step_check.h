@@ -31,8 +31,8 @@ struct MissedContact {
   double rest_m = 0;  ///< the gap that the push restores
   bool is_sharp = false;  ///< no other contact's push may take the gap
 
-  /// end_gap_m of a contact whose point faces nothing any more. It is let go once in a step: where it is found
-  /// again without its row, it stays.
+  /// end_gap_m of a contact whose point faces nothing any more. It is let go once in a step: where it is
+  /// found again without its row, it stays.
   static constexpr double kNothingThere_m = 1;
 };
 
