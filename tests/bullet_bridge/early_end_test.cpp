@@ -30,13 +30,13 @@ class FakeCheck : public StepCheck {
   }
   [[nodiscard]] const btCollisionObject* object(int i) const override { return object_[i]; }
   void linearise(const Pose (&)[2], std::vector<MissedContact>&) override {}
-  void findMissed(const Pose (&)[2], int, std::vector<MissedContact>& out) override {
+  void findMissed(const Pose (&)[2], CheckRound, std::vector<MissedContact>& out) override {
     ++rounds;
     if (!missed) return;
     MissedContact m;
     m.point = missed;
     for (int i = 0; i < 2; ++i) m.object[i] = object_[i];
-    m.end_gap_m = m.kept_m = 0.5;  // a row that holds nothing
+    m.end_gap_m = m.kept_m = 1;  // a row that holds nothing
     out.push_back(m);
   }
   double freeShare(const Pose (&)[2]) override { return 1; }

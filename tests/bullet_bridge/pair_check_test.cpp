@@ -35,7 +35,7 @@ struct CheckedPair {
   }
   std::vector<MissedContact> missedAt(const Pose& X_end) {
     std::vector<MissedContact> missed;
-    check->findMissed(Ends(*this, X_end).X_WB, 0, missed);
+    check->findMissed(Ends(*this, X_end).X_WB, {}, missed);
     return missed;
   }
   double freeShareTo(const Pose& X_end) { return check->freeShare(Ends(*this, X_end).X_WB); }

@@ -15,8 +15,8 @@ namespace vps::bullet::inline v0 {
 struct SolverSettings {
   double residual_m_s = 1e-7;  ///< converged when no contact's velocity changes by more; > 0
   /// For rigid contacts: sweeps, where a step of Newton's method counts as ten; below 40 there are only
-  /// sweeps. Where Newton's method is needed it may take sixty steps, or three for each of its bodies,, even
-  /// if that is more. For penalty contacts: steps of Newton's method in all rounds. >= 1
+  /// sweeps. Where Newton's method is needed it may take sixty steps, or three for each of its
+  /// bodies, even if that is more. For penalty contacts: steps of Newton's method in all rounds. >= 1
   int iteration_limit = 400;
   /// Penalty points of one island that are solved one by one; 0: all. Where more are near, up to 256
   /// neighbours are solved as one point, the deepest, with the stiffness of all; a message (log.h) says so

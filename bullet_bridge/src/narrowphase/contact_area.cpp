@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "native_shapes/native_shape_adapter.h"
 #include "vps/contact_tolerances.h"
 
 namespace vps::bullet::inline v0 {
@@ -110,8 +111,11 @@ void correct(std::vector<Candidate>& chosen, const Vec3& center, double length_m
 
 void keepFacingShares(const PairView& pair, std::vector<Candidate>& points) {
   const SideView side[2] = {pair.side(0), pair.side(1)};
+  const bool is_native[2] = {dynamic_cast<const NativeShapeAdapter*>(pair.shape[0]) != nullptr,
+                             dynamic_cast<const NativeShapeAdapter*>(pair.shape[1]) != nullptr};
   for (Candidate& c : points) {
     if (c.isCrossing() || !side[c.side].shape) continue;
+    if (is_native[c.side]) c.area_m2 = 0;  // corners of a native shape stand for no part of its faces
     // The squares of a direction's components along the normals of square faces have the sum 1.
     const double facing = c.n_W.dot(side[c.side].X_WM.R * side[c.side].shape->models().shell->inward[c.id]);
     c.area_m2 *= facing * facing;

@@ -142,9 +142,8 @@ std::size_t findCrossingCandidates(const SideView& body0, const SideView& body1,
 /// does not flicker. Where more than `limit` are left, cells are doubled, as long as they are smaller than
 /// most_m.
 /// @param cell_m  edge of the first cells, a fraction of the smaller body's size
-/// @param X_GW    the grid is fixed in a frame G of one of the bodies, so that a scene that is moved or
-/// turned as
-///                a whole keeps its contacts
+/// @param X_GW    the grid is fixed in a frame G of one of the bodies, so that a scene that is moved as a
+///                whole keeps its contacts
 /// @return edge of the last cells; 0 if there were no more than `limit`
 double reduceByCell(std::vector<Candidate>& candidates, std::size_t limit, double cell_m, double most_m,
                     const Pose& X_GW = Pose());

@@ -71,21 +71,23 @@ Exact atEndOfStep(const Exact& now, const Refiner& refiner, const OwnPoint& own,
 // How the faces around a contact curve: see Candidate.
 void setCurvature(Candidate& c, const Exact& exact, const SideView& side) {
   c.curvature_per_m = c.hollow_per_m = 0;
-  c.is_flat = false;
-  const bool has_face = !side.shape->models().surfaces.empty();
-  if (exact.is_contact && exact.is_own_face && exact.is_on_edge && has_face) {
-    const FacePoint own = ownFace(c, side);
-    c.is_flat = !own.surface->sheet && own.curvature_W().isZero(kNoDirection);
-  }
   if (!exact.is_contact || !exact.is_their_face || !exact.face.surface) return;
   const Mat3 theirs = exact.face.curvature_W();
   if (exact.is_curved) c.hollow_per_m = std::max(-Curvature(theirs).least_per_m, 0.0);
-  if (!exact.is_smooth || !has_face) return;
+  if (!exact.is_smooth || side.shape->models().surfaces.empty()) return;
   const FacePoint own = ownFace(c, side);
-  if (own.surface->sheet) return;
-  const Mat3 ours = own.curvature_W();
-  c.curvature_per_m = std::max(Curvature(theirs + ours).most_per_m, 0.0);
-  c.is_flat = !exact.is_curved && theirs.isZero(kNoDirection) && ours.isZero(kNoDirection);
+  if (!own.surface->sheet)
+    c.curvature_per_m = std::max(Curvature(theirs + own.curvature_W()).most_per_m, 0.0);
+}
+
+// True if a point of a flat face lies on a flat face of the other part, or on an edge of it.
+bool isFlat(const Candidate& c, const Exact& exact, const SideView& side) {
+  const bool is_on_flat = exact.is_smooth && !exact.is_curved,
+             is_on_edge = exact.is_own_face && exact.is_on_edge;
+  if (!exact.is_contact || !(is_on_flat || is_on_edge) || side.shape->models().surfaces.empty()) return false;
+  const Shape::PointFace own = side.shape->faceAt(c.id);
+  return !side.shape->features().isCurved(own.surface, own.triangle) &&
+         !side.shape->models().surfaces[own.surface].sheet;
 }
 
 }  // namespace
@@ -138,6 +140,7 @@ void refine(std::vector<Candidate>& candidates, const SideView& side, const Side
                  : exact.is_their_face ? static_cast<std::uint8_t>(1 - side.side)
                                        : Candidate::kBetween;
     setCurvature(c, exact, side);
+    c.is_flat = isFlat(c, exact, side);
     const bool is_query = motion.dt_s == 0;
     if (exact.is_contact && exact.is_own_face && is_query && !exact.is_inside)
       moveToClosest(c, side, exact.from_q);

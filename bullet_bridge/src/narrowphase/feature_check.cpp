@@ -2,8 +2,6 @@
 #include "narrowphase/feature_check.h"
 
 #include <algorithm>
-#include <cstdio>
-#include <cstdlib>
 
 #include "narrowphase/contact_selection.h"
 #include "narrowphase/contacts_there.h"
@@ -40,14 +38,14 @@ bool grazes(const FeatureContact& c, const PairView& start, const EndPoses& end,
   return true;
 }
 
-// With a round in which rows are no longer taken back, a gap that is as small as one that is kept will do.
-void findContacts(const PairView& start, const EndPoses& end, int round, PairState& state,
+// In a late round any gap will do from which the next step can restore the rest gap.
+void findContacts(const PairView& start, const EndPoses& end, CheckRound round, PairState& state,
                   std::vector<FeatureContact>& found) {
   found.clear();
   const Pose X_01_end = poseBetween(start, end.X_WS);
   state.features.check(start.shape[0]->features(), start.shape[1]->features(), start.X_01_models(), X_01_end,
-                       round == 0, found);
-  if (round >= kMostRetakes) {
+                       round.isFirst(), found);
+  if (round.isLate()) {
     const double rest_m = FeatureMotion::rest_m(start.shape[0]->features(), start.shape[1]->features());
     std::erase_if(found, [&](const FeatureContact& c) {
       return c.gap_m(X_01_end) >= kHeldShare * std::min(rest_m, c.start_m);
@@ -161,10 +159,11 @@ class Linearised {
     missed.is_sharp = !isOnSheet(c, start_);
     return missed;
   }
+  [[nodiscard]] std::uint64_t key(const FeatureContact& c) const { return at_end_(c).key(); }
   // As if nothing were there.
   MissedContact without(const FeatureContact& c, PairState& state) const {
     MissedContact missed = (*this)(c, state);
-    missed.end_gap_m = MissedContact::kNothingThere_m;
+    missed.end_gap_m = kOutOfReach_m;
     return missed;
   }
   [[nodiscard]] bool isOutOfPlace(const FeatureContact& c, const Relinearising& which,
@@ -232,7 +231,7 @@ void markSharp(const PairView& pair, const Settings& settings, bool is_own,
     if (is_own ? isSharp(pair, c) || c.is_flat : !c.is_flush) c.rest_m = rest_m;
 }
 
-void addFeatureContacts(const PairView& start, const EndPoses& end, int round, PairState& state,
+void addFeatureContacts(const PairView& start, const EndPoses& end, CheckRound round, PairState& state,
                         std::vector<MissedContact>& out) {
   thread_local std::vector<FeatureContact> found;
   findContacts(start, end, round, state, found);
@@ -268,7 +267,7 @@ void lineariseFeatures(const PairView& start, const EndPoses& end, const Relinea
                        PairState& state, std::vector<MissedContact>& out) {
   const Linearised at_end(start, end);
   for (const FeatureContact& c : state.missed_features)
-    if (at_end.hasLeft(c, which, state))
+    if (at_end.hasLeft(c, which, state) && state.letGo(at_end.key(c)))
       out.push_back(at_end.without(c, state));
     else if (at_end.isOutOfPlace(c, which, state))
       out.push_back(at_end(c, state));
@@ -302,7 +301,7 @@ void addMissedFeatures(const PairView& pair, const Settings& settings, PairState
 
 double freeShareOf(const PairView& start, const EndPoses& end, PairState& state) {
   thread_local std::vector<FeatureContact> found;
-  findContacts(start, end, kMostRounds, state, found);
+  findContacts(start, end, {kMostRounds}, state, found);
   double share = 1;
   for (const FeatureContact& c : found) share = std::min(share, c.share);
   return share;

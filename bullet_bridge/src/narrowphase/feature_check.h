@@ -22,7 +22,7 @@ bool hasFeatures(const PairView& pair, const Settings& settings);
 void addMissedFeatures(const PairView& pair, const Settings& settings, PairState& state,
                        std::vector<Candidate>& contacts);
 
-/// Marks the contacts that are kept at a rest gap, as sharp features are: those, and those of flat faces.
+/// Marks the contacts that are kept at a rest gap: those of sharp features and those of flat faces.
 /// Where contacts of a face lay deeper than those of its edges, the edges would carry its load alone.
 /// Bullet's own solvers keep the friction of contacts that lose their load while they iterate: with these,
 /// all have the rest gap that are not flush on curved faces, so that none lies deeper.
@@ -42,9 +42,10 @@ struct EndPoses {
 bool spinsFreely(const PairView& start, const Pose (&X_WS_end)[2], PairState& state);
 
 /// Appends a contact for each pair of features that the motion brings too near to each other, up to a limit.
-/// @param start     at the start of the step
-/// @param is_first  in the first check of a step, small gaps are restored too: FeatureMotion::check()
-void addFeatureContacts(const PairView& start, const EndPoses& end, int round, PairState& state,
+/// @param start  at the start of the step
+/// @param round  in the first, small gaps are restored too (FeatureMotion::check()); in late ones, gaps from
+///               which the next step can restore the rest gap are left
+void addFeatureContacts(const PairView& start, const EndPoses& end, CheckRound round, PairState& state,
                         std::vector<MissedContact>& out);
 
 /// Which rows are taken where the bodies end a step.

@@ -35,6 +35,7 @@ double turn_rad(const Mat3& R) {
 
 void PairCheck::setBodies(const PairView& pair) {
   is_of_this_step_ = true;
+  state_.let_go.clear();
   for (int i = 0; i < 2; ++i) {
     object_[i] = pair.wrapper[i]->getCollisionObject();
     shape_[i] = pair.wrapper[i]->getCollisionShape();
@@ -99,7 +100,7 @@ void PairCheck::linearise(const Pose (&X_WB_end)[2], std::vector<MissedContact>&
   relinearise(m, at_start, {Relinearising::Rows::Predicted, apartOf_m(state_.context->settings)}, out);
 }
 
-void PairCheck::findMissed(const Pose (&X_WB_end)[2], int round, std::vector<MissedContact>& out) {
+void PairCheck::findMissed(const Pose (&X_WB_end)[2], CheckRound round, std::vector<MissedContact>& out) {
   if (!isValid()) return;
   Motion m;
   if (!read(X_WB_end, m)) return;
@@ -109,7 +110,7 @@ void PairCheck::findMissed(const Pose (&X_WB_end)[2], int round, std::vector<Mis
   const double near_m = std::max(state_.context->settings.contact_margin_m, FeatureMotion::kRest_m);
   if (at_start.pair.leastDistance_m() > m.travel_m + near_m) return;
   if (spinsFreely(at_start.pair, m.end, state_)) return;
-  if (round >= kMostRetakes && m.turnsFar(0)) m.path.settle();
+  if (round.isLate() && m.turnsFar(0)) m.path.settle();
   const std::size_t had = out.size();
   if (hasFeatures(at_start.pair, state_.context->settings)) {
     addFeatureContacts(at_start.pair, {{m.end[0], m.end[1]}, m.path, m.turnsFar(0)}, round, state_, out);
@@ -129,7 +130,7 @@ void PairCheck::findMissed(const Pose (&X_WB_end)[2], int round, std::vector<Mis
     return;
   }
   const double apart_m = apartOf_m(state_.context->settings);
-  if (round >= kMostRetakes || out.size() != had || !(m.bend_m > apart_m)) return;
+  if (!round.mayRetake() || out.size() != had || !(m.bend_m > apart_m)) return;
   if (m.turnsFar(0) && areBothCurved(at_start.pair, state_)) return;
   relinearise(m, at_start, {Relinearising::Rows::Loaded, apart_m}, out);
   // A row that is taken anew leaves its load to those beside it, which are as wrong.
@@ -163,10 +164,11 @@ void PairCheck::relinearise(const Motion& m, const Placed& at_start, const Relin
                          ends[k].distance_m < settings.contact_margin_m + m.travel_m;
     if (is_same) {
       if (isOutOfPlace(now[k], ends[k], m.path, which, settings)) put(m, at_start, now[k], ends[k], out);
-    } else if (which.isOfLoad() && !are_both_curved && ends[k].distance_m > ends[k].rest_m + which.apart_m) {
+    } else if (which.isOfLoad() && !are_both_curved && ends[k].distance_m > ends[k].rest_m + which.apart_m &&
+               state_.letGo(now[k].key())) {
       // It carries load, and nothing is there: its plane goes beyond the face that it was taken from.
       Candidate end = m.step.moved(now[k]);
-      end.distance_m = MissedContact::kNothingThere_m;
+      end.distance_m = kOutOfReach_m;
       put(m, at_start, now[k], end, out);
     }
   }

@@ -46,7 +46,7 @@ class PairCheck final : public StepCheck {
   [[nodiscard]] bool isValid() const;
   [[nodiscard]] const btCollisionObject* object(int i) const override { return object_[i]; }
   void linearise(const Pose (&X_WB_end)[2], std::vector<MissedContact>& out) override;
-  void findMissed(const Pose (&X_WB_end)[2], int round, std::vector<MissedContact>& out) override;
+  void findMissed(const Pose (&X_WB_end)[2], CheckRound round, std::vector<MissedContact>& out) override;
   double freeShare(const Pose (&X_WB_end)[2]) override;
   double freeShareOfPoints(const Pose (&X_WB_end)[2]) override;
   void endStep() override { is_of_this_step_ = false; }

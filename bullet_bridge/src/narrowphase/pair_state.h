@@ -2,6 +2,8 @@
 // What a pair of bodies stores from step to step.
 #pragma once
 
+#include <algorithm>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -53,6 +55,7 @@ struct PairState {
   std::unique_ptr<ContactLoop> loop;  ///< with rigid contact, in a world whose solver asks no check
   FeatureMotion features;             ///< with rigid contact: of the models
   std::vector<FeatureContact> missed_features;  ///< with rigid contact: what earlier steps lacked, still near
+  std::vector<std::uint64_t> let_go;            ///< keys of contacts, in this step: see letGo()
   SpinClearance spin;                           ///< with rigid contact: of the models
   CrossingMemory crossings;                     ///< with rigid contact: of the models' edges
   PenaltyPair penalty;                          ///< with penalty contact
@@ -61,6 +64,14 @@ struct PairState {
   std::vector<std::uint32_t> always[2];         ///< ids of the points last selected, for the query
   std::optional<bool> are_both_curved;          ///< both shapes have facets that stand for curved surfaces
   std::uint64_t revision[2] = {0, 0};  ///< of the shapes that the ids in writer and selection belong to
+
+  /// Lets go of a contact that carries load though nothing faces its point any more. False: it was let go in
+  /// this step already, and found again without its row. So the rounds of a step end.
+  bool letGo(std::uint64_t key) {
+    if (std::find(let_go.begin(), let_go.end(), key) != let_go.end()) return false;
+    let_go.push_back(key);
+    return true;
+  }
 };
 
 }  // namespace vps::bullet::inline v0

@@ -67,16 +67,15 @@ void ContactLoop::linearise(const btContactSolverInfo& info) {
 }
 
 // True if contacts were added, so that the step must be solved again.
-bool ContactLoop::addMissed(const btContactSolverInfo& info, int round) {
+bool ContactLoop::addMissed(const btContactSolverInfo& info, CheckRound round) {
   missed_.clear();
   contacts.finish();  // a check asks which contacts carry load
   forEachCheck(contacts.push(), info.m_timeStep, [&](StepCheck& check, const Pose(&X_WB_end)[2]) {
     check.findMissed(X_WB_end, round, missed_);
   });
-  const bool has_changed = contacts.addMissed(missed_, info);
-  is_complete_ = !has_changed && std::all_of(missed_.begin(), missed_.end(),
-                                             [](const MissedContact& m) { return m.point != nullptr; });
-  return has_changed;
+  contacts.addMissed(missed_, info);
+  return std::any_of(missed_.begin(), missed_.end(),
+                     [](const MissedContact& m) { return m.point != nullptr; });
 }
 
 }  // namespace vps::bullet::inline v0

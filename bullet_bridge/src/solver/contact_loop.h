@@ -52,12 +52,11 @@ class ContactLoop {
       const SolveOutcome round = solve();
       outcome = {std::max(outcome.steps, round.steps), round.is_converged};
       contacts.solvePush(info, push_sweeps);
-      const int number = is_own ? checked : checked + kMostRetakes;
-      if (checked == kMostRounds || !addMissed(info, number)) return outcome;
+      if (checked == kMostRounds || !addMissed(info, {checked, is_own})) return outcome;
     }
   }
   /// True if the rounds were used up, or no room was left, with contacts still missed.
-  [[nodiscard]] bool hasMissed() const { return !is_complete_; }
+  [[nodiscard]] bool hasMissed() const { return !missed_.empty(); }
 
  private:
   /// Of the bodies that contacts and joints act on.
@@ -65,13 +64,12 @@ class ContactLoop {
   template <typename Visit>
   void forEachCheck(std::span<const Vec6> push, double dt_s, const Visit& visit) const;
   void linearise(const btContactSolverInfo& info);
-  bool addMissed(const btContactSolverInfo& info, int round);
+  bool addMissed(const btContactSolverInfo& info, CheckRound round);
 
   EvenPressure pressure_{island};
   ContactNewton newton_{island, joints};
   std::vector<MissedContact> missed_;  // of the last check
   std::vector<Vec6> u_;                // scratch
-  bool is_complete_ = true;
   double dt_s_ = 0;
 };
 

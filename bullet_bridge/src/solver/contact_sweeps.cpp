@@ -46,20 +46,27 @@ void ContactSweeps::apply(const ContactRow& row, double impulse) {
     if (side.body >= 0) body(side).u += impulse * side.MinvJ;
 }
 
-ContactRow ContactSweeps::makeRow(const btCollisionObject* const (&objects)[2], const btManifoldPoint& point,
-                                  const Vec3& d) const {
-  ContactRow row;
+// False: no body of the island is part of the contact.
+bool ContactSweeps::makeRows(RigidContact& c) const {
   // Both forces act at the middle of the gap: forces in one line preserve the angular momentum. The levers
   // are doubles, since floats would round each on its own, and move the two forces apart.
-  const Vec3 at = middle_W(point);
+  const Vec3 at = c.position_W();
+  ContactRow* const rows[3] = {&c.normal, &c.tangent[0], &c.tangent[1]};
+  const Vec3 directions[3] = {c.normal_W(), c.tangent_W(0), c.tangent_W(1)};
+  bool is_any_moved = false;
   for (int i = 0; i < 2; ++i) {
-    const Vec3 r = at - fromBt(objects[i]->getWorldTransform().getOrigin());
-    const Vec3 direction = i == 0 ? d : Vec3(-d);
-    row.side[i].body = island_.indexOf(objects[i]);
-    row.side[i].J = stacked(r.cross(direction), direction);
-    if (row.side[i].body < 0) row.fixed_velocity += row.side[i].J.dot(Island::fixedVelocity(objects[i]));
+    const Vec3 r = at - fromBt(c.object[i]->getWorldTransform().getOrigin());
+    const int body = island_.indexOf(c.object[i]);
+    is_any_moved |= body >= 0;
+    const Vec6 fixed = body < 0 ? Island::fixedVelocity(c.object[i]) : Vec6(Vec6::Zero());
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 direction = i == 0 ? directions[k] : Vec3(-directions[k]);
+      rows[k]->side[i].body = body;
+      rows[k]->side[i].J = stacked(r.cross(direction), direction);
+      if (body < 0) rows[k]->fixed_velocity += rows[k]->side[i].J.dot(fixed);
+    }
   }
-  return row;
+  return is_any_moved;
 }
 
 void ContactSweeps::prepareRow(ContactRow& row) const {
@@ -82,16 +89,12 @@ void ContactSweeps::add(btPersistentManifold& manifold, btManifoldPoint& point,
   const double distance_m = solvedDistance_m(point);
   c.gap_m = distance_m + info.m_linearSlop - restGap_m(point);
   c.is_sharp = restGap_m(point) > 0 && distance_m > 0;
-  const Vec3 n = fromBt(point.m_normalWorldOnB);
-  if (n.isZero(0)) return;  // a contact without a normal has no direction
+  if (point.m_normalWorldOnB.isZero()) return;  // a contact without a normal has no direction
   if (!(point.m_contactPointFlags & BT_CONTACT_FLAG_LATERAL_FRICTION_INITIALIZED)) {
     btPlaneSpace1(point.m_normalWorldOnB, point.m_lateralFrictionDir1, point.m_lateralFrictionDir2);
     point.m_appliedImpulseLateral1 = point.m_appliedImpulseLateral2 = 0;
   }
-  c.normal = makeRow(objects, point, n);
-  c.tangent[0] = makeRow(objects, point, fromBt(point.m_lateralFrictionDir1));
-  c.tangent[1] = makeRow(objects, point, fromBt(point.m_lateralFrictionDir2));
-  if (c.normal.side[0].body < 0 && c.normal.side[1].body < 0) return;
+  if (!makeRows(c)) return;
 
   c.restitution = restitutionOf(point);
   if (c.gap_m > 0) c.target_m_s = -c.gap_m / info.m_timeStep;
@@ -103,32 +106,24 @@ void ContactSweeps::add(btPersistentManifold& manifold, btManifoldPoint& point,
   contacts_.push_back(c);
 }
 
-bool ContactSweeps::addMissed(std::span<const MissedContact> missed, const btContactSolverInfo& info) {
+void ContactSweeps::addMissed(std::span<const MissedContact> missed, const btContactSolverInfo& info) {
   const double dt_s = info.m_timeStep;
-  bool has_changed = false;
   for (const MissedContact& m : missed) {
     if (!m.point) continue;
-    const auto same = std::find_if(contacts_.begin(), contacts_.end(),
-                                   [&](const RigidContact& had) { return had.point == m.point; });
-    const bool is_let_go = m.end_gap_m == MissedContact::kNothingThere_m;
-    if (is_let_go && same != contacts_.end() && same->was_let_go) continue;
     RigidContact c;
     c.point = m.point;
     for (int i = 0; i < 2; ++i) c.object[i] = m.object[i];
     c.mu = m.point->m_combinedFriction;
     c.area_m2 = area_m2(*m.point);
-    c.normal = makeRow(m.object, *m.point, fromBt(m.point->m_normalWorldOnB));
-    c.tangent[0] = makeRow(m.object, *m.point, fromBt(m.point->m_lateralFrictionDir1));
-    c.tangent[1] = makeRow(m.object, *m.point, fromBt(m.point->m_lateralFrictionDir2));
-    if (c.normal.side[0].body < 0 && c.normal.side[1].body < 0) continue;
+    if (!makeRows(c)) continue;
     const double v = velocity(c.normal);
     const double gap_m = m.end_gap_m - (v + pushVelocity(c.normal)) * dt_s;
     c.gap_m = gap_m - m.rest_m;
     c.is_sharp = m.is_sharp;
     c.target_m_s = -(gap_m - m.kept_m) / dt_s;
     c.restitution = restitutionOf(*m.point);
-    c.was_let_go = is_let_go;
-    has_changed = true;
+    const auto same = std::find_if(contacts_.begin(), contacts_.end(),
+                                   [&](const RigidContact& had) { return had.point == m.point; });
     if (same == contacts_.end()) {
       contacts_.push_back(c);
       continue;
@@ -136,10 +131,8 @@ bool ContactSweeps::addMissed(std::span<const MissedContact> missed, const btCon
     c.p_n = same->p_n;
     c.p_t[0] = same->p_t[0];
     c.p_t[1] = same->p_t[1];
-    c.was_let_go |= same->was_let_go;
     *same = c;
   }
-  return has_changed;
 }
 
 void ContactSweeps::prepare() {

@@ -57,7 +57,6 @@ struct RigidContact {
   double mu = 0;
   double restitution = 0;                       ///< 0 to 1
   bool is_sharp = false;                        ///< of sharp features apart, whose gap no push may take
-  bool was_let_go = false;                      ///< in this step: MissedContact::kNothingThere_m
   double p_n = 0, p_t[2] = {0, 0}, p_push = 0;  ///< impulses [N s]
   double W_t_inverse[3] = {0, 0, 0};            ///< of the 2x2 tangent block: 11, 12, 22
   double W_t = 0;                               ///< its greatest eigenvalue
@@ -89,8 +88,7 @@ class ContactSweeps {
   /// Adds contacts that the solved step lacks, or gives those that it has another plane. Each then keeps its
   /// bodies apart at the end of the step, to first order about the present velocities and push. A step must
   /// not end deeper than it began, so a contact may ask for a velocity that separates.
-  /// True if any of them changes the problem.
-  bool addMissed(std::span<const MissedContact> missed, const btContactSolverInfo& info);
+  void addMissed(std::span<const MissedContact> missed, const btContactSolverInfo& info);
   /// Velocities of the push, one for each body; empty: none is needed.
   [[nodiscard]] std::span<const Vec6> push() const { return push_; }
   /// Writes the impulses to the manifolds.
@@ -100,8 +98,7 @@ class ContactSweeps {
   [[nodiscard]] IslandBody& body(const ContactRow::Side& side) const {
     return island_.bodies[static_cast<std::size_t>(side.body)];
   }
-  [[nodiscard]] ContactRow makeRow(const btCollisionObject* const (&objects)[2], const btManifoldPoint& point,
-                                   const Vec3& d) const;
+  bool makeRows(RigidContact& contact) const;
   void prepareRow(ContactRow& row) const;
   void prepare();
   void setFreeVelocities();

@@ -30,10 +30,19 @@ struct MissedContact {
   double kept_m = 0;  ///< least gap at the end of the step; negative: an overlap that existed before the step
   double rest_m = 0;  ///< the gap that the push restores
   bool is_sharp = false;  ///< no other contact's push may take the gap
+};
 
-  /// end_gap_m of a contact whose point faces nothing any more. It is let go once in a step: where it is
-  /// found again without its row, it stays.
-  static constexpr double kNothingThere_m = 1;
+/// Which check of a step it is.
+struct CheckRound {
+  int number = 0;      ///< from 0
+  bool is_own = true;  ///< bullet::Solver solves the step; false: rows stay where they were selected
+
+  /// Gaps that are small already are restored.
+  [[nodiscard]] bool isFirst() const { return is_own && number == 0; }
+  /// Contacts that carry load although they end the step apart get other rows, or are let go.
+  [[nodiscard]] bool mayRetake() const { return is_own && number < kMostRetakes; }
+  /// Rounds are to end soon.
+  [[nodiscard]] bool isLate() const { return is_own && number >= kMostRetakes; }
 };
 
 /// A pair of bodies that checks a solved step.
@@ -48,8 +57,7 @@ class StepCheck {
   /// Appends the contacts that the step lacks, and in its first kMostRetakes checks those that carry load
   /// although they end it apart. Later a row is never taken back, so that the rounds end.
   /// @param X_WB_end  where the bodies' frames are at the end of the step
-  /// @param round     0 in the first check of this step
-  virtual void findMissed(const Pose (&X_WB_end)[2], int round, std::vector<MissedContact>& out) = 0;
+  virtual void findMissed(const Pose (&X_WB_end)[2], CheckRound round, std::vector<MissedContact>& out) = 0;
   /// The share of the step after which sharp features of the bodies would come too near; 1: they do not.
   virtual double freeShare(const Pose (&X_WB_end)[2]) = 0;
   /// The share of the step, positive, up to which points of the bodies are nowhere much deeper than allowed,

@@ -16,7 +16,8 @@ double passes(double height_m, double way_m) {
   return way_m < 0 ? std::max(height_m, 0.0) / -way_m : std::numeric_limits<double>::infinity();
 }
 
-// What the search for corners and facets surely finds.
+// True if the corner's surface lets it touch a facet with this normal. The search for corners and facets
+// finds such pairs.
 bool canTouch(const PassingCorner& corner, const Vec3& n) {
   const Vec3 own = corner.R.transpose() * n;
   return std::all_of(corner.rays.begin(), corner.rays.end(),
