@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "query/flush_features.h"
+#include "query/touch_cone.h"
 #include "vps/contact_tolerances.h"
 
 namespace vps::inline v0 {
@@ -14,14 +15,6 @@ namespace {
 // When the corner passes a plane, as a multiple of its way.
 double passes(double height_m, double way_m) {
   return way_m < 0 ? std::max(height_m, 0.0) / -way_m : std::numeric_limits<double>::infinity();
-}
-
-// True if the corner's surface lets it touch a facet with this normal. The search for corners and facets
-// finds such pairs.
-bool canTouch(const PassingCorner& corner, const Vec3& n) {
-  const Vec3 own = corner.R.transpose() * n;
-  return std::all_of(corner.rays.begin(), corner.rays.end(),
-                     [&](const Vec3& ray) { return own.dot(ray) >= -kSinTouch; });
 }
 
 // A neighbour across a convex sharp edge on which q lies; kNone: there is none.
@@ -55,7 +48,9 @@ BorderOwner ownerAtBorder(const FeatureSet& part, std::uint32_t facet, const Vec
     return then < std::numeric_limits<double>::infinity() && height_m[i] + then * way_m[i] >= -tolerated_m;
   };
   if (isOver(0) && (!isOver(1) || at[1] < at[0])) return BorderOwner::Facet;
-  return isOver(1) && canTouch(corner, n[1]) ? BorderOwner::Neighbour : BorderOwner::Edge;
+  // Only such pairs are surely found by the search for corners and facets.
+  const bool can_touch = risesFrom(corner.rays, corner.R.transpose() * n[1], kSinTouch);
+  return isOver(1) && can_touch ? BorderOwner::Neighbour : BorderOwner::Edge;
 }
 
 }  // namespace vps::inline v0

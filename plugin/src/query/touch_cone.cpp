@@ -16,10 +16,7 @@ class Allowed {
  public:
   Allowed(std::span<const Vec3> rays, double least) : rays_(rays), least_(least) {}
 
-  [[nodiscard]] bool has(const Vec3& n) const {
-    return std::all_of(rays_.begin(), rays_.end(),
-                       [&](const Vec3& ray) { return n.dot(ray) >= least_ - kSinFlat; });
-  }
+  [[nodiscard]] bool has(const Vec3& n) const { return risesFrom(rays_, n, kSinFlat - least_); }
 
   // The places where two of the circles cross.
   [[nodiscard]] std::vector<Vec3> vertices() const {

@@ -2,6 +2,7 @@
 // Which planes the corner of a solid can touch.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <span>
 
@@ -13,6 +14,13 @@ namespace vps::inline v0 {
 /// nut's crest cannot touch the flank it faces away from. Slopes down to kSinTouch are left in, since facets
 /// of curved surfaces stand for each other there.
 ///
+/// True if a corner's surface rises from a plane with this normal, or falls from it by no more than the
+/// slope.
+/// @param rays  from the corner along its surface, unit; in the normal's frame
+inline bool risesFrom(std::span<const Vec3> rays, const Vec3& n, double slope) {
+  return std::all_of(rays.begin(), rays.end(), [&](const Vec3& ray) { return n.dot(ray) >= -slope; });
+}
+
 /// A cone that holds every unit vector n with n . ray >= -slope for all rays; nothing if there is none.
 /// O(rays^3), of which the first twelve are used.
 std::optional<DirectionCone> touchCone(std::span<const Vec3> rays, double slope);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <span>
 
+#include "query/touch_cone.h"
 #include "vps/contact_tolerances.h"
 #include "vps/feature_set.h"
 
@@ -131,9 +132,7 @@ class TouchSearch {
 
   [[nodiscard]] bool canTouch(std::uint32_t facet) const {
     const Vec3& n = facets_of_.normal(facet);
-    if (!facets_of_.isTwoSided(facet))
-      for (const Vec3& ray : rays_)
-        if (n.dot(ray) < -kSinTouch - slack_rad_) return false;
+    if (!facets_of_.isTwoSided(facet) && !risesFrom(rays_, n, kSinTouch + slack_rad_)) return false;
     return !facets_of_.isCurved(facet) || std::none_of(faces_.begin(), faces_.end(), [&](const Vec3& own) {
       return own.dot(n) < surely_flush_;
     });
