@@ -24,6 +24,7 @@ constexpr std::array kFamilies{
     Family{"tetrahedra", "tetrahedra fall into a corner", drawTetrahedra},
     Family{"stairs", "parts tumble down stairs", drawStairs},
     Family{"prisms", "random prisms fall into a box", drawPrisms},
+    Family{"rings", "pipes of many sides fall on each other", drawRings},
 };
 
 /// Equal seeds of different families are unrelated.

@@ -37,5 +37,6 @@ Case drawChain(Random& random);
 Case drawTetrahedra(Random& random);
 Case drawStairs(Random& random);
 Case drawPrisms(Random& random);
+Case drawRings(Random& random);
 
 }  // namespace vps::search

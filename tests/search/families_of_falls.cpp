@@ -72,6 +72,21 @@ Mesh drawPrism(Random& random, double size_m) {
   return centred(mesh);
 }
 
+/// A pipe of seven to forty sides: sharp rims, whose corners are hills on the outside and valleys in the
+/// bore.
+Mesh drawRing(Random& random, double size_m) {
+  const int sides = 7 + random.index(34);
+  const double inner = random.uniform(0.4, 0.9);
+  Polygon outer, hole;
+  for (int i = 0; i < sides; ++i) {
+    const double angle_rad = 2 * std::numbers::pi * i / sides;
+    outer.push_back(size_m / 2 * Vec2(std::cos(angle_rad), std::sin(angle_rad)));
+    hole.push_back(inner * outer.back());
+  }
+  const double half_m = size_m * random.logUniform(0.1, 0.6);
+  return centred(makePrism(outer, {hole}, -half_m, half_m));
+}
+
 /// Bodies above each other, each with a random rotation and motion, mostly downwards.
 void dropAll(Random& random, std::vector<Mesh> meshes, double above_m, double aside_m, double friction,
              std::vector<CaseBody>& out) {
@@ -113,6 +128,17 @@ Case drawPrisms(Random& random) {
   for (Mesh& mesh : meshes) mesh = drawPrism(random, random.uniform(0.5, 1) * size_m);
   dropAll(random, std::move(meshes), 0, 0, friction, made.bodies);
   made.seconds = random.uniform(0.5, 1.5);
+  return made;
+}
+
+Case drawRings(Random& random) {
+  const double friction = drawFriction(random), size_m = random.uniform(10e-3, 30e-3);
+  Case made;
+  made.bodies = makeTray(random.uniform(0.6, 1.2) * size_m, 3 * size_m, friction);
+  std::vector<Mesh> meshes(static_cast<std::size_t>(2 + random.index(3)));
+  for (Mesh& mesh : meshes) mesh = drawRing(random, random.uniform(0.5, 1) * size_m);
+  dropAll(random, std::move(meshes), 0, 0, friction, made.bodies);
+  made.seconds = random.uniform(0.3, 1);
   return made;
 }
 

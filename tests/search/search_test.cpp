@@ -125,7 +125,7 @@ TEST_P(FamilyTest, RepeatsToTheBit) {
 
 INSTANTIATE_TEST_SUITE_P(Each, FamilyTest,
                          testing::Values("tslot", "dovetail", "key", "square_peg", "hexagonal_peg", "comb",
-                                         "puzzle", "chain", "tetrahedra", "stairs", "prisms"),
+                                         "puzzle", "chain", "tetrahedra", "stairs", "prisms", "rings"),
                          [](const auto& info) { return std::string(info.param); });
 
 // The push that restores the gaps of a jammed part took from the gap of a cracked edge, step by step, until

@@ -35,6 +35,7 @@ void resetIfModelsChanged(PairState& state, const PairView& pair) {
     const std::uint64_t revision = pair.shape[i] ? pair.shape[i]->revision() : 0;
     if (state.revision[i] == revision) continue;
     state.revision[i] = revision;
+    state.clear_way.forget();
     state.selection = {};
     state.penalty.points.clear();
     state.features.reset();

@@ -100,6 +100,33 @@ void PairCheck::linearise(const Pose (&X_WB_end)[2], std::vector<MissedContact>&
   relinearise(m, at_start, {Relinearising::Rows::Predicted, apartOf_m(state_.context->settings)}, out);
 }
 
+bool PairCheck::isClear(const Motion& m, const Placed& at_start, CheckRound round) const {
+  const PairView& pair = at_start.pair;
+  const double rest_m = hasFeatures(pair, state_.context->settings)
+                            ? FeatureMotion::rest_m(pair.shape[0]->features(), pair.shape[1]->features())
+                            : FeatureMotion::kRest_m;
+  return !m.turnsFar(0) && state_.clear_way.covers(m.X_01(m.start), m.X_01(m.end), round.isFirst(),
+                                                   m.start[0].inverse() * m.center_W, m.radius_m,
+                                                   FeatureMotion::kMissedShare * rest_m);
+}
+
+// Features, then points.
+void PairCheck::findOnWay(Motion& m, const Placed& at_start, CheckRound round,
+                          std::vector<MissedContact>& out) {
+  const std::size_t had = out.size();
+  if (hasFeatures(at_start.pair, state_.context->settings))
+    addFeatureContacts(at_start.pair, {{m.end[0], m.end[1]}, m.path, m.turnsFar(0)}, round, state_, out);
+  if (m.travel_m <= m.tolerated_m) return;
+  // In a step with so much rotation many facets of round parts pass each other: contacts that follow each of
+  // them brake a shaft in its bore. What may protrude from a facet elsewhere is tolerated here.
+  if (m.turnsFar(0)) m.tolerated_m = kFacetCornerShare * state_.context->settings.contact_margin_m;
+  thread_local std::vector<Candidate> missed;
+  missed.clear();
+  findAmongRefined(m, missed);
+  if (missed.empty() && out.size() == had && mayMissPoints(m, at_start.pair)) findAlongPath(m, missed);
+  if (!missed.empty()) emit(m, missed, out);
+}
+
 void PairCheck::findMissed(const Pose (&X_WB_end)[2], CheckRound round, std::vector<MissedContact>& out) {
   if (!isValid()) return;
   Motion m;
@@ -109,26 +136,16 @@ void PairCheck::findMissed(const Pose (&X_WB_end)[2], CheckRound round, std::vec
   if (!(m.travel_m > 0)) return;
   const double near_m = std::max(state_.context->settings.contact_margin_m, FeatureMotion::kRest_m);
   if (at_start.pair.leastDistance_m() > m.travel_m + near_m) return;
-  if (spinsFreely(at_start.pair, m.end, state_)) return;
-  if (round.isLate() && m.turnsFar(0)) m.path.settle();
   const std::size_t had = out.size();
-  if (hasFeatures(at_start.pair, state_.context->settings)) {
-    addFeatureContacts(at_start.pair, {{m.end[0], m.end[1]}, m.path, m.turnsFar(0)}, round, state_, out);
-    if (out.size() > had) state_.is_incomplete = true;
+  if (!isClear(m, at_start, round)) {
+    if (spinsFreely(at_start.pair, m.end, state_)) return;
+    if (round.isLate() && m.turnsFar(0)) m.path.settle();
+    findOnWay(m, at_start, round, out);
+    if (out.size() == had && !round.isLate() && !m.turnsFar(0))
+      state_.clear_way.remember(m.X_01(m.start), m.X_01(m.end), round.isFirst());
+    if (out.size() != had) state_.is_incomplete = true;
   }
   if (m.travel_m <= m.tolerated_m) return;
-  // In a step with so much rotation many facets of round parts pass each other: contacts that follow each of
-  // them brake a shaft in its bore. What may protrude from a facet elsewhere is tolerated here.
-  if (m.turnsFar(0)) m.tolerated_m = kFacetCornerShare * state_.context->settings.contact_margin_m;
-  thread_local std::vector<Candidate> missed;
-  missed.clear();
-  findAmongRefined(m, missed);
-  if (missed.empty() && out.size() == had && mayMissPoints(m, at_start.pair)) findAlongPath(m, missed);
-  if (!missed.empty()) {
-    emit(m, missed, out);
-    state_.is_incomplete = true;
-    return;
-  }
   const double apart_m = apartOf_m(state_.context->settings);
   if (!round.mayRetake() || out.size() != had || !(m.bend_m > apart_m)) return;
   if (m.turnsFar(0) && areBothCurved(at_start.pair, state_)) return;

@@ -40,6 +40,35 @@ struct Selection {
   double sampling_m = 0;  ///< greatest size of an area from which only the most urgent points were considered
 };
 
+/// A way on which a check found nothing that was missed, as poses of body 1 relative to body 0. What it found
+/// holds for any way that begins and ends within a share of the rest gap of it: most pairs move alike in the
+/// rounds of a step, and what rests, from step to step.
+class ClearWay {
+ public:
+  void forget() { is_known_ = false; }
+  void remember(const Pose& X_01_start, const Pose& X_01_end, bool with_small_gaps) {
+    start_ = X_01_start;
+    end_ = X_01_end;
+    is_known_ = true;
+    has_small_gaps_ = with_small_gaps;
+  }
+  /// @param with_small_gaps   gaps that were small at the start are looked at, too
+  /// @param center, radius_m  of the smaller body, in the frame of body 0
+  [[nodiscard]] bool covers(const Pose& X_01_start, const Pose& X_01_end, bool with_small_gaps,
+                            const Vec3& center, double radius_m, double apart_m) const {
+    const auto isNear = [&](const Pose& a, const Pose& b) {
+      const Pose way = a * b.inverse();
+      return (way * center - center).norm() + rotationVector(way.R).norm() * radius_m <= apart_m;
+    };
+    return is_known_ && (has_small_gaps_ || !with_small_gaps) && isNear(X_01_start, start_) &&
+           isNear(X_01_end, end_);
+  }
+
+ private:
+  Pose start_, end_;
+  bool is_known_ = false, has_small_gaps_ = false;
+};
+
 struct PairState {
   std::shared_ptr<Context> context;
   std::unique_ptr<ManifoldWriter> writer;
@@ -55,6 +84,7 @@ struct PairState {
   std::unique_ptr<ContactLoop> loop;  ///< with rigid contact, in a world whose solver asks no check
   FeatureMotion features;             ///< with rigid contact: of the models
   std::vector<FeatureContact> missed_features;  ///< with rigid contact: what earlier steps lacked, still near
+  ClearWay clear_way;                           ///< with rigid contact
   std::vector<std::uint64_t> let_go;            ///< keys of contacts, in this step: see letGo()
   SpinClearance spin;                           ///< with rigid contact: of the models
   CrossingMemory crossings;                     ///< with rigid contact: of the models' edges

@@ -67,6 +67,9 @@ class VPS_API FeatureMotion {
   /// A way longer than a twentieth of the smaller part's radius is looked at in stretches that long, until
   /// some hundred contacts are found; the same features may be found in several.
   ///
+  /// Edges that cross at the end, but not at the start, count as well if they come nearer on the way than it
+  /// bends: so an edge that slides past the end of another is held by the next one.
+  ///
   /// Features that intersect at the start are not seen. Neither are those of curved surfaces that lie flush
   /// in each other, as a thread in its nut: points of pointshells meet these along the normals of the curved
   /// surfaces, so that they slide smoothly.
@@ -87,9 +90,16 @@ class VPS_API FeatureMotion {
     double distance_m;  // at least this when they were last measured
     double path_m;      // way of the parts until then
   };
+  struct Step {
+    const Pose &start, &end;
+  };
+  struct Stretch {
+    Pose from, to;
+    bool is_last;
+  };
   void search(const FeatureSet& part0, const FeatureSet& part1);
-  void checkStretch(const FeatureSet& part0, const FeatureSet& part1, const Pose& start, const Pose& to,
-                    const Pose& end, bool holds_close, std::vector<FeatureContact>& out);
+  void checkStretch(const FeatureSet& part0, const FeatureSet& part1, const Stretch& stretch,
+                    const Step& step, bool holds_close, std::vector<FeatureContact>& out);
 
   std::vector<Near> near_;
   std::vector<Pose> way_10_;  // scratch

@@ -179,10 +179,14 @@ bool findCrossing(const FeatureSet& part0, const FeatureSet& part1, const std::u
   contact.p[0] = f.own[0] + share_a * (f.own[1] - f.own[0]);
   contact.p[1] = b + share_b * way_b;
   contact.n = (across.dot(n_1) < 0 ? -1 : 1) * across.normalized();
-  const Vec3 n_0 = end_10.R.transpose() * contact.n;
-  return contact.n.dot(end_10 * contact.p[0] - contact.p[1]) < 0 &&
-         isMetFromOutside(part0, Kind::EdgeOnEdge, 0, feature[0], contact.p[0], n_0) &&
-         isMetFromOutside(part1, Kind::EdgeOnEdge, 1, feature[1], contact.p[1], contact.n) &&
+  const auto areMetFromOutside = [&] {
+    const Vec3 n_0 = end_10.R.transpose() * contact.n;
+    return isMetFromOutside(part0, Kind::EdgeOnEdge, 0, feature[0], contact.p[0], n_0) &&
+           isMetFromOutside(part1, Kind::EdgeOnEdge, 1, feature[1], contact.p[1], contact.n);
+  };
+  // Beside an end of an edge, the line to it does not tell on which side of the other edge it is.
+  if (!areMetFromOutside()) contact.n = -contact.n;
+  return contact.n.dot(end_10 * contact.p[0] - contact.p[1]) < 0 && areMetFromOutside() &&
          !isLeftToPoints(part0, part1, contact, end_10.R, contact.n);
 }
 

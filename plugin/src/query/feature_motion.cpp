@@ -154,6 +154,32 @@ void moveToTouch(Met& met) {
   if (after.distance_m() > kRounding_m && is_nearer) met.reach = {std::min(opens, 1.0), after};
 }
 
+bool findCrossingOf(const FeatureSet& part0, const FeatureSet& part1, const std::uint32_t (&feature)[2],
+                    const Met& met, const Pose& X_10, FeatureContact& contact) {
+  return findCrossing(part0, part1, feature, met.features, X_10, met.reach.nearest.p - met.reach.nearest.q,
+                      contact);
+}
+
+// True if edges cross at the end of the step, but not at its start, and come nearer than the way bends. An
+// edge that slides past the end of another dips below it on a way that bends, though its contact holds it at
+// the end; it then enters the next edge from that end, deeper than features are looked for.
+bool entersFromItsEnd(const FeatureSet& part0, const FeatureSet& part1, const std::uint32_t (&feature)[2],
+                      const Pose& start, const Pose& end, Met& met, FeatureContact& contact) {
+  FeatureContact before;
+  if (!findCrossingOf(part0, part1, feature, met, end.inverse(), contact) ||
+      findCrossingOf(part0, part1, feature, met, start.inverse(), before))
+    return false;
+  const double bend_m =
+      0.5 * travel_m(part0, part1, start, end) * rotationVector(end.R * start.R.transpose()).norm();
+  thread_local std::vector<Pose> way_10;
+  way_10.clear();
+  Way(ballAround(part0), ballAround(part1), start, end).divide(way_10);
+  placeAt(met.features, way_10, 0);
+  met.reach.nearest = nearestOf(Kind::EdgeOnEdge, met.features.a, met.features.b);
+  const double distance_m = met.reach.nearest.distance_m();
+  return distance_m <= bend_m || findFirst(Kind::EdgeOnEdge, way_10, bend_m, distance_m, met);
+}
+
 }  // namespace
 
 FeatureMotion::FeatureMotion() : tube_(std::make_unique<MotionTube>()) {}
@@ -166,16 +192,18 @@ void FeatureMotion::check(const FeatureSet& part0, const FeatureSet& part1, cons
   const double stretch_m = longestStretch_m(ballAround(part0), ballAround(part1));
   const int stretches = static_cast<int>(
       std::clamp(std::ceil(travel_m(part0, part1, start, end) / stretch_m), 1.0, 10 * kMostStretches));
-  if (stretches == 1) return checkStretch(part0, part1, start, end, end, holds_close, out);
+  const Step step{start, end};
+  if (stretches == 1) return checkStretch(part0, part1, {start, end, true}, step, holds_close, out);
   const Way way(ballAround(part0), ballAround(part1), start, end);
   const double gap_m = rest_m(part0, part1);
   const std::size_t first = out.size();
   Pose from = start;
   // The last: more than a solver adds at once.
   for (int k = 0; k < stretches && out.size() < first + 32 * kMostAdded; ++k) {
-    const Pose to = k + 1 < stretches ? way.at((k + 1.0) / stretches).inverse() : end;
+    const bool is_last = k + 1 == stretches;
+    const Pose to = is_last ? end : way.at((k + 1.0) / stretches).inverse();
     const std::size_t found = out.size();
-    checkStretch(part0, part1, from, to, end, holds_close && k == 0, out);
+    checkStretch(part0, part1, {from, to, is_last}, step, holds_close && k == 0, out);
     from = to;
     for (std::size_t i = found; i < out.size(); ++i) {
       out[i].share = (k + out[i].share) / stretches;
@@ -190,10 +218,10 @@ void FeatureMotion::check(const FeatureSet& part0, const FeatureSet& part1, cons
   }
 }
 
-// @param end  of the whole step; a contact counts if the gap is too small there
-void FeatureMotion::checkStretch(const FeatureSet& part0, const FeatureSet& part1, const Pose& start,
-                                 const Pose& to, const Pose& end, bool holds_close,
-                                 std::vector<FeatureContact>& out) {
+// A contact counts if the gap is too small at the end of the step.
+void FeatureMotion::checkStretch(const FeatureSet& part0, const FeatureSet& part1, const Stretch& stretch,
+                                 const Step& step, bool holds_close, std::vector<FeatureContact>& out) {
+  const auto& [start, to, is_last] = stretch;
   const double step_m = travel_m(part0, part1, start, to);
   const double gap_m = rest_m(part0, part1), looked_at_m = kLeastShare * gap_m;
   if (is_valid_) path_m_ += travel_m(part0, part1, last_, start);
@@ -220,25 +248,30 @@ void FeatureMotion::checkStretch(const FeatureSet& part0, const FeatureSet& part
     const double least_m = std::min(looked_at_m, 0.5 * near.distance_m);
     const bool is_held = holds_close && near.distance_m < kHeldShare * gap_m;
     const Nearest at_start = nearest;
-    if (findFirst(near.kind, way_10_, least_m, near.distance_m, met)) {
-      if (near.kind == Kind::EdgeOnEdge) moveToTouch(met);
-    } else {
-      if (!is_held) continue;
+    FeatureContact contact;
+    const bool is_reached = findFirst(near.kind, way_10_, least_m, near.distance_m, met);
+    if (is_reached && near.kind == Kind::EdgeOnEdge) moveToTouch(met);
+    if (!is_reached) {
       placeAt(f, way_10_, 0);
       met.piece = 0;
       met.reach = {0, at_start};
     }
-    FeatureContact contact;
-    if (!findContact(part0, part1, near.kind, near.feature, f, met.reach, rotationAt(way_10_, met),
-                     contact) &&
-        !(near.kind == FeatureContact::Kind::EdgeOnEdge &&
-          findCrossing(part0, part1, near.feature, f, way_10_.back(),
-                       met.reach.nearest.p - met.reach.nearest.q, contact)))
-      continue;
-    contact.share =
-        (static_cast<double>(met.piece) + met.reach.share) / static_cast<double>(way_10_.size() - 1);
+    const bool are_edges = near.kind == Kind::EdgeOnEdge;
+    if (is_reached || is_held) {
+      if (!findContact(part0, part1, near.kind, near.feature, f, met.reach, rotationAt(way_10_, met),
+                       contact) &&
+          !(are_edges && findCrossingOf(part0, part1, near.feature, met, way_10_.back(), contact)))
+        continue;
+      contact.share =
+          (static_cast<double>(met.piece) + met.reach.share) / static_cast<double>(way_10_.size() - 1);
+    } else {
+      if (!is_last || !are_edges ||
+          !entersFromItsEnd(part0, part1, near.feature, step.start, step.end, met, contact))
+        continue;
+      contact.share = 1;
+    }
     contact.start_m = startOf(part0, part1, contact, near.distance_m, start);
-    if (is_held || endsTooNear(contact, end, gap_m)) out.push_back(contact);
+    if (is_held || endsTooNear(contact, step.end, gap_m)) out.push_back(contact);
   }
 }
 
