@@ -13,7 +13,7 @@ namespace vps::scenes::inline v0::import {
 namespace {
 
 /// Incremented when reading gives other bits, or part_bytes.h changes.
-constexpr std::uint32_t kKeptVersion = 1;
+constexpr std::uint32_t kKeptVersion = 2;
 
 template <class Io>
 void transferParts(Io& io, ImportedCad& cad) {

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // STEP and IGES with names, tree, places and colours (Open CASCADE's XDE), and BREP.
 #include <algorithm>
+#include <fstream>
+#include <iterator>
 #include <map>
 #include <mutex>
 #include <set>
+#include <sstream>
 
 #include <BRepGProp.hxx>
 #include <BRepTools.hxx>
@@ -11,8 +14,6 @@
 #include <GProp_GProps.hxx>
 #include <IGESCAFControl_Reader.hxx>
 #include <IGESControl_Controller.hxx>
-#include <Interface_Check.hxx>
-#include <Interface_InterfaceModel.hxx>
 #include <Interface_Static.hxx>
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
@@ -32,6 +33,7 @@
 #include <XCAFDoc_DocumentTool.hxx>
 #include <XCAFDoc_ShapeTool.hxx>
 
+#include "import/occt/damaged_entities.h"
 #include "import/occt/pieces.h"
 #include "import/occt/tessellate_all.h"
 #include "import/part_names.h"
@@ -326,40 +328,37 @@ LoadError unreadable(const std::string& file, const std::string& format, const s
   return {file, "", "is not a readable " + format + " file (" + why + "); export it again"};
 }
 
-/// Refuses a file with entities that could not be read: Open CASCADE continues with null pointers in their
-/// place, and crashes on some of them (7.6.3: a face bound without its loop).
-void requireIntact(const Handle(Interface_InterfaceModel) & model, const std::string& file,
-                   const std::string& format) {
-  std::string first;
-  int damaged = 0;
-  for (int i = 1; i <= model->NbEntities(); ++i) {
-    if (!model->IsErrorEntity(i)) continue;
-    if (damaged++ == 0 && model->Check(i, true)->HasFailed()) first = model->Check(i, true)->CFail(1);
-  }
-  const Handle(Interface_Check) global = model->GlobalCheck(true);
-  if (damaged == 0 && !global->HasFailed()) return;
-  if (first.empty() && global->HasFailed()) first = global->CFail(1);
-  for (char& c : first) c = c == '\n' ? ' ' : c;
-  throw unreadable(file, format, std::to_string(damaged) + " entities are damaged; the first: " + first);
+XSControl_Reader& basic(STEPCAFControl_Reader& reader) {
+  return reader.ChangeReader();
+}
+XSControl_Reader& basic(IGESCAFControl_Reader& reader) {
+  return reader;
 }
 
-const XSControl_Reader& basic(const STEPCAFControl_Reader& reader) {
-  return reader.Reader();
-}
-const XSControl_Reader& basic(const IGESCAFControl_Reader& reader) {
-  return reader;
+IFSelect_ReturnStatus readText(XSControl_Reader& reader, const std::string& file, const std::string& format) {
+  if (format != "STEP") return reader.ReadFile(file.c_str());
+  std::ifstream in(file, std::ios::binary);
+  const auto changed = withPlainlyLostReferences(std::string(std::istreambuf_iterator<char>(in), {}));
+  if (!changed) return reader.ReadFile(file.c_str());
+  std::istringstream text(*changed);
+  return reader.ReadStream(file.c_str(), text);
 }
 
 template <class Reader>
 void transfer(Reader& reader, const std::string& file, const std::string& format,
-              const Handle(TDocStd_Document) & document) {
+              const Handle(TDocStd_Document) & document, std::vector<std::string>& warnings) {
   reader.SetNameMode(true);
   reader.SetColorMode(true);
-  if (reader.ReadFile(file.c_str()) != IFSelect_RetDone)
+  if (readText(basic(reader), file, format) != IFSelect_RetDone)
     throw unreadable(file, format, "its syntax is wrong");
-  requireIntact(basic(reader).Model(), file, format);
+  // Open CASCADE 7.6.3 crashes on some of what was not read, as a face bound without its loop.
+  const Damage damage = damageOf(basic(reader).Model());
+  if (!damage.lost_geometry.empty()) throw unreadable(file, format, damage.lost_geometry);
+  if (!damage.remark.empty()) warnings.push_back(damage.remark);
   Handle(TDocStd_Document) target = document;
   if (!reader.Transfer(target)) throw unreadable(file, format, "no shape could be made from it");
+  if (const std::string unplaced = unplacedShapes(basic(reader)); !unplaced.empty())
+    warnings.push_back(unplaced);
 }
 
 RawCad read(const std::string& file, const std::string& format, const ImportSettings& settings,
@@ -396,12 +395,12 @@ RawCad read(const std::string& file, const std::string& format, const ImportSett
     STEPCAFControl_Controller::Init();  // defines the static below
     Interface_Static::SetCVal("xstep.cascade.unit", "MM");
     STEPCAFControl_Reader reader;
-    transfer(reader, file, format, document.get());
+    transfer(reader, file, format, document.get(), cad.warnings);
   } else {
     IGESControl_Controller::Init();
     Interface_Static::SetCVal("xstep.cascade.unit", "MM");
     IGESCAFControl_Reader reader;
-    transfer(reader, file, format, document.get());
+    transfer(reader, file, format, document.get(), cad.warnings);
   }
   Tree(document.get(), settings, progress, cad).walk();
   return cad;
