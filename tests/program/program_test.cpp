@@ -142,6 +142,9 @@ TEST_F(Program, MeshesThatMakeTheAnswerUncertainGiveWarnings) {
   const std::string settings = " --units mm --spacing 2mm --voxel ";
   EXPECT_TRUE(run("query plate.stl open.stl" + settings + "1mm").err.starts_with("vps: warning: open.stl: "));
   EXPECT_TRUE(run("import open.stl -o new --units mm").err.starts_with("vps: warning: open.stl: "));
+  const std::string block = VPS_SOURCE_DIR "/scenes/bearing_block/bearing_block.glb";
+  EXPECT_NE(run("import " + block + " -o block --units inch").err.find("--units is not used"),
+            std::string::npos);
   EXPECT_NE(run("query plate.stl pin.stl" + settings + "6mm")
                 .err.find("vps: warning: plate.stl: is 10.000 mm thin"),
             std::string::npos);

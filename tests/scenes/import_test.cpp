@@ -287,6 +287,67 @@ TEST(ImportGltf, WithoutMeshesItHoldsNoSurfaces) {
   EXPECT_NE(message.find("holds no surfaces"), std::string::npos) << message;
 }
 
+/// A tetrahedron with legs of 1 as Collada, with a text in place of its unit.
+std::string tetrahedronDae(const std::string& unit) {
+  return R"(<?xml version="1.0" encoding="utf-8"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1"><asset>)" +
+         unit + R"(<up_axis>Z_UP</up_axis></asset>
+<library_geometries><geometry id="g" name="tip"><mesh><source id="p"><float_array id="a" count="12">
+0 0 0 1 0 0 0 1 0 0 0 1</float_array><technique_common><accessor source="#a" count="4" stride="3">
+<param name="X" type="float"/><param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common>
+</source><vertices id="v"><input semantic="POSITION" source="#p"/></vertices><triangles count="4">
+<input semantic="VERTEX" source="#v" offset="0"/><p>0 2 1 0 1 3 0 3 2 1 2 3</p></triangles></mesh></geometry>
+</library_geometries><library_visual_scenes><visual_scene id="s"><node id="n" name="tip">
+<instance_geometry url="#g"/></node></visual_scene></library_visual_scenes>
+<scene><instance_visual_scene url="#s"/></scene></COLLADA>)";
+}
+
+TEST(ImportCollada, AUnitThatIsMissingOrWrongIsTold) {
+  const Folder folder;
+  struct Case {
+    const char* unit;
+    double unit_m;
+    const char* warning;
+    bool is_asked = false;  ///< --units mm
+  };
+  for (const Case& one : {
+           Case{"<unit name=\"millimeter\" meter=\"0.001\"/>", 1e-3, ""},
+           Case{"<unit meter='2.54e-2'></unit>", 25.4e-3, ""},
+           Case{"<unit meter=\"0.001\"/>", 1e-3, "", true},
+           Case{"<unit name=\"mm\" meter=\"1\"/>", 1, "calls its unit 'mm', but says that it has 1 m"},
+           Case{"", 1, "states no unit: metres are assumed"},
+           Case{"", 1e-3, "", true},
+           Case{"<unit meter=\"0\"/>", 1, "states a unit of '0' m: metres are assumed"},
+           Case{"<unit meter=\"-1\"></unit>", 1, "states a unit of '-1' m: metres are assumed"},
+           Case{"<unit name=\"mm\"/>", 1, "states a unit of '' m: metres are assumed"},
+           Case{"<unit meter=\"mm\"/>", 1e-3, "", true},
+       }) {
+    const fs::path file = folder.write("tip.dae", tetrahedronDae(one.unit));
+    const ImportedCad cad = importCad(file.string(), one.is_asked ? inUnit("mm") : ImportSettings());
+    ASSERT_EQ(cad.parts.size(), 1U) << one.unit;
+    EXPECT_EQ(cad.parts[0].name, "tip");
+    EXPECT_NEAR(volume(cad.parts[0]), std::pow(one.unit_m, 3) / 6, 1e-5 * std::pow(one.unit_m, 3))
+        << one.unit;
+    std::string all;
+    for (const std::string& warning : cad.warnings) all += warning + "\n";
+    if (*one.warning == '\0') {
+      EXPECT_EQ(all.find("unit"), all.find("unit right")) << all;
+    } else {
+      EXPECT_NE(all.find(one.warning), std::string::npos) << one.unit << ": " << all;
+    }
+  }
+}
+
+TEST(ImportUnits, FilesThatStateTheirUnitSaySo) {
+  const Folder folder;
+  const std::string glb = (kBlock / "bearing_block.glb").string(),
+                    obj = folder.write("cube.obj", cubeObj(10, "cube")).string();
+  EXPECT_TRUE(importCad(glb, inUnit("inch")).states_unit);
+  EXPECT_FALSE(importCad(obj, inUnit("inch")).states_unit);
+  EXPECT_FALSE(importCad(std::vector<std::string>{glb, obj}, inUnit("inch")).states_unit);
+  EXPECT_NEAR(partNamed(importCad(glb, inUnit("inch")), "cover").X_WP.p.z(), 0.05, 1e-8);
+}
+
 TEST(ImportObj, NeedsAUnitAndNamesTheRemedy) {
   const Folder folder;
   const fs::path file = folder.write("cube.obj", cubeObj(10, "cube"));

@@ -58,7 +58,9 @@ scenes::ImportedCad importedCad(const std::vector<std::string>& files, scenes::I
                                 const CadArguments& given, const Progress& progress) {
   const std::optional<ByteCache> cache = cadCacheFrom(given.cache);
   settings.cache = cache ? &*cache : nullptr;
-  return scenes::importCad(files, settings, progress);
+  scenes::ImportedCad cad = scenes::importCad(files, settings, progress);
+  if (settings.unit_m && cad.states_unit) cad.warnings.emplace_back(kUnusedUnits);
+  return cad;
 }
 
 bool areCadFiles(const std::vector<std::string>& files) {

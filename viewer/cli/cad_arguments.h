@@ -19,6 +19,9 @@ namespace vps::viewer::inline v0 {
 /// A part that would have more is read coarser: a check of it takes minutes.
 inline constexpr std::size_t kMostTriangles = 250'000;
 
+/// A warning.
+inline constexpr const char* kUnusedUnits = "states its unit itself, so that --units is not used";
+
 struct CadArguments {
   std::string units, deflection, up;  ///< as text; empty: not given
   double time_limit_s = 0;

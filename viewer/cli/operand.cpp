@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "cad_arguments.h"
 #include "file_kind.h"
 #include "terminal.h"
 #include "vps/solid.h"
@@ -44,6 +45,7 @@ Mesh readMesh(const std::string& file, std::optional<double> unit_m) {
   settings.unit_m = unit_m;
   const scenes::ImportedCad cad = scenes::importCad(file, settings);
   for (const std::string& warning : cad.warnings) warn(file + ": " + warning);
+  if (unit_m && cad.states_unit) warn(file + ": " + kUnusedUnits);
   Mesh mesh;
   for (const scenes::ImportedPart& part : cad.parts) append(mesh, transformed(part.mesh, part.X_WP));
   requireUsable(mesh, file, "");

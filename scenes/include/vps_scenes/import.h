@@ -19,7 +19,7 @@ namespace vps::scenes::inline v0 {
 
 struct ImportSettings {
   /// Metres per file unit, for formats without a unit (STL, OBJ, PLY, ...); empty: such a file is refused.
-  /// Formats that state their unit (STEP, IGES, glTF, Inventor with Units) ignore it.
+  /// Files that state their unit (STEP, IGES, glTF, 3MF, Collada, Inventor with Units) ignore it.
   std::optional<double> unit_m;
   /// Greatest distance between a curved face and its triangles [m] (STEP, IGES).
   double deflection_m = 1e-6;
@@ -68,14 +68,17 @@ struct ImportedCad {
   std::string format;  ///< "STEP", "STL", ...
   std::vector<ImportedPart> parts;
   std::vector<std::string> warnings;  ///< open edges, flipped facets and the like, one line each
+  /// All of it comes from files that state their unit, so that the one of the settings was not used.
+  bool states_unit = false;
 };
 
-/// Reads STEP, IGES and BREP (Open CASCADE), .iv and .wrl (Coin), and the formats of assimp. The format is
-/// detected from content and extension. Each solid (STEP) or closed shape becomes a part. Open shapes that
-/// together form a closed surface, as where an exporter wrote a shape for each face, are joined. glTF and
-/// Collada are y-up by definition and are rotated to z-up; other files keep their axes. Inventor without
-/// Units and VRML are in metres unless unit_m is given. Throws LoadError if the file is missing, cut, empty
-/// or damaged, its unit is unknown, or its format is not built in (the message names the package).
+/// Reads STEP, IGES and BREP (Open CASCADE), .iv and .wrl (Coin), .3mf (lib3mf), and the formats of assimp.
+/// The format is detected from content and extension. Each solid (STEP) or closed shape becomes a part. Open
+/// shapes that together form a closed surface, as where an exporter wrote a shape for each face, are joined.
+/// glTF and Collada are y-up by definition and are rotated to z-up; other files keep their axes. Inventor
+/// without Units, VRML, and Collada without a unit are in metres unless unit_m is given. Throws LoadError if
+/// the file is missing, cut, empty or damaged, its unit is unknown, or its format is not built in (the
+/// message names the package).
 VPS_SCENES_API ImportedCad importCad(const std::string& file, const ImportSettings& settings = {},
                                      const Progress& progress = {});
 

@@ -29,6 +29,7 @@ bool hasExactFaces(const std::string& format) {
 Reader readerOf(const std::string& format) {
   if (hasExactFaces(format)) return {"Open CASCADE", import::readOcct};
   if (format == "Inventor" || format == "VRML") return {"Coin", import::readCoin};
+  if (format == "3MF") return {"lib3mf", import::read3mf};
   return {"assimp", import::readAssimp};
 }
 
@@ -65,6 +66,7 @@ void readAnew(const std::string& file, const ImportSettings& settings, const Pro
   if (!raw)
     raw = settings.in_own_process ? import::inOwnProcess(file, reader.library, settings, progress, read)
                                   : read(progress);
+  cad.states_unit = raw->states_unit;
   import::finish(std::move(*raw), cad);
   for (ImportedPart& part : cad.parts) {
     if (hasExactFaces(cad.format))
@@ -94,6 +96,7 @@ ImportedCad withFileAxes(const std::string& file, ImportSettings settings, const
     readAnew(file, settings, progress, cad);
     if (!made_from.empty()) settings.cache->keep(made_from, import::keptBytes(cad));
   }
+  cad.states_unit = cad.states_unit || cad.format == "STEP" || cad.format == "IGES";
   if (progress) progress("reading " + import::stem(file), 1);
   return cad;
 }
@@ -114,11 +117,13 @@ ImportedCad importCad(const std::string& file, const ImportSettings& settings, c
 ImportedCad importCad(const std::vector<std::string>& files, const ImportSettings& settings,
                       const Progress& progress) {
   ImportedCad all;
+  all.states_unit = !files.empty();
   bool is_up_open = true;
   for (const std::string& file : files) {
     ImportedCad one = withFileAxes(file, settings, progress);
     if (all.file.empty()) all.file = file;
     is_up_open = is_up_open && isUpOpen(one.format);
+    all.states_unit = all.states_unit && one.states_unit;
     if (all.format.find(one.format) == std::string::npos)
       all.format += (all.format.empty() ? "" : ", ") + one.format;
     nameTreeApart(one, all);

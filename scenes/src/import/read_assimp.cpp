@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Mesh formats by assimp: STL, OBJ, PLY, glTF, Collada, 3MF and others.
+// Mesh formats by assimp: STL, OBJ, PLY, glTF, Collada and others.
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/MemoryIOWrapper.h>
 #include <assimp/config.h>
@@ -9,13 +9,16 @@
 #include <assimp/Importer.hpp>
 
 #include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
 #include <cstdint>
 #include <fstream>
 #include <iterator>
 #include <optional>
+#include <string_view>
 
 #include "color/palette.h"
-#include "import/colors_3mf.h"
 #include "import/mesh_text.h"
 #include "import/readers.h"
 #include "vps/load_error.h"
@@ -89,31 +92,9 @@ class ReplacedFile : public Assimp::DefaultIOSystem {
   const std::string& bytes_;
 };
 
-FaceColors faceColors(const Mesh3mf& mesh) {
-  FaceColors colors;
-  Palette palette(colors);
-  for (const std::optional<Color>& own : mesh.colors) palette.add(own.value_or(ImportedPart().color));
-  return colors;
-}
-
-/// Whether assimp made the mesh from that one: the same triangles between the same places.
-bool isSame(const aiMesh& mesh, const Mesh3mf& one) {
-  if (mesh.mNumFaces != one.triangles.size() || mesh.mNumVertices != one.vertices.size()) return false;
-  for (unsigned i = 0; i < mesh.mNumFaces; ++i)
-    for (unsigned k = 0; k < 3; ++k)
-      if (mesh.mFaces[i].mNumIndices != 3 || mesh.mFaces[i].mIndices[k] != one.triangles[i][k]) return false;
-  constexpr float kRelative = 1e-5F;  // both are floats of the same text
-  for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
-    const Eigen::Vector3f p(mesh.mVertices[i].x, mesh.mVertices[i].y, mesh.mVertices[i].z);
-    if (!((p - one.vertices[i]).norm() <= kRelative * (p.norm() + one.vertices[i].norm()))) return false;
-  }
-  return true;
-}
-
 struct Walk {
   const aiScene& scene;
   bool is_gltf;
-  const std::vector<Mesh3mf>& colored;  ///< of a 3MF file
   RawCad& cad;
 
   void node(const aiNode& n, const Eigen::Affine3d& X_WParent) {
@@ -125,11 +106,7 @@ struct Walk {
       const aiMesh& mesh = *scene.mMeshes[n.mMeshes[i]];
       const Color color = colorOf(scene, mesh, is_gltf);
       if (i == 0) part.color = color;
-      const auto own = std::ranges::find_if(colored, [&](const Mesh3mf& one) { return isSame(mesh, one); });
-      if (own == colored.end() || !own->hasColors())
-        appendColors(mesh, color, is_gltf, part.face_colors);
-      else
-        append(part.face_colors, own->colors.size(), faceColors(*own), color);
+      appendColors(mesh, color, is_gltf, part.face_colors);
       if (part.name.empty()) part.name = mesh.mName.C_Str();
       appendMesh(mesh, part.mesh);
     }
@@ -168,6 +145,44 @@ std::optional<std::string> plyItReadsRight(const std::string& file) {
   return bytes;
 }
 
+/// The text of a Collada file, of whose unit assimp makes a scale in the root's transform, and 1 where it is
+/// missing or no number. In place of a unit that is no positive length that of the settings applies, or
+/// else the metre, which Collada defines for files without one; a warning says so.
+std::string colladaText(const std::string& file, const ImportSettings& settings, RawCad& cad) {
+  std::ifstream in(file, std::ios::binary);
+  std::string text(std::istreambuf_iterator<char>(in), {});
+  const std::size_t from = std::min(text.find("<unit"), text.size());
+  const std::size_t end = std::min(text.find('>', from), text.size());
+  const std::string_view tag = std::string_view(text).substr(from, end - from);
+  const auto value = [&](std::string_view key) -> std::string_view {
+    const std::size_t at = tag.find(key);
+    const std::size_t quote = tag.find_first_of("\"'", std::min(at, tag.size()));
+    if (at == std::string_view::npos || quote == std::string_view::npos) return {};
+    return tag.substr(quote + 1, tag.find(tag[quote], quote + 1) - quote - 1);
+  };
+  const std::string_view meter = value(" meter");
+  double unit_m = 0;
+  const auto [rest, error] = std::from_chars(meter.data(), meter.data() + meter.size(), unit_m);
+  cad.states_unit =
+      error == std::errc() && rest == meter.data() + meter.size() && std::isfinite(unit_m) && unit_m > 0;
+  if (cad.states_unit) {
+    const std::string name(value(" name"));
+    const std::optional<double> named_m = unitFromText(name);
+    if (named_m && std::abs(unit_m - *named_m) > 0.01 * *named_m)
+      cad.warnings.push_back("calls its unit '" + name + "', but says that it has " + std::string(meter) +
+                             " m, which is taken");
+    return text;
+  }
+  cad.unit_m = settings.unit_m.value_or(1.0);
+  if (!settings.unit_m)
+    cad.warnings.push_back(
+        (tag.empty() ? std::string("states no unit") : "states a unit of '" + std::string(meter) + "' m") +
+        ": metres are assumed, as Collada defines; set unit or --units for another unit");
+  if (!tag.empty())
+    text.replace(from, tag.size(), tag.ends_with('/') ? "<unit meter='1'/" : "<unit meter='1'");
+  return text;
+}
+
 /// Back to the axes of the file: the user says which of them is up.
 void keepFileAxes(RawCad& cad) {
   const Eigen::Affine3d X_YZ(Eigen::AngleAxisd(-0.5 * EIGEN_PI, Vec3::UnitX()));
@@ -189,13 +204,17 @@ bool hasAllVertices(const aiMesh& mesh) {
 
 }  // namespace
 
-// Of assimp's result. It applies Collada's unit itself, in the root's transform. It drops
-// the units of 3MF and X3D, so these count as formats without one.
 double unitOf(const std::string& file, const std::string& format, const ImportSettings& settings) {
-  if (format == "glTF" || format == "DAE") return 1;
   if (settings.unit_m) return *settings.unit_m;
+  // assimp 5.2.5 drops the units of some formats.
+  constexpr std::array<std::string_view, 5> kWithout = {"STL", "OBJ", "PLY", "OFF", "3DS"};
+  const bool is_without = std::ranges::find(kWithout, format) != kWithout.end();
   throw LoadError(
-      file, "", format + " files do not state their unit; set unit = \"mm\" in the scene or give --units mm");
+      file, "",
+      is_without
+          ? format + R"( files do not state their unit; set unit = "mm" in the scene or give --units mm)"
+          : "the unit of " + format +
+                R"( files is not read; set unit = "mm" in the scene or give --units mm)");
 }
 
 RawCad readAssimp(const std::string& file, const std::string& format, const ImportSettings& settings,
@@ -207,7 +226,13 @@ RawCad readAssimp(const std::string& file, const std::string& format, const Impo
     throw LoadError(file, "", "has an unknown format; export STEP, glTF, STL, OBJ or PLY");
   }
   RawCad cad;
-  cad.unit_m = unitOf(file, format, settings);
+  cad.states_unit = format == "glTF";  // metres, by its specification
+  std::optional<std::string> collada;
+  if (format == "DAE")
+    collada = colladaText(file, settings, cad);
+  else if (!cad.states_unit)
+    cad.unit_m = unitOf(file, format, settings);
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);  // else identifiers
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   const aiScene* scene = nullptr;
   try {
@@ -215,7 +240,8 @@ RawCad readAssimp(const std::string& file, const std::string& format, const Impo
     if (format == "PLY") ply = plyItReadsRight(file);
     if (format == "OBJ") text = objText(file);
     if (format == "STL") text = stlText(file);
-    if (text) importer.SetIOHandler(new ReplacedFile(file, text->bytes));  // the importer deletes it
+    if (text || collada)  // the importer deletes it
+      importer.SetIOHandler(new ReplacedFile(file, text ? text->bytes : *collada));
     scene =
         ply ? importer.ReadFileFromMemory(ply->data(), ply->size(), 0, "ply") : importer.ReadFile(file, 0);
     for (unsigned i = 0; scene && i < scene->mNumMeshes; ++i) {
@@ -238,9 +264,7 @@ RawCad readAssimp(const std::string& file, const std::string& format, const Impo
     throw LoadError(file, "", "is not a readable " + format + " file (" + reason + "); export it again");
   }
   const bool is_gltf = format == "glTF";
-  std::vector<Mesh3mf> colored;
-  if (format == "3MF") colored = meshes3mf(model3mf(file));
-  Walk{*scene, is_gltf, colored, cad}.node(*scene->mRootNode, Eigen::Affine3d::Identity());
+  Walk{*scene, is_gltf, cad}.node(*scene->mRootNode, Eigen::Affine3d::Identity());
   if (is_gltf || format == "DAE") makeZUp(cad, is_gltf);
   if (is_gltf && settings.up) keepFileAxes(cad);
   if (format == "OBJ") cad.open_shapes = Shapes::BoundOne;

@@ -40,7 +40,8 @@ enum class Shapes {
 struct RawCad {
   std::vector<RawPart> parts;
   std::vector<std::string> warnings;
-  double unit_m = 1;  ///< metres per file unit
+  double unit_m = 1;         ///< metres per file unit
+  bool states_unit = false;  ///< the file does, so that that of the settings is not used
   Shapes open_shapes = Shapes::AreParts;
 };
 
@@ -53,6 +54,8 @@ RawCad readCoin(const std::string& file, const std::string& format, const Import
                 const Progress& progress);
 RawCad readAssimp(const std::string& file, const std::string& format, const ImportSettings& settings,
                   const Progress& progress);
+RawCad read3mf(const std::string& file, const std::string& format, const ImportSettings& settings,
+               const Progress& progress);
 
 /// A binary STL file without colours; nothing for any other, which readAssimp() reads. Gives what that gives.
 std::optional<RawCad> readBinaryStl(const std::string& file, const ImportSettings& settings);

@@ -180,7 +180,8 @@ RawCad readCoin(const std::string& file, const std::string& format, const Import
   cad.open_shapes = Shapes::BoundBodies;
   for (RawPart& part : cad.parts) part.rounding = floatRounding(part.mesh, part.X_WP);
   for (const std::string& line : messages.lines) cad.warnings.push_back(line);
-  if (!hasUnits(root)) {
+  cad.states_unit = hasUnits(root);
+  if (!cad.states_unit) {
     cad.unit_m = settings.unit_m.value_or(1.0);
     if (!settings.unit_m) {
       cad.warnings.push_back("states no unit: metres are assumed, as " + format +

@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// 3MF by lib3mf: what the build places, with units, names, components and colours.
+// Source of the meanings: 3MF Core Specification 1.3, Materials and Properties Extension 1.2.
+#include <Common/NMR_ErrorConst.h>
+#include <Model/COM/NMR_DLLInterfaces.h>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <set>
+
+#include "color/palette.h"
+#include "import/readers.h"
+#include "vps/load_error.h"
+
+namespace vps::scenes::inline v0::import {
+namespace {
+
+/// A call that failed.
+struct Failed {};
+
+void require(LIB3MFRESULT result) {
+  if (result != LIB3MF_OK) throw Failed();
+}
+
+struct Release {
+  void operator()(NMR::PLib3MFBase* object) const { NMR::lib3mf_release(object); }
+};
+/// Each class of lib3mf is a pointer to void in its interface.
+using Object = std::unique_ptr<NMR::PLib3MFBase, Release>;
+
+/// What f(arguments..., address) gives.
+template <class T, class F, class... Arguments>
+T valueOf(F f, Arguments... arguments) {
+  T value{};
+  require(f(arguments..., &value));
+  return value;
+}
+template <class F, class... Arguments>
+Object objectOf(F f, Arguments... arguments) {
+  auto* object = valueOf<NMR::PLib3MFBase*>(f, arguments...);
+  if (object == nullptr) throw Failed();
+  return Object(object);
+}
+
+template <class F, class... Arguments>
+std::string textOf(F f, Arguments... arguments) {
+  ULONG length = 0;
+  require(f(arguments..., nullptr, 0, &length));
+  std::string text(length + 1, '\0');
+  require(f(arguments..., text.data(), static_cast<ULONG>(text.size()), &length));
+  text.resize(std::min(text.find('\0'), text.size()));
+  return text;
+}
+
+double unitFrom(DWORD unit) {
+  switch (unit) {
+    case NMR::MODELUNIT_MICROMETER:
+      return 1e-6;
+    case NMR::MODELUNIT_CENTIMETER:
+      return 1e-2;
+    case NMR::MODELUNIT_INCH:
+      return 25.4e-3;
+    case NMR::MODELUNIT_FOOT:
+      return 0.3048;
+    case NMR::MODELUNIT_METER:
+      return 1;
+    default:
+      return 1e-3;  // that of a file that states none, by the specification
+  }
+}
+
+/// Its rows are the images of the axes and of the origin.
+Eigen::Affine3d affine(const NMR::MODELTRANSFORM& transform) {
+  Eigen::Affine3d X = Eigen::Affine3d::Identity();
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 4; ++column)
+      X(row, column) = static_cast<double>(transform.m_fFields[row][column]);
+  return X;
+}
+
+Color linear(const NMR::MODELMESHCOLOR_SRGB& c) {
+  return linearFromSrgb({float(c.m_Red) / 255, float(c.m_Green) / 255, float(c.m_Blue) / 255});
+}
+
+class Reader {
+ public:
+  Reader(const std::string& file, RawCad& cad) : file_(file), cad_(cad) {}
+
+  void read() {
+    model_ = objectOf(NMR::lib3mf_createmodel);
+    const Object reader = objectOf(NMR::lib3mf_model_queryreader, model_.get(), "3mf");
+    if (NMR::lib3mf_reader_readfromfileutf8(reader.get(), file_.c_str()) != LIB3MF_OK) {
+      DWORD code = 0;
+      LPCSTR words = nullptr;
+      NMR::lib3mf_getlasterror(reader.get(), &code, &words);
+      throw LoadError(file_, "",
+                      std::string("is not a readable 3MF file (") +
+                          (words == nullptr || *words == '\0' ? "lib3mf gives no reason" : words) +
+                          "); export it again");
+    }
+    cad_.unit_m = unitFrom(valueOf<DWORD>(NMR::lib3mf_model_getunit, model_.get()));
+    cad_.states_unit = true;
+    const Object items = objectOf(NMR::lib3mf_model_getbuilditems, model_.get());
+    while (valueOf<BOOL>(NMR::lib3mf_builditemiterator_movenext, items.get()) != 0) {
+      const Object item = objectOf(NMR::lib3mf_builditemiterator_getcurrent, items.get());
+      Eigen::Affine3d X_WO = Eigen::Affine3d::Identity();
+      if (valueOf<BOOL>(NMR::lib3mf_builditem_hasobjecttransform, item.get()) != 0)
+        X_WO = affine(valueOf<NMR::MODELTRANSFORM>(NMR::lib3mf_builditem_getobjecttransform, item.get()));
+      visit(objectOf(NMR::lib3mf_builditem_getobjectresource, item.get()), X_WO, "", {});
+    }
+    if (cad_.parts.empty())
+      throw LoadError(file_, "", "places no object with a mesh; export it again with its objects placed");
+    if (supports_ > 0)
+      cad_.warnings.push_back(std::to_string(supports_) +
+                              " objects are supports for printing and were left out");
+    addRemarks(reader);
+  }
+
+ private:
+  /// What lib3mf found that breaks the specification. Slicers add attributes and metadata of their own.
+  void addRemarks(const Object& reader) {
+    constexpr std::array<DWORD, 6> kNoMatter = {
+        NMR_ERROR_MISSINGUUID,     NMR_ERROR_NAMESPACE_INVALID_ATTRIBUTE,
+        NMR_ERROR_UNKNOWNMETADATA, NMR_ERROR_METADATA_COULDNOTGETNAMESPACE,
+        NMR_ERROR_INVALIDMETADATA, NMR_ERROR_DUPLICATEMETADATA};
+    std::string first;
+    int others = -1;
+    const auto count = valueOf<DWORD>(NMR::lib3mf_reader_getwarningcount, reader.get());
+    for (DWORD i = 0; i < count; ++i) {
+      DWORD code = 0;
+      const std::string words = textOf(NMR::lib3mf_reader_getwarningutf8, reader.get(), i, &code);
+      if (std::ranges::find(kNoMatter, code) != kNoMatter.end()) continue;
+      if (++others == 0) first = words;
+    }
+    if (first.empty()) return;
+    cad_.warnings.push_back("breaks the rules of 3MF, and was read as far as it is clear: " + first +
+                            (others > 0 ? " (and " + std::to_string(others) + " more)" : ""));
+  }
+
+  void visit(const Object& object, const Eigen::Affine3d& X_WO, std::string name,
+             std::vector<std::string> within) {
+    if (const std::string own = textOf(NMR::lib3mf_object_getnameutf8, object.get()); !own.empty())
+      name = own;
+    const auto type = valueOf<DWORD>(NMR::lib3mf_object_gettype, object.get());
+    if (type == NMR::MODELOBJECTTYPE_SUPPORT || type == NMR::MODELOBJECTTYPE_SOLIDSUPPORT) {
+      ++supports_;
+      return;
+    }
+    within.push_back(uniqueName(name.empty() ? "object" : name));
+    if (valueOf<BOOL>(NMR::lib3mf_object_iscomponentsobject, object.get()) != 0) {
+      const auto count = valueOf<DWORD>(NMR::lib3mf_componentsobject_getcomponentcount, object.get());
+      for (DWORD i = 0; i < count; ++i) {
+        const Object component = objectOf(NMR::lib3mf_componentsobject_getcomponent, object.get(), i);
+        const Eigen::Affine3d X_OC =
+            affine(valueOf<NMR::MODELTRANSFORM>(NMR::lib3mf_component_gettransform, component.get()));
+        visit(objectOf(NMR::lib3mf_component_getobjectresource, component.get()), X_WO * X_OC, name, within);
+      }
+      return;
+    }
+    RawPart part;
+    part.name = name;
+    part.X_WP = X_WO;
+    part.within = std::move(within);
+    readMesh(object, part);
+    part.rounding = floatRounding(part.mesh, X_WO);
+    cad_.parts.push_back(std::move(part));
+  }
+
+  void readMesh(const Object& object, RawPart& part) const {
+    const auto vertex_count = valueOf<DWORD>(NMR::lib3mf_meshobject_getvertexcount, object.get()),
+               triangle_count = valueOf<DWORD>(NMR::lib3mf_meshobject_gettrianglecount, object.get());
+    std::vector<NMR::MODELMESHVERTEX> vertices(vertex_count);
+    std::vector<NMR::MODELMESHTRIANGLE> triangles(triangle_count);
+    if (vertex_count == 0 || triangle_count == 0) return;
+    require(NMR::lib3mf_meshobject_getvertices(object.get(), vertices.data(), vertex_count, nullptr));
+    require(
+        NMR::lib3mf_meshobject_gettriangleindices(object.get(), triangles.data(), triangle_count, nullptr));
+    for (const NMR::MODELMESHVERTEX& p : vertices)
+      part.mesh.vertices.emplace_back(p.m_fPosition[0], p.m_fPosition[1], p.m_fPosition[2]);
+    for (const NMR::MODELMESHTRIANGLE& t : triangles)
+      part.mesh.triangles.push_back({t.m_nIndices[0], t.m_nIndices[1], t.m_nIndices[2]});
+    readColors(object, triangle_count, part);
+  }
+
+  /// Of base materials and colour groups; a triangle whose corners have several colours has their mean.
+  void readColors(const Object& object, DWORD triangle_count, RawPart& part) const {
+    const Object whole = objectOf(NMR::lib3mf_object_createdefaultpropertyhandler, object.get());
+    const auto type =
+        valueOf<NMR::eModelPropertyType>(NMR::lib3mf_defaultpropertyhandler_getpropertytype, whole.get());
+    if (type == NMR::MODELPROPERTYTYPE_COLOR) {
+      part.color = linear(valueOf<NMR::MODELMESHCOLOR_SRGB>(NMR::lib3mf_defaultpropertyhandler_getcolor,
+                                                            whole.get(), DWORD(0)));
+    } else if (type == NMR::MODELPROPERTYTYPE_BASEMATERIALS) {
+      DWORD group = 0, index = 0;
+      require(NMR::lib3mf_defaultpropertyhandler_getbasematerial(whole.get(), &group, &index));
+      part.color = materialColor(group, index, part.color);
+    }
+    const Object own = objectOf(NMR::lib3mf_meshobject_createpropertyhandler, object.get());
+    Palette palette(part.face_colors);
+    for (DWORD i = 0; i < triangle_count; ++i) palette.add(colorOf(own, i, part.color));
+  }
+
+  Color colorOf(const Object& handler, DWORD triangle, const Color& of_object) const {
+    switch (valueOf<NMR::eModelPropertyType>(NMR::lib3mf_propertyhandler_getpropertytype, handler.get(),
+                                             triangle)) {
+      case NMR::MODELPROPERTYTYPE_BASEMATERIALS: {
+        DWORD group = 0, index = 0;
+        require(NMR::lib3mf_propertyhandler_getbasematerial(handler.get(), triangle, &group, &index));
+        return materialColor(group, index, of_object);
+      }
+      case NMR::MODELPROPERTYTYPE_COLOR: {
+        const auto corners = valueOf<NMR::MODELMESH_TRIANGLECOLOR_SRGB>(NMR::lib3mf_propertyhandler_getcolor,
+                                                                        handler.get(), triangle);
+        Color mean{};
+        for (const NMR::MODELMESHCOLOR_SRGB& corner : corners.m_Colors)
+          for (std::size_t k = 0; k < 3; ++k) mean[k] += linear(corner)[k] / 3;
+        return mean;
+      }
+      default:
+        return of_object;
+    }
+  }
+
+  Color materialColor(DWORD group, DWORD index, const Color& otherwise) const {
+    NMR::PLib3MFBase* found = nullptr;
+    if (NMR::lib3mf_model_getbasematerialbyid(model_.get(), group, &found) != LIB3MF_OK || found == nullptr)
+      return otherwise;
+    const Object materials(found);
+    NMR::MODELMESHCOLOR_SRGB c{};
+    BYTE alpha = 0;
+    require(NMR::lib3mf_basematerial_getdisplaycolor(materials.get(), index, &c.m_Red, &c.m_Green, &c.m_Blue,
+                                                     &alpha));
+    return linear(c);
+  }
+
+  std::string uniqueName(const std::string& name) {
+    std::string unique = name;
+    for (int n = 2; !instances_.insert(unique).second; ++n) unique = name + "_" + std::to_string(n);
+    return unique;
+  }
+
+  const std::string& file_;
+  RawCad& cad_;
+  Object model_;
+  std::set<std::string> instances_;
+  int supports_ = 0;
+};
+
+}  // namespace
+
+RawCad read3mf(const std::string& file, const std::string&, const ImportSettings&, const Progress&) {
+  RawCad cad;
+  try {
+    Reader(file, cad).read();
+  } catch (const Failed&) {
+    throw LoadError(file, "", "is not a readable 3MF file (lib3mf refuses an object of it); export it again");
+  }
+  return cad;
+}
+
+}  // namespace vps::scenes::inline v0::import

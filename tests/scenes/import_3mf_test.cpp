@@ -1,0 +1,324 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// 3MF: units, names, colours, places and volumes are those of the file, whatever else is in it.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <functional>
+#include <random>
+
+#include "support/temporary_folder.h"
+#include "support/zip_archive.h"
+#include "vps/load_error.h"
+#include "vps_scenes/import.h"
+#include "vps_scenes/srgb.h"
+
+namespace vps::scenes {
+namespace {
+
+/// A box of `size` from the origin, in file units; `attributes` are those of its triangles.
+std::string boxMesh(const Vec3& size, const std::string& attributes = "") {
+  const Mesh box = makeBox(size);
+  std::string text = "<mesh><vertices>";
+  for (const Vec3& p : box.vertices) {
+    const Vec3 corner = p + size / 2;
+    text += "<vertex x=\"" + std::to_string(corner.x()) + "\" y=\"" + std::to_string(corner.y()) + "\" z=\"" +
+            std::to_string(corner.z()) + "\"/>\n";
+  }
+  text += "</vertices><triangles>";
+  for (const auto& t : box.triangles)
+    text += "<triangle v1=\"" + std::to_string(t[0]) + "\" v2=\"" + std::to_string(t[1]) + "\" v3=\"" +
+            std::to_string(t[2]) + "\"" + attributes + "/>\n";
+  return text + "</triangles></mesh>";
+}
+
+/// A 3MF file in parts that can be changed: a plate 4 x 3 x 1 at the origin and a block 1 x 2 x 3 at (10, 0,
+/// 0).
+struct File3mf {
+  std::string unit = " unit=\"millimeter\"", head, attributes;
+  std::string before_resources;
+  std::string resources;  ///< before the objects
+  std::string plate = "name=\"plate\"", block = "name=\"block\"";
+  std::string triangles;  ///< attributes of those of the plate
+  std::string more_objects;
+  std::string items = R"(<item objectid="1"/><item objectid="2" transform="1 0 0 0 1 0 0 0 1 10 0 0"/>)";
+  std::string model = "3D/3dmodel.model";
+  std::string relations, types;
+  std::vector<std::pair<std::string, std::string>> files;
+
+  [[nodiscard]] std::string modelText() const {
+    return R"(<?xml version="1.0" encoding="UTF-8"?>)" + head + "\n<model" + unit + attributes +
+           R"( xml:lang="en-US" xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02")"
+           R"( xmlns:m="http://schemas.microsoft.com/3dmanufacturing/material/2015/02">)" +
+           before_resources + "<resources>" + resources + "<object id=\"1\" type=\"model\" " + plate + ">" +
+           boxMesh({4, 3, 1}, triangles) + "</object><object id=\"2\" type=\"model\" " + block + ">" +
+           boxMesh({1, 2, 3}) + "</object>" + more_objects + "</resources><build>" + items +
+           "</build></model>";
+  }
+  [[nodiscard]] std::string bytes() const {
+    test::ZipArchive zip;
+    zip.add(
+        "[Content_Types].xml",
+        R"(<?xml version="1.0"?><Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types">)"
+        R"(<Default Extension="rels" ContentType="application/vnd.openxmlformats-package.relationships+xml"/>)"
+        R"(<Default Extension="model" ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/>)" +
+            types + "</Types>");
+    zip.add(
+        "_rels/.rels",
+        R"(<?xml version="1.0"?><Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships">)"
+        R"(<Relationship Id="rel0" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel" Target="/)" +
+            model + "\"/>" + relations + "</Relationships>");
+    zip.add(model, modelText());
+    for (const auto& [name, text] : files) zip.add(name, text);
+    return zip.bytes();
+  }
+};
+
+struct Import3mf : testing::Test {
+  ImportedCad read(const std::string& bytes) {
+    const std::string file = (folder_.path() / "rig.3mf").string();
+    std::ofstream(file, std::ios::binary) << bytes;
+    return importCad(file);
+  }
+  /// Whether the library is built in.
+  bool canRead() {
+    try {
+      read(File3mf().bytes());
+    } catch (const LoadError& e) {
+      if (std::string(e.what()).find("build again") != std::string::npos) return false;
+      throw;
+    }
+    return true;
+  }
+  test::TemporaryFolder folder_;
+};
+
+void expectPart(const ImportedPart& part, const std::string& name, double volume_m3, const Vec3& p_m,
+                const std::string& what) {
+  EXPECT_EQ(part.name, name) << what;
+  EXPECT_NEAR(massProperties(part.mesh).volume_m3, volume_m3, 1e-5 * volume_m3) << what;
+  EXPECT_LT((part.X_WP.p - p_m).norm(), 1e-6 * (p_m.norm() + 1e-9)) << what;
+  EXPECT_TRUE(checkMesh(part.mesh).isClosed()) << what;
+}
+
+const Color kRed = {1, 0, 0}, kGray = ImportedPart().color;
+
+void expectColor(const Color& found, const Color& truth, const std::string& what) {
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(found[k], truth[k], 1e-5) << what;
+}
+
+struct Oddity {
+  std::string name;
+  std::function<void(File3mf&)> change;
+  std::string plate = "plate", block = "block";
+  Color color = kGray;  ///< of the plate
+};
+
+const std::vector<Oddity>& oddities() {
+  static const std::vector<Oddity> all = {
+      {"none", [](File3mf&) {}},
+      {"a thumbnail",
+       [](File3mf& f) {
+         f.types = R"(<Default Extension="png" ContentType="image/png"/>)";
+         f.relations =
+             R"(<Relationship Id="rel1" Target="/Metadata/thumbnail.png" )"
+             R"(Type="http://schemas.openxmlformats.org/package/2006/relationships/metadata/thumbnail"/>)";
+         f.files.emplace_back("Metadata/thumbnail.png", std::string("\x89PNG\r\n\x1a\n\0\0\0\rIHDR", 16));
+       }},
+      {"a slicer's settings",
+       [](File3mf& f) {
+         f.attributes = R"( xmlns:slic3rpe="http://schemas.slic3r.org/3mf/2017/06")";
+         f.before_resources =
+             R"(<metadata name="slic3rpe:Version3mf">1</metadata><metadata name="Title">rig</metadata>)"
+             R"(<metadata name="Application">PrusaSlicer-2.5.0</metadata><!-- <object id="7"/> -->)";
+         f.triangles = R"( paint_color="8" slic3rpe:custom_supports="4")";
+         f.items = R"(<item objectid="1" printable="1"/>)"
+                   R"(<item objectid="2" transform="1 0 0 0 1 0 0 0 1 10 0 0" printable="1"/>)";
+         f.types = R"(<Default Extension="config" ContentType="text/plain"/>)";
+         f.files.emplace_back("Metadata/Slic3r_PE.config", "; layer_height = 0.2\n");
+       }},
+      {"metadata",
+       [](File3mf& f) {
+         f.head = "\n<!-- made by hand -->";
+         f.attributes = " requiredextensions=\"m\"";
+       }},
+      {"base materials",
+       [](File3mf& f) {
+         f.resources = R"(<basematerials id="5"><base name="a" displaycolor="#0000FF"/>)"
+                       R"(<base name="b" displaycolor="#FF0000FF"/></basematerials>)";
+         f.plate += R"( pid="5" pindex="1")";
+       },
+       "plate", "block", kRed},
+      {"a colour group",
+       [](File3mf& f) {
+         f.resources = R"(<m:colorgroup id="5"><m:color color="#FF0000"/></m:colorgroup>)";
+         f.plate += R"( pid="5" pindex="0")";
+         f.triangles = R"( pid="5" p1="0")";
+       },
+       "plate", "block", kRed},
+      {"names with entities and of other scripts",
+       [](File3mf& f) {
+         f.plate = "name=\"a &amp; &lt;b&gt;\"";
+         f.block = "name='\xe6\x9d\xbf'";
+       },
+       "a & <b>", "\xe6\x9d\xbf"},
+      {"no names", [](File3mf& f) { f.plate = f.block = ""; }, "rig", "rig_2"},
+      {"the same name twice", [](File3mf& f) { f.block = f.plate; }, "plate", "plate_2"},
+      {"a part number", [](File3mf& f) { f.plate += " partnumber=\"P-17\""; }},
+      {"another name of the model", [](File3mf& f) { f.model = "3D/rig.model"; }},
+      {"a support",
+       [](File3mf& f) {
+         f.more_objects = R"(<object id="3" type="support" name="s">)" + boxMesh({1, 1, 1}) + "</object>";
+         f.items += R"(<item objectid="3"/>)";
+       }},
+      {"components",
+       [](File3mf& f) {
+         // Turned by 90 degrees about z, which takes (0, -10, 0) to (10, 0, 0), and back by another
+         // component.
+         f.more_objects =
+             R"(<object id="3" type="model"><components><component objectid="2" )"
+             R"(transform="0 -1 0 1 0 0 0 0 1 0 -10 0"/></components></object>)"
+             R"(<object id="4" type="model" name="rig"><components><component objectid="1"/>)"
+             R"(<component objectid="3" transform="0 1 0 -1 0 0 0 0 1 0 0 0"/></components></object>)";
+         f.items = R"(<item objectid="4"/>)";
+       }},
+      {"objects in files of their own",
+       [](File3mf& f) {
+         f.attributes = R"( xmlns:p="http://schemas.microsoft.com/3dmanufacturing/production/2015/06")"
+                        R"( requiredextensions="p")";
+         f.more_objects = R"(<object id="4" type="model" name="block"><components><component objectid="9" )"
+                          R"(p:path="/3D/Objects/block.model"/></components></object>)";
+         f.items = R"(<item objectid="1"/><item objectid="4" transform="1 0 0 0 1 0 0 0 1 10 0 0"/>)";
+         f.files.emplace_back(
+             "3D/Objects/block.model",
+             R"(<?xml version="1.0"?><model)" + f.unit +
+                 R"( xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02"><resources>)"
+                 R"(<object id="9" type="model">)" +
+                 boxMesh({1, 2, 3}) + "</object></resources><build/></model>");
+         f.files.emplace_back(
+             "3D/_rels/3dmodel.model.rels",
+             R"(<?xml version="1.0"?><Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships">)"
+             R"(<Relationship Id="r1" Target="/3D/Objects/block.model" )"
+             R"(Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>)");
+       }},
+  };
+  return all;
+}
+
+TEST_F(Import3mf, HasTheUnitsNamesColoursAndPlacesOfTheFile) {
+  if (!canRead()) GTEST_SKIP() << "its library is not built in";
+  const std::pair<const char*, double> units[] = {
+      {"micron", 1e-6},  {"millimeter", 1e-3}, {"centimeter", 1e-2},
+      {"inch", 25.4e-3}, {"foot", 0.3048},     {"meter", 1},
+      {"", 1e-3}};
+  for (const auto& [unit, unit_m] : units)
+    for (const Oddity& oddity : oddities()) {
+      const std::string what = oddity.name + " in " + unit;
+      File3mf file;
+      file.unit = *unit == '\0' ? "" : std::string(" unit=\"") + unit + "\"";
+      oddity.change(file);
+      try {
+        const ImportedCad cad = read(file.bytes());
+        ASSERT_EQ(cad.parts.size(), 2U) << what;
+        EXPECT_TRUE(cad.states_unit) << what;
+        const double scale_m3 = unit_m * unit_m * unit_m;
+        expectPart(cad.parts[0], oddity.plate, 12 * scale_m3, Vec3::Zero(), what);
+        expectPart(cad.parts[1], oddity.block, 6 * scale_m3, Vec3(10 * unit_m, 0, 0), what);
+        EXPECT_LT((cad.parts[1].X_WP.R - Mat3::Identity()).norm(), 1e-6) << what;
+        EXPECT_LT((bounds(cad.parts[1].mesh).size() - unit_m * Vec3(1, 2, 3)).norm(), 1e-5 * unit_m) << what;
+        expectColor(cad.parts[0].color, oddity.color, what);
+        expectColor(cad.parts[1].color, kGray, what);
+        for (const std::string& warning : cad.warnings)
+          EXPECT_TRUE(unit_m > 0.1 || oddity.name == "a support" ||
+                      warning.find("is the unit right") != std::string::npos)
+              << what << ": " << warning;
+      } catch (const LoadError& e) {
+        ADD_FAILURE() << what << ": " << e.what();
+      }
+    }
+}
+
+// One face has a material, one a colour, one three colours, and one that of the object.
+TEST_F(Import3mf, TrianglesHaveColoursOfTheirOwn) {
+  if (!canRead()) GTEST_SKIP() << "its library is not built in";
+  File3mf file;
+  file.resources =
+      R"(<basematerials id="5"><base name="red" displaycolor="#FF0000"/><base name="blue" displaycolor="#0000FF"/>)"
+      R"(</basematerials><m:colorgroup id="6"><m:color color="#00ff00"/><m:color color="#000000"/></m:colorgroup>)";
+  file.more_objects =
+      R"(<object id="3" type="model" pid="5" pindex="1" name="tip"><mesh><vertices><vertex x="0" y="0" z="0"/>)"
+      R"(<vertex x="10" y="0" z="0"/><vertex x="0" y="10" z="0"/><vertex x="0" y="0" z="10"/></vertices><triangles>)"
+      R"(<triangle v1="0" v2="2" v3="1" pid="5" p1="0"/><triangle v1="0" v2="1" v3="3" pid="6" p1="0"/>)"
+      R"(<triangle v1="0" v2="3" v3="2" pid="6" p1="0" p2="0" p3="1"/><triangle v1="1" v2="2" v3="3"/>)"
+      R"(</triangles></mesh></object>)";
+  file.items = R"(<item objectid="3"/>)";
+  const ImportedCad cad = read(file.bytes());
+  ASSERT_EQ(cad.parts.size(), 1U);
+  ASSERT_EQ(cad.parts[0].face_colors.of_triangle.size(), 4U);
+  const std::vector<Color> truth = {{1, 0, 0}, {0, 1, 0}, {0, 2.0F / 3, 0}, {0, 0, 1}};
+  for (std::size_t i = 0; i < 4; ++i)
+    expectColor(cad.parts[0].face_colors.at(i), truth[i], std::to_string(i));
+}
+
+TEST_F(Import3mf, NamesOfAssembliesAreKnownToGroups) {
+  if (!canRead()) GTEST_SKIP() << "its library is not built in";
+  File3mf file;
+  oddities()[12].change(file);
+  ImportedCad cad = read(file.bytes());
+  ASSERT_EQ(oddities()[12].name, "components");
+  EXPECT_EQ(cad.parts[0].within, (std::vector<std::string>{"rig", "plate"}));
+  EXPECT_EQ(partGroups(cad, {.is_proposed = false, .names = {"rig"}}).at(0).parts.size(), 2U);
+}
+
+TEST_F(Import3mf, ABuildWithoutItemsIsRefusedInWords) {
+  if (!canRead()) GTEST_SKIP() << "its library is not built in";
+  File3mf file;
+  file.items = "";
+  try {
+    read(file.bytes());
+    ADD_FAILURE() << "was read";
+  } catch (const LoadError& e) {
+    EXPECT_NE(std::string(e.what()).find("places no object"), std::string::npos) << e.what();
+  }
+}
+
+// Bytes of the archive, and of the model within an archive that is whole.
+TEST_F(Import3mf, ADamagedFileIsReadOrRefused) {
+  if (!canRead()) GTEST_SKIP() << "its library is not built in";
+  std::mt19937 random(1);
+  const auto tryToRead = [&](const std::string& bytes) {
+    try {
+      EXPECT_FALSE(read(bytes).parts.empty());
+    } catch (const LoadError& e) {
+      EXPECT_EQ(std::string(e.what()).find('\n'), std::string::npos) << e.what();
+    }
+  };
+  File3mf file;
+  oddities()[12].change(file);
+  oddities()[5].change(file);
+  const std::string whole = file.bytes(), model = file.modelText();
+  for (int i = 0; i < 60; ++i) {
+    tryToRead(whole.substr(0, random() % whole.size()));
+    std::string changed = whole;
+    for (int k = 0; k < 3; ++k) changed[random() % changed.size()] = static_cast<char>(random());
+    tryToRead(changed);
+    std::string text = model;
+    const std::string digits = "-0123456789.\"<>e";
+    for (int k = 0; k < 3; ++k) text[random() % text.size()] = digits[random() % digits.size()];
+    if (i % 3 == 0) text.resize(random() % text.size());
+    test::ZipArchive zip;
+    zip.add(
+        "[Content_Types].xml",
+        R"(<?xml version="1.0"?><Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types">)"
+        R"(<Default Extension="model" ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/></Types>)");
+    zip.add(
+        "_rels/.rels",
+        R"(<?xml version="1.0"?><Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships">)"
+        R"(<Relationship Id="rel0" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel" )"
+        R"(Target="/3D/3dmodel.model"/></Relationships>)");
+    zip.add("3D/3dmodel.model", text);
+    tryToRead(zip.bytes());
+  }
+}
+
+}  // namespace
+}  // namespace vps::scenes
