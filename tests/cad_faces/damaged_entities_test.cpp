@@ -25,6 +25,7 @@
 #include <XCAFDoc_DocumentTool.hxx>
 #include <XCAFDoc_ShapeTool.hxx>
 
+#include "import/occt/damaged_entities.h"
 #include "support/temporary_folder.h"
 #include "vps/load_error.h"
 #include "vps_scenes/import.h"
@@ -364,17 +365,72 @@ TEST_F(DamagedEntities, NoDamageGivesAnotherVolumeOrPlace) {
   EXPECT_GT(read_whole, 60);
 }
 
-// The parameters of one entity of each type of an IGES box, one after the other. Open CASCADE makes a face
-// less of a list of vertices with a text in it, and says nothing: then the open edges are told of.
-TEST_F(DamagedEntities, AnIgesFileIsReadWholeOrRefusedOrItsFaultIsTold) {
+TEST_F(DamagedEntities, LostReferencesAreFoundInAnyText) {
+  using import::withPlainlyLostReferences;
+  const std::string head = "ISO-10303-21;HEADER;FILE_NAME('#9');ENDSEC;DATA;";
+  EXPECT_EQ(withPlainlyLostReferences(head + "#1=A('#7',#2);#2 =B(/* #8 */ $);"), std::nullopt);
+  EXPECT_EQ(withPlainlyLostReferences(head + "#1=A('it''s #7',(#2,#3));#2=B(#1);"),
+            head + "#1=A('it''s #7',(#2,#2000000000));#2=B(#1);");
+  EXPECT_EQ(withPlainlyLostReferences(head + "#1=A(#99999999999999999999,#,##2);"),
+            head + "#1=A(#99999999999999999999,#,##2000000000);");
+  const std::string sound = written(true);
+  for (std::size_t size = 0; size < sound.size(); size += 7) {
+    const auto changed = withPlainlyLostReferences(sound.substr(0, size));
+    EXPECT_GE(changed.value_or(sound.substr(0, size)).size(), size);
+  }
+}
+
+/// The lines of an IGES file with a box of 10 x 20 x 30 mm, in that unit.
+std::vector<std::string> igesLines(const char* unit) {
   IGESControl_Controller::Init();
-  IGESControl_Writer writer("MM", 1);
+  IGESControl_Writer writer(unit, 1);
   writer.AddShape(BRepPrimAPI_MakeBox(10, 20, 30).Shape());
   writer.ComputeModel();
   std::stringstream out;
-  ASSERT_TRUE(writer.Write(out));
+  EXPECT_TRUE(writer.Write(out));
   std::vector<std::string> lines;
   for (std::string line; std::getline(out, line);) lines.push_back(line);
+  return lines;
+}
+
+std::string joined(const std::vector<std::string>& lines, const char* end) {
+  std::string text;
+  for (const std::string& line : lines) text.append(line).append(end);
+  return text;
+}
+
+// Line fonts, levels, views, labels and colours that lead nowhere, of the solid, a face and a point.
+TEST_F(DamagedEntities, AnIgesFileIsReadInItsUnitWhateverItsStyles) {
+  std::string error;
+  for (const char* unit : {"MM", "CM", "M", "IN", "FT", "UM"}) {
+    const std::vector<std::string> sound = igesLines(unit);
+    const std::vector<Truth> truth = {{"box", 6e-6, Vec3::Zero()}};
+    for (const char* end : {"\n", "\r\n"}) {
+      const auto cad = read(joined(sound, end), error, "box.igs");
+      ASSERT_TRUE(cad) << unit << ": " << error;
+      expectSame(*cad, truth, true, unit);
+    }
+    for (const char* type : {"186", "510", "116"})
+      for (const int field : {3, 4, 5, 7, 12}) {  // of eight columns; from 10 on in the second line
+        std::vector<std::string> lines = sound;
+        auto line = std::ranges::find_if(lines, [&](const std::string& each) {
+          return each.size() > 72 && each[72] == 'D' && each.substr(5, 3) == type;
+        });
+        ASSERT_NE(line, lines.end()) << type;
+        if (field >= 10) ++line;
+        line->replace(static_cast<std::size_t>(field % 10) * 8, 8, "  -99999");
+        const std::string what = std::string(unit) + ", field " + std::to_string(field + 1) + " of a " + type;
+        const auto cad = read(joined(lines, "\n"), error, "box.igs");
+        EXPECT_TRUE(cad) << what << ": " << error;
+        if (cad) expectSame(*cad, truth, true, what);
+      }
+  }
+}
+
+// The parameters of one entity of each type of an IGES box, one after the other. Open CASCADE makes a face
+// less of a list of vertices with a text in it, and says nothing: then the open edges are told of.
+TEST_F(DamagedEntities, AnIgesFileIsReadWholeOrRefusedOrItsFaultIsTold) {
+  std::vector<std::string> lines = igesLines("MM");
   constexpr std::size_t kData = 64, kSection = 72;  // columns
   std::map<std::string, int> count;
   std::string error;
@@ -391,9 +447,7 @@ TEST_F(DamagedEntities, AnIgesFileIsReadWholeOrRefusedOrItsFaultIsTold) {
       data.erase(data.find(';') + 1);
       if (data.size() > kData) continue;
       line = data + std::string(kData - data.size(), ' ') + sound.substr(kData);
-      std::string text;
-      for (const std::string& each : lines) text += each + "\n";
-      const auto cad = read(text, error, "box.igs");
+      const auto cad = read(joined(lines, "\n"), error, "box.igs");
       ++(cad ? read_whole : refused);
       const bool is_told = cad && std::ranges::any_of(cad->warnings, [](const std::string& warning) {
                              return warning.find("part 'box'") != std::string::npos;

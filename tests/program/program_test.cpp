@@ -298,6 +298,7 @@ TEST_F(Program, ImportKeepsTheColorsOfFaces) {
         "usemtl blue\nf 1 2 4\nusemtl grey\nf 1 4 3\nf 2 3 4\n");
   const Ran ran = run("import two.obj -o imported --units mm --json import.json");
   ASSERT_EQ(ran.status, 0) << ran.err;
+  EXPECT_NE(run("import two.obj -o whole --units mm --part-per file").out.find("two.obj"), std::string::npos);
   const scenes::Scene scene = scenes::loadScene((folder_ / "imported/scene.toml").string());
   ASSERT_EQ(scene.parts.size(), 1U);
   const scenes::Part& tip = scene.parts[0].part;

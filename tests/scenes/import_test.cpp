@@ -147,6 +147,11 @@ TEST(PartNames, TheBetterOneOfInstanceAndProductIsTaken) {
   EXPECT_EQ(bestName("SOLID", "COMPOUND"), "");
   EXPECT_EQ(bestName("", "\xd0\x92\xd0\xb0\xd0\xbb"), "\xd0\x92\xd0\xb0\xd0\xbb");  // not ASCII
   EXPECT_EQ(bestName("17", "4711"), "");
+  for (const char* instance : {"", " ", "Component1:1", "MqXw0GXkVJeNj9w4", "1uYb$Lc0P8xQ2wEr5tZk9A", "????",
+                               "r\xEF\xBF\xBD x", "\xFF\xFE", "r\x01", "#12", "$0", "-_.:", "Instance 4"})
+    EXPECT_EQ(bestName(instance, "probe"), "probe") << instance;
+  EXPECT_EQ(bestName("PlanetaryGearStage2Carrier", "carrier"), "PlanetaryGearStage2Carrier");
+  EXPECT_EQ(bestName("M8x1.25-6H", "nut"), "M8x1.25-6H");
   EXPECT_EQ(bestName("decade", "facade"), "decade");  // of hexadecimal digits, and words
 }
 
@@ -693,6 +698,11 @@ TEST(ImportErrors, CutObjNeverCrashes) {
   const Folder folder;
   expectCutsAreCalm(folder.write("whole.obj", cubeObj(10, "cube") + cubeObj(10, "other", 9, 20)), "cut.obj",
                     true);
+}
+
+TEST(ImportErrors, CutColladaNeverCrashes) {
+  const Folder folder;
+  expectCutsAreCalm(folder.write("whole.dae", tetrahedronDae("<unit meter=\"0.001\"/>")), "cut.dae", true);
 }
 
 /// A STEP file that ends as it should but whose middle is missing or scrambled.

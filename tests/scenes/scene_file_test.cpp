@@ -269,6 +269,28 @@ struct Mistake {
   std::string words;  ///< that the message must have
 };
 
+TEST_F(SceneFile, AFileOfSeveralObjectsIsOnePartIfAskedFor) {
+  std::string two;
+  for (const char* name : {"left", "right"}) {
+    two += "o " + std::string(name) + "\n";
+    for (int i = 0; i < 4; ++i)
+      two += "v " + std::to_string((*name == 'l' ? 0 : 50) + (i == 1 ? 10 : 0)) + (i == 2 ? " 10" : " 0") +
+             (i == 3 ? " 10\n" : " 0\n");
+    two += "f -4 -2 -3\nf -4 -3 -1\nf -4 -1 -2\nf -3 -2 -1\n";
+  }
+  write("two.obj", two);
+  const std::string part = kPin + "[[part]]\nfile = 'two.obj'\n";
+  EXPECT_NE(messageOf(part).find("has 2 parts; say which with 'node', or node = \"*\" for all of it"),
+            std::string::npos)
+      << messageOf(part);
+  const Scene scene = load(part + "node = '*'\n[[part]]\nfile = 'two.obj'\nnode = 'right'\n");
+  ASSERT_EQ(scene.parts.size(), 4U);
+  EXPECT_EQ(scene.parts[2].part.name, "two");
+  EXPECT_NEAR(bounds(scene.parts[2].part.mesh).size().x(), 60e-3, 1e-8);
+  EXPECT_EQ(scene.parts[3].part.name, "right");
+  EXPECT_NEAR(bounds(scene.parts[3].part.mesh).size().x(), 10e-3, 1e-8);
+}
+
 TEST_F(SceneFile, EveryMistakeIsReportedWithLineAndKey) {
   const std::vector<Mistake> mistakes = {
       {"frcition = 1\n", "9", "key 'frcition' is unknown"},

@@ -14,8 +14,8 @@
 namespace vps::viewer::inline v0 {
 
 bool CadArguments::isAny() const {
-  return !units.empty() || !deflection.empty() || !up.empty() || time_limit_s > 0 || !groups.names.empty() ||
-         has_no_groups;
+  return !units.empty() || !deflection.empty() || !up.empty() || !part_per.empty() || time_limit_s > 0 ||
+         !groups.names.empty() || has_no_groups;
 }
 
 void addCadOptions(CLI::App& command, CadArguments& given) {
@@ -23,6 +23,12 @@ void addCadOptions(CLI::App& command, CadArguments& given) {
   addDeflectionOption(command, given.deflection);
   command.add_option("--up", given.up, "the file's axis that is up and becomes z: x, -x, y, -y, z or -z")
       ->type_name("AXIS");
+  command
+      .add_option("--part-per", given.part_per,
+                  "what is one part: each solid or closed surface (body), also each open object, group or "
+                  "shape (object), or each file (file)")
+      ->type_name("THING")
+      ->check(CLI::IsMember({"body", "object", "file"}));
   command
       .add_option("--group", given.groups.names,
                   "an assembly or product of the file, or part names with *, that is one body; may be given "
@@ -39,6 +45,8 @@ scenes::ImportSettings importSettingsFrom(const CadArguments& given, std::size_t
   settings.unit_m = unitFrom(given.units);
   settings.guesses_up = true;
   settings.most_s = given.time_limit_s;
+  if (given.part_per == "object") settings.part_per = scenes::PartPer::Object;
+  if (given.part_per == "file") settings.part_per = scenes::PartPer::File;
   settings.most_triangles = most_triangles;
   if (!given.deflection.empty()) {
     settings.deflection_m = scenes::lengthFromText(given.deflection, "--deflection");
@@ -100,10 +108,10 @@ scenes::Scene groupedScene(scenes::ImportedCad cad, const CadArguments& given) {
 void requireNoCadOptions(const std::string& scene, const CadArguments& given) {
   requireOwnUnits(scene, given.units, given.deflection);
   if (given.isAny())
-    throw LoadError(
-        scene, "",
-        "is a scene, which states its groups and poses itself; leave out --up, --group, --no-groups "
-        "and --time-limit");
+    throw LoadError(scene, "",
+                    "is a scene, which states its groups and poses itself; leave out --up, --part-per, "
+                    "--group, --no-groups "
+                    "and --time-limit");
 }
 
 }  // namespace vps::viewer::inline v0

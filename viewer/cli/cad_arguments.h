@@ -23,7 +23,7 @@ inline constexpr std::size_t kMostTriangles = 250'000;
 inline constexpr const char* kUnusedUnits = "states its unit itself, so that --units is not used";
 
 struct CadArguments {
-  std::string units, deflection, up;  ///< as text; empty: not given
+  std::string units, deflection, up, part_per;  ///< as text; empty: not given
   double time_limit_s = 0;
   scenes::GroupWishes groups;
   bool has_no_groups = false;
@@ -31,8 +31,8 @@ struct CadArguments {
   [[nodiscard]] bool isAny() const;  ///< whether one of the others is given
 };
 
-/// Adds --units, --deflection, --up, --group, --no-groups and --time-limit; those of the cache come by
-/// addCacheOptions().
+/// Adds --units, --deflection, --up, --part-per, --group, --no-groups and --time-limit; those of the cache
+/// come by addCacheOptions().
 void addCadOptions(CLI::App& command, CadArguments& given);
 
 /// What was given, and otherwise what suits a file that nobody has looked at: parts of more than

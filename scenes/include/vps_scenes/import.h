@@ -17,6 +17,16 @@
 
 namespace vps::scenes::inline v0 {
 
+/// What of a file is one part.
+enum class PartPer {
+  /// A solid or a closed surface, and what the file has as one object. Open groups of an OBJ file that
+  /// together
+  /// are closed are one, and so are connected shapes of VRML, of which exporters write one for each face.
+  Body,
+  Object,  ///< what the file has as an object, group or shape, also where open ones together are closed
+  File,    ///< all of the file, with its name
+};
+
 struct ImportSettings {
   /// Metres per file unit, for formats without a unit (STL, OBJ, PLY, ...); empty: such a file is refused.
   /// Files that state their unit (STEP, IGES, glTF, 3MF, Collada, Inventor with Units) ignore it.
@@ -33,6 +43,7 @@ struct ImportSettings {
   /// Where `up` is empty and all files are of formats that define y as up, which many programs do not heed
   /// (Inventor, VRML): y, unless the parts would hardly stand so, and z then. A warning says which.
   bool guesses_up = false;
+  PartPer part_per = PartPer::Body;
   /// Runs the format's library in a child process (POSIX), so that a crash on a damaged file becomes a
   /// LoadError. False: in this process, for a debugger, or where other threads use Open CASCADE or Coin
   /// themselves.
@@ -82,7 +93,9 @@ struct ImportedCad {
 VPS_SCENES_API ImportedCad importCad(const std::string& file, const ImportSettings& settings = {},
                                      const Progress& progress = {});
 
-/// The parts of several files in one frame, as if they were one file, which has the name of the first.
+/// The parts of several files in one frame, as if they were one file, which has the name of the first. A
+/// warning says so where they seem to lie in frames of their own: all about the origin, and reaching into
+/// each other.
 VPS_SCENES_API ImportedCad importCad(const std::vector<std::string>& files,
                                      const ImportSettings& settings = {}, const Progress& progress = {});
 

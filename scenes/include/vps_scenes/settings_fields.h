@@ -89,7 +89,8 @@ static_assert(coversAllMembers<PartTolerance>(kToleranceFields));
 /// `[[part]]`
 inline constexpr auto kPartKeys = std::make_tuple(
     Key{"file", "file", "", "mesh or CAD file, in any format that `vps import` reads"},
-    Key{"node", "text", "", "the part's name within the file, where the file has several"},
+    Key{"node", "text", "",
+        "the part's name within the file, where the file has several; `\"*\"`: all of it as one part"},
     Key{"name", "text", "`node`, or the file's stem", "unique in the scene"},
     Key{"pose", "pose", "as in the file", "designed pose in the world"},
     Key{"velocity_m_s", "3 numbers", "0",

@@ -67,6 +67,7 @@ void readAnew(const std::string& file, const ImportSettings& settings, const Pro
     raw = settings.in_own_process ? import::inOwnProcess(file, reader.library, settings, progress, read)
                                   : read(progress);
   cad.states_unit = raw->states_unit;
+  if (settings.part_per == PartPer::Object) raw->open_shapes = import::Shapes::AreParts;
   import::finish(std::move(*raw), cad);
   for (ImportedPart& part : cad.parts) {
     if (hasExactFaces(cad.format))
@@ -74,6 +75,26 @@ void readAnew(const std::string& file, const ImportSettings& settings, const Pro
     else
       part.deflection_m.reset();
   }
+}
+
+/// All parts as one, in the frame of the file.
+ImportedPart wholeFile(const ImportedCad& cad) {
+  ImportedPart whole;
+  whole.name = import::stem(cad.file);
+  double largest_m2 = 0;
+  for (const ImportedPart& part : cad.parts) {
+    append(whole.mesh, transformed(part.mesh, part.X_WP));
+    append(whole.face_colors, part.mesh.triangles.size(), part.face_colors, part.color);
+    if (const double own_m2 = area(part.mesh); own_m2 > largest_m2) {
+      largest_m2 = own_m2;
+      whole.color = part.color;
+    }
+    if (part.deflection_m) whole.deflection_m = std::max(*part.deflection_m, whole.deflection_m.value_or(0));
+    whole.rounding_m = std::max(whole.rounding_m, part.rounding_m);
+    if (whole.note.empty()) whole.note = part.note;
+  }
+  simplify(whole.face_colors, whole.color);
+  return whole;
 }
 
 ImportedCad withFileAxes(const std::string& file, ImportSettings settings, const Progress& progress) {
@@ -97,6 +118,7 @@ ImportedCad withFileAxes(const std::string& file, ImportSettings settings, const
     if (!made_from.empty()) settings.cache->keep(made_from, import::keptBytes(cad));
   }
   cad.states_unit = cad.states_unit || cad.format == "STEP" || cad.format == "IGES";
+  if (settings.part_per == PartPer::File) cad.parts = {wholeFile(cad)};
   if (progress) progress("reading " + import::stem(file), 1);
   return cad;
 }
@@ -119,6 +141,7 @@ ImportedCad importCad(const std::vector<std::string>& files, const ImportSetting
   ImportedCad all;
   all.states_unit = !files.empty();
   bool is_up_open = true;
+  std::vector<std::size_t> ends;
   for (const std::string& file : files) {
     ImportedCad one = withFileAxes(file, settings, progress);
     if (all.file.empty()) all.file = file;
@@ -128,10 +151,13 @@ ImportedCad importCad(const std::vector<std::string>& files, const ImportSetting
       all.format += (all.format.empty() ? "" : ", ") + one.format;
     nameTreeApart(one, all);
     std::ranges::move(one.parts, std::back_inserter(all.parts));
+    ends.push_back(all.parts.size());
     for (const std::string& warning : one.warnings)
       all.warnings.push_back(files.size() > 1 ? file + ": " + warning : warning);
   }
   import::nameUniquely(all.parts, "part");
+  if (const std::string warning = import::ownFramesWarning(all.parts, ends); !warning.empty())
+    all.warnings.push_back(warning);
   setUp(all, is_up_open, settings);
   return all;
 }

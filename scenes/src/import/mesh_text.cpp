@@ -130,7 +130,8 @@ MeshText objText(const std::string& file) {
     const auto object = afterKeyword(text, "o"), faces = afterKeyword(text, "g");
     const bool is_one_line = text.find('\r') >= text.size() - 1;  // else line ends are '\r' alone
     if ((!object && !faces) || !is_one_line) {
-      out.bytes += line;
+      // assimp skips a line that begins with a blank.
+      out.bytes += line.substr(std::min(line.find_first_not_of(" \t"), line.size()));
       return;
     }
     const std::string name(trimmed(object ? *object : *faces));

@@ -6,6 +6,8 @@
 #include <cctype>
 #include <string_view>
 
+#include "core/valid_text.h"
+
 namespace vps::scenes::inline v0::import {
 
 namespace {
@@ -30,7 +32,7 @@ std::string withoutNumber(std::string name) {
 }
 
 std::string wordOf(const std::string& name) {
-  std::string lower = withoutNumber(name);
+  std::string lower = withoutNumber(withoutNumber(name));  // "Component1:1"
   std::ranges::transform(lower, lower.begin(),
                          [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return lower;
@@ -53,10 +55,32 @@ bool isOfExporter(const std::string& name) {
          word.starts_with("open cascade step translator") || word.starts_with("=>[");
 }
 
+/// Characters that an exporter could not write, or that are no text: replaced, of control, or mostly signs.
+bool isGarbled(const std::string& name) {
+  const auto letters =
+      std::ranges::count_if(name, [](char c) { return isLetter(c) || isDigit(c) || c == ' '; });
+  return printable(name) != name || name.find("\xEF\xBF\xBD") != std::string::npos ||
+         name.find("??") != std::string::npos || 2 * letters < std::ssize(name);
+}
+
+/// One long word that changes between capitals, small letters and digits at every other place, as the
+/// identifiers of instances do: "MqXw0GXkVJeNj9w4".
+bool isRandom(const std::string& name) {
+  constexpr std::ptrdiff_t kLeast = 12;
+  const auto kindOf = [](unsigned char c) {
+    return std::isdigit(c) != 0 ? 0 : std::isupper(c) != 0 ? 1 : std::islower(c) != 0 ? 2 : 3;
+  };
+  if (name.find(' ') != std::string::npos) return false;
+  std::ptrdiff_t changes = 0;
+  for (std::size_t i = 1; i < name.size(); ++i) changes += kindOf(name[i]) != kindOf(name[i - 1]) ? 1 : 0;
+  return std::ssize(name) >= kLeast && 2 * changes > std::ssize(name);
+}
+
 /// Words that any part could have.
 bool isGeneric(const std::string& name) {
-  constexpr std::array<std::string_view, 7> kWords = {"part",    "body",    "component", "product",
-                                                      "unnamed", "no name", "group"};
+  constexpr std::array<std::string_view, 12> kWords = {"part",       "body",    "component", "product",
+                                                       "unnamed",    "no name", "group",     "instance",
+                                                       "occurrence", "item",    "object",    "element"};
   return std::ranges::find(kWords, wordOf(name)) != kWords.end();
 }
 
@@ -68,10 +92,10 @@ bool isIdentifier(const std::string& name) {
   return hex == std::ssize(name) && hex >= kLeast && std::ranges::count_if(name, isDigit) >= kLeastDigits;
 }
 
-/// 0: nothing, 1: a word that any part could have, 2: a name.
+/// 0: nothing, 1: a word that any part could have, or one that nobody gave, 2: a name.
 int meaningOf(const std::string& name) {
   if (!std::ranges::any_of(name, isLetter) || isOfExporter(name) || isIdentifier(name)) return 0;
-  return isGeneric(name) ? 1 : 2;
+  return isGeneric(name) || isGarbled(name) || isRandom(name) ? 1 : 2;
 }
 
 }  // namespace

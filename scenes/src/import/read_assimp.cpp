@@ -92,6 +92,14 @@ class ReplacedFile : public Assimp::DefaultIOSystem {
   const std::string& bytes_;
 };
 
+/// Empty for what assimp writes in place of a name.
+std::string nameFrom(const aiString& text) {
+  const std::string name = text.C_Str();
+  const bool is_placeholder = name.starts_with("<") || name.starts_with("nodes[") ||
+                              name.starts_with("meshes[") || name == "defaultobject" || name == "RootNode";
+  return is_placeholder ? "" : name;
+}
+
 struct Walk {
   const aiScene& scene;
   bool is_gltf;
@@ -100,14 +108,14 @@ struct Walk {
   void node(const aiNode& n, const Eigen::Affine3d& X_WParent) {
     const Eigen::Affine3d X_WP = X_WParent * affine(n.mTransformation);
     RawPart part;
-    part.name = n.mName.C_Str();
+    part.name = nameFrom(n.mName);
     part.X_WP = X_WP;
     for (unsigned i = 0; i < n.mNumMeshes; ++i) {
       const aiMesh& mesh = *scene.mMeshes[n.mMeshes[i]];
       const Color color = colorOf(scene, mesh, is_gltf);
       if (i == 0) part.color = color;
       appendColors(mesh, color, is_gltf, part.face_colors);
-      if (part.name.empty()) part.name = mesh.mName.C_Str();
+      if (part.name.empty()) part.name = nameFrom(mesh.mName);
       appendMesh(mesh, part.mesh);
     }
     part.rounding = floatRounding(part.mesh, X_WP);
@@ -273,10 +281,7 @@ RawCad readAssimp(const std::string& file, const std::string& format, const Impo
       part.name = text->nameIn(part.name);
       for (Vec3& p : part.mesh.vertices) p += text->shift;
     }
-    // STL's header and assimp's placeholders are no names.
-    if (format == "STL" && cad.parts.size() == 1) part.name.clear();
-    if (part.name.starts_with("<") || part.name == "defaultobject" || part.name == "RootNode")
-      part.name.clear();
+    if (format == "STL" && cad.parts.size() == 1) part.name.clear();  // STL's header is no name
   }
   return cad;
 }

@@ -69,6 +69,10 @@ void finish(RawCad raw, ImportedCad& cad);
 /// Gives each part another name where one is repeated; `fallback` where it has none.
 void nameUniquely(std::vector<ImportedPart>& parts, const std::string& fallback);
 
+/// A warning where several files seem to lie each in a frame of its own, see own_frames.cpp; else empty.
+/// @param ends for each file, how many of the parts are of it and of those before
+std::string ownFramesWarning(const std::vector<ImportedPart>& parts, const std::vector<std::size_t>& ends);
+
 /// Turns the parts so that the axis becomes z, the shortest way.
 void turnUp(ImportedCad& cad, const Vec3& axis);
 /// For formats that define y as up, which many programs do not heed: turns the parts so that y becomes z,

@@ -147,11 +147,14 @@ class SceneReader {
   }
 
   /// Reads each CAD file once, even if several parts come from it.
-  const ImportedCad& cad(const SceneKeys& keys, std::string_view key, const std::string& file) {
-    const auto known = cads_.find(file);
+  const ImportedCad& cad(const SceneKeys& keys, std::string_view key, const std::string& file,
+                         PartPer part_per = PartPer::Body) {
+    const auto known = cads_.find({file, part_per});
     if (known != cads_.end()) return known->second;
     try {
-      const ImportedCad& cad = cads_.emplace(file, importCad(path(file), import_, progress_)).first->second;
+      import_.part_per = part_per;
+      const ImportedCad& cad =
+          cads_.emplace(std::pair(file, part_per), importCad(path(file), import_, progress_)).first->second;
       for (const std::string& warning : cad.warnings) scene_.warnings.push_back(file + ": " + warning);
       return cad;
     } catch (const LoadError& error) {
@@ -202,16 +205,18 @@ class SceneReader {
   ScenePart& addPart(const SceneKeys& keys) {
     std::string file, node, name;
     keys.text("file", file);
-    const ImportedCad& found = cad(keys, "file", file);
+    const bool is_whole = keys.text("node", node) && node == "*";
+    const ImportedCad& found = cad(keys, "file", file, is_whole ? PartPer::File : PartPer::Body);
     std::size_t index = 0;
-    if (keys.text("node", node)) {
+    if (!node.empty() && !is_whole) {
       index = partNamed(keys, "node", node, found.parts, nameOfImported);
       name = node;
     } else {
       std::vector<std::string> names;
       for (const ImportedPart& part : found.parts) names.push_back(part.name);
       if (found.parts.size() != 1)
-        keys.fail("file", "has " + std::to_string(found.parts.size()) + " parts; say which with 'node'" +
+        keys.fail("file", "has " + std::to_string(found.parts.size()) +
+                              " parts; say which with 'node', or node = \"*\" for all of it as one part" +
                               didYouMean("", names));
       name = fs::path(file).stem().string();
     }
@@ -415,7 +420,7 @@ class SceneReader {
   Scene scene_;
   ImportSettings import_;
   Material material_;  ///< [material]: of the parts that do not state their own
-  std::map<std::string, ImportedCad> cads_;
+  std::map<std::pair<std::string, PartPer>, ImportedCad> cads_;
   std::vector<PartGroup> groups_;
   std::map<std::string, std::string> group_of_;  ///< by part
   std::size_t cad_count_ = 0;                    ///< the first parts of the scene are those of its 'cad'

@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// OBJ and glTF files that are odd and sound: read with the right sizes, names, colours and volumes.
+// Those of 3MF are in import_3mf_test.cpp, those of STEP and IGES in tests/cad_faces.
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <fstream>
+#include <functional>
+
+#include "support/temporary_folder.h"
+#include "vps/load_error.h"
+#include "vps_scenes/import.h"
+
+namespace vps::scenes {
+namespace {
+
+struct ImportOddities : testing::Test {
+  std::string written(const std::string& name, const std::string& text) {
+    const std::string file = (folder_.path() / name).string();
+    std::ofstream(file, std::ios::binary) << text;
+    return file;
+  }
+  test::TemporaryFolder folder_;
+};
+
+void expectBox(const ImportedCad& cad, std::size_t index, const std::string& name, const Vec3& size_m,
+               const std::string& what) {
+  ASSERT_GT(cad.parts.size(), index) << what;
+  const ImportedPart& part = cad.parts[index];
+  EXPECT_EQ(part.name, name) << what;
+  EXPECT_LT((bounds(part.mesh).size() - size_m).norm(), 1e-6 * size_m.norm()) << what;
+  EXPECT_NEAR(massProperties(part.mesh).volume_m3, size_m.prod(), 1e-5 * size_m.prod()) << what;
+  EXPECT_TRUE(checkMesh(part.mesh).isClosed()) << what;
+}
+
+std::string replacedAll(std::string text, const std::string& from, const std::string& to) {
+  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
+    text.replace(at, from.size(), to);
+  return text;
+}
+
+/// A box of 4 x 3 x 2 as OBJ; `first` is the number of its first vertex.
+std::string boxObj(const std::string& head, int first = 1, double x = 0) {
+  std::string text = head;
+  for (int i = 0; i < 8; ++i)
+    text += "v " + std::to_string(4 * (i & 1) + x) + " " + std::to_string(3.0 * (i >> 1 & 1)) + " " +
+            std::to_string(2.0 * (i >> 2)) + "\n";
+  const int quads[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
+                           {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+  for (const auto& quad : quads) {
+    text += "f";
+    for (const int i : quad) text.append(" ").append(std::to_string(i + first));
+    text += "\n";
+  }
+  return text;
+}
+
+TEST_F(ImportOddities, OfObjChangeNothing) {
+  const std::string plain = boxObj("o box\n");
+  struct Odd {
+    std::string name, text, part = "box";
+  };
+  const std::vector<Odd> all = {
+      {"none", plain},
+      {"line ends of two bytes", replacedAll(plain, "\n", "\r\n")},
+      {"comments and empty lines", "# made by hand\n\n" + replacedAll(plain, "\nf", "\n\n# face\nf")},
+      {"a library of materials that is missing",
+       "mtllib missing.mtl\n" + replacedAll(plain, "\nf", "\nusemtl red\nf")},
+      {"smoothing groups", replacedAll(plain, "\nf", "\ns off\nf")},
+      {"numbers from the end",
+       replacedAll(replacedAll(replacedAll(replacedAll(plain, "f 1 3 4 2", "f -8 -6 -5 -7"), "f 5 6 8 7",
+                                           "f -4 -3 -1 -2"),
+                               "f 1 2 6 5", "f -8 -7 -3 -4"),
+                   "f 3 7 8 4", "f -6 -2 -1 -5")},
+      {"normals and textures",
+       "vn 0 0 1\nvt 0 0\n" + replacedAll(replacedAll(plain, "f 1 3 4 2", "f 1/1/1 3/1/1 4/1/1 2/1/1"),
+                                          "f 5 6 8 7", "f 5//1 6//1 8//1 7//1")},
+      {"colours of vertices", replacedAll(plain, ".000000\n", ".000000 1 0 0\n")},
+      {"blanks before and after", replacedAll(replacedAll(plain, "\nv ", "\n  v\t"), "\nf ", "\n\tf  ")},
+      {"lines and points", plain + "l 1 2\np 3\n"},
+      {"a vertex that nothing uses", "v 900 900 900\n" + boxObj("o box\n", 2)},
+      {"numbers with exponents", replacedAll(plain, "4.000000", "4.0e+0")},
+      {"a name with blanks", boxObj("o head  cap M8 \n"), "head  cap M8"},
+      {"a group in place of an object", boxObj("g box\n")},
+      {"groups of faces", replacedAll(plain, "\nf 5", "\ng side\nf 5"), "odd"},
+      {"no name", boxObj(""), "odd"},
+      {"two names of a group", boxObj("g box lid\n"), "box lid"},
+  };
+  for (const auto& [unit, unit_m] :
+       {std::pair("mm", 1e-3), std::pair("inch", 25.4e-3), std::pair("cm", 1e-2)})
+    for (const Odd& odd : all) {
+      ImportSettings settings;
+      settings.unit_m = unitFromText(unit);
+      try {
+        const ImportedCad cad = importCad(written("odd.obj", odd.text), settings);
+        EXPECT_EQ(cad.parts.size(), 1U) << odd.name;
+        expectBox(cad, 0, odd.part, unit_m * Vec3(4, 3, 2), odd.name);
+        if (odd.name == "colours of vertices") {
+          EXPECT_NEAR(cad.parts[0].color[0], 1, 1e-5);
+          EXPECT_NEAR(cad.parts[0].color[1], 0, 1e-5);
+        }
+      } catch (const LoadError& e) {
+        ADD_FAILURE() << odd.name << ": " << e.what();
+      }
+    }
+}
+
+TEST_F(ImportOddities, OfObjSeveralObjectsAreOnePartOrSeveralAsAskedFor) {
+  const std::string two = written("two.obj", boxObj("o left\n") + boxObj("o right\n", 9, 10));
+  // Half of the faces in each of two groups: open, and together closed.
+  const std::string halves =
+      written("halves.obj", replacedAll(boxObj("o left\n"), "\nf 3", "\no right\nf 3"));
+  ImportSettings settings;
+  settings.unit_m = 1e-3;
+  const auto namesOf = [&](const std::string& file, PartPer per) {
+    settings.part_per = per;
+    std::string names;
+    for (const ImportedPart& part : importCad(file, settings).parts) names += part.name + " ";
+    return names;
+  };
+  EXPECT_EQ(namesOf(two, PartPer::Body), "left right ");
+  EXPECT_EQ(namesOf(two, PartPer::Object), "left right ");
+  EXPECT_EQ(namesOf(two, PartPer::File), "two ");
+  EXPECT_EQ(namesOf(halves, PartPer::Body), "halves ");
+  EXPECT_EQ(namesOf(halves, PartPer::Object), "left right ");
+  EXPECT_EQ(namesOf(halves, PartPer::File), "halves ");
+  settings.part_per = PartPer::File;
+  const ImportedCad both = importCad(std::vector<std::string>{two, halves}, settings);
+  ASSERT_EQ(both.parts.size(), 2U);
+  EXPECT_NEAR(massProperties(both.parts[0].mesh).volume_m3, 48e-9, 1e-13);
+  EXPECT_NEAR(bounds(both.parts[0].mesh).size().x(), 14e-3, 1e-8);
+}
+
+std::string base64(const std::string& bytes) {
+  static const char* const kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    std::uint32_t value = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      value = value << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0U);
+    for (int k = 3; k >= 0; --k)
+      text += i + 3 - static_cast<std::size_t>(k) > bytes.size() ? '=' : kDigits[value >> (6 * k) & 63];
+  }
+  return text;
+}
+
+/// A box of 4 x 3 x 2 in glTF; node 0 is it, and the rest of the JSON's members can be given.
+std::string boxGltf(const std::string& node = R"("name":"box")", const std::string& scene = "[0]",
+                    const std::string& more_nodes = "", const std::string& primitive = "",
+                    const std::string& members = "", bool has_indices = true) {
+  const Mesh box = makeBox(Vec3(4, 3, 2));
+  std::string bytes;
+  const auto put = [&](auto value) { bytes.append(reinterpret_cast<const char*>(&value), sizeof value); };
+  std::size_t count = 0;
+  if (has_indices) {
+    count = box.vertices.size();
+    for (const Vec3& p : box.vertices)
+      for (int k = 0; k < 3; ++k) put(static_cast<float>(p[k]));
+    for (const auto& t : box.triangles)
+      for (const std::uint32_t i : t) put(static_cast<std::uint16_t>(i));
+  } else {
+    for (const auto& t : box.triangles)
+      for (const std::uint32_t i : t)
+        for (int k = 0; k < 3; ++k) put(static_cast<float>(box.vertices[i][k]));
+    count = 3 * box.triangles.size();
+  }
+  const std::string at = std::to_string(count * 12), n = std::to_string(3 * box.triangles.size());
+  const std::string views =
+      R"("bufferViews":[{"buffer":0,"byteLength":)" + at + "}" +
+      (has_indices ? R"(,{"buffer":0,"byteOffset":)" + at + R"(,"byteLength":)" +
+                         std::to_string(bytes.size() - count * 12) + "}"
+                   : "") +
+      R"(],"accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","min":[-2,-1.5,-1],"max":[2,1.5,1],"count":)" +
+      std::to_string(count) + "}" +
+      (has_indices ? R"(,{"bufferView":1,"componentType":5123,"type":"SCALAR","count":)" + n + "}" : "") +
+      "]";
+  return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":)" + scene + R"(}],"nodes":[{"mesh":0,)" +
+         node + "}" + more_nodes + R"(],"meshes":[{"primitives":[{"attributes":{"POSITION":0})" +
+         (has_indices ? R"(,"indices":1)" : "") + primitive + "}]}]," + views +
+         R"(,"buffers":[{"byteLength":)" + std::to_string(bytes.size()) +
+         R"(,"uri":"data:application/octet-stream;base64,)" + base64(bytes) + "\"}]" + members + "}";
+}
+
+TEST_F(ImportOddities, OfGltfChangeNothing) {
+  struct Odd {
+    std::string name, text, part = "box";
+    double scale = 1;
+    Color color = {1, 1, 1};  // of glTF's default material
+  };
+  const std::string red = R"(,"materials":[{"pbrMetallicRoughness":{"baseColorFactor":[1,0,0,1]}}])";
+  const std::vector<Odd> all = {
+      {"none", boxGltf()},
+      {"no name", boxGltf(R"("extras":{})"), "odd"},
+      {"a name of another script", boxGltf("\"name\":\"\xe6\x9d\xbf\""), "\xe6\x9d\xbf"},
+      {"an escaped name", boxGltf(R"("name":"\u00e4 \"x\"")"), "\xc3\xa4 \"x\""},
+      {"a scale", boxGltf(R"("name":"box","scale":[0.001,0.001,0.001])"), "box", 1e-3},
+      {"a matrix", boxGltf(R"("name":"box","matrix":[0.01,0,0,0,0,0.01,0,0,0,0,0.01,0,0,0,0,1])"), "box",
+       1e-2},
+      {"a node above",
+       boxGltf(R"("name":"box")", "[1]", R"(,{"children":[0],"scale":[0.1,0.1,0.1],"name":"rig"})"), "box",
+       0.1},
+      {"a mirror", boxGltf(R"("name":"box","scale":[-1,1,1])")},
+      {"a material", boxGltf(R"("name":"box")", "[0]", "", R"(,"material":0)", red), "box", 1, {1, 0, 0}},
+      {"a camera", boxGltf(R"("name":"box")", "[0,1]", R"(,{"camera":0,"name":"eye"})", "",
+                           R"(,"cameras":[{"type":"perspective","perspective":{"yfov":1,"znear":0.1}}])")},
+      {"an extension that nobody knows", boxGltf(R"("name":"box","extensions":{"MY_thing":{"a":1}})", "[0]",
+                                                 "", "", R"(,"extensionsUsed":["MY_thing"])")},
+      {"no indices", boxGltf(R"("name":"box")", "[0]", "", "", "", false)},
+      {"an empty node", boxGltf(R"("name":"box")", "[0,1]", R"(,{"name":"nothing"})")},
+  };
+  for (const bool has_unit : {false, true})  // which is not used
+    for (const Odd& odd : all) {
+      ImportSettings settings;
+      if (has_unit) settings.unit_m = 25.4e-3;
+      try {
+        const ImportedCad cad = importCad(written("odd.gltf", odd.text), settings);
+        EXPECT_EQ(cad.parts.size(), 1U) << odd.name;
+        // y is up in glTF and z here.
+        expectBox(cad, 0, odd.part, odd.scale * Vec3(4, 2, 3), odd.name);
+        EXPECT_TRUE(cad.states_unit);
+        for (std::size_t k = 0; k < 3; ++k)
+          EXPECT_NEAR(cad.parts.at(0).color[k], odd.color[k], 1e-5) << odd.name;
+      } catch (const LoadError& e) {
+        ADD_FAILURE() << odd.name << ": " << e.what();
+      }
+    }
+}
+
+// Three blocks, each modelled about the origin, and as their assembly has them.
+TEST_F(ImportOddities, FilesInFramesOfTheirOwnAreToldOf) {
+  ImportSettings settings;
+  settings.unit_m = 1e-3;
+  const auto warningOf = [&](const std::vector<std::string>& files) {
+    std::string found;
+    for (const std::string& warning : importCad(files, settings).warnings)
+      if (warning.find("frames of their own") != std::string::npos) found = warning;
+    return found;
+  };
+  const std::string a = written("a.obj", boxObj("o a\n", 1, -2)),
+                    b = written("b.obj", boxObj("o b\n", 1, -2)), c = written("c.obj", boxObj("o c\n")),
+                    away = written("away.obj", boxObj("o away\n", 1, 4));
+  EXPECT_NE(warningOf({a, b}).find("the 2 files seem to lie in frames of their own"), std::string::npos);
+  EXPECT_NE(warningOf({a, b, c}).find("'pose'"), std::string::npos);
+  EXPECT_EQ(warningOf({c, away}), "");     // side by side
+  EXPECT_EQ(warningOf({a, b, away}), "");  // a clash of two, and a third where it belongs
+  EXPECT_EQ(warningOf({a}), "");
+  // A pin in its sleeve, both about the z axis: the sleeve has a square hole.
+  const std::string pin = written("pin.obj", boxObj("o pin\n", 1, -2));
+  std::string wall;
+  int first = 1;
+  for (const double x : {-7.0, 3.0}) {
+    wall += boxObj("", first, x);
+    first += 8;
+  }
+  EXPECT_EQ(warningOf({pin, written("sleeve.obj", "o sleeve\n" + wall)}), "");
+}
+
+}  // namespace
+}  // namespace vps::scenes
