@@ -215,6 +215,24 @@ TEST_F(DamagedEntities, WhatIsNoGeometryIsReadWithARemark) {
   }
 }
 
+TEST_F(DamagedEntities, AnItemOfAnUnknownKindCostsGeometryIfItHasFaces) {
+  const std::string sound = written(false);
+  const std::vector<Truth> truth = truthOf(sound);
+  std::size_t at = sound.find("ADVANCED_BREP_SHAPE_REPRESENTATION(");
+  at = sound.find(')', at);
+  const std::string with_item = std::string(sound).insert(at, ",#900100");
+  std::string error;
+  const auto cad = read(withLines(with_item, "#900100=MY_ANNOTATION('note',(1.,2.));"), error);
+  ASSERT_TRUE(cad) << error;
+  expectSame(*cad, truth, true, "annotation");
+  EXPECT_EQ(cad->warnings.size(), 1U);
+  const std::size_t face = sound.rfind('#', sound.find("ADVANCED_FACE"));
+  const std::string number = sound.substr(face, sound.find(' ', face) - face);
+  EXPECT_FALSE(read(
+      withLines(with_item, "#900100=MY_SOLID('',(#900101));\n#900101=MY_SHELL((" + number + "));"), error));
+  EXPECT_FALSE(read(with_item, error));  // it is not in the file
+}
+
 TEST_F(DamagedEntities, ANameThatIsNoStringLosesTheNameAlone) {
   const std::string sound = written(true);
   const std::vector<Truth> truth = truthOf(sound);

@@ -33,6 +33,7 @@ std::vector<Vec3> pointsBelow(const Mesh& mesh, double depth_m) {
   constexpr int kCount = 300;
   const double step_m2 = area(mesh) / kCount;
   std::vector<Vec3> points;
+  if (!(step_m2 > 0)) return points;
   double done_m2 = 0, a = 0.5, b = 0.5;
   for (const auto& t : mesh.triangles) {
     const Vec3 &p = mesh.vertices[t[0]], u = mesh.vertices[t[1]] - p, v = mesh.vertices[t[2]] - p;
@@ -79,7 +80,11 @@ std::optional<std::pair<std::string, std::string>> commonBall(const OneFile& one
 std::string ownFramesWarning(const std::vector<ImportedPart>& parts, const std::vector<std::size_t>& ends) {
   // Of the smaller one's least extent: more than threads and press fits overlap.
   constexpr double kDeep = 0.1;
-  if (ends.size() < 2) return "";
+  // What is inside of more triangles takes longer to prepare than such a hint is worth.
+  constexpr std::size_t kMostTriangles = 300'000;
+  std::size_t triangles = 0;
+  for (const ImportedPart& part : parts) triangles += part.mesh.triangles.size();
+  if (ends.size() < 2 || triangles > kMostTriangles) return "";
   std::vector<OneFile> files;
   for (std::size_t i = 0, from = 0; i < ends.size(); from = ends[i++]) {
     OneFile file{std::span(parts).subspan(from, ends[i] - from)};

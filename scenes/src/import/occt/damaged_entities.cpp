@@ -182,6 +182,7 @@ class Finder {
     const Handle(Interface_Check) check = model_->Check(i, true);
     std::string without_parameter;
     bool has_parameter = false;
+    std::optional<bool> is_whole;  // but for items that are no shapes
     for (int k = 1; k <= check->NbFails(); ++k) {
       const std::string message = check->CFail(k);
       const std::string_view parameter = parameterOf(message);
@@ -193,7 +194,10 @@ class Finder {
       }
       has_parameter = true;
       if (std::ranges::find(kNoGeometry, parameter) != kNoGeometry.end()) continue;
-      if (parameter == "representation_item" && hasShapeBesideUnknown(entity)) continue;
+      if (parameter == "representation_item") {
+        if (!is_whole) is_whole = hasShapeBesideUnknown(entity);
+        if (*is_whole) continue;
+      }
       return message;
     }
     const bool is_repeated = has_parameter && without_parameter.find("unresolved") != std::string::npos;
@@ -220,25 +224,24 @@ class Finder {
   [[nodiscard]] bool hasShapeBesideUnknown(const Entity& representation) const {
     if (!isAny<StepShape_ShapeRepresentation>(representation)) return false;
     bool has_shape = false;
-    std::size_t unknown = 0;
+    std::vector<Entity> unknown;
     for (Interface_EntityIterator it = graph_.Shareds(representation); it.More(); it.Next()) {
       const Entity& item = it.Value();
       has_shape = has_shape || isAny<StepShape_SolidModel, StepShape_ShellBasedSurfaceModel,
                                      StepShape_GeometricSet, StepRepr_MappedItem>(item);
-      if (!isAny<StepData_UndefinedEntity>(item)) continue;
-      ++unknown;
-      if (refersToTopology(item)) return false;
+      if (isAny<StepData_UndefinedEntity>(item)) unknown.push_back(item);
     }
     const Handle(Interface_Check) check = model_->Check(model_->Number(representation), true);
     std::size_t lost = 0;
     for (int k = 1; k <= check->NbFails(); ++k)
       if (parameterOf(check->CFail(k)) == "representation_item") ++lost;
-    return has_shape && lost <= unknown;  // else one is missing from the file, whatever it was
+    // More are lost than are unknown where one is missing from the file, whatever it was.
+    return has_shape && lost <= unknown.size() && !referToTopology(std::move(unknown));
   }
 
-  [[nodiscard]] bool refersToTopology(const Entity& entity) const {
+  /// Whether one of the entities does, at any depth.
+  [[nodiscard]] bool referToTopology(std::vector<Entity> left) const {
     std::vector<bool> is_seen(is_needed_.size());
-    std::vector<Entity> left = {entity};
     while (!left.empty()) {
       const Entity next = left.back();
       left.pop_back();
