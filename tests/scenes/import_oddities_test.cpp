@@ -77,6 +77,8 @@ TEST_F(ImportOddities, OfObjChangeNothing) {
                                           "f 5 6 8 7", "f 5//1 6//1 8//1 7//1")},
       {"colours of vertices", replacedAll(plain, ".000000\n", ".000000 1 0 0\n")},
       {"blanks before and after", replacedAll(replacedAll(plain, "\nv ", "\n  v\t"), "\nf ", "\n\tf  ")},
+      {"lines that go on in the next",
+       replacedAll(replacedAll(plain, "f 1 3 4 2", "f 1 3\\\n 4 2"), "f 5 6 8 7", "f 5 6 \\\n8 7")},
       {"lines and points", plain + "l 1 2\np 3\n"},
       {"a vertex that nothing uses", "v 900 900 900\n" + boxObj("o box\n", 2)},
       {"numbers with exponents", replacedAll(plain, "4.000000", "4.0e+0")},

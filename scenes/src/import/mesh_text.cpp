@@ -7,6 +7,7 @@
 #include <fstream>
 #include <iterator>
 #include <string_view>
+#include <utility>
 
 #include "vps/box.h"
 
@@ -125,8 +126,13 @@ std::string MeshText::nameIn(const std::string& word) const {
 MeshText objText(const std::string& file) {
   std::string group;  // that is active; assimp begins no new object where it is named again
   std::size_t group_word = 0;
+  bool is_continued = false;  // the line before ends in '\\'
   return rewritten(bytesOf(file), "v", [&](std::string_view line, MeshText& out) {
     const std::string_view text = line.substr(0, line.find('\n'));
+    if (std::exchange(is_continued, trimmed(text).ends_with('\\'))) {
+      out.bytes += line;  // a blank at its beginning parts two numbers
+      return;
+    }
     const auto object = afterKeyword(text, "o"), faces = afterKeyword(text, "g");
     const bool is_one_line = text.find('\r') >= text.size() - 1;  // else line ends are '\r' alone
     if ((!object && !faces) || !is_one_line) {

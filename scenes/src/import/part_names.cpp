@@ -5,6 +5,7 @@
 #include <array>
 #include <cctype>
 #include <string_view>
+#include <utility>
 
 #include "core/valid_text.h"
 
@@ -63,17 +64,33 @@ bool isGarbled(const std::string& name) {
          name.find("??") != std::string::npos || 2 * letters < std::ssize(name);
 }
 
-/// One long word that changes between capitals, small letters and digits at every other place, as the
-/// identifiers of instances do: "MqXw0GXkVJeNj9w4".
+/// One long word that changes between capitals, small letters and digits at every other place, and more than
+/// once from a small letter to a capital, as the identifiers of instances do: "MqXw0GXkVJeNj9w4".
+/// Designations as "DIN912M8x20A2K" and "LH_Arm_V2_01" do not.
 bool isRandom(const std::string& name) {
   constexpr std::ptrdiff_t kLeast = 12;
-  const auto kindOf = [](unsigned char c) {
-    return std::isdigit(c) != 0 ? 0 : std::isupper(c) != 0 ? 1 : std::islower(c) != 0 ? 2 : 3;
+  enum Kind { Separator, Digit, Capital, Small, Sign };
+  const auto kindOf = [](char c) {
+    const auto byte = static_cast<unsigned char>(c);
+    return c == '_' || c == '-' || c == '.' ? Separator
+           : std::isdigit(byte) != 0        ? Digit
+           : std::isupper(byte) != 0        ? Capital
+           : std::islower(byte) != 0        ? Small
+                                            : Sign;
   };
   if (name.find(' ') != std::string::npos) return false;
-  std::ptrdiff_t changes = 0;
-  for (std::size_t i = 1; i < name.size(); ++i) changes += kindOf(name[i]) != kindOf(name[i - 1]) ? 1 : 0;
-  return std::ssize(name) >= kLeast && 2 * changes > std::ssize(name);
+  std::ptrdiff_t length = 0, changes = 0, capitals_within = 0;
+  Kind before = Separator;
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    const Kind kind = kindOf(name[i]), last = std::exchange(before, kind);
+    if (kind == Separator) continue;
+    ++length;
+    const bool begins_word =
+        last == Capital && kind == Small && i + 1 < name.size() && kindOf(name[i + 1]) == Small;
+    changes += last != Separator && kind != last && !begins_word ? 1 : 0;
+    capitals_within += last == Small && kind == Capital ? 1 : 0;
+  }
+  return length >= kLeast && 2 * changes > length && capitals_within >= 2;
 }
 
 /// Words that any part could have.
