@@ -5,13 +5,13 @@
 #include <cstdio>
 #include <map>
 #include <numeric>
-#include <set>
 
 #include <tbb/parallel_for.h>
 
 #include "core/equal_meshes.h"
 #include "core/valid_text.h"
 #include "import/readers.h"
+#include "import/unique_names.h"
 #include "vps/load_error.h"
 #include "vps/mesh_weld.h"
 #include "vps_scenes/srgb.h"
@@ -259,16 +259,11 @@ std::array<float, 3> linearFromSrgb(const std::array<float, 3>& srgb) {
 }
 
 void nameUniquely(std::vector<ImportedPart>& parts, const std::string& fallback) {
-  std::set<std::string> taken;
-  std::map<std::string, int> tried;  // by name: the last number that was tried
+  UniqueNames names;
   for (ImportedPart& part : parts) {
     part.name = printable(part.name);
     if (part.name.find_first_not_of(' ') == std::string::npos) part.name = fallback;
-    const std::string base = part.name;
-    if (taken.insert(base).second) continue;
-    int& n = tried.try_emplace(base, 1).first->second;
-    do part.name = base + "_" + std::to_string(++n);
-    while (!taken.insert(part.name).second);
+    part.name = names.unique(part.name);
   }
 }
 

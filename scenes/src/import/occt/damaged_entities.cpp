@@ -3,10 +3,8 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
-#include <cstdint>
-#include <unordered_set>
-#include <utility>
+#include <optional>
+#include <string_view>
 #include <vector>
 
 #include <IGESData_IGESEntity.hxx>
@@ -16,41 +14,31 @@
 #include <Interface_ReportEntity.hxx>
 #include <StepBasic_MeasureWithUnit.hxx>
 #include <StepBasic_NamedUnit.hxx>
+#include <StepBasic_UncertaintyMeasureWithUnit.hxx>
 #include <StepData_UndefinedEntity.hxx>
 #include <StepGeom_ConicalSurface.hxx>
 #include <StepGeom_CylindricalSurface.hxx>
 #include <StepGeom_Pcurve.hxx>
+#include <StepGeom_RectangularTrimmedSurface.hxx>
 #include <StepGeom_SphericalSurface.hxx>
 #include <StepGeom_SurfaceOfRevolution.hxx>
 #include <StepGeom_ToroidalSurface.hxx>
 #include <StepGeom_TrimmedCurve.hxx>
-#include <StepRepr_MappedItem.hxx>
 #include <StepRepr_NextAssemblyUsageOccurrence.hxx>
 #include <StepRepr_ProductDefinitionShape.hxx>
-#include <StepRepr_ShapeRepresentationRelationship.hxx>
+#include <StepRepr_ShapeRepresentationRelationshipWithTransformation.hxx>
 #include <StepShape_ContextDependentShapeRepresentation.hxx>
-#include <StepShape_GeometricSet.hxx>
+#include <StepShape_RevolvedAreaSolid.hxx>
+#include <StepShape_RevolvedFaceSolid.hxx>
 #include <StepShape_ShapeDefinitionRepresentation.hxx>
-#include <StepShape_ShapeRepresentation.hxx>
-#include <StepShape_ShellBasedSurfaceModel.hxx>
-#include <StepShape_SolidModel.hxx>
-#include <StepShape_TopologicalRepresentationItem.hxx>
 #include <StepVisual_PreDefinedColour.hxx>
 #include <StepVisual_PreDefinedItem.hxx>
 #include <TCollection_HAsciiString.hxx>
-#include <Transfer_TransientProcess.hxx>
-#include <XSControl_TransferReader.hxx>
-#include <XSControl_WorkSession.hxx>
+
+#include "import/occt/step_kinds.h"
 
 namespace vps::scenes::inline v0::import {
 namespace {
-
-using Entity = Handle(Standard_Transient);
-
-template <class... Types>
-bool isAny(const Entity& entity) {
-  return (entity->IsKind(STANDARD_TYPE(Types)) || ...);
-}
 
 std::string joined(std::string text) {
   std::ranges::replace(text, '\n', ' ');
@@ -68,31 +56,17 @@ std::string_view parameterOf(std::string_view message) {
   return name.substr(name.rfind('.') + 1);
 }
 
-/// Calls f(number, where it is in the text, whether it is the entity's own) for each "#12" of the entities.
-template <class F>
-void forEachNumber(std::string_view text, F f) {
-  const auto after = [&](std::size_t at, std::string_view end) {
-    const std::size_t found = text.find(end, at);
-    return found == std::string_view::npos ? text.size() : found + end.size();
-  };
-  std::size_t at = after(0, "DATA;");
-  while ((at = text.find_first_of("#'/", at)) < text.size()) {
-    if (text[at] == '\'') {
-      at = after(at + 1, "'");
-    } else if (text[at] == '/') {
-      at = text.substr(at).starts_with("/*") ? after(at + 2, "*/") : at + 1;
-    } else {
-      std::uint64_t number = 0;
-      const auto [end, error] = std::from_chars(text.data() + at + 1, text.data() + text.size(), number);
-      const std::size_t from = std::exchange(at, static_cast<std::size_t>(end - text.data()));
-      if (error != std::errc()) {
-        at = from + 1;
-        continue;
-      }
-      const std::size_t next = text.find_first_not_of(" \t\r\n", at);
-      f(number, text.substr(from, at - from), next < text.size() && text[next] == '=');
-    }
+/// Words in the names of kinds that are no shapes: an unknown entity with one of them is no loss.
+bool isNoShape(std::string_view kind) {
+  constexpr std::array<std::string_view, 12> kWords = {"ANNOTATION", "DRAUGHTING", "CALLOUT", "TEXT",
+                                                       "LEADER",     "DIMENSION",  "SYMBOL",  "CAMERA",
+                                                       "PLACEMENT",  "AXIS2",      "AXIS1",   "PLACEHOLDER"};
+  while (!kind.empty()) {
+    const std::size_t end = std::min(kind.find('_'), kind.size());
+    if (std::ranges::find(kWords, kind.substr(0, end)) != kWords.end()) return true;
+    kind.remove_prefix(std::min(end + 1, kind.size()));
   }
+  return false;
 }
 
 /// The damaged entities of one file.
@@ -108,9 +82,6 @@ class Finder {
     for (int i = 1; i <= model_->NbEntities(); ++i) {
       if (!model_->IsErrorEntity(i)) continue;
       const std::string loss = isNeeded(i) ? lossOf(i) : "";
-      if (const auto color = Handle(StepVisual_PreDefinedColour)::DownCast(model_->Value(i));
-          !color.IsNull() && !color->GetPreDefinedItem().IsNull())
-        color->GetPreDefinedItem()->SetName(new TCollection_HAsciiString(""));
       if (loss.empty() ? other++ == 0 : lost++ == 0)
         (loss.empty() ? first_other : first_lost) =
             wordsOn(i, loss.empty() ? model_->Check(i, true)->CFail(1) : loss.c_str());
@@ -123,7 +94,7 @@ class Finder {
       damage.lost_geometry = global;
     if (other > 0)
       damage.remark =
-          "its geometry is whole, but " + std::to_string(other) + (other == 1 ? " entity" : " entities") +
+          std::to_string(other) + (other == 1 ? " entity" : " entities") +
           " cannot be read, so that names, colours or annotations may be missing; the first: " + first_other;
     return damage;
   }
@@ -152,37 +123,54 @@ class Finder {
                 StepRepr_ShapeRepresentationRelationship, StepRepr_NextAssemblyUsageOccurrence>(entity))
         need(i);
     }
+    bool has_pcurve = false, is_round = false;
     while (!left.empty()) {
       const Entity entity = model_->Value(left.back());
       left.pop_back();
+      has_pcurve = has_pcurve || isAny<StepGeom_Pcurve>(entity);
+      is_round = is_round || isAny<StepGeom_CylindricalSurface, StepGeom_SphericalSurface,
+                                   StepGeom_ToroidalSurface, StepGeom_SurfaceOfRevolution>(entity);
+      has_angles_ = has_angles_ || (has_pcurve && is_round) ||
+                    isAny<StepGeom_ConicalSurface, StepGeom_TrimmedCurve, StepGeom_RectangularTrimmedSurface,
+                          StepShape_RevolvedAreaSolid, StepShape_RevolvedFaceSolid>(entity);
+      if (isAny<IGESData_IGESEntity>(entity)) continue;  // all geometry of IGES is found by its number
       for (Interface_EntityIterator it = graph_.Shareds(entity); it.More(); it.Next())
-        need(model_->Number(it.Value()));
+        if (!isNoGeometry(it.Value())) need(model_->Number(it.Value()));
     }
+  }
+
+  /// Annotations, styles, tolerances, how exact the geometry is, and unknown entities: what refers to one of
+  /// these and needs it is damaged itself.
+  static bool isNoGeometry(const Entity& entity) {
+    const std::string_view type = entity->DynamicType()->Name();
+    return type.starts_with("StepVisual_") || type.starts_with("StepDimTol_") ||
+           isAny<StepBasic_UncertaintyMeasureWithUnit, StepData_UndefinedEntity>(entity);
   }
 
   /// The first message on what of a needed entity is lost; empty if its geometry is whole.
   [[nodiscard]] std::string lossOf(int i) const {
     // What says how exact, of which name, or where in an interface the geometry is. Open CASCADE computes
     // pcurves that are missing, and takes units by their kind and factor, not by their exponents.
-    constexpr std::array<std::string_view, 9> kNoGeometry = {"name",
-                                                             "id",
-                                                             "description",
-                                                             "identifier",
-                                                             "dimensions",
-                                                             "context_type",
-                                                             "context_identifier",
-                                                             "uncertainty_measure_with_unit",
-                                                             "associated_geometry"};
+    constexpr std::array<std::string_view, 10> kNoGeometry = {"name",
+                                                              "id",
+                                                              "reference_designator",
+                                                              "description",
+                                                              "identifier",
+                                                              "dimensions",
+                                                              "context_type",
+                                                              "context_identifier",
+                                                              "uncertainty_measure_with_unit",
+                                                              "associated_geometry"};
     const Entity entity = model_->Value(i);
     const std::string_view type = entity->DynamicType()->Name();
     // Products, their contexts and categories, dates, persons: all that is not a unit.
     if (type.starts_with("StepBasic_") && !isAny<StepBasic_NamedUnit, StepBasic_MeasureWithUnit>(entity))
       return "";
-    if (type.ends_with("SolidAngleUnit") || (type.ends_with("PlaneAngleUnit") && !hasAngles())) return "";
+    if (type.ends_with("SolidAngleUnit") || (type.ends_with("PlaneAngleUnit") && !has_angles_)) return "";
     const Handle(Interface_Check) check = model_->Check(i, true);
     std::string without_parameter;
     bool has_parameter = false;
-    std::optional<bool> is_whole;  // but for items that are no shapes
+    std::optional<std::string> lost_item;
     for (int k = 1; k <= check->NbFails(); ++k) {
       const std::string message = check->CFail(k);
       const std::string_view parameter = parameterOf(message);
@@ -195,65 +183,50 @@ class Finder {
       has_parameter = true;
       if (std::ranges::find(kNoGeometry, parameter) != kNoGeometry.end()) continue;
       if (parameter == "representation_item") {
-        if (!is_whole) is_whole = hasShapeBesideUnknown(entity);
-        if (*is_whole) continue;
+        if (!lost_item) lost_item = lostItem(entity);
+        if (lost_item->empty()) continue;
+        return *lost_item;
       }
+      if ((parameter == "rep_1" || parameter == "rep_2") && isBesideUnknown(entity)) continue;
       return message;
     }
     const bool is_repeated = has_parameter && without_parameter.find("unresolved") != std::string::npos;
     return is_repeated ? "" : without_parameter;
   }
 
-  /// Whether the geometry depends on the unit of angles: by a cone's half angle, by a parameter at the end of
-  /// a conic, or by pcurves on round surfaces.
-  [[nodiscard]] bool hasAngles() const {
-    bool has_pcurve = false, is_round = false;
-    for (int i = 1; i <= model_->NbEntities(); ++i) {
-      if (!isNeeded(i)) continue;
-      const Entity entity = model_->Value(i);
-      if (isAny<StepGeom_ConicalSurface, StepGeom_TrimmedCurve>(entity)) return true;
-      has_pcurve = has_pcurve || isAny<StepGeom_Pcurve>(entity);
-      is_round = is_round || isAny<StepGeom_CylindricalSurface, StepGeom_SphericalSurface,
-                                   StepGeom_ToroidalSurface, StepGeom_SurfaceOfRevolution>(entity);
-    }
-    return has_pcurve && is_round;
-  }
-
-  /// Whether a representation has a shape, and what could not be read of its items are entities of unknown
-  /// kinds to which no topology belongs, such as annotations.
-  [[nodiscard]] bool hasShapeBesideUnknown(const Entity& representation) const {
-    if (!isAny<StepShape_ShapeRepresentation>(representation)) return false;
+  /// What is lost of a representation's items; empty if it has a shape, and only entities of unknown kinds
+  /// that are no shapes by their names are not read.
+  [[nodiscard]] std::string lostItem(const Entity& representation) const {
     bool has_shape = false;
-    std::vector<Entity> unknown;
+    std::size_t unknown = 0, lost = 0;
     for (Interface_EntityIterator it = graph_.Shareds(representation); it.More(); it.Next()) {
       const Entity& item = it.Value();
-      has_shape = has_shape || isAny<StepShape_SolidModel, StepShape_ShellBasedSurfaceModel,
-                                     StepShape_GeometricSet, StepRepr_MappedItem>(item);
-      if (isAny<StepData_UndefinedEntity>(item)) unknown.push_back(item);
+      has_shape = has_shape || isShape(item);
+      const auto other = Handle(StepData_UndefinedEntity)::DownCast(item);
+      if (other.IsNull()) continue;
+      ++unknown;
+      const std::string kind = other->StepType() != nullptr ? other->StepType() : "";
+      if (!isNoShape(kind))
+        return std::string("its item ") + model_->StringLabel(item)->ToCString() + " " + kind +
+               " is of a kind that is not read";
     }
     const Handle(Interface_Check) check = model_->Check(model_->Number(representation), true);
-    std::size_t lost = 0;
     for (int k = 1; k <= check->NbFails(); ++k)
       if (parameterOf(check->CFail(k)) == "representation_item") ++lost;
     // More are lost than are unknown where one is missing from the file, whatever it was.
-    return has_shape && lost <= unknown.size() && !referToTopology(std::move(unknown));
+    return has_shape && lost <= unknown ? "" : check->CFail(1);
   }
 
-  /// Whether one of the entities does, at any depth.
-  [[nodiscard]] bool referToTopology(std::vector<Entity> left) const {
-    std::vector<bool> is_seen(is_needed_.size());
-    while (!left.empty()) {
-      const Entity next = left.back();
-      left.pop_back();
-      if (isAny<StepShape_TopologicalRepresentationItem>(next)) return true;
-      for (Interface_EntityIterator it = graph_.Shareds(next); it.More(); it.Next()) {
-        const int number = model_->Number(it.Value());
-        if (number <= 0 || is_seen[std::size_t(number)]) continue;
-        is_seen[std::size_t(number)] = true;
-        left.push_back(it.Value());
-      }
+  /// Whether a relationship joins a representation that has a shape with one of an unknown kind, as with a
+  /// tessellation in place of the exact shape.
+  [[nodiscard]] bool isBesideUnknown(const Entity& relationship) const {
+    bool has_shape = false, has_unknown = false;
+    for (Interface_EntityIterator it = graph_.Shareds(relationship); it.More(); it.Next()) {
+      has_shape = has_shape || anyItem(it.Value(), isShape);
+      has_unknown = has_unknown || isAny<StepData_UndefinedEntity>(it.Value());
     }
-    return false;
+    return has_shape && has_unknown &&
+           !isAny<StepRepr_ShapeRepresentationRelationshipWithTransformation>(relationship);
   }
 
   /// Errors of the whole file; that references lead nowhere is said by their entities as well.
@@ -279,6 +252,9 @@ class Finder {
   Handle(Interface_InterfaceModel) model_;
   Interface_Graph graph_;
   std::vector<bool> is_needed_;  // by the entities' numbers, which begin with 1
+  /// The geometry depends on the unit of angles: by a cone's half angle, by a parameter at the end of a conic
+  /// or of a surface, by the angle of a revolution, or by pcurves on round surfaces.
+  bool has_angles_ = false;
 };
 
 }  // namespace
@@ -287,37 +263,11 @@ Damage damageOf(const Handle(Interface_InterfaceModel) & model) {
   return Finder(model).find();
 }
 
-std::string unplacedShapes(const XSControl_Reader& reader) {
-  const Handle(Interface_InterfaceModel) model = reader.Model();
-  const Handle(Transfer_TransientProcess) process = reader.WS()->TransferReader()->TransientProcess();
-  std::string first;
-  int count = 0;
-  for (int i = 1; i <= model->NbEntities(); ++i) {
-    const Entity entity = model->Value(i);
-    if (!isAny<StepShape_SolidModel, StepShape_ShellBasedSurfaceModel>(entity) || process->IsBound(entity))
-      continue;
-    if (count++ == 0) first = model->StringLabel(entity)->ToCString();
-  }
-  if (count == 0) return "";
-  return std::to_string(count) + (count == 1 ? " solid is" : " solids are") +
-         " of no product, or of one that is placed nowhere, and left out; the first: " + first;
-}
-
-std::optional<std::string> withPlainlyLostReferences(std::string_view text) {
-  std::unordered_set<std::uint64_t> own;
-  forEachNumber(text, [&](std::uint64_t number, std::string_view, bool is_own) {
-    if (is_own) own.insert(number);
-  });
-  std::string out;
-  std::size_t copied = 0;
-  forEachNumber(text, [&](std::uint64_t number, std::string_view where, bool is_own) {
-    if (is_own || own.contains(number)) return;
-    const auto from = static_cast<std::size_t>(where.data() - text.data());
-    out.append(text.substr(copied, from - copied)).append("#2000000000");
-    copied = from + where.size();
-  });
-  if (copied == 0) return std::nullopt;
-  return out.append(text.substr(copied));
+void nameColors(const Handle(Interface_InterfaceModel) & model) {
+  for (int i = 1; i <= model->NbEntities(); ++i)
+    if (const auto color = Handle(StepVisual_PreDefinedColour)::DownCast(model->Value(i));
+        !color.IsNull() && !color->GetPreDefinedItem().IsNull() && model->IsErrorEntity(i))
+      color->GetPreDefinedItem()->SetName(new TCollection_HAsciiString(""));
 }
 
 }  // namespace vps::scenes::inline v0::import

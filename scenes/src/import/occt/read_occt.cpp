@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // STEP and IGES with names, tree, places and colours (Open CASCADE's XDE), and BREP.
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <map>
 #include <mutex>
-#include <set>
 #include <sstream>
 
 #include <BRepGProp.hxx>
@@ -34,10 +33,13 @@
 #include <XCAFDoc_ShapeTool.hxx>
 
 #include "import/occt/damaged_entities.h"
+#include "import/occt/entity_numbers.h"
+#include "import/occt/lost_shapes.h"
 #include "import/occt/pieces.h"
 #include "import/occt/tessellate_all.h"
 #include "import/part_names.h"
 #include "import/readers.h"
+#include "import/unique_names.h"
 #include "vps/load_error.h"
 
 namespace vps::scenes::inline v0::import {
@@ -173,7 +175,7 @@ class Tree {
     const std::string own_name = bestName(nameOf(label), nameOf(product));
     if (!own_name.empty()) above.name = own_name;
     const std::string& name = above.name;
-    above.within.push_back(uniqueName(name.empty() ? "product" : name));
+    above.within.push_back(instances_.unique(name.empty() ? "product" : name));
     const Eigen::Affine3d X_WP =
         label == product ? X_WParent
                          : X_WParent * affine(XCAFDoc_ShapeTool::GetLocation(label).Transformation());
@@ -201,12 +203,6 @@ class Tree {
         part.face_colors = faceColors(piece, !color && piece.is_by_faces ? ImportedPart().color : part.color);
       cad_.parts.push_back(std::move(part));
     }
-  }
-
-  std::string uniqueName(const std::string& name) {
-    std::string unique = name;
-    for (int n = 2; !instances_.insert(unique).second; ++n) unique = name + "_" + std::to_string(n);
-    return unique;
   }
 
   static std::string entryOf(const TDF_Label& label) {
@@ -318,7 +314,7 @@ class Tree {
   const Progress& progress_;
   RawCad& cad_;
   std::map<std::string, std::vector<Piece>> products_;
-  std::set<std::string> instances_;
+  UniqueNames instances_;
   std::vector<TopoDS_Shape> all_shapes_;
   std::map<std::string, std::size_t> first_shape_, shape_end_;  // of each product, in all_shapes_
   TessellatedShapes tessellated_;
@@ -338,10 +334,13 @@ XSControl_Reader& basic(IGESCAFControl_Reader& reader) {
 IFSelect_ReturnStatus readText(XSControl_Reader& reader, const std::string& file, const std::string& format) {
   if (format != "STEP") return reader.ReadFile(file.c_str());
   std::ifstream in(file, std::ios::binary);
-  const auto changed = withPlainlyLostReferences(std::string(std::istreambuf_iterator<char>(in), {}));
+  std::string text(std::filesystem::file_size(file), '\0');
+  in.read(text.data(), std::ssize(text));
+  std::optional<std::string> changed = withReadableNumbers(text);
   if (!changed) return reader.ReadFile(file.c_str());
-  std::istringstream text(*changed);
-  return reader.ReadStream(file.c_str(), text);
+  text = {};
+  std::istringstream stream(std::move(*changed));
+  return reader.ReadStream(file.c_str(), stream);
 }
 
 template <class Reader>
@@ -352,13 +351,15 @@ void transfer(Reader& reader, const std::string& file, const std::string& format
   if (readText(basic(reader), file, format) != IFSelect_RetDone)
     throw unreadable(file, format, "its syntax is wrong");
   // Open CASCADE 7.6.3 crashes on some of what was not read, as a face bound without its loop.
+  nameColors(basic(reader).Model());
   const Damage damage = damageOf(basic(reader).Model());
   if (!damage.lost_geometry.empty()) throw unreadable(file, format, damage.lost_geometry);
   if (!damage.remark.empty()) warnings.push_back(damage.remark);
   Handle(TDocStd_Document) target = document;
   if (!reader.Transfer(target)) throw unreadable(file, format, "no shape could be made from it");
-  if (const std::string unplaced = unplacedShapes(basic(reader)); !unplaced.empty())
-    warnings.push_back(unplaced);
+  const LostShapes lost = lostShapes(basic(reader));
+  if (!lost.unplaced.empty()) throw unreadable(file, format, lost.unplaced);
+  if (!lost.left_out.empty()) warnings.push_back(lost.left_out);
 }
 
 RawCad read(const std::string& file, const std::string& format, const ImportSettings& settings,
