@@ -2,6 +2,7 @@
 // 3MF: units, names, colours, places and volumes are those of the file, whatever else is in it.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <functional>
 #include <random>
@@ -74,10 +75,20 @@ struct File3mf {
 };
 
 struct Import3mf : testing::Test {
-  ImportedCad read(const std::string& bytes) {
+  ImportedCad read(const std::string& bytes, const ImportSettings& settings = {}) {
     const std::string file = (folder_.path() / "rig.3mf").string();
     std::ofstream(file, std::ios::binary) << bytes;
-    return importCad(file);
+    return importCad(file, settings);
+  }
+  /// The error's text.
+  std::string refusalOf(const File3mf& file) {
+    try {
+      read(file.bytes());
+    } catch (const LoadError& e) {
+      return e.what();
+    }
+    ADD_FAILURE() << "was read";
+    return "";
   }
   /// Whether the library is built in.
   bool canRead() {
@@ -111,7 +122,16 @@ struct Oddity {
   std::function<void(File3mf&)> change;
   std::string plate = "plate", block = "block";
   Color color = kGray;  ///< of the plate
+  const char* has_remark = nullptr;
 };
+
+/// Of two beams, without triangles.
+std::string latticeObject(int id) {
+  return "<object id=\"" + std::to_string(id) +
+         R"(" type="model" name="lattice"><mesh><vertices><vertex x="0" y="0" z="0"/><vertex x="0" y="9" z="0"/>)"
+         R"(<vertex x="9" y="0" z="0"/></vertices><triangles/><b:beamlattice radius="0.5" minlength="0.001">)"
+         R"(<b:beams><b:beam v1="0" v2="1"/><b:beam v1="1" v2="2"/></b:beams></b:beamlattice></mesh></object>)";
+}
 
 const std::vector<Oddity>& oddities() {
   static const std::vector<Oddity> all = {
@@ -169,7 +189,36 @@ const std::vector<Oddity>& oddities() {
        [](File3mf& f) {
          f.more_objects = R"(<object id="3" type="support" name="s">)" + boxMesh({1, 1, 1}) + "</object>";
          f.items += R"(<item objectid="3"/>)";
-       }},
+       },
+       "plate", "block", kGray, "1 object is for printing alone"},
+      {"a component of type other",
+       [](File3mf& f) {
+         f.more_objects = R"(<object id="3" type="other" name="s">)" + boxMesh({1, 1, 1}) +
+                          R"(</object><object id="4" type="model" name="block"><components>)"
+                          R"(<component objectid="2"/><component objectid="3"/></components></object>)";
+         f.items = R"(<item objectid="1"/><item objectid="4" transform="1 0 0 0 1 0 0 0 1 10 0 0"/>)";
+       },
+       "plate", "block", kGray, "1 object is for printing alone"},
+      {"a beam lattice beside a mesh",
+       [](File3mf& f) {
+         f.attributes = R"( xmlns:b="http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02")";
+         f.more_objects = latticeObject(3);
+         f.items += R"(<item objectid="3"/>)";
+       },
+       "plate", "block", kGray, "object 'lattice' has"},
+      {"a colour's number that is not in the file",
+       [](File3mf& f) {
+         f.resources = R"(<basematerials id="5"><base name="a" displaycolor="#FF0000"/></basematerials>)";
+         f.plate += R"( pid="5" pindex="7")";
+       },
+       "plate", "block", kGray, "not in the file"},
+      {"a triangle's colour that is not in the file",
+       [](File3mf& f) {
+         f.resources = R"(<basematerials id="5"><base name="a" displaycolor="#FF0000"/></basematerials>)";
+         f.plate += R"( pid="5" pindex="0")";
+         f.triangles = R"( pid="5" p1="9")";
+       },
+       "plate", "block", kRed, "not in the file"},
       {"components",
        [](File3mf& f) {
          // Turned by 90 degrees about z, which takes (0, -10, 0) to (10, 0, 0), and back by another
@@ -204,6 +253,12 @@ const std::vector<Oddity>& oddities() {
   return all;
 }
 
+void change(const std::string& name, File3mf& file) {
+  const auto found = std::ranges::find(oddities(), name, &Oddity::name);
+  ASSERT_NE(found, oddities().end()) << name;
+  found->change(file);
+}
+
 TEST_F(Import3mf, HasTheUnitsNamesColoursAndPlacesOfTheFile) {
   if (!canRead()) GTEST_SKIP() << "its library is not built in";
   const std::pair<const char*, double> units[] = {
@@ -228,8 +283,9 @@ TEST_F(Import3mf, HasTheUnitsNamesColoursAndPlacesOfTheFile) {
         expectColor(cad.parts[0].color, oddity.color, what);
         expectColor(cad.parts[1].color, kGray, what);
         for (const std::string& warning : cad.warnings)
-          EXPECT_TRUE(unit_m > 0.1 || oddity.name == "a support" ||
-                      warning.find("is the unit right") != std::string::npos)
+          EXPECT_TRUE((oddity.has_remark && warning.find(oddity.has_remark) != std::string::npos) ||
+                      warning.find("is the unit right") != std::string::npos ||
+                      warning.find("whose numbers of 32 bits") != std::string::npos)
               << what << ": " << warning;
       } catch (const LoadError& e) {
         ADD_FAILURE() << what << ": " << e.what();
@@ -262,9 +318,8 @@ TEST_F(Import3mf, TrianglesHaveColoursOfTheirOwn) {
 TEST_F(Import3mf, NamesOfAssembliesAreKnownToGroups) {
   if (!canRead()) GTEST_SKIP() << "its library is not built in";
   File3mf file;
-  oddities()[12].change(file);
+  change("components", file);
   ImportedCad cad = read(file.bytes());
-  ASSERT_EQ(oddities()[12].name, "components");
   EXPECT_EQ(cad.parts[0].within, (std::vector<std::string>{"rig", "plate"}));
   EXPECT_EQ(partGroups(cad, {.is_proposed = false, .names = {"rig"}}).at(0).parts.size(), 2U);
 }
@@ -273,12 +328,51 @@ TEST_F(Import3mf, ABuildWithoutItemsIsRefusedInWords) {
   if (!canRead()) GTEST_SKIP() << "its library is not built in";
   File3mf file;
   file.items = "";
-  try {
-    read(file.bytes());
-    ADD_FAILURE() << "was read";
-  } catch (const LoadError& e) {
-    EXPECT_NE(std::string(e.what()).find("places no object"), std::string::npos) << e.what();
+  EXPECT_NE(refusalOf(file).find("places no object"), std::string::npos);
+}
+
+TEST_F(Import3mf, TheUnitIsThatOfTheRootModel) {
+  if (!canRead()) GTEST_SKIP() << "its library is not built in";
+  const auto width_m = [](const ImportedCad& cad) { return bounds(cad.parts.at(0).mesh).size().x(); };
+  const auto hasWarning = [](const ImportedCad& cad, const std::string& words) {
+    return std::ranges::any_of(cad.warnings,
+                               [&](const std::string& w) { return w.find(words) != std::string::npos; });
+  };
+  for (const auto& [root, other] : {std::pair(" unit=\"inch\"", ""), std::pair("", " unit=\"inch\"")}) {
+    File3mf file;
+    file.unit = other;
+    change("objects in files of their own", file);
+    file.unit = root;
+    const ImportedCad cad = read(file.bytes());
+    EXPECT_NEAR(width_m(cad), *root == '\0' ? 4e-3 : 4 * 25.4e-3, 1e-8);
+    EXPECT_TRUE(hasWarning(cad, "in 3D/Objects/block.model"));
   }
+  File3mf file;
+  file.unit = " unit=\"furlong\"";
+  const ImportedCad assumed = read(file.bytes());
+  EXPECT_FALSE(assumed.states_unit);
+  EXPECT_TRUE(hasWarning(assumed, "'furlong', which 3MF does not have: millimetres are assumed"));
+  EXPECT_NEAR(width_m(assumed), 4e-3, 1e-9);
+  ImportSettings settings;
+  settings.unit_m = 1e-2;
+  const ImportedCad given = read(file.bytes(), settings);
+  EXPECT_FALSE(given.states_unit);
+  EXPECT_NEAR(width_m(given), 4e-2, 1e-8);
+}
+
+TEST_F(Import3mf, WhatCannotBeReadIsRefusedInWords) {
+  if (!canRead()) GTEST_SKIP() << "its library is not built in";
+  File3mf extension;
+  extension.attributes = R"( xmlns:x="http://example.com/extension" requiredextensions="x")";
+  EXPECT_NE(refusalOf(extension).find("needs an extension of 3MF that is not read"), std::string::npos);
+  File3mf beams;
+  beams.attributes = R"( xmlns:b="http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02")";
+  beams.more_objects = latticeObject(3);
+  beams.items = R"(<item objectid="3"/>)";
+  EXPECT_NE(refusalOf(beams).find("places no object with a mesh"), std::string::npos);
+  File3mf number;
+  number.plate = "name=\"a&#228;\"";
+  EXPECT_NE(refusalOf(number).find("write the character itself"), std::string::npos);
 }
 
 // Bytes of the archive, and of the model within an archive that is whole.
@@ -293,8 +387,8 @@ TEST_F(Import3mf, ADamagedFileIsReadOrRefused) {
     }
   };
   File3mf file;
-  oddities()[12].change(file);
-  oddities()[5].change(file);
+  change("components", file);
+  change("a colour group", file);
   const std::string whole = file.bytes(), model = file.modelText();
   for (int i = 0; i < 60; ++i) {
     tryToRead(whole.substr(0, random() % whole.size()));

@@ -152,6 +152,9 @@ TEST(PartNames, TheBetterOneOfInstanceAndProductIsTaken) {
     EXPECT_EQ(bestName(instance, "probe"), "probe") << instance;
   EXPECT_EQ(bestName("PlanetaryGearStage2Carrier", "carrier"), "PlanetaryGearStage2Carrier");
   EXPECT_EQ(bestName("M8x1.25-6H", "nut"), "M8x1.25-6H");
+  // Designations, not random words.
+  for (const char* name : {"LH_Arm_V2_01", "Bolt_M8_x_25_A2", "DIN912M8x20A2K", "GearZ24M2WithHubB12"})
+    EXPECT_EQ(bestName(name, "screw"), name);
   EXPECT_EQ(bestName("decade", "facade"), "decade");  // of hexadecimal digits, and words
 }
 
@@ -326,6 +329,13 @@ TEST(ImportCollada, AUnitThatIsMissingOrWrongIsTold) {
            Case{"<unit meter=\"-1\"></unit>", 1, "states a unit of '-1' m: metres are assumed"},
            Case{"<unit name=\"mm\"/>", 1, "states a unit of '' m: metres are assumed"},
            Case{"<unit meter=\"mm\"/>", 1e-3, "", true},
+           Case{"<unit name=\"cm\"\n meter=\"0.01\"/>", 1e-2, ""},
+           Case{"<unit\tmeter = ' +0.01 ' />", 1e-2, ""},
+           Case{"<!-- <unit meter=\"1\"/> --><unit meter=\"0.01\"/>", 1e-2, ""},
+           Case{"<unit_x meter=\"0\"/><contributor><comments>a > b</comments></contributor>"
+                "<unit meter=\"0.01\"/>",
+                1e-2, ""},
+           Case{"<extra><unit meter=\"0.01\"/></extra>", 1, "states no unit"},
        }) {
     const fs::path file = folder.write("tip.dae", tetrahedronDae(one.unit));
     const ImportedCad cad = importCad(file.string(), one.is_asked ? inUnit("mm") : ImportSettings());

@@ -21,6 +21,7 @@
 #include "color/palette.h"
 #include "import/mesh_text.h"
 #include "import/readers.h"
+#include "import/xml_tags.h"
 #include "vps/load_error.h"
 
 namespace vps::scenes::inline v0::import {
@@ -159,35 +160,30 @@ std::optional<std::string> plyItReadsRight(const std::string& file) {
 std::string colladaText(const std::string& file, const ImportSettings& settings, RawCad& cad) {
   std::ifstream in(file, std::ios::binary);
   std::string text(std::istreambuf_iterator<char>(in), {});
-  const std::size_t from = std::min(text.find("<unit"), text.size());
-  const std::size_t end = std::min(text.find('>', from), text.size());
-  const std::string_view tag = std::string_view(text).substr(from, end - from);
-  const auto value = [&](std::string_view key) -> std::string_view {
-    const std::size_t at = tag.find(key);
-    const std::size_t quote = tag.find_first_of("\"'", std::min(at, tag.size()));
-    if (at == std::string_view::npos || quote == std::string_view::npos) return {};
-    return tag.substr(quote + 1, tag.find(tag[quote], quote + 1) - quote - 1);
-  };
-  const std::string_view meter = value(" meter");
+  const std::optional<XmlTag> tag = tagAt(text, "COLLADA/asset/unit");
+  const std::string meter(tag ? tag->value("meter").value_or("") : "");
   double unit_m = 0;
-  const auto [rest, error] = std::from_chars(meter.data(), meter.data() + meter.size(), unit_m);
-  cad.states_unit =
-      error == std::errc() && rest == meter.data() + meter.size() && std::isfinite(unit_m) && unit_m > 0;
+  const char *const from = meter.data() + meter.starts_with('+'), *const end = meter.data() + meter.size();
+  const auto [rest, error] = std::from_chars(from, end, unit_m);
+  cad.states_unit = error == std::errc() && rest == end && std::isfinite(unit_m) && unit_m > 0;
   if (cad.states_unit) {
-    const std::string name(value(" name"));
+    const std::string name(tag->value("name").value_or(""));
     const std::optional<double> named_m = unitFromText(name);
     if (named_m && std::abs(unit_m - *named_m) > 0.01 * *named_m)
-      cad.warnings.push_back("calls its unit '" + name + "', but says that it has " + std::string(meter) +
+      cad.warnings.push_back("calls its unit '" + name + "', but says that it has " + meter +
                              " m, which is taken");
-    return text;
+  } else {
+    cad.unit_m = settings.unit_m.value_or(1.0);
+    if (!settings.unit_m)
+      cad.warnings.push_back(
+          (tag ? "states a unit of '" + meter + "' m" : std::string("states no unit")) +
+          ": metres are assumed, as Collada defines; set unit or --units for another unit");
   }
-  cad.unit_m = settings.unit_m.value_or(1.0);
-  if (!settings.unit_m)
-    cad.warnings.push_back(
-        (tag.empty() ? std::string("states no unit") : "states a unit of '" + std::string(meter) + "' m") +
-        ": metres are assumed, as Collada defines; set unit or --units for another unit");
-  if (!tag.empty())
-    text.replace(from, tag.size(), tag.ends_with('/') ? "<unit meter='1'/" : "<unit meter='1'");
+  // assimp reads neither signs nor blanks.
+  if (tag)
+    text.replace(
+        tag->from, tag->end - tag->from,
+        "<unit meter='" + (cad.states_unit ? std::string(from, end) : "1") + (tag->is_end ? "'/>" : "'>"));
   return text;
 }
 

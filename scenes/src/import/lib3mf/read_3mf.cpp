@@ -6,11 +6,14 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <memory>
-#include <set>
+#include <string_view>
 
 #include "color/palette.h"
+#include "import/lib3mf/model_units.h"
 #include "import/readers.h"
+#include "import/unique_names.h"
 #include "vps/load_error.h"
 
 namespace vps::scenes::inline v0::import {
@@ -53,24 +56,19 @@ std::string textOf(F f, Arguments... arguments) {
   return text;
 }
 
-double unitFrom(DWORD unit) {
-  switch (unit) {
-    case NMR::MODELUNIT_MICROMETER:
-      return 1e-6;
-    case NMR::MODELUNIT_CENTIMETER:
-      return 1e-2;
-    case NMR::MODELUNIT_INCH:
-      return 25.4e-3;
-    case NMR::MODELUNIT_FOOT:
-      return 0.3048;
-    case NMR::MODELUNIT_METER:
-      return 1;
-    default:
-      return 1e-3;  // that of a file that states none, by the specification
-  }
+constexpr std::array<std::pair<std::string_view, double>, 6> kUnits = {
+    {{"micron", 1e-6},
+     {"millimeter", 1e-3},
+     {"centimeter", 1e-2},
+     {"inch", 25.4e-3},
+     {"foot", 0.3048},
+     {"meter", 1}}};  // as lib3mf's numbers
+
+std::string counted(std::size_t count, const std::string& thing) {
+  return std::to_string(count) + " " + thing + (count == 1 ? " is" : "s are");
 }
 
-/// Its rows are the images of the axes and of the origin.
+/// lib3mf's matrix has the images of the axes and of the origin as its columns.
 Eigen::Affine3d affine(const NMR::MODELTRANSFORM& transform) {
   Eigen::Affine3d X = Eigen::Affine3d::Identity();
   for (int row = 0; row < 3; ++row)
@@ -85,7 +83,8 @@ Color linear(const NMR::MODELMESHCOLOR_SRGB& c) {
 
 class Reader {
  public:
-  Reader(const std::string& file, RawCad& cad) : file_(file), cad_(cad) {}
+  Reader(const std::string& file, const ImportSettings& settings, RawCad& cad)
+      : file_(file), settings_(settings), cad_(cad) {}
 
   void read() {
     model_ = objectOf(NMR::lib3mf_createmodel);
@@ -97,10 +96,13 @@ class Reader {
       throw LoadError(file_, "",
                       std::string("is not a readable 3MF file (") +
                           (words == nullptr || *words == '\0' ? "lib3mf gives no reason" : words) +
-                          "); export it again");
+                          (hasNumbersForCharacters(file_)
+                               ? "); a name in it has a number for a character, as &#228;, which lib3mf 1.8 "
+                                 "cannot read: write the character itself"
+                               : "); export it again"));
     }
-    cad_.unit_m = unitFrom(valueOf<DWORD>(NMR::lib3mf_model_getunit, model_.get()));
-    cad_.states_unit = true;
+    addRemarks(reader);
+    readUnit();
     const Object items = objectOf(NMR::lib3mf_model_getbuilditems, model_.get());
     while (valueOf<BOOL>(NMR::lib3mf_builditemiterator_movenext, items.get()) != 0) {
       const Object item = objectOf(NMR::lib3mf_builditemiterator_getcurrent, items.get());
@@ -112,12 +114,33 @@ class Reader {
     if (cad_.parts.empty())
       throw LoadError(file_, "", "places no object with a mesh; export it again with its objects placed");
     if (supports_ > 0)
-      cad_.warnings.push_back(std::to_string(supports_) +
-                              " objects are supports for printing and were left out");
-    addRemarks(reader);
+      cad_.warnings.push_back(counted(supports_, "object") +
+                              " for printing alone (supports, or of type 'other'), and left out");
+    if (bad_colors_ > 0)
+      cad_.warnings.push_back(counted(bad_colors_, "colour") +
+                              " not in the file; the object's own, or grey, is taken there");
   }
 
  private:
+  /// That of the root model applies to all, by the specification.
+  void readUnit() {
+    const ModelFiles files = modelFiles(file_);
+    const auto number = valueOf<DWORD>(NMR::lib3mf_model_getunit, model_.get());
+    const std::string stated = files.root ? files.root->unit : std::string(kUnits.at(number).first);
+    for (const ModelFile& other : files.others)
+      if (files.root && other.unit != stated) {
+        cad_.warnings.push_back("states the unit '" + stated + "', which is taken, and '" + other.unit +
+                                "' in " + other.name);
+        break;
+      }
+    const auto known = std::ranges::find(kUnits, stated, &std::pair<std::string_view, double>::first);
+    cad_.states_unit = known != kUnits.end();
+    cad_.unit_m = cad_.states_unit ? known->second : settings_.unit_m.value_or(1e-3);
+    if (!cad_.states_unit && !settings_.unit_m)
+      cad_.warnings.push_back("states the unit '" + stated +
+                              "', which 3MF does not have: millimetres are assumed; set unit or --units");
+  }
+
   /// What lib3mf found that breaks the specification. Slicers add attributes and metadata of their own.
   void addRemarks(const Object& reader) {
     constexpr std::array<DWORD, 6> kNoMatter = {
@@ -130,6 +153,8 @@ class Reader {
     for (DWORD i = 0; i < count; ++i) {
       DWORD code = 0;
       const std::string words = textOf(NMR::lib3mf_reader_getwarningutf8, reader.get(), i, &code);
+      if (code == NMR_ERROR_REQUIREDEXTENSIONNOTSUPPORTED)
+        throw LoadError(file_, "", "needs an extension of 3MF that is not read; export it again without");
       if (std::ranges::find(kNoMatter, code) != kNoMatter.end()) continue;
       if (++others == 0) first = words;
     }
@@ -143,11 +168,12 @@ class Reader {
     if (const std::string own = textOf(NMR::lib3mf_object_getnameutf8, object.get()); !own.empty())
       name = own;
     const auto type = valueOf<DWORD>(NMR::lib3mf_object_gettype, object.get());
-    if (type == NMR::MODELOBJECTTYPE_SUPPORT || type == NMR::MODELOBJECTTYPE_SOLIDSUPPORT) {
+    if (type == NMR::MODELOBJECTTYPE_SUPPORT || type == NMR::MODELOBJECTTYPE_SOLIDSUPPORT ||
+        type == NMR::MODELOBJECTTYPE_OTHER) {
       ++supports_;
       return;
     }
-    within.push_back(uniqueName(name.empty() ? "object" : name));
+    within.push_back(instances_.unique(name.empty() ? "object" : name));
     if (valueOf<BOOL>(NMR::lib3mf_object_iscomponentsobject, object.get()) != 0) {
       const auto count = valueOf<DWORD>(NMR::lib3mf_componentsobject_getcomponentcount, object.get());
       for (DWORD i = 0; i < count; ++i) {
@@ -158,21 +184,32 @@ class Reader {
       }
       return;
     }
-    RawPart part;
+    const auto [known, is_new] =
+        meshes_.try_emplace(valueOf<DWORD>(NMR::lib3mf_resource_getresourceid, object.get()));
+    if (is_new) readMesh(object, name, known->second);
+    if (known->second.mesh.triangles.empty()) return;
+    RawPart part = known->second;
     part.name = name;
     part.X_WP = X_WO;
     part.within = std::move(within);
-    readMesh(object, part);
     part.rounding = floatRounding(part.mesh, X_WO);
     cad_.parts.push_back(std::move(part));
   }
 
-  void readMesh(const Object& object, RawPart& part) const {
+  void readMesh(const Object& object, const std::string& name, RawPart& part) {
     const auto vertex_count = valueOf<DWORD>(NMR::lib3mf_meshobject_getvertexcount, object.get()),
                triangle_count = valueOf<DWORD>(NMR::lib3mf_meshobject_gettrianglecount, object.get());
     std::vector<NMR::MODELMESHVERTEX> vertices(vertex_count);
     std::vector<NMR::MODELMESHTRIANGLE> triangles(triangle_count);
-    if (vertex_count == 0 || triangle_count == 0) return;
+    const auto beam_count = valueOf<DWORD>(NMR::lib3mf_meshobject_getbeamcount, object.get());
+    const std::string whose = name.empty() ? "an object" : "object '" + name + "'";
+    if (beam_count > 0)
+      cad_.warnings.push_back(whose + " has a lattice of " + std::to_string(beam_count) +
+                              " beams, which are not read; export it as a mesh");
+    if (vertex_count == 0 || triangle_count == 0) {
+      cad_.warnings.push_back(whose + " has no triangles, and is left out");
+      return;
+    }
     require(NMR::lib3mf_meshobject_getvertices(object.get(), vertices.data(), vertex_count, nullptr));
     require(
         NMR::lib3mf_meshobject_gettriangleindices(object.get(), triangles.data(), triangle_count, nullptr));
@@ -183,22 +220,37 @@ class Reader {
     readColors(object, triangle_count, part);
   }
 
+  /// What f gives, or `otherwise` where the file has no such colour.
+  template <class F>
+  Color colorOr(const Color& otherwise, F f) {
+    try {
+      return f();
+    } catch (const Failed&) {
+      ++bad_colors_;
+      return otherwise;
+    }
+  }
+
   /// Of base materials and colour groups; a triangle whose corners have several colours has their mean.
-  void readColors(const Object& object, DWORD triangle_count, RawPart& part) const {
+  void readColors(const Object& object, DWORD triangle_count, RawPart& part) {
+    part.color = colorOr(part.color, [&] { return colorOfWhole(object, part.color); });
+    const Object own = objectOf(NMR::lib3mf_meshobject_createpropertyhandler, object.get());
+    Palette palette(part.face_colors);
+    for (DWORD i = 0; i < triangle_count; ++i)
+      palette.add(colorOr(part.color, [&] { return colorOf(own, i, part.color); }));
+  }
+
+  Color colorOfWhole(const Object& object, const Color& otherwise) const {
     const Object whole = objectOf(NMR::lib3mf_object_createdefaultpropertyhandler, object.get());
     const auto type =
         valueOf<NMR::eModelPropertyType>(NMR::lib3mf_defaultpropertyhandler_getpropertytype, whole.get());
-    if (type == NMR::MODELPROPERTYTYPE_COLOR) {
-      part.color = linear(valueOf<NMR::MODELMESHCOLOR_SRGB>(NMR::lib3mf_defaultpropertyhandler_getcolor,
-                                                            whole.get(), DWORD(0)));
-    } else if (type == NMR::MODELPROPERTYTYPE_BASEMATERIALS) {
-      DWORD group = 0, index = 0;
-      require(NMR::lib3mf_defaultpropertyhandler_getbasematerial(whole.get(), &group, &index));
-      part.color = materialColor(group, index, part.color);
-    }
-    const Object own = objectOf(NMR::lib3mf_meshobject_createpropertyhandler, object.get());
-    Palette palette(part.face_colors);
-    for (DWORD i = 0; i < triangle_count; ++i) palette.add(colorOf(own, i, part.color));
+    if (type == NMR::MODELPROPERTYTYPE_COLOR)
+      return linear(valueOf<NMR::MODELMESHCOLOR_SRGB>(NMR::lib3mf_defaultpropertyhandler_getcolor,
+                                                      whole.get(), DWORD(0)));
+    if (type != NMR::MODELPROPERTYTYPE_BASEMATERIALS) return otherwise;
+    DWORD group = 0, index = 0;
+    require(NMR::lib3mf_defaultpropertyhandler_getbasematerial(whole.get(), &group, &index));
+    return materialColor(group, index, otherwise);
   }
 
   Color colorOf(const Object& handler, DWORD triangle, const Color& of_object) const {
@@ -234,25 +286,21 @@ class Reader {
     return linear(c);
   }
 
-  std::string uniqueName(const std::string& name) {
-    std::string unique = name;
-    for (int n = 2; !instances_.insert(unique).second; ++n) unique = name + "_" + std::to_string(n);
-    return unique;
-  }
-
   const std::string& file_;
+  const ImportSettings& settings_;
   RawCad& cad_;
   Object model_;
-  std::set<std::string> instances_;
-  int supports_ = 0;
+  UniqueNames instances_;
+  std::map<DWORD, RawPart> meshes_;  ///< with colours, by the numbers of their objects
+  std::size_t supports_ = 0, bad_colors_ = 0;
 };
 
 }  // namespace
 
-RawCad read3mf(const std::string& file, const std::string&, const ImportSettings&, const Progress&) {
+RawCad read3mf(const std::string& file, const std::string&, const ImportSettings& settings, const Progress&) {
   RawCad cad;
   try {
-    Reader(file, cad).read();
+    Reader(file, settings, cad).read();
   } catch (const Failed&) {
     throw LoadError(file, "", "is not a readable 3MF file (lib3mf refuses an object of it); export it again");
   }

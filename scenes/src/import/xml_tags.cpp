@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "import/xml_tags.h"
+
+#include <algorithm>
+#include <string>
+
+namespace vps::scenes::inline v0::import {
+namespace {
+
+constexpr std::string_view kXmlBlank = " \t\r\n";
+
+std::string_view withoutBlanks(std::string_view text) {
+  text.remove_prefix(std::min(text.find_first_not_of(kXmlBlank), text.size()));
+  return text.substr(0, text.find_last_not_of(kXmlBlank) + 1);
+}
+
+/// Behind the '>' of a tag, which may be within the values of attributes as well.
+std::size_t endOfTag(std::string_view xml, std::size_t at) {
+  while ((at = xml.find_first_of(">\"'", at)) != std::string_view::npos && xml[at] != '>') {
+    at = xml.find(xml[at], at + 1);
+    if (at == std::string_view::npos) return at;
+    ++at;
+  }
+  return at == std::string_view::npos ? at : at + 1;
+}
+
+/// Behind what is no element: comments, unparsed text, instructions and declarations; `at` itself for others.
+std::size_t behindOther(std::string_view xml, std::size_t at) {
+  const std::string_view text = xml.substr(at);
+  const std::string_view end = text.starts_with("<!--")        ? "-->"
+                               : text.starts_with("<![CDATA[") ? "]]>"
+                               : text.starts_with("<?")        ? "?>"
+                               : text.starts_with("<!")        ? ">"
+                                                               : "";
+  if (end.empty()) return at;
+  const std::size_t found = xml.find(end, at);
+  return found == std::string_view::npos ? xml.size() : found + end.size();
+}
+
+}  // namespace
+
+std::optional<std::string_view> XmlTag::value(std::string_view key) const {
+  std::string_view rest = withoutBlanks(attributes);
+  while (true) {
+    const std::size_t equals = rest.find('=');
+    if (equals == std::string_view::npos) return std::nullopt;
+    const std::string_view name = withoutBlanks(rest.substr(0, equals));
+    const std::size_t quote = rest.find_first_of("\"'", equals);
+    if (quote == std::string_view::npos) return std::nullopt;
+    const std::size_t close = rest.find(rest[quote], quote + 1);
+    if (close == std::string_view::npos) return std::nullopt;
+    if (name == key) return withoutBlanks(rest.substr(quote + 1, close - quote - 1));
+    rest = withoutBlanks(rest.substr(close + 1));
+  }
+}
+
+std::optional<XmlTag> nextTag(std::string_view xml, std::size_t& at) {
+  while ((at = xml.find('<', at)) != std::string_view::npos) {
+    if (const std::size_t behind = behindOther(xml, at); behind != at) {
+      at = behind;
+      continue;
+    }
+    XmlTag tag;
+    tag.from = at;
+    tag.end = at = endOfTag(xml, at);
+    if (at == std::string_view::npos) return std::nullopt;
+    std::string_view text = xml.substr(tag.from + 1, tag.end - tag.from - 2);
+    const bool is_closing = text.starts_with('/'), is_empty = text.ends_with('/');
+    tag.is_begin = !is_closing;
+    tag.is_end = is_closing || is_empty;
+    if (is_closing) text.remove_prefix(1);
+    if (is_empty && !text.empty()) text.remove_suffix(1);
+    const std::size_t stop = std::min(text.find_first_of(kXmlBlank), text.size());
+    tag.name = text.substr(0, stop);
+    tag.name.remove_prefix(tag.name.find(':') + 1);  // npos + 1 is 0
+    tag.attributes = text.substr(stop);
+    return tag;
+  }
+  return std::nullopt;
+}
+
+std::optional<XmlTag> tagAt(std::string_view xml, std::string_view path) {
+  std::size_t at = 0;
+  std::string open;
+  while (const std::optional<XmlTag> tag = nextTag(xml, at)) {
+    if (tag->is_begin) {
+      open.append(open.empty() ? "" : "/").append(tag->name);
+      if (open == path) return tag;
+    }
+    if (tag->is_end) open.resize(open.find('/') == std::string::npos ? 0 : open.rfind('/'));
+  }
+  return std::nullopt;
+}
+
+}  // namespace vps::scenes::inline v0::import

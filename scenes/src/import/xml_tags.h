@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The tags of an XML text, for the few that the readers' libraries do not give.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string_view>
+
+namespace vps::scenes::inline v0::import {
+
+struct XmlTag {
+  std::string_view name;  ///< without a prefix of a namespace
+  std::string_view attributes;
+  std::size_t from = 0, end = 0;          ///< in the text, from '<' to after '>'
+  bool is_begin = false, is_end = false;  ///< "<a/>" is both
+
+  /// Without blanks around it; nothing if there is no such attribute. Its references are not replaced.
+  [[nodiscard]] std::optional<std::string_view> value(std::string_view key) const;
+};
+
+/// The next tag from `at` on, which is moved behind it; comments, declarations and unparsed text are skipped.
+std::optional<XmlTag> nextTag(std::string_view xml, std::size_t& at);
+
+/// The first tag that begins an element at this path from the root, "COLLADA/asset/unit".
+std::optional<XmlTag> tagAt(std::string_view xml, std::string_view path);
+
+}  // namespace vps::scenes::inline v0::import
