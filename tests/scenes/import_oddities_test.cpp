@@ -7,6 +7,8 @@
 #include <fstream>
 #include <functional>
 
+#include "import/missing_library.h"
+#include "import/readers.h"
 #include "support/temporary_folder.h"
 #include "vps/load_error.h"
 #include "vps_scenes/import.h"
@@ -255,6 +257,55 @@ TEST_F(ImportOddities, FilesInFramesOfTheirOwnAreToldOf) {
     first += 8;
   }
   EXPECT_EQ(warningOf({pin, written("sleeve.obj", "o sleeve\n" + wall)}), "");
+}
+
+/// A cube of 10 mm; without its last facets where it is open.
+ImportedPart cubeAt(const Vec3& p_m, bool is_open = false) {
+  ImportedPart part;
+  part.name = "cube";
+  part.mesh = makeBox(Vec3::Constant(0.01));
+  if (is_open) part.mesh.triangles.pop_back();
+  part.X_WP.p = p_m;
+  return part;
+}
+
+// What is looked at is bounded by the number of distances, whatever the number of parts.
+TEST(OwnFrames, ManyPartsAndOpenOnesCostFewDistances) {
+  constexpr int kSide = 26;
+  const auto gridAt = [](double z_m, double step_m) {
+    std::vector<ImportedPart> parts;
+    for (int i = 0; i < kSide * kSide; ++i)
+      parts.push_back(
+          cubeAt({step_m * (i % kSide - 0.5 * (kSide - 1)), step_m * (i / kSide - 0.5 * (kSide - 1)), z_m}));
+    return parts;
+  };
+  const auto warningOf = [](std::vector<ImportedPart> parts, const std::vector<ImportedPart>& others,
+                            std::size_t& queries) {
+    const std::size_t end = parts.size();
+    parts.insert(parts.end(), others.begin(), others.end());
+    queries = 0;
+    return import::ownFramesWarning(parts, {end, parts.size()}, &queries);
+  };
+  std::size_t queries = 0;
+  const std::vector<ImportedPart> grid = gridAt(0, 0.02);
+  EXPECT_NE(warningOf(grid, grid, queries).find("frames of their own"), std::string::npos);
+  EXPECT_LT(queries, 100U);
+  EXPECT_EQ(warningOf(grid, gridAt(0.02, 0.02), queries), "");  // one grid above the other
+  EXPECT_EQ(queries, 0U);
+  EXPECT_EQ(warningOf(grid, gridAt(0.0095, 0.02), queries), "");  // each overlaps by 0.5 mm
+  EXPECT_EQ(queries, 0U);
+  // Open cubes have no inside.
+  EXPECT_EQ(warningOf({cubeAt(Vec3::Zero(), true)}, {cubeAt(Vec3::Zero(), true)}, queries), "");
+  EXPECT_EQ(queries, 0U);
+  EXPECT_NE(warningOf({cubeAt(Vec3::Zero())}, {cubeAt(Vec3::Zero())}, queries), "");
+}
+
+TEST(MissingLibrary, IsKnownByItsWords) {
+  for (const char* library : {"Open CASCADE", "Coin", "lib3mf"})
+    EXPECT_TRUE(import::isMissingLibrary(import::missingLibrary("a.x", "X", library, "x-dev"))) << library;
+  EXPECT_STREQ(import::missingLibrary("a.3mf", "3MF", "lib3mf", "lib3mf-dev").what(),
+               "a.3mf: 3MF needs lib3mf, which this build lacks; install lib3mf-dev and build again");
+  EXPECT_FALSE(import::isMissingLibrary(LoadError("a.step", "", "Open CASCADE crashed while reading it")));
 }
 
 }  // namespace

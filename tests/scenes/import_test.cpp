@@ -944,8 +944,8 @@ TEST(OwnProcess, BeyondItsTimeOrMemoryItIsEndedWithARemedy) {
   limits.most_s = 0.1;
   EXPECT_EQ(
       messageWith(limits, readForEver),
-      "a.step: took more than 0.1 s to read (reading a); a greater deflection needs less, or export fewer "
-      "parts into one file");
+      "a.step: took more than 0.1 s to read (reading a); export fewer parts into one file, or read STEP and "
+      "IGES with a greater deflection");
   limits.most_s = 0;
   limits.most_memory_bytes = 100'000'000;
   const std::string grown = messageWith(limits, [](const Progress& tell) {

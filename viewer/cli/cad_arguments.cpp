@@ -110,8 +110,7 @@ void requireNoCadOptions(const std::string& scene, const CadArguments& given) {
   if (given.isAny())
     throw LoadError(scene, "",
                     "is a scene, which states its groups and poses itself; leave out --up, --part-per, "
-                    "--group, --no-groups "
-                    "and --time-limit");
+                    "--group, --no-groups and --time-limit");
 }
 
 }  // namespace vps::viewer::inline v0

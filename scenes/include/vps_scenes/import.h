@@ -19,9 +19,9 @@ namespace vps::scenes::inline v0 {
 
 /// What of a file is one part.
 enum class PartPer {
-  /// A solid or a closed surface, and what the file has as one object. Open groups of an OBJ file that
-  /// together
-  /// are closed are one, and so are connected shapes of VRML, of which exporters write one for each face.
+  /// A solid or a closed surface, and what the file has as one object. Open groups of an OBJ file that are
+  /// closed together are one, and so are connected shapes of VRML, of which exporters write one for each
+  /// face.
   Body,
   Object,  ///< what the file has as an object, group or shape, also where open ones together are closed
   File,    ///< all of the file, with its name
@@ -66,7 +66,8 @@ struct ImportedPart {
   std::optional<double> deflection_m = {};
   std::string note = {};  ///< what is wrong with the mesh beside those faces, also among the warnings
   /// Names of the assemblies that it is in, from the outermost, and last of its product, where the format has
-  /// a tree (STEP, IGES). Each instance has a name of its own: a repeated one becomes "<name>_2" and so on.
+  /// a tree (STEP, IGES, 3MF). Each instance has a name of its own: a repeated one becomes "<name>_2" and so
+  /// on.
   std::vector<std::string> within = {};
   /// Greatest distance of its vertices from where the file has them, or from where they were before the file
   /// kept them as 32-bit floats, which are 15 um apart at 300 m. 0: less than 0.05 um.

@@ -34,7 +34,7 @@ inline constexpr auto kSceneKeys = std::make_tuple(
     Key{"cad", "file", "none",
         "an assembly: each of its parts is a part of the scene, with its name and designed pose"},
     Key{"cad_fallback", "file", "none",
-        "read instead of `cad` where this build lacks Open CASCADE; it has the same part names"},
+        "read instead of `cad` where this build lacks the library of its format; it has the same part names"},
     Key{"deflection", "length", "`\"1um\"`",
         "greatest distance between a curved face and its triangles (STEP, IGES)"},
     field("release_s", &Scene::release_s,

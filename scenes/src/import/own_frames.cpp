@@ -3,13 +3,14 @@
 // assembly: then all lie about the origin, and each reaches deep into another.
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "import/readers.h"
 #include "vps/box.h"
-#include "vps/solid.h"
+#include "vps/mesh_distance.h"
 
 namespace vps::scenes::inline v0::import {
 namespace {
@@ -29,9 +30,8 @@ double leastExtent_m(const Box& box) {
 }
 
 /// Points below the surface, spread evenly over it, in the part's frame: the same ones each time.
-std::vector<Vec3> pointsBelow(const Mesh& mesh, double depth_m) {
-  constexpr int kCount = 300;
-  const double step_m2 = area(mesh) / kCount;
+std::vector<Vec3> pointsBelow(const Mesh& mesh, double depth_m, std::size_t count) {
+  const double step_m2 = area(mesh) / double(count);
   std::vector<Vec3> points;
   if (!(step_m2 > 0)) return points;
   double done_m2 = 0, a = 0.5, b = 0.5;
@@ -53,55 +53,93 @@ std::vector<Vec3> pointsBelow(const Mesh& mesh, double depth_m) {
   return points;
 }
 
-/// A file's parts, with what is inside of each.
-struct OneFile {
-  std::span<const ImportedPart> parts;
-  Box box = {};  ///< of all, in the world
-  std::vector<Solid> solids = {};
+/// A part, with distances that are prepared where they are needed.
+struct Placed {
+  const ImportedPart* part = nullptr;
+  Box box = {};  ///< in the world
+  std::unique_ptr<const MeshDistance> distance = nullptr;
+
+  /// Whether a ball about this point of the part's frame fits into it. An open mesh has no inside here: what
+  /// is inside of it costs winding numbers, more than such a hint is worth.
+  bool hasBall(const Vec3& p, double radius_m, std::size_t& queries) {
+    if (!distance && checkMesh(part->mesh).isClosed()) distance = std::make_unique<MeshDistance>(part->mesh);
+    if (!distance) return false;
+    ++queries;
+    return -distance->signedDistance(p) >= radius_m;
+  }
 };
 
-/// Whether a ball of this radius fits into two parts of the files at once, as far as it is found at points
-/// below the surface of one's; and which parts these are.
-std::optional<std::pair<std::string, std::string>> commonBall(const OneFile& one, const OneFile& other,
-                                                              double radius_m) {
-  for (std::size_t i = 0; i < one.parts.size(); ++i)
-    for (const Vec3& p : pointsBelow(one.parts[i].mesh, 1.5 * radius_m)) {
-      if (-one.solids[i].signedDistance(p) < radius_m) continue;
-      const Vec3 p_W = one.parts[i].X_WP * p;
-      for (std::size_t k = 0; k < other.parts.size(); ++k)
-        if (-other.solids[k].signedDistance(other.parts[k].X_WP.inverse() * p_W) >= radius_m)
-          return std::pair(one.parts[i].name, other.parts[k].name);
+struct OneFile {
+  std::vector<Placed> parts = {};
+  Box box = {};  ///< of all, in the world
+};
+
+/// Where the middle of a ball that fits into both boxes can be; empty if none does.
+Box middles(const Box& a, const Box& b, double radius_m) {
+  return {a.min.cwiseMax(b.min).array() + radius_m, a.max.cwiseMin(b.max).array() - radius_m};
+}
+
+/// The greatest number of distances that are computed, about 0.2 s.
+constexpr std::size_t kMostQueries = 100'000;
+
+/// Whether a ball of this radius fits into a part of each file at once, as far as it is found at points below
+/// the surface of a part of the first; and which parts these are.
+std::optional<std::pair<std::string, std::string>> commonBall(OneFile& one, OneFile& other, double radius_m,
+                                                              std::size_t& queries) {
+  const std::size_t count = std::clamp<std::size_t>(30'000 / one.parts.size(), 20, 300);
+  for (Placed& part : one.parts) {
+    std::vector<std::pair<Placed*, Box>> near;  // with where the ball's middle may be
+    for (Placed& neighbor : other.parts)
+      if (const Box both = middles(part.box, neighbor.box, radius_m); !both.isEmpty())
+        near.emplace_back(&neighbor, both);
+    if (near.empty()) continue;
+    for (const Vec3& p : pointsBelow(part.part->mesh, 1.5 * radius_m, count)) {
+      const Vec3 p_W = part.part->X_WP * p;
+      const auto reaches = [&](const auto& neighbor) { return isWithin(p_W, neighbor.second); };
+      if (queries > kMostQueries) return std::nullopt;
+      if (std::ranges::none_of(near, reaches) || !part.hasBall(p, radius_m, queries)) continue;
+      for (const auto& neighbor : near)
+        if (reaches(neighbor) &&
+            neighbor.first->hasBall(neighbor.first->part->X_WP.inverse() * p_W, radius_m, queries))
+          return std::pair(part.part->name, neighbor.first->part->name);
     }
+  }
   return std::nullopt;
 }
 
 }  // namespace
 
-std::string ownFramesWarning(const std::vector<ImportedPart>& parts, const std::vector<std::size_t>& ends) {
+std::string ownFramesWarning(const std::vector<ImportedPart>& parts, const std::vector<std::size_t>& ends,
+                             std::size_t* query_count) {
   // Of the smaller one's least extent: more than threads and press fits overlap.
   constexpr double kDeep = 0.1;
-  // What is inside of more triangles takes longer to prepare than such a hint is worth.
-  constexpr std::size_t kMostTriangles = 300'000;
-  std::size_t triangles = 0;
+  // What is inside of more triangles takes longer to prepare than such a hint is worth, and so do the boxes
+  // of more parts to compare.
+  constexpr std::size_t kMostTriangles = 300'000, kMostParts = 3'000;
+  std::size_t triangles = 0, own_count = 0;
   for (const ImportedPart& part : parts) triangles += part.mesh.triangles.size();
-  if (ends.size() < 2 || triangles > kMostTriangles) return "";
+  if (ends.size() < 2 || triangles > kMostTriangles || parts.size() > kMostParts) return "";
+  std::size_t& queries = query_count != nullptr ? *query_count : own_count;
   std::vector<OneFile> files;
   for (std::size_t i = 0, from = 0; i < ends.size(); from = ends[i++]) {
-    OneFile file{std::span(parts).subspan(from, ends[i] - from)};
-    for (const ImportedPart& part : file.parts)
-      for (const Vec3& p : part.mesh.vertices) file.box.add(part.X_WP * p);
+    if (ends[i] == from) return "";
+    OneFile file;
+    for (const ImportedPart& part : std::span(parts).subspan(from, ends[i] - from)) {
+      Placed& placed = file.parts.emplace_back(&part);
+      for (const Vec3& p : part.mesh.vertices) placed.box.add(part.X_WP * p);
+      file.box.add(placed.box.min);
+      file.box.add(placed.box.max);
+    }
     if (!isAboutOrigin(file.box)) return "";
     files.push_back(std::move(file));
   }
-  for (OneFile& file : files)
-    for (const ImportedPart& part : file.parts) file.solids.emplace_back(part.mesh, part.name);
   std::pair<std::string, std::string> names;
-  for (const OneFile& file : files) {
-    const bool is_deep = std::ranges::any_of(files, [&](const OneFile& other) {
+  for (OneFile& file : files) {
+    const bool is_deep = std::ranges::any_of(files, [&](OneFile& other) {
       if (&other == &file) return false;
       const double radius_m = kDeep * std::min(leastExtent_m(file.box), leastExtent_m(other.box));
-      auto found = commonBall(file, other, radius_m);
-      if (!found) found = commonBall(other, file, radius_m);
+      auto found = commonBall(file, other, radius_m, queries);
+      if (!found) found = commonBall(other, file, radius_m, queries);
       if (found) names = *found;
       return found.has_value();
     });

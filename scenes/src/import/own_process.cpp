@@ -249,7 +249,8 @@ class Watch {
   void look() {
     if (progress_) progress_(doing_, share_);
     const std::string remedy =
-        " (" + doing_ + "); a greater deflection needs less, or export fewer parts into one file";
+        " (" + doing_ +
+        "); export fewer parts into one file, or read STEP and IGES with a greater deflection";
     const auto now = std::chrono::steady_clock::now();
     const double seconds = std::chrono::duration<double>(now - begun_).count();
     if (limits_.most_s > 0 && seconds > limits_.most_s)
@@ -330,7 +331,7 @@ RawCad inOwnProcess(const std::string& file, const std::string& library, const I
       throw LoadError(
           file, "",
           "was not read, because the process that reads it was ended from outside, as when memory "
-          "runs out; a greater deflection needs less");
+          "runs out; export fewer parts into one file, or read STEP and IGES with a greater deflection");
     throw LoadError(file, "", library + " crashed while reading it; the file is damaged, so export it again");
   }
 }

@@ -41,7 +41,7 @@ struct RawCad {
   std::vector<RawPart> parts;
   std::vector<std::string> warnings;
   double unit_m = 1;         ///< metres per file unit
-  bool states_unit = false;  ///< the file does, so that that of the settings is not used
+  bool states_unit = false;  ///< The file states its unit, so that the unit of the settings is not used.
   Shapes open_shapes = Shapes::AreParts;
 };
 
@@ -70,8 +70,10 @@ void finish(RawCad raw, ImportedCad& cad);
 void nameUniquely(std::vector<ImportedPart>& parts, const std::string& fallback);
 
 /// A warning where several files seem to lie each in a frame of its own, see own_frames.cpp; else empty.
-/// @param ends for each file, how many of the parts are of it and of those before
-std::string ownFramesWarning(const std::vector<ImportedPart>& parts, const std::vector<std::size_t>& ends);
+/// @param ends        for each file, how many of the parts are of it and of those before
+/// @param query_count gets the number of distances that were computed; may be null
+std::string ownFramesWarning(const std::vector<ImportedPart>& parts, const std::vector<std::size_t>& ends,
+                             std::size_t* query_count = nullptr);
 
 /// Turns the parts so that the axis becomes z, the shortest way.
 void turnUp(ImportedCad& cad, const Vec3& axis);

@@ -10,6 +10,7 @@
 #include <span>
 #include <sstream>
 
+#include "import/missing_library.h"
 #include "scene/read_fields.h"
 #include "scene/screw_keys.h"
 #include "scene/toml_text.h"
@@ -82,12 +83,6 @@ ScenePart placedPart(const ImportedPart& imported, const std::string& file, cons
   part.deflection_m = imported.deflection_m;
   part.rounding_m = imported.rounding_m;
   return part;
-}
-
-/// True if the file was refused because this build has no reader for its format; importCad() then names the
-/// package.
-bool isMissingReader(const LoadError& error) {
-  return std::string_view(error.what()).find("Open CASCADE") != std::string_view::npos;
 }
 
 /// Tolerance of `fidelity = "auto"` where no bound is set. assumed: a usual bound in mechanical design
@@ -171,7 +166,7 @@ class SceneReader {
     try {
       return addCad("cad", file);
     } catch (const LoadError& error) {
-      if (!isMissingReader(error)) throw;
+      if (!import::isMissingLibrary(error)) throw;
       std::fprintf(stderr, "%s; using %s\n", error.what(), fallback.c_str());
     }
     addCad("cad_fallback", fallback);
