@@ -143,10 +143,12 @@ class Reader {
 
   /// What lib3mf found that breaks the specification. Slicers add attributes and metadata of their own.
   void addRemarks(const Object& reader) {
-    constexpr std::array<DWORD, 6> kNoMatter = {
-        NMR_ERROR_MISSINGUUID,     NMR_ERROR_NAMESPACE_INVALID_ATTRIBUTE,
-        NMR_ERROR_UNKNOWNMETADATA, NMR_ERROR_METADATA_COULDNOTGETNAMESPACE,
-        NMR_ERROR_INVALIDMETADATA, NMR_ERROR_DUPLICATEMETADATA};
+    constexpr std::array<DWORD, 7> kNoMatter = {
+        NMR_ERROR_INVALIDMODELUNIT,  // see readUnit()
+
+        NMR_ERROR_MISSINGUUID,      NMR_ERROR_NAMESPACE_INVALID_ATTRIBUTE,
+        NMR_ERROR_UNKNOWNMETADATA,  NMR_ERROR_METADATA_COULDNOTGETNAMESPACE,
+        NMR_ERROR_INVALIDMETADATA,  NMR_ERROR_DUPLICATEMETADATA};
     std::string first;
     int others = -1;
     const auto count = valueOf<DWORD>(NMR::lib3mf_reader_getwarningcount, reader.get());
@@ -165,6 +167,13 @@ class Reader {
 
   void visit(const Object& object, const Eigen::Affine3d& X_WO, std::string name,
              std::vector<std::string> within) {
+    // assumed: more than assemblies have; a file of 3 kB can place 10 million objects.
+    constexpr std::size_t kMostLevels = 100, kMostVisits = 200'000;
+    if (within.size() >= kMostLevels || ++visits_ > kMostVisits)
+      throw LoadError(file_, "",
+                      "has more than " + std::to_string(kMostLevels) +
+                          " levels of components, or places more than " + std::to_string(kMostVisits) +
+                          " objects; export fewer into one file");
     if (const std::string own = textOf(NMR::lib3mf_object_getnameutf8, object.get()); !own.empty())
       name = own;
     const auto type = valueOf<DWORD>(NMR::lib3mf_object_gettype, object.get());
@@ -292,7 +301,7 @@ class Reader {
   Object model_;
   UniqueNames instances_;
   std::map<DWORD, RawPart> meshes_;  ///< with colours, by the numbers of their objects
-  std::size_t supports_ = 0, bad_colors_ = 0;
+  std::size_t supports_ = 0, bad_colors_ = 0, visits_ = 0;
 };
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <string_view>
 #include <vector>
 
 #include <Interface_Check.hxx>
@@ -112,7 +113,9 @@ std::string leftOut(const Handle(Interface_InterfaceModel) & model,
   int count = 0;
   const auto look = [&](const Entity& solid) {
     if (process.IsBound(solid) || count++ > 0) return;
-    first = std::string(model->StringLabel(solid)->ToCString()) + " ";
+    std::string_view kind = solid->DynamicType()->Name();
+    kind.remove_prefix(kind.find('_') + 1);
+    first = std::string(model->StringLabel(solid)->ToCString()).append(" (").append(kind).append(") ");
     const Handle(Transfer_Binder) tried = process.Find(solid);
     if (isPrimitive(solid))
       first += "is of a kind that is not read";
@@ -133,7 +136,7 @@ std::string leftOut(const Handle(Interface_InterfaceModel) & model,
   if (count == 0) return "";
   std::ranges::replace(first, '\n', ' ');
   return std::to_string(count) + (count == 1 ? " solid is" : " solids are") +
-         " left out, so that their parts are missing; the first: " + first;
+         " left out; the first: " + first;
 }
 
 }  // namespace
