@@ -48,7 +48,7 @@ class DamagedEntities : public testing::Test {
  protected:
   void SetUp() override { Message::DefaultMessenger()->ChangePrinters().Clear(); }
 
-  std::string written(bool has_cone) {
+  std::string written(bool has_cone, bool has_pin = true) {
     Handle(TDocStd_Document) document;
     XCAFApp_Application::GetApplication()->NewDocument("BinXCAF", document);
     const Handle(XCAFDoc_ShapeTool) shapes = XCAFDoc_DocumentTool::ShapeTool(document->Main());
@@ -65,7 +65,7 @@ class DamagedEntities : public testing::Test {
     const TDF_Label box = add(BRepPrimAPI_MakeBox(10, 20, 30).Shape(), "box", 100);
     XCAFDoc_DocumentTool::ColorTool(document->Main())
         ->SetColor(box, Quantity_Color(1, 0, 0, Quantity_TOC_RGB), XCAFDoc_ColorSurf);
-    add(BRepPrimAPI_MakeCylinder(5, 20).Shape(), "pin", 0);
+    if (has_pin) add(BRepPrimAPI_MakeCylinder(5, 20).Shape(), "pin", 0);
     if (has_cone) add(BRepPrimAPI_MakeCone(5, 2, 20).Shape(), "cone", 200);
     shapes->UpdateAssemblies();
     STEPCAFControl_Writer writer;
@@ -381,7 +381,7 @@ TEST_F(DamagedEntities, ANameThatIsNoStringLosesTheNameAlone) {
 }
 
 TEST_F(DamagedEntities, AnAngleUnitThatIsDamagedIsReadUnlessTheShapeDependsOnIt) {
-  const std::string sound = written(false), with_cone = written(true);
+  const std::string with_cone = written(true);
   const auto inDegrees = [](const std::string& text, const std::string& exponents,
                             const std::string& factor) {
     const std::string from = "( NAMED_UNIT(*) PLANE_ANGLE_UNIT() SI_UNIT($,.RADIAN.) )";
@@ -405,6 +405,17 @@ TEST_F(DamagedEntities, AnAngleUnitThatIsDamagedIsReadUnlessTheShapeDependsOnIt)
     expectSame(*cad, factsOf(*sound_degrees), true, exponents);
   }
   EXPECT_FALSE(read(inDegrees(with_cone, "#900102", "#99999"), error));
+  EXPECT_NE(error.find("conversion_factor"), std::string::npos) << error;
+  // Of a box nothing depends on angles, unless a surface is trimmed by parameters.
+  const std::string box = inDegrees(written(false, false), "#900102", "#99999");
+  const auto cad = read(box, error);
+  ASSERT_TRUE(cad) << error;
+  EXPECT_NEAR(massProperties(cad->parts.at(0).mesh).volume_m3, 6e-6, 1e-14);
+  const std::size_t at = box.find(" = PLANE("), from = box.rfind('#', at);
+  const std::string plane = box.substr(from, at - from);
+  EXPECT_FALSE(read(withLines(std::string(box).replace(from, at - from, "#900103"),
+                              plane + "=RECTANGULAR_TRIMMED_SURFACE('',#900103,-99.,99.,-99.,99.,.T.,.T.);"),
+                    error));
   EXPECT_NE(error.find("conversion_factor"), std::string::npos) << error;
 }
 
