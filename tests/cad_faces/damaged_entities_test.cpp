@@ -1,23 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// STEP and IGES files with one damaged or unknown entity: read exactly if no geometry is lost, else refused.
-#include <gtest/gtest.h>
-
+// STEP files with one damaged or unknown entity: read exactly if no geometry is lost, else refused.
+#include <algorithm>
 #include <fstream>
 #include <iterator>
 #include <map>
-#include <numbers>
 #include <set>
-#include <sstream>
 #include <tuple>
 
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRepPrimAPI_MakeCone.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
-#include <IGESCAFControl_Writer.hxx>
-#include <IGESControl_Controller.hxx>
-#include <IGESControl_Writer.hxx>
-#include <Message.hxx>
-#include <Message_Messenger.hxx>
 #include <Quantity_Color.hxx>
 #include <STEPCAFControl_Writer.hxx>
 #include <TDataStd_Name.hxx>
@@ -27,27 +19,15 @@
 #include <XCAFDoc_DocumentTool.hxx>
 #include <XCAFDoc_ShapeTool.hxx>
 
+#include "cad_faces/damaged_file.h"
 #include "import/occt/entity_numbers.h"
-#include "support/temporary_folder.h"
-#include "vps/load_error.h"
-#include "vps_scenes/import.h"
 
 namespace vps::scenes {
 namespace {
 
-/// What is compared of a part. Volumes of round parts are those of their triangles, so that they are compared
-/// with those of the sound file; the box's is known by its edges.
-struct Truth {
-  std::string name;
-  double volume_m3 = 0;
-  Vec3 at_m = Vec3::Zero();
-};
-
 /// An assembly of a red box of 10 x 20 x 30 mm at 100 mm along x, a cylinder, and, if asked for, a cone.
-class DamagedEntities : public testing::Test {
+class DamagedEntities : public DamagedFile {
  protected:
-  void SetUp() override { Message::DefaultMessenger()->ChangePrinters().Clear(); }
-
   std::string written(bool has_cone, bool has_pin = true) {
     Handle(TDocStd_Document) document;
     XCAFApp_Application::GetApplication()->NewDocument("BinXCAF", document);
@@ -79,44 +59,6 @@ class DamagedEntities : public testing::Test {
     return {std::istreambuf_iterator<char>(in), {}};
   }
 
-  /// The parts, or the error's text.
-  std::optional<ImportedCad> read(const std::string& text, std::string& error,
-                                  const char* name = "rig.step") {
-    const std::string file = (folder_.path() / name).string();
-    std::ofstream(file, std::ios::binary) << text;
-    ImportSettings settings;
-    settings.deflection_m = 100e-6;
-    error.clear();
-    try {
-      return importCad(file, settings);
-    } catch (const LoadError& e) {
-      error = e.what();
-      EXPECT_EQ(error.find('\n'), std::string::npos) << error;
-      return std::nullopt;
-    }
-  }
-
-  static std::vector<Truth> factsOf(const ImportedCad& cad) {
-    std::vector<Truth> facts;
-    for (const ImportedPart& part : cad.parts)
-      facts.push_back({part.name, massProperties(part.mesh).volume_m3, part.X_WP.p});
-    return facts;
-  }
-
-  /// Names may be others where the damage is to a name.
-  static void expectSame(const ImportedCad& cad, const std::vector<Truth>& truth, bool same_names,
-                         const std::string& what) {
-    const std::vector<Truth> found = factsOf(cad);
-    ASSERT_EQ(found.size(), truth.size()) << what;
-    for (std::size_t i = 0; i < truth.size(); ++i) {
-      if (same_names) {
-        EXPECT_EQ(found[i].name, truth[i].name) << what;
-      }
-      EXPECT_NEAR(found[i].volume_m3, truth[i].volume_m3, 1e-9 * truth[i].volume_m3) << what;
-      EXPECT_LT((found[i].at_m - truth[i].at_m).norm(), 1e-9) << what;
-    }
-  }
-
   std::vector<Truth> truthOf(const std::string& text) {
     std::string error;
     const auto cad = read(text, error);
@@ -128,8 +70,6 @@ class DamagedEntities : public testing::Test {
     EXPECT_NEAR(cad->parts.at(0).color[0], 1, 1e-5);
     return factsOf(*cad);
   }
-
-  test::TemporaryFolder folder_;
 };
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {
@@ -540,113 +480,6 @@ TEST_F(DamagedEntities, LostReferencesAreFoundInAnyText) {
   EXPECT_EQ(withReadableNumbers(head + "#4294967301=A(#5);#5=B(#4294967301);"),
             head + "#1999999999=A(#5);#5=B(#1999999999);");
   EXPECT_EQ(withReadableNumbers(head + "#53 /* ' #4 */ = A(#53);"), head + "#53= A(#53);");
-}
-
-/// The lines of an IGES file with a box of 10 x 20 x 30 mm, in that unit.
-std::vector<std::string> igesLines(const char* unit) {
-  IGESControl_Controller::Init();
-  IGESControl_Writer writer(unit, 1);
-  writer.AddShape(BRepPrimAPI_MakeBox(10, 20, 30).Shape());
-  writer.ComputeModel();
-  std::stringstream out;
-  EXPECT_TRUE(writer.Write(out));
-  std::vector<std::string> lines;
-  for (std::string line; std::getline(out, line);) lines.push_back(line);
-  return lines;
-}
-
-std::string joined(const std::vector<std::string>& lines, const char* end) {
-  std::string text;
-  for (const std::string& line : lines) text.append(line).append(end);
-  return text;
-}
-
-// Line fonts, levels, views, labels and colours that lead nowhere, of the solid, a face and a point.
-TEST_F(DamagedEntities, AnIgesFileIsReadInItsUnitWhateverItsStyles) {
-  std::string error;
-  for (const char* unit : {"MM", "CM", "M", "IN", "FT", "UM"}) {
-    const std::vector<std::string> sound = igesLines(unit);
-    const std::vector<Truth> truth = {{"box", 6e-6, Vec3::Zero()}};
-    for (const char* end : {"\n", "\r\n"}) {
-      const auto cad = read(joined(sound, end), error, "box.igs");
-      ASSERT_TRUE(cad) << unit << ": " << error;
-      expectSame(*cad, truth, true, unit);
-    }
-    for (const char* type : {"186", "510", "116"})
-      for (const int field : {3, 4, 5, 7, 12}) {  // of eight columns; from 10 on in the second line
-        std::vector<std::string> lines = sound;
-        auto line = std::ranges::find_if(lines, [&](const std::string& each) {
-          return each.size() > 72 && each[72] == 'D' && each.substr(5, 3) == type;
-        });
-        ASSERT_NE(line, lines.end()) << type;
-        if (field >= 10) ++line;
-        line->replace(static_cast<std::size_t>(field % 10) * 8, 8, "  -99999");
-        const std::string what = std::string(unit) + ", field " + std::to_string(field + 1) + " of a " + type;
-        const auto cad = read(joined(lines, "\n"), error, "box.igs");
-        EXPECT_TRUE(cad) << what << ": " << error;
-        if (cad) expectSame(*cad, truth, true, what);
-      }
-  }
-}
-
-// A colour that IGES has no number for is an entity, in which a text stands in place of its red.
-TEST_F(DamagedEntities, AnIgesColourThatIsDamagedIsNoGeometry) {
-  IGESControl_Controller::Init();
-  Handle(TDocStd_Document) document;
-  XCAFApp_Application::GetApplication()->NewDocument("BinXCAF", document);
-  const TDF_Label box = XCAFDoc_DocumentTool::ShapeTool(document->Main())
-                            ->AddShape(BRepPrimAPI_MakeBox(10, 20, 30).Shape(), false);
-  XCAFDoc_DocumentTool::ColorTool(document->Main())
-      ->SetColor(box, Quantity_Color(0.3, 0.6, 0.1, Quantity_TOC_RGB), XCAFDoc_ColorGen);
-  IGESCAFControl_Writer writer;
-  ASSERT_TRUE(writer.Transfer(document));
-  std::stringstream out;
-  ASSERT_TRUE(writer.Write(out));
-  XCAFApp_Application::GetApplication()->Close(document);
-  std::string text = out.str();
-  const std::size_t at = text.find("\n314,");
-  ASSERT_NE(at, std::string::npos);
-  const std::size_t from = at + 5, length = text.find(',', from) - from;
-  ASSERT_GE(length, 3U);
-  const std::string count = std::to_string(length - (length < 12 ? 2 : 3));
-  text.replace(from, length, count + "H" + std::string(length - count.size() - 1, 'x'));
-  std::string error;
-  const auto cad = read(text, error, "box.igs");
-  ASSERT_TRUE(cad) << error;
-  EXPECT_NEAR(massProperties(cad->parts.at(0).mesh).volume_m3, 6e-6, 1e-14);
-}
-
-// The parameters of one entity of each type of an IGES box, one after the other. Open CASCADE makes a face
-// less of a list of vertices with a text in it, and says nothing: then the open edges are told of.
-TEST_F(DamagedEntities, AnIgesFileIsReadWholeOrRefusedOrItsFaultIsTold) {
-  std::vector<std::string> lines = igesLines("MM");
-  constexpr std::size_t kData = 64, kSection = 72;  // columns
-  std::map<std::string, int> count;
-  std::string error;
-  int refused = 0, read_whole = 0;
-  for (std::string& line : lines) {
-    if (line.size() <= kSection || line[kSection] != 'P' || line.find(';') > kData) continue;
-    if (++count[line.substr(0, line.find(','))] > 2) continue;
-    const std::string sound = line;
-    for (std::size_t comma = sound.find(','); comma < kData; comma = sound.find(',', comma + 1)) {
-      const std::size_t end = sound.find_first_of(",;", comma + 1);
-      if (end > kData) break;
-      const bool is_real = sound.substr(comma, end - comma).find('.') != std::string::npos;
-      std::string data = sound.substr(0, comma + 1) + (is_real ? "4Htext" : "99999") + sound.substr(end);
-      data.erase(data.find(';') + 1);
-      if (data.size() > kData) continue;
-      line = data + std::string(kData - data.size(), ' ') + sound.substr(kData);
-      const auto cad = read(joined(lines, "\n"), error, "box.igs");
-      ++(cad ? read_whole : refused);
-      const bool is_told = cad && std::ranges::any_of(cad->warnings, [](const std::string& warning) {
-                             return warning.find("part 'box'") != std::string::npos;
-                           });
-      if (cad && !is_told) expectSame(*cad, {{"box", 6e-6, Vec3::Zero()}}, false, data);
-    }
-    line = sound;
-  }
-  EXPECT_GT(refused, 50);
-  EXPECT_GT(read_whole, 10);
 }
 
 }  // namespace

@@ -150,7 +150,10 @@ class SceneReader {
       import_.part_per = part_per;
       const ImportedCad& cad =
           cads_.emplace(std::pair(file, part_per), importCad(path(file), import_, progress_)).first->second;
-      for (const std::string& warning : cad.warnings) scene_.warnings.push_back(file + ": " + warning);
+      for (const std::string& warning : cad.warnings)  // a file may be read as parts and as one part
+        if (const std::string line = file + ": " + warning;
+            std::ranges::find(scene_.warnings, line) == scene_.warnings.end())
+          scene_.warnings.push_back(line);
       return cad;
     } catch (const LoadError& error) {
       keys.fail(key, std::string("cannot be used: ") + error.what());
