@@ -67,7 +67,8 @@ scenes::ImportedCad importedCad(const std::vector<std::string>& files, scenes::I
   const std::optional<ByteCache> cache = cadCacheFrom(given.cache);
   settings.cache = cache ? &*cache : nullptr;
   scenes::ImportedCad cad = scenes::importCad(files, settings, progress);
-  if (settings.unit_m && cad.states_unit) cad.warnings.emplace_back(kUnusedUnits);
+  if (settings.unit_m && cad.states_unit)
+    cad.warnings.push_back(std::string(files.size() > 1 ? "each file " : "") + kUnusedUnits);
   return cad;
 }
 
