@@ -45,6 +45,7 @@ struct File3mf {
   std::string model = "3D/3dmodel.model";
   std::string relations, types;
   std::vector<std::pair<std::string, std::string>> files;
+  std::size_t cut_bytes = 0;  ///< that the end of the model lacks
 
   [[nodiscard]] std::string modelText() const {
     return R"(<?xml version="1.0" encoding="UTF-8"?>)" + head + "\n<model" + unit + attributes +
@@ -68,7 +69,8 @@ struct File3mf {
         R"(<?xml version="1.0"?><Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships">)"
         R"(<Relationship Id="rel0" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel" Target="/)" +
             model + "\"/>" + relations + "</Relationships>");
-    zip.add(model, modelText());
+    const std::string text = modelText();
+    zip.add(model, text.substr(0, text.size() - cut_bytes));
     for (const auto& [name, text] : files) zip.add(name, text);
     return zip.bytes();
   }
@@ -181,6 +183,28 @@ const std::vector<Oddity>& oddities() {
          f.block = "name='\xe6\x9d\xbf'";
        },
        "a & <b>", "\xe6\x9d\xbf"},
+      {"numbers for characters",
+       [](File3mf& f) {
+         f.plate = "name=\"W&#228;lz &#x3C;&#38;&#x1F600;&#10;\"";
+         f.block = "name='&#26495;'";
+       },
+       "W\xc3\xa4lz <&\xf0\x9f\x98\x80 ", "\xe6\x9d\xbf"},
+      {"beams that are needed, and no beams",
+       [](File3mf& f) {
+         f.attributes = R"( xmlns:b="http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02")"
+                        R"( requiredextensions="b")";
+       }},
+      {"numbers with exponents, signs and blanks",
+       [](File3mf& f) {
+         std::string box = boxMesh({1, 2, 3});
+         for (const auto& [plain, odd] :
+              {std::pair("\"1.000000\"", "\"+1.0e+00\""), std::pair("\"0.000000\"", "\" -0 \""),
+               std::pair("\"2.000000\"", "\".2E1\"")})
+           for (std::size_t at = 0; (at = box.find(plain)) != std::string::npos;)
+             box.replace(at, std::string(plain).size(), odd);
+         f.more_objects = R"(<object id="3" type="model" name="block">)" + box + "</object>";
+         f.items = R"(<item objectid="1"/><item objectid="3" transform="1 0 0 0 1 0 0 0 1 10 0 0"/>)";
+       }},
       {"no names", [](File3mf& f) { f.plate = f.block = ""; }, "rig", "rig_2"},
       {"the same name twice", [](File3mf& f) { f.block = f.plate; }, "plate", "plate_2"},
       {"a part number", [](File3mf& f) { f.plate += " partnumber=\"P-17\""; }},
@@ -385,9 +409,31 @@ TEST_F(Import3mf, WhatCannotBeReadIsRefusedInWords) {
   }
   many.items = R"(<item objectid="10"/>)";
   EXPECT_NE(refusalOf(many).find("places more than 200000 objects"), std::string::npos);
-  File3mf number;
-  number.plate = "name=\"a&#228;\"";
-  EXPECT_NE(refusalOf(number).find("write the character itself"), std::string::npos);
+  beams.items = R"(<item objectid="1"/><item objectid="3"/>)";
+  EXPECT_FALSE(read(beams.bytes()).parts.empty());
+  beams.attributes += " requiredextensions=\"b\"";
+  EXPECT_NE(refusalOf(beams).find("has a lattice of beams, which the file says is needed"),
+            std::string::npos);
+}
+
+// lib3mf takes 4 of "4,5" and "4mm", and of a model that is cut the objects before the end.
+TEST_F(Import3mf, FaultsThatTheLibraryReadsOverAreRefused) {
+  if (!canRead()) GTEST_SKIP() << "its library is not built in";
+  for (const char* number : {"4,5", "4mm", "4 5", "nan", "0x4", ""}) {
+    File3mf file;
+    file.more_objects =
+        std::string(R"(<object id="3" type="model"><mesh><vertices><vertex x=")") + number +
+        R"(" y="0" z="0"/><vertex x="9" y="0" z="0"/><vertex x="0" y="9" z="0"/></vertices>)" +
+        R"(<triangles><triangle v1="0" v2="1" v3="2"/></triangles></mesh></object>)";
+    EXPECT_NE(refusalOf(file).find("3D/3dmodel.model has a vertex with x = \"" + std::string(number) + '"'),
+              std::string::npos)
+        << number;
+  }
+  for (const std::size_t less : {1U, 9U, 20U, 60U}) {
+    File3mf file;
+    file.cut_bytes = less;
+    EXPECT_NE(refusalOf(file).find("ends before its model does"), std::string::npos) << less;
+  }
 }
 
 // Bytes of the archive, and of the model within an archive that is whole.

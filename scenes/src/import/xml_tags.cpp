@@ -2,6 +2,8 @@
 #include "import/xml_tags.h"
 
 #include <algorithm>
+#include <charconv>
+#include <cstdint>
 #include <string>
 
 namespace vps::scenes::inline v0::import {
@@ -35,6 +37,36 @@ std::size_t behindOther(std::string_view xml, std::size_t at) {
   if (end.empty()) return at;
   const std::size_t found = xml.find(end, at);
   return found == std::string_view::npos ? xml.size() : found + end.size();
+}
+
+/// UTF-8 [RFC 3629]; empty for what is no character.
+std::string utf8(std::uint32_t character) {
+  const bool is_surrogate = character >= 0xD800 && character < 0xE000;
+  if (character == 0 || is_surrogate || character > 0x10FFFF) return "";
+  if (character < 0x80) return {static_cast<char>(character)};
+  std::string text;
+  int shift = character < 0x800 ? 6 : character < 0x10000 ? 12 : 18;
+  text += static_cast<char>((shift == 6 ? 0xC0 : shift == 12 ? 0xE0 : 0xF0) | character >> shift);
+  while ((shift -= 6) >= 0) text += static_cast<char>(0x80 | (character >> shift & 0x3F));
+  return text;
+}
+
+std::string escaped(std::uint32_t character) {
+  constexpr std::uint32_t kBlank = 0x20, kDelete = 0x7F;
+  switch (character) {
+    case '&':
+      return "&amp;";
+    case '<':
+      return "&lt;";
+    case '>':
+      return "&gt;";
+    case '"':
+      return "&quot;";
+    case '\'':
+      return "&apos;";
+    default:
+      return (character > 0 && character < kBlank) || character == kDelete ? " " : utf8(character);
+  }
 }
 
 }  // namespace
@@ -90,6 +122,24 @@ std::optional<XmlTag> tagAt(std::string_view xml, std::string_view path) {
     if (tag->is_end) open.resize(open.find('/') == std::string::npos ? 0 : open.rfind('/'));
   }
   return std::nullopt;
+}
+
+std::optional<std::string> withoutNumbersForCharacters(std::string_view xml) {
+  std::string out;
+  std::size_t copied = 0;
+  for (std::size_t at = xml.find("&#"); at != std::string_view::npos; at = xml.find("&#", at + 1)) {
+    const bool is_hex = xml.substr(at + 2).starts_with('x');
+    const char *const from = xml.data() + at + (is_hex ? 3 : 2), *const end = xml.data() + xml.size();
+    std::uint32_t character = 0;
+    const auto [rest, error] = std::from_chars(from, end, character, is_hex ? 16 : 10);
+    if (error != std::errc() || rest == end || *rest != ';') continue;
+    const std::string text = escaped(character);
+    if (text.empty()) continue;
+    out.append(xml.substr(copied, at - copied)).append(text);
+    copied = static_cast<std::size_t>(rest + 1 - xml.data());
+  }
+  if (copied == 0) return std::nullopt;
+  return out.append(xml.substr(copied));
 }
 
 }  // namespace vps::scenes::inline v0::import

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <string_view>
 
 namespace vps::scenes::inline v0::import {
@@ -23,5 +24,9 @@ std::optional<XmlTag> nextTag(std::string_view xml, std::size_t& at);
 
 /// The first tag that begins an element at this path from the root, "COLLADA/asset/unit".
 std::optional<XmlTag> tagAt(std::string_view xml, std::string_view path);
+
+/// The text with each character in place of its number, "&#228;" and "&#xE4;": a name where it would be read
+/// as markup ("&lt;"), and a blank for those of control. Nothing if the text has no such number.
+std::optional<std::string> withoutNumbersForCharacters(std::string_view xml);
 
 }  // namespace vps::scenes::inline v0::import

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the model files of a 3MF archive say of their unit: lib3mf keeps that of the last one that it reads.
+// What the model files of a 3MF archive say in their first tag and lib3mf does not tell. Of the unit it keeps
+// that of the last model file that it reads.
 #pragma once
 
 #include <optional>
@@ -10,7 +11,8 @@ namespace vps::scenes::inline v0::import {
 
 struct ModelFile {
   std::string name;
-  std::string unit = "millimeter";  ///< as stated; the default of the specification where it is not
+  std::string unit = "millimeter";    ///< as stated; the default of the specification where it is not
+  std::vector<std::string> required;  ///< the namespaces of the extensions that are needed to read it
 };
 
 struct ModelFiles {
@@ -20,8 +22,5 @@ struct ModelFiles {
 
 /// Reads the beginnings of the files in the archive; never throws.
 ModelFiles modelFiles(const std::string& archive);
-
-/// Whether a model file has a number in place of a character, as "&#228;", which lib3mf 1.8.1 refuses.
-bool hasNumbersForCharacters(const std::string& archive);
 
 }  // namespace vps::scenes::inline v0::import

@@ -11,6 +11,8 @@
 #include <string_view>
 
 #include "color/palette.h"
+#include "import/lib3mf/archive.h"
+#include "import/lib3mf/model_faults.h"
 #include "import/lib3mf/model_units.h"
 #include "import/readers.h"
 #include "import/unique_names.h"
@@ -87,20 +89,14 @@ class Reader {
       : file_(file), settings_(settings), cad_(cad) {}
 
   void read() {
-    model_ = objectOf(NMR::lib3mf_createmodel);
-    const Object reader = objectOf(NMR::lib3mf_model_queryreader, model_.get(), "3mf");
-    if (NMR::lib3mf_reader_readfromfileutf8(reader.get(), file_.c_str()) != LIB3MF_OK) {
-      DWORD code = 0;
-      LPCSTR words = nullptr;
-      NMR::lib3mf_getlasterror(reader.get(), &code, &words);
-      throw LoadError(file_, "",
-                      std::string("is not a readable 3MF file (") +
-                          (words == nullptr || *words == '\0' ? "lib3mf gives no reason" : words) +
-                          (hasNumbersForCharacters(file_)
-                               ? "); a name in it has a number for a character, as &#228;, which lib3mf 1.8 "
-                                 "cannot read: write the character itself"
-                               : "); export it again"));
-    }
+    if (const std::string fault = modelFault(file_); !fault.empty())
+      throw LoadError(file_, "", "is not a readable 3MF file (" + fault + "); export it again");
+    std::string words;
+    Object reader = readModel("", words);
+    if (!reader)
+      if (const std::string bytes = withoutNumbersForCharacters(file_); !bytes.empty())
+        reader = readModel(bytes, words);
+    if (!reader) throw LoadError(file_, "", "is not a readable 3MF file (" + words + "); export it again");
     addRemarks(reader);
     readUnit();
     const Object items = objectOf(NMR::lib3mf_model_getbuilditems, model_.get());
@@ -122,9 +118,29 @@ class Reader {
   }
 
  private:
+  /// The reader with its warnings; null, with lib3mf's words, if it fails.
+  /// @param bytes  of an archive that is read in place of the file; empty: the file
+  Object readModel(std::string bytes, std::string& words) {
+    model_ = objectOf(NMR::lib3mf_createmodel);
+    Object reader = objectOf(NMR::lib3mf_model_queryreader, model_.get(), "3mf");
+    const LIB3MFRESULT result = bytes.empty()
+                                    ? NMR::lib3mf_reader_readfromfileutf8(reader.get(), file_.c_str())
+                                    : NMR::lib3mf_reader_readfrombuffer(
+                                          reader.get(), reinterpret_cast<BYTE*>(bytes.data()), bytes.size());
+    if (result == LIB3MF_OK) return reader;
+    DWORD code = 0;
+    LPCSTR text = nullptr;
+    NMR::lib3mf_getlasterror(reader.get(), &code, &text);
+    words = text == nullptr || *text == '\0' ? "lib3mf gives no reason" : text;
+    return nullptr;
+  }
+
   /// That of the root model applies to all, by the specification.
   void readUnit() {
     const ModelFiles files = modelFiles(file_);
+    requires_beams_ = files.root && std::ranges::any_of(files.root->required, [](const std::string& space) {
+                        return space.find("/beamlattice/") != std::string::npos;
+                      });
     const auto number = valueOf<DWORD>(NMR::lib3mf_model_getunit, model_.get());
     const std::string stated = files.root ? files.root->unit : std::string(kUnits.at(number).first);
     for (const ModelFile& other : files.others)
@@ -212,6 +228,10 @@ class Reader {
     std::vector<NMR::MODELMESHTRIANGLE> triangles(triangle_count);
     const auto beam_count = valueOf<DWORD>(NMR::lib3mf_meshobject_getbeamcount, object.get());
     const std::string whose = name.empty() ? "an object" : "object '" + name + "'";
+    if (beam_count > 0 && requires_beams_)
+      throw LoadError(file_, name,
+                      "has a lattice of beams, which the file says is needed and which is not read; export "
+                      "it as a mesh");
     if (beam_count > 0)
       cad_.warnings.push_back(whose + " has a lattice of " + std::to_string(beam_count) +
                               " beams, which are not read; export it as a mesh");
@@ -301,6 +321,7 @@ class Reader {
   Object model_;
   UniqueNames instances_;
   std::map<DWORD, RawPart> meshes_;  ///< with colours, by the numbers of their objects
+  bool requires_beams_ = false;      ///< the file says that it cannot be read without them
   std::size_t supports_ = 0, bad_colors_ = 0, visits_ = 0;
 };
 
