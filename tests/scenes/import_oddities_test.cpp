@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// OBJ and glTF files that are odd and sound: read with the right sizes, names, colours and volumes.
+// OBJ, STL and glTF files that are odd and sound: read with the right sizes, names, colours and volumes.
 // Those of 3MF are in import_3mf_test.cpp, those of STEP and IGES in tests/cad_faces.
 #include <gtest/gtest.h>
 
@@ -7,6 +7,7 @@
 #include <fstream>
 #include <functional>
 
+#include "import/gltf_extensions.h"
 #include "import/missing_library.h"
 #include "import/readers.h"
 #include "support/temporary_folder.h"
@@ -89,6 +90,12 @@ TEST_F(ImportOddities, OfObjChangeNothing) {
       {"groups of faces", replacedAll(plain, "\nf 5", "\ng side\nf 5"), "odd"},
       {"no name", boxObj(""), "odd"},
       {"two names of a group", boxObj("g box lid\n"), "box lid"},
+      {"a byte order mark", "\xef\xbb\xbf" + plain},
+      {"a byte order mark before a vertex", "\xef\xbb\xbf" + boxObj(""), "odd"},
+      {"numbers that begin with the point",
+       "vt .5 .5\nvn 0 0 -.9\n" +
+           replacedAll(replacedAll(plain, "4.000000", ".4e1"), "f 1 3 4 2", "f 1/1/1 3/1/1 4/1/1 2/1/1")},
+      {"keywords that begin as those of elements", plain + "lod 1\nparm u 0 \\\n1\nlod 2\n"},
   };
   for (const auto& [unit, unit_m] :
        {std::pair("mm", 1e-3), std::pair("inch", 25.4e-3), std::pair("cm", 1e-2)})
@@ -107,6 +114,36 @@ TEST_F(ImportOddities, OfObjChangeNothing) {
         ADD_FAILURE() << odd.name << ": " << e.what();
       }
     }
+}
+
+TEST_F(ImportOddities, OfObjFreeFormSurfacesAreToldOf) {
+  ImportSettings settings;
+  settings.unit_m = 1e-3;
+  const std::string file = written("odd.obj", boxObj("o box\n") +
+                                                  "cstype bezier\ndeg 1 1\nsurf 0 1 0 1 1 2 3 4\n"
+                                                  "parm u 0 1\nparm v 0 1\nend\n");
+  const ImportedCad cad = importCad(file, settings);
+  expectBox(cad, 0, "box", 1e-3 * Vec3(4, 3, 2), file);
+  ASSERT_EQ(cad.warnings.size(), 1U);
+  EXPECT_EQ(cad.warnings[0], "has 1 free-form surface ('surf') that is not read; export triangles");
+}
+
+TEST_F(ImportOddities, OfStlAByteOrderMarkChangesNothing) {
+  const Mesh box = makeBox(Vec3(4, 3, 2));
+  std::string text = "\xef\xbb\xbfsolid box\n";
+  for (const auto& t : box.triangles) {
+    text += "facet normal 0 0 0\nouter loop\n";
+    for (const std::uint32_t i : t) {
+      text += "vertex";
+      for (int k = 0; k < 3; ++k) text.append(" ").append(std::to_string(box.vertices[i][k]));
+      text += "\n";
+    }
+    text += "endloop\nendfacet\n";
+  }
+  ImportSettings settings;
+  settings.unit_m = 1e-3;
+  expectBox(importCad(written("odd.stl", text + "endsolid\n"), settings), 0, "odd", 1e-3 * Vec3(4, 3, 2),
+            "mark");
 }
 
 TEST_F(ImportOddities, OfObjSeveralObjectsAreOnePartOrSeveralAsAskedFor) {
@@ -211,6 +248,12 @@ TEST_F(ImportOddities, OfGltfChangeNothing) {
                                                  "", "", R"(,"extensionsUsed":["MY_thing"])")},
       {"no indices", boxGltf(R"("name":"box")", "[0]", "", "", "", false)},
       {"an empty node", boxGltf(R"("name":"box")", "[0,1]", R"(,{"name":"nothing"})")},
+      {"a byte order mark", "\xef\xbb\xbf" + boxGltf()},
+      {"extensions that are needed and change no geometry",
+       boxGltf(R"("name":"box")", "[0]", "", "",
+               R"(,"extensionsRequired":["KHR_materials_unlit","KHR_texture_transform"])")},
+      {"an extension that is needed elsewhere",
+       boxGltf(R"("name":"box","extras":{"extensionsRequired":["MY_thing"]})")},
   };
   for (const bool has_unit : {false, true})  // which is not used
     for (const Odd& odd : all) {
@@ -228,6 +271,32 @@ TEST_F(ImportOddities, OfGltfChangeNothing) {
         ADD_FAILURE() << odd.name << ": " << e.what();
       }
     }
+}
+
+// Positions of 16 bits, instances in a buffer, and meshes that are packed are read wrongly or not at all.
+TEST_F(ImportOddities, OfGltfANeededExtensionThatIsNotReadIsRefused) {
+  const std::string text = boxGltf(R"("name":"box")", "[0]", "", "",
+                                   R"(,"extensionsRequired" : [ "KHR_materials_unlit", "MY_\"thing" ])");
+  std::string glb = "glTF";
+  const auto put = [&](std::size_t value) {
+    for (int byte = 0; byte < 4; ++byte) glb += static_cast<char>(value >> (8 * byte) & 0xFF);
+  };
+  const std::string json = text + std::string(3 - (text.size() + 3) % 4, ' ');
+  put(2);
+  put(20 + json.size());
+  put(json.size());
+  glb += "JSON" + json;
+  for (const auto& [name, bytes] : {std::pair("odd.gltf", text), std::pair("odd.glb", glb)}) try {
+      importCad(written(name, bytes));
+      ADD_FAILURE() << name;
+    } catch (const LoadError& e) {
+      EXPECT_NE(std::string(e.what()).find("needs the extension 'MY_"), std::string::npos) << e.what();
+    }
+  for (const char* cut :
+       {"", "{", R"({"extensionsRequired)", R"({"extensionsRequired":["a\)", "]]}}", "\"\\"})
+    EXPECT_LE(import::requiredExtensions(cut).size(), 1U) << cut;
+  EXPECT_EQ(import::unreadExtension({"KHR_draco_mesh_compression", "KHR_lights_punctual"}), "");
+  EXPECT_EQ(import::unreadExtension({"KHR_mesh_quantization"}), "KHR_mesh_quantization");
 }
 
 // Three blocks, each modelled about the origin, and as their assembly has them.

@@ -353,6 +353,19 @@ TEST(ImportCollada, AUnitThatIsMissingOrWrongIsTold) {
   }
 }
 
+TEST(ImportCollada, ANodeWithoutANameHasItsIdentifierOrThatOfItsMesh) {
+  const Folder folder;
+  const std::string named = tetrahedronDae("<unit meter=\"0.001\"/>"), words = "id=\"n\" name=\"tip\"";
+  const std::size_t at = named.find(words);
+  ASSERT_NE(at, std::string::npos);
+  for (const auto& [attributes, name] :
+       {std::pair("id='arm &amp; hand'", "arm & hand"), std::pair("", "tip"),
+        std::pair("id=\"n\" name=\"hand\"", "hand"), std::pair("sid=\"x\"\nid=\"arm\"", "arm")}) {
+    const fs::path file = folder.write("part.dae", std::string(named).replace(at, words.size(), attributes));
+    EXPECT_EQ(importCad(file.string()).parts.at(0).name, name);
+  }
+}
+
 TEST(ImportUnits, FilesThatStateTheirUnitSaySo) {
   const Folder folder;
   const std::string glb = (kBlock / "bearing_block.glb").string(),

@@ -99,7 +99,7 @@ std::string detectFormat(const std::string& file) {
   if (!in) throw LoadError(file, "", "cannot be opened; check its permissions");
   const std::uint64_t size = fs::file_size(file, error);
   if (error || size == 0) throw LoadError(file, "", "is empty; export it again");
-  const std::string head = bytes(in, 0, 1024);
+  const std::string head(withoutByteOrderMark(bytes(in, 0, 1024)));
   const std::string format = formatOf(head, upperExtension(file), file);
   if (!isWhole(format, in, size, head)) {
     throw LoadError(file, "",

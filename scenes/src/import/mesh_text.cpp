@@ -9,6 +9,7 @@
 #include <string_view>
 #include <utility>
 
+#include "import/readers.h"
 #include "vps/box.h"
 
 namespace vps::scenes::inline v0::import {
@@ -18,9 +19,12 @@ namespace {
 constexpr std::string_view kWord = "vps_object_";
 constexpr std::string_view kBlank = " \t\r\f\v";
 
+/// Without a byte order mark, which assimp would take for a part of the first word.
 std::string bytesOf(const std::string& file) {
   std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
+  std::string bytes(std::istreambuf_iterator<char>(in), {});
+  if (bytes.starts_with(kByteOrderMark)) bytes.erase(0, kByteOrderMark.size());
+  return bytes;
 }
 
 std::string_view trimmed(std::string_view text) {
@@ -55,6 +59,31 @@ std::optional<Vertex> vertexOf(std::string_view text) {
   }
   out.rest = text;
   return out;
+}
+
+/// With a zero before each decimal point that begins a number, as in ".5" and "-.5": assimp 5.2.5 does not
+/// count these numbers, and skips the vertex.
+void appendWithZeros(std::string_view line, std::string& out) {
+  for (std::size_t point = line.find('.'); point != std::string_view::npos; point = line.find('.')) {
+    const bool has_digit = point > 0 && line[point - 1] >= '0' && line[point - 1] <= '9';
+    out.append(line.substr(0, point)).append(has_digit ? "." : "0.");
+    line.remove_prefix(point + 1);
+  }
+  out += line;
+}
+
+/// The keyword of a line.
+std::string_view keywordOf(std::string_view line) {
+  const std::string_view text = trimmed(line);
+  return text.substr(0, text.find_first_of(kBlank));
+}
+
+/// Whether assimp 5.2.5 would take the line for one of faces, lines or points, by its first letter alone:
+/// "lod", "parm".
+bool isTakenForElement(std::string_view keyword) {
+  constexpr std::array<std::string_view, 4> kElements = {"f", "fo", "l", "p"};
+  return !keyword.empty() && std::string_view("flp").find(keyword.front()) != std::string_view::npos &&
+         std::ranges::find(kElements, keyword) == kElements.end();
 }
 
 template <class F>
@@ -126,18 +155,24 @@ std::string MeshText::nameIn(const std::string& word) const {
 MeshText objText(const std::string& file) {
   std::string group;  // that is active; assimp begins no new object where it is named again
   std::size_t group_word = 0;
-  bool is_continued = false;  // the line before ends in '\\'
+  bool is_continued = false, is_dropped = false;  // the line before ends in '\\'; it was left out
   return rewritten(bytesOf(file), "v", [&](std::string_view line, MeshText& out) {
     const std::string_view text = line.substr(0, line.find('\n'));
     if (std::exchange(is_continued, trimmed(text).ends_with('\\'))) {
-      out.bytes += line;  // a blank at its beginning parts two numbers
+      if (!is_dropped) out.bytes += line;  // a blank at its beginning parts two numbers
       return;
     }
+    const std::string_view keyword = keywordOf(text);
+    out.surface_count += keyword == "surf" ? 1 : 0;
+    is_dropped = isTakenForElement(keyword);
+    if (is_dropped) return;
     const auto object = afterKeyword(text, "o"), faces = afterKeyword(text, "g");
     const bool is_one_line = text.find('\r') >= text.size() - 1;  // else line ends are '\r' alone
     if ((!object && !faces) || !is_one_line) {
       // assimp skips a line that begins with a blank.
-      out.bytes += line.substr(std::min(line.find_first_not_of(" \t"), line.size()));
+      const std::string_view rest = line.substr(std::min(line.find_first_not_of(" \t"), line.size()));
+      if (rest.starts_with('v')) return appendWithZeros(rest, out.bytes);
+      out.bytes += rest;
       return;
     }
     const std::string name(trimmed(object ? *object : *faces));
@@ -155,9 +190,10 @@ MeshText objText(const std::string& file) {
 
 std::optional<MeshText> stlText(const std::string& file) {
   constexpr std::string_view kSolid = "solid";
-  std::array<char, kSolid.size()> first{};
+  std::array<char, kByteOrderMark.size() + kSolid.size()> first{};
   std::ifstream in(file, std::ios::binary);
-  if (!in.read(first.data(), first.size()) || std::string_view(first.data(), first.size()) != kSolid)
+  if (!in.read(first.data(), first.size()) ||
+      !withoutByteOrderMark({first.data(), first.size()}).starts_with(kSolid))
     return std::nullopt;
   const std::string bytes = bytesOf(file);
   // A binary file may begin with the same word.

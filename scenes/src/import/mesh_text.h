@@ -2,6 +2,7 @@
 // OBJ and STL files of text, changed so that assimp reads them as they are meant.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,6 +19,7 @@ struct MeshText {
   /// By number: assimp 5.2.5 cuts names at their first space and makes one object of two of the same name, so
   /// each name is replaced by a word of its own, see nameIn().
   std::vector<std::string> names;
+  std::size_t surface_count = 0;  ///< free-form surfaces of an OBJ file, which assimp does not read
 
   /// The name that was replaced by this word; the word itself where it is none.
   [[nodiscard]] std::string nameIn(const std::string& word) const;

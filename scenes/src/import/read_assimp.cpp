@@ -13,12 +13,15 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <optional>
 #include <string_view>
 
 #include "color/palette.h"
+#include "import/gltf_extensions.h"
 #include "import/mesh_text.h"
 #include "import/readers.h"
 #include "import/xml_tags.h"
@@ -97,7 +100,8 @@ class ReplacedFile : public Assimp::DefaultIOSystem {
 std::string nameFrom(const aiString& text) {
   const std::string name = text.C_Str();
   const bool is_placeholder = name.starts_with("<") || name.starts_with("nodes[") ||
-                              name.starts_with("meshes[") || name == "defaultobject" || name == "RootNode";
+                              name.starts_with("meshes[") || name.starts_with("$ColladaAutoName$") ||
+                              name == "defaultobject" || name == "RootNode";
   return is_placeholder ? "" : name;
 }
 
@@ -154,6 +158,21 @@ std::optional<std::string> plyItReadsRight(const std::string& file) {
   return bytes;
 }
 
+/// Gives each node that has an identifier and no name its identifier as its name.
+std::string withNamesOfNodes(std::string_view collada) {
+  std::string out;
+  std::size_t copied = 0, at = 0;
+  while (const std::optional<XmlTag> tag = nextTag(collada, at)) {
+    if (tag->name != "node" || !tag->is_begin || tag->value("name")) continue;
+    const std::string id(tag->value("id").value_or(""));
+    if (id.empty() || id.find('"') != std::string::npos) continue;
+    const auto end_of_name = static_cast<std::size_t>(tag->attributes.data() - collada.data());
+    out.append(collada.substr(copied, end_of_name - copied)).append(" name=\"" + id + '"');
+    copied = end_of_name;
+  }
+  return out.append(collada.substr(copied));
+}
+
 /// The text of a Collada file, of whose unit assimp makes a scale in the root's transform, and 1 where it is
 /// missing or no number. In place of a unit that is no positive length that of the settings applies, or
 /// else the metre, which Collada defines for files without one; a warning says so.
@@ -184,7 +203,37 @@ std::string colladaText(const std::string& file, const ImportSettings& settings,
     text.replace(
         tag->from, tag->end - tag->from,
         "<unit meter='" + (cad.states_unit ? std::string(from, end) : "1") + (tag->is_end ? "'/>" : "'>"));
-  return text;
+  return withNamesOfNodes(text);
+}
+
+/// The JSON text of a glTF file, that of a binary one as well.
+std::string gltfJson(const std::string& file) {
+  constexpr std::size_t kHeader = 20;  // "glTF", version, size; size of the first chunk, "JSON"
+  std::ifstream in(file, std::ios::binary);
+  std::string json(kHeader, '\0');
+  in.read(json.data(), kHeader);
+  std::uint32_t size = 0;
+  std::memcpy(&size, &json[12], sizeof size);
+  if (in && json.starts_with("glTF")) {
+    const auto all = std::filesystem::file_size(file);
+    json.resize(std::min<std::uintmax_t>(size, all));
+    in.read(json.data(), std::ssize(json));
+    json.resize(static_cast<std::size_t>(in.gcount()));
+    return json;
+  }
+  json.resize(static_cast<std::size_t>(in.gcount()));
+  json.append(std::istreambuf_iterator<char>(in), {});
+  return json;
+}
+
+/// The text to read in place of a glTF file with a byte order mark.
+std::optional<std::string> gltfText(const std::string& file) {
+  std::string json = gltfJson(file);
+  if (const std::string name = unreadExtension(requiredExtensions(json)); !name.empty())
+    throw LoadError(file, "",
+                    "needs the extension '" + name + "' of glTF, which is not read; export it without");
+  if (!json.starts_with(kByteOrderMark)) return std::nullopt;
+  return json.erase(0, kByteOrderMark.size());
 }
 
 /// Back to the axes of the file: the user says which of them is up.
@@ -231,9 +280,10 @@ RawCad readAssimp(const std::string& file, const std::string& format, const Impo
   }
   RawCad cad;
   cad.states_unit = format == "glTF";  // metres, by its specification
-  std::optional<std::string> collada;
+  std::optional<std::string> replaced;
+  if (format == "glTF") replaced = gltfText(file);
   if (format == "DAE")
-    collada = colladaText(file, settings, cad);
+    replaced = colladaText(file, settings, cad);
   else if (!cad.states_unit)
     cad.unit_m = unitOf(file, format, settings);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);  // else identifiers
@@ -244,8 +294,8 @@ RawCad readAssimp(const std::string& file, const std::string& format, const Impo
     if (format == "PLY") ply = plyItReadsRight(file);
     if (format == "OBJ") text = objText(file);
     if (format == "STL") text = stlText(file);
-    if (text || collada)  // the importer deletes it
-      importer.SetIOHandler(new ReplacedFile(file, text ? text->bytes : *collada));
+    if (text || replaced)  // the importer deletes it
+      importer.SetIOHandler(new ReplacedFile(file, text ? text->bytes : *replaced));
     scene =
         ply ? importer.ReadFileFromMemory(ply->data(), ply->size(), 0, "ply") : importer.ReadFile(file, 0);
     for (unsigned i = 0; scene && i < scene->mNumMeshes; ++i) {
@@ -272,6 +322,11 @@ RawCad readAssimp(const std::string& file, const std::string& format, const Impo
   if (is_gltf || format == "DAE") makeZUp(cad, is_gltf);
   if (is_gltf && settings.up) keepFileAxes(cad);
   if (format == "OBJ") cad.open_shapes = Shapes::BoundOne;
+  if (text && text->surface_count > 0)
+    cad.warnings.push_back("has " + std::to_string(text->surface_count) +
+                           (text->surface_count == 1 ? " free-form surface ('surf') that is"
+                                                     : " free-form surfaces ('surf') that are") +
+                           " not read; export triangles");
   for (RawPart& part : cad.parts) {
     if (text) {
       part.name = text->nameIn(part.name);

@@ -5,6 +5,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "vps/mesh.h"
@@ -56,6 +57,13 @@ RawCad readAssimp(const std::string& file, const std::string& format, const Impo
                   const Progress& progress);
 RawCad read3mf(const std::string& file, const std::string& format, const ImportSettings& settings,
                const Progress& progress);
+
+/// The byte order mark of UTF-8, with which some programs begin text files.
+inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
+inline std::string_view withoutByteOrderMark(std::string_view text) {
+  return text.starts_with(kByteOrderMark) ? text.substr(kByteOrderMark.size()) : text;
+}
 
 /// A binary STL file without colours; nothing for any other, which readAssimp() reads. Gives what that gives.
 std::optional<RawCad> readBinaryStl(const std::string& file, const ImportSettings& settings);
