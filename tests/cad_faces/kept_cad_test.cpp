@@ -56,6 +56,7 @@ TEST_F(KeptCad, ComesBackToTheBit) {
   ASSERT_EQ(second.parts.size(), 1U);
   EXPECT_EQ(second.file, first.file);
   EXPECT_EQ(second.format, "STEP");
+  EXPECT_TRUE(first.states_unit && second.states_unit);
   EXPECT_EQ(second.warnings, first.warnings);
   EXPECT_EQ(import::keptBytes(second), import::keptBytes(first));  // all that transfer() has
   EXPECT_EQ(second.parts[0].mesh.vertices, first.parts[0].mesh.vertices);

@@ -88,9 +88,9 @@ struct ImportedCad {
 /// The format is detected from content and extension. Each solid (STEP) or closed shape becomes a part. Open
 /// shapes that together form a closed surface, as where an exporter wrote a shape for each face, are joined.
 /// glTF and Collada are y-up by definition and are rotated to z-up; other files keep their axes. Inventor
-/// without Units, VRML, and Collada without a unit are in metres unless unit_m is given. Throws LoadError if
-/// the file is missing, cut, empty or damaged, its unit is unknown, or its format is not built in (the
-/// message names the package).
+/// without Units, VRML, and Collada without a unit are in metres unless unit_m is given, STEP and IGES
+/// without one in millimetres. Throws LoadError if the file is missing, cut, empty or damaged, its unit is
+/// unknown, or its format is not built in (the message names the package).
 VPS_SCENES_API ImportedCad importCad(const std::string& file, const ImportSettings& settings = {},
                                      const Progress& progress = {});
 

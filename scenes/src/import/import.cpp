@@ -117,7 +117,6 @@ ImportedCad withFileAxes(const std::string& file, ImportSettings settings, const
     readAnew(file, settings, progress, cad);
     if (!made_from.empty()) settings.cache->keep(made_from, import::keptBytes(cad));
   }
-  cad.states_unit = cad.states_unit || cad.format == "STEP" || cad.format == "IGES";  // also where kept
   if (settings.part_per == PartPer::File) cad.parts = {wholeFile(cad)};
   if (progress) progress("reading " + import::stem(file), 1);
   return cad;

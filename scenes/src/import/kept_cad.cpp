@@ -13,12 +13,13 @@ namespace vps::scenes::inline v0::import {
 namespace {
 
 /// Incremented when reading gives other bits, or part_bytes.h changes.
-constexpr std::uint32_t kKeptVersion = 2;
+constexpr std::uint32_t kKeptVersion = 3;
 
 template <class Io>
 void transferParts(Io& io, ImportedCad& cad) {
   transferEach(io, cad.parts, [&](ImportedPart& part) { transfer(io, part); });
   transferLines(io, cad.warnings);
+  transfer(io, cad.states_unit);
 }
 
 /// Whether all that its triangles name exists.
@@ -77,6 +78,7 @@ bool readKeptBytes(const std::string& bytes, ImportedCad& cad) {
   }
   cad.parts = std::move(found.parts);
   cad.warnings = std::move(found.warnings);
+  cad.states_unit = found.states_unit;
   return true;
 }
 

@@ -105,4 +105,28 @@ std::optional<std::string> withReadableNumbers(std::string_view text) {
   return out.append(text.substr(copied));
 }
 
+bool capitalizeExponents(std::string& text) {
+  const auto isIn = [&](std::size_t at, std::string_view set) {
+    return at < text.size() && set.find(text[at]) != std::string_view::npos;
+  };
+  constexpr std::string_view kDigits = "0123456789";
+  bool is_changed = false;
+  std::size_t at = 0;
+  while ((at = text.find_first_of("e'/", at)) < text.size()) {
+    if (text[at] == '\'') {
+      at = after(text, at + 1, "'");
+    } else if (text[at] == '/') {
+      at = std::string_view(text).substr(at).starts_with("/*") ? after(text, at + 2, "*/") : at + 1;
+    } else {
+      const bool is_behind_digit = at > 0 && (isIn(at - 1, kDigits) || text[at - 1] == '.');
+      if (is_behind_digit && isIn(isIn(at + 1, "+-") ? at + 2 : at + 1, kDigits)) {
+        text[at] = 'E';
+        is_changed = true;
+      }
+      ++at;
+    }
+  }
+  return is_changed;
+}
+
 }  // namespace vps::scenes::inline v0::import

@@ -34,6 +34,7 @@
 
 #include "import/occt/damaged_entities.h"
 #include "import/occt/entity_numbers.h"
+#include "import/occt/length_units.h"
 #include "import/occt/lost_shapes.h"
 #include "import/occt/pieces.h"
 #include "import/occt/tessellate_all.h"
@@ -336,16 +337,32 @@ IFSelect_ReturnStatus readText(XSControl_Reader& reader, const std::string& file
   std::ifstream in(file, std::ios::binary);
   std::string text(std::filesystem::file_size(file), '\0');
   in.read(text.data(), std::ssize(text));
-  std::optional<std::string> changed = withReadableNumbers(text);
-  if (!changed) return reader.ReadFile(file.c_str());
-  text = {};
-  std::istringstream stream(std::move(*changed));
+  bool is_changed = text.starts_with(kByteOrderMark);
+  if (is_changed) text.erase(0, kByteOrderMark.size());
+  is_changed = capitalizeExponents(text) || is_changed;
+  if (std::optional<std::string> changed = withReadableNumbers(text))
+    text = std::move(*changed);
+  else if (!is_changed)
+    return reader.ReadFile(file.c_str());
+  std::istringstream stream(std::move(text));
   return reader.ReadStream(file.c_str(), stream);
+}
+
+/// The unit of the settings, or the millimetre, in place of one that the file does not state.
+void readUnit(const LengthUnits& units, const ImportSettings& settings, RawCad& cad) {
+  cad.states_unit = units.is_stated;
+  if (!units.remark.empty()) cad.warnings.push_back(units.remark);
+  if (units.is_stated) return;
+  cad.unit_m = settings.unit_m.value_or(1e-3);
+  if (!settings.unit_m)
+    cad.warnings.emplace_back(
+        "states no unit of length: millimetres are assumed; set unit or --units for another unit");
 }
 
 template <class Reader>
 void transfer(Reader& reader, const std::string& file, const std::string& format,
-              const Handle(TDocStd_Document) & document, std::vector<std::string>& warnings) {
+              const Handle(TDocStd_Document) & document, const ImportSettings& settings, RawCad& cad) {
+  std::vector<std::string>& warnings = cad.warnings;
   reader.SetNameMode(true);
   reader.SetColorMode(true);
   if (readText(basic(reader), file, format) != IFSelect_RetDone)
@@ -355,6 +372,9 @@ void transfer(Reader& reader, const std::string& file, const std::string& format
   const Damage damage = damageOf(basic(reader).Model());
   if (!damage.lost_geometry.empty()) throw unreadable(file, format, damage.lost_geometry);
   if (!damage.remark.empty()) warnings.push_back(damage.remark);
+  const LengthUnits units = lengthUnits(basic(reader).Model());
+  if (!units.fault.empty()) throw unreadable(file, format, units.fault);
+  readUnit(units, settings, cad);
   Handle(TDocStd_Document) target = document;
   if (!reader.Transfer(target)) throw unreadable(file, format, "no shape could be made from it");
   const LostShapes lost = lostShapes(basic(reader));
@@ -396,12 +416,12 @@ RawCad read(const std::string& file, const std::string& format, const ImportSett
     STEPCAFControl_Controller::Init();  // defines the static below
     Interface_Static::SetCVal("xstep.cascade.unit", "MM");
     STEPCAFControl_Reader reader;
-    transfer(reader, file, format, document.get(), cad.warnings);
+    transfer(reader, file, format, document.get(), settings, cad);
   } else {
     IGESControl_Controller::Init();
     Interface_Static::SetCVal("xstep.cascade.unit", "MM");
     IGESCAFControl_Reader reader;
-    transfer(reader, file, format, document.get(), cad.warnings);
+    transfer(reader, file, format, document.get(), settings, cad);
   }
   Tree(document.get(), settings, progress, cad).walk();
   return cad;
