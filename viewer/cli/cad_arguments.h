@@ -19,7 +19,7 @@ namespace vps::viewer::inline v0 {
 /// A part that would have more is read coarser: a check of it takes minutes.
 inline constexpr std::size_t kMostTriangles = 250'000;
 
-/// A warning.
+/// The warning where --units is given and not used.
 inline constexpr const char* kUnusedUnits = "states its unit itself, so that --units is not used";
 
 struct CadArguments {

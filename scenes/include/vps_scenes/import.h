@@ -17,14 +17,13 @@
 
 namespace vps::scenes::inline v0 {
 
-/// What of a file is one part.
+/// Which geometry of a file becomes one part.
 enum class PartPer {
-  /// A solid or a closed surface, and what the file has as one object. Open groups of an OBJ file that are
-  /// closed together are one, and so are connected shapes of VRML, of which exporters write one for each
-  /// face.
+  /// Each solid, closed surface or object of the file. Open groups of an OBJ file that together are closed
+  /// become one part, and so do connected shapes of VRML, since exporters write a shape for each face.
   Body,
-  Object,  ///< what the file has as an object, group or shape, also where open ones together are closed
-  File,    ///< all of the file, with its name
+  Object,  ///< each object, group or shape of the file, also where open ones together are closed
+  File,    ///< the whole file, under the file's name
 };
 
 struct ImportSettings {
@@ -80,7 +79,7 @@ struct ImportedCad {
   std::string format;  ///< "STEP", "STL", ...
   std::vector<ImportedPart> parts;
   std::vector<std::string> warnings;  ///< open edges, flipped facets and the like, one line each
-  /// All of it comes from files that state their unit, so that the one of the settings was not used.
+  /// All files state their unit, so that the unit of the settings was not used.
   bool states_unit = false;
 };
 
@@ -95,8 +94,8 @@ VPS_SCENES_API ImportedCad importCad(const std::string& file, const ImportSettin
                                      const Progress& progress = {});
 
 /// The parts of several files in one frame, as if they were one file, which has the name of the first. A
-/// warning says so where they seem to lie in frames of their own: all about the origin, and reaching into
-/// each other.
+/// warning is added where the files seem to lie in frames of their own, that is, where the parts of each lie
+/// about the origin and overlap those of another.
 VPS_SCENES_API ImportedCad importCad(const std::vector<std::string>& files,
                                      const ImportSettings& settings = {}, const Progress& progress = {});
 

@@ -77,7 +77,7 @@ void readAnew(const std::string& file, const ImportSettings& settings, const Pro
   }
 }
 
-/// All parts as one, in the frame of the file.
+/// All parts of the file as one part, in the frame of the file.
 ImportedPart wholeFile(const ImportedCad& cad) {
   ImportedPart whole;
   whole.name = import::stem(cad.file);

@@ -16,7 +16,7 @@ inline LoadError missingLibrary(const std::string& file, const std::string& form
   return {file, "", (format + " needs " + library).append(kLacks) + package + " and build again"};
 }
 
-/// By its words, since errors come from the reader's process as text.
+/// Recognizes the error by its words, since errors come from the reader's process as text.
 inline bool isMissingLibrary(const LoadError& error) {
   return std::string_view(error.what()).find(kLacks) != std::string_view::npos;
 }

@@ -59,8 +59,8 @@ struct Placed {
   Box box = {};  ///< in the world
   std::unique_ptr<const MeshDistance> distance = nullptr;
 
-  /// Whether a ball about this point of the part's frame fits into it. An open mesh has no inside here: what
-  /// is inside of it costs winding numbers, more than such a hint is worth.
+  /// Whether a ball about this point of the part's frame fits into the part. It fits into no open mesh:
+  /// winding numbers would tell its inside, and cost more than such a hint is worth.
   bool hasBall(const Vec3& p, double radius_m, std::size_t& queries) {
     if (!distance && checkMesh(part->mesh).isClosed()) distance = std::make_unique<MeshDistance>(part->mesh);
     if (!distance) return false;
@@ -82,8 +82,8 @@ Box middles(const Box& a, const Box& b, double radius_m) {
 /// The greatest number of distances that are computed, about 0.2 s.
 constexpr std::size_t kMostQueries = 100'000;
 
-/// Whether a ball of this radius fits into a part of each file at once, as far as it is found at points below
-/// the surface of a part of the first; and which parts these are.
+/// The names of two parts, one of each file, into both of which a ball of this radius fits at one place;
+/// nothing if there are none. Only places below the surfaces of the first file's parts are tried.
 std::optional<std::pair<std::string, std::string>> commonBall(OneFile& one, OneFile& other, double radius_m,
                                                               std::size_t& queries) {
   const std::size_t count = std::clamp<std::size_t>(30'000 / one.parts.size(), 20, 300);
@@ -111,10 +111,10 @@ std::optional<std::pair<std::string, std::string>> commonBall(OneFile& one, OneF
 
 std::string ownFramesWarning(const std::vector<ImportedPart>& parts, const std::vector<std::size_t>& ends,
                              std::size_t* query_count) {
-  // Of the smaller one's least extent: more than threads and press fits overlap.
+  // A fraction of the smaller file's least extent. Threads and press fits overlap by less.
   constexpr double kDeep = 0.1;
-  // What is inside of more triangles takes longer to prepare than such a hint is worth, and so do the boxes
-  // of more parts to compare.
+  // To prepare distances to more triangles, or to compare the boxes of more parts, takes longer than such a
+  // hint is worth.
   constexpr std::size_t kMostTriangles = 300'000, kMostParts = 3'000;
   std::size_t triangles = 0, own_count = 0;
   for (const ImportedPart& part : parts) triangles += part.mesh.triangles.size();

@@ -21,7 +21,7 @@ bool isLetter(char c) {
   return std::isalpha(static_cast<unsigned char>(c)) != 0 || static_cast<unsigned char>(c) >= 0x80;
 }
 
-/// Without what numbers an instance: digits in brackets, or after a separator, or the digits themselves.
+/// The name without the number of an instance: digits in brackets, behind a separator, or at the end.
 std::string withoutNumber(std::string name) {
   const auto endsIn = [&](std::string_view set) {
     return !name.empty() && set.find(name.back()) != std::string_view::npos;
@@ -39,7 +39,7 @@ std::string wordOf(const std::string& name) {
   return lower;
 }
 
-/// Words of exporters and kernels for things of which they know no name.
+/// Whether the name is a word that exporters and kernels write where they know no name.
 bool isOfExporter(const std::string& name) {
   const std::string word = wordOf(name);
   constexpr std::array<std::string_view, 10> kWords = {"nauo",
@@ -56,7 +56,8 @@ bool isOfExporter(const std::string& name) {
          word.starts_with("open cascade step translator") || word.starts_with("=>[");
 }
 
-/// Characters that an exporter could not write, or that are no text: replaced, of control, or mostly signs.
+/// Whether the name has replaced characters or those of control, or mostly signs, as an exporter writes it
+/// that lacks the characters.
 bool isGarbled(const std::string& name) {
   const auto letters =
       std::ranges::count_if(name, [](char c) { return isLetter(c) || isDigit(c) || c == ' '; });
@@ -64,9 +65,9 @@ bool isGarbled(const std::string& name) {
          name.find("??") != std::string::npos || 2 * letters < std::ssize(name);
 }
 
-/// One long word that changes between capitals, small letters and digits at every other place, and more than
-/// once from a small letter to a capital, as the identifiers of instances do: "MqXw0GXkVJeNj9w4".
-/// Designations as "DIN912M8x20A2K" and "LH_Arm_V2_01" do not.
+/// Whether the name is one long word that changes between capitals, small letters and digits at every other
+/// place, and more than once from a small letter to a capital, as the identifiers of instances do:
+/// "MqXw0GXkVJeNj9w4". Designations as "DIN912M8x20A2K" and "LH_Arm_V2_01" do not.
 bool isRandom(const std::string& name) {
   constexpr std::ptrdiff_t kLeast = 12;
   enum Kind { Separator, Digit, Capital, Small, Sign };
@@ -93,7 +94,7 @@ bool isRandom(const std::string& name) {
   return length >= kLeast && 2 * changes > length && capitals_within >= 2;
 }
 
-/// Words that any part could have.
+/// Whether the name is a word that any part could have.
 bool isGeneric(const std::string& name) {
   constexpr std::array<std::string_view, 12> kWords = {"part",       "body",    "component", "product",
                                                        "unnamed",    "no name", "group",     "instance",
@@ -101,7 +102,7 @@ bool isGeneric(const std::string& name) {
   return std::ranges::find(kWords, wordOf(name)) != kWords.end();
 }
 
-/// Long, of hexadecimal digits and separators, with several decimal ones.
+/// Whether the name is long and consists of hexadecimal digits and separators, with several decimal digits.
 bool isIdentifier(const std::string& name) {
   constexpr std::ptrdiff_t kLeast = 16, kLeastDigits = 4;
   const auto hex = std::ranges::count_if(

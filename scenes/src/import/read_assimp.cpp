@@ -96,7 +96,7 @@ class ReplacedFile : public Assimp::DefaultIOSystem {
   const std::string& bytes_;
 };
 
-/// Empty for what assimp writes in place of a name.
+/// The name of a node or mesh; empty for what assimp writes in place of a name.
 std::string nameFrom(const aiString& text) {
   const std::string name = text.C_Str();
   const bool is_placeholder = name.starts_with("<") || name.starts_with("nodes[") ||

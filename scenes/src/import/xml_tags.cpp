@@ -16,7 +16,7 @@ std::string_view withoutBlanks(std::string_view text) {
   return text.substr(0, text.find_last_not_of(kXmlBlank) + 1);
 }
 
-/// Behind the '>' of a tag, which may be within the values of attributes as well.
+/// The position behind the '>' that ends a tag; a '>' within the value of an attribute does not end it.
 std::size_t endOfTag(std::string_view xml, std::size_t at) {
   while ((at = xml.find_first_of(">\"'", at)) != std::string_view::npos && xml[at] != '>') {
     at = xml.find(xml[at], at + 1);
@@ -26,7 +26,8 @@ std::size_t endOfTag(std::string_view xml, std::size_t at) {
   return at == std::string_view::npos ? at : at + 1;
 }
 
-/// Behind what is no element: comments, unparsed text, instructions and declarations; `at` itself for others.
+/// The position behind a comment, unparsed text, an instruction or a declaration at `at`; `at` itself where
+/// none of these begins.
 std::size_t behindOther(std::string_view xml, std::size_t at) {
   const std::string_view text = xml.substr(at);
   const std::string_view end = text.starts_with("<!--")        ? "-->"

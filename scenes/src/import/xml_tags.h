@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The tags of an XML text, for the few that the readers' libraries do not give.
+// The tags of an XML text, for the few facts that the readers' libraries do not give.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,8 @@ struct XmlTag {
   std::size_t from = 0, end = 0;          ///< in the text, from '<' to after '>'
   bool is_begin = false, is_end = false;  ///< "<a/>" is both
 
-  /// Without blanks around it; nothing if there is no such attribute. Its references are not replaced.
+  /// Without blanks around it; nothing if there is no such attribute. References to
+  /// characters in it ("&lt;") are not replaced.
   [[nodiscard]] std::optional<std::string_view> value(std::string_view key) const;
 };
 

@@ -34,7 +34,7 @@ struct Release {
 /// Each class of lib3mf is a pointer to void in its interface.
 using Object = std::unique_ptr<NMR::PLib3MFBase, Release>;
 
-/// What f(arguments..., address) gives.
+/// The value that f(arguments..., address) writes to the address.
 template <class T, class F, class... Arguments>
 T valueOf(F f, Arguments... arguments) {
   T value{};
@@ -64,7 +64,7 @@ constexpr std::array<std::pair<std::string_view, double>, 6> kUnits = {
      {"centimeter", 1e-2},
      {"inch", 25.4e-3},
      {"foot", 0.3048},
-     {"meter", 1}}};  // as lib3mf's numbers
+     {"meter", 1}}};  // in the order of lib3mf's numbers
 
 std::string counted(std::size_t count, const std::string& thing) {
   return std::to_string(count) + " " + thing + (count == 1 ? " is" : "s are");
@@ -135,7 +135,7 @@ class Reader {
     return nullptr;
   }
 
-  /// That of the root model applies to all, by the specification.
+  /// The unit of the root model applies to all model files, by the specification.
   void readUnit() {
     const ModelFiles files = modelFiles(file_);
     requires_beams_ = files.root && std::ranges::any_of(files.root->required, [](const std::string& space) {
@@ -157,7 +157,8 @@ class Reader {
                               "', which 3MF does not have: millimetres are assumed; set unit or --units");
   }
 
-  /// What lib3mf found that breaks the specification. Slicers add attributes and metadata of their own.
+  /// Warns of what breaks the specification, as lib3mf finds it. Slicers add attributes and metadata of their
+  /// own.
   void addRemarks(const Object& reader) {
     constexpr std::array<DWORD, 7> kNoMatter = {
         NMR_ERROR_INVALIDMODELUNIT,  // see readUnit()
@@ -249,7 +250,7 @@ class Reader {
     readColors(object, triangle_count, part);
   }
 
-  /// What f gives, or `otherwise` where the file has no such colour.
+  /// The result of f, or `otherwise` where the file has no such colour.
   template <class F>
   Color colorOr(const Color& otherwise, F f) {
     try {
@@ -260,7 +261,8 @@ class Reader {
     }
   }
 
-  /// Of base materials and colour groups; a triangle whose corners have several colours has their mean.
+  /// Reads the colours of base materials and colour groups; a triangle whose corners have several colours has
+  /// their mean.
   void readColors(const Object& object, DWORD triangle_count, RawPart& part) {
     part.color = colorOr(part.color, [&] { return colorOfWhole(object, part.color); });
     const Object own = objectOf(NMR::lib3mf_meshobject_createpropertyhandler, object.get());

@@ -56,7 +56,7 @@ std::string_view parameterOf(std::string_view message) {
   return name.substr(name.rfind('.') + 1);
 }
 
-/// Words in the names of kinds that are no shapes: an unknown entity with one of them is no loss.
+/// Whether the name of an unknown kind has a word of kinds that are no shapes, so that it is no loss.
 bool isNoShape(std::string_view kind) {
   constexpr std::array<std::string_view, 12> kWords = {"ANNOTATION", "DRAUGHTING", "CALLOUT", "TEXT",
                                                        "LEADER",     "DIMENSION",  "SYMBOL",  "CAMERA",
@@ -139,18 +139,18 @@ class Finder {
     }
   }
 
-  /// Annotations, styles, tolerances, how exact the geometry is, and unknown entities: what refers to one of
-  /// these and needs it is damaged itself.
+  /// Whether it is an annotation, a style, a tolerance, an uncertainty or an unknown entity: an entity that
+  /// refers to one of these and needs it is damaged itself.
   static bool isNoGeometry(const Entity& entity) {
     const std::string_view type = entity->DynamicType()->Name();
     return type.starts_with("StepVisual_") || type.starts_with("StepDimTol_") ||
            isAny<StepBasic_UncertaintyMeasureWithUnit, StepData_UndefinedEntity>(entity);
   }
 
-  /// The first message on what of a needed entity is lost; empty if its geometry is whole.
+  /// The first message about lost geometry of a needed entity; empty if its geometry is whole.
   [[nodiscard]] std::string lossOf(int i) const {
-    // What says how exact, of which name, or where in an interface the geometry is. Open CASCADE computes
-    // pcurves that are missing, and takes units by their kind and factor, not by their exponents.
+    // These parameters give accuracy, names or identifiers, not shapes. Open CASCADE computes pcurves that
+    // are missing, and takes units by their kind and factor, not by their exponents.
     constexpr std::array<std::string_view, 10> kNoGeometry = {"name",
                                                               "id",
                                                               "reference_designator",
@@ -213,7 +213,7 @@ class Finder {
     const Handle(Interface_Check) check = model_->Check(model_->Number(representation), true);
     for (int k = 1; k <= check->NbFails(); ++k)
       if (parameterOf(check->CFail(k)) == "representation_item") ++lost;
-    // More are lost than are unknown where one is missing from the file, whatever it was.
+    // If more items are lost than are of unknown kinds, an item is missing from the file, and may be a shape.
     return has_shape && lost <= unknown ? "" : check->CFail(1);
   }
 
@@ -229,7 +229,7 @@ class Finder {
            !isAny<StepRepr_ShapeRepresentationRelationshipWithTransformation>(relationship);
   }
 
-  /// Errors of the whole file; that references lead nowhere is said by their entities as well.
+  /// The first error of the whole file; unresolved references are also errors of the entities that have them.
   [[nodiscard]] std::string globalLoss() const {
     const Handle(Interface_Check) global = model_->GlobalCheck(true);
     for (int k = 1; k <= global->NbFails(); ++k)

@@ -10,7 +10,7 @@ namespace vps::scenes::inline v0::import {
 
 struct Damage {
   std::string lost_geometry;  ///< in words; empty: all geometry that the file's parts need is there
-  std::string remark;         ///< on what was left out without loss of geometry; empty: nothing
+  std::string remark;         ///< on entities that are left out without loss of geometry; empty: none are
 };
 
 /// Open CASCADE continues with null pointers, zeros or defaults in place of what it could not read. In STEP,

@@ -90,7 +90,8 @@ class Placements {
                      }));
            });
   }
-  /// Whether a product or one of its parts has one; `seen` ends the search where products contain themselves.
+  /// Whether a product or one of its parts has a shape; `seen` ends the search where products contain
+  /// themselves.
   [[nodiscard]] bool hasShape(const Entity& product, std::set<Entity>& seen) const {
     if (product.IsNull() || !seen.insert(product).second) return false;
     if (anyItemOf(product, isShape)) return true;
@@ -106,7 +107,7 @@ class Placements {
   std::set<Entity> placed_;
 };
 
-/// Solids of which nothing was made, with the reason of the first.
+/// The number of solids that were not translated, with the reason for the first, in words.
 std::string leftOut(const Handle(Interface_InterfaceModel) & model,
                     const Transfer_TransientProcess& process) {
   std::string first;

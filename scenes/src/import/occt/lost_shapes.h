@@ -8,7 +8,7 @@
 
 namespace vps::scenes::inline v0::import {
 
-/// For a file that the reader transferred, in words; each is empty if there are none.
+/// Losses in a file that the reader has transferred, in words; a text is empty if there is no such loss.
 struct LostShapes {
   /// Instances of products with a shape that have no placement, so that the assembly lacks them.
   std::string unplaced;

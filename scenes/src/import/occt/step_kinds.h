@@ -29,7 +29,7 @@ bool isAny(const Entity& entity) {
   return !entity.IsNull() && (entity->IsKind(STANDARD_TYPE(Types)) || ...);
 }
 
-/// Of constructive solid geometry.
+/// Whether it is a primitive or an operation of constructive solid geometry.
 inline bool isPrimitive(const Entity& entity) {
   return isAny<StepShape_Block, StepShape_RightAngularWedge, StepShape_RightCircularCone,
                StepShape_RightCircularCylinder, StepShape_Sphere, StepShape_Torus, StepShape_BooleanResult,
