@@ -192,6 +192,7 @@ TEST_F(DamagedEntities, ASolidOfAPrimitiveKindIsLeftOutWithAWarning) {
   expectSame(*cad, truth, true, "block");
   ASSERT_EQ(cad->warnings.size(), 1U);
   EXPECT_NE(cad->warnings[0].find("1 solid is left out"), std::string::npos) << cad->warnings[0];
+  EXPECT_EQ(cad->missing, cad->warnings[0]);
   EXPECT_NE(cad->warnings[0].find("(Block) is of a kind that is not read"), std::string::npos)
       << cad->warnings[0];
 }

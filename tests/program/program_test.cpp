@@ -142,6 +142,13 @@ TEST_F(Program, MeshesThatMakeTheAnswerUncertainGiveWarnings) {
   const std::string settings = " --units mm --spacing 2mm --voxel ";
   EXPECT_TRUE(run("query plate.stl open.stl" + settings + "1mm").err.starts_with("vps: warning: open.stl: "));
   EXPECT_TRUE(run("import open.stl -o new --units mm").err.starts_with("vps: warning: open.stl: "));
+  write("patch.obj",
+        "o tip\nv 0 0 0\nv 10 0 0\nv 0 10 0\nv 0 0 10\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
+        "cstype bezier\ndeg 1 1\nsurf 0 1 0 1 1 2 3 4\nend\n");
+  EXPECT_EQ(run("import patch.obj -o lacking --units mm").status, 0);
+  EXPECT_NE(run("simulate lacking/scene.toml --seconds 0.001 --voxel 1mm --spacing 2mm")
+                .err.find("lacks geometry of its CAD file: has 1 free-form surface"),
+            std::string::npos);
   const std::string block = VPS_SOURCE_DIR "/scenes/bearing_block/bearing_block.glb";
   EXPECT_NE(run("import " + block + " -o block --units inch").err.find("--units is not used"),
             std::string::npos);

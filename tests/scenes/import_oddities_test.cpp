@@ -126,6 +126,10 @@ TEST_F(ImportOddities, OfObjFreeFormSurfacesAreToldOf) {
   expectBox(cad, 0, "box", 1e-3 * Vec3(4, 3, 2), file);
   ASSERT_EQ(cad.warnings.size(), 1U);
   EXPECT_EQ(cad.warnings[0], "has 1 free-form surface ('surf') that is not read; export triangles");
+  EXPECT_EQ(cad.missing, cad.warnings[0]);
+  EXPECT_EQ(
+      importCad(std::vector<std::string>{file, written("sound.obj", boxObj("o box\n"))}, settings).missing,
+      file + ": " + cad.missing);
 }
 
 TEST_F(ImportOddities, OfStlAByteOrderMarkChangesNothing) {

@@ -13,6 +13,7 @@
 #include "support/stl_box.h"
 #include "vps/load_error.h"
 #include "vps_scenes/scene.h"
+#include "vps_scenes/scene_text.h"
 
 namespace vps::scenes {
 namespace {
@@ -289,6 +290,15 @@ TEST_F(SceneFile, AFileOfSeveralObjectsIsOnePartIfAskedFor) {
   EXPECT_NEAR(bounds(scene.parts[2].part.mesh).size().x(), 60e-3, 1e-8);
   EXPECT_EQ(scene.parts[3].part.name, "right");
   EXPECT_NEAR(bounds(scene.parts[3].part.mesh).size().x(), 10e-3, 1e-8);
+}
+
+TEST_F(SceneFile, GeometryThatNoPartHasIsToldOfEachTime) {
+  const Scene scene = load("missing = '2 solids are left out'\n" + kPin);
+  EXPECT_EQ(scene.warnings,
+            std::vector<std::string>{"lacks geometry of its CAD file: 2 solids are left out"});
+  EXPECT_NE(sceneText(scene, {"plate.stl", "pin.stl"}, "").find("\nmissing = \"2 solids are left out\"\n"),
+            std::string::npos);
+  EXPECT_EQ(sceneText(load(kPin), {"plate.stl", "pin.stl"}, "").find("missing"), std::string::npos);
 }
 
 TEST_F(SceneFile, EveryMistakeIsReportedWithLineAndKey) {

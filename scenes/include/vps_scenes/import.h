@@ -81,6 +81,7 @@ struct ImportedCad {
   std::vector<std::string> warnings;  ///< open edges, flipped facets and the like, one line each
   /// All files state their unit, so that the unit of the settings was not used.
   bool states_unit = false;
+  std::string missing = {};  ///< geometry that no part has, in words, also among the warnings; empty: none
 };
 
 /// Reads STEP, IGES and BREP (Open CASCADE), .iv and .wrl (Coin), .3mf (lib3mf), and the formats of assimp.

@@ -161,6 +161,7 @@ struct Scene {
   std::string file;
   std::string name;
   std::vector<std::string> warnings;  ///< defects found in the CAD files, one line each
+  std::string missing;                ///< geometry of the CAD files that no part has, in words; empty: none
   std::vector<ScenePart> parts;
   std::vector<SceneStep> steps;
   Vec3 gravity_W = Vec3(0, 0, -9.81);

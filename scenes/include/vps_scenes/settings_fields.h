@@ -37,6 +37,8 @@ inline constexpr auto kSceneKeys = std::make_tuple(
         "read instead of `cad` where this build lacks the library of its format; it has the same part names"},
     Key{"deflection", "length", "`\"1um\"`",
         "greatest distance between a curved face and its triangles (STEP, IGES)"},
+    Key{"missing", "text", "none",
+        "geometry of the CAD file that no part has; each command warns of it, and `vps import` writes it"},
     field("release_s", &Scene::release_s,
           "how long a mounted part stays dynamic before it joins the fixed field",
           {.range = kNotNegative, .type = "seconds"}),

@@ -67,6 +67,7 @@ void readAnew(const std::string& file, const ImportSettings& settings, const Pro
     raw = settings.in_own_process ? import::inOwnProcess(file, reader.library, settings, progress, read)
                                   : read(progress);
   cad.states_unit = raw->states_unit;
+  cad.missing = raw->missing;
   if (settings.part_per == PartPer::Object) raw->open_shapes = import::Shapes::AreParts;
   import::finish(std::move(*raw), cad);
   for (ImportedPart& part : cad.parts) {
@@ -151,6 +152,10 @@ ImportedCad importCad(const std::vector<std::string>& files, const ImportSetting
     nameTreeApart(one, all);
     std::ranges::move(one.parts, std::back_inserter(all.parts));
     ends.push_back(all.parts.size());
+    if (!one.missing.empty())
+      all.missing.append(all.missing.empty() ? "" : "; ")
+          .append(files.size() > 1 ? file + ": " : "")
+          .append(one.missing);
     for (const std::string& warning : one.warnings)
       all.warnings.push_back(files.size() > 1 ? file + ": " + warning : warning);
   }

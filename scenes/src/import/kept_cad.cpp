@@ -20,6 +20,7 @@ void transferParts(Io& io, ImportedCad& cad) {
   transferEach(io, cad.parts, [&](ImportedPart& part) { transfer(io, part); });
   transferLines(io, cad.warnings);
   transfer(io, cad.states_unit);
+  transferArray(io, cad.missing);
 }
 
 /// Whether all that its triangles name exists.
@@ -79,6 +80,7 @@ bool readKeptBytes(const std::string& bytes, ImportedCad& cad) {
   cad.parts = std::move(found.parts);
   cad.warnings = std::move(found.warnings);
   cad.states_unit = found.states_unit;
+  cad.missing = std::move(found.missing);
   return true;
 }
 

@@ -107,12 +107,13 @@ void transfer(Io& io, RawPart& part) {
 
 template <class Io>
 void transfer(Io& io, RawCad& cad) {
-  auto& [parts, warnings, unit_m, states_unit, open_shapes] = cad;
+  auto& [parts, warnings, unit_m, states_unit, open_shapes, missing] = cad;
   transferEach(io, parts, [&](RawPart& part) { transfer(io, part); });
   transferLines(io, warnings);
   transfer(io, unit_m);
   transfer(io, states_unit);
   transfer(io, open_shapes);
+  transferArray(io, missing);
 }
 
 template <class Io>

@@ -323,10 +323,10 @@ RawCad readAssimp(const std::string& file, const std::string& format, const Impo
   if (is_gltf && settings.up) keepFileAxes(cad);
   if (format == "OBJ") cad.open_shapes = Shapes::BoundOne;
   if (text && text->surface_count > 0)
-    cad.warnings.push_back("has " + std::to_string(text->surface_count) +
-                           (text->surface_count == 1 ? " free-form surface ('surf') that is"
-                                                     : " free-form surfaces ('surf') that are") +
-                           " not read; export triangles");
+    cad.warnOfMissing("has " + std::to_string(text->surface_count) +
+                      (text->surface_count == 1 ? " free-form surface ('surf') that is"
+                                                : " free-form surfaces ('surf') that are") +
+                      " not read; export triangles");
   for (RawPart& part : cad.parts) {
     if (text) {
       part.name = text->nameIn(part.name);

@@ -44,6 +44,12 @@ struct RawCad {
   double unit_m = 1;         ///< metres per file unit
   bool states_unit = false;  ///< The file states its unit, so that the unit of the settings is not used.
   Shapes open_shapes = Shapes::AreParts;
+  std::string missing;  ///< geometry that no part has, in words, also among the warnings
+
+  void warnOfMissing(const std::string& words) {
+    warnings.push_back(words);
+    missing.append(missing.empty() ? "" : "; ").append(words);
+  }
 };
 
 /// Each throws LoadError; `format` is as detected, e.g. "STEP".

@@ -179,6 +179,7 @@ Scene sceneOf(const ImportedCad& cad) {
   scene.file = cad.file;
   scene.name = std::filesystem::path(cad.file).stem().string();
   scene.warnings = cad.warnings;
+  scene.missing = cad.missing;
   for (const ImportedPart& imported : cad.parts) {
     ScenePart part;
     part.part.name = imported.name;

@@ -191,11 +191,13 @@ void fields(Archive& archive, T& x) {
       archive(std::invoke(row.get, x));
   });
 }
-/// A wish is not archived: a recorded scene has its fidelity.
+/// A wish is not archived, since a recorded scene has its fidelity; nor are warnings and `missing`, which the
+/// command that records has printed.
 template <typename Archive, Either<Scene> T>
 void fields(Archive& archive, T& x) {
-  [[maybe_unused]] auto& [file, name, warnings, parts, steps, gravity, fidelity, wish, choice, chooses_voxel,
-                          chooses_spacing, resolution, coupling, device, hand, record, release_s] = x;
+  [[maybe_unused]] auto& [file, name, warnings, missing, parts, steps, gravity, fidelity, wish, choice,
+                          chooses_voxel, chooses_spacing, resolution, coupling, device, hand, record,
+                          release_s] = x;
   archive(file, name, parts, steps, gravity);
   settings(archive, fidelity, kFidelityFields);
   settings(archive, coupling, kCouplingFields);

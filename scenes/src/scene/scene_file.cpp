@@ -124,6 +124,8 @@ class SceneReader {
     }
     top_.numbers("gravity", 3, scene_.gravity_W.data());
     readFields(top_, scene_, kSceneKeys);
+    if (top_.text("missing", scene_.missing) && !scene_.missing.empty())
+      scene_.warnings.push_back("lacks geometry of its CAD file: " + scene_.missing);
     import_.unit_m = context_.unit_m;
     top_.length("deflection", import_.deflection_m, kPositive);
     readTable("material", material_, kMaterialFields);
@@ -154,6 +156,9 @@ class SceneReader {
         if (const std::string line = file + ": " + warning;
             std::ranges::find(scene_.warnings, line) == scene_.warnings.end())
           scene_.warnings.push_back(line);
+      if (const std::string words = file + ": " + cad.missing;
+          !cad.missing.empty() && scene_.missing.find(words) == std::string::npos)
+        scene_.missing.append(scene_.missing.empty() ? "" : "; ").append(words);
       return cad;
     } catch (const LoadError& error) {
       keys.fail(key, std::string("cannot be used: ") + error.what());

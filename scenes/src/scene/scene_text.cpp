@@ -177,6 +177,7 @@ std::string sceneText(const Scene& scene, const std::vector<std::string>& files,
   if (scene.gravity_W != Scene().gravity_W)
     out += "gravity = [" + tomlNumber(scene.gravity_W.x(), 17) + ", " + tomlNumber(scene.gravity_W.y(), 17) +
            ", " + tomlNumber(scene.gravity_W.z(), 17) + "]\n";
+  if (!scene.missing.empty()) out += "missing = " + tomlText(scene.missing) + "\n";
   out += linesOf(scene, kSceneKeys) + "\n";
   for (std::size_t i = 0; i < scene.parts.size(); ++i) out += partText(scene.parts[i], files[i]);
   for (const SceneStep& step : scene.steps) out += stepText(step, scene.parts[step.part]);

@@ -234,8 +234,8 @@ class Reader {
                       "has a lattice of beams, which the file says is needed and which is not read; export "
                       "it as a mesh");
     if (beam_count > 0)
-      cad_.warnings.push_back(whose + " has a lattice of " + std::to_string(beam_count) +
-                              " beams, which are not read; export it as a mesh");
+      cad_.warnOfMissing(whose + " has a lattice of " + std::to_string(beam_count) +
+                         " beams, which are not read; export it as a mesh");
     if (vertex_count == 0 || triangle_count == 0) {
       cad_.warnings.push_back(whose + " has no triangles, and is left out");
       return;

@@ -362,7 +362,6 @@ void readUnit(const LengthUnits& units, const ImportSettings& settings, RawCad& 
 template <class Reader>
 void transfer(Reader& reader, const std::string& file, const std::string& format,
               const Handle(TDocStd_Document) & document, const ImportSettings& settings, RawCad& cad) {
-  std::vector<std::string>& warnings = cad.warnings;
   reader.SetNameMode(true);
   reader.SetColorMode(true);
   if (readText(basic(reader), file, format) != IFSelect_RetDone)
@@ -371,7 +370,7 @@ void transfer(Reader& reader, const std::string& file, const std::string& format
   nameColors(basic(reader).Model());
   const Damage damage = damageOf(basic(reader).Model());
   if (!damage.lost_geometry.empty()) throw unreadable(file, format, damage.lost_geometry);
-  if (!damage.remark.empty()) warnings.push_back(damage.remark);
+  if (!damage.remark.empty()) cad.warnings.push_back(damage.remark);
   const LengthUnits units = lengthUnits(basic(reader).Model());
   if (!units.fault.empty()) throw unreadable(file, format, units.fault);
   readUnit(units, settings, cad);
@@ -379,7 +378,7 @@ void transfer(Reader& reader, const std::string& file, const std::string& format
   if (!reader.Transfer(target)) throw unreadable(file, format, "no shape could be made from it");
   const LostShapes lost = lostShapes(basic(reader));
   if (!lost.unplaced.empty()) throw unreadable(file, format, lost.unplaced);
-  if (!lost.left_out.empty()) warnings.push_back(lost.left_out);
+  if (!lost.left_out.empty()) cad.warnOfMissing(lost.left_out);
 }
 
 RawCad read(const std::string& file, const std::string& format, const ImportSettings& settings,
