@@ -11,6 +11,7 @@
 #include "search/random.h"
 #include "solver/penalty_contacts.h"
 #include "solver/step_check.h"
+#include "vps/feature_motion.h"
 
 namespace vps::bullet {
 namespace {
@@ -94,6 +95,38 @@ TEST(PairCheck, MissesNothingInAStepThatStaysFree) {
       EXPECT_EQ(scene.freeShareTo(scene.moved(by)), 1) << gap_m << ' ' << by.transpose();
     }
   }
+}
+
+// A way is not looked at again where one was clear that ends within a twentieth of the rest gap of it; it is
+// where it ends farther from it.
+TEST(PairCheck, AClearWayHoldsForWaysThatEndBesideIt) {
+  if (!test::kIsDouble) GTEST_SKIP() << "poses are coarser than a nanometre";
+  constexpr double kGap_m = 100e-6, kMissed_m = FeatureMotion::kLeastShare * FeatureMotion::kRest_m;
+  const auto missesAt = [&](BoxAbovePlate& scene, double gap_m) {
+    return !scene.missedAt(scene.moved(Vec3(0, 0, gap_m - kGap_m))).empty();
+  };
+  BoxAbovePlate without(rotationFromVector({0.4, 0, 0}), kGap_m),
+      with(rotationFromVector({0.4, 0, 0}), kGap_m);
+  EXPECT_TRUE(missesAt(without, kMissed_m - 2e-9));
+  EXPECT_FALSE(missesAt(with, kMissed_m + 2e-9));
+  EXPECT_FALSE(missesAt(with, kMissed_m - 2e-9));
+  EXPECT_TRUE(missesAt(with, kMissed_m - 4e-9));
+}
+
+// A ball of Bullet's grows between two steps, in which the part above it stays where it is.
+TEST(PairCheck, AClearWayEndsWhereAShapeChangesItsSize) {
+  constexpr double kRadius_m = 50e-3;
+  btSphereShape ball(toBt(kRadius_m));
+  CheckedPair scene;
+  btRigidBody& fixed = scene.world.addShape(ball, 0, Vec3::Zero(), Pose::translation({0, 0, -kRadius_m}));
+  btRigidBody& other = scene.world.add(BoxAbovePlate::sharedBox(), Pose::translation({0, 0, 5e-3 + 100e-6}));
+  scene.detect(fixed, other);
+  ASSERT_TRUE(scene.check);
+  const Pose X_end(scene.X_WB[1].R, scene.X_WB[1].p - Vec3(0, 0, 90e-6));
+  EXPECT_TRUE(scene.missedAt(X_end).empty());
+  ball.setUnscaledRadius(toBt(kRadius_m + 50e-6));
+  scene.detect(fixed, other);
+  EXPECT_FALSE(scene.missedAt(X_end).empty());
 }
 
 // A corner, an edge or a face goes into the plate: the deepest contact that is reported has the exact depth.

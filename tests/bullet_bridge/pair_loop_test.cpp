@@ -94,8 +94,8 @@ double deepest_m(World& world, const Built& fixed, const Built& thrown, const Po
 }
 
 // Corners and edges that turn at up to 50 rad/s and fly at up to 0.8 m/s meet faces and edges. One body
-// slides over the end of an edge in a step that bends by 32 um, and ends 15 to 16 um deep: Bullet's solver
-// keeps the rows of the start of a step.
+// slides over the end of an edge in a step that bends by 32 um. Since the next edge is found there, that body
+// later ends a step 15 to 16 um deep; why is not known.
 TEST_P(PairLoop, FindsTheCornersAndEdgesOfAThrownBody) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> uniform(-1, 1);

@@ -107,39 +107,47 @@ void dropAll(Random& random, std::vector<Mesh> meshes, double above_m, double as
   }
 }
 
+struct Range {
+  double from, to;
+  [[nodiscard]] double draw(Random& random) const { return random.uniform(from, to); }
+};
+
+/// Bodies that fall into a tray.
+struct Fall {
+  Range size_m;         ///< of the greatest body
+  Range room;           ///< half the tray's width, in sizes
+  int fewest, choices;  ///< bodies: the fewest, and how many counts there are
+  Range seconds;
+};
+
+/// @param drawMesh  called with the size, once for each body
+template <typename DrawMesh>
+Case drawFall(Random& random, const Fall& fall, const DrawMesh& drawMesh) {
+  const double friction = drawFriction(random), size_m = fall.size_m.draw(random);
+  Case made;
+  made.bodies = makeTray(fall.room.draw(random) * size_m, 3 * size_m, friction);
+  std::vector<Mesh> meshes(static_cast<std::size_t>(fall.fewest + random.index(fall.choices)));
+  for (Mesh& mesh : meshes) mesh = drawMesh(size_m);
+  dropAll(random, std::move(meshes), 0, 0, friction, made.bodies);
+  made.seconds = fall.seconds.draw(random);
+  return made;
+}
+
 }  // namespace
 
 Case drawTetrahedra(Random& random) {
-  const double friction = drawFriction(random), size_m = random.uniform(10e-3, 40e-3);
-  Case made;
-  made.bodies = makeTray(random.uniform(0.6, 1.2) * size_m, 3 * size_m, friction);
-  std::vector<Mesh> meshes(static_cast<std::size_t>(1 + random.index(3)));
-  for (Mesh& mesh : meshes) mesh = drawTetrahedron(random, size_m);
-  dropAll(random, std::move(meshes), 0, 0, friction, made.bodies);
-  made.seconds = random.uniform(0.3, 1);
-  return made;
+  return drawFall(random, {{10e-3, 40e-3}, {0.6, 1.2}, 1, 3, {0.3, 1}},
+                  [&](double size_m) { return drawTetrahedron(random, size_m); });
 }
 
 Case drawPrisms(Random& random) {
-  const double friction = drawFriction(random), size_m = random.uniform(8e-3, 25e-3);
-  Case made;
-  made.bodies = makeTray(random.uniform(0.8, 2) * size_m, 3 * size_m, friction);
-  std::vector<Mesh> meshes(static_cast<std::size_t>(2 + random.index(4)));
-  for (Mesh& mesh : meshes) mesh = drawPrism(random, random.uniform(0.5, 1) * size_m);
-  dropAll(random, std::move(meshes), 0, 0, friction, made.bodies);
-  made.seconds = random.uniform(0.5, 1.5);
-  return made;
+  return drawFall(random, {{8e-3, 25e-3}, {0.8, 2}, 2, 4, {0.5, 1.5}},
+                  [&](double size_m) { return drawPrism(random, random.uniform(0.5, 1) * size_m); });
 }
 
 Case drawRings(Random& random) {
-  const double friction = drawFriction(random), size_m = random.uniform(10e-3, 30e-3);
-  Case made;
-  made.bodies = makeTray(random.uniform(0.6, 1.2) * size_m, 3 * size_m, friction);
-  std::vector<Mesh> meshes(static_cast<std::size_t>(2 + random.index(3)));
-  for (Mesh& mesh : meshes) mesh = drawRing(random, random.uniform(0.5, 1) * size_m);
-  dropAll(random, std::move(meshes), 0, 0, friction, made.bodies);
-  made.seconds = random.uniform(0.3, 1);
-  return made;
+  return drawFall(random, {{10e-3, 30e-3}, {0.6, 1.2}, 2, 3, {0.3, 1}},
+                  [&](double size_m) { return drawRing(random, random.uniform(0.5, 1) * size_m); });
 }
 
 Case drawStairs(Random& random) {

@@ -40,7 +40,6 @@ struct PairCheck::Motion {
   Vec3 moved_W = Vec3::Zero(), turned = Vec3::Zero();  ///< of body 0 relative to body 1
   double bend_m = 0;                                   ///< how far a point's path may bend from its tangent
 
-  [[nodiscard]] static Pose X_01(const Pose (&X)[2]) { return X[0].inverse() * X[1]; }
   /// True if the bodies turn too far against each other from a share of the step to its end for a plane to be
   /// carried along: on a curved face another plane is the nearest one then.
   [[nodiscard]] bool turnsFar(double share) const { return (1 - share) * turn_rad > kContactTurn_rad; }

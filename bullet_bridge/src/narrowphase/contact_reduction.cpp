@@ -66,10 +66,11 @@ Brief briefOf(const Candidate& c, double cell_m, const Pose& X_GW, std::uint32_t
   constexpr double kMost = 1e9;  // cells; beyond them positions are no longer told apart
   // Evenly spaced points and flat faces would lie on the borders of cells, where rounding decides: by these
   // shares of a cell they do not. Test: the bridge's tests with Bullet in single precision.
-  static const Vec3 kOffset(0.05, 0.079, 0.104);
-  const Vec3 at = X_GW * c.p_W / cell_m + kOffset;
+  constexpr double kOffset[3] = {0.05, 0.079, 0.104};
+  const Vec3 p_G = X_GW * c.p_W;
   for (int k = 0; k < 3; ++k)
-    brief.at[k] = static_cast<std::int32_t>(std::floor(std::clamp(at[k], -kMost, kMost)));
+    brief.at[k] =
+        static_cast<std::int32_t>(std::floor(std::clamp(p_G[k] / cell_m + kOffset[k], -kMost, kMost)));
   return brief;
 }
 

@@ -220,7 +220,7 @@ void storeSelection(const std::vector<Candidate>& chosen, const PairView& pair, 
                     Selection& selection) {
   selection.contacts = chosen;
   selection.is_valid = true;
-  selection.X_01 = pair.X_WS[0].inverse() * pair.X_WS[1];
+  selection.X_01 = pair.X_01();
   selection.X_W0 = pair.X_WS[0];
   selection.V = motion.V;
   for (int i = 0; i < 2; ++i) selection.key[i] = pair.key(i);
@@ -232,11 +232,7 @@ bool hasNotMoved(const Selection& selection, const PairView& pair, const Relativ
   for (int i = 0; i < 2; ++i)
     if (!(selection.key[i] == pair.key(i))) return false;
   if (reach_m(motion) > selection.reach_m + kSamePlace_m) return false;
-  const Pose X_01 = pair.X_WS[0].inverse() * pair.X_WS[1];
-  const Pose moved = X_01 * selection.X_01.inverse();  // of body 1, in body 0
-  const Vec3 center_0 = pair.X_WS[0].inverse() * pair.center_W();
-  const double turned_rad = (moved.R - Mat3::Identity()).norm();
-  return (moved * center_0 - center_0).norm() + turned_rad * pair.radius_m() <= kSamePlace_m;
+  return pair.movedBy_m(pair.X_01() * selection.X_01.inverse()) <= kSamePlace_m;
 }
 
 double motionChange_m(const Selection& selection, const PairView& pair, const RelativeMotion& motion) {
@@ -246,9 +242,8 @@ double motionChange_m(const Selection& selection, const PairView& pair, const Re
 }
 
 CandidateMotion motionSince(const Selection& selection, const PairView& pair) {
-  const Pose X_01 = pair.X_WS[0].inverse() * pair.X_WS[1];
   const Pose body0_W = pair.X_WS[0] * selection.X_W0.inverse();
-  const Pose body1_W = pair.X_WS[0] * X_01 * selection.X_01.inverse() * pair.X_WS[0].inverse();
+  const Pose body1_W = pair.X_WS[0] * pair.X_01() * selection.X_01.inverse() * pair.X_WS[0].inverse();
   return {body0_W, body1_W};
 }
 

@@ -20,6 +20,10 @@ Pose poseBetween(const PairView& pair, const Pose (&X_WS)[2]) {
   return (X_WS[0] * pair.shape[0]->X_SM()).inverse() * (X_WS[1] * pair.shape[1]->X_SM());
 }
 
+double restGapOf_m(const PairView& pair) {
+  return FeatureMotion::rest_m(pair.shape[0]->features(), pair.shape[1]->features());
+}
+
 // True if the corner of a contact goes no deeper into the other body than tolerated, from where they meet to
 // the end of the step. In a far turn a corner that grazes a curved face would be held by the plane of one
 // facet of it, which leads away from that face.
@@ -46,7 +50,7 @@ void findContacts(const PairView& start, const EndPoses& end, CheckRound round, 
   state.features.check(start.shape[0]->features(), start.shape[1]->features(), start.X_01_models(), X_01_end,
                        round.isFirst(), found);
   if (round.isLate()) {
-    const double rest_m = FeatureMotion::rest_m(start.shape[0]->features(), start.shape[1]->features());
+    const double rest_m = restGapOf_m(start);
     std::erase_if(found, [&](const FeatureContact& c) {
       return c.gap_m(X_01_end) >= kHeldShare * std::min(rest_m, c.start_m);
     });
@@ -100,7 +104,7 @@ struct FeaturePlacer {
       : X_01(poseBetween(start, X_WS)),
         X_WM0(X_WS[0] * start.shape[0]->X_SM()),
         shape{start.shape[0], start.shape[1]},
-        rest_m(FeatureMotion::rest_m(start.shape[0]->features(), start.shape[1]->features())) {}
+        rest_m(restGapOf_m(start)) {}
   [[nodiscard]] Candidate operator()(const FeatureContact& c) const {
     Candidate at;
     at.n_W = X_WM0.R * c.normal_0(X_01);
@@ -206,6 +210,10 @@ bool hasFeatures(const PairView& pair, const Settings& settings) {
          !pair.shape[1]->features().isEmpty();
 }
 
+double restGap_m(const PairView& pair, const Settings& settings) {
+  return hasFeatures(pair, settings) ? restGapOf_m(pair) : FeatureMotion::kRest_m;
+}
+
 bool spinsFreely(const PairView& start, const Pose (&X_WS_end)[2], PairState& state) {
   const Settings& settings = state.context->settings;
   const double least_m = kToleratedShare * settings.contact_margin_m;
@@ -226,7 +234,7 @@ bool isSharp(const PairView& pair, const Candidate& c) {
 void markSharp(const PairView& pair, const Settings& settings, bool is_own,
                std::vector<Candidate>& contacts) {
   if (!hasFeatures(pair, settings)) return;
-  const double rest_m = FeatureMotion::rest_m(pair.shape[0]->features(), pair.shape[1]->features());
+  const double rest_m = restGapOf_m(pair);
   for (Candidate& c : contacts)
     if (is_own ? isSharp(pair, c) || c.is_flat : !c.is_flush) c.rest_m = rest_m;
 }

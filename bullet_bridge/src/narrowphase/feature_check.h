@@ -14,6 +14,8 @@ namespace vps::bullet::inline v0 {
 
 /// True if both bodies have exact surfaces, whose features can be compared.
 bool hasFeatures(const PairView& pair, const Settings& settings);
+/// The gap at which features of both bodies rest; of bodies without, that of large parts.
+double restGap_m(const PairView& pair, const Settings& settings);
 
 /// Adds the contacts of features that earlier steps lacked and that are still as near, in key order; at most
 /// 16, beyond the contact limit, which the selection has used up where a part lies on faces. Parts that rest

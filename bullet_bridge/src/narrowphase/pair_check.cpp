@@ -100,16 +100,6 @@ void PairCheck::linearise(const Pose (&X_WB_end)[2], std::vector<MissedContact>&
   relinearise(m, at_start, {Relinearising::Rows::Predicted, apartOf_m(state_.context->settings)}, out);
 }
 
-bool PairCheck::isClear(const Motion& m, const Placed& at_start, CheckRound round) const {
-  const PairView& pair = at_start.pair;
-  const double rest_m = hasFeatures(pair, state_.context->settings)
-                            ? FeatureMotion::rest_m(pair.shape[0]->features(), pair.shape[1]->features())
-                            : FeatureMotion::kRest_m;
-  return !m.turnsFar(0) && state_.clear_way.covers(m.X_01(m.start), m.X_01(m.end), round.isFirst(),
-                                                   m.start[0].inverse() * m.center_W, m.radius_m,
-                                                   FeatureMotion::kMissedShare * rest_m);
-}
-
 // Features, then points.
 void PairCheck::findOnWay(Motion& m, const Placed& at_start, CheckRound round,
                           std::vector<MissedContact>& out) {
@@ -137,13 +127,16 @@ void PairCheck::findMissed(const Pose (&X_WB_end)[2], CheckRound round, std::vec
   const double near_m = std::max(state_.context->settings.contact_margin_m, FeatureMotion::kRest_m);
   if (at_start.pair.leastDistance_m() > m.travel_m + near_m) return;
   const std::size_t had = out.size();
-  if (!isClear(m, at_start, round)) {
+  const Pose X_01_end = m.end[0].inverse() * m.end[1];
+  const double same_m = FeatureMotion::kMissedShare * restGap_m(at_start.pair, state_.context->settings);
+  if (m.turnsFar(0) || !state_.clear_way.covers(at_start.pair, X_01_end, round.isFirst(), same_m)) {
     if (spinsFreely(at_start.pair, m.end, state_)) return;
     if (round.isLate() && m.turnsFar(0)) m.path.settle();
     findOnWay(m, at_start, round, out);
-    if (out.size() == had && !round.isLate() && !m.turnsFar(0))
-      state_.clear_way.remember(m.X_01(m.start), m.X_01(m.end), round.isFirst());
-    if (out.size() != had) state_.is_incomplete = true;
+    if (out.size() != had)
+      state_.is_incomplete = true;
+    else if (!round.isLate() && !m.turnsFar(0))
+      state_.clear_way.remember(at_start.pair, X_01_end, round.isFirst());
   }
   if (m.travel_m <= m.tolerated_m) return;
   const double apart_m = apartOf_m(state_.context->settings);

@@ -58,7 +58,6 @@ class PairCheck final : public StepCheck {
   void measure(const PairView& start, Motion& motion) const;
   void relinearise(const Motion& motion, const Placed& at_start, const Relinearising& which,
                    std::vector<MissedContact>& out);
-  [[nodiscard]] bool isClear(const Motion& motion, const Placed& at_start, CheckRound round) const;
   void findOnWay(Motion& motion, const Placed& at_start, CheckRound round, std::vector<MissedContact>& out);
   void findAmongRefined(const Motion& motion, std::vector<Candidate>& missed) const;
   void findOverlaps(const Motion& motion, const PairView& pair, std::vector<Candidate>& found) const;

@@ -12,6 +12,7 @@
 #include "narrowphase/context.h"
 #include "narrowphase/manifold_writer.h"
 #include "narrowphase/motion.h"
+#include "narrowphase/pair_view.h"
 #include "narrowphase/query_state.h"
 #include "native_shapes/shape_key.h"
 #include "solver/contact_loop.h"
@@ -40,32 +41,33 @@ struct Selection {
   double sampling_m = 0;  ///< greatest size of an area from which only the most urgent points were considered
 };
 
-/// A way on which a check found nothing that was missed, as poses of body 1 relative to body 0. What it found
-/// holds for any way that begins and ends within a share of the rest gap of it: most pairs move alike in the
-/// rounds of a step, and what rests, from step to step.
+/// The way of a step on which a check found nothing that was missed. What it found holds for any way that
+/// begins and ends within a share of the rest gap of this one: most pairs move alike in the rounds of a step,
+/// and what rests, from step to step.
 class ClearWay {
  public:
   void forget() { is_known_ = false; }
-  void remember(const Pose& X_01_start, const Pose& X_01_end, bool with_small_gaps) {
-    start_ = X_01_start;
-    end_ = X_01_end;
+  void remember(const PairView& start, const Pose& X_01_end, bool with_small_gaps) {
+    X_01_start_ = start.X_01();
+    X_01_end_ = X_01_end;
+    for (const int i : {0, 1}) key_[i] = start.key(i);
     is_known_ = true;
     has_small_gaps_ = with_small_gaps;
   }
-  /// @param with_small_gaps   gaps that were small at the start are looked at, too
-  /// @param center, radius_m  of the smaller body, in the frame of body 0
-  [[nodiscard]] bool covers(const Pose& X_01_start, const Pose& X_01_end, bool with_small_gaps,
-                            const Vec3& center, double radius_m, double apart_m) const {
-    const auto isNear = [&](const Pose& a, const Pose& b) {
-      const Pose way = a * b.inverse();
-      return (way * center - center).norm() + rotationVector(way.R).norm() * radius_m <= apart_m;
+  /// @param with_small_gaps  gaps that were small at the start are looked at, too
+  /// @param apart_m          how far a point may be from where it was on this way
+  [[nodiscard]] bool covers(const PairView& start, const Pose& X_01_end, bool with_small_gaps,
+                            double apart_m) const {
+    const auto isNear = [&](const Pose& X_01, const Pose& had) {
+      return start.movedBy_m(X_01 * had.inverse()) <= apart_m;
     };
-    return is_known_ && (has_small_gaps_ || !with_small_gaps) && isNear(X_01_start, start_) &&
-           isNear(X_01_end, end_);
+    return is_known_ && (has_small_gaps_ || !with_small_gaps) && start.key(0) == key_[0] &&
+           start.key(1) == key_[1] && isNear(start.X_01(), X_01_start_) && isNear(X_01_end, X_01_end_);
   }
 
  private:
-  Pose start_, end_;
+  Pose X_01_start_, X_01_end_;
+  ShapeKey key_[2];  // of sides that are no Shape
   bool is_known_ = false, has_small_gaps_ = false;
 };
 

@@ -30,6 +30,14 @@ struct PairView {
   [[nodiscard]] SideView side(int i) const {
     return {shape[i], shape[i] ? X_WS[i] * shape[i]->X_SM() : X_WS[i], static_cast<std::uint8_t>(i)};
   }
+  /// Body 1 in body 0.
+  [[nodiscard]] Pose X_01() const { return X_WS[0].inverse() * X_WS[1]; }
+  /// Upper bound of how far a motion of body 1 in body 0 moves the bodies' points near the smaller one
+  /// against each other.
+  [[nodiscard]] double movedBy_m(const Pose& motion_0) const {
+    const Vec3 center_0 = X_WS[0].inverse() * center_W();
+    return (motion_0 * center_0 - center_0).norm() + (motion_0.R - Mat3::Identity()).norm() * radius_m();
+  }
   /// Models' frame of side 1 in that of side 0.
   [[nodiscard]] Pose X_01_models() const { return side(0).X_WM.inverse() * side(1).X_WM; }
   /// No points of the two bodies are nearer than this. 0 where their boxes overlap, or a side's is not known.
@@ -38,7 +46,7 @@ struct PairView {
     for (const Shape* each : shape)
       if (!each || !each->models().mesh) return 0;
     const Box &box0 = shape[0]->bounds(), &box1 = shape[1]->bounds();
-    const Pose X_01 = X_WS[0].inverse() * X_WS[1];
+    const Pose X_01 = this->X_01();
     return std::max(distance_m(box0, moved(box1, X_01)), distance_m(moved(box0, X_01.inverse()), box1));
   }
   /// Of a side that is no Shape; changes with its size.

@@ -90,16 +90,15 @@ class VPS_API FeatureMotion {
     double distance_m;  // at least this when they were last measured
     double path_m;      // way of the parts until then
   };
-  struct Step {
-    const Pose &start, &end;
-  };
+  /// A piece of the way of a step; poses of part 1 in part 0.
   struct Stretch {
-    Pose from, to;
+    const Pose &start, &end;  // of the step
+    const Pose &from, &to;    // of the piece
     bool is_last;
   };
   void search(const FeatureSet& part0, const FeatureSet& part1);
   void checkStretch(const FeatureSet& part0, const FeatureSet& part1, const Stretch& stretch,
-                    const Step& step, bool holds_close, std::vector<FeatureContact>& out);
+                    bool holds_close, std::vector<FeatureContact>& out);
 
   std::vector<Near> near_;
   std::vector<Pose> way_10_;  // scratch

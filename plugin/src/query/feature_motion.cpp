@@ -169,11 +169,10 @@ bool entersFromItsEnd(const FeatureSet& part0, const FeatureSet& part1, const st
   if (!findCrossingOf(part0, part1, feature, met, end.inverse(), contact) ||
       findCrossingOf(part0, part1, feature, met, start.inverse(), before))
     return false;
-  const double bend_m =
-      0.5 * travel_m(part0, part1, start, end) * rotationVector(end.R * start.R.transpose()).norm();
+  const Way way(ballAround(part0), ballAround(part1), start, end);
+  const double bend_m = 0.5 * travel_m(part0, part1, start, end) * way.turn_rad();
   thread_local std::vector<Pose> way_10;
-  way_10.clear();
-  Way(ballAround(part0), ballAround(part1), start, end).divide(way_10);
+  way.divide(way_10);
   placeAt(met.features, way_10, 0);
   met.reach.nearest = nearestOf(Kind::EdgeOnEdge, met.features.a, met.features.b);
   const double distance_m = met.reach.nearest.distance_m();
@@ -192,8 +191,7 @@ void FeatureMotion::check(const FeatureSet& part0, const FeatureSet& part1, cons
   const double stretch_m = longestStretch_m(ballAround(part0), ballAround(part1));
   const int stretches = static_cast<int>(
       std::clamp(std::ceil(travel_m(part0, part1, start, end) / stretch_m), 1.0, 10 * kMostStretches));
-  const Step step{start, end};
-  if (stretches == 1) return checkStretch(part0, part1, {start, end, true}, step, holds_close, out);
+  if (stretches == 1) return checkStretch(part0, part1, {start, end, start, end, true}, holds_close, out);
   const Way way(ballAround(part0), ballAround(part1), start, end);
   const double gap_m = rest_m(part0, part1);
   const std::size_t first = out.size();
@@ -203,7 +201,7 @@ void FeatureMotion::check(const FeatureSet& part0, const FeatureSet& part1, cons
     const bool is_last = k + 1 == stretches;
     const Pose to = is_last ? end : way.at((k + 1.0) / stretches).inverse();
     const std::size_t found = out.size();
-    checkStretch(part0, part1, {from, to, is_last}, step, holds_close && k == 0, out);
+    checkStretch(part0, part1, {start, end, from, to, is_last}, holds_close && k == 0, out);
     from = to;
     for (std::size_t i = found; i < out.size(); ++i) {
       out[i].share = (k + out[i].share) / stretches;
@@ -220,8 +218,8 @@ void FeatureMotion::check(const FeatureSet& part0, const FeatureSet& part1, cons
 
 // A contact counts if the gap is too small at the end of the step.
 void FeatureMotion::checkStretch(const FeatureSet& part0, const FeatureSet& part1, const Stretch& stretch,
-                                 const Step& step, bool holds_close, std::vector<FeatureContact>& out) {
-  const auto& [start, to, is_last] = stretch;
+                                 bool holds_close, std::vector<FeatureContact>& out) {
+  const Pose &start = stretch.from, &to = stretch.to;
   const double step_m = travel_m(part0, part1, start, to);
   const double gap_m = rest_m(part0, part1), looked_at_m = kLeastShare * gap_m;
   if (is_valid_) path_m_ += travel_m(part0, part1, last_, start);
@@ -265,13 +263,13 @@ void FeatureMotion::checkStretch(const FeatureSet& part0, const FeatureSet& part
       contact.share =
           (static_cast<double>(met.piece) + met.reach.share) / static_cast<double>(way_10_.size() - 1);
     } else {
-      if (!is_last || !are_edges ||
-          !entersFromItsEnd(part0, part1, near.feature, step.start, step.end, met, contact))
+      if (!stretch.is_last || !are_edges ||
+          !entersFromItsEnd(part0, part1, near.feature, stretch.start, stretch.end, met, contact))
         continue;
       contact.share = 1;
     }
     contact.start_m = startOf(part0, part1, contact, near.distance_m, start);
-    if (is_held || endsTooNear(contact, step.end, gap_m)) out.push_back(contact);
+    if (is_held || endsTooNear(contact, stretch.end, gap_m)) out.push_back(contact);
   }
 }
 

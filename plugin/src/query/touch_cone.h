@@ -10,12 +10,10 @@
 
 namespace vps::inline v0 {
 
-/// A corner touches a facet of another part only where its own surface rises from the facet all around: a
-/// nut's crest cannot touch the flank it faces away from. Slopes down to kSinTouch are left in, since facets
-/// of curved surfaces stand for each other there.
-///
-/// True if a corner's surface rises from a plane with this normal, or falls from it by no more than the
-/// slope.
+/// True if a corner's surface rises from a plane with this normal all around, or falls from it by no more
+/// than the slope. A corner touches a facet of another part only then: a nut's crest cannot touch the flank
+/// it faces away from. Slopes down to kSinTouch are left in, since facets of curved surfaces stand for each
+/// other there.
 /// @param rays  from the corner along its surface, unit; in the normal's frame
 inline bool risesFrom(std::span<const Vec3> rays, const Vec3& n, double slope) {
   return std::all_of(rays.begin(), rays.end(), [&](const Vec3& ray) { return n.dot(ray) >= -slope; });
