@@ -168,6 +168,7 @@ class Linearised {
   MissedContact without(const FeatureContact& c, PairState& state) const {
     MissedContact missed = (*this)(c, state);
     missed.end_gap_m = kOutOfReach_m;
+    missed.is_let_go = true;
     return missed;
   }
   [[nodiscard]] bool isOutOfPlace(const FeatureContact& c, const Relinearising& which,
@@ -275,10 +276,11 @@ void lineariseFeatures(const PairView& start, const EndPoses& end, const Relinea
                        PairState& state, std::vector<MissedContact>& out) {
   const Linearised at_end(start, end);
   for (const FeatureContact& c : state.missed_features)
-    if (at_end.hasLeft(c, which, state) && state.letGo(at_end.key(c)))
-      out.push_back(at_end.without(c, state));
-    else if (at_end.isOutOfPlace(c, which, state))
+    if (at_end.hasLeft(c, which, state)) {
+      if (state.letGo(at_end.key(c))) out.push_back(at_end.without(c, state));
+    } else if (at_end.isOutOfPlace(c, which, state)) {
       out.push_back(at_end(c, state));
+    }
 }
 
 void addMissedFeatures(const PairView& pair, const Settings& settings, PairState& state,

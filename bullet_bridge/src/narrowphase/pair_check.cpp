@@ -131,7 +131,7 @@ void PairCheck::findMissed(const Pose (&X_WB_end)[2], CheckRound round, std::vec
   const double same_m = FeatureMotion::kMissedShare * restGap_m(at_start.pair, state_.context->settings);
   if (m.turnsFar(0) || !state_.clear_way.covers(at_start.pair, X_01_end, round.isFirst(), same_m)) {
     if (spinsFreely(at_start.pair, m.end, state_)) return;
-    if (round.isLate() && m.turnsFar(0)) m.path.settle();
+    if ((round.isLate() || !round.is_own) && m.turnsFar(0)) m.path.settle();
     findOnWay(m, at_start, round, out);
     if (out.size() != had)
       state_.is_incomplete = true;
@@ -180,6 +180,7 @@ void PairCheck::relinearise(const Motion& m, const Placed& at_start, const Relin
       Candidate end = m.step.moved(now[k]);
       end.distance_m = kOutOfReach_m;
       put(m, at_start, now[k], end, out);
+      out.back().is_let_go = true;
     }
   }
 }

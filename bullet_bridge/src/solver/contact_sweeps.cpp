@@ -128,9 +128,12 @@ void ContactSweeps::addMissed(std::span<const MissedContact> missed, const btCon
       contacts_.push_back(c);
       continue;
     }
-    c.p_n = same->p_n;
-    c.p_t[0] = same->p_t[0];
-    c.p_t[1] = same->p_t[1];
+    // The impulse of a contact that is let go would make the start worse than none; see start().
+    if (!m.is_let_go) {
+      c.p_n = same->p_n;
+      c.p_t[0] = same->p_t[0];
+      c.p_t[1] = same->p_t[1];
+    }
     *same = c;
   }
 }

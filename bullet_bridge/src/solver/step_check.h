@@ -29,7 +29,8 @@ struct MissedContact {
   double end_gap_m = 0;  ///< at the end of the step, in the motion that was checked
   double kept_m = 0;  ///< least gap at the end of the step; negative: an overlap that existed before the step
   double rest_m = 0;  ///< the gap that the push restores
-  bool is_sharp = false;  ///< no other contact's push may take the gap
+  bool is_sharp = false;   ///< no other contact's push may take the gap
+  bool is_let_go = false;  ///< nothing faces it any more: it loses its impulse
 };
 
 /// Which check of a step it is.
