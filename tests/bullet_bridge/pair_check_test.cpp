@@ -34,9 +34,9 @@ struct CheckedPair {
         check = found;
     if (check && check->object(0) != &fixed) fixed_ = 1;
   }
-  std::vector<MissedContact> missedAt(const Pose& X_end) {
+  std::vector<MissedContact> missedAt(const Pose& X_end, CheckRound round = {}) {
     std::vector<MissedContact> missed;
-    check->findMissed(Ends(*this, X_end).X_WB, {}, missed);
+    check->findMissed(Ends(*this, X_end).X_WB, round, missed);
     return missed;
   }
   double freeShareTo(const Pose& X_end) { return check->freeShare(Ends(*this, X_end).X_WB); }
@@ -111,6 +111,30 @@ TEST(PairCheck, AClearWayHoldsForWaysThatEndBesideIt) {
   EXPECT_FALSE(missesAt(with, kMissed_m + 2e-9));
   EXPECT_FALSE(missesAt(with, kMissed_m - 2e-9));
   EXPECT_TRUE(missesAt(with, kMissed_m - 4e-9));
+}
+
+// A box is put from above a plate to below it: the way to the same end leads through the plate.
+TEST(PairCheck, AClearWayHoldsFromItsStartOnly) {
+  CheckedPair scene;
+  btRigidBody& plate =
+      scene.world.add(BoxAbovePlate::sharedPlate(), Pose::translation({0, 0, -5e-3}), true);
+  btRigidBody& box = scene.world.add(BoxAbovePlate::sharedBox(), Pose::translation({0, 0, 5e-3 + 100e-6}));
+  scene.detect(plate, box);
+  ASSERT_TRUE(scene.check);
+  const Pose X_end(scene.X_WB[1].R, scene.X_WB[1].p - Vec3(0, 0, 90e-6));
+  EXPECT_TRUE(scene.missedAt(X_end).empty());
+  box.setWorldTransform(toBt(Pose(X_end.R, X_end.p - Vec3(0, 0, 20e-3 + 110e-6))));
+  scene.detect(plate, box);
+  EXPECT_FALSE(scene.missedAt(X_end).empty());
+}
+
+// What a later round found clear has not been asked for gaps that were small at the start.
+TEST(PairCheck, AClearWayOfALaterRoundIsLookedAtForSmallGaps) {
+  if (!test::kIsDouble) GTEST_SKIP() << "poses are coarser than a nanometre";
+  BoxAbovePlate scene(rotationFromVector({0.4, 0.3, 0}), 15e-9);
+  const Pose X_end = scene.moved({1e-6, 0, 0});
+  EXPECT_TRUE(scene.missedAt(X_end, {1}).empty());
+  EXPECT_FALSE(scene.missedAt(X_end).empty());
 }
 
 // A ball of Bullet's grows between two steps, in which the part above it stays where it is.
