@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "recording/crc32.h"
 #include "vps_device/detail/bytes.h"
+#include "vps_device/detail/crc32.h"
 
 namespace vps::device {
 namespace {

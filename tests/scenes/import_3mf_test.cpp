@@ -6,9 +6,10 @@
 #include <fstream>
 #include <functional>
 #include <random>
+#include <utility>
 
+#include "import/stored_archive.h"
 #include "support/temporary_folder.h"
-#include "support/zip_archive.h"
 #include "vps/load_error.h"
 #include "vps_scenes/import.h"
 #include "vps_scenes/srgb.h"
@@ -57,7 +58,7 @@ struct File3mf {
            "</build></model>";
   }
   [[nodiscard]] std::string bytes() const {
-    test::ZipArchive zip;
+    import::StoredArchive zip;
     zip.add(
         "[Content_Types].xml",
         R"(<?xml version="1.0"?><Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types">)"
@@ -72,7 +73,7 @@ struct File3mf {
     const std::string text = modelText();
     zip.add(model, text.substr(0, text.size() - cut_bytes));
     for (const auto& [name, text] : files) zip.add(name, text);
-    return zip.bytes();
+    return std::move(zip).finish();
   }
 };
 
@@ -466,7 +467,7 @@ TEST_F(Import3mf, ADamagedFileIsReadOrRefused) {
     const std::string digits = "-0123456789.\"<>e";
     for (int k = 0; k < 3; ++k) text[random() % text.size()] = digits[random() % digits.size()];
     if (i % 3 == 0) text.resize(random() % text.size());
-    test::ZipArchive zip;
+    import::StoredArchive zip;
     zip.add(
         "[Content_Types].xml",
         R"(<?xml version="1.0"?><Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types">)"
@@ -477,7 +478,7 @@ TEST_F(Import3mf, ADamagedFileIsReadOrRefused) {
         R"(<Relationship Id="rel0" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel" )"
         R"(Target="/3D/3dmodel.model"/></Relationships>)");
     zip.add("3D/3dmodel.model", text);
-    tryToRead(zip.bytes(), false);
+    tryToRead(std::move(zip).finish(), false);
   }
 }
 

@@ -4,10 +4,9 @@
 #include <minizip/unzip.h>
 
 #include <array>
-#include <cstdint>
-#include <initializer_list>
 #include <memory>
 
+#include "import/stored_archive.h"
 #include "import/xml_tags.h"
 
 namespace vps::scenes::inline v0::import {
@@ -15,62 +14,6 @@ namespace {
 
 struct CloseZip {
   void operator()(void* zip) const { unzClose(zip); }
-};
-
-std::uint32_t crc32(std::string_view bytes) {
-  constexpr std::uint32_t kPolynomial = 0xEDB88320U;  // of the zip format
-  static const std::array<std::uint32_t, 256> table = [] {
-    std::array<std::uint32_t, 256> made{};
-    for (std::uint32_t i = 0; i < made.size(); ++i) {
-      made[i] = i;
-      for (int bit = 0; bit < 8; ++bit) made[i] = made[i] >> 1 ^ ((made[i] & 1) != 0 ? kPolynomial : 0);
-    }
-    return made;
-  }();
-  std::uint32_t crc = ~0U;
-  for (const char c : bytes) crc = crc >> 8 ^ table[(crc ^ static_cast<unsigned char>(c)) & 0xFF];
-  return ~crc;
-}
-
-/// A zip archive whose files are stored as they are [APPNOTE.TXT 6.3.10].
-class StoredArchive {
- public:
-  void add(std::string_view name, std::string_view bytes) {
-    const auto size = static_cast<std::uint32_t>(bytes.size());
-    std::string common;
-    put<std::uint16_t>(common, {20, 0, 0, 0, 0x21});  // version, flags, stored, time, date
-    put<std::uint32_t>(common, {crc32(bytes), size, size});
-    put<std::uint16_t>(common, {static_cast<std::uint16_t>(name.size()), 0});
-    directory_ += "PK\x01\x02";
-    put<std::uint16_t>(directory_, {20});
-    directory_ += common;
-    put<std::uint16_t>(directory_, {0, 0, 0});
-    put<std::uint32_t>(directory_, {0, static_cast<std::uint32_t>(files_.size())});
-    directory_ += name;
-    files_.append("PK\x03\x04").append(common).append(name).append(bytes);
-    ++count_;
-  }
-  [[nodiscard]] std::size_t size() const { return files_.size() + directory_.size(); }
-  /// With the directory behind the files; then nothing can be added.
-  std::string finish() && {
-    const auto files = static_cast<std::uint32_t>(files_.size());
-    files_ += directory_;
-    files_ += "PK\x05\x06";
-    put<std::uint16_t>(files_, {0, 0, count_, count_});
-    put<std::uint32_t>(files_, {static_cast<std::uint32_t>(directory_.size()), files});
-    put<std::uint16_t>(files_, {0});
-    return std::move(files_);
-  }
-
- private:
-  template <typename T>
-  static void put(std::string& to, std::initializer_list<T> values) {
-    for (const T value : values)
-      for (std::size_t byte = 0; byte < sizeof value; ++byte)
-        to += static_cast<char>(value >> (8 * byte) & 0xFF);
-  }
-  std::string files_, directory_;
-  std::uint16_t count_ = 0;
 };
 
 }  // namespace
