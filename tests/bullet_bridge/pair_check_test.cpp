@@ -116,8 +116,7 @@ TEST(PairCheck, AClearWayHoldsForWaysThatEndBesideIt) {
 // A box is put from above a plate to below it: the way to the same end leads through the plate.
 TEST(PairCheck, AClearWayHoldsFromItsStartOnly) {
   CheckedPair scene;
-  btRigidBody& plate =
-      scene.world.add(BoxAbovePlate::sharedPlate(), Pose::translation({0, 0, -5e-3}), true);
+  btRigidBody& plate = scene.world.add(BoxAbovePlate::sharedPlate(), Pose::translation({0, 0, -5e-3}), true);
   btRigidBody& box = scene.world.add(BoxAbovePlate::sharedBox(), Pose::translation({0, 0, 5e-3 + 100e-6}));
   scene.detect(plate, box);
   ASSERT_TRUE(scene.check);
