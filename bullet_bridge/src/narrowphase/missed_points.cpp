@@ -76,6 +76,32 @@ void PairCheck::findOverlaps(const Motion& m, const PairView& pair, std::vector<
   std::erase_if(found, [&](const Candidate& c) { return c.distance_m >= -m.tolerated_m; });
 }
 
+// A point was behind its plane before, so it did not enter through it. The plane that it had then decides. If
+// the point keeps to that one, and yet was outside before, then it slid past the edge of what it faced: its
+// way out is through the plane that it has now.
+bool PairCheck::refineAtStart(const Motion& m, const PairView& at_start, Candidate& start,
+                              Candidate& end) const {
+  Candidate then = start;
+  if (refineAt(at_start, m.travel_m, state_.context->settings, then)) {
+    const Candidate there = m.step.moved(then);
+    if (isMissed(then.distance_m, there.distance_m, m.tolerated_m)) {
+      start = then;
+      end = there;
+      return true;
+    }
+  }
+  if (!wasOutside(m, at_start, start)) return false;
+  start.distance_m = 0;
+  return true;
+}
+
+// True of a point behind its plane at the start, but beside the face that this is the plane of. Not of one
+// that is deeper inside than that.
+bool PairCheck::wasOutside(const Motion& m, const PairView& at_start, const Candidate& start) const {
+  return start.distance_m < -m.tolerated_m && !start.isCrossing() &&
+         !isInside(start.p_W, at_start.side(1 - start.side), kOutOfReach_m, m.tolerated_m);
+}
+
 void PairCheck::findAlongPath(const Motion& m, std::vector<Candidate>& missed) const {
   const Placed at_start(*this, m.start);
   const double range_m = std::max(queryRange_m(at_start.pair), m.tolerated_m);
@@ -94,11 +120,8 @@ void PairCheck::findAlongPath(const Motion& m, std::vector<Candidate>& missed) c
       if (m.turnsFar(share)) continue;  // later places tell
       if (m.turnsFar(0)) {
         if (!measureAtStart(m, at_start.pair, start)) continue;
-      } else if (start.distance_m < -m.tolerated_m) {
-        // It was behind this plane before, so it did not enter through it. The plane that it had then
-        // decides.
-        if (!refineAt(at_start.pair, m.travel_m, state_.context->settings, start)) continue;
-        end = m.step.moved(start);
+      } else if (start.distance_m < -m.tolerated_m && !refineAtStart(m, at_start.pair, start, end)) {
+        continue;
       }
       if (isMissed(start.distance_m, end.distance_m, m.tolerated_m)) entered.push_back(end);
     }
@@ -123,6 +146,7 @@ void PairCheck::emit(const Motion& m, std::vector<Candidate>& missed, std::vecto
     Candidate start = m.step.inverse().moved(end);
     if (m.turnsFar(0) && !end.isCrossing()) measureAtStart(m, at_start.pair, start);
     put(m, at_start, start, end, out);
+    if (wasOutside(m, at_start.pair, start)) out.back().kept_m = 0;
   }
 }
 

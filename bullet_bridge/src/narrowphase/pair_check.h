@@ -62,6 +62,8 @@ class PairCheck final : public StepCheck {
   void findAmongRefined(const Motion& motion, std::vector<Candidate>& missed) const;
   void findOverlaps(const Motion& motion, const PairView& pair, std::vector<Candidate>& found) const;
   void findAlongPath(const Motion& motion, std::vector<Candidate>& missed) const;
+  bool refineAtStart(const Motion& motion, const PairView& at_start, Candidate& start, Candidate& end) const;
+  [[nodiscard]] bool wasOutside(const Motion& motion, const PairView& at_start, const Candidate& start) const;
   [[nodiscard]] bool mayMissPoints(const Motion& motion, const PairView& at_start) const;
   [[nodiscard]] bool leavesCurve(const Motion& motion, const PairView& at_start, const Candidate& c) const;
   bool measureAtStart(const Motion& motion, const PairView& at_start, Candidate& start) const;

@@ -160,9 +160,30 @@ bool findCrossingOf(const FeatureSet& part0, const FeatureSet& part1, const std:
                       contact);
 }
 
-// True if edges cross at the end of the step, but not at its start, and come nearer than the way bends. An
-// edge that slides past the end of another dips below it on a way that bends, though its contact holds it at
-// the end; it then enters the next edge from that end, deeper than features are looked for.
+// Of the curve that an edge stands for, 0 for a straight one: a chord of length l leaves it by l^2 / 8 times
+// this.
+double curvature_per_m(const FeatureSet& part, const FeatureEdge& edge) {
+  if (!edge.is_curved) return 0;
+  const double sagitta_m = std::max(part.sagitta_m(edge.from), part.sagitta_m(edge.to));
+  return 8 * sagitta_m / (part.vertices()[edge.to] - part.vertices()[edge.from]).squaredNorm();
+}
+
+// How far edges that cross at the end may have been held from where they do: a row holds two straight lines
+// on a straight way. So it is off by what the way bends, and what curved edges do along the slide.
+double bendOf_m(const FeatureSet& part0, const FeatureSet& part1, const Pose& start, const Pose& end,
+                const FeatureContact& contact) {
+  const Way way(ballAround(part0), ballAround(part1), start, end);
+  const double slide_m = std::max((start.inverse() * contact.p[0] - end.inverse() * contact.p[0]).norm(),
+                                  (start * contact.p[1] - end * contact.p[1]).norm());
+  const double curvature = curvature_per_m(part0, part0.edges()[contact.feature[0]]) +
+                           curvature_per_m(part1, part1.edges()[contact.feature[1]]);
+  return 0.5 * travel_m(part0, part1, start, end) * way.turn_rad() + 0.5 * curvature * slide_m * slide_m;
+}
+
+// True if edges cross at the end of the step, but not at its start, and come nearer than the way and the
+// edges bend. An edge that slides past the end of another dips below it on a way that bends, though its
+// contact holds it at the end; it then enters the next edge from that end, deeper than features are looked
+// for. Along a fine rim it passes several such ends in a step.
 bool entersFromItsEnd(const FeatureSet& part0, const FeatureSet& part1, const std::uint32_t (&feature)[2],
                       const Pose& start, const Pose& end, Met& met, FeatureContact& contact) {
   FeatureContact before;
@@ -170,7 +191,7 @@ bool entersFromItsEnd(const FeatureSet& part0, const FeatureSet& part1, const st
       findCrossingOf(part0, part1, feature, met, start.inverse(), before))
     return false;
   const Way way(ballAround(part0), ballAround(part1), start, end);
-  const double bend_m = 0.5 * travel_m(part0, part1, start, end) * way.turn_rad();
+  const double bend_m = bendOf_m(part0, part1, start, end, contact);
   thread_local std::vector<Pose> way_10;
   way.divide(way_10);
   placeAt(met.features, way_10, 0);
