@@ -62,11 +62,14 @@ VPS_SCENES_API const char* toText(PairState state);
 struct CheckedPair {
   std::string a, b;
   PairState state = PairState::Apart;
-  double clearance_m = 0;           ///< least distance of the surfaces; 0 where the meshes overlap
-  double interference_depth_m = 0;  ///< of the meshes, as Overlap::depth_m
+  double clearance_m = 0;  ///< least distance of the surfaces; 0 where the meshes overlap
+  /// The greatest distance from a point of one part's surface inside the other part to the other's surface,
+  /// or the diameter of the greatest ball in both parts if that is more. Of the solids: it does not depend on
+  /// how faces are divided.
+  double interference_depth_m = 0;
   double interference_volume_m3 = 0;
   double volume_error_m3 = 0;
-  double error_m = 0;        ///< of clearance and depth
+  double error_m = 0;        ///< of clearance and depth, with what a search at its limit left open
   Vec3 at_W = Vec3::Zero();  ///< of the deepest overlap, or between the nearest points
   bool is_allowed = false;   ///< an overlap that the scene allows
   /// It cannot be told whether they overlap: a surface without an inside is there, see

@@ -16,7 +16,10 @@ inline constexpr auto kCheckedPairFields = std::make_tuple(
           "one)"),
     field("clearance_m", &CheckedPair::clearance_m,
           "least distance of the surfaces; 0 where the meshes overlap"),
-    field("interference_depth_m", &CheckedPair::interference_depth_m, "how deep the meshes overlap"),
+    field(
+        "interference_depth_m", &CheckedPair::interference_depth_m,
+        "greatest depth of a point of one part's surface below the other's, or diameter of the greatest ball "
+        "in both if that is more"),
     field("interference_volume_m3", &CheckedPair::interference_volume_m3, "shared volume of a clash"),
     field("volume_error_m3", &CheckedPair::volume_error_m3, "bound of the error of the volume"),
     field("error_m", &CheckedPair::error_m,

@@ -6,7 +6,9 @@
 #include <limits>
 
 #include "check/certain_overlap.h"
+#include "check/overlap_depth.h"
 #include "check/overlap_volume.h"
+#include "check/shared_ball.h"
 #include "check/surface_gap.h"
 
 namespace vps::scenes::inline v0 {
@@ -23,15 +25,18 @@ double uncertainty_m(const PlacedSurface& part) {
 
 /// Distance of the meshes from the faces that they stand for, where the parts are near each other.
 struct FaceError {
-  double chord_m = 0;  ///< of the facets
-  double crack_m = 0;  ///< widths of the cracks, of which either side may be the face
+  double chord_m = 0;       ///< of the facets of both
+  double most_chord_m = 0;  ///< of those of one of them
+  double crack_m = 0;       ///< widths of the cracks, of which either side may be the face
 };
 
 FaceError faceError(const PlacedSurface& a, const PlacedSurface& b, double near_m) {
   FaceError error;
   for (const auto& [part, other] : {std::pair{&a, &b}, std::pair{&b, &a}}) {
     const Box box_P = moved(grown(other->box_W, near_m), part->X_WP.inverse());
-    error.chord_m += part->surface->chordIn(box_P);
+    const double chord_m = part->surface->chordIn(box_P);
+    error.chord_m += chord_m;
+    error.most_chord_m = std::max(error.most_chord_m, chord_m);
     error.crack_m += part->surface->crackIn(box_P);
   }
   return error;
@@ -60,64 +65,50 @@ Overlap flushOverlap(const PlacedSurface& a, const PlacedSurface& b) {
   return deepest;
 }
 
-/// Twice the radius of a ball in both parts: how thick the shared region is. Bars that cross each other share
-/// more than their edges show, which pass near the other's faces. A search from points of a grid, so the
-/// greatest ball may be larger.
-Overlap sharedBall(const PlacedSurface& a, const PlacedSurface& b, const Box& both_W) {
-  constexpr int kGrid = 12;
-  constexpr int kRounds = 60;
-  const Pose X_AW = a.X_WP.inverse(), X_BW = b.X_WP.inverse();
-  const auto radiusAt = [&](const Vec3& p_W) {
-    const double in_a_m = -a.surface->solid().signedDistance(X_AW * p_W);
-    return in_a_m > 0 ? std::min(in_a_m, -b.surface->solid().signedDistance(X_BW * p_W)) : in_a_m;
-  };
-  const Vec3 cell = both_W.size() / kGrid;
-  Overlap best;
-  for (int i = 0; i < kGrid * kGrid * kGrid; ++i) {
-    const Vec3 at(i % kGrid + 0.5, i / kGrid % kGrid + 0.5, i / kGrid / kGrid + 0.5);
-    const Vec3 p_W = both_W.min + at.cwiseProduct(cell);
-    if (const double radius_m = radiusAt(p_W); radius_m > best.depth_m) best = {radius_m, p_W};
-  }
-  if (best.depth_m == 0) return best;
-  // A step to one of the 26 neighbours while that helps, then half of it. Steps along the axes alone end at
-  // the ridges between faces.
-  Vec3 step = 0.5 * cell;
-  for (int round = 0; round < kRounds; ++round) {
-    const Vec3 from_W = best.p_W;
-    for (int k = 0; k < 27; ++k) {
-      const Vec3 p_W = from_W + step.cwiseProduct(Vec3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1));
-      if (const double radius_m = radiusAt(p_W); radius_m > best.depth_m) best = {radius_m, p_W};
-    }
-    if (best.p_W == from_W) step *= 0.5;
-  }
-  return {2 * best.depth_m, best.p_W};
+/// What is inside is not certain at a crack, so that a search for the deepest point would find one: the depth
+/// is that of the edges, or the thickness where that is clearly more.
+OverlapDepth depthOfTorn(const PlacedSurface& a, const PlacedSurface& b, const Overlap& found,
+                         double error_m) {
+  const Overlap ball = SharedBalls(a, b).greatest();
+  if (const double thick_m = 2 * ball.depth_m; thick_m > found.depth_m + error_m)
+    return {thick_m, thick_m + kOverlapCertain_m, ball.p_W, true};
+  return {found.depth_m, found.depth_m + kOverlapCertain_m, found.p_W};
 }
 
-Overlap deepestOf(const PlacedSurface& a, const PlacedSurface& b, double error_m) {
+OverlapDepth deepestOf(const PlacedSurface& a, const PlacedSurface& b, double error_m, bool has_cracks) {
   const Overlap found = deepestOverlap(a.surface->overlap(), a.X_WP, b.surface->overlap(), b.X_WP);
+  if (found.depth_m > error_m)
+    return has_cracks ? depthOfTorn(a, b, found, error_m)
+                      : overlapDepth(a, b, {found.depth_m, found.depth_m, found.p_W});
   const Box both{a.box_W.min.cwiseMax(b.box_W.min), a.box_W.max.cwiseMin(b.box_W.max)};
-  if (found.depth_m > error_m) {
-    const Overlap thick = sharedBall(a, b, both);
-    return thick.depth_m > found.depth_m + error_m ? thick : found;
-  }
-  if (both.isEmpty() || both.size().minCoeff() <= error_m) return found;
-  for (const auto& [inner, outer] : {std::pair{&a, &b}, std::pair{&b, &a}})
-    if (const Overlap flush = flushOverlap(*inner, *outer); flush.depth_m > error_m) return flush;
-  return found;
+  if (!both.isEmpty() && both.size().minCoeff() > error_m)
+    for (const auto& [inner, outer] : {std::pair{&a, &b}, std::pair{&b, &a}})
+      if (const Overlap flush = flushOverlap(*inner, *outer); flush.depth_m > error_m)
+        return overlapDepth(a, b, {flush.depth_m, flush.depth_m, flush.p_W});
+  return {found.depth_m, found.depth_m + kOverlapCertain_m, found.p_W};
 }
 
 std::optional<CheckedPair> measured(const PlacedSurface& a, const PlacedSurface& b, double near_m) {
   CheckedPair pair{.a = a.name, .b = b.name};
   pair.is_allowed = a.drawn->allow_overlap || b.drawn->allow_overlap;
   pair.press_fit_m = std::max(a.drawn->press_fit_m, b.drawn->press_fit_m);
-  const auto [chord_m, crack_m] = faceError(a, b, near_m);
-  const double round_m = uncertainty_m(a) + uncertainty_m(b) + crack_m;
+  FaceError faces = faceError(a, b, near_m);
+  double chord_m = faces.chord_m, round_m = uncertainty_m(a) + uncertainty_m(b) + faces.crack_m;
   pair.error_m = chord_m + round_m;
-  const Overlap overlap = deepestOf(a, b, pair.error_m + kOverlapCertain_m);
+  const OverlapDepth overlap = deepestOf(a, b, pair.error_m + kOverlapCertain_m, faces.crack_m > 0);
   if (overlap.depth_m > 0) {
-    pair.error_m += kOverlapCertain_m;
+    if (overlap.depth_m > near_m) {
+      // The surface that a deep point is near may be as far away.
+      faces = faceError(a, b, overlap.most_m);
+      round_m = uncertainty_m(a) + uncertainty_m(b) + faces.crack_m;
+      chord_m = faces.chord_m;
+    }
+    // A ball between two facets of one part grows by the chords of both.
+    if (overlap.is_thickness) chord_m = std::max(chord_m, 2 * faces.most_chord_m);
+    pair.error_m = chord_m + round_m + kOverlapCertain_m;
     pair.interference_depth_m = overlap.depth_m;
     pair.at_W = overlap.p_W;
+    double unsettled_m = overlap.most_m - overlap.depth_m - kOverlapCertain_m;
     if (chord_m > 0) {
       // Where flat faces overlap, the error of the round ones beside them does not count.
       const CertainOverlap certain = certainOverlap(a, b);
@@ -127,13 +118,15 @@ std::optional<CheckedPair> measured(const PlacedSurface& a, const PlacedSurface&
         pair.interference_depth_m = certain.depth_m;
         pair.error_m = error_m;
         pair.at_W = certain.p_W;
+        unsettled_m = 0;
       }
     }
     pair.state = pair.interference_depth_m > pair.error_m ? PairState::Clash : PairState::Contact;
+    pair.error_m += unsettled_m;
     if (pair.state == PairState::Contact) return pair;
     const OverlapVolume shared = overlapVolume(*a.surface, *b.surface, a.X_WP.inverse() * b.X_WP);
     pair.interference_volume_m3 = shared.volume_m3;
-    pair.volume_error_m3 = shared.error_m3 + shared.area_m2 * (chord_m + round_m);
+    pair.volume_error_m3 = shared.error_m3 + shared.faces_error_m3 + shared.area_m2 * round_m;
     return pair;
   }
   const double most_m = near_m + pair.error_m;

@@ -85,7 +85,22 @@ struct Flux {
   double volume_m3 = 0, area_m2 = 0;
   Vec3 vector_area_S = Vec3::Zero();  // [m2], in the frame of the solid
   double wrong_m2 = 0;                // by which areas came out below zero or above their facet's
+  double faces_m3 = 0;                // that curved faces may sweep to where the facets are
 };
+
+/// The area of a facet of a curved face that is in the solid, or may be where the solid's faces are curved as
+/// well: then all of it, if it is as near as that.
+double areaOfFace(const Flat& facet, double inside_m2, const PartSurface& solid) {
+  const double all_m2 = 0.5 * facet.n.norm();
+  Box box;
+  for (const Vec3& p : facet.t) box.add(p);
+  const double chord_m = inside_m2 < all_m2 ? solid.chordIn(box) : 0;
+  if (chord_m == 0) return inside_m2;
+  const Vec3 middle = (facet.t[0] + facet.t[1] + facet.t[2]) / 3;
+  double reach_m = 0;
+  for (const Vec3& p : facet.t) reach_m = std::max(reach_m, (p - middle).norm());
+  return solid.solid().signedDistance(middle) <= reach_m + chord_m ? all_m2 : inside_m2;
+}
 
 /// The share that the surface of `of` within `solid` has in the volume.
 /// @param X_SO   pose of `of` in the solid's frame
@@ -110,6 +125,8 @@ Flux fluxInside(const PartSurface& of, const PartSurface& solid, const Pose& X_S
                       const double area_m2 = std::clamp(0.5 * sweep2, 0.0, 0.5 * length2);
                       flux.area_m2 += area_m2;
                       flux.wrong_m2 += std::abs(0.5 * sweep2 - area_m2);
+                      if (of.chord_m(i) > 0)
+                        flux.faces_m3 += of.chord_m(i) * areaOfFace(facet, area_m2, solid);
                       flux.vector_area_S += area_m2 / length2 * facet.n;
                       flux.volume_m3 += area_m2 * facet.n.dot(facet.t[0] - p_S) / length2 / 3;
                     });
@@ -168,6 +185,7 @@ OverlapVolume overlapVolume(const PartSurface& a, const PartSurface& b, const Po
   const double left_m2 = (X_AS.R * of_a.vector_area_S + of_b.vector_area_S).norm();
   const double holes_m2 = std::min(out.area_m2, holeArea(a) + holeArea(b));
   out.error_m3 += (left_m2 + of_a.wrong_m2 + of_b.wrong_m2 + holes_m2) * 0.5 * both.size().norm() / 3;
+  out.faces_error_m3 = of_a.faces_m3 + of_b.faces_m3;
   out.volume_m3 = std::max(0.0, of_a.volume_m3 + of_b.volume_m3);
   return out;
 }

@@ -9,9 +9,10 @@ namespace vps::scenes::inline v0 {
 struct OverlapVolume {
   double volume_m3 = 0;
   double area_m2 = 0;  ///< of its surface
-  /// A bound: the shift, and what the vector areas of the found surface lack of zero. A hole of an open mesh
-  /// adds its area times a sixth of the overlap's diagonal.
+  /// A bound for the meshes: the shift, and what the vector areas of the found surface lack of zero. A hole
+  /// of an open mesh adds its area times a sixth of the overlap's diagonal.
   double error_m3 = 0;
+  double faces_error_m3 = 0;  ///< by the distance of the facets from the curved faces that they stand for
 };
 
 /// By the divergence theorem over the parts of each surface inside the other solid, whose areas are exact:

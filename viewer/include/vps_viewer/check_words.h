@@ -11,8 +11,8 @@ namespace vps::viewer::inline v0 {
 
 /// How the overlap in the tables is meant.
 inline constexpr const char* kOverlapMeaning =
-    "overlap: depth of the deepest point below the other part's surface, or thickness of what both share if "
-    "more";
+    "overlap: greatest depth of a point of one part's surface below the other's, or thickness of what both "
+    "share (diameter of the greatest ball in it) if more";
 
 /// The volume that two parts share, in cubic millimetres: "7.9840"; "<= 12.3" where its error is as large;
 /// "not known" where no piece of its surface was found.

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Convex pieces of facets, and whether one is outside of a solid.
+#pragma once
+
+#include <vector>
+
+#include "check/part_surface.h"
+
+namespace vps::scenes::inline v0 {
+
+/// Corners of a flat convex polygon in order; two are a segment, one is a point.
+using SurfacePiece = std::vector<Vec3>;
+
+/// The corners' mean.
+Vec3 middleOf(const SurfacePiece& piece);
+/// The greatest distance of a corner from the point.
+double reachFrom(const Vec3& p, const SurfacePiece& piece);
+SurfacePiece placed(const SurfacePiece& piece, const Pose& X);
+SurfacePiece shifted(const SurfacePiece& piece, const Vec3& by);
+/// The part of a polygon where n . p <= level; empty if none.
+SurfacePiece below(const SurfacePiece& piece, const Vec3& n, double level);
+
+/// Whether the piece is outside of the surface's solid and meets none of its facets. "No" is also the answer
+/// where it cannot be told, as for polygons in the plane of a facet.
+/// @param n     normal of the polygon's plane
+/// @param work  counts the nodes and facets that are visited, of some 10 ns each
+bool isOutside(const SurfacePiece& piece, const Vec3& n, const PartSurface& surface, std::size_t& work);
+
+}  // namespace vps::scenes::inline v0
