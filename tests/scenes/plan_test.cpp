@@ -603,6 +603,60 @@ TEST(Plan, AThreadedCapTurnsOffItsNeck) {
   expectFreeWays(parts, plan);
 }
 
+/// A plate with a bore of 10 mm and a pin of 9.9 mm through it, whose head hangs below.
+std::vector<DrawnPart> hangingHead(double head_radius_m, int segments) {
+  return {
+      at("plate", test::lathe({{5e-3, 0}, {25e-3, 0}, {25e-3, 10e-3}, {5e-3, 10e-3}}, segments), {0, 0, 0}),
+      at("pin",
+         test::lathe({{0, -6e-3},
+                      {head_radius_m, -6e-3},
+                      {head_radius_m, -2e-3},
+                      {4.95e-3, -2e-3},
+                      {4.95e-3, 14e-3},
+                      {0, 14e-3}},
+                     segments),
+         {0, 0, 0})};
+}
+
+// Within the allowance for meshes the head passes the bore, upwards, which is what gravity prefers.
+TEST(Plan, AHoleThatIsTooSmallByLessThanTheAllowanceIsNotTheWayWhereTheOtherSideIsFree) {
+  for (const int segments : {32, 64, 200})
+    for (const double too_large_m : {0.5e-6, 2e-6, 5e-6, 8e-6}) {
+      PlanSettings settings;
+      settings.fixed = {"plate"};
+      const PlanResult plan = planAssembly("test", hangingHead(5e-3 + too_large_m, segments), settings);
+      ASSERT_EQ(stepsOf(plan.assemblies.front()), Names{"pin"});
+      const PlannedStep& step = plan.assemblies.front().steps.front();
+      EXPECT_NEAR(step.insertion_W.z(), 1, 1e-6) << segments << ", " << too_large_m;
+      EXPECT_EQ(step.allowance_m, 0) << segments << ", " << too_large_m;
+    }
+}
+
+TEST(Plan, AWayThatNeedsTheAllowanceIsTakenWhereThereIsNoOtherAndIsSaid) {
+  // A floor below, fixed as well, leaves the pin the way through the bore.
+  std::vector<DrawnPart> parts = hangingHead(5e-3 + 2e-6, 64);
+  parts.push_back(at("floor", makeBox({0.05, 0.05, 1e-3}), {0, 0, -6.6e-3}));
+  PlanSettings settings;
+  settings.fixed = {"plate", "floor"};
+  const PlanResult plan = planAssembly("test", parts, settings);
+  ASSERT_EQ(stepsOf(plan.assemblies.front()), Names{"pin"});
+  const PlannedStep& step = plan.assemblies.front().steps.front();
+  EXPECT_NEAR(step.insertion_W.z(), -1, 1e-6);
+  EXPECT_GE(step.allowance_m, 2e-6);
+}
+
+// The floor, which carries nothing, can be taken off first, and then the pin leaves without an allowance.
+TEST(Plan, WhatNeedsTheAllowanceWaitsUntilTheOtherSideIsFree) {
+  std::vector<DrawnPart> parts = hangingHead(5e-3 + 2e-6, 64);
+  parts.push_back(at("floor", makeBox({0.05, 0.05, 1e-3}), {0, 0, -8.5e-3}));
+  PlanSettings settings;
+  settings.fixed = {"plate"};
+  const PlanResult plan = planAssembly("test", parts, settings);
+  ASSERT_EQ(stepsOf(plan.assemblies.front()), (Names{"pin", "floor"}));
+  EXPECT_NEAR(plan.assemblies.front().steps.front().insertion_W.z(), 1, 1e-6);
+  EXPECT_EQ(plan.assemblies.front().steps.front().allowance_m, 0);
+}
+
 /// The plan of a block above a table, which it touches nowhere.
 PlannedStep blockAboveTable(double gap_m) {
   const std::vector<DrawnPart> parts = {at("table", makeBox({0.1, 0.1, 0.01}), {0, 0, -0.005}),

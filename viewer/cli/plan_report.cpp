@@ -54,6 +54,22 @@ std::string tightestText(const scenes::PlannedAssembly& assembly) {
          tightest->nearest + "' at " + fixed(1e3 * *tightest->clearance_m, 3) + " mm.\n";
 }
 
+/// Ways on which facets are in each other.
+std::string allowanceText(const scenes::PlannedAssembly& assembly) {
+  std::vector<std::string> names;
+  double most_m = 0;
+  for (const scenes::PlannedStep& step : assembly.steps) {
+    if (step.allowance_m == 0) continue;
+    names.push_back(step.name);
+    most_m = std::max(most_m, step.allowance_m);
+  }
+  if (names.empty()) return "";
+  return "On the way of " + listed(names) + " facets are deeper in each other than drawn, by no more than " +
+         um(most_m) +
+         " um, which the distance of meshes from the faces and 5 um allow. No way without that was "
+         "found: a finer mesh tells more, and a hole may be too small.\n";
+}
+
 std::string benchText(const scenes::PlannedAssembly& assembly) {
   std::vector<std::string> left;
   bool is_any = false;
@@ -80,6 +96,7 @@ std::string assemblyTable(const scenes::PlannedAssembly& assembly) {
   }
   if (!assembly.steps.empty()) out += table.text();
   out += tightestText(assembly);
+  out += allowanceText(assembly);
   out += benchText(assembly);
   std::vector<std::string> held;
   for (const scenes::PlannedStep& step : assembly.steps)

@@ -46,8 +46,12 @@ struct PlannedStep {
   /// Where it is before, as motions of the world applied to its pose at home: first the start, outside of the
   /// boxes of all that is in place, then the way points.
   std::vector<Pose> before_W;
-  Vec3 insertion_W = Vec3::Zero();   ///< unit; of the last leg on the way home
-  double lead_m = 0;                 ///< of a screw: its way in one turn; negative: left-hand
+  Vec3 insertion_W = Vec3::Zero();  ///< unit; of the last leg on the way home
+  double lead_m = 0;                ///< of a screw: its way in one turn; negative: left-hand
+  /// Of a straight way that is stopped if facets may be no deeper in each other than they are drawn: how much
+  /// more they may be, for the distance of meshes from the faces and 5 um. No way without it was found. 0:
+  /// the way needs none.
+  double allowance_m = 0;
   bool is_carried = false;           ///< something in place keeps it from falling once it is home
   std::vector<std::string> falling;  ///< parts in place already that nothing carries until it is there
   bool is_on_bench = false;          ///< it starts there, see PlanSettings

@@ -19,6 +19,9 @@ inline constexpr auto kPlannedStepFields = std::make_tuple(
     field("insertion", &PlannedStep::insertion_W,
           "unit direction of the last leg, in the world; 0 for a turn"),
     field("lead_m", &PlannedStep::lead_m, "of a screw: its way in one turn; negative: left-hand"),
+    field("allowance_m", &PlannedStep::allowance_m,
+          "how much deeper than drawn facets may be in each other on its way, which it needs: no way without "
+          "that was found; 0: it needs none"),
     field("is_carried", &PlannedStep::is_carried,
           "something in place keeps it from falling; false: its step says `holds`"),
     field("falling", &PlannedStep::falling, "parts in place that nothing else carries until it is there"),

@@ -11,6 +11,9 @@ namespace {
 
 /// For one motion of one pair: some ten seconds. Those of a bolt of 227,717 facets need 2 million.
 constexpr std::uint64_t kMostWork = 10'000'000;
+/// To find out whether a motion needs an allowance: it is stopped early if it does, and takes long where
+/// faces slide along each other.
+constexpr std::uint64_t kMostExactWork = 300'000;
 constexpr double kFall_m = 1e-3;  // assumed: what sinks by less than this is carried
 
 /// How deep parts may be in each other on a way, beyond what is drawn and its error: facets of curved faces
@@ -105,8 +108,9 @@ void PairMotions::findNear(const CheckResult& checked, const Progress& progress)
   for (std::size_t i = 0; i < parts_.size(); ++i) index[parts_[i].name] = i;
   for (const CheckedPair& pair : checked.pairs) {
     const Pair key = std::minmax(index[pair.a], index[pair.b]);
-    near_[key].crossing_m =
-        pair.interference_depth_m + pair.error_m + touchOf(parts_[key.first], parts_[key.second]);
+    Near& near = near_[key];
+    near.allowance_m = pair.error_m + touchOf(parts_[key.first], parts_[key.second]);
+    near.crossing_m = pair.interference_depth_m + near.allowance_m;
   }
   std::vector<std::pair<const Pair, Near>*> all;
   for (auto& one : near_) all.push_back(&one);
@@ -159,6 +163,24 @@ bool PairMotions::stops(std::size_t held, std::size_t part, std::size_t directio
   // Another thread may have found it meanwhile.
   if (known_.emplace(key, Answer{is_stopped, work.isSpent()}).second && work.isSpent()) ++cut_;
   return is_stopped;
+}
+
+double PairMotions::allowanceOf(std::size_t held, std::size_t part, std::size_t direction) const {
+  if (held < part) return allowanceOf(part, held, Directions::opposite(direction));
+  const Motion motion{directions_[direction], Vec3::Zero(), false};
+  if (staysBeside(parts_[part].box_W, parts_[held].box_W, motion.direction, 0, leave_m_)) return 0;
+  const std::uint64_t key = slot(part, held, direction);
+  if (const auto known = allowance_m_.find(key); known != allowance_m_.end()) return known->second;
+  const auto near = near_.find({part, held});
+  const bool is_near = near != near_.end();
+  const MotionSearch exact(
+      parts_[part], std::make_shared<const StandingParts>(std::vector<const PlacedSurface*>{&parts_[held]}),
+      {is_near ? near->second.crossing_m : 0.0}, CrossingDepth::AsDrawn);
+  SearchWork work{kMostExactWork};
+  const Reach reach = exact.reach(motion, leave_m_, &work);
+  const bool is_stopped = reach.is_stopped && !reach.is_given_up && !work.isSpent();
+  const double all_m = is_near ? near->second.allowance_m : touchOf(parts_[part], parts_[held]);
+  return allowance_m_.emplace(key, is_stopped ? all_m : 0).first->second;
 }
 
 std::vector<std::uint64_t> PairMotions::found() const {

@@ -52,6 +52,10 @@ class PairMotions {
 
   /// Whether a part that moves away in a direction meets the held one. Kept once it is known. Thread-safe.
   bool stops(std::size_t held, std::size_t part, std::size_t direction) const;
+  /// Of a motion that is not stopped: how much of the allowance for meshes it may need [m], beyond what is
+  /// drawn; 0 if it needs none. Facets that may be only as deep in each other as they are where the part
+  /// stands then stop it. Also 0 where that takes too long to find out. Kept once it is known. Thread-safe.
+  double allowanceOf(std::size_t held, std::size_t part, std::size_t direction) const;
   /// The answers of stops() so far, and those of an earlier plan of the same parts. A motion's number is its
   /// slot(), then a bit for its answer and one for whether it was too long to be followed.
   [[nodiscard]] std::vector<std::uint64_t> found() const;
@@ -72,7 +76,8 @@ class PairMotions {
  private:
   using Pair = std::pair<std::size_t, std::size_t>;
   struct Near {
-    double crossing_m = 0;  ///< how deep they may be in each other
+    double crossing_m = 0;   ///< how deep they may be in each other
+    double allowance_m = 0;  ///< what of that is not drawn
     std::unique_ptr<const MotionSearch> search;
     ContactProbes probes;
     /// Of a straight motion of the first.
@@ -100,6 +105,7 @@ class PairMotions {
     bool is_stopped = false, is_cut = false;
   };
   mutable tbb::concurrent_unordered_map<std::uint64_t, Answer> known_;
+  mutable tbb::concurrent_unordered_map<std::uint64_t, double> allowance_m_;  ///< by slot()
 };
 
 /// A part moved by a motion of the world.

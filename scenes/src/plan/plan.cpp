@@ -145,6 +145,7 @@ class Planner {
     for (const std::size_t part : removal.parts) step.parts.push_back(nameOf(part));
     step.kind = way.kind;
     step.lead_m = way.lead_m;
+    step.allowance_m = way.allowance_m;
     step.is_carried = removal.is_carried && (removal.parts.size() > 1 ||
                                              (!sinksFromItsPlace(motions_, removal.parts.front(), held) &&
                                               !leansInHole(motions_, removal.parts.front(), held) &&

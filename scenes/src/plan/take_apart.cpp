@@ -53,7 +53,7 @@ class TakingApart {
   }
 
  private:
-  using Score = std::tuple<std::size_t, int, int, int, double, double, std::size_t>;
+  using Score = std::tuple<std::size_t, int, int, int, int, double, double, std::size_t>;
 
   Removal next() {
     if (Removal found = straight(); !found.parts.empty() && found.falling.empty()) return found;
@@ -129,17 +129,30 @@ class TakingApart {
     return best;
   }
 
-  /// The best direction in which a part leaves all that remain; the likely ones first.
+  /// The best direction in which a part leaves all that remain; the likely ones first. A direction in which
+  /// it only leaves because facets may be in each other, as through a hole that is a little too small, is the
+  /// last resort.
   std::optional<Way> straightWay(std::size_t part) {
+    std::optional<Way> last_resort;
     for (std::vector<std::size_t> directions : {motions_.axesOf(part), motions_.around()}) {
       std::ranges::stable_sort(directions, {}, [&](std::size_t d) { return rank(part, d); });
       for (const std::size_t d : directions) {
         if (!leaves(part, d)) continue;
         const Motion motion{motions_.directions()[d], Vec3::Zero(), false};
-        return Way{WayKind::Straight, {{motion, motions_.leave_m()}}, d, 0};
+        Way way{WayKind::Straight, {{motion, motions_.leave_m()}}, d, 0, allowanceOf(part, d)};
+        if (way.allowance_m == 0) return way;
+        if (!last_resort) last_resort = std::move(way);
       }
     }
-    return std::nullopt;
+    return last_resort;
+  }
+
+  /// The greatest that it needs to pass one of those that remain.
+  [[nodiscard]] double allowanceOf(std::size_t part, std::size_t direction) const {
+    double most_m = 0;
+    for (const std::size_t held : remaining_)
+      if (held != part) most_m = std::max(most_m, motions_.allowanceOf(held, part, direction));
+    return most_m;
   }
 
   [[nodiscard]] std::pair<int, int> rank(std::size_t part, std::size_t d) const {
@@ -204,6 +217,7 @@ class TakingApart {
     const Box& box = motions_.parts()[removal.parts.front()].box_W;
     const double height_m = motions_.directions()[motions_.up()].dot(box.center());
     return {removal.falling.size(),
+            removal.way.allowance_m > 0 ? 1 : 0,
             static_cast<int>(removal.way.kind),
             slopeOfPart(removal.parts.front(), removal.way.legs.back().motion.direction),
             last_ == removal.way.direction ? 0 : 1,

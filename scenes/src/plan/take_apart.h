@@ -29,11 +29,11 @@ struct Disassembly {
 };
 
 /// Takes parts off the fixed ones, one after the other, by rules in this order: what makes nothing fall;
-/// straight before screws; upwards, along round fits, sideways, down; in the direction of the one before; the
-/// loosest fit, so that pins are in place before what they locate; the highest; the first. Where no part
-/// leaves alone, the smallest set that leaves straight as one does; where none does, ways of several legs are
-/// searched, of parts alone and then of sets, with limits of work for each and for all. What is left in the
-/// end is blocked. On all cores.
+/// what needs no allowance for meshes; straight before screws; upwards, along round fits, sideways, down; in
+/// the direction of the one before; the loosest fit, so that pins are in place before what they locate; the
+/// highest; the first. Where no part leaves alone, the smallest set that leaves straight as one does; where
+/// none does, ways of several legs are searched, of parts alone and then of sets, with limits of work for
+/// each and for all. What is left in the end is blocked. On all cores.
 /// @param on_removal  hears of each as it is found
 Disassembly takeApart(const PairMotions& motions, const std::vector<std::size_t>& members,
                       const std::vector<std::size_t>& fixed, const Progress& progress,

@@ -24,6 +24,7 @@ struct Way {
   std::vector<Leg> legs;
   std::size_t direction = kNoDirection;  ///< of a straight way
   double lead_m = 0;                     ///< of a screw
+  double allowance_m = 0;                ///< of a straight way, see PairMotions::allowanceOf()
 };
 
 /// The poses at the ends of all legs but the last, as motions of the world: the first is home.
