@@ -208,6 +208,34 @@ TEST(CheckPlay, APegInAThroughBore) {
   }
 }
 
+/// A shaft with a taper, in a bore with the same one: both to a radius that grows by a hundredth of the
+/// height.
+Mesh taper(double radius_m, double outer_m, int segments) {
+  constexpr double kHeight_m = 30e-3, kGrows_m = 0.3e-3;
+  if (outer_m == 0)
+    return test::lathe({{0, 0}, {radius_m, 0}, {radius_m + kGrows_m, kHeight_m}, {0, kHeight_m}}, segments);
+  return test::lathe({{radius_m, 0}, {outer_m, 0}, {outer_m, kHeight_m}, {radius_m + kGrows_m, kHeight_m}},
+                     segments);
+}
+
+// A pin that is too small by 10 um in radius sinks by a hundred times as much, and so does the error.
+TEST(CheckPlay, ATaperSinksByItsLackOverItsSlopeWithinTheErrorThatIsSaid) {
+  for (const auto& [bore_segments, pin_segments] : {std::pair{64, 64}, {64, 61}, {128, 100}, {200, 180}})
+    for (const double lack_m : {5e-6, 10e-6}) {
+      const CheckedPart pin = playOf("pin", {part("block", taper(4e-3, 20e-3, bore_segments)),
+                                             part("pin", taper(4e-3 - lack_m, 0, pin_segments))});
+      ASSERT_TRUE(pin.play);
+      EXPECT_NEAR(pin.play->m[5], 100 * lack_m, pin.play->error_m[5])
+          << bore_segments << ", " << pin_segments;
+      // Twice the chords of both, for how they are estimated, and the rest depth, over the slope.
+      const double chords_m = 4.3e-3 * std::pow(std::numbers::pi, 2) / 2 *
+                              (1 / std::pow(bore_segments, 2) + 1 / std::pow(pin_segments, 2));
+      EXPECT_LT(pin.play->error_m[5], 102 * (2 * chords_m + 0.3e-6)) << bore_segments << ", " << pin_segments;
+      EXPECT_TRUE(std::isinf(pin.play->m[4]));
+      EXPECT_EQ(pin.play->error_m[4], 0);
+    }
+}
+
 // The same with another number of facets, in another place and attitude.
 TEST(CheckPlay, MovesWithTheAssembly) {
   const Pose X(rotationFromVector(Vec3(0.6, -0.5, 0.8)), Vec3(0.1, -0.05, 0.2));

@@ -64,11 +64,10 @@ std::string pressTable(const scenes::CheckResult& result) {
   return table.text();
 }
 
-std::string playCell(double plus, double minus, double scale, int digits) {
-  const auto one = [&](double value) {
-    return std::isinf(value) ? std::string("free") : fixed(scale * value, digits);
-  };
-  return std::string("+").append(one(plus)).append(" -").append(one(minus));
+std::string playCell(const std::array<double, 6>& way, const std::array<double, 6>& error, std::size_t i,
+                     double usual, double scale, const char* form) {
+  return "+" + playWords(way[i], error[i], usual, scale, form) + " -" +
+         playWords(way[i + 1], error[i + 1], usual, scale, form);
 }
 
 std::string waysText(const scenes::CheckedPart& part) {
@@ -88,9 +87,9 @@ std::string partTable(const scenes::CheckResult& result) {
     }
     std::vector<std::string> cells = {part.name};
     for (std::size_t i = 0; i < 6; i += 2)
-      cells.push_back(playCell(part.play->m[i], part.play->m[i + 1], 1e6, 1));
+      cells.push_back(playCell(part.play->m, part.play->error_m, i, part.play_error_m, 1e6, "%.1f"));
     for (std::size_t i = 0; i < 6; i += 2)
-      cells.push_back(playCell(part.play->rad[i], part.play->rad[i + 1], 1e3, 2));
+      cells.push_back(playCell(part.play->rad, part.play->error_rad, i, part.play_error_rad, 1e3, "%.2f"));
     cells.push_back(waysText(part));
     table.add(cells);
   }
@@ -186,8 +185,9 @@ std::string checkCsv(const scenes::CheckResult& result) {
   constexpr std::array kAxes = {"+x", "-x", "+y", "-y", "+z", "-z"};
   for (const scenes::CheckedPart& part : result.parts)
     for (std::size_t i = 0; part.play && i < kAxes.size(); ++i) {
-      add("part", part.name, "", std::string("play_m ") + kAxes[i], part.play->m[i], part.play_error_m);
-      add("part", part.name, "", std::string("play_rad ") + kAxes[i], part.play->rad[i], part.play_error_rad);
+      add("part", part.name, "", std::string("play_m ") + kAxes[i], part.play->m[i], part.play->error_m[i]);
+      add("part", part.name, "", std::string("play_rad ") + kAxes[i], part.play->rad[i],
+          part.play->error_rad[i]);
     }
   return out;
 }

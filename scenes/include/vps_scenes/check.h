@@ -129,6 +129,10 @@ VPS_SCENES_API std::string standardOf(const CheckedFit& fit);
 struct Play {
   std::array<double, 6> m = {};    ///< +x, -x, +y, -y, +z, -z
   std::array<double, 6> rad = {};  ///< about the same axes
+  /// Bounds of the errors of each: those of the surfaces' distance, divided by the rate at which the surfaces
+  /// come nearer where they touch. Infinite: the search ended before the play did, which is more, or no bound
+  /// is known. 0 where it is free.
+  std::array<double, 6> error_m = {}, error_rad = {};
 };
 
 /// A way in which a part is screwed out of the others.
@@ -141,13 +145,13 @@ struct ScrewWay {
 struct CheckedPart {
   std::string name;
   std::size_t triangles = 0;
-  double chord_error_m = 0;             ///< greatest distance of the mesh from its curved faces
-  std::string mesh_faults;              ///< in words; empty for a closed mesh
-  std::string no_inside;                ///< why it has no inside, or parts of it; empty: it has one
-  std::optional<Play> play;             ///< none for a part that clashes, and if not asked for
-  Mat3 play_axes_W = Mat3::Identity();  ///< columns: the axes of `play`
-  Vec3 play_center_W = Vec3::Zero();    ///< through which the axes of rotation go
-  double play_error_m = 0, play_error_rad = 0;
+  double chord_error_m = 0;                     ///< greatest distance of the mesh from its curved faces
+  std::string mesh_faults;                      ///< in words; empty for a closed mesh
+  std::string no_inside;                        ///< why it has no inside, or parts of it; empty: it has one
+  std::optional<Play> play;                     ///< none for a part that clashes, and if not asked for
+  Mat3 play_axes_W = Mat3::Identity();          ///< columns: the axes of `play`
+  Vec3 play_center_W = Vec3::Zero();            ///< through which the axes of rotation go
+  double play_error_m = 0, play_error_rad = 0;  ///< where faces stop it squarely; else see Play::error_m
   std::vector<Vec3> ways_out_W;  ///< unit directions in which it leaves the others on a straight line
   std::vector<ScrewWay> screw_ways_out;
   /// False: a shaft and its bore have the same size, or facets cross as drawn by no more than the error of

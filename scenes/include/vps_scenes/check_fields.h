@@ -76,7 +76,17 @@ inline constexpr auto kPlayFields = std::make_tuple(
         "how far it moves along +x, -x, +y, -y, +z, -z of `play_axes`; null: away from the others"),
     field(
         "play_rad", [](const Play& play) { return std::vector<double>(play.rad.begin(), play.rad.end()); },
-        "how far it turns about these axes through `play_center_m`; null: a whole turn"));
+        "how far it turns about these axes through `play_center_m`; null: a whole turn"),
+    field(
+        "play_errors_m",
+        [](const Play& play) { return std::vector<double>(play.error_m.begin(), play.error_m.end()); },
+        "bounds of the errors of `play_m`: at a shallow contact, as in a taper, they are more than "
+        "`play_error_m`; "
+        "null: it may move on"),
+    field(
+        "play_errors_rad",
+        [](const Play& play) { return std::vector<double>(play.error_rad.begin(), play.error_rad.end()); },
+        "bounds of the errors of `play_rad`; null: it may turn on"));
 
 inline constexpr auto kCheckedPartFields = std::make_tuple(
     field("name", &CheckedPart::name, "name of the part"),
@@ -86,8 +96,9 @@ inline constexpr auto kCheckedPartFields = std::make_tuple(
     field("mesh_faults", &CheckedPart::mesh_faults, "faults of the mesh in words; empty: it is closed"),
     field("no_inside", &CheckedPart::no_inside, "why it has no inside, or parts of it; empty: it has one"),
     group("", &CheckedPart::play, kPlayFields),
-    field("play_error_m", &CheckedPart::play_error_m, "bound of the error of `play_m`"),
-    field("play_error_rad", &CheckedPart::play_error_rad, "bound of the error of `play_rad`"),
+    field("play_error_m", &CheckedPart::play_error_m,
+          "bound of the error of `play_m` where faces stop it squarely"),
+    field("play_error_rad", &CheckedPart::play_error_rad, "the same of `play_rad`"),
     field("play_certain", &CheckedPart::is_play_certain,
           "false: facets cross as drawn, curved faces of equal size touch, or the search ended early; meshes "
           "can "

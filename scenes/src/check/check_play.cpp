@@ -91,10 +91,13 @@ void measurePlay(const PlacedSurface& part, const PartTask& task, double leave_m
       out.screw_ways_out = screwWaysOut(*task.search, part, task.fits, leave_m);
       return;
     }
-    const AxisPlay both = playAlong(*task.search, task.frame, static_cast<int>(axis), leave_m);
+    const AxisPlay both = playAlong(*task.search, task.frame, static_cast<int>(axis), leave_m, task.error_m);
     std::array<double, 6>& of = axis < 3 ? play.m : play.rad;
     of[2 * (axis % 3)] = both.way[0];
     of[2 * (axis % 3) + 1] = both.way[1];
+    std::array<double, 6>& error = axis < 3 ? play.error_m : play.error_rad;
+    error[2 * (axis % 3)] = both.error[0];
+    error[2 * (axis % 3) + 1] = both.error[1];
     is_given_up[axis] = both.is_given_up ? 1 : 0;
   });
   out.play = play;

@@ -352,8 +352,14 @@ Reach MotionSearch::backedOff(Reach reach, const Motion& motion_W, double speed)
   // A contact that closes more slowly is a grazing one, whose place is as uncertain as its depth allows.
   const double closing =
       std::max(closingSpeed(pair, reach.by.moving_facet, reach.by.held_facet), 0.1 * speed);
+  reach.rate = contactRate(pair, reach.by.moving_facet, reach.by.held_facet);
   reach.s = std::max(0.0, reach.s - kRest_m / closing);
   return reach;
+}
+
+double MotionSearch::chordOf_m(const Blocker& blocker) const {
+  return part_.surface->chord_m(blocker.moving_facet) +
+         held_->parts[blocker.held]->surface->chord_m(blocker.held_facet);
 }
 
 bool MotionSearch::isStoppedBy(const Blocker& blocker, const Motion& motion, double most) const {

@@ -26,6 +26,7 @@ struct Reach {
   bool is_stopped = false;
   bool is_given_up = false;  ///< with is_stopped: not stopped, but after too many steps; it reaches farther
   Blocker by;
+  double rate = 1;  ///< of a stop: contactRate() of the two facets
 };
 
 /// Parts that stand, which must outlive it, and a tree of their boxes in the world.
@@ -85,6 +86,8 @@ class MotionSearch {
                                                const std::array<const PassingFacets*, 2>& passing = {}) const;
   /// Whether the two facets alone stop the motion.
   [[nodiscard]] bool isStoppedBy(const Blocker& blocker, const Motion& motion, double most) const;
+  /// Distance of the two facets from the curved faces that they stand for.
+  [[nodiscard]] double chordOf_m(const Blocker& blocker) const;
   [[nodiscard]] const PlacedSurface& held(std::size_t index) const { return *held_->parts[index]; }
   /// Of the held part with this name, which is among them.
   [[nodiscard]] std::size_t indexOf(const std::string& held) const;

@@ -48,6 +48,20 @@ class Step {
     return std::max(-v.dot(pair_.held.normal(held_)), v.dot(pair_.X_HM.R * pair_.moving.normal(moving_)));
   }
 
+  double contactRate() {
+    gap_ = triangleGap(a_, b_);
+    const Vec3 v = pair_.motion.velocity(gap_.p_a);
+    const double of_held = std::max(0.0, -v.dot(pair_.held.normal(held_))),
+                 of_moving = std::max(0.0, v.dot(pair_.X_HM.R * pair_.moving.normal(moving_)));
+    if (gap_.distance_m > kDirection_m) {  // else they cross by rounding, and so may other features
+      if (gap_.feature_b == 0) return of_held;
+      if (gap_.feature_a == 0) return of_moving;
+      if (const Vec3 n = acrossEdges(); !n.isZero(0)) return std::abs(n.dot(v));
+    }
+    if (of_held == 0 || of_moving == 0) return std::max(of_held, of_moving);
+    return std::min(of_held, of_moving);
+  }
+
   double depth() {
     gap_ = triangleGap(a_, b_);
     if (gap_.distance_m > 0) return 0;
@@ -126,17 +140,24 @@ class Step {
   void tryFeatures() {
     forEachFeatureNormal([&](const Vec3& n) { tryHeld(n, -pair_.rest_m); },
                          [&](const Vec3& n) { tryMoving(n, -pair_.rest_m); });
-    const auto isEdge = [](int feature) { return feature >= 1 && feature <= 3; };
-    if (!isEdge(gap_.feature_a) || !isEdge(gap_.feature_b)) return;
-    const int i = gap_.feature_a - 1, k = gap_.feature_b - 1;
-    Vec3 n = (a_[(i + 1) % 3] - a_[i]).cross(b_[(k + 1) % 3] - b_[k]);
-    const double length = n.norm();
-    if (!(length > 1e-9 * (a_[(i + 1) % 3] - a_[i]).norm() * (b_[(k + 1) % 3] - b_[k]).norm())) return;
-    n /= length;
+    Vec3 n = acrossEdges();
+    if (n.isZero(0)) return;
     const Vec3 out_b = pair_.held.solid().featureNormal(held_, gap_.feature_b),
                out_a = pair_.X_HM.R * pair_.moving.solid().featureNormal(moving_, gap_.feature_a);
     if (n.dot(out_b) < 0) n = -n;
     if (n.dot(out_a) < 0) tryHeld(n, -pair_.rest_m);
+  }
+
+  /// Unit; zero if the nearest features are not two edges, or those are parallel.
+  [[nodiscard]] Vec3 acrossEdges() const {
+    const auto isEdge = [](int feature) { return feature >= 1 && feature <= 3; };
+    if (!isEdge(gap_.feature_a) || !isEdge(gap_.feature_b)) return Vec3::Zero();
+    const int i = gap_.feature_a - 1, k = gap_.feature_b - 1;
+    const Vec3 n = (a_[(i + 1) % 3] - a_[i]).cross(b_[(k + 1) % 3] - b_[k]);
+    const double length = n.norm();
+    if (!(length > 1e-9 * (a_[(i + 1) % 3] - a_[i]).norm() * (b_[(k + 1) % 3] - b_[k]).norm()))
+      return Vec3::Zero();
+    return n / length;
   }
 
   /// Triangles that touch along a line have many nearest points: the planes around all corners.
@@ -172,6 +193,10 @@ double safeStep(const MovingPair& pair, std::uint32_t moving, std::uint32_t held
 
 double closingSpeed(const MovingPair& pair, std::uint32_t moving, std::uint32_t held) {
   return Step(pair, moving, held).closing();
+}
+
+double contactRate(const MovingPair& pair, std::uint32_t moving, std::uint32_t held) {
+  return Step(pair, moving, held).contactRate();
 }
 
 double crossingDepth(const MovingPair& pair, std::uint32_t moving, std::uint32_t held) {

@@ -38,6 +38,11 @@ double safeStep(const MovingPair& pair, std::uint32_t moving, std::uint32_t held
 /// the motion.
 double closingSpeed(const MovingPair& pair, std::uint32_t moving, std::uint32_t held);
 
+/// How fast they come nearer along the normal of the contact, per unit of the motion, where they touch: along
+/// that of the face that is touched, or across two edges. Where that cannot be told the lesser of those of
+/// both triangles. Not negative.
+double contactRate(const MovingPair& pair, std::uint32_t moving, std::uint32_t held);
+
 /// How deep the triangles are in each other now: the least over the planes of the facets and their nearest
 /// features; 0 where a plane parts them.
 double crossingDepth(const MovingPair& pair, std::uint32_t moving, std::uint32_t held);

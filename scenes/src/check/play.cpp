@@ -55,7 +55,8 @@ PlayFrame playFrame(const PlacedSurface& part, const std::vector<CheckedFit>& fi
   return frame;
 }
 
-AxisPlay playAlong(const MotionSearch& search, const PlayFrame& frame, int axis, double leave_m) {
+AxisPlay playAlong(const MotionSearch& search, const PlayFrame& frame, int axis, double leave_m,
+                   double error_m) {
   const Motion motion{frame.axes_W.col(axis % 3), frame.center_W, axis >= 3};
   const std::array<Reach, 2> reach =
       search.reachBoth(motion, motion.is_turn ? 2 * std::numbers::pi : leave_m);
@@ -63,6 +64,9 @@ AxisPlay playAlong(const MotionSearch& search, const PlayFrame& frame, int axis,
   for (const std::size_t i : {0, 1}) {
     play.way[i] = reach[i].is_stopped ? reach[i].s : kPlayForever;
     play.is_given_up = play.is_given_up || reach[i].is_given_up;
+    if (!reach[i].is_stopped) continue;
+    const double off_m = std::max(error_m, search.chordOf_m(reach[i].by) + MotionSearch::kRest_m);
+    play.error[i] = reach[i].is_given_up || reach[i].rate == 0 ? kPlayForever : off_m / reach[i].rate;
   }
   return play;
 }

@@ -21,12 +21,18 @@ PlayFrame playFrame(const PlacedSurface& part, const std::vector<CheckedFit>& fi
 /// Play along or about an axis, forwards and back.
 struct AxisPlay {
   std::array<double, 2> way = {};
+  /// Of each way, by that of the distance between the surfaces where they touch: that divided by the rate at
+  /// which they come nearer. A shaft with a taper of 1:50 sinks by 100 times the radius that it lacks.
+  /// Infinite where the search ended before the play did; 0 where nothing stops it.
+  std::array<double, 2> error = {};
   bool is_given_up = false;  ///< the search ended before the play did, which is more
 };
 
 /// Along (0 to 2) or about (3 to 5) an axis of the frame.
 /// @param leave_m  a way on which a part certainly leaves all others
-AxisPlay playAlong(const MotionSearch& search, const PlayFrame& frame, int axis, double leave_m);
+/// @param error_m  of the distance of surfaces that are near as drawn; elsewhere the facets' own chord counts
+AxisPlay playAlong(const MotionSearch& search, const PlayFrame& frame, int axis, double leave_m,
+                   double error_m);
 
 /// Unit directions in the world in which the part leaves the others on a straight line: of the frame's axes,
 /// of those of its fits, and of 42 directions all around.

@@ -18,6 +18,12 @@ inline constexpr const char* kOverlapMeaning =
 /// "not known" where no piece of its surface was found.
 VPS_VIEWER_API std::string volumeWords(const scenes::CheckedPair& pair);
 
+/// How far a part moves one way: "free", "1009.0"; "1009.0 (+- 962.4)" where its error is more than twice
+/// that of the part's play, as in a taper; ">= 909.7" where the search ended before.
+/// @param usual  CheckedPart::play_error_m, or of a turn play_error_rad
+/// @param form   of a number, as "%.1f"
+VPS_VIEWER_API std::string playWords(double way, double error, double usual, double scale, const char* form);
+
 /// Why the play of a part is not certain, and by how much: "facets cross others as drawn; ..."; empty if
 /// it is.
 VPS_VIEWER_API std::string playDoubt(const scenes::CheckedPart& part, const scenes::CheckResult& result);

@@ -118,11 +118,11 @@ std::string pressFits(const scenes::CheckResult& result) {
                      rows);
 }
 
-std::string both(double plus, double minus, double scale, const char* form) {
-  const auto one = [&](double value) {
-    return std::isinf(value) ? std::string("free") : format(scale * value, form);
-  };
-  return std::string("+").append(one(plus)).append(" / −").append(one(minus));
+/// Both ways along one axis.
+std::string both(const std::array<double, 6>& way, const std::array<double, 6>& error, std::size_t i,
+                 double usual, double scale, const char* form) {
+  return escapeHtml("+" + playWords(way[i], error[i], usual, scale, form) + " / −" +
+                    playWords(way[i + 1], error[i + 1], usual, scale, form));
 }
 
 std::string coordinates(const Vec3& d) {
@@ -138,9 +138,10 @@ std::string play(const scenes::CheckResult& result) {
       if (!part.play)
         row.push_back({"", "n"});
       else if (is_turn)
-        row.push_back({both(part.play->rad[i - 6], part.play->rad[i - 5], 1e3, "%.2f"), "n"});
+        row.push_back(
+            {both(part.play->rad, part.play->error_rad, i - 6, part.play_error_rad, 1e3, "%.2f"), "n"});
       else
-        row.push_back({both(part.play->m[i], part.play->m[i + 1], 1e6, "%.1f"), "n"});
+        row.push_back({both(part.play->m, part.play->error_m, i, part.play_error_m, 1e6, "%.1f"), "n"});
     }
     std::string ways = part.play ? "" : "it overlaps another part";
     for (const Vec3& way : part.ways_out_W) ways += (ways.empty() ? "(" : ", (") + coordinates(way) + ")";

@@ -15,6 +15,13 @@ std::string volumeWords(const scenes::CheckedPair& pair) {
   return most_m3 > 0 ? "<= " + html::format(1e9 * most_m3, "%.4g") : "not known";
 }
 
+std::string playWords(double way, double error, double usual, double scale, const char* form) {
+  if (std::isinf(way)) return "free";
+  const std::string words = html::format(scale * way, form);
+  if (std::isinf(error)) return ">= " + words;
+  return error > 2 * usual ? words + " (+- " + html::format(scale * error, form) + ")" : words;
+}
+
 std::string playDoubt(const scenes::CheckedPart& part, const scenes::CheckResult& result) {
   if (!part.play || part.is_play_certain) return {};
   constexpr double kEqual_m = 0.1e-6;  // as the check takes sizes for equal
