@@ -603,6 +603,48 @@ TEST(Plan, AThreadedCapTurnsOffItsNeck) {
   expectFreeWays(parts, plan);
 }
 
+/// A blind cap on a threaded neck. Thread and cap of any size, and shorter or longer than the cap is high.
+std::vector<DrawnPart> cappedNeck(double major_m, double pitch_m, double length_m) {
+  test::ThreadShape neck;
+  neck.major_m = major_m;
+  neck.pitch_m = pitch_m;
+  neck.length_m = length_m;
+  neck.columns = 48;
+  neck.rows_per_pitch = 16;
+  test::ThreadShape thread = neck;
+  thread.clearance_m = 0.06 * pitch_m;
+  Mesh cap = test::makeNut(thread, 1.8 * major_m);
+  const double top_m = bounds(cap).max.z(), lid_m = 0.4 * major_m;
+  append(cap,
+         transformed(makeCylinder(1.5 * major_m, lid_m, 48), Pose::translation({0, 0, top_m + 0.5 * lid_m})));
+  return {at("neck", test::makeThreadedRod(neck), {0, 0, -pitch_m}), at("cap", cap, {0, 0, 0})};
+}
+
+// A screw starts as it stands at home, and is turned onto its thread by hand: inside of the thread it would
+// overlap it, unless it is whole turns above its place.
+TEST(Plan, AScrewStartsOutsideOfItsThreadHoweverShortItIs) {
+  struct Size {
+    double major_m, pitch_m, turns;
+  };
+  for (const Size& size : {Size{2.5e-3, 0.8e-3, 3}, Size{2.5e-3, 0.8e-3, 6}, Size{20e-3, 4.5e-3, 4}}) {
+    const std::vector<DrawnPart> parts = cappedNeck(size.major_m, size.pitch_m, size.turns * size.pitch_m);
+    PlanSettings settings;
+    settings.fixed = {"neck"};
+    const PlanResult plan = planAssembly("test", parts, settings);
+    ASSERT_EQ(stepsOf(plan.assemblies.front()), Names{"cap"}) << size.major_m << ", " << size.turns;
+    ASSERT_EQ(plan.assemblies.front().steps.front().kind, WayKind::Screw);
+    std::vector<Scene> scenes = plannedScenes(sceneOf(parts), plan);
+    const Pose& X_WP = scenes.front().steps.front().X_WP_start;
+    EXPECT_GT(X_WP.p.z() + bounds(parts[1].mesh).min.z(), bounds(parts[0].mesh).max.z() - size.pitch_m);
+    EXPECT_TRUE(checkWays(scenes.front()).empty());
+    // Half a turn above its place, and not turned, it is in the thread's flanks.
+    scenes.front().steps.front().X_WP_start = Pose::translation({0, 0, 1.5 * size.pitch_m});
+    const std::vector<WayFault> faults = checkWays(scenes.front());
+    ASSERT_EQ(faults.size(), 1U) << size.major_m;
+    EXPECT_EQ(faults.front().kind, WayFaultKind::Through);
+  }
+}
+
 /// A plate with a bore of 10 mm and a pin of 9.9 mm through it, whose head hangs below.
 std::vector<DrawnPart> hangingHead(double head_radius_m, int segments) {
   return {

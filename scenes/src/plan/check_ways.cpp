@@ -139,13 +139,15 @@ class WayCheck {
   [[nodiscard]] std::vector<Pose> poses_W() const {
     const std::vector<Pose> stops = stops_W();
     std::vector<Pose> poses;
-    for (std::size_t leg = 0; leg + 1 < stops.size(); ++leg)
+    for (std::size_t leg = 0; leg + 1 < stops.size(); ++leg) {
+      const bool is_turned = step_.motion == StepMotion::Screw && leg + 2 == stops.size();
+      if (is_turned) poses.push_back(stops[leg]);  // from where the hand begins to turn it
       for (int i = 0; i < kPosesOfLeg; ++i) {
-        const bool is_turned = step_.motion == StepMotion::Screw && leg + 2 == stops.size();
         const double share = static_cast<double>(i) / kPosesOfLeg;
         poses.push_back(is_turned ? screwed(1 - share, stops[leg])
                                   : between(stops[leg], stops[leg + 1], share));
       }
+    }
     return poses;
   }
 

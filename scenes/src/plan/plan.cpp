@@ -70,11 +70,12 @@ double leavingDistance(const Box& moving, const Box& held, const Vec3& d) {
 }
 
 /// How far parts go on their last leg until they have left the boxes of all that stay, and half as far as
-/// they are long.
+/// they are long. Of a screw from home on: it starts as it stands at home, and a hand turns it onto its
+/// thread, so that it has to be outside of it.
 double leavingDistance(const PairMotions& motions, const Removal& removal,
                        const std::vector<std::size_t>& held) {
   const Vec3& d = removal.way.legs.back().motion.direction;
-  const Pose X_W = cornersOf(removal.way).back();
+  const Pose X_W = removal.way.kind == WayKind::Screw ? Pose() : cornersOf(removal.way).back();
   double far_m = 0, own_m = 0;
   for (const std::size_t part : removal.parts) {
     const PlacedSurface placed = displaced(motions.parts()[part], X_W);
