@@ -10,10 +10,9 @@ namespace vps::scenes::inline v0 {
 /// the greatest distance from a point of one part's surface inside the other part to the other's surface, and
 /// the thickness of what both parts share, the diameter of the greatest ball in it.
 struct OverlapDepth {
-  double depth_m = 0;       ///< that was found, at most the true one
-  double most_m = 0;        ///< the true depth is at most this: depth_m and kOverlapCertain_m, or more where
-                            ///< the search ended at its limit
-  Vec3 p_W = Vec3::Zero();  ///< the deepest point, or the ball's centre
+  double depth_m = 0;         ///< that was found, at most the true one
+  double most_m = 0;          ///< the true depth is at most this
+  Vec3 p_W = Vec3::Zero();    ///< the deepest point, or the ball's centre
   bool is_thickness = false;  ///< depth_m is the ball's diameter
 };
 
@@ -32,8 +31,9 @@ struct OverlapDepth {
 /// Others are divided: where two faces are equally far, else in the middle. Corners and edges that point into
 /// the part are touched in a cone of directions, which is divided as well.
 ///
-/// The same on any machine: its limit is a count, of about two seconds in all. In surfaces with holes a
-/// distance jumps by up to their width, which is not in the bound.
+/// The same on any machine: its limit is a count, of a second or two, and of some ten where many facets are
+/// equally far, as around the centre of a ball. In surfaces with holes a distance jumps by up to their width,
+/// which is not in the bound.
 /// @param known  a depth that was found in some other way, at most the true one
 OverlapDepth overlapDepth(const PlacedSurface& a, const PlacedSurface& b, const OverlapDepth& known);
 
