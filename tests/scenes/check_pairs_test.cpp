@@ -8,6 +8,7 @@
 
 #include "support/faulty_meshes.h"
 #include "vps/load_error.h"
+#include "vps/mesh_overlap.h"
 #include "vps_scenes/check.h"
 
 namespace vps::scenes {
@@ -48,7 +49,7 @@ TEST(CheckPairs, PartsFartherApartThanNearAreLeftOut) {
 }
 
 TEST(CheckPairs, ABlockInAPlateHasDepthVolumeAndPlace) {
-  for (const double depth_m : {0.5e-6, 5e-6, 90e-6, 1e-3}) {
+  for (const double depth_m : {0.7e-6, 5e-6, 90e-6, 1e-3}) {
     const CheckResult result = check({block("plate", {0.1, 0.1, 0.02}, at(0, 0, -0.01)),
                                       block("block", {0.01, 0.02, 0.03}, at(0.02, 0.01, 0.015 - depth_m))});
     ASSERT_EQ(result.pairs.size(), 1U);
@@ -61,6 +62,22 @@ TEST(CheckPairs, ABlockInAPlateHasDepthVolumeAndPlace) {
     EXPECT_NEAR(pair.at_W.z(), -depth_m, pair.error_m);
     EXPECT_EQ(pair.clearance_m, 0);
     EXPECT_EQ(result.clashes(), 1U);
+  }
+}
+
+// Half a micrometre is what the depths of a run are measured to; the search of the check may be 0.1 um off.
+TEST(CheckPairs, AnOverlapIsAClashFromHalfAMicrometreBeyondItsErrorOn) {
+  for (const auto& [depth_m, state] : {std::pair{0.15e-6, PairState::Contact},
+                                       {0.3e-6, PairState::Contact},
+                                       {0.59e-6, PairState::Contact},
+                                       {0.61e-6, PairState::Clash},
+                                       {1e-6, PairState::Clash}}) {
+    const CheckResult result = check({block("plate", {0.1, 0.1, 0.02}, at(0, 0, -0.01)),
+                                      block("block", {0.01, 0.02, 0.03}, at(0.02, 0.01, 0.015 - depth_m))});
+    ASSERT_EQ(result.pairs.size(), 1U);
+    EXPECT_EQ(result.pairs[0].state, state) << depth_m;
+    EXPECT_NEAR(result.pairs[0].interference_depth_m, depth_m, result.pairs[0].error_m);
+    EXPECT_NEAR(result.pairs[0].error_m, kOverlapCertain_m, 1e-12);
   }
 }
 

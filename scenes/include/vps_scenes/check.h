@@ -49,11 +49,17 @@ struct CheckSettings {
   [[nodiscard]] bool isAsked(const std::string& part) const;
 };
 
+/// An overlap of no more than this beyond its error is contact and no clash, for `vps check` and for every
+/// verdict. It is what the depths of a run are measured to (OverlapJudge::kCertain_m): parts that are drawn
+/// less deep in each other cannot be told from parts that touch. A drawing means no less either: parts of
+/// 50 mm in steel are longer by as much at each degree.
+inline constexpr double kContactDepth_m = 0.5e-6;
+
 enum class PairState {
   Apart,     ///< the clearance is more than its error
-  Contact,   ///< the surfaces meet to within the error; coincident faces are contact
-  PressFit,  ///< the parts overlap by more than the error, and by no more than a declared press fit
-  Clash,     ///< the parts overlap by more than the error, and by more than is declared
+  Contact,   ///< the surfaces meet to within the error and kContactDepth_m; coincident faces are contact
+  PressFit,  ///< the parts overlap by more than contact does, and by no more than a declared press fit
+  Clash,     ///< the parts overlap by more than contact does, and by more than is declared
 };
 VPS_SCENES_API const char* toText(PairState state);
 
@@ -77,6 +83,8 @@ struct CheckedPair {
   bool is_uncertain = false;
   double press_fit_m = 0;  ///< declared interference, the greater of both parts'; 0: none
   [[nodiscard]] bool isClash() const { return state == PairState::Clash && !is_allowed; }
+  /// Whether the overlap is more than contact is.
+  [[nodiscard]] bool isBeyondContact() const { return interference_depth_m > error_m + kContactDepth_m; }
 };
 
 enum class FitKind {

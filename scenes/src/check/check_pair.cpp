@@ -113,7 +113,7 @@ std::optional<CheckedPair> measured(const PlacedSurface& a, const PlacedSurface&
       // Where flat faces overlap, the error of the round ones beside them does not count.
       const CertainOverlap certain = certainOverlap(a, b);
       const double error_m = certain.error_m + round_m + kOverlapCertain_m;
-      const bool is_only_one = overlap.depth_m <= pair.error_m && certain.depth_m > error_m;
+      const bool is_only_one = !pair.isBeyondContact() && certain.depth_m > error_m + kContactDepth_m;
       if (is_only_one || (error_m < pair.error_m && certain.depth_m > overlap.depth_m - kOverlapCertain_m)) {
         pair.interference_depth_m = certain.depth_m;
         pair.error_m = error_m;
@@ -121,7 +121,7 @@ std::optional<CheckedPair> measured(const PlacedSurface& a, const PlacedSurface&
         unsettled_m = 0;
       }
     }
-    pair.state = pair.interference_depth_m > pair.error_m ? PairState::Clash : PairState::Contact;
+    pair.state = pair.isBeyondContact() ? PairState::Clash : PairState::Contact;
     pair.error_m += unsettled_m;
     if (pair.state == PairState::Contact) return pair;
     const OverlapVolume shared = overlapVolume(*a.surface, *b.surface, a.X_WP.inverse() * b.X_WP);

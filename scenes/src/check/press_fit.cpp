@@ -159,7 +159,7 @@ void judge(const std::vector<PlacedSurface>& parts, CheckedPair& pair, std::vect
     if (pair.press_fit_m > 0 && fit.kind == FitKind::Shaft)
       fit.press = pressOf(fit, named(parts, fit.shaft), named(parts, fit.bore), pair.press_fit_m);
   }
-  if (is_contact && hidden_m == 0) return;
+  if (is_contact && (hidden_m == 0 || !pair.isBeyondContact())) return;
   pair.state =
       pair.press_fit_m > 0 && is_declared && pair.interference_depth_m - pair.error_m <= depth_limit_m
           ? PairState::PressFit

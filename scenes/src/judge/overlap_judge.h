@@ -8,6 +8,7 @@
 
 #include "check/box_tree.h"
 #include "vps/part_model.h"
+#include "vps_scenes/check.h"
 
 namespace vps::scenes::inline v0 {
 
@@ -43,7 +44,7 @@ struct Penetration {
 /// Solid's answer; in the middle of a hole, where the signed distance jumps, a point may be missed.
 class OverlapJudge {
  public:
-  static constexpr double kCertain_m = 0.5e-6;
+  static constexpr double kCertain_m = kContactDepth_m;
 
   /// Adds a part that does not move.
   void mount(JudgedBody body, const Pose& X_WB);

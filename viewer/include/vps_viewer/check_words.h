@@ -12,7 +12,8 @@ namespace vps::viewer::inline v0 {
 /// How the overlap in the tables is meant.
 inline constexpr const char* kOverlapMeaning =
     "overlap: greatest depth of a point of one part's surface below the other's, or thickness of what both "
-    "share (diameter of the greatest ball in it) if more";
+    "share (diameter of the greatest ball in it) if more; up to 0.5 um beyond its error it counts as contact";
+static_assert(scenes::kContactDepth_m == 0.5e-6);
 
 /// The volume that two parts share, in cubic millimetres: "7.9840"; "<= 12.3" where its error is as large;
 /// "not known" where no piece of its surface was found.

@@ -255,7 +255,9 @@ std::string method(const scenes::Scene& scene, const scenes::AssembleResult& res
          "to the deflection of the tessellation.</li>\n"
          "<li>Overlap is measured as the exact distance between those meshes, during the step and the rest "
          "after "
-         "it. The limit is 10 µm or a quarter of the fit's clearance, whichever is less.</li>\n" +
+         "it. The limit is 10 µm or a quarter of the fit's clearance, whichever is less. As drawn, parts "
+         "overlap "
+         "where they are in each other by more than the error of their meshes and 0.5 µm.</li>\n" +
          handText(scene) + "<li>The device is " +
          escapeHtml(scene.device.kind == "dual_arm" ? "the simulated dual arm" : scene.device.kind) +
          ", at " + format(scene.device.scale, "%g") +
