@@ -216,7 +216,8 @@ TEST(Documentation, TheResultsKeysAreThoseOfTheFieldTables) {
   checkSection(readme, "check",
                head + resultLines("pairs[].", kCheckedPairFields) +
                    resultLines("fits[].", kCheckedFitFields) + resultLines("parts[].", kCheckedPartFields) +
-                   resultLines("wall.", kCheckWallFields));
+                   resultLines("places.", kCheckedPlacesFields) +
+                   resultLines("places.moved[].", kMovedPartFields) + resultLines("wall.", kCheckWallFields));
   checkSection(readme, "plan",
                head + resultLines("", kPlanFields) + resultLines("way_faults[].", kWayFaultFields) +
                    resultLines("wall.", kPlanWallFields));

@@ -130,34 +130,17 @@ std::string checkTables(const scenes::CheckResult& result) {
   return out;
 }
 
-namespace {
-
-std::string whyUncertain(const scenes::CheckResult& result, const scenes::CheckedPair& pair) {
-  for (const scenes::CheckedPart& part : result.parts)
-    if ((part.name == pair.a || part.name == pair.b) && !part.no_inside.empty())
-      return "because of " + part.name + ": " + part.no_inside;
-  return {};
-}
-
-}  // namespace
-
 std::string checkHeadline(const scenes::CheckResult& result) {
-  const std::string checked = result.assembly + ": " + std::to_string(result.parts.size()) + " parts, " +
-                              std::to_string(result.pairs.size()) + " pairs near each other, ";
+  std::string out = result.assembly + ": " + std::to_string(result.parts.size()) + " parts, " +
+                    std::to_string(result.pairs.size()) + " pairs near each other, ";
+  const std::string answer = assemblyWords(result);
   const std::size_t clashes = result.clashes();
-  if (clashes == 0 && result.uncertain() > 0) {
-    const scenes::CheckedPair& first =
-        *std::ranges::find(result.pairs, true, &scenes::CheckedPair::is_uncertain);
-    return checked + "not shown: it cannot be told whether " + first.a + " and " + first.b + " overlap, " +
-           whyUncertain(result, first) +
-           (result.uncertain() > 1 ? "; so are " + std::to_string(result.uncertain() - 1) + " other pairs"
-                                   : "");
-  }
-  if (clashes == 0) return checked + "no clash beyond the error";
+  if (clashes == 0) return out + (answer.empty() ? "no clash beyond the error" : answer);
   const scenes::CheckedPair& worst = *result.deepestClash();
-  return checked + std::to_string(clashes) + (clashes == 1 ? " clash: " : " clashes, the deepest: ") +
-         worst.a + " and " + worst.b + " by " + um(worst.interference_depth_m) + " um (+- " +
-         um(worst.error_m) + ")";
+  out += std::to_string(clashes) + (clashes == 1 ? " clash: " : " clashes, the deepest: ") + worst.a +
+         " and " + worst.b + " by " + um(worst.interference_depth_m) + " um (+- " + um(worst.error_m) +
+         ") as drawn";
+  return out + "\n" + answer;
 }
 
 std::string checkCsv(const scenes::CheckResult& result) {

@@ -59,6 +59,7 @@ int runCheck(const CheckArguments& given) {
   PdfFile pdf(given.pdf, inputs);
   scenes::CheckSettings settings;
   settings.has_play = !given.has_no_play;
+  settings.has_places = true;
   settings.has_sections = settings.has_maps = !given.html.empty() || !given.pdf.empty();
   if (!given.near.empty()) settings.near_m = scenes::lengthFromText(given.near, "--near");
   if (!(settings.near_m >= 0)) throw LoadError("", "", "--near is " + given.near + "; expected 0 or more");
@@ -78,8 +79,15 @@ int runCheck(const CheckArguments& given) {
   std::fputs(checkTables(result).c_str(), stdout);
   std::printf("%s\n", checkHeadline(result).c_str());
   pdf.write(page);  // last, so that nothing is lost where it fails
-  if (result.clashes() > 0) return kBad;
-  return result.uncertain() > 0 ? kNotShown : kGood;
+  switch (result.verdict()) {
+    case scenes::Verdict::Fits:
+      return kGood;
+    case scenes::Verdict::Blocked:
+      return kBad;
+    case scenes::Verdict::NotShown:
+      break;
+  }
+  return kNotShown;
 }
 
 }  // namespace

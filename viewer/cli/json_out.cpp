@@ -344,10 +344,17 @@ std::string toJson(const scenes::CheckResult& result) {
   for (const scenes::CheckedPair& pair : result.pairs)
     pairs.push_back(toObject(pair, scenes::kCheckedPairFields));
   for (const scenes::CheckedFit& fit : result.fits) fits.push_back(toObject(fit, scenes::kCheckedFitFields));
+  Json places = toObject(result.places, scenes::kCheckedPlacesFields);
+  places["moved"] = Json::array();
+  for (const scenes::MovedPart& part : result.places.moved)
+    places["moved"].push_back(toObject(part, scenes::kMovedPartFields));
   return text({{"wall", toObject(result, scenes::kCheckWallFields)},
                {"assembly", result.assembly},
+               {"verdict", scenes::toText(result.verdict())},
                {"clashes", result.clashes()},
                {"uncertain", result.uncertain()},
+               {"alone", result.alone},
+               {"places", places},
                {"pairs", pairs},
                {"fits", fits},
                {"parts", parts}});

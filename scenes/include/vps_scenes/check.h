@@ -14,6 +14,7 @@
 #include "vps_scenes/export.h"
 #include "vps_scenes/import.h"
 #include "vps_scenes/scene.h"
+#include "vps_scenes/verdict.h"
 
 namespace vps::scenes::inline v0 {
 
@@ -31,6 +32,7 @@ struct DrawnPart {
   double poissons_ratio = 0.3;
   double friction = 0.15;
   double rounding_m = 0;  ///< see ImportedPart; counts as error of the part
+  bool is_fixed = false;  ///< it is not moved to clear an overlap
 };
 
 /// The parts of a CAD file at their poses.
@@ -44,6 +46,7 @@ struct CheckSettings {
   bool has_play = true;  ///< with the ways out
   bool has_sections = false;
   bool has_maps = false;
+  bool has_places = false;  ///< looks for places without overlap (CheckedPlaces); needs the fits
   /// Names of parts: pairs with none of them, and the play of others, are left out. Empty: all.
   std::vector<std::string> only_parts = {};
   [[nodiscard]] bool isAsked(const std::string& part) const;
@@ -198,20 +201,49 @@ struct ClearanceMap {
       distance_m;  ///< by vertex: to the nearest other part, at most near_m; negative inside it
 };
 
+/// A part beside the place where it is drawn.
+struct MovedPart {
+  std::string name;
+  Vec3 by_W = Vec3::Zero();    ///< of the middle of its box [m]
+  Vec3 turn_W = Vec3::Zero();  ///< about that point, as rotation vector [rad]
+  double most_m = 0;           ///< how far the corner of its box that goes farthest goes
+  double allowed_m = 0;        ///< the most it may: by its tightest fit, or by sight where it has none
+  Pose X_WP;                   ///< where it stands then
+};
+
+/// Whether the parts can be assembled, which is another question than whether they overlap as drawn: what is
+/// drawn 50 um into its neighbour is free where it moves by as much within its play. Looked for are places
+/// where no parts overlap, with each part no farther from where it is drawn than its tolerance there
+/// (core/fit_tolerance.h).
+struct CheckedPlaces {
+  /// Fits: nothing overlaps as drawn, or nothing does once the parts of `moved` are moved, by exact measure.
+  /// Blocked: proven that no such places exist. NotShown: none was found, and none is ruled out.
+  Verdict verdict = Verdict::Fits;
+  std::vector<MovedPart> moved;  ///< few of them, by little; also where other overlaps remain
+  std::string reason;            ///< in words: of a verdict other than Fits
+};
+
 struct CheckResult {
   std::string assembly;
   std::vector<CheckedPair> pairs;  ///< clashes first, the deepest first; then by clearance
   std::vector<CheckedFit> fits;
   std::vector<CheckedPart> parts;
+  /// Parts that are nowhere near another one: nothing shows whether they fit. None of a single part.
+  std::vector<std::string> alone;
+  CheckedPlaces places;                  ///< NotShown where it was not asked for and parts clash
   std::vector<CheckedSection> sections;  ///< if asked for: of each fit and of each overlap
   double near_m = 0;                     ///< as the settings say
   std::vector<ClearanceMap> maps;        ///< if asked for: of the parts that are near others
-  double prepare_wall_s = 0, pairs_wall_s = 0, fits_wall_s = 0, pictures_wall_s = 0, play_wall_s = 0;
+  double prepare_wall_s = 0, pairs_wall_s = 0, fits_wall_s = 0, pictures_wall_s = 0, play_wall_s = 0,
+         places_wall_s = 0;
   [[nodiscard]] std::size_t clashes() const;
   /// Pairs of which it cannot be told whether they overlap.
   [[nodiscard]] std::size_t uncertain() const;
   /// The deepest overlap that is not allowed; null if there is none.
   [[nodiscard]] const CheckedPair* deepestClash() const;
+  /// The answer to "do the parts go together?": that of `places`, and NotShown where overlaps are uncertain
+  /// or parts stand alone.
+  [[nodiscard]] Verdict verdict() const;
 };
 
 /// Measures the parts as they stand, on all cores. The same bits on any number of threads. Throws LoadError

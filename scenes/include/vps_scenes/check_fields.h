@@ -105,11 +105,39 @@ inline constexpr auto kCheckedPartFields = std::make_tuple(
           "then stop a motion that the faces allow"),
     field("play_center_m", &CheckedPart::play_center_W, "where the axes of rotation meet, in the world"));
 
+inline constexpr auto kMovedPartFields = std::make_tuple(
+    field("name", &MovedPart::name, "name of the part"),
+    field("by_m", &MovedPart::by_W, "by how much the middle of its box is moved, in the world"),
+    field("turn_rad", &MovedPart::turn_W, "by how much it is turned about that point: rotation vector"),
+    field("most_m", &MovedPart::most_m, "how far the corner of its box goes that goes farthest"),
+    field("allowed_m", &MovedPart::allowed_m, "the most that it may: by its tightest fit, or by sight"),
+    field(
+        "position_m",
+        [](const MovedPart& part) {
+          return std::vector<double>{part.X_WP.p.x(), part.X_WP.p.y(), part.X_WP.p.z()};
+        },
+        "where its origin is then, in the world"),
+    field(
+        "rotation_xyzw",
+        [](const MovedPart& part) {
+          const Quat q = part.X_WP.quaternion();
+          return std::vector<double>{q.x(), q.y(), q.z(), q.w()};
+        },
+        "its rotation then, as a unit quaternion"));
+
+inline constexpr auto kCheckedPlacesFields = std::make_tuple(
+    field(
+        "verdict", &CheckedPlaces::verdict,
+        "`fits`: nothing overlaps as drawn, or nothing does once the parts of `moved` are moved; `blocked`: "
+        "proven that there are no such places; `not_shown`: neither"),
+    field("reason", &CheckedPlaces::reason, "of another verdict, in words"));
+
 inline constexpr auto kCheckWallFields =
     std::make_tuple(field("prepare_s", &CheckResult::prepare_wall_s, "time to prepare the parts"),
                     field("pairs_s", &CheckResult::pairs_wall_s, "time for the pairs"),
                     field("fits_s", &CheckResult::fits_wall_s, "time for the fits"),
                     field("pictures_s", &CheckResult::pictures_wall_s, "time for sections and maps"),
-                    field("play_s", &CheckResult::play_wall_s, "time for play and ways out"));
+                    field("play_s", &CheckResult::play_wall_s, "time for play and ways out"),
+                    field("places_s", &CheckResult::places_wall_s, "time for places without overlap"));
 
 }  // namespace vps::scenes::inline v0

@@ -44,8 +44,8 @@ struct StepResult {
   /// A later part that fits into it and takes it from where the hand left it to where it belongs; empty:
   /// none, or it cannot be moved there.
   std::string aligned_by;
-  /// Why the meshes cannot show that it fits: the error that is known of them is more than its clearance;
-  /// empty: they can.
+  /// Why the drawing cannot show that it fits: the error that is known of its meshes is more than its
+  /// clearance, or nothing is near where it belongs; empty: it can.
   std::string mesh_doubt;
   bool is_taken_off = false;  ///< the step took the part off, and its target is where it was put away
   bool completed = false;     ///< the part reached its target, whatever else is wrong

@@ -50,7 +50,9 @@ inline constexpr auto kStepFields = std::make_tuple(
     field(
         "mesh_doubt", &StepResult::mesh_doubt,
         "why it is not shown that it fits, though the hand brought it home: the known error of the meshes is "
-        "more than its clearance, or a passage on the way was not searched to its end; empty: nothing"),
+        "more than its clearance, it belongs nowhere near another part, or a passage on the way was not "
+        "searched "
+        "to its end; empty: nothing"),
     field("aligned_by", &StepResult::aligned_by,
           "a later part that fits into it and takes it from where the hand left it to where it belongs; "
           "empty if none"),

@@ -13,6 +13,7 @@
 #include "check/clearance_map.h"
 #include "check/fits.h"
 #include "check/on_cores.h"
+#include "check/places.h"
 #include "check/press_fit.h"
 #include "check/section.h"
 #include "core/wall_clock.h"
@@ -72,6 +73,11 @@ const CheckedPair* CheckResult::deepestClash() const {
   const auto found =
       std::find_if(pairs.begin(), pairs.end(), [](const CheckedPair& pair) { return pair.isClash(); });
   return found == pairs.end() ? nullptr : &*found;
+}
+
+Verdict CheckResult::verdict() const {
+  if (places.verdict != Verdict::Fits) return places.verdict;
+  return uncertain() > 0 || !alone.empty() ? Verdict::NotShown : Verdict::Fits;
 }
 
 namespace {
@@ -144,6 +150,24 @@ std::vector<CheckedFit> checkFits(const std::vector<PlacedSurface>& parts, const
   return fits;
 }
 
+/// Parts whose boxes are near no other one; and all of them where no two parts are near each other.
+std::vector<std::string> partsAlone(const std::vector<PlacedSurface>& parts, const CheckResult& result,
+                                    const CheckSettings& settings) {
+  // assumed: parts of an assembly touch, or have a neighbour at less than this; the default of --near
+  constexpr double kNeighbour_m = 1e-3;
+  std::vector<std::string> alone;
+  if (parts.size() < 2) return alone;
+  std::vector<bool> has_neighbour(parts.size());
+  for (const auto& [a, b] : nearPairs(parts, std::max(settings.near_m, kNeighbour_m)))
+    has_neighbour[a] = has_neighbour[b] = true;
+  const bool is_none_near =
+      result.pairs.empty() && settings.only_parts.empty() && settings.near_m >= kNeighbour_m;
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    if ((is_none_near || !has_neighbour[i]) && settings.isAsked(parts[i].name))
+      alone.push_back(parts[i].name);
+  return alone;
+}
+
 CheckedPart describePart(const PlacedSurface& part) {
   CheckedPart out;
   out.name = part.name;
@@ -187,12 +211,18 @@ CheckResult checkPlaced(const std::string& name, const std::vector<PlacedSurface
   removeFalseFits(result);
   judgeByFits(placed, result);
   sortPairs(result.pairs);
-  if (!settings.has_fits) result.fits.clear();
   result.fits_wall_s = lap_s();
+  if (settings.has_fits && settings.has_places && settings.only_parts.empty())
+    result.places = freePlaces(placed, result, progress);
+  else if (result.clashes() > 0)
+    result.places = {Verdict::NotShown, {}, "places without overlap were not looked for"};
+  result.places_wall_s = lap_s();
+  if (!settings.has_fits) result.fits.clear();
   if (settings.has_sections) result.sections = checkSections(placed, result, progress);
   if (settings.has_maps) result.maps = clearanceMaps(placed, result, settings.near_m, progress);
   result.pictures_wall_s = lap_s();
   for (const PlacedSurface& part : placed) result.parts.push_back(describePart(part));
+  result.alone = partsAlone(placed, result, settings);
   if (settings.has_play) checkPlay(placed, result, settings, progress);
   result.play_wall_s = lap_s();
   return result;

@@ -20,7 +20,7 @@ std::vector<DrawnPart> drawnParts(const Scene& scene) {
   for (const ScenePart& part : scene.parts)
     parts.push_back({part.part.name, part.part.mesh, part.X_WP, part.deflection_m, part.allow_overlap,
                      part.press_fit_m, part.youngs_modulus_Pa, part.poissons_ratio,
-                     part.part.material.friction, part.rounding_m});
+                     part.part.material.friction, part.rounding_m, part.is_fixed});
   for (const SceneStep& step : scene.steps) parts[step.part].X_WP = placeOf(step);
   return parts;
 }

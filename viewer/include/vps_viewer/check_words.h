@@ -29,4 +29,8 @@ VPS_VIEWER_API std::string playWords(double way, double error, double usual, dou
 /// it is.
 VPS_VIEWER_API std::string playDoubt(const scenes::CheckedPart& part, const scenes::CheckResult& result);
 
+/// The answer to "do the parts go together?" where it is not yes as drawn: "can be assembled: free if 'bolt'
+/// moves by 0.050 mm along +x", "cannot be assembled: ...", "not shown: ..."; empty for yes as drawn.
+VPS_VIEWER_API std::string assemblyWords(const scenes::CheckResult& result);
+
 }  // namespace vps::viewer::inline v0

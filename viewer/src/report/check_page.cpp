@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 
 #include "report/clearance_pictures.h"
@@ -191,23 +192,23 @@ std::string checkSection(const scenes::CheckResult& result) {
 
 std::string checkPage(const scenes::CheckResult& result) {
   const std::size_t clashes = result.clashes();
-  std::string verdict = "No parts overlap as drawn, beyond the stated errors.";
-  if (result.uncertain() > 0)
-    verdict =
-        format(static_cast<double>(result.uncertain()), "Not shown: of %.0f ") +
-        "pairs it cannot be told whether they overlap, because a part has no inside; see the last table.";
+  std::string answer = escapeHtml(assemblyWords(result));
+  if (!answer.empty()) answer.front() = static_cast<char>(std::toupper(answer.front()));
+  std::string verdict =
+      answer.empty() ? "No parts overlap as drawn, beyond the stated errors." : answer + ".";
   if (clashes > 0) {
     const scenes::CheckedPair& worst = *result.deepestClash();
     verdict = (clashes == 1 ? "Two parts overlap as drawn: "
                             : std::to_string(clashes) + " pairs of parts overlap as drawn, the deepest: ") +
               escapeHtml(worst.a) + " and " + escapeHtml(worst.b) + " by " +
-              micrometres(worst.interference_depth_m) + " µm (± " + micrometres(worst.error_m) + ").";
+              micrometres(worst.interference_depth_m) + " µm (± " + micrometres(worst.error_m) + "). " +
+              verdict;
   }
+  constexpr std::array kClass = {"good", "bad", "unsure"};
+  static_assert(static_cast<int>(scenes::Verdict::NotShown) == 2);
   return html::page("Check of " + result.assembly, "<h1>Check of " + escapeHtml(result.assembly) +
                                                        "</h1>\n<p class=\"verdict " +
-                                                       (clashes > 0              ? "bad"
-                                                        : result.uncertain() > 0 ? "unsure"
-                                                                                 : "good") +
+                                                       kClass[static_cast<std::size_t>(result.verdict())] +
                                                        "\">" + verdict + "</p>\n" + checkSection(result));
 }
 

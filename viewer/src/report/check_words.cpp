@@ -2,11 +2,87 @@
 #include "vps_viewer/check_words.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numbers>
 
 #include "report/html.h"
 
 namespace vps::viewer::inline v0 {
+
+namespace {
+
+/// "+x", or "(0.71, 0.71, 0.00)".
+std::string directionWords(const Vec3& d) {
+  constexpr double kAlong = 0.9995;  // within two degrees
+  constexpr std::array kAxes = {"x", "y", "z"};
+  for (int i = 0; i < 3; ++i)
+    if (std::abs(d[i]) > kAlong) return std::string(d[i] > 0 ? "+" : "-") + kAxes[std::size_t(i)];
+  const auto rounded = [](double x) {
+    constexpr double kZero = 0.005;
+    return html::format(std::abs(x) < kZero ? 0 : x, "%.2f");
+  };
+  return "(" + rounded(d.x()) + ", " + rounded(d.y()) + ", " + rounded(d.z()) + ")";
+}
+
+/// "'bolt' moves by 0.050 mm along +x and turns by 0.010 degrees about (1.00, 0.00, 0.00)"
+std::string motionWords(const scenes::MovedPart& part) {
+  constexpr double kNone = 0.01;  // a share of the whole motion that is not worth a word
+  const double by_m = part.by_W.norm(), turn_rad = part.turn_W.norm();
+  std::string out = "'" + part.name + "'";
+  const bool is_moved = by_m > kNone * part.most_m;
+  if (is_moved)
+    out += " moves by " + html::format(1e3 * by_m, "%.4f") + " mm along " + directionWords(part.by_W / by_m);
+  // What a turn adds to the way of the farthest corner.
+  if (part.most_m - by_m <= kNone * part.most_m) return out;
+  return out + (is_moved ? " and" : "") + " turns by " +
+         html::format(turn_rad * 180 / std::numbers::pi, "%.4f") + " degrees about " +
+         directionWords(part.turn_W / turn_rad);
+}
+
+std::string aloneWords(const std::vector<std::string>& alone) {
+  const bool is_one = alone.size() == 1;
+  return "'" + alone.front() + "'" +
+         (is_one ? " is"
+                 : " and " + std::to_string(alone.size() - 1) +
+                       (alone.size() == 2 ? " other are" : " others are")) +
+         " nowhere near another part, so that nothing shows whether " + (is_one ? "it fits" : "they fit");
+}
+
+std::string uncertainWords(const scenes::CheckResult& result) {
+  const scenes::CheckedPair& first =
+      *std::ranges::find(result.pairs, true, &scenes::CheckedPair::is_uncertain);
+  std::string why;
+  for (const scenes::CheckedPart& part : result.parts)
+    if (why.empty() && (part.name == first.a || part.name == first.b) && !part.no_inside.empty())
+      why = "because of " + part.name + ": " + part.no_inside;
+  const std::size_t others = result.uncertain() - 1;
+  return "it cannot be told whether " + first.a + " and " + first.b + " overlap, " + why +
+         (others > 0 ? "; so are " + std::to_string(others) + " other pairs" : "");
+}
+
+}  // namespace
+
+std::string assemblyWords(const scenes::CheckResult& result) {
+  switch (result.places.verdict) {
+    case scenes::Verdict::Blocked:
+      return "cannot be assembled: " + result.places.reason;
+    case scenes::Verdict::NotShown:
+      return "whether it can be assembled is not shown: " + result.places.reason;
+    case scenes::Verdict::Fits:
+      break;
+  }
+  if (result.uncertain() > 0) return "not shown: " + uncertainWords(result);
+  if (!result.alone.empty()) return "not shown: " + aloneWords(result.alone);
+  if (result.places.moved.empty()) return {};
+  std::string out = "can be assembled: free if ";
+  constexpr std::size_t kMost = 4;
+  const std::vector<scenes::MovedPart>& moved = result.places.moved;
+  for (std::size_t i = 0; i < std::min(moved.size(), kMost); ++i)
+    out += (i == 0 ? "" : i + 1 == moved.size() ? " and " : ", ") + motionWords(moved[i]);
+  return moved.size() > kMost ? out + " and " + std::to_string(moved.size() - kMost) + " more parts move"
+                              : out;
+}
 
 std::string volumeWords(const scenes::CheckedPair& pair) {
   if (pair.volume_error_m3 < pair.interference_volume_m3)

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "check/blocked_proof.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "core/fit_tolerance.h"
+
+namespace vps::scenes::inline v0 {
+
+namespace {
+
+/// How far a body may be from where it stands now.
+struct BodyReach {
+  double most_m = 0;    ///< of each of its points
+  double turn_rad = 0;  ///< greatest turn
+};
+
+/// What a touch contributes to the mean, before its weight.
+struct Bounded {
+  double most_m = 0;  ///< h and all that is not linear in the motion
+  Vec3 n_W = Vec3::Zero(), c_W = Vec3::Zero();
+};
+
+/// How far the bodies may be from where they stand.
+class Reaches {
+ public:
+  Reaches(const std::vector<PlacedSurface>& parts, const std::vector<Pose>& X_WP,
+          const std::vector<MovableBody>& bodies, const std::vector<double>& moved_m)
+      : parts_(parts), X_WP_(X_WP), bodies_(bodies), body_of_(bodyOfPart(bodies, parts.size())) {
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      const double most_m = bodies[i].allowed_m + moved_m[i];
+      const double turn_rad = bodies[i].is_fixed ? 0 : bodies[i].mostTurn(most_m);
+      // at() is in the middle of the body as drawn, which may lie beside a thin one that has moved.
+      reach_.push_back({most_m + turn_rad * moved_m[i], turn_rad});
+    }
+  }
+  [[nodiscard]] std::size_t bodyOf(std::size_t part) const { return body_of_[part]; }
+  [[nodiscard]] const BodyReach& of(std::size_t body) const { return reach_[body]; }
+  [[nodiscard]] const Vec3& at(std::size_t body) const { return bodies_[body].loose.at_W; }
+
+  /// With the ball, of some that touch the surface at the point's foot, for which the bound is least.
+  [[nodiscard]] Bounded bounded(const Touch& touch) const {
+    constexpr int kBalls = 14;
+    constexpr double kSmaller = 0.6;
+    const std::size_t a = bodyOf(touch.of), b = bodyOf(touch.above);
+    const PartSurface& above = *parts_[touch.above].surface;
+    const Vec3 p_W = X_WP_[touch.of] * touch.p_O;
+    const double w_m = of(a).most_m + of(b).most_m;
+    const auto turned_m = [&](std::size_t body, const Vec3& x_W) {
+      return 0.5 * of(body).turn_rad * of(body).turn_rad * (x_W - at(body)).norm();
+    };
+    Bounded best{std::numeric_limits<double>::infinity()};
+    double radius_m = 0.5 * above.box().size().norm();
+    for (int i = 0; i < kBalls; ++i, radius_m *= kSmaller) {
+      const Vec3 c_A = touch.q_A - radius_m * touch.n_A;
+      const double inside_m = -above.solid().signedDistance(c_A);
+      if (!(inside_m > 0)) continue;
+      const Vec3 c_W = X_WP_[touch.above] * c_A, v = p_W - c_W;
+      const double length_m = v.norm();
+      if (!(length_m > 2 * w_m)) continue;
+      const double most_m =
+          length_m - inside_m + w_m * w_m / (2 * (length_m - w_m)) + turned_m(a, p_W) + turned_m(b, c_W);
+      if (most_m < best.most_m) best = {most_m, v / length_m, c_W};
+    }
+    return best;
+  }
+
+ private:
+  const std::vector<PlacedSurface>& parts_;
+  const std::vector<Pose>& X_WP_;
+  const std::vector<MovableBody>& bodies_;
+  std::vector<std::size_t> body_of_;
+  std::vector<BodyReach> reach_;
+};
+
+/// The greatest angle around the axis in which no corner of the part lies on a cylinder of this radius.
+double greatestGap(const PlacedSurface& part, const CheckedFit& fit, double radius_m) {
+  const Vec3 u = fit.axis_W.unitOrthogonal(), v = fit.axis_W.cross(u);
+  // The axis of the fit is the shaft's; the bore's is beside it.
+  const double same_m = fit.offset_m + fit.error_m + 1e-6 * radius_m + 1e-9;
+  std::vector<double> angles;
+  for (const Vec3& p_P : part.surface->mesh().vertices) {
+    const Vec3 r = part.X_WP * p_P - fit.at_W;
+    const double x = u.dot(r), y = v.dot(r);
+    if (std::abs(std::hypot(x, y) - radius_m) <= same_m) angles.push_back(std::atan2(y, x));
+  }
+  if (angles.empty()) return 2 * std::numbers::pi;
+  std::ranges::sort(angles);
+  double most = angles.front() + 2 * std::numbers::pi - angles.back();
+  for (std::size_t i = 1; i < angles.size(); ++i) most = std::max(most, angles[i] - angles[i - 1]);
+  return most;
+}
+
+}  // namespace
+
+double greatestGap_m(const std::vector<PlacedSurface>& parts, const std::vector<Pose>& X_WP,
+                     const Touch& touch, const std::vector<MovableBody>& bodies,
+                     const std::vector<double>& moved_m) {
+  return Reaches(parts, X_WP, bodies, moved_m).bounded(touch).most_m;
+}
+
+double provenOverlap_m(const std::vector<PlacedSurface>& parts, const std::vector<Pose>& X_WP,
+                       std::span<const PressedTouch> touches, const std::vector<MovableBody>& bodies,
+                       const std::vector<double>& moved_m) {
+  const Reaches reaches(parts, X_WP, bodies, moved_m);
+  double weight = 0, sum_m = 0;
+  std::vector<Vec3> force(bodies.size(), Vec3::Zero()), torque = force;
+  for (const PressedTouch& pressed : touches) {
+    const Bounded found = reaches.bounded(pressed.touch);
+    if (!(pressed.weight > 0) || !std::isfinite(found.most_m)) continue;
+    const std::size_t a = reaches.bodyOf(pressed.touch.of), b = reaches.bodyOf(pressed.touch.above);
+    const Vec3 p_W = X_WP[pressed.touch.of] * pressed.touch.p_O;
+    weight += pressed.weight;
+    sum_m += pressed.weight * (found.most_m + pressed.error_m);
+    force[a] += pressed.weight * found.n_W;
+    force[b] -= pressed.weight * found.n_W;
+    torque[a] += pressed.weight * (p_W - reaches.at(a)).cross(found.n_W);
+    torque[b] -= pressed.weight * (found.c_W - reaches.at(b)).cross(found.n_W);
+  }
+  if (!(weight > 0)) return 0;
+  for (std::size_t i = 0; i < bodies.size(); ++i)
+    if (!bodies[i].is_fixed)
+      sum_m += force[i].norm() * reaches.of(i).most_m + torque[i].norm() * reaches.of(i).turn_rad;
+  return -sum_m / weight;
+}
+
+bool isProvenByFit(const std::vector<PlacedSurface>& parts, const CheckedFit& fit) {
+  if (fit.kind != FitKind::Shaft) return false;
+  if (!(-fit.diametral_clearance_m > fit.error_m + 2 * kContactDepth_m)) return false;
+  // By an interference each part may move by kContactOnBothSides_m: a shorter fit may be left along its axis.
+  if (!(fit.length_m > 4 * kContactOnBothSides_m)) return false;
+  // A round part among points that surround it comes nearer to one of them whatever way it moves.
+  constexpr double kAround = std::numbers::pi / 4, kSurrounds = 2 * std::numbers::pi / 3;
+  const double of_shaft = greatestGap(named(parts, fit.shaft), fit, 0.5 * fit.shaft_m),
+               of_bore = greatestGap(named(parts, fit.bore), fit, 0.5 * fit.bore_m);
+  return std::min(of_shaft, of_bore) <= kAround && std::max(of_shaft, of_bore) <= kSurrounds;
+}
+
+}  // namespace vps::scenes::inline v0

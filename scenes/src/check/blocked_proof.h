@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Proofs that parts overlap wherever they are within their tolerances.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "check/loose_bodies.h"
+#include "check/touches.h"
+
+namespace vps::scenes::inline v0 {
+
+/// A touch that presses, as leastMotion() found it.
+struct PressedTouch {
+  Touch touch;
+  double allowed_m = 0;  ///< that its point may be below the plane: facets of parts in contact cross
+  double error_m = 0;    ///< of the meshes of its pair, and the overlap that counts as contact
+  double weight = 0;     ///< how far its gap stays negative where the sum of squares is least
+};
+
+/// An upper bound of the gap of a touch, less what is linear in the motion, wherever the bodies are within
+/// their tolerances.
+double greatestGap_m(const std::vector<PlacedSurface>& parts, const std::vector<Pose>& X_WP,
+                     const Touch& touch, const std::vector<MovableBody>& bodies,
+                     const std::vector<double>& moved_m);
+
+/// An overlap beyond error_m that some pair of the touches' parts has wherever the bodies are within their
+/// tolerances; 0 or less: there may be none.
+///
+/// A point p of one part and a ball of radius r about c in another overlap unless h = |p - c| - r >= 0. Any
+/// mean of such h with positive weights is negative only if one h is. Along n, from c to p, a displacement w
+/// of p against c changes h by no more than n . w + |w|^2 / (2 (|p - c| - |w|)), and w is linear in the
+/// motion of the bodies but for a turn's |turn|^2 arm / 2. With the weights of a least sum of squares, forces
+/// along n are in balance on each body, so that the linear part of the mean vanishes, up to rounding: what
+/// is left of it is bounded over all motions within the tolerances. Source: Farkas' lemma, with remainders.
+/// @param moved_m  by body: how far its farthest corner is from where it is drawn
+double provenOverlap_m(const std::vector<PlacedSurface>& parts, const std::vector<Pose>& X_WP,
+                       std::span<const PressedTouch> touches, const std::vector<MovableBody>& bodies,
+                       const std::vector<double>& moved_m);
+
+/// Whether a shaft is so much larger than its bore that small motions cannot keep it from overlapping: one of
+/// the two is round all around, and the other surrounds it. The corners of facets lie on the true faces, so
+/// that this holds to the error of the fit, however coarse the facets are.
+bool isProvenByFit(const std::vector<PlacedSurface>& parts, const CheckedFit& fit);
+
+}  // namespace vps::scenes::inline v0
