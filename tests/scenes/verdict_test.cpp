@@ -147,6 +147,18 @@ TEST(Verdict, APegDrawnTooLongForItsBlindHoleIsBlockedByTheBottom) {
   EXPECT_NEAR(step.blocked_at_W.z(), -kDepth_m, 0.1 * kMm);
 }
 
+// Parts that are laid out beside each other, as for printing, are brought there and show nothing.
+TEST(Verdict, APartThatBelongsNowhereNearAnotherIsNotShownToFit) {
+  const auto scene = [](double gap_m) {
+    return sceneOf({scenePart("plate", makeBox({30 * kMm, 30 * kMm, 4 * kMm}), Vec3::Zero(), true),
+                    scenePart("block", makeBox({6 * kMm, 6 * kMm, 6 * kMm}), {0, 0, 5 * kMm + gap_m}, false)},
+                   1 * kMm);
+  };
+  const StepResult apart = checkDrawnTargets(scene(20 * kMm), {}).front();
+  EXPECT_NE(apart.mesh_doubt.find("nowhere near another part"), std::string::npos) << apart.mesh_doubt;
+  EXPECT_EQ(checkDrawnTargets(scene(0), {}).front().mesh_doubt, "");
+}
+
 TEST(Verdict, ABlockDrawnInsideAPlateIsBlockedUnlessTheSceneAllowsIt) {
   const auto scene = [](double deep_m) {
     return sceneOf(

@@ -145,6 +145,15 @@ std::string meshDoubt(const Scene& scene, const CheckResult& checked, const std:
   return doubt;
 }
 
+/// Why a part that is brought home has not been shown to fit: nothing is there that it could fit.
+std::string aloneDoubt(const CheckResult& checked, const StepResult& step) {
+  const bool is_alone = std::ranges::find(checked.alone, step.part) != checked.alone.end();
+  if (!is_alone || step.is_taken_off) return {};
+  return "where it belongs it is nowhere near another part, so that nothing shows that it fits: are the "
+         "parts "
+         "laid out, or each in a frame of its own?";
+}
+
 double toleranceOf(const CheckResult& checked, const std::vector<InPlace>& in_place, const SceneStep& planned,
                    const std::string& part) {
   if (planned.tolerance_m > 0) return planned.tolerance_m;
@@ -179,6 +188,7 @@ std::vector<StepResult> checkDrawnTargets(const Scene& scene, const Progress& pr
     findOverlap(checked, in_place, steps[i]);
     steps[i].aligned_by = alignedBy(checked, scene, i, in_place, steps[i].part);
     steps[i].mesh_doubt = meshDoubt(scene, checked, in_place, planned, steps[i]);
+    if (steps[i].mesh_doubt.empty()) steps[i].mesh_doubt = aloneDoubt(checked, steps[i]);
     findPressFit(checked, in_place, steps[i]);
     if (steps[i].blocked_by.empty()) findClosedRoom(scene, planned, in_place, steps[i]);
   }

@@ -75,6 +75,10 @@ std::string verdictLine(const scenes::AssembleResult& result) {
       break;
   }
   const std::string parts = partsWith(result, scenes::Verdict::NotShown);
+  const bool is_home = std::all_of(result.steps.begin(), result.steps.end(),
+                                   [](const scenes::StepResult& s) { return s.completed; });
+  if (is_home && !parts.empty() && !is_apart)
+    return "Not shown: " + parts + " was brought home, but that does not show that it fits; " + count;
   return "Not shown: " + (parts.empty() ? std::string("the run ended before its last step") : parts) +
          (is_apart ? " was not taken off" : " was not brought home") +
          ", and nothing proves that it cannot be; " + count;
