@@ -283,6 +283,47 @@ TEST(FeatureMotion, ACornerThatPassesAnEdgeFlushMeetsTheFaceBehindIt) {
   }
 }
 
+// The edge of a wedge that leans across the rim of a hole and slides along it, straight: the rim goes off to
+// the side, and the wedge's edge enters it by d^2 / 2r, after it has passed the ends of several of its edges.
+// Rows of those that it passed hold it on straight lines, which the rim leaves.
+TEST(FeatureMotion, AnEdgeThatSlidesAlongAFineRimMeetsTheEdgeWhereItEnds) {
+  constexpr double kRadius_m = 4e-3, kHeight_m = 2e-3;
+  const double lean = std::sqrt(0.5);  // the edge leans by 45 degrees in the plane of the hole's axis
+  // Along x is the edge, into +z the wedge grows.
+  Mesh wedge;
+  for (const double x : {-1.5e-3, 1.5e-3})
+    for (const Vec3& p : {Vec3(x, 0, 0), Vec3(x, 1e-3, 1e-3), Vec3(x, -1e-3, 1e-3)})
+      wedge.vertices.push_back(p);
+  wedge.triangles = {{0, 2, 1}, {3, 4, 5}, {0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}, {2, 0, 3}, {2, 3, 5}};
+  ASSERT_GT(massProperties(wedge).volume_m3, 0);
+  Mat3 R;
+  R << lean, 0, -lean, 0, 1, 0, lean, 0, lean;
+  const Body slider(std::move(wedge));
+  for (const int corners : {100, 200, 400, 800}) {
+    const Body ring(
+        test::lathe({{kRadius_m, 0}, {10e-3, 0}, {10e-3, kHeight_m}, {kRadius_m, kHeight_m}}, corners));
+    for (const double slide_m : {0.1e-3, 0.2e-3, 0.35e-3, 0.5e-3}) {
+      const double chord_m = 2 * kRadius_m * std::sin(std::numbers::pi / corners);
+      if (slide_m < 1.5 * chord_m) continue;
+      // It rests on the first edge beside x, near its middle.
+      const double turn_rad = std::numbers::pi / corners;
+      const Mat3 first = rotationFromVector(Vec3(0, 0, turn_rad));
+      const Vec3 middle(kRadius_m * std::cos(turn_rad), 0, kHeight_m), up(-lean, 0, lean);
+      const Vec3 at = first * (middle + 1.5 * FeatureMotion::kRest_m * up), way = first * Vec3(0, slide_m, 0);
+      const Pose start(first * R, at), end(first * R, at + way);
+      // Across the edge, seen along it: the rim leaves the first chord's line by this.
+      const double sink_m = lean * slide_m * slide_m / (2 * kRadius_m);
+      double deepest_m = 0;
+      for (const FeatureContact& c : check(ring, slider, start, end))
+        deepest_m = std::min(deepest_m, c.gap_m(end));
+      // The plane of two edges leans with the rim by d / r. A polygon's chords are within its circle.
+      EXPECT_NEAR(deepest_m, 1.5 * FeatureMotion::kRest_m - sink_m,
+                  slide_m / kRadius_m * sink_m + chord_m * chord_m / (8 * kRadius_m))
+          << corners << " corners, " << 1e3 * slide_m << " mm";
+    }
+  }
+}
+
 // Whenever two tetrahedra overlap at the end of a step, and did not at its start, the way there is reported.
 TEST(FeatureMotion, NoOverlapIsMissed) {
   std::mt19937 random(7);

@@ -75,7 +75,7 @@ class Cutter {
   double offset_m_;
 };
 
-double distance2(const Point& a, const Point& b) {
+double squaredDistance(const Point& a, const Point& b) {
   return (a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]);
 }
 
@@ -86,10 +86,10 @@ bool closeChains(std::vector<Chain>& open, std::vector<Chain>& closed, double sa
     Chain chain = std::move(open.back());
     open.pop_back();
     for (;;) {
-      double least_m2 = distance2(chain.back(), chain.front());
+      double least_m2 = squaredDistance(chain.back(), chain.front());
       std::size_t next = open.size();
       for (std::size_t i = 0; i < open.size(); ++i)
-        if (const double m2 = distance2(chain.back(), open[i].front()); m2 < least_m2) {
+        if (const double m2 = squaredDistance(chain.back(), open[i].front()); m2 < least_m2) {
           least_m2 = m2;
           next = i;
         }
