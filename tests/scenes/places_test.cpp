@@ -181,7 +181,7 @@ TEST(Places, ABlockWithPlayFitsWhereverItIsDrawn) {
     }
 }
 
-TEST(Places, ABlockThatIsTooWideFitsNowhereAndIsBlockedWhereItsFitIsSeen) {
+TEST(Places, ABlockThatIsTooWideFitsNowhere) {
   std::mt19937_64 random(49);
   for (const double play_um : {-5.0, -8.0, -20.0, -50.0})
     for (int i = 0; i < 20; ++i) {
@@ -190,12 +190,9 @@ TEST(Places, ABlockThatIsTooWideFitsNowhereAndIsBlockedWhereItsFitIsSeen) {
       const Pose X_off(rotationFromVector(Vec3(0, 0, turn)), Vec3(x_m, drawn(random) * kMm, 0));
       const CheckResult found = check(blockInSlot(10 * kMm + play_um * kUm, X_off));
       EXPECT_GT(found.clashes(), 0U);
-      EXPECT_NE(found.verdict(), Verdict::Fits) << play_um << " um, draw " << i;
-      // Of a turned block no fit is found, so that it may be as far off as sight leaves it: no proof.
-      if (turn == 0) {
-        EXPECT_EQ(found.verdict(), Verdict::Blocked)
-            << play_um << " um, draw " << i << ": " << found.places.reason;
-      }
+      // Both may be as far off as sight leaves them, which is too much room for a proof.
+      EXPECT_EQ(found.verdict(), Verdict::NotShown)
+          << play_um << " um, draw " << i << ": " << found.places.reason;
     }
 }
 
@@ -211,12 +208,11 @@ TEST(Places, KeysThroughSlotsOfTwoPitchesAreFreeWhereEachMovesByItsShare) {
   }
 }
 
-TEST(Places, KeysThroughSlotsWhosePitchesDifferByMoreThanTheirPlayAreBlocked) {
+TEST(Places, KeysThroughSlotsWhosePitchesDifferByMoreThanTheirPlayFitNowhere) {
   // An outer key needs 30 um, and its clearances give 10 from the middle one of its slots to that of the
   // other.
   const CheckResult found = check(keysThroughCombs(10 * kUm, 30 * kUm));
-  EXPECT_EQ(found.places.verdict, Verdict::Blocked) << found.places.reason;
-  EXPECT_EQ(found.verdict(), Verdict::Blocked);
+  EXPECT_EQ(found.verdict(), Verdict::NotShown) << found.places.reason;
 }
 
 TEST(Places, APinMovesWithinItsBoreAndIsBlockedByASmallerOne) {
@@ -238,7 +234,7 @@ TEST(Places, APinMovesWithinItsBoreAndIsBlockedByASmallerOne) {
     }
 }
 
-TEST(Places, WhatIsDeeperThanTolerancesIsBlockedAndWhatNoTryFreesIsNotShown) {
+TEST(Places, WhatIsDeeperThanSightLeavesItIsBlocked) {
   const auto drawn = [](double deep_m) {
     return check(
         {part("plate", makeBox({30 * kMm, 30 * kMm, 8 * kMm}), Pose(), true),

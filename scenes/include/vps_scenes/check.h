@@ -217,7 +217,7 @@ struct MovedPart {
 /// (core/fit_tolerance.h).
 struct CheckedPlaces {
   /// Fits: nothing overlaps as drawn, or nothing does once the parts of `moved` are moved, by exact measure.
-  /// Blocked: proven that no such places exist. NotShown: none was found, and none is ruled out.
+  /// Blocked: proven that there are none within 0.5 mm, whatever the fits. NotShown: neither of these.
   Verdict verdict = Verdict::Fits;
   std::vector<MovedPart> moved;  ///< few of them, by little; also where other overlaps remain
   std::string reason;            ///< in words: of a verdict other than Fits

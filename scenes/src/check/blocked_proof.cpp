@@ -4,9 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
-
-#include "core/fit_tolerance.h"
 
 namespace vps::scenes::inline v0 {
 
@@ -76,24 +73,6 @@ class Reaches {
   std::vector<BodyReach> reach_;
 };
 
-/// The greatest angle around the axis in which no corner of the part lies on a cylinder of this radius.
-double greatestGap(const PlacedSurface& part, const CheckedFit& fit, double radius_m) {
-  const Vec3 u = fit.axis_W.unitOrthogonal(), v = fit.axis_W.cross(u);
-  // The axis of the fit is the shaft's; the bore's is beside it.
-  const double same_m = fit.offset_m + fit.error_m + 1e-6 * radius_m + 1e-9;
-  std::vector<double> angles;
-  for (const Vec3& p_P : part.surface->mesh().vertices) {
-    const Vec3 r = part.X_WP * p_P - fit.at_W;
-    const double x = u.dot(r), y = v.dot(r);
-    if (std::abs(std::hypot(x, y) - radius_m) <= same_m) angles.push_back(std::atan2(y, x));
-  }
-  if (angles.empty()) return 2 * std::numbers::pi;
-  std::ranges::sort(angles);
-  double most = angles.front() + 2 * std::numbers::pi - angles.back();
-  for (std::size_t i = 1; i < angles.size(); ++i) most = std::max(most, angles[i] - angles[i - 1]);
-  return most;
-}
-
 }  // namespace
 
 double greatestGap_m(const std::vector<PlacedSurface>& parts, const std::vector<Pose>& X_WP,
@@ -125,18 +104,6 @@ double provenOverlap_m(const std::vector<PlacedSurface>& parts, const std::vecto
     if (!bodies[i].is_fixed)
       sum_m += force[i].norm() * reaches.of(i).most_m + torque[i].norm() * reaches.of(i).turn_rad;
   return -sum_m / weight;
-}
-
-bool isProvenByFit(const std::vector<PlacedSurface>& parts, const CheckedFit& fit) {
-  if (fit.kind != FitKind::Shaft) return false;
-  if (!(-fit.diametral_clearance_m > fit.error_m + 2 * kContactDepth_m)) return false;
-  // By an interference each part may move by kContactOnBothSides_m: a shorter fit may be left along its axis.
-  if (!(fit.length_m > 4 * kContactOnBothSides_m)) return false;
-  // A round part among points that surround it comes nearer to one of them whatever way it moves.
-  constexpr double kAround = std::numbers::pi / 4, kSurrounds = 2 * std::numbers::pi / 3;
-  const double of_shaft = greatestGap(named(parts, fit.shaft), fit, 0.5 * fit.shaft_m),
-               of_bore = greatestGap(named(parts, fit.bore), fit, 0.5 * fit.bore_m);
-  return std::min(of_shaft, of_bore) <= kAround && std::max(of_shaft, of_bore) <= kSurrounds;
 }
 
 }  // namespace vps::scenes::inline v0

@@ -38,9 +38,4 @@ double provenOverlap_m(const std::vector<PlacedSurface>& parts, const std::vecto
                        std::span<const PressedTouch> touches, const std::vector<MovableBody>& bodies,
                        const std::vector<double>& moved_m);
 
-/// Whether a shaft is so much larger than its bore that small motions cannot keep it from overlapping: one of
-/// the two is round all around, and the other surrounds it. The corners of facets lie on the true faces, so
-/// that this holds to the error of the fit, however coarse the facets are.
-bool isProvenByFit(const std::vector<PlacedSurface>& parts, const CheckedFit& fit);
-
 }  // namespace vps::scenes::inline v0

@@ -140,6 +140,17 @@ std::optional<CheckedPair> measured(const PlacedSurface& a, const PlacedSurface&
 
 }  // namespace
 
+double meshError_m(const PlacedSurface& a, const PlacedSurface& b) {
+  double error_m = kOverlapCertain_m;
+  for (const PlacedSurface* part : {&a, &b}) {
+    const PartSurface& surface = *part->surface;
+    if (!surface.noInside().empty() || !surface.solid().report().isClosed())
+      return std::numeric_limits<double>::infinity();
+    error_m += surface.chordIn(surface.box()) + surface.crackIn(surface.box()) + uncertainty_m(*part);
+  }
+  return error_m;
+}
+
 std::optional<CheckedPair> checkPair(const PlacedSurface& a, const PlacedSurface& b, double near_m) {
   std::optional<CheckedPair> pair = measured(a, b, near_m);
   const bool have_inside = a.surface->noInside().empty() && b.surface->noInside().empty();

@@ -40,10 +40,14 @@ Vec3 corner(const Box& box, int i) {
 }  // namespace
 
 double MovableBody::mostMoved_m(const Eigen::Matrix<double, 6, 1>& motion) const {
+  return mostMoved_m(motion, box_W);
+}
+
+double MovableBody::mostMoved_m(const Eigen::Matrix<double, 6, 1>& motion, const Box& of_W) const {
   const Pose X = movedPose(Pose(), loose, motion);
   double most_m = 0;
   for (int i = 0; i < 8; ++i) {
-    const Vec3 p_W = corner(box_W, i);
+    const Vec3 p_W = corner(of_W, i);
     most_m = std::max(most_m, (X * p_W - p_W).norm());
   }
   return most_m;
@@ -70,14 +74,16 @@ std::vector<MovableBody> looseBodies(const std::vector<PlacedSurface>& parts, co
     sets.join(first_fixed, i);
   }
   for (const CheckedPair& pair : checked.pairs)
-    if (pair.state == PairState::PressFit || (pair.state == PairState::Clash && pair.is_allowed))
-      sets.join(index_of.at(pair.a), index_of.at(pair.b));
+    if (pair.state == PairState::PressFit) sets.join(index_of.at(pair.a), index_of.at(pair.b));
   std::vector<double> allowed_m(parts.size(), kSightTolerance_m);
-  for (const CheckedFit& fit : checked.fits)
+  for (const CheckedFit& fit : checked.fits) {
+    // A fit within a body, as of a bushing in its lever, does not tell where the body is.
+    if (sets.of(index_of.at(fit.shaft)) == sets.of(index_of.at(fit.bore))) continue;
     for (const std::string& name : {fit.shaft, fit.bore}) {
       double& least_m = allowed_m[index_of.at(name)];
       least_m = std::min(least_m, fitTolerance_m(fit.diametral_clearance_m));
     }
+  }
   std::vector<MovableBody> bodies;
   std::vector<std::size_t> at(parts.size(), parts.size());
   for (std::size_t i = 0; i < parts.size(); ++i) {

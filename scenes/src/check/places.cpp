@@ -13,9 +13,12 @@
 
 #include "check/blocked_proof.h"
 #include "check/check_pair.h"
+#include "check/fit_proof.h"
 #include "check/loose_bodies.h"
 #include "check/touches.h"
+#include "core/fit_tolerance.h"
 #include "core/length_words.h"
+#include "vps/mesh_overlap.h"
 
 namespace vps::scenes::inline v0 {
 
@@ -37,8 +40,10 @@ struct NearPair {
   std::size_t a = 0, b = 0;
   bool is_clash = false;
   double drawn_depth_m = 0;
-  double allowed_m = 0;  ///< facets of parts in contact cross as drawn; no more of it is allowed
-  double error_m = std::numeric_limits<double>::infinity();  ///< of the meshes, where both have an inside
+  double allowed_m = 0;       ///< facets of parts in contact cross as drawn; no more of it is allowed
+  bool is_uncertain = false;  ///< as drawn: CheckedPair::is_uncertain
+  /// Of the meshes anywhere, and what a declared press fit allows; not the error of drawn_depth_m.
+  double error_m = std::numeric_limits<double>::infinity();
 };
 
 std::string quoted(const std::string& name) {
@@ -78,8 +83,11 @@ class PlaceSearch {
         checked_(checked),
         bodies_(looseBodies(parts, checked)),
         body_of_(bodyOfPart(bodies_, parts.size())),
-        motion_(bodies_.size(), Six::Zero()) {
+        motion_(bodies_.size(), Six::Zero()),
+        by_sight_(bodies_) {
     for (const PlacedSurface& part : parts) X_WP_.push_back(part.X_WP);
+    for (MovableBody& body : by_sight_)
+      if (!body.is_fixed) body.allowed_m = body.loose.most_m = kSightTolerance_m;
     findPairs();
   }
 
@@ -98,13 +106,17 @@ class PlaceSearch {
     }
     for (const NearPair& pair : tied_) {
       if (out.verdict == Verdict::Blocked) break;
-      const bool is_fixed = bodies_[body_of_[pair.a]].is_fixed;
+      if (std::string why = provenAlone(pair); !why.empty()) {
+        out.verdict = Verdict::Blocked;
+        out.reason = std::move(why);
+        break;
+      }
+      const bool is_fixed = mayMove_m(pair.a) + mayMove_m(pair.b) == 0 && std::isfinite(pair.error_m);
       out.verdict = is_fixed ? Verdict::Blocked : Verdict::NotShown;
-      out.reason =
-          quoted(parts_[pair.a].name) + " and " + quoted(parts_[pair.b].name) + " overlap and are " +
-          (is_fixed ? "both fixed" : "tied to each other by press fits or overlaps that are allowed");
+      out.reason = quoted(parts_[pair.a].name) + " and " + quoted(parts_[pair.b].name) + " overlap and are " +
+                   (is_fixed ? "both fixed" : "tied to each other by fixed parts or press fits");
     }
-    if (out.verdict == Verdict::Fits && !isFree(pairs_, X_WP_)) {
+    if (out.verdict == Verdict::Fits && !isFree(movedPairs(), X_WP_)) {
       out.verdict = Verdict::NotShown;
       out.reason = "no places without overlap were found for all parts at once";
     }
@@ -127,15 +139,16 @@ class PlaceSearch {
     }
     for (const auto& [a, b] : nearPairs(parts_, 2 * most_m)) {
       NearPair near{a, b};
+      if (parts_[a].drawn->allow_overlap || parts_[b].drawn->allow_overlap) continue;
       for (const auto& [other, pair] : known[a]) {
         if (other != b) continue;
+        near.is_uncertain = pair->is_uncertain;
         near.is_clash = pair->isClash();
         near.drawn_depth_m = pair->interference_depth_m;
         near.allowed_m = near.is_clash ? 0 : pair->interference_depth_m;
-        const bool have_inside =
-            parts_[a].surface->noInside().empty() && parts_[b].surface->noInside().empty();
-        if (have_inside) near.error_m = pair->error_m;
       }
+      near.error_m = meshError_m(parts_[a], parts_[b]) +
+                     std::max(parts_[a].drawn->press_fit_m, parts_[b].drawn->press_fit_m);
       if (body_of_[a] != body_of_[b])
         pairs_.push_back(near);
       else if (near.is_clash)
@@ -214,6 +227,10 @@ class PlaceSearch {
     if (group.size() <= kMostBodies) add(movable(group));
     add(movable(reachable(
         group, [](const NearPair&) { return true; }, std::max(kMostBodies, group.size()))));
+    // Two that are each as deep in the other as both tolerances together have to share the way.
+    std::vector<std::size_t> all = group;
+    std::erase_if(all, [&](std::size_t body) { return bodies_[body].is_fixed; });
+    add(all);
     std::erase_if(out, [](const auto& bodies) { return bodies.size() > kMostBodies; });
     return out;
   }
@@ -238,32 +255,45 @@ class PlaceSearch {
         return {Verdict::Fits, ""};
       }
       if (std::string why = proven(tried.pressed); !why.empty()) return {Verdict::Blocked, std::move(why)};
-      most_moved = std::max(most_moved, moved.size());
+      std::size_t parts_moved = 0;
+      for (const std::size_t body : moved) parts_moved += bodies_[body].parts.size();
+      most_moved = std::max(most_moved, parts_moved);
       last = std::move(tried);
     }
-    std::vector<std::string> names;
-    for (const std::size_t body : group)
-      for (const std::size_t part : bodies_[body].parts)
-        if (names.empty() || !bodies_[body].is_fixed) names.push_back(parts_[part].name);
-    std::string why = "no places without overlap were found for " + listed(names) +
-                      " within their tolerances, and nothing proves that there are none";
-    if (most_moved == 0)
-      why += "; too many parts overlap each other to be moved at once";
-    else
-      why += "; moved were up to " + std::to_string(most_moved) + (most_moved == 1 ? " part" : " parts") +
-             ", with an overlap of " + lengthInWords(last.left_m) + " left" +
-             (work_ < kMostPlaceWork ? "" : " when the search reached its limit");
-    return {Verdict::NotShown, why};
+    return {Verdict::NotShown, notShownWords(group, most_moved, last)};
   }
 
-  /// Why the pair overlaps wherever its parts are within their tolerances; empty: it may not.
+  /// @param most_moved  parts of a try
+  [[nodiscard]] std::string notShownWords(const std::vector<std::size_t>& group, std::size_t most_moved,
+                                          const Tried& last) const {
+    std::vector<std::string> names;
+    double allowed_m = 0;
+    for (const std::size_t body : group) {
+      if (bodies_[body].is_fixed) continue;
+      allowed_m = std::max(allowed_m, bodies_[body].allowed_m);
+      for (const std::size_t part : bodies_[body].parts) names.push_back(parts_[part].name);
+    }
+    std::string why = "no places without overlap were found for " + listed(names) + " within " +
+                      lengthInWords(allowed_m) + " of where " + (names.size() == 1 ? "it is" : "they are") +
+                      " drawn, and nothing proves that there are none";
+    if (most_moved == 0) return why + "; too many parts overlap each other to be moved at once";
+    why += "; moved were up to " + std::to_string(most_moved) + (most_moved == 1 ? " part" : " parts");
+    // What the search for places counts as none may be a clash by the greater measure of the check.
+    why += last.left_m <= kClear_m ? ", and no direction out was found"
+                                   : ", with an overlap of " + lengthInWords(last.left_m) + " left";
+    return why + (work_ < kMostPlaceWork ? "" : " when the search reached its limit");
+  }
+
+  /// Why the pair overlaps wherever its parts are without that being seen; empty: it may not.
   [[nodiscard]] std::string provenAlone(const NearPair& pair) const {
     const std::string& a = parts_[pair.a].name;
     const std::string& b = parts_[pair.b].name;
-    const double apart_m = bodies_[body_of_[pair.a]].allowed_m + bodies_[body_of_[pair.b]].allowed_m;
-    if (pair.drawn_depth_m > apart_m + pair.error_m + kContactDepth_m)
+    const double apart_m = mayMove_m(pair.a) + mayMove_m(pair.b);
+    // What only a fit shows may be of round faces that lie beside each other.
+    if (pair.drawn_depth_m > apart_m + pair.error_m + kContactDepth_m && hiddenByFacets(pair).empty())
       return quoted(a) + " and " + quoted(b) + " overlap by " + lengthInWords(pair.drawn_depth_m) +
-             ", and within their tolerances they come apart by no more than " + lengthInWords(apart_m);
+             ", and by moves that sight would not show they come apart by no more than " +
+             lengthInWords(apart_m);
     for (const CheckedFit& fit : checked_.fits) {
       const bool is_of_pair = (fit.shaft == a && fit.bore == b) || (fit.shaft == b && fit.bore == a);
       if (is_of_pair && isProvenByFit(parts_, fit))
@@ -276,25 +306,35 @@ class PlaceSearch {
   /// A clash that only the fit shows: where the meshes cannot show an overlap, they cannot show that it is
   /// gone.
   [[nodiscard]] std::string hiddenByFacets(const NearPair& pair) const {
-    const std::optional<CheckedPair> drawn = checkPair(parts_[pair.a], parts_[pair.b], 0);
+    // The depth that is found at once is a lower bound; the exact one takes a second.
+    const PlacedSurface &a = parts_[pair.a], &b = parts_[pair.b];
+    const Overlap found = deepestOverlap(a.surface->overlap(), a.X_WP, b.surface->overlap(), b.X_WP);
+    if (found.depth_m > pair.error_m + kContactDepth_m) return {};
+    const std::optional<CheckedPair> drawn = checkPair(parts_[pair.a], parts_[pair.b], checked_.near_m);
     if (drawn && drawn->state == PairState::Clash && !drawn->is_uncertain) return {};
     return "the overlap of " + quoted(parts_[pair.a].name) + " and " + quoted(parts_[pair.b].name) +
            " is less than their meshes are off their faces, so that these cannot show it gone";
   }
 
-  /// Why no motion within the tolerances frees the touches of a try; empty: one may. All bodies of the
-  /// touches are moved, from where they are drawn, so that forces are in balance on each.
+  /// Why no motion that sight would not show frees the touches of a try; empty: one may. All bodies of the
+  /// touches are moved, from where they are drawn, so that forces are in balance on each. What is pressed
+  /// into another part may be drawn in the wrong place of it, so that nothing is proven of parts that are
+  /// tied.
   [[nodiscard]] std::string proven(const std::vector<PressedTouch>& touches) const {
     std::vector<std::size_t> bodies;
     for (const PressedTouch& pressed : touches)
       for (const std::size_t part : {pressed.touch.of, pressed.touch.above})
-        if (!bodies_[body_of_[part]].is_fixed) bodies.push_back(body_of_[part]);
+        if (mayMove_m(part) > 0) {
+          if (bodies_[body_of_[part]].parts.size() > 1) return {};
+          bodies.push_back(body_of_[part]);
+        }
     std::ranges::sort(bodies);
     bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
     if (bodies.size() > kMostBodies + 1) return {};
     // A large cost keeps motions small, so that little is unknown; a small one, forces in balance.
     for (const double e : {1.0, 0.1, 0.01, 0.001}) {
       Tried tried = startOf(bodies);
+      for (LooseBody& body : tried.moving.loose) body.most_m = kSightTolerance_m;
       tried.pressed = touches;
       if (const double least_m = provenAfter(tried, e); least_m > 0) return provenWords(tried, least_m);
     }
@@ -318,7 +358,8 @@ class PlaceSearch {
     std::erase_if(tried.pressed, [&](const PressedTouch& pressed) {
       const Touch& touch = pressed.touch;
       const double gap_m = touch.gap_m(tried.X_WP[touch.of], tried.X_WP[touch.above]);
-      return !(greatestGap_m(parts_, tried.X_WP, touch, bodies_, at_start_m) - gap_m < kMostBend * deepest_m);
+      return !(greatestGap_m(parts_, tried.X_WP, touch, by_sight_, at_start_m) - gap_m <
+               kMostBend * deepest_m);
     });
     for (int round = 0; round < kRounds; ++round) {
       for (PressedTouch& pressed : tried.pressed) {
@@ -327,7 +368,7 @@ class PlaceSearch {
       }
       solve(tried, e);
     }
-    return provenOverlap_m(parts_, tried.X_WP, tried.pressed, bodies_, moved_m());
+    return provenOverlap_m(parts_, tried.X_WP, tried.pressed, by_sight_, moved_m());
   }
 
   [[nodiscard]] std::string provenWords(const Tried& tried, double least_m) const {
@@ -338,8 +379,9 @@ class PlaceSearch {
         if (std::ranges::find(names, parts_[part].name) == names.end()) names.push_back(parts_[part].name);
     }
     std::ranges::sort(names);
-    return "wherever " + listed(names) + " are within their tolerances, some of them overlap by " +
-           lengthInWords(least_m + kContactDepth_m) + " or more beyond the error";
+    return "wherever " + listed(names) + " are within " + lengthInWords(kSightTolerance_m) +
+           " of where they are drawn, some of them overlap by " + lengthInWords(least_m + kContactDepth_m) +
+           " or more beyond the error";
   }
 
   /// A try to move some bodies, before the first step.
@@ -450,10 +492,25 @@ class PlaceSearch {
         if (at[part].box_W.isEmpty())
           for (const Vec3& p : at[part].surface->mesh().vertices) at[part].box_W.add(X_WP[part] * p);
     tbb::parallel_for(std::size_t{0}, pairs.size(), [&](std::size_t i) {
-      const std::optional<CheckedPair> pair = checkPair(at[pairs[i].a], at[pairs[i].b], 0);
-      is_clash[i] = pair && (pair->state == PairState::Clash || pair->is_uncertain) ? 1 : 0;
+      const std::optional<CheckedPair> pair = checkPair(at[pairs[i].a], at[pairs[i].b], checked_.near_m);
+      // What cannot be told as drawn is said of the whole check.
+      const bool is_new_doubt = pair && pair->is_uncertain && !pairs[i].is_uncertain;
+      is_clash[i] = pair && (pair->state == PairState::Clash || is_new_doubt) ? 1 : 0;
     });
     return std::ranges::count(is_clash, 1) == 0;
+  }
+
+  /// Those of which a part is moved.
+  [[nodiscard]] std::vector<NearPair> movedPairs() const {
+    std::vector<NearPair> out;
+    for (const NearPair& pair : pairs_)
+      if (!motion_[body_of_[pair.a]].isZero() || !motion_[body_of_[pair.b]].isZero()) out.push_back(pair);
+    return out;
+  }
+
+  /// How far the part may be from where it belongs without that being seen.
+  [[nodiscard]] double mayMove_m(std::size_t part) const {
+    return parts_[part].drawn->is_fixed ? 0 : kSightTolerance_m;
   }
 
   void appendMoved(std::vector<MovedPart>& out) const {
@@ -463,7 +520,8 @@ class PlaceSearch {
         const Vec3 at_W = parts_[part].box_W.center();
         const Pose X = movedPose(Pose(), bodies_[i].loose, motion_[i]);
         out.push_back({parts_[part].name, X * at_W - at_W, motion_[i].tail<3>() / bodies_[i].loose.arm_m,
-                       bodies_[i].mostMoved_m(motion_[i]), bodies_[i].allowed_m, X_WP_[part]});
+                       bodies_[i].mostMoved_m(motion_[i], parts_[part].box_W), bodies_[i].allowed_m,
+                       X_WP_[part]});
       }
     }
   }
@@ -476,7 +534,9 @@ class PlaceSearch {
   std::vector<NearPair> tied_;  // clashes within a body
   std::vector<Six> motion_;     // by body, of the groups that are free by now
   std::vector<Pose> X_WP_;      // by part, with these motions
-  std::size_t work_ = 0;        // done for the group
+  std::vector<MovableBody>
+      by_sight_;          // the bodies, each allowed to move as far as sight leaves it: for proofs
+  std::size_t work_ = 0;  // done for the group
 };
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "check/near_axis.h"
 #include "check/ring_volume.h"
 
 namespace vps::scenes::inline v0 {
@@ -24,85 +25,24 @@ double interferenceOf(const CheckedFit& fit) {
   return fit.diametral_clearance_m < -beyond_m ? -fit.diametral_clearance_m : 0;
 }
 
-/// The corners of a triangle that is cut off at from_m and to_m along the axis, as distances from it.
-class NearAxis {
- public:
-  NearAxis(const CheckedFit& fit, const PlacedSurface& of, double half_length_m)
-      : of_(of),
-        axis_(fit.axis_W),
-        at_(fit.at_W),
-        u_(axis_.unitOrthogonal()),
-        v_(axis_.cross(u_)),
-        half_m_(half_length_m) {}
-
-  /// Calls visit(least, greatest distance from the axis, radial part of the normal) for facets in the slab.
-  template <class Visit>
-  void forEachFacet(Visit visit) const {
-    for (std::uint32_t i = 0; i < of_.surface->mesh().triangles.size(); ++i) {
-      const std::vector<Vec3> polygon = clipped(of_.surface->triangle(i));
-      if (polygon.size() < 3) continue;
-      double least_m = std::numeric_limits<double>::max(), most_m = 0;
-      Vec3 middle = Vec3::Zero();
-      for (std::size_t k = 0; k < polygon.size(); ++k) {
-        least_m = std::min(least_m, toAxis(polygon[k], polygon[(k + 1) % polygon.size()]));
-        most_m = std::max(most_m, polygon[k].head<2>().norm());
-        middle += polygon[k] / static_cast<double>(polygon.size());
-      }
-      const Vec3 n = of_.X_WP.R * of_.surface->normal(i);
-      const Vec3 out = (middle.x() * u_ + middle.y() * v_).normalized();
-      visit(least_m, most_m, n.dot(out));
-    }
-  }
-
- private:
-  /// In coordinates along u, v and the axis.
-  [[nodiscard]] std::vector<Vec3> clipped(const Triangle& t) const {
-    std::vector<Vec3> polygon;
-    for (const Vec3& p : t) {
-      const Vec3 r = of_.X_WP * p - at_;
-      polygon.emplace_back(u_.dot(r), v_.dot(r), axis_.dot(r));
-    }
-    for (const double sign : {1.0, -1.0}) {
-      std::vector<Vec3> kept;
-      for (std::size_t k = 0; k < polygon.size(); ++k) {
-        const Vec3 &a = polygon[k], &b = polygon[(k + 1) % polygon.size()];
-        const double in_a = half_m_ - sign * a.z(), in_b = half_m_ - sign * b.z();
-        if (in_a >= 0) kept.push_back(a);
-        if ((in_a >= 0) != (in_b >= 0)) kept.emplace_back(a + in_a / (in_a - in_b) * (b - a));
-      }
-      polygon = std::move(kept);
-    }
-    return polygon;
-  }
-
-  static double toAxis(const Vec3& a, const Vec3& b) {
-    const Eigen::Vector2d from = a.head<2>(), along = b.head<2>() - from;
-    const double t =
-        along.squaredNorm() > 0 ? std::clamp(-from.dot(along) / along.squaredNorm(), 0.0, 1.0) : 0.0;
-    return (from + t * along).norm();
-  }
-
-  const PlacedSurface& of_;
-  Vec3 axis_, at_, u_, v_;
-  double half_m_;
-};
-
 constexpr double kMiddle = 0.25;    // of the length, to each side: chamfers at the ends do not count
 constexpr double kFacingOut = 0.1;  // radial part of a facet's normal, from which it bounds the ring
 
 double hubOf(const CheckedFit& fit, const PlacedSurface& hub) {
   double least_m = std::numeric_limits<double>::max();
-  NearAxis(fit, hub, kMiddle * fit.length_m).forEachFacet([&](double from_m, double, double outward) {
-    if (outward > kFacingOut && from_m > 0.5 * fit.bore_m) least_m = std::min(least_m, from_m);
-  });
+  NearAxis(fit.axis_W, fit.at_W, hub, kMiddle * fit.length_m)
+      .forEachFacet([&](double from_m, double, double outward, std::uint32_t) {
+        if (outward > kFacingOut && from_m > 0.5 * fit.bore_m) least_m = std::min(least_m, from_m);
+      });
   return 2 * least_m;
 }
 
 double holeOf(const CheckedFit& fit, const PlacedSurface& shaft) {
   double most_m = 0;
-  NearAxis(fit, shaft, kMiddle * fit.length_m).forEachFacet([&](double, double to_m, double outward) {
-    if (outward < -kFacingOut && to_m < 0.5 * fit.shaft_m) most_m = std::max(most_m, to_m);
-  });
+  NearAxis(fit.axis_W, fit.at_W, shaft, kMiddle * fit.length_m)
+      .forEachFacet([&](double, double to_m, double outward, std::uint32_t) {
+        if (outward < -kFacingOut && to_m < 0.5 * fit.shaft_m) most_m = std::max(most_m, to_m);
+      });
   return 2 * most_m;
 }
 
