@@ -66,6 +66,16 @@ TEST_F(Check, PartsThatAreNowhereNearEachOtherAreNotShown) {
   EXPECT_NE(slurp(folder_ / "check.html").find("nowhere near another part"), std::string::npos);
 }
 
+TEST_F(Check, WhatFreesAnOverlapIsSaidBesideWhatIsNotShown) {
+  write("drawn.toml",
+        scene(-0.02) + "[[part]]\nname = 'far'\nfile = 'pin.stl'\npose = {position = [90, 0, 90]}\n");
+  const Ran ran = run("check drawn.toml --no-play");
+  EXPECT_EQ(ran.status, 3) << ran.out << ran.err;
+  EXPECT_NE(ran.out.find("not shown: 'far' is nowhere near another part"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("; what overlaps is free if 'pin' moves by 0.0200 mm along +z"), std::string::npos)
+      << ran.out;
+}
+
 TEST_F(Check, TheTextSaysWhatAnOverlapIs) {
   write("drawn.toml", scene(0));
   EXPECT_EQ(run("check drawn.toml --no-play").out.find("depth of the deepest point"), std::string::npos);

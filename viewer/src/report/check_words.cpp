@@ -58,7 +58,20 @@ std::string uncertainWords(const scenes::CheckResult& result) {
       why = "because of " + part.name + ": " + part.no_inside;
   const std::size_t others = result.uncertain() - 1;
   return "it cannot be told whether " + first.a + " and " + first.b + " overlap, " + why +
-         (others > 0 ? "; so are " + std::to_string(others) + " other pairs" : "");
+         (others == 0   ? ""
+          : others == 1 ? "; so is 1 other pair"
+                        : "; so are " + std::to_string(others) + " other pairs");
+}
+
+/// "free if 'bolt' moves by 0.050 mm along +x"; empty: nothing is moved.
+std::string freeWords(const std::vector<scenes::MovedPart>& moved) {
+  constexpr std::size_t kMost = 4;
+  if (moved.empty()) return {};
+  std::string out = "free if ";
+  for (std::size_t i = 0; i < std::min(moved.size(), kMost); ++i)
+    out += (i == 0 ? "" : i + 1 == moved.size() ? " and " : ", ") + motionWords(moved[i]);
+  return moved.size() > kMost ? out + " and " + std::to_string(moved.size() - kMost) + " more parts move"
+                              : out;
 }
 
 }  // namespace
@@ -72,16 +85,14 @@ std::string assemblyWords(const scenes::CheckResult& result) {
     case scenes::Verdict::Fits:
       break;
   }
-  if (result.uncertain() > 0) return "not shown: " + uncertainWords(result);
-  if (!result.alone.empty()) return "not shown: " + aloneWords(result.alone);
-  if (result.places.moved.empty()) return {};
-  std::string out = "can be assembled: free if ";
-  constexpr std::size_t kMost = 4;
-  const std::vector<scenes::MovedPart>& moved = result.places.moved;
-  for (std::size_t i = 0; i < std::min(moved.size(), kMost); ++i)
-    out += (i == 0 ? "" : i + 1 == moved.size() ? " and " : ", ") + motionWords(moved[i]);
-  return moved.size() > kMost ? out + " and " + std::to_string(moved.size() - kMost) + " more parts move"
-                              : out;
+  const std::string freed = freeWords(result.places.moved);
+  std::string doubt;
+  if (result.uncertain() > 0)
+    doubt = uncertainWords(result);
+  else if (!result.alone.empty())
+    doubt = aloneWords(result.alone);
+  if (!doubt.empty()) return "not shown: " + doubt + (freed.empty() ? "" : "; what overlaps is " + freed);
+  return freed.empty() ? freed : "can be assembled: " + freed;
 }
 
 std::string volumeWords(const scenes::CheckedPair& pair) {
