@@ -96,9 +96,15 @@ bool PairCheck::refineAtStart(const Motion& m, const PairView& at_start, Candida
 }
 
 // True of a point behind its plane at the start, but beside the face that this is the plane of. Not of one
-// that is deeper inside than that.
+// that is deeper inside than that. Bodies that begin in each other are moved apart by the push: what comes
+// into a face by that needs no velocity that separates.
 bool PairCheck::wasOutside(const Motion& m, const PairView& at_start, const Candidate& start) const {
-  return start.distance_m < -m.tolerated_m && !start.isCrossing() &&
+  if (start.isCrossing() || !(start.distance_m < -m.tolerated_m)) return false;
+  const double margin_m = state_.context->settings.contact_margin_m;
+  const std::vector<Candidate>& refined = state_.selection.refined;
+  const bool are_in_each_other = std::any_of(refined.begin(), refined.end(),
+                                             [&](const Candidate& c) { return c.distance_m < -margin_m; });
+  return !are_in_each_other &&
          !isInside(start.p_W, at_start.side(1 - start.side), kOutOfReach_m, m.tolerated_m);
 }
 
