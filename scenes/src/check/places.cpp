@@ -284,7 +284,7 @@ class PlaceSearch {
     return why + (work_ < kMostPlaceWork ? "" : " when the search reached its limit");
   }
 
-  /// Why the pair overlaps wherever its parts are without that being seen; empty: it may not.
+  /// Why the pair overlaps wherever its parts are within what places as drawn may be off; empty: it may not.
   [[nodiscard]] std::string provenAlone(const NearPair& pair) const {
     const std::string& a = parts_[pair.a].name;
     const std::string& b = parts_[pair.b].name;
@@ -292,8 +292,7 @@ class PlaceSearch {
     // What only a fit shows may be of round faces that lie beside each other.
     if (pair.drawn_depth_m > apart_m + pair.error_m + kContactDepth_m && hiddenByFacets(pair).empty())
       return quoted(a) + " and " + quoted(b) + " overlap by " + lengthInWords(pair.drawn_depth_m) +
-             ", and by moves that sight would not show they come apart by no more than " +
-             lengthInWords(apart_m);
+             ", more than the " + lengthInWords(apart_m) + " that their places as drawn may be off together";
     for (const CheckedFit& fit : checked_.fits) {
       const bool is_of_pair = (fit.shaft == a && fit.bore == b) || (fit.shaft == b && fit.bore == a);
       if (is_of_pair && isProvenByFit(parts_, fit))
@@ -316,10 +315,10 @@ class PlaceSearch {
            " is less than their meshes are off their faces, so that these cannot show it gone";
   }
 
-  /// Why no motion that sight would not show frees the touches of a try; empty: one may. All bodies of the
-  /// touches are moved, from where they are drawn, so that forces are in balance on each. What is pressed
-  /// into another part may be drawn in the wrong place of it, so that nothing is proven of parts that are
-  /// tied.
+  /// Why no motion by as much as places as drawn may be off frees the touches of a try; empty: one may. All
+  /// bodies of the touches are moved, from where they are drawn, so that forces are in balance on each. What
+  /// is pressed into another part may be drawn in the wrong place of it, so that nothing is proven of parts
+  /// that are tied.
   [[nodiscard]] std::string proven(const std::vector<PressedTouch>& touches) const {
     std::vector<std::size_t> bodies;
     for (const PressedTouch& pressed : touches)
