@@ -19,19 +19,8 @@ PartMesh makeBushing() {
   return makePart(
       test::lathe({{6e-3, 0}, {15e-3, 0}, {15e-3, 4e-3}, {9e-3, 4e-3}, {9e-3, 20e-3}, {6e-3, 20e-3}}, 96));
 }
-PartMesh makeSmallGear() {
-  test::GearShape gear;
-  gear.module_m = 1.25e-3;
-  gear.teeth = 20;
-  gear.width_m = 8e-3;
-  gear.other_radius_m = 4e-3;
-  gear.points_per_tooth = 16;
-  gear.axial_steps = 4;
-  gear.radial_steps = 4;
-  return makePart(test::makeSpurGear(gear));
-}
 const PartMesh& heapPart(int i) {
-  static const PartMesh parts[2] = {makeBushing(), makeSmallGear()};
+  static const PartMesh parts[2] = {makeBushing(), makeHeapGear()};
   return parts[i % 2];
 }
 
@@ -48,6 +37,18 @@ void addBox(World& world) {
 }
 
 }  // namespace
+
+PartMesh makeHeapGear() {
+  test::GearShape gear;
+  gear.module_m = 1.25e-3;
+  gear.teeth = 20;
+  gear.width_m = 8e-3;
+  gear.other_radius_m = 4e-3;
+  gear.points_per_tooth = 16;
+  gear.axial_steps = 4;
+  gear.radial_steps = 4;
+  return makePart(test::makeSpurGear(gear));
+}
 
 Engine heapEngine() {
   const auto engines = std::make_shared<std::vector<Engine>>();

@@ -20,6 +20,8 @@ struct HeapResult {
 /// Twenty seconds (short: ten bodies, eight seconds). Sleeping is enabled, below 5 mm/s and 0.2 rad/s.
 HeapResult dropHeap(const SceneSettings& settings);
 
+/// One of its two parts, of 20 teeth.
+PartMesh makeHeapGear();
 /// The engine for this scene: shells of about 5,000 points.
 Engine heapEngine();
 

@@ -8,8 +8,7 @@
 #include <array>
 #include <random>
 
-#include "dynamics/world.h"
-#include "support/gear.h"
+#include "dynamics/heap.h"
 #include "vps_bullet/convert.h"
 
 namespace vps::dynamics {
@@ -21,21 +20,10 @@ struct State {
   Vec3 p_m, v_m_s, w_rad_s;
 };
 
-PartMesh gear() {
-  test::GearShape shape;
-  shape.module_m = 1.25e-3;
-  shape.teeth = 20;
-  shape.width_m = 8e-3;
-  shape.other_radius_m = 4e-3;
-  shape.points_per_tooth = 16;
-  shape.axial_steps = shape.radial_steps = 4;
-  return makePart(test::makeSpurGear(shape));
-}
-
 // Without that face, 13 of the first 40 were 2 to 32 um deep after their first step.
 TEST(SlidingGears, ATipThatLeavesABoreOverItsRimStaysOutside) {
-  const PartMesh part = gear();
-  const Engine engine = vpsEngine({0.5e-3, 1.15 * std::sqrt(area(part.mesh) / 5000)});
+  const PartMesh part = makeHeapGear();
+  const Engine engine = heapEngine();
   const std::array<State, 2> states{State{{0.892710405, 0.027460799, 0.395735765, 0.21379252},
                                           {0.017427508, 0.0207874916, 0.0287547902},
                                           {-0.276511257, 0.0346279288, -0.191116916},

@@ -10,6 +10,7 @@
 #include "output.h"
 #include "pdf_file.h"
 #include "progress_bar.h"
+#include "run_report.h"
 #include "terminal.h"
 #include "vps/load_error.h"
 #include "vps_scenes/check.h"
@@ -79,15 +80,7 @@ int runCheck(const CheckArguments& given) {
   std::fputs(checkTables(result).c_str(), stdout);
   std::printf("%s\n", checkHeadline(result).c_str());
   pdf.write(page);  // last, so that nothing is lost where it fails
-  switch (result.verdict()) {
-    case scenes::Verdict::Fits:
-      return kGood;
-    case scenes::Verdict::Blocked:
-      return kBad;
-    case scenes::Verdict::NotShown:
-      break;
-  }
-  return kNotShown;
+  return statusOf(result.verdict());
 }
 
 }  // namespace

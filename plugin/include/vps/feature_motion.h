@@ -67,8 +67,8 @@ class VPS_API FeatureMotion {
   /// A way longer than a twentieth of the smaller part's radius is looked at in stretches that long, until
   /// some hundred contacts are found; the same features may be found in several.
   ///
-  /// Edges that cross at the end, but not at the start, count as well if they come nearer on the way than it
-  /// bends: so an edge that slides past the end of another is held by the next one.
+  /// Edges that cross at the end, but not at the start, count as well if they come nearer on the way than the
+  /// way and curved edges bend: so an edge that slides past the end of another is held by the next one.
   ///
   /// Features that intersect at the start are not seen. Neither are those of curved surfaces that lie flush
   /// in each other, as a thread in its nut: points of pointshells meet these along the normals of the curved

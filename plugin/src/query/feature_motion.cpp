@@ -171,8 +171,7 @@ double curvature_per_m(const FeatureSet& part, const FeatureEdge& edge) {
 // How far edges that cross at the end may have been held from where they do: a row holds two straight lines
 // on a straight way. So it is off by what the way bends, and what curved edges do along the slide.
 double bendOf_m(const FeatureSet& part0, const FeatureSet& part1, const Pose& start, const Pose& end,
-                const FeatureContact& contact) {
-  const Way way(ballAround(part0), ballAround(part1), start, end);
+                const Way& way, const FeatureContact& contact) {
   const double slide_m = std::max((start.inverse() * contact.p[0] - end.inverse() * contact.p[0]).norm(),
                                   (start * contact.p[1] - end * contact.p[1]).norm());
   const double curvature = curvature_per_m(part0, part0.edges()[contact.feature[0]]) +
@@ -191,7 +190,7 @@ bool entersFromItsEnd(const FeatureSet& part0, const FeatureSet& part1, const st
       findCrossingOf(part0, part1, feature, met, start.inverse(), before))
     return false;
   const Way way(ballAround(part0), ballAround(part1), start, end);
-  const double bend_m = bendOf_m(part0, part1, start, end, contact);
+  const double bend_m = bendOf_m(part0, part1, start, end, way, contact);
   thread_local std::vector<Pose> way_10;
   way.divide(way_10);
   placeAt(met.features, way_10, 0);

@@ -140,9 +140,9 @@ VPS_SCENES_API std::string standardOf(const CheckedFit& fit);
 struct Play {
   std::array<double, 6> m = {};    ///< +x, -x, +y, -y, +z, -z
   std::array<double, 6> rad = {};  ///< about the same axes
-  /// Bounds of the errors of each: those of the surfaces' distance, divided by the rate at which the surfaces
-  /// come nearer where they touch. Infinite: the search ended before the play did, which is more, or no bound
-  /// is known. 0 where it is free.
+  /// Errors of each, at the contact that stops it first: those of the surfaces' distance, divided by the rate
+  /// at which the surfaces come nearer where they touch. Infinite: the search ended before the play did,
+  /// which is more, or no bound is known. 0 where it is free.
   std::array<double, 6> error_m = {}, error_rad = {};
 };
 

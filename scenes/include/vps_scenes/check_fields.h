@@ -80,13 +80,13 @@ inline constexpr auto kPlayFields = std::make_tuple(
     field(
         "play_errors_m",
         [](const Play& play) { return std::vector<double>(play.error_m.begin(), play.error_m.end()); },
-        "bounds of the errors of `play_m`: at a shallow contact, as in a taper, they are more than "
-        "`play_error_m`; "
-        "null: it may move on"),
+        "errors of `play_m` at the contact that stops it first; another one may stop it earlier by more. At "
+        "a "
+        "shallow contact, as in a taper, they are more than `play_error_m`; null: it may move on"),
     field(
         "play_errors_rad",
         [](const Play& play) { return std::vector<double>(play.error_rad.begin(), play.error_rad.end()); },
-        "bounds of the errors of `play_rad`; null: it may turn on"));
+        "the same of `play_rad`; null: it may turn on"));
 
 inline constexpr auto kCheckedPartFields = std::make_tuple(
     field("name", &CheckedPart::name, "name of the part"),

@@ -75,10 +75,14 @@ class Reaches {
 
 }  // namespace
 
-double greatestGap_m(const std::vector<PlacedSurface>& parts, const std::vector<Pose>& X_WP,
-                     const Touch& touch, const std::vector<MovableBody>& bodies,
-                     const std::vector<double>& moved_m) {
-  return Reaches(parts, X_WP, bodies, moved_m).bounded(touch).most_m;
+std::vector<double> greatestGaps_m(const std::vector<PlacedSurface>& parts, const std::vector<Pose>& X_WP,
+                                   std::span<const PressedTouch> touches,
+                                   const std::vector<MovableBody>& bodies,
+                                   const std::vector<double>& moved_m) {
+  const Reaches reaches(parts, X_WP, bodies, moved_m);
+  std::vector<double> out;
+  for (const PressedTouch& pressed : touches) out.push_back(reaches.bounded(pressed.touch).most_m);
+  return out;
 }
 
 double provenOverlap_m(const std::vector<PlacedSurface>& parts, const std::vector<Pose>& X_WP,

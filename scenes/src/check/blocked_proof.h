@@ -18,11 +18,13 @@ struct PressedTouch {
   double weight = 0;     ///< how far its gap stays negative where the sum of squares is least
 };
 
-/// An upper bound of the gap of a touch, less what is linear in the motion, wherever the bodies are within
+/// By touch: an upper bound of its gap, less what is linear in the motion, wherever the bodies are within
 /// their tolerances.
-double greatestGap_m(const std::vector<PlacedSurface>& parts, const std::vector<Pose>& X_WP,
-                     const Touch& touch, const std::vector<MovableBody>& bodies,
-                     const std::vector<double>& moved_m);
+/// @param moved_m  by body: how far its farthest corner is from where it is drawn
+std::vector<double> greatestGaps_m(const std::vector<PlacedSurface>& parts, const std::vector<Pose>& X_WP,
+                                   std::span<const PressedTouch> touches,
+                                   const std::vector<MovableBody>& bodies,
+                                   const std::vector<double>& moved_m);
 
 /// An overlap beyond error_m that some pair of the touches' parts has wherever the bodies are within their
 /// tolerances; 0 or less: there may be none.

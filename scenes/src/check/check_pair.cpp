@@ -144,8 +144,7 @@ double meshError_m(const PlacedSurface& a, const PlacedSurface& b) {
   double error_m = kOverlapCertain_m;
   for (const PlacedSurface* part : {&a, &b}) {
     const PartSurface& surface = *part->surface;
-    if (!surface.noInside().empty() || !surface.solid().report().isClosed())
-      return std::numeric_limits<double>::infinity();
+    if (!surface.isClosed()) return std::numeric_limits<double>::infinity();
     error_m += surface.chordIn(surface.box()) + surface.crackIn(surface.box()) + uncertainty_m(*part);
   }
   return error_m;

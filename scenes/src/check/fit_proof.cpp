@@ -94,20 +94,16 @@ std::vector<RoundFace> facesOf(const PlacedSurface& part, bool is_bore, double s
   return faces;
 }
 
+}  // namespace
+
 double mayMove_m(const PlacedSurface& part) {
   return part.drawn->is_fixed ? 0 : kSightTolerance_m;
 }
 
-bool isClosed(const PlacedSurface& part) {
-  return part.surface->noInside().empty() && part.surface->solid().report().isClosed();
-}
-
-}  // namespace
-
 bool isProvenByFit(const std::vector<PlacedSurface>& parts, const CheckedFit& fit) {
   if (fit.kind != FitKind::Shaft) return false;
   const PlacedSurface &shaft = named(parts, fit.shaft), &bore = named(parts, fit.bore);
-  if (!isClosed(shaft) || !isClosed(bore)) return false;
+  if (!shaft.surface->isClosed() || !bore.surface->isClosed()) return false;
   // On both sides of the diameter; what is declared as a press fit is no overlap that blocks.
   const double beyond_m =
       fit.error_m + 2 * kContactDepth_m + std::max(shaft.drawn->press_fit_m, bore.drawn->press_fit_m);

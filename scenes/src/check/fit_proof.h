@@ -8,6 +8,9 @@
 
 namespace vps::scenes::inline v0 {
 
+/// How far a part may be from where it belongs without that being seen.
+double mayMove_m(const PlacedSurface& part);
+
 /// Whether a shaft overlaps its bore wherever the two parts are, as long as none of their points is farther
 /// from where it is drawn than sight tells (kSightTolerance_m; fixed parts stay). The corners of facets lie
 /// on the true faces, so that this holds to the error of the fit, however coarse the facets are.

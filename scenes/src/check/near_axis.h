@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "check/placed_surface.h"
+#include "check/surface_piece.h"
 
 namespace vps::scenes::inline v0 {
 
@@ -53,22 +54,12 @@ class NearAxis {
  private:
   /// In coordinates along u, v and the axis.
   [[nodiscard]] std::vector<Vec3> clipped(const Triangle& t) const {
-    std::vector<Vec3> polygon;
+    SurfacePiece polygon;
     for (const Vec3& p : t) {
       const Vec3 r = of_.X_WP * p - at_;
       polygon.emplace_back(u_.dot(r), v_.dot(r), axis_.dot(r));
     }
-    for (const double sign : {1.0, -1.0}) {
-      std::vector<Vec3> kept;
-      for (std::size_t k = 0; k < polygon.size(); ++k) {
-        const Vec3 &a = polygon[k], &b = polygon[(k + 1) % polygon.size()];
-        const double in_a = half_m_ - sign * a.z(), in_b = half_m_ - sign * b.z();
-        if (in_a >= 0) kept.push_back(a);
-        if ((in_a >= 0) != (in_b >= 0)) kept.emplace_back(a + in_a / (in_a - in_b) * (b - a));
-      }
-      polygon = std::move(kept);
-    }
-    return polygon;
+    return below(below(polygon, Vec3::UnitZ(), half_m_), -Vec3::UnitZ(), half_m_);
   }
 
   static double toAxis(const Vec3& a, const Vec3& b) {

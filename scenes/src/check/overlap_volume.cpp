@@ -7,6 +7,8 @@
 #include <map>
 #include <numeric>
 
+#include "check/surface_piece.h"
+
 namespace vps::scenes::inline v0 {
 
 namespace {
@@ -25,18 +27,7 @@ struct Flat {
 
 /// The part of segment pq within the triangle, whose plane holds the segment; false if there is none.
 bool clip(const Flat& in, Vec3& p, Vec3& q) {
-  double from = 0, to = 1;
-  for (int i = 0; i < 3; ++i) {
-    const Vec3 inward = in.n.cross(in.t[(i + 1) % 3] - in.t[i]);
-    const double at_p = inward.dot(p - in.t[i]), at_q = inward.dot(q - in.t[i]);
-    if (at_p < 0 && at_q < 0) return false;
-    if ((at_p < 0) == (at_q < 0)) continue;
-    const double fraction = at_p / (at_p - at_q);
-    if (at_p < 0)
-      from = std::max(from, fraction);
-    else
-      to = std::min(to, fraction);
-  }
+  const auto [from, to] = sharesWithin(in.t, in.n, p, q);
   if (!(from < to)) return false;
   const Vec3 first = p + from * (q - p);
   q = p + to * (q - p);

@@ -58,6 +58,8 @@ class PartSurface {
 
   /// Why the surface, or parts of it, has no inside; empty: it has one.
   [[nodiscard]] const std::string& noInside() const { return no_inside_; }
+  /// It has an inside everywhere, and no holes.
+  [[nodiscard]] bool isClosed() const { return no_inside_.empty() && solid().report().isClosed(); }
 
   /// Greatest distance of a facet from the curved face that it stands for.
   [[nodiscard]] double chord_m(std::uint32_t i) const { return chord_m_[i]; }

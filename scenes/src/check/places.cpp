@@ -18,6 +18,7 @@
 #include "check/touches.h"
 #include "core/fit_tolerance.h"
 #include "core/length_words.h"
+#include "core/name_words.h"
 #include "vps/mesh_overlap.h"
 
 namespace vps::scenes::inline v0 {
@@ -46,17 +47,7 @@ struct NearPair {
   double error_m = std::numeric_limits<double>::infinity();
 };
 
-std::string quoted(const std::string& name) {
-  return "'" + name + "'";
-}
-
-std::string listed(const std::vector<std::string>& names) {
-  constexpr std::size_t kMost = 4;
-  std::string out;
-  for (std::size_t i = 0; i < std::min(names.size(), kMost); ++i)
-    out += (i == 0 ? "" : i + 1 == names.size() ? " and " : ", ") + quoted(names[i]);
-  return names.size() > kMost ? out + " and " + std::to_string(names.size() - kMost) + " more" : out;
-}
+constexpr std::size_t kMostNamed = 4;  // in a sentence
 
 /// Bodies that are moved, and by how much.
 struct Moving {
@@ -111,7 +102,8 @@ class PlaceSearch {
         out.reason = std::move(why);
         break;
       }
-      const bool is_fixed = mayMove_m(pair.a) + mayMove_m(pair.b) == 0 && std::isfinite(pair.error_m);
+      const bool is_fixed =
+          mayMove_m(parts_[pair.a]) + mayMove_m(parts_[pair.b]) == 0 && std::isfinite(pair.error_m);
       out.verdict = is_fixed ? Verdict::Blocked : Verdict::NotShown;
       out.reason = quoted(parts_[pair.a].name) + " and " + quoted(parts_[pair.b].name) + " overlap and are " +
                    (is_fixed ? "both fixed" : "tied to each other by fixed parts or press fits");
@@ -273,7 +265,7 @@ class PlaceSearch {
       allowed_m = std::max(allowed_m, bodies_[body].allowed_m);
       for (const std::size_t part : bodies_[body].parts) names.push_back(parts_[part].name);
     }
-    std::string why = "no places without overlap were found for " + listed(names) + " within " +
+    std::string why = "no places without overlap were found for " + listed(names, kMostNamed) + " within " +
                       lengthInWords(allowed_m) + " of where " + (names.size() == 1 ? "it is" : "they are") +
                       " drawn, and nothing proves that there are none";
     if (most_moved == 0) return why + "; too many parts overlap each other to be moved at once";
@@ -288,7 +280,7 @@ class PlaceSearch {
   [[nodiscard]] std::string provenAlone(const NearPair& pair) const {
     const std::string& a = parts_[pair.a].name;
     const std::string& b = parts_[pair.b].name;
-    const double apart_m = mayMove_m(pair.a) + mayMove_m(pair.b);
+    const double apart_m = mayMove_m(parts_[pair.a]) + mayMove_m(parts_[pair.b]);
     // What only a fit shows may be of round faces that lie beside each other.
     if (pair.drawn_depth_m > apart_m + pair.error_m + kContactDepth_m && hiddenByFacets(pair).empty())
       return quoted(a) + " and " + quoted(b) + " overlap by " + lengthInWords(pair.drawn_depth_m) +
@@ -323,7 +315,7 @@ class PlaceSearch {
     std::vector<std::size_t> bodies;
     for (const PressedTouch& pressed : touches)
       for (const std::size_t part : {pressed.touch.of, pressed.touch.above})
-        if (mayMove_m(part) > 0) {
+        if (mayMove_m(parts_[part]) > 0) {
           if (bodies_[body_of_[part]].parts.size() > 1) return {};
           bodies.push_back(body_of_[part]);
         }
@@ -353,13 +345,15 @@ class PlaceSearch {
     };
     double deepest_m = 0;
     for (const PressedTouch& pressed : tried.pressed) deepest_m = std::max(deepest_m, pressed.weight);
-    const std::vector<double> at_start_m = moved_m();
-    std::erase_if(tried.pressed, [&](const PressedTouch& pressed) {
-      const Touch& touch = pressed.touch;
+    const std::vector<double> greatest_m =
+        greatestGaps_m(parts_, tried.X_WP, tried.pressed, by_sight_, moved_m());
+    std::vector<PressedTouch> kept;
+    for (std::size_t i = 0; i < greatest_m.size(); ++i) {
+      const Touch& touch = tried.pressed[i].touch;
       const double gap_m = touch.gap_m(tried.X_WP[touch.of], tried.X_WP[touch.above]);
-      return !(greatestGap_m(parts_, tried.X_WP, touch, by_sight_, at_start_m) - gap_m <
-               kMostBend * deepest_m);
-    });
+      if (greatest_m[i] - gap_m < kMostBend * deepest_m) kept.push_back(tried.pressed[i]);
+    }
+    tried.pressed = std::move(kept);
     for (int round = 0; round < kRounds; ++round) {
       for (PressedTouch& pressed : tried.pressed) {
         Touch& touch = pressed.touch;
@@ -378,7 +372,7 @@ class PlaceSearch {
         if (std::ranges::find(names, parts_[part].name) == names.end()) names.push_back(parts_[part].name);
     }
     std::ranges::sort(names);
-    return "wherever " + listed(names) + " are within " + lengthInWords(kSightTolerance_m) +
+    return "wherever " + listed(names, kMostNamed) + " are within " + lengthInWords(kSightTolerance_m) +
            " of where they are drawn, some of them overlap by " + lengthInWords(least_m + kContactDepth_m) +
            " or more beyond the error";
   }
@@ -505,11 +499,6 @@ class PlaceSearch {
     for (const NearPair& pair : pairs_)
       if (!motion_[body_of_[pair.a]].isZero() || !motion_[body_of_[pair.b]].isZero()) out.push_back(pair);
     return out;
-  }
-
-  /// How far the part may be from where it belongs without that being seen.
-  [[nodiscard]] double mayMove_m(std::size_t part) const {
-    return parts_[part].drawn->is_fixed ? 0 : kSightTolerance_m;
   }
 
   void appendMoved(std::vector<MovedPart>& out) const {

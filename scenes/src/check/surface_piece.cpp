@@ -44,6 +44,24 @@ SurfacePiece below(const SurfacePiece& piece, const Vec3& n, double level) {
   return kept;
 }
 
+std::pair<double, double> sharesWithin(std::span<const Vec3> polygon, const Vec3& n, const Vec3& p,
+                                       const Vec3& q) {
+  double from = 0, to = 1;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Vec3& a = polygon[i];
+    const Vec3 inward = n.cross(polygon[(i + 1) % polygon.size()] - a);
+    const double at_p = inward.dot(p - a), at_q = inward.dot(q - a);
+    if (at_p < 0 && at_q < 0) return {1, 0};
+    if ((at_p < 0) == (at_q < 0)) continue;
+    const double fraction = at_p / (at_p - at_q);
+    if (at_p < 0)
+      from = std::max(from, fraction);
+    else
+      to = std::min(to, fraction);
+  }
+  return {from, to};
+}
+
 namespace {
 
 /// A polygon and what tells quickly that a box or a facet is apart from it.
@@ -69,28 +87,12 @@ class PieceTest {
       if ((above_m[i] > 0) != (above_m[k] > 0))
         ends[count++] = t[i] + above_m[i] / (above_m[i] - above_m[k]) * (t[k] - t[i]);
     }
-    return count == 2 && isAnyWithin(ends[0], ends[1]);
-  }
-
- private:
-  /// Whether some of segment pq, which is in the polygon's plane, is in the polygon.
-  [[nodiscard]] bool isAnyWithin(const Vec3& p, const Vec3& q) const {
-    double from = 0, to = 1;
-    for (std::size_t i = 0; i < piece_.size(); ++i) {
-      const Vec3& a = piece_[i];
-      const Vec3 inward = n_.cross(piece_[(i + 1) % piece_.size()] - a);
-      const double at_p = inward.dot(p - a), at_q = inward.dot(q - a);
-      if (at_p < 0 && at_q < 0) return false;
-      if ((at_p < 0) == (at_q < 0)) continue;
-      const double fraction = at_p / (at_p - at_q);
-      if (at_p < 0)
-        from = std::max(from, fraction);
-      else
-        to = std::min(to, fraction);
-    }
+    if (count < 2) return false;
+    const auto [from, to] = sharesWithin(piece_, n_, ends[0], ends[1]);
     return from <= to;
   }
 
+ private:
   const SurfacePiece& piece_;
   const Vec3& n_;
   double level_;

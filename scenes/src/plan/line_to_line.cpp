@@ -8,6 +8,7 @@
 #include <string>
 
 #include "check/round_faces.h"
+#include "core/name_words.h"
 #include "plan/drawn_overlaps.h"
 
 namespace vps::scenes::inline v0 {
@@ -57,19 +58,12 @@ std::optional<Resized> thinner(const PlacedSurface& shaft, const CheckedFit& fit
   return out;
 }
 
-std::string listed(const std::vector<std::string>& names) {
-  std::string out;
-  for (std::size_t i = 0; i < names.size(); ++i)
-    out += (i == 0 ? "'" : i + 1 == names.size() ? " and '" : ", '") + names[i] + "'";
-  return out;
-}
-
 std::string wordsOf(const OverlapChoice& choice, const std::vector<std::string>& bores) {
   char sizes[80];
   std::snprintf(sizes, sizeof sizes, "(%.3f mm): taken for a sliding fit, and made %.3f mm wide",
                 2e3 * choice.resized->from_radius_m, 2e3 * choice.resized->to_radius_m);
   return "'" + choice.a + "' is drawn exactly as wide as its " + (bores.size() == 1 ? "hole" : "holes") +
-         " in " + listed(bores) + " " + sizes + " so that it can pass";
+         " in " + listed(bores, bores.size()) + " " + sizes + " so that it can pass";
 }
 
 }  // namespace

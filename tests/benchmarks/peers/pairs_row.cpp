@@ -6,8 +6,8 @@
 #include <random>
 #include <vector>
 
+#include "dynamics/heap.h"
 #include "rival_rows.h"
-#include "support/gear.h"
 #include "support/random_draw.h"
 #include "vps_bullet/body.h"
 #include "vps_bullet/convert.h"
@@ -91,14 +91,7 @@ void pairQueryRow(const Options&, Table& table) {
 
 // Twenty gears of 23,000 points are put into a bin; all their pairs are new in the first step.
 void firstStepRow(const Options&, Table& table) {
-  test::GearShape gear;
-  gear.module_m = 1.25e-3;
-  gear.teeth = 20;
-  gear.width_m = 8e-3;
-  gear.other_radius_m = 4e-3;
-  gear.points_per_tooth = 16;
-  gear.axial_steps = gear.radial_steps = 4;
-  const dynamics::PartMesh part = dynamics::makePart(test::makeSpurGear(gear));
+  const dynamics::PartMesh part = dynamics::makeHeapGear();
   dynamics::World world({dynamics::Mode::Constraint, true, dynamics::vpsEngine({0.2e-3, 0.36e-3})});
   const auto addWall = [&](const Vec3& half_m, const Vec3& center) {
     world.addShape(std::make_shared<btBoxShape>(bullet::toBt(half_m)), {}, Pose::translation(center));
