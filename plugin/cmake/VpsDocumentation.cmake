@@ -16,8 +16,6 @@ foreach(folder IN ITEMS plugin bullet_bridge device scenes viewer)
   list(APPEND documented_folders ${PROJECT_SOURCE_DIR}/${folder}/include)
   list(APPEND DOXYGEN_STRIP_FROM_INC_PATH ${PROJECT_SOURCE_DIR}/${folder}/include)
 endforeach()
-# The inline namespace is part of the binary interface only, and a class would be shown as v0::Name.
-set(DOXYGEN_INPUT_FILTER "sed -e s/::inline.v0//")
 set(DOXYGEN_PREDEFINED VPS_API= VPS_VDB_API= VPS_BULLET_API= VPS_DEVICE_API= VPS_SCENES_API= VPS_VIEWER_API=)
 set(DOXYGEN_MACRO_EXPANSION YES)
 set(DOXYGEN_EXPAND_ONLY_PREDEF YES)

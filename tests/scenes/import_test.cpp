@@ -911,7 +911,7 @@ TEST(OwnProcess, EndsWithItsProgressAndLeavesNoChild) {
 import::RawCad readForEver(const Progress&) {
   for (;
 ;) ::pause();
-}
+}  // namespace vps::scenes
 
 TEST(OwnProcess, EndsWithItsProgressWhileTheLibrarySaysNothing) {
   int asked = 0;

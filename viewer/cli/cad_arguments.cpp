@@ -11,7 +11,7 @@
 #include "vps_scenes/scene_groups.h"
 #include "vps_scenes/scene_text.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 bool CadArguments::isAny() const {
   return !units.empty() || !deflection.empty() || !up.empty() || !part_per.empty() || time_limit_s > 0 ||
@@ -114,4 +114,4 @@ void requireNoCadOptions(const std::string& scene, const CadArguments& given) {
                     "--group, --no-groups and --time-limit");
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -14,7 +14,7 @@ namespace CLI {
 class App;
 }
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// A part that would have more is read coarser: a check of it takes minutes.
 inline constexpr std::size_t kMostTriangles = 250'000;
@@ -58,4 +58,4 @@ scenes::Scene groupedScene(scenes::ImportedCad cad, const CadArguments& given);
 /// Throws LoadError when one of the options is given for a scene file, which states all of that itself.
 void requireNoCadOptions(const std::string& scene, const CadArguments& given);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -9,7 +9,7 @@
 #include "vps_viewer/check_words.h"
 #include "vps_viewer/csv.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -175,4 +175,4 @@ std::string checkCsv(const scenes::CheckResult& result) {
   return out;
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

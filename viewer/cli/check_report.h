@@ -6,7 +6,7 @@
 
 #include "vps_scenes/check.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// Tables of pairs, fits and parts; what was not asked for, and what there is none of, is left out.
 std::string checkTables(const scenes::CheckResult& result);
@@ -15,4 +15,4 @@ std::string checkHeadline(const scenes::CheckResult& result);
 /// A line for each number: what, a, b, quantity, value, error.
 std::string checkCsv(const scenes::CheckResult& result);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

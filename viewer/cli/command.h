@@ -7,7 +7,7 @@
 #include <functional>
 #include <string>
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// Exit status of the program.
 inline constexpr int kGood = 0;      ///< done, and the answer is good
@@ -30,4 +30,4 @@ CLI::App& addCommand(CommandLine& line, const std::string& name, const std::stri
 /// --json FILE.
 void addJsonOption(CLI::App& command, std::string& file);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -19,7 +19,7 @@
 #include "vps/load_error.h"
 #include "vps_scenes/network/session_request.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -130,4 +130,4 @@ void addAsk(CommandLine& line) {
       [](const auto& request, const AskArguments&) { return request.record(""); });
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -28,7 +28,7 @@
 #include "vps_scenes/tries.h"
 #include "vps_viewer/verdict_words.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -259,4 +259,4 @@ void addAssemble(CommandLine& line) {
   addJsonOption(command, given->json);
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

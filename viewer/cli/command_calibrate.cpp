@@ -16,7 +16,7 @@
 #include "vps_scenes/scene.h"
 #include "vps_scenes/toml_edit.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -201,4 +201,4 @@ void addCalibrate(CommandLine& line) {
   command.add_option("-o,--out", given->out, "TOML file to write")->type_name("FILE.toml");
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

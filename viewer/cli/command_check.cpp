@@ -16,7 +16,7 @@
 #include "vps_scenes/check.h"
 #include "vps_viewer/check_page.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -107,4 +107,4 @@ void addCheck(CommandLine& line) {
   addJsonOption(command, given->json);
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

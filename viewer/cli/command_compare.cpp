@@ -14,7 +14,7 @@
 #include "vps_scenes/compare.h"
 #include "vps_viewer/compare_page.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -80,4 +80,4 @@ void addCompare(CommandLine& line) {
   addJsonOption(command, given->json);
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

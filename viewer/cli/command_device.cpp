@@ -21,7 +21,7 @@
 #include "vps_scenes/network/nodes.h"
 #include "vps_viewer/device_plot.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -265,4 +265,4 @@ void addDevice(CommandLine& line) {
   command.get_option("--json")->needs(characterise);
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

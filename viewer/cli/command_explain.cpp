@@ -13,7 +13,7 @@
 #include "table.h"
 #include "terminal.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -207,4 +207,4 @@ void addExplain(CommandLine& line) {
   addJsonOption(command, given->json);
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

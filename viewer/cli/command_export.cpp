@@ -20,7 +20,7 @@
 #include "vps/solid.h"
 #include "vps/voxmap.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -180,4 +180,4 @@ void addExport(CommandLine& line) {
   addJsonOption(command, given->json);
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -25,7 +25,7 @@
 #include "vps_scenes/scene_groups.h"
 #include "vps_scenes/scene_text.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -169,4 +169,4 @@ void addImport(CommandLine& line) {
   addJsonOption(command, given->json);
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -18,7 +18,7 @@
 #include "vps_viewer/margin_page.h"
 #include "vps_viewer/verdict_words.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -95,4 +95,4 @@ void addMargin(CommandLine& line) {
   addJsonOption(command, given->json);
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -15,7 +15,7 @@
 #include "vps/load_error.h"
 #include "vps_scenes/plan.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -75,4 +75,4 @@ void addPlan(CommandLine& line) {
   addJsonOption(command, given->json);
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

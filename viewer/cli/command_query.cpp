@@ -24,7 +24,7 @@
 #include "vps/query.h"
 #include "vps/solid.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -349,4 +349,4 @@ void addQuery(CommandLine& line) {
   addJsonOption(command, given->json);
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

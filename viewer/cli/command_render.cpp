@@ -16,7 +16,7 @@
 #include "vps_scenes/network/nodes.h"
 #include "vps_scenes/network/request_server.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -157,4 +157,4 @@ void addRender(CommandLine& line) {
   addJsonOption(command, given->json);
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

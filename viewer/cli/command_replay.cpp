@@ -16,7 +16,7 @@
 #include "vps_scenes/replay.h"
 #include "vps_viewer/csv.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -105,4 +105,4 @@ void addReplay(CommandLine& line) {
   addJsonOption(command, given->json);
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -15,7 +15,7 @@
 #include "vps_scenes/simulate.h"
 #include "vps_viewer/csv.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -154,4 +154,4 @@ void addSimulate(CommandLine& line) {
   addJsonOption(command, given->json);
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

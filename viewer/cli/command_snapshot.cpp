@@ -22,7 +22,7 @@
 #include "vps_viewer/renderer.h"
 #include "vps_viewer/stereo.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -253,4 +253,4 @@ void addSnapshot(CommandLine& line) {
   addJsonOption(command, given->json);
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -24,7 +24,7 @@
 #include "vps_scenes/study.h"
 #include "vps_viewer/study_page.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -216,4 +216,4 @@ void addStudy(CommandLine& line) {
   addJsonOption(command, given->json);
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

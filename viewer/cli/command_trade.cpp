@@ -18,7 +18,7 @@
 #include "vps_scenes/import.h"
 #include "vps_scenes/trade.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -160,4 +160,4 @@ void addTrade(CommandLine& line) {
   addJsonOption(command, given->json);
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -15,7 +15,7 @@
 #include "vps_scenes/replay.h"
 #include "vps_viewer/video.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -145,4 +145,4 @@ void addVideo(CommandLine& line) {
   for (const char* name : {"--width", "--height", "--view", "--camera"}) display->excludes(name);
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -17,7 +17,7 @@
 #include "vps_viewer/stereo.h"
 #include "vps_viewer/window.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -180,4 +180,4 @@ void addView(CommandLine& line) {
       ->type_name("NAME");
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -30,7 +30,7 @@
 #include "vps_viewer/web.h"
 #include "vps_viewer/window.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -337,4 +337,4 @@ void addWatch(CommandLine& line) {
       ->needs(web);
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

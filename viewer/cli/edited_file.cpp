@@ -5,7 +5,7 @@
 
 #include "vps/load_error.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -33,4 +33,4 @@ EditedFile::EditedFile(const std::string& file, std::span<const scenes::TomlValu
   if (error) throw LoadError(file, "", "cannot be written: " + error.message() + "; choose another place");
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

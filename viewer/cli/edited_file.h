@@ -8,7 +8,7 @@
 #include "output.h"
 #include "vps_scenes/toml_edit.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// The edited text stands complete beside the file, with the file's permissions, until commit() replaces the
 /// file by it; without commit() the file is as it was.
@@ -23,4 +23,4 @@ class EditedFile {
   OutputFile out_;
 };
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

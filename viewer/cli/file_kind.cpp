@@ -8,7 +8,7 @@
 
 #include "vps/load_error.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 std::string lowerExtension(const std::string& file) {
   std::string extension = std::filesystem::path(file).extension().string();
@@ -46,4 +46,4 @@ void requireCadFile(const std::string& file) {
     throw LoadError(file, "", "is a scene already; vps assemble, vps simulate and vps explain read scenes");
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

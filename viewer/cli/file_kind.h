@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// ".step" of "Part.STEP"; empty if there is none.
 std::string lowerExtension(const std::string& file);
@@ -16,4 +16,4 @@ void requireSceneFile(const std::string& file);
 /// Throws LoadError, naming the commands that read the file, unless it can have a mesh.
 void requireCadFile(const std::string& file);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -6,7 +6,7 @@
 
 #include "terminal.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 HeardRun::HeardRun() {
   tap_.is_wanted = true;
@@ -28,4 +28,4 @@ std::string HeardRun::wav() {
   return bytes;
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -8,7 +8,7 @@
 #include "vps_scenes/assemble.h"
 #include "vps_viewer/sound.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 class HeardRun {
  public:
@@ -34,4 +34,4 @@ class HeardRun {
   scenes::SnapshotTap tap_;
 };
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -12,7 +12,7 @@
 #include "vps/mesh.h"
 #include "vps_scenes/fields.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 // Keys keep the order in which they are added.
 using Json = nlohmann::ordered_json;
@@ -91,4 +91,4 @@ void addFields(Json& out, const Struct& of, const Rows& rows) {
   scenes::forEachRow(rows, [&](const auto& row) { addRow(out, of, row); });
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

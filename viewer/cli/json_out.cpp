@@ -17,7 +17,7 @@
 #include "vps_scenes/trade_fields.h"
 #include "vps_viewer/latency.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -489,4 +489,4 @@ std::string toJson(const device::DualArmCharacter& c, const device::DualArmFile&
   return text(json);
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -17,7 +17,7 @@
 #include "vps_scenes/result.h"
 #include "vps_scenes/simulate.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 struct CheckResult;
 struct FidelityChoice;
 struct MarginResult;
@@ -25,14 +25,14 @@ struct Ergonomics;
 struct RunComparison;
 struct StudyResult;
 struct TradeResult;
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 struct DualArmCharacter;
 struct DualArmFile;
-}  // namespace vps::device::inline v0
+}  // namespace vps::device
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 struct LatencyResult;
 
@@ -123,4 +123,4 @@ std::string toJson(const std::string& scene, const std::vector<scenes::WayFault>
 std::string toJson(const std::string& scene, const scenes::FidelityChoice& choice);
 std::string toJson(const device::DualArmCharacter& character, const device::DualArmFile& file);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -12,7 +12,7 @@
 #include "table.h"
 #include "terminal.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 void addRow(Table& table, const std::string& words, const std::vector<double>& values_s) {
@@ -60,4 +60,4 @@ int reportLatency(const SceneArguments& given, const LatencySettings& settings, 
   return result.isGood() ? kGood : kBad;
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

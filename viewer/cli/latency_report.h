@@ -7,10 +7,10 @@
 #include "scene_arguments.h"
 #include "vps_viewer/latency.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// Returns the exit status: kBad where picture, sound and force are farther apart than kApart_s.
 /// @param json  file to write; empty: none
 int reportLatency(const SceneArguments& scene, const LatencySettings& settings, const std::string& json);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -11,7 +11,7 @@
 #include "vdb_module/level_set_module.h"
 #include "vps/load_error.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 #ifdef VPS_VDB_MODULE
 
@@ -76,4 +76,4 @@ void saveLevelSet(const VoxMap&, const std::string& file) {
 
 #endif
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

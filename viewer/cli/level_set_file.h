@@ -6,7 +6,7 @@
 
 #include "vps/voxmap.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// Throws LoadError that names the file in a build without OpenVDB, and where the program's module for it
 /// cannot be loaded.
@@ -16,4 +16,4 @@ void requireOpenVdb(const std::string& file);
 VoxMap loadLevelSet(const std::string& file);
 void saveLevelSet(const VoxMap& map, const std::string& file);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

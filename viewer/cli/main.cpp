@@ -8,7 +8,7 @@
 #include "terminal.h"
 #include "vps/version.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 #define COMMAND(add) void add(CommandLine& line);
 #include "command_list.inc"
@@ -94,7 +94,7 @@ void addJsonOption(CLI::App& command, std::string& file) {
   command.add_option("--json", file, "write the results to this file as JSON")->type_name("FILE");
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer
 
 int main(int argc, char** argv) {
   return vps::viewer::runSafely(argc, argv);

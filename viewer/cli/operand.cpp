@@ -12,7 +12,7 @@
 #include "vps_scenes/import.h"
 #include "vps_scenes/mesh_warning.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -65,4 +65,4 @@ double spacingFor(const Mesh& mesh, std::size_t point_count) {
   return std::sqrt(area(mesh) / static_cast<double>(point_count));
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -11,7 +11,7 @@
 #include "vps/voxmap.h"
 #include "vps/voxmap_cache.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 enum class OperandKind { Mesh, LevelSet, PointShell };
 
@@ -29,4 +29,4 @@ VoxMap mapOf(const Mesh& mesh, const VoxMapSettings& settings, const std::string
 /// The distance between points that gives about `point_count` of them.
 double spacingFor(const Mesh& mesh, std::size_t point_count);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

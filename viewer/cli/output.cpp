@@ -10,7 +10,7 @@
 #include "terminal.h"
 #include "vps/load_error.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -137,4 +137,4 @@ void OutputFolder::commit() {
   }
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -11,7 +11,7 @@
 
 #include "vps/write_file.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// Throws LoadError when `output` is one of the files that a command reads, under whatever name.
 void requireNotRead(const std::string& output, const std::vector<std::string>& inputs);
@@ -59,4 +59,4 @@ class OutputFolder {
   bool is_new_ = false;
 };
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

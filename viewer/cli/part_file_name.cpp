@@ -5,7 +5,7 @@
 #include <cctype>
 #include <utility>
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 std::string partFileName(const std::string& name, const std::string& extension,
                          std::set<std::string>& taken) {
@@ -26,4 +26,4 @@ std::string partFileName(const std::string& name, const std::string& extension,
   return file;
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

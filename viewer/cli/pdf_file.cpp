@@ -4,7 +4,7 @@
 #include "vps/load_error.h"
 #include "vps_viewer/pdf.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 const std::string& checked(const std::string& file) {
@@ -40,4 +40,4 @@ void PdfFile::write(const std::string& html) {
   out_.commit();
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -8,7 +8,7 @@
 
 #include "output.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// Adds --pdf.
 void addPdfOption(CLI::App& command, std::string& file);
@@ -31,4 +31,4 @@ class PdfFile {
   OutputFile out_;
 };
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

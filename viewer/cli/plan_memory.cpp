@@ -10,7 +10,7 @@
 
 #include "vps/load_error.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -98,4 +98,4 @@ std::map<std::string, double> plannedClearances(const std::string& scene_file) {
   return out;
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -9,7 +9,7 @@
 
 #include "vps_scenes/plan.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// A number that differs where the parts, their places or what is asked for differ.
 std::string planKey(const scenes::Scene& scene, const scenes::PlanSettings& settings);
@@ -23,4 +23,4 @@ std::optional<scenes::PlanFindings> readFindings(const std::string& file, const 
 /// none, or where it has no assembly of that name. Those of more than kNearWay_m are that.
 std::map<std::string, double> plannedClearances(const std::string& scene_file);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -8,7 +8,7 @@
 
 #include "table.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -247,4 +247,4 @@ std::string inWords(const scenes::WayFault& fault) {
          fixed(1e3 * fault.allowed_m, 3) + " mm allowed)" + remedy;
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

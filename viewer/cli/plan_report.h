@@ -6,7 +6,7 @@
 
 #include "vps_scenes/plan.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// A line for each different fastener with the names of the parts; empty if there are none.
 std::string fastenerText(const std::vector<scenes::Fastener>& fasteners);
@@ -17,4 +17,4 @@ std::string planHeadline(const scenes::PlanResult& plan);
 /// "the way of 'peg' leads through 'wall', 3.20 mm deep at (1.0, 2.0, 3.0) mm (0.01 mm allowed)"
 std::string inWords(const scenes::WayFault& fault);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

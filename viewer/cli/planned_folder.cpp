@@ -23,7 +23,7 @@
 #include "vps/write_file.h"
 #include "vps_scenes/scene_text.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -173,4 +173,4 @@ PlannedFolder planInto(const PlanArguments& given, ProgressBar& bar) {
   return folder;
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

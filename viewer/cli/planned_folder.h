@@ -9,7 +9,7 @@
 #include "progress_bar.h"
 #include "vps_scenes/plan.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 struct PlanArguments {
   std::vector<std::string> assembly;  ///< CAD files in one frame, or one scene file
@@ -44,4 +44,4 @@ inline constexpr const char* kUnfinishedPlan = "unfinished_plan.json";
 /// many triangles are read with a greater deflection, and this is said, unless --deflection is given.
 PlannedFolder planInto(const PlanArguments& given, ProgressBar& bar);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

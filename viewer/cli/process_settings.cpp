@@ -9,7 +9,7 @@
 
 #include <cstddef>
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 void giveWay() {
 #if defined(__unix__)
@@ -33,4 +33,4 @@ void limitStacks() {
 #endif
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

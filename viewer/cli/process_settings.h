@@ -3,7 +3,7 @@
 // nothing.
 #pragma once
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// Others go first where the processor is busy; also for threads that are started later.
 void giveWay();
@@ -13,4 +13,4 @@ void giveWay();
 /// one takes it over.
 void limitStacks();
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -7,7 +7,7 @@
 
 #include "terminal.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -52,4 +52,4 @@ void ProgressBar::clear() {
   is_drawn_ = false;
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -8,7 +8,7 @@
 
 #include "vps/progress.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 class ProgressBar {
  public:
@@ -33,4 +33,4 @@ class ProgressBar {
   Clock::time_point begun_, drawn_;
 };
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// A word of a POSIX shell.
 inline std::string quoted(const std::string& word) {
@@ -13,4 +13,4 @@ inline std::string quoted(const std::string& word) {
   return out + "'";
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

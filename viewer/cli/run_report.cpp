@@ -15,7 +15,7 @@
 #include "vps_viewer/report.h"
 #include "vps_viewer/verdict_words.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -127,4 +127,4 @@ void printOutcome(const scenes::Scene& scene, const scenes::AssembleResult& resu
   std::printf("%s\nreport: %s/report.html\n", verdictLine(result).c_str(), out.c_str());
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

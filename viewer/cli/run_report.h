@@ -10,7 +10,7 @@
 #include "vps_scenes/result.h"
 #include "vps_scenes/scene.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 struct RunFiles {
   std::string command;  ///< that repeats the run
@@ -39,4 +39,4 @@ void printOutcome(const scenes::Scene& scene, const scenes::AssembleResult& resu
 /// The program's exit status.
 int statusOf(scenes::Verdict verdict);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

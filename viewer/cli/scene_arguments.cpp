@@ -15,7 +15,7 @@
 #include "vps_scenes/import.h"
 #include "vps_scenes/resolution.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -222,4 +222,4 @@ scenes::Scene sceneFrom(const std::string& file, const FidelityArguments& given,
   return scene;
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -16,7 +16,7 @@ namespace CLI {
 class App;
 }
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 class ProgressBar;
 
@@ -102,4 +102,4 @@ std::string defaultCacheFolder();
 void setModelOptions(scenes::ModelOptions& options, ProgressBar& bar, const std::optional<VoxMapCache>& cache,
                      bool models_everything);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

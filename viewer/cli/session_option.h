@@ -7,7 +7,7 @@
 
 #include "vps_scenes/network/session_network.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 inline constexpr const char* kDefaultSession = "default";
 
@@ -34,4 +34,4 @@ inline CLI::Option* addSessionOption(CLI::App& command, std::string& session) {
       ->type_name("NAME");
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -6,7 +6,7 @@
 #include "terminal.h"
 #include "vps/load_error.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 CLI::Option* addRecordOption(CLI::App& command, std::string& file) {
   return command
@@ -45,4 +45,4 @@ int finishRecording(scenes::SessionRecording& recording, const std::string& file
   return kCouldNot;
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -7,7 +7,7 @@
 #include "command.h"
 #include "vps_scenes/network/session_recording.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 CLI::Option* addRecordOption(CLI::App& command, std::string& file);
 scenes::SessionRecordingOptions recordingOptions(const std::string& session,
@@ -18,4 +18,4 @@ void requireAsked(scenes::SessionRecording& recording, const std::string& option
 /// Waits for the file, and says where it is, or why not. Returns an exit status.
 int finishRecording(scenes::SessionRecording& recording, const std::string& file);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

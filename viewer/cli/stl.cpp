@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <map>
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 std::string stlBytes(const Mesh& mesh) {
   static_assert(std::endian::native == std::endian::little, "STL is little endian");
@@ -75,4 +75,4 @@ std::string meshBytes(const Mesh& mesh, const scenes::FaceColors& colors) {
   return out + faces;
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -7,7 +7,7 @@
 #include "vps/mesh.h"
 #include "vps_scenes/face_colors.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// The bytes of the file, in metres. Coordinates are floats, which resolve 0.06 um at 1 m; vertices that are
 /// equal stay equal to the bit, so that readers can weld them.
@@ -20,4 +20,4 @@ std::string meshExtension(const Mesh& mesh, const scenes::FaceColors& colors = {
 /// has colours (sRGB) by vertex.
 std::string meshBytes(const Mesh& mesh, const scenes::FaceColors& colors = {});
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

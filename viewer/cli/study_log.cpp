@@ -9,7 +9,7 @@
 #include "vps/load_error.h"
 #include "vps_scenes/study_fields.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -100,4 +100,4 @@ void StudyLog::write(const std::string& line) {
     throw LoadError(file_, "", "cannot be written; is the disk full?");
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -9,7 +9,7 @@
 
 #include "vps_scenes/study.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// The line of a run, without its end.
 std::string studyLine(const scenes::StudyRun& run);
@@ -37,4 +37,4 @@ class StudyLog {
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> out_{nullptr, &std::fclose};
 };
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

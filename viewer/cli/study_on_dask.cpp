@@ -12,7 +12,7 @@
 #include "terminal.h"
 #include "vps/load_error.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 std::vector<RunRange> rangesOf(const std::vector<std::size_t>& numbers, std::size_t tasks) {
   std::vector<RunRange> ranges;
@@ -60,4 +60,4 @@ void makeOnDask(const std::string& address, const std::string& log, const std::v
   throw LoadError(log, "", "has not all runs; the same command goes on with those that are missing");
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// The Python script that shares tasks among workers: study_on_dask.py.
 extern const char* const kStudyOnDaskScript;
@@ -24,4 +24,4 @@ std::vector<RunRange> rangesOf(const std::vector<std::size_t>& numbers, std::siz
 void makeOnDask(const std::string& address, const std::string& log, const std::vector<std::string>& command,
                 const std::vector<RunRange>& ranges);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

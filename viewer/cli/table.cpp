@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -57,4 +57,4 @@ std::string fixed(double value, int digits) {
   return is_zero && text[0] == '-' ? text + 1 : text;
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// A text table whose columns are as wide as their widest cell.
 class Table {
@@ -28,4 +28,4 @@ inline std::string um(double length_m, int digits = 2) {
   return fixed(1e6 * length_m, digits);
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -7,7 +7,7 @@
 #include <csignal>
 #include <cstdio>
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 std::atomic<bool> is_stop_requested{false};
@@ -53,4 +53,4 @@ void throwIfStopped() {
   if (is_stop_requested.load(std::memory_order_relaxed)) throw Stopped();
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -6,7 +6,7 @@
 #include <exception>
 #include <string>
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// Whether stderr is a terminal.
 bool isTerminal();
@@ -32,4 +32,4 @@ struct Stopped : std::exception {
 };
 void throwIfStopped();
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

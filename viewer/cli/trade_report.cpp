@@ -7,7 +7,7 @@
 #include "vps_scenes/trade_fields.h"
 #include "vps_viewer/csv.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -74,4 +74,4 @@ PlotOutcome plotTrade(const scenes::TradeResult& result, const std::string& file
   return plotSeries(plot, file);
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

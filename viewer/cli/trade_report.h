@@ -7,7 +7,7 @@
 #include "vps_scenes/trade.h"
 #include "vps_viewer/plot.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 std::string tradeTable(const scenes::TradeResult& result);
 /// One line for each row, SI but for microseconds. A column's name is its path in the JSON file, joined by
@@ -16,4 +16,4 @@ std::string tradeCsv(const scenes::TradeResult& result);
 /// Error of depth over the time of a step, with the front as a line; writes file + ".png" and file + ".svg".
 PlotOutcome plotTrade(const scenes::TradeResult& result, const std::string& file);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

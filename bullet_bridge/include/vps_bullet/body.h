@@ -18,7 +18,7 @@
 #include "vps_bullet/saved_shape.h"
 #include "vps_bullet/shape.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 /// Voxel and spacing of a part's models.
 struct Resolution {
@@ -83,4 +83,4 @@ struct Body {
 VPS_BULLET_API Body makeBody(const Mesh& mesh, const BodySettings& settings = {});
 VPS_BULLET_API Body makeBody(const btStridingMeshInterface& triangles, const BodySettings& settings = {});
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -7,7 +7,7 @@
 #include "vps/pose.h"
 #include "vps_bullet/precision.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 inline btScalar toBt(double x) {
   return static_cast<btScalar>(x);
@@ -43,4 +43,4 @@ inline Pose fromBt(const btTransform& X) {
   return {fromBt(X.getBasis()), fromBt(X.getOrigin())};
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

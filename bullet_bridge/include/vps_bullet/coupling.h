@@ -12,7 +12,7 @@
 class btConstraintSolver;
 class btRigidBody;
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 /// A 6-DOF spring-damper between a target (the device's proxy at the end of the step) and a point of a
 /// dynamic body. Implicit: the wrench is that of the coupling law at the end of the step, solved together
@@ -102,4 +102,4 @@ class VPS_BULLET_API CouplingConstraint : public btTypedConstraint {
   Wrench F_PG_W_;
 };
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

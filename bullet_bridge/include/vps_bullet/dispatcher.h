@@ -9,7 +9,7 @@
 #include "vps_bullet/export.h"
 #include "vps_bullet/precision.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 /// Drop-in for btCollisionDispatcher: several threads find the contacts of all pairs with VPS contact before
 /// Bullet visits the pairs one by one. Results have the same bits as with the stock dispatcher, for any
@@ -30,4 +30,4 @@ class VPS_BULLET_API Dispatcher : public btCollisionDispatcher {
   std::unique_ptr<Arena> arena_;
 };
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -9,7 +9,7 @@
 
 class btCollisionDispatcher;
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 /// Makes every bullet::Shape collide in worlds that use this dispatcher: with each other and with Bullet's
 /// own shapes, in contact and closest-point queries, in both orders, for every shape type (README.md lists
@@ -28,4 +28,4 @@ VPS_BULLET_API void uninstall(btCollisionDispatcher& dispatcher);
 /// All zero without an installation.
 [[nodiscard]] VPS_BULLET_API Stats stats(const btCollisionDispatcher& dispatcher);
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

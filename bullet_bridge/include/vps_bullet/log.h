@@ -8,7 +8,7 @@
 #include "vps_bullet/export.h"
 #include "vps_bullet/precision.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 enum class LogLevel {
   Info,     ///< what was chosen or done
@@ -29,4 +29,4 @@ VPS_BULLET_API void setLogLevel(LogLevel least);
 /// At most so many messages within a second reach the hook; the next one that does says how many did not.
 inline constexpr int kLogLimit = 20;
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -11,7 +11,7 @@
 
 class btStridingMeshInterface;
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 /// All triangles, with equal vertices joined and the interface's scaling applied. Throws
 /// std::invalid_argument for a mesh without triangles, with a vertex that is not finite, or with an index
@@ -24,4 +24,4 @@ VPS_BULLET_API Mesh meshOf(const btStridingMeshInterface& triangles);
 VPS_BULLET_API std::unique_ptr<Shape> restoreShape(const char* saved_as,
                                                    const btStridingMeshInterface& triangles);
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

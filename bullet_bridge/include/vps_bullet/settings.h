@@ -7,7 +7,7 @@
 #include "vps/fidelity.h"
 #include "vps_bullet/precision.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 struct Settings {
   /// Penalty needs bullet::Solver. Any other solver takes the contacts as rigid, as with Constraint; a
@@ -45,4 +45,4 @@ struct Stats {
   double deepest_start_m = 0;  ///< the deepest of these overlaps
 };
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

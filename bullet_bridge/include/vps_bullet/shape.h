@@ -17,7 +17,7 @@
 #include "vps_bullet/export.h"
 #include "vps_bullet/precision.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 /// A body's mass, and the frame that Bullet requires: origin at the centre of mass, principal axes.
 struct BodyFrame {
@@ -185,4 +185,4 @@ class VPS_BULLET_API Shape : public btConcaveShape {
   mutable std::shared_ptr<Saved> saved_;  // a serializer refers to it
 };
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

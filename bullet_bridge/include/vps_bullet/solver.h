@@ -10,7 +10,7 @@
 #include "vps_bullet/export.h"
 #include "vps_bullet/precision.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 struct SolverSettings {
   double residual_m_s = 1e-7;  ///< converged when no contact's velocity changes by more; > 0
@@ -72,4 +72,4 @@ class VPS_BULLET_API Solver : public btSequentialImpulseConstraintSolver {
   bool has_reported_groups_ = false;
 };
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -14,7 +14,7 @@
 class btDiscreteDynamicsWorld;
 class btRigidBody;
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 /// What tuneWorld changed, as text and as input for restoreWorld.
 struct WorldTuning {
@@ -46,4 +46,4 @@ inline constexpr double kSleepSpin_rad_s = 0.1;
 /// Sets a body's sleeping thresholds to kSleepSpeed_m_s and kSleepSpin_rad_s.
 VPS_BULLET_API void tuneBody(btRigidBody& body);
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

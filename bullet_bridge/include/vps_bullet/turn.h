@@ -13,7 +13,7 @@
 class btCollisionWorld;
 class btRigidBody;
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 /// Greatest turn in a step of two bodies in contact, relative to each other [rad]. A contact is a plane for
 /// the whole step, and a point at distance r from the axis leaves its plane by r turn^2 / 2: at 0.1 rad by 5
@@ -59,4 +59,4 @@ VPS_BULLET_API void findTurns(btCollisionWorld& world, std::vector<BodyTurn>& ou
 /// the world.
 VPS_BULLET_API int substepsFor(btCollisionWorld& world, double dt_s, int most);
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

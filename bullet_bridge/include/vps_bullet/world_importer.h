@@ -18,7 +18,7 @@
 #include "vps_bullet/saved_shape.h"
 #include "vps_bullet/shape.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 /// Drop-in for btBulletWorldImporter. Bodies whose shape was a Shape, or a compound with one at any depth,
 /// get one again; its models are built anew at the resolution that they had. Rigid bodies also get the
@@ -115,4 +115,4 @@ class WorldImporter : public btBulletWorldImporter {
   std::vector<std::unique_ptr<Shape>> shapes_;
 };
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -16,7 +16,7 @@
 #include "vps_bullet/convert.h"
 #include "vps_bullet/tune.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 namespace {
 
@@ -149,4 +149,4 @@ Body makeBody(const btStridingMeshInterface& triangles, const BodySettings& sett
   return makeBody(meshOf(triangles), settings);
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -11,7 +11,7 @@
 
 #include "vps_bullet/convert.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 namespace {
 
@@ -214,4 +214,4 @@ btScalar CouplingConstraint::getParam(int, int) const {
   return 0;
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -35,7 +35,7 @@
 #include "solver/step_check.h"
 #include "solver/turn_check.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 namespace {
 
@@ -310,4 +310,4 @@ Stats stats(const btCollisionDispatcher& dispatcher) {
   return stats;
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -12,7 +12,7 @@
 
 #include "vps_bullet/precision.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 namespace {
 
@@ -68,4 +68,4 @@ void requireOneThread(const btCollisionDispatcher& dispatcher) {
       "contacts of VPS parts in parallel with the bits of one thread, or set a task scheduler of one thread");
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -4,7 +4,7 @@
 
 class btCollisionDispatcher;
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 /// Throws std::invalid_argument where Bullet's library, or the code that made the dispatcher, was compiled in
 /// the other precision: the headers of this package were not, and the two would not agree about any type.
@@ -14,4 +14,4 @@ void requireSamePrecision(const btCollisionDispatcher& dispatcher);
 /// manifolds come in another order in each run.
 void requireOneThread(const btCollisionDispatcher& dispatcher);
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -14,7 +14,7 @@
 #include "vps_bullet/convert.h"
 #include "vps_bullet/solver.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 namespace {
 
@@ -120,4 +120,4 @@ void tuneBody(btRigidBody& body) {
   body.setSleepingThresholds(toBt(kSleepSpeed_m_s), toBt(kSleepSpin_rad_s));
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

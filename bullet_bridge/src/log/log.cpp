@@ -8,7 +8,7 @@
 
 #include "log/report.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 namespace {
 
@@ -80,4 +80,4 @@ void report(LogLevel level, const std::string& message) noexcept {
   }
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

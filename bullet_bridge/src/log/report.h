@@ -6,9 +6,9 @@
 
 #include "vps_bullet/log.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 /// Passes a message to the hook, within the limits of log.h. Never throws. Thread-safe.
 void report(LogLevel level, const std::string& message) noexcept;
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

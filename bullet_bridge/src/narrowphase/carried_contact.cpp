@@ -6,7 +6,7 @@
 
 #include "vps/contact_tolerances.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 namespace {
 
@@ -64,4 +64,4 @@ double overlapOf(Candidate c, const PairView& pair) {
   return std::min(0.0, c.distance_m);
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -5,7 +5,7 @@
 #include "narrowphase/contact_candidate.h"
 #include "narrowphase/pair_view.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 /// Displacements of both bodies.
 struct Displacement {
@@ -23,4 +23,4 @@ bool crossAt(Candidate& c, const SideView& body0, const SideView& body1);
 /// How deep a contact overlaps where the bodies are; 0 or less. Edges that cross later may not cross yet.
 double overlapOf(Candidate c, const PairView& pair);
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

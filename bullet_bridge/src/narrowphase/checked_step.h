@@ -8,7 +8,7 @@
 #include "vps/contact_tolerances.h"
 #include "vps_bullet/turn.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 /// Both bodies at other poses than Bullet's.
 struct PairCheck::Placed {
@@ -50,4 +50,4 @@ inline bool isMissed(double start_m, double end_m, double tolerated_m) {
   return end_m < -tolerated_m && end_m < start_m - kGrowthShare * tolerated_m;
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -16,7 +16,7 @@
 #include "vps_bullet/convert.h"
 #include "vps_bullet/shape.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 static_assert(sizeof(CompoundPair) <= sizeof(btConvexConcaveCollisionAlgorithm));
 
@@ -182,4 +182,4 @@ void CompoundPair::getAllContactManifolds(btManifoldArray& manifolds) {
     if (child) child->getAllContactManifolds(manifolds);
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

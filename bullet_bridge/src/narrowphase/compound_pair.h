@@ -6,7 +6,7 @@
 
 #include "narrowphase/pair_algorithm.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 struct Context;
 
@@ -33,4 +33,4 @@ class CompoundPair final : public PairAlgorithm {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

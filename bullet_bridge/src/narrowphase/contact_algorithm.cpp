@@ -22,7 +22,7 @@
 #include "vps/contact_tolerances.h"
 #include "vps_bullet/turn.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 // Elements of Bullet's pool are as large as its own largest algorithm, whatever size is requested.
 static_assert(sizeof(ContactAlgorithm) <= sizeof(btConvexConcaveCollisionAlgorithm));
@@ -229,4 +229,4 @@ void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* body0,
   passToSolver(*state_);
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -6,7 +6,7 @@
 
 #include "narrowphase/pair_algorithm.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 struct PairState;
 struct Context;
@@ -40,4 +40,4 @@ class ContactAlgorithm final : public PairAlgorithm {
   std::unique_ptr<PairState> state_;
 };
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -8,7 +8,7 @@
 #include "native_shapes/native_shape_adapter.h"
 #include "vps/contact_tolerances.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 void addArea(const Candidate& from, Candidate& to) {
   const double sum_m2 = to.area_m2 + from.area_m2;
@@ -142,4 +142,4 @@ void shareAreas(const std::vector<Candidate>& all, double length_m, std::vector<
             [](const Candidate& a, const Candidate& b) { return a.key() < b.key(); });
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -7,7 +7,7 @@
 #include "narrowphase/contact_candidate.h"
 #include "narrowphase/pair_view.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 /// Leaves the points their shares of the faces that the other body faces: a point on an edge belongs in part
 /// to each of its faces, and one on a wall beside a face that touches to none that touches.
@@ -27,4 +27,4 @@ void addArea(const Candidate& from, Candidate& to);
 /// Cost: all times chosen, some 2 ns each, and 5 us.
 void shareAreas(const std::vector<Candidate>& all, double length_m, std::vector<Candidate>& chosen);
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -15,7 +15,7 @@
 
 class btCollisionShape;
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 struct QueryState;
 
@@ -176,4 +176,4 @@ void refineEdges(std::vector<Candidate>& candidates, const SideView& side, const
 /// the points of `side` that do not face the other's surface. Cost: a few products each.
 void useOwnNormals(std::vector<Candidate>& candidates, const SideView& side);
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

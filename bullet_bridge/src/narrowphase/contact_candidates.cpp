@@ -11,7 +11,7 @@
 #include "native_shapes/primitive.h"
 #include "vps/contact_tolerances.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 namespace {
 
@@ -202,4 +202,4 @@ std::size_t findSurfaceCandidates(const SideView& side, const SideView& other, d
   return findByDistance(side, other.X_WM, cutoff_m, settings, canBeNear, at, out, points_tested);
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -10,7 +10,7 @@
 #include "vps/contact_tolerances.h"
 #include "vps/direction_cell.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 namespace {
 
@@ -227,4 +227,4 @@ void reduceBySpread(std::vector<Candidate>& candidates, std::size_t limit, doubl
             [](const Candidate& a, const Candidate& b) { return a.key() < b.key(); });
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -10,7 +10,7 @@
 #include "vps/contact_tolerances.h"
 #include "vps/feature_motion.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 namespace {
 
@@ -205,4 +205,4 @@ void useOwnNormals(std::vector<Candidate>& candidates, const SideView& side) {
   });
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -8,7 +8,7 @@
 #include "native_shapes/primitive.h"
 #include "vps/contact_tolerances.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 namespace {
 
@@ -247,4 +247,4 @@ CandidateMotion motionSince(const Selection& selection, const PairView& pair) {
   return {body0_W, body1_W};
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -9,7 +9,7 @@
 #include "narrowphase/pair_view.h"
 #include "vps/contact_tolerances.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 // Both contact methods use these.
 
@@ -88,4 +88,4 @@ bool meetsWithBounce(double restitution, double gap_m, double predicted_m, doubl
 void selectRigid(const PairView& pair, PairState& state);
 void selectPenalty(const PairView& pair, PairState& state);
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -5,7 +5,7 @@
 
 #include "narrowphase/contact_selection.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 bool isInside(const Vec3& p_W, const SideView& other, double near_m, double tolerated_m) {
   if (!other.shape || other.shape->models().surfaces.empty()) return true;
@@ -61,4 +61,4 @@ void findThere(const PairView& there, const PairState& state, bool only_loaded, 
   refineAll(there, still, settings, ends);
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

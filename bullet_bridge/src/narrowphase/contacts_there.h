@@ -8,7 +8,7 @@
 #include "narrowphase/pair_state.h"
 #include "narrowphase/pair_view.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 /// True if a point is deeper than tolerated in the other side; where that is no solid, always.
 /// @param near_m  how far the other's surface is searched for
@@ -29,4 +29,4 @@ bool areBothCurved(const PairView& pair, PairState& state);
 void findThere(const PairView& there, const PairState& state, bool only_loaded, std::vector<Candidate>& now,
                std::vector<Candidate>& ends);
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -8,7 +8,7 @@
 
 #include "vps_bullet/settings.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 class NativeShapeCache;
 class PenaltyContacts;
@@ -27,4 +27,4 @@ struct Context {
   std::atomic<double> deepest_start_m{0};
 };
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

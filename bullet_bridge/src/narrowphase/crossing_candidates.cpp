@@ -8,7 +8,7 @@
 #include "vps/contact_tolerances.h"
 #include "vps/edge_crossing.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 namespace {
 
@@ -118,4 +118,4 @@ std::size_t findCrossingCandidates(const SideView& body0, const SideView& body1,
   return crossings.size() - room;
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -8,7 +8,7 @@
 
 #include "vps/contact_tolerances.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 namespace {
 
@@ -152,4 +152,4 @@ void moveToClosest(Candidate& c, const SideView& side, const Vec3& from_q_W) {
   c.distance_m = distance_m;
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -4,7 +4,7 @@
 
 #include "narrowphase/contact_candidate.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 /// A point of a face, on the curved surface that the facets approximate.
 struct FacePoint {
@@ -52,4 +52,4 @@ bool moveToFoot(Candidate& c, const SideView& side, const Vec3& from_q_W);
 /// @param from_q_W  p - q
 void moveToClosest(Candidate& c, const SideView& side, const Vec3& from_q_W);
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -13,7 +13,7 @@
 #include "narrowphase/pair_algorithm.h"
 #include "narrowphase/pair_renewal.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 struct Dispatcher::Arena {
   tbb::task_arena arena;
@@ -55,4 +55,4 @@ void Dispatcher::dispatchAllCollisionPairs(btOverlappingPairCache* pairs, const 
   btCollisionDispatcher::dispatchAllCollisionPairs(pairs, info, dispatcher);
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -4,7 +4,7 @@
 
 #include "narrowphase/pair_algorithm.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 /// No contact: with an empty shape, or where contact was refused.
 class EmptyPair final : public PairAlgorithm {
@@ -17,4 +17,4 @@ class EmptyPair final : public PairAlgorithm {
   void getAllContactManifolds(btManifoldArray&) override {}
 };
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -11,7 +11,7 @@
 #include "narrowphase/curved_contact.h"
 #include "vps/contact_tolerances.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 namespace {
 
@@ -80,4 +80,4 @@ void measureAtEnd(const PairView& pair, const RelativeMotion& motion, const Sett
   }
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -9,7 +9,7 @@
 #include "shape/sheet_border.h"
 #include "vps/contact_tolerances.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 bool OwnPoint::isFlushOn(const Vec3& n_W) const {
   const Vec3 n = inModel(n_W);
@@ -165,4 +165,4 @@ Exact Refiner::at(const OwnPoint& own, double max_m) const {
   return nearest;
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -8,7 +8,7 @@
 #include "narrowphase/contact_candidate.h"
 #include "narrowphase/curved_contact.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 /// A shell point and its own part's surface around it.
 struct OwnPoint {
@@ -70,4 +70,4 @@ struct Refiner {
   [[nodiscard]] Exact at(const OwnPoint& own, double max_m) const;
 };
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

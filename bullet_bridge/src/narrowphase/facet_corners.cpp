@@ -7,7 +7,7 @@
 #include "narrowphase/curved_contact.h"
 #include "vps/contact_tolerances.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 namespace {
 
@@ -99,4 +99,4 @@ void moveToFacetCorners(const PairView& pair, double contact_margin_m, std::vect
   }
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -8,7 +8,7 @@
 #include "narrowphase/contact_candidate.h"
 #include "narrowphase/pair_view.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 /// Moves candidates of curved faces to the deepest vertex of the facet where they are, if that is high enough
 /// and deeper in the other body than the candidate. Distance and normal become those of the vertex, exactly.
@@ -20,4 +20,4 @@ void moveToFacetCorners(const PairView& pair, double contact_margin_m, std::vect
 /// True if one of the points lies on a facet with vertices high enough to be features.
 bool haveFacetCorners(const PairView& pair, double contact_margin_m, std::span<const Candidate> candidates);
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

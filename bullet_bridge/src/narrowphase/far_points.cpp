@@ -11,7 +11,7 @@
 #include "native_shapes/primitive.h"
 #include "vps/contact_tolerances.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 namespace {
 
@@ -172,4 +172,4 @@ std::vector<Candidate> nearestFarPoints(const PairView& pair, double wanted_m, C
   return points;
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -7,7 +7,7 @@
 #include "narrowphase/context.h"
 #include "narrowphase/pair_view.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 /// The nearest points of two bodies that are within `wanted_m`, measured by the exact surfaces: the nearest
 /// place around the nearest shell point of either side, and the points that are farther by no more than a
@@ -15,4 +15,4 @@ namespace vps::bullet::inline v0 {
 /// depends on `wanted_m`.
 std::vector<Candidate> nearestFarPoints(const PairView& pair, double wanted_m, Context& context);
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

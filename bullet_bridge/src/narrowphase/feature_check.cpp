@@ -8,7 +8,7 @@
 #include "narrowphase/surface_view.h"
 #include "vps/contact_tolerances.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 namespace {
 
@@ -317,4 +317,4 @@ double freeShareOf(const PairView& start, const EndPoses& end, PairState& state)
   return share;
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -10,7 +10,7 @@
 #include "narrowphase/step_path.h"
 #include "solver/step_check.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 /// True if both bodies have exact surfaces, whose features can be compared.
 bool hasFeatures(const PairView& pair, const Settings& settings);
@@ -76,4 +76,4 @@ void lineariseFeatures(const PairView& start, const EndPoses& end, const Relinea
 /// The share of the motion up to which no features come too near; 1 if none do.
 double freeShareOf(const PairView& start, const EndPoses& end, PairState& state);
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -7,7 +7,7 @@
 #include "vps/contact_tolerances.h"
 #include "vps_bullet/convert.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 void positions(const Candidate& c, Vec3& on0, Vec3& on1) {
   on0 = c.side == 0 ? c.p_W : Vec3(c.p_W + c.distance_m * c.n_W);
@@ -122,4 +122,4 @@ void keepMaterial(btManifoldPoint& point, const btManifoldPoint& old) {
   point.m_appliedImpulseLateral2 = old.m_appliedImpulseLateral2;
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -8,7 +8,7 @@
 #include "narrowphase/contact_candidate.h"
 #include "narrowphase/pair_material.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 // Bits of m_contactPointFlags far above Bullet's own: the point was given to gContactAddedCallback, which set
 // friction directions, or a normal, of its own.
@@ -30,4 +30,4 @@ void copyImpulses(btManifoldPoint& point, const btManifoldPoint& old);
 /// Gives a point that is not added again what the user's callback has set.
 void keepMaterial(btManifoldPoint& point, const btManifoldPoint& old);
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -11,7 +11,7 @@
 #include "vps/contact_tolerances.h"
 #include "vps_bullet/convert.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 namespace {
 
@@ -199,4 +199,4 @@ void reportContacts(std::span<const Candidate> contacts, const btCollisionObject
   result.setPersistentManifold(before);
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

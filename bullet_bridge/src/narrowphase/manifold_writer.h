@@ -15,7 +15,7 @@ class btCollisionObject;
 class btManifoldResult;
 struct btCollisionObjectWrapper;
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 class ManifoldWriter {
  public:
@@ -69,4 +69,4 @@ class ManifoldWriter {
 void reportContacts(std::span<const Candidate> contacts, const btCollisionObjectWrapper* const (&bodies)[2],
                     btManifoldResult& result);
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

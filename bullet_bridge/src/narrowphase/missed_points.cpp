@@ -9,7 +9,7 @@
 #include "narrowphase/facet_corners.h"
 #include "narrowphase/sampling_error.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 // Points out of reach had a greater gap than this at the predicted end of the step, so they do not touch if
 // the deviation is less. Or they were out of reach of this motion in any direction.
@@ -170,4 +170,4 @@ void PairCheck::put(const Motion& m, const Placed& at_start, const Candidate& st
   out.push_back(added);
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

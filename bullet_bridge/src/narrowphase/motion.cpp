@@ -8,7 +8,7 @@
 #include "vps_bullet/convert.h"
 #include "vps_bullet/coupling.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 namespace {
 
@@ -72,4 +72,4 @@ Pose displacement(const btCollisionObject& object, const Twist& V, double t_s) {
   return {R, center + (V.v + V.w.cross(center)) * t_s - R * center};
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -6,7 +6,7 @@
 
 class btCollisionObject;
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 /// Velocity about the world's origin, in W, that the object would reach by the end of the step without
 /// contact: its own, plus external forces, plus (with_couplings) the pull of its CouplingConstraints. A link
@@ -17,4 +17,4 @@ Twist predictedVelocity(const btCollisionObject& object, double dt_s, bool with_
 /// centre, wherever the world's origin is.
 Pose displacement(const btCollisionObject& object, const Twist& V, double t_s);
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

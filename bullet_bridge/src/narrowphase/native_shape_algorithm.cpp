@@ -11,7 +11,7 @@
 #include "narrowphase/context.h"
 #include "native_shapes/native_shape_adapter.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 static_assert(sizeof(NativeShapeAlgorithm) <= sizeof(btConvexConcaveCollisionAlgorithm));
 
@@ -98,4 +98,4 @@ void NativeShapeAlgorithm::processCollision(const btCollisionObjectWrapper* body
   state_->inner->processCollision(bodies.wrapper[0], bodies.wrapper[1], info, result);
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -4,7 +4,7 @@
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 #include <BulletCollision/CollisionShapes/btCollisionShape.h>
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 PairAlgorithm::PairAlgorithm(const btCollisionAlgorithmConstructionInfo& info,
                              const btCollisionObjectWrapper* body0, const btCollisionObjectWrapper* body1)
@@ -17,4 +17,4 @@ bool PairAlgorithm::isFor(const btCollisionShape* shape0, const btCollisionShape
          shape1->getShapeType() == type_[1];
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

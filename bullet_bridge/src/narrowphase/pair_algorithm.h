@@ -6,7 +6,7 @@
 
 class btCollisionShape;
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 class PairAlgorithm : public btActivatingCollisionAlgorithm {
  public:
@@ -34,4 +34,4 @@ class PairAlgorithm : public btActivatingCollisionAlgorithm {
   int type_[2];
 };
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

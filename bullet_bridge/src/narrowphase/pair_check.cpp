@@ -18,7 +18,7 @@
 #include "vps/contact_tolerances.h"
 #include "vps_bullet/turn.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 namespace {
 
@@ -219,4 +219,4 @@ double PairCheck::freeShareOfPoints(const Pose (&X_WB_end)[2]) {
   return share;
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

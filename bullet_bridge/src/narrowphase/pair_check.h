@@ -12,7 +12,7 @@
 #include "narrowphase/pair_view.h"
 #include "solver/step_check.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 /// A pair's check of the solved step, in four stages, each only where the one before cannot exclude an
 /// overlap:
@@ -79,4 +79,4 @@ class PairCheck final : public StepCheck {
   Pose X_BS_[2];
 };
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

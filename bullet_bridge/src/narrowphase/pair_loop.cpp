@@ -15,7 +15,7 @@
 #include "vps/contact_tolerances.h"
 #include "vps_bullet/convert.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 namespace {
 
@@ -194,4 +194,4 @@ void addMissedAlone(btDispatcher& dispatcher, const PairView& pair, PairState& s
   writeDistances(state.motion, loop.contacts.contacts());
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -8,7 +8,7 @@
 
 class btDispatcher;
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 /// True if bullet::Solver asks the pair for its missing contacts.
 bool isCheckedBySolver(const PairView& pair, const PairState& state);
@@ -34,4 +34,4 @@ bool checksAlone(const PairView& pair, const PairState& state);
 /// are the impulses of all contacts that the last step had.
 void addMissedAlone(btDispatcher& dispatcher, const PairView& pair, PairState& state);
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

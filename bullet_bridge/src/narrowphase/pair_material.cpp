@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 namespace {
 
@@ -61,4 +61,4 @@ double PairMaterial::stiffness_N_per_m3(const Candidate& c, double usual_N_per_m
                   at(c, 1).stiffness_N_per_m3.value_or(usual_N_per_m3));
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -7,7 +7,7 @@
 class btCollisionObject;
 struct btCollisionObjectWrapper;
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 /// Combines both sides' materials as Bullet does: friction and restitution are multiplied. Bodies and shapes
 /// must outlive it.
@@ -29,4 +29,4 @@ class PairMaterial {
   double friction_, restitution_;  // of the bodies
 };
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

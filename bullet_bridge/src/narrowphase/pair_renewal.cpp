@@ -9,7 +9,7 @@
 #include "solver/dispatch_table.h"
 #include "solver/penalty_contacts.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 namespace {
 
@@ -50,4 +50,4 @@ void renewIfSwapped(btBroadphasePair& pair, btCollisionDispatcher& dispatcher) {
   pair.m_algorithm = nullptr;
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

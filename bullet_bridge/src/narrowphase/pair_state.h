@@ -22,7 +22,7 @@
 #include "vps/feature_motion.h"
 #include "vps/spin_clearance.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 /// The contacts selected by a full query, and where the bodies were.
 struct Selection {
@@ -106,4 +106,4 @@ struct PairState {
   }
 };
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

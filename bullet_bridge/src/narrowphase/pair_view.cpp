@@ -5,7 +5,7 @@
 
 #include "vps/contact_tolerances.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 RelativeMotion relativeMotion(const PairView& pair, double dt_s, double contact_margin_m, bool is_held) {
   RelativeMotion motion;
@@ -77,4 +77,4 @@ void coast(const PairView& pair, double dt_s, Pose (&way)[2]) {
   }
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -12,7 +12,7 @@
 #include "vps_bullet/convert.h"
 #include "vps_bullet/shape.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 /// Both bodies of a pair at one instant.
 struct PairView {
@@ -103,4 +103,4 @@ void advance(PairView& pair, const PairView& start, double dt_s, double t_s);
 /// Displacement of both bodies in the step at constant velocity, in W.
 void coast(const PairView& pair, double dt_s, Pose (&way)[2]);
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -8,7 +8,7 @@
 #include "vps/contact_tolerances.h"
 #include "vps_bullet/convert.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 void updatePenaltyPoints(PenaltyPair& pair, std::span<const Candidate> candidates,
                          const PairMaterial& material, double usual_N_per_m3, int sides,
@@ -55,4 +55,4 @@ void updatePenaltyPoints(PenaltyPair& pair, std::span<const Candidate> candidate
   }
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -7,7 +7,7 @@
 #include "narrowphase/pair_material.h"
 #include "solver/penalty_pair.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 /// Updates a pair's points from candidates (ascending by key), carried from where they were found to where
 /// the bodies are now; points that stay keep bend, force and tolerated overlap.
@@ -17,4 +17,4 @@ void updatePenaltyPoints(PenaltyPair& pair, std::span<const Candidate> candidate
                          const PairMaterial& material, double usual_N_per_m3, int sides,
                          const RelativeMotion& motion, const CandidateMotion& moved);
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

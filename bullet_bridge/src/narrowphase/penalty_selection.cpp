@@ -4,7 +4,7 @@
 #include "narrowphase/penalty_points.h"
 #include "vps/contact_tolerances.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 namespace {
 
@@ -69,4 +69,4 @@ void selectPenalty(const PairView& pair, PairState& state) {
                       state.motion, moved);
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 namespace {
 
@@ -36,4 +36,4 @@ std::size_t smallQueryLimit(const Settings& settings) {
   return kTilePoints * static_cast<std::size_t>(settings.contact_limit);
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

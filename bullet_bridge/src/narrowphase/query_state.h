@@ -9,7 +9,7 @@
 #include "vps/representative_points.h"
 #include "vps_bullet/settings.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 struct QueryState {
   /// O(points / 16). The shell must outlive it.
@@ -31,4 +31,4 @@ std::size_t refinedLimit(const Settings& settings);
 /// True if representative points serve for so many near points.
 bool needsLeading(std::size_t near_points, const PointShell& shell, const Settings& settings);
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -8,7 +8,7 @@
 #include "narrowphase/pair_loop.h"
 #include "narrowphase/pair_material.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 namespace {
 
@@ -84,4 +84,4 @@ void selectRigid(const PairView& pair, PairState& state) {
   markBounces(state.contacts, state.motion, PairMaterial(pair.wrapper));
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

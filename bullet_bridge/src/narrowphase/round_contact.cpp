@@ -17,7 +17,7 @@
 #include "vps/contact_tolerances.h"
 #include "vps_bullet/convert.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 namespace {
 
@@ -183,4 +183,4 @@ bool refineOnRound(Candidate& c, const SideView& side, const SideView& other,
   return true;
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -4,7 +4,7 @@
 
 #include "narrowphase/contact_candidate.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 /// How much farther than the contact itself the nearest shell point of a face can be from a primitive's round
 /// side: s^2 / (2 r) for points s apart on a ball of radius r, at most s. 0 for primitives without a round
@@ -19,4 +19,4 @@ double roundReach_m(const btCollisionShape& primitive, double spacing_m);
 bool refineOnRound(Candidate& c, const SideView& side, const SideView& other,
                    const btCollisionShape& primitive);
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

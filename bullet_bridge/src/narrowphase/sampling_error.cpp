@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 Curvature::Curvature(const Mat3& turn_per_m) {
   const double half = 0.5 * turn_per_m.trace();
@@ -39,4 +39,4 @@ double SamplingError::of_m(const Candidate& c) const {
                          std::max(ownCurvature_per_m(pair_, c), 0.0) + most_per_m_[1 - c.side]);
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

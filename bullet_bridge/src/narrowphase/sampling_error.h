@@ -9,7 +9,7 @@
 #include "narrowphase/contact_candidate.h"
 #include "narrowphase/pair_view.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 /// Greatest and least curvature of a curved surface [1/m]; convex is positive, a plane has none.
 struct Curvature {
@@ -42,4 +42,4 @@ class SamplingError {
   std::array<double, 2> most_per_m_{0, 0};
 };
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -8,7 +8,7 @@
 #include "narrowphase/pair_loop.h"
 #include "vps/contact_tolerances.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 namespace {
 
@@ -151,4 +151,4 @@ void refineOnWay(const PairView& pair, const RelativeMotion& motion, const Setti
     if (c.met_s == kAtStart_s) c = here[next++];
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

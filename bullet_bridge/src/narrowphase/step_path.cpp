@@ -9,7 +9,7 @@
 #include "vps/contact_tolerances.h"
 #include "vps_bullet/convert.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 StepPath::StepPath(const btCollisionObject* const (&objects)[2], const Pose (&start)[2], const Pose (&end)[2],
                    double dt_s) {
@@ -89,4 +89,4 @@ bool StepPath::bends(const Candidate& start, const Candidate& end) const {
   return std::abs(way_m(atEnd(end)) - way_m({start.p_W, start.n_W})) > kKnown_m;
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -6,7 +6,7 @@
 
 class btCollisionObject;
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 /// The way of both bodies in a solved step.
 ///
@@ -74,4 +74,4 @@ class StepPath {
   bool is_settled_ = false;
 };
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -6,7 +6,7 @@
 #include "shape/sheet_border.h"
 #include "vps/contact_tolerances.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 namespace {
 
@@ -110,4 +110,4 @@ bool SurfaceView::hasEnteredBy(double depth_m, const Vec3& q_M) const {
   return !map || 0.5 * map->voxel_m() - map->distance(q_M) >= 0.5 * depth_m;
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

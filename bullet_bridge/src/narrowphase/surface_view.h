@@ -7,7 +7,7 @@
 #include "narrowphase/contact_candidate.h"
 #include "native_shapes/primitive.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 /// Distances of points of `side` (in its models' frame M) from the surfaces of `other` (in its frame N). Both
 /// must outlive it.
@@ -60,4 +60,4 @@ class SurfaceView {
   Pose X_NM_;
 };
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -12,7 +12,7 @@
 
 #include "native_shapes/native_shape_mesh.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 namespace {
 
@@ -107,4 +107,4 @@ std::uint64_t contentHash(const btCollisionShape& shape) {
   return hash.total();
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

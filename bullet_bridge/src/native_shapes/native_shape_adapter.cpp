@@ -12,7 +12,7 @@
 #include "shape/sheet_border.h"
 #include "vps_bullet/convert.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 namespace {
 
@@ -161,4 +161,4 @@ std::shared_ptr<const NativeShapeAdapter> NativeShapeCache::get(const btCollisio
   return adapter;
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

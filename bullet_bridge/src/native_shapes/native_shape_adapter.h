@@ -10,7 +10,7 @@
 #include "native_shapes/shape_key.h"
 #include "vps_bullet/shape.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 /// A native shape's surface as models without a map: the exact distance of its triangles, and its corners as
 /// a shell. So each side's points are queried in the other: the Shape's on the surface, the corners in the
@@ -50,4 +50,4 @@ class NativeShapeCache {
   std::map<const btCollisionShape*, Entry> entries_;
 };
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -24,7 +24,7 @@
 
 #include "vps_bullet/convert.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 namespace {
 
@@ -313,4 +313,4 @@ NativeShapeMesh nativeShapeMesh(const btCollisionShape& shape) {
   refuse(shape, "it is neither convex nor a mesh");
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -6,7 +6,7 @@
 
 class btCollisionShape;
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 /// Triangles in the shape's frame, with its scale applied, without Bullet's collision margin.
 struct NativeShapeMesh {
@@ -23,4 +23,4 @@ inline constexpr std::size_t kMaxNativeTriangles = 4'000'000;
 /// obtained: the message names the shape and a remedy.
 NativeShapeMesh nativeShapeMesh(const btCollisionShape& shape);
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

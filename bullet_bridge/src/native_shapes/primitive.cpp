@@ -16,7 +16,7 @@
 #include "native_shapes/native_shape_adapter.h"
 #include "vps_bullet/convert.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 namespace {
 
@@ -264,4 +264,4 @@ SurfaceDistance primitiveDistance(const btCollisionShape& shape, const Vec3& p) 
   }
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -6,7 +6,7 @@
 
 class btCollisionShape;
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 /// Signed distance [m], negative inside, and the outward unit normal there.
 struct SurfaceDistance {
@@ -29,4 +29,4 @@ bool hasCorners(const btCollisionShape& shape);
 /// adds to it is ignored. O(1); for n spheres O(n^4).
 SurfaceDistance primitiveDistance(const btCollisionShape& shape, const Vec3& p);
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -6,7 +6,7 @@
 #include <BulletCollision/CollisionShapes/btTriangleMeshShape.h>
 #include <LinearMath/btTransform.h>
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 ShapeKey keyOf(const btCollisionShape& shape) {
   ShapeKey key;
@@ -27,4 +27,4 @@ ShapeKey keyOf(const btCollisionShape& shape) {
   return key;
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -4,7 +4,7 @@
 
 class btCollisionShape;
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 /// A few numbers that change when a shape is scaled, resized, refitted or replaced by another.
 struct ShapeKey {
@@ -16,4 +16,4 @@ struct ShapeKey {
 };
 ShapeKey keyOf(const btCollisionShape& shape);
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

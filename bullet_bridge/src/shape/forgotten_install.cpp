@@ -5,7 +5,7 @@
 
 #include "log/report.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 namespace {
 
@@ -33,4 +33,4 @@ void warnOfForgottenInstall() {
          "the first step");
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

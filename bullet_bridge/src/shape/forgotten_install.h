@@ -2,7 +2,7 @@
 // Tells a host that never called install(), whose parts would fall through planes without a message.
 #pragma once
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 /// install() was called for any dispatcher of the process.
 void setContactInstalled();
@@ -12,4 +12,4 @@ void setContactInstalled();
 /// added before install() is called, so it speaks at a later call, once.
 void warnOfForgottenInstall();
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -17,7 +17,7 @@
 #include "vps/load_error.h"
 #include "vps_bullet/convert.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 namespace {
 
@@ -167,4 +167,4 @@ const char* Shape::serialize(void* data, btSerializer* serializer) const {
   return type;
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -5,7 +5,7 @@
 
 #include "shape/sheet_border.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 namespace {
 
@@ -80,4 +80,4 @@ ShapeModels scaledModels(const ShapeModels& models, double factor) {
   return larger;
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -4,7 +4,7 @@
 
 #include "vps_bullet/shape.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 /// Models of the part scaled by `factor` about the origin of their frame M. Shell and mesh are scaled copies.
 /// The map and the exact surfaces are built again, the map on a grid scaled by the same factor, with as many
@@ -12,4 +12,4 @@ namespace vps::bullet::inline v0 {
 /// std::invalid_argument for models with a map but neither surfaces nor a mesh to build it from.
 ShapeModels scaledModels(const ShapeModels& models, double factor);
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

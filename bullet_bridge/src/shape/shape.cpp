@@ -19,7 +19,7 @@
 #include "vps/mesh_repair.h"
 #include "vps_bullet/convert.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 namespace {
 
@@ -303,4 +303,4 @@ void Shape::setMargin(btScalar margin) {
     warnOnce(was_reported, "Shape has no margin: its contact distance is that of the part's surface");
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

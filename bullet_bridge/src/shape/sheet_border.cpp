@@ -5,7 +5,7 @@
 #include <array>
 #include <map>
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 SheetBorder::SheetBorder(const Mesh& mesh) {
   std::map<std::array<std::uint32_t, 2>, int> uses;
@@ -46,4 +46,4 @@ SheetFoot SheetBorder::seenFrom(const Vec3& p, const Vec3& inward, const MeshDis
   return {(n + from_q / from_q.norm()).normalized(), true};
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -8,7 +8,7 @@
 #include "vps/mesh.h"
 #include "vps/mesh_distance.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 /// Outward normal at a point's foot on a sheet, for that point.
 struct SheetFoot {
@@ -39,4 +39,4 @@ class SheetBorder {
   double touch_m_ = 0;
 };
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -11,7 +11,7 @@
 
 #include "vps_bullet/convert.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 /// A box of half extents `half` that moves from `from` by `way`.
 struct Shape::TriangleTree::Path {
@@ -134,4 +134,4 @@ void Shape::TriangleTree::report(std::uint32_t triangle, btTriangleCallback& cal
   callback.processTriangle(corners, 0, static_cast<int>(triangle));
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

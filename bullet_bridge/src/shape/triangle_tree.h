@@ -10,7 +10,7 @@
 
 class btTriangleCallback;
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 /// In the shape's frame. Split at the median of the longest axis, four to a leaf.
 class Shape::TriangleTree {
@@ -43,4 +43,4 @@ class Shape::TriangleTree {
   std::vector<Node> nodes_;
 };
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -3,7 +3,7 @@
 
 #include <BulletCollision/NarrowPhaseCollision/btManifoldPoint.h>
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 namespace {
 
@@ -55,4 +55,4 @@ std::uint64_t keyOf(const btManifoldPoint& point) {
   return contactKey(side, crossed, static_cast<std::uint32_t>(side == 0 ? point.m_index0 : point.m_index1));
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -6,7 +6,7 @@
 
 class btManifoldPoint;
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 /// @param side     0 or 1: whose shell the point belongs to
 /// @param crossed  at a crossing of edges 1 + body 1's edge; 0: a shell point
@@ -39,4 +39,4 @@ double solvedDistance_m(const btManifoldPoint& point);
 /// other -1; at a crossing each index is that body's edge.
 std::uint64_t keyOf(const btManifoldPoint& point);
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -5,7 +5,7 @@
 
 #include "vps/contact_tolerances.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 // For parts near rest sweeps converge within a few microseconds; otherwise Newton's method follows, which
 // sees the whole island.
@@ -78,4 +78,4 @@ bool ContactLoop::addMissed(const btContactSolverInfo& info, CheckRound round) {
                      [](const MissedContact& m) { return m.point != nullptr; });
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

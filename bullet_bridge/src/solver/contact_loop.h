@@ -18,7 +18,7 @@
 
 struct btContactSolverInfo;
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 /// Bodies, joints and contacts of one problem, and the pairs that check its solution. The caller fills them;
 /// the memory is kept from one problem to the next.
@@ -73,4 +73,4 @@ class ContactLoop {
   double dt_s_ = 0;
 };
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -12,7 +12,7 @@
 #include "vps/contact_tolerances.h"
 #include "vps_bullet/convert.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 void ContactNewton::addPatch(const RigidContact& first) {
   Patch& patch = patches_.emplace_back();
@@ -315,4 +315,4 @@ SolveOutcome ContactNewton::solve(std::span<RigidContact> contacts, double resid
   return outcome;
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -31,7 +31,7 @@
 #include "solver/island_matrix.h"
 #include "solver/patch_math.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 class ContactNewton {
  public:
@@ -108,4 +108,4 @@ class ContactNewton {
   std::vector<std::pair<int, int>> touching_;
 };
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

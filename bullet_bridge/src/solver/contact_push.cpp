@@ -9,7 +9,7 @@
 #include "solver/contact_sweeps.h"
 #include "vps/contact_tolerances.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 double ContactSweeps::pushVelocity(const ContactRow& row) const {
   double v = 0;
@@ -76,4 +76,4 @@ void ContactSweeps::solvePush(const btContactSolverInfo& info, int sweep_limit) 
   }
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

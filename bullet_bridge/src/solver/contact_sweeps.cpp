@@ -12,7 +12,7 @@
 #include "vps/friction.h"
 #include "vps_bullet/convert.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 namespace {
 
 // More than 1 would make energy. Bullet accepts any value, also one that is not a number.
@@ -272,4 +272,4 @@ void ContactSweeps::finish() const {
   }
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

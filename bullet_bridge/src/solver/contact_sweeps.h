@@ -21,7 +21,7 @@ class btManifoldPoint;
 class btPersistentManifold;
 struct btContactSolverInfo;
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 /// One direction of a contact: a row of its Jacobian.
 struct ContactRow {
@@ -124,4 +124,4 @@ class ContactSweeps {
   std::vector<Vec6> push_;  // velocities that change positions only, in one step
 };
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -5,7 +5,7 @@
 
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 /// Bullet's shape type of a bullet::Shape. See shape.h for the reason.
 inline constexpr int kShapeType = FAST_CONCAVE_MESH_PROXYTYPE;
@@ -21,4 +21,4 @@ struct DispatchTable : btCollisionDispatcher {
   }
 };
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -7,7 +7,7 @@
 
 #include "vps/contact_tolerances.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 namespace {
 
@@ -70,4 +70,4 @@ bool endEarly(Island& island, std::span<const RigidContact> contacts, const Join
   return is_short;
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

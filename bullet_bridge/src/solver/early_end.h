@@ -9,7 +9,7 @@
 #include "solver/joint_rows.h"
 #include "solver/step_check.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 /// Where points would be too deep at the end of the step, or sharp features too near to each other, the
 /// bodies of the pair, and those that hang together with them by joints and by contacts with load, move only
@@ -22,4 +22,4 @@ namespace vps::bullet::inline v0 {
 bool endEarly(Island& island, std::span<const RigidContact> contacts, const JointRows& joints,
               std::span<StepCheck* const> checks, std::span<const Vec6> push, double dt_s);
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

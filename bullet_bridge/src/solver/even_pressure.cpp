@@ -10,7 +10,7 @@
 #include "vps/contact_tolerances.h"
 #include "vps/friction.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 namespace {
 
@@ -155,4 +155,4 @@ bool EvenPressure::spreadFriction(std::span<RigidContact> contacts, const Vec3& 
   return true;
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -9,7 +9,7 @@
 
 #include "solver/contact_sweeps.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 /// Spreads the normal impulses of each pair of bodies over its contacts that touch, so that force and moment
 /// stay and the sum of p^2 / area is least: as under a body on an even, soft layer. Friction is spread
@@ -37,4 +37,4 @@ class EvenPressure {
   std::vector<std::array<double, 2>> friction_Ns_;
 };
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

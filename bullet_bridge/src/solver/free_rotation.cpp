@@ -9,7 +9,7 @@
 #include "vps/contact_tolerances.h"
 #include "vps_bullet/turn.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 namespace {
 
 // h of the header, for a speed of rotation. Above kBulletTurn_rad Bullet limits the angle in sine and cosine,
@@ -61,4 +61,4 @@ Vec3 meanAngularVelocity(const Vec3& inertia_kg_m2, const Vec3& w_B, double dt_s
   return mean.rest(W, dt_s).norm() <= kRoundingShare * mean.L.norm() ? W : w_B;
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

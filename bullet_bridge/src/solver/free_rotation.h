@@ -4,7 +4,7 @@
 
 #include "vps/pose.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 /// The constant angular velocity with which a step turns a free body, so that the body keeps its angular
 /// momentum and its energy at once, and a body that spins about a principal axis turns at exactly its own
@@ -28,4 +28,4 @@ namespace vps::bullet::inline v0 {
 /// Newton's method: two to four iterations of a 3x3 system below 100 rad/s at 1 kHz.
 Vec3 meanAngularVelocity(const Vec3& inertia_kg_m2, const Vec3& w_B, double dt_s);
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

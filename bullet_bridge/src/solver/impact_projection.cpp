@@ -7,7 +7,7 @@
 
 #include "vps/contact_tolerances.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 void ImpactRow::prepare(std::span<const Mat6> inverse_mass) {
   W = 0;
@@ -208,4 +208,4 @@ void ImpactProjection::solve(std::span<const std::uint8_t> chosen, double tolera
   remember(chosen);
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

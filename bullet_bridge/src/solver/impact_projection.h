@@ -10,7 +10,7 @@
 
 #include "solver/island.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 /// A contact's normal, or a degree of freedom that a joint takes, in an impact.
 struct ImpactRow {
@@ -87,4 +87,4 @@ class ImpactProjection {
   std::size_t work_ = 0, most_work_ = std::numeric_limits<std::size_t>::max();
 };
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -12,7 +12,7 @@
 #include "solver/free_rotation.h"
 #include "vps_bullet/convert.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 namespace {
 
 // Angular, then linear.
@@ -215,4 +215,4 @@ void Island::readSolution(StepSolution& solution) const {
   for (const IslandBody& b : bodies) solution.momenta.push_back(b.ended());
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -26,7 +26,7 @@ class btCollisionObject;
 class btRigidBody;
 class btTransform;
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 using Vec6 = Eigen::Matrix<double, 6, 1>;  ///< angular, then linear; in W
 using Mat6 = Eigen::Matrix<double, 6, 6>;
@@ -131,4 +131,4 @@ class Island {
   std::unordered_map<const btCollisionObject*, int> index_;
 };
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

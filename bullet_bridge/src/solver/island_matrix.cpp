@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <set>
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 void IslandMatrix::setPattern(std::size_t body_count, std::span<const std::pair<int, int>> pairs) {
   wanted_.clear();
@@ -109,4 +109,4 @@ void IslandMatrix::solve(std::span<const Vec6> gradient, std::vector<Vec6>& step
   }
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

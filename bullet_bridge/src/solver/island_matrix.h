@@ -10,7 +10,7 @@
 
 #include "solver/island.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 /// Blocks on the diagonal and of bodies that touch; the pattern is symmetric, the values need not be.
 /// Factorised as LU without exchange of blocks, in an order of bodies that leaves few further blocks (minimum
@@ -54,4 +54,4 @@ class IslandMatrix {
   std::vector<Vec6> x_;
 };
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -12,7 +12,7 @@
 #include "vps/contact_tolerances.h"
 #include "vps_bullet/convert.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 namespace {
 
 /// A row as getInfo2() fills it.
@@ -129,4 +129,4 @@ void JointRows::finish(double dt_s) {
   }
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

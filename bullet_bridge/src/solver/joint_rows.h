@@ -10,7 +10,7 @@
 class btTypedConstraint;
 struct btContactSolverInfo;
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 /// One degree of freedom that a joint constrains or drives: J u = target - cfm times impulse, within the
 /// limits of the impulse.
@@ -59,4 +59,4 @@ class JointRows {
   std::vector<JointRow> rows;
 };
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -7,7 +7,7 @@
 
 #include "vps/contact_tolerances.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 /// How much of a step to take: 1, or the share at which the function is nearly least. The function is convex,
 /// so its slope along the step increases; the minimum is where it is zero.
@@ -30,4 +30,4 @@ double lineSearch(double slope, const SlopeAt& slopeAt) {
   return share;
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -4,7 +4,7 @@
 
 #include "solver/island.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 /// Of a force at r.
 inline Vec6 wrenchOf(const Vec3& r, const Vec3& f) {
@@ -51,4 +51,4 @@ class SymmetricSum {
   Mat3 krr_ = Mat3::Zero();
 };
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -3,7 +3,7 @@
 
 #include "solver/dispatch_table.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 void PenaltyContacts::add(const btPersistentManifold* manifold, PenaltyPair* pair) {
   const std::lock_guard lock(mutex_);
@@ -26,4 +26,4 @@ ContactCreateFunction* contactFunctionOf(const btDispatcher* dispatcher) {
   return dynamic_cast<ContactCreateFunction*>(DispatchTable::contact(*table)[kShapeType][kShapeType]);
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -16,7 +16,7 @@
 class btDispatcher;
 class btPersistentManifold;
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 struct PenaltyPair;
 class StepChecks;
@@ -56,4 +56,4 @@ struct ContactCreateFunction : btCollisionAlgorithmCreateFunc {
 /// The create function of the installation on this dispatcher, with its stores; null without one.
 ContactCreateFunction* contactFunctionOf(const btDispatcher* dispatcher);
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -11,7 +11,7 @@
 #include "vps/contact_tolerances.h"
 #include "vps_bullet/convert.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 void PenaltyNewton::add(PenaltyPair& pair, int level, bool follows_rotation) {
   if (pair.points.empty()) return;
   const int body[2] = {island_.indexOf(pair.object[0]), island_.indexOf(pair.object[1])};
@@ -197,4 +197,4 @@ void PenaltyNewton::finish() {
   for (const PenaltyPatch& patch : patches()) patch.finish(twistOf(patch, u_));
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -21,7 +21,7 @@
 #include "solver/joint_rows.h"
 #include "solver/penalty_patch.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 class PenaltyNewton {
  public:
@@ -82,4 +82,4 @@ class PenaltyNewton {
   std::vector<Vec6> u_, gradient_, step_, trial_, trial_gradient_;
 };
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

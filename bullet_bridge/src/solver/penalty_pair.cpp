@@ -9,7 +9,7 @@
 #include "solver/contact_key.h"
 #include "vps_bullet/convert.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 namespace {
 
 /// Stiffness of a point without an area: a steel corner of a millimetre. Assumed.
@@ -74,4 +74,4 @@ void writeImpulses(std::span<const PenaltyManifold> manifolds, double dt_s) {
   });
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

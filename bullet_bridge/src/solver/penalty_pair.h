@@ -11,7 +11,7 @@
 class btCollisionObject;
 class btPersistentManifold;
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 /// A point of one side near the other's surface: a spring along the normal and a bristle in the tangent
 /// plane (vps/friction.h). Both are fixed to the point, so friction holds without creep.
@@ -51,4 +51,4 @@ PenaltyPair penaltyPairOf(const btPersistentManifold& manifold, double dt_s);
 /// the impulse of all its points.
 void writeImpulses(std::span<const PenaltyManifold> manifolds, double dt_s);
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

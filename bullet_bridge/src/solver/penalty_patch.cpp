@@ -10,7 +10,7 @@
 #include "solver/patch_math.h"
 #include "vps_bullet/convert.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 void PenaltyPatch::build(PenaltyPair& from, const Mat3 (&off_tangent)[2], double dt_s, int level) {
   pair = &from;
@@ -144,4 +144,4 @@ void PenaltyPatch::finish(const Vec6& twist) const {
   }
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

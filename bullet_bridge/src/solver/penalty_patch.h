@@ -11,7 +11,7 @@
 #include "solver/point_groups.h"
 #include "vps/friction.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 /// Twists are of body 0 relative to body 1, about center, in W. Most points of a pair are near but do not
 /// press. The data that decides this is stored in columns, so that these points cost little.
@@ -74,4 +74,4 @@ class PenaltyPatch {
   mutable Columns bent_m_;
 };
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -3,7 +3,7 @@
 
 #include "vps/contact_tolerances.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 namespace {
 
 double leadGap_m(const PenaltyPoint& p) {
@@ -53,4 +53,4 @@ int levelFor(std::span<const PenaltyPair* const> pairs, std::size_t limit) {
   return kCoarsestLevel;
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -10,7 +10,7 @@
 
 #include "solver/penalty_pair.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 /// The points [first, end) of a pair, solved as its point `leader` with the stiffness of all.
 struct PointGroup {
@@ -32,4 +32,4 @@ inline constexpr int kCoarsestLevel = 8;
 /// kCoarsestLevel. O(points) for each level.
 int levelFor(std::span<const PenaltyPair* const> pairs, std::size_t limit);
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -7,7 +7,7 @@
 
 #include "vps/contact_tolerances.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 namespace {
 
 /// Iterations over the rows of one impact.
@@ -128,4 +128,4 @@ ImpactState afterImpact(std::span<const ImpactRow> rows, const std::vector<Vec6>
   return mean;
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -35,7 +35,7 @@
 
 #include "solver/impact_projection.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 /// The bodies' velocities, and the impulse of each row that led to them.
 struct ImpactState {
@@ -52,4 +52,4 @@ struct ImpactState {
 /// most some 0.1 s for all values of restitution together; a row of n bodies has some n impacts.
 ImpactState afterImpact(std::span<const ImpactRow> rows, const std::vector<Vec6>& before);
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

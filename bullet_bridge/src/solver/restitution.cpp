@@ -16,7 +16,7 @@
 #include "vps/friction.h"
 #include "vps_bullet/convert.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 namespace {
 
 // Rows of joints with a bounded impulse, motors, are no part of an impact. False: such a row.
@@ -266,4 +266,4 @@ void Restitution::apply(std::span<RigidContact> contacts, const StepSolution& so
   }
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -57,7 +57,7 @@
 
 struct btContactSolverInfo;
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 class Restitution {
  public:
@@ -127,4 +127,4 @@ class Restitution {
   Group group_;
 };
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

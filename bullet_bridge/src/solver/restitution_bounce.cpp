@@ -11,7 +11,7 @@
 #include "vps/contact_tolerances.h"
 #include "vps_bullet/convert.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 // The velocities before the step, at the end pose. The bodies moved there by the solution's velocities, whose
 // impulses act at the lines of the start: the group's angular momentum differs by those from what it was. The
@@ -126,4 +126,4 @@ void Restitution::bounce(std::span<const BodyEnd> ends, double dt_s) {
     group_.v[i] += (after.v[i] - before[i]) + (group_.external[i] - (1 - share) * group_.kick[i]) + rest[i];
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -6,7 +6,7 @@
 #include "solver/restitution.h"
 #include "vps/contact_tolerances.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 // The greatest share s of the change of velocities for which a s^2 + b s + c, the energy above what is
 // allowed, is not positive, or else least.
@@ -47,4 +47,4 @@ double Restitution::shareWithoutGain(std::span<const BodyEnd> ends) const {
   return std::clamp((-b + std::sqrt(root)) / (2 * a), 0.0, 1.0);
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

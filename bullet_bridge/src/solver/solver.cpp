@@ -36,7 +36,7 @@
 #include "vps_bullet/convert.h"
 #include "vps_bullet/coupling.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 /// Working data of one island; kept between calls to reuse its memory.
 struct Solver::Work {
@@ -293,4 +293,4 @@ btScalar Solver::solveGroup(btCollisionObject** bodies, int body_count, btPersis
   return 0;
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "solver/step_check.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 void StepChecks::add(const btPersistentManifold* manifold, StepCheck* check) {
   const std::lock_guard lock(mutex_);
@@ -18,4 +18,4 @@ StepCheck* StepChecks::find(const btPersistentManifold* manifold) const {
   return it == checks_.end() ? nullptr : it->second;
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

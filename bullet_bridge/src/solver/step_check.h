@@ -20,7 +20,7 @@ class btCollisionObject;
 class btManifoldPoint;
 class btPersistentManifold;
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 /// A contact without which two bodies overlap at the end of the step.
 struct MissedContact {
@@ -84,4 +84,4 @@ class StepChecks {
   std::map<const btPersistentManifold*, StepCheck*> checks_;
 };
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

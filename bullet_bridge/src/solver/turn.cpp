@@ -11,7 +11,7 @@
 
 #include "vps_bullet/convert.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 namespace {
 
@@ -115,4 +115,4 @@ int substepsFor(btCollisionWorld& world, double dt_s, int most) {
   return count < most ? std::max(1, static_cast<int>(count)) : std::max(1, most);
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -10,7 +10,7 @@
 #include "vps_bullet/convert.h"
 #include "vps_bullet/turn.h"
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 namespace {
 
@@ -64,4 +64,4 @@ void reportContactTurn(TurnReports& reports, const btCollisionObject& body0, con
   report(LogLevel::Warning, words);
 }
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

@@ -7,7 +7,7 @@
 
 class btCollisionObject;
 
-namespace vps::bullet::inline v0 {
+namespace vps::bullet {
 
 /// What one installation has reported.
 struct TurnReports {
@@ -23,4 +23,4 @@ void reportClampedTurn(TurnReports& reports, std::span<btCollisionObject* const>
 void reportContactTurn(TurnReports& reports, const btCollisionObject& body0, const btCollisionObject& body1,
                        double w_rad_s, double dt_s);
 
-}  // namespace vps::bullet::inline v0
+}  // namespace vps::bullet

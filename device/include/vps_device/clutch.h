@@ -17,7 +17,7 @@
 #include "vps/wrench.h"
 #include "vps_device/export.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 class VPS_DEVICE_API Clutch {
  public:
@@ -54,4 +54,4 @@ class VPS_DEVICE_API Clutch {
   bool is_closing_ = true;
 };
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

@@ -14,7 +14,7 @@
 #include "vps_device/export.h"
 #include "vps_device/safety.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 /// What one tick of the haptic loop did.
 struct TickReport {
@@ -99,4 +99,4 @@ struct CouplingPort {
   RemotePhysics* remote = nullptr;     ///< null: physics is in this process
 };
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

@@ -10,7 +10,7 @@
 #include "vps_device/device_events.h"
 #include "vps_device/export.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 /// The handle H in the device's base frame D at one instant. V_DH: velocity of H's origin, in D.
 struct DeviceSample {
@@ -80,4 +80,4 @@ class VPS_DEVICE_API Device {
   Device& operator=(const Device&) = default;
 };
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

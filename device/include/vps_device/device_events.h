@@ -9,7 +9,7 @@
 
 #include "vps_device/export.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 enum class DeviceEventKind : std::uint8_t {
   // Faults: no wrench until rearm().
@@ -83,4 +83,4 @@ class VPS_DEVICE_API DeviceEventQueue {
   std::atomic<std::uint64_t> lost_{0};
 };
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

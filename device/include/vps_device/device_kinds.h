@@ -14,7 +14,7 @@
 #include "vps_device/pulled_handle.h"
 #include "vps_device/simulated_device.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 /// The options with which a device is opened. A kind ignores those that do not apply to it.
 struct DeviceOptions {
@@ -50,4 +50,4 @@ VPS_DEVICE_API const DeviceKind* findDeviceKind(std::string_view name);
 /// The names of all kinds for a message: "dual_arm, ideal_dual_arm, ..."
 VPS_DEVICE_API std::string deviceKindNames();
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

@@ -6,7 +6,7 @@
 #include "vps_device/device.h"
 #include "vps_device/export.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 struct CouplingTiming {
   double haptic_rate_hz = 1000;
@@ -35,4 +35,4 @@ VPS_DEVICE_API CouplingGains softerOf(const CouplingGains& a, const CouplingGain
 /// s/rad, springs limited to 1 kN and 1 kN m. Stability on a device is a separate matter: see deriveGains().
 VPS_DEVICE_API bool areUsable(const CouplingGains& gains) noexcept;
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

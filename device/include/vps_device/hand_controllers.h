@@ -7,7 +7,7 @@
 #include "vps_device/export.h"
 #include "vps_device/rate_control.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 /// A thread of the device's own calls the library, which may wait, allocate and search for hardware; the
 /// haptic thread reads the latest deflection from a TripleBuffer. A device that is absent or unplugged reads
@@ -24,4 +24,4 @@ VPS_DEVICE_API std::unique_ptr<Device> openSpaceMouse(const RateSettings& settin
 /// Throws LoadError if this build lacks SDL2.
 VPS_DEVICE_API std::unique_ptr<Device> openGameController(const RateSettings& settings = {});
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

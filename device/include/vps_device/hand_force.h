@@ -7,7 +7,7 @@
 #include "vps/wrench.h"
 #include "vps_device/export.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 /// Wrench of the hand on the handle about the handle's origin, in frame A: W from an operator, D for a
 /// device.
@@ -28,4 +28,4 @@ struct HandForce {
 /// The wrench of `hand` on a handle at X with velocity V, all in the hand's frame.
 VPS_DEVICE_API Wrench handWrench(const HandForce& hand, const Pose& X, const Twist& V) noexcept;
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

@@ -11,7 +11,7 @@
 #include "vps/query.h"
 #include "vps_device/export.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 struct LocalContactSettings {
   /// Without a new physics state for longer, the part stands still. assumed: five steps of 100 Hz physics
@@ -88,4 +88,4 @@ class VPS_DEVICE_API LocalContact {
   Report report_;
 };
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

@@ -16,7 +16,7 @@
 #include "vps_device/safety.h"
 #include "vps_device/workspace_map.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 struct LoopSettings {
   CouplingGains gains;
@@ -164,4 +164,4 @@ class VPS_DEVICE_API HapticLoop {
   std::array<std::uint64_t, kStatusCount> counts_{};
 };
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

@@ -6,7 +6,7 @@
 
 #include "vps_device/export.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 /// The clock; tests use another. Called by one thread at a time.
 class VPS_DEVICE_API RealTimeClock {
@@ -56,4 +56,4 @@ class VPS_DEVICE_API Metronome {
   std::int64_t due_ns_ = 0, seen_ns_ = 0;
 };
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

@@ -11,7 +11,7 @@
 #include "vps_device/export.h"
 #include "vps_device/hand_force.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 /// Parameters of the hand. Impedance: order of magnitude of [Mussa-Ivaldi, Hogan and Bizzi 1985; Dolan,
 /// Friedman and Nagurka 1993; Tsuji et al. 1995; Speich, Shao and Goldfarb 2005]; all values assumed within
@@ -203,4 +203,4 @@ class VPS_DEVICE_API VirtualOperator {
   std::unique_ptr<Person> person_;
 };
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

@@ -12,7 +12,7 @@
 #include "vps_device/export.h"
 #include "vps_device/metronome.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 struct PeriodicSettings {
   double rate_hz = 1000;
@@ -61,4 +61,4 @@ VPS_DEVICE_API RealTimeReport requestRealTime(int priority, bool locks_memory);
 /// Returns the calling thread to normal scheduling.
 VPS_DEVICE_API void leaveRealTime() noexcept;
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

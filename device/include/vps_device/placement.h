@@ -10,7 +10,7 @@
 #include "vps/status.h"
 #include "vps_device/export.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 /// A point touched by the handle's origin.
 struct TouchedPoint {
@@ -31,4 +31,4 @@ struct Placement {
 /// sign of reflections.
 VPS_DEVICE_API Placement fitPlacement(std::span<const TouchedPoint> points) noexcept;
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

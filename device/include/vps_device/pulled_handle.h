@@ -9,7 +9,7 @@
 #include "vps_device/device.h"
 #include "vps_device/export.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 /// Where a cursor wants the handle, as one thread says and another reads. Neither waits.
 using HandleWish = TripleBuffer<Pose>;  ///< X_DH
@@ -46,4 +46,4 @@ class VPS_DEVICE_API PulledHandle {
 VPS_DEVICE_API std::unique_ptr<Device> openMouse(std::shared_ptr<HandleWish> wish,
                                                  const PulledHandleSettings& settings = {});
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

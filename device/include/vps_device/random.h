@@ -7,7 +7,7 @@
 #include "vps/pose.h"
 #include "vps_device/export.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 /// SplitMix64 [Steele, Lea and Flood 2014] and Box-Muller on top.
 class VPS_DEVICE_API Random {
@@ -22,4 +22,4 @@ class VPS_DEVICE_API Random {
   std::uint64_t state_;
 };
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

@@ -6,7 +6,7 @@
 #include "vps_device/device.h"
 #include "vps_device/export.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 /// Deflection of cap or sticks, in D (x towards the person, y to the right, z up); each -1 to 1.
 struct Deflection {
@@ -48,4 +48,4 @@ class VPS_DEVICE_API RateControl {
 /// 1 at 1, odd.
 VPS_DEVICE_API double rateShare(double deflection, const RateSettings& settings) noexcept;
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

@@ -13,7 +13,7 @@
 #include "vps_device/periodic_thread.h"
 #include "vps_device/tick_statistics.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 /// Measures how long a device takes for read() and write().
 class VPS_DEVICE_API TimedDevice final : public Device {
@@ -129,4 +129,4 @@ class VPS_DEVICE_API RealTimeLoop {
   std::int64_t quiet_ticks_ = 0;  ///< remaining until misses are reported again
 };
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

@@ -12,7 +12,7 @@
 #include "vps_device/export.h"
 #include "vps_device/run_log.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 /// The head of a recording.
 struct RecordingHead {
@@ -58,4 +58,4 @@ class VPS_DEVICE_API Recorder final : public RunLog {
   std::unique_ptr<Work> work_;
 };
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

@@ -9,7 +9,7 @@
 #include "vps_device/export.h"
 #include "vps_device/recorder.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 struct VPS_DEVICE_API RecordedRun {
   std::string file;
@@ -76,4 +76,4 @@ class VPS_DEVICE_API ReplayCheck final : public RunLog {
   std::string departure_;
 };
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

@@ -10,7 +10,7 @@
 #include "vps_device/device.h"
 #include "vps_device/export.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 /// A wrench that was written to the device, after safety: on the hand about H's origin, in D.
 struct WrittenWrench {
@@ -114,4 +114,4 @@ class VPS_DEVICE_API TappedDevice final : public Device {
   double time_s_ = 0;
 };
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

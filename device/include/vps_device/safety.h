@@ -9,7 +9,7 @@
 #include "vps_device/device_events.h"
 #include "vps_device/export.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 struct SafetyLimits {
   double force_N = 30;
@@ -72,4 +72,4 @@ class VPS_DEVICE_API SafetyGuard {
   double ramp_ = 1;
 };
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

@@ -6,7 +6,7 @@
 #include "vps_device/export.h"
 #include "vps_device/hand_force.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 class VPS_DEVICE_API SimulatedDevice : public Device {
  public:
@@ -18,4 +18,4 @@ class VPS_DEVICE_API SimulatedDevice : public Device {
   [[nodiscard]] virtual const Twist& trueTwist() const noexcept = 0;
 };
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

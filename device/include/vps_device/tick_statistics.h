@@ -10,7 +10,7 @@
 
 #include "vps_device/export.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 /// Histogram of times with 64 buckets per octave: percentiles have a relative error of 1/64, from 1 ns to 18
 /// minutes (longer times count as that). One writer, any number of readers; neither waits. 18 kB.
@@ -99,4 +99,4 @@ class VPS_DEVICE_API TickStatistics {
   std::array<std::atomic<std::int64_t>, 6> worst_{};
 };
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

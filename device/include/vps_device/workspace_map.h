@@ -6,7 +6,7 @@
 #include "vps/wrench.h"
 #include "vps_device/export.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 /// Placement of the device's space in the scene: p_W = X_WD (scale p_D). Forces on the hand are force_scale
 /// times the scene's. Powers then differ by scale / force_scale; energy is accounted at the hand.
@@ -36,4 +36,4 @@ struct VPS_DEVICE_API Grasp {
   [[nodiscard]] Pose toHandle(const Pose& X_WG) const noexcept;
 };
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vps_device/device_events.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 namespace {
 
 using Kind = DeviceEventKind;
@@ -120,4 +120,4 @@ bool DeviceEventQueue::pop(DeviceEvent& event) noexcept {
   return true;
 }
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

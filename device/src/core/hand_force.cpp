@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vps_device/hand_force.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 Wrench handWrench(const HandForce& hand, const Pose& X, const Twist& V) noexcept {
   Wrench F = hand.F;
@@ -11,4 +11,4 @@ Wrench handWrench(const HandForce& hand, const Pose& X, const Twist& V) noexcept
   return F;
 }
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

@@ -4,7 +4,7 @@
 #include <Eigen/SVD>
 #include <cmath>
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 Placement fitPlacement(std::span<const TouchedPoint> points) noexcept {
   Placement found;
@@ -45,4 +45,4 @@ Placement fitPlacement(std::span<const TouchedPoint> points) noexcept {
   return found;
 }
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

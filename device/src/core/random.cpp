@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 std::uint64_t Random::next() noexcept {
   state_ += 0x9e3779b97f4a7c15ull;
@@ -30,4 +30,4 @@ Vec3 Random::normal3() noexcept {
   return {x, y, z};
 }
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

@@ -5,7 +5,7 @@
 
 #include "drivers/kinds.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 // Built explicitly: a linker drops self-registering objects of a static library.
 std::span<const DeviceKind> deviceKinds() {
@@ -26,4 +26,4 @@ std::string deviceKindNames() {
   return names;
 }
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

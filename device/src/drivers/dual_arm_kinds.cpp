@@ -3,7 +3,7 @@
 #include "drivers/kinds.h"
 #include "vps_device/dual_arm/simulated_dual_arm.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 namespace {
 
@@ -50,4 +50,4 @@ DeviceKind idealDualArmKind() {
           nothing};
 }
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

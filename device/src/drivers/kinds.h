@@ -5,7 +5,7 @@
 #include "vps_device/device_kinds.h"
 #include "vps_device/rate_control.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 DeviceKind dualArmKind();
 DeviceKind idealDualArmKind();
@@ -20,4 +20,4 @@ inline RateSettings rateSettings(const DeviceOptions& options) {
   return settings;
 }
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

@@ -7,7 +7,7 @@
 #include "vps/load_error.h"
 #include "vps_device/pulled_handle.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 namespace {
 
 class Mouse final : public Device {
@@ -54,4 +54,4 @@ DeviceKind mouseKind() {
           [] { return std::string(); }};
 }
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

@@ -10,7 +10,7 @@
 #include "vps/triple_buffer.h"
 #include "vps_device/rate_control.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 struct HandInput {
   Deflection deflection;
@@ -69,4 +69,4 @@ class PolledDevice final : public Device {
   std::thread thread_;  // last: it uses the others
 };
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

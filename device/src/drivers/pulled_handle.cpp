@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 namespace {
 
 constexpr double kReach_m = 1e3;  // a cursor's handle has no walls; the splitting of paths needs a number
@@ -59,4 +59,4 @@ DeviceLimits PulledHandle::limits() const noexcept {
   return limits;
 }
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

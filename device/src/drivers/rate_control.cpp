@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 namespace {
 
@@ -61,4 +61,4 @@ DeviceLimits RateControl::limits() const noexcept {
   return limits;
 }
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

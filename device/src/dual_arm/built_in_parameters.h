@@ -2,8 +2,8 @@
 // The text of data/dual_arm.toml, embedded at build time.
 #pragma once
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 extern const char* const kDualArmToml;
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

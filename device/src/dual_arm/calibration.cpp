@@ -4,7 +4,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 namespace {
 
 using Vec6 = Eigen::Matrix<double, 6, 1>;
@@ -104,4 +104,4 @@ BaseCalibration calibrateBases(const DualArmParameters& parameters,
   return result;
 }
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

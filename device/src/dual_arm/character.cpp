@@ -12,7 +12,7 @@
 #include "vps_device/gains.h"
 #include "vps_device/random.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 namespace {
 
 using Mat6 = Eigen::Matrix<double, 6, 6>;
@@ -371,4 +371,4 @@ std::vector<VerticalForceAt> verticalForces(const DualArmParameters& p, double p
   return out;
 }
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

@@ -7,7 +7,7 @@
 #include "dual_arm/gravity.h"
 #include "vps_device/dual_arm/structure.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 namespace {
 
 using Kind = DeviceEventKind;
@@ -227,4 +227,4 @@ Status DualArmController::calibrate(const Pose& X_DH, int readings) noexcept {
   return Status::Ok;
 }
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

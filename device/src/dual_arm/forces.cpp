@@ -7,7 +7,7 @@
 
 #include "dual_arm/gravity.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 namespace {
 
 constexpr double kNoEffort = 1e-12;  // effort per newton below which a motor does not contribute
@@ -75,4 +75,4 @@ VerticalForce verticalForce(const DualArmParameters& p, const Vec3& p_DE,
   return force;
 }
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vps_device/dual_arm/frames.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 namespace {
 
 Pose between(const DualArmParameters& parameters, DeviceFrame from, DeviceFrame to) {
@@ -42,4 +42,4 @@ Wrench inFrame(const DualArmParameters& parameters, const Wrench& F, DeviceFrame
   return rotated(between(parameters, from, to).R, F);
 }
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

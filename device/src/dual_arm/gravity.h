@@ -5,7 +5,7 @@
 #include "vps/wrench.h"
 #include "vps_device/dual_arm/parameters.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 inline constexpr double kGravity_m_s2 = 9.81;
 
@@ -14,4 +14,4 @@ inline Wrench handleWeight(const DualArmParameters& parameters) noexcept {
   return {Vec3::Zero(), Vec3(0, 0, -parameters.handle_kg * kGravity_m_s2)};
 }
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

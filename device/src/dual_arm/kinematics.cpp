@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 namespace {
 
 constexpr double kSingular =
@@ -318,4 +318,4 @@ JointVector motorLimits(const DualArmParameters& parameters, double peak_share) 
   return jointVector(plate, link, blend(parameters.rotor_torque_Nm, parameters.rotor_peak_Nm));
 }
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

@@ -5,7 +5,7 @@
 
 #include "vps_device/dual_arm/controller.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 namespace {
 
 using Mat6 = Eigen::Matrix<double, 6, 6>;
@@ -92,4 +92,4 @@ DeviceLimits dualArmLimits(const DualArmParameters& p, double rate_hz, bool has_
   return limits;
 }
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

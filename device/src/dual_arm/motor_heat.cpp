@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 namespace {
 
 // The peak decreases over the last tenth of the budget, so that force does not drop abruptly.
@@ -37,4 +37,4 @@ double MotorHeat::peakShare() const noexcept {
   return shareOf(heat_.maxCoeff());
 }
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

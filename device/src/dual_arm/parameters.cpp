@@ -20,7 +20,7 @@
 #include <toml++/toml.h>
 #pragma pop_macro("NDEBUG")
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 namespace {
 
 using P = DualArmParameters;
@@ -312,4 +312,4 @@ DualArmFile loadDualArm(const std::string& file) {
   return parseDualArm(slurp(file), file);
 }
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

@@ -9,7 +9,7 @@
 #include "dual_arm/gravity.h"
 #include "vps_device/dual_arm/structure.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 namespace {
 
 // Below this joint speed dry friction is proportional to speed: about 2 mm/s at the handle, slower than the
@@ -237,4 +237,4 @@ void DualArmPlant::step(double dt_s, const HandForce& hand) noexcept {
   F_hand_.tau -= hand.inertia_kgm2 / dt_s * (V_DH_.w - V_before.w);
 }
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

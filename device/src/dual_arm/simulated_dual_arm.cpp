@@ -3,7 +3,7 @@
 
 #include "dual_arm/gravity.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 SimulatedDualArmSettings idealDualArm() {
   SimulatedDualArmSettings settings;
@@ -33,4 +33,4 @@ void SimulatedDualArm::write(const Wrench& F_Ho_D) noexcept {
     F_applied_ += handleWeight(p);
 }
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

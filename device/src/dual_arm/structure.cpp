@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 JointVector structureStiffness(const DualArmParameters& p, const JointVector& joints) noexcept {
   const double gimbal = 1 / p.gimbal_N_per_m;
@@ -32,4 +32,4 @@ JointVector structureDrift(const DualArmParameters& p, const JointVector& joints
   return drift;
 }
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

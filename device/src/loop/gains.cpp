@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 namespace {
 
 constexpr double kMargin = 0.8;  // of the passive stiffness, since the device's numbers are estimates
@@ -63,4 +63,4 @@ bool areUsable(const CouplingGains& gains) noexcept {
          isWithin(gains.max_force_N, 1e3) && isWithin(gains.max_torque_Nm, 1e3);
 }
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

@@ -7,7 +7,7 @@
 
 #include "vps/friction.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 namespace {
 
 constexpr int kRounds = 6;           // of the active-set iteration; two or three suffice
@@ -146,4 +146,4 @@ bool LocalContact::step(const CouplingGains& gains, const CouplingState& proxy, 
   return true;
 }
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

@@ -6,7 +6,7 @@
 
 #include "vps_device/gains.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 HapticLoop::HapticLoop(Device& device, CouplingPort& port, const LoopSettings& settings)
     : device_(&device), port_(&port), settings_(settings), limits_(device.limits()), guard_(settings.safety) {
@@ -281,4 +281,4 @@ HandForce HapticLoop::toDevice(const HandForce& hand_W) const noexcept {
   return hand;
 }
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

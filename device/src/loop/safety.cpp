@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 namespace {
 
 // Factor that brings both parts of F within their limits, at most 1. Dividing first keeps huge values from
@@ -114,4 +114,4 @@ void SafetyGuard::rearm() noexcept {
   last_ = {};
 }
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

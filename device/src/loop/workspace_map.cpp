@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vps_device/workspace_map.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 Pose WorkspaceMap::toScene(const Pose& X_DH) const noexcept {
   return {Mat3(X_WD.R * X_DH.R), X_WD * Vec3(scale * X_DH.p)};
@@ -33,4 +33,4 @@ Pose Grasp::toHandle(const Pose& X_WG) const noexcept {
   return {Mat3(X_WG.R * R_HG.transpose()), Vec3(X_WG.p - offset_W)};
 }
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

@@ -4,7 +4,7 @@
 
 #include "operator/strategies.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 namespace {
 constexpr double kRate_N_per_s = 6;  // growth of the push
@@ -38,4 +38,4 @@ Outcome AlignByTorque::step(const Feel& feel, double dt_s) noexcept {
   return is_full && stuck_s > situation_.habits.stuck_s ? Outcome::Done : Outcome::GoingOn;
 }
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

@@ -4,7 +4,7 @@
 
 #include "operator/strategies.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 namespace {
 constexpr double kHover_s = 1;  // three fixations
@@ -36,4 +36,4 @@ Outcome Approach::step(const Feel& feel, double dt_s) noexcept {
   return is_beyond ? Outcome::Failed : Outcome::GoingOn;
 }
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

@@ -4,7 +4,7 @@
 
 #include "operator/strategies.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 namespace {
 constexpr double kBackOffSpeed_m_s = 15e-3;
@@ -41,4 +41,4 @@ Outcome BackOff::step(const Feel& feel, double dt_s) noexcept {
   return is_there || looked_s_ > kBackOffLookLongest_s ? Outcome::Done : Outcome::GoingOn;
 }
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

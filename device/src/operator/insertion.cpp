@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 namespace {
 
@@ -140,4 +140,4 @@ void Insertion::backOff(bool is_whole, const Feel& feel) noexcept {
   start(OperatorStrategy::BackOff, feel);
 }
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

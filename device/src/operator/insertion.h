@@ -10,7 +10,7 @@
 
 #include "operator/sequence.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 class Insertion final : public Sequence {
  public:
@@ -41,4 +41,4 @@ class Insertion final : public Sequence {
   double first_mouth_m_ = 0, approach_from_m_ = 0;
 };
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

@@ -3,7 +3,7 @@
 
 #include "operator/person.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 const char* toText(OperatorPhase phase) noexcept {
   switch (phase) {
@@ -116,4 +116,4 @@ const OperatorHabits& VirtualOperator::habits() const noexcept {
   return person_->habits();
 }
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "operator/person.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 namespace {
 
 constexpr double kMinSegment_s = 0.3;   // assumed: no aimed movement is shorter
@@ -472,4 +472,4 @@ HandForce VirtualOperator::Person::impedance() const noexcept {
   return hand;
 }
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

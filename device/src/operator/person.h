@@ -12,7 +12,7 @@
 #include "vps_device/operator.h"
 #include "vps_device/random.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 /// Where the person believes the part's path and hole to be, as an offset from where they are.
 struct Belief {
@@ -158,4 +158,4 @@ class VirtualOperator::Person {
   Vec3 serve_m_ = Vec3::Zero(), serve_rad_ = Vec3::Zero();  // of the hand against friction of the device
 };
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

@@ -4,7 +4,7 @@
 
 #include "operator/strategies.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 namespace {
 constexpr double kGain_per_s = 1.2, kSpeedMost_m_s = 5e-3;
@@ -47,4 +47,4 @@ Outcome PlaceBySight::step(const Feel& feel, double dt_s) noexcept {
   return Outcome::Done;
 }
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

@@ -4,7 +4,7 @@
 
 #include "operator/strategies.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 namespace {
 constexpr double kRamp_s = 0.2;          // of the press, up and down
@@ -38,4 +38,4 @@ Outcome PressHome::step(const Feel& feel, double) noexcept {
   return std::abs(feel.seen_short_m) < situation_.near_m ? Outcome::Done : Outcome::Failed;
 }
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

@@ -4,7 +4,7 @@
 
 #include "operator/strategies.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 namespace {
 constexpr double kScrewTurn_rad = 6.283185307179586;
@@ -81,4 +81,4 @@ Outcome ScrewOn::step(const Feel& feel, double dt_s) noexcept {
              : Outcome::GoingOn;
 }
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 namespace {
 
@@ -56,4 +56,4 @@ void Screwing::next(bool succeeded, const Feel& feel) noexcept {
   }
 }
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

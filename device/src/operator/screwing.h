@@ -8,7 +8,7 @@
 
 #include "operator/sequence.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 class Screwing final : public Sequence {
  private:
@@ -23,4 +23,4 @@ class Screwing final : public Sequence {
   bool is_coming_off_ = false;
 };
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

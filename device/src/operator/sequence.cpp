@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "operator/sequence.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 void Sequence::begin(const Situation& situation, const Feel& feel) noexcept {
   situation_ = situation;
@@ -40,4 +40,4 @@ void Sequence::afterApproach(bool has_touched, const Feel& feel) noexcept {
   start(OperatorStrategy::Touch, feel);
 }
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

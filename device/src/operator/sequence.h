@@ -5,7 +5,7 @@
 
 #include "operator/strategies.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 class Sequence {
  public:
@@ -48,4 +48,4 @@ class Sequence {
   PlaceBySight place_by_sight_;
 };
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 void Sight::begin(const Vec3& tip_P, double now_s) noexcept {
   tip_P_ = tip_P;
@@ -35,4 +35,4 @@ bool Sight::look(const OperatorView& view, const Vec3& felt_m) noexcept {
   return has_seen_;
 }
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

@@ -9,7 +9,7 @@
 #include "vps_device/operator.h"
 #include "vps_device/random.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 class Sight {
  public:
@@ -46,4 +46,4 @@ class Sight {
   bool has_seen_ = false;
 };
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

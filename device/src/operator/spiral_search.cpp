@@ -4,7 +4,7 @@
 
 #include "operator/strategies.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 namespace {
 constexpr double kSpiralSearchSpeed_m_s = 2.5e-3;  // along the spiral
@@ -57,4 +57,4 @@ Outcome SpiralSearch::step(const Feel& feel, double dt_s) noexcept {
   return Outcome::GoingOn;
 }
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

@@ -4,7 +4,7 @@
 
 #include "operator/strategy.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 /// Hovers until it has looked long enough, then moves ahead until it touches, slowly near the target. Failed:
 /// the part is seen beyond its target and nothing stopped it.
@@ -149,4 +149,4 @@ class PlaceBySight final : public Strategy {
   double held_s_ = 0;  ///< how long that was seen; 0: the part still comes
 };
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

@@ -6,7 +6,7 @@
 #include "vps/pose.h"
 #include "vps_device/operator.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 /// Positions are those of the part as the hand feels them, at G: its own position, less what gives way under
 /// the force that it feels. a: axis of insertion.
@@ -114,4 +114,4 @@ class Progress {
   double best_m_ = 0, best_s_ = 0;
 };
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

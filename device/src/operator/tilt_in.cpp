@@ -4,7 +4,7 @@
 
 #include "operator/strategies.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 namespace {
 constexpr double kLean_s = 0.4, kUpright_s = 0.6, kDrop_s = 0.3, kTiltInLower_s = 2;
@@ -75,4 +75,4 @@ Outcome TiltIn::step(const Feel& feel, double dt_s) noexcept {
   return Outcome::GoingOn;
 }
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

@@ -4,7 +4,7 @@
 
 #include "operator/strategies.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 namespace {
 constexpr double kTouchCreep_m_s = 10e-3;
@@ -27,4 +27,4 @@ Outcome Touch::step(const Feel& feel, double) noexcept {
   return is_over ? Outcome::Done : Outcome::GoingOn;
 }
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

@@ -4,7 +4,7 @@
 
 #include "operator/strategies.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 namespace {
 constexpr double kTurnBack_rad_s =
@@ -58,4 +58,4 @@ Outcome TurnBack::step(const Feel& feel, double dt_s) noexcept {
   return turned_rad > situation_.back_rad ? Outcome::Failed : Outcome::GoingOn;
 }
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

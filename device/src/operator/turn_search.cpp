@@ -4,7 +4,7 @@
 
 #include "operator/strategies.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 namespace {
 constexpr double kSpeed_rad_s = 0.12;  // slow enough that the part drops within its clearance
@@ -51,4 +51,4 @@ Outcome TurnSearch::step(const Feel& feel, double dt_s) noexcept {
   return Outcome::GoingOn;
 }
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vps_device/metronome.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 void Metronome::start() noexcept {
   due_ns_ = seen_ns_ = clock_->now_ns();
@@ -32,4 +32,4 @@ Beat Metronome::wait() noexcept {
   return beat;
 }
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

@@ -7,7 +7,7 @@
 
 #include "vps/load_error.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 namespace {
 
 constexpr std::size_t kStack_bytes = 256 * 1024;  // assumed: a tick needs some kilobytes
@@ -67,4 +67,4 @@ void PeriodicThread::stop() {
   if (const std::exception_ptr failure = std::exchange(failure_, nullptr)) std::rethrow_exception(failure);
 }
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

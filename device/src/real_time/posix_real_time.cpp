@@ -13,7 +13,7 @@
 #include "vps_device/device_events.h"
 #include "vps_device/periodic_thread.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 namespace {
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
@@ -74,4 +74,4 @@ RealTimeReport requestRealTime(int priority, bool locks_memory) {
   return report;
 }
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 namespace {
 
 constexpr std::int64_t kQuietTicks = 1000;  // misses are reported once, and again after this many good ticks
@@ -180,4 +180,4 @@ void RealTimeLoop::handleRequests() noexcept {
   handled_.store(handled, std::memory_order_release);
 }
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

@@ -5,7 +5,7 @@
 #include <bit>
 #include <cmath>
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 namespace {
 
 constexpr int kSplitBits = 6;
@@ -136,4 +136,4 @@ TickStatistics::Summary TickStatistics::summary() const noexcept {
   return all;
 }
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

@@ -8,7 +8,7 @@
 
 #include "vps_device/detail/bytes.h"
 
-namespace vps::device::inline v0::log {
+namespace vps::device::log {
 
 namespace {
 
@@ -217,4 +217,4 @@ std::string difference(const LogEntry& recorded, const LogEntry& now) {
   return "the payload of a NaN";  // prints alike, but differs in bits
 }
 
-}  // namespace vps::device::inline v0::log
+}  // namespace vps::device::log

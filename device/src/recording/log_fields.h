@@ -7,7 +7,7 @@
 
 #include "vps_device/run_log.h"
 
-namespace vps::device::inline v0::log {
+namespace vps::device::log {
 
 /// visit(name, field) for each field: double, Vec3, Mat3 (row by row), int32, uint8-sized enums and numbers,
 /// and the event's text. Doubles come first, so that no byte of a message is padding.
@@ -102,4 +102,4 @@ std::string csvRow(const LogEntry& entry);
 /// for bit.
 std::string difference(const LogEntry& recorded, const LogEntry& now);
 
-}  // namespace vps::device::inline v0::log
+}  // namespace vps::device::log

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string_view>
 
-namespace vps::device::inline v0::mcap {
+namespace vps::device::mcap {
 
 inline constexpr std::string_view kMagic{"\x89MCAP0\r\n", 8};
 
@@ -18,4 +18,4 @@ inline constexpr std::uint8_t kHeader = 1, kFooter = 2, kSchema = 3, kChannel = 
 inline constexpr std::size_t kRecordHead = 9;
 inline constexpr std::size_t kFooterBytes = 20;
 
-}  // namespace vps::device::inline v0::mcap
+}  // namespace vps::device::mcap

@@ -4,7 +4,7 @@
 #include "vps_device/detail/crc32.h"
 #include "vps_device/detail/mcap.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 using namespace mcap;
 
@@ -233,4 +233,4 @@ McapContent readMcap(std::string_view bytes) {
   return Parser(bytes).parse();
 }
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

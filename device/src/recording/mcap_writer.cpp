@@ -6,7 +6,7 @@
 #include "vps_device/detail/crc32.h"
 #include "vps_device/detail/mcap.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 using namespace mcap;
 
@@ -265,4 +265,4 @@ std::string McapWriter::metadataBytes(const Indexed& entry) {
   });
 }
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

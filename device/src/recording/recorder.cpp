@@ -22,7 +22,7 @@
 #include "vps_device/detail/bytes.h"
 #include "vps_device/detail/entry_ring.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 namespace {
 
@@ -284,4 +284,4 @@ const std::string& Recorder::unfinished() const noexcept {
   return work_->partial;
 }
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

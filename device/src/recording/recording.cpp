@@ -11,7 +11,7 @@
 #include "recording/recording_format.h"
 #include "vps/load_error.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 namespace {
 
@@ -196,4 +196,4 @@ void ReplayCheck::add(const LogEntry& entry) noexcept {
   departure_ = "tick " + std::to_string(ticks_) + " (" + seconds(timeOf(entry)) + "): " + what;
 }
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

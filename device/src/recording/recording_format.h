@@ -8,7 +8,7 @@
 
 #include "vps_device/device.h"
 
-namespace vps::device::inline v0::recording {
+namespace vps::device::recording {
 
 inline constexpr const char* kLibrary = "bullet-vps";  ///< marks a file as ours
 inline constexpr const char* kProfile = "ros2";
@@ -44,4 +44,4 @@ void eachLimit(Limits& limits, Visit&& visit) {
   visit("workspace_rad", workspace_rad);
 }
 
-}  // namespace vps::device::inline v0::recording
+}  // namespace vps::device::recording

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstring>
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 void RunEvent::setWords(std::string_view words) noexcept {
   text.fill(0);
@@ -32,4 +32,4 @@ void TappedDevice::write(const Wrench& F_Ho_D) noexcept {
   log_.add(WrittenWrench{time_s_, F_Ho_D});
 }
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

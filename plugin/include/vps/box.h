@@ -5,7 +5,7 @@
 #include "vps/export.h"
 #include "vps/pose.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// An axis-aligned box [m]. Its faces belong to it. A new box is empty.
 struct Box {
@@ -35,4 +35,4 @@ struct Box {
 /// The smallest box around a box that was moved by X. An empty box stays empty.
 [[nodiscard]] VPS_API Box moved(const Box& box, const Pose& X) noexcept;
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -12,7 +12,7 @@
 
 #include "vps/export.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 class CacheFolder;
 
@@ -38,4 +38,4 @@ class VPS_API ByteCache {
   std::shared_ptr<CacheFolder> folder_;
 };
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -18,7 +18,7 @@
 
 #include <cstddef>
 
-namespace vps::inline v0 {
+namespace vps {
 
 // --- Rounding: below these, nothing is known ---------------------------------------------------------------
 
@@ -232,4 +232,4 @@ inline constexpr double kMostStretches = 1000;
 /// Assumed; no test pins it.
 inline constexpr std::size_t kMostImpactWork = 10'000'000;
 
-}  // namespace vps::inline v0
+}  // namespace vps

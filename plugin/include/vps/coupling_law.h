@@ -7,7 +7,7 @@
 #include "vps/pose.h"
 #include "vps/wrench.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// A 6-DOF spring-damper. The limits bound the spring's share and keep its direction, so that a part that
 /// lags behind the proxy pulls with a known largest force.
@@ -39,4 +39,4 @@ VPS_API Wrench couplingWrench(const CouplingGains& gains, const CouplingState& p
 VPS_API double couplingEnergy_J(const CouplingGains& gains, const CouplingState& proxy,
                                 const CouplingState& part) noexcept;
 
-}  // namespace vps::inline v0
+}  // namespace vps

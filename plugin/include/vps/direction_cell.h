@@ -6,7 +6,7 @@
 
 #include "vps/pose.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// The cell of a direction, among 6 x 2 x 2 cells of a cube's surface: below 24.
 inline std::uint32_t directionCell(const Vec3& n) {
@@ -16,4 +16,4 @@ inline std::uint32_t directionCell(const Vec3& n) {
   return static_cast<std::uint32_t>(((axis * 2 + (n[axis] > 0)) * 2 + (n[u] > 0)) * 2 + (n[v] > 0));
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -13,7 +13,7 @@
 #include "vps/export.h"
 #include "vps/mesh.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// A straight piece of an edge between two faces of a part, in the frame of its set.
 struct EdgeSegment {
@@ -114,4 +114,4 @@ VPS_API void findCrossings(const EdgeSet& edges0, const EdgeSet& edges1, const P
                            const CrossingRange& range, std::vector<EdgeCrossing>& out,
                            CrossingMemory* memory = nullptr);
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -9,7 +9,7 @@
 #include "vps/export.h"
 #include "vps/pose.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// Straight edges with a hierarchy of bounding spheres and lines.
 class VPS_API EdgeTree {
@@ -60,4 +60,4 @@ class VPS_API EdgeTree {
   std::vector<Node> nodes_;
 };
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -10,7 +10,7 @@
 #include "vps/feature_set.h"
 #include "vps/pose.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// Where a corner of one part reaches a facet of the other, or an edge an edge, on the way from one relative
 /// pose to another.
@@ -118,4 +118,4 @@ VPS_API bool measureAgain(const FeatureSet& part0, const FeatureSet& part1, cons
 VPS_API double travel_m(const FeatureSet& part0, const FeatureSet& part1, const Pose& X_01_start,
                         const Pose& X_01_end);
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -11,7 +11,7 @@
 #include "vps/export.h"
 #include "vps/mesh.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 struct CornerTree;
 class EdgeTree;
@@ -113,4 +113,4 @@ class VPS_API FeatureSet {
   std::unique_ptr<const Trees> trees_;
 };
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -7,7 +7,7 @@
 #include "vps/export.h"
 #include "vps/voxmap.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// Whether one part's points are tested against the other's field, or both ways.
 enum class Sides { One, Both };
@@ -50,4 +50,4 @@ struct Fidelity {
 /// Presets "fast", "normal", "fine"; throws LoadError for another name.
 VPS_API Fidelity fidelityPreset(std::string_view name);
 
-}  // namespace vps::inline v0
+}  // namespace vps

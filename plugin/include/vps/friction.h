@@ -16,7 +16,7 @@
 
 #include "vps/pose.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// A body's share in the coefficient of friction, for engines that multiply the values of both bodies, as
 /// Bullet does. Two bodies of one material have that material's coefficient together.
@@ -74,4 +74,4 @@ inline double frictionDamping(double limit_N, double speed_m_s, double creep_m_s
   return limit_N / std::max(speed_m_s, creep_m_s);
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -7,7 +7,7 @@
 
 #include "vps/export.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// Thrown while loading or saving files and while building models; never in the haptic loop. what() is one
 /// line for a person: "gear.stl: part 'hub': vertex 17 is not a number; export it again".
@@ -18,4 +18,4 @@ class VPS_API LoadError : public std::runtime_error {
                            (part.empty() ? std::string() : "part '" + part + "': ") + found_and_remedy) {}
 };
 
-}  // namespace vps::inline v0
+}  // namespace vps

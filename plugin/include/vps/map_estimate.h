@@ -6,7 +6,7 @@
 #include "vps/mesh.h"
 #include "vps/voxmap.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// Estimates the bytes that building a mesh's map takes: the bricks that meet a slab of the surface's area,
 /// as thick as the band, and the directory of its box. buildVoxMap() uses this estimate to refuse maps that
@@ -19,4 +19,4 @@ VPS_API double largestMapBytes();
 /// 0.1 %. Infinite where no voxel is large enough. O(triangles).
 VPS_API double fittingVoxel_m(const Mesh& mesh, const VoxMapSettings& settings, double most_bytes);
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -11,7 +11,7 @@
 #include "vps/export.h"
 #include "vps/pose.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// Vertices [m] in the part's frame and triangles, counter-clockwise from outside.
 struct Mesh {
@@ -94,4 +94,4 @@ VPS_API Mesh makeTube(double outer_m, double inner_m, double height_m, int segme
 /// Sphere from a subdivided icosahedron: 20 * 4^level triangles, vertices on the sphere.
 VPS_API Mesh makeSphere(double radius_m, int level);
 
-}  // namespace vps::inline v0
+}  // namespace vps

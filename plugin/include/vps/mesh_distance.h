@@ -9,7 +9,7 @@
 #include "vps/export.h"
 #include "vps/mesh.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// Closest point q on triangle abc to p, and the feature it lies on.
 /// Source: Ericson, Real-Time Collision Detection, section 5.1.5.
@@ -106,4 +106,4 @@ class VPS_API MeshDistance {
   std::vector<std::uint8_t> is_corner_of_thin_;                 // by vertex
 };
 
-}  // namespace vps::inline v0
+}  // namespace vps

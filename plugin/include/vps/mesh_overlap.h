@@ -10,7 +10,7 @@
 #include "vps/export.h"
 #include "vps/solid.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 struct EdgeGroups;
 
@@ -62,4 +62,4 @@ inline constexpr double kOverlapCertain_m = 0.1e-6;
 VPS_API Overlap deepestOverlap(const OverlapMesh& a, const Pose& X_WA, const OverlapMesh& b, const Pose& X_WB,
                                bool with_sheets = false);
 
-}  // namespace vps::inline v0
+}  // namespace vps

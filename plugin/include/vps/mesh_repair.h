@@ -7,7 +7,7 @@
 #include "vps/export.h"
 #include "vps/mesh.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// What repairMesh() makes of a mesh.
 struct RepairedMesh {
@@ -63,4 +63,4 @@ VPS_API MassProperties solidMass(const Mesh& mesh, const std::string& part = "")
 /// certain for 99.8 %".
 VPS_API std::string describe(const MeshReport& report);
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -8,7 +8,7 @@
 #include "vps/export.h"
 #include "vps/mesh.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 struct WeldedMesh {
   Mesh mesh;                           ///< as welded() gives it
@@ -18,4 +18,4 @@ struct WeldedMesh {
 /// As welded(), with the triangle that each one was.
 VPS_API WeldedMesh weldedWithSources(const Mesh& mesh, double tolerance_m = 0);
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -10,7 +10,7 @@
 #include "vps/pointshell.h"
 #include "vps/voxmap.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// The size of a part's voxmap and pointshell, whole or cropped to some boxes. Bricks and face points follow
 /// from the surface's area, points on sharp edges are counted. The mesh should have shared vertices: without
@@ -49,4 +49,4 @@ class VPS_API ModelEstimate {
   double cell_m_ = 0, bricks_per_m2_ = 0, face_points_per_m2_ = 0;
 };
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -5,7 +5,7 @@
 #include "vps/export.h"
 #include "vps/query.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// The models of one part. Both must be set and outlive the query.
 struct PairSide {
@@ -35,4 +35,4 @@ VPS_API QueryResult queryBothSides(const PairSide& a, const PairSide& b, const P
 /// B, about the same point.
 [[nodiscard]] VPS_API Wrench bothWays(const Wrench& F_B_A, const Wrench& F_A_B, const Mat3& R_AB);
 
-}  // namespace vps::inline v0
+}  // namespace vps

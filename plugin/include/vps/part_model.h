@@ -12,7 +12,7 @@
 #include "vps/solid.h"
 #include "vps/voxmap.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 struct Material {
   double density_kg_m3 = 7850;       ///< steel
@@ -55,4 +55,4 @@ VPS_API std::shared_ptr<const PartModel> buildPartModel(const std::string& name,
 VPS_API std::shared_ptr<const PartModel> withShell(const PartModel& model,
                                                    std::shared_ptr<const PointShell> shell);
 
-}  // namespace vps::inline v0
+}  // namespace vps

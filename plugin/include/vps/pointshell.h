@@ -11,7 +11,7 @@
 #include "vps/progress.h"
 #include "vps/shell_block.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 class Solid;
 
@@ -76,4 +76,4 @@ VPS_API void savePly(const PointShell& shell, const std::string& file);
 /// Throws LoadError.
 VPS_API PointShell loadPly(const std::string& file);
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -8,7 +8,7 @@
 
 #include "vps/export.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 using Vec3 = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3d;
@@ -58,4 +58,4 @@ struct Twist {
   [[nodiscard]] bool isFinite() const { return w.allFinite() && v.allFinite(); }
 };
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -14,7 +14,7 @@
 #include "vps/voxmap.h"
 #include "vps/wrench.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// One point of the shell near the surface of the map.
 struct Contact {
@@ -94,4 +94,4 @@ VPS_API QueryResult queryWrench(const VoxMap& map, const PointShell& shell, cons
 /// @return wrench on the shell's part about O, in M [N m, N]
 VPS_API Wrench penaltyWrench(std::span<const Contact> contacts, double k_N_per_m3, const Vec3& p_MO) noexcept;
 
-}  // namespace vps::inline v0
+}  // namespace vps

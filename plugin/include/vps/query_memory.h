@@ -10,7 +10,7 @@
 #include "vps/pointshell.h"
 #include "vps/voxmap.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// Temporal coherence of one map and one shell. When a leaf of points is read, or it or sixteen neighbouring
 /// leaves are bounded, that says how far they may move before any of their points can come within the cutoff.
@@ -60,4 +60,4 @@ class VPS_API QueryMemory {
   double cutoff_ = kNoQuery;  ///< of the last query [voxels]
 };
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -10,7 +10,7 @@
 #include "vps/export.h"
 #include "vps/query.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// Divides a shell into tiles: nodes of its hierarchy up to a given size, and in each tile the points into
 /// groups whose normals agree within 20 degrees. find() reports for each group the point that is nearest to
@@ -160,4 +160,4 @@ class VPS_API RepresentativePoints {
   bool reduces_contacts_ = false;
 };
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -5,7 +5,7 @@
 #include "vps/export.h"
 #include "vps/solid.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// A point in a solid, in its frame.
 struct PointDepth {
@@ -28,4 +28,4 @@ struct PointDepth {
 /// @param certain_m  > 0
 VPS_API PointDepth deepestOnSegment(const Solid& solid, const Vec3& a, const Vec3& b, double certain_m);
 
-}  // namespace vps::inline v0
+}  // namespace vps

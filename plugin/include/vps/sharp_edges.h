@@ -9,10 +9,10 @@
 #include "vps/export.h"
 #include "vps/mesh.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// Returns the vertex pairs of edges whose two faces differ by more than angle_rad, and of all edges that do
 /// not have exactly two triangles, in ascending order. Expects shared vertices (see welded()). O(n log n).
 VPS_API std::vector<std::array<std::uint32_t, 2>> sharpEdges(const Mesh& mesh, double angle_rad);
 
-}  // namespace vps::inline v0
+}  // namespace vps

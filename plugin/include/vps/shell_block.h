@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// Points or spheres per block: one AVX-512 vector of floats, two of AVX2.
 inline constexpr int kLanes = 16;
@@ -24,4 +24,4 @@ struct alignas(64) ShellBlock {
   float weight[kLanes] = {};  ///< a point's area [m^2], 0 in unused lanes; a sphere's radius [m]
 };
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -5,10 +5,10 @@
 #include "vps/export.h"
 #include "vps/mesh.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// The smallest spacing, but not below the given one, at which buildPointShell() does not refuse the mesh for
 /// its number of points. O(triangles).
 VPS_API double fittingSpacing_m(const Mesh& mesh, double spacing_m);
 
-}  // namespace vps::inline v0
+}  // namespace vps

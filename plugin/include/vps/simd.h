@@ -4,7 +4,7 @@
 
 #include "vps/export.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// `Best` is the faster one of the two widest sets that the processor has, by a measurement of 0.1 ms when
 /// the program starts. The others are for tests and measurements; a set that the processor lacks falls back
@@ -15,4 +15,4 @@ enum class Simd { Best, Scalar, Avx2, Avx512 };
 VPS_API Simd availableSimd(Simd wanted = Simd::Best) noexcept;
 VPS_API const char* toText(Simd simd) noexcept;
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -10,7 +10,7 @@
 #include "vps/mesh.h"
 #include "vps/mesh_distance.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 class Interior;
 struct RepairedMesh;
@@ -95,4 +95,4 @@ class VPS_API Solid {
   bool is_sheet_ = false;
 };
 
-}  // namespace vps::inline v0
+}  // namespace vps

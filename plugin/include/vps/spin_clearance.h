@@ -6,7 +6,7 @@
 #include "vps/feature_set.h"
 #include "vps/pose.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// Two parts of which one turns: a shaft in its bore, a wheel beside its fork. Points of a part that turns
 /// move far without coming nearer to the other part. But as long as its axis stays in place, the part stays
@@ -42,4 +42,4 @@ class VPS_API SpinClearance {
   static constexpr int kFirstWait = 4, kWait = 64, kMostWait = 4096;
 };
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -2,7 +2,7 @@
 // What functions of the haptic loop return instead of throwing.
 #pragma once
 
-namespace vps::inline v0 {
+namespace vps {
 
 enum class Status {
   Ok,
@@ -31,4 +31,4 @@ inline const char* toText(Status status) {
   return "unknown";
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

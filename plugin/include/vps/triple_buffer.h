@@ -6,7 +6,7 @@
 #include <atomic>
 #include <cstdint>
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// Three slots: the writer fills one, the reader owns one, the third holds the latest published value.
 /// Wait-free, no allocation. Assigning a T must not throw.
@@ -36,4 +36,4 @@ class TripleBuffer {
   std::atomic<std::uint8_t> middle_{2};
 };
 
-}  // namespace vps::inline v0
+}  // namespace vps

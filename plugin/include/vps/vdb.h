@@ -8,7 +8,7 @@
 #include "vps/vdb_export.h"
 #include "vps/voxmap.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// Writes an ordinary OpenVDB level set (grid "surface", float, narrow band) that opens in Houdini and
 /// Blender, with metadata from which loadVdb() restores the map to the bit. An existing file is replaced
@@ -38,4 +38,4 @@ struct PlacedVdb {
 /// As loadVdb(), but without resampling: every node is a value of the file, rounded to the map's quantum.
 VPS_VDB_API PlacedVdb loadPlacedVdb(const std::string& file, const std::string& grid = "");
 
-}  // namespace vps::inline v0
+}  // namespace vps

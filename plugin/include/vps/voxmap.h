@@ -12,7 +12,7 @@
 #include "vps/mesh.h"
 #include "vps/progress.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 struct VoxMapSettings {
   double voxel_m = 0.25e-3;  ///< grid step h
@@ -148,4 +148,4 @@ VPS_API VoxMap resampledVoxMap(const PlacedMap& part, const VoxMapSettings& sett
 /// tenth of a second or more.
 VPS_API VoxMap mountVoxMap(const VoxMap& cooked, const PlacedMap& part);
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -12,7 +12,7 @@
 #include "vps/pointshell.h"
 #include "vps/voxmap.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 class CacheFolder;
 
@@ -62,4 +62,4 @@ class VPS_API VoxMapCache {
   std::shared_ptr<CacheFolder> folder_;
 };
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -7,7 +7,7 @@
 #include "vps/export.h"
 #include "vps/voxmap.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// A copy of the map that keeps only the nodes in and around the boxes; readings there are the same to the
 /// bit. Elsewhere it reads as saturated, with the right sign for each cell, and its bounds do not hold: use
@@ -15,4 +15,4 @@ namespace vps::inline v0 {
 /// can be mounted on it. O(cells).
 VPS_API VoxMap croppedVoxMap(const VoxMap& map, const std::vector<Box>& boxes_M);
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -10,7 +10,7 @@
 #include "vps/export.h"
 #include "vps/mesh.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// The solid angle of all triangles as seen from a point, over 4 pi: how often they wind around it. It is 1
 /// inside and 0 outside of a closed mesh that faces out. Over a hole it falls smoothly from 1 to 0, so that
@@ -62,4 +62,4 @@ class VPS_API WindingNumber {
   std::vector<Node> nodes_;
 };
 
-}  // namespace vps::inline v0
+}  // namespace vps

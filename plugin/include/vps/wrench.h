@@ -4,7 +4,7 @@
 
 #include "vps/pose.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// Torque tau [N m] about a point and force f [N]. The variable's name says which: F_Po_W acts on P, about
 /// P's origin, in W.
@@ -38,4 +38,4 @@ inline double power(const Wrench& F, const Twist& V) {
   return F.tau.dot(V.w) + F.f.dot(V.v);
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

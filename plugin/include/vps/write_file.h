@@ -8,7 +8,7 @@
 
 #include "vps/export.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// A file that is written under a temporary name in the target's folder and then renamed to the target, so
 /// that readers find the old content or the new, never a part of it.
@@ -43,4 +43,4 @@ class VPS_API WholeFile {
 /// reason; `file` is then as it was.
 VPS_API void writeWholeFile(const std::filesystem::path& file, std::string_view bytes);
 
-}  // namespace vps::inline v0
+}  // namespace vps

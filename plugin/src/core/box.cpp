@@ -3,7 +3,7 @@
 
 #include <limits>
 
-namespace vps::inline v0 {
+namespace vps {
 
 bool overlap(const Box& a, const Box& b) noexcept {
   return !a.isEmpty() && !b.isEmpty() && (a.min.array() <= b.max.array()).all() &&
@@ -37,4 +37,4 @@ Box moved(const Box& box, const Pose& X) noexcept {
   return out;
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -2,7 +2,7 @@
 // What is not needed in inner loops: Eigen's rotations take long to compile in every file that includes them.
 #include "vps/pose.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 Pose::Pose(const Quat& rotation, const Vec3& position)
     : R(rotation.normalized().toRotationMatrix()), p(position) {}
@@ -30,4 +30,4 @@ Pose interpolate(const Pose& from, const Pose& to, double share) {
   return {Mat3(rotationFromVector(share * turn) * from.R), Vec3(from.p + share * (to.p - from.p))};
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

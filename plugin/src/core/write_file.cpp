@@ -10,7 +10,7 @@
 
 #include "vps/load_error.h"
 
-namespace vps::inline v0 {
+namespace vps {
 namespace {
 
 std::filesystem::path temporaryName(const std::filesystem::path& target) {
@@ -62,4 +62,4 @@ void writeWholeFile(const std::filesystem::path& file, std::string_view bytes) {
   if (const std::error_code error = whole.commit()) fail(file, error);
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace vps::inline v0 {
+namespace vps {
 namespace {
 
 /// Shortens v to at most `limit` and keeps its direction, so that saturation does not turn the force.
@@ -42,4 +42,4 @@ double couplingEnergy_J(const CouplingGains& gains, const CouplingState& proxy,
                       gains.max_torque_Nm);
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -9,7 +9,7 @@
 
 #include "vps/mesh.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// True if two boxes share a point; touching boxes do.
 inline bool meet(const Box& a, const Box& b) {
@@ -88,4 +88,4 @@ class BoxTree {
   std::vector<Node> nodes_;
 };
 
-}  // namespace vps::inline v0
+}  // namespace vps

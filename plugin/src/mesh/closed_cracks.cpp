@@ -6,7 +6,7 @@
 
 #include "mesh/joined_edges.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 namespace {
 
@@ -54,4 +54,4 @@ ClosedCracks closeCracks(const Mesh& mesh, const std::vector<HalfEdge>& edges) {
   return closed;
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

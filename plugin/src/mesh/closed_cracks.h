@@ -5,7 +5,7 @@
 
 #include "mesh/mesh_edges.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 struct ClosedCracks {
   Mesh mesh;
@@ -22,4 +22,4 @@ inline constexpr double kClosedCrackShare = 1e-4, kClosedCrack_m = 2e-6;
 /// Without such vertices, as given. O(n log n).
 ClosedCracks closeCracks(const Mesh& mesh, const std::vector<HalfEdge>& edges);
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -12,7 +12,7 @@
 
 #include "mesh/triangle_distance.h"
 
-namespace vps::inline v0 {
+namespace vps {
 namespace {
 
 /// What counts as touching, relative to the greatest coordinate: some fifty times its rounding.
@@ -162,4 +162,4 @@ std::vector<Crossed> crossedFacets(const MeshDistance& all, std::size_t count) {
   return Crossings(all, count).run();
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

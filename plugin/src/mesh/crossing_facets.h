@@ -7,7 +7,7 @@
 
 #include "vps/mesh_distance.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// Unknown: too many others are near.
 enum class Crossed : std::uint8_t { No, Yes, Unknown };
@@ -18,4 +18,4 @@ enum class Crossed : std::uint8_t { No, Yes, Unknown };
 /// log n) for usual meshes.
 std::vector<Crossed> crossedFacets(const MeshDistance& all, std::size_t count);
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -6,7 +6,7 @@
 
 #include "mesh/mesh_edges.h"
 
-namespace vps::inline v0 {
+namespace vps {
 namespace {
 
 /// The height of a triangle over its longest side.
@@ -40,4 +40,4 @@ Vec3 middleOf(const Mesh& mesh, std::uint32_t triangle) {
   return (mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]) / 3;
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -7,7 +7,7 @@
 
 #include "vps/mesh.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 struct CutPatches {
   std::vector<std::uint32_t> patch_of;  ///< by piece, counted from 0
@@ -19,4 +19,4 @@ CutPatches patchesOf(const Mesh& pieces);
 
 Vec3 middleOf(const Mesh& mesh, std::uint32_t triangle);
 
-}  // namespace vps::inline v0
+}  // namespace vps

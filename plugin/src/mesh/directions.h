@@ -7,7 +7,7 @@
 
 #include "vps/pose.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// Unit v, or zero where v is too short to have a direction.
 inline Vec3 unitOrZero(const Vec3& v) {
@@ -28,4 +28,4 @@ inline bool hasArea(const Vec3& a, const Vec3& b, const Vec3& c) {
   return (b - a).cross(c - a).norm() > kMinSlimness * longest2;
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

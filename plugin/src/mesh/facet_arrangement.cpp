@@ -12,7 +12,7 @@
 #include "mesh/mesh_edges.h"
 #include "mesh/planar_triangulation.h"
 
-namespace vps::inline v0 {
+namespace vps {
 namespace {
 
 using Corners = std::array<std::uint32_t, 3>;
@@ -522,4 +522,4 @@ std::optional<Arrangement> arrange(const Mesh& mesh, std::span<const std::array<
   return Arranger(mesh, pairs, touch_m, work_left).run();
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -10,7 +10,7 @@
 
 #include "vps/mesh.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// A mesh whose facets have been cut.
 struct Arrangement {
@@ -31,4 +31,4 @@ bool mayTouch(const Mesh& mesh, std::uint32_t f, std::uint32_t g, double touch_m
 std::optional<Arrangement> arrange(const Mesh& mesh, std::span<const std::array<std::uint32_t, 2>> pairs,
                                    double touch_m, std::int64_t& work_left);
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace vps::inline v0 {
+namespace vps {
 
 namespace {
 
@@ -164,4 +164,4 @@ void searchBelow(const OverlapMesh& in, const OverlapMesh& other, const Pose& X_
   }
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

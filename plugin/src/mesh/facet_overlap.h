@@ -8,7 +8,7 @@
 
 #include "vps/mesh_overlap.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// The deepest point found in a solid, in its frame.
 struct Deepest {
@@ -33,4 +33,4 @@ std::vector<FlushPoint> searchFacets(const OverlapMesh& in, const OverlapMesh& o
 void searchBelow(const OverlapMesh& in, const OverlapMesh& other, const Pose& X_SO,
                  std::span<const FlushPoint> points, Deepest& deepest);
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -7,7 +7,7 @@
 
 #include "mesh/mesh_edges.h"
 
-namespace vps::inline v0 {
+namespace vps {
 namespace {
 
 using FacetCorners = std::array<std::uint32_t, 3>;
@@ -95,4 +95,4 @@ std::optional<Mesh> withoutFlatFacets(Mesh mesh) {
   return std::nullopt;
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -6,11 +6,11 @@
 
 #include "vps/mesh.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// The mesh without facets of no area. The facet across the longest side of each is split at its middle
 /// corner, so that a closed mesh stays closed. Vertices stay. Nothing if some could not be left out. O(n log
 /// n).
 std::optional<Mesh> withoutFlatFacets(Mesh mesh);
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -8,7 +8,7 @@
 #include "vps/mesh.h"
 #include "vps/winding_number.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// Inside is where the winding number exceeds 0.5, within the box of the surface. Beyond that box nothing is
 /// inside, whatever the winding number: walls that face the wrong way raise it above 0.5 far from the part.
@@ -39,4 +39,4 @@ class Interior {
   WindingSlope slope_;
 };
 
-}  // namespace vps::inline v0
+}  // namespace vps

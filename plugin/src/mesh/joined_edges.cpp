@@ -7,7 +7,7 @@
 
 #include "mesh/box_tree.h"
 
-namespace vps::inline v0 {
+namespace vps {
 namespace {
 
 constexpr double kNarrowest = 1e-7;
@@ -206,4 +206,4 @@ LinkedPatches linkPatches(const Mesh& mesh, const std::vector<HalfEdge>& edges,
   return linked;
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

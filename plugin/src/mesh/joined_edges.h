@@ -9,7 +9,7 @@
 
 #include "mesh/mesh_edges.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 struct JoinedFacets {
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< near vertices have one number
@@ -43,4 +43,4 @@ LinkedPatches linkPatches(const Mesh& mesh, const std::vector<HalfEdge>& edges,
                           const std::vector<std::uint32_t>& patch_of,
                           const std::vector<std::uint8_t>& is_turned);
 
-}  // namespace vps::inline v0
+}  // namespace vps

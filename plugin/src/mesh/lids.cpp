@@ -7,7 +7,7 @@
 
 #include "mesh/mesh_edges.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 namespace {
 
@@ -56,4 +56,4 @@ Mesh lidsOf(const Mesh& mesh) {
   return lids;
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

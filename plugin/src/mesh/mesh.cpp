@@ -8,7 +8,7 @@
 #include "mesh/mesh_edges.h"
 #include "vps/load_error.h"
 
-namespace vps::inline v0 {
+namespace vps {
 namespace {
 
 Vec3 areaVector(const Mesh& mesh, const std::array<std::uint32_t, 3>& t) {
@@ -131,4 +131,4 @@ void requireUsable(const Mesh& mesh, const std::string& file, const std::string&
     throw LoadError(file, part, "has zero area: all triangles are points or lines; export it again");
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

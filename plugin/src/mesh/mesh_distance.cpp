@@ -13,7 +13,7 @@
 #include "mesh/triangle_distance.h"
 #include "mesh/vertex_normals.h"
 
-namespace vps::inline v0 {
+namespace vps {
 namespace {
 
 /// The distance that counts as contact, relative to the size of the mesh: more than the height of a thin
@@ -298,4 +298,4 @@ Vec3 MeshDistance::featureNormal(std::uint32_t triangle, int feature) const noex
   return vertex_normals_[mesh_.triangles[triangle][feature - 4]];
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

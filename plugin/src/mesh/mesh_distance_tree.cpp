@@ -11,7 +11,7 @@
 #include "mesh/mesh_distance_tree.h"
 #include "vps/mesh_distance.h"
 
-namespace vps::inline v0 {
+namespace vps {
 namespace {
 
 using Range = std::span<std::uint32_t>;  // of triangles
@@ -192,4 +192,4 @@ void MeshDistance::buildTree() {
   }
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -2,7 +2,7 @@
 // How deep MeshDistance's tree can be, for the stacks that walk it.
 #pragma once
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// Nodes on these levels divide their triangles by area, which may take off few at a time; nodes below, by
 /// count, so that each of the eight children has an eighth of their triangles, up to eight.
@@ -11,4 +11,4 @@ inline constexpr int kTreeLevelsByArea = 20;
 /// whose children are triangles.
 inline constexpr int kTreeLevels = kTreeLevelsByArea + 11;
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -12,7 +12,7 @@
 
 #include "vps/mesh.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 inline bool hasRepeatedCorner(const std::array<std::uint32_t, 3>& t) {
   return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
@@ -131,4 +131,4 @@ void forEachEdge(std::span<const HalfEdge> edges, Visit visit) {
   }
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -11,7 +11,7 @@
 #include "mesh/segment_search.h"
 #include "vps/sharp_edges.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 struct EdgeGroups {
   explicit EdgeGroups(std::vector<Box> of_groups) : boxes(std::move(of_groups)), tree(boxes) {}
@@ -211,4 +211,4 @@ Overlap deepestOverlap(const OverlapMesh& a, const Pose& X_WA, const OverlapMesh
   return deepest;
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -7,7 +7,7 @@
 #include "vps/assert.h"
 #include "vps/mesh.h"
 
-namespace vps::inline v0 {
+namespace vps {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -115,4 +115,4 @@ Mesh makeSphere(double radius_m, int level) {
   return mesh;
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

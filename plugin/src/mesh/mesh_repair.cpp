@@ -22,7 +22,7 @@
 #include "vps/mesh_distance.h"
 #include "vps/winding_number.h"
 
-namespace vps::inline v0 {
+namespace vps {
 namespace {
 
 /// Number of facets sampled to classify a whole patch. Assumed: enough for a mean, and fast.
@@ -780,4 +780,4 @@ std::string describe(const MeshReport& report) {
   return text + certain;
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -8,7 +8,7 @@
 #include "mesh/directions.h"
 #include "vps/mesh_distance.h"
 
-namespace vps::inline v0 {
+namespace vps {
 namespace {
 
 /// Faces whose normals differ by less are facets of one curved surface: 20 degrees, as
@@ -122,4 +122,4 @@ Mat3 MeshDistance::smoothCurvature(std::uint32_t triangle) const noexcept {
   return along * (0.5 * (S + S.transpose())) * along;
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace vps::inline v0 {
+namespace vps {
 
 std::vector<std::uint8_t> findDuplicates(const std::vector<std::array<std::uint32_t, 3>>& triangles,
                                          const std::vector<HalfEdge>& edges) {
@@ -81,4 +81,4 @@ void surveyOpenEdges(const Mesh& mesh, const std::vector<HalfEdge>& edges, MeshR
   for (const std::uint32_t v : corners) report.holes += groups.find(v) == v;
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -8,7 +8,7 @@
 
 #include "mesh/mesh_edges.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// Flags all but one of each set of triangles with the same corners; the first of the majority stays. Of
 /// back-to-back pairs none stays if an even number of other facets ends at each edge of them and of pairs
@@ -22,4 +22,4 @@ std::vector<std::uint8_t> findDuplicates(const std::vector<std::array<std::uint3
 /// Counts holes (connected open edges) and T-junctions (corners within an open edge).
 void surveyOpenEdges(const Mesh& mesh, const std::vector<HalfEdge>& edges, MeshReport& report);
 
-}  // namespace vps::inline v0
+}  // namespace vps

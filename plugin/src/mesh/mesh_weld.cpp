@@ -10,7 +10,7 @@
 
 #include "mesh/mesh_edges.h"
 
-namespace vps::inline v0 {
+namespace vps {
 namespace {
 
 struct CellHash {
@@ -111,4 +111,4 @@ Mesh welded(const Mesh& mesh, double tolerance_m) {
   return weldedWithSources(mesh, tolerance_m).mesh;
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -10,7 +10,7 @@
 #include "mesh/mesh_edges.h"
 #include "vps/mesh_repair.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 namespace {
 
@@ -173,4 +173,4 @@ Mesh sheetSurface(const Mesh& mesh) {
   return apart(once, beside, turnedFacets(once.triangles.size(), beside));
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

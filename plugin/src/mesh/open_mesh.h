@@ -4,7 +4,7 @@
 
 #include "vps/mesh.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// True if a mesh has a hole wider than that, and so is a surface that is met from both sides. The width is
 /// four times the area of the hole's lid (see lidsOf()) over the length of its border: the diameter of a
@@ -18,4 +18,4 @@ bool isOpenSurface(const Mesh& mesh, double wider_than_m);
 /// meet along an edge, or that turn over like a Moebius strip, have normals of their own there. O(n log n).
 Mesh sheetSurface(const Mesh& mesh);
 
-}  // namespace vps::inline v0
+}  // namespace vps

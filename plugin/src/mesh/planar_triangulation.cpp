@@ -8,7 +8,7 @@
 #include <unordered_map>
 #include <utility>
 
-namespace vps::inline v0 {
+namespace vps {
 namespace {
 
 using Edge = std::pair<std::uint32_t, std::uint32_t>;  ///< directed
@@ -262,4 +262,4 @@ std::optional<std::vector<std::array<std::uint32_t, 3>>> triangulate(const CutFa
   return triangulation.triangles();
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -10,7 +10,7 @@
 
 #include "vps/pose.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// What a facet is cut by. Points are numbered as in a common list.
 struct CutFacet {
@@ -27,4 +27,4 @@ struct CutFacet {
 std::optional<std::vector<std::array<std::uint32_t, 3>>> triangulate(const CutFacet& facet,
                                                                      std::span<const Vec3> points);
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -7,7 +7,7 @@
 
 #include "mesh/segment_search.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 namespace {
 
@@ -156,4 +156,4 @@ PointDepth deepestOnSegment(const Solid& solid, const Vec3& a, const Vec3& b, do
   return deepest;
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -4,7 +4,7 @@
 
 #include "vps/solid.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// Looks for points of segment ab, which is wholly inside or wholly outside, except where it passes a crack
 /// of the mesh, that are deeper than depth_m by more than certain_m; sets depth_m and p_S to the deepest
@@ -16,4 +16,4 @@ bool searchUncrossed(const Solid& solid, const Vec3& a, const Vec3& b, double ce
 /// The distance to one triangle, which is at least that to the surface.
 double distanceToTriangle(const Solid& solid, std::uint32_t triangle, const Vec3& p);
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -5,7 +5,7 @@
 
 #include "mesh/mesh_edges.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 namespace {
 
@@ -29,4 +29,4 @@ std::vector<std::array<std::uint32_t, 2>> sharpEdges(const Mesh& mesh, double an
   return sharp;
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -6,7 +6,7 @@
 #include "mesh/box_tree.h"
 #include "mesh/facet_arrangement.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 Box boxOf(const Mesh& mesh, std::uint32_t triangle, double margin_m) {
   Box box;
@@ -49,4 +49,4 @@ std::vector<FacetPair> nearPairs(const Mesh& mesh, const std::vector<std::uint32
   return pairs;
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

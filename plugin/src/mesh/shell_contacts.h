@@ -9,7 +9,7 @@
 #include "vps/box.h"
 #include "vps/mesh.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 using FacetPair = std::array<std::uint32_t, 2>;
 
@@ -27,4 +27,4 @@ std::vector<Box> boxesOf(const Mesh& mesh, const std::vector<std::uint32_t>& she
 std::vector<FacetPair> nearPairs(const Mesh& mesh, const std::vector<std::uint32_t>& shell_of,
                                  double touch_m);
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -10,7 +10,7 @@
 #include "mesh/shell_union.h"
 #include "mesh/triangle_distance.h"
 
-namespace vps::inline v0 {
+namespace vps {
 namespace {
 
 /// What may be spent on cutting for this.
@@ -84,4 +84,4 @@ bool ShellNesting::isOn(const Vec3& p, std::uint32_t shell) const {
                                  [&](std::uint32_t i) { return shell_of_[i] != shell || !isNear(i); });
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

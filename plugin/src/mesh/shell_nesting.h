@@ -10,7 +10,7 @@
 #include "vps/mesh.h"
 #include "vps/winding_number.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// Shells are cut along each other as unite() cuts them. No cut piece of a shell crosses another shell, so
 /// that one point of each patch of pieces tells where the patch is. Which way shells face does not matter.
@@ -47,4 +47,4 @@ class ShellNesting {
   std::vector<std::optional<WindingNumber>> windings_;  // by shell: made at first need
 };
 
-}  // namespace vps::inline v0
+}  // namespace vps

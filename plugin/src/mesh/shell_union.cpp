@@ -18,7 +18,7 @@
 #include "mesh/triangle_distance.h"
 #include "vps/winding_number.h"
 
-namespace vps::inline v0 {
+namespace vps {
 namespace {
 
 constexpr std::int64_t kAnglesInStep = 16;  ///< solid angles of triangles that are as much work
@@ -337,4 +337,4 @@ bool haveContact(const Mesh& mesh, const std::vector<std::uint32_t>& shell_of) {
   return !cut || countMet(*cut, shell_of) > 0;
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -8,7 +8,7 @@
 
 #include "vps/mesh.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// Facets of different shells that are nearer to each other than this share of the greatest coordinate touch:
 /// four roundings of a float. Larger gaps may be meant.
@@ -40,4 +40,4 @@ ShellUnion unite(const Mesh& mesh, const std::vector<std::uint32_t>& shell_of);
 /// where that is not known.
 bool haveContact(const Mesh& mesh, const std::vector<std::uint32_t>& shell_of);
 
-}  // namespace vps::inline v0
+}  // namespace vps

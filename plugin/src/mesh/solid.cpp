@@ -10,7 +10,7 @@
 #include "mesh/sure_facets.h"
 #include "vps/mesh_repair.h"
 
-namespace vps::inline v0 {
+namespace vps {
 namespace {
 
 constexpr double kInPlane = 1e-9;  ///< a sine: above rounding, below any angle of a mesh
@@ -111,4 +111,4 @@ bool Solid::isInside(const Vec3& p) const noexcept {
   return interior_ != nullptr ? interior_->isInside(p) : signedDistance(p) < 0;
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

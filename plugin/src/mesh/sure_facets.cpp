@@ -10,7 +10,7 @@
 #include "mesh/interior.h"
 #include "mesh/mesh_edges.h"
 
-namespace vps::inline v0 {
+namespace vps {
 namespace {
 
 /// Beyond this margin a winding number may change by crossing facets inside the solid, from 2 to 1.
@@ -108,4 +108,4 @@ std::vector<float> sureDistances(const MeshDistance& surface, const Interior& in
   return sure_m;
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -8,7 +8,7 @@
 #include "vps/mesh.h"
 #include "vps/mesh_distance.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 class Interior;
 
@@ -24,4 +24,4 @@ std::vector<std::uint8_t> regularVertices(const Mesh& mesh);
 /// Two winding numbers a triangle; parallel.
 std::vector<float> sureDistances(const MeshDistance& surface, const Interior& interior);
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -5,7 +5,7 @@
 
 #include "vps/mesh_distance.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// Closest point of segment ab; feature is that of the segment, of a, or of b.
 inline TrianglePoint closestOnSegment(const Vec3& p, const Vec3& a, const Vec3& b, int segment, int at_a,
@@ -57,4 +57,4 @@ inline TrianglePoint closestOnTriangleInline(const Vec3& p, const Vec3& a, const
   return *best;
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -3,7 +3,7 @@
 
 #include "mesh/directions.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 std::vector<Vec3> angleWeightedNormals(const Mesh& mesh, std::span<const Vec3> facet_normals) {
   std::vector<Vec3> sums(mesh.vertices.size(), Vec3::Zero());
@@ -18,4 +18,4 @@ std::vector<Vec3> angleWeightedNormals(const Mesh& mesh, std::span<const Vec3> f
   return sums;
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

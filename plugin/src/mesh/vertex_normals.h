@@ -6,7 +6,7 @@
 
 #include "vps/mesh.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// For each vertex the sum of the normals of its facets, each times the facet's angle there: a normal that
 /// does not depend on how faces are cut into facets. Not of unit length; zero at a blade, whose facets
@@ -14,4 +14,4 @@ namespace vps::inline v0 {
 /// @param facet_normals  unit, or zero for a facet that has none
 std::vector<Vec3> angleWeightedNormals(const Mesh& mesh, std::span<const Vec3> facet_normals);
 
-}  // namespace vps::inline v0
+}  // namespace vps

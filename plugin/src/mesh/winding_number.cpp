@@ -6,7 +6,7 @@
 #include <numbers>
 #include <numeric>
 
-namespace vps::inline v0 {
+namespace vps {
 namespace {
 
 constexpr std::uint32_t kLeafTriangles = 8;
@@ -327,4 +327,4 @@ double WindingNumber::exact(const Vec3& p) const noexcept {
   return all.windings();
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -8,7 +8,7 @@
 
 #include "mesh/mesh_edges.h"
 
-namespace vps::inline v0 {
+namespace vps {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
@@ -83,4 +83,4 @@ double WindingSlope::bound(const Box& box) const noexcept {
   return sum / (4 * std::numbers::pi);
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

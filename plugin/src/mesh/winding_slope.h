@@ -8,7 +8,7 @@
 
 #include "vps/mesh.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// A bound of the gradient of the winding number away from triangles. The gradient is the field of a current
 /// along the mesh's border (Biot and Savart), so it is at most the sum of length / distance^2 over border
@@ -31,4 +31,4 @@ class WindingSlope {
   std::vector<std::pair<Box, double>> edges_;  // box and length [m]
 };
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -5,7 +5,7 @@
 #include "part/cache_file.h"
 #include "part/cache_folder.h"
 
-namespace vps::inline v0 {
+namespace vps {
 namespace {
 
 namespace fs = std::filesystem;
@@ -87,4 +87,4 @@ void ByteCache::keep(std::string_view made_from, std::string_view bytes) const {
   });
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -3,7 +3,7 @@
 
 #include <cstdio>
 
-namespace vps::inline v0 {
+namespace vps {
 
 std::string nameOf(const Digest& key) {
   std::array<char, 33> text;
@@ -12,4 +12,4 @@ std::string nameOf(const Digest& key) {
   return text.data();
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -14,7 +14,7 @@
 
 #include "vps/mesh.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 using Digest = std::array<std::uint64_t, 2>;
 
@@ -101,4 +101,4 @@ class HashedWriter {
   Hash hash_;
 };
 
-}  // namespace vps::inline v0
+}  // namespace vps

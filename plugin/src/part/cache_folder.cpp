@@ -7,7 +7,7 @@
 
 #include "vps/write_file.h"
 
-namespace vps::inline v0 {
+namespace vps {
 namespace {
 
 namespace fs = std::filesystem;
@@ -118,4 +118,4 @@ std::uint64_t CacheFolder::removeLongestUnused(const fs::path& newest) const {
   return bytes;
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

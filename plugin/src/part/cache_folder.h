@@ -8,7 +8,7 @@
 #include <mutex>
 #include <string>
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// Thread-safe. Several programs may use one folder: a file that another one removes is only built again.
 class CacheFolder {
@@ -43,4 +43,4 @@ class CacheFolder {
   std::uint64_t bytes_ = 0;  ///< of the folder, as far as known: others may write to it
 };
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -7,7 +7,7 @@
 #include "pointshell/shell_samples.h"
 #include "voxmap/map_limits.h"
 
-namespace vps::inline v0 {
+namespace vps {
 namespace {
 
 /// Largest piece of surface over the size of a brick, and the greatest number of pieces that large triangles
@@ -101,4 +101,4 @@ double ModelEstimate::shellBytes(double point_count) {
                                              (sizeof(ShellBlock) * 17.0 / 16 + 2 * sizeof(ShellNode)) / 16);
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

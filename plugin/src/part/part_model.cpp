@@ -6,7 +6,7 @@
 #include "mesh/interior.h"
 #include "mesh/open_mesh.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 namespace {
 
@@ -47,4 +47,4 @@ std::shared_ptr<const PartModel> withShell(const PartModel& model, std::shared_p
   return other;
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -5,7 +5,7 @@
 
 #include "pointshell/shell_hierarchy.h"
 
-namespace vps::inline v0 {
+namespace vps {
 namespace {
 
 /// Incremented when the file's layout changes, or sampling gives other bits.
@@ -80,4 +80,4 @@ bool writeShell(const PointShell& shell, const std::filesystem::path& file, cons
   return writer.finish();
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

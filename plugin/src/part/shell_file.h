@@ -9,7 +9,7 @@
 #include "part/cache_file.h"
 #include "vps/pointshell.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// Of everything that determines the shell of a mesh's Solid.
 Digest shellKeyOf(const Mesh& mesh, const PointShellSettings& settings);
@@ -18,4 +18,4 @@ std::optional<PointShell> readShell(const std::filesystem::path& file, const Dig
 /// False if the file could not be written.
 bool writeShell(const PointShell& shell, const std::filesystem::path& file, const Digest& key);
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -13,7 +13,7 @@
 #include "voxmap/voxmap_access.h"
 #include "vps/solid.h"
 
-namespace vps::inline v0 {
+namespace vps {
 namespace {
 
 namespace fs = std::filesystem;
@@ -227,4 +227,4 @@ PointShell VoxMapCache::buildShell(const Mesh& mesh, const Solid& solid, const P
       [&](const PointShell& made, const fs::path& to) { return writeShell(made, to, key); });
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -17,7 +17,7 @@
 #include "vps/pointshell.h"
 #include "vps/write_file.h"
 
-namespace vps::inline v0 {
+namespace vps {
 namespace {
 
 static_assert(std::endian::native == std::endian::little,
@@ -308,4 +308,4 @@ PointShell loadPly(const std::string& file) {
   return shell;
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

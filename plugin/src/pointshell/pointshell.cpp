@@ -12,7 +12,7 @@
 #include "vps/shell_estimate.h"
 #include "vps/solid.h"
 
-namespace vps::inline v0 {
+namespace vps {
 namespace {
 
 /// Face points per square of spacing (measured 1.25), rounded up for the estimate.
@@ -161,4 +161,4 @@ PointShell mergedShells(const std::vector<const PointShell*>& shells, const std:
   return merged;
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -5,7 +5,7 @@
 #include "mesh/mesh_edges.h"
 #include "pointshell/shell_samples.h"
 
-namespace vps::inline v0 {
+namespace vps {
 namespace {
 
 /// Appends samples of the border; those of its corners face the mean of the ways out of the edges there. Each
@@ -39,4 +39,4 @@ void addOtherSides(const Mesh& mesh, double step_m, std::vector<ShellSample>& sa
   addBorder(welded(mesh), step_m, samples);
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -6,7 +6,7 @@
 #include "pointshell/shell_hierarchy.h"
 #include "vps/shell_crop.h"
 
-namespace vps::inline v0 {
+namespace vps {
 namespace {
 
 /// The number of kept entries before each index, and the total.
@@ -70,4 +70,4 @@ PointShell croppedShell(const PointShell& shell, const std::vector<Box>& boxes_P
   return out;
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

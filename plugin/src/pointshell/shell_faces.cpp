@@ -12,7 +12,7 @@
 #include "pointshell/shell_samples.h"
 #include "vps/assert.h"
 
-namespace vps::inline v0 {
+namespace vps {
 namespace {
 
 /// Least gap over spacing (assumed): leaves a quarter of the spacing to the fill pass.
@@ -322,4 +322,4 @@ void sampleFaces(const Mesh& mesh, const std::vector<Vec3>& normals, double spac
   sampler.dealOutArea();
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -6,7 +6,7 @@
 #include "mesh/mesh_edges.h"
 #include "pointshell/shell_samples.h"
 
-namespace vps::inline v0 {
+namespace vps {
 namespace {
 
 constexpr std::uint32_t kNone = 0xffffffff;
@@ -210,4 +210,4 @@ std::vector<ShellSample> sampleFeatures(const Mesh& mesh, const std::vector<Vec3
   return FeatureSampler(mesh, normals, step_m, tolerance_m, edge_angle_rad).run();
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -11,7 +11,7 @@
 
 #include "vps/pose.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// Points by index, in cubic cells of a hash table with open addressing. Insertion never moves a point;
 /// visits follow a fixed order, so results depend on the input alone.
@@ -98,4 +98,4 @@ class PointGrid {
   std::vector<Entry> entries_;
 };
 
-}  // namespace vps::inline v0
+}  // namespace vps

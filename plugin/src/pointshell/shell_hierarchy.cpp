@@ -7,7 +7,7 @@
 
 #include "pointshell/shell_grid.h"
 
-namespace vps::inline v0 {
+namespace vps {
 namespace {
 
 constexpr std::size_t kLeafPoints = kLanes;
@@ -247,4 +247,4 @@ std::vector<std::uint32_t> progressiveOrder(std::span<const Vec3> points) {
   return order;
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

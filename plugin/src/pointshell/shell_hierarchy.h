@@ -8,7 +8,7 @@
 
 #include "vps/pointshell.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// The permutation that sorts points along a k-d tree with the hierarchy's leaves: sortedOrder()[i] is the
 /// point that goes to index i. Deterministic. O(n log n).
@@ -27,4 +27,4 @@ void layOutBlocks(PointShell& shell);
 /// point is within 2 R of it, while R is larger than the points' own spacing.
 std::vector<std::uint32_t> progressiveOrder(std::span<const Vec3> points);
 
-}  // namespace vps::inline v0
+}  // namespace vps

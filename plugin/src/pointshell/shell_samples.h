@@ -6,7 +6,7 @@
 
 #include "vps/mesh.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// Spacing of points on edges over the spacing on faces (assumed): tight fits touch at edges, and their cost
 /// is proportional to their length. A vertex of a chain is left out where that moves the rim by less than
@@ -49,4 +49,4 @@ void sampleFaces(const Mesh& mesh, const std::vector<Vec3>& normals, double spac
 /// sheets meet, are no border.
 void addOtherSides(const Mesh& mesh, double step_m, std::vector<ShellSample>& samples);
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -15,7 +15,7 @@
 #include "vps/query.h"
 #include "vps/query_memory.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// The walk with temporal coherence; see QueryMemory. Lengths are in voxels.
 template <typename Consume>
@@ -258,4 +258,4 @@ inline void setDistance(const VoxMap& map, const Reading& reading, float least_r
   result.is_beyond_band = skipped_m < read_m || !(read_m < map.band_m());
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -9,7 +9,7 @@
 #include "query/leaf_walk.h"
 #include "voxmap/voxmap_sampler.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// A saturated reading means only "far": it is never a contact, however large the cutoff.
 inline double usedCutoff(const VoxMap& map, double cutoff_m) noexcept {
@@ -83,4 +83,4 @@ class ContactCollector {
   float least_ = std::numeric_limits<float>::infinity();
 };
 
-}  // namespace vps::inline v0
+}  // namespace vps

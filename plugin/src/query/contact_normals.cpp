@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "query/contact_normals.h"
 
-namespace vps::inline v0 {
+namespace vps {
 namespace {
 
 float mix(float a, float b, float t) {
@@ -76,4 +76,4 @@ int ContactNormals::compute() noexcept {
   return count_;
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -5,7 +5,7 @@
 #include "query/leaf_walk.h"
 #include "vps/query.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// The reading of a lane [quanta], extrapolated along the trilinear slope from the step to which its point
 /// was rounded to the point itself: a stiff contact would show the steps of 1/16384 voxel (15 nm at 0.25 mm).
@@ -46,4 +46,4 @@ class ContactNormals {
   float n_[3][kMaxCount];  // gradients, of any length [quanta]
 };
 
-}  // namespace vps::inline v0
+}  // namespace vps

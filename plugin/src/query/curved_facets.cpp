@@ -5,7 +5,7 @@
 
 #include "vps/contact_tolerances.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 namespace {
 
@@ -55,4 +55,4 @@ std::vector<std::uint8_t> findCurvedFacets(std::span<const HalfEdge> edges, std:
   return is_curved;
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -10,7 +10,7 @@
 #include "vps/contact_tolerances.h"
 #include "vps/pose.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// Facets that meet at less than 8 degrees belong to one curved surface if one of them has such a neighbour
 /// on another side, too. Where neither has, the edge is a lone kink between two planes.
@@ -25,4 +25,4 @@ std::vector<std::uint8_t> findCurvedFacets(std::span<const HalfEdge> edges, std:
 /// @param width_m  of the narrower one, across the edge
 bool isSmoothEdge(const Vec3& normal0, const Vec3& normal1, bool is_one_curved, double width_m);
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -10,7 +10,7 @@
 #include "vps/contact_tolerances.h"
 #include "vps/pose.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// All directions within an angle of an axis.
 struct DirectionCone {
@@ -55,4 +55,4 @@ inline bool areOpposite(const DirectionCone& a, const Vec3& axis, const Directio
   return left_rad > 0 && -axis.dot(b.axis) > 1 - square / 2 + square * square / 24;  // at least the cosine
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

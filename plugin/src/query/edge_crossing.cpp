@@ -14,7 +14,7 @@
 #include "query/moving_features.h"
 #include "vps/contact_tolerances.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 namespace {
 
@@ -272,4 +272,4 @@ void findCrossings(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_0
   sortByEdges(out, first);
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -9,7 +9,7 @@
 
 #include "vps/pose.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// An end of an edge.
 struct EdgeEnd {
@@ -33,4 +33,4 @@ void forEachJoint(std::vector<EdgeEnd>& ends, Visit visit) {
   }
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -8,7 +8,7 @@
 #include "query/feature_points.h"
 #include "vps/edge_tree.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// Two poses of a part in another; its points move on straight lines.
 struct Sweep {
@@ -111,4 +111,4 @@ class EdgePairSearch {
   double turn_rad_, reach_m_, least_sine_;
 };
 
-}  // namespace vps::inline v0
+}  // namespace vps

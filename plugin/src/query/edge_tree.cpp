@@ -8,7 +8,7 @@
 
 #include "vps/mesh.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 EdgeTree::EdgeTree(std::vector<Line> lines) : lines_(std::move(lines)) {
   if (!lines_.empty()) build();
@@ -89,4 +89,4 @@ bool EdgeTree::isNear(std::uint32_t edge, const Vec3& p, double radius_m) const 
   return (p - s.from - share * way).norm() <= radius_m;
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -9,7 +9,7 @@
 #include "query/passed_edge.h"
 #include "vps/contact_tolerances.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 using Kind = FeatureContact::Kind;
 
@@ -209,4 +209,4 @@ bool measureAgain(const FeatureSet& part0, const FeatureSet& part1, const Pose& 
   return true;
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -5,7 +5,7 @@
 #include "query/moving_features.h"
 #include "vps/feature_motion.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// The contact of two features that were carried a share of their way, with its plane, where the features
 /// touch along the line between their nearest points, or, near an edge, in the plane of the face that they
@@ -24,4 +24,4 @@ bool findCrossing(const FeatureSet& part0, const FeatureSet& part1, const std::u
 double distanceAt(const FeatureSet& part0, const FeatureSet& part1, const FeatureContact& contact,
                   const Pose& X_01);
 
-}  // namespace vps::inline v0
+}  // namespace vps

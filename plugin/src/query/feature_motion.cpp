@@ -9,7 +9,7 @@
 #include "query/moving_features.h"
 #include "vps/contact_tolerances.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 namespace {
 
@@ -293,4 +293,4 @@ void FeatureMotion::checkStretch(const FeatureSet& part0, const FeatureSet& part
   }
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -6,7 +6,7 @@
 #include "mesh/triangle_distance.h"
 #include "vps/contact_tolerances.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 Nearest nearestOfSegments(const Vec3& p1, const Vec3& q1, const Vec3& p2, const Vec3& q2) {
   const Vec3 d1 = q1 - p1, d2 = q2 - p2, r = p1 - p2;
@@ -52,4 +52,4 @@ int pointsOf(const FeatureSet& part, Kind kind, int i, std::uint32_t feature, Ve
   return 3;
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

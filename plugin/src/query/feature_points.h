@@ -6,7 +6,7 @@
 
 #include "vps/feature_motion.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// The nearest points of two features.
 struct Nearest {
@@ -28,4 +28,4 @@ Nearest nearestOf(FeatureContact::Kind kind, const Vec3 (&a)[3], const Vec3 (&b)
 /// @param i  part 0 or 1
 int pointsOf(const FeatureSet& part, FeatureContact::Kind kind, int i, std::uint32_t feature, Vec3 (&out)[3]);
 
-}  // namespace vps::inline v0
+}  // namespace vps

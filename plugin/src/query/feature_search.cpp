@@ -4,7 +4,7 @@
 #include "query/touch_search.h"
 #include "vps/feature_motion.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 void FeatureMotion::search(const FeatureSet& part0, const FeatureSet& part1) {
   using Kind = FeatureContact::Kind;
@@ -31,4 +31,4 @@ void FeatureMotion::search(const FeatureSet& part0, const FeatureSet& part1) {
       .run([&](std::uint32_t j, std::uint32_t i) { addIfNear(Kind::EdgeOnEdge, i, j); });
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -13,7 +13,7 @@
 #include "vps/contact_tolerances.h"
 #include "vps/edge_tree.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 struct FeatureSet::Trees {
   explicit Trees(const FeatureSet& part) : edges(linesOf(part)) {
@@ -199,4 +199,4 @@ const FacetTree& FeatureSet::facetTree() const {
   return trees_->facets;
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

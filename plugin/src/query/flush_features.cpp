@@ -6,7 +6,7 @@
 
 #include "vps/contact_tolerances.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 double distanceToSide(const FeatureSet& part, std::uint32_t facet, std::size_t k, const Vec3& p) {
   const auto& t = part.facets()[facet];
@@ -90,4 +90,4 @@ bool isLeftToPoints(const FeatureSet& part0, const FeatureSet& part1, const Feat
   return isFlushOn(pair, pair.facet) || slidesOverBorder(pair, on_facet);
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

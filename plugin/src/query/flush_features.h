@@ -5,7 +5,7 @@
 
 #include "vps/feature_motion.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// True for features that are left to the points.
 /// @param R_10  rotation from the frame of part 0 to that of part 1
@@ -17,4 +17,4 @@ bool isLeftToPoints(const FeatureSet& part0, const FeatureSet& part1, const Feat
 /// @param p  a point in the part's frame
 double distanceToSide(const FeatureSet& part, std::uint32_t facet, std::size_t k, const Vec3& p);
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -10,7 +10,7 @@
 #include "vps/pointshell.h"
 #include "vps/voxmap.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// A map, a shell and a pose, prepared for reading.
 struct Reading {
@@ -188,4 +188,4 @@ float walkNear(const Reading& reading, std::uint32_t root, float cutoff, Take ta
   return least_skipped;
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

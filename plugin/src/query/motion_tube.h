@@ -7,7 +7,7 @@
 
 #include "query/way.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// A motion that is expected of two parts, and a margin around it. A list of what comes near on this motion
 /// stays complete while the parts follow it to within the margin. In a thread that turns, hundred times more
@@ -105,4 +105,4 @@ class MotionTube {
   double slack_m_ = 0, bend_m_ = 0;
 };
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -5,7 +5,7 @@
 
 #include "vps/contact_tolerances.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 namespace {
 
@@ -96,4 +96,4 @@ bool findReach(Kind kind, const Features& f, double least_m, double start_m, Rea
   return true;
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -4,7 +4,7 @@
 
 #include "query/feature_points.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// Points of part 0 and part 1, in the frame of part 1. Those of part 0 move.
 struct Features {
@@ -42,4 +42,4 @@ struct Reach {
 /// @param reach  holds their nearest points at the start
 bool findReach(FeatureContact::Kind kind, const Features& f, double least_m, double start_m, Reach& reach);
 
-}  // namespace vps::inline v0
+}  // namespace vps

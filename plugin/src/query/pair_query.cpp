@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace vps::inline v0 {
+namespace vps {
 
 Wrench bothWays(const Wrench& F_B_A, const Wrench& F_A_B, const Mat3& R_AB) {
   return F_B_A * 0.5 + rotated(R_AB, -F_A_B) * 0.5;  // B gets the opposite of what A gets
@@ -35,4 +35,4 @@ QueryResult queryBothSides(const PairSide& a, const PairSide& b, const Pose& X_A
   return result;
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

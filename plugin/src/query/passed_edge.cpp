@@ -8,7 +8,7 @@
 #include "query/touch_cone.h"
 #include "vps/contact_tolerances.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 namespace {
 
@@ -53,4 +53,4 @@ BorderOwner ownerAtBorder(const FeatureSet& part, std::uint32_t facet, const Vec
   return isOver(1) && can_touch ? BorderOwner::Neighbour : BorderOwner::Edge;
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -9,7 +9,7 @@
 #include "vps/feature_set.h"
 #include "vps/pose.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 enum class BorderOwner {
   Facet,      ///< the corner passes the neighbour's plane above the facet, and is then over it
@@ -31,4 +31,4 @@ struct PassingCorner {
 BorderOwner ownerAtBorder(const FeatureSet& part, std::uint32_t facet, const Vec3& q,
                           const PassingCorner& corner, double tolerated_m);
 
-}  // namespace vps::inline v0
+}  // namespace vps

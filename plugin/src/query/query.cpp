@@ -14,7 +14,7 @@
 #include "voxmap/voxmap_layout.h"
 #include "voxmap/voxmap_sampler.h"
 
-namespace vps::inline v0 {
+namespace vps {
 namespace {
 
 /// The least lower bound of the true distance over a shell that is entirely beyond the band: spheres are
@@ -126,4 +126,4 @@ QueryResult queryDistance(const VoxMap& map, const PointShell& shell, const Pose
   return result;
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

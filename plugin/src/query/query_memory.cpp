@@ -6,7 +6,7 @@
 
 #include "query/coherent_walk.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 QueryMemory::QueryMemory(const VoxMap& map, const PointShell& shell)
     : map_(map), shell_(&shell), blocks_(shell.blocks.data()) {
@@ -48,4 +48,4 @@ bool QueryMemory::isFor(const VoxMap& map, const PointShell& shell) const noexce
          row_next_.size() == rowCount(shell);
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

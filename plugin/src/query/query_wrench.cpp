@@ -4,7 +4,7 @@
 #include "query/wrench_collector.h"
 #include "vps/query.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 QueryResult queryWrench(const VoxMap& map, const PointShell& shell, const Pose& X_MP,
                         const QueryOptions& options, double k_N_per_m3, const Vec3& p_MO, TouchSummary& out,
@@ -38,4 +38,4 @@ Wrench penaltyWrench(std::span<const Contact> contacts, double k_N_per_m3, const
   return F_O_M;
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -10,7 +10,7 @@
 #include "vps/direction_cell.h"
 #include "vps/representative_points.h"
 
-namespace vps::inline v0 {
+namespace vps {
 namespace {
 
 constexpr double kEdgeShare = 0.25;  // of a tile's size. assumed
@@ -169,4 +169,4 @@ void RepresentativePoints::addLevels(double tile_size_m) {
   }
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -8,7 +8,7 @@
 #include "query/coherent_walk.h"
 #include "query/contact_collector.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 std::uint32_t RepresentativePoints::groupOf(std::uint32_t id) const noexcept {
   if (group_of_[id] == kNoGroup) return kNone;
@@ -281,4 +281,4 @@ QueryResult RepresentativePoints::find(const VoxMap& map, const Pose& X_MP, cons
   return result;
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -8,7 +8,7 @@
 
 #include "mesh/box_tree.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 namespace {
 
@@ -126,4 +126,4 @@ bool SpinClearance::staysApart(const FeatureSet& part0, const FeatureSet& part1,
   return helps;
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

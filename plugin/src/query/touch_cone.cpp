@@ -6,7 +6,7 @@
 
 #include "vps/contact_tolerances.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 namespace {
 
@@ -69,4 +69,4 @@ std::optional<DirectionCone> touchCone(std::span<const Vec3> rays, double slope)
   return DirectionCone::around(axis, std::acos(std::clamp(least, -1.0, 1.0)) + kSinParallel);
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -8,7 +8,7 @@
 
 #include "query/direction_cone.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// True if a corner's surface rises from a plane with this normal all around, or falls from it by no more
 /// than the slope. A corner touches a facet of another part only then: a nut's crest cannot touch the flank
@@ -23,4 +23,4 @@ inline bool risesFrom(std::span<const Vec3> rays, const Vec3& n, double slope) {
 /// O(rays^3), of which the first twelve are used.
 std::optional<DirectionCone> touchCone(std::span<const Vec3> rays, double slope);
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -9,7 +9,7 @@
 #include "vps/contact_tolerances.h"
 #include "vps/feature_set.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 namespace {
 
@@ -156,4 +156,4 @@ void findTouchPairs(const FeatureSet& with_corners, const FeatureSet& with_facet
   TouchSearch(with_corners, with_facets, X_fc, margin_m, slack_rad, found).run();
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

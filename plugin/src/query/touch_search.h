@@ -9,7 +9,7 @@
 #include "query/edge_pair_search.h"
 #include "vps/mesh.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 class FeatureSet;
 
@@ -71,4 +71,4 @@ struct TouchPair {
 void findTouchPairs(const FeatureSet& with_corners, const FeatureSet& with_facets, const Sweep& X_fc,
                     double margin_m, double slack_rad, std::vector<TouchPair>& found);
 
-}  // namespace vps::inline v0
+}  // namespace vps

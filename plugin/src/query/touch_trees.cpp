@@ -11,7 +11,7 @@
 #include "vps/contact_tolerances.h"
 #include "vps/feature_set.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 namespace {
 
@@ -183,4 +183,4 @@ void CornerTree::build(const FeatureSet& part) {
   for (std::uint32_t& i : tree.order) i = corners[i];
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -10,7 +10,7 @@
 #include "vps/feature_motion.h"
 #include "vps/pose.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// A ball around a part, in the part's frame.
 struct Ball {
@@ -94,4 +94,4 @@ class Way {
   double radius_m_ = 0;
 };
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -14,7 +14,7 @@
 #include "query/leaf_walk.h"
 #include "vps/query.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 inline double sumOfLanes(const double lanes[kLanes]) {
   double sum[kLanes];
@@ -177,4 +177,4 @@ class WrenchCollector {
   float least_ = std::numeric_limits<float>::infinity();
 };
 
-}  // namespace vps::inline v0
+}  // namespace vps

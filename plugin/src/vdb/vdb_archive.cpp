@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace vps::inline v0 {
+namespace vps {
 
 std::string VdbArchive::Entry::name() const {
   return openvdb::io::GridDescriptor::nameAsString(descriptor.uniqueName());
@@ -60,4 +60,4 @@ openvdb::GridBase::Ptr VdbArchive::read(std::size_t index) {
   return entry.grid;
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

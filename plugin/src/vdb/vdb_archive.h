@@ -11,7 +11,7 @@
 
 #include "vdb/vdb_format.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// Throws exceptions of OpenVDB and of streams. OpenVDB does not check whether a read was complete; the
 /// stream does.
@@ -41,4 +41,4 @@ class VdbArchive : private openvdb::io::Archive {
   std::vector<Entry> entries_;
 };
 
-}  // namespace vps::inline v0
+}  // namespace vps

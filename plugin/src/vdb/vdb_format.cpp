@@ -5,7 +5,7 @@
 
 #include "vps/load_error.h"
 
-namespace vps::inline v0 {
+namespace vps {
 namespace {
 
 constexpr std::string_view kMark = "vps-end1";
@@ -45,4 +45,4 @@ Origin originOf(std::string_view bytes) {
   return has_traces ? Origin::Changed : Origin::Others;
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -13,7 +13,7 @@
 
 #include "voxmap/voxmap_layout.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 inline constexpr const char* kSurface = "surface";
 inline constexpr const char* kCenter = "vps_center";
@@ -60,4 +60,4 @@ inline Index3 fromVdb(const openvdb::Coord& c) {
   return {c.x(), c.y(), c.z()};
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

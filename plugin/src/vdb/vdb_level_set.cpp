@@ -12,7 +12,7 @@
 #include "voxmap/map_limits.h"
 #include "vps/load_error.h"
 
-namespace vps::inline v0 {
+namespace vps {
 namespace {
 
 using openvdb::DoubleGrid;
@@ -199,4 +199,4 @@ LevelSet levelSetOf(VdbArchive& archive, const std::string& file, const std::str
   return asLevelSet(asFloats(archive.read(static_cast<std::size_t>(&entry - entries.data()))), file);
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -6,7 +6,7 @@
 
 #include "vdb/vdb_archive.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 struct LevelSet {
   openvdb::FloatGrid::Ptr grid;
@@ -22,4 +22,4 @@ LevelSet levelSetOf(VdbArchive& archive, const std::string& file, const std::str
 /// Takes a grid of floats as a level set; the file's name is for errors.
 LevelSet asLevelSet(const openvdb::FloatGrid::Ptr& grid, const std::string& file);
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -12,7 +12,7 @@
 #include "voxmap/map_limits.h"
 #include "vps/load_error.h"
 
-namespace vps::inline v0 {
+namespace vps {
 namespace {
 
 using Accessor = openvdb::FloatGrid::ConstAccessor;
@@ -166,4 +166,4 @@ void readNodes(const openvdb::FloatTree& tree, double quantum_m, const std::stri
   Bricks(tree, quantum_m, file, layout).run();
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

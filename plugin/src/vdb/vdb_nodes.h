@@ -4,7 +4,7 @@
 
 #include "vdb/vdb_format.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// Determines the directory: all cells with a value below the background, one more below for borders, and one
 /// empty cell around. Throws LoadError if it would not fit in memory.
@@ -14,4 +14,4 @@ void layOut(const openvdb::FloatTree& tree, double quantum_m, const std::string&
 /// LoadError before memory is allocated if they would not fit. O(cells + nodes of bricks), parallel.
 void readNodes(const openvdb::FloatTree& tree, double quantum_m, const std::string& file, VoxLayout& layout);
 
-}  // namespace vps::inline v0
+}  // namespace vps

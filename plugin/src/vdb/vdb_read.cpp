@@ -15,7 +15,7 @@
 #include "vps/load_error.h"
 #include "vps/vdb.h"
 
-namespace vps::inline v0 {
+namespace vps {
 namespace {
 
 [[noreturn]] void refuseDamaged(const std::string& file) {
@@ -174,4 +174,4 @@ VoxMap loadVdb(const std::string& file, const std::string& grid) {
   return mountVoxMap(VoxMapAccess::empty(settings), PlacedMap{&map, placed.X_FM});
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

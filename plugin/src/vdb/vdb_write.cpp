@@ -11,7 +11,7 @@
 #include "vps/vdb.h"
 #include "vps/write_file.h"
 
-namespace vps::inline v0 {
+namespace vps {
 namespace {
 
 constexpr int kOwnNodes = kBrick * kBrick * kBrick;
@@ -127,4 +127,4 @@ void saveVdb(const VoxMap& map, const std::string& file) {
   writeGrids(grids, file);
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

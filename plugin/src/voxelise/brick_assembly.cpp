@@ -5,7 +5,7 @@
 #include <bit>
 #include <cmath>
 
-namespace vps::inline v0 {
+namespace vps {
 namespace {
 
 constexpr auto kFarBits = std::bit_cast<std::uint32_t>(kFar);
@@ -131,4 +131,4 @@ void fillEmptyCells(VoxLayout& layout) {
   Filler(layout).run();
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -7,7 +7,7 @@
 
 #include "voxmap/voxmap_layout.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// Marks nodes beyond the band that have no sign yet.
 inline constexpr float kFar = FLT_MAX;
@@ -42,4 +42,4 @@ class BrickWriter {
 /// Decides whether empty cells are outside or inside, after all bricks are stored.
 void fillEmptyCells(VoxLayout& layout);
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -5,7 +5,7 @@
 #include "vps/load_error.h"
 #include "vps/solid.h"
 
-namespace vps::inline v0 {
+namespace vps {
 namespace {
 
 VoxMap mapOf(const PlacedMesh& part, const VoxMapSettings& settings) {
@@ -57,4 +57,4 @@ VoxMap mountVoxMap(const VoxMap& cooked, const PlacedSolid& part) {
   return mounted(cooked, part);
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

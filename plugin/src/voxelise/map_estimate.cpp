@@ -7,7 +7,7 @@
 
 #include "voxmap/map_limits.h"
 
-namespace vps::inline v0 {
+namespace vps {
 namespace {
 
 /// Bytes for a map of this surface: bricks that meet a slab as thick as the band and a brick's own slant, and
@@ -62,4 +62,4 @@ void requireFits(const Mesh& mesh, const VoxMapSettings& settings, const std::st
   requireMemory(bytesAt(settings.voxel_m), what_for, remedy, "", part);
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

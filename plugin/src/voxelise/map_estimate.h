@@ -6,10 +6,10 @@
 
 #include "vps/map_estimate.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// Throws LoadError for settings that no map can have and for a mesh whose map would not fit in memory; the
 /// message names a voxel size that would fit.
 void requireFits(const Mesh& mesh, const VoxMapSettings& settings, const std::string& part);
 
-}  // namespace vps::inline v0
+}  // namespace vps

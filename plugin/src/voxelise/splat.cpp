@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vps::inline v0 {
+namespace vps {
 namespace {
 
 /// How far beyond its region a feature is still used: more than rounding moves a border, so that no node
@@ -294,4 +294,4 @@ void Splatter::splat(std::uint32_t feature, const Vec3& origin, float* tile) {
   });
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

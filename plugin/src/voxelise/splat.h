@@ -12,7 +12,7 @@
 #include "voxelise/splat_rows.h"
 #include "voxelise/surface_features.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 using Tile = std::array<float, std::size_t{kTileNodes} * kTileNodes * kTileNodes>;
 constexpr int tileIndex(int x, int y, int z) {
@@ -52,4 +52,4 @@ class Splatter {
   std::vector<Vec3> spokes_;
 };
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -5,7 +5,7 @@
 
 #include "voxelise/splat_rows_kernel.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 #ifdef VPS_SPLAT_AVX2
 int findRowsAvx2(const SplatRegion& region, SplatRow* rows);
@@ -47,4 +47,4 @@ int findRows(const SplatRegion& region, SplatRow* rows) {
   return find(region, rows);
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

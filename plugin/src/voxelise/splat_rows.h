@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// Edge of the cube of cells that is processed at once, and nodes along it. The last nodes are also the first
 /// of the next tile, so that a tile's bricks have their borders.
@@ -42,4 +42,4 @@ int findRows(const SplatRegion& region, SplatRow* rows);
 /// The same without the processor's own vector instructions, for comparison.
 int findRowsBaseline(const SplatRegion& region, SplatRow* rows);
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -2,10 +2,10 @@
 // Compiled for AVX2; see splat_rows.cpp.
 #include "voxelise/splat_rows_kernel.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 int findRowsAvx2(const SplatRegion& region, SplatRow* rows) {
   return findRowsHere(region, rows);
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -6,7 +6,7 @@
 
 #include "voxelise/splat_rows.h"
 
-namespace vps::inline v0 {
+namespace vps {
 namespace {  // one copy for each set of instructions
 
 /// Vectors of eight, which GCC and Clang split where the processor's are shorter. GCC 12 did not vectorise
@@ -55,4 +55,4 @@ inline int findRowsHere(const SplatRegion& region, SplatRow* rows) {
 }
 
 }  // namespace
-}  // namespace vps::inline v0
+}  // namespace vps

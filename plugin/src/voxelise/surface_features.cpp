@@ -8,7 +8,7 @@
 
 #include "mesh/directions.h"
 
-namespace vps::inline v0 {
+namespace vps {
 namespace {
 
 /// A triangle lower than this share of a voxel is replaced by its edges, which are as near.
@@ -147,4 +147,4 @@ Vec3 SurfaceFeatures::pseudonormalThrough(const Vec3& q, std::span<const Triangl
   return sum;
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -17,7 +17,7 @@
 
 #include "vps/mesh.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// Side `side` of a triangle, from its corner `side` to the next.
 struct TriangleSide {
@@ -85,4 +85,4 @@ class SurfaceFeatures {
   std::vector<std::uint32_t> edge_of_;  // of each triangle's three sides; only where a triangle is thin
 };
 
-}  // namespace vps::inline v0
+}  // namespace vps

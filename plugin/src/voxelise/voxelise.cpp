@@ -28,7 +28,7 @@
 #include "vps/mesh_repair.h"
 #include "vps/solid.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 namespace {
 
@@ -389,4 +389,4 @@ VoxMap buildVoxMap(const Solid& solid, const VoxMapSettings& settings, const std
   return buildVoxMap(PlacedSolid{&solid, Pose()}, settings, part, progress, report);
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -10,7 +10,7 @@
 #include "voxelise/brick_assembly.h"
 #include "voxmap/node_steps.h"
 
-namespace vps::inline v0 {
+namespace vps {
 namespace {
 
 /// A winding number this far from 0.5 is certain, and may be passed to neighbours.
@@ -348,4 +348,4 @@ bool signsAgree(const VoxLayout& layout, double voxel_m, double quantum_m) {
   return agree;
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

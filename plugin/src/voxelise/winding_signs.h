@@ -8,7 +8,7 @@
 #include "mesh/interior.h"
 #include "voxmap/voxmap_layout.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// Signs nodes as an Interior does. Between neighbouring nodes that are farther from the surface than their
 /// step, the winding number changes at most by its slope, so that one value serves many nodes: all nodes of a
@@ -47,4 +47,4 @@ class WindingSigner {
 /// False means that pseudonormals were wrong, most likely because the mesh crosses itself.
 bool signsAgree(const VoxLayout& layout, double voxel_m, double quantum_m);
 
-}  // namespace vps::inline v0
+}  // namespace vps

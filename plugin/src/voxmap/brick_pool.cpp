@@ -11,7 +11,7 @@
 #include "vps/assert.h"
 #include "vps/load_error.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 VoxPool::VoxPool(std::size_t capacity)
     : capacity_(std::min<std::size_t>(2 * capacity, kMaxBricks) + 2),
@@ -144,4 +144,4 @@ std::uint32_t takeBricks(VoxLayout& layout, std::size_t count) {
   return moved;
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

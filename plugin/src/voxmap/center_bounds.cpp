@@ -5,7 +5,7 @@
 
 #include <bit>
 
-namespace vps::inline v0 {
+namespace vps {
 namespace {
 
 constexpr int kCenter = kBrick / 2;
@@ -108,4 +108,4 @@ std::vector<float> boundCellCenters(const Index3& size, const std::vector<std::i
   return bound;
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

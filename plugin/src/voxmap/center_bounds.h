@@ -5,7 +5,7 @@
 
 #include "voxmap/voxmap_layout.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// Nodes of a brick that are near enough to the surface to be the nearest node of one of its points: bit z of
 /// rows[x / 2 * 4 + y / 2], set if one of the four nodes (x, y), (x, y + 1), ... is.
@@ -23,4 +23,4 @@ struct SurfaceBits {
 std::vector<float> boundCellCenters(const Index3& size, const std::vector<std::int32_t>& brick,
                                     const std::vector<SurfaceBits>& bits);
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -2,7 +2,7 @@
 // Cells with only empty cells around them: points near such a cell need not be read.
 #include "voxmap/voxmap_layout.h"
 
-namespace vps::inline v0 {
+namespace vps {
 namespace {
 
 /// Spreads set entries to their neighbours along one axis. `stride`: from neighbour to neighbour; `length`:
@@ -37,4 +37,4 @@ void markFarCells(VoxLayout& layout) {
   }
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

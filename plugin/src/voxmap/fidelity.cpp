@@ -5,7 +5,7 @@
 
 #include "vps/load_error.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 // All values are assumed: the paper gives none of them. The grid step is half the point spacing, so that the
 // area of a point covers a few cells; `vps trade` measures what a scene needs.
@@ -30,4 +30,4 @@ Fidelity fidelityPreset(std::string_view name) {
   throw LoadError("", "", "fidelity '" + std::string(name) + "' is not known; use fast, normal or fine");
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

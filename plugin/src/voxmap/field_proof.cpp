@@ -12,7 +12,7 @@
 #include "voxmap/center_bounds.h"
 #include "voxmap/node_steps.h"
 
-namespace vps::inline v0 {
+namespace vps {
 namespace {
 
 /// The length of the longest path over grid cells between points at distance 1: |(1, sqrt 2 - 1, sqrt 3 -
@@ -173,4 +173,4 @@ Box proveField(VoxLayout& layout, double voxel_m, double quantum_m) {
   return Proof(layout, voxel_m, quantum_m).run();
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -4,7 +4,7 @@
 
 #include "voxmap/voxmap_layout.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// Sets the bounds that queries rely on from the nodes alone: steepest, node_error, centers_m and parts.
 /// Returns the box of the surface, empty if no sign changes. Deterministic. O(nodes).
@@ -20,4 +20,4 @@ namespace vps::inline v0 {
 /// raised by what the nodes are below that distance. [Extension by cones: McShane 1934.]
 VPS_API Box proveField(VoxLayout& layout, double voxel_m, double quantum_m);
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -5,7 +5,7 @@
 #include "voxmap/read_kernel.h"
 #include "voxmap/voxmap_access.h"
 
-namespace vps::inline v0 {
+namespace vps {
 namespace {
 
 /// An empty map is one cell of the outer constant brick.
@@ -56,4 +56,4 @@ Motion::Motion(const FieldView& field, const Pose& X_MP) noexcept {
   p[3] = column[0][3] = column[1][3] = column[2][3] = 0;
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

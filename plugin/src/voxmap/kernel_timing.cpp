@@ -10,7 +10,7 @@
 #include "voxmap/voxmap_layout.h"
 #include "vps/voxmap.h"
 
-namespace vps::inline v0 {
+namespace vps {
 namespace {
 
 constexpr int kCells = 4;  // of the field, along each axis; the outermost are empty
@@ -91,4 +91,4 @@ bool isFaster(const ReadKernels& a, const ReadKernels& b) {
   return a_s <= b_s;
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -4,11 +4,11 @@
 
 #include "voxmap/read_kernel.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// True if `a` reads a small field at least as fast as `b`. The kernels run alternately, and the least time
 /// of each counts, since other programs only lengthen it. Takes about 0.1 ms; kernels that differ by less
 /// than 3 % may be told either way, which changes no result.
 bool isFaster(const ReadKernels& a, const ReadKernels& b);
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -6,7 +6,7 @@
 
 #include <cstdint>
 
-namespace vps::inline v0 {
+namespace vps {
 namespace {
 
 constexpr int kWide = 8;
@@ -59,4 +59,4 @@ inline void fetchPairs(At at, Ints* pairs) {
 }
 
 }  // namespace
-}  // namespace vps::inline v0
+}  // namespace vps

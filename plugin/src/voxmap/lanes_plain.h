@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <cstring>
 
-namespace vps::inline v0 {
+namespace vps {
 namespace {
 
 constexpr int kWide = 4;
@@ -85,4 +85,4 @@ inline void fetchPairs(At at, Ints* pairs) {
 }
 
 }  // namespace
-}  // namespace vps::inline v0
+}  // namespace vps

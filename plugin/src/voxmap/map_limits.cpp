@@ -6,7 +6,7 @@
 
 #include "vps/load_error.h"
 
-namespace vps::inline v0 {
+namespace vps {
 namespace {
 
 static_assert(kMemoryLimit_bytes / VoxLayout::kCellBytes < 2147483648.0, "kernels count cells in int");
@@ -64,4 +64,4 @@ void requireMemory(double bytes, const std::string& what_for, const std::string&
   throw LoadError(file, part, needs + what_for + limit + remedy);
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -7,7 +7,7 @@
 
 #include "voxmap/voxmap_layout.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// Refuses voxel sizes and bands that no map can have, including NaN.
 void requireSettings(const VoxMapSettings& settings, const std::string& part = "");
@@ -32,4 +32,4 @@ VPS_API void requireDirectory(const Vec3& cells, const std::string& file = "", c
 VPS_API void requireMemory(double bytes, const std::string& what_for, const std::string& remedy,
                            const std::string& file = "", const std::string& part = "");
 
-}  // namespace vps::inline v0
+}  // namespace vps

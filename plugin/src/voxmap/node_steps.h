@@ -7,7 +7,7 @@
 
 #include "voxmap/voxmap_layout.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// The largest difference of nodes that are one step (X, Y, Z) apart, over a brick [quanta].
 template <int X, int Y, int Z>
@@ -34,4 +34,4 @@ inline float steepnessOf(int difference, double voxel_m, double quantum_m) {
   return static_cast<float>((difference - 1) * quantum_m / voxel_m * (1 + 1e-6));
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

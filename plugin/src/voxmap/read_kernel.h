@@ -15,7 +15,7 @@
 #include "vps/shell_block.h"
 #include "vps/simd.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// The data of a map that kernels read. The map must outlive the view.
 struct FieldView {
@@ -123,4 +123,4 @@ struct ReadKernels {
 /// The kernels for an instruction set, or for the best narrower one that this processor has.
 const ReadKernels& readKernels(Simd simd) noexcept;
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -3,7 +3,7 @@
 #include "voxmap/lanes_avx512.h"
 #include "voxmap/read_kernel.h"
 
-namespace vps::inline v0 {
+namespace vps {
 namespace {
 #include "voxmap/read_kernel.inc"
 }  // namespace
@@ -11,4 +11,4 @@ namespace {
 extern const ReadKernels kAvx512Kernels;
 const ReadKernels kAvx512Kernels = {read, bound, touch, addRow, readAt};
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -6,7 +6,7 @@
 #include "voxmap/kernel_timing.h"
 #include "voxmap/read_kernel.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 extern const ReadKernels kScalarKernels;
 #ifdef VPS_HAS_X86_KERNELS
@@ -79,4 +79,4 @@ const ReadKernels& readKernels(Simd simd) noexcept {
   return kScalarKernels;
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -6,7 +6,7 @@
 #include "voxmap/voxmap_access.h"
 #include "voxmap/voxmap_sampler.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 VoxMap::VoxMap() {
   // An empty map has no cells, so every point is outside; all empty maps share this layout.
@@ -97,4 +97,4 @@ VoxMap VoxMapAccess::empty(const VoxMapSettings& settings) {
   return make(layout(VoxMap()), settings.voxel_m, settings.band_voxels * settings.voxel_m, Box());
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -4,7 +4,7 @@
 
 #include "voxmap/voxmap_layout.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// Takes maps apart and puts them together. The only friend of VoxMap.
 class VPS_API VoxMapAccess {
@@ -21,4 +21,4 @@ class VPS_API VoxMapAccess {
   static VoxMap empty(const VoxMapSettings& settings);
 };
 
-}  // namespace vps::inline v0
+}  // namespace vps

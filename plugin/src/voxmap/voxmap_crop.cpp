@@ -5,7 +5,7 @@
 #include "voxmap/voxmap_access.h"
 #include "vps/voxmap_crop.h"
 
-namespace vps::inline v0 {
+namespace vps {
 namespace {
 
 /// True for cells of 8 voxels in a box or next to it: gradients at its border read nodes beyond it.
@@ -30,4 +30,4 @@ VoxMap croppedVoxMap(const VoxMap& map, const std::vector<Box>& boxes_M) {
   return VoxMapAccess::make(layout, map.voxel_m(), map.band_m(), map.bounds());
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -23,7 +23,7 @@
 
 #include "vps/voxmap.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 using Index3 = Eigen::Vector3i;
 
@@ -233,4 +233,4 @@ inline NodeValue nodeOf(Real quanta) {
   return static_cast<NodeValue>(static_cast<int>(quanta + std::copysign(Real{0.5}, quanta)));
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

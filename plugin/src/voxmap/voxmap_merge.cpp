@@ -13,7 +13,7 @@
 #include "voxmap/voxmap_access.h"
 #include "vps/assert.h"
 
-namespace vps::inline v0 {
+namespace vps {
 namespace {
 
 double boxDistance(const Box& box, const Vec3& p) {
@@ -219,4 +219,4 @@ VoxMap packedVoxMap(const VoxMap& map) {
   return VoxMapAccess::make(layout, map.voxel_m(), map.band_m(), map.bounds());
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -4,7 +4,7 @@
 
 #include "voxmap/voxmap_layout.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// A field on a map's grid, brick by brick, in a box of cells. Reading it is thread-safe.
 class AddedField : public CellBox {
@@ -30,4 +30,4 @@ VoxMap mergedVoxMap(const VoxMap& a, const VoxMap& b);
 /// The map with its bricks in a pool of its own: merging leaves bricks behind that no map uses any more.
 VoxMap packedVoxMap(const VoxMap& map);
 
-}  // namespace vps::inline v0
+}  // namespace vps

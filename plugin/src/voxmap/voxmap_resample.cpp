@@ -13,7 +13,7 @@
 #include "voxmap/voxmap_sampler.h"
 #include "vps/load_error.h"
 
-namespace vps::inline v0 {
+namespace vps {
 namespace {
 
 constexpr int kBlocksOfBrick = kBrickStride / kLanes;
@@ -181,4 +181,4 @@ VoxMap mountVoxMap(const VoxMap& cooked, const PlacedMap& part) {
   return mergedVoxMap(cooked, field, field.bounds());
 }
 
-}  // namespace vps::inline v0
+}  // namespace vps

@@ -6,7 +6,7 @@
 
 #include "voxmap/voxmap_access.h"
 
-namespace vps::inline v0 {
+namespace vps {
 
 /// Reads one map. Cheap to construct (no reference count changes); the map must outlive it.
 class VoxSampler {
@@ -239,4 +239,4 @@ class VoxSampler {
   Vec3 low_, size_;  // of the directory, in voxels
 };
 
-}  // namespace vps::inline v0
+}  // namespace vps

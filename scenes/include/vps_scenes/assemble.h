@@ -16,7 +16,7 @@
 #include "vps_scenes/run_requests.h"
 #include "vps_scenes/scene.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Asks a run for a Snapshot, as a window does. A run makes one at the end of a physics step where it is
 /// asked, so that nobody else reads its state, and a run that is watched has the same bits as one that is
@@ -78,4 +78,4 @@ inline constexpr double kPersonTimeout_s = 600;
 /// a mesh that cannot be modelled). A step that does not reach its target is a result, not an error.
 VPS_SCENES_API AssembleResult assemble(Scene& scene, const AssembleOptions& options = {});
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

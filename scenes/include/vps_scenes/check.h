@@ -16,7 +16,7 @@
 #include "vps_scenes/scene.h"
 #include "vps_scenes/verdict.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// A part where it belongs in the assembly.
 struct DrawnPart {
@@ -252,4 +252,4 @@ struct CheckResult {
 VPS_SCENES_API CheckResult checkAssembly(const std::string& name, const std::vector<DrawnPart>& parts,
                                          const CheckSettings& settings = {}, const Progress& progress = {});
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

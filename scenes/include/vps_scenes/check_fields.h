@@ -7,7 +7,7 @@
 #include "vps_scenes/check.h"
 #include "vps_scenes/fields.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 inline constexpr auto kCheckedPairFields = std::make_tuple(
     field("a", &CheckedPair::a, "name of one part"), field("b", &CheckedPair::b, "name of the other"),
@@ -140,4 +140,4 @@ inline constexpr auto kCheckWallFields =
                     field("play_s", &CheckResult::play_wall_s, "time for play and ways out"),
                     field("places_s", &CheckResult::places_wall_s, "time for places without overlap"));
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -9,7 +9,7 @@
 #include "vps_device/recording.h"
 #include "vps_scenes/export.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// One sample of a step while the part is in hand.
 struct HandSample {
@@ -60,4 +60,4 @@ struct RunComparison {
 VPS_SCENES_API RunComparison compareRuns(const device::RecordedRun& expert,
                                          const device::RecordedRun& trainee);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -5,7 +5,7 @@
 #include "vps_scenes/compare.h"
 #include "vps_scenes/fields.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 inline constexpr auto kRunMeasureFields = std::make_tuple(
     field("duration_s", &RunMeasures::duration_s, "from taking the part to letting it go, simulated time"),
@@ -38,4 +38,4 @@ inline constexpr auto kComparisonFields =
                     list("steps", &RunComparison::steps, kComparedStepFields));
 static_assert(coversAllMembers<RunComparison>(kComparisonFields));
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

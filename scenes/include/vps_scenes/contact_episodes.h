@@ -8,7 +8,7 @@
 #include "vps_scenes/export.h"
 #include "vps_scenes/result.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// An interval in which the part in hand is in contact.
 struct ContactEpisode {
@@ -26,4 +26,4 @@ inline constexpr double kSlideTravel_m = 1e-3;
 /// The episodes of a trace in order of time, without TracePhase::Rest. O(rows).
 VPS_SCENES_API std::vector<ContactEpisode> contactEpisodes(std::span<const TraceRow> trace);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -5,7 +5,7 @@
 #include "vps_scenes/export.h"
 #include "vps_scenes/scene.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// The scene with all parts in place and its steps in reverse. Each step takes its part off, along its path
 /// from the target to the start, and puts it away there (SceneStep::takes_off); a screw is unscrewed first.
@@ -17,4 +17,4 @@ VPS_SCENES_API Scene disassemblyOf(Scene scene);
 /// assumed: nearer than this a part that was put away need not be where its way ends
 inline constexpr double kAway_m = 2e-3;
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

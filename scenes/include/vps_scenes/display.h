@@ -11,7 +11,7 @@
 #include "vps_scenes/head_track.h"
 #include "vps_scenes/scene.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// A flat screen in the room's frame S [m].
 struct DisplayScreen {
@@ -61,4 +61,4 @@ struct Display {
 /// a recorded head.
 VPS_SCENES_API Display loadDisplay(const std::string& file);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -10,7 +10,7 @@
 #include "vps_scenes/result.h"
 #include "vps_scenes/scene.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 enum class Posture { Seated, Standing };
 inline const char* toText(Posture posture) {
@@ -80,4 +80,4 @@ struct Ergonomics {
 /// count.
 VPS_SCENES_API Ergonomics measureErgonomics(const Scene& scene, const std::vector<TraceRow>& trace);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -5,7 +5,7 @@
 #include "vps_scenes/ergonomics.h"
 #include "vps_scenes/fields.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 inline constexpr auto kStepErgonomicsFields = std::make_tuple(
     field("part", &StepErgonomics::part, "part of the step"),
@@ -24,4 +24,4 @@ inline constexpr auto kStepErgonomicsFields = std::make_tuple(
     field("rula_worst", &StepErgonomics::rula_worst, "the greatest of them"));
 static_assert(coversAllMembers<StepErgonomics>(kStepErgonomicsFields));
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

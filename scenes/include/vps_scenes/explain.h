@@ -8,7 +8,7 @@
 #include "vps_scenes/model_plan.h"
 #include "vps_scenes/result.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// One part's own models; 0 where it has none, or shares those of another part.
 struct PartCost {
@@ -54,4 +54,4 @@ enum class PartUse {
 };
 VPS_SCENES_API PartUse useOf(const ModelPlan& plan, std::size_t part, std::size_t step);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

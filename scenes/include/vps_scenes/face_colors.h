@@ -10,7 +10,7 @@
 
 #include "vps_scenes/export.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Linear RGB, 0 to 1.
 using Color = std::array<float, 3>;
@@ -38,4 +38,4 @@ VPS_SCENES_API FaceColors ofTriangles(const FaceColors& colors, std::span<const 
 /// Where all triangles have one colour, it becomes the part's, and `colors` has none any more.
 VPS_SCENES_API void simplify(FaceColors& colors, Color& color);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

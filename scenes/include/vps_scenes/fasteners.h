@@ -7,7 +7,7 @@
 
 #include "vps_scenes/check.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 enum class FastenerKind {
   Screw,    ///< a round shank with a head, threaded or drawn plain
@@ -32,4 +32,4 @@ struct Fastener {
 VPS_SCENES_API std::vector<Fastener> findFasteners(const std::vector<DrawnPart>& parts,
                                                    const Progress& progress = {});
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -8,7 +8,7 @@
 #include "vps_scenes/export.h"
 #include "vps_scenes/scene.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Cost model of a physics step [us]: a constant, and a term for each point that may be near contact in it
 /// (those of the part in hand, and as many of the others as it can cover). Fitted once to the 99th percentile
@@ -54,4 +54,4 @@ VPS_SCENES_API std::string toToml(const Fidelity& fidelity);
 /// ..."
 VPS_SCENES_API std::string describe(const FidelityChoice& choice);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -17,7 +17,7 @@
 
 #include "vps_scenes/export.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// How a scene file spells a number. Members and JSON are always SI.
 enum class Quantity {
@@ -229,4 +229,4 @@ consteval bool coversAllMembers(const Tables&... tables) {
   return counter.count + by_hand == memberCount<Struct>();
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -8,7 +8,7 @@
 #include "vps/pose.h"
 #include "vps_scenes/export.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Poses in the room's frame S, in order of time.
 struct VPS_SCENES_API HeadTrack {
@@ -24,4 +24,4 @@ struct VPS_SCENES_API HeadTrack {
 /// times that do not rise, and for four numbers that are no rotation.
 VPS_SCENES_API HeadTrack loadHeadTrack(const std::string& file);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -15,7 +15,7 @@
 #include "vps_scenes/export.h"
 #include "vps_scenes/face_colors.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Which geometry of a file becomes one part.
 enum class PartPer {
@@ -125,4 +125,4 @@ VPS_SCENES_API std::optional<double> unitFromText(const std::string& text);
 /// Parses a length with its unit, "0.2mm" or "20um"; throws LoadError naming `what` when the unit is missing.
 VPS_SCENES_API double lengthFromText(const std::string& text, const std::string& what);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -9,7 +9,7 @@
 #include "vps_scenes/export.h"
 #include "vps_scenes/result.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// A load level relative to the scene's own settings. Force limits, passivity control and watchdogs are the
 /// same at every level.
@@ -39,4 +39,4 @@ VPS_SCENES_API std::string describe(const LoadLevel& level, const Fidelity& fide
 /// The error that a change of level costs: the bound known beforehand, and the difference measured.
 VPS_SCENES_API std::string describeCost(const LoadLevelChange& change);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

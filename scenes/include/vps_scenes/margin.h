@@ -13,7 +13,7 @@
 #include "vps_scenes/scene.h"
 #include "vps_scenes/verdict.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 struct MarginOptions : ModelOptions {
   double resolution_m = 1e-6;  ///< of the growth: the bisection ends at this width
@@ -60,4 +60,4 @@ struct MarginResult {
 /// assemble().
 VPS_SCENES_API MarginResult measureMargins(const Scene& scene, const MarginOptions& options = {});
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

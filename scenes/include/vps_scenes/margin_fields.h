@@ -5,7 +5,7 @@
 #include "vps_scenes/fields.h"
 #include "vps_scenes/margin.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 inline constexpr auto kStepMarginFields = std::make_tuple(
     field("step", &StepMargin::step, "index in the procedure"),
@@ -30,4 +30,4 @@ inline constexpr auto kStepMarginFields = std::make_tuple(
     field("checks", &StepMargin::checks, "exact measurements that it took"),
     field("runs", &StepMargin::runs, "runs of the hand that it took"));
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -8,7 +8,7 @@
 #include "vps/progress.h"
 #include "vps/voxmap_cache.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 struct ModelOptions {
   Progress progress;
@@ -21,4 +21,4 @@ struct ModelOptions {
   std::function<void(const std::string&)> warn;
 };
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

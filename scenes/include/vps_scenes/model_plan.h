@@ -11,7 +11,7 @@
 #include "vps_scenes/export.h"
 #include "vps_scenes/scene.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// What the models are for.
 enum class ModelPurpose {
@@ -54,4 +54,4 @@ VPS_SCENES_API ModelPlan makeModelPlan(const Scene& scene, ModelPurpose purpose,
 /// Whole models of every part for Assemble, with equal geometry built once.
 VPS_SCENES_API ModelPlan makeSharedModelPlan(const Scene& scene);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -8,7 +8,7 @@
 
 #include "vps_scenes/export.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 struct NumberRow {
   std::vector<double> numbers;
@@ -21,4 +21,4 @@ struct NumberRow {
 VPS_SCENES_API std::vector<NumberRow> readNumberTable(const std::string& file, std::size_t columns,
                                                       const std::string& what);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// The part of a closed chain of points that lies within half_m of the middle along both axes. Sutherland and
 /// Hodgman 1974. O(n).
@@ -31,4 +31,4 @@ inline std::vector<std::array<double, 2>> clippedToSquare(std::vector<std::array
   return chain;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

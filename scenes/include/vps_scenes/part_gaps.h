@@ -10,7 +10,7 @@
 #include "vps_scenes/scene.h"
 #include "vps_scenes/snapshot.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 struct PartGap {
   std::size_t other = 0;    ///< index into Scene::parts
@@ -48,4 +48,4 @@ class VPS_SCENES_API PartGaps {
   std::vector<std::unique_ptr<Surface>> surfaces_;
 };
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

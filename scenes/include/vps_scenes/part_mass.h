@@ -6,7 +6,7 @@
 #include "vps_scenes/export.h"
 #include "vps_scenes/scene.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Volume, centre and inertia of the solid that a part's mesh stands for (see massOf() in vps/mesh_repair.h),
 /// in the part's frame: the one source of them for simulation, grasp, sound and reports. The same with and
@@ -14,4 +14,4 @@ namespace vps::scenes::inline v0 {
 /// n) the first time, and a hash of the mesh after that. Thread-safe.
 VPS_SCENES_API MassProperties partMass(const ScenePart& part);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -12,7 +12,7 @@
 #include "vps_scenes/check.h"
 #include "vps_scenes/fasteners.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// What a plan had found by the time it was stopped. A later plan of the same parts need not find it again.
 struct PlanFindings {
@@ -220,4 +220,4 @@ struct WayFault {
 VPS_SCENES_API std::vector<WayFault> checkWays(const Scene& scene, const Progress& progress = {},
                                                const std::map<std::string, double>& planned_clearance_m = {});
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

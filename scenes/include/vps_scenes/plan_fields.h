@@ -5,7 +5,7 @@
 #include "vps_scenes/check_fields.h"
 #include "vps_scenes/plan.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 inline constexpr auto kPlannedPoseFields = std::make_tuple(
     field("position_m", &Pose::p, "of the motion of the world that brings the part there from its target"),
@@ -127,4 +127,4 @@ inline constexpr auto kWayFaultFields = std::make_tuple(
     field("planned_m", &WayFault::planned_m, "and as planned"));
 static_assert(coversAllMembers<WayFault>(kWayFaultFields));
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

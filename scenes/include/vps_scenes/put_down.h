@@ -12,7 +12,7 @@
 #include "vps_scenes/result.h"
 #include "vps_scenes/scene.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 struct PutDown {
   std::size_t part = 0;  ///< index into Scene::parts
@@ -36,4 +36,4 @@ VPS_SCENES_API Scene sceneOfOnePart(const Scene& scene, std::span<const Pose> X_
 /// Of a run with so many planned steps.
 VPS_SCENES_API Verdict verdictOf(const std::vector<StepResult>& steps, std::size_t planned);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

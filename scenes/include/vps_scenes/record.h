@@ -7,7 +7,7 @@
 #include "vps_scenes/assemble.h"
 #include "vps_scenes/export.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Runs assemble() and records it to `file` (format: vps_device/recorder.h), scene and meshes included, so
 /// that replay() runs it again from this file alone. A run that is stopped or fails leaves the unfinished
@@ -16,4 +16,4 @@ namespace vps::scenes::inline v0 {
 VPS_SCENES_API AssembleResult assembleAndRecord(Scene& scene, const std::string& file,
                                                 const AssembleOptions& options = {});
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

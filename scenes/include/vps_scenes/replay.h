@@ -12,7 +12,7 @@
 #include "vps_scenes/result.h"
 #include "vps_scenes/scene.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 struct ReplayOptions : ModelOptions {
   const std::atomic<bool>* stop = nullptr;  ///< as in AssembleOptions
@@ -41,4 +41,4 @@ VPS_SCENES_API Scene recordedScene(const device::RecordedRun& run);
 /// recordedScene() and assemble().
 VPS_SCENES_API ReplayResult replay(const device::RecordedRun& run, const ReplayOptions& options = {});
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

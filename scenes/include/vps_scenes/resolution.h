@@ -5,7 +5,7 @@
 #include "vps_scenes/export.h"
 #include "vps_scenes/scene.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Voxels across the least size that has to be resolved: of a part that moves, of a bore or slot and of what
 /// fits into it. Measured with a peg of 8 mm (scenes/peg_in_hole): with 1 mm it is brought home less than 1
@@ -30,4 +30,4 @@ inline constexpr double kLargestUsual_m = 0.15;
 /// O(triangles log triangles); nothing is built.
 VPS_SCENES_API void chooseResolution(Scene& scene);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -14,7 +14,7 @@
 #include "vps_scenes/snapshot.h"
 #include "vps_scenes/verdict.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Wall-clock statistics of a repeated task [microseconds].
 struct TickTimes {
@@ -224,4 +224,4 @@ struct AssembleResult {
   double simulated_s = 0, build_wall_s = 0, run_wall_s = 0;
 };
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

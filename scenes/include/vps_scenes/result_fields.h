@@ -9,7 +9,7 @@
 #include "vps_scenes/fields.h"
 #include "vps_scenes/result.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 // --- TickTimes: the figures that each place shows
 
@@ -261,4 +261,4 @@ inline constexpr auto kTraceFields = std::make_tuple(
           "0 none, 1 approach, 2 touch, 3 tilt_in, 4 spiral_search, 5 align_by_torque, 6 back_off, "
           "7 press_home, 8 place_by_sight, 9 turn_search"));
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -9,7 +9,7 @@
 
 #include "vps/coupling_law.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 enum class RunPhase {
   Preparing,  ///< no step has begun
@@ -73,4 +73,4 @@ class RunRequests {
   std::optional<CouplingGains> gains_;
 };
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

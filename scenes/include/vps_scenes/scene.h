@@ -17,7 +17,7 @@
 #include "vps_scenes/export.h"
 #include "vps_scenes/face_colors.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// What a scene says of a part itself, in the part's own frame P.
 struct Part {
@@ -187,4 +187,4 @@ struct Scene {
 VPS_SCENES_API Scene loadScene(const std::string& file, const Progress& progress = {},
                                const ByteCache* cache = nullptr);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -9,7 +9,7 @@
 #include "vps_scenes/import.h"
 #include "vps_scenes/scene.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// The parts as one, in the frame of the first, whose settings it has, but for these: it is fixed if one of
 /// them is, may overlap if one may, has the greatest deflection and press fit, the density of their mass over
@@ -20,4 +20,4 @@ VPS_SCENES_API ScenePart unitedPart(const std::string& name, const std::vector<S
 /// @param groups names of parts of the scene, each in one group at most
 VPS_SCENES_API void uniteGroups(Scene& scene, const std::vector<PartGroup>& groups);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -8,7 +8,7 @@
 #include "vps_scenes/import.h"
 #include "vps_scenes/scene.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// The text of a scene file, in metres, that loadScene() reads as the same scene: each part with the mesh
 /// file that is named for it, and every setting that is not the default. Meshes are not written.
@@ -25,4 +25,4 @@ VPS_SCENES_API std::string tomlText(const std::string& text);
 /// {position = [x, y, z], rotation_xyzw = [x, y, z, w]}, in metres with twelve digits.
 VPS_SCENES_API std::string tomlPose(const Pose& pose);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

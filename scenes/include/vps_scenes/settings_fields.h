@@ -6,7 +6,7 @@
 #include "vps_scenes/fields.h"
 #include "vps_scenes/scene.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 template <>
 inline constexpr int kValueCount<Sides> = 2;
@@ -278,4 +278,4 @@ inline constexpr auto kRecordFields = std::make_tuple(
           {.range = kPositive}));
 static_assert(coversAllMembers<RecordSettings>(kRecordFields));
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

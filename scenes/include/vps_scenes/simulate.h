@@ -13,7 +13,7 @@
 #include "vps_scenes/result.h"
 #include "vps_scenes/scene.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 struct BodyState {
   std::string name;
@@ -107,4 +107,4 @@ VPS_SCENES_API std::string inWords(const std::vector<FastTurn>& turns, const Fid
 /// quarter of the least clearance that a step states. Throws LoadError as assemble() does.
 VPS_SCENES_API SimulateResult simulate(Scene& scene, double seconds, const SimulateOptions& options = {});
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -10,7 +10,7 @@
 #include "vps/pose.h"
 #include "vps/wrench.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 enum class BodyRole {
   Waiting,   ///< its step is still to come: drawn only in the overview of the finished assembly
@@ -68,4 +68,4 @@ struct Snapshot {
   std::optional<RunFigures> figures;
 };
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

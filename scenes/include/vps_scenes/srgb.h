@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdint>
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Both are O(1) and continuous.
 inline double srgbFromLinear(double linear) {
@@ -20,4 +20,4 @@ inline std::uint8_t srgbByte(double linear) {
   return static_cast<std::uint8_t>(std::lround(255 * srgbFromLinear(std::clamp(linear, 0.0, 1.0))));
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

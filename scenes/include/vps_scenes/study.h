@@ -14,7 +14,7 @@
 #include "vps_scenes/scene.h"
 #include "vps_scenes/verdict.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 enum class StudyQuantity { Size, X, Y, Z, AboutX, AboutY, AboutZ, Friction };
 
@@ -102,4 +102,4 @@ VPS_SCENES_API StudyResult sumUpStudy(const std::string& scene, const std::vecto
 VPS_SCENES_API std::string studyFingerprint(const Scene& scene, const std::vector<StudyVariable>& variables,
                                             const StudySettings& settings);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

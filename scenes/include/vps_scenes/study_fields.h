@@ -5,7 +5,7 @@
 #include "vps_scenes/fields.h"
 #include "vps_scenes/study.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 inline constexpr auto kStudyRunFields = std::make_tuple(
     field("run", &StudyRun::run, "number of the run"), field("verdict", &StudyRun::verdict, "verdict"),
@@ -39,4 +39,4 @@ inline constexpr auto kStudyFields =
                     list("effects", &StudyResult::effects, kStudyEffectFields),
                     list("runs", &StudyResult::runs, kStudyRunFields));
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -7,7 +7,7 @@
 
 #include "vps_scenes/export.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// A key of one of the file's tables, and its new value as TOML text: {"device", "scale", "0.25"}.
 struct TomlValue {
@@ -20,4 +20,4 @@ struct TomlValue {
 /// that this function cannot replace (as a table of its own, for example).
 VPS_SCENES_API std::string editedToml(const std::string& file, std::span<const TomlValue> values);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

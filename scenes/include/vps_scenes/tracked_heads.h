@@ -9,7 +9,7 @@
 #include "vps_scenes/display.h"
 #include "vps_scenes/export.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// How long a program waits for a head that only the network knows. assumed: discovery takes less than one
 inline constexpr double kHeadWait_s = 3;
@@ -42,4 +42,4 @@ class VPS_SCENES_API TrackedHeads {
   std::unique_ptr<Work> work_;
 };
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

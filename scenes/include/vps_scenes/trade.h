@@ -11,7 +11,7 @@
 #include "vps_scenes/result.h"
 #include "vps_scenes/scene.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// The setting that a row changes against the scene's own fidelity.
 enum class TradeKnob {
@@ -111,4 +111,4 @@ VPS_SCENES_API std::vector<std::string> tradeAnswers(const TradeResult& result);
 /// The effect of each knob against the scene's own setting, a line for each row.
 VPS_SCENES_API std::vector<std::string> tradeKnobs(const TradeResult& result);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -7,7 +7,7 @@
 #include "vps_scenes/settings_fields.h"
 #include "vps_scenes/trade.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 inline constexpr auto kProbeFields = std::make_tuple(
     field("distance_error_m", path(&TradeRow::probe, &ProbeErrors::distance_m),
@@ -73,4 +73,4 @@ inline constexpr auto kChoiceFields = std::make_tuple(
     field("step_by_model_us", &FidelityChoice::step_us, "time of a step by the cost model, without a clock"));
 static_assert(coversAllMembers<FidelityChoice>(kChoiceFields));
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -5,7 +5,7 @@
 #include "vps_scenes/assemble.h"
 #include "vps_scenes/export.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 struct TrySettings {
   int tries = 10;        ///< at least 1
@@ -21,4 +21,4 @@ struct TrySettings {
 VPS_SCENES_API AssembleResult assembleTries(const Scene& scene, const TrySettings& settings,
                                             const AssembleOptions& options = {});
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

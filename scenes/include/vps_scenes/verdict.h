@@ -4,7 +4,7 @@
 
 #include <array>
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 enum class Verdict {
   Fits,      ///< brought home by contact within tolerance, nothing overlaps, and it stays there
@@ -18,4 +18,4 @@ inline const char* toText(Verdict verdict) {
   return kWords[static_cast<std::size_t>(verdict)];
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 void AxisExtent::add(const AxisExtent& other) {
   from_m = std::min(from_m, other.from_m);
@@ -70,4 +70,4 @@ AxisExtents::AxisExtents(const PartSurface& part, const Vec3& axis, const Vec3& 
   }
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -7,7 +7,7 @@
 
 #include "check/part_surface.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 struct AxisExtent {
   double from_m = 1e300, to_m = -1e300;      ///< along the axis, from its centre
@@ -32,4 +32,4 @@ struct AxisExtents {
   AxisExtents(const PartSurface& part, const Vec3& axis, const Vec3& center);
 };
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

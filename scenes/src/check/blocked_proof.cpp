@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -110,4 +110,4 @@ double provenOverlap_m(const std::vector<PlacedSurface>& parts, const std::vecto
   return -sum_m / weight;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

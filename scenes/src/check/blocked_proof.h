@@ -8,7 +8,7 @@
 #include "check/loose_bodies.h"
 #include "check/touches.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// A touch that presses, as leastMotion() found it.
 struct PressedTouch {
@@ -40,4 +40,4 @@ double provenOverlap_m(const std::vector<PlacedSurface>& parts, const std::vecto
                        std::span<const PressedTouch> touches, const std::vector<MovableBody>& bodies,
                        const std::vector<double>& moved_m);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <numeric>
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -48,4 +48,4 @@ BoxTree::BoxTree(const std::vector<Box>& boxes) : order_(boxes.size()) {
   }
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -7,7 +7,7 @@
 
 #include "vps/mesh.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 class BoxTree {
  public:
@@ -92,4 +92,4 @@ void visitPairs(const BoxTree& a, const BoxTree& b, Place place, Bound bound, Li
   }
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -121,4 +121,4 @@ CertainOverlap certainOverlap(const PlacedSurface& a, const PlacedSurface& b) {
   return best;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -4,7 +4,7 @@
 
 #include "check/placed_surface.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 struct CertainOverlap {
   double depth_m = 0;  ///< 0: none is certain
@@ -19,4 +19,4 @@ struct CertainOverlap {
 /// certain, but there may be more. O(edges near the other part x log facets).
 CertainOverlap certainOverlap(const PlacedSurface& a, const PlacedSurface& b);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -19,7 +19,7 @@
 #include "core/wall_clock.h"
 #include "vps/mesh_repair.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 const char* toText(PairState state) {
   switch (state) {
@@ -228,4 +228,4 @@ CheckResult checkPlaced(const std::string& name, const std::vector<PlacedSurface
   return result;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

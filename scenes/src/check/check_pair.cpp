@@ -11,7 +11,7 @@
 #include "check/shared_ball.h"
 #include "check/surface_gap.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -159,4 +159,4 @@ std::optional<CheckedPair> checkPair(const PlacedSurface& a, const PlacedSurface
   return pair;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -6,7 +6,7 @@
 
 #include "check/placed_surface.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Empty if the parts are farther from each other than near_m. Thread-safe.
 std::optional<CheckedPair> checkPair(const PlacedSurface& a, const PlacedSurface& b, double near_m);
@@ -17,4 +17,4 @@ std::optional<CheckedPair> checkPair(const PlacedSurface& a, const PlacedSurface
 /// or is not closed: a depth in it has no bound.
 double meshError_m(const PlacedSurface& a, const PlacedSurface& b);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

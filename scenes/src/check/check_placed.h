@@ -4,10 +4,10 @@
 
 #include "check/placed_surface.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// As checkAssembly().
 CheckResult checkPlaced(const std::string& name, const std::vector<PlacedSurface>& placed,
                         const CheckSettings& settings, const Progress& progress);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

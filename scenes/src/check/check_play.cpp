@@ -13,7 +13,7 @@
 #include "check/on_cores.h"
 #include "check/play.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -126,4 +126,4 @@ void checkPlay(const std::vector<PlacedSurface>& parts, CheckResult& result, con
   });
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

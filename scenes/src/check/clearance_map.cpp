@@ -7,7 +7,7 @@
 
 #include "check/on_cores.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -117,4 +117,4 @@ std::vector<ClearanceMap> clearanceMaps(const std::vector<PlacedSurface>& parts,
   return maps;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

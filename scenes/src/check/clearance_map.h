@@ -6,10 +6,10 @@
 
 #include "check/placed_surface.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Of each part that has another one within near_m, the parts with the tightest places first. On all cores.
 std::vector<ClearanceMap> clearanceMaps(const std::vector<PlacedSurface>& parts, const CheckResult& result,
                                         double near_m, const Progress& progress);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

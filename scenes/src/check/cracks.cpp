@@ -6,7 +6,7 @@
 
 #include "vps/box.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 std::vector<std::array<std::uint32_t, 3>> neighboursOf(const Mesh& mesh) {
   struct Side {
@@ -88,4 +88,4 @@ std::vector<Crack> cracksOf(const Mesh& mesh, const std::vector<std::array<std::
   return cracks;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

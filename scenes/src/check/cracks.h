@@ -9,7 +9,7 @@
 #include "check/box_tree.h"
 #include "vps/mesh.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// The facet beyond each edge of each triangle (edge i from corner i to the next); kNoFacet at an edge that
 /// does not have exactly two facets.
@@ -26,4 +26,4 @@ struct Crack {
 std::vector<Crack> cracksOf(const Mesh& mesh, const std::vector<std::array<std::uint32_t, 3>>& neighbours,
                             const BoxTree& tree);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -3,7 +3,7 @@
 
 #include <Eigen/Cholesky>
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 bool fitCylinder(std::span<const Vec3> points, Cylinder& cylinder) {
   using Vec5 = Eigen::Matrix<double, 5, 1>;
@@ -32,4 +32,4 @@ bool fitCylinder(std::span<const Vec3> points, Cylinder& cylinder) {
   return cylinder.radius_m > 0;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

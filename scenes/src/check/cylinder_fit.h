@@ -6,7 +6,7 @@
 
 #include "vps/pose.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 struct Cylinder {
   Vec3 axis = Vec3::UnitZ();  ///< unit
@@ -26,4 +26,4 @@ struct Cylinder {
 /// fails; the cylinder may have moved then. O(points).
 bool fitCylinder(std::span<const Vec3> points, Cylinder& cylinder);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

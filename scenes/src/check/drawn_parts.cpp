@@ -2,7 +2,7 @@
 // Where the parts of a CAD file or a scene belong.
 #include "vps_scenes/check.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 std::vector<DrawnPart> drawnParts(const ImportedCad& cad) {
   std::vector<DrawnPart> parts;
@@ -25,4 +25,4 @@ std::vector<DrawnPart> drawnParts(const Scene& scene) {
   return parts;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -10,7 +10,7 @@
 
 #include "check/iso_262.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -269,4 +269,4 @@ std::optional<FastenerShape> fastenerShape(const PartSurface& surface, const Fit
   return std::nullopt;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -8,7 +8,7 @@
 #include "check/fits.h"
 #include "vps_scenes/fasteners.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// In the part's frame.
 struct FastenerShape {
@@ -26,4 +26,4 @@ std::optional<FastenerShape> fastenerShape(const PartSurface& surface, const Fit
 std::vector<std::optional<FastenerShape>> fastenerShapes(const std::vector<PlacedSurface>& parts,
                                                          const Progress& progress);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -6,7 +6,7 @@
 #include "check/fastener_shape.h"
 #include "check/on_cores.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 const char* toText(FastenerKind kind) {
   switch (kind) {
@@ -51,4 +51,4 @@ std::vector<Fastener> findFasteners(const std::vector<DrawnPart>& parts, const P
   return out;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -10,7 +10,7 @@
 #include "check/round_faces.h"
 #include "core/fit_tolerance.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -133,4 +133,4 @@ bool isProvenByFit(const std::vector<PlacedSurface>& parts, const CheckedFit& fi
   return false;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -6,7 +6,7 @@
 
 #include "check/placed_surface.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// How far a part may be from where it belongs without that being seen.
 double mayMove_m(const PlacedSurface& part);
@@ -23,4 +23,4 @@ double mayMove_m(const PlacedSurface& part);
 /// other way around: a disc that is larger than a bore can stand in it at a slant.
 bool isProvenByFit(const std::vector<PlacedSurface>& parts, const CheckedFit& fit);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -11,7 +11,7 @@
 #include "check/round_faces.h"
 #include "check/thread_faces.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// The faces of a part that fits can have.
 struct FitFaces {
@@ -50,4 +50,4 @@ inline double mostClearance_m(double size_m) {
   return std::max(0.25 * size_m, std::min(0.18e-3, size_m));
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <span>
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -113,4 +113,4 @@ std::vector<FlatFace> flatFaces(const PartSurface& surface, const std::vector<Ro
   return faces;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

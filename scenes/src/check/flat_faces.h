@@ -8,7 +8,7 @@
 #include "check/round_faces.h"
 #include "check/thread_faces.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Facets in one plane that are connected, or beside each other across a crack, outside of round faces and
 /// threads.
@@ -24,4 +24,4 @@ struct FlatFace {
 std::vector<FlatFace> flatFaces(const PartSurface& surface, const std::vector<RoundFace>& round,
                                 const std::vector<ThreadFace>& threads, std::size_t most);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

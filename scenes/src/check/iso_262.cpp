@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -107,4 +107,4 @@ std::string metricHole(double minor_m) {
   return "";
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 struct MetricThread {
   std::string name;    ///< "M16", "M16x1.5" for a fine pitch, "M16x1.5-LH" for a left-hand one
@@ -26,4 +26,4 @@ std::string metricSize(double major_m);
 /// P, or that of its drill, D - P, of a coarse or fine pitch, within 0.1 P. Empty if there is none.
 std::string metricHole(double minor_m);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -9,7 +9,7 @@
 #include <iterator>
 #include <string_view>
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -93,4 +93,4 @@ std::string isoFit(double bore_m, double shaft_m) {
   return "";
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Least and greatest deviation from the nominal size [m].
 struct Zone {
@@ -20,4 +20,4 @@ std::optional<Zone> isoZone(const std::string& zone, double nominal_m);
 /// nominal size that is a multiple of half a millimetre; empty if there is none.
 std::string isoFit(double bore_m, double shaft_m);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -6,7 +6,7 @@
 #include "check/fits.h"
 #include "check/iso_286.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -236,4 +236,4 @@ void appendKeyFits(const FittedPart& a, const FittedPart& b, std::vector<Checked
   appendFits(b, a, out);
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

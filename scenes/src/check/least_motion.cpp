@@ -7,7 +7,7 @@
 
 #include <Eigen/Cholesky>
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -108,4 +108,4 @@ Pose movedPose(const Pose& X_WP, const LooseBody& body, const Six& motion) {
   return Pose(R, body.at_W - R * body.at_W + motion.head<3>()) * X_WP;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -11,7 +11,7 @@
 
 #include "vps/pose.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// A body that may move, about a point of it.
 struct LooseBody {
@@ -50,4 +50,4 @@ Motions leastMotion(std::span<const GapRow> rows, std::span<const LooseBody> bod
 /// The pose after a motion of the body that stands at X_WP when all six numbers are 0.
 Pose movedPose(const Pose& X_WP, const LooseBody& body, const Eigen::Matrix<double, 6, 1>& motion);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

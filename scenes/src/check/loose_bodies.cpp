@@ -10,7 +10,7 @@
 
 #include "core/fit_tolerance.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -113,4 +113,4 @@ std::vector<std::size_t> bodyOfPart(const std::vector<MovableBody>& bodies, std:
   return out;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -9,7 +9,7 @@
 #include "check/least_motion.h"
 #include "check/placed_surface.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Parts that move as one: one part, or several that are pressed into each other, or all that are fixed.
 struct MovableBody {
@@ -35,4 +35,4 @@ std::vector<MovableBody> looseBodies(const std::vector<PlacedSurface>& parts, co
 /// The body of each part.
 std::vector<std::size_t> bodyOfPart(const std::vector<MovableBody>& bodies, std::size_t part_count);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

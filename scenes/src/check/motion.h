@@ -10,7 +10,7 @@
 
 #include "vps/pose.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// The way s goes from 0 on: in metres along `direction`, or in radians about it through `center`, on which a
 /// screw goes forward as well.
@@ -79,4 +79,4 @@ struct Motion {
   }
 };
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -3,7 +3,7 @@
 
 #include "check/pair_step.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -376,4 +376,4 @@ bool MotionSearch::isStoppedBy(const Blocker& blocker, const Motion& motion, dou
   return false;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

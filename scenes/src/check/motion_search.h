@@ -13,7 +13,7 @@
 #include "check/pair_step.h"
 #include "check/placed_surface.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Two facets that stopped a motion.
 struct Blocker {
@@ -143,4 +143,4 @@ class MotionSearch {
   double most_rest_m_ = kRest_m;
 };
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

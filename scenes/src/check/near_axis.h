@@ -10,7 +10,7 @@
 #include "check/placed_surface.h"
 #include "check/surface_piece.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// The facets of a part, cut off where a slab across an axis ends.
 class NearAxis {
@@ -74,4 +74,4 @@ class NearAxis {
   double half_m_;
 };
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -9,7 +9,7 @@
 
 #include "vps/progress.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Does `work(i)` for 0 to count - 1, and tells the progress on the caller's thread only. What either throws
 /// ends it.
@@ -25,4 +25,4 @@ void forEachOnCores(std::size_t count, const Progress& progress, const char* doi
   });
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

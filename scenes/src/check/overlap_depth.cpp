@@ -8,7 +8,7 @@
 #include "check/shared_ball.h"
 #include "check/surface_piece.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -425,4 +425,4 @@ OverlapDepth overlapDepth(const PlacedSurface& a, const PlacedSurface& b, const 
   return found;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -4,7 +4,7 @@
 
 #include "check/placed_surface.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// The depth is the greater of two lengths, neither of which depends on how a surface is divided into facets:
 /// the greatest distance from a point of one part's surface inside the other part to the other's surface, and
@@ -37,4 +37,4 @@ struct OverlapDepth {
 /// @param known  a depth that was found in some other way, at most the true one
 OverlapDepth overlapDepth(const PlacedSurface& a, const PlacedSurface& b, const OverlapDepth& known);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -9,7 +9,7 @@
 
 #include "check/surface_piece.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -181,4 +181,4 @@ OverlapVolume overlapVolume(const PartSurface& a, const PartSurface& b, const Po
   return out;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -4,7 +4,7 @@
 
 #include "check/part_surface.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 struct OverlapVolume {
   double volume_m3 = 0;
@@ -21,4 +21,4 @@ struct OverlapVolume {
 inline constexpr double kVolumeShift_m = 1e-9;
 OverlapVolume overlapVolume(const PartSurface& a, const PartSurface& b, const Pose& X_AB);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "check/pair_step.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -203,4 +203,4 @@ double crossingDepth(const MovingPair& pair, std::uint32_t moving, std::uint32_t
   return Step(pair, moving, held).depth();
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

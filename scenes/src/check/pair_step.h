@@ -7,7 +7,7 @@
 #include "check/motion.h"
 #include "check/part_surface.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// A moving part and one that is held, while the moving part stands at X_HM.
 struct MovingPair {
@@ -47,4 +47,4 @@ double contactRate(const MovingPair& pair, std::uint32_t moving, std::uint32_t h
 /// features; 0 where a plane parts them.
 double crossingDepth(const MovingPair& pair, std::uint32_t moving, std::uint32_t held);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

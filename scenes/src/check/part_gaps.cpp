@@ -8,7 +8,7 @@
 #include "check/triangle_gap.h"
 #include "vps/mesh_distance.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 struct PartGaps::Surface {
   Mesh mesh;
@@ -87,4 +87,4 @@ std::vector<PartTouch> PartGaps::touches(const Snapshot& shot) const {
   return touches;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -6,7 +6,7 @@
 #include <span>
 #include <tuple>
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -177,4 +177,4 @@ double PartSurface::chordIn(const Box& box_P) const {
   return most_m;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

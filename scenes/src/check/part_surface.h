@@ -15,7 +15,7 @@
 #include "vps/mesh_overlap.h"
 #include "vps/solid.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Facets that meet at less than this belong to one curved face; import makes them meet at 0.35 at most.
 inline constexpr double kCurved_rad = 0.4;
@@ -91,4 +91,4 @@ class PartSurface {
   std::vector<std::uint32_t> first_around_;  // by vertex, and the end
 };
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

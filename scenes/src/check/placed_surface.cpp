@@ -9,7 +9,7 @@
 #include "core/equal_meshes.h"
 #include "vps/load_error.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -94,4 +94,4 @@ const PlacedSurface& named(const std::vector<PlacedSurface>& parts, const std::s
   return *std::ranges::find(parts, name, &PlacedSurface::name);
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

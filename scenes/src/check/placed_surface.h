@@ -11,7 +11,7 @@
 #include "check/part_surface.h"
 #include "vps_scenes/check.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 struct PlacedSurface {
   std::string name;
@@ -33,4 +33,4 @@ const PlacedSurface& named(const std::vector<PlacedSurface>& parts, const std::s
 std::vector<std::pair<std::size_t, std::size_t>> nearPairs(const std::vector<PlacedSurface>& parts,
                                                            double near_m);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -21,7 +21,7 @@
 #include "core/name_words.h"
 #include "vps/mesh_overlap.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -535,4 +535,4 @@ CheckedPlaces freePlaces(const std::vector<PlacedSurface>& parts, const CheckRes
   return PlaceSearch(parts, checked).search(progress);
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -4,7 +4,7 @@
 
 #include "check/placed_surface.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// See CheckedPlaces. Fits without more where nothing clashes.
 ///
@@ -16,4 +16,4 @@ namespace vps::scenes::inline v0 {
 CheckedPlaces freePlaces(const std::vector<PlacedSurface>& parts, const CheckResult& checked,
                          const Progress& progress);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -7,7 +7,7 @@
 
 #include "check/screw_profile.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -129,4 +129,4 @@ std::vector<ScrewWay> screwWaysOut(const MotionSearch& search, const PlacedSurfa
   return ways;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -6,7 +6,7 @@
 
 #include "check/motion_search.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// The axes along and about which a part's play is measured.
 struct PlayFrame {
@@ -43,4 +43,4 @@ std::vector<Vec3> waysOut(const MotionSearch& search, const PlacedSurface& part,
 std::vector<ScrewWay> screwWaysOut(const MotionSearch& search, const PlacedSurface& part,
                                    const std::vector<CheckedFit>& fits, double leave_m);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -9,7 +9,7 @@
 #include "check/near_axis.h"
 #include "check/ring_volume.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -138,4 +138,4 @@ void judgeByFits(const std::vector<PlacedSurface>& parts, CheckResult& result) {
     if (needsFit(pair)) judge(parts, pair, result.fits);
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

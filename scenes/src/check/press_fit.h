@@ -6,7 +6,7 @@
 
 #include "check/placed_surface.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// True for a pair whose state may follow from its fits: one with a declared press fit, and one whose meshes
 /// overlap by no more than their facets are off the faces.
@@ -33,4 +33,4 @@ struct PressedRing {
 /// Design, 10th ed., eq. (3-56).
 double jointPressure(const PressedRing& ring, double interference_m);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

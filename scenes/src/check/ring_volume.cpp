@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 RingVolume ringVolume(const CheckedFit& fit, const PlacedSurface& shaft, const PlacedSurface& bore,
                       double aside_m) {
@@ -37,4 +37,4 @@ RingVolume ringVolume(const CheckedFit& fit, const PlacedSurface& shaft, const P
   return {ring_m3 * shared / kCells, ring_m3 * mixed / kCells + surface_m2 * 0.5 * fit.error_m};
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -4,7 +4,7 @@
 
 #include "check/placed_surface.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 struct RingVolume {
   double volume_m3 = 0, error_m3 = 0;
@@ -18,4 +18,4 @@ struct RingVolume {
 RingVolume ringVolume(const CheckedFit& fit, const PlacedSurface& shaft, const PlacedSurface& bore,
                       double aside_m);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

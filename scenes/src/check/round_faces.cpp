@@ -10,7 +10,7 @@
 
 #include "check/cylinder_fit.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -218,4 +218,4 @@ std::vector<RoundFace> roundFaces(const PartSurface& surface) {
   return Finder(surface).find();
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

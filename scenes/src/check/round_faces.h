@@ -6,7 +6,7 @@
 
 #include "check/part_surface.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Facets whose corners lie on one cylinder. Corners lie on the true surface, so the radius has no error of
 /// the facets' chord.
@@ -24,4 +24,4 @@ struct RoundFace {
 /// kCurved_rad, are prisms and are not found. O(n).
 std::vector<RoundFace> roundFaces(const PartSurface& surface);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -7,7 +7,7 @@
 
 #include "check/axis_extents.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -163,4 +163,4 @@ std::vector<std::uint8_t> ScrewProfile::passing(const PlacedSurface& part) const
   return out;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

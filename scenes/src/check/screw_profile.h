@@ -8,7 +8,7 @@
 #include "check/motion.h"
 #include "check/placed_surface.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// The least radius of a nut around the axis of a screw motion, by phase z - lead turn. A screw motion
 /// changes neither the radius nor the phase of a point, so what is below this profile passes the nut for any
@@ -47,4 +47,4 @@ class ScrewProfile {
   std::vector<double> least_m_;  // by bin of phase
 };
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

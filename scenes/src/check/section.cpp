@@ -8,7 +8,7 @@
 #include "check/on_cores.h"
 #include "vps/mesh_distance.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -153,4 +153,4 @@ std::vector<CheckedSection> checkSections(const std::vector<PlacedSurface>& part
   return sections;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -6,7 +6,7 @@
 
 #include "check/placed_surface.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Cuts at fits and at overlaps: clashes first, the deepest first, then press fits, then fits, the tightest
 /// first.
@@ -17,4 +17,4 @@ std::vector<CheckedSection> checkSections(const std::vector<PlacedSurface>& part
 /// surface in the plane itself count as in front of it, so that each chain closes. O(facets near the plane).
 SectionOutline outlineOf(const PlacedSurface& part, const CheckedSection& section);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -7,7 +7,7 @@
 #include "check/section.h"
 #include "vps_scenes/outline_clip.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -145,4 +145,4 @@ SectionOutline outlineOf(const PlacedSurface& part, const CheckedSection& sectio
   return out;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -5,7 +5,7 @@
 #include "check/fits.h"
 #include "check/iso_286.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -92,4 +92,4 @@ void appendShaftFits(const FittedPart& a, const FittedPart& b, std::vector<Check
     }
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -78,4 +78,4 @@ Overlap SharedBalls::greatest() const {
   return best_m > 0 ? grownFrom(best_A, 0.5 * cell) : Overlap{};
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

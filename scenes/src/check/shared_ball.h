@@ -4,7 +4,7 @@
 
 #include "check/placed_surface.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Balls in both of two placed solids, in the frame of the first. Both must outlive it.
 class SharedBalls {
@@ -33,4 +33,4 @@ class SharedBalls {
   Box both_A_;
 };
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

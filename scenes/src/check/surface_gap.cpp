@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "check/surface_gap.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 SurfaceGap surfaceGap(const PartSurface& a, const PartSurface& b, const Pose& X_AB, double most_m) {
   SurfaceGap best{most_m, {}, {}};
@@ -17,4 +17,4 @@ SurfaceGap surfaceGap(const PartSurface& a, const PartSurface& b, const Pose& X_
   return best;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

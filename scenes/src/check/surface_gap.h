@@ -4,7 +4,7 @@
 
 #include "check/part_surface.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 struct SurfaceGap {
   double distance_m = 0;  ///< at least most_m if nothing is nearer; 0 where the surfaces touch or cross
@@ -15,4 +15,4 @@ struct SurfaceGap {
 /// O(log n) typical, more where large areas are equally far.
 SurfaceGap surfaceGap(const PartSurface& a, const PartSurface& b, const Pose& X_AB, double most_m);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

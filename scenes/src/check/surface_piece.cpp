@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 Vec3 middleOf(const SurfacePiece& piece) {
   Vec3 sum = Vec3::Zero();
@@ -129,4 +129,4 @@ bool isOutside(const SurfacePiece& piece, const Vec3& n, const PartSurface& surf
   return crossings.empty();
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -8,7 +8,7 @@
 
 #include "check/part_surface.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Corners of a flat convex polygon in order; two are a segment, one is a point.
 using SurfacePiece = std::vector<Vec3>;
@@ -34,4 +34,4 @@ std::pair<double, double> sharesWithin(std::span<const Vec3> polygon, const Vec3
 /// @param work  counts the nodes and facets that are visited, of some 10 ns each
 bool isOutside(const SurfacePiece& piece, const Vec3& n, const PartSurface& surface, std::size_t& work);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -15,7 +15,7 @@
 #include "check/cylinder_fit.h"
 #include "scene/thread_form.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -348,4 +348,4 @@ std::vector<ThreadFace> threadFaces(const PartSurface& surface, const std::vecto
   return out;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

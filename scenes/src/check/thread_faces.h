@@ -6,7 +6,7 @@
 
 #include "check/round_faces.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 struct ThreadFace {
   Vec3 axis = Vec3::UnitZ();  ///< unit, in the part's frame
@@ -26,4 +26,4 @@ struct ThreadFace {
 /// longer than a twelfth of a turn, are not found. O(facets) for each axis, and 0.1 s for each thread.
 std::vector<ThreadFace> threadFaces(const PartSurface& surface, const std::vector<RoundFace>& round);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -5,7 +5,7 @@
 #include "check/fits.h"
 #include "check/iso_262.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -85,4 +85,4 @@ void appendThreadFits(const FittedPart& a, const FittedPart& b, std::vector<Chec
     }
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

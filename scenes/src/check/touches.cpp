@@ -6,7 +6,7 @@
 
 #include "vps/mesh_overlap.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -74,4 +74,4 @@ PairTouches touchesOf(const std::vector<PlacedSurface>& parts, const std::vector
   return out;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -7,7 +7,7 @@
 
 #include "check/placed_surface.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// A point of one part that is, or was, inside another, and the face of that one over which it leaves.
 struct Touch {
@@ -37,4 +37,4 @@ struct PairTouches {
 PairTouches touchesOf(const std::vector<PlacedSurface>& parts, const std::vector<Pose>& X_WP, std::size_t a,
                       std::size_t b, double more_than_m);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

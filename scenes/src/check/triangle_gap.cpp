@@ -5,7 +5,7 @@
 #include <cmath>
 #include <optional>
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -83,4 +83,4 @@ TriangleGap triangleGap(const Triangle& a, const Triangle& b) {
   return best;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

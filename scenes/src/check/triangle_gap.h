@@ -6,7 +6,7 @@
 
 #include "vps/mesh_distance.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 using Triangle = std::array<Vec3, 3>;
 
@@ -25,4 +25,4 @@ TriangleGap triangleGap(const Triangle& a, const Triangle& b);
 /// section 5.1.9.
 std::array<double, 2> nearestOfSegments(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

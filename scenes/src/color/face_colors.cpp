@@ -6,7 +6,7 @@
 #include "color/palette.h"
 #include "vps_scenes/srgb.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 Color srgbFromLinear(const Color& linear) {
   Color srgb{};
@@ -45,4 +45,4 @@ void simplify(FaceColors& colors, Color& color) {
   colors = {};
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -8,7 +8,7 @@
 
 #include "vps_scenes/face_colors.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// The colours must outlive it, and are changed by it alone meanwhile.
 class Palette {
@@ -30,4 +30,4 @@ class Palette {
   std::map<Color, std::uint32_t> known_;
 };
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

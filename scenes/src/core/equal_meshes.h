@@ -9,7 +9,7 @@
 
 #include "vps/mesh.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// True for meshes with the same vertices and triangles, to the bit.
 inline bool isEqualGeometry(const Mesh& a, const Mesh& b) {
@@ -45,4 +45,4 @@ class EqualMeshes {
   std::unordered_multimap<std::size_t, std::size_t> known_;
 };
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Greatest tolerance that a fit gives, but for its own play. assumed: a usual tolerance of position
 inline constexpr double kFitTolerance_m = 0.1e-3;
@@ -22,4 +22,4 @@ inline double fitTolerance_m(double diametral_clearance_m) {
   return std::max(std::min(kFitTolerance_m, clearance_m + kContactOnBothSides_m), play_m);
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -4,7 +4,7 @@
 
 #include "vps_scenes/scene.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Of the last leg of the path of G, unit, in W; of a step that takes its part off, of the first, along which
 /// it comes free. Zero where the part only turns there.
@@ -17,4 +17,4 @@ inline Vec3 insertionAxis(const SceneStep& step, const Pose& X_PG) {
   return leg_W.norm() < kLeast_m ? Vec3(Vec3::Zero()) : Vec3(leg_W.normalized());
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <numbers>
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 std::string lengthInWords(double length_m) {
   char text[64];
@@ -29,4 +29,4 @@ std::string placeInWords(const Vec3& p_W) {
   return text;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

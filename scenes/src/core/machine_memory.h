@@ -2,9 +2,9 @@
 // How much memory this machine has.
 #pragma once
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Total memory in bytes; 0 where the system does not report it.
 double machineMemoryBytes() noexcept;
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 inline std::string quoted(const std::string& name) {
   return "'" + name + "'";
@@ -22,4 +22,4 @@ inline std::string listed(const std::vector<std::string>& names, std::size_t mos
   return names.size() > most ? out + " and " + std::to_string(names.size() - most) + " more" : out;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -9,7 +9,7 @@
 
 #include "vps/load_error.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 std::vector<NumberRow> readNumberTable(const std::string& file, std::size_t columns,
                                        const std::string& what) {
@@ -34,4 +34,4 @@ std::vector<NumberRow> readNumberTable(const std::string& file, std::size_t colu
   return rows;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -7,7 +7,7 @@
 
 #include "vps_scenes/scene.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 struct PartInPlace {
   std::size_t part = 0;
@@ -28,4 +28,4 @@ inline std::vector<PartInPlace> partsInPlace(const Scene& scene, std::size_t bef
   return parts;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -8,7 +8,7 @@
 
 #include "vps/pose.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// @param n  x, y, z and a quaternion x, y, z, w
 /// @return  none where the numbers are not finite or the quaternion is no rotation; its length may miss one
@@ -22,4 +22,4 @@ inline std::optional<Pose> poseOf(std::span<const double, 7> n) {
   return Pose(q.normalized(), p);
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

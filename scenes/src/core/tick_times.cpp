@@ -3,7 +3,7 @@
 
 #include <time.h>
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 double TickClock::threadTime_us() {
   timespec now{};
@@ -33,4 +33,4 @@ TickTimes TickClock::summary() const {
   return times;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -9,7 +9,7 @@
 #include "vps_device/tick_statistics.h"
 #include "vps_scenes/result.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// The percentiles of a histogram; neither mean nor processor time.
 TickTimes timesOf(const device::TickHistogram::Summary& all, std::uint64_t missed);
@@ -47,4 +47,4 @@ class TickClock {
   std::uint64_t missed_ = 0;
 };
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -47,4 +47,4 @@ std::string printable(std::string_view text) {
   return out;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

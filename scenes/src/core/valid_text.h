@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// The text with U+FFFD in place of each byte that is not UTF-8 [RFC 3629], as TOML and JSON have no others.
 std::string validUtf8(std::string_view text);
@@ -13,4 +13,4 @@ std::string validUtf8(std::string_view text);
 /// The same with a space in place of each control character.
 std::string printable(std::string_view text);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

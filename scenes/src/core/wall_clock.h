@@ -4,11 +4,11 @@
 
 #include <chrono>
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Seconds on a monotonic clock, from an arbitrary start.
 inline double wallSeconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -6,7 +6,7 @@
 
 #include "vps_scenes/ergonomics.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -47,4 +47,4 @@ int rulaArm(const ArmPose& arm) {
   return upper + (is_easy ? 1 : 2);
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

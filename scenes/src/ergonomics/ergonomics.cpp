@@ -8,7 +8,7 @@
 #include "vps/mesh.h"
 #include "vps_scenes/part_mass.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -118,4 +118,4 @@ Ergonomics measureErgonomics(const Scene& scene, const std::vector<TraceRow>& tr
   return result;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "haptics/clocked_driver.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 void ClockedDriver::publish(const device::PhysicsState& state) {
   device::PhysicsState numbered = state;
@@ -22,4 +22,4 @@ void ClockedDriver::setView(const device::HapticState& view) {
   report_fault_(toText(view.safety.fault));
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

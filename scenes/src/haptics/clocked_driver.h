@@ -7,7 +7,7 @@
 #include "haptics/haptic_driver.h"
 #include "vps_device/run_log.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// The physics thread reads the loop's state once per step, in advance(), and gives one command at a time. So
 /// the whole interaction of the two threads is a list of SyncEvents, and a replay can repeat it.
@@ -56,4 +56,4 @@ class ClockedDriver : public HapticDriver {
   std::uint64_t reported_faults_ = 0;
 };
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

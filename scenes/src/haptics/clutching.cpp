@@ -3,7 +3,7 @@
 
 #include "haptics/hand.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -65,4 +65,4 @@ bool ClutchWork::index(const std::function<bool()>& advance) const {
   return true;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

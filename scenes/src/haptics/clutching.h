@@ -7,7 +7,7 @@
 
 #include "haptics/haptic_driver.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Each function waits in physics steps by calling `advance`, and returns false as soon as `advance` does
 /// (the run cannot go on). Meanwhile the part stands still, held by the proxy.
@@ -37,4 +37,4 @@ class ClutchWork {
   std::function<double()> step_s_;
 };
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

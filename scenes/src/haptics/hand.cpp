@@ -13,7 +13,7 @@
 #include "vps/load_error.h"
 #include "vps_device/device_kinds.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -354,4 +354,4 @@ std::unique_ptr<Hand> recordedHand(device::Recording& recording) {
   return std::make_unique<RecordedHand>(recording);
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

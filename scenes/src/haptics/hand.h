@@ -16,7 +16,7 @@
 #include "vps_device/recording.h"
 #include "vps_scenes/scene.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 class HapticDriver;
 
@@ -77,4 +77,4 @@ std::unique_ptr<Hand> personHand(std::unique_ptr<device::Device> device);
 /// A recording of any device and hand; it outlives the hand.
 std::unique_ptr<Hand> recordedHand(device::Recording& recording);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "haptics/hand_command.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 void prepare(Hand& hand, const HandCommand& command) {
   if (command.what == device::SyncEventKind::Begin) hand.prepare(command.task, command.step, command.now_s);
@@ -39,4 +39,4 @@ void carryOut(Hand& hand, device::HapticLoop& loop, const HandCommand& command) 
   }
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -8,7 +8,7 @@
 #include "vps_device/loop.h"
 #include "vps_device/run_log.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 struct HandCommand {
   device::SyncEventKind what = device::SyncEventKind::Tick;  ///< from Begin on
@@ -23,4 +23,4 @@ void prepare(Hand& hand, const HandCommand& command);
 /// On the thread that runs the loop. Never allocates.
 void carryOut(Hand& hand, device::HapticLoop& loop, const HandCommand& command) noexcept;
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

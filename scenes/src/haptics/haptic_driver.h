@@ -15,7 +15,7 @@
 #include "vps_device/run_log.h"
 #include "vps_scenes/result.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Commands and state exchange of a procedure, called from the physics thread. In lockstep the haptic loop
 /// runs inside advance(); in real time it runs from resume() to pause(), also while commands are given.
@@ -101,4 +101,4 @@ std::unique_ptr<HapticDriver> makeReplayedDriver(Hand& hand, std::vector<Recorde
 /// In real time: how old a physics state may be.
 double physicsLimit_s(double physics_s);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -7,7 +7,7 @@
 #include "vps_device/detail/entry_ring.h"
 #include "vps_device/run_log.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// The haptic thread adds entries without waiting or allocating. The physics thread passes them on to the
 /// run's log in the order in which they happened, up to the point that it has reached. So the log has one
@@ -63,4 +63,4 @@ class HapticLog final : public device::RunLog {
   std::uint32_t passed_ = 0;  ///< physics thread's
 };
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -8,7 +8,7 @@
 
 #include "core/tick_times.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -149,4 +149,4 @@ RealTimeResult HapticSide::realTime() {
   return result;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

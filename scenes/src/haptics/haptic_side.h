@@ -11,7 +11,7 @@
 #include "vps_device/real_time_loop.h"
 #include "vps_scenes/result.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 struct HapticTiming {
   double stale_s = 2e-3;         ///< ticks with an older physics state are counted
@@ -81,4 +81,4 @@ class HapticSide {
   device::RealTimeLoop loop_;
 };
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

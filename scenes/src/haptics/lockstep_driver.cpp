@@ -3,7 +3,7 @@
 #include "core/tick_times.h"
 #include "haptics/haptic_driver.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 namespace {
 
 class LockstepDriver final : public HapticDriver {
@@ -97,4 +97,4 @@ std::unique_ptr<HapticDriver> makeLockstepDriver(Hand& hand, device::Device& dev
   return std::make_unique<LockstepDriver>(hand, device, port, settings, ticks_per_step, report);
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

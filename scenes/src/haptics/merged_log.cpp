@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "haptics/merged_log.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 void MergedLog::add(const device::LogEntry& entry) noexcept {
   if (is_over_) return;
@@ -66,4 +66,4 @@ void MergedLog::passLoopEntry() {
   loop_.pop_front();
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

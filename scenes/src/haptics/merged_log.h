@@ -8,7 +8,7 @@
 
 #include "vps_device/run_log.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Entries of the loop come later than the states and replies that physics works with, the later the longer
 /// the way. So what physics logs waits here until the entries that precede it have come. Used by the physics
@@ -61,4 +61,4 @@ class MergedLog final : public device::RunLog {
   bool is_over_ = false;                     ///< something was lost, so a replay ends there
 };
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -9,7 +9,7 @@
 #include "vps/mesh.h"
 #include "vps_scenes/part_mass.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -263,4 +263,4 @@ PathSegments withoutPassed(const PathSegments& segments, std::size_t passed) {
   return ahead;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -8,7 +8,7 @@
 
 #include "vps_scenes/scene.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// The segments of a step's path.
 ///
@@ -39,4 +39,4 @@ PathSegments withoutPassed(const PathSegments& segments, std::size_t passed);
 /// How far a handle that turns by handle_rad to each side is turned before it is grasped again.
 double turnRange_rad(double handle_rad);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -7,7 +7,7 @@
 #include "haptics/haptic_side.h"
 #include "simulation/physics_clock.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 namespace {
 
 class RealTimeDriver final : public ClockedDriver {
@@ -116,4 +116,4 @@ std::unique_ptr<HapticDriver> makeRealTimeDriver(Hand& hand, device::CouplingPor
   return std::make_unique<RealTimeDriver>(hand, port, settings, physics_s, report, log);
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

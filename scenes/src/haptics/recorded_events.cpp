@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "haptics/recorded_events.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 std::vector<RecordedEvent> recordedEvents(const std::vector<device::LogEntry>& entries) {
   std::vector<RecordedEvent> all;
@@ -22,4 +22,4 @@ std::vector<RecordedEvent> recordedEvents(const std::vector<device::LogEntry>& e
   return all;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

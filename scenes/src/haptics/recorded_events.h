@@ -7,7 +7,7 @@
 #include "vps_device/operator.h"
 #include "vps_device/run_log.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 struct RecordedEvent {
   device::SyncEvent event;
@@ -19,4 +19,4 @@ struct RecordedEvent {
 
 std::vector<RecordedEvent> recordedEvents(const std::vector<device::LogEntry>& entries);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

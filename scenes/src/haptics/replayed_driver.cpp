@@ -8,7 +8,7 @@
 #include "core/tick_times.h"
 #include "haptics/clocked_driver.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 namespace {
 
 class ReplayedDriver final : public ClockedDriver {
@@ -148,4 +148,4 @@ std::unique_ptr<HapticDriver> makeReplayedDriver(Hand& hand, std::vector<Recorde
   return std::make_unique<ReplayedDriver>(hand, std::move(events), device, port, settings, report, log);
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

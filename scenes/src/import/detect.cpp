@@ -10,7 +10,7 @@
 #include "import/readers.h"
 #include "vps/load_error.h"
 
-namespace vps::scenes::inline v0::import {
+namespace vps::scenes::import {
 namespace {
 
 namespace fs = std::filesystem;
@@ -109,4 +109,4 @@ std::string detectFormat(const std::string& file) {
   return format;
 }
 
-}  // namespace vps::scenes::inline v0::import
+}  // namespace vps::scenes::import

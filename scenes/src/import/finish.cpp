@@ -16,7 +16,7 @@
 #include "vps/mesh_weld.h"
 #include "vps_scenes/srgb.h"
 
-namespace vps::scenes::inline v0::import {
+namespace vps::scenes::import {
 namespace {
 
 void flip(Mesh& mesh) {
@@ -289,4 +289,4 @@ void finish(RawCad raw, ImportedCad& cad) {
   weldAll(cad);
 }
 
-}  // namespace vps::scenes::inline v0::import
+}  // namespace vps::scenes::import

@@ -33,7 +33,7 @@
 #endif
 #endif
 
-namespace vps::scenes::inline v0::import {
+namespace vps::scenes::import {
 
 namespace {
 
@@ -238,4 +238,4 @@ std::vector<std::string> madeInCopies(const std::vector<std::size_t>& order, con
   return out;
 }
 
-}  // namespace vps::scenes::inline v0::import
+}  // namespace vps::scenes::import

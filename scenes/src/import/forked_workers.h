@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace vps::scenes::inline v0::import {
+namespace vps::scenes::import {
 
 /// Whether a fork of this process can compute. AddressSanitizer's malloc, unlike glibc's, does not work in
 /// the fork of a program with threads: a lock that one of them held stays locked (GCC 12: the child hangs).
@@ -26,4 +26,4 @@ std::vector<std::string> madeInCopies(const std::vector<std::size_t>& order,
                                       const std::function<std::string(std::size_t)>& make,
                                       const std::function<void()>& done, std::size_t copies = 0);
 
-}  // namespace vps::scenes::inline v0::import
+}  // namespace vps::scenes::import

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 
-namespace vps::scenes::inline v0::import {
+namespace vps::scenes::import {
 namespace {
 
 /// The '"' that ends a string of JSON which begins before `at`; the text's size if it is cut.
@@ -51,4 +51,4 @@ std::string unreadExtension(const std::vector<std::string>& names) {
   return found == names.end() ? "" : *found;
 }
 
-}  // namespace vps::scenes::inline v0::import
+}  // namespace vps::scenes::import

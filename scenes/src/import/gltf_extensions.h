@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace vps::scenes::inline v0::import {
+namespace vps::scenes::import {
 
 /// The names under "extensionsRequired" in the JSON text of a glTF file. O(n).
 std::vector<std::string> requiredExtensions(std::string_view json);
@@ -15,4 +15,4 @@ std::vector<std::string> requiredExtensions(std::string_view json);
 /// textures, lights and remarks change none, and compression by Draco is read or refused by assimp.
 std::string unreadExtension(const std::vector<std::string>& names);
 
-}  // namespace vps::scenes::inline v0::import
+}  // namespace vps::scenes::import

@@ -12,7 +12,7 @@
 #include "vps/load_error.h"
 #include "vps_scenes/import.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -200,4 +200,4 @@ std::vector<PartGroup> partGroups(ImportedCad& cad, const GroupWishes& wishes) {
   return grouping.take();
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -13,7 +13,7 @@
 #include "import/readers.h"
 #include "vps/load_error.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 namespace {
 
 struct Reader {
@@ -166,4 +166,4 @@ ImportedCad importCad(const std::vector<std::string>& files, const ImportSetting
   return all;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

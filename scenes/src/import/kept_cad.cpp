@@ -9,7 +9,7 @@
 
 #include "import/part_bytes.h"
 
-namespace vps::scenes::inline v0::import {
+namespace vps::scenes::import {
 namespace {
 
 /// Incremented when reading gives other bits, or part_bytes.h changes.
@@ -84,4 +84,4 @@ bool readKeptBytes(const std::string& bytes, ImportedCad& cad) {
   return true;
 }
 
-}  // namespace vps::scenes::inline v0::import
+}  // namespace vps::scenes::import

@@ -7,7 +7,7 @@
 
 #include "import/readers.h"
 
-namespace vps::scenes::inline v0::import {
+namespace vps::scenes::import {
 
 /// What determines the parts of a STEP, IGES or BREP file, so that they can be kept by it: the file's bytes,
 /// the settings, and versions. Empty for other formats, whose files name others, for a STEP file that does
@@ -21,4 +21,4 @@ std::string keptBytes(const ImportedCad& cad);
 /// Sets parts and warnings; false for bytes of another kind, which leave `cad` as it was.
 bool readKeptBytes(const std::string& bytes, ImportedCad& cad);
 
-}  // namespace vps::scenes::inline v0::import
+}  // namespace vps::scenes::import

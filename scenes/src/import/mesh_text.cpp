@@ -12,7 +12,7 @@
 #include "import/readers.h"
 #include "vps/box.h"
 
-namespace vps::scenes::inline v0::import {
+namespace vps::scenes::import {
 
 namespace {
 
@@ -201,4 +201,4 @@ std::optional<MeshText> stlText(const std::string& file) {
   return rewritten(bytes, "vertex", [](std::string_view line, MeshText& out) { out.bytes += line; });
 }
 
-}  // namespace vps::scenes::inline v0::import
+}  // namespace vps::scenes::import

@@ -9,7 +9,7 @@
 
 #include "vps/pose.h"
 
-namespace vps::scenes::inline v0::import {
+namespace vps::scenes::import {
 
 struct MeshText {
   std::string bytes;
@@ -29,4 +29,4 @@ MeshText objText(const std::string& file);
 /// Empty for a binary file.
 std::optional<MeshText> stlText(const std::string& file);
 
-}  // namespace vps::scenes::inline v0::import
+}  // namespace vps::scenes::import

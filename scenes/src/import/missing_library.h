@@ -7,7 +7,7 @@
 
 #include "vps/load_error.h"
 
-namespace vps::scenes::inline v0::import {
+namespace vps::scenes::import {
 
 inline constexpr std::string_view kLacks = ", which this build lacks; install ";
 
@@ -21,4 +21,4 @@ inline bool isMissingLibrary(const LoadError& error) {
   return std::string_view(error.what()).find(kLacks) != std::string_view::npos;
 }
 
-}  // namespace vps::scenes::inline v0::import
+}  // namespace vps::scenes::import

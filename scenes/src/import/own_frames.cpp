@@ -12,7 +12,7 @@
 #include "vps/box.h"
 #include "vps/mesh_distance.h"
 
-namespace vps::scenes::inline v0::import {
+namespace vps::scenes::import {
 namespace {
 
 /// Whether two coordinates of the box's middle or of its least corner are zero, as of a part that is modelled
@@ -151,4 +151,4 @@ std::string ownFramesWarning(const std::vector<ImportedPart>& parts, const std::
          "' overlap; export them from the assembly, in its frame, or give each a 'pose' in a scene file";
 }
 
-}  // namespace vps::scenes::inline v0::import
+}  // namespace vps::scenes::import

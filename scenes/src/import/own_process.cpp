@@ -3,12 +3,12 @@
 
 #if !defined(__unix__)
 
-namespace vps::scenes::inline v0::import {
+namespace vps::scenes::import {
 RawCad inOwnProcess(const std::string&, const std::string&, const ImportSettings&, const Progress& progress,
                     const std::function<RawCad(const Progress&)>& read) {
   return read(progress);
 }
-}  // namespace vps::scenes::inline v0::import
+}  // namespace vps::scenes::import
 
 #else
 
@@ -37,7 +37,7 @@ RawCad inOwnProcess(const std::string&, const std::string&, const ImportSettings
 #include "import/part_bytes.h"
 #include "vps/load_error.h"
 
-namespace vps::scenes::inline v0::import {
+namespace vps::scenes::import {
 namespace {
 
 // Messages of the child: Progressed (share, text) any number of times, then once Done (a RawCad) or Failed
@@ -336,6 +336,6 @@ RawCad inOwnProcess(const std::string& file, const std::string& library, const I
   }
 }
 
-}  // namespace vps::scenes::inline v0::import
+}  // namespace vps::scenes::import
 
 #endif

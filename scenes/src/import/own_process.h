@@ -7,7 +7,7 @@
 
 #include "import/readers.h"
 
-namespace vps::scenes::inline v0::import {
+namespace vps::scenes::import {
 
 /// Runs read() in a child process and returns its result, bit for bit. Its progress is passed to `progress`
 /// in this process and thread, and its LoadError is thrown here in the same words. If the child ends without
@@ -24,4 +24,4 @@ namespace vps::scenes::inline v0::import {
 RawCad inOwnProcess(const std::string& file, const std::string& library, const ImportSettings& limits,
                     const Progress& progress, const std::function<RawCad(const Progress&)>& read);
 
-}  // namespace vps::scenes::inline v0::import
+}  // namespace vps::scenes::import

@@ -16,7 +16,7 @@
 
 #include "import/readers.h"
 
-namespace vps::scenes::inline v0::import {
+namespace vps::scenes::import {
 
 class ToBytes {
  public:
@@ -135,4 +135,4 @@ void transfer(Io& io, ImportedPart& part) {
   transfer(io, face_colors);
 }
 
-}  // namespace vps::scenes::inline v0::import
+}  // namespace vps::scenes::import

@@ -9,7 +9,7 @@
 
 #include "core/valid_text.h"
 
-namespace vps::scenes::inline v0::import {
+namespace vps::scenes::import {
 
 namespace {
 
@@ -129,4 +129,4 @@ std::string bestName(const std::string& instance, const std::string& product) {
   return is_counted ? product : instance;
 }
 
-}  // namespace vps::scenes::inline v0::import
+}  // namespace vps::scenes::import

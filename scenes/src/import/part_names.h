@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace vps::scenes::inline v0::import {
+namespace vps::scenes::import {
 
 /// The better one of the names of an instance and of its product. Names of exporters count as none: counters,
 /// identifiers and kinds of shapes ("NAUO7", "=>[0:1:1:2]", "3f2a9c40-...", "SOLID"); words that any part
@@ -13,4 +13,4 @@ namespace vps::scenes::inline v0::import {
 /// has the product's name. Empty if neither means anything.
 std::string bestName(const std::string& instance, const std::string& product);
 
-}  // namespace vps::scenes::inline v0::import
+}  // namespace vps::scenes::import

@@ -27,7 +27,7 @@
 #include "import/xml_tags.h"
 #include "vps/load_error.h"
 
-namespace vps::scenes::inline v0::import {
+namespace vps::scenes::import {
 namespace {
 
 Eigen::Affine3d affine(const aiMatrix4x4& m) {
@@ -337,4 +337,4 @@ RawCad readAssimp(const std::string& file, const std::string& format, const Impo
   return cad;
 }
 
-}  // namespace vps::scenes::inline v0::import
+}  // namespace vps::scenes::import

@@ -14,7 +14,7 @@
 #include "import/readers.h"
 #include "vps/load_error.h"
 
-namespace vps::scenes::inline v0::import {
+namespace vps::scenes::import {
 namespace {
 
 constexpr std::size_t kHeader = 84, kTriangle = 50;
@@ -61,4 +61,4 @@ std::optional<RawCad> readBinaryStl(const std::string& file, const ImportSetting
   return cad;
 }
 
-}  // namespace vps::scenes::inline v0::import
+}  // namespace vps::scenes::import

@@ -12,7 +12,7 @@
 #include "vps/progress.h"
 #include "vps_scenes/import.h"
 
-namespace vps::scenes::inline v0::import {
+namespace vps::scenes::import {
 
 /// A part as in its file: triangles not yet welded, lengths in file units; the name may be empty or repeated.
 struct RawPart {
@@ -105,4 +105,4 @@ std::string stem(const std::string& file);
 /// Display colour (sRGB) to linear. Source: IEC 61966-2-1.
 std::array<float, 3> linearFromSrgb(const std::array<float, 3>& srgb);
 
-}  // namespace vps::scenes::inline v0::import
+}  // namespace vps::scenes::import

@@ -10,7 +10,7 @@
 
 #include "vps_device/detail/crc32.h"
 
-namespace vps::scenes::inline v0::import {
+namespace vps::scenes::import {
 
 /// A zip archive whose files are stored as they are [APPNOTE.TXT 6.3.10].
 class StoredArchive {
@@ -53,4 +53,4 @@ class StoredArchive {
   std::uint16_t count_ = 0;
 };
 
-}  // namespace vps::scenes::inline v0::import
+}  // namespace vps::scenes::import

@@ -6,7 +6,7 @@
 #include <set>
 #include <string>
 
-namespace vps::scenes::inline v0::import {
+namespace vps::scenes::import {
 
 class UniqueNames {
  public:
@@ -25,4 +25,4 @@ class UniqueNames {
   std::map<std::string, int> tried_;  ///< by name: the last number that was tried
 };
 
-}  // namespace vps::scenes::inline v0::import
+}  // namespace vps::scenes::import

@@ -6,7 +6,7 @@
 #include "vps/load_error.h"
 #include "vps_scenes/import.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 std::optional<double> unitFromText(const std::string& text) {
   if (text == "m") return 1.0;
@@ -33,4 +33,4 @@ double lengthFromText(const std::string& text, const std::string& what) {
   return value * *unit_m;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

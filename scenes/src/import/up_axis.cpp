@@ -12,7 +12,7 @@
 #include "vps/mesh.h"
 #include "vps/mesh_repair.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -89,4 +89,4 @@ std::optional<Vec3> axisFromText(const std::string& text) {
   return Vec3((is_negative ? -1 : 1) * Vec3::Unit(name[0] - 'x'));
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string>
 
-namespace vps::scenes::inline v0::import {
+namespace vps::scenes::import {
 namespace {
 
 constexpr std::string_view kXmlBlank = " \t\r\n";
@@ -143,4 +143,4 @@ std::optional<std::string> withoutNumbersForCharacters(std::string_view xml) {
   return out.append(xml.substr(copied));
 }
 
-}  // namespace vps::scenes::inline v0::import
+}  // namespace vps::scenes::import

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-namespace vps::scenes::inline v0::import {
+namespace vps::scenes::import {
 
 struct XmlTag {
   std::string_view name;  ///< without a prefix of a namespace
@@ -30,4 +30,4 @@ std::optional<XmlTag> tagAt(std::string_view xml, std::string_view path);
 /// as markup ("&lt;"), and a blank for those of control. Nothing if the text has no such number.
 std::optional<std::string> withoutNumbersForCharacters(std::string_view xml);
 
-}  // namespace vps::scenes::inline v0::import
+}  // namespace vps::scenes::import

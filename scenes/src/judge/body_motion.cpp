@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -48,4 +48,4 @@ RelativeMotion relativeMotion(const BodyMotion& a, const Box& box_A, const BodyM
   return of_b;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

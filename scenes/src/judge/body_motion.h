@@ -5,7 +5,7 @@
 #include "vps/box.h"
 #include "vps/pose.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// The motion of a rigid body in one step: its centre of mass moves along a line and it turns about it, both
 /// uniformly. The turn is the shorter one, so it is less than half a turn.
@@ -37,4 +37,4 @@ struct RelativeMotion {
 /// @param box_A, box_B  of the bodies, in their frames
 RelativeMotion relativeMotion(const BodyMotion& a, const Box& box_A, const BodyMotion& b, const Box& box_B);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -6,7 +6,7 @@
 
 #include "vps/mesh.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Greatest displacement of any point of a box that moves from X_a to X_b: a corner's, since it is convex in
 /// the point.
@@ -20,4 +20,4 @@ inline double greatestDisplacement(const Box& box, const Pose& X_a, const Pose& 
   return greatest_m;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

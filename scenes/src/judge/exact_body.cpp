@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -84,4 +84,4 @@ PairMeasure measurePair(const ExactBody& a, const Pose& X_WA, const ExactBody& b
   return measure;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

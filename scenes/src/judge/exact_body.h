@@ -8,7 +8,7 @@
 #include "check/triangle_gap.h"
 #include "vps/mesh_overlap.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Measured: so many pairs of boxes take a microsecond, a unit of Overlap::work.
 inline constexpr std::size_t kBoxesPerWork = 8;
@@ -46,4 +46,4 @@ struct PairMeasure {
 PairMeasure measurePair(const ExactBody& a, const Pose& X_WA, const ExactBody& b, const Pose& X_WB,
                         double near_m);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

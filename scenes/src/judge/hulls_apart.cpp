@@ -6,7 +6,7 @@
 #include "judge/motion_judge.h"
 #include "judge/pair_path.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -58,4 +58,4 @@ bool MotionJudge::areHullsApart(PairPath& path, double from, double to, double e
   return false;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

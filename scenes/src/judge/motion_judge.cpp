@@ -7,7 +7,7 @@
 
 #include "judge/pair_path.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -247,4 +247,4 @@ void MotionJudge::setDepth(const Pair& pair, double depth_m, const Vec3& p_W) {
   known_m = depth_m > 0 ? depth_m : std::min(known_m, 0.0);
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -12,7 +12,7 @@
 #include "judge/body_motion.h"
 #include "judge/exact_body.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 struct PairPath;
 
@@ -125,4 +125,4 @@ class MotionJudge {
   std::size_t measured_ = 0;
 };
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

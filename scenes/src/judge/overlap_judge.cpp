@@ -10,7 +10,7 @@
 #include "vps/segment_depth.h"
 #include "vps/sharp_edges.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -151,4 +151,4 @@ double OverlapJudge::fieldDepth_m(const JudgedBody& moving, const Pose& X_WP) co
   return -least_m;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

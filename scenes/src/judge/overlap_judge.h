@@ -10,7 +10,7 @@
 #include "vps/part_model.h"
 #include "vps_scenes/check.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// A sharp edge of a part, in its frame.
 struct SharpEdge {
@@ -69,4 +69,4 @@ class OverlapJudge {
   std::vector<Mounted> mounted_;
 };
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

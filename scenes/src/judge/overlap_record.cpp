@@ -9,7 +9,7 @@
 #include "judge/box_motion.h"
 #include "judge/motion_judge.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -108,4 +108,4 @@ OverlapVerdict judgeSamples(const OverlapJudge& judge, const JudgedBody& moving,
   return verdict;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

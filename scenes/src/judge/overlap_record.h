@@ -7,7 +7,7 @@
 
 #include "judge/overlap_judge.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// A pose of the moving part, with the depth of its contacts in that pose as the solver saw them.
 struct OverlapSample {
@@ -39,4 +39,4 @@ OverlapVerdict judgeSamples(const OverlapJudge& judge, const JudgedBody& moving,
                             const std::vector<OverlapSample>& samples, std::size_t stride,
                             const std::atomic<bool>* stop = nullptr);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Arcs are replaced by chords that leave them by at most this, a fraction of the tolerance.
 inline constexpr double kChord_m = 0.25e-6;
@@ -40,4 +40,4 @@ struct PairPath {
   }
 };
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

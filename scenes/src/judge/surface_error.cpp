@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 double surfaceError_m(const Solid& solid, const Pose& X_error) {
   double greatest_m = 0;
@@ -13,4 +13,4 @@ double surfaceError_m(const Solid& solid, const Pose& X_error) {
   return greatest_m;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -8,7 +8,7 @@
 #include "judge/motion_judge.h"
 #include "judge/pair_path.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -136,4 +136,4 @@ bool MotionJudge::areSurfacesApart(PairPath& path, double from, double to) {
   return is_apart;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

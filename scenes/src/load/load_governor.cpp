@@ -7,7 +7,7 @@
 
 #include "simulation/physics_clock.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -92,4 +92,4 @@ void LoadGovernor::moveTo(int level) noexcept {
   calm_ = 0;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

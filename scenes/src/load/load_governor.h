@@ -5,7 +5,7 @@
 
 #include <vector>
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 struct GovernorSettings {
   double window_s = 0.25;    ///< time that one decision is based on. assumed: the delay a person accepts
@@ -85,4 +85,4 @@ class LoadGovernor {
   bool has_risen_ = false;  ///< a change downwards would now be a relapse
 };
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -3,7 +3,7 @@
 
 #include <cstdio>
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 double costRatio(std::size_t level) {
   const LoadLevel &now = kLoadLevels[level], &before = kLoadLevels[level - 1];
@@ -29,4 +29,4 @@ std::string describeCost(const LoadLevelChange& change) {
   return change.cost + text;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -10,7 +10,7 @@
 #include "vps_device/gains.h"
 #include "vps_device/periodic_thread.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -224,4 +224,4 @@ void LoadShedder::reportLastLevel(double time_s) {
   changes_.push_back(std::move(change));
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -15,7 +15,7 @@
 #include "simulation/simulation.h"
 #include "vps_scenes/load_level.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 struct LoadLimits {
   bool may_slow = true;                     ///< simulated time may run slower than the clock's
@@ -91,4 +91,4 @@ class LoadShedder {
   std::vector<LoadLevelChange> changes_;
 };
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -10,7 +10,7 @@
 #include "vps/shell_crop.h"
 #include "vps/voxmap_crop.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -107,4 +107,4 @@ CookedField cookField(const FieldOrder& order) {
   return field;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

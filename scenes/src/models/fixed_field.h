@@ -12,7 +12,7 @@
 #include "vps/part_model.h"
 #include "vps_bullet/shape.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// What contacts with a part of this material take from it. Bullet multiplies the two bodies' values: with
 /// square roots the product of friction is the geometric mean, so that two parts of 0.15 have 0.15 between
@@ -62,4 +62,4 @@ struct CookedField {
 /// as cookVoxMap(). When stopped, the result may have no shape; an order without parts has none.
 CookedField cookField(const FieldOrder& order);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -15,7 +15,7 @@
 #include "vps/box.h"
 #include "vps/mesh_distance.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -190,4 +190,4 @@ std::vector<MeetingSize> meetingSizes(const Scene& scene, double most_m) {
   return sizes;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -8,7 +8,7 @@
 
 #include "vps_scenes/scene.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Opposite walls of one mesh, up to a distance.
 struct WallSizes {
@@ -39,4 +39,4 @@ struct MeetingSize {
 /// a run is not asked: a fit is found from the sizes, wherever the parts begin. O(triangles log triangles).
 std::vector<MeetingSize> meetingSizes(const Scene& scene, double most_m);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -6,7 +6,7 @@
 
 #include "vps/mesh_repair.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 std::string meshWarning(const MeshReport& report) {
   if (!report.signed_by_winding && !report.is_union_incomplete) return {};
@@ -27,4 +27,4 @@ std::string meshWarning(const MeshReport& report) {
   return words + certain;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

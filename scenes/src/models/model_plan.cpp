@@ -12,7 +12,7 @@
 #include "models/scene_models.h"
 #include "vps/box.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -224,4 +224,4 @@ ModelPlan makeModelPlan(const Scene& scene, ModelPurpose purpose, bool models_ev
   return models_everything ? planner.everything() : planner.reduced();
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

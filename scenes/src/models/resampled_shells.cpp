@@ -8,7 +8,7 @@
 #include "vps/query.h"
 #include "vps/shell_crop.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -84,4 +84,4 @@ ResampledShells resampleShells(ResampleOrder order, std::shared_ptr<const ShellS
   return out;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -11,7 +11,7 @@
 #include "vps_scenes/model_plan.h"
 #include "vps_scenes/scene.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Pointshells that replace the parts' own, by part; null: the part's own is used.
 using ShellSet = std::vector<std::shared_ptr<const PointShell>>;
@@ -47,4 +47,4 @@ struct ResampledShells {
 /// cookField(), and std::runtime_error where that was stopped.
 ResampledShells resampleShells(ResampleOrder order, std::shared_ptr<const ShellSet> shells);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

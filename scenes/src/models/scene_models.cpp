@@ -29,7 +29,7 @@
 #include "vps/voxmap_crop.h"
 #include "vps_scenes/mesh_warning.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 VoxMapSettings voxMapSettings(const Fidelity& fidelity) {
   VoxMapSettings settings;
@@ -484,4 +484,4 @@ ModelledCost modelledCost(const Scene& scene) {
   return cost;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -7,7 +7,7 @@
 #include "vps_scenes/result.h"
 #include "vps_scenes/scene.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 VoxMapSettings voxMapSettings(const Fidelity& fidelity);
 PointShellSettings pointShellSettings(const Fidelity& fidelity);
@@ -44,4 +44,4 @@ void buildWhole(Scene& scene, ModelPlan& plan, const ModelOptions& options);
 /// Memory of the models of all parts; shared ones count once.
 ModelledCost modelledCost(const Scene& scene);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -48,4 +48,4 @@ Mesh shrunkMesh(const Mesh& mesh, double by_m) {
   return out;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -4,11 +4,11 @@
 
 #include "vps/mesh.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// The same facets, each moved inwards by the given distance, or outwards for a negative one. Where the
 /// facets at a corner leave no such place, it is the nearest one. For distances far below the size of the
 /// facets.
 Mesh shrunkMesh(const Mesh& mesh, double by_m);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -11,7 +11,7 @@
 #include "vps/load_error.h"
 #include "vps_device/metronome.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Used by one thread. All of its requests have one sender.
 class Asking {
@@ -81,4 +81,4 @@ class Asking {
   const char* remedy_;  ///< where nothing answers
 };
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

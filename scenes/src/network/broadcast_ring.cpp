@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstring>
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -88,4 +88,4 @@ void RingReader::skip() noexcept {
   if (memory_ != nullptr) number_ = memory_[0].load(std::memory_order_acquire);
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -14,7 +14,7 @@
 #include <span>
 #include <string_view>
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 using SharedWord = std::atomic<std::uint64_t>;
 static_assert(SharedWord::is_always_lock_free && sizeof(SharedWord) == 8, "processes share no lock");
@@ -68,4 +68,4 @@ class RingReader {
   std::uint64_t lost_ = 0;
 };
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "network/clock_doubts.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -37,4 +37,4 @@ std::string ClockDoubts::summary(const Link& link) {
   return words.empty() ? "" : "times that cannot be and were not believed: " + words;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -8,7 +8,7 @@
 
 #include "network/link.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Used by one thread, which may wait for the link's other threads.
 class ClockDoubts {
@@ -22,4 +22,4 @@ class ClockDoubts {
   std::set<std::uint64_t> said_;
 };
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -102,4 +102,4 @@ std::int64_t sentByClockHere_ns(std::int64_t sent_ns, double offset_s, std::int6
   return now_ns - std::max<std::int64_t>(0, ago_ns);
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -15,7 +15,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// The four times of an exchange [ns], t0 and t3 by the clock here, t1 and t2 by the one there.
 struct ClockExchange {
@@ -86,4 +86,4 @@ class ClockEstimate {
 /// @param offset_s  what that clock is ahead
 std::int64_t sentByClockHere_ns(std::int64_t sent_ns, double offset_s, std::int64_t now_ns) noexcept;
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -10,7 +10,7 @@
 #include "network/message_fields.h"
 #include "network/messages.h"
 
-namespace vps::scenes::inline v0::wire {
+namespace vps::scenes::wire {
 
 template <typename V>
 void compactFields(HapticMessage& m, V& visit) {
@@ -69,4 +69,4 @@ void compactFields(SnapshotMessage& m, V& visit) {
   });
 }
 
-}  // namespace vps::scenes::inline v0::wire
+}  // namespace vps::scenes::wire

@@ -10,7 +10,7 @@
 #include "network/messages.h"
 #include "network/packed_rotation.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -366,4 +366,4 @@ DenseBase baseOf(const PhysicsMessage& m) noexcept {
   return {true, m.state.part.X_W.inverse() * m.state.held.X_WP};
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

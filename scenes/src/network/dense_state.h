@@ -25,7 +25,7 @@
 #include "vps/pose.h"
 #include "vps_device/coupling_port.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 struct HapticMessage;
 struct PhysicsMessage;
@@ -96,4 +96,4 @@ bool isOlder(const PhysicsMessage& read, const PhysicsMessage& now) noexcept;
 DenseBase baseOf(const HapticMessage& m) noexcept;
 DenseBase baseOf(const PhysicsMessage& m) noexcept;
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -10,7 +10,7 @@
 #include "vps/load_error.h"
 #include "vps_device/metronome.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -158,4 +158,4 @@ std::string DeviceEnd::refusals() const {
   return words;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

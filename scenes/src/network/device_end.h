@@ -16,7 +16,7 @@
 #include "network/messages.h"
 #include "vps_scenes/run_requests.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Used by the physics thread.
 class DeviceEnd {
@@ -116,4 +116,4 @@ inline constexpr double kPeerLimit_s = 0.02;
 /// In the device's node. The rest of the limit is left for the tick that finds it.
 inline constexpr double kSilence_s = 0.75 * kPeerLimit_s;
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

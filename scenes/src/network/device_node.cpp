@@ -21,7 +21,7 @@
 #include "vps_device/metronome.h"
 #include "vps_scenes/network/nodes.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -354,4 +354,4 @@ DeviceNodeResult deviceNode(const DeviceNodeOptions& options) {
   return result;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

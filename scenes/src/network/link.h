@@ -17,7 +17,7 @@
 #include "network/wire_form.h"
 #include "vps_scenes/network/session_network.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// What flows between nodes, each from one writer. States: the newest counts. The others: each counts, in
 /// order.
@@ -162,4 +162,4 @@ std::unique_ptr<Link> makeNetworkSession(const std::string& session, std::string
 std::unique_ptr<Link> joinNetworkSession(const std::string& session, NodeRole role,
                                          const SessionNetwork& network);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

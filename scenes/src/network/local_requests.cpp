@@ -16,7 +16,7 @@
 #include "network/shared_region.h"
 #include "vps/load_error.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -204,4 +204,4 @@ std::unique_ptr<ClientChannel> findLocalServer(const std::string& session, uid_t
   return std::make_unique<LocalClient>(std::move(socket));
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -8,7 +8,7 @@
 
 #include "network/messages.h"
 
-namespace vps::scenes::inline v0::wire {
+namespace vps::scenes::wire {
 
 template <typename V>
 void fields(Envelope& m, V& visit) {
@@ -280,4 +280,4 @@ void fields(FetchedMessage& m, V& visit) {
   fields(m.piece, visit);
 }
 
-}  // namespace vps::scenes::inline v0::wire
+}  // namespace vps::scenes::wire

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "network/message_order.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -41,4 +41,4 @@ bool MessageOrder::continuesRun(const Heard& message) noexcept {
   return run_length_ >= kRunUntilTrusted;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -10,7 +10,7 @@
 
 #include <cstdint>
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 class MessageOrder {
  public:
@@ -40,4 +40,4 @@ class MessageOrder {
   int run_length_ = 0;
 };
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -13,7 +13,7 @@
 #include "vps_device/detail/bytes.h"
 #include "vps_device/metronome.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -533,4 +533,4 @@ MESSAGE(PieceMessage)
 MESSAGE(FetchedMessage)
 #undef MESSAGE
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -24,7 +24,7 @@
 #include "vps_scenes/result.h"
 #include "vps_scenes/snapshot.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Of all messages together; nodes of other versions are refused when they join.
 inline constexpr std::uint16_t kMessageVersion = 8;
@@ -293,4 +293,4 @@ MessageKind kindOf(std::string_view bytes) noexcept;
 /// A number for Envelope::sender.
 std::uint64_t newSender();
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

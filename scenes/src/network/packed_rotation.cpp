@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -53,4 +53,4 @@ std::optional<Mat3> unpackedRotation(std::uint64_t packed, unsigned bits) {
   return Eigen::Quaterniond(q[3], q[0], q[1], q[2]).normalized().toRotationMatrix();
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -9,7 +9,7 @@
 
 #include "vps_scenes/network/session_network.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// What each who watches a session sends to all who do; best effort. Used by one thread.
 class PointerTopic {
@@ -29,4 +29,4 @@ class PointerTopic {
 /// In dds/. Throws LoadError as joinSession() over a network.
 std::unique_ptr<PointerTopic> makePointerTopic(const std::string& session, const SessionNetwork& network);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -5,7 +5,7 @@
 #include <cctype>
 #include <filesystem>
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 bool isRecordingName(const std::string& name) {
   const auto is_good = [](unsigned char c) {
@@ -21,4 +21,4 @@ std::string recordingName(const std::string& file) {
   return isRecordingName(name) && name.size() <= kLongest ? name : "run.mcap";
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Of a file, without a folder, so that nobody chooses where on this machine it goes: letters, digits, -, _
 /// and dots, with the ending .mcap.
@@ -12,4 +12,4 @@ bool isRecordingName(const std::string& name);
 /// Under which the render node keeps what goes to a file elsewhere: the same, where that is allowed.
 std::string recordingName(const std::string& file);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -16,7 +16,7 @@
 #include "simulation/physics_clock.h"
 #include "vps/load_error.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -411,4 +411,4 @@ std::unique_ptr<Hand> remoteHand(DeviceEnd& end, const Scene& scene, MergedLog* 
   return std::make_unique<RemoteHand>(end, scene, log);
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

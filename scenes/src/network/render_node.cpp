@@ -15,7 +15,7 @@
 #include "vps_device/gains.h"
 #include "vps_scenes/network/nodes.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -195,4 +195,4 @@ AssembleResult renderNode(Scene& scene, const RenderOptions& given, const std::s
   return result;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -13,7 +13,7 @@
 
 #include "vps_scenes/network/session_network.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Longest request or answer.
 inline constexpr std::size_t kLongestAsk = 40 * 1024;
@@ -64,4 +64,4 @@ std::unique_ptr<ClientChannel> findLocalServer(const std::string& session, uid_t
 std::unique_ptr<ServerChannel> makeNetworkServer(const std::string& session, const SessionNetwork& network);
 std::unique_ptr<ClientChannel> findNetworkServer(const std::string& session, const SessionNetwork& network);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

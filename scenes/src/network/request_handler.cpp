@@ -21,7 +21,7 @@
 #include "vps_device/metronome.h"
 #include "vps_scenes/network/session_request.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -466,4 +466,4 @@ std::string_view RequestHandler::fetch(const Envelope& envelope, std::uint64_t o
   return writer_.write(message);
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

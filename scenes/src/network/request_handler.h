@@ -17,7 +17,7 @@
 #include "vps_scenes/network/request_server.h"
 #include "vps_scenes/run_requests.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// The first of run.mcap, run-2.mcap, ... that does not exist, so that no earlier run is lost.
 std::string unusedFile(const std::string& wanted);
@@ -145,4 +145,4 @@ class RequestHandler {
   int gains_step_ = -1;                 ///< of the procedure, in which that was
 };
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

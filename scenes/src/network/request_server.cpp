@@ -8,7 +8,7 @@
 #include "network/request_server_work.h"
 #include "vps_device/metronome.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -94,4 +94,4 @@ std::string RequestServer::recording() const {
   return work_->recording.empty() ? "" : unusedFile(work_->recording);
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -13,7 +13,7 @@
 #include "network/request_handler.h"
 #include "vps_scenes/network/request_server.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 struct RequestServer::Work {
   explicit Work(const RequestServerOptions& given);
@@ -37,4 +37,4 @@ struct RequestServer::Work {
   std::thread thread;
 };
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -3,7 +3,7 @@
 
 #include "vps_scenes/network/ros_topics.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 std::string rosName(const std::string& name) {
   // A name does not begin with a digit.
@@ -13,4 +13,4 @@ std::string rosName(const std::string& name) {
   return allowed;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -18,7 +18,7 @@
 #include "vps/load_error.h"
 #include "vps_device/metronome.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -204,4 +204,4 @@ std::vector<SessionPointer> SessionPointers::take() {
   return changes;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

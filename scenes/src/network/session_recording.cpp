@@ -18,7 +18,7 @@
 #include "vps/load_error.h"
 #include "vps/write_file.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -161,4 +161,4 @@ std::string SessionRecording::finish() {
   return work_->failure;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

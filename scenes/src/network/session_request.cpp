@@ -10,7 +10,7 @@
 #include "record/scene_archive.h"
 #include "vps/load_error.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -88,4 +88,4 @@ SessionAnswer SessionRequest::load(const Scene& scene, const std::function<void(
   return answerOf(answer);
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

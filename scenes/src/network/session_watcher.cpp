@@ -10,7 +10,7 @@
 #include "vps_device/metronome.h"
 #include "vps_scenes/network/nodes.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 struct SessionWatcher::Work {
   explicit Work(std::unique_ptr<Link> joined, const std::string& session)
@@ -98,4 +98,4 @@ std::vector<std::string> SessionWatcher::takeDoubts() {
   return work_->doubts.takeNew(*work_->link);
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -11,7 +11,7 @@
 #include "vps/load_error.h"
 #include "vps_device/periodic_thread.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -147,4 +147,4 @@ std::unique_ptr<Link> joinSession(const std::string& session, NodeRole role, con
   return network.empty() ? joinSession(session, role) : joinNetworkSession(session, role, network);
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -18,7 +18,7 @@
 
 #include "vps/load_error.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -215,4 +215,4 @@ void removeIfDead(const std::string& session) {
   removeDead(nameOf(session));
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

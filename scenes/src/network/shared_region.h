@@ -13,7 +13,7 @@
 #include <string>
 #include <utility>
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Who takes part in a session.
 enum class NodeRole : unsigned char { Render, Device, Watch };
@@ -69,4 +69,4 @@ void requireSessionName(const std::string& session);
 /// "session 'demo'", for messages.
 std::string sessionWords(const std::string& session);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

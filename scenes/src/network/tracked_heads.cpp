@@ -9,7 +9,7 @@
 #include "vps_device/metronome.h"
 #include "vps_scenes/network/head_topic.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 namespace {
 
 constexpr double kSilent_s = 1;  // assumed: trackers send 60 poses a second and more
@@ -112,4 +112,4 @@ std::vector<std::string> TrackedHeads::takeNews() {
   return std::exchange(work_->news, {});
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

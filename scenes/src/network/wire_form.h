@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// How the numbers of states and snapshots are written; other messages have one form.
 enum class WireForm : std::uint8_t {
@@ -12,4 +12,4 @@ enum class WireForm : std::uint8_t {
   Compact,  ///< a tenth of the bytes (dense_state.h, compact_fields.h)
 };
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -38,4 +38,4 @@ BasePart proposedBase(const PairMotions& motions, const std::vector<std::size_t>
   return {members[best], std::move(reason)};
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -7,7 +7,7 @@
 
 #include "plan/pair_motions.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 struct BasePart {
   std::size_t part = 0;
@@ -18,4 +18,4 @@ struct BasePart {
 /// most others; then the largest; then the first. The volume of an open mesh is that of its box.
 BasePart proposedBase(const PairMotions& motions, const std::vector<std::size_t>& members);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -6,7 +6,7 @@
 #include <map>
 #include <optional>
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -194,4 +194,4 @@ void layOnBench(const Placing& placing, PlannedAssembly& assembly) {
   if (!assembly.steps.empty()) Bench(placing, assembly).layOut(assembly);
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -4,7 +4,7 @@
 
 #include "plan/way_clearance.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Gives each step a start on a bench: a plane below all of the assembly, on which the parts, turned as on
 /// their ways, lie in rings around it in the order of the steps, with a twentieth of its size between them.
@@ -13,4 +13,4 @@ namespace vps::scenes::inline v0 {
 /// in place covers its start on all sides, keeps that start.
 void layOnBench(const Placing& placing, PlannedAssembly& assembly);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

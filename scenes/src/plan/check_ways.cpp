@@ -14,7 +14,7 @@
 
 #include "vps_scenes/plan.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 const char* toText(WayFaultKind kind) {
   switch (kind) {
@@ -316,4 +316,4 @@ std::vector<WayFault> checkWays(const Scene& scene, const Progress& progress,
   return of_step;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 std::vector<Vec3> ContactProbes::touching(const PlacedSurface& of, const PlacedSurface& other,
                                           double within_m) {
@@ -48,4 +48,4 @@ bool ContactProbes::areStopped(const Vec3& d_W) const {
   });
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -6,7 +6,7 @@
 
 #include "check/placed_surface.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Points on the surfaces of two parts where they touch. Where such a point, moved a little, is deeper in the
 /// other part than is allowed, the motion is stopped. It proves no more: where no point is, a search has to
@@ -30,4 +30,4 @@ class ContactProbes {
   double allowed_m_ = 0;
 };
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -8,7 +8,7 @@
 #include "check/iso_262.h"
 #include "plan/wire_like.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 const char* toText(OverlapKind kind) {
   switch (kind) {
@@ -248,4 +248,4 @@ std::vector<std::size_t> leftOut(const std::vector<PlacedSurface>& parts,
   return out;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

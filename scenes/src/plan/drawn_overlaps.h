@@ -8,7 +8,7 @@
 #include "check/fastener_shape.h"
 #include "vps_scenes/plan.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Of a shaft that is made thinner, or a hole that is made wider, on each side. With 20 um in diameter a hand
 /// found the hole in 100 of 100 tries; this is more, for shafts that pass several holes.
@@ -32,4 +32,4 @@ std::vector<OverlapChoice> noVolumeChoices(const std::vector<PlacedSurface>& par
 std::vector<std::size_t> leftOut(const std::vector<PlacedSurface>& parts,
                                  const std::vector<OverlapChoice>& choices);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

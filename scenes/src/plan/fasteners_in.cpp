@@ -8,7 +8,7 @@
 #include <map>
 #include <set>
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -53,4 +53,4 @@ std::vector<Fastener> fastenersIn(const std::vector<PlacedSurface>& parts, const
   return out;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -7,11 +7,11 @@
 
 #include "check/fastener_shape.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Those that their shapes tell, pins only where they fit a bore, and keys: bars with key fits to two parts.
 /// @param shapes of the parts, see fastenerShapes()
 std::vector<Fastener> fastenersIn(const std::vector<PlacedSurface>& parts, const CheckResult& checked,
                                   const std::vector<std::optional<FastenerShape>>& shapes);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

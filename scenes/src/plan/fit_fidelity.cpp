@@ -14,7 +14,7 @@
 #include "vps_scenes/plan.h"
 #include "vps_scenes/resolution.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -120,4 +120,4 @@ std::string fitFidelity(Scene& scene, double most_bytes) {
   return words;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -12,7 +12,7 @@
 
 #include "core/fit_tolerance.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -161,4 +161,4 @@ bool leansInHole(const PairMotions& motions, std::size_t part, const std::vector
   return center_m < from_m || center_m > to_m;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

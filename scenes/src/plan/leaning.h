@@ -6,7 +6,7 @@
 
 #include "plan/pair_motions.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// True for a part that only holes around level axes carry, with its centre of mass beside all of them along
 /// the axis: a bolt through a wall, before its nut is on. It leans by the play of its hole. Its drawn contact
@@ -22,4 +22,4 @@ bool sinksFromItsPlace(const PairMotions& motions, std::size_t part, const std::
 /// weight without friction: a plate that stands in a slot with its centre of mass beside the slot.
 bool tipsOver(const PairMotions& motions, std::size_t part, const std::vector<std::size_t>& held);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -6,7 +6,7 @@
 
 #include "plan/way.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -160,4 +160,4 @@ std::optional<Way> legWay(const PairMotions& motions, const std::vector<std::siz
   return LegSearch(motions, parts, held, work).find();
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

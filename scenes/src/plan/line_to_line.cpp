@@ -11,7 +11,7 @@
 #include "core/name_words.h"
 #include "plan/drawn_overlaps.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -99,4 +99,4 @@ std::vector<OverlapChoice> lineToLineChoices(const std::vector<PlacedSurface>& p
   return out;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

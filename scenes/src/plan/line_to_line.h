@@ -7,7 +7,7 @@
 #include "check/placed_surface.h"
 #include "vps_scenes/plan.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// A choice for each shaft whose diameter cannot be told from that of a hole that it is in: as drawn there is
 /// neither clearance nor interference, so that no run by contact can tell whether it passes. In the planned
@@ -17,4 +17,4 @@ std::vector<OverlapChoice> lineToLineChoices(const std::vector<PlacedSurface>& p
                                              const CheckResult& checked,
                                              const std::vector<OverlapChoice>& others);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -5,7 +5,7 @@
 
 #include "check/on_cores.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -211,4 +211,4 @@ MotionSearch PairMotions::search(const PlacedSurface& placed, std::size_t part,
           CrossingDepth::UpToMost};
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -14,7 +14,7 @@
 #include "check/motion_search.h"
 #include "plan/contact_probes.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Unit vectors, each with its opposite: 2 k and 2 k + 1.
 class Directions {
@@ -111,4 +111,4 @@ class PairMotions {
 /// A part moved by a motion of the world.
 PlacedSurface displaced(const PlacedSurface& part, const Pose& X_W);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

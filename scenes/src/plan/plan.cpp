@@ -23,7 +23,7 @@
 #include "plan/way_clearance.h"
 #include "vps/load_error.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 const char* toText(WayKind kind) {
   switch (kind) {
@@ -335,4 +335,4 @@ PlanResult planAssembly(const Scene& scene, PlanSettings settings, const Progres
   return planAssembly(scene.name, parts, settings, progress);
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

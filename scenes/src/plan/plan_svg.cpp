@@ -7,7 +7,7 @@
 
 #include "plan/precedence.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -189,4 +189,4 @@ path { fill: none; stroke: #444 }
          "</svg>\n";
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -9,7 +9,7 @@
 #include "vps_scenes/plan.h"
 #include "vps_scenes/scene_groups.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -202,4 +202,4 @@ std::vector<Scene> plannedScenes(const Scene& scene, const PlanResult& plan) {
   return out;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -8,7 +8,7 @@
 
 #include "check/on_cores.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 std::vector<PlannedOrder> precedence(const PairMotions& motions, const Disassembly& apart,
                                      const std::vector<std::string>& names) {
@@ -112,4 +112,4 @@ std::string planDot(const PlanResult& plan) {
   return out + "}\n";
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -4,7 +4,7 @@
 
 #include "plan/take_apart.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// @param names  of the removals, in their order
 std::vector<PlannedOrder> precedence(const PairMotions& motions, const Disassembly& apart,
@@ -13,4 +13,4 @@ std::vector<PlannedOrder> precedence(const PairMotions& motions, const Disassemb
 /// Those that do not follow from two others.
 std::vector<PlannedOrder> reducedOrder(const std::vector<PlannedOrder>& order);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -16,7 +16,7 @@
 #include "vps_scenes/explain.h"
 #include "vps_scenes/plan.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -207,4 +207,4 @@ void chooseResolution(Scene& scene) {
   scene.resolution_choice = fitFidelity(scene);
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

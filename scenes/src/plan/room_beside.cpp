@@ -6,7 +6,7 @@
 
 #include "core/fit_tolerance.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -63,4 +63,4 @@ Vec3 toMostRoom_m(const PairMotions& motions, std::size_t part, const std::vecto
   return Vec3::Zero();
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -6,7 +6,7 @@
 
 #include "plan/pair_motions.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// From its place to where it has most room to all sides across a straight way out, for a part that is drawn
 /// against one side of its play: a slide that rests on the plate of its dovetail meets the edge of that plate
@@ -15,4 +15,4 @@ namespace vps::scenes::inline v0 {
 Vec3 toMostRoom_m(const PairMotions& motions, std::size_t part, const std::vector<std::size_t>& held,
                   const Vec3& out_W);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -6,7 +6,7 @@
 #include "check/on_cores.h"
 #include "plan/take_apart.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -84,4 +84,4 @@ std::vector<std::vector<std::size_t>> connectedGroups(const PairMotions& motions
   return groups;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -10,7 +10,7 @@
 
 #include "check/on_cores.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -283,4 +283,4 @@ Disassembly takeApart(const PairMotions& motions, const std::vector<std::size_t>
   return TakingApart(motions, members, fixed, progress, on_removal).run();
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -7,7 +7,7 @@
 
 #include "plan/way.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// One part, or several that leave as one.
 struct Removal {
@@ -53,4 +53,4 @@ std::vector<std::vector<std::size_t>> connectedGroups(const PairMotions& motions
 /// Sort key of directions: up, sideways, down.
 int slopeOf(const PairMotions& motions, const Vec3& direction_W);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -7,7 +7,7 @@
 
 #include "check/play.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 std::vector<Pose> cornersOf(const Way& way) {
   std::vector<Pose> corners{Pose()};
@@ -54,4 +54,4 @@ std::optional<Way> screwWay(const PairMotions& motions, std::size_t part,
   return std::nullopt;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -8,7 +8,7 @@
 #include "plan/pair_motions.h"
 #include "vps_scenes/plan.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// A piece of a way, in the world.
 struct Leg {
@@ -45,4 +45,4 @@ std::optional<Way> screwWay(const PairMotions& motions, std::size_t part,
 std::optional<Way> legWay(const PairMotions& motions, const std::vector<std::size_t>& parts,
                           const std::vector<std::size_t>& held, SearchWork& work);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -11,7 +11,7 @@
 #include "check/surface_gap.h"
 #include "check/triangle_gap.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -223,4 +223,4 @@ void measureWays(const Placing& placing, PlannedAssembly& assembly, const Progre
   });
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

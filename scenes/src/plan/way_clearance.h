@@ -7,7 +7,7 @@
 #include "check/placed_surface.h"
 #include "vps_scenes/plan.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// What the ways of a plan are measured on.
 struct Placing {
@@ -21,4 +21,4 @@ struct Placing {
 /// thousandth of it. On all cores.
 void measureWays(const Placing& placing, PlannedAssembly& assembly, const Progress& progress);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -13,7 +13,7 @@
 
 #include "vps/box.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -171,4 +171,4 @@ bool isWireLike(const Mesh& mesh) {
   return wire.bands <= kMostBands && wire.slenderness() >= kLeastSlender;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

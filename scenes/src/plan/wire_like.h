@@ -4,7 +4,7 @@
 
 #include "vps/mesh.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// A surface cut into bands of equal distance from one of its ends, measured along the surface: a wire has
 /// one or two narrow bands at every distance, a shell has bands as wide as itself, and a perforated plate has
@@ -24,4 +24,4 @@ WireMeasure measureWire(const Mesh& mesh);
 /// Whether a part is long beside its width, and has no more than two sections at a distance from its end.
 bool isWireLike(const Mesh& mesh);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

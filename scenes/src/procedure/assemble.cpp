@@ -3,7 +3,7 @@
 
 #include "procedure/assembly_run.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 AssembleResult assemble(Scene& scene, const AssembleOptions& options) {
   requireSteps(scene);
@@ -11,4 +11,4 @@ AssembleResult assemble(Scene& scene, const AssembleOptions& options) {
   return runProcedure(scene, *hand, nullptr, loopSettings(scene, hand->device()), options);
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

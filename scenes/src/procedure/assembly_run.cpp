@@ -16,7 +16,7 @@
 #include "vps/load_error.h"
 #include "vps_scenes/put_down.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -120,4 +120,4 @@ AssembleResult runProcedure(Scene& scene, Hand& hand, device::RunLog* log,
   return result;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -7,7 +7,7 @@
 #include "vps_device/run_log.h"
 #include "vps_scenes/assemble.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Throws LoadError for a scene without a step, or with a part that is neither fixed, nor moved, nor scenery.
 void requireSteps(const Scene& scene);
@@ -26,4 +26,4 @@ AssembleResult runProcedure(Scene& scene, Hand& hand, device::RunLog* log,
                             const device::LoopSettings& settings, const AssembleOptions& options,
                             const std::vector<StepResult>& drawn);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -16,7 +16,7 @@
 #include "vps_device/metronome.h"
 #include "vps_scenes/part_mass.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -390,4 +390,4 @@ void AssemblyWorld::summarise(AssembleResult& result) const {
   result.simulated_s = state_.time_s;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

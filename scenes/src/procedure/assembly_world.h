@@ -16,7 +16,7 @@
 #include "vps_device/run_log.h"
 #include "vps_scenes/assemble.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// The part that the current step moves.
 struct StepPart {
@@ -156,4 +156,4 @@ class AssemblyWorld {
   double figures_time_s_ = 0;
 };
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -6,7 +6,7 @@
 
 #include "core/insertion_axis.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 namespace {
 
 constexpr double kShare = 1.0 / 3;                // of the device's peaks
@@ -66,4 +66,4 @@ std::optional<AxisSnap> axisSnap(const SceneStep& step, const Vec3& p_PG, const 
                                            peak(limits.peak_torque_Nm, kTorque_Nm))};
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

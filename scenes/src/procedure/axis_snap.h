@@ -10,7 +10,7 @@
 #include "vps_device/device.h"
 #include "vps_scenes/scene.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// A spring that lets go with distance: F(x) = k x (1 - (x/r)^2)^2 up to its reach r, and nothing beyond, so
 /// that force and stiffness are continuous. The greatest force is kPeak k r, at r / sqrt(5).
@@ -45,4 +45,4 @@ struct AxisSnap {
 std::optional<AxisSnap> axisSnap(const SceneStep& step, const Vec3& p_PG, const device::DeviceLimits& limits,
                                  double mass_kg, double least_I, double dt_s);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -10,7 +10,7 @@
 
 #include "vps/mesh_repair.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -79,4 +79,4 @@ bool isInClosedRoom(const Mesh& part, const Mesh& other, const Pose& X_OP) {
   return false;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

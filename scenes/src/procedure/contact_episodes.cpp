@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vps_scenes/contact_episodes.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 std::vector<ContactEpisode> contactEpisodes(std::span<const TraceRow> trace) {
   constexpr int kRest = static_cast<int>(TracePhase::Rest);
@@ -24,4 +24,4 @@ std::vector<ContactEpisode> contactEpisodes(std::span<const TraceRow> trace) {
   return episodes;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

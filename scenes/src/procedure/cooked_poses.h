@@ -9,7 +9,7 @@
 #include "vps_scenes/model_plan.h"
 #include "vps_scenes/scene.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// The poses at which the parts are cooked: fixed parts as designed, others where their steps have them in
 /// place.
@@ -31,4 +31,4 @@ class CookedPoses {
   std::vector<Pose> X_WP_;
 };
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

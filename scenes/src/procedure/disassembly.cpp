@@ -11,7 +11,7 @@
 #include "vps/mesh_repair.h"
 #include "vps_device/operator.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -95,4 +95,4 @@ Scene disassemblyOf(Scene scene) {
   return scene;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

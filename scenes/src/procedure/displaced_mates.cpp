@@ -8,7 +8,7 @@
 #include "core/parts_in_place.h"
 #include "vps_scenes/check.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -51,4 +51,4 @@ std::vector<Vec3> displacedMates_m(const Scene& scene, std::size_t step, const s
   return displaced_m;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -7,7 +7,7 @@
 
 #include "vps_scenes/scene.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// How far each part that was moved before, and that this step's part fits, is from its own place at the
 /// middle of their fit; in W. Where one part has several fits, each counts. A shaft holds nothing along its
@@ -16,4 +16,4 @@ namespace vps::scenes::inline v0 {
 /// @param X_WP  where the parts are, by part
 std::vector<Vec3> displacedMates_m(const Scene& scene, std::size_t step, const std::vector<Pose>& X_WP);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

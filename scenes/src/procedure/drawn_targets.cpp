@@ -11,7 +11,7 @@
 #include "procedure/closed_room.h"
 #include "vps_scenes/check.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -195,4 +195,4 @@ std::vector<StepResult> checkDrawnTargets(const Scene& scene, const Progress& pr
   return steps;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -10,7 +10,7 @@
 #include "vps_scenes/result.h"
 #include "vps_scenes/scene.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// A result for each step with tolerance_m, aligned_by, mesh_doubt and press_needed_N, and with reason and
 /// blocked_... where geometry proves that the part cannot be there: at its target it overlaps what is in
@@ -20,4 +20,4 @@ namespace vps::scenes::inline v0 {
 std::vector<StepResult> checkDrawnTargets(const Scene& scene, const Progress& progress,
                                           std::shared_ptr<const CheckResult>* checked = nullptr);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

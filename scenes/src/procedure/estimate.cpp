@@ -13,7 +13,7 @@
 #include "vps/model_estimate.h"
 #include "vps_scenes/explain.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -144,4 +144,4 @@ ExplainedModels estimate(const Scene& scene, ModelPurpose purpose, const ModelOp
   return Estimator(scene, purpose, options).run();
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

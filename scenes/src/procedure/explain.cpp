@@ -9,7 +9,7 @@
 #include "procedure/cooked_poses.h"
 #include "simulation/simulation.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -76,4 +76,4 @@ PartUse useOf(const ModelPlan& plan, std::size_t part, std::size_t step) {
   return PartUse::Absent;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

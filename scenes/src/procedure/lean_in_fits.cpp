@@ -8,7 +8,7 @@
 
 #include "core/parts_in_place.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -73,4 +73,4 @@ double leanInFits_m(const Scene& scene, std::size_t step) {
   return leanInFits_m(own, others);
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

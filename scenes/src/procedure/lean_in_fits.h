@@ -8,7 +8,7 @@
 #include "vps_scenes/check.h"
 #include "vps_scenes/scene.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Greatest displacement of a part's surface within the play of its fits. A shaft that is displaced by t from
 /// the middle of a hole and leans by w touches it at both ends of their common length L where 2 t + w L is
@@ -23,4 +23,4 @@ double leanInFits_m(const DrawnPart& part, const std::vector<DrawnPart>& others)
 /// Of the step's part at its target, in what is in place by then.
 double leanInFits_m(const Scene& scene, std::size_t step);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

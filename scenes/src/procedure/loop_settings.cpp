@@ -7,7 +7,7 @@
 #include "vps_device/device_kinds.h"
 #include "vps_device/gains.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 device::LoopSettings loopSettings(const Scene& scene, const device::Device& device, double delay_s) {
   const device::DeviceLimits limits = device.limits();
@@ -55,4 +55,4 @@ int ticksPerStep(const Scene& scene) {
   return ticks;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

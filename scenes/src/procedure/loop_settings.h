@@ -6,7 +6,7 @@
 #include "vps_device/loop.h"
 #include "vps_scenes/scene.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Gains from deriveGains(), except those that the scene states. Safety limits are the device's peaks.
 /// @param delay_s  from a state of the proxy to the answer to it, beyond the physics step: of a network
@@ -20,4 +20,4 @@ CouplingGains passiveGains(const Scene& scene, const device::DeviceLimits& limit
 /// physics rate.
 int ticksPerStep(const Scene& scene);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

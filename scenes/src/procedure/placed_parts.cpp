@@ -7,7 +7,7 @@
 #include "models/scene_models.h"
 #include "vps/box.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 PlacedParts::PlacedParts(Scene& scene, ModelPlan& plan, Simulation& simulation, const ModelOptions& options)
     : scene_(scene),
@@ -125,4 +125,4 @@ void PlacedParts::widen(std::size_t step, const Box& box_P, const Pose& X_WP) {
   if (const auto order = orderFor(step, has_changed)) setField(cookField(*order));
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -10,7 +10,7 @@
 #include "simulation/simulation.h"
 #include "vps_scenes/model_options.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Not thread-safe, except that another thread may read judge() and a judgedBody() while add() or leaveOut()
 /// is called.
@@ -71,4 +71,4 @@ class PlacedParts {
   int widened_in_step_ = 0;
 };
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -6,7 +6,7 @@
 #include "vps/box.h"
 #include "vps_scenes/assemble.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 namespace {
 
 /// Moves `box` along x until it overlaps none of the others, at least by a tenth of its length.
@@ -80,4 +80,4 @@ Scene sceneOfOnePart(const Scene& scene, std::span<const Pose> X_WP, std::size_t
   return free;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -8,7 +8,7 @@
 #include "core/insertion_axis.h"
 #include "vps/box.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -129,4 +129,4 @@ Snapshot snapshotOf(const AssemblyWorld& world) {
   return shot;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -13,7 +13,7 @@
 #include "vps_device/run_log.h"
 #include "vps_scenes/result.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 class RunTrace {
  public:
@@ -56,4 +56,4 @@ class RunTrace {
 /// What a viewer needs of this instant.
 Snapshot snapshotOf(const AssemblyWorld& world);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -9,7 +9,7 @@
 #include "core/length_words.h"
 #include "vps_device/operator.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -67,4 +67,4 @@ Pose turnedBack(const Pose& X_WP, const SceneStep& step, const Vec3& axis_W, con
   return {R, Vec3(X_WP * X_PG.p - R * X_PG.p)};
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

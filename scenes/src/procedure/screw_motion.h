@@ -8,7 +8,7 @@
 #include "vps_scenes/result.h"
 #include "vps_scenes/scene.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Sets turns, advance_per_turn_m and lean_rad from the last time that the part was screwed on.
 /// @param axis_W  of insertion
@@ -23,4 +23,4 @@ std::string threadFault(const SceneStep& step, const StepResult& result);
 /// The pose without its turn about the axis through G: a screw belongs at a height, not at an angle.
 Pose turnedBack(const Pose& X_WP, const SceneStep& step, const Vec3& axis_W, const Pose& X_PG);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

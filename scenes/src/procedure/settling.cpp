@@ -12,7 +12,7 @@
 #include "core/wall_clock.h"
 #include "vps_device/periodic_thread.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -115,4 +115,4 @@ void settleStep(AssemblyWorld& world, std::vector<OverlapSample> samples, StepRe
   if (cooked.shape || !world.isStopped()) swapIn(world.placed(), std::move(cooked), result);
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -9,7 +9,7 @@
 #include "procedure/assembly_world.h"
 #include "vps_scenes/result.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Judges the step's samples and cooks the field of the next step, on other threads, then fixes the part:
 /// where it lies if the step was completed, else at its target, so that the next step has what it is mounted
@@ -17,4 +17,4 @@ namespace vps::scenes::inline v0 {
 /// each run. By the clock, loop and physics go on until both are ready.
 void settleStep(AssemblyWorld& world, std::vector<OverlapSample> samples, StepResult& result);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

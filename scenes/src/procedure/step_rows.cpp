@@ -5,7 +5,7 @@
 
 #include "judge/box_motion.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 void StepRows::beginStep(const Box& box_P) {
   box_P_ = box_P;
@@ -60,4 +60,4 @@ void StepRows::thin() {
   stride_ *= 2;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

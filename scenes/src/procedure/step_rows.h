@@ -9,7 +9,7 @@
 #include "judge/overlap_record.h"
 #include "vps_scenes/result.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 class StepRows {
  public:
@@ -46,4 +46,4 @@ class StepRows {
   std::size_t left_ = 0;    ///< those that the last row stands for and that are still to come
 };
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -18,7 +18,7 @@
 #include "procedure/way_check.h"
 #include "vps_scenes/contact_episodes.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -273,4 +273,4 @@ StepResult runStep(AssemblyWorld& world, RunTrace& trace, std::size_t index, Ste
   return result;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -6,10 +6,10 @@
 #include "procedure/run_trace.h"
 #include "vps_scenes/result.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Runs scene.steps[index]. Throws LoadError as AssemblyWorld::take(). A step that fails is a result.
 /// @param known  what is known of it beforehand: block, stands_on
 StepResult runStep(AssemblyWorld& world, RunTrace& trace, std::size_t index, StepResult known);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

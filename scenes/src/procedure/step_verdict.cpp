@@ -17,7 +17,7 @@
 #include "procedure/way_check.h"
 #include "vps_scenes/put_down.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -188,4 +188,4 @@ Verdict verdictOf(const std::vector<StepResult>& steps, std::size_t planned) {
   return has(Verdict::NotShown) || steps.size() < planned ? Verdict::NotShown : Verdict::Fits;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

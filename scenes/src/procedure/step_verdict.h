@@ -6,7 +6,7 @@
 #include "procedure/assembly_world.h"
 #include "vps_scenes/result.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// The greatest penetration that a step may have: min(10 um, clearance / 4).
 double penetrationLimit_m(const SceneStep& step);
@@ -22,4 +22,4 @@ void judgeCompletion(AssemblyWorld& world, const SceneStep& step, const Pose& X_
 /// @param hand_N  greatest force of the hand
 void judgeStep(StepResult& result, double hand_N);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

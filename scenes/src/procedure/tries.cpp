@@ -15,7 +15,7 @@
 #include "procedure/drawn_targets.h"
 #include "vps/load_error.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -150,4 +150,4 @@ AssembleResult assembleTries(const Scene& scene, const TrySettings& settings,
   return result;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

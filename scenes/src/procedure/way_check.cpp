@@ -5,7 +5,7 @@
 
 #include "core/length_words.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -74,4 +74,4 @@ bool isFreeBeyondTarget(AssemblyWorld& world, const SceneStep& step, const Vec3&
   return judge.deepest(body, X_beyond).depth_m <= limit_m;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -7,7 +7,7 @@
 #include "judge/overlap_judge.h"
 #include "procedure/assembly_world.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// "; the way that it was given leads through 'wall', up to 3.20 mm deep at ...", or nothing if all poses
 /// that were tried are free. 24 exact measurements of overlap for each leg of the way.
@@ -27,4 +27,4 @@ bool isFreeToTarget(AssemblyWorld& world, const SceneStep& step, const Pose& X_W
 bool isFreeBeyondTarget(AssemblyWorld& world, const SceneStep& step, const Vec3& axis_W, double by_m,
                         double limit_m);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -5,7 +5,7 @@
 #include "record/run_record.h"
 #include "vps/load_error.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 AssembleResult assembleAndRecord(Scene& scene, const std::string& file, const AssembleOptions& options) {
   requireSteps(scene);
@@ -21,4 +21,4 @@ AssembleResult assembleAndRecord(Scene& scene, const std::string& file, const As
   return result;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

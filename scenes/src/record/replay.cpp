@@ -8,7 +8,7 @@
 #include "record/scene_archive.h"
 #include "vps/load_error.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -58,4 +58,4 @@ ReplayResult replay(const device::RecordedRun& run, const ReplayOptions& options
   return replayed;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -7,7 +7,7 @@
 #include "vps/version.h"
 #include "vps_scenes/settings_fields.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -108,4 +108,4 @@ std::string programVersion() {
   return words.append(", compiler " __VERSION__ ", Bullet ").append(precision);
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

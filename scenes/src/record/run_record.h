@@ -10,7 +10,7 @@
 #include "vps_scenes/assemble.h"
 #include "vps_scenes/scene.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Name of the attachment that holds the scene.
 inline constexpr const char* kSceneAttachment = "scene.vps";
@@ -42,4 +42,4 @@ class RunRecord final : public device::RunLog {
 /// it.
 std::string programVersion();
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

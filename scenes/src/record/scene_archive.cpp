@@ -20,7 +20,7 @@
 #include "vps_device/detail/bytes.h"
 #include "vps_scenes/settings_fields.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -367,4 +367,4 @@ std::string contentHash(const Mesh& mesh) {
   return contentHash(bytes);
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -7,7 +7,7 @@
 
 #include "vps_scenes/scene.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// The scene without its models, which follow from the rest; numbers to the bit. Of file names only the last
 /// component is kept, since folders may be private.
@@ -21,4 +21,4 @@ Scene sceneFromBytes(std::string_view bytes, const std::string& file);
 std::string contentHash(const Mesh& mesh);
 std::string contentHash(std::string_view bytes);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

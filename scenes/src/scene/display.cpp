@@ -10,7 +10,7 @@
 #include "vps_scenes/display.h"
 #include "vps_scenes/import.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 namespace {
 
 constexpr double kSquare = 0.01;     // cosine by which corners may miss a right angle
@@ -170,4 +170,4 @@ Display loadDisplay(const std::string& file) {
   return display;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -9,7 +9,7 @@
 #include "vps/load_error.h"
 #include "vps_scenes/number_table.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 Pose HeadTrack::at(double t_s) const {
   const auto after = std::upper_bound(time_s.begin(), time_s.end(), t_s);
@@ -38,4 +38,4 @@ HeadTrack loadHeadTrack(const std::string& file) {
   return track;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -12,7 +12,7 @@
 
 #include "vps/mesh_repair.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 namespace {
 
 using MeshKey = std::pair<std::uint64_t, std::uint64_t>;
@@ -57,4 +57,4 @@ MassProperties partMass(const ScenePart& part) {
   return has_own_solid ? part.model->solid->mass() : known.of(part.part.mesh, part.part.name);
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

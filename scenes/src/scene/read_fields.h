@@ -8,7 +8,7 @@
 #include "scene/scene_file_keys.h"
 #include "vps_scenes/fields.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 inline void addKey(std::vector<std::string_view>& keys, const Key& row) {
   keys.push_back(row.key);
@@ -109,4 +109,4 @@ void readFields(const SceneKeys& keys, Struct& out, const Rows& rows) {
   forEachRow(rows, [&](const auto& row) { readRow(keys, out, row); });
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

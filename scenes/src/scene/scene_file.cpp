@@ -23,7 +23,7 @@
 #include "vps_scenes/settings_fields.h"
 #include "vps_scenes/srgb.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -441,4 +441,4 @@ Scene loadScene(const std::string& file, const Progress& progress, const ByteCac
   return SceneReader(root, file, progress, cache).read();
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -11,7 +11,7 @@
 #include "vps/load_error.h"
 #include "vps_scenes/import.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -323,4 +323,4 @@ Pose SceneKeys::requirePose(std::string_view key, const toml::node& node, Pose f
   return from;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

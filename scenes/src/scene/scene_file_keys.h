@@ -19,7 +19,7 @@
 #include <toml++/toml.h>
 #pragma pop_macro("NDEBUG")
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Shared by all tables of one scene file.
 struct SceneFileContext {
@@ -89,4 +89,4 @@ class SceneKeys {
   std::string place_;
 };
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -8,7 +8,7 @@
 #include "vps/mesh_repair.h"
 #include "vps_scenes/part_mass.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 ScenePart unitedPart(const std::string& name, const std::vector<ScenePart>& parts) {
   ScenePart whole = parts.front();
@@ -64,4 +64,4 @@ void uniteGroups(Scene& scene, const std::vector<PartGroup>& groups) {
   scene.parts = std::move(parts);
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

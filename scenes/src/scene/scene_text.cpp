@@ -10,7 +10,7 @@
 #include "vps_scenes/settings_fields.h"
 #include "vps_scenes/srgb.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -188,4 +188,4 @@ std::string sceneText(const Scene& scene, const std::vector<std::string>& files,
   return out;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

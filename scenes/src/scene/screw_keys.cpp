@@ -8,7 +8,7 @@
 #include "scene/thread_form.h"
 #include "vps/mesh_repair.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -47,4 +47,4 @@ void completeScrew(const SceneKeys& keys, const Mesh& mesh, SceneStep& step) {
     keys.fail("pitch", "is longer than the part itself; give the way in one turn");
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -5,10 +5,10 @@
 #include "scene/scene_file_keys.h"
 #include "vps_scenes/scene.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Finds the pitch in the moving part's mesh where the file gives none. Throws LoadError for a screw without
 /// a pitch or with a path that turns it, and for keys of a screw elsewhere.
 void completeScrew(const SceneKeys& keys, const Mesh& mesh, SceneStep& step);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

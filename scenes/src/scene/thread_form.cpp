@@ -10,7 +10,7 @@
 #include <unsupported/Eigen/FFT>
 #include <vector>
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 namespace {
 
 constexpr double kTurn_rad = 2 * std::numbers::pi;
@@ -232,4 +232,4 @@ std::optional<ThreadForm> findThread(const Mesh& mesh, const Vec3& p, const Vec3
   return threadIn(RadiusMap(mesh, p, axis, is_inside), is_inside);
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -6,7 +6,7 @@
 
 #include "vps/mesh.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 struct ThreadForm {
   double lead_m = 0;       ///< its way in one turn; negative: a left-hand thread
@@ -22,4 +22,4 @@ std::optional<ThreadForm> findThread(const Mesh& mesh, const Vec3& p, const Vec3
 /// The same on the outside of a solid, or in a bore.
 std::optional<ThreadForm> findThread(const Mesh& mesh, const Vec3& p, const Vec3& axis, bool is_inside);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -6,7 +6,7 @@
 #include "scene/toml_text.h"
 #include "vps/load_error.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 namespace {
 
 /// Where a line begins; lines count from 1. The text's end for a line beyond the last.
@@ -85,4 +85,4 @@ std::string editedToml(const std::string& file, std::span<const TomlValue> value
   return text;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

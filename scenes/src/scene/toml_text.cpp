@@ -8,7 +8,7 @@
 
 #include "vps/load_error.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 std::string readTomlText(const std::string& file, const std::string& what, const std::string& example) {
   std::error_code error;
@@ -35,4 +35,4 @@ toml::table parseToml(const std::string& text, const std::string& file) {
   }
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -6,7 +6,7 @@
 
 #include "scene/scene_file_keys.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// @param what, example  for messages: "scene file", "scene.toml"
 std::string readTomlText(const std::string& file, const std::string& what, const std::string& example);
@@ -14,4 +14,4 @@ std::string readTomlText(const std::string& file, const std::string& what, const
 /// @param file  for messages
 toml::table parseToml(const std::string& text, const std::string& file);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

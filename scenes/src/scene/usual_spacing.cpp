@@ -6,7 +6,7 @@
 
 #include "vps/box.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 SmallestPart smallestMoved(const Scene& scene) {
   SmallestPart out{"", std::numeric_limits<double>::infinity()};
@@ -28,4 +28,4 @@ double usualSpacing_m(const Scene& scene) {
   return std::clamp(kShare * smallestMoved(scene).across_m, 2 * voxel_m, 4 * voxel_m);
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

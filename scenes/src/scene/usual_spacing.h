@@ -5,7 +5,7 @@
 
 #include "vps_scenes/scene.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// The moved part with the least size across, in its own frame: of steps, or dynamic from the start.
 struct SmallestPart {
@@ -23,4 +23,4 @@ SmallestPart smallestMoved(const Scene& scene);
 /// without points, so more points on faces add time and no accuracy to rigid contacts (FIDELITY.md).
 double usualSpacing_m(const Scene& scene);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

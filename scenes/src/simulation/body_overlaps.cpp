@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -121,4 +121,4 @@ JudgedDepth BodyOverlaps::deepest() const {
   return {describe(motions_.deepestOfAll()), motions_.bound_m(), motions_.measured(), motions_.isSearched()};
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

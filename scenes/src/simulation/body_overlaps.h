@@ -11,7 +11,7 @@
 #include "vps_scenes/scene.h"
 #include "vps_scenes/simulate.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Measures pairs of which one part can move and whose boxes overlap: at single instants, and along the steps
 /// between them.
@@ -51,4 +51,4 @@ class BodyOverlaps {
   std::map<Pair, OverlappingStart> starts_;
 };
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -6,7 +6,7 @@
 
 #include "vps_scenes/simulate.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -47,4 +47,4 @@ std::string inWords(const std::vector<FastTurn>& turns, const Fidelity& fidelity
   return words;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -5,7 +5,7 @@
 
 #include "core/tick_times.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -53,4 +53,4 @@ void PhysicsClock::stop() noexcept {
   device::leaveRealTime();
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -9,7 +9,7 @@
 #include "vps_device/tick_statistics.h"
 #include "vps_scenes/result.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// How late a step may begin and still be made up for; what is later than that is lost. The steps after a
 /// long one follow at once until the clock is reached again: a part that slides into its bore takes a step of
@@ -55,4 +55,4 @@ class PhysicsClock {
   std::int64_t woke_ns_ = 0;  ///< end of the last wait; 0: none yet
 };
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

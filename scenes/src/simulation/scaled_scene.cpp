@@ -6,7 +6,7 @@
 
 #include "models/meeting_sizes.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -90,4 +90,4 @@ SimulateResult scaledBack(SimulateResult result, double factor) {
   return result;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -5,7 +5,7 @@
 #include "vps_scenes/scene.h"
 #include "vps_scenes/simulate.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Contact has lengths and speeds of its own (a rest gap of 0.1 um, a margin of 20 um, ...: vps_bullet),
 /// which are right for parts of millimetres and more. A scene whose smallest moving part is less than
@@ -22,4 +22,4 @@ Scene scaledScene(const Scene& scene, double factor);
 SimulateResult scaledBack(SimulateResult result, double factor);
 std::vector<BodyState> scaledBack(std::vector<BodyState> bodies, double factor);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

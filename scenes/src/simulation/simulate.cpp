@@ -15,7 +15,7 @@
 #include "simulation/simulation.h"
 #include "vps/load_error.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -200,4 +200,4 @@ SimulateResult simulate(Scene& scene, double seconds, const SimulateOptions& opt
   return scaledBack(simulateAsGiven(larger, seconds, larger_options, factor), factor);
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

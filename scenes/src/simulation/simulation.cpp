@@ -19,7 +19,7 @@
 #include "vps_bullet/turn.h"
 #include "vps_scenes/part_mass.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -538,4 +538,4 @@ void Simulation::addField(ModelledCost& cost) const {
   cost.field_points = shell != nullptr ? shell->size() : 0;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -15,7 +15,7 @@
 #include "vps_scenes/result.h"
 #include "vps_scenes/scene.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// The contacts of the last step.
 struct TouchState {
@@ -131,4 +131,4 @@ class Simulation {
   std::unique_ptr<World> world_;
 };
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <string_view>
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Draws for one run of a study and one name.
 class CountedDraw {
@@ -45,4 +45,4 @@ class CountedDraw {
   std::uint64_t key_;
 };
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

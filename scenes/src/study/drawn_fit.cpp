@@ -6,7 +6,7 @@
 #include "check/check_placed.h"
 #include "core/length_words.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -79,4 +79,4 @@ DrawnMisfit DrawnFit::findMisfit(const Scene& variant) const {
   return {};
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -8,7 +8,7 @@
 #include "check/placed_surface.h"
 #include "vps_scenes/scene.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Why a part that a step moves cannot be where it belongs, by exact distance; empty: nothing is in its way.
 struct DrawnMisfit {
@@ -33,4 +33,4 @@ class DrawnFit {
   std::vector<PlacedSurface> placed_;  // points to the parts
 };
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -16,7 +16,7 @@
 #include "vps_scenes/assemble.h"
 #include "vps_scenes/check.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -212,4 +212,4 @@ MarginResult measureMargins(const Scene& scene, const MarginOptions& options) {
   return result;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -5,7 +5,7 @@
 #include "study/varied_scene.h"
 #include "vps_scenes/study.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -59,4 +59,4 @@ Scene sampledScene(const Scene& scene, const std::vector<StudyVariable>& variabl
   return sampled;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -16,7 +16,7 @@
 #include "study/drawn_fit.h"
 #include "vps_scenes/assemble.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -162,4 +162,4 @@ std::string studyFingerprint(const Scene& scene, const std::vector<StudyVariable
   return contentHash(bytes);
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -5,7 +5,7 @@
 
 #include "vps_scenes/study.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -80,4 +80,4 @@ StudyResult sumUpStudy(const std::string& scene, const std::vector<StudyVariable
   return result;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

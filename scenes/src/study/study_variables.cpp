@@ -10,7 +10,7 @@
 #include "vps_scenes/check.h"
 #include "vps_scenes/study.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -130,4 +130,4 @@ std::vector<StudyVariable> studyVariables(const Scene& scene) {
   return Variables(scene).take();
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -7,7 +7,7 @@
 #include "core/insertion_axis.h"
 #include "models/shrunk_mesh.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -90,4 +90,4 @@ Scene withDeviations(const Scene& scene, const std::vector<PartDeviation>& devia
   return varied;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -6,7 +6,7 @@
 
 #include "vps_scenes/scene.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Moves every face of a part outwards by `by_m`, or inwards for a negative one, and removes its models. The
 /// other parts stay as they are.
@@ -32,4 +32,4 @@ struct PartDeviation {
 /// so that only deviations across the path can be in its way.
 Scene withDeviations(const Scene& scene, const std::vector<PartDeviation>& deviations);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -5,7 +5,7 @@
 
 #include "vps_scenes/trade.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -117,4 +117,4 @@ std::vector<std::string> tradeKnobs(const TradeResult& result) {
   return lines;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -152,4 +152,4 @@ TradeSetting tradeSuggestion(const Scene& scene, const std::vector<TradeRow>& ro
   return best;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -6,7 +6,7 @@
 
 #include "vps_scenes/trade.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// The scene's own, each knob alone coarser and finer (the most informative first), and all together coarser
 /// and finer.
@@ -20,4 +20,4 @@ std::vector<TradeSetting> tradeReferences(const Scene& scene);
 /// name is empty where that changes fewer than two knobs.
 TradeSetting tradeSuggestion(const Scene& scene, const std::vector<TradeRow>& rows);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 ExactContact exactContact(const JudgedBody& solid, const std::vector<SurfaceSample>& samples,
                           const Pose& X_SB, const Vec3& p_SO) {
@@ -35,4 +35,4 @@ ExactContact exactContact(const JudgedBody& solid, const std::vector<SurfaceSamp
   return contact;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -9,7 +9,7 @@
 #include "trade/surface_samples.h"
 #include "vps/wrench.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Any value will do, since only ratios of wrenches are reported.
 inline constexpr double kProbeStiffness_N_per_m3 = 1e12;
@@ -27,4 +27,4 @@ struct ExactContact {
 ExactContact exactContact(const JudgedBody& solid, const std::vector<SurfaceSample>& samples,
                           const Pose& X_SB, const Vec3& p_SO);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 Scene excerptOf(const Scene& scene, std::size_t step) {
   Scene excerpt = scene;
@@ -24,4 +24,4 @@ Scene excerptOf(const Scene& scene, std::size_t step) {
   return excerpt;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

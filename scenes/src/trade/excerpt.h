@@ -4,10 +4,10 @@
 
 #include "vps_scenes/scene.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// The step with the parts that are in place by then: fixed parts, and those of earlier steps, fixed at their
 /// targets. Parts of later steps are left out. The operator aims as in the whole scene.
 Scene excerptOf(const Scene& scene, std::size_t step);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

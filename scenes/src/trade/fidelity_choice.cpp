@@ -18,7 +18,7 @@
 #include "vps_scenes/resolution.h"
 #include "vps_scenes/settings_fields.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -275,4 +275,4 @@ std::string describe(const FidelityChoice& choice) {
   return words;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -34,4 +34,4 @@ void markFront(std::vector<TradeRow>& rows) {
                       });
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -6,10 +6,10 @@
 
 #include "vps_scenes/trade.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Marks the completed rows that no other completed row dominates in time of a step (99th percentile of
 /// processor time), error and memory. The reference is a row like any other.
 void markFront(std::vector<TradeRow>& rows);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

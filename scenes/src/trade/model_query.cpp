@@ -8,7 +8,7 @@
 #include "trade/exact_contact.h"
 #include "vps/pair_query.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -79,4 +79,4 @@ TickTimes timeQueries(const Scene& scene, std::size_t moving, const std::vector<
   return clock.summary();
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

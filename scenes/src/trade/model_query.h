@@ -9,7 +9,7 @@
 #include "vps_scenes/result.h"
 #include "vps_scenes/scene.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Contact of one part with all fixed parts, by the models.
 struct ModelResponse {
@@ -28,4 +28,4 @@ double leastDistance(const Scene& scene, std::size_t moving, const Pose& X_WP);
 TickTimes timeQueries(const Scene& scene, std::size_t moving, const std::vector<Pose>& poses,
                       bool is_exhaustive);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

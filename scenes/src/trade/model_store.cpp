@@ -4,7 +4,7 @@
 #include "core/wall_clock.h"
 #include "models/scene_models.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 double ModelStore::fill(Scene& scene, const ModelOptions& options) {
   const double voxel_m = scene.fidelity.voxel_m, spacing_m = scene.fidelity.spacing_m;
@@ -27,4 +27,4 @@ double ModelStore::fill(Scene& scene, const ModelOptions& options) {
   return wall_s;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

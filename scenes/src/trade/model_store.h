@@ -10,7 +10,7 @@
 #include "vps_scenes/model_options.h"
 #include "vps_scenes/scene.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Keeps the maps of one scene's parts by voxel size, and their shells by spacing.
 class ModelStore {
@@ -26,4 +26,4 @@ class ModelStore {
   std::map<Key, std::shared_ptr<const PointShell>> shells_;
 };
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

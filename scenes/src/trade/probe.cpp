@@ -8,7 +8,7 @@
 #include "trade/exact_contact.h"
 #include "trade/model_query.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -117,4 +117,4 @@ void Probe::measure(const Scene& scene, TradeRow& row) const {
   row.has_probe = true;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

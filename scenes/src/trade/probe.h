@@ -9,7 +9,7 @@
 #include "trade/surface_samples.h"
 #include "vps_scenes/trade.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// The part that a scene's first step moves, at poses near contact, against all fixed parts. The exact values
 /// come from the meshes alone: depth from OverlapJudge (to half a micrometre), distance and penalty wrench
@@ -54,4 +54,4 @@ class Probe {
 /// to the clearance and 20 um, so that it penetrates. Seeded: the same run gives the same poses.
 std::vector<Pose> probePoses(const Scene& scene, const AssembleResult& run, std::size_t count);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -5,7 +5,7 @@
 #include "trade/probe.h"
 #include "trade/seeded_draw.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 std::vector<Pose> probePoses(const Scene& scene, const AssembleResult& run, std::size_t count) {
   std::vector<const TraceRow*> touching;
@@ -24,4 +24,4 @@ std::vector<Pose> probePoses(const Scene& scene, const AssembleResult& run, std:
   return poses;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

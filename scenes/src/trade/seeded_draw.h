@@ -7,7 +7,7 @@
 
 #include "vps/pose.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Draws from [0, 1). Not std::uniform_real_distribution, whose numbers depend on the standard library.
 class SeededDraw {
@@ -28,4 +28,4 @@ class SeededDraw {
   std::mt19937_64 random_;
 };
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -38,4 +38,4 @@ std::vector<SurfaceSample> sampleSurface(const Mesh& mesh, double spacing_m, con
   return samples;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -6,7 +6,7 @@
 
 #include "vps/mesh.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 struct SurfaceSample {
   Vec3 p = Vec3::Zero();
@@ -19,4 +19,4 @@ struct SurfaceSample {
 /// sequences, 2018.
 std::vector<SurfaceSample> sampleSurface(const Mesh& mesh, double spacing_m, const Box& box);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

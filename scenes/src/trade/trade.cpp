@@ -18,7 +18,7 @@
 #include "vps/load_error.h"
 #include "vps_scenes/assemble.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -293,4 +293,4 @@ TradeResult trade(const Scene& scene, const TradeOptions& options) {
   return Trade(scene, options).run();
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

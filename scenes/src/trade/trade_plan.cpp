@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -67,4 +67,4 @@ void TradePlan::runTook(const TradeSetting& setting, double wall_s) {
     run_scale_ = 0.5 * (run_scale_ + wall_s / (own_run_s_ * runShare(setting)));
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -6,7 +6,7 @@
 
 #include "vps_scenes/trade.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Estimates the time of a setting from the times of the scene's own, and keeps account of the time that is
 /// left. The clock decides which rows are measured, but not their contents.
@@ -48,4 +48,4 @@ class TradePlan {
   bool is_reserve_released_ = false;
 };
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

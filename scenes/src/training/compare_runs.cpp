@@ -14,7 +14,7 @@
 #include "vps_scenes/replay.h"
 #include "vps_scenes/result.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -198,4 +198,4 @@ RunComparison compareRuns(const device::RecordedRun& expert, const device::Recor
   return result;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -6,7 +6,7 @@
 
 #include "vps/voxmap.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// The module's one symbol, of C: an object of this type.
 struct LevelSetModule {
@@ -15,4 +15,4 @@ struct LevelSetModule {
 };
 inline constexpr const char* kLevelSetSymbol = "vps_level_set_module";
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -7,7 +7,7 @@
 #include "vps/mesh.h"
 #include "vps_viewer/export.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// A perspective camera that looks from eye to target. Near and far planes follow from what is drawn.
 struct VPS_VIEWER_API Camera {
@@ -39,4 +39,4 @@ struct VPS_VIEWER_API Camera {
 VPS_VIEWER_API Camera frameScene(const Box& box_W, const Vec3& direction, double fov_rad = 0.5,
                                  double aspect = 4.0 / 3, double margin = 0.12);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

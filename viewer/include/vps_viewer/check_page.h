@@ -7,7 +7,7 @@
 #include "vps_scenes/check.h"
 #include "vps_viewer/export.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// Tables of pairs, fits and press fits, without pictures, for the report of a run.
 VPS_VIEWER_API std::string checkTablesOfRun(const scenes::CheckResult& result);
@@ -16,4 +16,4 @@ VPS_VIEWER_API std::string checkSection(const scenes::CheckResult& result);
 /// A page of its own, with the answer first.
 VPS_VIEWER_API std::string checkPage(const scenes::CheckResult& result);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -7,7 +7,7 @@
 #include "vps_scenes/check.h"
 #include "vps_viewer/export.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// How the overlap in the tables is meant.
 inline constexpr const char* kOverlapMeaning =
@@ -33,4 +33,4 @@ VPS_VIEWER_API std::string playDoubt(const scenes::CheckedPart& part, const scen
 /// moves by 0.050 mm along +x", "cannot be assembled: ...", "not shown: ..."; empty for yes as drawn.
 VPS_VIEWER_API std::string assemblyWords(const scenes::CheckResult& result);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -8,11 +8,11 @@
 #include "vps_scenes/compare.h"
 #include "vps_viewer/export.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// Writes compare.html, and for each step plots/path_N and plots/force_N (PNG and SVG), into dir, which
 /// exists. Returns notes on what could not be drawn. Throws LoadError when dir cannot be written.
 VPS_VIEWER_API std::vector<std::string> writeComparePage(const scenes::RunComparison& result,
                                                          const std::string& dir);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

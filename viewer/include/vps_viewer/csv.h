@@ -10,7 +10,7 @@
 #include "vps_scenes/fields.h"
 #include "vps_viewer/export.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// One line, with its line end; a cell stands in quotes where it must.
 VPS_VIEWER_API std::string csvLine(const std::vector<std::string>& cells);
@@ -93,4 +93,4 @@ std::string toCsv(const std::vector<Struct>& structs, const Rows& rows) {
   return out;
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -10,7 +10,7 @@
 #include "vps_viewer/export.h"
 #include "vps_viewer/plot.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// Left: the least force over each column of the workspace, as surfaces over x and y. Right: the least over x
 /// and z, along y, with the paper's 5 N and 12 N. Writes file + ".png" and file + ".svg"; the same input
@@ -18,4 +18,4 @@ namespace vps::viewer::inline v0 {
 VPS_VIEWER_API PlotOutcome plotVerticalForces(const std::vector<device::VerticalForceAt>& forces,
                                               const std::string& file);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

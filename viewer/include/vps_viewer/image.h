@@ -8,7 +8,7 @@
 
 #include "vps_viewer/export.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// sRGB, 8 bits per channel, rows from the top; rgb.size() == 3 * width * height.
 struct VPS_VIEWER_API Image {
@@ -53,4 +53,4 @@ VPS_VIEWER_API Image differenceImage(const Image& a, const Image& b, int toleran
 /// savePng(differenceImage(...)).
 VPS_VIEWER_API void writeDifference(const Image& a, const Image& b, int tolerance, const std::string& file);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -16,7 +16,7 @@
 #include "vps_scenes/scene.h"
 #include "vps_viewer/export.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// How far picture, sound and force of a contact may be apart, 99 of 100 times: section 2 of the paper.
 inline constexpr double kApart_s = 24e-3;
@@ -77,4 +77,4 @@ VPS_VIEWER_API double percentile(std::vector<double> values, double share);
 /// met, std::runtime_error as Renderer.
 VPS_VIEWER_API LatencyResult measureLatency(scenes::Scene scene, const LatencySettings& settings);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

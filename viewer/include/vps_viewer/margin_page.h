@@ -7,9 +7,9 @@
 #include "vps_scenes/margin.h"
 #include "vps_viewer/export.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// A page with the answer, a bar for each step (the tightest first) and a table.
 VPS_VIEWER_API std::string marginPage(const scenes::MarginResult& result);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -9,7 +9,7 @@
 #include "vps/voxmap.h"
 #include "vps_viewer/export.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// Such a mesh has at most this many triangles, so that single points and cubes are seen in a picture.
 inline constexpr std::size_t kModelTriangles = 120000;
@@ -30,4 +30,4 @@ struct TintedMesh {
 /// @param cube_m  if given, receives their edge
 VPS_VIEWER_API TintedMesh voxelMesh(const VoxMap& map, double* cube_m = nullptr);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -11,7 +11,7 @@
 #include "vps_viewer/model_meshes.h"
 #include "vps_viewer/renderer.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 struct ShownModels {
   bool has_points = false, has_voxels = false;
@@ -31,4 +31,4 @@ class VPS_VIEWER_API ModelView {
   std::vector<std::unique_ptr<TintedMesh>> meshes_;
 };
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

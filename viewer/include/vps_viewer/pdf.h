@@ -6,7 +6,7 @@
 
 #include "vps_viewer/export.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// What is missing to print here, in words with its remedy; empty: nothing.
 VPS_VIEWER_API std::string missingForPdf();
@@ -17,4 +17,4 @@ VPS_VIEWER_API std::string printPdf(const std::string& page, const std::string& 
 /// The same for the text of a page that shows nothing from other files.
 VPS_VIEWER_API std::string printPdfOf(const std::string& html, const std::string& pdf);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -10,7 +10,7 @@
 #include "vps_scenes/result.h"
 #include "vps_viewer/export.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 struct Series {
   std::string name;
@@ -45,4 +45,4 @@ VPS_VIEWER_API PlotOutcome plotForces(const std::vector<scenes::TraceRow>& trace
 /// Plots curves over a common axis. Writes file + ".png" and file + ".svg".
 VPS_VIEWER_API PlotOutcome plotSeries(const Plot& plot, const std::string& file);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

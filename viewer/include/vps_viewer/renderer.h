@@ -21,7 +21,7 @@
 #include "vps_viewer/export.h"
 #include "vps_viewer/image.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// One thing that can be drawn; BodySnapshot::part counts these.
 struct DrawnMesh {
@@ -132,4 +132,4 @@ class VPS_VIEWER_API Renderer {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

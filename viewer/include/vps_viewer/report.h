@@ -10,7 +10,7 @@
 #include "vps_scenes/scene.h"
 #include "vps_viewer/export.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 struct ReportOptions {
   std::string command;       ///< repeats the run: "vps assemble scene.toml --out out"
@@ -38,4 +38,4 @@ VPS_VIEWER_API void writeTraceCsv(const std::vector<scenes::TraceRow>& trace, co
 /// Escapes text for HTML elements and quoted attributes.
 VPS_VIEWER_API std::string escapeHtml(const std::string& text);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

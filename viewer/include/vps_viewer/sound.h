@@ -11,7 +11,7 @@
 #include "vps_scenes/snapshot.h"
 #include "vps_viewer/export.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 struct SoundSettings {
   int rate_hz = 48000;
@@ -57,4 +57,4 @@ class VPS_VIEWER_API RunSound {
 VPS_VIEWER_API std::string wavBytes(const RunSound::Samples& samples, int rate_hz,
                                     double* full_scale_Pa = nullptr);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

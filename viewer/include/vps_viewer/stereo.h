@@ -10,7 +10,7 @@
 #include "vps_viewer/export.h"
 #include "vps_viewer/renderer.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 enum class StereoMode {
   Mono,         ///< from the middle between the eyes
@@ -88,4 +88,4 @@ VPS_VIEWER_API std::vector<ScreenPicture> renderDisplay(Renderer& renderer, cons
                                                         const scenes::Display& display,
                                                         const DrawOptions& options, StereoMode mode);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -7,7 +7,7 @@
 #include "vps_scenes/result.h"
 #include "vps_viewer/export.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// "fits", "blocked", "not shown"
 VPS_VIEWER_API const char* words(scenes::Verdict verdict);
@@ -24,4 +24,4 @@ VPS_VIEWER_API bool isDisassembly(const scenes::AssembleResult& result);
 /// One sentence: "Yes, the parts go together: all 3 steps fit."
 VPS_VIEWER_API std::string verdictLine(const scenes::AssembleResult& result);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

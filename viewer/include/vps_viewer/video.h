@@ -10,7 +10,7 @@
 #include "vps_viewer/export.h"
 #include "vps_viewer/stereo.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 enum class CameraPath {
   Fixed,
@@ -42,4 +42,4 @@ VPS_VIEWER_API std::size_t writeFrames(const device::RecordedRun& run, const std
 VPS_VIEWER_API std::string encodeVideo(const std::string& folder, double frames_per_s,
                                        const std::string& sound, const std::string& file);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

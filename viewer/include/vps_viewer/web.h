@@ -13,7 +13,7 @@
 #include "vps_scenes/scene.h"
 #include "vps_viewer/export.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 struct WebOptions {
   std::uint16_t port = 8080;  ///< 0: one that is free
@@ -45,4 +45,4 @@ VPS_VIEWER_API void serveSession(const WebOptions& options);
 VPS_VIEWER_API void serveScene(const scenes::Scene& scene, const WebOptions& options);
 VPS_VIEWER_API void serveRecording(const device::RecordedRun& run, const WebOptions& options);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -17,7 +17,7 @@
 #include "vps_viewer/model_view.h"
 #include "vps_viewer/stereo.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 struct WindowOptions {
   int width = 1280, height = 720;
@@ -55,4 +55,4 @@ VPS_VIEWER_API void viewRecording(const device::RecordedRun& run, const WindowOp
 /// where the session cannot be watched.
 VPS_VIEWER_API std::optional<scenes::Verdict> viewSession(const WindowOptions& options);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

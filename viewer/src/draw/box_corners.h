@@ -6,7 +6,7 @@
 
 #include "vps/mesh.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// Corner i takes the greatest x, y, z where bit 0, 1, 2 of i is set.
 inline std::array<Vec3, 8> corners(const Box& box) {
@@ -18,4 +18,4 @@ inline std::array<Vec3, 8> corners(const Box& box) {
   return points;
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

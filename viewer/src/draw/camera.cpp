@@ -6,7 +6,7 @@
 
 #include "draw/box_corners.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 Pose Camera::pose() const {
   const Vec3 z = (eye_W - target_W).normalized();
@@ -54,4 +54,4 @@ Camera frameScene(const Box& box_W, const Vec3& direction, double fov_rad, doubl
   return camera;
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

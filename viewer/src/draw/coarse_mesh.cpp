@@ -8,7 +8,7 @@
 #include <set>
 #include <unordered_map>
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 /// Which of the six sides of a cube the normal faces.
@@ -119,4 +119,4 @@ std::vector<std::uint32_t> CoarseMesh::smoothedIndices(double cell) {
   return withStandIns(stand_in);
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

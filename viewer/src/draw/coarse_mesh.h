@@ -9,7 +9,7 @@
 
 #include "draw/shading_mesh.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// The coarser versions of one mesh. Its creases are found once, for the first that needs them.
 class CoarseMesh {
@@ -37,4 +37,4 @@ class CoarseMesh {
   std::vector<bool> is_creased_;  ///< of each vertex; empty until it is needed
 };
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -5,7 +5,7 @@
 
 #include "draw/passes.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 using Eigen::Vector2f;
@@ -168,4 +168,4 @@ void drawFlash(const GpuResources& gl, bool is_lit, Image& image) {
   readBack(square, image);
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

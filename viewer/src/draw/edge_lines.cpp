@@ -4,7 +4,7 @@
 
 #include "draw/passes.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 using Eigen::Vector2f;
@@ -65,4 +65,4 @@ void drawEdges(const Picture& picture) {
   glDisable(GL_BLEND);
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

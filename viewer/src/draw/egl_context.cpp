@@ -7,7 +7,7 @@
 #include <array>
 #include <stdexcept>
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 [[noreturn]] void fail(const std::string& what) {
@@ -83,4 +83,4 @@ EglContext::Current::~Current() {
     eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 class EglContext {
  public:
@@ -34,4 +34,4 @@ class EglContext {
   void* context_ = nullptr;
 };
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

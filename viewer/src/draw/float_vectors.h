@@ -6,7 +6,7 @@
 
 #include "vps/pose.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 inline std::array<float, 3> toFloat(const Vec3& v) {
   return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
@@ -16,4 +16,4 @@ inline Vec3 toVec3(const std::array<float, 3>& v) {
   return {v[0], v[1], v[2]};
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 gl::Framebuffer targetOf(const gl::Texture& texture, const char* what,
@@ -66,4 +66,4 @@ ShadowTargets::ShadowTargets() {
   floor_b_target = targetOf(floor_b, "the blurred floor");
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

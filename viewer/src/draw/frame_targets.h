@@ -4,7 +4,7 @@
 
 #include "draw/gl_objects.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 struct FrameTargets {
   int width, height;  ///< of the finished picture
@@ -44,4 +44,4 @@ struct ShadowTargets {
   ShadowTargets();
 };
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -3,7 +3,7 @@
 
 #include <stdexcept>
 
-namespace vps::viewer::inline v0::gl {
+namespace vps::viewer::gl {
 namespace {
 
 GLuint compile(const char* name, GLenum stage, const std::string& source) {
@@ -153,4 +153,4 @@ void Program::set(const char* uniform, const Eigen::Matrix4f& value) const {
   glProgramUniformMatrix4fv(program_.id(), at(uniform), 1, GL_FALSE, value.data());
 }
 
-}  // namespace vps::viewer::inline v0::gl
+}  // namespace vps::viewer::gl

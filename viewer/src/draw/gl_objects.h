@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-namespace vps::viewer::inline v0::gl {
+namespace vps::viewer::gl {
 
 /// Throws std::runtime_error, which says what helps, where the graphics card was reset or is out of memory
 /// since the last call. What was drawn is then worth nothing.
@@ -98,4 +98,4 @@ class Program {
   Object<deleteProgram> program_;
 };
 
-}  // namespace vps::viewer::inline v0::gl
+}  // namespace vps::viewer::gl

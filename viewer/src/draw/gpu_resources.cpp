@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <vector>
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -71,4 +71,4 @@ void GpuResources::drawSquare(const gl::Program& program) const {
   glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

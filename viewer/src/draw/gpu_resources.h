@@ -12,7 +12,7 @@
 #include "draw/scene_buffers.h"
 #include "draw/shaders.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// The blur of the floor's shadow [texels of its texture].
 struct FloorBlur {
@@ -72,4 +72,4 @@ struct GpuResources {
   gl::Program final_background_;
 };
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 bool isSameBody(const DrawnBody& a, const DrawnBody& b) {
@@ -81,4 +81,4 @@ std::optional<PixelRect> changedPixels(const DraftContents& last, const DraftCon
   return changes.rect();
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -8,7 +8,7 @@
 #include "draw/screen_box.h"
 #include "vps_viewer/image.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// Everything that a draft depends on, besides the meshes.
 struct DraftContents {
@@ -42,4 +42,4 @@ Box coarseBounds(const Box& box, const Box* last);
 std::optional<PixelRect> changedPixels(const DraftContents& last, const DraftContents& next, const View& view,
                                        int width, int height);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -9,7 +9,7 @@
 
 #include "draw/float_vectors.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 Mark makeMark(const Vec3& base_C, const Vec3& axis_C, double length_m, double width_m,
@@ -115,4 +115,4 @@ void MarkShape::draw(const std::vector<Mark>& marks) const {
   glDrawArraysInstanced(GL_TRIANGLES, 0, vertex_count_, static_cast<GLsizei>(marks.size()));
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -8,7 +8,7 @@
 #include "draw/gl_objects.h"
 #include "vps_viewer/renderer.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// Linear RGB of a contact whose depth is `share` of full scale: from yellow (0) over orange and red to dark
 /// red (1).
@@ -49,4 +49,4 @@ class MarkShape {
   GLsizei vertex_count_ = 0;
 };
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -41,4 +41,4 @@ void drawMeshes(const gl::Program& program, const std::vector<DrawnBody>& bodies
   }
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

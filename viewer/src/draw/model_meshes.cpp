@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 void addQuad(Mesh& mesh, const std::array<Vec3, 4>& corners) {
@@ -109,4 +109,4 @@ TintedMesh voxelMesh(const VoxMap& map, double* cube_m) {
   }
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -5,7 +5,7 @@
 
 #include "vps/solid.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 ShownModels shownModels(const std::vector<std::string>& words) {
   const auto has = [&](const char* word) { return std::ranges::find(words, word) != words.end(); };
@@ -33,4 +33,4 @@ ModelView::ModelView(const scenes::Scene& scene, const ShownModels& shown, Rende
   }
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

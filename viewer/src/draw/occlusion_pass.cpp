@@ -5,7 +5,7 @@
 
 #include "draw/passes.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 void renderGeometry(const Picture& picture) {
   const FrameTargets& frame = *picture.gl.frame;
@@ -62,4 +62,4 @@ void lightEverything(const Picture& picture) {
   glClearTexImage(picture.gl.frame->occlusion.id(), 0, GL_RG, GL_UNSIGNED_BYTE, all.data());
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

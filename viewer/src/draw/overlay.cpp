@@ -9,7 +9,7 @@
 #include "draw/marks.h"
 #include "vps_scenes/srgb.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 /// Blends rows y0 to y1 with white, so that text is readable on any background: `opacity` at the picture's
@@ -123,4 +123,4 @@ void drawOverlay(Image& image, const scenes::Snapshot& snapshot, const DrawOptio
   if (has_contacts) legend.depthScale(options.contact_full_scale_m);
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

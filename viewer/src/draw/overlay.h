@@ -5,7 +5,7 @@
 #include "draw/text.h"
 #include "vps_viewer/renderer.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 struct LegendColors {
   Eigen::Vector3f hand, target;  ///< linear RGB
@@ -14,4 +14,4 @@ struct LegendColors {
 void drawOverlay(Image& image, const scenes::Snapshot& snapshot, const DrawOptions& options,
                  const LegendColors& colors, const Lettering& lettering);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

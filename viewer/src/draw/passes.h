@@ -12,7 +12,7 @@
 #include "draw/screen_box.h"
 #include "draw/view.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// What the passes of one picture read.
 struct Picture {
@@ -67,4 +67,4 @@ void drawEdges(const Picture& picture);
 void drawLines(const GpuLines& lines, const DrawnBody& body, const Picture& picture, float width_px,
                const Eigen::Vector4f& color);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

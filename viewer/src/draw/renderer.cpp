@@ -10,7 +10,7 @@
 #include "draw/passes.h"
 #include "draw/visible_parts.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 using Eigen::Vector3f;
@@ -230,4 +230,4 @@ Image Renderer::Impl::drawDraft(const scenes::Snapshot& snapshot, const Camera& 
   return image;
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -6,7 +6,7 @@
 
 #include "draw/coarse_mesh.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 GpuLines::GpuLines(std::span<const ShadingEdge> segments)
     : buffer(gl::makeBuffer(segments)),
@@ -104,4 +104,4 @@ std::vector<ShadingEdge> outline(const ShadingMesh& mesh, const Vec3& p_eye) {
   return edges;
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -11,7 +11,7 @@
 #include "draw/shading_mesh.h"
 #include "vps_viewer/renderer.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// Line segments in graphics memory.
 struct GpuLines {
@@ -79,4 +79,4 @@ Eigen::Matrix4f toMatrix(const Pose& X);
 /// The edges at which a smooth surface turns away from the eye.
 std::vector<ShadingEdge> outline(const ShadingMesh& mesh, const Vec3& p_eye);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -5,7 +5,7 @@
 
 #include "vps_viewer/renderer.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 RenderScene drawnMeshes(const scenes::Scene& scene) {
   // Linear RGB of muted steel, brass, sage, clay, slate and sand. Blue is reserved for the part in hand.
@@ -47,4 +47,4 @@ CutPlane sectionAlong(const Vec3& p_W, const Vec3& d_W, const Vec3& to_viewer_W)
   return cut;
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

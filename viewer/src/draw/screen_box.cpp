@@ -7,7 +7,7 @@
 
 #include "draw/box_corners.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 /// Around the points; all of the picture where one of them is behind the near plane.
@@ -74,4 +74,4 @@ PixelRect markOnScreen(const Mark& mark, const View& view, int width, int height
   return around(points_C, view, width, height, 2);
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -8,7 +8,7 @@
 #include "draw/scene_buffers.h"
 #include "draw/view.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// Pixels from the lower left corner, as OpenGL counts.
 struct PixelRect {
@@ -32,4 +32,4 @@ PixelRect boxOnScreen(const DrawnBody& body, const View& view, int width, int he
 /// Around an arrow or a disc, likewise.
 PixelRect markOnScreen(const Mark& mark, const View& view, int width, int height);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

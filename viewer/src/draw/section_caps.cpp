@@ -6,7 +6,7 @@
 #include "draw/passes.h"
 #include "draw/screen_box.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 using Eigen::Vector2f;
@@ -93,4 +93,4 @@ void drawCaps(const gl::Program& program, const Picture& picture) {
   glDisable(GL_STENCIL_TEST);
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

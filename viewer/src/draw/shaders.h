@@ -3,7 +3,7 @@
 // viewer), so that floats are precise far from the world's origin. Colours are linear.
 #pragma once
 
-namespace vps::viewer::inline v0::glsl {
+namespace vps::viewer::glsl {
 
 // --- solid surfaces ---
 
@@ -369,4 +369,4 @@ void main() {
 }
 )";
 
-}  // namespace vps::viewer::inline v0::glsl
+}  // namespace vps::viewer::glsl

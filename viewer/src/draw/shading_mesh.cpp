@@ -7,7 +7,7 @@
 #include "draw/float_vectors.h"
 #include "vps/mesh_weld.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 using Triangle = std::array<std::uint32_t, 3>;
@@ -157,4 +157,4 @@ std::vector<ShadingEdge> sectionSegments(const ShadingMesh& mesh, const Vec3& n,
   return segments;
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

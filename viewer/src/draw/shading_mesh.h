@@ -9,7 +9,7 @@
 #include "vps/mesh.h"
 #include "vps_scenes/face_colors.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 struct ShadingVertex {
   std::array<float, 3> p;  ///< relative to ShadingMesh::center
@@ -55,4 +55,4 @@ ShadingMesh buildShadingMesh(const Mesh& mesh, double crease_rad = kCreaseAngle_
 /// relative to center.
 std::vector<ShadingEdge> sectionSegments(const ShadingMesh& mesh, const Vec3& n, double offset);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -5,7 +5,7 @@
 
 #include "draw/passes.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 using Eigen::Vector2i;
@@ -93,4 +93,4 @@ void drawFloorShadow(const Picture& picture) {
   glDisable(GL_BLEND);
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <functional>
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 /// Calls visit for each code point. Bytes that are not UTF-8 become U+FFFD.
@@ -110,4 +110,4 @@ double Lettering::write(Image& image, double x, double y, const std::string& utf
   });
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -7,7 +7,7 @@
 
 #include "vps_viewer/image.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 enum class FontWeight { Regular, Bold };
 
@@ -34,4 +34,4 @@ class Lettering {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

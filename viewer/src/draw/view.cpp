@@ -6,7 +6,7 @@
 
 #include "draw/box_corners.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 using Eigen::Matrix4f;
@@ -93,4 +93,4 @@ View makeView(const Box& drawn_W, const Camera& camera, const DrawOptions& optio
   return view;
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -4,7 +4,7 @@
 
 #include "vps_viewer/renderer.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// A cut that removes nothing.
 inline const Eigen::Vector4f kNoCut(0, 0, 0, 1);
@@ -35,4 +35,4 @@ View makeView(const Box& box_W, const Camera& camera, const DrawOptions& options
 /// @param back unit vector from the centre to the viewer
 Eigen::Matrix4f parallelProjection(const Vec3& center, double radius_m, const Vec3& back, const Vec3& up);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

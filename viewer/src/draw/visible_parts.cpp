@@ -3,7 +3,7 @@
 
 #include "draw/box_corners.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 void addMoved(Box& box_W, const Box& box_P, const Pose& X_WP) {
@@ -49,4 +49,4 @@ Box snapshotBounds(const RenderScene& scene, const scenes::Snapshot& snapshot, b
   return visibleBounds(partExtents(scene), snapshot, show_waiting, true);
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

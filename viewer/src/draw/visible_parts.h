@@ -7,7 +7,7 @@
 
 #include "vps_viewer/renderer.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// A part's extent and, if it is fixed, its pose. A renderer keeps this after the meshes are uploaded.
 struct PartExtent {
@@ -28,4 +28,4 @@ void forEachVisiblePart(
 Box visibleBounds(const std::vector<PartExtent>& parts, const scenes::Snapshot& snapshot, bool show_waiting,
                   bool show_target);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -6,7 +6,7 @@
 
 #include "vps_viewer/image.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 int pixelDifference(const std::uint8_t* a, const std::uint8_t* b) {
@@ -56,4 +56,4 @@ void writeDifference(const Image& a, const Image& b, int tolerance, const std::s
   savePng(differenceImage(a, b, tolerance), file);
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

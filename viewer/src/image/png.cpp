@@ -13,7 +13,7 @@
 #include "vps/write_file.h"
 #include "vps_viewer/image.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 // libpng's simplified interface returns errors as text and needs no setjmp.
@@ -82,4 +82,4 @@ Image loadPng(const std::string& file) {
   return image;
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

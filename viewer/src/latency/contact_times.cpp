@@ -6,7 +6,7 @@
 #include <iterator>
 #include <limits>
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 constexpr double kApartContacts_s = 0.06;  // assumed: longer than a part bounces
@@ -152,4 +152,4 @@ std::vector<ContactTimes> findContacts(const LatencyLog& log, double from_s) {
   return contacts;
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -8,7 +8,7 @@
 #include "vps_viewer/export.h"
 #include "vps_viewer/latency.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// What was recorded, each list in order of time. All times by device::monotonicSeconds().
 struct LatencyLog {
@@ -47,4 +47,4 @@ VPS_VIEWER_API std::size_t lateSamples(const LatencyLog& log, double from_s);
 /// And since they were mixed too late.
 VPS_VIEWER_API std::size_t lateMixes(const LatencyLog& log, double from_s);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -19,7 +19,7 @@
 #include "window/live_run.h"
 #include "window/picture_worker.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 // Taps before those that count: the first picture comes late, and so does the first sound, since the modes of
@@ -225,4 +225,4 @@ LatencyResult measureLatency(scenes::Scene scene, const LatencySettings& setting
   return result;
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -7,7 +7,7 @@
 #include "vps_device/metronome.h"
 #include "vps_device/pulled_handle.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 constexpr double kRest_s = 1;             // until the part is in hand. assumed
@@ -89,4 +89,4 @@ void TappingHandle::move(double dt_s) noexcept {
   sample_.X_DH.p = aside * aside * (3 - 2 * aside) * plan_.aside_D + along_m_ * plan_.d_D;
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

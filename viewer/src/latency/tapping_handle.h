@@ -11,7 +11,7 @@
 #include "vps_device/random.h"
 #include "vps_viewer/export.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// A motion of the handle in D: first aside, then towards the contact, and to and fro there.
 struct TapPlan {
@@ -70,4 +70,4 @@ class VPS_VIEWER_API TappingHandle final : public device::Device {
   std::atomic<bool> has_found_nothing_{false};
 };
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

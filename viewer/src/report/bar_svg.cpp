@@ -6,7 +6,7 @@
 #include "report/html.h"
 #include "vps_viewer/report.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -71,4 +71,4 @@ std::string histogram(const std::vector<Column>& columns, const std::string& lef
   return figure(kChartHeight + kAxis, shapes, caption_html);
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

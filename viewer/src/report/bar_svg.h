@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// One horizontal bar with its name on the left and its value in words on the right.
 struct Bar {
@@ -29,4 +29,4 @@ struct Column {
 std::string histogram(const std::vector<Column>& columns, const std::string& left_text,
                       const std::string& right_text, const std::string& caption_html);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string_view>
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 std::string base64(std::span<const std::byte> bytes) {
   constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -25,4 +25,4 @@ std::string pngInText(std::string_view bytes) {
   return std::string("data:image/png;base64,").append(base64(std::as_bytes(std::span(bytes))));
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

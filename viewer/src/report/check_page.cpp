@@ -13,7 +13,7 @@
 #include "vps_viewer/check_words.h"
 #include "vps_viewer/report.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -212,4 +212,4 @@ std::string checkPage(const scenes::CheckResult& result) {
                                                        "\">" + verdict + "</p>\n" + checkSection(result));
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

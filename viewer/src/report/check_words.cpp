@@ -8,7 +8,7 @@
 
 #include "report/html.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -124,4 +124,4 @@ std::string playDoubt(const scenes::CheckedPart& part, const scenes::CheckResult
       .append(" mrad, and is more where meshes stop what the faces allow");
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -14,7 +14,7 @@
 #include "vps_viewer/renderer.h"
 #include "vps_viewer/report.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -121,4 +121,4 @@ std::string clearancePictures(const scenes::CheckResult& result) {
   }
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -7,7 +7,7 @@
 
 #include "vps_scenes/check.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// sRGB, 0 to 1: magenta for an overlap, then from red over yellow and green to blue, by the logarithm of the
 /// distance from a thousandth of near_m to near_m; light grey from there on.
@@ -16,4 +16,4 @@ std::array<double, 3> clearanceColor(double distance_m, double near_m);
 /// A section of a page: each part from two sides, with the legend. Says what is missing where OpenGL is.
 std::string clearancePictures(const scenes::CheckResult& result);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

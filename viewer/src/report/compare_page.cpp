@@ -14,7 +14,7 @@
 #include "vps_viewer/plot.h"
 #include "vps_viewer/report.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -132,4 +132,4 @@ std::vector<std::string> writeComparePage(const scenes::RunComparison& result, c
   return notes;
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

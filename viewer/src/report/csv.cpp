@@ -4,7 +4,7 @@
 #include <charconv>
 #include <cmath>
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 std::string csvLine(const std::vector<std::string>& cells) {
   std::string out;
@@ -44,4 +44,4 @@ void addCells(std::vector<std::string>& cells, const Pose& X) {
   for (const double value : {q.x(), q.y(), q.z(), q.w()}) cells.push_back(csvNumber(value));
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

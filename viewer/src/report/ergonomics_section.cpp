@@ -10,7 +10,7 @@
 #include "report/thinned_trace.h"
 #include "vps_viewer/report.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -141,4 +141,4 @@ std::string ergonomicsSection(const scenes::Scene& scene, const scenes::Assemble
          "wrist, neck, trunk and load.</p>\n";
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -6,10 +6,10 @@
 
 #include "vps_scenes/ergonomics.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// A table, and a side view for each posture with the path, both persons' arms at the path's farthest place
 /// and what they reach. Empty where nothing was measured.
 std::string ergonomicsSection(const scenes::Scene& scene, const scenes::AssembleResult& result);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -9,7 +9,7 @@
 #include "report/run_plot.h"
 #include "vps_viewer/plot.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 using gnuplot::number;
@@ -164,4 +164,4 @@ RunPlot forcePlot() {
              const std::string& file) { return plotForces(result.trace, file, step_names, step); }};
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

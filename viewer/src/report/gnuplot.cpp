@@ -9,7 +9,7 @@
 #include "report/run_program.h"
 #include "vps/write_file.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 constexpr const char* kMissing = "gnuplot is not installed (Debian: apt install gnuplot-nox)";
@@ -94,4 +94,4 @@ PlotOutcome draw(const std::string& body, const std::string& file, int width, in
 }
 
 }  // namespace gnuplot
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -8,7 +8,7 @@
 
 #include "vps_viewer/plot.h"
 
-namespace vps::viewer::inline v0::gnuplot {
+namespace vps::viewer::gnuplot {
 
 /// A string literal of gnuplot: quotes and backslashes are escaped, control characters dropped. Scripts
 /// switch enhanced text off, so that an underscore in a part's name is not read as a subscript.
@@ -29,4 +29,4 @@ std::vector<std::pair<double, double>> thinned(const std::vector<std::pair<doubl
 /// Runs the script `body` for file.png and again for file.svg. A file appears only if gnuplot succeeds.
 PlotOutcome draw(const std::string& body, const std::string& file, int width, int height);
 
-}  // namespace vps::viewer::inline v0::gnuplot
+}  // namespace vps::viewer::gnuplot

@@ -12,7 +12,7 @@
 #include "report/text_file.h"
 #include "vps_viewer/report.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 std::string escapeHtml(const std::string& text) {
   std::string out;
@@ -176,4 +176,4 @@ std::string page(const std::string& title, const std::string& body, const std::s
 }
 
 }  // namespace html
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

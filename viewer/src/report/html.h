@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace vps::viewer::inline v0::html {
+namespace vps::viewer::html {
 
 /// printf with one double: format(1e6 * depth_m, "%.2f").
 std::string format(double value, const char* form);
@@ -31,4 +31,4 @@ std::string figure(const std::string& file, const std::string& caption_html, con
 /// that it links to, are written into it, so that it can be sent on without the folder.
 std::string page(const std::string& title, const std::string& body, const std::string& folder = {});
 
-}  // namespace vps::viewer::inline v0::html
+}  // namespace vps::viewer::html

@@ -6,7 +6,7 @@
 
 #include "report/html.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// The number of micrometres, without unit: "12.34".
 inline std::string micrometres(double length_m, const char* form = "%.2f") {
@@ -21,4 +21,4 @@ inline std::string lengthText(double length_m) {
   return html::format(1e9 * length_m, "%g nm");
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

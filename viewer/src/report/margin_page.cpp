@@ -8,7 +8,7 @@
 #include "report/length_text.h"
 #include "vps_viewer/report.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -96,4 +96,4 @@ std::string marginPage(const scenes::MarginResult& result) {
           growthChart(result) + positionChart(result) + angleChart(result) + stepTable(result));
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

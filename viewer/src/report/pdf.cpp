@@ -10,7 +10,7 @@
 
 #include "report/run_program.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 namespace fs = std::filesystem;
@@ -93,4 +93,4 @@ std::string printPdfOf(const std::string& html, const std::string& pdf) {
   return print(profile, page, pdf);
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -7,7 +7,7 @@
 #include "report/html.h"
 #include "vps_viewer/renderer.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 using html::format;
@@ -146,4 +146,4 @@ ReportPictures drawPictures(const scenes::Scene& scene, const scenes::AssembleRe
   }
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -7,7 +7,7 @@
 
 #include "vps_viewer/report.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// File names relative to the report; empty where there is no picture.
 struct StepPictures {
@@ -22,4 +22,4 @@ struct ReportPictures {
 ReportPictures drawPictures(const scenes::Scene& scene, const scenes::AssembleResult& result,
                             const std::string& dir, const ReportOptions& options);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -5,7 +5,7 @@
 
 #include "report/gnuplot.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 using gnuplot::number;
@@ -40,4 +40,4 @@ std::string plotLines(const std::vector<Line>& lines, const std::string& more) {
   return out + "\n";
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

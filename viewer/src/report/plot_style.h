@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 using Curve = std::vector<std::pair<double, double>>;
 
@@ -31,4 +31,4 @@ struct Line {
 /// A plot command for the lines, followed by what `more` holds (ended by ", \\\n" or empty).
 std::string plotLines(const std::vector<Line>& lines, const std::string& more = {});
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

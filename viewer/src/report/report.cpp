@@ -22,7 +22,7 @@
 #include "vps_viewer/check_page.h"
 #include "vps_viewer/verdict_words.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 using html::Cell;
@@ -378,4 +378,4 @@ ReportOutcome writeReport(const scenes::Scene& scene, const scenes::AssembleResu
   return outcome;
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

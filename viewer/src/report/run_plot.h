@@ -9,7 +9,7 @@
 #include "vps_scenes/result.h"
 #include "vps_viewer/plot.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 struct RunPlot {
   std::string name;          ///< of its files: plots/NAME.png and .svg
@@ -35,4 +35,4 @@ inline std::vector<RunPlot> runPlots() {
   };
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

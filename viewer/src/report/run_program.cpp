@@ -14,7 +14,7 @@
 
 extern char** environ;
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 struct CloseFile {
@@ -71,4 +71,4 @@ bool hasProgram(const std::string& name) {
   return false;
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

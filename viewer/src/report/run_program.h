@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// Runs a program that is found by PATH, without a shell. Returns nothing on success, and otherwise the
 /// reason: `missing` where there is no such program, else with the start of what it printed.
@@ -17,4 +17,4 @@ std::string runProgram(const std::vector<std::string>& words, const std::string&
 /// Whether PATH has it.
 bool hasProgram(const std::string& name);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

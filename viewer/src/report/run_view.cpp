@@ -20,7 +20,7 @@
 #include "vps_scenes/srgb.h"
 #include "vps_viewer/renderer.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -220,4 +220,4 @@ RunView runView(const scenes::Scene& scene, const scenes::AssembleResult& result
   return view;
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

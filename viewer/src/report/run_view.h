@@ -7,7 +7,7 @@
 #include "vps_scenes/result.h"
 #include "vps_scenes/scene.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 struct RunView {
   std::string html;     ///< empty if it could not be made
@@ -23,4 +23,4 @@ RunView runView(const scenes::Scene& scene, const scenes::AssembleResult& result
 inline constexpr std::size_t kRunViewTriangles = 150000;
 inline constexpr double kRunViewRate_hz = 25;
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

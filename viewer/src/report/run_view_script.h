@@ -2,8 +2,8 @@
 // run_view.js as text.
 #pragma once
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 extern const char* const kRunViewScript;
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

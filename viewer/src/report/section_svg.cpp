@@ -10,7 +10,7 @@
 #include "vps_scenes/outline_clip.h"
 #include "vps_viewer/report.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -175,4 +175,4 @@ std::string sectionPictures(const scenes::CheckResult& result) {
   return out;
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

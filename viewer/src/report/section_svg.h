@@ -6,7 +6,7 @@
 
 #include "vps_scenes/check.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// Two pictures beside each other: the whole, and what is near the place, each with a scale bar. Inner part
 /// blue, outer part tan, their overlap red, others grey. `id` makes names unique within a page.
@@ -16,4 +16,4 @@ std::string sectionSvg(const scenes::CheckResult& result, const scenes::CheckedS
 /// All sections, with captions.
 std::string sectionPictures(const scenes::CheckResult& result);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

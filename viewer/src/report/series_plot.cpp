@@ -6,7 +6,7 @@
 #include "report/plot_style.h"
 #include "vps_viewer/plot.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 PlotOutcome plotSeries(const Plot& plot, const std::string& file) {
   static constexpr std::array<const char*, 7> kColors = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
@@ -36,4 +36,4 @@ PlotOutcome plotSeries(const Plot& plot, const std::string& file) {
   return gnuplot::draw(script + plotLines({}, commands), file, 1100, 620);
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -10,7 +10,7 @@
 #include "vps_viewer/report.h"
 #include "vps_viewer/verdict_words.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -104,4 +104,4 @@ std::string studyPage(const scenes::StudyResult& result) {
   return html::page("Study of " + result.scene, body);
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

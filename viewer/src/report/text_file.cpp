@@ -4,11 +4,11 @@
 #include <fstream>
 #include <iterator>
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 std::string textOf(const std::string& file) {
   std::ifstream stream(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

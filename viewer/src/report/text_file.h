@@ -4,9 +4,9 @@
 
 #include <string>
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// Its bytes; empty where it cannot be read.
 std::string textOf(const std::string& file);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

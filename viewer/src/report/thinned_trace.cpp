@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 std::vector<scenes::TraceRow> thinned(const std::vector<scenes::TraceRow>& trace, double rate_hz) {
   std::vector<scenes::TraceRow> rows;
@@ -17,4 +17,4 @@ std::vector<scenes::TraceRow> thinned(const std::vector<scenes::TraceRow>& trace
   return rows;
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -6,9 +6,9 @@
 
 #include "vps_scenes/result.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// The first row of every period 1 / rate_hz.
 std::vector<scenes::TraceRow> thinned(const std::vector<scenes::TraceRow>& trace, double rate_hz);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

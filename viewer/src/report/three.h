@@ -2,9 +2,9 @@
 // Where three.js is, which draws in browsers.
 #pragma once
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 inline constexpr const char* kThreeFolder =
     "/usr/share/javascript/three/";  // of Debian's package libjs-three
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -4,10 +4,10 @@
 #include "vps_viewer/csv.h"
 #include "vps_viewer/report.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 void writeTraceCsv(const std::vector<scenes::TraceRow>& trace, const std::string& file) {
   writeWholeFile(file, toCsv(trace, scenes::kTraceFields));
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

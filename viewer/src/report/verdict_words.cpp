@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -84,4 +84,4 @@ std::string verdictLine(const scenes::AssembleResult& result) {
          ", and nothing proves that it cannot be; " + count;
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -10,7 +10,7 @@
 #include "report/gnuplot.h"
 #include "vps_viewer/device_plot.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 using gnuplot::number;
@@ -151,4 +151,4 @@ PlotOutcome plotVerticalForces(const std::vector<device::VerticalForceAt>& force
       1400, 660);
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 constexpr double kBeep_s = 0.09, kPause_s = 0.06, kRamp_s = 0.005;
@@ -31,4 +31,4 @@ double Beeper::next() {
   return ramp * std::sin(2 * std::numbers::pi * pitch_hz * t_s);
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

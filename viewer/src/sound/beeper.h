@@ -6,7 +6,7 @@
 
 #include "vps_device/device_events.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// assumed: beeps of 90 ms with pauses of 60 ms are counted with ease.
 class Beeper {
@@ -24,4 +24,4 @@ class Beeper {
   long at_ = 0;                    ///< samples since it began
 };
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

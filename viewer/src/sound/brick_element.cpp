@@ -4,7 +4,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 std::array<std::array<int, 3>, kBrickNodes> makeNodes() {
@@ -140,4 +140,4 @@ BrickMatrices brickMatrices(const Vec3& size_m, const Elasticity& material, cons
   return {stiffnessFrom(H, material), size_m.prod() * (C.transpose() * integralOf(filling, -1, -1) * C)};
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -8,7 +8,7 @@
 
 #include "vps/pose.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 struct Elasticity {
   double youngs_modulus_Pa = 210e9;
@@ -89,4 +89,4 @@ void BrickFilling::addShares(const Vec3& low, const Vec3& high, int along, const
   }
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 using Place = std::array<int, 3>;
@@ -198,4 +198,4 @@ PointShapes shapesAt(const BrickGrid& grid, const Vec3& p_P) {
   return nearest;
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

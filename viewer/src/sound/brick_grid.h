@@ -12,7 +12,7 @@
 #include "sound/brick_element.h"
 #include "vps/box.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 struct Brick {
   std::array<int, 3> at{};                  ///< column, row, layer
@@ -48,4 +48,4 @@ struct PointShapes {
 };
 PointShapes shapesAt(const BrickGrid& grid, const Vec3& p_P);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -5,7 +5,7 @@
 
 #include "vps_device/metronome.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 LastingOutput::LastingOutput(std::unique_ptr<SoundOutput> output,
                              std::function<std::unique_ptr<SoundOutput>()> open, double wait_s,
@@ -32,4 +32,4 @@ void LastingOutput::write(std::span<const float> parts, std::span<const float> b
   next_s_ = device::monotonicSeconds() + wait_s_;
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -8,7 +8,7 @@
 
 #include "sound/live_sound.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// Writes to an output for as long as it is there, and opens it again. Used by one thread.
 class LastingOutput {
@@ -31,4 +31,4 @@ class LastingOutput {
   std::function<void(const std::string&)> tell_;
 };
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

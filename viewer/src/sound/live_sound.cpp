@@ -10,7 +10,7 @@
 
 #include "sound/lasting_output.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 constexpr double kFullScale_Pa = 0.2;   // 80 dB at the listener: a tool that is put down. assumed
@@ -134,4 +134,4 @@ std::string LiveSound::takeNews() {
   return std::exchange(impl_->news, {});
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

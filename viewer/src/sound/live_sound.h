@@ -11,7 +11,7 @@
 #include "vps_viewer/export.h"
 #include "vps_viewer/sound.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// Where samples go. All its functions are called by one thread.
 class SoundOutput {
@@ -79,4 +79,4 @@ class VPS_VIEWER_API LiveSound {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

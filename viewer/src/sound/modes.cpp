@@ -11,7 +11,7 @@
 #include "sound/brick_grid.h"
 #include "vps_device/random.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 using Eigen::MatrixXd;
@@ -183,4 +183,4 @@ BodyModes findModes(const Mesh& mesh_P, const std::function<bool(const Vec3& p_P
   return body;
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -10,7 +10,7 @@
 #include "vps/mesh.h"
 #include "vps_viewer/export.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 struct ModeSettings {
   std::size_t most_bricks = 320;  ///< filled ones. assumed: modes of a part within a second on one core
@@ -41,4 +41,4 @@ VPS_VIEWER_API BodyModes findModes(const Mesh& mesh_P, const std::function<bool(
                                    double density_kg_m3, const Elasticity& material,
                                    const ModeSettings& settings = {});
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

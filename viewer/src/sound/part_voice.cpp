@@ -6,7 +6,7 @@
 #include <numbers>
 #include <utility>
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -77,4 +77,4 @@ double PartVoice::next() {
   return pressure_Pa;
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

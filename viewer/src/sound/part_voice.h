@@ -7,7 +7,7 @@
 
 #include "sound/modes.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// Where and in which direction a part is struck or rubbed, as the drive of each of its modes by 1 N.
 struct Touch {
@@ -46,4 +46,4 @@ class VPS_VIEWER_API PartVoice {
   long quiet_samples_ = 0, quiet_after_ = 0;
 };
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

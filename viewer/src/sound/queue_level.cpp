@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 // By which a thread may be later than it was of late. It grows with each gap, and goes back by half of what
@@ -106,4 +106,4 @@ std::vector<float> shortened(std::span<const float> samples, std::size_t dropped
   return rest;
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

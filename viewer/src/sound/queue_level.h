@@ -8,7 +8,7 @@
 
 #include "vps_viewer/export.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// What is to be done with the next samples.
 struct QueuePlan {
@@ -67,4 +67,4 @@ class VPS_VIEWER_API QueueLevel {
 /// The samples with fewer of them, without a step to those before and after.
 VPS_VIEWER_API std::vector<float> shortened(std::span<const float> samples, std::size_t dropped);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -13,7 +13,7 @@
 #include "vps_scenes/part_mass.h"
 #include "vps_viewer/sound.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 constexpr double kHalfTurn = std::numbers::pi;
@@ -199,4 +199,4 @@ RunSound::Samples RunSound::take() {
   return std::exchange(impl_->samples, {});
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

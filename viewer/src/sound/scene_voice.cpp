@@ -12,7 +12,7 @@
 #include "vps/voxmap.h"
 #include "vps_scenes/part_mass.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -72,4 +72,4 @@ PartVoice partVoice(const scenes::ScenePart& part, const SoundSettings& settings
           settings.distance_m};
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

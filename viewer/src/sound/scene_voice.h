@@ -6,7 +6,7 @@
 #include "vps_scenes/scene.h"
 #include "vps_viewer/sound.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// Finds its modes, up to a second, unless settings.has_rings is false.
 PartVoice partVoice(const scenes::ScenePart& part, const SoundSettings& settings);
@@ -30,4 +30,4 @@ struct Stroke {
   [[nodiscard]] bool isOver(long sample) const { return static_cast<double>(sample - start) >= length; }
 };
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

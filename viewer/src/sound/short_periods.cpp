@@ -15,7 +15,7 @@
 
 #include "sound/live_sound.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 #if defined(__linux__)
@@ -88,4 +88,4 @@ void askForShortPeriods() {
 #endif
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

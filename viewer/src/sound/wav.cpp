@@ -6,7 +6,7 @@
 
 #include "vps_viewer/sound.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 constexpr double kPeak = 0.708, kBeepLevel = 0.1;  // -3 dB, -20 dB
@@ -50,4 +50,4 @@ std::string wavBytes(const RunSound::Samples& samples, int rate_hz, double* full
   return bytes;
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -10,7 +10,7 @@
 #include "vps/pose.h"
 #include "vps_scenes/srgb.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 // sRGB's primaries in XYZ, by column: IEC 61966-2-1.
@@ -55,4 +55,4 @@ Image throughSpectralFilter(const Image& image, bool is_left) {
   return out;
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -4,10 +4,10 @@
 
 #include "vps_viewer/image.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// The picture in the primaries of that eye's filter: the same colours for whoever looks through the glasses,
 /// as far as the primaries can mix them; white stays white.
 Image throughSpectralFilter(const Image& image, bool is_left);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -8,7 +8,7 @@
 #include "stereo/spectral.h"
 #include "vps/load_error.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 /// The camera of an eye in front of a rectangle; all in one frame.
@@ -190,4 +190,4 @@ std::vector<ScreenPicture> renderDisplay(Renderer& renderer, const scenes::Snaps
   return pictures;
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

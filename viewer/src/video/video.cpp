@@ -16,7 +16,7 @@
 #include "window/picture_worker.h"
 #include "window/timeline.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 /// Around the scene at all times.
@@ -170,4 +170,4 @@ std::string encodeVideo(const std::string& folder, double frames_per_s, const st
   return runProgram(words, "", "ffmpeg is not installed (Debian: apt install ffmpeg)");
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

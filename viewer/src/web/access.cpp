@@ -5,7 +5,7 @@
 #include <cctype>
 #include <random>
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -102,4 +102,4 @@ bool RateLimit::take(double now_s) {
   return true;
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

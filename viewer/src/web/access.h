@@ -7,7 +7,7 @@
 
 #include "vps_viewer/export.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// What a request says of itself. Empty: the header is missing.
 struct WebRequest {
@@ -73,4 +73,4 @@ class VPS_VIEWER_API RateLimit {
   bool has_time_ = false;
 };
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -71,4 +71,4 @@ std::optional<BrowserMessage> readBrowserMessage(std::string_view text) noexcept
   }
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -9,7 +9,7 @@
 #include "vps/pose.h"
 #include "vps_viewer/export.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 enum class BrowserWord {
   Ack,    ///< `number`: the snapshot that was drawn
@@ -38,4 +38,4 @@ inline constexpr std::size_t kLongestBrowserMessage = 512;  ///< [bytes]
 /// 1e9. Does not throw.
 VPS_VIEWER_API std::optional<BrowserMessage> readBrowserMessage(std::string_view text) noexcept;
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

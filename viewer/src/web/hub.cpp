@@ -11,7 +11,7 @@
 #include "web/part_glb.h"
 #include "window/presentation.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -335,4 +335,4 @@ std::shared_ptr<const std::string> WebHub::partFile(std::string_view target) {
   return file;
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

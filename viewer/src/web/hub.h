@@ -17,7 +17,7 @@
 #include "web/snapshot_coder.h"
 #include "web/watched_run.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// The way to one browser. Neither function waits.
 class BrowserEnd {
@@ -97,4 +97,4 @@ class WebHub {
   std::map<std::pair<std::size_t, bool>, std::shared_ptr<const std::string>> files_;  ///< fine or coarse
 };
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

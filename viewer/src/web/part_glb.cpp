@@ -10,7 +10,7 @@
 #include "draw/coarse_mesh.h"
 #include "vps_device/detail/bytes.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -138,4 +138,4 @@ std::string partGlb(const ShadingMesh& mesh, std::size_t wanted, bool has_edges)
   return file;
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

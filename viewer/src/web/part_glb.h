@@ -7,7 +7,7 @@
 
 #include "draw/shading_mesh.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// The bytes of a .glb file: one node with the surface (positions, normals, triangles) and, as lines, the
 /// sharp edges; in metres and in the part's frame. The node's translation is the mesh's center, so that
@@ -17,4 +17,4 @@ namespace vps::viewer::inline v0 {
 /// O(triangles). Source: Khronos, "glTF 2.0 Specification".
 std::string partGlb(const ShadingMesh& mesh, std::size_t wanted, bool has_edges = true);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

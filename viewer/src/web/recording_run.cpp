@@ -11,7 +11,7 @@
 #include "web/watched_run.h"
 #include "window/timeline.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -82,4 +82,4 @@ std::unique_ptr<WatchedRun> watchedRecording(const device::RecordedRun& run) {
   return std::make_unique<RecordingRun>(run);
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

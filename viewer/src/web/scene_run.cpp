@@ -8,7 +8,7 @@
 #include "web/watched_run.h"
 #include "window/live_run.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -96,4 +96,4 @@ std::unique_ptr<WatchedRun> watchedScene(const scenes::Scene& scene, const WebOp
   return std::make_unique<SceneRun>(scene, options);
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

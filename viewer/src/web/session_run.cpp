@@ -12,7 +12,7 @@
 #include "vps_scenes/network/nodes.h"
 #include "web/watched_run.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -158,4 +158,4 @@ std::unique_ptr<WatchedRun> watchedSession(const WebOptions& options) {
   return std::make_unique<SessionRun>(options);
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

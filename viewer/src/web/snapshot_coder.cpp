@@ -7,7 +7,7 @@
 
 #include "vps_device/detail/bytes.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -115,4 +115,4 @@ std::string blowBytes(const BlowSound& sound) {
   return bytes;
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -10,7 +10,7 @@
 #include "web/watched_run.h"
 #include "window/blow_sounds.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// Layout, least significant byte first; lengths in metres from `center_W`, rotations as quaternions x y z w:
 ///
@@ -47,4 +47,4 @@ inline constexpr std::uint8_t kShotKind = 1, kBlowKind = 2;
 /// u8 kBlowKind, f64 taken_ms, u32 rate_hz, f32 pressure in Pa of the number 32767, i16 samples.
 std::string blowBytes(const BlowSound& sound);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

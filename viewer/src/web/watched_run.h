@@ -16,7 +16,7 @@
 #include "vps_viewer/web.h"
 #include "window/hand_drag.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 struct WatchedShot {
   scenes::Snapshot snapshot;
@@ -76,4 +76,4 @@ std::unique_ptr<WatchedRun> watchedScene(const scenes::Scene& scene, const WebOp
 /// Plays from its begin. Throws LoadError where nothing of a run is in it.
 std::unique_ptr<WatchedRun> watchedRecording(const device::RecordedRun& run);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

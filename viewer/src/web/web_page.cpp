@@ -6,7 +6,7 @@
 #include "report/text_file.h"
 #include "report/three.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 WebPage::WebPage() {
   constexpr const char* kScript = "text/javascript; charset=utf-8";
@@ -31,4 +31,4 @@ const WebFile* WebPage::find(std::string_view path) const {
   return found == files_.end() ? nullptr : &found->second;
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

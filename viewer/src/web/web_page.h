@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 struct WebFile {
   std::string type;  ///< "text/html; charset=utf-8"
@@ -31,4 +31,4 @@ extern const char* const kPageHtml;
 extern const char* const kPageCss;
 extern const char* const kPageScript;
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

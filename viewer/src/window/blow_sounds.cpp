@@ -14,7 +14,7 @@
 #include "vps_scenes/part_mass.h"
 #include "window/hand_drag.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -139,4 +139,4 @@ std::vector<BlowSound> BlowSounds::take() {
   return std::exchange(impl_->ready, {});
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

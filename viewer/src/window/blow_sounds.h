@@ -12,7 +12,7 @@
 #include "vps_scenes/snapshot.h"
 #include "vps_viewer/export.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// The part in hand meets something.
 struct Blow {
@@ -65,4 +65,4 @@ class VPS_VIEWER_API BlowSounds {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

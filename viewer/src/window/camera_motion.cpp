@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 /// Length in the scene of one pixel, at a distance in front of the eye.
@@ -93,4 +93,4 @@ Camera fitted(const Camera& camera, const Box& box_W, PictureSize size) {
   return near;
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

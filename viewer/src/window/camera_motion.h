@@ -9,7 +9,7 @@
 #include "vps_viewer/camera.h"
 #include "vps_viewer/export.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// Size of the picture in pixels.
 struct PictureSize {
@@ -54,4 +54,4 @@ VPS_VIEWER_API const std::vector<StandardView>& standardViews();
 /// The nearest view of the box from where the camera looks now.
 [[nodiscard]] VPS_VIEWER_API Camera fitted(const Camera& camera, const Box& box_W, PictureSize size);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 constexpr double kGap_px = 4;  // between outputs, so that it is seen where each ends
@@ -69,4 +69,4 @@ std::vector<TilePlace> tilePlaces(std::span<const DisplayOutput> outputs, Pictur
   return best;
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

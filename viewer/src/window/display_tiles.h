@@ -9,7 +9,7 @@
 #include "vps_viewer/stereo.h"
 #include "window/camera_motion.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// What one projector or monitor shows: a screen for one viewer, or for one of the viewer's eyes.
 struct DisplayOutput {
@@ -34,4 +34,4 @@ struct TilePlace {
 [[nodiscard]] VPS_VIEWER_API std::vector<TilePlace> tilePlaces(std::span<const DisplayOutput> outputs,
                                                                PictureSize area);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "window/exploded.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 Vec3 wayOut(const scenes::SceneStep& step) {
@@ -25,4 +25,4 @@ scenes::Snapshot exploded(const scenes::Scene& scene, scenes::Snapshot snapshot,
   return snapshot;
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

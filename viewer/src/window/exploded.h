@@ -6,7 +6,7 @@
 #include "vps_scenes/snapshot.h"
 #include "vps_viewer/export.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// Moves each part that a step mounts back along the last leg of its path, farther for later steps: by
 /// `share` of the assembly's size for the last one. Contacts and target are left out. A share of 0 changes
@@ -15,4 +15,4 @@ namespace vps::viewer::inline v0 {
 [[nodiscard]] VPS_VIEWER_API scenes::Snapshot exploded(const scenes::Scene& scene, scenes::Snapshot snapshot,
                                                        double share, double size_m);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -15,7 +15,7 @@
 #include "vps_scenes/verdict.h"
 #include "window/blow_sounds.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -161,4 +161,4 @@ void FollowedSession::listenAt(const Pose& X_WL) {
   if (sound_) sound_->listenAt(X_WL);
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -13,7 +13,7 @@
 #include "vps_viewer/export.h"
 #include "window/presentation.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// Used by one thread; nothing of it waits.
 class VPS_VIEWER_API FollowedSession {
@@ -66,4 +66,4 @@ class VPS_VIEWER_API FollowedSession {
   bool is_over_ = false, had_device_ = true;
 };
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

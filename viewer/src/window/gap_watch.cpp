@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <utility>
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 GapWatch::GapWatch(const scenes::Scene& scene, std::function<void()> on_news)
     : scene_(scene), on_news_(std::move(on_news)) {}
@@ -96,4 +96,4 @@ std::vector<std::string> gapLines(const scenes::Scene& scene, const MeasuredGaps
   return lines;
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

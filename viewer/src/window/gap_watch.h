@@ -14,7 +14,7 @@
 #include "vps_scenes/part_gaps.h"
 #include "vps_viewer/export.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// What was measured for one part.
 struct MeasuredGaps {
@@ -65,4 +65,4 @@ class VPS_VIEWER_API GapWatch {
 [[nodiscard]] VPS_VIEWER_API std::vector<std::string> gapLines(const scenes::Scene& scene,
                                                                const MeasuredGaps& measured);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 HandDrag::HandDrag(double scale) : scale_(scale) {}
 
@@ -82,4 +82,4 @@ const scenes::BodySnapshot* partInHand(const scenes::Snapshot& shot) {
   return nullptr;
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

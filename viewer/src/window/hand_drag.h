@@ -8,7 +8,7 @@
 #include "vps_scenes/snapshot.h"
 #include "window/camera_motion.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 enum class HandMotion {
   Across,  ///< parallel to the screen, so that the grabbed point stays under the cursor
@@ -60,4 +60,4 @@ class VPS_VIEWER_API HandDrag {
 /// The part in hand of a snapshot; null: none.
 [[nodiscard]] VPS_VIEWER_API const scenes::BodySnapshot* partInHand(const scenes::Snapshot& shot);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

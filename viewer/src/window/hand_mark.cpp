@@ -6,7 +6,7 @@
 
 #include "vps_device/pulled_handle.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 HandMark handMark(const scenes::Snapshot& shot) {
   const double force_N = shot.F_hand_W.f.norm(), torque_Nm = shot.F_hand_W.tau.norm();
@@ -29,4 +29,4 @@ std::vector<PixelPlace> handMarkPlaces(StereoMode mode, const Vec3& hand_W, cons
   return {{x, y}};
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

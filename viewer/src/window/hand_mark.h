@@ -9,7 +9,7 @@
 #include "vps_viewer/stereo.h"
 #include "window/camera_motion.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 struct HandMark {
   std::string words;  ///< "2.5 N  0.10 N m"
@@ -23,4 +23,4 @@ struct HandMark {
 [[nodiscard]] VPS_VIEWER_API std::vector<PixelPlace> handMarkPlaces(StereoMode mode, const Vec3& hand_W,
                                                                     const Camera& camera, PictureSize size);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 void HandWork::begin(bool is_free) {
   is_free_ = is_free;
@@ -73,4 +73,4 @@ void addEarlierSteps(std::vector<scenes::StepResult> before, std::size_t planned
   result.completed = result.steps.size() == planned && std::ranges::all_of(result.steps, is_completed);
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -11,7 +11,7 @@
 #include "vps_scenes/snapshot.h"
 #include "vps_viewer/export.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// Either along the procedure, step after step, or freely, any part at any time. An undone step leaves
 /// exactly what was before it, so that the same scene goes on: the same motion then gives the same bits.
@@ -58,4 +58,4 @@ class VPS_VIEWER_API HandWork {
 VPS_VIEWER_API void addEarlierSteps(std::vector<scenes::StepResult> before, std::size_t planned,
                                     scenes::AssembleResult& result);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

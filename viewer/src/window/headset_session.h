@@ -11,7 +11,7 @@
 
 #include "vps_viewer/renderer.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// A controller of the headset: 0 the left one, 1 the right one.
 struct HeadsetHand {
@@ -47,4 +47,4 @@ class VPS_VIEWER_API HeadsetSession {
   std::unique_ptr<Work> work_;
 };
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -7,7 +7,7 @@
 
 #include "window/timeline.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
@@ -62,4 +62,4 @@ std::vector<std::string> figureLines(const scenes::RunFigures& now, const scenes
           energy, injected};
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

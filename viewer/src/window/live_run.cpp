@@ -8,7 +8,7 @@
 #include "vps_device/device_kinds.h"
 #include "vps_scenes/record.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 double wallSeconds() {
@@ -207,4 +207,4 @@ void LiveRun::run(const LiveSettings& settings) {
   on_news_();
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

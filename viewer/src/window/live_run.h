@@ -16,7 +16,7 @@
 #include "vps_scenes/assemble.h"
 #include "vps_viewer/export.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 struct LiveSettings {
   std::string record;           ///< file to record the run in; empty: none
@@ -110,4 +110,4 @@ class VPS_VIEWER_API LiveRun {
   std::thread thread_;  // last, since it uses the others
 };
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

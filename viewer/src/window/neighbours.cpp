@@ -4,7 +4,7 @@
 #include <chrono>
 #include <cstdio>
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 std::string describe(const std::string& other, const scenes::CheckedPair& pair) {
@@ -48,4 +48,4 @@ std::vector<std::string> Neighbours::of(const std::string& part) {
   return lines;
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

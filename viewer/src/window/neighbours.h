@@ -9,7 +9,7 @@
 #include "vps_scenes/check.h"
 #include "vps_viewer/export.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 class VPS_VIEWER_API Neighbours {
  public:
@@ -25,4 +25,4 @@ class VPS_VIEWER_API Neighbours {
   std::shared_future<scenes::CheckResult> checked_;
 };
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

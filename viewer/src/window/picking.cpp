@@ -6,7 +6,7 @@
 
 #include "draw/visible_parts.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
@@ -78,4 +78,4 @@ std::optional<PickedPlace> pick(const RenderScene& scene, const scenes::Snapshot
   return found;
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -7,7 +7,7 @@
 #include "vps_viewer/renderer.h"
 #include "window/camera_motion.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 struct PickedPlace {
   std::size_t part = 0;  ///< index into the RenderScene
@@ -21,4 +21,4 @@ struct PickedPlace {
                                                              const scenes::Snapshot& snapshot,
                                                              const DrawOptions& options, const Ray& ray);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

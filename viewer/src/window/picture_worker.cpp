@@ -8,7 +8,7 @@
 
 #include "vps_device/metronome.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 bool isSamePose(const Pose& a, const Pose& b) {
@@ -223,4 +223,4 @@ void PictureWorker::drawAll(Renderer& renderer) {
   }
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -14,7 +14,7 @@
 #include "vps_viewer/stereo.h"
 #include "window/display_tiles.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// What a part of the picture shows.
 struct PictureTile {
@@ -92,4 +92,4 @@ class VPS_VIEWER_API PictureWorker {
   std::thread thread_;  // last, since it uses the others
 };
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

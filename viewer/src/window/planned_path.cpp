@@ -3,7 +3,7 @@
 
 #include "vps_scenes/part_mass.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 PlannedPath plannedPath(const scenes::Scene& scene, const scenes::Snapshot& shot) {
   PlannedPath path;
@@ -19,4 +19,4 @@ PlannedPath plannedPath(const scenes::Scene& scene, const scenes::Snapshot& shot
   return path;
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

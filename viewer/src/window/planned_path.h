@@ -8,7 +8,7 @@
 #include "vps_scenes/snapshot.h"
 #include "vps_viewer/export.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 struct PlannedPath {
   std::vector<Vec3> points_W;  ///< of the part's centre of mass: start, way points, target; empty: no step
@@ -18,4 +18,4 @@ struct PlannedPath {
 /// @param shot  of the scene's own procedure
 VPS_VIEWER_API PlannedPath plannedPath(const scenes::Scene& scene, const scenes::Snapshot& shot);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -19,4 +19,4 @@ void Presentation::add(scenes::Snapshot shot, std::int64_t taken_ns, std::int64_
   waiting_.push_back({std::move(shot), taken_ns});
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

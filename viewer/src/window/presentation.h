@@ -10,7 +10,7 @@
 #include "vps_scenes/snapshot.h"
 #include "vps_viewer/export.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// From physics to picture and sound. Covers the ways whose length differs from watcher to watcher: 17 ms
 /// until a window or page looks again, and a network with a jitter of 5 ms and a delay of 20 ms.
@@ -44,4 +44,4 @@ class VPS_VIEWER_API Presentation {
   std::uint64_t late_ = 0;
 };
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

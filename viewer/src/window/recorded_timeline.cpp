@@ -5,7 +5,7 @@
 
 #include "window/timeline.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 using device::RunEvent;
@@ -93,4 +93,4 @@ Timeline recordedTimeline(const scenes::Scene& scene, const device::RecordedRun&
   return line;
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -6,7 +6,7 @@
 #include "vps_device/operator.h"
 #include "window/timeline.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 constexpr double kFinished_s = 2, kMove_s = 1.5, kRest_s = 0.5;
@@ -70,4 +70,4 @@ Timeline sceneTour(const scenes::Scene& scene) {
   return tour;
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

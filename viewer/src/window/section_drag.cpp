@@ -7,7 +7,7 @@
 
 #include "draw/box_corners.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 CutPlane sectionFacing(const Camera& camera, const Box& box_W) {
   const Vec3 back = camera.eye_W - camera.target_W;
@@ -48,4 +48,4 @@ void tiltSection(CutPlane& cut, const Camera& camera, const PixelPlace& drag, Pi
   cut.n_W = (rotationFromVector(turn_W) * cut.n_W).normalized();
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

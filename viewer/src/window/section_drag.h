@@ -5,7 +5,7 @@
 #include "vps_viewer/renderer.h"
 #include "window/camera_motion.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// The plane through the box's middle, across the axis of W that points to the viewer most; it cuts away the
 /// half on the viewer's side.
@@ -21,4 +21,4 @@ VPS_VIEWER_API void dragSection(CutPlane& cut, const Camera& camera, const Pixel
 VPS_VIEWER_API void tiltSection(CutPlane& cut, const Camera& camera, const PixelPlace& drag,
                                 PictureSize size);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

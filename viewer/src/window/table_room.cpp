@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 const Vec3 kTable_R(0, -0.45, -0.6);
@@ -41,4 +41,4 @@ Camera cameraOf(const TableRoom& room, const HeadsetEye& eye, const Box& box_W) 
   return camera;
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

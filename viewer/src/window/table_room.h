@@ -12,7 +12,7 @@
 
 #include "vps_viewer/camera.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// Of an eye in a headset.
 struct HeadsetEye {
@@ -46,4 +46,4 @@ inline constexpr double kOnTable_m = 0.6, kHighOnTable_m = 0.4;
 /// The camera of an eye in the scene, whose picture has exactly the eye's field of view.
 [[nodiscard]] VPS_VIEWER_API Camera cameraOf(const TableRoom& room, const HeadsetEye& eye, const Box& box_W);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

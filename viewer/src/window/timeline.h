@@ -12,7 +12,7 @@
 #include "vps_scenes/snapshot.h"
 #include "vps_viewer/export.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// A step of the procedure on the time axis.
 struct Chapter {
@@ -71,4 +71,4 @@ VPS_VIEWER_API Timeline sceneTour(const scenes::Scene& scene);
 /// A recorded run as its trace has it. Contacts are not recorded, only their number. Both outlive it.
 VPS_VIEWER_API Timeline recordedTimeline(const scenes::Scene& scene, const device::RecordedRun& run);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

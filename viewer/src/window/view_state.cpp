@@ -6,7 +6,7 @@
 
 #include "window/section_drag.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 constexpr double kNudge_s = 0.02;  // of the arrow keys: five rows of a trace at 250 Hz
@@ -264,4 +264,4 @@ void advance(ViewState& state, const Timeline& line, double elapsed_s) {
   state.is_playing = false;
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -10,7 +10,7 @@
 #include "window/picking.h"
 #include "window/timeline.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 enum class Action {
   Help,
@@ -97,4 +97,4 @@ VPS_VIEWER_API void apply(Action action, ViewState& state, const Timeline& line,
 /// Lets time go on where it is played; at the end it stops.
 VPS_VIEWER_API void advance(ViewState& state, const Timeline& line, double elapsed_s);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

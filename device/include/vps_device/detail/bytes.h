@@ -12,7 +12,7 @@
 
 #include "vps_device/export.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 /// Appends to a string. The caller's format chooses the type of length prefixes.
 class VPS_DEVICE_API ByteWriter {
@@ -81,4 +81,4 @@ class VPS_DEVICE_API ByteReader {
   bool is_good_ = true;
 };
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

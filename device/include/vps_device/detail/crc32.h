@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string_view>
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 /// CRC-32 (reflected polynomial 0xedb88320, as ISO-HDLC).
 /// @param crc  of the bytes before, to continue a sum; 0 to begin
@@ -26,4 +26,4 @@ inline std::uint32_t crc32(std::string_view bytes, std::uint32_t crc = 0) {
   return ~crc;
 }
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

@@ -10,7 +10,7 @@
 #include "vps_device/export.h"
 #include "vps_device/run_log.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 /// One writer, one reader; neither waits. A full ring refuses entries.
 class VPS_DEVICE_API EntryRing {
@@ -52,4 +52,4 @@ class VPS_DEVICE_API EntryRing {
   alignas(64) std::atomic<std::size_t> tail_{0};
 };
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

@@ -16,7 +16,7 @@
 
 #include "vps_device/export.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 struct McapSchema {
   std::uint16_t id = 0;  ///< 1 and up
@@ -132,4 +132,4 @@ class VPS_DEVICE_API McapWriter {
   std::uint64_t message_count_ = 0;
 };
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

@@ -8,7 +8,7 @@
 #include "vps_device/dual_arm/kinematics.h"
 #include "vps_device/export.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 struct BaseCalibration {
   /// Ok; Truncated: fewer than twelve readings; BadPose: a reading is not finite; Singular: the readings are
@@ -27,4 +27,4 @@ struct BaseCalibration {
 VPS_DEVICE_API BaseCalibration calibrateBases(const DualArmParameters& parameters,
                                               std::span<const DualArmJoints> readings) noexcept;
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

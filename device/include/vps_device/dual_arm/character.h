@@ -10,7 +10,7 @@
 #include "vps_device/dual_arm/forces.h"
 #include "vps_device/export.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 /// A figure over all sampled places and attitudes.
 struct Extent {
@@ -74,4 +74,4 @@ struct VerticalForceAt {
 VPS_DEVICE_API std::vector<VerticalForceAt> verticalForces(const DualArmParameters& parameters,
                                                            double peak_share = 0);
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

@@ -12,7 +12,7 @@
 #include "vps_device/dual_arm/motor_heat.h"
 #include "vps_device/export.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 struct DualArmControllerSettings {
   DualArmParameters arms;
@@ -83,4 +83,4 @@ class VPS_DEVICE_API DualArmController final : public Device {
 VPS_DEVICE_API DeviceLimits dualArmLimits(const DualArmParameters& parameters, double rate_hz,
                                           bool has_quantised_encoders);
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

@@ -5,7 +5,7 @@
 #include "vps_device/dual_arm/kinematics.h"
 #include "vps_device/export.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 /// Greatest upward force [N] with the handle straight and its midpoint at p_DE, motors at `limits`.
 struct VerticalForce {
@@ -36,4 +36,4 @@ VPS_DEVICE_API double leastOverDirections(const Eigen::Matrix<double, 7, 3>& eff
 VPS_DEVICE_API double alongDirection(const Eigen::Matrix<double, 7, 3>& efforts, const JointVector& weight,
                                      const JointVector& limits, const Vec3& direction) noexcept;
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

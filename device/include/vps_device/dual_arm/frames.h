@@ -5,7 +5,7 @@
 #include "vps_device/dual_arm/kinematics.h"
 #include "vps_device/export.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 enum class DeviceFrame {
   Independent,  ///< D: origin at the workspace's centre
@@ -26,4 +26,4 @@ VPS_DEVICE_API Twist inFrame(const DualArmParameters& parameters, const Twist& V
 VPS_DEVICE_API Wrench inFrame(const DualArmParameters& parameters, const Wrench& F, DeviceFrame from,
                               DeviceFrame to) noexcept;
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

@@ -6,7 +6,7 @@
 #include "vps_device/dual_arm/kinematics.h"
 #include "vps_device/export.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 /// The encoders at one instant.
 struct DualArmReading {
@@ -33,4 +33,4 @@ class VPS_DEVICE_API DualArmHardware {
   DualArmHardware& operator=(const DualArmHardware&) = default;
 };
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

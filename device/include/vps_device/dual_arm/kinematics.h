@@ -17,7 +17,7 @@
 #include "vps_device/dual_arm/parameters.h"
 #include "vps_device/export.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 /// Joints of one arm: t1, t2 [rad] of the plate and the prismatic d3 [m].
 struct ArmJoints {
@@ -138,4 +138,4 @@ VPS_DEVICE_API double saturationScale(const JointVector& bias, const JointVector
 /// Motor limits; share 0 continuous, 1 peak, linear between.
 VPS_DEVICE_API JointVector motorLimits(const DualArmParameters& parameters, double peak_share) noexcept;
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

@@ -6,7 +6,7 @@
 #include "vps_device/dual_arm/kinematics.h"
 #include "vps_device/export.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 class VPS_DEVICE_API MotorHeat {
  public:
@@ -28,4 +28,4 @@ class VPS_DEVICE_API MotorHeat {
   double thermal_s_;
 };
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

@@ -9,7 +9,7 @@
 #include "vps/pose.h"
 #include "vps_device/export.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 /// Defaults are the values of data/dual_arm.toml. Copies never allocate.
 struct VPS_DEVICE_API DualArmParameters {
@@ -92,4 +92,4 @@ VPS_DEVICE_API DualArmFile loadDualArm(const std::string& file);
 /// The same from text; `name` stands for the file in messages.
 VPS_DEVICE_API DualArmFile parseDualArm(const std::string& text, const std::string& name);
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

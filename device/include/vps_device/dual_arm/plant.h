@@ -15,7 +15,7 @@
 #include "vps_device/hand_force.h"
 #include "vps_device/random.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 struct DualArmPlantSettings {
   DualArmParameters arms;
@@ -90,4 +90,4 @@ class VPS_DEVICE_API DualArmPlant final : public DualArmHardware {
   double kinetic_J_ = 0, structure_J_ = 0, friction_J_ = 0;
 };
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

@@ -7,7 +7,7 @@
 #include "vps_device/export.h"
 #include "vps_device/simulated_device.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 struct SimulatedDualArmSettings {
   DualArmParameters arms;
@@ -62,4 +62,4 @@ class VPS_DEVICE_API SimulatedDualArm final : public SimulatedDevice {
   Wrench F_applied_;
 };
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

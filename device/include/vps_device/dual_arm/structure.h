@@ -5,7 +5,7 @@
 #include "vps_device/dual_arm/kinematics.h"
 #include "vps_device/export.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 /// Stiffness of each joint [N m/rad, N/m, N m/rad] with the arms at `joints`: capstan, tendon and link in
 /// series with the gimbal's and the handle's stiffness, which is the same in every direction and therefore,
@@ -18,4 +18,4 @@ VPS_DEVICE_API JointVector structureStiffness(const DualArmParameters& parameter
 VPS_DEVICE_API JointVector structureDrift(const DualArmParameters& parameters, const JointVector& joints,
                                           const JointVector& stretch) noexcept;
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

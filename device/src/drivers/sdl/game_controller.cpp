@@ -10,7 +10,7 @@
 #include "drivers/polled_device.h"
 #include "vps_device/hand_controllers.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 namespace {
 
@@ -105,4 +105,4 @@ DeviceKind gameControllerKind() {
           }};
 }
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

@@ -4,7 +4,7 @@
 #include "vps/load_error.h"
 #include "vps_device/hand_controllers.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 std::unique_ptr<Device> openGameController(const RateSettings&) {
   throw LoadError("", "", "this build has no game controller; install libsdl2-dev and build again");
@@ -19,4 +19,4 @@ DeviceKind gameControllerKind() {
           [] { return std::string("this build lacks SDL2"); }};
 }
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

@@ -4,7 +4,7 @@
 #include "vps/load_error.h"
 #include "vps_device/hand_controllers.h"
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 std::unique_ptr<Device> openSpaceMouse(const RateSettings&) {
   throw LoadError("", "", "this build has no space mouse; install libspnav-dev and build again");
@@ -19,4 +19,4 @@ DeviceKind spaceMouseKind() {
           [] { return std::string("this build lacks libspnav"); }};
 }
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

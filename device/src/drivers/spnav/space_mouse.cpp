@@ -18,7 +18,7 @@
 // Last: it brings Xlib's macros (Status, Success, None) along.
 #include <spnav.h>
 
-namespace vps::device::inline v0 {
+namespace vps::device {
 
 namespace {
 
@@ -136,4 +136,4 @@ DeviceKind spaceMouseKind() {
           [] { return std::string(mayBeRunning() ? "" : "no spacenavd daemon was found"); }};
 }
 
-}  // namespace vps::device::inline v0
+}  // namespace vps::device

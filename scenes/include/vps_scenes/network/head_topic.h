@@ -9,7 +9,7 @@
 #include "vps/pose.h"
 #include "vps_scenes/export.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// A pose topic of ROS 2 (geometry_msgs/PoseStamped), as trackers publish it. Its frame is not looked at: the
 /// poses are in the room. Used by one thread; nothing waits.
@@ -32,4 +32,4 @@ class VPS_SCENES_API HeadTopic {
   std::unique_ptr<Work> work_;
 };
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -19,7 +19,7 @@
 #include "vps_scenes/scene.h"
 #include "vps_scenes/snapshot.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Words for the user. May be called by any thread of a node, one at a time.
 using Say = std::function<void(const std::string&)>;
@@ -121,4 +121,4 @@ class VPS_SCENES_API SessionWatcher {
   std::unique_ptr<Work> work_;
 };
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -14,7 +14,7 @@
 #include "vps_scenes/network/session_network.h"
 #include "vps_scenes/scene.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 enum class RequestRights {
   Look,  ///< who is there
@@ -64,4 +64,4 @@ class VPS_SCENES_API RequestServer {
   std::unique_ptr<Work> work_;
 };
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

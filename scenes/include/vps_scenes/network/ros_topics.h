@@ -12,7 +12,7 @@
 #include "vps_scenes/scene.h"
 #include "vps_scenes/snapshot.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Publishes, reliable and volatile as ROS 2's default:
 ///
@@ -46,4 +46,4 @@ class VPS_SCENES_API RosTopics {
 /// A name as ROS 2 allows them: letters, digits and _; others become _.
 VPS_SCENES_API std::string rosName(const std::string& name);
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// The same in all nodes, apart from the folder, which is each node's own.
 struct SessionNetwork {
@@ -25,4 +25,4 @@ struct SessionNetwork {
   std::string security;
 };
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -12,7 +12,7 @@
 #include "vps_scenes/export.h"
 #include "vps_scenes/network/session_network.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 struct SessionPointer {
   int who = 0;                ///< of all persons at this session, 1000 and above
@@ -43,4 +43,4 @@ class VPS_SCENES_API SessionPointers {
   std::unique_ptr<Work> work_;
 };
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -10,7 +10,7 @@
 #include "vps_scenes/network/nodes.h"
 #include "vps_scenes/network/session_network.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 struct SessionRecordingOptions {
   std::string session = "default";
@@ -42,4 +42,4 @@ class VPS_SCENES_API SessionRecording {
   std::unique_ptr<Work> work_;
 };
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

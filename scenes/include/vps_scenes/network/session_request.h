@@ -9,7 +9,7 @@
 #include "vps_scenes/network/session_network.h"
 #include "vps_scenes/scene.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// Whether a text has the form of a scene's hash: 32 hexadecimal digits, in small letters.
 VPS_SCENES_API bool isSceneHash(const std::string& text);
@@ -48,4 +48,4 @@ class VPS_SCENES_API SessionRequest {
   SessionNetwork network_;
 };
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

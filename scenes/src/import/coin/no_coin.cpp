@@ -3,10 +3,10 @@
 #include "import/missing_library.h"
 #include "import/readers.h"
 
-namespace vps::scenes::inline v0::import {
+namespace vps::scenes::import {
 
 RawCad readCoin(const std::string& file, const std::string& format, const ImportSettings&, const Progress&) {
   throw missingLibrary(file, format, "Coin", "libcoin-dev");
 }
 
-}  // namespace vps::scenes::inline v0::import
+}  // namespace vps::scenes::import

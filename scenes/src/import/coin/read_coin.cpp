@@ -22,7 +22,7 @@
 #include "import/readers.h"
 #include "vps/load_error.h"
 
-namespace vps::scenes::inline v0::import {
+namespace vps::scenes::import {
 namespace {
 
 std::string oneLine(const char* text) {
@@ -191,4 +191,4 @@ RawCad readCoin(const std::string& file, const std::string& format, const Import
   return cad;
 }
 
-}  // namespace vps::scenes::inline v0::import
+}  // namespace vps::scenes::import

@@ -18,7 +18,7 @@
 #include <Inventor/nodes/SoTriangleStripSet.h>
 #include <Inventor/nodes/SoVertexProperty.h>
 
-namespace vps::scenes::inline v0::import {
+namespace vps::scenes::import {
 namespace {
 
 /// Calls f on every node of type T under root, including those behind switches.
@@ -107,4 +107,4 @@ bool hasItsVertices(const SoCallbackAction& action, const SoNode& shape) {
   return true;
 }
 
-}  // namespace vps::scenes::inline v0::import
+}  // namespace vps::scenes::import

@@ -5,7 +5,7 @@
 class SoCallbackAction;
 class SoNode;
 
-namespace vps::scenes::inline v0::import {
+namespace vps::scenes::import {
 
 /// Removes normals, texture coordinates and their indices, which only pictures need and Coin reads unchecked.
 void dropNormals(SoNode* root);
@@ -13,4 +13,4 @@ void dropNormals(SoNode* root);
 /// True if all vertices of a shape exist, by the coordinates that apply at this point of the traversal.
 bool hasItsVertices(const SoCallbackAction& action, const SoNode& shape);
 
-}  // namespace vps::scenes::inline v0::import
+}  // namespace vps::scenes::import

@@ -9,7 +9,7 @@
 #include "import/stored_archive.h"
 #include "import/xml_tags.h"
 
-namespace vps::scenes::inline v0::import {
+namespace vps::scenes::import {
 namespace {
 
 struct CloseZip {
@@ -55,4 +55,4 @@ std::string withoutNumbersForCharacters(const std::string& archive) {
   return has_any && is_small ? std::move(copy).finish() : "";
 }
 
-}  // namespace vps::scenes::inline v0::import
+}  // namespace vps::scenes::import

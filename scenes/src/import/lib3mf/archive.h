@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-namespace vps::scenes::inline v0::import {
+namespace vps::scenes::import {
 
 inline constexpr std::size_t kWholeFile = std::numeric_limits<std::size_t>::max();
 
@@ -24,4 +24,4 @@ inline bool isModel(std::string_view name) {
 /// ("&#228;"), which lib3mf 1.8.1 refuses; empty if no model file has such a number, or beyond 4 GB.
 std::string withoutNumbersForCharacters(const std::string& archive);
 
-}  // namespace vps::scenes::inline v0::import
+}  // namespace vps::scenes::import

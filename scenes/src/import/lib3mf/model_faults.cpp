@@ -8,7 +8,7 @@
 #include "import/lib3mf/archive.h"
 #include "import/xml_tags.h"
 
-namespace vps::scenes::inline v0::import {
+namespace vps::scenes::import {
 namespace {
 
 bool isNumber(std::string_view text) {
@@ -47,4 +47,4 @@ std::string modelFault(const std::string& archive) {
   return fault;
 }
 
-}  // namespace vps::scenes::inline v0::import
+}  // namespace vps::scenes::import

@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace vps::scenes::inline v0::import {
+namespace vps::scenes::import {
 
 /// The first fault, in words; empty if there is none:
 /// - a coordinate of a vertex that is not a number as a whole, as "4,5" and "4mm", of which lib3mf takes 4;
@@ -12,4 +12,4 @@ namespace vps::scenes::inline v0::import {
 /// O(bytes); never throws.
 std::string modelFault(const std::string& archive);
 
-}  // namespace vps::scenes::inline v0::import
+}  // namespace vps::scenes::import

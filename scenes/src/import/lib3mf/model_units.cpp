@@ -7,7 +7,7 @@
 #include "import/lib3mf/archive.h"
 #include "import/xml_tags.h"
 
-namespace vps::scenes::inline v0::import {
+namespace vps::scenes::import {
 namespace {
 
 ModelFile modelFile(std::string_view name, const std::optional<XmlTag>& model) {
@@ -49,4 +49,4 @@ ModelFiles modelFiles(const std::string& archive) {
   return files;
 }
 
-}  // namespace vps::scenes::inline v0::import
+}  // namespace vps::scenes::import

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace vps::scenes::inline v0::import {
+namespace vps::scenes::import {
 
 struct ModelFile {
   std::string name;
@@ -23,4 +23,4 @@ struct ModelFiles {
 /// Reads the beginnings of the files in the archive; never throws.
 ModelFiles modelFiles(const std::string& archive);
 
-}  // namespace vps::scenes::inline v0::import
+}  // namespace vps::scenes::import

@@ -18,7 +18,7 @@
 #include "import/unique_names.h"
 #include "vps/load_error.h"
 
-namespace vps::scenes::inline v0::import {
+namespace vps::scenes::import {
 namespace {
 
 /// A call that failed.
@@ -339,4 +339,4 @@ RawCad read3mf(const std::string& file, const std::string&, const ImportSettings
   return cad;
 }
 
-}  // namespace vps::scenes::inline v0::import
+}  // namespace vps::scenes::import

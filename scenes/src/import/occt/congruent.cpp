@@ -14,7 +14,7 @@
 #include <TopoDS_Edge.hxx>
 #include <TopoDS_Face.hxx>
 
-namespace vps::scenes::inline v0::import {
+namespace vps::scenes::import {
 
 namespace {
 
@@ -99,4 +99,4 @@ std::optional<Eigen::Affine3d> motionBetween(const ShapeTrace& a, const ShapeTra
   return X;
 }
 
-}  // namespace vps::scenes::inline v0::import
+}  // namespace vps::scenes::import

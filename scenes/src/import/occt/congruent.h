@@ -10,7 +10,7 @@
 
 #include "vps/mesh.h"
 
-namespace vps::scenes::inline v0::import {
+namespace vps::scenes::import {
 
 /// What a rigid copy of a shape has in common with it, in one order: kinds and counts of its faces and edges,
 /// and points on them.
@@ -28,4 +28,4 @@ ShapeTrace traceOf(const TopoDS_Shape& shape);
 /// grid could still differ in between, as free-form faces that somebody changed between the grid's points.
 std::optional<Eigen::Affine3d> motionBetween(const ShapeTrace& a, const ShapeTrace& b, double tolerance);
 
-}  // namespace vps::scenes::inline v0::import
+}  // namespace vps::scenes::import

@@ -37,7 +37,7 @@
 
 #include "import/occt/step_kinds.h"
 
-namespace vps::scenes::inline v0::import {
+namespace vps::scenes::import {
 namespace {
 
 std::string joined(std::string text) {
@@ -270,4 +270,4 @@ void nameColors(const Handle(Interface_InterfaceModel) & model) {
       color->GetPreDefinedItem()->SetName(new TCollection_HAsciiString(""));
 }
 
-}  // namespace vps::scenes::inline v0::import
+}  // namespace vps::scenes::import

@@ -6,7 +6,7 @@
 
 #include <Interface_InterfaceModel.hxx>
 
-namespace vps::scenes::inline v0::import {
+namespace vps::scenes::import {
 
 struct Damage {
   std::string lost_geometry;  ///< in words; empty: all geometry that the file's parts need is there
@@ -23,4 +23,4 @@ Damage damageOf(const Handle(Interface_InterfaceModel) & model);
 /// Gives predefined colours without a name, on which Open CASCADE 7.6.3 crashes, an empty one.
 void nameColors(const Handle(Interface_InterfaceModel) & model);
 
-}  // namespace vps::scenes::inline v0::import
+}  // namespace vps::scenes::import

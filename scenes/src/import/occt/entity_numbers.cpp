@@ -7,7 +7,7 @@
 #include <map>
 #include <vector>
 
-namespace vps::scenes::inline v0::import {
+namespace vps::scenes::import {
 namespace {
 
 constexpr std::uint64_t kGreatest = 2'000'000'000;  // below 2^31
@@ -129,4 +129,4 @@ bool capitalizeExponents(std::string& text) {
   return is_changed;
 }
 
-}  // namespace vps::scenes::inline v0::import
+}  // namespace vps::scenes::import

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace vps::scenes::inline v0::import {
+namespace vps::scenes::import {
 
 /// A STEP file's text with changed entity numbers where Open CASCADE 7.6.3 would misread it; empty if it
 /// would not.
@@ -21,4 +21,4 @@ std::optional<std::string> withReadableNumbers(std::string_view text);
 /// needs. True if there was one to change. O(n).
 bool capitalizeExponents(std::string& text);
 
-}  // namespace vps::scenes::inline v0::import
+}  // namespace vps::scenes::import

@@ -19,7 +19,7 @@
 
 #include "import/occt/step_kinds.h"
 
-namespace vps::scenes::inline v0::import {
+namespace vps::scenes::import {
 namespace {
 
 using Units = Handle(StepBasic_HArray1OfNamedUnit);
@@ -89,4 +89,4 @@ LengthUnits lengthUnits(const Handle(Interface_InterfaceModel) & model) {
   return found;
 }
 
-}  // namespace vps::scenes::inline v0::import
+}  // namespace vps::scenes::import

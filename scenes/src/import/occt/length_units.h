@@ -7,7 +7,7 @@
 
 #include <Interface_InterfaceModel.hxx>
 
-namespace vps::scenes::inline v0::import {
+namespace vps::scenes::import {
 
 struct LengthUnits {
   bool is_stated = true;  ///< at least one shape has a unit
@@ -18,4 +18,4 @@ struct LengthUnits {
 /// O(entities).
 LengthUnits lengthUnits(const Handle(Interface_InterfaceModel) & model);
 
-}  // namespace vps::scenes::inline v0::import
+}  // namespace vps::scenes::import

@@ -25,7 +25,7 @@
 
 #include "import/occt/step_kinds.h"
 
-namespace vps::scenes::inline v0::import {
+namespace vps::scenes::import {
 namespace {
 
 /// Which products have a shape, and which of their instances have no placement.
@@ -147,4 +147,4 @@ LostShapes lostShapes(const XSControl_Reader& reader) {
           leftOut(reader.Model(), *reader.WS()->TransferReader()->TransientProcess())};
 }
 
-}  // namespace vps::scenes::inline v0::import
+}  // namespace vps::scenes::import

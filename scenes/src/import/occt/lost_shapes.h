@@ -6,7 +6,7 @@
 
 #include <XSControl_Reader.hxx>
 
-namespace vps::scenes::inline v0::import {
+namespace vps::scenes::import {
 
 /// Losses in a file that the reader has transferred, in words; a text is empty if there is no such loss.
 struct LostShapes {
@@ -19,4 +19,4 @@ struct LostShapes {
 /// O(entities).
 LostShapes lostShapes(const XSControl_Reader& reader);
 
-}  // namespace vps::scenes::inline v0::import
+}  // namespace vps::scenes::import

@@ -3,7 +3,7 @@
 #include "import/missing_library.h"
 #include "import/readers.h"
 
-namespace vps::scenes::inline v0::import {
+namespace vps::scenes::import {
 
 std::string occtVersion() {
   return "";
@@ -13,4 +13,4 @@ RawCad readOcct(const std::string& file, const std::string& format, const Import
   throw missingLibrary(file, format, "Open CASCADE", "libocct-data-exchange-dev");
 }
 
-}  // namespace vps::scenes::inline v0::import
+}  // namespace vps::scenes::import

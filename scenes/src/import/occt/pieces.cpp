@@ -9,7 +9,7 @@
 #include <Bnd_Box.hxx>
 #include <TopExp_Explorer.hxx>
 
-namespace vps::scenes::inline v0::import {
+namespace vps::scenes::import {
 std::vector<TopoDS_Shape> pieces(const TopoDS_Shape& shape) {
   std::vector<TopoDS_Shape> found;
   for (TopExp_Explorer it(shape, TopAbs_SOLID); it.More(); it.Next()) found.push_back(it.Current());
@@ -28,4 +28,4 @@ std::vector<TopoDS_Shape> pieces(const TopoDS_Shape& shape) {
   return found;
 }
 
-}  // namespace vps::scenes::inline v0::import
+}  // namespace vps::scenes::import

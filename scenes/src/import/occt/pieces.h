@@ -6,9 +6,9 @@
 
 #include <TopoDS_Shape.hxx>
 
-namespace vps::scenes::inline v0::import {
+namespace vps::scenes::import {
 
 /// The rigid pieces of a shape: each solid, and the faces outside of solids, sewn together where they meet.
 std::vector<TopoDS_Shape> pieces(const TopoDS_Shape& shape);
 
-}  // namespace vps::scenes::inline v0::import
+}  // namespace vps::scenes::import

@@ -43,7 +43,7 @@
 #include "import/unique_names.h"
 #include "vps/load_error.h"
 
-namespace vps::scenes::inline v0::import {
+namespace vps::scenes::import {
 namespace {
 
 /// Removes Open CASCADE's console printers for a scope.
@@ -448,4 +448,4 @@ RawCad readOcct(const std::string& file, const std::string& format, const Import
   }
 }
 
-}  // namespace vps::scenes::inline v0::import
+}  // namespace vps::scenes::import

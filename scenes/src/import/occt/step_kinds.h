@@ -20,7 +20,7 @@
 #include <StepShape_Sphere.hxx>
 #include <StepShape_Torus.hxx>
 
-namespace vps::scenes::inline v0::import {
+namespace vps::scenes::import {
 
 using Entity = Handle(Standard_Transient);
 
@@ -51,4 +51,4 @@ bool anyItem(const Entity& representation, F f) {
   return std::any_of(of->Items()->begin(), of->Items()->end(), f);
 }
 
-}  // namespace vps::scenes::inline v0::import
+}  // namespace vps::scenes::import

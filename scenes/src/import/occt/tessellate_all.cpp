@@ -13,7 +13,7 @@
 #include "import/occt/congruent.h"
 #include "import/part_bytes.h"
 
-namespace vps::scenes::inline v0::import {
+namespace vps::scenes::import {
 
 namespace {
 
@@ -109,4 +109,4 @@ TessellatedShapes tessellateAll(const std::vector<TopoDS_Shape>& shapes, const I
   return out;
 }
 
-}  // namespace vps::scenes::inline v0::import
+}  // namespace vps::scenes::import

@@ -10,7 +10,7 @@
 
 #include "import/occt/tessellation.h"
 
-namespace vps::scenes::inline v0::import {
+namespace vps::scenes::import {
 
 struct TessellatedShape {
   std::size_t number = 0;                              ///< of its tessellation
@@ -30,4 +30,4 @@ TessellatedShapes tessellateAll(const std::vector<TopoDS_Shape>& shapes, const I
                                 double units_per_m,
                                 const std::function<void(std::size_t, std::size_t)>& done);
 
-}  // namespace vps::scenes::inline v0::import
+}  // namespace vps::scenes::import

@@ -26,7 +26,7 @@
 #include <TopoDS.hxx>
 #include <TopoDS_Face.hxx>
 
-namespace vps::scenes::inline v0::import {
+namespace vps::scenes::import {
 
 namespace {
 
@@ -360,4 +360,4 @@ std::string inWords(const Tessellation& tessellation, const ImportSettings& sett
          "matters, let the CAD program write the part as a mesh (STL, OBJ), or those faces anew";
 }
 
-}  // namespace vps::scenes::inline v0::import
+}  // namespace vps::scenes::import

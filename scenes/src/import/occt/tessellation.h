@@ -12,7 +12,7 @@
 #include "vps/mesh.h"
 #include "vps_scenes/import.h"
 
-namespace vps::scenes::inline v0::import {
+namespace vps::scenes::import {
 
 /// Triangles of a shape, in its length unit (a metre has units_per_m of them), outward for a solid. Faces of
 /// one shape share the points of their common edges, so welding closes it.
@@ -57,4 +57,4 @@ Tessellation tessellate(const TopoDS_Shape& shape, ImportSettings settings, doub
 /// A warning about a part that is not as asked for; empty if it is.
 std::string inWords(const Tessellation& tessellation, const ImportSettings& settings);
 
-}  // namespace vps::scenes::inline v0::import
+}  // namespace vps::scenes::import

@@ -9,7 +9,7 @@
 
 #include "vps/load_error.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -77,4 +77,4 @@ std::string securitySettings(const SessionNetwork& network, bool is_loopback) {
           element("Cryptographic", plugin("libdds_security_crypto.so", "crypto")));
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

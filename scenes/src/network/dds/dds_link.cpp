@@ -21,7 +21,7 @@
 #include "vps_device/metronome.h"
 #include "vps_device/periodic_thread.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -401,4 +401,4 @@ std::unique_ptr<Link> joinNetworkSession(const std::string& session, NodeRole ro
   return link;
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

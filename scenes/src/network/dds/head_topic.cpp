@@ -5,7 +5,7 @@
 #include "network/dds/ros_types.h"
 #include "network/dds/topics.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 struct HeadTopic::Work {
   Work(const std::string& topic, int domain, const std::string& interface)
       : participant(SessionNetwork(interface, "none"), domain) {
@@ -43,4 +43,4 @@ std::optional<Pose> HeadTopic::take() {
   }
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -7,7 +7,7 @@
 #include "vps_scenes/network/head_topic.h"
 #include "vps_scenes/network/ros_topics.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -57,4 +57,4 @@ std::optional<Pose> HeadTopic::take() {
   return {};
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

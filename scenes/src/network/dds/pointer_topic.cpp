@@ -7,7 +7,7 @@
 
 #include "network/dds/topics.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -49,4 +49,4 @@ std::unique_ptr<PointerTopic> makePointerTopic(const std::string& session, const
   return std::make_unique<DdsPointerTopic>(session, network);
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -7,7 +7,7 @@
 #include "network/dds/topics.h"
 #include "network/request_channel.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -96,4 +96,4 @@ std::unique_ptr<ClientChannel> findNetworkServer(const std::string& session, con
   return std::make_unique<NetworkClient>(session, network);
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

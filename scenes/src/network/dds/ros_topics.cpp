@@ -13,7 +13,7 @@
 #include "network/dds/ros_types.h"
 #include "network/dds/topics.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -141,4 +141,4 @@ void RosTopics::publish(const Wrench& F_hand_W, std::int64_t time_ns) {
   dds_write(work_->force, &wrench);
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -5,7 +5,7 @@
 
 #include "vps/load_error.h"
 
-namespace vps::scenes::inline v0::ros {
+namespace vps::scenes::ros {
 
 dds_topic_descriptor_t descriptor(const char* name, std::size_t size, const std::uint32_t* ops,
                                   std::uint32_t instructions) {
@@ -28,4 +28,4 @@ dds_entity_t require(dds_entity_t made) {
   throw LoadError("", "", std::string("the topics of ROS 2: ") + dds_strretcode(-made));
 }
 
-}  // namespace vps::scenes::inline v0::ros
+}  // namespace vps::scenes::ros

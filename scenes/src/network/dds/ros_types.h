@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace vps::scenes::inline v0::ros {
+namespace vps::scenes::ros {
 
 struct Header {
   std::int32_t sec;
@@ -38,4 +38,4 @@ dds_topic_descriptor_t descriptor(const char* name, std::size_t size, const std:
 /// Throws LoadError where DDS refuses.
 dds_entity_t require(dds_entity_t made);
 
-}  // namespace vps::scenes::inline v0::ros
+}  // namespace vps::scenes::ros

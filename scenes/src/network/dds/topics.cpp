@@ -18,7 +18,7 @@
 #include "vps/load_error.h"
 #include "vps_device/periodic_thread.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 namespace {
 
@@ -234,4 +234,4 @@ void DdsTopic::write(std::string_view bytes) {
   dds_write(work_->end, &message);
 }
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

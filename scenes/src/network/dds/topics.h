@@ -11,7 +11,7 @@
 
 #include "vps_scenes/network/session_network.h"
 
-namespace vps::scenes::inline v0 {
+namespace vps::scenes {
 
 /// A participant in a domain of one network interface. Throws LoadError where the system refuses, and where
 /// the network needs certificates and has none.
@@ -60,4 +60,4 @@ class DdsTopic {
   std::unique_ptr<Work> work_;
 };
 
-}  // namespace vps::scenes::inline v0
+}  // namespace vps::scenes

@@ -2,7 +2,7 @@
 // Loudspeakers in a build without OpenAL.
 #include "sound/live_sound.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 std::unique_ptr<SoundOutput> openSoundOutput(int, std::string& why) {
   why = "this build is silent; install libopenal-dev and build again";
@@ -13,4 +13,4 @@ std::unique_ptr<SoundOutput> openSoundLoopback(int rate_hz, HeardPeriod, std::st
   return openSoundOutput(rate_hz, why);
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -21,7 +21,7 @@
 #include "vps_device/metronome.h"
 #include "vps_device/periodic_thread.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 constexpr int kMixerPriority = 1;    // as OpenAL's own thread has with askForShortPeriods()
@@ -272,4 +272,4 @@ std::unique_ptr<SoundOutput> openSoundLoopback(int rate_hz, HeardPeriod heard, s
   return std::make_unique<LoopbackOutput>(device, context, rate_hz, std::move(heard));
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -17,7 +17,7 @@
 
 #include "vps_device/metronome.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -258,4 +258,4 @@ void serveConnection(tcp::socket socket, WebShared& shared) {
     std::make_shared<HttpEnd<TlsStream>>(TlsStream(std::move(socket), *shared.tls), shared)->begin();
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -10,7 +10,7 @@
 #include "web/hub.h"
 #include "web/web_page.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// What all connections share; it outlives them.
 struct WebShared {
@@ -29,4 +29,4 @@ void serveConnection(boost::asio::ip::tcp::socket socket, WebShared& shared);
 /// The monotonic clock, for rates.
 double webClock_s();
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

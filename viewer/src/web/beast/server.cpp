@@ -13,7 +13,7 @@
 #include "web/beast/connection.h"
 #include "web/beast/tls.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -149,4 +149,4 @@ void serveRecording(const device::RecordedRun& run, const WebOptions& options) {
   serveRun(*watchedRecording(run), options);
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -8,7 +8,7 @@
 #include "vps_viewer/web.h"
 #include "web/watched_run.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// Used by one thread.
 class VPS_VIEWER_API WebServer {
@@ -30,4 +30,4 @@ class VPS_VIEWER_API WebServer {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -11,7 +11,7 @@
 
 #include "vps/load_error.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 namespace {
 
@@ -78,4 +78,4 @@ std::unique_ptr<ssl::context> tlsContext(const std::string& certificate_file, co
   return context;
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

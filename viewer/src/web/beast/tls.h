@@ -6,7 +6,7 @@
 #include <memory>
 #include <string>
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// TLS 1.2 and later with a certificate, and those that follow it in the chain, and its key, both in PEM form
 /// and the key without a passphrase. Throws LoadError where a file is missing or no such thing, the two do
@@ -14,4 +14,4 @@ namespace vps::viewer::inline v0 {
 std::unique_ptr<boost::asio::ssl::context> tlsContext(const std::string& certificate_file,
                                                       const std::string& key_file);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

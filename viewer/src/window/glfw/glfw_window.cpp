@@ -15,7 +15,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 // Dear ImGui spreads what an event changes over up to three frames.
@@ -302,4 +302,4 @@ Image GlfwWindow::readBack() const {
   return image;
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

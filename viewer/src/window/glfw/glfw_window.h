@@ -12,7 +12,7 @@
 
 struct GLFWwindow;
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// Throws as GlfwWindow does where there is no display. Not while there is a window.
 void requireDisplay();
@@ -76,4 +76,4 @@ class GlfwWindow {
   std::atomic<bool> has_news_{false};
 };
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -6,7 +6,7 @@
 #include "window/glfw/session.h"
 #include "window/hand_mark.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 ImU32 packed(const Eigen::Vector3f& linear) {
@@ -55,4 +55,4 @@ void drawHandMarks(const Session& session) {
   label(list, {to.x + 14, to.y + 8}, color, mark.words.c_str());
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

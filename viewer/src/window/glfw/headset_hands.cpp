@@ -4,7 +4,7 @@
 
 #include "window/glfw/session.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 /// What a controller points at: the part in hand is taken there where a person moves it, another part picked.
@@ -66,4 +66,4 @@ void useHeadset(Session& session) {
   }
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

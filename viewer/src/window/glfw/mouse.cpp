@@ -6,7 +6,7 @@
 #include "window/glfw/session.h"
 #include "window/section_drag.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 void dragOnPicture(Session& session, const ImGuiIO& io) {
@@ -102,4 +102,4 @@ void useMouse(Session& session) {
   if (isClick(io)) session.view.picked = pickAt(session, at);
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

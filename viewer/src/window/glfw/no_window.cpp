@@ -4,7 +4,7 @@
 
 #include "vps_viewer/window.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 std::string missingForWindow() {
   return "this build has no window; install libglfw3-dev and libimgui-dev and build again";
@@ -22,4 +22,4 @@ std::optional<scenes::Verdict> viewSession(const WindowOptions&) {
   throw std::runtime_error(missingForWindow());
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -12,7 +12,7 @@
 #include "window/glfw/session.h"
 #include "window/section_drag.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
@@ -332,4 +332,4 @@ void drawPanels(Session& session, const GlfwWindow& window) {
   session.area = {0, 0, {size.width - static_cast<int>(side_px), size.height - static_cast<int>(axis_px)}};
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -4,7 +4,7 @@
 #include "window/glfw/session.h"
 #include "window/planned_path.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 constexpr ImU32 kPath = IM_COL32(0, 90, 160, 255), kAxis = IM_COL32(170, 70, 0, 255);
@@ -46,4 +46,4 @@ void drawPathMarks(const Session& session) {
   }
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

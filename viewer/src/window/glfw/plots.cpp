@@ -10,7 +10,7 @@
 
 #include "window/glfw/session.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 // Okabe and Ito's colours, which people with common kinds of colour blindness can tell apart.
@@ -92,4 +92,4 @@ void drawPlots(const Timeline& line, double* now_s, float scale, bool may_seek) 
   }
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

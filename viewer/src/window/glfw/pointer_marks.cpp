@@ -3,7 +3,7 @@
 
 #include "window/glfw/session.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 constexpr ImU32 kOthers = IM_COL32(214, 39, 140, 255), kOwn = IM_COL32(20, 130, 60, 255);
@@ -27,4 +27,4 @@ void drawPointerMarks(const Session& session) {
   if (session.followed->pointing()) mark(*session.followed->pointing(), kOwn);
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -9,7 +9,7 @@
 #include "vps_viewer/verdict_words.h"
 #include "window/glfw/session.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 /// "run.mcap", "run_2.mcap", ...: what was undone stays in the file before.
@@ -280,4 +280,4 @@ void carryOutWork(Session& session, GlfwWindow& window) {
   if (wants[4]) takeOrPutDown(session, window);
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -21,7 +21,7 @@
 #include "window/picture_worker.h"
 #include "window/view_state.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// Where the picture is in the window, in pixels.
 struct PictureArea {
@@ -139,4 +139,4 @@ void drawPointerMarks(const Session& session);
 /// to the mouse's cursor.
 void drawHandMarks(const Session& session);
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

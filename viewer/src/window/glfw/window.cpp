@@ -17,7 +17,7 @@
 #include "window/exploded.h"
 #include "window/glfw/session.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 // Larger windows show a smaller picture, stretched: 4096 x 4096 with their samples are a GiB of memory.
@@ -357,4 +357,4 @@ std::optional<scenes::Verdict> viewSession(const WindowOptions& options) {
   return followed.verdict();
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

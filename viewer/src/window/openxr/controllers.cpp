@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 constexpr const char* kHands[] = {"/user/hand/left", "/user/hand/right"};
@@ -120,4 +120,4 @@ void Controllers::tremble(std::size_t hand, double share) const {
   xrApplyHapticFeedback(session_, &of, reinterpret_cast<const XrHapticBaseHeader*>(&wanted));
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

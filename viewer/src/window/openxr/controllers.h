@@ -6,7 +6,7 @@
 
 #include "window/openxr/xr_calls.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// In the room; it points along its -z.
 struct Controller {
@@ -38,4 +38,4 @@ class Controllers {
   std::array<XrSpace, 2> spaces_{};
 };
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

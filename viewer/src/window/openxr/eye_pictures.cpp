@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 /// Our bytes are sRGB, which only formats that say so keep; the others are shown too bright.
@@ -65,4 +65,4 @@ XrSwapchainSubImage EyePictures::put(const Image& image) {
   return place;
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -8,7 +8,7 @@
 #include "vps_viewer/image.h"
 #include "window/openxr/xr_calls.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 class EyePictures {
  public:
@@ -30,4 +30,4 @@ class EyePictures {
   std::vector<std::uint8_t> flipped_;
 };
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -3,7 +3,7 @@
 
 #include <stdexcept>
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 [[noreturn]] void fail(Display* display, const std::string& what) {
@@ -94,4 +94,4 @@ XrGraphicsBindingOpenGLXlibKHR GlxContext::binding() const {
   return made;
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -4,7 +4,7 @@
 
 #include "window/openxr/xr_calls.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 class GlxContext {
  public:
@@ -27,4 +27,4 @@ class GlxContext {
   unsigned visual_ = 0;
 };
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

@@ -17,7 +17,7 @@
 #include "window/openxr/xr_instance.h"
 #include "window/table_room.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 namespace {
 
 constexpr XrViewConfigurationType kTwoEyes = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO;
@@ -383,4 +383,4 @@ std::vector<std::string> HeadsetSession::takeMessages() {
   return std::exchange(work_->messages, {});
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

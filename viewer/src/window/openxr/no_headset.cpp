@@ -2,7 +2,7 @@
 // A build without OpenXR.
 #include "window/headset_session.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 struct HeadsetSession::Work {};
 
@@ -23,4 +23,4 @@ void HeadsetSession::tremble(std::size_t, double) {}
 std::vector<std::string> HeadsetSession::takeMessages() {
   return {};
 }
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

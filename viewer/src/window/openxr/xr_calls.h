@@ -20,7 +20,7 @@
 
 #include "vps/pose.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 /// A struct of OpenXR with its type set and all else zero.
 template <class T>
@@ -48,4 +48,4 @@ inline void check(XrResult result, const char* call) {
   return X;
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

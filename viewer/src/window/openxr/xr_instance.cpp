@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 XrConnection::XrConnection() {
   setenv("XR_LOADER_DEBUG", "none", 0);  // what the loader prints by itself; we say it in words
@@ -48,4 +48,4 @@ std::string XrConnection::whyNot() const {
   return "";
 }
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer

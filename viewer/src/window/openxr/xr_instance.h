@@ -6,7 +6,7 @@
 
 #include "window/openxr/xr_calls.h"
 
-namespace vps::viewer::inline v0 {
+namespace vps::viewer {
 
 class XrConnection {
  public:
@@ -28,4 +28,4 @@ class XrConnection {
   XrResult result_ = XR_ERROR_RUNTIME_UNAVAILABLE;
 };
 
-}  // namespace vps::viewer::inline v0
+}  // namespace vps::viewer
