@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vps_viewer/report.h"
 
+#include "report/html.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "vps_scenes/check.h"
+#include "vps_scenes/check_types.h"
 #include "vps_scenes/fields.h"
 
 namespace vps::scenes {

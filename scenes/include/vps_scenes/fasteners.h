@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "vps_scenes/check.h"
+#include "vps_scenes/check_types.h"
 
 namespace vps::scenes {
 

@@ -10,6 +10,14 @@
 
 namespace vps::scenes {
 
+/// What the models of a scene take.
+struct ModelledCost {
+  std::size_t voxmaps = 0, pointshells = 0;
+  std::size_t points = 0;        ///< of the parts' own pointshells
+  std::size_t field_points = 0;  ///< of the fixed field
+  std::size_t bytes = 0;         ///< of all
+};
+
 struct ModelOptions {
   Progress progress;
   bool models_everything = false;      ///< models every part everywhere (model_plan.h)

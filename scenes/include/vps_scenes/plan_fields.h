@@ -3,7 +3,7 @@
 #pragma once
 
 #include "vps_scenes/check_fields.h"
-#include "vps_scenes/plan.h"
+#include "vps_scenes/plan_types.h"
 
 namespace vps::scenes {
 

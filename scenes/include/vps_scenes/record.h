@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "vps_scenes/assemble.h"
+#include "vps_scenes/assemble_options.h"
 #include "vps_scenes/export.h"
 
 namespace vps::scenes {

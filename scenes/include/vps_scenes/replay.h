@@ -6,7 +6,7 @@
 #include <functional>
 
 #include "vps_device/recording.h"
-#include "vps_scenes/assemble.h"
+#include "vps_scenes/assemble_options.h"
 #include "vps_scenes/export.h"
 #include "vps_scenes/model_options.h"
 #include "vps_scenes/result.h"

@@ -11,6 +11,7 @@
 
 #include "vps/wrench.h"
 #include "vps_scenes/export.h"
+#include "vps_scenes/model_options.h"
 #include "vps_scenes/snapshot.h"
 #include "vps_scenes/verdict.h"
 
@@ -139,13 +140,6 @@ struct FastTurn {
 };
 /// "'shaft' turns with 10000 rpm, ...", with the remedy.
 VPS_SCENES_API std::string inWords(const FastTurn& turn);
-
-struct ModelledCost {
-  std::size_t voxmaps = 0, pointshells = 0;
-  std::size_t points = 0;        ///< of the parts' own pointshells
-  std::size_t field_points = 0;  ///< of the fixed field
-  std::size_t bytes = 0;         ///< of all
-};
 
 /// One change of the load level (load_level.h).
 struct LoadLevelChange {

@@ -2,7 +2,7 @@
 // The same procedure by several seeds of the virtual operator.
 #pragma once
 
-#include "vps_scenes/assemble.h"
+#include "vps_scenes/assemble_options.h"
 #include "vps_scenes/export.h"
 
 namespace vps::scenes {

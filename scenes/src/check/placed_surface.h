@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "check/part_surface.h"
-#include "vps_scenes/check.h"
+#include "vps_scenes/check_types.h"
 
 namespace vps::scenes {
 

@@ -8,7 +8,7 @@
 
 #include "check/box_tree.h"
 #include "vps/part_model.h"
-#include "vps_scenes/check.h"
+#include "vps_scenes/check_types.h"
 
 namespace vps::scenes {
 

@@ -4,7 +4,6 @@
 
 #include "vps_scenes/model_options.h"
 #include "vps_scenes/model_plan.h"
-#include "vps_scenes/result.h"
 #include "vps_scenes/scene.h"
 
 namespace vps::scenes {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "check/fastener_shape.h"
-#include "vps_scenes/plan.h"
+#include "vps_scenes/plan_types.h"
 
 namespace vps::scenes {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "check/placed_surface.h"
-#include "vps_scenes/plan.h"
+#include "vps_scenes/plan_types.h"
 
 namespace vps::scenes {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "plan/pair_motions.h"
-#include "vps_scenes/plan.h"
+#include "vps_scenes/plan_types.h"
 
 namespace vps::scenes {
 

@@ -5,7 +5,7 @@
 #include "haptics/hand.h"
 #include "procedure/loop_settings.h"
 #include "vps_device/run_log.h"
-#include "vps_scenes/assemble.h"
+#include "vps_scenes/assemble_options.h"
 
 namespace vps::scenes {
 

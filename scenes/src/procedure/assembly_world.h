@@ -14,7 +14,7 @@
 #include "simulation/simulation.h"
 #include "vps_device/local_contact.h"
 #include "vps_device/run_log.h"
-#include "vps_scenes/assemble.h"
+#include "vps_scenes/assemble_options.h"
 
 namespace vps::scenes {
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "vps_scenes/check.h"
+#include "vps_scenes/check_types.h"
 #include "vps_scenes/scene.h"
 
 namespace vps::scenes {

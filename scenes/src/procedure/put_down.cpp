@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "vps/box.h"
-#include "vps_scenes/assemble.h"
+#include "vps_scenes/assemble_options.h"
 
 namespace vps::scenes {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "vps_device/loop.h"
 #include "vps_device/recorder.h"
-#include "vps_scenes/assemble.h"
+#include "vps_scenes/assemble_options.h"
 #include "vps_scenes/scene.h"
 
 namespace vps::scenes {

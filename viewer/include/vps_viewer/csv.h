@@ -8,6 +8,7 @@
 
 #include "vps/pose.h"
 #include "vps_scenes/fields.h"
+#include "vps_scenes/result.h"
 #include "vps_viewer/export.h"
 
 namespace vps::viewer {
@@ -92,5 +93,9 @@ std::string toCsv(const std::vector<Struct>& structs, const Rows& rows) {
   }
   return out;
 }
+
+/// Writes the time series as CSV: a header line, then one row per sample, with SI units in the column names.
+/// The folder must exist. Throws LoadError when the file cannot be written.
+VPS_VIEWER_API void writeTraceCsv(const std::vector<scenes::TraceRow>& trace, const std::string& file);
 
 }  // namespace vps::viewer

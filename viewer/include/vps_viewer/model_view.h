@@ -9,7 +9,7 @@
 #include "vps_scenes/scene.h"
 #include "vps_viewer/export.h"
 #include "vps_viewer/model_meshes.h"
-#include "vps_viewer/renderer.h"
+#include "vps_viewer/render_scene.h"
 
 namespace vps::viewer {
 

@@ -31,11 +31,4 @@ struct ReportOutcome {
 VPS_VIEWER_API ReportOutcome writeReport(const scenes::Scene& scene, const scenes::AssembleResult& result,
                                          const std::string& dir, const ReportOptions& options = {});
 
-/// Writes the time series as CSV: a header line, then one row per sample, with SI units in the column names.
-/// The folder must exist. Throws LoadError when the file cannot be written.
-VPS_VIEWER_API void writeTraceCsv(const std::vector<scenes::TraceRow>& trace, const std::string& file);
-
-/// Escapes text for HTML elements and quoted attributes.
-VPS_VIEWER_API std::string escapeHtml(const std::string& text);
-
 }  // namespace vps::viewer

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "draw/gl_objects.h"
-#include "vps_viewer/renderer.h"
+#include "vps_viewer/render_scene.h"
 
 namespace vps::viewer {
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "draw/text.h"
-#include "vps_viewer/renderer.h"
+#include "vps_viewer/render_scene.h"
 
 namespace vps::viewer {
 

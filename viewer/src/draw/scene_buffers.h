@@ -9,7 +9,7 @@
 #include "draw/coarse_mesh.h"
 #include "draw/gl_objects.h"
 #include "draw/shading_mesh.h"
-#include "vps_viewer/renderer.h"
+#include "vps_viewer/render_scene.h"
 
 namespace vps::viewer {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "vps_viewer/renderer.h"
+#include "vps_viewer/render_scene.h"
 
 namespace vps::viewer {
 

@@ -2,7 +2,7 @@
 // The camera, section and light projection of one picture, in the camera frame C.
 #pragma once
 
-#include "vps_viewer/renderer.h"
+#include "vps_viewer/render_scene.h"
 
 namespace vps::viewer {
 

@@ -5,7 +5,7 @@
 #include <functional>
 #include <vector>
 
-#include "vps_viewer/renderer.h"
+#include "vps_viewer/render_scene.h"
 
 namespace vps::viewer {
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "report/html.h"
-#include "vps_viewer/report.h"
 
 namespace vps::viewer {
 

@@ -11,7 +11,6 @@
 #include "report/length_text.h"
 #include "report/section_svg.h"
 #include "vps_viewer/check_words.h"
-#include "vps_viewer/report.h"
 
 namespace vps::viewer {
 

@@ -12,7 +12,6 @@
 #include "vps_scenes/srgb.h"
 #include "vps_viewer/image.h"
 #include "vps_viewer/renderer.h"
-#include "vps_viewer/report.h"
 
 namespace vps::viewer {
 

@@ -5,7 +5,7 @@
 #include <array>
 #include <string>
 
-#include "vps_scenes/check.h"
+#include "vps_scenes/check_types.h"
 
 namespace vps::viewer {
 

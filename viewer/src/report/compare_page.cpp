@@ -12,7 +12,6 @@
 #include "vps/mesh.h"
 #include "vps/write_file.h"
 #include "vps_viewer/plot.h"
-#include "vps_viewer/report.h"
 
 namespace vps::viewer {
 

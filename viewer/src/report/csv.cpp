@@ -4,6 +4,9 @@
 #include <charconv>
 #include <cmath>
 
+#include "vps/write_file.h"
+#include "vps_scenes/result_fields.h"
+
 namespace vps::viewer {
 
 std::string csvLine(const std::vector<std::string>& cells) {
@@ -42,6 +45,10 @@ void addCells(std::vector<std::string>& cells, const Pose& X) {
   addCells(cells, X.p);
   const Quat q = X.isFinite() ? X.quaternion() : Quat::Identity();
   for (const double value : {q.x(), q.y(), q.z(), q.w()}) cells.push_back(csvNumber(value));
+}
+
+void writeTraceCsv(const std::vector<scenes::TraceRow>& trace, const std::string& file) {
+  writeWholeFile(file, toCsv(trace, scenes::kTraceFields));
 }
 
 }  // namespace vps::viewer

@@ -8,7 +8,6 @@
 
 #include "report/html.h"
 #include "report/thinned_trace.h"
-#include "vps_viewer/report.h"
 
 namespace vps::viewer {
 

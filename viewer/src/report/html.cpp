@@ -10,7 +10,6 @@
 
 #include "report/base64.h"
 #include "report/text_file.h"
-#include "vps_viewer/report.h"
 
 namespace vps::viewer {
 

@@ -6,7 +6,12 @@
 #include <utility>
 #include <vector>
 
-namespace vps::viewer::html {
+namespace vps::viewer {
+
+/// Escapes text for HTML elements and quoted attributes.
+std::string escapeHtml(const std::string& text);
+
+namespace html {
 
 /// printf with one double: format(1e6 * depth_m, "%.2f").
 std::string format(double value, const char* form);
@@ -31,4 +36,6 @@ std::string figure(const std::string& file, const std::string& caption_html, con
 /// that it links to, are written into it, so that it can be sent on without the folder.
 std::string page(const std::string& title, const std::string& body, const std::string& folder = {});
 
-}  // namespace vps::viewer::html
+}  // namespace html
+
+}  // namespace vps::viewer

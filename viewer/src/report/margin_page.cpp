@@ -6,7 +6,6 @@
 #include "report/bar_svg.h"
 #include "report/html.h"
 #include "report/length_text.h"
-#include "vps_viewer/report.h"
 
 namespace vps::viewer {
 

@@ -20,6 +20,7 @@
 #include "vps_scenes/load_level.h"
 #include "vps_scenes/scene_text.h"
 #include "vps_viewer/check_page.h"
+#include "vps_viewer/csv.h"
 #include "vps_viewer/verdict_words.h"
 
 namespace vps::viewer {

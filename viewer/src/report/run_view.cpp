@@ -18,7 +18,7 @@
 #include "report/thinned_trace.h"
 #include "report/three.h"
 #include "vps_scenes/srgb.h"
-#include "vps_viewer/renderer.h"
+#include "vps_viewer/render_scene.h"
 
 namespace vps::viewer {
 

@@ -8,7 +8,6 @@
 #include "report/html.h"
 #include "report/length_text.h"
 #include "vps_scenes/outline_clip.h"
-#include "vps_viewer/report.h"
 
 namespace vps::viewer {
 

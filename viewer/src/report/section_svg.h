@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "vps_scenes/check.h"
+#include "vps_scenes/check_types.h"
 
 namespace vps::viewer {
 

@@ -7,7 +7,6 @@
 
 #include "report/bar_svg.h"
 #include "report/html.h"
-#include "vps_viewer/report.h"
 #include "vps_viewer/verdict_words.h"
 
 namespace vps::viewer {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "vps_viewer/renderer.h"
+#include "vps_viewer/render_scene.h"
 
 namespace vps::viewer {
 

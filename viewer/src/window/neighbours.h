@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "vps_scenes/check.h"
+#include "vps_scenes/check_types.h"
 #include "vps_viewer/export.h"
 
 namespace vps::viewer {

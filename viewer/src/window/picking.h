@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "vps_viewer/renderer.h"
+#include "vps_viewer/render_scene.h"
 #include "window/camera_motion.h"
 
 namespace vps::viewer {

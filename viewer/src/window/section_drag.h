@@ -2,7 +2,7 @@
 // How the mouse moves a section's plane.
 #pragma once
 
-#include "vps_viewer/renderer.h"
+#include "vps_viewer/render_scene.h"
 #include "window/camera_motion.h"
 
 namespace vps::viewer {

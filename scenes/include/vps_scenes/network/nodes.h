@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "vps_scenes/assemble.h"
+#include "vps_scenes/assemble_options.h"
 #include "vps_scenes/export.h"
 #include "vps_scenes/network/session_network.h"
 #include "vps_scenes/result.h"
