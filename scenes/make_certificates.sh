@@ -59,7 +59,7 @@ XML
 
 topics() { for topic in "$@"; do printf '<topic>%s</topic>' "$topic"; done; }
 
-# Of each topic one role is the writer (scenes/src/network/link.h). Who watches may point, for the others who watch.
+# Of each topic one role is the writer (scenes/network/src/link/link.h). Who watches may point, for the others who watch.
 written_by() {
   case $1 in
     render*) topics 'vps/*/beat' 'vps/*/scene' 'vps/*/physics' 'vps/*/physics_state' 'vps/*/snapshot' 'vps/*/request' 'vps/*/news' 'vps/*/answer' ;;

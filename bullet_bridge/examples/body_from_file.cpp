@@ -7,7 +7,7 @@
 #include <vps_bullet/body.h>
 #include <vps_bullet/convert.h>
 #include <vps_bullet/install.h>
-#include <vps_scenes/import.h>
+#include <vps_scenes/cad/import.h>
 
 #include <cstdio>
 #include <exception>

@@ -3,10 +3,12 @@
 # vpsConfig.cmake that looks for the packages of the requested components only.
 
 # The install rules of one component; arguments as for vps_add_library().
+#   TARGETS         targets that belong to it besides vps_NAME: its wings
+#   HEADER_FOLDERS  where its headers are; by default include
 function(vps_install_library name public)
-  cmake_parse_arguments(ARG "PC_FILE" "" "SOURCES;PUBLIC;PRIVATE;PRECOMPILE;PACKAGES;PRIVATE_PACKAGES;HEADERS;EXCLUDE_HEADERS;\
+  cmake_parse_arguments(ARG "PC_FILE" "" "TARGETS;HEADER_FOLDERS;SOURCES;PUBLIC;PRIVATE;PRECOMPILE;PACKAGES;PRIVATE_PACKAGES;HEADERS;EXCLUDE_HEADERS;\
 PC_REQUIRES;PC_PRIVATE_REQUIRES;PC_CFLAGS;PC_PRIVATE_LIBS" ${ARGN})
-  install(TARGETS vps_${name} EXPORT vps_${name}
+  install(TARGETS vps_${name} ${ARG_TARGETS} EXPORT vps_${name}
     ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT ${name}
     LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT ${name}
     RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT ${name})
@@ -23,7 +25,12 @@ PC_REQUIRES;PC_PRIVATE_REQUIRES;PC_CFLAGS;PC_PRIVATE_LIBS" ${ARGN})
     foreach(header IN LISTS ARG_EXCLUDE_HEADERS)
       list(APPEND exclude PATTERN ${header} EXCLUDE)
     endforeach()
-    install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT ${name} ${exclude})
+    if(NOT ARG_HEADER_FOLDERS)
+      set(ARG_HEADER_FOLDERS include)
+    endif()
+    foreach(folder IN LISTS ARG_HEADER_FOLDERS)
+      install(DIRECTORY ${folder}/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT ${name} ${exclude})
+    endforeach()
   endif()
 
   set(requires "")

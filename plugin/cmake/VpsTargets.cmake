@@ -32,9 +32,105 @@ PC_REQUIRES;PC_PRIVATE_REQUIRES;PC_CFLAGS;PC_PRIVATE_LIBS" ${ARGN})
   vps_install_library(${name} "${ARG_PUBLIC}" ${ARGN})
 endfunction()
 
+# vps_add_wing(LIBRARY NAME [WINGS name...] [PUBLIC target...] [PRIVATE target...] [SOURCES file...])
+# A wing of a library: a folder with sources and headers of its own, built and linked alone as vps::LIBRARY_NAME.
+# vps_join_wings() makes the library from them.
+#   WINGS            the wings that it includes; it sees their public and private headers, and those that they include
+#   SOURCES          besides all sources in src/*/; a folder there that has a CMakeLists.txt lists its own
+function(vps_add_wing library name)
+  cmake_parse_arguments(ARG "" "" "WINGS;PUBLIC;PRIVATE;SOURCES" ${ARGN})
+  set(target vps_${library}_${name})
+  file(GLOB sources CONFIGURE_DEPENDS src/*/*.cpp)
+  file(GLOB own_lists CONFIGURE_DEPENDS src/*/CMakeLists.txt)
+  foreach(list IN LISTS own_lists)
+    get_filename_component(folder ${list} DIRECTORY)
+    list(FILTER sources EXCLUDE REGEX "^${folder}/")
+  endforeach()
+  add_library(${target} STATIC ${sources} ${ARG_SOURCES})
+  add_library(vps::${library}_${name} ALIAS ${target})
+  set_target_properties(${target} PROPERTIES
+    EXPORT_NAME ${library}_${name} OUTPUT_NAME ${target}${VPS_PACKAGE_SUFFIX})
+  target_compile_features(${target} PUBLIC cxx_std_20)
+
+  set(private ${CMAKE_CURRENT_SOURCE_DIR}/src)  # of itself and of all wings below
+  set(below "")
+  foreach(wing IN LISTS ARG_WINGS)
+    get_target_property(folders vps_${library}_${wing} VPS_PRIVATE_HEADERS)
+    list(APPEND private ${folders})
+    list(APPEND below vps::${library}_${wing})
+  endforeach()
+  list(REMOVE_DUPLICATES private)
+  set_target_properties(${target} PROPERTIES VPS_PRIVATE_HEADERS "${private}")
+  target_include_directories(${target} PRIVATE ${private} PUBLIC
+    $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include> $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include>
+    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_link_libraries(${target} PUBLIC ${below} ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
+  string(TOUPPER VPS_${library}_STATIC_DEFINE static)
+  if(BUILD_SHARED_LIBS)
+    target_compile_definitions(${target} PRIVATE vps_${library}_EXPORTS)
+  else()
+    target_compile_definitions(${target} PUBLIC ${static})
+  endif()
+  vps_compile_options(${target})
+  vps_precompile(${target})
+  vps_unite_folders(${target} "${sources}")
+  set_property(GLOBAL APPEND PROPERTY VPS_WINGS_OF_${library} ${name})
+  foreach(list IN LISTS own_lists)
+    get_filename_component(folder ${list} DIRECTORY)
+    add_subdirectory(${folder})
+  endforeach()
+endfunction()
+
+# vps_join_wings(NAME [PUBLIC target...] [PACKAGES ...] [PRIVATE_PACKAGES ...]): the library vps::NAME of all wings that
+# were added, with its install rules; PUBLIC are the components that it requires. Static, it only names them.
+function(vps_join_wings name)
+  cmake_parse_arguments(ARG "" "" "PUBLIC;PACKAGES;PRIVATE_PACKAGES" ${ARGN})
+  get_property(wings GLOBAL PROPERTY VPS_WINGS_OF_${name})
+  list(TRANSFORM wings PREPEND vps_${name}_ OUTPUT_VARIABLE targets)
+  list(GET targets 0 first)
+  vps_export_header(${name} ${first})
+  if(BUILD_SHARED_LIBS)
+    file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/whole.cpp CONTENT "// All of it comes from the wings.\n")
+    add_library(vps_${name} SHARED ${CMAKE_CURRENT_BINARY_DIR}/whole.cpp)
+    list(JOIN targets "," whole)
+    target_link_libraries(vps_${name} PUBLIC ${ARG_PUBLIC} PRIVATE $<LINK_LIBRARY:WHOLE_ARCHIVE,${whole}>)
+    foreach(wing IN LISTS wings)
+      target_include_directories(vps_${name} PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/${wing}/include>)
+    endforeach()
+    target_include_directories(vps_${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include>
+      $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+    target_compile_features(vps_${name} PUBLIC cxx_std_20)
+    set_target_properties(vps_${name} PROPERTIES OUTPUT_NAME vps_${name}${VPS_PACKAGE_SUFFIX}
+      VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+  else()
+    add_library(vps_${name} INTERFACE)
+    target_link_libraries(vps_${name} INTERFACE ${targets})
+  endif()
+  add_library(vps::${name} ALIAS vps_${name})
+  set_target_properties(vps_${name} PROPERTIES EXPORT_NAME ${name})
+  list(TRANSFORM wings APPEND /include OUTPUT_VARIABLE headers)
+  if(BUILD_SHARED_LIBS)
+    set(targets "")
+  endif()
+  vps_install_library(${name} "${ARG_PUBLIC}" TARGETS ${targets} HEADER_FOLDERS ${headers}
+    PACKAGES ${ARG_PACKAGES} PRIVATE_PACKAGES ${ARG_PRIVATE_PACKAGES})
+endfunction()
+
+# Lets a program of ours, a test or a measurement, include the private headers of the wings of a library.
+function(vps_see_private_headers target library)
+  get_property(wings GLOBAL PROPERTY VPS_WINGS_OF_${library})
+  foreach(wing IN LISTS wings)
+    target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/${library}/${wing}/src)
+  endforeach()
+endfunction()
+
 # The macro that marks what a library exports, VPS_API in vps/export.h for plugin and VPS_<NAME>_API in
 # vps_<name>/export.h for others: all else is hidden, and costs neither a symbol nor an indirect call.
 function(vps_export_header name)
+  set(target vps_${name})
+  if(ARGN)  # a wing, in place of the library that is made of it
+    set(target ${ARGN})
+  endif()
   string(TOUPPER ${name} upper)
   set(macro VPS_${upper}_API)
   set(header vps_${name}/export.h)
@@ -45,11 +141,11 @@ function(vps_export_header name)
     set(header vps/vdb_export.h)
   endif()
   include(GenerateExportHeader)
-  generate_export_header(vps_${name} BASE_NAME VPS_${upper} EXPORT_MACRO_NAME ${macro}
+  generate_export_header(${target} BASE_NAME VPS_${upper} EXPORT_MACRO_NAME ${macro}
     EXPORT_FILE_NAME ${PROJECT_BINARY_DIR}/include/${header})
-  target_include_directories(vps_${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include>)
+  target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include>)
   if(NOT BUILD_SHARED_LIBS)
-    target_compile_definitions(vps_${name} PUBLIC VPS_${upper}_STATIC_DEFINE)
+    target_compile_definitions(${target} PUBLIC VPS_${upper}_STATIC_DEFINE)
   endif()
   get_filename_component(folder ${header} DIRECTORY)
   install(FILES ${PROJECT_BINARY_DIR}/include/${header}

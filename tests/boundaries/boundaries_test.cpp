@@ -79,6 +79,15 @@ TEST_F(BrokenTree, AnOrderOfGroupsIsNoCircle) {
   EXPECT_EQ(joined(groupCircles(root(), "plugin")), "");
 }
 
+TEST_F(BrokenTree, ACircleOfGroupsInTwoWingsIsReported) {
+  write("scenes/cad/src/import/import.cpp", "#include \"models/plan.h\"\n");
+  write("scenes/cad/include/vps_scenes/cad/import.h", "#pragma once\n");
+  write("scenes/scene/src/models/plan.h", "#include \"vps_scenes/cad/import.h\"\n");
+  const std::vector<std::string> circles = groupCircles(root(), "scenes");
+  ASSERT_EQ(circles.size(), 1U);
+  EXPECT_NE(circles[0].find("cad/import -> scene/models -> cad/import"), std::string::npos) << circles[0];
+}
+
 TEST_F(BrokenTree, AnIncludeOfAFolderAboveIsReported) {
   write("device/src/loop/loop.cpp", "#include \"vps_bullet/shape.h\"\n");
   write("plugin/src/mesh/mesh.cpp", "#include <btBulletDynamicsCommon.h>\n");

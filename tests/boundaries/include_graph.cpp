@@ -47,21 +47,21 @@ std::vector<Rule> rules() {
       {"viewer is above all other folders", {"vps_viewer/"}, {"viewer/"}},
       {"Bullet is used in bullet_bridge and in the simulation only",
        {"bt", "Bullet", "LinearMath"},
-       {"bullet_bridge/", "scenes/src/simulation/", "device/examples/"}},
+       {"bullet_bridge/", "scenes/run/src/simulation/", "device/examples/"}},
       {"OpenGL is used in viewer only", {"epoxy/", "EGL/", "GL/"}, {"viewer/"}},
       {"window libraries are used in the window only",
        {"GLFW/", "imgui", "backends/imgui"},
-       {"viewer/src/window/glfw/"}},
-      {"OpenXR and Xlib are used in the headset only", {"openxr/", "X11/"}, {"viewer/src/window/openxr/"}},
+       {"viewer/window/src/glfw/"}},
+      {"OpenXR and Xlib are used in the headset only", {"openxr/", "X11/"}, {"viewer/window/src/openxr/"}},
       {"Boost.Beast is used in the web server only",
        {"boost/beast", "boost/asio"},
-       {"viewer/src/web/beast/"}},
+       {"viewer/web/src/beast/"}},
       {"OpenVDB is used in the .vdb reader and writer only", {"openvdb/", "nanovdb/"}, {"plugin/src/vdb/"}},
       {"libspnav and SDL are used in their drivers only", {"spnav", "SDL"}, {"device/src/drivers/"}},
-      {"Cyclone DDS is used in the link over UDP only", {"dds/"}, {"scenes/src/network/dds/"}},
+      {"Cyclone DDS is used in the link over UDP only", {"dds/"}, {"scenes/network/src/dds/"}},
       {"CAD libraries are used in the importers only",
        {"assimp/", "Inventor/", "TopoDS", "STEPCAF", "IGESCAF", "XCAFDoc"},
-       {"scenes/src/import/", "scenes/bearing_block/generate.cpp"}},
+       {"scenes/cad/src/", "scenes/bearing_block/generate.cpp"}},
   };
 }
 
@@ -77,33 +77,33 @@ const std::map<std::string, std::string>& groupOfHeader() {
 class Groups {
  public:
   Groups(const fs::path& root, const std::string& folder) {
-    const fs::path src = root / folder / "src", include = root / folder / "include";
-    std::map<std::string, std::string> group_of_noun;
-    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(src)) {
+    std::vector<Place> headers;
+    std::map<std::string, std::string> group_of_noun;  // by the source's folder and name
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root / folder)) {
       if (!entry.is_regular_file() || !isSource(entry.path())) continue;
-      const std::string group = groupBelow(src, entry.path());
-      if (group.empty()) continue;
-      of_target_[fs::relative(entry.path(), src).generic_string()] = group;
-      of_file_[fs::relative(entry.path(), root).generic_string()] = group;
-      if (entry.path().extension() == ".cpp") group_of_noun[entry.path().stem().string()] = group;
-      names_.insert(group);
+      const std::optional<Place> place = placeOf(root / folder, entry.path());
+      if (!place) continue;
+      if (place->is_public) {
+        headers.push_back(*place);
+        continue;
+      }
+      if (place->group.empty()) continue;
+      add(root, *place, place->wing + place->group);
+      if (entry.path().extension() == ".cpp")
+        group_of_noun[place->wing + entry.path().stem().string()] = place->wing + place->group;
+      names_.insert(place->wing + place->group);
     }
-    if (!fs::exists(include)) return;
-    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(include)) {
-      if (!entry.is_regular_file() || !isSource(entry.path())) continue;
-      const std::string target = fs::relative(entry.path(), include).generic_string();
-      const std::string below = groupBelow(include / *fs::path(target).begin(), entry.path());
-      const auto noun = group_of_noun.find(entry.path().stem().string());
-      const auto named = groupOfHeader().find(target);
-      std::string group = target;
-      if (names_.contains(below))
-        group = below;
+    for (const Place& place : headers) {
+      const auto noun = group_of_noun.find(place.wing + place.file.stem().string());
+      const auto named = groupOfHeader().find(place.target);
+      std::string group = place.target;
+      if (names_.contains(place.wing + place.group))
+        group = place.wing + place.group;
       else if (noun != group_of_noun.end())
         group = noun->second;
       else if (named != groupOfHeader().end())
         group = named->second;
-      of_target_[target] = group;
-      of_file_[fs::relative(entry.path(), root).generic_string()] = group;
+      add(root, place, group);
     }
   }
 
@@ -115,10 +115,34 @@ class Groups {
   }
 
  private:
-  /// The first folder below `base` on the way to `file`; empty where the file lies in `base` itself.
-  static std::string groupBelow(const fs::path& base, const fs::path& file) {
-    const fs::path relative = fs::relative(file, base);
-    return relative.has_parent_path() ? relative.begin()->string() : "";
+  /// Where a file stands in its folder: <wing>/src/<group>/, <wing>/include/<namespace>/<group>/, each with
+  /// or without a wing, or in the program's folder cli/<group>/.
+  struct Place {
+    fs::path file;
+    std::string wing;    ///< "fits/"; empty in a folder without wings
+    std::string group;   ///< empty where the file lies in no group
+    std::string target;  ///< as an include names it
+    bool is_public = false;
+  };
+  static std::optional<Place> placeOf(const fs::path& folder, const fs::path& file) {
+    std::vector<std::string> parts;
+    for (const fs::path& part : fs::relative(file, folder)) parts.push_back(part.string());
+    const auto root_at = std::ranges::find_if(
+        parts, [](const std::string& part) { return part == "src" || part == "include" || part == "cli"; });
+    const auto depth = static_cast<std::size_t>(root_at - parts.begin());
+    if (depth > 1 || depth + 1 >= parts.size()) return std::nullopt;
+    Place place{.file = file, .is_public = parts[depth] == "include"};
+    if (depth == 1 || parts[0] == "cli") place.wing = parts[0] + "/";
+    // A public header's first folder is the namespace, and its second the wing.
+    const std::size_t above = depth + (place.is_public ? 2 + depth : 1);
+    if (above + 1 < parts.size()) place.group = parts[above];
+    for (std::size_t i = depth + 1; i < parts.size(); ++i)
+      place.target += (place.target.empty() ? "" : "/") + parts[i];
+    return place;
+  }
+  void add(const fs::path& root, const Place& place, const std::string& group) {
+    of_target_[place.target] = group;
+    of_file_[fs::relative(place.file, root).generic_string()] = group;
   }
   static std::optional<std::string> find(const std::map<std::string, std::string>& map,
                                          const std::string& key) {

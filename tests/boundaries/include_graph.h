@@ -25,9 +25,10 @@ std::vector<std::string> folderViolations(const std::filesystem::path& root);
 
 /// One message per circle among the groups of one folder, with one include line for each of its arrows.
 ///
-/// A group is a folder in `folder`/src. A public header belongs to the group that holds the source file of
-/// the same name, or, in a sub-folder of include/<namespace>/, to the group of that name. A public header
-/// without a source is a group of its own, unless the table in include_graph.cpp names its group.
+/// A group is a folder in `folder`/src, in the src of one of its wings (`folder`/<wing>/src), or in
+/// `folder`/cli. A public header belongs to the group that holds the source file of the same name, or, in a
+/// sub-folder of the public headers, to the group of that name. A public header without a source is a group
+/// of its own, unless the table in include_graph.cpp names its group.
 std::vector<std::string> groupCircles(const std::filesystem::path& root, const std::string& folder);
 
 }  // namespace vps::boundaries

@@ -18,7 +18,7 @@
 #include <STEPControl_Writer.hxx>
 #include <gp_Ax2.hxx>
 
-#include "vps_scenes/import.h"
+#include "vps_scenes/cad/import.h"
 
 namespace vps::scenes {
 namespace {

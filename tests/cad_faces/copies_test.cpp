@@ -25,8 +25,8 @@
 #include <gp_Ax2.hxx>
 
 #include "import/forked_workers.h"
-#include "import/occt/tessellate_all.h"
-#include "vps_scenes/import.h"
+#include "occt/tessellate_all.h"
+#include "vps_scenes/cad/import.h"
 
 namespace vps::scenes {
 namespace {

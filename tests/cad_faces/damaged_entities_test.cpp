@@ -20,7 +20,7 @@
 #include <XCAFDoc_ShapeTool.hxx>
 
 #include "cad_faces/damaged_file.h"
-#include "import/occt/entity_numbers.h"
+#include "occt/entity_numbers.h"
 
 namespace vps::scenes {
 namespace {

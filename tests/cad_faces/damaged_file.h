@@ -12,7 +12,7 @@
 
 #include "support/temporary_folder.h"
 #include "vps/load_error.h"
-#include "vps_scenes/import.h"
+#include "vps_scenes/cad/import.h"
 
 namespace vps::scenes {
 

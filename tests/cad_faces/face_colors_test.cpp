@@ -23,9 +23,9 @@
 #include <XCAFDoc_DocumentTool.hxx>
 #include <XCAFDoc_ShapeTool.hxx>
 
-#include "vps_scenes/import.h"
-#include "vps_scenes/plan.h"
-#include "vps_viewer/renderer.h"
+#include "vps_scenes/cad/import.h"
+#include "vps_scenes/planning/plan.h"
+#include "vps_viewer/draw/renderer.h"
 
 namespace vps::scenes {
 namespace {

@@ -15,7 +15,7 @@
 
 #include "support/temporary_folder.h"
 #include "vps/byte_cache.h"
-#include "vps_scenes/scene.h"
+#include "vps_scenes/scene/scene.h"
 
 namespace vps::scenes {
 namespace {

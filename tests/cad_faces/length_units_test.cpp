@@ -13,7 +13,7 @@
 #include <STEPControl_Writer.hxx>
 
 #include "cad_faces/damaged_file.h"
-#include "import/occt/entity_numbers.h"
+#include "occt/entity_numbers.h"
 
 namespace vps::scenes {
 namespace {

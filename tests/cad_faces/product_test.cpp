@@ -22,7 +22,7 @@
 #include <gp_Ax2.hxx>
 
 #include "vps/load_error.h"
-#include "vps_scenes/import.h"
+#include "vps_scenes/cad/import.h"
 
 namespace vps::scenes {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Families of solids whose triangles are right, and each again with a fault of which the answer is known.
-#include "import/occt/tessellation.h"
+#include "occt/tessellation.h"
 
 #include <gtest/gtest.h>
 

@@ -10,7 +10,7 @@
 #include "judge/motion_judge.h"
 #include "search/random.h"
 #include "support/fit.h"
-#include "vps_scenes/simulate.h"
+#include "vps_scenes/run/simulate.h"
 
 namespace vps::families {
 namespace {

@@ -8,7 +8,7 @@
 #include "family.h"
 #include "search/random.h"
 #include "vps/friction.h"
-#include "vps_scenes/simulate.h"
+#include "vps_scenes/run/simulate.h"
 
 namespace vps::families {
 

@@ -12,10 +12,10 @@
 #include "support/gear.h"
 #include "support/lathe.h"
 #include "vps/map_estimate.h"
-#include "vps_scenes/explain.h"
-#include "vps_scenes/fidelity_choice.h"
-#include "vps_scenes/resolution.h"
-#include "vps_scenes/simulate.h"
+#include "vps_scenes/planning/fidelity_choice.h"
+#include "vps_scenes/planning/resolution.h"
+#include "vps_scenes/run/explain.h"
+#include "vps_scenes/run/simulate.h"
 
 namespace vps::families {
 namespace {

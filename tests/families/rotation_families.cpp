@@ -11,7 +11,7 @@
 #include "impact_world.h"
 #include "search/random.h"
 #include "vps_bullet/convert.h"
-#include "vps_scenes/simulate.h"
+#include "vps_scenes/run/simulate.h"
 
 namespace vps::families {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Reads arbitrary bytes as each kind of message between nodes.
-#include "network/messages.h"
+#include "messages/messages.h"
 
 #include "fuzz.h"
 

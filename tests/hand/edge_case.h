@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "peg_scenes.h"
-#include "vps_scenes/result.h"
+#include "vps_scenes/run/result.h"
 
 namespace vps::hand {
 

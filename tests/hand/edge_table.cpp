@@ -10,7 +10,7 @@
 #include "edge_case.h"
 #include "support/table_rows.h"
 #include "vps/load_error.h"
-#include "vps_scenes/assemble.h"
+#include "vps_scenes/run/assemble.h"
 
 namespace vps::hand {
 

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "edge_case.h"
-#include "vps_scenes/assemble.h"
+#include "vps_scenes/run/assemble.h"
 
 namespace vps::hand {
 namespace {

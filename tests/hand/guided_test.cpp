@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "peg_scenes.h"
-#include "vps_scenes/assemble.h"
+#include "vps_scenes/run/assemble.h"
 
 namespace vps::hand {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "hand/peg_scenes.h"
-#include "vps_scenes/assemble.h"
+#include "vps_scenes/run/assemble.h"
 
 namespace vps::hand {
 namespace {

@@ -11,7 +11,7 @@
 #include "peg_scenes.h"
 #include "support/table_rows.h"
 #include "thread_scenes.h"
-#include "vps_scenes/assemble.h"
+#include "vps_scenes/run/assemble.h"
 
 namespace {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "vps_scenes/scene.h"
+#include "vps_scenes/scene/scene.h"
 
 namespace vps::hand {
 

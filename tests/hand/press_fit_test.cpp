@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "peg_scenes.h"
-#include "vps_scenes/assemble.h"
+#include "vps_scenes/run/assemble.h"
 
 namespace vps::hand {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "thread_scenes.h"
-#include "vps_scenes/assemble.h"
+#include "vps_scenes/run/assemble.h"
 
 namespace vps::hand {
 namespace {

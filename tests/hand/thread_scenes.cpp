@@ -9,7 +9,7 @@
 
 #include "support/lathe.h"
 #include "support/screw.h"
-#include "vps_scenes/import.h"
+#include "vps_scenes/cad/import.h"
 
 namespace vps::hand {
 

@@ -7,7 +7,7 @@
 
 #include "peg_scenes.h"
 #include "vps/load_error.h"
-#include "vps_scenes/tries.h"
+#include "vps_scenes/run/tries.h"
 
 namespace vps::hand {
 namespace {

@@ -9,8 +9,8 @@
 #include <stdexcept>
 
 #include "vps_bullet/shape.h"
-#include "vps_scenes/fidelity_choice.h"
-#include "vps_scenes/simulate.h"
+#include "vps_scenes/planning/fidelity_choice.h"
+#include "vps_scenes/run/simulate.h"
 
 namespace vps::peers {
 

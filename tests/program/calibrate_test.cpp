@@ -4,8 +4,8 @@
 
 #include "program.h"
 #include "support/random_draw.h"
-#include "vps_scenes/display.h"
-#include "vps_scenes/scene.h"
+#include "vps_scenes/scene/display.h"
+#include "vps_scenes/scene/scene.h"
 
 namespace vps {
 namespace {

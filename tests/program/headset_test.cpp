@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "fake_headset.h"
+#include "run/hand_drag.h"
+#include "view/table_room.h"
 #include "vps_device/recording.h"
-#include "vps_scenes/replay.h"
-#include "window/hand_drag.h"
-#include "window/table_room.h"
+#include "vps_scenes/run/replay.h"
 #include "window_on_display.h"
 
 namespace vps {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The program `vps` as its users run it: exit status, messages and files.
 #include "program.h"
-#include "vps_scenes/scene.h"
+#include "vps_scenes/scene/scene.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>

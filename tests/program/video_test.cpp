@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "program.h"
-#include "vps_viewer/image.h"
+#include "vps_viewer/draw/image.h"
 
 namespace vps {
 namespace {

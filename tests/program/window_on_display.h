@@ -9,13 +9,13 @@
 #include <thread>
 
 #include "program.h"
-#include "vps_scenes/display.h"
-#include "vps_scenes/scene.h"
-#include "vps_viewer/renderer.h"
-#include "vps_viewer/stereo.h"
-#include "vps_viewer/window.h"
-#include "window/camera_motion.h"
-#include "window/timeline.h"
+#include "view/camera_motion.h"
+#include "view/timeline.h"
+#include "vps_scenes/scene/display.h"
+#include "vps_scenes/scene/scene.h"
+#include "vps_viewer/draw/renderer.h"
+#include "vps_viewer/draw/stereo.h"
+#include "vps_viewer/window/window.h"
 
 namespace vps {
 

@@ -10,14 +10,14 @@
 #include <thread>
 
 #include "support/child_process.h"
-#include "vps_scenes/display.h"
+#include "view/camera_motion.h"
+#include "view/picture_worker.h"
 #include "vps_scenes/network/session_pointers.h"
-#include "vps_scenes/scene.h"
-#include "vps_viewer/model_view.h"
-#include "vps_viewer/renderer.h"
-#include "vps_viewer/stereo.h"
-#include "window/camera_motion.h"
-#include "window/picture_worker.h"
+#include "vps_scenes/scene/display.h"
+#include "vps_scenes/scene/scene.h"
+#include "vps_viewer/draw/model_view.h"
+#include "vps_viewer/draw/renderer.h"
+#include "vps_viewer/draw/stereo.h"
 #include "window_on_display.h"
 
 namespace vps {

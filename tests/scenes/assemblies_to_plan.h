@@ -13,7 +13,8 @@
 #include "scenes/scene_part.h"
 #include "support/lathe.h"
 #include "vps/load_error.h"
-#include "vps_scenes/check.h"
+#include "vps_scenes/fits/check.h"
+#include "vps_scenes/planning/plan.h"
 
 namespace vps::scenes {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "procedure/axis_snap.h"
+#include "world/axis_snap.h"
 
 #include <gtest/gtest.h>
 
@@ -11,9 +11,9 @@
 #include "support/random_draw.h"
 #include "support/recorded.h"
 #include "support/temporary_folder.h"
-#include "vps_scenes/assemble.h"
-#include "vps_scenes/record.h"
-#include "vps_scenes/replay.h"
+#include "vps_scenes/run/assemble.h"
+#include "vps_scenes/run/record.h"
+#include "vps_scenes/run/replay.h"
 
 namespace vps::scenes {
 namespace {

@@ -6,7 +6,7 @@
 #include <map>
 
 #include "scenes/assemblies_to_plan.h"
-#include "vps_scenes/plan.h"
+#include "vps_scenes/planning/plan.h"
 
 namespace vps::scenes {
 namespace {

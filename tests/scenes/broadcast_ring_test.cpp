@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The ring of messages in shared memory: order, overruns, torn messages, a writer that dies, and garbage.
-#include "network/broadcast_ring.h"
+#include "link/broadcast_ring.h"
 
 #include <gtest/gtest.h>
 

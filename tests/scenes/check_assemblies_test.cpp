@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "vps_scenes/check.h"
+#include "vps_scenes/fits/check.h"
 
 namespace vps::scenes {
 namespace {

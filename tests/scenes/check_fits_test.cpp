@@ -5,9 +5,9 @@
 #include <array>
 #include <cmath>
 
-#include "check/iso_286.h"
+#include "fits/iso_286.h"
 #include "support/lathe.h"
-#include "vps_scenes/check.h"
+#include "vps_scenes/fits/check.h"
 
 namespace vps::scenes {
 namespace {

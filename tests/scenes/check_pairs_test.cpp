@@ -9,7 +9,7 @@
 #include "support/faulty_meshes.h"
 #include "vps/load_error.h"
 #include "vps/mesh_overlap.h"
-#include "vps_scenes/check.h"
+#include "vps_scenes/fits/check.h"
 
 namespace vps::scenes {
 namespace {

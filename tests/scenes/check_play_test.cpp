@@ -7,11 +7,11 @@
 #include <numbers>
 #include <random>
 
-#include "check/motion_search.h"
+#include "motion/motion_search.h"
 #include "scenes/assemblies_to_plan.h"
 #include "support/lathe.h"
 #include "support/random_draw.h"
-#include "vps_scenes/check.h"
+#include "vps_scenes/fits/check.h"
 
 namespace vps::scenes {
 namespace {

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "check/press_fit.h"
+#include "fits/press_fit.h"
 #include "support/lathe.h"
-#include "vps_scenes/check.h"
+#include "vps_scenes/fits/check.h"
 
 namespace vps::scenes {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "support/lathe.h"
-#include "vps_scenes/check.h"
+#include "vps_scenes/fits/check.h"
 
 namespace vps::scenes {
 namespace {

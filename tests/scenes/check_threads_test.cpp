@@ -10,12 +10,12 @@
 #include <numbers>
 #include <random>
 
-#include "check/iso_262.h"
-#include "check/screw_profile.h"
+#include "fits/iso_262.h"
+#include "motion/screw_profile.h"
 #include "support/lathe.h"
 #include "support/screw.h"
-#include "vps_scenes/check.h"
-#include "vps_scenes/import.h"
+#include "vps_scenes/cad/import.h"
+#include "vps_scenes/fits/check.h"
 
 namespace vps::scenes {
 namespace {

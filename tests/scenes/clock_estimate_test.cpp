@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Offset and drift of another clock, against clocks whose offset and drift are given.
-#include "network/clock_estimate.h"
+#include "link/clock_estimate.h"
 
 #include <gtest/gtest.h>
 

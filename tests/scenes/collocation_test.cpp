@@ -8,8 +8,8 @@
 
 #include "support/random_draw.h"
 #include "vps_device/placement.h"
-#include "vps_scenes/assemble.h"
-#include "vps_scenes/display.h"
+#include "vps_scenes/run/assemble.h"
+#include "vps_scenes/scene/display.h"
 
 namespace vps::scenes {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Runs of a trainee whose detour, force and time are known by construction.
-#include "vps_scenes/compare.h"
+#include "vps_scenes/uses/compare.h"
 
 #include <gtest/gtest.h>
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // States in 40 bytes: right to their rounding, whole ones where these do not do, and no fault by loss, late
 // comers or damage.
-#include "network/dense_state.h"
+#include "messages/dense_state.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
-#include "network/messages.h"
+#include "messages/messages.h"
 #include "support/no_alloc.h"
 
 namespace vps::scenes {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Maintenance runs whose answer is known by construction.
-#include "vps_scenes/disassembly.h"
+#include "vps_scenes/run/disassembly.h"
 
 #include <gtest/gtest.h>
 
@@ -10,9 +10,9 @@
 #include "support/recorded.h"
 #include "support/temporary_folder.h"
 #include "vps/load_error.h"
-#include "vps_scenes/assemble.h"
-#include "vps_scenes/record.h"
-#include "vps_scenes/replay.h"
+#include "vps_scenes/run/assemble.h"
+#include "vps_scenes/run/record.h"
+#include "vps_scenes/run/replay.h"
 
 namespace vps::scenes {
 namespace {

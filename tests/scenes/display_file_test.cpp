@@ -6,7 +6,7 @@
 
 #include "support/temporary_folder.h"
 #include "vps/load_error.h"
-#include "vps_scenes/display.h"
+#include "vps_scenes/scene/display.h"
 
 namespace vps::scenes {
 namespace {

@@ -12,14 +12,14 @@
 #include <string>
 
 #include "scene/read_fields.h"
-#include "vps_scenes/check_fields.h"
-#include "vps_scenes/compare_fields.h"
-#include "vps_scenes/ergonomics_fields.h"
-#include "vps_scenes/margin_fields.h"
-#include "vps_scenes/plan_fields.h"
-#include "vps_scenes/settings_fields.h"
-#include "vps_scenes/study_fields.h"
-#include "vps_scenes/trade_fields.h"
+#include "vps_scenes/fits/check_fields.h"
+#include "vps_scenes/planning/margin_fields.h"
+#include "vps_scenes/planning/plan_fields.h"
+#include "vps_scenes/planning/study_fields.h"
+#include "vps_scenes/planning/trade_fields.h"
+#include "vps_scenes/scene/settings_fields.h"
+#include "vps_scenes/uses/compare_fields.h"
+#include "vps_scenes/uses/ergonomics_fields.h"
 
 namespace vps::scenes {
 namespace {

@@ -9,7 +9,8 @@
 
 #include "scenes/assemblies_to_plan.h"
 #include "support/swept.h"
-#include "vps_scenes/plan.h"
+#include "vps_scenes/fits/check.h"
+#include "vps_scenes/planning/plan.h"
 
 namespace vps::scenes {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Arms and reach whose angles follow from a drawing.
-#include "vps_scenes/ergonomics.h"
+#include "vps_scenes/uses/ergonomics.h"
 
 #include <gtest/gtest.h>
 

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "core/tick_times.h"
-#include "vps_scenes/contact_episodes.h"
+#include "simulation/tick_times.h"
+#include "vps_scenes/run/contact_episodes.h"
 
 namespace vps::scenes {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Fasteners of known kinds and sizes, and parts that are none.
-#include "vps_scenes/fasteners.h"
+#include "vps_scenes/fits/fasteners.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 
 #include "scenes/assemblies_to_plan.h"
 #include "support/screw.h"
-#include "vps_scenes/plan.h"
+#include "vps_scenes/planning/plan.h"
 
 namespace vps::scenes {
 namespace {

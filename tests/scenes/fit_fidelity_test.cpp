@@ -5,9 +5,9 @@
 #include <numbers>
 
 #include "scenes/assemblies_to_plan.h"
-#include "vps_scenes/explain.h"
-#include "vps_scenes/plan.h"
-#include "vps_scenes/resolution.h"
+#include "vps_scenes/planning/plan.h"
+#include "vps_scenes/planning/resolution.h"
+#include "vps_scenes/run/explain.h"
 
 namespace vps::scenes {
 namespace {

@@ -11,9 +11,10 @@
 #include "scenes/assemblies_to_plan.h"
 #include "support/stl_box.h"
 #include "support/temporary_folder.h"
-#include "vps_scenes/plan.h"
-#include "vps_scenes/scene_groups.h"
-#include "vps_scenes/scene_text.h"
+#include "vps_scenes/fits/check.h"
+#include "vps_scenes/planning/plan.h"
+#include "vps_scenes/scene/scene_groups.h"
+#include "vps_scenes/scene/scene_text.h"
 
 namespace vps::scenes {
 namespace {

@@ -12,8 +12,8 @@
 #include "vps/load_error.h"
 #include "vps_scenes/network/head_topic.h"
 #include "vps_scenes/network/ros_topics.h"
-#include "vps_scenes/number_table.h"
-#include "vps_scenes/tracked_heads.h"
+#include "vps_scenes/network/tracked_heads.h"
+#include "vps_scenes/scene/number_table.h"
 
 namespace vps::scenes {
 namespace {

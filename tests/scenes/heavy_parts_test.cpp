@@ -7,7 +7,7 @@
 
 #include "haptics/haptic_driver.h"
 #include "scenes/peg_in_cup.h"
-#include "vps_scenes/assemble.h"
+#include "vps_scenes/run/assemble.h"
 
 namespace vps::scenes {
 namespace {

@@ -11,12 +11,12 @@
 #include <thread>
 #include <vector>
 
-#include "network/link.h"
-#include "network/messages.h"
-#include "procedure/loop_settings.h"
+#include "link/link.h"
+#include "messages/messages.h"
 #include "record/scene_archive.h"
 #include "scenes/two_pins.h"
 #include "vps_scenes/network/nodes.h"
+#include "world/loop_settings.h"
 
 namespace vps::scenes {
 namespace {

@@ -11,8 +11,8 @@
 #include "import/stored_archive.h"
 #include "support/temporary_folder.h"
 #include "vps/load_error.h"
-#include "vps_scenes/import.h"
-#include "vps_scenes/srgb.h"
+#include "vps_scenes/cad/import.h"
+#include "vps_scenes/cad/srgb.h"
 
 namespace vps::scenes {
 namespace {

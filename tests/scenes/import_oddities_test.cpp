@@ -7,12 +7,12 @@
 #include <fstream>
 #include <functional>
 
-#include "import/gltf_extensions.h"
+#include "assimp/gltf_extensions.h"
 #include "import/missing_library.h"
 #include "import/readers.h"
 #include "support/temporary_folder.h"
 #include "vps/load_error.h"
-#include "vps_scenes/import.h"
+#include "vps_scenes/cad/import.h"
 
 namespace vps::scenes {
 namespace {

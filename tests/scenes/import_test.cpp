@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // CAD import: parts, poses and units are those of the file, and damaged files are refused.
 // More than 400 lines: all file formats, with files that the tests write themselves.
-#include "vps_scenes/import.h"
+#include "vps_scenes/cad/import.h"
 
 #include <algorithm>
 #include <cmath>
@@ -25,7 +25,7 @@
 #include "import/readers.h"
 #include "support/stl_box.h"
 #include "vps/load_error.h"
-#include "vps_scenes/check.h"
+#include "vps_scenes/fits/check.h"
 
 namespace vps::scenes {
 namespace {

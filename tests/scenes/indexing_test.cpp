@@ -10,9 +10,9 @@
 #include "support/temporary_folder.h"
 #include "vps/load_error.h"
 #include "vps_device/random.h"
-#include "vps_scenes/assemble.h"
-#include "vps_scenes/record.h"
-#include "vps_scenes/replay.h"
+#include "vps_scenes/run/assemble.h"
+#include "vps_scenes/run/record.h"
+#include "vps_scenes/run/replay.h"
 
 namespace vps::scenes {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How far a part may lean in its fits, by the formula.
-#include "procedure/lean_in_fits.h"
+#include "world/lean_in_fits.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Runs in real time with physics that is artificially too slow. The added loads are several times the
 // duration of a step, and the periods are long, so that a busy machine can only add to the load.
-#include "vps_scenes/load_level.h"
+#include "vps_scenes/run/load_level.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <string>
 
 #include "core/wall_clock.h"
-#include "vps_scenes/assemble.h"
+#include "vps_scenes/run/assemble.h"
 
 namespace vps::scenes {
 namespace {

@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "core/fit_tolerance.h"
+#include "fits/fit_tolerance.h"
 #include "scenes/peg_in_cup.h"
-#include "vps_scenes/assemble.h"
+#include "vps_scenes/run/assemble.h"
 
 namespace vps::scenes {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Margins of a peg in its hole, whose room is known by construction.
-#include "vps_scenes/margin.h"
+#include "vps_scenes/planning/margin.h"
 
 #include <gtest/gtest.h>
 

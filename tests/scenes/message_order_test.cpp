@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // One damaged number must not make all later messages old, and what somebody kept must not become new.
-#include "network/message_order.h"
+#include "messages/message_order.h"
 
 #include <gtest/gtest.h>
 
-#include "network/messages.h"
+#include "messages/messages.h"
 #include "support/fake_clock.h"
 
 namespace vps::scenes {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Messages between nodes: read back to the bit, and refused where anything about them is wrong.
-#include "network/messages.h"
+#include "messages/messages.h"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 #include <limits>
 #include <optional>
 
-#include "network/link.h"
-#include "network/packed_rotation.h"
+#include "link/link.h"
+#include "messages/packed_rotation.h"
 #include "support/no_alloc.h"
 
 namespace vps::scenes {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "vps_scenes/model_plan.h"
+#include "vps_scenes/scene/model_plan.h"
 
 #include <gtest/gtest.h>
 
@@ -10,9 +10,9 @@
 #include "scenes/scene_part.h"
 #include "vps/box.h"
 #include "vps/load_error.h"
-#include "vps_scenes/assemble.h"
-#include "vps_scenes/explain.h"
-#include "vps_scenes/simulate.h"
+#include "vps_scenes/run/assemble.h"
+#include "vps_scenes/run/explain.h"
+#include "vps_scenes/run/simulate.h"
 
 namespace vps::scenes {
 namespace {

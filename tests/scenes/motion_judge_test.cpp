@@ -7,10 +7,10 @@
 #include <cmath>
 
 #include "judge/overlap_record.h"
-#include "procedure/step_rows.h"
 #include "scenes/scene_part.h"
 #include "simulation/body_overlaps.h"
-#include "vps_scenes/simulate.h"
+#include "vps_scenes/run/simulate.h"
+#include "world/step_rows.h"
 
 namespace vps::scenes {
 namespace {

@@ -8,9 +8,9 @@
 #include <functional>
 #include <thread>
 
-#include "network/clock_doubts.h"
-#include "network/link.h"
-#include "network/messages.h"
+#include "link/clock_doubts.h"
+#include "link/link.h"
+#include "messages/messages.h"
 #include "record/scene_archive.h"
 #include "scenes/two_pins.h"
 #include "support/no_alloc.h"
@@ -18,10 +18,10 @@
 #include "vps/load_error.h"
 #include "vps_device/recording.h"
 #include "vps_scenes/network/nodes.h"
-#include "vps_scenes/replay.h"
+#include "vps_scenes/run/replay.h"
 
 #if __has_include(<dds/dds.h>)
-#include "network/dds/topics.h"
+#include "dds/topics.h"
 #endif
 
 namespace vps::scenes {

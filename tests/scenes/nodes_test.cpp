@@ -14,7 +14,7 @@
 #include "support/temporary_folder.h"
 #include "vps/load_error.h"
 #include "vps_device/recording.h"
-#include "vps_scenes/replay.h"
+#include "vps_scenes/run/replay.h"
 
 namespace vps::scenes {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "support/lathe.h"
 #include "support/random_draw.h"
-#include "vps_scenes/check.h"
+#include "vps_scenes/fits/check.h"
 
 namespace vps::scenes {
 namespace {

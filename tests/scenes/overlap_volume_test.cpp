@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The volume that two meshes share, and the bound of its error, against formulas of prisms and boxes.
-#include "check/overlap_volume.h"
+#include "pair/overlap_volume.h"
 
 #include <gtest/gtest.h>
 

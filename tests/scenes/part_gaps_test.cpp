@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Distances at the poses of a snapshot, against formulas.
-#include "vps_scenes/part_gaps.h"
+#include "vps_scenes/run/part_gaps.h"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 
 #include "procedure/assembly_run.h"
 #include "vps/load_error.h"
-#include "vps_scenes/assemble.h"
+#include "vps_scenes/run/assemble.h"
 
 namespace vps::scenes {
 namespace {

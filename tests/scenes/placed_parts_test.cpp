@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What is modelled anew when a part leaves the region of its step.
-#include "procedure/placed_parts.h"
+#include "world/placed_parts.h"
 
 #include <gtest/gtest.h>
 

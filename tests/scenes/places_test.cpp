@@ -9,7 +9,7 @@
 #include <numbers>
 #include <random>
 
-#include "vps_scenes/check.h"
+#include "vps_scenes/fits/check.h"
 
 namespace vps::scenes {
 namespace {

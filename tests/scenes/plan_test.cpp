@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Orders and ways of assemblies of which both are known.
-#include "vps_scenes/plan.h"
+#include "vps_scenes/planning/plan.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Assemblies that go on from what was put down before.
-#include "vps_scenes/put_down.h"
+#include "vps_scenes/run/put_down.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include "scenes/two_pins.h"
 #include "support/recorded.h"
 #include "vps/box.h"
-#include "vps_scenes/assemble.h"
+#include "vps_scenes/run/assemble.h"
 
 namespace vps::scenes {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "scenes/assemblies_to_plan.h"
 #include "support/voxel_puzzle.h"
-#include "vps_scenes/plan.h"
+#include "vps_scenes/planning/plan.h"
 
 namespace vps::scenes {
 namespace {

@@ -8,9 +8,9 @@
 #include "support/no_alloc.h"
 #include "support/recorded.h"
 #include "support/temporary_folder.h"
-#include "vps_scenes/assemble.h"
-#include "vps_scenes/record.h"
-#include "vps_scenes/replay.h"
+#include "vps_scenes/run/assemble.h"
+#include "vps_scenes/run/record.h"
+#include "vps_scenes/run/replay.h"
 
 namespace vps::scenes {
 namespace {

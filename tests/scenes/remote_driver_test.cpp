@@ -8,7 +8,7 @@
 #include <variant>
 
 #include "haptics/haptic_driver.h"
-#include "network/device_end.h"
+#include "nodes/device_end.h"
 #include "scenes/two_pins.h"
 
 namespace vps::scenes {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Recorded runs repeat to the bit, and the scene in a recording comes back.
-#include "vps_scenes/replay.h"
-#include "vps_scenes/record.h"
+#include "vps_scenes/run/replay.h"
+#include "vps_scenes/run/record.h"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 #include "support/recorded.h"
 #include "support/temporary_folder.h"
 #include "vps/load_error.h"
-#include "vps_scenes/assemble.h"
+#include "vps_scenes/run/assemble.h"
 
 namespace vps::scenes {
 namespace {

@@ -17,8 +17,8 @@
 #include <optional>
 #include <thread>
 
-#include "network/request_server_work.h"
 #include "record/scene_archive.h"
+#include "requests/request_server_work.h"
 #include "scenes/two_pins.h"
 #include "support/temporary_folder.h"
 #include "vps/load_error.h"
@@ -26,7 +26,7 @@
 #include "vps_device/recording.h"
 #include "vps_scenes/network/session_recording.h"
 #include "vps_scenes/network/session_request.h"
-#include "vps_scenes/replay.h"
+#include "vps_scenes/run/replay.h"
 
 namespace vps::scenes {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Voxel and spacing by the sizes of the parts and of what they meet; memory known before anything is built.
-#include "vps_scenes/resolution.h"
+#include "vps_scenes/planning/resolution.h"
 
 #include <gtest/gtest.h>
 
@@ -13,9 +13,9 @@
 #include "scenes/scene_part.h"
 #include "simulation/scaled_scene.h"
 #include "vps/load_error.h"
-#include "vps_scenes/explain.h"
-#include "vps_scenes/plan.h"
-#include "vps_scenes/simulate.h"
+#include "vps_scenes/planning/plan.h"
+#include "vps_scenes/run/explain.h"
+#include "vps_scenes/run/simulate.h"
 
 namespace vps::scenes {
 namespace {

@@ -12,8 +12,8 @@
 
 #include "support/stl_box.h"
 #include "vps/load_error.h"
-#include "vps_scenes/scene.h"
-#include "vps_scenes/scene_text.h"
+#include "vps_scenes/scene/scene.h"
+#include "vps_scenes/scene/scene_text.h"
 
 namespace vps::scenes {
 namespace {

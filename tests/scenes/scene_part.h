@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "vps_scenes/scene.h"
+#include "vps_scenes/scene/scene.h"
 
 namespace vps::scenes {
 

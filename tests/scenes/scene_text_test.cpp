@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Scenes that are written and read again.
-#include "vps_scenes/scene_text.h"
+#include "vps_scenes/scene/scene_text.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-#include "procedure/screw_motion.h"
+#include "step/screw_motion.h"
 #include "vps_device/operator.h"
 
 namespace vps::scenes {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Shared memory of a session: who may open it, who is alive, and what a crash leaves behind.
-#include "network/shared_region.h"
+#include "link/shared_region.h"
 
 #include <gtest/gtest.h>
 #include <signal.h>

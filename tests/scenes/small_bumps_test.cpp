@@ -9,7 +9,7 @@
 #include "scene/usual_spacing.h"
 #include "scenes/scene_part.h"
 #include "support/swept.h"
-#include "vps_scenes/assemble.h"
+#include "vps_scenes/run/assemble.h"
 
 namespace vps::scenes {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The rows that are kept of a step, however long it takes.
-#include "procedure/step_rows.h"
+#include "world/step_rows.h"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 
 #include "scenes/scene_part.h"
 #include "support/lathe.h"
-#include "vps_scenes/assemble.h"
+#include "vps_scenes/run/assemble.h"
 
 namespace vps::scenes {
 namespace {

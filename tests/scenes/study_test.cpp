@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The yield of a peg and a hole of normal diameters, which has a closed formula.
-#include "vps_scenes/study.h"
+#include "vps_scenes/planning/study.h"
 
 #include <gtest/gtest.h>
 

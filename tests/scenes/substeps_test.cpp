@@ -9,7 +9,7 @@
 #include "models/scene_models.h"
 #include "scenes/scene_part.h"
 #include "simulation/simulation.h"
-#include "vps_scenes/simulate.h"
+#include "vps_scenes/run/simulate.h"
 
 namespace vps::scenes {
 namespace {

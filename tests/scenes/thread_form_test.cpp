@@ -8,7 +8,7 @@
 #include <random>
 
 #include "support/screw.h"
-#include "vps_scenes/import.h"
+#include "vps_scenes/cad/import.h"
 
 namespace vps::scenes {
 namespace {

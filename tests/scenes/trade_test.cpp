@@ -23,8 +23,8 @@
 #include "vps/load_error.h"
 #include "vps/map_estimate.h"
 #include "vps/mesh_distance.h"
-#include "vps_scenes/fidelity_choice.h"
-#include "vps_scenes/trade.h"
+#include "vps_scenes/planning/fidelity_choice.h"
+#include "vps_scenes/planning/trade.h"
 
 namespace vps::scenes {
 namespace {

@@ -2,7 +2,7 @@
 // A scene of two steps that runs in a few seconds of the clock.
 #pragma once
 
-#include "vps_scenes/scene.h"
+#include "vps_scenes/scene/scene.h"
 
 namespace vps::scenes {
 

@@ -6,13 +6,14 @@
 
 #include "judge/overlap_judge.h"
 #include "judge/surface_error.h"
-#include "procedure/drawn_targets.h"
-#include "procedure/way_check.h"
 #include "scenes/scene_part.h"
+#include "step/way_check.h"
 #include "support/lathe.h"
 #include "vps/load_error.h"
 #include "vps/mesh.h"
-#include "vps_scenes/assemble.h"
+#include "vps_scenes/planning/plan.h"
+#include "vps_scenes/run/assemble.h"
+#include "world/drawn_targets.h"
 
 namespace vps::scenes {
 namespace {

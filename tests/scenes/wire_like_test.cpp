@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <functional>
 
-#include "plan/wire_like.h"
+#include "overlaps/wire_like.h"
 #include "scenes/assemblies_to_plan.h"
 #include "support/swept.h"
 

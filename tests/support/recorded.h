@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "vps_device/recording.h"
-#include "vps_scenes/result.h"
+#include "vps_scenes/run/result.h"
 
 namespace vps::test {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "window/camera_motion.h"
+#include "view/camera_motion.h"
 
 #include <gtest/gtest.h>
 

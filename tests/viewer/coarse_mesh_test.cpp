@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "draw/coarse_mesh.h"
+#include "mesh/coarse_mesh.h"
 
 #include <gtest/gtest.h>
 

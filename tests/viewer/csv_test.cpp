@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // CSV of field tables: columns, and cells of what was not measured.
-#include "vps_viewer/csv.h"
+#include "vps_viewer/report/csv.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <set>
 #include <sstream>
 
-#include "vps_scenes/trade_fields.h"
+#include "vps_scenes/planning/trade_fields.h"
 
 namespace vps::viewer {
 namespace {

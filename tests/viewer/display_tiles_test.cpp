@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "window/display_tiles.h"
+#include "view/display_tiles.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "window/picture_worker.h"
+#include "view/picture_worker.h"
 
 namespace vps::viewer {
 namespace {

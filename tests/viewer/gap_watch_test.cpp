@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "window/gap_watch.h"
+#include "run/gap_watch.h"
 
 #include <gtest/gtest.h>
 

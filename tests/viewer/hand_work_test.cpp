@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "window/hand_work.h"
+#include "run/hand_work.h"
 
 #include <gtest/gtest.h>
 
 #include "scenes/two_pins.h"
-#include "window/planned_path.h"
+#include "view/planned_path.h"
 
 namespace vps::viewer {
 namespace {

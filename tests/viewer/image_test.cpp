@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "vps_viewer/image.h"
+#include "vps_viewer/draw/image.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How late picture, sound and force of a contact are: what is found in a made-up measurement, and its parts.
-#include "vps_viewer/latency.h"
+#include "vps_viewer/window/latency.h"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 #include "latency/tapping_handle.h"
 #include "sound/live_sound.h"
 #include "vps_device/metronome.h"
-#include "vps_viewer/renderer.h"
+#include "vps_viewer/draw/renderer.h"
 
 namespace vps::viewer {
 namespace {

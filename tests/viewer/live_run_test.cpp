@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A run by a person's device while a window watches it.
-#include "window/live_run.h"
+#include "run/live_run.h"
 
 #include <gtest/gtest.h>
 

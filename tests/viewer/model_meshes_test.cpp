@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "vps_viewer/model_meshes.h"
+#include "vps_viewer/draw/model_meshes.h"
 
 #include <gtest/gtest.h>
 

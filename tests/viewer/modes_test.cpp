@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Natural frequencies against the formulas of bar, plate and ring, and the theory of thin shells for tube and
 // bell. 3 %: below what an ear tells apart as another note (a semitone is 6 %).
-#include "sound/modes.h"
+#include "modes/modes.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "window/picking.h"
+#include "view/picking.h"
 
 #include <gtest/gtest.h>
 
-#include "window/section_drag.h"
+#include "view/section_drag.h"
 
 namespace vps::viewer {
 namespace {

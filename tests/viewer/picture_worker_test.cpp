@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "window/picture_worker.h"
+#include "view/picture_worker.h"
 
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Those who watch show a snapshot at the same instant, however different their ways are.
-#include "window/presentation.h"
+#include "run/presentation.h"
 
 #include <gtest/gtest.h>
 

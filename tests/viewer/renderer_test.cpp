@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "vps_viewer/renderer.h"
+#include "vps_viewer/draw/renderer.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <memory>
 #include <optional>
 
-#include "draw/shading_mesh.h"
+#include "mesh/shading_mesh.h"
 
 namespace vps::viewer {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "vps_viewer/report.h"
+#include "vps_viewer/report/report.h"
 
-#include "report/html.h"
+#include "files/html.h"
 
 #include <gtest/gtest.h>
 
@@ -16,11 +16,11 @@
 #include <string>
 #include <vector>
 
-#include "report/base64.h"
+#include "files/base64.h"
 #include "viewer/small_run.h"
-#include "vps_scenes/check.h"
-#include "vps_viewer/image.h"
-#include "vps_viewer/plot.h"
+#include "vps_scenes/fits/check.h"
+#include "vps_viewer/draw/image.h"
+#include "vps_viewer/report/plot.h"
 
 namespace vps::viewer {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report/run_view.h"
+#include "pages/run_view.h"
 
 #include <gtest/gtest.h>
 
@@ -9,12 +9,12 @@
 #include <span>
 #include <string>
 
-#include "report/base64.h"
+#include "files/base64.h"
 #include "support/chromium.h"
 #include "viewer/small_run.h"
-#include "vps_scenes/assemble.h"
-#include "vps_viewer/image.h"
-#include "vps_viewer/report.h"
+#include "vps_scenes/run/assemble.h"
+#include "vps_viewer/draw/image.h"
+#include "vps_viewer/report/report.h"
 
 namespace vps::viewer {
 namespace {

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "vps_scenes/result.h"
-#include "vps_scenes/scene.h"
+#include "vps_scenes/run/result.h"
+#include "vps_scenes/scene/scene.h"
 
 namespace vps::viewer::test {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "vps_viewer/sound.h"
+#include "vps_viewer/sound/sound.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Parallax of a known point in every stereo mode and on displays, against the line from the eye through it.
-#include "vps_viewer/stereo.h"
+#include "vps_viewer/draw/stereo.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "window/table_room.h"
+#include "view/table_room.h"
 
 #include <gtest/gtest.h>
 

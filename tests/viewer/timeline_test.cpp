@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "window/timeline.h"
+#include "view/timeline.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "window/exploded.h"
-#include "window/view_state.h"
+#include "view/exploded.h"
+#include "view/view_state.h"
 
 namespace vps::viewer {
 namespace {

@@ -10,11 +10,11 @@
 #include <string>
 #include <thread>
 
+#include "beast/server.h"
 #include "support/chromium.h"
 #include "support/temporary_folder.h"
 #include "vps_device/recording.h"
-#include "vps_scenes/scene.h"
-#include "web/beast/server.h"
+#include "vps_scenes/scene/scene.h"
 #include "web/watched_run.h"
 
 namespace vps::viewer {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The web page's server with sockets, and in a browser.
-#include "web/beast/server.h"
+#include "beast/server.h"
 
 #include <gtest/gtest.h>
 
@@ -21,11 +21,11 @@
 #include <string>
 #include <thread>
 
+#include "run/presentation.h"
 #include "support/chromium.h"
 #include "viewer/web_run.h"
 #include "vps/load_error.h"
-#include "vps_viewer/image.h"
-#include "window/presentation.h"
+#include "vps_viewer/draw/image.h"
 
 namespace vps::viewer {
 namespace {

@@ -10,6 +10,7 @@
 #include <thread>
 #include <vector>
 
+#include "run/blow_sounds.h"
 #include "viewer/web_run.h"
 #include "vps_device/detail/bytes.h"
 #include "web/access.h"
@@ -17,7 +18,6 @@
 #include "web/hub.h"
 #include "web/part_glb.h"
 #include "web/snapshot_coder.h"
-#include "window/blow_sounds.h"
 
 namespace vps::viewer {
 namespace {

@@ -18,12 +18,12 @@
 #include <string>
 #include <thread>
 
+#include "beast/server.h"
 #include "support/certificate.h"
 #include "support/temporary_folder.h"
 #include "viewer/web_run.h"
 #include "vps/load_error.h"
 #include "vps/write_file.h"
-#include "web/beast/server.h"
 
 namespace vps::viewer {
 namespace {

@@ -222,7 +222,7 @@ class Repairer {
     std::vector<std::uint32_t> shell_of;  // by triangle
   };
   static bool haveContact(const ShellFacets& facets) {
-    return facets.mesh.triangles.size() > 1 && v0::haveContact(facets.mesh, facets.shell_of);
+    return facets.mesh.triangles.size() > 1 && vps::haveContact(facets.mesh, facets.shell_of);
   }
 
   /// The facets of closed patches, with area; what was united before is one shell.

@@ -27,7 +27,7 @@
 
 #include "benchmarks/scene_parts.h"
 #include "core/wall_clock.h"
-#include "draw/egl_context.h"
+#include "gl/egl_context.h"
 #include "vps/voxmap.h"
 
 namespace vps::bench {

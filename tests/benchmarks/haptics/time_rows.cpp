@@ -7,8 +7,8 @@
 
 #include "rows.h"
 #include "vps/pointshell.h"
-#include "vps_scenes/assemble.h"
-#include "vps_scenes/scene.h"
+#include "vps_scenes/run/assemble.h"
+#include "vps_scenes/scene/scene.h"
 
 namespace vps::bench {
 

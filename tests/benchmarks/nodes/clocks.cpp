@@ -16,7 +16,7 @@
 #include <memory>
 #include <string>
 
-#include "network/link.h"
+#include "link/link.h"
 #include "rows.h"
 #include "vps/load_error.h"
 #include "vps_device/metronome.h"

@@ -21,7 +21,7 @@
 #include "support/temporary_folder.h"
 
 #if __has_include(<dds/dds.h>)
-#include "network/dds/topics.h"
+#include "dds/topics.h"
 #endif
 
 namespace vps::bench {

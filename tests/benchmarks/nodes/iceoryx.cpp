@@ -17,7 +17,7 @@
 #include <string>
 
 #include "exchange_times.h"
-#include "network/messages.h"
+#include "messages/messages.h"
 #include "rows.h"
 #include "support/child_process.h"
 #include "support/temporary_folder.h"

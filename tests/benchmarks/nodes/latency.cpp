@@ -20,8 +20,8 @@
 #include <vector>
 
 #include "exchange_times.h"
-#include "network/link.h"
-#include "network/messages.h"
+#include "link/link.h"
+#include "messages/messages.h"
 #include "rows.h"
 #include "vps_device/metronome.h"
 #include "vps_device/periodic_thread.h"

@@ -20,12 +20,12 @@
 #include <thread>
 #include <vector>
 
+#include "run/live_run.h"
+#include "view/camera_motion.h"
+#include "view/picture_worker.h"
+#include "view/timeline.h"
 #include "vps_device/device.h"
-#include "vps_viewer/renderer.h"
-#include "window/camera_motion.h"
-#include "window/live_run.h"
-#include "window/picture_worker.h"
-#include "window/timeline.h"
+#include "vps_viewer/draw/renderer.h"
 
 namespace {
 

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "assimp/mesh_text.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <fstream>
+#include <iterator>
+#include <string_view>
+#include <utility>
+
+#include "import/readers.h"
+#include "vps/box.h"
+
+namespace vps::scenes::import {
+
+namespace {
+
+constexpr std::string_view kWord = "vps_object_";
+constexpr std::string_view kBlank = " \t\r\f\v";
+
+/// Without a byte order mark, which assimp would take for a part of the first word.
+std::string bytesOf(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::string bytes(std::istreambuf_iterator<char>(in), {});
+  if (bytes.starts_with(kByteOrderMark)) bytes.erase(0, kByteOrderMark.size());
+  return bytes;
+}
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t from = text.find_first_not_of(kBlank);
+  if (from == std::string_view::npos) return {};
+  return text.substr(from, text.find_last_not_of(kBlank) - from + 1);
+}
+
+/// What follows the keyword of a line; empty optional: the line has another keyword.
+std::optional<std::string_view> afterKeyword(std::string_view line, std::string_view keyword) {
+  const std::size_t from = line.find_first_not_of(kBlank);
+  if (from == std::string_view::npos || !line.substr(from).starts_with(keyword)) return std::nullopt;
+  const std::string_view rest = line.substr(from + keyword.size());
+  if (!rest.empty() && kBlank.find(rest.front()) == std::string_view::npos) return std::nullopt;
+  return rest;
+}
+
+/// Three numbers, and the text after them.
+struct Vertex {
+  Vec3 p = Vec3::Zero();
+  std::string_view rest;
+};
+std::optional<Vertex> vertexOf(std::string_view text) {
+  Vertex out;
+  for (int axis = 0; axis < 3; ++axis) {
+    text.remove_prefix(std::min(text.find_first_not_of(kBlank), text.size()));
+    const bool has_plus = text.starts_with('+');
+    const char *from = text.data() + has_plus, *end = text.data() + text.size();
+    const auto [next, error] = std::from_chars(from, end, out.p[axis]);
+    if (error != std::errc()) return std::nullopt;
+    text.remove_prefix(static_cast<std::size_t>(next - text.data()));
+  }
+  out.rest = text;
+  return out;
+}
+
+/// With a zero before each decimal point that begins a number, as in ".5" and "-.5": assimp 5.2.5 does not
+/// count these numbers, and skips the vertex.
+void appendWithZeros(std::string_view line, std::string& out) {
+  for (std::size_t point = line.find('.'); point != std::string_view::npos; point = line.find('.')) {
+    const bool has_digit = point > 0 && line[point - 1] >= '0' && line[point - 1] <= '9';
+    out.append(line.substr(0, point)).append(has_digit ? "." : "0.");
+    line.remove_prefix(point + 1);
+  }
+  out += line;
+}
+
+/// The keyword of a line.
+std::string_view keywordOf(std::string_view line) {
+  const std::string_view text = trimmed(line);
+  return text.substr(0, text.find_first_of(kBlank));
+}
+
+/// Whether assimp 5.2.5 would take the line for one of faces, lines or points, by its first letter alone:
+/// "lod", "parm".
+bool isTakenForElement(std::string_view keyword) {
+  constexpr std::array<std::string_view, 4> kElements = {"f", "fo", "l", "p"};
+  return !keyword.empty() && std::string_view("flp").find(keyword.front()) != std::string_view::npos &&
+         std::ranges::find(kElements, keyword) == kElements.end();
+}
+
+template <class F>
+void forEachLine(std::string_view bytes, F f) {
+  while (!bytes.empty()) {
+    const std::size_t end = std::min(bytes.find('\n'), bytes.size() - 1);
+    f(bytes.substr(0, end + 1));
+    bytes.remove_prefix(end + 1);
+  }
+}
+
+/// The middle of the vertices, where they are far from the origin beside their size, so that at least two of
+/// the 24 bits of a float are won; else zero. Zero too where a vertex cannot be read, or has a weight, or
+/// goes on in the next line.
+Vec3 shiftOf(std::string_view bytes, std::string_view keyword) {
+  constexpr double kFar = 4;
+  Box box;
+  bool is_plain = true;
+  forEachLine(bytes, [&](std::string_view line) {
+    const auto numbers = afterKeyword(line.substr(0, line.find('\n')), keyword);
+    if (!numbers) return;
+    const std::optional<Vertex> vertex = vertexOf(*numbers);
+    const std::string_view rest = vertex ? trimmed(vertex->rest) : "";
+    is_plain = is_plain && vertex && vertex->p.allFinite() &&
+               (rest.empty() || (rest.find(' ') != std::string_view::npos && rest.back() != '\\'));
+    if (is_plain) box.add(vertex->p);
+  });
+  if (!is_plain || box.isEmpty()) return Vec3::Zero();
+  const double farthest = box.min.cwiseAbs().cwiseMax(box.max.cwiseAbs()).maxCoeff();
+  return farthest > kFar * box.size().norm() ? Vec3(box.center()) : Vec3::Zero();
+}
+
+void appendVertex(std::string_view keyword, const Vertex& vertex, const Vec3& shift, std::string& out) {
+  out += keyword;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::array<char, 32> number;
+    const auto [end, error] =
+        std::to_chars(number.data(), number.data() + number.size(), vertex.p[axis] - shift[axis]);
+    out += ' ';
+    out.append(number.data(), end);
+  }
+  out += vertex.rest;
+}
+
+/// Writes the vertices without the shift, and all other lines as f gives them.
+template <class F>
+MeshText rewritten(const std::string& bytes, std::string_view keyword, F f) {
+  MeshText out;
+  out.shift = shiftOf(bytes, keyword);
+  out.bytes.reserve(bytes.size() + bytes.size() / 8);
+  const bool is_shifted = !out.shift.isZero(0);
+  forEachLine(bytes, [&](std::string_view line) {
+    const auto numbers = is_shifted ? afterKeyword(line, keyword) : std::nullopt;
+    if (!numbers) return f(line, out);
+    appendVertex(keyword, *vertexOf(*numbers), out.shift, out.bytes);
+  });
+  return out;
+}
+
+}  // namespace
+
+std::string MeshText::nameIn(const std::string& word) const {
+  if (!word.starts_with(kWord)) return word;
+  std::size_t number = 0;
+  const auto [end, error] = std::from_chars(word.data() + kWord.size(), word.data() + word.size(), number);
+  return error == std::errc() && number < names.size() ? names[number] : word;
+}
+
+MeshText objText(const std::string& file) {
+  std::string group;  // that is active; assimp begins no new object where it is named again
+  std::size_t group_word = 0;
+  bool is_continued = false, is_dropped = false;  // the line before ends in '\\'; it was left out
+  return rewritten(bytesOf(file), "v", [&](std::string_view line, MeshText& out) {
+    const std::string_view text = line.substr(0, line.find('\n'));
+    if (std::exchange(is_continued, trimmed(text).ends_with('\\'))) {
+      if (!is_dropped) out.bytes += line;  // a blank at its beginning parts two numbers
+      return;
+    }
+    const std::string_view keyword = keywordOf(text);
+    out.surface_count += keyword == "surf" ? 1 : 0;
+    is_dropped = isTakenForElement(keyword);
+    if (is_dropped) return;
+    const auto object = afterKeyword(text, "o"), faces = afterKeyword(text, "g");
+    const bool is_one_line = text.find('\r') >= text.size() - 1;  // else line ends are '\r' alone
+    if ((!object && !faces) || !is_one_line) {
+      // assimp skips a line that begins with a blank.
+      const std::string_view rest = line.substr(std::min(line.find_first_not_of(" \t"), line.size()));
+      if (rest.starts_with('v')) return appendWithZeros(rest, out.bytes);
+      out.bytes += rest;
+      return;
+    }
+    const std::string name(trimmed(object ? *object : *faces));
+    const bool is_known = faces && name == group && !out.names.empty() && group_word < out.names.size() &&
+                          out.names[group_word] == name;
+    const std::size_t word = is_known ? group_word : out.names.size();
+    if (!is_known) out.names.push_back(name);
+    if (faces) {
+      group = name;
+      group_word = word;
+    }
+    out.bytes += std::string(object ? "o " : "g ").append(kWord) + std::to_string(word) + "\n";
+  });
+}
+
+std::optional<MeshText> stlText(const std::string& file) {
+  constexpr std::string_view kSolid = "solid";
+  std::array<char, kByteOrderMark.size() + kSolid.size()> first{};
+  std::ifstream in(file, std::ios::binary);
+  if (!in.read(first.data(), first.size()) ||
+      !withoutByteOrderMark({first.data(), first.size()}).starts_with(kSolid))
+    return std::nullopt;
+  const std::string bytes = bytesOf(file);
+  // A binary file may begin with the same word.
+  if (bytes.find('\0') != std::string::npos) return std::nullopt;
+  return rewritten(bytes, "vertex", [](std::string_view line, MeshText& out) { out.bytes += line; });
+}
+
+}  // namespace vps::scenes::import

@@ -1,0 +1,340 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Mesh formats by assimp: STL, OBJ, PLY, glTF, Collada and others.
+#include <assimp/DefaultIOSystem.h>
+#include <assimp/MemoryIOWrapper.h>
+#include <assimp/config.h>
+#include <assimp/material.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <assimp/Importer.hpp>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <string_view>
+
+#include "assimp/gltf_extensions.h"
+#include "assimp/mesh_text.h"
+#include "assimp/xml_tags.h"
+#include "color/palette.h"
+#include "import/readers.h"
+#include "vps/load_error.h"
+
+namespace vps::scenes::import {
+namespace {
+
+Eigen::Affine3d affine(const aiMatrix4x4& m) {
+  Eigen::Affine3d X;
+  X.matrix() << m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3, m.c4, 0, 0, 0, 1;
+  return X;
+}
+
+void appendMesh(const aiMesh& from, Mesh& to) {
+  const auto base = std::uint32_t(to.vertices.size());
+  for (unsigned i = 0; i < from.mNumVertices; ++i) {
+    to.vertices.emplace_back(from.mVertices[i].x, from.mVertices[i].y, from.mVertices[i].z);
+  }
+  for (unsigned i = 0; i < from.mNumFaces; ++i) {
+    const aiFace& face = from.mFaces[i];
+    if (face.mNumIndices != 3) continue;  // points and lines
+    to.triangles.push_back({base + face.mIndices[0], base + face.mIndices[1], base + face.mIndices[2]});
+  }
+}
+
+/// The colours of the triangles that appendMesh() takes: a corner's, where the file has them by vertex, in
+/// the mean, else the mesh's.
+void appendColors(const aiMesh& from, const Color& of_mesh, bool is_gltf, FaceColors& to) {
+  FaceColors own;
+  std::size_t count = 0;
+  Palette palette(own);
+  for (unsigned i = 0; i < from.mNumFaces; ++i) {
+    const aiFace& face = from.mFaces[i];
+    if (face.mNumIndices != 3) continue;
+    ++count;
+    if (!from.HasVertexColors(0)) continue;
+    aiColor4D mean;
+    for (unsigned k = 0; k < 3; ++k) mean += from.mColors[0][face.mIndices[k]];
+    Color color = {mean.r / 3, mean.g / 3, mean.b / 3};
+    if (!is_gltf) color = linearFromSrgb(color);
+    for (std::size_t k = 0; is_gltf && k < 3; ++k) color[k] *= of_mesh[k];  // by its specification
+    palette.add(color);
+  }
+  append(to, count, own, of_mesh);
+}
+
+std::array<float, 3> colorOf(const aiScene& scene, const aiMesh& mesh, bool is_gltf) {
+  aiColor4D c;
+  if (mesh.mMaterialIndex >= scene.mNumMaterials) return ImportedPart().color;
+  aiMaterial& material = *scene.mMaterials[mesh.mMaterialIndex];
+  // glTF's factor is linear by its specification; the others mean the colour on the screen.
+  if (is_gltf && material.Get(AI_MATKEY_BASE_COLOR, c) == AI_SUCCESS) return {c.r, c.g, c.b};
+  if (std::string(material.GetName().C_Str()) == AI_DEFAULT_MATERIAL_NAME) {
+    return ImportedPart().color;  // the material is assimp's default, not the file's
+  }
+  if (material.Get(AI_MATKEY_COLOR_DIFFUSE, c) == AI_SUCCESS) return linearFromSrgb({c.r, c.g, c.b});
+  return ImportedPart().color;
+}
+
+/// Gives assimp other bytes in place of one file; the files that it names are read where they are.
+class ReplacedFile : public Assimp::DefaultIOSystem {
+ public:
+  ReplacedFile(std::string file, const std::string& bytes) : file_(std::move(file)), bytes_(bytes) {}
+  Assimp::IOStream* Open(const char* name, const char* mode) override {
+    if (name != file_) return DefaultIOSystem::Open(name, mode);
+    return new Assimp::MemoryIOStream(reinterpret_cast<const std::uint8_t*>(bytes_.data()), bytes_.size());
+  }
+
+ private:
+  std::string file_;
+  const std::string& bytes_;
+};
+
+/// The name of a node or mesh; empty for what assimp writes in place of a name.
+std::string nameFrom(const aiString& text) {
+  const std::string name = text.C_Str();
+  const bool is_placeholder = name.starts_with("<") || name.starts_with("nodes[") ||
+                              name.starts_with("meshes[") || name.starts_with("$ColladaAutoName$") ||
+                              name == "defaultobject" || name == "RootNode";
+  return is_placeholder ? "" : name;
+}
+
+struct Walk {
+  const aiScene& scene;
+  bool is_gltf;
+  RawCad& cad;
+
+  void node(const aiNode& n, const Eigen::Affine3d& X_WParent) {
+    const Eigen::Affine3d X_WP = X_WParent * affine(n.mTransformation);
+    RawPart part;
+    part.name = nameFrom(n.mName);
+    part.X_WP = X_WP;
+    for (unsigned i = 0; i < n.mNumMeshes; ++i) {
+      const aiMesh& mesh = *scene.mMeshes[n.mMeshes[i]];
+      const Color color = colorOf(scene, mesh, is_gltf);
+      if (i == 0) part.color = color;
+      appendColors(mesh, color, is_gltf, part.face_colors);
+      if (part.name.empty()) part.name = nameFrom(mesh.mName);
+      appendMesh(mesh, part.mesh);
+    }
+    part.rounding = floatRounding(part.mesh, X_WP);
+    if (n.mNumMeshes > 0) cad.parts.push_back(std::move(part));
+    for (unsigned i = 0; i < n.mNumChildren; ++i) node(*n.mChildren[i], X_WP);
+  }
+};
+
+/// glTF is y-up by its specification, and exporters rotate z-up models with their meshes; rotated back, a
+/// part has its frame in CAD. assimp makes Collada y-up by the root's transform alone, so only poses are
+/// rotated back.
+void makeZUp(RawCad& cad, bool is_gltf) {
+  const Eigen::Affine3d X_ZY(Eigen::AngleAxisd(0.5 * EIGEN_PI, Vec3::UnitX()));
+  for (RawPart& part : cad.parts) {
+    part.X_WP = X_ZY * part.X_WP;
+    if (!is_gltf) continue;
+    part.X_WP = part.X_WP * X_ZY.inverse();
+    for (Vec3& p : part.mesh.vertices) p = Vec3(p.x(), -p.z(), p.y());
+  }
+}
+
+/// For a binary PLY whose first value begins with the byte '\n': the bytes to give to assimp instead.
+/// assimp 5.2.5 takes that byte for the second half of a line end and drops it, so the header gets a line end
+/// of two bytes.
+std::optional<std::string> plyItReadsRight(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  bool is_binary = false;
+  for (std::string line; std::getline(in, line) && line != "end_header";)
+    is_binary = is_binary || line.starts_with("format binary");
+  if (!in || !is_binary || in.peek() != '\n') return std::nullopt;
+  const auto data_at = std::size_t(in.tellg());
+  in.seekg(0);
+  std::string bytes(std::istreambuf_iterator<char>(in), {});
+  bytes.insert(data_at - 1, 1, '\r');
+  return bytes;
+}
+
+/// Gives each node that has an identifier and no name its identifier as its name.
+std::string withNamesOfNodes(std::string_view collada) {
+  std::string out;
+  std::size_t copied = 0, at = 0;
+  while (const std::optional<XmlTag> tag = nextTag(collada, at)) {
+    if (tag->name != "node" || !tag->is_begin || tag->value("name")) continue;
+    const std::string id(tag->value("id").value_or(""));
+    if (id.empty() || id.find('"') != std::string::npos) continue;
+    const auto end_of_name = static_cast<std::size_t>(tag->attributes.data() - collada.data());
+    out.append(collada.substr(copied, end_of_name - copied)).append(" name=\"" + id + '"');
+    copied = end_of_name;
+  }
+  return out.append(collada.substr(copied));
+}
+
+/// The text of a Collada file, of whose unit assimp makes a scale in the root's transform, and 1 where it is
+/// missing or no number. In place of a unit that is no positive length that of the settings applies, or
+/// else the metre, which Collada defines for files without one; a warning says so.
+std::string colladaText(const std::string& file, const ImportSettings& settings, RawCad& cad) {
+  std::ifstream in(file, std::ios::binary);
+  std::string text(std::istreambuf_iterator<char>(in), {});
+  const std::optional<XmlTag> tag = tagAt(text, "COLLADA/asset/unit");
+  const std::string meter(tag ? tag->value("meter").value_or("") : "");
+  double unit_m = 0;
+  const char *const from = meter.data() + meter.starts_with('+'), *const end = meter.data() + meter.size();
+  const auto [rest, error] = std::from_chars(from, end, unit_m);
+  cad.states_unit = error == std::errc() && rest == end && std::isfinite(unit_m) && unit_m > 0;
+  if (cad.states_unit) {
+    const std::string name(tag->value("name").value_or(""));
+    const std::optional<double> named_m = unitFromText(name);
+    if (named_m && std::abs(unit_m - *named_m) > 0.01 * *named_m)
+      cad.warnings.push_back("calls its unit '" + name + "', but says that it has " + meter +
+                             " m, which is taken");
+  } else {
+    cad.unit_m = settings.unit_m.value_or(1.0);
+    if (!settings.unit_m)
+      cad.warnings.push_back(
+          (tag ? "states a unit of '" + meter + "' m" : std::string("states no unit")) +
+          ": metres are assumed, as Collada defines; set unit or --units for another unit");
+  }
+  // assimp reads neither signs nor blanks.
+  if (tag)
+    text.replace(
+        tag->from, tag->end - tag->from,
+        "<unit meter='" + (cad.states_unit ? std::string(from, end) : "1") + (tag->is_end ? "'/>" : "'>"));
+  return withNamesOfNodes(text);
+}
+
+/// The JSON text of a glTF file, that of a binary one as well.
+std::string gltfJson(const std::string& file) {
+  constexpr std::size_t kHeader = 20;  // "glTF", version, size; size of the first chunk, "JSON"
+  std::ifstream in(file, std::ios::binary);
+  std::string json(kHeader, '\0');
+  in.read(json.data(), kHeader);
+  std::uint32_t size = 0;
+  std::memcpy(&size, &json[12], sizeof size);
+  if (in && json.starts_with("glTF")) {
+    const auto all = std::filesystem::file_size(file);
+    json.resize(std::min<std::uintmax_t>(size, all));
+    in.read(json.data(), std::ssize(json));
+    json.resize(static_cast<std::size_t>(in.gcount()));
+    return json;
+  }
+  json.resize(static_cast<std::size_t>(in.gcount()));
+  json.append(std::istreambuf_iterator<char>(in), {});
+  return json;
+}
+
+/// The text to read in place of a glTF file with a byte order mark.
+std::optional<std::string> gltfText(const std::string& file) {
+  std::string json = gltfJson(file);
+  if (const std::string name = unreadExtension(requiredExtensions(json)); !name.empty())
+    throw LoadError(file, "",
+                    "needs the extension '" + name + "' of glTF, which is not read; export it without");
+  if (!json.starts_with(kByteOrderMark)) return std::nullopt;
+  return json.erase(0, kByteOrderMark.size());
+}
+
+/// Back to the axes of the file: the user says which of them is up.
+void keepFileAxes(RawCad& cad) {
+  const Eigen::Affine3d X_YZ(Eigen::AngleAxisd(-0.5 * EIGEN_PI, Vec3::UnitX()));
+  for (RawPart& part : cad.parts) part.X_WP = X_YZ * part.X_WP;
+}
+
+/// True if all vertices of the faces exist. assimp's readers do not check this, and its triangulation then
+/// aborts.
+bool hasAllVertices(const aiMesh& mesh) {
+  for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
+    const aiFace& face = mesh.mFaces[i];
+    if (face.mNumIndices == 0) return false;
+    for (unsigned k = 0; k < face.mNumIndices; ++k) {
+      if (face.mIndices[k] >= mesh.mNumVertices) return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+double unitOf(const std::string& file, const std::string& format, const ImportSettings& settings) {
+  if (settings.unit_m) return *settings.unit_m;
+  // assimp 5.2.5 drops the units of some formats.
+  constexpr std::array<std::string_view, 5> kWithout = {"STL", "OBJ", "PLY", "OFF", "3DS"};
+  const bool is_without = std::ranges::find(kWithout, format) != kWithout.end();
+  throw LoadError(
+      file, "",
+      is_without
+          ? format + R"( files do not state their unit; set unit = "mm" in the scene or give --units mm)"
+          : "the unit of " + format +
+                R"( files is not read; set unit = "mm" in the scene or give --units mm)");
+}
+
+RawCad readAssimp(const std::string& file, const std::string& format, const ImportSettings& settings,
+                  const Progress&) {
+  std::optional<MeshText> text;
+  Assimp::Importer importer;  // its logger is silent unless asked
+  if (format.empty() || (format != "glTF" && !importer.IsExtensionSupported("." + format)) ||
+      format == "IFC") {
+    throw LoadError(file, "", "has an unknown format; export STEP, glTF, STL, OBJ or PLY");
+  }
+  RawCad cad;
+  cad.states_unit = format == "glTF";  // metres, by its specification
+  std::optional<std::string> replaced;
+  if (format == "glTF") replaced = gltfText(file);
+  if (format == "DAE")
+    replaced = colladaText(file, settings, cad);
+  else if (!cad.states_unit)
+    cad.unit_m = unitOf(file, format, settings);
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);  // else identifiers
+  importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
+  const aiScene* scene = nullptr;
+  try {
+    std::optional<std::string> ply;
+    if (format == "PLY") ply = plyItReadsRight(file);
+    if (format == "OBJ") text = objText(file);
+    if (format == "STL") text = stlText(file);
+    if (text || replaced)  // the importer deletes it
+      importer.SetIOHandler(new ReplacedFile(file, text ? text->bytes : *replaced));
+    scene =
+        ply ? importer.ReadFileFromMemory(ply->data(), ply->size(), 0, "ply") : importer.ReadFile(file, 0);
+    for (unsigned i = 0; scene && i < scene->mNumMeshes; ++i) {
+      if (!hasAllVertices(*scene->mMeshes[i]))
+        throw LoadError(file, scene->mMeshes[i]->mName.C_Str(),
+                        "has a face with a vertex that does not exist; export it again");
+    }
+    if (scene) scene = importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_SortByPType);
+  } catch (const LoadError&) {
+    throw;
+  } catch (const std::exception& e) {
+    throw LoadError(file, "",
+                    std::string("is not a readable ") + format + " file (" + e.what() + "); export it again");
+  }
+  if (scene != nullptr && scene->mRootNode != nullptr && scene->mNumMeshes == 0)
+    throw LoadError(file, "", "holds no surfaces; export solids or meshes");
+  if (!scene || !scene->mRootNode || (scene->mFlags & AI_SCENE_FLAGS_INCOMPLETE)) {
+    std::string reason = importer.GetErrorString();
+    for (char& c : reason) c = c == '\n' ? ' ' : c;
+    throw LoadError(file, "", "is not a readable " + format + " file (" + reason + "); export it again");
+  }
+  const bool is_gltf = format == "glTF";
+  Walk{*scene, is_gltf, cad}.node(*scene->mRootNode, Eigen::Affine3d::Identity());
+  if (is_gltf || format == "DAE") makeZUp(cad, is_gltf);
+  if (is_gltf && settings.up) keepFileAxes(cad);
+  if (format == "OBJ") cad.open_shapes = Shapes::BoundOne;
+  if (text && text->surface_count > 0)
+    cad.warnOfMissing("has " + std::to_string(text->surface_count) +
+                      (text->surface_count == 1 ? " free-form surface ('surf') that is"
+                                                : " free-form surfaces ('surf') that are") +
+                      " not read; export triangles");
+  for (RawPart& part : cad.parts) {
+    if (text) {
+      part.name = text->nameIn(part.name);
+      for (Vec3& p : part.mesh.vertices) p += text->shift;
+    }
+    if (format == "STL" && cad.parts.size() == 1) part.name.clear();  // STL's header is no name
+  }
+  return cad;
+}
+
+}  // namespace vps::scenes::import

@@ -1,0 +1,451 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// STEP and IGES with names, tree, places and colours (Open CASCADE's XDE), and BREP.
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <mutex>
+#include <sstream>
+
+#include <BRepGProp.hxx>
+#include <BRepTools.hxx>
+#include <BRep_Builder.hxx>
+#include <GProp_GProps.hxx>
+#include <IGESCAFControl_Reader.hxx>
+#include <IGESControl_Controller.hxx>
+#include <Interface_Static.hxx>
+#include <Message.hxx>
+#include <Message_Messenger.hxx>
+#include <Quantity_Color.hxx>
+#include <STEPCAFControl_Controller.hxx>
+#include <STEPCAFControl_Reader.hxx>
+#include <Standard_Failure.hxx>
+#include <Standard_Version.hxx>
+#include <TDF_LabelSequence.hxx>
+#include <TDF_Tool.hxx>
+#include <TDataStd_Name.hxx>
+#include <TDocStd_Document.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopTools_DataMapOfShapeInteger.hxx>
+#include <XCAFApp_Application.hxx>
+#include <XCAFDoc_ColorTool.hxx>
+#include <XCAFDoc_DocumentTool.hxx>
+#include <XCAFDoc_ShapeTool.hxx>
+
+#include "import/part_names.h"
+#include "import/readers.h"
+#include "import/unique_names.h"
+#include "occt/damaged_entities.h"
+#include "occt/entity_numbers.h"
+#include "occt/length_units.h"
+#include "occt/lost_shapes.h"
+#include "occt/pieces.h"
+#include "occt/tessellate_all.h"
+#include "vps/load_error.h"
+
+namespace vps::scenes::import {
+namespace {
+
+/// Removes Open CASCADE's console printers for a scope.
+class Quiet {
+ public:
+  Quiet() : printers_(Message::DefaultMessenger()->Printers()) {
+    Message::DefaultMessenger()->ChangePrinters().Clear();
+  }
+  ~Quiet() { Message::DefaultMessenger()->ChangePrinters() = printers_; }
+  Quiet(const Quiet&) = delete;
+  Quiet& operator=(const Quiet&) = delete;
+
+ private:
+  Message_SequenceOfPrinters printers_;
+};
+
+/// A document that is closed with its scope.
+class Document {
+ public:
+  Document() { XCAFApp_Application::GetApplication()->NewDocument("BinXCAF", document_); }
+  ~Document() { XCAFApp_Application::GetApplication()->Close(document_); }
+  Document(const Document&) = delete;
+  Document& operator=(const Document&) = delete;
+  [[nodiscard]] Handle(TDocStd_Document) & get() { return document_; }
+
+ private:
+  Handle(TDocStd_Document) document_;
+};
+
+Eigen::Affine3d affine(const gp_Trsf& t) {
+  Eigen::Affine3d X = Eigen::Affine3d::Identity();
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 4; ++column) X(row, column) = t.Value(row + 1, column + 1);
+  }
+  return X;
+}
+
+std::string nameOf(const TDF_Label& label) {
+  Handle(TDataStd_Name) attribute;
+  if (!label.FindAttribute(TDataStd_Name::GetID(), attribute)) return "";
+  const TCollection_AsciiString utf8(attribute->Get());
+  return utf8.ToCString();
+}
+
+/// Of the triangles from the faces.
+double errorOf(const Tessellation& made, const ImportSettings& settings) {
+  return made.deflection_m > settings.deflection_m ? std::max(made.deviation_m, made.deflection_m)
+                                                   : made.deviation_m;
+}
+
+/// Visits the leaves of an assembly's tree and meshes each product once.
+class Tree {
+ public:
+  Tree(const Handle(TDocStd_Document) & document, const ImportSettings& settings, const Progress& progress,
+       RawCad& cad)
+      : shapes_(XCAFDoc_DocumentTool::ShapeTool(document->Main())),
+        colors_(XCAFDoc_DocumentTool::ColorTool(document->Main())),
+        settings_(settings),
+        progress_(progress),
+        cad_(cad) {}
+
+  void walk() {
+    TDF_LabelSequence roots;
+    shapes_->GetFreeShapes(roots);
+    for (const TDF_Label& root : roots) collect(root, nameOf(root));
+    triangulateAll();
+    for (const TDF_Label& root : roots) {
+      // A single shape may have a location.
+      const Color* none = nullptr;
+      visit(root, {}, Eigen::Affine3d::Identity(), none);
+    }
+  }
+
+ private:
+  struct Piece {
+    Tessellation tessellation;
+    Eigen::Affine3d X_PieceMesh;  ///< in file units
+    Color color;
+    bool has_color;
+    bool is_by_faces = false;                    ///< `color` is that of most of them
+    std::vector<std::optional<Color>> of_faces;  ///< of the tessellation; empty: none has one
+  };
+
+  /// Calls f(component) for each component of an assembly.
+  template <class F>
+  static void forComponents(const TDF_Label& assembly, F f) {
+    TDF_LabelSequence components;
+    XCAFDoc_ShapeTool::GetComponents(assembly, components);
+    for (const TDF_Label& component : components) f(component);
+  }
+
+  static TDF_Label referred(const TDF_Label& label) {
+    TDF_Label target;
+    return XCAFDoc_ShapeTool::GetReferredShape(label, target) ? target : label;
+  }
+
+  /// The pieces of each product below a label, named for the progress.
+  void collect(const TDF_Label& label, std::string name) {
+    const TDF_Label product = referred(label);
+    if (const std::string own_name = bestName(nameOf(label), nameOf(product)); !own_name.empty())
+      name = own_name;
+    if (XCAFDoc_ShapeTool::IsAssembly(product)) {
+      forComponents(product, [&](const TDF_Label& component) { collect(component, name); });
+      return;
+    }
+    const auto [it, is_new] = first_shape_.try_emplace(entryOf(product), all_shapes_.size());
+    if (!is_new) return;
+    if (progress_) progress_("reading the faces of " + name, 0);
+    for (const TopoDS_Shape& shape : pieces(XCAFDoc_ShapeTool::GetShape(product)))
+      all_shapes_.push_back(shape);
+    shape_end_[it->first] = all_shapes_.size();
+  }
+
+  void triangulateAll() {
+    tessellated_ =
+        tessellateAll(all_shapes_, settings_, 1 / cad_.unit_m, [&](std::size_t done, std::size_t all) {
+          if (progress_) progress_("meshing", double(done) / double(all));
+        });
+  }
+
+  /// What is above an instance.
+  struct Above {
+    std::string name;
+    std::vector<std::string> within;
+  };
+
+  void visit(const TDF_Label& label, Above above, const Eigen::Affine3d& X_WParent,
+             const Color* color_above) {
+    const TDF_Label product = referred(label);
+    const std::string own_name = bestName(nameOf(label), nameOf(product));
+    if (!own_name.empty()) above.name = own_name;
+    const std::string& name = above.name;
+    above.within.push_back(instances_.unique(name.empty() ? "product" : name));
+    const Eigen::Affine3d X_WP =
+        label == product ? X_WParent
+                         : X_WParent * affine(XCAFDoc_ShapeTool::GetLocation(label).Transformation());
+    Color own{};
+    // The instance's colour overrides its product's; a colour above applies only where both have none.
+    const bool is_instance_colored = label != product && colorOf(label, own);
+    const bool has_own = is_instance_colored || colorOf(product, own);
+    const Color* color = has_own ? &own : color_above;
+    if (XCAFDoc_ShapeTool::IsAssembly(product)) {
+      forComponents(product, [&](const TDF_Label& component) { visit(component, above, X_WP, color); });
+      return;
+    }
+    for (const Piece& piece : piecesOf(product)) {
+      RawPart part;
+      part.name = name;
+      part.mesh = piece.tessellation.mesh;
+      part.deviation_m = errorOf(piece.tessellation, settings_);
+      part.note = inWords(piece.tessellation, settings_);
+      part.X_WP = X_WP * piece.X_PieceMesh;
+      part.within = above.within;
+      if (piece.has_color) part.color = piece.color;
+      if (color) part.color = *color;
+      // Over the faces' own goes only what is said of this instance.
+      if (!is_instance_colored && !piece.of_faces.empty())
+        part.face_colors = faceColors(piece, !color && piece.is_by_faces ? ImportedPart().color : part.color);
+      cad_.parts.push_back(std::move(part));
+    }
+  }
+
+  static std::string entryOf(const TDF_Label& label) {
+    TCollection_AsciiString entry;
+    TDF_Tool::Entry(label, entry);
+    return entry.ToCString();
+  }
+
+  const std::vector<Piece>& piecesOf(const TDF_Label& product) {
+    const auto [it, is_new] = products_.try_emplace(entryOf(product));
+    if (!is_new) return it->second;
+    const ColoredFaces colored(product, *this);
+    for (std::size_t i = first_shape_.at(it->first); i < shape_end_.at(it->first); ++i) {
+      const TopoDS_Shape& shape = all_shapes_[i];
+      Piece piece;
+      piece.has_color = colorOf(shape, piece.color, piece.is_by_faces);
+      piece.tessellation = tessellated_.tessellations[tessellated_.shapes[i].number];
+      piece.X_PieceMesh = tessellated_.shapes[i].X_ST;
+      piece.of_faces = colored.of(shape);  // a copy's faces are in the order of those it is a copy of
+      // Faces that were healed may be others.
+      if (piece.of_faces.size() != piece.tessellation.faces.size()) piece.of_faces.clear();
+      it->second.push_back(std::move(piece));
+    }
+    return it->second;
+  }
+
+  /// The colours that a product's faces have of their own.
+  class ColoredFaces {
+   public:
+    ColoredFaces(const TDF_Label& product, const Tree& tree) {
+      TDF_LabelSequence labels;
+      XCAFDoc_ShapeTool::GetSubShapes(product, labels);
+      for (const TDF_Label& label : labels) {
+        const TopoDS_Shape shape = XCAFDoc_ShapeTool::GetShape(label);
+        Color color{};
+        if (shape.IsNull() || shape.ShapeType() != TopAbs_FACE || !tree.colorOf(label, color)) continue;
+        number_of_.Bind(shape, static_cast<int>(colors_.size()));
+        colors_.push_back(color);
+      }
+    }
+    /// By face, in the order of TopExp_Explorer; empty where none has a colour.
+    [[nodiscard]] std::vector<std::optional<Color>> of(const TopoDS_Shape& shape) const {
+      std::vector<std::optional<Color>> out;
+      bool has_any = false;
+      for (TopExp_Explorer it(shape, TopAbs_FACE); !colors_.empty() && it.More(); it.Next()) {
+        std::optional<Color>& color = out.emplace_back();
+        int number = 0;
+        if (!number_of_.Find(it.Current(), number)) continue;
+        color = colors_[static_cast<std::size_t>(number)];
+        has_any = true;
+      }
+      if (!has_any) out.clear();
+      return out;
+    }
+
+   private:
+    std::vector<Color> colors_;
+    TopTools_DataMapOfShapeInteger number_of_;
+  };
+
+  static FaceColors faceColors(const Piece& piece, const Color& other) {
+    FaceColors colors;
+    for (std::size_t i = 0; i < piece.of_faces.size(); ++i)
+      append(colors, piece.tessellation.faces[i].triangles, {}, piece.of_faces[i].value_or(other));
+    return colors;
+  }
+
+  static Color linear(const Quantity_Color& c) { return {float(c.Red()), float(c.Green()), float(c.Blue())}; }
+
+  bool colorOf(const TDF_Label& label, Color& out) const {
+    Quantity_Color c;
+    for (const XCAFDoc_ColorType type : {XCAFDoc_ColorGen, XCAFDoc_ColorSurf}) {
+      if (!colors_->GetColor(label, type, c)) continue;
+      out = linear(c);
+      return true;
+    }
+    return false;
+  }
+
+  /// The solid's colour, or the one that most of the area of its faces has, among those that have one.
+  bool colorOf(const TopoDS_Shape& shape, Color& out, bool& is_by_faces) const {
+    const auto has = [&](const TopoDS_Shape& s) {
+      Quantity_Color c;
+      for (const XCAFDoc_ColorType type : {XCAFDoc_ColorGen, XCAFDoc_ColorSurf}) {
+        if (!colors_->GetColor(s, type, c)) continue;
+        out = linear(c);
+        return true;
+      }
+      return false;
+    };
+    is_by_faces = false;
+    if (has(shape)) return true;
+    is_by_faces = true;
+    std::map<Color, double> area_of;
+    for (TopExp_Explorer it(shape, TopAbs_FACE); it.More(); it.Next()) {
+      if (!has(it.Current())) continue;
+      GProp_GProps face;
+      BRepGProp::SurfaceProperties(it.Current(), face);
+      area_of[out] += face.Mass();
+    }
+    if (area_of.empty()) return false;
+    out = std::ranges::max_element(area_of, {}, [](const auto& one) { return one.second; })->first;
+    return true;
+  }
+
+  Handle(XCAFDoc_ShapeTool) shapes_;
+  Handle(XCAFDoc_ColorTool) colors_;
+  const ImportSettings& settings_;
+  const Progress& progress_;
+  RawCad& cad_;
+  std::map<std::string, std::vector<Piece>> products_;
+  UniqueNames instances_;
+  std::vector<TopoDS_Shape> all_shapes_;
+  std::map<std::string, std::size_t> first_shape_, shape_end_;  // of each product, in all_shapes_
+  TessellatedShapes tessellated_;
+};
+
+LoadError unreadable(const std::string& file, const std::string& format, const std::string& why) {
+  return {file, "", "is not a readable " + format + " file (" + why + "); export it again"};
+}
+
+XSControl_Reader& basic(STEPCAFControl_Reader& reader) {
+  return reader.ChangeReader();
+}
+XSControl_Reader& basic(IGESCAFControl_Reader& reader) {
+  return reader;
+}
+
+IFSelect_ReturnStatus readText(XSControl_Reader& reader, const std::string& file, const std::string& format) {
+  if (format != "STEP") return reader.ReadFile(file.c_str());
+  std::ifstream in(file, std::ios::binary);
+  std::string text(std::filesystem::file_size(file), '\0');
+  in.read(text.data(), std::ssize(text));
+  bool is_changed = text.starts_with(kByteOrderMark);
+  if (is_changed) text.erase(0, kByteOrderMark.size());
+  is_changed = capitalizeExponents(text) || is_changed;
+  if (std::optional<std::string> changed = withReadableNumbers(text))
+    text = std::move(*changed);
+  else if (!is_changed)
+    return reader.ReadFile(file.c_str());
+  std::istringstream stream(std::move(text));
+  return reader.ReadStream(file.c_str(), stream);
+}
+
+/// The unit of the settings, or the millimetre, in place of one that the file does not state.
+void readUnit(const LengthUnits& units, const ImportSettings& settings, RawCad& cad) {
+  cad.states_unit = units.is_stated;
+  if (!units.remark.empty()) cad.warnings.push_back(units.remark);
+  if (units.is_stated) return;
+  cad.unit_m = settings.unit_m.value_or(1e-3);
+  if (!settings.unit_m)
+    cad.warnings.emplace_back(
+        "states no unit of length: millimetres are assumed; set unit or --units for another unit");
+}
+
+template <class Reader>
+void transfer(Reader& reader, const std::string& file, const std::string& format,
+              const Handle(TDocStd_Document) & document, const ImportSettings& settings, RawCad& cad) {
+  reader.SetNameMode(true);
+  reader.SetColorMode(true);
+  if (readText(basic(reader), file, format) != IFSelect_RetDone)
+    throw unreadable(file, format, "its syntax is wrong");
+  // Open CASCADE 7.6.3 crashes on some of what was not read, as a face bound without its loop.
+  nameColors(basic(reader).Model());
+  const Damage damage = damageOf(basic(reader).Model());
+  if (!damage.lost_geometry.empty()) throw unreadable(file, format, damage.lost_geometry);
+  if (!damage.remark.empty()) cad.warnings.push_back(damage.remark);
+  const LengthUnits units = lengthUnits(basic(reader).Model());
+  if (!units.fault.empty()) throw unreadable(file, format, units.fault);
+  readUnit(units, settings, cad);
+  Handle(TDocStd_Document) target = document;
+  if (!reader.Transfer(target)) throw unreadable(file, format, "no shape could be made from it");
+  const LostShapes lost = lostShapes(basic(reader));
+  if (!lost.unplaced.empty()) throw unreadable(file, format, lost.unplaced);
+  if (!lost.left_out.empty()) cad.warnOfMissing(lost.left_out);
+}
+
+RawCad read(const std::string& file, const std::string& format, const ImportSettings& settings,
+            const Progress& progress) {
+  RawCad cad;
+  cad.unit_m = 1e-3;  // both readers convert to mm
+  if (format == "BREP") {
+    if (!settings.unit_m) {
+      throw LoadError(
+          file, "", "BREP files do not state their unit; set unit = \"mm\" in the scene or give --units mm");
+    }
+    cad.unit_m = *settings.unit_m;
+    TopoDS_Shape shape;
+    if (!BRepTools::Read(shape, file.c_str(), BRep_Builder()) || shape.IsNull()) {
+      throw unreadable(file, format, "its syntax is wrong");
+    }
+    const TessellatedShapes found =
+        tessellateAll(pieces(shape), settings, 1 / cad.unit_m, [&](std::size_t done, std::size_t all) {
+          if (progress) progress("meshing", double(done) / double(all));
+        });
+    for (const TessellatedShape& one : found.shapes) {
+      const Tessellation& tessellation = found.tessellations[one.number];
+      RawPart part;
+      part.mesh = tessellation.mesh;
+      part.X_WP = one.X_ST;
+      part.deviation_m = errorOf(tessellation, settings);
+      part.note = inWords(tessellation, settings);
+      cad.parts.push_back(std::move(part));
+    }
+    return cad;
+  }
+  Document document;
+  if (format == "STEP") {
+    STEPCAFControl_Controller::Init();  // defines the static below
+    Interface_Static::SetCVal("xstep.cascade.unit", "MM");
+    STEPCAFControl_Reader reader;
+    transfer(reader, file, format, document.get(), settings, cad);
+  } else {
+    IGESControl_Controller::Init();
+    Interface_Static::SetCVal("xstep.cascade.unit", "MM");
+    IGESCAFControl_Reader reader;
+    transfer(reader, file, format, document.get(), settings, cad);
+  }
+  Tree(document.get(), settings, progress, cad).walk();
+  return cad;
+}
+
+}  // namespace
+
+std::string occtVersion() {
+  return OCC_VERSION_STRING_EXT;
+}
+
+RawCad readOcct(const std::string& file, const std::string& format, const ImportSettings& settings,
+                const Progress& progress) {
+  static std::mutex one_at_a_time;  // its settings and messages are global
+  const std::lock_guard lock(one_at_a_time);
+  const Quiet quiet;
+  try {
+    return read(file, format, settings, progress);
+  } catch (const LoadError&) {
+    throw;
+  } catch (const Standard_Failure& e) {
+    throw unreadable(file, format, e.GetMessageString());
+  } catch (const std::exception& e) {
+    throw unreadable(file, format, e.what());
+  }
+}
+
+}  // namespace vps::scenes::import

@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vps_scenes/fits/check.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <map>
+#include <string_view>
+#include <unordered_map>
+
+#include "check/check_placed.h"
+#include "check/check_play.h"
+#include "check/clearance_map.h"
+#include "check/section.h"
+#include "core/wall_clock.h"
+#include "fits/fits.h"
+#include "fits/press_fit.h"
+#include "pair/check_pair.h"
+#include "proof/places.h"
+#include "surface/on_cores.h"
+#include "vps/mesh_repair.h"
+
+namespace vps::scenes {
+
+const char* toText(PairState state) {
+  switch (state) {
+    case PairState::Apart:
+      return "apart";
+    case PairState::Contact:
+      return "contact";
+    case PairState::PressFit:
+      return "press fit";
+    case PairState::Clash:
+      return "clash";
+  }
+  return "";
+}
+
+const char* toText(FitKind kind) {
+  switch (kind) {
+    case FitKind::Shaft:
+      return "shaft";
+    case FitKind::Key:
+      return "key";
+    case FitKind::Thread:
+      return "thread";
+  }
+  return "";
+}
+
+std::string standardOf(const CheckedFit& fit) {
+  if (fit.kind != FitKind::Thread || !fit.thread.empty()) return fit.iso_286 + fit.thread;
+  std::array<char, 80> text{};
+  std::snprintf(text.data(), text.size(), "lead %.3f mm%s%s", 1e3 * std::abs(fit.lead_m),
+                fit.starts > 1 ? (", " + std::to_string(fit.starts) + " starts").c_str() : "",
+                fit.lead_m < 0 ? ", left-hand" : "");
+  return text.data();
+}
+
+std::size_t CheckResult::clashes() const {
+  return static_cast<std::size_t>(
+      std::count_if(pairs.begin(), pairs.end(), [](const CheckedPair& pair) { return pair.isClash(); }));
+}
+
+std::size_t CheckResult::uncertain() const {
+  return static_cast<std::size_t>(std::ranges::count(pairs, true, &CheckedPair::is_uncertain));
+}
+
+bool CheckSettings::isAsked(const std::string& part) const {
+  return only_parts.empty() || std::ranges::find(only_parts, part) != only_parts.end();
+}
+
+const CheckedPair* CheckResult::deepestClash() const {
+  const auto found =
+      std::find_if(pairs.begin(), pairs.end(), [](const CheckedPair& pair) { return pair.isClash(); });
+  return found == pairs.end() ? nullptr : &*found;
+}
+
+Verdict CheckResult::verdict() const {
+  if (places.verdict != Verdict::Fits) return places.verdict;
+  return uncertain() > 0 || !alone.empty() ? Verdict::NotShown : Verdict::Fits;
+}
+
+namespace {
+
+using PartPairs = std::vector<std::pair<std::size_t, std::size_t>>;
+
+PartPairs pairsAsked(const std::vector<PlacedSurface>& parts, const CheckSettings& settings) {
+  PartPairs near = nearPairs(parts, settings.near_m);
+  std::erase_if(near, [&](const auto& pair) {
+    return !settings.isAsked(parts[pair.first].name) && !settings.isAsked(parts[pair.second].name);
+  });
+  return near;
+}
+
+std::vector<CheckedPair> checkPairs(const std::vector<PlacedSurface>& parts, const PartPairs& near,
+                                    double near_m, const Progress& progress) {
+  std::vector<std::optional<CheckedPair>> found(near.size());
+  forEachOnCores(near.size(), progress, "measuring pairs", [&](std::size_t i) {
+    found[i] = checkPair(parts[near[i].first], parts[near[i].second], near_m);
+  });
+  std::vector<CheckedPair> pairs;
+  for (std::optional<CheckedPair>& pair : found)
+    if (pair) pairs.push_back(std::move(*pair));
+  return pairs;
+}
+
+void sortPairs(std::vector<CheckedPair>& pairs) {
+  std::stable_sort(pairs.begin(), pairs.end(), [](const CheckedPair& a, const CheckedPair& b) {
+    if (a.state != b.state) return a.state > b.state;
+    if (a.interference_depth_m != b.interference_depth_m)
+      return a.interference_depth_m > b.interference_depth_m;
+    return a.clearance_m < b.clearance_m;
+  });
+}
+
+/// The pairs of which fits are needed to judge the overlap.
+PartPairs pairsToJudge(const std::vector<PlacedSurface>& parts, const std::vector<CheckedPair>& pairs) {
+  std::unordered_map<std::string_view, std::size_t> index_of;
+  for (std::size_t i = 0; i < parts.size(); ++i) index_of.emplace(parts[i].name, i);
+  PartPairs out;
+  for (const CheckedPair& pair : pairs)
+    if (needsFit(pair)) out.emplace_back(index_of.at(pair.a), index_of.at(pair.b));
+  return out;
+}
+
+std::vector<CheckedFit> checkFits(const std::vector<PlacedSurface>& parts, const PartPairs& near,
+                                  const Progress& progress) {
+  std::vector<bool> is_near(parts.size());
+  for (const auto& [a, b] : near) is_near[a] = is_near[b] = true;
+  // Equal parts share their surface.
+  std::map<const PartSurface*, FitFaces> faces;
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    if (is_near[i]) faces.try_emplace(parts[i].surface.get());
+  std::vector<decltype(faces)::value_type*> own;
+  for (auto& of_surface : faces) own.push_back(&of_surface);
+  forEachOnCores(own.size(), progress, "finding round and flat faces",
+                 [&](std::size_t i) { own[i]->second = fitFaces(*own[i]->first); });
+  std::vector<std::vector<CheckedFit>> found(near.size());
+  forEachOnCores(near.size(), progress, "finding fits", [&](std::size_t i) {
+    const auto [a, b] = near[i];
+    const FittedPart of_a{parts[a], faces.at(parts[a].surface.get())},
+        of_b{parts[b], faces.at(parts[b].surface.get())};
+    appendShaftFits(of_a, of_b, found[i]);
+    appendKeyFits(of_a, of_b, found[i]);
+    appendThreadFits(of_a, of_b, found[i]);
+  });
+  std::vector<CheckedFit> fits;
+  for (const std::vector<CheckedFit>& of_pair : found)
+    fits.insert(fits.end(), of_pair.begin(), of_pair.end());
+  return fits;
+}
+
+/// Parts whose boxes are near no other one; and all of them where no two parts are near each other.
+std::vector<std::string> partsAlone(const std::vector<PlacedSurface>& parts, const CheckResult& result,
+                                    const CheckSettings& settings) {
+  // assumed: parts of an assembly touch, or have a neighbour at less than this; the default of --near
+  constexpr double kNeighbour_m = 1e-3;
+  std::vector<std::string> alone;
+  if (parts.size() < 2) return alone;
+  std::vector<bool> has_neighbour(parts.size());
+  for (const auto& [a, b] : nearPairs(parts, std::max(settings.near_m, kNeighbour_m)))
+    has_neighbour[a] = has_neighbour[b] = true;
+  const bool is_none_near =
+      result.pairs.empty() && settings.only_parts.empty() && settings.near_m >= kNeighbour_m;
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    if ((is_none_near || !has_neighbour[i]) && settings.isAsked(parts[i].name))
+      alone.push_back(parts[i].name);
+  return alone;
+}
+
+CheckedPart describePart(const PlacedSurface& part) {
+  CheckedPart out;
+  out.name = part.name;
+  const Mesh& mesh = part.surface->mesh();
+  out.triangles = mesh.triangles.size();
+  for (std::uint32_t i = 0; i < out.triangles; ++i)
+    out.chord_error_m = std::max(out.chord_error_m, part.surface->chord_m(i));
+  const MeshReport& report = part.surface->solid().report();
+  out.no_inside = part.surface->noInside();
+  if (!report.isClosed() || part.surface->solid().isByWinding()) out.mesh_faults = describe(report);
+  return out;
+}
+
+}  // namespace
+
+CheckResult checkAssembly(const std::string& name, const std::vector<DrawnPart>& parts,
+                          const CheckSettings& settings, const Progress& progress) {
+  const double begun_s = wallSeconds();
+  const std::vector<PlacedSurface> placed = placedSurfaces(parts, progress);
+  const double prepare_s = wallSeconds() - begun_s;
+  CheckResult result = checkPlaced(name, placed, settings, progress);
+  result.prepare_wall_s = prepare_s;
+  return result;
+}
+
+CheckResult checkPlaced(const std::string& name, const std::vector<PlacedSurface>& placed,
+                        const CheckSettings& settings, const Progress& progress) {
+  CheckResult result;
+  result.assembly = name;
+  result.near_m = settings.near_m;
+  double begun_s = wallSeconds();
+  const auto lap_s = [&] {
+    const double before_s = begun_s;
+    begun_s = wallSeconds();
+    return begun_s - before_s;
+  };
+  const PartPairs near = pairsAsked(placed, settings);
+  result.pairs = checkPairs(placed, near, settings.near_m, progress);
+  result.pairs_wall_s = lap_s();
+  result.fits = checkFits(placed, settings.has_fits ? near : pairsToJudge(placed, result.pairs), progress);
+  removeFalseFits(result);
+  judgeByFits(placed, result);
+  sortPairs(result.pairs);
+  result.fits_wall_s = lap_s();
+  if (settings.has_fits && settings.has_places && settings.only_parts.empty())
+    result.places = freePlaces(placed, result, progress);
+  else if (result.clashes() > 0)
+    result.places = {Verdict::NotShown, {}, "places without overlap were not looked for"};
+  result.places_wall_s = lap_s();
+  if (!settings.has_fits) result.fits.clear();
+  if (settings.has_sections) result.sections = checkSections(placed, result, progress);
+  if (settings.has_maps) result.maps = clearanceMaps(placed, result, settings.near_m, progress);
+  result.pictures_wall_s = lap_s();
+  for (const PlacedSurface& part : placed) result.parts.push_back(describePart(part));
+  result.alone = partsAlone(placed, result, settings);
+  if (settings.has_play) checkPlay(placed, result, settings, progress);
+  result.play_wall_s = lap_s();
+  return result;
+}
+
+}  // namespace vps::scenes

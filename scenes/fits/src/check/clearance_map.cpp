@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "check/clearance_map.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+
+#include "surface/on_cores.h"
+
+namespace vps::scenes {
+
+namespace {
+
+constexpr std::size_t kMostParts = 24;         // assumed: more pictures than anybody looks at
+constexpr std::size_t kMostVertices = 40'000;  // assumed: a tenth of a second a part
+constexpr double kFine = 1.0 / 100;            // of the part's size: about four pixels
+
+using Edge = std::array<std::uint32_t, 2>;
+
+/// Divides the edges longer than this that are near boxes of other parts, once. The mesh stays closed,
+/// because both facets at an edge divide it. False if there is none.
+bool divideOnce(Mesh& mesh, double longest_m, const std::vector<Box>& others_W) {
+  std::map<Edge, std::uint32_t> middle;
+  const auto divided = [&](std::uint32_t a, std::uint32_t b) -> std::uint32_t {
+    const auto [low, high] = std::minmax(a, b);
+    const auto known = middle.find({low, high});
+    return known == middle.end() ? a : known->second;
+  };
+  for (const auto& t : mesh.triangles) {
+    Box box;
+    for (const std::uint32_t v : t) box.add(mesh.vertices[v]);
+    if (std::ranges::none_of(others_W, [&](const Box& other) { return overlap(box, other); })) continue;
+    for (std::size_t e = 0; e < 3; ++e) {
+      const auto [low, high] = std::minmax(t[e], t[(e + 1) % 3]);
+      const Vec3 a = mesh.vertices[low], b = mesh.vertices[high];
+      if ((b - a).norm() <= longest_m || middle.contains({low, high})) continue;
+      middle[{low, high}] = static_cast<std::uint32_t>(mesh.vertices.size());
+      mesh.vertices.emplace_back(0.5 * (a + b));
+    }
+  }
+  if (middle.empty()) return false;
+  std::vector<std::array<std::uint32_t, 3>> out;
+  for (auto t : mesh.triangles) {
+    std::array<std::uint32_t, 3> m{};
+    std::array<bool, 3> is_divided{};
+    for (std::size_t e = 0; e < 3; ++e) {
+      m[e] = divided(t[e], t[(e + 1) % 3]);
+      is_divided[e] = m[e] != t[e];
+    }
+    const auto count = std::ranges::count(is_divided, true);
+    if (count == 0) {
+      out.push_back(t);
+    } else if (count == 3) {
+      out.insert(out.end(), {{t[0], m[0], m[2]}, {t[1], m[1], m[0]}, {t[2], m[2], m[1]}, {m[0], m[1], m[2]}});
+    } else {
+      // Turned so that edge 0 is divided and edge 2 is not.
+      while (!is_divided[0] || is_divided[2]) {
+        std::rotate(t.begin(), t.begin() + 1, t.end());
+        std::rotate(m.begin(), m.begin() + 1, m.end());
+        std::rotate(is_divided.begin(), is_divided.begin() + 1, is_divided.end());
+      }
+      if (count == 1)
+        out.insert(out.end(), {{t[0], m[0], t[2]}, {m[0], t[1], t[2]}});
+      else
+        out.insert(out.end(), {{m[0], t[1], m[1]}, {t[0], m[0], m[1]}, {t[0], m[1], t[2]}});
+    }
+  }
+  mesh.triangles = std::move(out);
+  return true;
+}
+
+ClearanceMap mapOf(const PlacedSurface& part, const std::vector<const PlacedSurface*>& others,
+                   double near_m) {
+  ClearanceMap map{part.name, transformed(part.surface->mesh(), part.X_WP), {}};
+  std::vector<Box> others_W;
+  for (const PlacedSurface* other : others) others_W.push_back(grown(other->box_W, near_m));
+  const double longest_m = kFine * part.box_W.size().norm();
+  while (map.mesh_W.vertices.size() < kMostVertices && divideOnce(map.mesh_W, longest_m, others_W)) {
+  }
+  map.distance_m.assign(map.mesh_W.vertices.size(), near_m);
+  for (std::size_t i = 0; i < map.distance_m.size(); ++i) {
+    const Vec3& p_W = map.mesh_W.vertices[i];
+    double& least_m = map.distance_m[i];
+    for (const PlacedSurface* other : others) {
+      const Vec3 out = (other->box_W.min - p_W).cwiseMax(p_W - other->box_W.max).cwiseMax(0);
+      const double apart_m = out.norm();
+      if (apart_m >= std::max(least_m, 1e-300)) continue;
+      // Nothing outside its box is inside a part; within the box a far surface can still be around the point.
+      const double most_m = apart_m > 0 ? least_m : near_m;
+      const Vec3 p = other->X_WP.inverse() * p_W;
+      least_m = std::min(least_m, other->surface->solid().signedDistance(p, most_m));
+    }
+  }
+  return map;
+}
+
+}  // namespace
+
+std::vector<ClearanceMap> clearanceMaps(const std::vector<PlacedSurface>& parts, const CheckResult& result,
+                                        double near_m, const Progress& progress) {
+  // The pairs are sorted, the tightest first.
+  std::vector<std::size_t> wanted;
+  for (const CheckedPair& pair : result.pairs)
+    for (const std::string& name : {pair.a, pair.b}) {
+      const auto i =
+          static_cast<std::size_t>(std::ranges::find(parts, name, &PlacedSurface::name) - parts.begin());
+      if (wanted.size() < kMostParts && std::ranges::find(wanted, i) == wanted.end()) wanted.push_back(i);
+    }
+  const auto near = nearPairs(parts, near_m);
+  std::vector<ClearanceMap> maps(wanted.size());
+  forEachOnCores(wanted.size(), progress, "mapping the clearance", [&](std::size_t k) {
+    std::vector<const PlacedSurface*> others;
+    for (const auto& [a, b] : near)
+      if (a == wanted[k] || b == wanted[k]) others.push_back(&parts[a == wanted[k] ? b : a]);
+    maps[k] = mapOf(parts[wanted[k]], others, near_m);
+  });
+  return maps;
+}
+
+}  // namespace vps::scenes

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fits/iso_262.h"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+namespace vps::scenes {
+
+namespace {
+
+/// A size with its coarse pitch and its fine ones [mm].
+struct Size {
+  double nominal, coarse;
+  std::array<double, 3> fine = {};
+};
+constexpr std::array kSizes = {Size{1, 0.25},
+                               Size{1.2, 0.25},
+                               Size{1.4, 0.3},
+                               Size{1.6, 0.35},
+                               Size{1.8, 0.35},
+                               Size{2, 0.4},
+                               Size{2.5, 0.45},
+                               Size{3, 0.5},
+                               Size{3.5, 0.6},
+                               Size{4, 0.7},
+                               Size{5, 0.8},
+                               Size{6, 1},
+                               Size{7, 1},
+                               Size{8, 1.25, {1}},
+                               Size{10, 1.5, {1.25, 1}},
+                               Size{12, 1.75, {1.5, 1.25}},
+                               Size{14, 2, {1.5}},
+                               Size{16, 2, {1.5}},
+                               Size{18, 2.5, {2, 1.5}},
+                               Size{20, 2.5, {2, 1.5}},
+                               Size{22, 2.5, {2, 1.5}},
+                               Size{24, 3, {2}},
+                               Size{27, 3, {2}},
+                               Size{30, 3.5, {2}},
+                               Size{33, 3.5, {2}},
+                               Size{36, 4, {3}},
+                               Size{39, 4, {3}},
+                               Size{42, 4.5, {3}},
+                               Size{45, 4.5, {3}},
+                               Size{48, 5, {3}},
+                               Size{52, 5, {4}},
+                               Size{56, 5.5, {4}},
+                               Size{60, 5.5, {4}},
+                               Size{64, 6, {4}}};
+
+/// Lower deviation of the major diameter at 8g [mm]: es of g is -(15 + 11 P) um, and grade 8 is 1.6 times
+/// grade 6, 180 P^(2/3) - 3.15 / sqrt(P) um.
+double lowest_mm(double pitch_mm) {
+  return -1e-3 *
+         (15 + 11 * pitch_mm + 1.6 * (180 * std::cbrt(pitch_mm * pitch_mm) - 3.15 / std::sqrt(pitch_mm)));
+}
+
+std::string nameOf(double nominal_mm, double pitch_mm, bool is_coarse, bool is_left) {
+  char text[48];
+  int n = std::snprintf(text, sizeof text, "M%g", nominal_mm);
+  if (!is_coarse) n += std::snprintf(text + n, sizeof text - static_cast<std::size_t>(n), "x%g", pitch_mm);
+  if (is_left) std::snprintf(text + n, sizeof text - static_cast<std::size_t>(n), "-LH");
+  return text;
+}
+
+}  // namespace
+
+MetricThread metricThread(double major_m, double lead_m) {
+  constexpr double kSamePitch = 0.01;
+  constexpr double kAbove_mm = 1e-3;  // rounding of the drawing
+  const double pitch_mm = 1e3 * std::abs(lead_m), major_mm = 1e3 * major_m;
+  for (const Size& size : kSizes) {
+    const double above_mm = major_mm - size.nominal;
+    const auto is = [&](double standard_mm) {
+      return standard_mm > 0 && std::abs(pitch_mm - standard_mm) <= kSamePitch * standard_mm &&
+             above_mm <= kAbove_mm && above_mm >= lowest_mm(standard_mm);
+    };
+    if (is(size.coarse)) return {nameOf(size.nominal, size.coarse, true, lead_m < 0), 1e-3 * size.coarse};
+    for (const double fine_mm : size.fine)
+      if (is(fine_mm)) return {nameOf(size.nominal, fine_mm, false, lead_m < 0), 1e-3 * fine_mm};
+  }
+  return {};
+}
+
+std::string metricSize(double major_m) {
+  constexpr double kAbove_mm = 1e-3;
+  for (const Size& size : kSizes) {
+    const double above_mm = 1e3 * major_m - size.nominal;
+    if (above_mm <= kAbove_mm && above_mm >= lowest_mm(size.coarse))
+      return nameOf(size.nominal, size.coarse, true, false);
+  }
+  return "";
+}
+
+std::string metricHole(double minor_m) {
+  constexpr double kMost = 1.0825, kLeast = 1, kSlack = 0.1;
+  const auto is = [&](double nominal_mm, double pitch_mm) {
+    const double below = (nominal_mm - 1e3 * minor_m) / pitch_mm;
+    return pitch_mm > 0 && below < kMost + kSlack && below > kLeast - kSlack;
+  };
+  for (const Size& size : kSizes)
+    if (is(size.nominal, size.coarse)) return nameOf(size.nominal, size.coarse, true, false);
+  for (const Size& size : kSizes)
+    for (const double fine_mm : size.fine)
+      if (is(size.nominal, fine_mm)) return nameOf(size.nominal, fine_mm, false, false);
+  return "";
+}
+
+}  // namespace vps::scenes

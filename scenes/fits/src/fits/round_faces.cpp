@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fits/round_faces.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "fits/cylinder_fit.h"
+
+namespace vps::scenes {
+
+namespace {
+
+/// Coordinates of files with six or seven digits are off by up to 1e-6 of the greatest.
+constexpr double kRoundFacesRounding = 2e-6;
+/// In the radius: 1 um at 4 mm, what coordinates in metres with six decimals need.
+constexpr double kCoarse = 2.5e-4;
+constexpr double kLeastTurn = 0.3;
+constexpr std::size_t kPatch = 16;  // facets from which a cylinder is guessed
+/// Flat strips from which a circle can be told; one strip may be divided into many facets.
+constexpr std::size_t kLeastNormals = 4;
+/// How far the middle of a facet is inside, in the radius: 1 - cos(kCurved_rad / 2).
+constexpr double kMostChord = 0.02;
+
+class Finder {
+ public:
+  explicit Finder(const PartSurface& surface)
+      : surface_(surface),
+        mesh_(surface.mesh()),
+        is_taken_(mesh_.triangles.size()),
+        is_tried_(is_taken_.size()),
+        seen_(is_taken_.size()) {
+    for (const Vec3& v : mesh_.vertices) tolerance_m_ = std::max(tolerance_m_, v.cwiseAbs().maxCoeff());
+    tolerance_m_ *= kRoundFacesRounding;
+    is_corner_.assign(mesh_.vertices.size(), false);
+    for (std::uint32_t i = 0; i < is_taken_.size(); ++i)
+      for (int e = 0; e < 3; ++e)
+        if (isBent(i, surface_.neighbours()[i][e]))
+          for (const int end : {e, (e + 1) % 3}) is_corner_[mesh_.triangles[i][end]] = true;
+  }
+
+  std::vector<RoundFace> find() {
+    std::vector<RoundFace> faces;
+    for (std::uint32_t seed = 0; seed < is_taken_.size(); ++seed) {
+      if (is_taken_[seed] || is_tried_[seed] || !isBent(seed)) continue;
+      if (std::optional<RoundFace> face = grownFrom(seed)) faces.push_back(std::move(*face));
+    }
+    return faces;
+  }
+
+ private:
+  [[nodiscard]] double turn(std::uint32_t i, std::uint32_t k) const {
+    const Vec3 a = surface_.normal(i), b = surface_.normal(k);
+    return std::atan2(a.cross(b).norm(), a.dot(b));
+  }
+  [[nodiscard]] bool isBent(std::uint32_t i, std::uint32_t neighbour) const {
+    const double turn_rad = neighbour == kNoFacet ? 0 : turn(i, neighbour);
+    return turn_rad > 1e-4 && turn_rad < kCurved_rad;
+  }
+  [[nodiscard]] bool isBent(std::uint32_t i) const {
+    return std::ranges::any_of(surface_.neighbours()[i], [&](std::uint32_t k) { return isBent(i, k); });
+  }
+
+  /// Calls visit(x) for the corners of a facet that lie on the true surface. Where a flat strip was divided
+  /// further, the other corners lie on it, inside the cylinder.
+  template <class Visit>
+  void forEachCorner(std::uint32_t i, Visit visit) const {
+    for (const std::uint32_t v : mesh_.triangles[i])
+      if (is_corner_[v]) visit(mesh_.vertices[v]);
+  }
+
+  /// Facets that are connected to the seed over smooth edges, and of which `accepts` is true.
+  template <class Accepts>
+  std::vector<std::uint32_t> flood(std::uint32_t seed, std::size_t most, Accepts accepts) {
+    ++round_;
+    std::vector<std::uint32_t> found{seed};
+    seen_[seed] = round_;
+    for (std::size_t next = 0; next < found.size() && found.size() < most; ++next)
+      for (const std::uint32_t k : surface_.neighbours()[found[next]]) {
+        if (k == kNoFacet || seen_[k] == round_) continue;
+        seen_[k] = round_;
+        if (!is_taken_[k] && turn(found[next], k) < kCurved_rad && accepts(k)) found.push_back(k);
+      }
+    return found;
+  }
+
+  std::optional<RoundFace> grownFrom(std::uint32_t seed) {
+    std::vector<std::uint32_t> facets;
+    for (const std::size_t most : {kPatch, 8 * kPatch, 64 * kPatch}) {
+      facets = flood(seed, most, [](std::uint32_t) { return true; });
+      if (differentNormals(facets) >= kLeastNormals) break;
+    }
+    std::optional<Cylinder> guess = guessed(facets);
+    if (!guess) return std::nullopt;
+    // Files of few digits have corners off the circle by more; the face's residual then says so.
+    for (const double within_m : {tolerance_m_, kCoarse * guess->radius_m})
+      if (std::optional<RoundFace> face = grown(seed, *guess, within_m)) return face;
+    return std::nullopt;
+  }
+
+  std::optional<RoundFace> grown(std::uint32_t seed, Cylinder guess, double within_m) {
+    std::vector<std::uint32_t> facets;
+    // A small patch tells the cylinder less well than all of it: the tolerance narrows.
+    for (const double loose_m : {1e-4 * guess.radius_m + 3 * within_m, within_m}) {
+      const Cylinder& on = guess;
+      const auto lies = [&](std::uint32_t i) { return liesOn(on, i, loose_m); };
+      if (!lies(seed)) return std::nullopt;
+      facets = flood(seed, is_taken_.size(), lies);
+      if (facets.size() < 6 || !refine(guess, facets)) return std::nullopt;
+    }
+    std::erase_if(facets, [&](std::uint32_t i) { return !liesOn(guess, i, 2 * within_m); });
+    return finished(guess, std::move(facets));
+  }
+
+  /// Their number, up to kLeastNormals.
+  [[nodiscard]] std::size_t differentNormals(const std::vector<std::uint32_t>& facets) const {
+    std::vector<Vec3> normals;
+    for (const std::uint32_t i : facets) {
+      const Vec3 n = surface_.normal(i);
+      const bool is_new = std::ranges::none_of(
+          normals, [&](const Vec3& other) { return n.cross(other).squaredNorm() < 1e-8; });
+      if (is_new) normals.push_back(n);
+      if (normals.size() == kLeastNormals) break;
+    }
+    return normals.size();
+  }
+
+  [[nodiscard]] bool liesOn(const Cylinder& on, std::uint32_t i, double within_m) const {
+    const Triangle t = surface_.triangle(i);
+    const Vec3 n = surface_.normal(i), out = on.outward((t[0] + t[1] + t[2]) / 3);
+    if (std::abs(n.dot(on.axis)) > 0.05 || std::abs(n.dot(out)) < 0.9 * out.norm()) return false;
+    bool lies = true;
+    forEachCorner(i, [&](const Vec3& x) { lies = lies && std::abs(on.off(x)) <= within_m; });
+    return lies && std::ranges::all_of(t, [&](const Vec3& x) {
+             return on.off(x) <= within_m && on.off(x) >= -kMostChord * on.radius_m - within_m;
+           });
+  }
+
+  /// The normals of a cylinder are square to its axis, and its corners lie on a circle as seen along it.
+  [[nodiscard]] std::optional<Cylinder> guessed(const std::vector<std::uint32_t>& facets) const {
+    Mat3 spread = Mat3::Zero();
+    Vec3 middle = Vec3::Zero();
+    for (const std::uint32_t i : facets) {
+      spread += surface_.normal(i) * surface_.normal(i).transpose();
+      middle += surface_.triangle(i)[0];
+    }
+    middle /= static_cast<double>(facets.size());
+    const Eigen::SelfAdjointEigenSolver<Mat3> solver(spread);
+    if (!(solver.eigenvalues()[0] < 1e-4 * solver.eigenvalues()[1])) return std::nullopt;
+    Cylinder guess{solver.eigenvectors().col(0), middle, 0};
+    // Least squares for x^2 + y^2 = 2 a x + 2 b y + c (Kasa 1976).
+    const Vec3 u = guess.axis.unitOrthogonal(), v = guess.axis.cross(u);
+    Mat3 sum = Mat3::Zero();
+    Vec3 right = Vec3::Zero();
+    for (const std::uint32_t i : facets)
+      forEachCorner(i, [&](const Vec3& x) {
+        const Vec3 row(u.dot(x - middle), v.dot(x - middle), 1);
+        sum += row * row.transpose();
+        right += row * row.head<2>().squaredNorm();
+      });
+    const Vec3 solved = sum.ldlt().solve(right);
+    const double x = 0.5 * solved.x(), y = 0.5 * solved.y();
+    const double radius2_m2 = solved.z() + x * x + y * y;
+    if (!std::isfinite(radius2_m2) || radius2_m2 <= 0) return std::nullopt;
+    guess.p = middle + x * u + y * v;
+    guess.radius_m = std::sqrt(radius2_m2);
+    return guess;
+  }
+
+  bool refine(Cylinder& of, const std::vector<std::uint32_t>& facets) const {
+    std::vector<Vec3> corners;
+    for (const std::uint32_t i : facets) forEachCorner(i, [&](const Vec3& x) { corners.push_back(x); });
+    return fitCylinder(corners, of);
+  }
+
+  std::optional<RoundFace> finished(const Cylinder& on, std::vector<std::uint32_t> facets) {
+    RoundFace face{on.axis, on.p, on.radius_m, 1e300, -1e300, 0, false, std::move(facets)};
+    double area_m2 = 0, facing = 0;
+    for (const std::uint32_t i : face.facets) {
+      const Triangle t = surface_.triangle(i);
+      area_m2 += 0.5 * (t[1] - t[0]).cross(t[2] - t[0]).norm();
+      facing += surface_.normal(i).dot(on.outward((t[0] + t[1] + t[2]) / 3));
+      for (const Vec3& x : t) {
+        const double along_m = on.axis.dot(x - on.p);
+        face.from_m = std::min(face.from_m, along_m);
+        face.to_m = std::max(face.to_m, along_m);
+      }
+      forEachCorner(i,
+                    [&](const Vec3& x) { face.residual_m = std::max(face.residual_m, std::abs(on.off(x))); });
+    }
+    face.is_bore = facing < 0;
+    const double whole_m2 = 2 * std::numbers::pi * on.radius_m * (face.to_m - face.from_m);
+    if (!(area_m2 >= kLeastTurn * whole_m2) || !(whole_m2 > 0)) {
+      for (const std::uint32_t i : face.facets) is_tried_[i] = true;
+      return std::nullopt;
+    }
+    for (const std::uint32_t i : face.facets) is_taken_[i] = true;
+    std::ranges::sort(face.facets);
+    return face;
+  }
+
+  const PartSurface& surface_;
+  const Mesh& mesh_;
+  double tolerance_m_ = 0;
+  std::vector<bool> is_taken_;
+  std::vector<bool> is_tried_;   // on a cylinder of which too little is there, as the crests of a thread
+  std::vector<bool> is_corner_;  // by vertex: at an edge between two facets of a curved face
+  std::vector<std::uint32_t> seen_;
+  std::uint32_t round_ = 0;
+};
+
+}  // namespace
+
+std::vector<RoundFace> roundFaces(const PartSurface& surface) {
+  return Finder(surface).find();
+}
+
+}  // namespace vps::scenes

@@ -1,0 +1,379 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "motion/motion_search.h"
+
+#include "motion/pair_step.h"
+
+namespace vps::scenes {
+
+namespace {
+
+constexpr double kMotionSearchForever = std::numeric_limits<double>::infinity();
+/// A step of less than this stops the motion: a tenth of the rest depth.
+constexpr double kLeastStep_m = 0.1 * MotionSearch::kRest_m;
+constexpr int kMostSteps = 400;
+/// A whole turn in a bore of n facets, with clearance c at radius r, takes some 2 n steps, and more where c
+/// is near the chord of the facets.
+constexpr int kMostStepsOfTurn = 4000;
+/// The first step ends here, and each later one at four times as far: only what is near is looked at, where
+/// something is near.
+constexpr double kFirstStep_m = 0.1e-3;
+
+/// The greatest rest depth that the facets of a pair need as drawn.
+double restOf(const PlacedSurface& part, const PlacedSurface& held, const Pose& X_HM, double crossing_m) {
+  const MovingPair pair{*part.surface, *held.surface, X_HM, {}, MotionSearch::kRest_m};
+  double needed_m = 0;
+  visitPairs(
+      held.surface->tree(), part.surface->tree(), [&](const Box& box) { return moved(box, X_HM); }, distance2,
+      [] { return std::numeric_limits<double>::min(); },
+      [&](std::uint32_t k, std::uint32_t i) { needed_m = std::max(needed_m, crossingDepth(pair, i, k)); });
+  return MotionSearch::kRest_m + std::min(needed_m, crossing_m);
+}
+
+/// When a box that moves along d reaches another one; forever if it passes by.
+double entry(const Box& moving, const Box& held, const Vec3& d) {
+  double first = 0, last = kMotionSearchForever;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double before = held.min[axis] - moving.max[axis], behind = held.max[axis] - moving.min[axis];
+    if (d[axis] == 0) {
+      if (before > 0 || behind < 0) return kMotionSearchForever;
+      continue;
+    }
+    const double from = (d[axis] > 0 ? before : behind) / d[axis],
+                 to = (d[axis] > 0 ? behind : before) / d[axis];
+    first = std::max(first, from);
+    last = std::min(last, to);
+  }
+  return first <= last ? first : kMotionSearchForever;
+}
+
+std::array<Vec3, 8> cornersOf(const Box& box) {
+  std::array<Vec3, 8> out;
+  for (int i = 0; i < 8; ++i)
+    out[static_cast<std::size_t>(i)] =
+        Vec3((i & 1) != 0 ? box.max.x() : box.min.x(), (i & 2) != 0 ? box.max.y() : box.min.y(),
+             (i & 4) != 0 ? box.max.z() : box.min.z());
+  return out;
+}
+
+double greatestSpeed(const Motion& motion, const Box& box) {
+  double most = 0;
+  for (const Vec3& corner : cornersOf(box)) most = std::max(most, motion.velocity(corner).norm());
+  return most;
+}
+
+/// How long all of a box that moves stays above a plane; 0 if it is not now.
+double staysAbove(const Motion& motion, const Box& box, const Vec3& n, double least_m) {
+  const double lowest_m = n.dot(box.center()) - 0.5 * n.cwiseAbs().dot(box.size());
+  if (lowest_m < least_m) return 0;
+  double s = kMotionSearchForever;
+  for (const Vec3& corner : cornersOf(box)) s = std::min(s, motion.staysAbove(n, corner, least_m));
+  return s;
+}
+
+/// Whether two nodes of the trees, with a patch of a surface in one of them, pass beside each other on a
+/// straight motion, as besideMotion() tells of two facets.
+bool passBeside(const PartSurface& held, std::uint32_t k, const PartSurface& moving, std::uint32_t i,
+                const Pose& X_HM, const Vec3& d_H, double rest_m) {
+  const auto facets = [](const PartSurface& of, std::uint32_t node) {
+    return of.tree().nodes()[node].end - of.tree().nodes()[node].first;
+  };
+  constexpr std::uint32_t kFewPairs = 4;  // quicker by themselves
+  const std::uint32_t of_held = facets(held, k), of_moving = facets(moving, i);
+  if (std::max(of_held, of_moving) > PartSurface::kFacetsOfPatch || of_held * of_moving <= kFewPairs)
+    return false;
+  const auto isParted = [&](const Vec3& n_H) {  // the held one below, the moving one above
+    const Vec3 n_M = X_HM.R.transpose() * n_H;
+    return n_H.dot(X_HM.p) - moving.highest_m(i, -n_M) >= held.highest_m(k, n_H) - rest_m;
+  };
+  if (const Vec3& n = held.patches()[k]; n != Vec3::Zero())
+    if (const std::optional<Vec3> beside = besideMotion(n, d_H); beside && isParted(*beside)) return true;
+  const Vec3& n = moving.patches()[i];
+  if (n == Vec3::Zero()) return false;
+  const std::optional<Vec3> beside = besideMotion(X_HM.R * n, d_H);
+  return beside && isParted(-*beside);
+}
+
+Box boxOf(const Triangle& t) {
+  Box box;
+  for (const Vec3& p : t) box.add(p);
+  return box;
+}
+
+}  // namespace
+
+PassingFacets::PassingFacets(std::size_t of_held, bool of_moving, std::vector<std::uint8_t> of_facets,
+                             const BoxTree& tree)
+    : held(of_held), is_of_moving(of_moving), facets(std::move(of_facets)), nodes(tree.nodes().size(), 1) {
+  for (std::size_t n = nodes.size(); n-- > 0;) {  // children stand after their parents
+    const BoxTree::Node& node = tree.nodes()[n];
+    if (!node.isLeaf()) {
+      nodes[n] = nodes[node.left] & nodes[node.left + 1];
+      continue;
+    }
+    for (std::uint32_t i = node.first; i < node.end; ++i) nodes[n] &= facets[tree.order()[i]];
+  }
+}
+
+StandingParts::StandingParts(std::vector<const PlacedSurface*> of_parts)
+    : parts(std::move(of_parts)), boxes([this] {
+        std::vector<Box> all;
+        for (const PlacedSurface* part : parts) all.push_back(part->box_W);
+        return all;
+      }()) {}
+
+MotionSearch::MotionSearch(const PlacedSurface& part, std::shared_ptr<const StandingParts> held,
+                           const std::vector<double>& crossing_m, CrossingDepth depth)
+    : part_(part), held_(std::move(held)), rest_m_(held_->parts.size(), kRest_m) {
+  for (std::size_t i = 0; i < rest_m_.size(); ++i) {
+    if (crossing_m[i] == 0) continue;
+    rest_m_[i] = depth == CrossingDepth::UpToMost
+                     ? kRest_m + crossing_m[i]
+                     : restOf(part, *held_->parts[i], heldAt(i).X_HM, crossing_m[i]);
+    most_rest_m_ = std::max(most_rest_m_, rest_m_[i]);
+  }
+}
+
+MotionSearch::Held MotionSearch::heldAt(std::size_t index) const {
+  const PlacedSurface* held = held_->parts[index];
+  return {held, held->X_WP.inverse() * part_.X_WP, rest_m_[index]};
+}
+
+std::size_t MotionSearch::indexOf(const std::string& held) const {
+  return static_cast<std::size_t>(
+      std::ranges::find(held_->parts, held, [](const PlacedSurface* part) { return part->name; }) -
+      held_->parts.begin());
+}
+
+double MotionSearch::rest_m() const {
+  return most_rest_m_;
+}
+
+std::optional<MotionSearch::Turning> MotionSearch::turningOf(const Motion& motion) const {
+  if (!motion.is_turn) return std::nullopt;
+  const Motion in_moving = motion.in(part_.X_WP.inverse());
+  return Turning{motion.direction, AxisExtents(*part_.surface, in_moving.direction, in_moving.center)};
+}
+
+double MotionSearch::farthestFrom(const Motion& turn, double most) const {
+  return (part_.box_W.min - turn.center)
+             .cwiseAbs()
+             .cwiseMax((part_.box_W.max - turn.center).cwiseAbs())
+             .norm() +
+         std::abs(most * turn.forward_m);
+}
+
+std::vector<MotionSearch::Near> MotionSearch::nearOf(const Motion& motion, double most) const {
+  const double farthest_m = motion.is_turn ? farthestFrom(motion, most) : 0;
+  const Box center{motion.center, motion.center};
+  const auto isNear = [&](const Box& box_W, double rest_m) {
+    return motion.is_turn ? distance2(center, box_W) <= farthest_m * farthest_m + rest_m
+                          : entry(grown(part_.box_W, 2 * rest_m), box_W, motion.direction) <= most;
+  };
+  std::vector<std::size_t> found;
+  held_->boxes.forEach([&](const Box& node_W) { return isNear(node_W, most_rest_m_); },
+                       [&](std::uint32_t h) {
+                         const PlacedSurface* part = held_->parts[h];
+                         if (part != &part_ && isNear(part->box_W, rest_m_[h])) found.push_back(h);
+                       });
+  std::ranges::sort(found);
+  std::vector<Near> near;
+  for (const std::size_t h : found) {
+    near.push_back({h, heldAt(h), std::nullopt});
+    if (!motion.is_turn) continue;
+    const PlacedSurface& held = *near.back().held.part;
+    const Motion in_held = motion.in(held.X_WP.inverse());
+    near.back().turning.emplace(*held.surface, in_held.direction, in_held.center);
+  }
+  return near;
+}
+
+double MotionSearch::pairStops(const MovingPair& pair, std::uint32_t moving, std::uint32_t held,
+                               const Piece& piece, double most, SearchWork* work, bool& is_given_up) {
+  const int most_steps =
+      piece.motion_H.is_turn && piece.motion_H.forward_m == 0 ? kMostStepsOfTurn : kMostSteps;
+  MovingPair there = pair;
+  double s = 0;
+  for (int i = 0; i < most_steps && s < most; ++i) {
+    if (i > 0) there.X_HM = piece.motion_H.at(s) * piece.X_HM;
+    if (i > 0 && work != nullptr && ++work->done >= work->most) return s;
+    const double safe = safeStep(there, moving, held);
+    if (safe < std::min(piece.least, most - s)) return s;
+    s += safe;
+  }
+  is_given_up = s < most;
+  return s;
+}
+
+double MotionSearch::step(const Near& near, const std::optional<Turning>& turning, const Piece& piece,
+                          const PassingFacets* passing, SearchWork* work, Reach& reach) const {
+  // No structured binding: clang 14 does not let a lambda use one.
+  const Motion& motion_H = piece.motion_H;
+  const Pose& X_HM = piece.X_HM;
+  const double most = piece.most;
+  const std::array<double, 2>& along_m = piece.along_m;
+  const Held& held = near.held;
+  const PartSurface &moving = *part_.surface, &fixed = *held.part->surface;
+  const MovingPair pair{moving, fixed, X_HM, motion_H, held.rest_m};
+  const double near_m = 2 * held.rest_m;
+  // Times at which boxes can come within the rest depth of each other.
+  const auto reaches = [&](const Box& of_moving, const Box& of_held, double radius_m) {
+    const Box wide = grown(of_moving, near_m);
+    if (!motion_H.is_turn) return entry(wide, of_held, motion_H.direction);
+    return std::sqrt(distance2(wide, of_held)) / std::max(std::hypot(radius_m, motion_H.forward_m), 1e-300);
+  };
+  double best = most;
+  if (passing != nullptr && passing->held != near.index) passing = nullptr;
+  const auto passes = [&](const std::vector<std::uint8_t> PassingFacets::*what, std::uint32_t k,
+                          std::uint32_t i) {
+    return passing != nullptr && (passing->*what)[passing->is_of_moving ? i : k] != 0;
+  };
+  const auto visit = [&](std::uint32_t k, std::uint32_t i) {
+    if (passes(&PassingFacets::facets, k, i)) return;
+    if (turning && !turning->moving.triangles[i].reaches(near.turning->triangles[k], near_m, along_m)) return;
+    Triangle t = moving.triangle(i);
+    for (Vec3& p : t) p = X_HM * p;
+    const double radius_m = turning ? turning->moving.triangles[i].farthest_m : 0;
+    if (!(reaches(boxOf(t), boxOf(fixed.triangle(k)), radius_m) < best)) return;
+    bool is_given_up = false;
+    const double stops = pairStops(pair, i, k, piece, best, work, is_given_up);
+    if (stops >= best) return;
+    best = stops;
+    reach.is_given_up = is_given_up;
+    reach.by = {near.index, i, k};
+  };
+
+  struct Waiting {
+    std::uint32_t held, moving;
+    double bound;
+  };
+  const auto &tree = fixed.tree().nodes(), &tree_M = moving.tree().nodes();
+  const auto boundOf = [&](std::uint32_t k, std::uint32_t i) {
+    if (passes(&PassingFacets::nodes, k, i)) return kMotionSearchForever;
+    if (turning && !turning->moving.nodes[i].reaches(near.turning->nodes[k], near_m, along_m))
+      return kMotionSearchForever;
+    const double radius_m = turning ? turning->moving.nodes[i].farthest_m : 0;
+    const Box box = moved(tree_M[i].box, X_HM);
+    const double bound = reaches(box, tree[k].box, radius_m);
+    if (!(bound < best)) return bound;
+    // As safeStep() does for two facets: the plane of a flat node parts all of both.
+    if (const PartSurface::NodePlane& plane = fixed.planes()[k]; plane.isFlat())
+      if (staysAbove(motion_H, box, plane.n, plane.highest_m - held.rest_m) >= best)
+        return kMotionSearchForever;
+    if (const PartSurface::NodePlane& plane = moving.planes()[i]; plane.isFlat()) {
+      const Vec3 n = X_HM.R * plane.n;
+      if (staysAbove(motion_H.reversed(), tree[k].box, n, plane.highest_m + n.dot(X_HM.p) - held.rest_m) >=
+          best)
+        return kMotionSearchForever;
+    }
+    if (!motion_H.is_turn && passBeside(fixed, k, moving, i, X_HM, motion_H.direction, held.rest_m))
+      return kMotionSearchForever;
+    return bound;
+  };
+  std::vector<Waiting> stack{{0, 0, boundOf(0, 0)}};
+  while (!stack.empty() && best > 0) {
+    if (work != nullptr && work->isSpent()) return 0;
+    if (work != nullptr) ++work->done;
+    const Waiting now = stack.back();
+    stack.pop_back();
+    if (!(now.bound < best)) continue;
+    const BoxTree::Node &of_held = tree[now.held], &of_moving = tree_M[now.moving];
+    if (of_held.isLeaf() && of_moving.isLeaf()) {
+      for (std::uint32_t a = of_held.first; a < of_held.end; ++a)
+        for (std::uint32_t b = of_moving.first; b < of_moving.end; ++b)
+          visit(fixed.tree().order()[a], moving.tree().order()[b]);
+      continue;
+    }
+    const bool halves_held =
+        of_moving.isLeaf() ||
+        (!of_held.isLeaf() && of_held.box.size().squaredNorm() >= of_moving.box.size().squaredNorm());
+    Waiting first = now, second = now;
+    (halves_held ? first.held : first.moving) = halves_held ? of_held.left : of_moving.left;
+    (halves_held ? second.held : second.moving) = (halves_held ? of_held.left : of_moving.left) + 1;
+    first.bound = boundOf(first.held, first.moving);
+    second.bound = boundOf(second.held, second.moving);
+    if (second.bound < first.bound) std::swap(first, second);
+    if (second.bound < best) stack.push_back(second);
+    if (first.bound < best) stack.push_back(first);
+  }
+  return best;
+}
+
+Reach MotionSearch::reach(const Motion& motion, double most, SearchWork* work) const {
+  return reach(motion, most, nearOf(motion, most), turningOf(motion), nullptr, work);
+}
+
+std::array<Reach, 2> MotionSearch::reachBoth(const Motion& motion, double most,
+                                             const std::array<const PassingFacets*, 2>& passing) const {
+  const std::optional<Turning> turning = turningOf(motion);
+  const std::vector<Near> near = nearOf(motion, most);
+  std::vector<Near> near_back;  // of a straight motion; a turn's are the same
+  if (!turning) near_back = nearOf(motion.reversed(), most);
+  return {reach(motion, most, near, turning, passing[0], nullptr),
+          reach(motion.reversed(), most, turning ? near : near_back, turning, passing[1], nullptr)};
+}
+
+Reach MotionSearch::reach(const Motion& motion, double most, const std::vector<Near>& near,
+                          const std::optional<Turning>& turning, const PassingFacets* passing,
+                          SearchWork* work) const {
+  std::vector<Motion> in_held;
+  for (const Near& one : near) in_held.push_back(motion.in(one.held.part->X_WP.inverse()));
+  const double speed = std::max(motion.is_turn ? greatestSpeed(motion, part_.box_W) : 1, 1e-300);
+  const double least = kLeastStep_m / speed;
+  double longest = kFirstStep_m / speed;
+  const double forward_m = turning ? motion.forward_m * motion.direction.dot(turning->axis_W) : 0;
+  Reach reach;
+  for (; reach.s < most && !reach.is_stopped; longest *= 4) {
+    double free = std::min(longest, most - reach.s);
+    for (std::size_t k = 0; k < near.size() && free > 0; ++k) {
+      const auto [back_m, front_m] = std::minmax({reach.s * forward_m, (reach.s + free) * forward_m});
+      const Piece piece{
+          in_held[k], in_held[k].at(reach.s) * near[k].held.X_HM, free, least, {back_m, front_m}};
+      const double here = step(near[k], turning, piece, passing, work, reach);
+      if (here >= free) continue;
+      free = here;
+      reach.is_stopped = true;
+    }
+    reach.s = std::min(most, reach.s + free);
+  }
+  if (!reach.is_stopped || reach.is_given_up) return reach;
+  if (work != nullptr && work->isSpent()) {
+    reach.is_given_up = true;
+    return reach;
+  }
+  return backedOff(reach, motion, speed);
+}
+
+/// Takes back the rest depth by which facets may enter each other.
+Reach MotionSearch::backedOff(Reach reach, const Motion& motion_W, double speed) const {
+  const Held held = heldAt(reach.by.held);
+  const Motion motion = motion_W.in(held.part->X_WP.inverse());
+  const MovingPair pair{*part_.surface, *held.part->surface, motion.at(reach.s) * held.X_HM, motion,
+                        held.rest_m};
+  // A contact that closes more slowly is a grazing one, whose place is as uncertain as its depth allows.
+  const double closing =
+      std::max(closingSpeed(pair, reach.by.moving_facet, reach.by.held_facet), 0.1 * speed);
+  reach.rate = contactRate(pair, reach.by.moving_facet, reach.by.held_facet);
+  reach.s = std::max(0.0, reach.s - kRest_m / closing);
+  return reach;
+}
+
+double MotionSearch::chordOf_m(const Blocker& blocker) const {
+  return part_.surface->chord_m(blocker.moving_facet) +
+         held_->parts[blocker.held]->surface->chord_m(blocker.held_facet);
+}
+
+bool MotionSearch::isStoppedBy(const Blocker& blocker, const Motion& motion, double most) const {
+  const Held held = heldAt(blocker.held);
+  const Motion motion_H = motion.in(held.part->X_WP.inverse());
+  double s = 0;
+  for (int i = 0; i < kMostSteps && s < most; ++i) {
+    const MovingPair pair{*part_.surface, *held.part->surface, motion_H.at(s) * held.X_HM, motion_H,
+                          held.rest_m};
+    const double safe = safeStep(pair, blocker.moving_facet, blocker.held_facet);
+    if (safe < kLeastStep_m) return true;
+    s += safe;
+  }
+  return false;
+}
+
+}  // namespace vps::scenes

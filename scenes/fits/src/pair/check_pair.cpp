@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pair/check_pair.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "pair/certain_overlap.h"
+#include "pair/overlap_depth.h"
+#include "pair/overlap_volume.h"
+#include "pair/shared_ball.h"
+#include "pair/surface_gap.h"
+
+namespace vps::scenes {
+
+namespace {
+
+/// Rounding of some sums of coordinates, and of the part's file; and where a crack was closed, the surface
+/// lies between its sides.
+double uncertainty_m(const PlacedSurface& part) {
+  const double greatest_m = part.box_W.min.cwiseAbs().cwiseMax(part.box_W.max.cwiseAbs()).maxCoeff();
+  return 16 * std::numeric_limits<double>::epsilon() * greatest_m + part.drawn->rounding_m +
+         0.5 * part.surface->solid().report().joined_m;
+}
+
+/// Distance of the meshes from the faces that they stand for, where the parts are near each other.
+struct FaceError {
+  double chord_m = 0;       ///< of the facets of both
+  double most_chord_m = 0;  ///< of those of one of them
+  double crack_m = 0;       ///< widths of the cracks, of which either side may be the face
+};
+
+FaceError faceError(const PlacedSurface& a, const PlacedSurface& b, double near_m) {
+  FaceError error;
+  for (const auto& [part, other] : {std::pair{&a, &b}, std::pair{&b, &a}}) {
+    const Box box_P = moved(grown(other->box_W, near_m), part->X_WP.inverse());
+    const double chord_m = part->surface->chordIn(box_P);
+    error.chord_m += chord_m;
+    error.most_chord_m = std::max(error.most_chord_m, chord_m);
+    error.crack_m += part->surface->crackIn(box_P);
+  }
+  return error;
+}
+
+/// Solids whose edges all lie on each other's surface, as those of a part that is drawn twice, share an
+/// inside that no edge shows. The deepest of some points below the middle of facets of a.
+Overlap flushOverlap(const PlacedSurface& a, const PlacedSurface& b) {
+  constexpr std::uint32_t kFacets = 16;
+  const PartSurface& of = *a.surface;
+  const Pose X_BA = b.X_WP.inverse() * a.X_WP;
+  const double size_m = of.box().size().norm();
+  const auto count = static_cast<std::uint32_t>(of.mesh().triangles.size());
+  Overlap deepest;
+  for (std::uint32_t k = 0; k < std::min(kFacets, count); ++k) {
+    const auto i = static_cast<std::uint32_t>(std::uint64_t{count} * k / std::min(kFacets, count));
+    const Triangle t = of.triangle(i);
+    for (double below_m = 0.25 * size_m; below_m > 1e-4 * size_m; below_m *= 0.5) {
+      const Vec3 p_A = (t[0] + t[1] + t[2]) / 3 - below_m * of.normal(i);
+      const double in_a_m = -of.solid().signedDistance(p_A);
+      if (in_a_m <= deepest.depth_m) continue;
+      const double in_both_m = std::min(in_a_m, -b.surface->solid().signedDistance(X_BA * p_A));
+      if (in_both_m > deepest.depth_m) deepest = {in_both_m, a.X_WP * p_A};
+    }
+  }
+  return deepest;
+}
+
+/// What is inside is not certain at a crack, so that a search for the deepest point would find one: the depth
+/// is that of the edges, or the thickness where that is clearly more.
+OverlapDepth depthOfTorn(const PlacedSurface& a, const PlacedSurface& b, const Overlap& found,
+                         double error_m) {
+  const Overlap ball = SharedBalls(a, b).greatest();
+  if (const double thick_m = 2 * ball.depth_m; thick_m > found.depth_m + error_m)
+    return {thick_m, thick_m + kOverlapCertain_m, ball.p_W, true};
+  return {found.depth_m, found.depth_m + kOverlapCertain_m, found.p_W};
+}
+
+OverlapDepth deepestOf(const PlacedSurface& a, const PlacedSurface& b, double error_m, bool has_cracks) {
+  const Overlap found = deepestOverlap(a.surface->overlap(), a.X_WP, b.surface->overlap(), b.X_WP);
+  if (found.depth_m > error_m)
+    return has_cracks ? depthOfTorn(a, b, found, error_m)
+                      : overlapDepth(a, b, {found.depth_m, found.depth_m, found.p_W});
+  const Box both{a.box_W.min.cwiseMax(b.box_W.min), a.box_W.max.cwiseMin(b.box_W.max)};
+  if (!both.isEmpty() && both.size().minCoeff() > error_m)
+    for (const auto& [inner, outer] : {std::pair{&a, &b}, std::pair{&b, &a}})
+      if (const Overlap flush = flushOverlap(*inner, *outer); flush.depth_m > error_m)
+        return overlapDepth(a, b, {flush.depth_m, flush.depth_m, flush.p_W});
+  return {found.depth_m, found.depth_m + kOverlapCertain_m, found.p_W};
+}
+
+std::optional<CheckedPair> measured(const PlacedSurface& a, const PlacedSurface& b, double near_m) {
+  CheckedPair pair{.a = a.name, .b = b.name};
+  pair.is_allowed = a.drawn->allow_overlap || b.drawn->allow_overlap;
+  pair.press_fit_m = std::max(a.drawn->press_fit_m, b.drawn->press_fit_m);
+  FaceError faces = faceError(a, b, near_m);
+  double chord_m = faces.chord_m, round_m = uncertainty_m(a) + uncertainty_m(b) + faces.crack_m;
+  pair.error_m = chord_m + round_m;
+  const OverlapDepth overlap = deepestOf(a, b, pair.error_m + kOverlapCertain_m, faces.crack_m > 0);
+  if (overlap.depth_m > 0) {
+    if (overlap.depth_m > near_m) {
+      // The surface that a deep point is near may be as far away.
+      faces = faceError(a, b, overlap.most_m);
+      round_m = uncertainty_m(a) + uncertainty_m(b) + faces.crack_m;
+      chord_m = faces.chord_m;
+    }
+    // A ball between two facets of one part grows by the chords of both.
+    if (overlap.is_thickness) chord_m = std::max(chord_m, 2 * faces.most_chord_m);
+    pair.error_m = chord_m + round_m + kOverlapCertain_m;
+    pair.interference_depth_m = overlap.depth_m;
+    pair.at_W = overlap.p_W;
+    double unsettled_m = overlap.most_m - overlap.depth_m - kOverlapCertain_m;
+    if (chord_m > 0) {
+      // Where flat faces overlap, the error of the round ones beside them does not count.
+      const CertainOverlap certain = certainOverlap(a, b);
+      const double error_m = certain.error_m + round_m + kOverlapCertain_m;
+      const bool is_only_one = !pair.isBeyondContact() && certain.depth_m > error_m + kContactDepth_m;
+      if (is_only_one || (error_m < pair.error_m && certain.depth_m > overlap.depth_m - kOverlapCertain_m)) {
+        pair.interference_depth_m = certain.depth_m;
+        pair.error_m = error_m;
+        pair.at_W = certain.p_W;
+        unsettled_m = 0;
+      }
+    }
+    pair.state = pair.isBeyondContact() ? PairState::Clash : PairState::Contact;
+    pair.error_m += unsettled_m;
+    if (pair.state == PairState::Contact) return pair;
+    const OverlapVolume shared = overlapVolume(*a.surface, *b.surface, a.X_WP.inverse() * b.X_WP);
+    pair.interference_volume_m3 = shared.volume_m3;
+    pair.volume_error_m3 = shared.error_m3 + shared.faces_error_m3 + shared.area_m2 * round_m;
+    return pair;
+  }
+  const double most_m = near_m + pair.error_m;
+  const SurfaceGap gap = surfaceGap(*a.surface, *b.surface, a.X_WP.inverse() * b.X_WP, most_m);
+  if (!(gap.distance_m < most_m)) return std::nullopt;
+  pair.clearance_m = gap.distance_m;
+  pair.at_W = a.X_WP * (0.5 * (gap.p_A + gap.p_B));
+  pair.state = gap.distance_m > pair.error_m ? PairState::Apart : PairState::Contact;
+  return pair;
+}
+
+}  // namespace
+
+double meshError_m(const PlacedSurface& a, const PlacedSurface& b) {
+  double error_m = kOverlapCertain_m;
+  for (const PlacedSurface* part : {&a, &b}) {
+    const PartSurface& surface = *part->surface;
+    if (!surface.isClosed()) return std::numeric_limits<double>::infinity();
+    error_m += surface.chordIn(surface.box()) + surface.crackIn(surface.box()) + uncertainty_m(*part);
+  }
+  return error_m;
+}
+
+std::optional<CheckedPair> checkPair(const PlacedSurface& a, const PlacedSurface& b, double near_m) {
+  std::optional<CheckedPair> pair = measured(a, b, near_m);
+  const bool have_inside = a.surface->noInside().empty() && b.surface->noInside().empty();
+  if (have_inside || !overlap(a.box_W, b.box_W) || (pair && pair->state == PairState::Clash)) return pair;
+  if (!pair) pair = CheckedPair{.a = a.name, .b = b.name, .clearance_m = near_m};
+  pair->is_uncertain = true;
+  return pair;
+}
+
+}  // namespace vps::scenes

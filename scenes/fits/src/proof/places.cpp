@@ -1,0 +1,538 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "proof/places.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string_view>
+#include <unordered_map>
+
+#include <tbb/parallel_for.h>
+
+#include "fits/fit_tolerance.h"
+#include "pair/check_pair.h"
+#include "pair/touches.h"
+#include "proof/blocked_proof.h"
+#include "proof/fit_proof.h"
+#include "proof/loose_bodies.h"
+#include "text/length_words.h"
+#include "text/name_words.h"
+#include "vps/mesh_overlap.h"
+
+namespace vps::scenes {
+
+namespace {
+
+using Six = Eigen::Matrix<double, 6, 1>;
+
+/// Left of an overlap that counts as none: what deepestOverlap() is certain to, and room for the next digit.
+constexpr double kClear_m = 3 * kOverlapCertain_m;
+static_assert(kClear_m + kOverlapCertain_m < kContactDepth_m);
+constexpr std::size_t kMostBodies = 40;  // moved at once: a step of the search solves for six times as many
+
+/// How much may be measured for parts that clash with each other, as Overlap::work: half a minute of one
+/// core.
+constexpr std::size_t kMostPlaceWork = 30'000'000;
+
+/// Two parts of different bodies that are or may come near each other.
+struct NearPair {
+  std::size_t a = 0, b = 0;
+  bool is_clash = false;
+  double drawn_depth_m = 0;
+  double allowed_m = 0;       ///< facets of parts in contact cross as drawn; no more of it is allowed
+  bool is_uncertain = false;  ///< as drawn: CheckedPair::is_uncertain
+  /// Of the meshes anywhere, and what a declared press fit allows; not the error of drawn_depth_m.
+  double error_m = std::numeric_limits<double>::infinity();
+};
+
+constexpr std::size_t kMostNamed = 4;  // in a sentence
+
+/// Bodies that are moved, and by how much.
+struct Moving {
+  std::vector<std::size_t> bodies;
+  std::vector<std::size_t> variable;  ///< by body: its place among them, or GapRow::kHeld
+  std::vector<LooseBody> loose;
+  Motions x;
+};
+
+/// What a try to move some bodies came to.
+struct Tried {
+  Moving moving;
+  bool is_free = false;
+  double left_m = 0;  ///< the deepest overlap beyond what is allowed
+  std::vector<Six> motion;
+  std::vector<Pose> X_WP;
+  std::vector<PressedTouch> pressed;  ///< of the last step
+};
+
+class PlaceSearch {
+ public:
+  PlaceSearch(const std::vector<PlacedSurface>& parts, const CheckResult& checked)
+      : parts_(parts),
+        checked_(checked),
+        bodies_(looseBodies(parts, checked)),
+        body_of_(bodyOfPart(bodies_, parts.size())),
+        motion_(bodies_.size(), Six::Zero()),
+        by_sight_(bodies_) {
+    for (const PlacedSurface& part : parts) X_WP_.push_back(part.X_WP);
+    for (MovableBody& body : by_sight_)
+      if (!body.is_fixed) body.allowed_m = body.loose.most_m = kSightTolerance_m;
+    findPairs();
+  }
+
+  [[nodiscard]] CheckedPlaces search(const Progress& progress) {
+    CheckedPlaces out;
+    const std::vector<std::vector<std::size_t>> groups = clashGroups();
+    for (std::size_t i = 0; i < groups.size(); ++i) {
+      if (progress) progress("looking for places without overlap", double(i) / double(groups.size()));
+      const auto [verdict, reason] = freeGroup(groups[i]);
+      const bool is_worse = verdict == Verdict::Blocked || out.verdict == Verdict::Fits;
+      if (verdict != Verdict::Fits && is_worse) {
+        out.verdict = verdict;
+        out.reason = reason;
+      }
+      if (verdict == Verdict::Blocked) break;
+    }
+    for (const NearPair& pair : tied_) {
+      if (out.verdict == Verdict::Blocked) break;
+      if (std::string why = provenAlone(pair); !why.empty()) {
+        out.verdict = Verdict::Blocked;
+        out.reason = std::move(why);
+        break;
+      }
+      const bool is_fixed =
+          mayMove_m(parts_[pair.a]) + mayMove_m(parts_[pair.b]) == 0 && std::isfinite(pair.error_m);
+      out.verdict = is_fixed ? Verdict::Blocked : Verdict::NotShown;
+      out.reason = quoted(parts_[pair.a].name) + " and " + quoted(parts_[pair.b].name) + " overlap and are " +
+                   (is_fixed ? "both fixed" : "tied to each other by fixed parts or press fits");
+    }
+    if (out.verdict == Verdict::Fits && !isFree(movedPairs(), X_WP_)) {
+      out.verdict = Verdict::NotShown;
+      out.reason = "no places without overlap were found for all parts at once";
+    }
+    appendMoved(out.moved);
+    return out;
+  }
+
+ private:
+  using Answer = std::pair<Verdict, std::string>;
+
+  void findPairs() {
+    std::unordered_map<std::string_view, std::size_t> index_of;
+    for (std::size_t i = 0; i < parts_.size(); ++i) index_of.emplace(parts_[i].name, i);
+    double most_m = 0;
+    for (const MovableBody& body : bodies_) most_m = std::max(most_m, body.allowed_m);
+    std::vector<std::vector<std::pair<std::size_t, const CheckedPair*>>> known(parts_.size());
+    for (const CheckedPair& pair : checked_.pairs) {
+      const auto [a, b] = std::minmax(index_of.at(pair.a), index_of.at(pair.b));
+      known[a].emplace_back(b, &pair);
+    }
+    for (const auto& [a, b] : nearPairs(parts_, 2 * most_m)) {
+      NearPair near{a, b};
+      if (parts_[a].drawn->allow_overlap || parts_[b].drawn->allow_overlap) continue;
+      for (const auto& [other, pair] : known[a]) {
+        if (other != b) continue;
+        near.is_uncertain = pair->is_uncertain;
+        near.is_clash = pair->isClash();
+        near.drawn_depth_m = pair->interference_depth_m;
+        near.allowed_m = near.is_clash ? 0 : pair->interference_depth_m;
+      }
+      near.error_m = meshError_m(parts_[a], parts_[b]) +
+                     std::max(parts_[a].drawn->press_fit_m, parts_[b].drawn->press_fit_m);
+      if (body_of_[a] != body_of_[b])
+        pairs_.push_back(near);
+      else if (near.is_clash)
+        tied_.push_back(near);
+    }
+  }
+
+  /// Bodies that clash, over others that do, in ascending order.
+  [[nodiscard]] std::vector<std::vector<std::size_t>> clashGroups() const {
+    std::vector<std::vector<std::size_t>> groups;
+    std::vector<bool> is_seen(bodies_.size());
+    for (const NearPair& pair : pairs_) {
+      // What clashes with fixed parts is not joined by these.
+      const std::size_t first = body_of_[bodies_[body_of_[pair.a]].is_fixed ? pair.b : pair.a];
+      if (!pair.is_clash || is_seen[first]) continue;
+      groups.push_back(reachable(
+          {first}, [](const NearPair& p) { return p.is_clash; }, bodies_.size()));
+      for (const std::size_t body : groups.back()) is_seen[body] = true;
+    }
+    return groups;
+  }
+
+  /// The bodies, and those that are joined to them by pairs, breadth first; sorted. A fixed body joins none.
+  template <class Joins>
+  [[nodiscard]] std::vector<std::size_t> reachable(std::vector<std::size_t> bodies, Joins joins,
+                                                   std::size_t most) const {
+    std::vector<bool> is_in(bodies_.size());
+    for (const std::size_t body : bodies) is_in[body] = true;
+    for (std::size_t next = 0; next < bodies.size(); ++next) {
+      if (bodies_[bodies[next]].is_fixed) continue;
+      for (const NearPair& pair : pairs_) {
+        const std::size_t a = body_of_[pair.a], b = body_of_[pair.b];
+        if ((a != bodies[next] && b != bodies[next]) || !joins(pair)) continue;
+        const std::size_t other = a == bodies[next] ? b : a;
+        if (is_in[other] || bodies.size() >= most) continue;
+        is_in[other] = true;
+        bodies.push_back(other);
+      }
+    }
+    std::ranges::sort(bodies);
+    return bodies;
+  }
+
+  /// Whether the pair is a clash of the group.
+  [[nodiscard]] bool isOf(const std::vector<std::size_t>& group, const NearPair& pair) const {
+    const std::size_t body = body_of_[bodies_[body_of_[pair.a]].is_fixed ? pair.b : pair.a];
+    return pair.is_clash && std::ranges::binary_search(group, body);
+  }
+
+  [[nodiscard]] double size_m(std::size_t body) const { return bodies_[body].loose.arm_m; }
+
+  /// All that may be moved but the largest, unless a fixed one is among them.
+  [[nodiscard]] std::vector<std::size_t> movable(std::vector<std::size_t> bodies) const {
+    const std::size_t count = bodies.size();
+    std::erase_if(bodies, [&](std::size_t body) { return bodies_[body].is_fixed; });
+    if (bodies.size() == count && count > 1)
+      bodies.erase(std::ranges::max_element(bodies, {}, [&](std::size_t body) { return size_m(body); }));
+    return bodies;
+  }
+
+  /// What is moved in turn.
+  [[nodiscard]] std::vector<std::vector<std::size_t>> tries(const std::vector<std::size_t>& group) const {
+    std::vector<std::vector<std::size_t>> out;
+    std::vector<std::size_t> by_size = group;
+    std::ranges::stable_sort(by_size, {}, [&](std::size_t body) { return size_m(body); });
+    const auto isInAll = [&](std::size_t body) {
+      return std::ranges::all_of(pairs_, [&](const NearPair& pair) {
+        return !isOf(group, pair) || body_of_[pair.a] == body || body_of_[pair.b] == body;
+      });
+    };
+    const auto add = [&](const std::vector<std::size_t>& bodies) {
+      if (!bodies.empty() && std::ranges::find(out, bodies) == out.end()) out.push_back(bodies);
+    };
+    for (const std::size_t body : by_size)
+      if (!bodies_[body].is_fixed && isInAll(body)) add({body});
+    if (group.size() <= kMostBodies) add(movable(group));
+    add(movable(reachable(
+        group, [](const NearPair&) { return true; }, std::max(kMostBodies, group.size()))));
+    // Two that are each as deep in the other as both tolerances together have to share the way.
+    std::vector<std::size_t> all = group;
+    std::erase_if(all, [&](std::size_t body) { return bodies_[body].is_fixed; });
+    add(all);
+    std::erase_if(out, [](const auto& bodies) { return bodies.size() > kMostBodies; });
+    return out;
+  }
+
+  [[nodiscard]] Answer freeGroup(const std::vector<std::size_t>& group) {
+    std::vector<const NearPair*> clashes;
+    for (const NearPair& pair : pairs_)
+      if (isOf(group, pair)) clashes.push_back(&pair);
+    for (const NearPair* pair : clashes)
+      if (std::string why = provenAlone(*pair); !why.empty()) return {Verdict::Blocked, std::move(why)};
+    for (const NearPair* pair : clashes)
+      if (std::string why = hiddenByFacets(*pair); !why.empty()) return {Verdict::NotShown, std::move(why)};
+    Tried last;
+    std::size_t most_moved = 0;
+    work_ = 0;
+    for (const std::vector<std::size_t>& moved : tries(group)) {
+      if (work_ >= kMostPlaceWork) break;
+      Tried tried = move(moved);
+      if (tried.is_free) {
+        motion_ = std::move(tried.motion);
+        X_WP_ = std::move(tried.X_WP);
+        return {Verdict::Fits, ""};
+      }
+      if (std::string why = proven(tried.pressed); !why.empty()) return {Verdict::Blocked, std::move(why)};
+      std::size_t parts_moved = 0;
+      for (const std::size_t body : moved) parts_moved += bodies_[body].parts.size();
+      most_moved = std::max(most_moved, parts_moved);
+      last = std::move(tried);
+    }
+    return {Verdict::NotShown, notShownWords(group, most_moved, last)};
+  }
+
+  /// @param most_moved  parts of a try
+  [[nodiscard]] std::string notShownWords(const std::vector<std::size_t>& group, std::size_t most_moved,
+                                          const Tried& last) const {
+    std::vector<std::string> names;
+    double allowed_m = 0;
+    for (const std::size_t body : group) {
+      if (bodies_[body].is_fixed) continue;
+      allowed_m = std::max(allowed_m, bodies_[body].allowed_m);
+      for (const std::size_t part : bodies_[body].parts) names.push_back(parts_[part].name);
+    }
+    std::string why = "no places without overlap were found for " + listed(names, kMostNamed) + " within " +
+                      lengthInWords(allowed_m) + " of where " + (names.size() == 1 ? "it is" : "they are") +
+                      " drawn, and nothing proves that there are none";
+    if (most_moved == 0) return why + "; too many parts overlap each other to be moved at once";
+    why += "; moved were up to " + std::to_string(most_moved) + (most_moved == 1 ? " part" : " parts");
+    // What the search for places counts as none may be a clash by the greater measure of the check.
+    why += last.left_m <= kClear_m ? ", and no direction out was found"
+                                   : ", with an overlap of " + lengthInWords(last.left_m) + " left";
+    return why + (work_ < kMostPlaceWork ? "" : " when the search reached its limit");
+  }
+
+  /// Why the pair overlaps wherever its parts are within what places as drawn may be off; empty: it may not.
+  [[nodiscard]] std::string provenAlone(const NearPair& pair) const {
+    const std::string& a = parts_[pair.a].name;
+    const std::string& b = parts_[pair.b].name;
+    const double apart_m = mayMove_m(parts_[pair.a]) + mayMove_m(parts_[pair.b]);
+    // What only a fit shows may be of round faces that lie beside each other.
+    if (pair.drawn_depth_m > apart_m + pair.error_m + kContactDepth_m && hiddenByFacets(pair).empty())
+      return quoted(a) + " and " + quoted(b) + " overlap by " + lengthInWords(pair.drawn_depth_m) +
+             ", more than the " + lengthInWords(apart_m) + " that their places as drawn may be off together";
+    for (const CheckedFit& fit : checked_.fits) {
+      const bool is_of_pair = (fit.shaft == a && fit.bore == b) || (fit.shaft == b && fit.bore == a);
+      if (is_of_pair && isProvenByFit(parts_, fit))
+        return quoted(fit.shaft) + " is " + lengthInWords(-fit.diametral_clearance_m) +
+               " larger than its bore in " + quoted(fit.bore) + ", whatever its place in it";
+    }
+    return {};
+  }
+
+  /// A clash that only the fit shows: where the meshes cannot show an overlap, they cannot show that it is
+  /// gone.
+  [[nodiscard]] std::string hiddenByFacets(const NearPair& pair) const {
+    // The depth that is found at once is a lower bound; the exact one takes a second.
+    const PlacedSurface &a = parts_[pair.a], &b = parts_[pair.b];
+    const Overlap found = deepestOverlap(a.surface->overlap(), a.X_WP, b.surface->overlap(), b.X_WP);
+    if (found.depth_m > pair.error_m + kContactDepth_m) return {};
+    const std::optional<CheckedPair> drawn = checkPair(parts_[pair.a], parts_[pair.b], checked_.near_m);
+    if (drawn && drawn->state == PairState::Clash && !drawn->is_uncertain) return {};
+    return "the overlap of " + quoted(parts_[pair.a].name) + " and " + quoted(parts_[pair.b].name) +
+           " is less than their meshes are off their faces, so that these cannot show it gone";
+  }
+
+  /// Why no motion by as much as places as drawn may be off frees the touches of a try; empty: one may. All
+  /// bodies of the touches are moved, from where they are drawn, so that forces are in balance on each. What
+  /// is pressed into another part may be drawn in the wrong place of it, so that nothing is proven of parts
+  /// that are tied.
+  [[nodiscard]] std::string proven(const std::vector<PressedTouch>& touches) const {
+    std::vector<std::size_t> bodies;
+    for (const PressedTouch& pressed : touches)
+      for (const std::size_t part : {pressed.touch.of, pressed.touch.above})
+        if (mayMove_m(parts_[part]) > 0) {
+          if (bodies_[body_of_[part]].parts.size() > 1) return {};
+          bodies.push_back(body_of_[part]);
+        }
+    std::ranges::sort(bodies);
+    bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
+    if (bodies.size() > kMostBodies + 1) return {};
+    // A large cost keeps motions small, so that little is unknown; a small one, forces in balance.
+    for (const double e : {1.0, 0.1, 0.01, 0.001}) {
+      Tried tried = startOf(bodies);
+      for (LooseBody& body : tried.moving.loose) body.most_m = kSightTolerance_m;
+      tried.pressed = touches;
+      if (const double least_m = provenAfter(tried, e); least_m > 0) return provenWords(tried, least_m);
+    }
+    return {};
+  }
+
+  /// What provenOverlap_m() says of the touches' least motion at this cost.
+  double provenAfter(Tried& tried, double e) const {
+    constexpr int kRounds = 4;
+    // Of the deepest overlap: touches whose bound bends away by more take from the proof.
+    constexpr double kMostBend = 0.6;
+    solve(tried, e);
+    const auto moved_m = [&] {
+      std::vector<double> out(bodies_.size());
+      for (std::size_t i = 0; i < bodies_.size(); ++i) out[i] = bodies_[i].mostMoved_m(tried.motion[i]);
+      return out;
+    };
+    double deepest_m = 0;
+    for (const PressedTouch& pressed : tried.pressed) deepest_m = std::max(deepest_m, pressed.weight);
+    const std::vector<double> greatest_m =
+        greatestGaps_m(parts_, tried.X_WP, tried.pressed, by_sight_, moved_m());
+    std::vector<PressedTouch> kept;
+    for (std::size_t i = 0; i < greatest_m.size(); ++i) {
+      const Touch& touch = tried.pressed[i].touch;
+      const double gap_m = touch.gap_m(tried.X_WP[touch.of], tried.X_WP[touch.above]);
+      if (greatest_m[i] - gap_m < kMostBend * deepest_m) kept.push_back(tried.pressed[i]);
+    }
+    tried.pressed = std::move(kept);
+    for (int round = 0; round < kRounds; ++round) {
+      for (PressedTouch& pressed : tried.pressed) {
+        Touch& touch = pressed.touch;
+        touch.renew(*parts_[touch.above].surface, tried.X_WP[touch.above].inverse() * tried.X_WP[touch.of]);
+      }
+      solve(tried, e);
+    }
+    return provenOverlap_m(parts_, tried.X_WP, tried.pressed, by_sight_, moved_m());
+  }
+
+  [[nodiscard]] std::string provenWords(const Tried& tried, double least_m) const {
+    std::vector<std::string> names;
+    for (const PressedTouch& pressed : tried.pressed) {
+      if (!(pressed.weight > 0)) continue;
+      for (const std::size_t part : {pressed.touch.of, pressed.touch.above})
+        if (std::ranges::find(names, parts_[part].name) == names.end()) names.push_back(parts_[part].name);
+    }
+    std::ranges::sort(names);
+    return "wherever " + listed(names, kMostNamed) + " are within " + lengthInWords(kSightTolerance_m) +
+           " of where they are drawn, some of them overlap by " + lengthInWords(least_m + kContactDepth_m) +
+           " or more beyond the error";
+  }
+
+  /// A try to move some bodies, before the first step.
+  [[nodiscard]] Tried startOf(const std::vector<std::size_t>& moved_bodies) const {
+    Tried tried;
+    tried.motion = motion_;
+    tried.X_WP = X_WP_;
+    Moving& moving = tried.moving;
+    moving.bodies = moved_bodies;
+    moving.variable.assign(bodies_.size(), GapRow::kHeld);
+    moving.x.resize(6 * Eigen::Index(moved_bodies.size()));
+    for (const std::size_t body : moved_bodies) {
+      moving.x.segment<6>(6 * Eigen::Index(moving.loose.size())) = motion_[body];
+      moving.variable[body] = moving.loose.size();
+      moving.loose.push_back(bodies_[body].loose);
+    }
+    return tried;
+  }
+
+  /// To where the gaps of the touches are open, or nearly.
+  void solve(Tried& tried, double e) const {
+    Moving& moving = tried.moving;
+    std::vector<GapRow> rows;
+    for (const PressedTouch& pressed : tried.pressed) {
+      const Touch& touch = pressed.touch;
+      const Pose &X_WO = tried.X_WP[touch.of], &X_WA = tried.X_WP[touch.above];
+      rows.push_back({moving.variable[body_of_[touch.of]], moving.variable[body_of_[touch.above]],
+                      X_WO * touch.p_O, X_WA.R * touch.n_A, touch.gap_m(X_WO, X_WA) + pressed.allowed_m});
+    }
+    std::vector<double> closed_m;
+    moving.x = leastMotion(rows, moving.loose, moving.x, e, closed_m);
+    for (std::size_t k = 0; k < rows.size(); ++k) tried.pressed[k].weight = closed_m[k];
+    for (std::size_t i = 0; i < moving.bodies.size(); ++i) {
+      const std::size_t body = moving.bodies[i];
+      tried.motion[body] = moving.x.segment<6>(6 * Eigen::Index(i));
+      for (const std::size_t part : bodies_[body].parts)
+        tried.X_WP[part] = movedPose(parts_[part].X_WP, bodies_[body].loose, tried.motion[body]);
+    }
+  }
+
+  [[nodiscard]] bool isWithinTolerances(const Tried& tried) const {
+    return std::ranges::all_of(tried.moving.bodies, [&](std::size_t body) {
+      return bodies_[body].mostMoved_m(tried.motion[body]) <= bodies_[body].allowed_m;
+    });
+  }
+
+  /// Moves the bodies until no pair with one of them overlaps.
+  [[nodiscard]] Tried move(const std::vector<std::size_t>& moved_bodies) {
+    constexpr int kMostRounds = 40, kMostStalled = 8;
+    constexpr double kGain = 0.9;
+    Tried tried = startOf(moved_bodies);
+    const auto isMoved = [&](std::size_t part) {
+      return tried.moving.variable[body_of_[part]] != GapRow::kHeld;
+    };
+    std::vector<NearPair> pairs;
+    for (const NearPair& pair : pairs_)
+      if (isMoved(pair.a) || isMoved(pair.b)) pairs.push_back(pair);
+    double best_m = std::numeric_limits<double>::infinity();
+    int stalled = 0;
+    for (int round = 0; round < kMostRounds && stalled < kMostStalled && work_ < kMostPlaceWork; ++round) {
+      tried.left_m = addTouches(pairs, tried);
+      if (tried.left_m <= kClear_m) {
+        tried.is_free = isWithinTolerances(tried) && isFree(pairs, tried.X_WP);
+        break;
+      }
+      stalled = tried.left_m < kGain * best_m ? 0 : stalled + 1;
+      best_m = std::min(best_m, tried.left_m);
+      solve(tried, kSearchMotionCost);
+    }
+    return tried;
+  }
+
+  /// Adds the touches of all pairs that overlap by more than is allowed; returns by how much they do at most.
+  double addTouches(const std::vector<NearPair>& pairs, Tried& tried) {
+    constexpr double kSame_m = 0.05e-6;  // overlaps by less need no touch
+    std::vector<PairTouches> found(pairs.size());
+    tbb::parallel_for(std::size_t{0}, pairs.size(), [&](std::size_t i) {
+      found[i] = touchesOf(parts_, tried.X_WP, pairs[i].a, pairs[i].b, pairs[i].allowed_m + kSame_m);
+    });
+    double most_m = 0;
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      most_m = std::max(most_m, found[i].depth_m - pairs[i].allowed_m);
+      work_ += found[i].work;
+      for (const Touch& touch : found[i].touches) {
+        const auto known = std::ranges::find_if(tried.pressed, [&](const PressedTouch& other) {
+          return touch.vertex != Touch::kNoVertex && other.touch.vertex == touch.vertex &&
+                 other.touch.of == touch.of && other.touch.above == touch.above;
+        });
+        if (known != tried.pressed.end())
+          known->touch = touch;
+        else
+          tried.pressed.push_back({touch, pairs[i].allowed_m, pairs[i].error_m + kContactDepth_m});
+      }
+    }
+    return most_m;
+  }
+
+  /// Whether no pair clashes at these poses, by the measure of the check.
+  [[nodiscard]] bool isFree(const std::vector<NearPair>& pairs, const std::vector<Pose>& X_WP) const {
+    std::vector<PlacedSurface> at = parts_;
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      at[i].X_WP = X_WP[i];
+      at[i].box_W = Box();
+    }
+    std::vector<std::uint8_t> is_clash(pairs.size());
+    for (const NearPair& pair : pairs)
+      for (const std::size_t part : {pair.a, pair.b})
+        if (at[part].box_W.isEmpty())
+          for (const Vec3& p : at[part].surface->mesh().vertices) at[part].box_W.add(X_WP[part] * p);
+    tbb::parallel_for(std::size_t{0}, pairs.size(), [&](std::size_t i) {
+      const std::optional<CheckedPair> pair = checkPair(at[pairs[i].a], at[pairs[i].b], checked_.near_m);
+      // What cannot be told as drawn is said of the whole check.
+      const bool is_new_doubt = pair && pair->is_uncertain && !pairs[i].is_uncertain;
+      is_clash[i] = pair && (pair->state == PairState::Clash || is_new_doubt) ? 1 : 0;
+    });
+    return std::ranges::count(is_clash, 1) == 0;
+  }
+
+  /// Those of which a part is moved.
+  [[nodiscard]] std::vector<NearPair> movedPairs() const {
+    std::vector<NearPair> out;
+    for (const NearPair& pair : pairs_)
+      if (!motion_[body_of_[pair.a]].isZero() || !motion_[body_of_[pair.b]].isZero()) out.push_back(pair);
+    return out;
+  }
+
+  void appendMoved(std::vector<MovedPart>& out) const {
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      if (motion_[i].isZero()) continue;
+      for (const std::size_t part : bodies_[i].parts) {
+        const Vec3 at_W = parts_[part].box_W.center();
+        const Pose X = movedPose(Pose(), bodies_[i].loose, motion_[i]);
+        out.push_back({parts_[part].name, X * at_W - at_W, motion_[i].tail<3>() / bodies_[i].loose.arm_m,
+                       bodies_[i].mostMoved_m(motion_[i], parts_[part].box_W), bodies_[i].allowed_m,
+                       X_WP_[part]});
+      }
+    }
+  }
+
+  const std::vector<PlacedSurface>& parts_;
+  const CheckResult& checked_;
+  std::vector<MovableBody> bodies_;
+  std::vector<std::size_t> body_of_;
+  std::vector<NearPair> pairs_;
+  std::vector<NearPair> tied_;  // clashes within a body
+  std::vector<Six> motion_;     // by body, of the groups that are free by now
+  std::vector<Pose> X_WP_;      // by part, with these motions
+  std::vector<MovableBody>
+      by_sight_;          // the bodies, each allowed to move as far as sight leaves it: for proofs
+  std::size_t work_ = 0;  // done for the group
+};
+
+}  // namespace
+
+CheckedPlaces freePlaces(const std::vector<PlacedSurface>& parts, const CheckResult& checked,
+                         const Progress& progress) {
+  if (checked.clashes() == 0) return {};
+  return PlaceSearch(parts, checked).search(progress);
+}
+
+}  // namespace vps::scenes

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The facets of a part in a slab across an axis.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "surface/placed_surface.h"
+#include "surface/surface_piece.h"
+
+namespace vps::scenes {
+
+/// The facets of a part, cut off where a slab across an axis ends.
+class NearAxis {
+ public:
+  /// @param of  must outlive it
+  /// @param axis_W  unit
+  /// @param half_length_m  of the slab around at_W, along the axis
+  NearAxis(const Vec3& axis_W, const Vec3& at_W, const PlacedSurface& of, double half_length_m)
+      : of_(of),
+        axis_(axis_W),
+        at_(at_W),
+        u_(axis_.unitOrthogonal()),
+        v_(axis_.cross(u_)),
+        half_m_(half_length_m) {}
+
+  /// A facet within the slab, in coordinates along u, v and the axis; less than three corners: it is outside.
+  [[nodiscard]] std::vector<Vec3> clippedFacet(std::uint32_t i) const {
+    return clipped(of_.surface->triangle(i));
+  }
+
+  /// Calls visit(least, greatest distance from the axis, radial part of the normal, facet) for facets in the
+  /// slab.
+  template <class Visit>
+  void forEachFacet(Visit visit) const {
+    for (std::uint32_t i = 0; i < of_.surface->mesh().triangles.size(); ++i) {
+      const std::vector<Vec3> polygon = clipped(of_.surface->triangle(i));
+      if (polygon.size() < 3) continue;
+      double least_m = std::numeric_limits<double>::max(), most_m = 0;
+      Vec3 middle = Vec3::Zero();
+      for (std::size_t k = 0; k < polygon.size(); ++k) {
+        least_m = std::min(least_m, toAxis(polygon[k], polygon[(k + 1) % polygon.size()]));
+        most_m = std::max(most_m, polygon[k].head<2>().norm());
+        middle += polygon[k] / static_cast<double>(polygon.size());
+      }
+      const Vec3 n = of_.X_WP.R * of_.surface->normal(i);
+      const Vec3 out = (middle.x() * u_ + middle.y() * v_).normalized();
+      visit(least_m, most_m, n.dot(out), i);
+    }
+  }
+
+ private:
+  /// In coordinates along u, v and the axis.
+  [[nodiscard]] std::vector<Vec3> clipped(const Triangle& t) const {
+    SurfacePiece polygon;
+    for (const Vec3& p : t) {
+      const Vec3 r = of_.X_WP * p - at_;
+      polygon.emplace_back(u_.dot(r), v_.dot(r), axis_.dot(r));
+    }
+    return below(below(polygon, Vec3::UnitZ(), half_m_), -Vec3::UnitZ(), half_m_);
+  }
+
+  static double toAxis(const Vec3& a, const Vec3& b) {
+    const Eigen::Vector2d from = a.head<2>(), along = b.head<2>() - from;
+    const double t =
+        along.squaredNorm() > 0 ? std::clamp(-from.dot(along) / along.squaredNorm(), 0.0, 1.0) : 0.0;
+    return (from + t * along).norm();
+  }
+
+  const PlacedSurface& of_;
+  Vec3 axis_, at_, u_, v_;
+  double half_m_;
+};
+
+}  // namespace vps::scenes

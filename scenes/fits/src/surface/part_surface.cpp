@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "surface/part_surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <tuple>
+
+namespace vps::scenes {
+
+namespace {
+
+/// Rounding turns the diagonal of a flat face by about 1e-8; curved faces turn by more than 1e-3.
+constexpr double kFlat_rad = 1e-6;
+constexpr double kPartSurfaceParallel = 1e-12;  // 1 - cosine
+
+double angleBetween(const Vec3& a, const Vec3& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+/// Distance of a triangle's corner from the line through its edge i opposite.
+double heightAcross(const Triangle& t, int edge) {
+  const Vec3 along = t[(edge + 1) % 3] - t[edge];
+  return along.cross(t[(edge + 2) % 3] - t[edge]).norm() / std::max(along.norm(), 1e-300);
+}
+
+int edgeTowards(const std::array<std::uint32_t, 3>& neighbours, std::uint32_t other) {
+  return static_cast<int>(std::find(neighbours.begin(), neighbours.end(), other) - neighbours.begin());
+}
+
+}  // namespace
+
+PartSurface::PartSurface(std::shared_ptr<const Solid> solid, std::optional<double> chord_m)
+    : overlap_(std::move(solid)),
+      tree_(overlap_.mesh()),
+      neighbours_(neighboursOf(overlap_.mesh())),
+      most_chord_m_(chord_m) {
+  estimateChords();
+  cracks_ = cracksOf(mesh(), neighbours_, tree_);
+  findPlanes();
+  findPatches();
+  gatherNormals();
+  tellInside();
+}
+
+// A depth is measured in both parts, so in a plate of thickness t none is above t / 2.
+void PartSurface::tellInside() {
+  constexpr double kThinnest_m = 10 * kOverlapCertain_m;
+  const std::size_t sheets = solid().report().sheet_facets;
+  const double thickness_m = 2 * massProperties(mesh()).volume_m3 / area(mesh());
+  if (sheets > 0)
+    no_inside_ = std::to_string(sheets)
+                     .append(" of ")
+                     .append(std::to_string(mesh().triangles.size()))
+                     .append(" facets belong to surfaces without an inside");
+  else if (!(thickness_m > kThinnest_m))
+    no_inside_ = "it is thinner than 1 um";
+}
+
+void PartSurface::gatherNormals() {
+  std::vector<std::vector<std::uint32_t>> facets(mesh().vertices.size());
+  for (std::uint32_t i = 0; i < mesh().triangles.size(); ++i)
+    for (const std::uint32_t v : mesh().triangles[i]) facets[v].push_back(i);
+  for (const std::vector<std::uint32_t>& of_vertex : facets) {
+    const std::size_t first = around_.size();
+    first_around_.push_back(static_cast<std::uint32_t>(first));
+    for (const std::uint32_t i : of_vertex) {
+      const Vec3 n = normal(i);
+      const bool is_known =
+          std::any_of(around_.begin() + static_cast<std::ptrdiff_t>(first), around_.end(),
+                      [&](const Vec3& other) { return other.dot(n) > 1 - kPartSurfaceParallel; });
+      if (!is_known) around_.push_back(n);
+    }
+  }
+  first_around_.push_back(static_cast<std::uint32_t>(around_.size()));
+}
+
+void PartSurface::findPlanes() {
+  planes_.resize(tree_.nodes().size());
+  for (std::size_t node = 0; node < planes_.size(); ++node) {
+    const std::uint32_t first = tree_.nodes()[node].first, end = tree_.nodes()[node].end;
+    const auto facets = std::span(tree_.order()).subspan(first, end - first);
+    const Vec3 n = normal(facets[0]);
+    if (!std::ranges::all_of(facets,
+                             [&](std::uint32_t i) { return normal(i).dot(n) > 1 - kPartSurfaceParallel; }))
+      continue;
+    NodePlane& plane = planes_[node];
+    plane = {n, -1e300};
+    for (const std::uint32_t i : facets)
+      for (const Vec3& p : triangle(i)) plane.highest_m = std::max(plane.highest_m, n.dot(p));
+  }
+}
+
+void PartSurface::findPatches() {
+  constexpr double kOneWay = 0.9;  // about 25 degrees on average; assumed
+  patches_.assign(tree_.nodes().size(), Vec3::Zero());
+  for (std::size_t node = 0; node < patches_.size(); ++node) {
+    const auto [first, end] = std::pair(tree_.nodes()[node].first, tree_.nodes()[node].end);
+    if (end - first > kFacetsOfPatch) continue;
+    Vec3 sum_m2 = Vec3::Zero();
+    double total_m2 = 0;
+    for (std::uint32_t i = first; i < end; ++i) {
+      const Triangle t = triangle(tree_.order()[i]);
+      const double area_m2 = (t[1] - t[0]).cross(t[2] - t[0]).norm();
+      sum_m2 += area_m2 * normal(tree_.order()[i]);
+      total_m2 += area_m2;
+    }
+    if (sum_m2.norm() > kOneWay * total_m2) patches_[node] = sum_m2.normalized();
+  }
+}
+
+double PartSurface::highest_m(std::uint32_t node, const Vec3& n) const {
+  double highest_m = -1e300;
+  for (std::uint32_t i = tree_.nodes()[node].first; i < tree_.nodes()[node].end; ++i)
+    for (const std::uint32_t v : mesh().triangles[tree_.order()[i]])
+      highest_m = std::max(highest_m, n.dot(mesh().vertices[v]));
+  return highest_m;
+}
+
+Triangle PartSurface::triangle(std::uint32_t i) const {
+  const auto& t = mesh().triangles[i];
+  return {mesh().vertices[t[0]], mesh().vertices[t[1]], mesh().vertices[t[2]]};
+}
+
+// A strip of width w across a curve turns by theta from its neighbours: the radius is w / theta, and the
+// middle of the strip is w theta / 8 inside the curve through its edges. A triangle of a ball has three such
+// edges, whose sum is more than its depth below the ball. A flat face beside a curved one is wider, so the
+// smaller width counts. A bevel of less than kCurved_rad is taken for a curve: the estimate is then too
+// large.
+void PartSurface::estimateChords() {
+  chord_m_.assign(mesh().triangles.size(), 0);
+  for (std::uint32_t i = 0; i < chord_m_.size(); ++i)
+    for (int e = 0; e < 3; ++e) {
+      const std::uint32_t other = neighbours_[i][e];
+      if (other == kNoFacet) continue;
+      const double turn_rad = angleBetween(normal(i), normal(other));
+      if (turn_rad < kFlat_rad || turn_rad > kCurved_rad) continue;
+      const double width_m = std::min(heightAcross(triangle(i), e),
+                                      heightAcross(triangle(other), edgeTowards(neighbours_[other], i)));
+      chord_m_[i] += width_m * turn_rad / 8;
+    }
+  if (most_chord_m_)
+    for (double& chord_m : chord_m_) chord_m = std::min(chord_m, *most_chord_m_);
+}
+
+// A strip of width w turns by no more than twice what it turns from a neighbour, which may be much narrower:
+// it is at most w theta / 4 inside the curve.
+double PartSurface::chordBound_m(std::uint32_t i) const {
+  if (chord_m_[i] == 0) return 0;
+  if (most_chord_m_) return *most_chord_m_;
+  double bound_m = 0;
+  for (int e = 0; e < 3; ++e) {
+    const std::uint32_t other = neighbours_[i][e];
+    if (other == kNoFacet) continue;
+    const double turn_rad = angleBetween(normal(i), normal(other));
+    if (turn_rad <= kCurved_rad) bound_m += heightAcross(triangle(i), e) * turn_rad / 4;
+  }
+  return bound_m;
+}
+
+double PartSurface::crackIn(const Box& box_P) const {
+  double most_m = 0;
+  for (const Crack& crack : cracks_)
+    if (distance2(box_P, Box{crack.p_P, crack.p_P}) == 0) most_m = std::max(most_m, crack.width_m);
+  return most_m;
+}
+
+double PartSurface::chordIn(const Box& box_P) const {
+  double most_m = 0;
+  tree_.forEach([&](const Box& node) { return distance2(node, box_P) == 0; },
+                [&](std::uint32_t i) {
+                  if (chord_m_[i] <= most_m) return;
+                  Box box;
+                  for (const Vec3& p : triangle(i)) box.add(p);
+                  if (distance2(box, box_P) == 0) most_m = chord_m_[i];
+                });
+  return most_m;
+}
+
+}  // namespace vps::scenes

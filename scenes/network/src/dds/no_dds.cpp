@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// In place of dds_link.cpp where Cyclone DDS is missing.
+#include "link/link.h"
+#include "link/pointer_topic.h"
+#include "requests/request_channel.h"
+#include "vps/load_error.h"
+#include "vps_scenes/network/head_topic.h"
+#include "vps_scenes/network/ros_topics.h"
+
+namespace vps::scenes {
+
+namespace {
+
+[[noreturn]] void refuseNetwork() {
+  throw LoadError("", "",
+                  "this build has no network, only shared memory; leave out --network, or build with Cyclone "
+                  "DDS (Debian: cyclonedds-dev)");
+}
+
+}  // namespace
+
+std::unique_ptr<Link> makeNetworkSession(const std::string&, std::string_view, const SessionNetwork&) {
+  refuseNetwork();
+}
+std::unique_ptr<Link> joinNetworkSession(const std::string&, NodeRole, const SessionNetwork&) {
+  refuseNetwork();
+}
+
+std::unique_ptr<PointerTopic> makePointerTopic(const std::string&, const SessionNetwork&) {
+  refuseNetwork();
+}
+
+std::unique_ptr<ServerChannel> makeNetworkServer(const std::string&, const SessionNetwork&) {
+  refuseNetwork();
+}
+std::unique_ptr<ClientChannel> findNetworkServer(const std::string&, const SessionNetwork&) {
+  refuseNetwork();
+}
+
+struct RosTopics::Work {};
+RosTopics::RosTopics(int, const std::string&, const std::string&, const Scene&) {
+  refuseNetwork();
+}
+RosTopics::~RosTopics() = default;
+void RosTopics::publish(const Snapshot&, std::int64_t) {}
+void RosTopics::publish(const Wrench&, std::int64_t) {}
+
+struct HeadTopic::Work {};
+HeadTopic::HeadTopic(const std::string& topic, int, const std::string&) {
+  throw LoadError("", "",
+                  "this build has no network, so no head comes on '" + topic +
+                      "'; give 'head' or 'recorded' in its place, or build with Cyclone DDS (Debian: "
+                      "cyclonedds-dev)");
+}
+HeadTopic::~HeadTopic() = default;
+std::optional<Pose> HeadTopic::take() {
+  return {};
+}
+
+}  // namespace vps::scenes

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The names are those of ROS 2's mapping to DDS (design.ros2.org, "Topic and Service name mapping to DDS").
+#include "vps_scenes/network/ros_topics.h"
+
+#include <dds/dds.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include "dds/ros_types.h"
+#include "dds/topics.h"
+
+namespace vps::scenes {
+
+namespace {
+
+using ros::descriptor, ros::Header, ros::kDoubles, ros::kNumber, ros::kText, ros::PoseStamped, ros::require;
+
+constexpr const char* kWorld = "world";
+
+struct WrenchStamped {
+  Header header;
+  double wrench[6];  ///< force and torque
+};
+struct TransformStamped {
+  Header header;
+  char* child_frame;
+  double transform[7];  ///< translation, and rotation x y z w
+};
+struct TfMessage {
+  dds_sequence_t transforms;
+};
+
+constexpr std::uint32_t kList = static_cast<std::uint32_t>(DDS_OP_ADR) | DDS_OP_TYPE_SEQ | DDS_OP_SUBTYPE_STU;
+
+constexpr std::uint32_t kWrenchOps[] = {kNumber,  offsetof(WrenchStamped, header.sec),
+                                        kNumber,  offsetof(WrenchStamped, header.nanosec),
+                                        kText,    offsetof(WrenchStamped, header.frame),
+                                        kDoubles, offsetof(WrenchStamped, wrench),
+                                        6,        DDS_OP_RTS};
+// Of a list: its place, the size of an element, and how far the next instruction and the element's are.
+constexpr std::uint32_t kTfOps[] = {kList,
+                                    offsetof(TfMessage, transforms),
+                                    sizeof(TransformStamped),
+                                    (4U << 16U) + 5U,
+                                    DDS_OP_RTS,
+                                    kNumber,
+                                    offsetof(TransformStamped, header.sec),
+                                    kNumber,
+                                    offsetof(TransformStamped, header.nanosec),
+                                    kText,
+                                    offsetof(TransformStamped, header.frame),
+                                    kText,
+                                    offsetof(TransformStamped, child_frame),
+                                    kDoubles,
+                                    offsetof(TransformStamped, transform),
+                                    7,
+                                    DDS_OP_RTS};
+
+dds_entity_t makeWriter(const DdsParticipant& participant, const std::string& name,
+                        const dds_topic_descriptor_t& type, int depth) {
+  dds_qos_t* qos = dds_create_qos();
+  dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, DDS_MSECS(10));
+  dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, depth);
+  const dds_entity_t topic = dds_create_topic(participant.entity(), &type, name.c_str(), nullptr, nullptr);
+  const dds_entity_t writer =
+      topic < 0 ? topic : dds_create_writer(participant.entity(), topic, qos, nullptr);
+  dds_delete_qos(qos);
+  return require(writer);
+}
+
+Header headerOf(std::int64_t time_ns) {
+  constexpr std::int64_t kSecond_ns = 1'000'000'000;
+  return {static_cast<std::int32_t>(time_ns / kSecond_ns), static_cast<std::uint32_t>(time_ns % kSecond_ns),
+          const_cast<char*>(kWorld)};
+}
+
+void setPose(double (&to)[7], const Pose& X) {
+  const Eigen::Quaterniond q(X.R);
+  const double values[7] = {X.p.x(), X.p.y(), X.p.z(), q.x(), q.y(), q.z(), q.w()};
+  std::copy(std::begin(values), std::end(values), std::begin(to));
+}
+
+}  // namespace
+
+struct RosTopics::Work {
+  Work(int domain, const std::string& interface, const std::string& session, const Scene& scene)
+      : participant(SessionNetwork(interface, "none"), domain) {
+    const std::string name = rosName(session);
+    const dds_topic_descriptor_t pose_type =
+        descriptor(ros::kPoseName, sizeof(PoseStamped), ros::kPoseOps, ros::kPoseInstructions);
+    const dds_topic_descriptor_t wrench_type =
+        descriptor("geometry_msgs::msg::dds_::WrenchStamped_", sizeof(WrenchStamped), kWrenchOps, 5);
+    const dds_topic_descriptor_t tf_type =
+        descriptor("tf2_msgs::msg::dds_::TFMessage_", sizeof(TfMessage), kTfOps, 8);
+    handle = makeWriter(participant, "rt/vps/" + name + "/handle", pose_type, 10);
+    force = makeWriter(participant, "rt/vps/" + name + "/force", wrench_type, 10);
+    tf = makeWriter(participant, "rt/tf", tf_type, 100);
+    for (const ScenePart& part : scene.parts) frames.push_back(name + "/" + rosName(part.part.name));
+  }
+
+  DdsParticipant participant;  // its end is that of its writers
+  dds_entity_t handle = 0, force = 0, tf = 0;
+  std::vector<std::string> frames;
+  std::vector<TransformStamped> transforms;
+};
+
+RosTopics::RosTopics(int domain, const std::string& interface, const std::string& session, const Scene& scene)
+    : work_(std::make_unique<Work>(domain, interface, session, scene)) {}
+RosTopics::~RosTopics() = default;
+
+void RosTopics::publish(const Snapshot& shot, std::int64_t time_ns) {
+  const Header header = headerOf(time_ns);
+  if (shot.has_hand) {
+    PoseStamped pose{header, {}};
+    setPose(pose.pose, shot.X_W_Proxy);
+    dds_write(work_->handle, &pose);
+  }
+  work_->transforms.clear();
+  for (const BodySnapshot& body : shot.bodies) {
+    if (body.role == BodyRole::Waiting || body.part >= work_->frames.size()) continue;
+    TransformStamped transform{header, work_->frames[body.part].data(), {}};
+    setPose(transform.transform, body.X_WP);
+    work_->transforms.push_back(transform);
+  }
+  if (work_->transforms.empty()) return;
+  TfMessage message{};
+  message.transforms._maximum = message.transforms._length =
+      static_cast<std::uint32_t>(work_->transforms.size());
+  message.transforms._buffer = reinterpret_cast<std::uint8_t*>(work_->transforms.data());
+  dds_write(work_->tf, &message);
+}
+
+void RosTopics::publish(const Wrench& F_hand_W, std::int64_t time_ns) {
+  WrenchStamped wrench{
+      headerOf(time_ns),
+      {F_hand_W.f.x(), F_hand_W.f.y(), F_hand_W.f.z(), F_hand_W.tau.x(), F_hand_W.tau.y(), F_hand_W.tau.z()}};
+  dds_write(work_->force, &wrench);
+}
+
+}  // namespace vps::scenes

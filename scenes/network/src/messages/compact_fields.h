@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The states between nodes where bytes are dear, over UDP: lengths as floats, rotations in eight bytes,
+// twists and wrenches as half floats. Of haptics and physics these are the whole states, of which there are
+// few; most are dense (dense_state.h).
+//
+// visit(x) takes the worth of a float of each number; visit.exact(x) every bit; visit.coarse(x) the worth of
+// a half float. Shared by writing and reading.
+#pragma once
+
+#include "messages/message_fields.h"
+#include "messages/messages.h"
+
+namespace vps::scenes::wire {
+
+template <typename V>
+void compactFields(HapticMessage& m, V& visit) {
+  device::TickReport& report = m.state.report;
+  visit.exact(m.state.tick);
+  visit.exact(report.time_s);
+  visit.choice(report.status, 6);
+  visit.choice(m.state.safety.fault, 8);
+  visit.exact(m.state.proxy.is_coupled);
+  visit.exact(m.hand);
+  visit(report.X_WG);
+  visit.coarse(report.V_WG);
+  visit.coarse(report.F_hand_W);
+  visit.coarse(report.F_hand_D);
+  visit(report.clutch_ratio);
+  visit.exact(m.state.safety.faults);
+  visit.exact(m.state.safety.limited);
+  visit.exact(m.state.safety.slewed);
+  fields(m.state.passivity, visit);
+}
+
+template <typename V>
+void compactFields(PhysicsMessage& m, V& visit) {
+  visit.exact(m.state.step);
+  visit.exact(m.state.part.time_s);
+  visit.exact(m.state.part.is_coupled);
+  visit(m.state.part.X_W);
+  visit.coarse(m.state.part.V_W);
+  visit(m.state.stored_J);
+  visit(m.state.held.X_WP);
+  visit.coarse(m.state.held.V_WP);
+  visit(m.state.held.weight_W);
+}
+
+template <typename V>
+void compactFields(SnapshotMessage& m, V& visit) {
+  Snapshot& s = m.snapshot;
+  visit.exact(s.time_s);
+  visit.exact(s.step);
+  visit.exact(s.has_target);
+  visit.exact(s.target_part);
+  visit(s.X_WP_target);
+  visit.exact(s.has_hand);
+  visit(s.X_W_Proxy);
+  visit.coarse(s.F_hand_W);
+  visit.list(s.bodies, [&visit](BodySnapshot& body) {
+    visit.exact(body.part);
+    visit(body.X_WP);
+    visit.choice(body.role, 4);
+  });
+  visit.list(s.contacts, [&visit](ContactMark& mark) {
+    visit(mark.p_W);
+    visit.coarse(mark.n_W);
+    visit.coarse(mark.depth_m);  // to 0.06 um, or a part in 2048
+    visit.coarse(mark.force_N);
+  });
+}
+
+}  // namespace vps::scenes::wire

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A program that asks the render node of a session, and waits for each answer.
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <string>
+
+#include "messages/messages.h"
+#include "requests/request_channel.h"
+#include "vps/load_error.h"
+#include "vps_device/metronome.h"
+
+namespace vps::scenes {
+
+/// Used by one thread. All of its requests have one sender.
+class Asking {
+ public:
+  static constexpr double kLimit_s = 5;
+
+  /// Throws LoadError where no render node of the session takes requests.
+  Asking(const std::string& session, const SessionNetwork& network)
+      : session_(session),
+        channel_(network.empty() ? findLocalServer(session) : findNetworkServer(session, network)),
+        writer_(newSender()),
+        remedy_(network.empty() ? "its vps render is stopped, or too busy"
+                                : "check that vps render runs it at this --network, and that the "
+                                  "certificates are of its authority and allow requests") {
+    if (channel_ == nullptr)
+      throw LoadError("", "", sessionWords(session) + ": no vps render runs it that takes requests");
+  }
+
+  /// Throws LoadError where nothing answers in time, the session has ended, or it is of another version.
+  template <typename Message>
+  AnswerMessage ask(const Message& message, double limit_s = kLimit_s) {
+    AnswerMessage read;
+    MessageReader().read(askFor(message, limit_s), read);
+    return read;
+  }
+  /// The bytes of an AnswerMessage or a FetchedMessage.
+  template <typename Message>
+  std::string askFor(const Message& message, double limit_s = kLimit_s) {
+    const std::string bytes(writer_.write(message));
+    const std::uint64_t number = writer_.number(kindOf(bytes));
+    const double until_s = device::monotonicSeconds() + limit_s;
+    channel_->send(bytes);
+    double again_s = device::monotonicSeconds() + kAgain_s;
+    while (device::monotonicSeconds() < until_s) {
+      std::string answer = channel_->receive(kAgain);
+      if (channel_->isOver()) throw LoadError("", "", sessionWords(session_) + " has ended");
+      if (!answer.empty() && isAnswerTo(answer, number)) return answer;
+      if (device::monotonicSeconds() < again_s) continue;
+      again_s = device::monotonicSeconds() + kAgain_s;
+      channel_->send(bytes);
+    }
+    throw LoadError("", "", sessionWords(session_) + ": nothing answers; " + remedy_);
+  }
+
+ private:
+  static constexpr std::chrono::milliseconds kAgain{300};  // over a network: until the other end is found
+  static constexpr double kAgain_s = 0.3;
+
+  template <typename Message>
+  bool isAnswerTo(const std::string& bytes, std::uint64_t number, Message&& message) const {
+    const Reading reading = MessageReader().read(bytes, message);
+    if (reading == Reading::BadVersion)
+      throw LoadError(
+          "", "",
+          sessionWords(session_) + " is run by another version of vps render; use the same version for both");
+    return reading == Reading::Good && message.asker == writer_.sender() && message.number == number;
+  }
+  [[nodiscard]] bool isAnswerTo(const std::string& bytes, std::uint64_t number) const {
+    if (kindOf(bytes) != MessageKind::Fetched) return isAnswerTo(bytes, number, AnswerMessage());
+    const auto fetched = std::make_unique<FetchedMessage>();  // too long for a stack
+    return isAnswerTo(bytes, number, *fetched);
+  }
+
+  std::string session_;
+  std::unique_ptr<ClientChannel> channel_;
+  MessageWriter writer_;
+  const char* remedy_;  ///< where nothing answers
+};
+
+}  // namespace vps::scenes

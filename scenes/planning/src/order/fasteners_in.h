@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The fasteners of an assembly, with what its fits tell.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "fits/fastener_shape.h"
+
+namespace vps::scenes {
+
+/// Those that their shapes tell, pins only where they fit a bore, and keys: bars with key fits to two parts.
+/// @param shapes of the parts, see fastenerShapes()
+std::vector<Fastener> fastenersIn(const std::vector<PlacedSurface>& parts, const CheckResult& checked,
+                                  const std::vector<std::optional<FastenerShape>>& shapes);
+
+}  // namespace vps::scenes

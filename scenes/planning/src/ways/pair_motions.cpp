@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ways/pair_motions.h"
+
+#include <algorithm>
+
+#include "surface/on_cores.h"
+
+namespace vps::scenes {
+
+namespace {
+
+/// For one motion of one pair: some ten seconds. Those of a bolt of 227,717 facets need 2 million.
+constexpr std::uint64_t kMostWork = 10'000'000;
+/// To find out whether a motion needs an allowance: it is stopped early if it does, and takes long where
+/// faces slide along each other.
+constexpr std::uint64_t kMostExactWork = 300'000;
+constexpr double kFall_m = 1e-3;  // assumed: what sinks by less than this is carried
+
+/// How deep parts may be in each other on a way, beyond what is drawn and its error: facets of curved faces
+/// of one size cross by more than their chords where they slide along each other. Half of the 10 um that a
+/// step may penetrate, and a thousandth of small parts. A search with 1 um took ten times as long.
+double touchOf(const PlacedSurface& a, const PlacedSurface& b) {
+  constexpr double kTouch_m = 5e-6, kShare = 1e-3;
+  return std::min(
+      {kTouch_m, kShare * a.surface->box().size().norm(), kShare * b.surface->box().size().norm()});
+}
+
+/// Whether a plane across an axis of the world parts two boxes, but for some depth, while one of them goes
+/// all the way along d. A search along faces that lie on each other takes a second where they have many
+/// edges.
+bool staysBeside(const Box& moving, const Box& held, const Vec3& d, double depth_m, double way_m) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const double nearer_m = way_m * d[axis];
+    if (moving.min[axis] - held.max[axis] + depth_m + std::min(0.0, nearer_m) >= 0) return true;
+    if (held.min[axis] - moving.max[axis] + depth_m - std::max(0.0, nearer_m) >= 0) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+std::size_t Directions::add(const Vec3& d) {
+  constexpr double kSameDirection = 1e-10;  // squared
+  for (std::size_t i = 0; i < vectors_.size(); ++i)
+    if ((vectors_[i] - d).squaredNorm() < kSameDirection) return i;
+  vectors_.push_back(d);
+  vectors_.emplace_back(-d);
+  return vectors_.size() - 2;
+}
+
+PlacedSurface displaced(const PlacedSurface& part, const Pose& X_W) {
+  PlacedSurface out = part;
+  out.X_WP = X_W * part.X_WP;
+  out.box_W = Box();
+  for (const Vec3& p : part.surface->mesh().vertices) out.box_W.add(out.X_WP * p);
+  return out;
+}
+
+PairMotions::PairMotions(const std::vector<PlacedSurface>& parts, const CheckResult& checked,
+                         const Vec3& up_W, const Progress& progress)
+    : parts_(parts),
+      axes_(parts.size()),
+      fits_(parts.size()),
+      mates_(parts.size()),
+      carriers_(parts.size()),
+      carried_(parts.size()) {
+  up_ = directions_.add(up_W.normalized());
+  Box all;
+  for (const PlacedSurface& part : parts) {
+    all.add(part.box_W.min);
+    all.add(part.box_W.max);
+  }
+  leave_m_ = 2 * all.size().norm();
+  findDirections(checked);
+  findNear(checked, progress);
+}
+
+void PairMotions::findDirections(const CheckResult& checked) {
+  std::map<std::string, std::size_t> index;
+  for (std::size_t i = 0; i < parts_.size(); ++i) index[parts_[i].name] = i;
+  for (const CheckedFit& fit : checked.fits) {
+    const std::size_t shaft = index.at(fit.shaft), bore = index.at(fit.bore);
+    for (const auto& [part, mate] : {std::pair(shaft, bore), {bore, shaft}}) {
+      fits_[part].push_back(fit);
+      mates_[part].push_back(mate);
+    }
+  }
+  for (int axis = 0; axis < 3; ++axis) directions_.add(Vec3::Unit(axis));
+  const std::size_t common = directions_.size();
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    for (std::size_t d = 0; d < common; ++d) axes_[i].push_back(d);
+    const auto add = [&](const Vec3& v) {
+      const std::size_t d = directions_.add(v);
+      for (const std::size_t one : {d, Directions::opposite(d)})
+        if (std::ranges::find(axes_[i], one) == axes_[i].end()) axes_[i].push_back(one);
+    };
+    for (const CheckedFit& fit : fits_[i]) {
+      add(fit.along_W.normalized());
+      if (fit.kind == FitKind::Key) add(fit.axis_W.cross(fit.along_W).normalized());
+    }
+    for (int axis = 0; axis < 3; ++axis) add(parts_[i].X_WP.R.col(axis));
+  }
+  for (const Vec3& d : makeSphere(1, 1).vertices) around_.push_back(directions_.add(d.normalized()));
+}
+
+void PairMotions::findNear(const CheckResult& checked, const Progress& progress) {
+  std::map<std::string, std::size_t> index;
+  for (std::size_t i = 0; i < parts_.size(); ++i) index[parts_[i].name] = i;
+  for (const CheckedPair& pair : checked.pairs) {
+    const Pair key = std::minmax(index[pair.a], index[pair.b]);
+    Near& near = near_[key];
+    near.allowance_m = pair.error_m + touchOf(parts_[key.first], parts_[key.second]);
+    near.crossing_m = pair.interference_depth_m + near.allowance_m;
+  }
+  std::vector<std::pair<const Pair, Near>*> all;
+  for (auto& one : near_) all.push_back(&one);
+  const Vec3 down_W = -directions_[up_];
+  std::vector<std::array<bool, 2>> falls(all.size());  // the first, the second
+  forEachOnCores(all.size(), progress, "preparing motions", [&](std::size_t i) {
+    auto& [pair, near] = *all[i];
+    near.search = std::make_unique<const MotionSearch>(
+        parts_[pair.first],
+        std::make_shared<const StandingParts>(std::vector<const PlacedSurface*>{&parts_[pair.second]}),
+        std::vector<double>{near.crossing_m}, CrossingDepth::UpToMost);
+    near.probes = ContactProbes(parts_[pair.first], parts_[pair.second], near.crossing_m);
+    SearchWork down{kMostWork}, up{kMostWork};
+    falls[i] = {!near.stops({down_W, Vec3::Zero(), false}, kFall_m, down),
+                !near.stops({-down_W, Vec3::Zero(), false}, kFall_m, up)};
+  });
+  const auto add = [this](std::size_t carrier, std::size_t part) {
+    carriers_[part].push_back(carrier);
+    carried_[carrier].push_back(part);
+  };
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const auto [first, second] = all[i]->first;
+    if (!falls[i][0]) add(second, first);
+    if (!falls[i][1]) add(first, second);
+  }
+  for (auto* lists : {&carriers_, &carried_})
+    for (std::vector<std::size_t>& list : *lists) std::ranges::sort(list);
+}
+
+std::uint64_t PairMotions::slot(std::size_t a, std::size_t b, std::size_t direction) const {
+  return (static_cast<std::uint64_t>(b) * (b - 1) / 2 + a) * directions_.size() + direction;
+}
+
+bool PairMotions::stops(std::size_t held, std::size_t part, std::size_t direction) const {
+  // The first of a pair moves: that the second moves is the same, backwards.
+  if (held < part) return stops(part, held, Directions::opposite(direction));
+  const Motion motion{directions_[direction], Vec3::Zero(), false};
+  const Box &moving = parts_[part].box_W, &fixed = parts_[held].box_W;
+  if (staysBeside(moving, fixed, motion.direction, 0, leave_m_)) return false;
+  const std::uint64_t key = slot(part, held, direction);
+  if (const auto known = known_.find(key); known != known_.end()) return known->second.is_stopped;
+  const auto near = near_.find({part, held});
+  const bool is_near = near != near_.end();
+  const double depth_m = is_near ? near->second.crossing_m : touchOf(parts_[part], parts_[held]);
+  SearchWork work{kMostWork};
+  const bool is_stopped =
+      !staysBeside(moving, fixed, motion.direction, depth_m, leave_m_) &&
+      (is_near ? near->second.stops(motion, leave_m_, work)
+               : search(parts_[part], part, {held}).reach(motion, leave_m_, &work).is_stopped);
+  // Another thread may have found it meanwhile.
+  if (known_.emplace(key, Answer{is_stopped, work.isSpent()}).second && work.isSpent()) ++cut_;
+  return is_stopped;
+}
+
+double PairMotions::allowanceOf(std::size_t held, std::size_t part, std::size_t direction) const {
+  if (held < part) return allowanceOf(part, held, Directions::opposite(direction));
+  const Motion motion{directions_[direction], Vec3::Zero(), false};
+  if (staysBeside(parts_[part].box_W, parts_[held].box_W, motion.direction, 0, leave_m_)) return 0;
+  const std::uint64_t key = slot(part, held, direction);
+  if (const auto known = allowance_m_.find(key); known != allowance_m_.end()) return known->second;
+  const auto near = near_.find({part, held});
+  const bool is_near = near != near_.end();
+  const MotionSearch exact(
+      parts_[part], std::make_shared<const StandingParts>(std::vector<const PlacedSurface*>{&parts_[held]}),
+      {is_near ? near->second.crossing_m : 0.0}, CrossingDepth::AsDrawn);
+  SearchWork work{kMostExactWork};
+  const Reach reach = exact.reach(motion, leave_m_, &work);
+  const bool is_stopped = reach.is_stopped && !reach.is_given_up && !work.isSpent();
+  const double all_m = is_near ? near->second.allowance_m : touchOf(parts_[part], parts_[held]);
+  return allowance_m_.emplace(key, is_stopped ? all_m : 0).first->second;
+}
+
+std::vector<std::uint64_t> PairMotions::found() const {
+  std::vector<std::uint64_t> out;
+  for (const auto& [slot, answer] : known_)
+    out.push_back(slot << 2U | (answer.is_stopped ? 1U : 0U) | (answer.is_cut ? 2U : 0U));
+  std::ranges::sort(out);
+  return out;
+}
+
+void PairMotions::take(const std::vector<std::uint64_t>& found) {
+  for (const std::uint64_t one : found) {
+    const Answer answer{(one & 1U) != 0, (one & 2U) != 0};
+    if (known_.emplace(one >> 2U, answer).second && answer.is_cut) ++cut_;
+  }
+}
+
+MotionSearch PairMotions::search(const PlacedSurface& placed, std::size_t part,
+                                 const std::vector<std::size_t>& held) const {
+  std::vector<const PlacedSurface*> surfaces;
+  std::vector<double> crossing_m;
+  for (const std::size_t h : held) {
+    surfaces.push_back(&parts_[h]);
+    const auto near = near_.find(std::minmax(h, part));
+    crossing_m.push_back(near == near_.end() ? touchOf(parts_[h], parts_[part]) : near->second.crossing_m);
+  }
+  return {placed, std::make_shared<const StandingParts>(std::move(surfaces)), crossing_m,
+          CrossingDepth::UpToMost};
+}
+
+}  // namespace vps::scenes

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Repeats a recorded run from its recording alone.
+#pragma once
+
+#include <atomic>
+#include <functional>
+
+#include "vps_device/recording.h"
+#include "vps_scenes/export.h"
+#include "vps_scenes/run/assemble_options.h"
+#include "vps_scenes/run/result.h"
+#include "vps_scenes/scene/model_options.h"
+#include "vps_scenes/scene/scene.h"
+
+namespace vps::scenes {
+
+struct ReplayOptions : ModelOptions {
+  const std::atomic<bool>* stop = nullptr;  ///< as in AssembleOptions
+  SnapshotTap* tap = nullptr;               ///< as in AssembleOptions
+  /// As in AssembleOptions.
+  std::function<void(const device::DeviceEvent&)> on_device_event;
+  /// Called with the scene before it is run, and before its models are built. It stays where it is until
+  /// replay() returns. May be empty.
+  std::function<void(const Scene&)> on_scene;
+};
+
+struct ReplayResult {
+  Scene scene;  ///< as recorded
+  AssembleResult result;
+  std::string
+      departure;  ///< first difference; empty: all wrenches, events and traced poses are equal to the bit
+  std::string other_version;  ///< "was recorded by ..., this is ..."; empty: recorded by this version
+  std::size_t equal = 0;      ///< entries that agree
+};
+
+/// The scene of a recorded run. Throws LoadError if the recording has none, as that of a device alone.
+VPS_SCENES_API Scene recordedScene(const device::RecordedRun& run);
+
+/// Takes the device's samples from the recording, computes everything else again and compares it. After a
+/// difference the run continues to its end. A cut recording ends the run at the cut. Throws as
+/// recordedScene() and assemble().
+VPS_SCENES_API ReplayResult replay(const device::RecordedRun& run, const ReplayOptions& options = {});
+
+}  // namespace vps::scenes

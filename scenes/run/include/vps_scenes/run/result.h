@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The result of a run: the numbers of reports, plots and JSON. result_fields.h has a row for each of them.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "vps/wrench.h"
+#include "vps_scenes/export.h"
+#include "vps_scenes/fits/verdict.h"
+#include "vps_scenes/run/snapshot.h"
+#include "vps_scenes/scene/model_options.h"
+
+namespace vps::scenes {
+
+/// Wall-clock statistics of a repeated task [microseconds].
+struct TickTimes {
+  std::uint64_t count = 0;
+  std::uint64_t missed = 0;  ///< took longer than the period
+  double p50_us = 0, p99_us = 0, p999_us = 0, max_us = 0, mean_us = 0;
+  /// Processor time of the thread, without the time that other programs took. 0: not measured.
+  double cpu_p50_us = 0, cpu_p99_us = 0;
+};
+
+/// One strategy that the virtual operator used while it inserted or pressed.
+struct StrategyUse {
+  std::string strategy;  ///< "tilt_in": vps_device/operator.h
+  double start_s = 0, duration_s = 0;
+};
+
+struct StepResult {
+  std::string part;
+  Verdict verdict = Verdict::NotShown;
+  std::string reason;      ///< of the verdict, in words; empty when it fits
+  std::string blocked_by;  ///< the part whose geometry proves that it cannot be there; empty: none
+  Vec3 blocked_at_W = Vec3::Zero();
+  double blocked_depth_m = 0, blocked_error_m = 0;
+  std::string stuck_against;  ///< the part that it touched when the hand gave up; empty: none, or it did not
+  Vec3 stuck_at_W = Vec3::Zero();
+  std::string stands_on;  ///< an earlier part that is not where it belongs and was put there; empty: none
+  /// A later part that fits into it and takes it from where the hand left it to where it belongs; empty:
+  /// none, or it cannot be moved there.
+  std::string aligned_by;
+  /// Why the drawing cannot show that it fits: the error that is known of its meshes is more than its
+  /// clearance, or nothing is near where it belongs; empty: it can.
+  std::string mesh_doubt;
+  bool is_taken_off = false;  ///< the step took the part off, and its target is where it was put away
+  bool completed = false;     ///< the part reached its target, whatever else is wrong
+  bool by_contact = false;    ///< completed, and other parts guided it there: isGuided()
+  /// Greatest force from the sides, against the last leg of its path, while it was in hand: of what guides
+  /// it.
+  double guide_force_N = 0;
+  std::string failure_reason;  ///< empty when completed
+  double start_s = 0, duration_s = 0;
+  double max_penetration_m = 0;  ///< by exact mesh distance, during the step and the rest after it
+  std::string deepest_against;
+  Vec3 deepest_at_W = Vec3::Zero();
+  double deepest_time_s = 0;
+  double penetration_limit_m = 0;               ///< min(10 um, clearance / 4), see result_fields.h
+  double field_penetration_m = 0;               ///< deepest penetration by the voxmap, for comparison
+  double peak_force_N = 0, peak_torque_Nm = 0;  ///< on the hand
+  int impacts = 0, slides = 0;
+  int index_count = 0;                  ///< times the device was clutched and recentred on its path
+  std::vector<StrategyUse> strategies;  ///< in order of time; empty where a person moves the part
+  double turns = 0;                     ///< of a screw, the last time it was screwed on
+  double advance_per_turn_m = 0;        ///< its way along the axis in these turns, for one turn
+  double lean_rad = 0;                  ///< greatest angle between its axis and that of its target meanwhile
+  /// To press it in, by Lame's formula for the declared interference; 0: no press fit that check finds.
+  double press_needed_N = 0;
+  double hoist_N = 0;        ///< of its weight, what a hoist carries, since the hand may not; 0: no hoist
+  double tolerance_m = 0;    ///< of final_error_m, as stated or from the fit
+  double final_error_m = 0;  ///< greatest distance of its surface from where it belongs
+  double final_error_rad = 0;
+  double rest_drift_m = 0;  ///< greatest displacement of any point of the part in rest_s after release
+  double late_drift_m = 0;  ///< the same in the second half of that time, from where it was in the middle
+  double rest_s = 0;
+  double cook_wall_s = 0;  ///< time to build the fixed field of the next step, on its own thread
+  double swap_wall_s = 0;  ///< time to put it in place, between two physics steps
+  std::uint64_t missed_while_cooking = 0;  ///< haptic periods, in real time
+};
+
+/// Greatest late drift of a released part that counts as being at rest: what settles within its clearance has
+/// done so by then.
+inline constexpr double kRestDriftLimit_m = 5e-6;
+
+/// What a verdict is made of.
+inline bool isWithinLimit(const StepResult& step) {
+  return step.max_penetration_m <= step.penetration_limit_m;
+}
+inline bool isAtRest(const StepResult& step) {
+  return step.late_drift_m <= kRestDriftLimit_m;
+}
+/// Guided with less force than this is not guided. Measured (tests/hand): at most 0.01 N over a plate with
+/// nothing beside the part, at least 0.036 N in a bore.
+inline constexpr double kGuideLeast_N = 0.02;
+inline bool isGuided(const StepResult& step) {
+  return step.guide_force_N >= kGuideLeast_N;
+}
+/// Report, table, JSON and exit status show the verdict; nothing else decides whether the parts fit.
+inline bool isGood(const StepResult& step) {
+  return step.verdict == Verdict::Fits;
+}
+
+/// What the hand does with the part.
+enum class TracePhase { Reach, Insert, Press, Rest };
+
+/// One row of the time series (figure 9 of the paper).
+struct TraceRow {
+  double time_s = 0;
+  int step = -1;
+  int phase = 0;     ///< a TracePhase
+  int strategy = 0;  ///< a device::OperatorStrategy
+  Wrench F_hand_W;   ///< on the hand
+  Pose X_WP;         ///< part in hand
+  Pose X_W_Proxy;
+  int contacts = 0;
+  double depth_m = 0;  ///< by the voxmap
+};
+
+struct EnergyLedger {
+  double to_hand_J = 0, from_hand_J = 0;
+  double injected_J = 0;                  ///< energy that the loop generated, by the encoders' positions
+  double quantisation_error_bound_J = 0;  ///< of injected_J, by the encoders' resolution
+};
+
+/// A part that turned farther in a step than the step can hold: contacts that turn by more than 0.1 rad
+/// against each other miss teeth and corners, and above 45 degrees Bullet turns a body by less than its
+/// speed.
+struct FastTurn {
+  std::string part;
+  bool is_in_contact = false;  ///< the rotation is that against what it touches
+  double w_rad_s = 0;          ///< the greatest of the run, by what it needs
+  double turn_rad = 0;         ///< at that speed in a step, or in a part of a step (Fidelity::substeps)
+  double limit_rad = 0;        ///< greatest turn that is held
+  double needed_hz = 0;        ///< Fidelity::physics_rate_hz that would hold it, without substeps
+};
+/// "'shaft' turns with 10000 rpm, ...", with the remedy.
+VPS_SCENES_API std::string inWords(const FastTurn& turn);
+
+/// One change of the load level (load_level.h).
+struct LoadLevelChange {
+  double time_s = 0;      ///< simulated
+  int from = 0, to = 0;   ///< indices of kLoadLevels
+  std::string was, is;    ///< both levels in words
+  std::string why;        ///< the measurement that caused it
+  std::string cost;       ///< its cost in error, or what it restores
+  double lost_share = 0;  ///< share of the last quarter of a second without a step of its own
+  /// Greatest distance from any place of the surface to the nearest point that is tested: no contact can be
+  /// deeper without being detected.
+  double unseen_bound_m = 0;
+  /// Least distance by the new points less that by the old, at the part's pose; none if it was beyond the
+  /// map's band.
+  std::optional<double> misread_m;
+  double k_N_per_m = 0;     ///< coupling stiffness from here on
+  double build_wall_s = 0;  ///< for new points: from the decision to their use
+  bool is_done = true;      ///< false: it failed, and `why` gives the reason
+};
+
+/// Timing of a run in real time.
+struct RealTimeResult {
+  bool has_priority = false, has_locked_memory = false;
+  std::vector<std::string> warnings;                             ///< what the system refused, with the remedy
+  TickTimes late;                                                ///< from a tick's due time to its start
+  TickTimes response;                                            ///< from a tick's due time to its wrench
+  std::vector<std::pair<std::string, std::uint64_t>> missed_by;  ///< missed haptic periods by cause
+  std::uint64_t stale_ticks = 0;  ///< ticks whose part was older than two physics steps
+  std::uint64_t worst_tick = 0;   ///< the longest response
+  double worst_us = 0;
+  std::string worst_cause;
+  TickTimes physics_late;            ///< from a physics step's due time to its begin
+  std::uint64_t physics_missed = 0;  ///< periods of the scene's physics rate without a step of their own
+  double behind_s = 0;               ///< by how much simulated time fell behind the clock while physics ran
+  std::vector<LoadLevelChange> load_changes;  ///< in order of time
+  std::uint64_t faults = 0;                   ///< safety faults
+};
+
+/// One of several runs of the same procedure (assembleTries()).
+struct TryResult {
+  std::uint64_t seed = 0;  ///< of the virtual operator
+  Verdict verdict = Verdict::NotShown;
+  double simulated_s = 0;
+  std::string reason;  ///< "part: why", of the first step that does not fit; empty when all fit
+};
+
+struct CheckResult;
+
+struct AssembleResult {
+  std::string scene;
+  Verdict verdict =
+      Verdict::NotShown;  ///< Blocked if a step is; else NotShown if a step is, or was not tried
+  bool completed = false;
+  std::vector<StepResult> steps;
+  std::vector<TryResult> tries;  ///< in order of their seeds; empty for a single run
+  /// Ease of assembly: the share of the tries in which every part was brought home.
+  std::optional<double> ease_share;
+  std::vector<TraceRow> trace;
+  std::vector<Snapshot> start, contact, end;  ///< one for each step, for pictures
+  Snapshot finished;
+  double haptic_rate_hz = 0, physics_rate_hz = 0;
+  /// What the drawing alone says (check.h), without play: the run measures it before its first step. Null: it
+  /// did not.
+  std::shared_ptr<const CheckResult> checked;
+  TickTimes haptic, physics;
+  std::optional<RealTimeResult> real_time;  ///< of a run in real time
+  struct {
+    std::uint64_t held = 0;                  ///< ticks in which the last snapshot was used unchanged
+    double jump_J = 0, greatest_jump_m = 0;  ///< caused by new snapshots
+  } local_contact;
+  EnergyLedger energy;
+  ModelledCost modelled;              ///< at its maximum, with the fixed field
+  int widened = 0;                    ///< times a part left its region, so that more was modelled
+  std::vector<FastTurn> fast_turns;   ///< one for each part that turned too fast for its steps
+  std::size_t contacts_left_out = 0;  ///< near points beyond a query's limit; 0 unless a limit was set
+  double simulated_s = 0, build_wall_s = 0, run_wall_s = 0;
+};
+
+}  // namespace vps::scenes

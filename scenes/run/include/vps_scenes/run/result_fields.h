@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The numbers of a run as JSON and CSV show them: one table for each object, in its order.
+// viewer/cli/README.md is made from them. Figures of the wall clock have tables of their own, since they do
+// not repeat.
+#pragma once
+
+#include <vector>
+
+#include "vps_scenes/run/result.h"
+#include "vps_scenes/scene/fields.h"
+
+namespace vps::scenes {
+
+// --- TickTimes: the figures that each place shows
+
+inline constexpr auto kPercentiles = std::make_tuple(
+    field("p50", &TickTimes::p50_us, "median"), field("p99", &TickTimes::p99_us, "99th percentile"),
+    field("p999", &TickTimes::p999_us, "99.9th percentile"), field("max", &TickTimes::max_us, "longest"));
+
+inline constexpr auto kShortTimes = std::make_tuple(field("median", &TickTimes::p50_us, "median"),
+                                                    field("p99", &TickTimes::p99_us, "99th percentile"),
+                                                    field("max", &TickTimes::max_us, "longest"));
+
+inline constexpr auto kProcessorTimes = std::make_tuple(
+    field("median", &TickTimes::p50_us, "median"), field("p99", &TickTimes::p99_us, "99th percentile"),
+    field("cpu_median", &TickTimes::cpu_p50_us, "median of the thread's processor time"),
+    field("cpu_p99", &TickTimes::cpu_p99_us, "99th percentile of the thread's processor time"));
+
+inline constexpr auto kLoopTimes =
+    std::make_tuple(field("missed", &TickTimes::missed, "ticks that took longer than the period"),
+                    object("tick_us", kPercentiles, "duration of a tick, or of a physics step"));
+
+// --- A step of the procedure
+
+inline constexpr auto kStepFields = std::make_tuple(
+    field("part", &StepResult::part, "name of the part"),
+    field("verdict", &StepResult::verdict, "`fits`, `blocked` or `not_shown`"),
+    field("reason", &StepResult::reason, "of the verdict, in words; empty when it fits"),
+    field("blocked_by", &StepResult::blocked_by,
+          "the part that it overlaps at its target, as drawn, or that shuts it in or out; empty if none"),
+    field("blocked_at_m", &StepResult::blocked_at_W, "where, in the world"),
+    field("blocked_depth_m", &StepResult::blocked_depth_m, "depth of that overlap"),
+    field("blocked_error_m", &StepResult::blocked_error_m,
+          "error of that depth, by the meshes' distance from the faces that they stand for"),
+    field("stuck_against", &StepResult::stuck_against,
+          "the part that it touched when the hand gave up; empty if none, or if the hand did not"),
+    field("stuck_at_m", &StepResult::stuck_at_W, "where they touched, in the world"),
+    field("stands_on", &StepResult::stands_on,
+          "an earlier part that did not reach its target and was put there for this step; empty if none"),
+    field(
+        "mesh_doubt", &StepResult::mesh_doubt,
+        "why it is not shown that it fits, though the hand brought it home: the known error of the meshes is "
+        "more than its clearance, it belongs nowhere near another part, or a passage on the way was not "
+        "searched "
+        "to its end; empty: nothing"),
+    field("aligned_by", &StepResult::aligned_by,
+          "a later part that fits into it and takes it from where the hand left it to where it belongs; "
+          "empty if none"),
+    field("taken_off", &StepResult::is_taken_off,
+          "the step took the part off (`--disassemble`); its target is where it was put away"),
+    field("completed", &StepResult::completed, "the part reached its target within tolerance"),
+    field("by_contact", &StepResult::by_contact,
+          "completed, and other parts guided it across its path; false: by sight alone"),
+    field("guide_force_N", &StepResult::guide_force_N,
+          "greatest force from the sides, against the last leg of its path, while it was in hand"),
+    field("failure_reason", &StepResult::failure_reason, "empty when completed"),
+    field("start_s", &StepResult::start_s, "simulated time at which the step began"),
+    field("duration_s", &StepResult::duration_s, "simulated time that it took"),
+    field("max_penetration_m", &StepResult::max_penetration_m,
+          "deepest penetration over the step and the rest after it, by exact distance along all sharp edges, "
+          "at the vertices of curved faces and at the shells' points on faces, at every 200th pose and the "
+          "fifty with the deepest contacts; also of passages between the poses of two physics steps that are "
+          "more "
+          "than 0.1 mm apart"),
+    field("penetration_limit_m", &StepResult::penetration_limit_m,
+          "min(10 um, clearance / 4); of a part that is taken off, beyond the overlap as drawn"),
+    field("deepest_against", &StepResult::deepest_against, "name of the part that was penetrated deepest"),
+    field("deepest_at_m", &StepResult::deepest_at_W, "place of the deepest penetration, in the world"),
+    field("deepest_time_s", &StepResult::deepest_time_s, "simulated time of the deepest penetration"),
+    field("field_penetration_m", &StepResult::field_penetration_m,
+          "deepest penetration by the voxmap, for comparison"),
+    field("peak_force_N", &StepResult::peak_force_N, "greatest force on the hand"),
+    field("peak_torque_Nm", &StepResult::peak_torque_Nm, "greatest torque on the hand"),
+    field("impacts", &StepResult::impacts, "number of impacts"),
+    field("slides", &StepResult::slides, "number of contacts that slide"),
+    field("index_count", &StepResult::index_count,
+          "how often the device was clutched and recentred, on a path longer than its workspace or a turn "
+          "beyond it"),
+    field("turns", &StepResult::turns, "of a screw: turns, the last time that it was screwed on"),
+    field("advance_per_turn_m", &StepResult::advance_per_turn_m,
+          "of a screw: its way along the axis in these turns, for one turn"),
+    field("lean_rad", &StepResult::lean_rad,
+          "of a screw: greatest angle between its axis and that of its target meanwhile"),
+    field("press_needed_N", &StepResult::press_needed_N,
+          "force that presses it in, by Lamé's formula for the declared interference; 0: not a press fit"),
+    field("hoist_N", &StepResult::hoist_N,
+          "what a hoist carries of its weight, which is more than half of the coupling's greatest force, so "
+          "that forces on the hand are those of a lighter part; 0: no hoist"),
+    field("tolerance_m", &StepResult::tolerance_m, "tolerance of `final_error_m`, as stated or from the fit"),
+    field("final_error_m", &StepResult::final_error_m,
+          "greatest distance of the part's surface from where it belongs"),
+    field("final_error_rad", &StepResult::final_error_rad, "rotation from the target"),
+    field("rest_drift_m", &StepResult::rest_drift_m,
+          "greatest displacement of any point of the part in `rest_s` after release"),
+    field("late_drift_m", &StepResult::late_drift_m,
+          "the same in the second half of that time; more than 5 um: it is not at rest"),
+    field("rest_s", &StepResult::rest_s, "simulated time that the part was watched after release"));
+
+inline constexpr auto kStrategyFields = std::make_tuple(
+    field(
+        "strategy", &StrategyUse::strategy,
+        "what the virtual operator did: approach, touch, tilt_in, spiral_search, align_by_torque, back_off, "
+        "press_home, place_by_sight, turn_search, turn_back or screw_on"),
+    field("start_s", &StrategyUse::start_s, "simulated time at which it began"),
+    field("duration_s", &StrategyUse::duration_s, "how long it took"));
+static_assert(coversAllMembers<StrategyUse>(kStrategyFields));
+
+/// Lists, which a table of steps has no column for.
+inline constexpr auto kStepLists =
+    std::make_tuple(list("strategies", &StepResult::strategies, kStrategyFields));
+
+inline constexpr auto kStepWallFields = std::make_tuple(
+    field("cook_s", &StepResult::cook_wall_s,
+          "time to build the fixed field of the next step, on its own thread"),
+    field("swap_s", &StepResult::swap_wall_s, "time to put that field in place, between two physics steps"),
+    field("missed_while_cooking", &StepResult::missed_while_cooking,
+          "haptic periods missed meanwhile, in real time"));
+static_assert(coversAllMembers<StepResult>(kStepFields, kStepLists, kStepWallFields));
+
+// --- Parts of the result of a run
+
+inline constexpr auto kEnergyFields = std::make_tuple(
+    field("to_hand_J", &EnergyLedger::to_hand_J, "work done on the hand"),
+    field("from_hand_J", &EnergyLedger::from_hand_J, "work done by the hand"),
+    field("injected_J", &EnergyLedger::injected_J,
+          "greatest rise of energy that the simulation added, by the positions that the encoders show"),
+    field("quantisation_error_bound_J", &EnergyLedger::quantisation_error_bound_J,
+          "bound of the error of `injected_J` by the encoders' resolution"));
+static_assert(coversAllMembers<EnergyLedger>(kEnergyFields));
+
+/// Of a part that turned farther in a step than the step can hold.
+inline constexpr auto kFastTurnFields = std::make_tuple(
+    field("part", &FastTurn::part, "name of the part"),
+    field("in_contact", &FastTurn::is_in_contact, "the rotation is that against what it touches"),
+    field("angular_velocity_rad_s", &FastTurn::w_rad_s, "its rotation where it needs the shortest step"),
+    field("turn_rad", &FastTurn::turn_rad, "its turn in a step, or in a part of one (`substeps`)"),
+    field("limit_rad", &FastTurn::limit_rad,
+          "greatest turn that is held: 0.1 between bodies in contact, else that of Bullet"),
+    field("needed_hz", &FastTurn::needed_hz, "`physics_rate_hz` that would hold it, without `substeps`"));
+static_assert(coversAllMembers<FastTurn>(kFastTurnFields));
+
+inline constexpr auto kModelledFields =
+    std::make_tuple(field("voxmaps", &ModelledCost::voxmaps, "number of voxmaps"),
+                    field("pointshells", &ModelledCost::pointshells, "number of pointshells"),
+                    field("points", &ModelledCost::points, "points of the parts' own pointshells"),
+                    field("field_points", &ModelledCost::field_points, "points of the fixed field"),
+                    field("bytes", &ModelledCost::bytes, "memory of all models"));
+static_assert(coversAllMembers<ModelledCost>(kModelledFields));
+
+inline constexpr auto kLoadChangeFields = std::make_tuple(
+    field("time_s", &LoadLevelChange::time_s, "simulated time"),
+    object("from", std::make_tuple(field("level", &LoadLevelChange::from, "load level before"),
+                                   field("words", &LoadLevelChange::was, "that level in words"))),
+    object("to", std::make_tuple(field("level", &LoadLevelChange::to, "load level after"),
+                                 field("words", &LoadLevelChange::is, "that level in words"))),
+    field("is_done", &LoadLevelChange::is_done, "false: the change was not possible, and `why` says why"),
+    field("why", &LoadLevelChange::why, "reason for the change"),
+    field("lost_share", &LoadLevelChange::lost_share,
+          "share of the last quarter of a second whose physics steps were missing"),
+    field("cost", &LoadLevelChange::cost, "effect on accuracy, in words"),
+    field("unseen_bound_m", &LoadLevelChange::unseen_bound_m,
+          "bound of the depth of a contact between the points"),
+    field("misread_m", &LoadLevelChange::misread_m,
+          "least distance by the new points less that by the old; null beyond the band"),
+    field("k_N_per_m", &LoadLevelChange::k_N_per_m, "stiffness of the coupling from here on"),
+    field("build_s", &LoadLevelChange::build_wall_s, "time from the decision to its effect"));
+static_assert(coversAllMembers<LoadLevelChange>(kLoadChangeFields));
+
+inline constexpr auto kRealTimeHapticFields = std::make_tuple(
+    field("missed_by", &RealTimeResult::missed_by, "missed periods by cause"),
+    group("late_us", &RealTimeResult::late, kPercentiles, "from a tick's due time to its start"),
+    group("response_us", &RealTimeResult::response, kPercentiles, "from a tick's due time to its wrench"),
+    object("worst",
+           std::make_tuple(field("tick", &RealTimeResult::worst_tick, "number of the slowest tick"),
+                           field("response_us", &RealTimeResult::worst_us, "from its due time to its wrench"),
+                           field("cause", &RealTimeResult::worst_cause, "cause of its delay"))),
+    field("stale_ticks", &RealTimeResult::stale_ticks, "ticks whose part was older than two physics steps"),
+    field("faults", &RealTimeResult::faults, "faults of the safety chain"),
+    field("has_priority", &RealTimeResult::has_priority, "the thread has real-time priority"),
+    field("has_locked_memory", &RealTimeResult::has_locked_memory, "the memory is locked"),
+    field("warnings", &RealTimeResult::warnings, "what the system refused, with the remedy"));
+
+inline constexpr auto kRealTimePhysicsFields = std::make_tuple(
+    group("late_us", &RealTimeResult::physics_late, kPercentiles, "from a step's due time to its begin"),
+    field("missed_periods", &RealTimeResult::physics_missed, "physics periods without a step of their own"),
+    field("behind_s", &RealTimeResult::behind_s, "how far simulated time fell behind the clock"),
+    list("load_changes", &RealTimeResult::load_changes, kLoadChangeFields));
+static_assert(coversAllMembers<RealTimeResult>(kRealTimeHapticFields, kRealTimePhysicsFields));
+
+// --- A run
+
+using LocalContact = decltype(AssembleResult::local_contact);
+
+inline constexpr auto kTryFields = std::make_tuple(
+    field("seed", &TryResult::seed, "seed of the virtual operator"),
+    field("verdict", &TryResult::verdict, "`fits`, `blocked` or `not_shown`"),
+    field("simulated_s", &TryResult::simulated_s, "simulated time"),
+    field("reason", &TryResult::reason, "of the first step that does not fit; empty when all fit"));
+static_assert(coversAllMembers<TryResult>(kTryFields));
+
+inline constexpr auto kAssembleFields = std::make_tuple(
+    field("scene", &AssembleResult::scene, "name of the scene"),
+    field("verdict", &AssembleResult::verdict, "`fits`, `blocked` or `not_shown`"),
+    field("completed", &AssembleResult::completed, "all steps were completed"),
+    field("contacts_left_out", &AssembleResult::contacts_left_out,
+          "near points that found no room in a query; 0 unless a limit was set"),
+    field("simulated_s", &AssembleResult::simulated_s, "simulated time"),
+    list("steps", &AssembleResult::steps, std::tuple_cat(kStepFields, kStepLists)),
+    list("fast_turns", &AssembleResult::fast_turns, kFastTurnFields),
+    list("tries", &AssembleResult::tries, kTryFields),
+    field("ease_of_assembly", &AssembleResult::ease_share,
+          "share of the tries in which every part was brought home; null for a single run"),
+    object("haptic",
+           std::make_tuple(
+               field("rate_hz", &AssembleResult::haptic_rate_hz, "rate of the haptic loop"),
+               field("ticks", path(&AssembleResult::haptic, &TickTimes::count), "number of its ticks"))),
+    object("physics", std::make_tuple(field("rate_hz", &AssembleResult::physics_rate_hz, "rate of physics"),
+                                      field("ticks", path(&AssembleResult::physics, &TickTimes::count),
+                                            "number of steps"))),
+    group("energy", &AssembleResult::energy, kEnergyFields),
+    group("local_contact", &AssembleResult::local_contact,
+          std::make_tuple(
+              field("held_ticks", &LocalContact::held, "ticks that used the last snapshot unchanged"),
+              field("jump_J", &LocalContact::jump_J, "energy of the jumps at new snapshots"),
+              field("greatest_jump_m", &LocalContact::greatest_jump_m, "greatest of these jumps"))),
+    field("widened", &AssembleResult::widened,
+          "how often a part reached the border of its region, so that more was modelled"),
+    group("modelled", &AssembleResult::modelled, kModelledFields));
+
+inline constexpr auto kAssembleWallFields = std::make_tuple(
+    field("build_s", &AssembleResult::build_wall_s, "time to build the models"),
+    field("run_s", &AssembleResult::run_wall_s, "time of the run"),
+    columns(&AssembleResult::steps, kStepWallFields),
+    object("haptic", std::make_tuple(group("", &AssembleResult::haptic, kLoopTimes),
+                                     group("", &AssembleResult::real_time, kRealTimeHapticFields))),
+    object("physics", std::make_tuple(group("", &AssembleResult::physics, kLoopTimes),
+                                      group("", &AssembleResult::real_time, kRealTimePhysicsFields))));
+
+// --- A row of trace.csv; a vector's columns are "force_x_N" and so on, a pose's "part_x_m" to "part_qw"
+
+inline constexpr auto kTraceFields = std::make_tuple(
+    field("time_s", &TraceRow::time_s, "simulated time"), field("step", &TraceRow::step, "index of the step"),
+    field("phase", &TraceRow::phase, "0 reach, 1 insert, 2 press, 3 rest"),
+    field("force_N", path(&TraceRow::F_hand_W, &Wrench::f), "force on the hand, in the world"),
+    field("torque_Nm", path(&TraceRow::F_hand_W, &Wrench::tau), "torque on the hand, in the world"),
+    field("part", &TraceRow::X_WP, "pose of the part in hand"),
+    field("proxy", &TraceRow::X_W_Proxy, "pose of the device's proxy"),
+    field("contacts", &TraceRow::contacts, "number of contacts"),
+    field("depth_m", &TraceRow::depth_m, "deepest penetration by the voxmap"),
+    field("strategy", &TraceRow::strategy,
+          "0 none, 1 approach, 2 touch, 3 tilt_in, 4 spiral_search, 5 align_by_torque, 6 back_off, "
+          "7 press_home, 8 place_by_sight, 9 turn_search"));
+
+}  // namespace vps::scenes

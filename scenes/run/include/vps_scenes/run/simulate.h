@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Simulates the scene's bodies under gravity, without a hand.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "vps_scenes/export.h"
+#include "vps_scenes/run/result.h"
+#include "vps_scenes/scene/model_options.h"
+#include "vps_scenes/scene/scene.h"
+
+namespace vps::scenes {
+
+struct BodyState {
+  std::string name;
+  Pose X_WP;
+  Twist V_WP_W;  ///< of the part's origin, in W
+};
+
+/// How deep two bodies overlap, by exact distance between their meshes.
+struct PairOverlap {
+  std::string a, b;
+  double depth_m = 0;
+  Vec3 at_W = Vec3::Zero();
+  double time_s = 0;
+};
+
+/// Two bodies that overlapped at the start by more than the limit.
+struct OverlappingStart {
+  PairOverlap start;
+  std::optional<double> apart_s;  ///< when they first overlapped by the limit or less; empty: never
+  double end_depth_m = 0;         ///< when they were judged last
+};
+
+struct JudgedOverlap {
+  double limit_m = 0;
+  std::size_t poses_judged = 0;
+  /// Of all pairs and steps, between their ends too, but for pairs that overlapped at the start: as long as
+  /// they have not come apart, they count only where they are deeper than then, by the limit or more. The
+  /// part that moves is named first.
+  PairOverlap deepest;
+  std::vector<OverlappingStart> at_start;
+  /// Pairs that overlapped at the start and have not come apart since. They overlap by more than the limit.
+  [[nodiscard]] std::size_t neverApart() const {
+    std::size_t count = 0;
+    for (const OverlappingStart& start : at_start) count += !start.apart_s;
+    return count;
+  }
+  [[nodiscard]] bool isWithinLimit() const { return deepest.depth_m <= limit_m && neverApart() == 0; }
+};
+
+/// The deepest overlap of a run by exact distance, at the start, the end and along all steps.
+struct JudgedDepth {
+  PairOverlap deepest;       ///< depth 0: nothing overlapped
+  double bound_m = 0;        ///< no overlap was deeper at any time, between the steps' poses too
+  std::size_t measures = 0;  ///< of single pairs between start and end
+  /// False: bound_m is that of a stretch of time that was left, since searching it would have cost too much.
+  /// Where it is true, bound_m may exceed the deepest by what parts that start in each other may overlap.
+  bool is_searched = true;
+};
+
+struct SimulateOptions : ModelOptions {
+  /// Measures the overlap of all pairs of bodies at the start, after every so many steps and at the end; 0:
+  /// never. Not together with is_real_time.
+  int judge_every = 0;
+  /// By the system's clock: each step begins when it is due. The steps and their results stay the same.
+  bool is_real_time = false;
+  const std::atomic<bool>* stop = nullptr;  ///< set it to end early
+  /// Called after every step. May be empty.
+  std::function<void(double time_s, const std::vector<BodyState>& bodies, double max_depth_m)> trace;
+};
+
+struct SimulateResult {
+  std::vector<BodyState> bodies;
+  /// Deepest overlap of the run: exact.deepest.depth_m.
+  double max_penetration_m = 0;
+  double contact_depth_m = 0;  ///< deepest contact of the run as the solver saw it
+  JudgedDepth exact;           ///< a run in real time is judged after it
+  std::optional<JudgedOverlap> overlap;
+  double kinetic_energy_J = 0;  ///< at the end
+  /// How often bodies in contact were stopped within a step, because no contact force was found that keeps
+  /// their sharp edges and corners apart for the whole step. Each takes energy.
+  std::size_t shortened_steps = 0;
+  std::vector<FastTurn> fast_turns;  ///< one for each part that turned too fast for its steps
+  int most_substeps = 1;             ///< greatest number of parts of a step
+  TickTimes step, contact_step;      ///< of all steps; of those with contact
+  ModelledCost modelled;
+  double build_wall_s = 0;
+  struct RealTime {
+    std::uint64_t missed = 0;  ///< periods without a step of their own
+    bool has_priority = false, has_locked_memory = false;
+    std::vector<std::string> warnings;  ///< what the system refused
+    double run_wall_s = 0;
+  };
+  std::optional<RealTime> real_time;  ///< of a run in real time
+};
+
+/// The part that turns fastest, by what it needs, with the remedy, and how many others there are. Empty for
+/// none.
+VPS_SCENES_API std::string inWords(const std::vector<FastTurn>& turns, const Fidelity& fidelity);
+
+/// Every part that is not fixed is a dynamic body at its designed pose. The limit of overlap is 10 um, or a
+/// quarter of the least clearance that a step states. Throws LoadError as assemble() does.
+VPS_SCENES_API SimulateResult simulate(Scene& scene, double seconds, const SimulateOptions& options = {});
+
+}  // namespace vps::scenes

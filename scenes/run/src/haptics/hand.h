@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The source of the handle's motion during a run: a simulated device with a virtual operator, a person at a
+// live device, or a recording of any device.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "haptics/recorded_events.h"
+#include "vps_device/loop.h"
+#include "vps_device/operator.h"
+#include "vps_device/pulled_handle.h"
+#include "vps_device/recording.h"
+#include "vps_scenes/scene/scene.h"
+
+namespace vps::scenes {
+
+class HapticDriver;
+
+/// Receives each safety fault, in words.
+using ReportFault = std::function<void(const std::string&)>;
+
+/// Device and hand together.
+class Hand {
+ public:
+  virtual ~Hand() = default;
+  /// For a hand whose loop is in another process: the driver that reaches it. Null for all others. Arguments
+  /// as of makeRealTimeDriver().
+  virtual std::unique_ptr<HapticDriver> makeDriver(const device::LoopSettings& settings, double physics_s,
+                                                   const ReportFault& report, device::RunLog* log);
+  virtual device::Device& device() = 0;
+  /// Plans a step that starts at time now_s. The task's way points are those of the scene's step that are
+  /// still ahead of the part. May allocate; may run concurrently with step(), on another
+  /// thread.
+  virtual void prepare(const device::OperatorTask& task, std::size_t step, double now_s) = 0;
+  /// Starts what was prepared. As step(), never allocates.
+  virtual void begin() = 0;
+  /// The empty hand returns to where that step starts, in kHandReturn_s; beyond the last step to the middle
+  /// of the workspace. Never allocates.
+  virtual void goBack(std::size_t next) = 0;
+  /// In OperatorPhase::Regrasp, with the clutch open: moves to where the next segment starts, in
+  /// kHandReturn_s, and stays there until goOn(). Neither function allocates.
+  virtual void recentre() = 0;
+  /// The clutch is closed again: continues the step.
+  virtual void goOn() = 0;
+  /// One tick of the hand, after the loop's own.
+  virtual void step(const device::HeldPart& part, const device::HapticLoop& loop, double dt_s) = 0;
+  [[nodiscard]] virtual device::OperatorPhase phase() const = 0;
+  /// None where the hand is a person's.
+  [[nodiscard]] virtual device::OperatorStrategy strategy() const { return device::OperatorStrategy::None; }
+  [[nodiscard]] device::OperatorState state() const { return {phase(), strategy()}; }
+  /// The recorded events of a real-time run that is replayed; empty otherwise.
+  [[nodiscard]] virtual std::vector<RecordedEvent> events() const { return {}; }
+  /// Whether this many ticks are left.
+  [[nodiscard]] virtual bool canGoOn(int ticks) const = 0;
+};
+
+inline constexpr double kHandReturn_s = 1.5;  ///< duration of the hand's way back to the next part
+
+/// The hand for the scene's [device] kind. Throws LoadError for an unknown kind, a path that a simulated
+/// device cannot reach, and a device that a person moves where the run is not in real time or the device does
+/// not answer within 3 s.
+/// @param wish  of the mouse; null: there is none
+std::unique_ptr<Hand> makeHand(const Scene& scene, bool is_real_time,
+                               std::shared_ptr<device::HandleWish> wish = nullptr);
+
+/// A simulated device and the virtual operator. Throws LoadError as makeHand().
+std::unique_ptr<Hand> simulatedHand(const Scene& scene);
+
+/// A person at a device. A step is done once the part has been within its tolerance, and the handle at rest,
+/// for half a second: the person releases the cap or stick. It fails at its timeout.
+std::unique_ptr<Hand> personHand(std::unique_ptr<device::Device> device);
+
+/// A recording of any device and hand; it outlives the hand.
+std::unique_ptr<Hand> recordedHand(device::Recording& recording);
+
+}  // namespace vps::scenes

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Device, hand and haptic loop of a run. Three implementations: lockstep (simulated time, the caller's
+// thread), real time (a thread of its own) and the replay of a real-time run.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "haptics/hand.h"
+#include "vps_device/device_events.h"
+#include "vps_device/loop.h"
+#include "vps_device/run_log.h"
+#include "vps_scenes/run/result.h"
+
+namespace vps::scenes {
+
+/// Commands and state exchange of a procedure, called from the physics thread. In lockstep the haptic loop
+/// runs inside advance(); in real time it runs from resume() to pause(), also while commands are given.
+class HapticDriver {
+ public:
+  virtual ~HapticDriver() = default;
+  virtual void pause() = 0;
+  /// If the loop runs already, only clears a safety fault, as a person would between steps.
+  virtual void resume() = 0;
+  [[nodiscard]] virtual const device::LoopSettings& settings() const = 0;
+
+  /// Hands over the part whose grasp frame is at X_WG now; the clutch begins to close. No force flows before
+  /// a coupled part is published.
+  virtual void handOver(const Pose& X_WG) = 0;
+  /// Begin to open or close the clutch; last().clutch_ratio tells the progress.
+  virtual void openClutch() = 0;
+  virtual void closeClutch() = 0;
+  /// The hand begins a step; when this returns, phase() is that of the step.
+  virtual void begin(const device::OperatorTask& task, std::size_t step, double now_s) = 0;
+  virtual void letGo() = 0;
+  /// Moves the free hand, as the functions of Hand; when one returns, the motion has begun.
+  virtual void goBack(std::size_t next) = 0;
+  virtual void recentre() = 0;
+  virtual void goOn() = 0;
+
+  /// Proceeds until the next physics step is due: lockstep runs that step's ticks, real time waits. False,
+  /// and nothing done, where the hand cannot go on.
+  [[nodiscard]] virtual bool advance() = 0;
+  /// The proxy after advance(), for the physics step.
+  virtual const CouplingState& proxy() = 0;
+  /// Publishes the state after that step. state.step is set here. state.stored_J is given while a part is
+  /// held.
+  virtual void publish(const device::PhysicsState& state) = 0;
+  /// Whether background work is ready: as the caller says, or as recorded in a run that is replayed.
+  virtual bool hasSettled(bool is_ready) { return is_ready; }
+  /// Whether axis snap acts in the coming physics step, after advance(): as the caller says, or as recorded.
+  virtual bool snaps(bool is_wanted) { return is_wanted; }
+  /// Whether the part is let go of on request, after advance(): as the caller says, or as recorded.
+  virtual bool givesUp(bool is_wanted) { return is_wanted; }
+  /// Gains from the next part on that is handed over, also in settings(). Not in a run that is recorded.
+  virtual void setGains(const CouplingGains& /*gains*/) {}
+  /// Time the caller spent between the last two calls of advance(); 0 in lockstep.
+  [[nodiscard]] virtual double busy_s() const { return 0; }
+  /// In real time, from the next advance() on: steps of step_s of simulated time, one each period_s of the
+  /// clock, and other gains. settings() stays as given.
+  virtual void setLoadLevel(double /*step_s*/, double /*period_s*/, const CouplingGains& /*gains*/) {}
+
+  /// Of the hand.
+  [[nodiscard]] virtual device::OperatorState state() = 0;
+  [[nodiscard]] device::OperatorPhase phase() { return state().phase; }
+  /// As of the last tick.
+  [[nodiscard]] virtual const device::TickReport& last() = 0;
+  /// Haptic periods without a tick so far; 0 in lockstep.
+  [[nodiscard]] virtual std::uint64_t missed() = 0;
+  /// Whether time goes on while the physics thread does other work.
+  [[nodiscard]] virtual bool isByClock() const = 0;
+  [[nodiscard]] virtual device::PassivityObserver passivity() = 0;
+  [[nodiscard]] virtual TickTimes times() = 0;
+  /// Passes on, by the physics thread, what the loop reported since the last call.
+  virtual void passEvents(const std::function<void(const device::DeviceEvent&)>& /*to*/) {}
+  /// Figures that exist only in real time.
+  [[nodiscard]] virtual std::optional<RealTimeResult> realTime() = 0;
+};
+
+/// @param device  the hand's own, or a tap on it; all arguments outlive the driver
+std::unique_ptr<HapticDriver> makeLockstepDriver(Hand& hand, device::Device& device,
+                                                 device::CouplingPort& port,
+                                                 const device::LoopSettings& settings, int ticks_per_step,
+                                                 const ReportFault& report);
+/// @param physics_s  period of physics
+/// @param log        may be null; receives, from the physics thread, what a replay needs
+std::unique_ptr<HapticDriver> makeRealTimeDriver(Hand& hand, device::CouplingPort& port,
+                                                 const device::LoopSettings& settings, double physics_s,
+                                                 const ReportFault& report, device::RunLog* log);
+/// Repeats a run of makeRealTimeDriver() in simulated time.
+/// @param events    as recorded
+/// @param device    the recording, tapped
+/// @param settings  of the recorded loop, with physicsLimit_s()
+std::unique_ptr<HapticDriver> makeReplayedDriver(Hand& hand, std::vector<RecordedEvent> events,
+                                                 device::Device& device, device::CouplingPort& port,
+                                                 const device::LoopSettings& settings,
+                                                 const ReportFault& report, device::RunLog& log);
+/// In real time: how old a physics state may be.
+double physicsLimit_s(double physics_s);
+
+}  // namespace vps::scenes

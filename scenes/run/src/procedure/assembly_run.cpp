@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "procedure/assembly_run.h"
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include "core/wall_clock.h"
+#include "models/scene_models.h"
+#include "step/step_run.h"
+#include "step/step_verdict.h"
+#include "vps/assert.h"
+#include "vps/load_error.h"
+#include "vps_scenes/run/put_down.h"
+#include "world/assembly_world.h"
+#include "world/drawn_targets.h"
+#include "world/run_trace.h"
+
+namespace vps::scenes {
+
+namespace {
+
+/// A part that did not go to its place takes no other one along. What it was to align was put at its target
+/// for it, and is there for later steps too.
+void refuseAlignment(std::vector<StepResult>& steps, std::string& not_in_place) {
+  StepResult& last = steps.back();
+  if (last.verdict == Verdict::Fits) return;
+  for (StepResult& step : steps) {
+    if (step.aligned_by != last.part) continue;
+    step.aligned_by.clear();
+    if (last.stands_on.empty()) last.stands_on = step.part;
+    if (not_in_place.empty()) not_in_place = step.part;
+  }
+}
+
+void runSteps(AssemblyWorld& world, RunTrace& trace, const std::vector<StepResult>& drawn,
+              AssembleResult& result) {
+  result.completed = true;
+  const std::size_t count = world.scene().steps.size();
+  std::string not_in_place;
+  for (std::size_t i = 0; i < count && !world.isStopped(); ++i) {
+    StepResult known = drawn[i];
+    known.stands_on = not_in_place;
+    result.steps.push_back(runStep(world, trace, i, std::move(known)));
+    refuseAlignment(result.steps, not_in_place);
+    const StepResult& step = result.steps.back();
+    if (!step.completed && not_in_place.empty()) not_in_place = step.part;
+    result.completed = result.completed && step.completed;
+    result.verdict = verdictOf(result.steps, count);
+    if (world.options().on_step) {
+      result.finished = snapshotOf(world);
+      world.options().on_step(result);
+    }
+    if (!step.completed && !world.options().keep_going) break;
+  }
+  if (result.steps.size() < count) result.completed = false;
+}
+
+}  // namespace
+
+void requireSteps(const Scene& scene) {
+  if (scene.steps.empty())
+    throw LoadError(scene.file, "",
+                    "has no [[step]], so there is nothing to assemble; add one, or use `vps simulate`");
+  for (std::size_t i = 0; i < scene.parts.size(); ++i) {
+    const ScenePart& part = scene.parts[i];
+    const auto moves = [i](const SceneStep& step) { return step.part == i; };
+    if (part.is_fixed || part.is_scenery || std::any_of(scene.steps.begin(), scene.steps.end(), moves))
+      continue;
+    throw LoadError(scene.file, part.part.name,
+                    "is not fixed, and no [[step]] moves it, so nothing would collide with it and the answer "
+                    "could be wrong; give it a [[step]], fixed = true, or scenery = true if it is only to be "
+                    "left out");
+  }
+}
+
+std::unique_ptr<Hand> makeHand(const Scene& scene, const AssembleOptions& options) {
+  if (options.device == nullptr) return makeHand(scene, options.is_real_time, options.wish);
+  VPS_ASSERT(options.is_real_time);
+  return personHand(options.device());
+}
+
+AssembleResult runProcedure(Scene& scene, Hand& hand, device::RunLog* log,
+                            const device::LoopSettings& settings, const AssembleOptions& options) {
+  const double begun_s = wallSeconds();
+  std::shared_ptr<const CheckResult> checked;
+  const std::vector<StepResult> drawn = checkDrawnTargets(scene, options.progress, &checked);
+  const double checked_s = wallSeconds() - begun_s;
+  AssembleResult result = runProcedure(scene, hand, log, settings, options, drawn);
+  result.build_wall_s += checked_s;
+  result.checked = std::move(checked);
+  return result;
+}
+
+AssembleResult runProcedure(Scene& scene, Hand& hand, device::RunLog* log,
+                            const device::LoopSettings& settings, const AssembleOptions& options,
+                            const std::vector<StepResult>& drawn) {
+  AssembleResult result;
+  const double begun_s = wallSeconds();
+  const ModelPlan plan = makeModelPlan(scene, ModelPurpose::Assemble, options.models_everything);
+  buildModels(scene, plan, options);
+  RunTrace trace(scene, log);
+  const AssemblyWorld* faulty = nullptr;  // set before the first tick
+  AssemblyWorld world(scene, plan, hand, log, settings, options, [&](const std::string& fault) {
+    if (faulty != nullptr) trace.logEvent(*faulty, device::RunEventKind::Note, "safety: " + fault);
+  });
+  faulty = &world;
+  const double run_begun_s = wallSeconds();
+  result.build_wall_s = run_begun_s - begun_s;
+
+  runSteps(world, trace, drawn, result);
+  world.finish();
+  result.finished = snapshotOf(world);
+  trace.moveTo(result);
+  world.summarise(result);
+  result.run_wall_s = wallSeconds() - run_begun_s;
+  result.scene = scene.name;
+  result.haptic_rate_hz = scene.fidelity.haptic_rate_hz;
+  result.physics_rate_hz = scene.fidelity.physics_rate_hz;
+  return result;
+}
+
+}  // namespace vps::scenes

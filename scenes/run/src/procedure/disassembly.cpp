@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vps_scenes/run/disassembly.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "scene/insertion_axis.h"
+#include "vps/load_error.h"
+#include "vps/mesh_repair.h"
+#include "vps_device/operator.h"
+
+namespace vps::scenes {
+
+namespace {
+
+/// The hand turns the part by this at a time: far below half a turn, whose direction would be ambiguous.
+constexpr double kUnscrewTurn_rad = 0.5 * std::numbers::pi;
+/// Of the time that the turns take. assumed: re-grasping takes as long again
+constexpr double kSpareTime = 3;
+
+/// The way out of a thread, from the target on, as far as the last leg led into it.
+std::vector<Pose> unscrewed(const SceneStep& step, const Pose& X_PG) {
+  const Vec3 axis_W = insertionAxis(step, X_PG), target_W = step.X_WP_target * X_PG.p;
+  const Pose& X_before = step.way_points.empty() ? step.X_WP_start : step.way_points.back();
+  const double way_m = (target_W - X_before * X_PG.p).norm();
+  const double turn_rad = 2 * std::numbers::pi * way_m / step.pitch_m;
+  const int count = std::max(1, static_cast<int>(std::ceil(std::abs(turn_rad) / kUnscrewTurn_rad)));
+  std::vector<Pose> poses;
+  for (int i = 1; i <= count; ++i) {
+    const double share = static_cast<double>(i) / count;
+    const Mat3 R = rotationFromVector(-share * turn_rad * axis_W) * step.X_WP_target.R;
+    poses.emplace_back(R, Vec3(target_W - share * way_m * axis_W - R * X_PG.p));
+  }
+  return poses;
+}
+
+/// The poses before the last leg, backwards: way points, then the start.
+std::vector<Pose> restOfTheWay(const SceneStep& step) {
+  std::vector<Pose> poses{step.X_WP_start};
+  poses.insert(poses.end(), step.way_points.begin(), step.way_points.end());
+  std::ranges::reverse(poses);
+  return poses;
+}
+
+/// What was unscrewed keeps the turn with which it left the thread.
+std::vector<Pose> wayOutOfThread(const SceneStep& step, const Pose& X_PG) {
+  std::vector<Pose> way = unscrewed(step, X_PG);
+  const Mat3 turn = way.back().R * step.X_WP_target.R.transpose();
+  const std::vector<Pose> rest = restOfTheWay(step);
+  for (std::size_t i = 1; i < rest.size(); ++i) {  // the first is where the thread ends
+    const Mat3 R = turn * rest[i].R;
+    way.emplace_back(R, Vec3(rest[i] * X_PG.p - R * X_PG.p));
+  }
+  return way;
+}
+
+SceneStep takenOff(const SceneStep& step, const Mesh& mesh) {
+  const Pose X_PG = Pose::translation(solidMass(mesh).com);
+  const bool is_screw = step.motion == StepMotion::Screw && step.pitch_m != 0;
+  std::vector<Pose> way = is_screw ? wayOutOfThread(step, X_PG) : restOfTheWay(step);
+  SceneStep off;
+  off.part = step.part;
+  off.takes_off = true;
+  off.is_held = true;  // where it was put away
+  off.X_WP_start = step.X_WP_target;
+  off.X_WP_target = way.back();
+  way.pop_back();
+  off.way_points = std::move(way);
+  off.clearance_m = step.clearance_m;
+  off.tolerance_m = std::min(kAway_m, 0.25 * (off.X_WP_target * X_PG.p - off.X_WP_start * X_PG.p).norm());
+  off.timeout_s = step.timeout_s;
+  if (is_screw)
+    off.timeout_s += kSpareTime * kUnscrewTurn_rad / device::OperatorHabits{}.turn_rad_s *
+                     static_cast<double>(off.way_points.size());
+  return off;
+}
+
+}  // namespace
+
+Scene disassemblyOf(Scene scene) {
+  if (scene.steps.empty())
+    throw LoadError(scene.file, "", "has no [[step]], so there is no way along which a part could leave");
+  if (std::ranges::any_of(scene.steps, &SceneStep::takes_off))
+    throw LoadError(scene.file, "", "is a disassembly already");
+  if (std::ranges::none_of(scene.parts, &ScenePart::is_fixed))
+    throw LoadError(scene.file, "",
+                    "has no fixed part from which the others could be taken; say fixed = true in the "
+                    "[[part]] that stands still");
+  std::vector<SceneStep> steps;
+  for (const SceneStep& step : scene.steps) steps.push_back(takenOff(step, scene.parts[step.part].part.mesh));
+  std::ranges::reverse(steps);
+  scene.steps = std::move(steps);
+  return scene;
+}
+
+}  // namespace vps::scenes

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Timing of physics in real time: when the next step is due, and how well the rate was kept.
+#pragma once
+
+#include <algorithm>
+
+#include "vps_device/metronome.h"
+#include "vps_device/periodic_thread.h"
+#include "vps_device/tick_statistics.h"
+#include "vps_scenes/run/result.h"
+
+namespace vps::scenes {
+
+/// How late a step may begin and still be made up for; what is later than that is lost. The steps after a
+/// long one follow at once until the clock is reached again: a part that slides into its bore takes a step of
+/// 4 ms here and there, and 0.2 ms in between. assumed: 20 ms, well below what a person sees as a delay
+/// between hand and picture (some 50 ms); two periods where these are longer.
+inline double mostLate_s(double period_s) {
+  constexpr double kMostLate_s = 0.02;
+  return std::max(kMostLate_s, 2 * period_s);
+}
+
+/// Used by the thread that steps physics, whose priority it raises.
+class PhysicsClock {
+ public:
+  explicit PhysicsClock(double period_s);
+
+  /// The first step is due a period from now.
+  /// @param locks_memory  whether to request locked memory
+  /// @return what the system granted and refused
+  device::RealTimeReport start(bool locks_memory);
+  /// Waits until the next step is due; returns at once if it is late. Steps later than mostLate_s() are lost.
+  device::Beat wait() noexcept;
+  /// Returns the thread to normal priority.
+  void stop() noexcept;
+  /// From the next wait() on: steps of step_s of simulated time, one each period_s of the clock.
+  void setLoadLevel(double step_s, double period_s);
+
+  /// Missed periods, in units of the first period.
+  [[nodiscard]] std::uint64_t missed() const noexcept { return missed_; }
+  /// Lag of simulated time behind the clock, without what the last steps are late.
+  [[nodiscard]] double behind_s() const noexcept { return behind_s_; }
+  /// From a step's due time to its begin.
+  [[nodiscard]] TickTimes late() const;
+  /// Time the caller spent between the last two waits.
+  [[nodiscard]] double busy_s() const noexcept { return busy_s_; }
+
+ private:
+  device::Metronome metronome_;
+  device::TickHistogram late_;
+  double period_s_;  ///< as constructed
+  double step_s_;
+  std::uint64_t missed_ = 0;
+  double behind_s_ = 0, busy_s_ = 0;
+  std::int64_t woke_ns_ = 0;  ///< end of the last wait; 0: none yet
+};
+
+}  // namespace vps::scenes

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Whether a part that was screwed on followed its thread.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "vps_scenes/run/result.h"
+#include "vps_scenes/scene/scene.h"
+
+namespace vps::scenes {
+
+/// Sets turns, advance_per_turn_m and lean_rad from the last time that the part was screwed on.
+/// @param axis_W  of insertion
+/// @param X_PG    the axis leads through G
+void measureScrew(std::span<const TraceRow> rows, const SceneStep& step, const Vec3& axis_W, const Pose& X_PG,
+                  StepResult& result);
+
+/// Why the part is not on its thread, by these figures; empty if it followed the thread, or a
+/// person moved it.
+std::string threadFault(const SceneStep& step, const StepResult& result);
+
+/// The pose without its turn about the axis through G: a screw belongs at a height, not at an angle.
+Pose turnedBack(const Pose& X_WP, const SceneStep& step, const Vec3& axis_W, const Pose& X_PG);
+
+}  // namespace vps::scenes

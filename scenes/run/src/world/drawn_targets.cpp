@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "world/drawn_targets.h"
+
+#include <algorithm>
+#include <optional>
+#include <string>
+
+#include "fits/fit_tolerance.h"
+#include "scene/parts_in_place.h"
+#include "text/length_words.h"
+#include "vps_scenes/fits/check.h"
+#include "world/closed_room.h"
+
+namespace vps::scenes {
+
+namespace {
+
+struct InPlace {
+  const ScenePart* part;
+  Pose X_WP;
+};
+
+std::vector<InPlace> inPlaceBefore(const Scene& scene, std::size_t step) {
+  std::vector<InPlace> parts;
+  for (const auto& [part, X_WP] : partsInPlace(scene, step)) parts.push_back({&scene.parts[part], X_WP});
+  return parts;
+}
+
+bool contains(const std::vector<InPlace>& parts, const std::string& name) {
+  return std::any_of(parts.begin(), parts.end(), [&](const InPlace& p) { return p.part->part.name == name; });
+}
+
+/// The other part of a pair or fit, if the pair is of this part and one in place; else null.
+const std::string* otherOf(const std::string& part, const std::string& a, const std::string& b,
+                           const std::vector<InPlace>& in_place) {
+  if (a != part && b != part) return nullptr;
+  const std::string& other = a == part ? b : a;
+  return contains(in_place, other) ? &other : nullptr;
+}
+
+void findOverlap(const CheckResult& checked, const std::vector<InPlace>& in_place, StepResult& step) {
+  for (const CheckedPair& pair : checked.pairs) {
+    const std::string* other = otherOf(step.part, pair.a, pair.b, in_place);
+    if (other == nullptr) continue;
+    // A part that is in place already overlaps as drawn, within the error of the meshes.
+    if (step.is_taken_off && !pair.isClash())
+      step.penetration_limit_m = std::max(step.penetration_limit_m, pair.interference_depth_m);
+    if (!pair.isClash() || pair.interference_depth_m <= step.blocked_depth_m) continue;
+    step.blocked_by = *other;
+    step.blocked_at_W = pair.at_W;
+    step.blocked_depth_m = pair.interference_depth_m;
+    step.blocked_error_m = pair.error_m;
+  }
+  if (step.blocked_by.empty()) return;
+  step.reason = "as drawn, it overlaps '" + step.blocked_by + "' by " + lengthInWords(step.blocked_depth_m) +
+                " (error " + lengthInWords(step.blocked_error_m) + ") at " + placeInWords(step.blocked_at_W);
+}
+
+/// What it takes to press a part in.
+void findPressFit(const CheckResult& checked, const std::vector<InPlace>& in_place, StepResult& step) {
+  for (const CheckedFit& fit : checked.fits)
+    if (fit.press && otherOf(step.part, fit.shaft, fit.bore, in_place) != nullptr)
+      step.press_needed_N += fit.press->declared_force_N;
+}
+
+void findClosedRoom(const Scene& scene, const SceneStep& planned, const std::vector<InPlace>& in_place,
+                    StepResult& step) {
+  for (const InPlace& other : in_place) {
+    const Mesh& mesh = scene.parts[planned.part].part.mesh;
+    const auto isInside = [&](const Pose& X_WP) {
+      return isInClosedRoom(mesh, other.part->part.mesh, other.X_WP.inverse() * X_WP);
+    };
+    const bool starts_inside = isInside(planned.X_WP_start);
+    if (!starts_inside && !isInside(planned.X_WP_target)) continue;
+    step.blocked_by = other.part->part.name;
+    step.blocked_at_W = (starts_inside ? planned.X_WP_start : planned.X_WP_target) * mesh.vertices.front();
+    step.reason = std::string(starts_inside ? "it starts" : "it belongs") + " in a closed room inside '" +
+                  step.blocked_by + "', into which no way leads";
+    return;
+  }
+}
+
+/// A part that no fit with parts in place holds lies where sight has put it. What fits into it later takes it
+/// along: a bolt through a bracket that lies on a plate finds the plate's hole, and the bracket with it.
+std::string alignedBy(const CheckResult& checked, const Scene& scene, std::size_t step,
+                      const std::vector<InPlace>& in_place, const std::string& part) {
+  const auto fits = [&](const std::string& other) {
+    return std::ranges::any_of(checked.fits, [&](const CheckedFit& fit) {
+      return (fit.shaft == part && fit.bore == other) || (fit.bore == part && fit.shaft == other);
+    });
+  };
+  if (std::ranges::any_of(in_place, [&](const InPlace& other) { return fits(other.part->part.name); }))
+    return {};
+  for (std::size_t i = step + 1; i < scene.steps.size(); ++i)
+    if (const std::string& later = scene.parts[scene.steps[i].part].part.name; fits(later)) return later;
+  return {};
+}
+
+double knownError_m(const ScenePart& part) {
+  return part.deflection_m.value_or(0) + part.rounding_m;
+}
+
+/// Whether the meshes are farther off the faces that they stand for than the parts are from each other. What
+/// counts as contact (10 um) is less than that. Flat faces are exact wherever import is as asked for, so a
+/// part without a fit is doubted only where the error is more than its tolerance.
+std::string meshDoubt(const Scene& scene, const CheckResult& checked, const std::vector<InPlace>& in_place,
+                      const SceneStep& planned, const StepResult& step) {
+  constexpr double kContact_m = 10e-6;
+  const ScenePart& own = scene.parts[planned.part];
+  std::string doubt;
+  double most_m = 0;
+  const auto partOf = [&](const std::string& mate) -> const ScenePart& {
+    return *std::ranges::find(in_place, mate, [](const InPlace& p) { return p.part->part.name; })->part;
+  };
+  const auto errorWith = [&](const std::string& mate) {
+    return knownError_m(own) + knownError_m(partOf(mate));
+  };
+  const auto consider = [&](const std::string& mate, double clearance_m, const char* what) {
+    const ScenePart& other = partOf(mate);
+    const ScenePart& worse = knownError_m(own) >= knownError_m(other) ? own : other;
+    const double error_m = errorWith(mate);
+    // On both sides: a clearance is that of the diameter.
+    if (2 * error_m <= std::max(clearance_m, kContact_m) || error_m <= most_m) return;
+    most_m = error_m;
+    doubt = "the mesh of '" + worse.part.name + "' is known to be up to " +
+            lengthInWords(knownError_m(worse)) + " off its exact faces, which its " + what + " '" + mate +
+            "' (" + lengthInWords(clearance_m) +
+            ") does not allow; give a finer --deflection, or a better file of that part";
+  };
+  bool has_fit = false;
+  for (const CheckedFit& fit : checked.fits) {
+    const std::string* mate = otherOf(step.part, fit.shaft, fit.bore, in_place);
+    if (mate == nullptr) continue;
+    has_fit = true;
+    const double found_m = std::max(0.0, fit.diametral_clearance_m);
+    consider(*mate, planned.clearance_m > 0 ? planned.clearance_m : found_m, "clearance in");
+  }
+  if (has_fit) return doubt;
+  for (const CheckedPair& pair : checked.pairs) {
+    const std::string* mate = otherOf(step.part, pair.a, pair.b, in_place);
+    // Faces that are farther apart than both meshes are off cannot touch.
+    if (mate == nullptr || pair.clearance_m > errorWith(*mate)) continue;
+    consider(*mate, planned.clearance_m > 0 ? planned.clearance_m : 2 * step.tolerance_m, "place at");
+  }
+  return doubt;
+}
+
+/// Why a part that is brought home has not been shown to fit: nothing is there that it could fit.
+std::string aloneDoubt(const CheckResult& checked, const StepResult& step) {
+  const bool is_alone = std::ranges::find(checked.alone, step.part) != checked.alone.end();
+  if (!is_alone || step.is_taken_off) return {};
+  return "where it belongs it is nowhere near another part, so that nothing shows that it fits: are the "
+         "parts "
+         "laid out, or each in a frame of its own?";
+}
+
+double toleranceOf(const CheckResult& checked, const std::vector<InPlace>& in_place, const SceneStep& planned,
+                   const std::string& part) {
+  if (planned.tolerance_m > 0) return planned.tolerance_m;
+  if (planned.is_held || planned.motion == StepMotion::Screw) return kSightTolerance_m;
+  std::optional<double> clearance_m;
+  if (planned.clearance_m > 0) clearance_m = planned.clearance_m;
+  for (const CheckedFit& fit : checked.fits) {
+    if (planned.clearance_m > 0 || otherOf(part, fit.shaft, fit.bore, in_place) == nullptr) continue;
+    const double found_m = std::max(0.0, fit.diametral_clearance_m);
+    clearance_m = std::min(clearance_m.value_or(found_m), found_m);
+  }
+  return clearance_m ? fitTolerance_m(*clearance_m) : kSightTolerance_m;
+}
+
+}  // namespace
+
+std::vector<StepResult> checkDrawnTargets(const Scene& scene, const Progress& progress,
+                                          std::shared_ptr<const CheckResult>* to) {
+  CheckSettings settings;
+  settings.has_play = false;
+  const auto kept =
+      std::make_shared<const CheckResult>(checkAssembly(scene.name, drawnParts(scene), settings, progress));
+  if (to != nullptr) *to = kept;
+  const CheckResult& checked = *kept;
+  std::vector<StepResult> steps(scene.steps.size());
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    const SceneStep& planned = scene.steps[i];
+    const std::vector<InPlace> in_place = inPlaceBefore(scene, i);
+    steps[i].part = scene.parts[planned.part].part.name;
+    steps[i].is_taken_off = planned.takes_off;
+    steps[i].tolerance_m = toleranceOf(checked, in_place, planned, steps[i].part);
+    findOverlap(checked, in_place, steps[i]);
+    steps[i].aligned_by = alignedBy(checked, scene, i, in_place, steps[i].part);
+    steps[i].mesh_doubt = meshDoubt(scene, checked, in_place, planned, steps[i]);
+    if (steps[i].mesh_doubt.empty()) steps[i].mesh_doubt = aloneDoubt(checked, steps[i]);
+    findPressFit(checked, in_place, steps[i]);
+    if (steps[i].blocked_by.empty()) findClosedRoom(scene, planned, in_place, steps[i]);
+  }
+  return steps;
+}
+
+}  // namespace vps::scenes

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The parts in place during a run, fixed or mounted: as the overlap judge measures against them, and as the
+// fixed field that is cooked from them.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "judge/overlap_judge.h"
+#include "simulation/simulation.h"
+#include "vps_scenes/scene/model_options.h"
+
+namespace vps::scenes {
+
+/// Not thread-safe, except that another thread may read judge() and a judgedBody() while add() or leaveOut()
+/// is called.
+class PlacedParts {
+ public:
+  /// All arguments outlive it. widen() enlarges regions of the plan, or removes them.
+  PlacedParts(Scene& scene, ModelPlan& plan, Simulation& simulation, const ModelOptions& options);
+
+  /// Adds a part to the fields of later steps.
+  void add(std::size_t part, const Pose& X_WP) { placed_.push_back({part, X_WP}); }
+  /// Leaves a part out of the fields of later steps.
+  void leaveOut(std::size_t part);
+  /// From now on the judge measures against the parts that add() and leaveOut() have left, and no others.
+  void renewJudge();
+  /// From now on the judge measures against this part, if it is modelled. It was added before.
+  void addToJudge(std::size_t part);
+  [[nodiscard]] const OverlapJudge& judge() const { return judge_; }
+  /// Made at the first call. The reference stays valid until widen().
+  const JudgedBody& judgedBody(std::size_t part);
+
+  /// What to cook for a step's region; nothing if the field in place serves it, or after the last step.
+  [[nodiscard]] std::optional<FieldOrder> orderFor(std::size_t step);
+  /// @param field  without a shape: nothing is in place
+  void setField(CookedField field);
+
+  /// False when a moving part, with all that it may reach within the coming physics step, is not inside the
+  /// step's region.
+  /// @param V_W   of the part's origin
+  /// @param dt_s  physics step
+  [[nodiscard]] bool isCovered(std::size_t step, const Box& box_P, const Pose& X_WP, const Twist& V_W,
+                               double dt_s) const;
+  /// Enlarges the step's region around the part, by its own size and at each later call for the step by twice
+  /// as much; models the fixed parts in it, and cooks what is in place there. A part that leaves four such
+  /// regions is no longer on its way: then all fixed parts are modelled everywhere, for all steps. Takes as
+  /// long as loading those parts.
+  void widen(std::size_t step, const Box& box_P, const Pose& X_WP);
+
+  /// How often widen() was called.
+  [[nodiscard]] int widened() const { return widened_; }
+  /// The parts' models and the largest field so far.
+  [[nodiscard]] const ModelledCost& modelled() const { return modelled_; }
+
+ private:
+  /// @return the fixed parts that have to be modelled anew, in ascending order
+  std::vector<std::size_t> widenTo(std::size_t step, const Box& region_W);
+  [[nodiscard]] std::optional<FieldOrder> orderFor(std::size_t step, bool rebuilds);
+
+  Scene& scene_;
+  ModelPlan& plan_;
+  Simulation& simulation_;
+  const ModelOptions& options_;
+  std::vector<FixedPart> placed_;  ///< in the order in which they were added
+  OverlapJudge judge_;
+  std::vector<std::optional<JudgedBody>> judged_;  ///< by part
+  ModelledCost modelled_;
+  int widened_ = 0;
+  std::size_t widened_step_ = 0;
+  int widened_in_step_ = 0;
+};
+
+}  // namespace vps::scenes

@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The keys of a scene file: one table for each of its tables, in the order of scenes/README.md, which is made
+// from them. Rows of `field()` are read, archived and written by the table alone.
+#pragma once
+
+#include "vps_scenes/scene/fields.h"
+#include "vps_scenes/scene/scene.h"
+
+namespace vps::scenes {
+
+template <>
+inline constexpr int kValueCount<Sides> = 2;
+template <>
+inline constexpr int kValueCount<Gradient> = 2;
+template <>
+inline constexpr int kValueCount<ContactMethod> = 2;
+template <>
+inline constexpr int kValueCount<StepMotion> = 2;
+
+template <>
+inline constexpr int kValueCount<SizeOf> = 2;
+template <>
+inline constexpr int kValueCount<Distribution> = 2;
+
+inline constexpr Range kRate_Hz{.min = 1, .max = 1e6};
+inline constexpr Range kCount{.min = 1, .max = 1e6};
+
+/// At the top of the file.
+inline constexpr auto kSceneKeys = std::make_tuple(
+    Key{"name", "text", "the folder's name", "name of the scene in reports"},
+    Key{"unit", "`\"um\"`, `\"mm\"`, `\"cm\"`, `\"m\"`, `\"inch\"`", "none",
+        "unit of plain lengths, and of meshes that do not state theirs"},
+    Key{"gravity", "3 numbers [m/s^2]", "`[0, 0, -9.81]`", "acceleration of gravity in the world"},
+    Key{"cad", "file", "none",
+        "an assembly: each of its parts is a part of the scene, with its name and designed pose"},
+    Key{"cad_fallback", "file", "none",
+        "read instead of `cad` where this build lacks the library of its format; it has the same part names"},
+    Key{"deflection", "length", "`\"1um\"`",
+        "greatest distance between a curved face and its triangles (STEP, IGES)"},
+    Key{"missing", "text", "none",
+        "geometry of the CAD file that no part has; each command warns of it, and `vps import` writes it"},
+    field("release_s", &Scene::release_s,
+          "how long a mounted part stays dynamic before it joins the fixed field",
+          {.range = kNotNegative, .type = "seconds"}),
+    Key{"material", "table", "steel",
+        "`density`, `friction`, `restitution`, `stiffness` of all parts that do not state their own"},
+    Key{"part"}, Key{"group"}, Key{"step"}, Key{"device"}, Key{"operator"}, Key{"coupling"}, Key{"fidelity"},
+    Key{"record"});
+
+inline constexpr auto kMaterialFields = std::make_tuple(
+    field("density", &Material::density_kg_m3, "density of the material",
+          {.range = kPositive, .type = "kg/m^3"}),
+    field("friction", &Material::friction,
+          "Coulomb coefficient of the material on itself; two materials have the geometric mean of theirs",
+          {.range = kNotNegative}),
+    field("restitution", &Material::restitution,
+          "0 inelastic to 1 elastic; two parts have the product of theirs",
+          {.range = {.min = 0, .max = 1}, .type = "0 to 1"}),
+    field("stiffness", &Material::stiffness_N_per_m3, "penalty stiffness per area; of two parts the lesser",
+          {.range = kPositive, .type = "N/m^3"}));
+static_assert(coversAllMembers<Material>(kMaterialFields));
+
+/// `[[part]]`, for `vps study`. Not archived: a recording is of one run.
+inline constexpr auto kToleranceFields = std::make_tuple(
+    field("size_tolerance", &PartTolerance::size_class,
+          "`vps study`: tolerance class of ISO 286 of its fit, `\"H7\"` (a hole) or `\"g6\"` (a shaft)",
+          {.default_text = "none"}),
+    field("nominal_size", &PartTolerance::nominal_m, "`vps study`: of `size_tolerance`",
+          {.quantity = Quantity::Length,
+           .range = kNotNegative,
+           .default_text = "the drawn size, rounded to half a millimetre"}),
+    field(
+        "size_lower", &PartTolerance::lower_m,
+        "`vps study`: least deviation of diameter or width from the drawn one, in place of `size_tolerance`",
+        {.quantity = Quantity::Length}),
+    field("size_upper", &PartTolerance::upper_m, "`vps study`: the greatest", {.quantity = Quantity::Length}),
+    field("size_of", &PartTolerance::size_of, "`vps study`: what `size_lower` and `size_upper` are of"),
+    field("position_tolerance", &PartTolerance::position_m,
+          "`vps study`: greatest displacement of its place along each of its axes",
+          {.quantity = Quantity::Length, .range = kNotNegative}),
+    field("angle_tolerance_deg", &PartTolerance::angle_rad,
+          "`vps study`: greatest rotation of its place about each of its axes",
+          {.quantity = Quantity::Angle, .range = kNotNegative}),
+    field("friction_tolerance", &PartTolerance::friction, "`vps study`: greatest difference from `friction`",
+          {.range = kNotNegative}),
+    field("distribution", &PartTolerance::distribution,
+          "`vps study`: normal: the limits are three standard deviations from their middle; uniform: even "
+          "between the limits"));
+static_assert(coversAllMembers<PartTolerance>(kToleranceFields));
+
+/// `[[part]]`
+inline constexpr auto kPartKeys = std::make_tuple(
+    Key{"file", "file", "", "mesh or CAD file, in any format that `vps import` reads"},
+    Key{"node", "text", "",
+        "the part's name within the file, where the file has several; `\"*\"`: all of it as one part"},
+    Key{"name", "text", "`node`, or the file's stem", "unique in the scene"},
+    Key{"pose", "pose", "as in the file", "designed pose in the world"},
+    Key{"velocity_m_s", "3 numbers", "0",
+        "of the part's origin in the world, at the start of `vps simulate`"},
+    Key{"angular_velocity_rad_s", "3 numbers", "0", "in the world, at the start of `vps simulate`"},
+    field("fixed", &ScenePart::is_fixed, "the part never moves and is in place from the start"),
+    group("", path(&ScenePart::part, &Part::material), kMaterialFields),
+    Key{"color", "`\"#rrggbb\"` or 3 numbers 0 to 1", "as in the file, or grey", "sRGB"},
+    field("deflection", &ScenePart::deflection_m,
+          "greatest distance of the mesh from the faces that it stands for; `vps import` writes it",
+          {.quantity = Quantity::Length, .range = kNotNegative, .default_text = "of the file, or estimated"}),
+    field("rounding", &ScenePart::rounding_m,
+          "greatest distance of the vertices from where they were before a file kept them as 32-bit floats; "
+          "`vps import` writes it",
+          {.quantity = Quantity::Length, .range = kNotNegative, .default_text = "of the file"}),
+    field("allow_overlap", &ScenePart::allow_overlap,
+          "the part may start inside another one (interference fits)"),
+    field("press_fit", &ScenePart::press_fit_m,
+          "declared interference of a part that is pressed in, in diameter or width: `vps check` judges an "
+          "overlap by it and computes the force",
+          {.quantity = Quantity::Length, .range = kNotNegative, .default_text = "none"}),
+    field("youngs_modulus", &ScenePart::youngs_modulus_Pa,
+          "Young's modulus, for the force of a press fit; assumed: steel",
+          {.range = kPositive, .type = "Pa"}),
+    field("poissons_ratio", &ScenePart::poissons_ratio,
+          "Poisson's ratio, for the force of a press fit; assumed: steel", {.range = {.min = 0, .max = 0.5}}),
+    field("scenery", &ScenePart::is_scenery,
+          "`vps assemble` leaves the part out: it is not fixed, no step moves it, and nothing collides with "
+          "it"),
+    field("fastener", &ScenePart::fastener,
+          "what `vps plan` takes the part for by its shape, as `\"nut M8\"`; for readers, it changes nothing",
+          {.default_text = "none"}),
+    group("", &ScenePart::tolerance, kToleranceFields));
+
+/// `[[group]]`
+inline constexpr auto kGroupKeys = std::make_tuple(
+    Key{"name", "text", "required", "name of the body, which the steps use in place of its parts' names"},
+    Key{"parts", "list of texts", "required", "names of two or more parts, which are in no other group"});
+
+/// `[[step]]`
+inline constexpr auto kStepKeys = std::make_tuple(
+    Key{"part", "text", "required", "name of the part to mount"},
+    Key{"target", "pose", "the designed pose", "where the part belongs"},
+    Key{"start", "pose", "see below", "where the hand takes the part; what is left out is the target's"},
+    Key{"approach", "3 lengths", "see below", "the start as an offset from the target, in the world"},
+    Key{"way_points", "list of poses", "none",
+        "poses of the part that the hand passes, from start to target"},
+    field("tolerance", &SceneStep::tolerance_m,
+          "greatest distance of the part's surface from where it belongs",
+          {.quantity = Quantity::Length,
+           .range = kNotNegative,
+           .default_text = "20 um and the clearance of the tightest fit that `vps check` finds there, at "
+                           "most 0.1 mm, or what its play lets the part lie in the corner of a rectangular "
+                           "hole (0.71 of the clearance and 20 um, at most 0.5 mm), if that is more; 0.5 mm "
+                           "where it finds none, or with `holds`, since sight alone then stops the part"}),
+    field("tolerance_deg", &SceneStep::tolerance_rad, "greatest rotation from the target",
+          {.quantity = Quantity::Angle, .range = kNotNegative, .default_text = "not judged"}),
+    field("clearance", &SceneStep::clearance_m,
+          "diametral clearance of the tightest fit that the part enters; the part may penetrate another by a "
+          "quarter of it, and by 10 um at most",
+          {.quantity = Quantity::Length, .range = kNotNegative, .default_text = "not stated"}),
+    field("timeout_s", &SceneStep::timeout_s, "simulated time after which the step has failed",
+          {.range = kPositive, .type = "seconds"}),
+    field("holds", &SceneStep::is_held,
+          "a fixture or the other hand holds the part after it is let go: it need not stay there by itself",
+          {.since = 4}),
+    field("motion", &SceneStep::motion,
+          "push: along the last leg of the path; screw: turned about that leg as well, see below",
+          {.since = 5}),
+    field("pitch", &SceneStep::pitch_m, "of a screw: its way in one turn; negative: a left-hand thread",
+          {.quantity = Quantity::Length, .since = 5, .default_text = "found in the mesh"}),
+    field("torque_Nm", &SceneStep::torque_Nm, "of a screw: it is turned until it resists with this torque",
+          {.range = kNotNegative, .since = 5, .default_text = "turned to the height of its target"}));
+static_assert(coversAllMembers<SceneStep, 5>(kStepKeys));
+
+/// `[device]`
+inline constexpr auto kDeviceKeys = std::make_tuple(
+    field("kind", &DeviceSettings::kind, "`dual_arm`, or a name that `vps device --list` shows"),
+    // Read by hand, since its file is checked; the member is a path.
+    Key{"parameters", "file", "none",
+        "what differs from [the built-in dual arm](../device/data/dual_arm.toml)"},
+    field("scale", &DeviceSettings::scale, "scene metres per device metre", {.range = kPositive}),
+    field("quantised_encoders", &DeviceSettings::has_quantised_encoders,
+          "encoders have their finite resolution"),
+    field("indexing", &DeviceSettings::has_indexing,
+          "a path that is longer, or turns farther, than the device can is split, see below; false: such a "
+          "path is an error",
+          {.since = 3}),
+    // Read by hand, since it is a pose.
+    Key{"placement", "pose", "none",
+        "where the device stands in the scene, by `vps calibrate`: a part that a person takes is then where "
+        "the "
+        "hand is. None: the device's axes are the scene's"});
+static_assert(coversAllMembers<DeviceSettings, 2>(kDeviceKeys));
+
+/// `[operator]`
+inline constexpr auto kOperatorFields = std::make_tuple(
+    field("seed", &OperatorSettings::seed, "seed of the operator's aim", {.range = kNotNegative}),
+    field("aim_error", &OperatorSettings::aim_error_m, "standard deviation of the aim across the path",
+          {.quantity = Quantity::Length, .range = kNotNegative}),
+    field("aim_error_deg", &OperatorSettings::aim_error_rad, "standard deviation of the aimed orientation",
+          {.quantity = Quantity::Angle, .range = kNotNegative}),
+    field("aim_turn_deg", &OperatorSettings::aim_turn_rad,
+          "greatest error about the axis of insertion, which the operator does not see",
+          {.quantity = Quantity::Angle, .range = kNotNegative, .since = 4}),
+    field("speed_m_s", &OperatorSettings::speed_m_s, "average speed along the path", {.range = kPositive}),
+    field("press_N", &OperatorSettings::press_N, "force with which the operator presses a part home",
+          {.range = kNotNegative}),
+    field("force_limit_N", &OperatorSettings::force_limit_N, "the operator backs off above this force",
+          {.range = kPositive}));
+static_assert(coversAllMembers<OperatorSettings>(kOperatorFields));
+
+/// `[coupling]`
+inline constexpr auto kCouplingFields = std::make_tuple(
+    field("k_N_per_m", &CouplingWishes::k_N_per_m, "stiffness", {.range = kNotNegative}),
+    field("b_Ns_per_m", &CouplingWishes::b_Ns_per_m, "damping", {.range = kNotNegative}),
+    field("k_Nm_per_rad", &CouplingWishes::k_Nm_per_rad, "rotational stiffness", {.range = kNotNegative}),
+    field("b_Nms_per_rad", &CouplingWishes::b_Nms_per_rad, "rotational damping", {.range = kNotNegative}),
+    field("max_force_N", &CouplingWishes::max_force_N, "greatest force", {.range = kPositive}),
+    field("max_torque_Nm", &CouplingWishes::max_torque_Nm, "greatest torque", {.range = kPositive}));
+static_assert(coversAllMembers<CouplingWishes>(kCouplingFields));
+
+/// `[fidelity]`: the settings themselves.
+inline constexpr auto kFidelityFields = std::make_tuple(
+    field("voxel", &Fidelity::voxel_m, "grid step of the voxmaps",
+          {.quantity = Quantity::Length,
+           .range = kPositive,
+           .default_text = "of the preset; without one, `\"0.25mm\"`, or other ones for parts and fits below "
+                           "2 mm and for large parts, see below"}),
+    field(
+        "spacing", &Fidelity::spacing_m, "distance between the points of a pointshell",
+        {.quantity = Quantity::Length,
+         .range = kPositive,
+         .default_text = "of the preset; without one, a quarter of the smallest moved part, between two and "
+                         "four voxels, and two with `penalty`"}),
+    field("sides", &Fidelity::sides,
+          "one: points of the moving part against the field of the fixed parts; both: the other way as well"),
+    field("gradient", &Fidelity::gradient, "how the field's gradient is interpolated"),
+    field("contact_limit", &Fidelity::contact_limit,
+          "contacts of each pair of parts given to the solver; checks of solved steps may add up to 16",
+          {.range = {.min = 4, .max = kCount.max}}),
+    field("haptic_rate_hz", &Fidelity::haptic_rate_hz, "rate of the haptic loop", {.range = kRate_Hz}),
+    field("physics_rate_hz", &Fidelity::physics_rate_hz, "rate of the physics steps", {.range = kRate_Hz}),
+    field("substeps", &Fidelity::substeps,
+          "each physics step is divided into so many; `\"auto\"`: into as many as keep what turns right, "
+          "see below",
+          {.range = {.min = 0, .max = 1e4}, .since = 8, .type = "number or `\"auto\"`", .zero_word = "auto"}),
+    field("solver_iterations", &Fidelity::solver_iterations, "iterations of the contact solver in a step",
+          {.range = kCount}),
+    field(
+        "contact", &Fidelity::contact_method,
+        "constraint: rigid contacts with a friction cone; penalty: each touching point pushes with stiffness "
+        "times area times depth",
+        {.since = 2}));
+static_assert(coversAllMembers<Fidelity>(kFidelityFields));
+
+/// `[fidelity]`: what `auto = true` chooses by. Not archived: a recording holds what was chosen.
+inline constexpr auto kFidelityWishFields = std::make_tuple(
+    field(
+        "tolerance", &FidelityWish::tolerance_m,
+        "greatest error of depth at 95 of 100 points of every surface",
+        {.quantity = Quantity::Length, .range = kPositive, .default_text = "`\"10um\"` if no bound is set"}),
+    field("budget_hz", &FidelityWish::budget_hz, "physics steps a second",
+          {.range = kRate_Hz, .default_text = "no limit"}),
+    field("memory_MB", &FidelityWish::memory_bytes, "memory of all models",
+          {.quantity = Quantity::Megabytes, .range = kPositive, .default_text = "no limit"}));
+static_assert(coversAllMembers<FidelityWish, 1>(kFidelityWishFields));
+
+/// `[fidelity]`: where its values come from.
+inline constexpr auto kFidelityChoiceKeys = std::make_tuple(
+    Key{"preset", "`\"fast\"`, `\"normal\"`, `\"fine\"`", "`\"normal\"`",
+        "gives the values of the keys that are not set"},
+    Key{"auto", "bool", "false", "`voxel` and `spacing` are chosen, see [FIDELITY.md](FIDELITY.md)"});
+
+/// `[fidelity]`, whole.
+inline constexpr auto kFidelityKeys =
+    std::tuple_cat(kFidelityChoiceKeys, kFidelityWishFields, kFidelityFields);
+
+/// `[record]`
+inline constexpr auto kRecordFields = std::make_tuple(
+    field("csv_rate_hz", &RecordSettings::csv_rate_hz,
+          "rows of trace.csv, and of the trace in a recording, a second; above the physics rate: each step",
+          {.range = kPositive}));
+static_assert(coversAllMembers<RecordSettings>(kRecordFields));
+
+}  // namespace vps::scenes

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "input/level_set_file.h"
+
+#ifdef VPS_VDB_MODULE
+#include <dlfcn.h>
+
+#include <filesystem>
+#include <system_error>
+#endif
+
+#include "vdb_module/level_set_module.h"
+#include "vps/load_error.h"
+
+namespace vps::viewer {
+
+#ifdef VPS_VDB_MODULE
+
+namespace {
+
+/// Beside the program as it is built, or where it is installed; else null.
+void* openModule() {
+  namespace fs = std::filesystem;
+  std::error_code none;
+  const fs::path folder = fs::read_symlink("/proc/self/exe", none).parent_path();
+  for (const fs::path& at : {folder / VPS_VDB_MODULE, folder / VPS_VDB_MODULE_FOLDER / VPS_VDB_MODULE})
+    if (!folder.empty() && fs::exists(at, none)) return dlopen(at.c_str(), RTLD_NOW | RTLD_LOCAL);
+  return nullptr;
+}
+
+/// Opened once, and for good: what it gives has functions of it.
+const LevelSetModule& module(const std::string& file) {
+  static std::string why = "it is not beside the program";
+  static const auto* const found = [] {
+    void* const opened = openModule();
+    if (opened != nullptr) return static_cast<const LevelSetModule*>(dlsym(opened, kLevelSetSymbol));
+    if (const char* words = dlerror(); words != nullptr) why = words;
+    return static_cast<const LevelSetModule*>(nullptr);
+  }();
+  if (found == nullptr)
+    throw LoadError(file, "",
+                    "needs OpenVDB and this program's module " VPS_VDB_MODULE " (" + why +
+                        "); install both (Debian: libopenvdb10.0)");
+  return *found;
+}
+
+}  // namespace
+
+void requireOpenVdb(const std::string& file) {
+  module(file);
+}
+
+VoxMap loadLevelSet(const std::string& file) {
+  return module(file).load(file);
+}
+
+void saveLevelSet(const VoxMap& map, const std::string& file) {
+  module(file).save(map, file);
+}
+
+#else
+
+void requireOpenVdb(const std::string& file) {
+  throw LoadError(file, "",
+                  "needs OpenVDB, without which this program was built; install it (Debian: libopenvdb-dev "
+                  "libboost-dev) and build again");
+}
+
+VoxMap loadLevelSet(const std::string& file) {
+  requireOpenVdb(file);
+  return {};
+}
+
+void saveLevelSet(const VoxMap&, const std::string& file) {
+  requireOpenVdb(file);
+}
+
+#endif
+
+}  // namespace vps::viewer

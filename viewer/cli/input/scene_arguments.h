@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The options that several commands share, and the scene and settings they stand for.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "vps/byte_cache.h"
+#include "vps/fidelity.h"
+#include "vps/voxmap_cache.h"
+#include "vps_scenes/scene/model_options.h"
+#include "vps_scenes/scene/scene.h"
+
+namespace CLI {
+class App;
+}
+
+namespace vps::viewer {
+
+class ProgressBar;
+
+/// --fidelity, --voxel, --spacing, --points and --sides as text; empty or 0: not given.
+struct FidelityArguments {
+  std::string preset, voxel, spacing, sides;
+  std::size_t points = 0;
+};
+
+/// Adds --fidelity, --voxel, --spacing and --sides.
+void addFidelityOptions(CLI::App& command, FidelityArguments& given);
+/// Adds --points, which excludes --spacing. Call addFidelityOptions() first.
+void addPointsOption(CLI::App& command, FidelityArguments& given);
+/// `base` with what was given on the command line. Throws LoadError naming the option.
+Fidelity fidelityFrom(const FidelityArguments& given, Fidelity base);
+struct NamedMesh {
+  const Mesh& mesh;
+  std::string name;  ///< for the words
+};
+/// The same for a mesh that no scene states a fidelity for: where neither preset nor voxel is given, by its
+/// size and that of what it meets (vps_scenes/planning/resolution.h).
+/// @param other   may be null
+/// @param choice  is set to what was chosen for both, in words; empty: the preset serves
+Fidelity fidelityFrom(const FidelityArguments& given, const NamedMesh& mesh, const NamedMesh* other,
+                      std::string& choice);
+/// Says what was chosen, if anything was.
+void sayChoice(const std::string& resolution_choice);
+
+/// Where models and the parts of CAD files are kept between runs.
+struct CacheArguments {
+  std::string folder;   ///< empty: the user's own, see defaultCacheFolder()
+  bool is_off = false;  ///< models are built each time
+  double limit_GB = 4;  ///< the files that were not used for the longest time are removed
+};
+
+/// A scene and how its models are built.
+struct SceneArguments {
+  std::string scene;
+  CacheArguments cache;
+  bool models_everything = false;  ///< see scenes::ModelOptions
+  FidelityArguments fidelity;
+};
+
+/// Adds the positional argument SCENE.
+void addSceneArgument(CLI::App& command, std::string& scene);
+/// Adds --cache.
+void addCacheOption(CLI::App& command, std::string& folder);
+/// Adds --cache, --no-cache and --cache-limit. Where the command builds no models, only CAD files are meant.
+void addCacheOptions(CLI::App& command, CacheArguments& given);
+/// Adds SCENE and the options --model-everything, those of addCacheOptions() and of addFidelityOptions().
+void addSceneOptions(CLI::App& command, SceneArguments& given);
+
+/// The scene, with the command line's fidelity instead of its own. Prints warnings about its CAD files on
+/// stderr. Throws LoadError when one of `outputs` is a file that the scene was read from, and names the
+/// command that reads `file` when it is no scene but a CAD file, a level set or a recording.
+/// @param cache  of the parts of its CAD files
+scenes::Scene sceneFrom(const std::string& file, const FidelityArguments& given,
+                        const std::vector<std::string>& outputs, const CacheArguments& cache);
+
+/// Adds --units.
+void addUnitsOption(CLI::App& command, std::string& units);
+/// Adds --deflection.
+void addDeflectionOption(CLI::App& command, std::string& deflection);
+/// "mm", "cm", "m", "um" or "inch" in metres; empty for empty text. Throws LoadError naming --units.
+std::optional<double> unitFrom(const std::string& text);
+/// Throws LoadError when --units or --deflection is given for a scene file, which states both itself.
+void requireOwnUnits(const std::string& scene, const std::string& units, const std::string& deflection);
+
+/// Reads a scene, and its CAD files from the cache.
+scenes::Scene loadedScene(const std::string& file, const CacheArguments& cache, const Progress& progress);
+
+/// The cache in a folder, which reports damaged files on stderr; none for an empty name.
+std::optional<VoxMapCache> cacheFrom(const std::string& folder);
+/// The cache that the options stand for; none with --no-cache, and where the user has no folder for caches.
+std::optional<VoxMapCache> cacheFrom(const CacheArguments& given);
+/// The same folder for the parts of CAD files.
+std::optional<ByteCache> cadCacheFrom(const CacheArguments& given);
+/// bullet-vps in $XDG_CACHE_HOME, or else in $HOME/.cache; empty where neither is an absolute path.
+/// Source: XDG Base Directory Specification 0.8.
+std::string defaultCacheFolder();
+
+/// Sets progress, warnings on stderr and the cache. Bar and cache must outlive the options.
+void setModelOptions(scenes::ModelOptions& options, ProgressBar& bar, const std::optional<VoxMapCache>& cache,
+                     bool models_everything);
+
+}  // namespace vps::viewer

@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "output/plan_report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "output/table.h"
+
+namespace vps::viewer {
+
+namespace {
+
+std::string listed(const std::vector<std::string>& names) {
+  constexpr std::size_t kShown = 8;
+  std::string out;
+  for (std::size_t i = 0; i < std::min(names.size(), kShown); ++i)
+    out += (i > 0 ? ", '" : "'") + names[i] + "'";
+  if (names.size() > kShown) out += " and " + std::to_string(names.size() - kShown) + " more";
+  return out;
+}
+
+/// "-z" for an axis of the world, else three numbers.
+std::string directionText(const Vec3& d) {
+  constexpr double kAlong = 1e-6;
+  if (d.isZero(0)) return "turn";
+  for (int axis = 0; axis < 3; ++axis)
+    if (std::abs(d[axis]) > 1 - kAlong) return std::string(d[axis] > 0 ? "+" : "-") + "xyz"[axis];
+  return fixed(d.x(), 2) + ", " + fixed(d.y(), 2) + ", " + fixed(d.z(), 2);
+}
+
+std::string wayText(const scenes::PlannedStep& step) {
+  if (step.kind == scenes::WayKind::Screw) return "screw, lead " + fixed(1e3 * step.lead_m, 3) + " mm";
+  if (step.kind == scenes::WayKind::Legs) return std::to_string(step.before_W.size()) + " legs";
+  return toText(step.kind);
+}
+
+std::string needsText(const scenes::PlannedAssembly& assembly, const scenes::PlannedStep& step) {
+  std::vector<std::string> before;
+  for (const scenes::PlannedOrder& one : assembly.order)
+    if (one.after == step.name) before.push_back(one.before);
+  return before.empty() ? "" : "after " + listed(before);
+}
+
+/// The way with the least clearance.
+std::string tightestText(const scenes::PlannedAssembly& assembly) {
+  const scenes::PlannedStep* tightest = nullptr;
+  for (const scenes::PlannedStep& step : assembly.steps)
+    if (step.clearance_m && (tightest == nullptr || *step.clearance_m < *tightest->clearance_m))
+      tightest = &step;
+  if (tightest == nullptr) return "";
+  return "The least clearance on a way, to parts that it passes: '" + tightest->name + "' passes '" +
+         tightest->nearest + "' at " + fixed(1e3 * *tightest->clearance_m, 3) + " mm.\n";
+}
+
+/// Ways on which facets are in each other.
+std::string allowanceText(const scenes::PlannedAssembly& assembly) {
+  std::vector<std::string> names;
+  double most_m = 0;
+  for (const scenes::PlannedStep& step : assembly.steps) {
+    if (step.allowance_m == 0) continue;
+    names.push_back(step.name);
+    most_m = std::max(most_m, step.allowance_m);
+  }
+  if (names.empty()) return "";
+  return "On the way of " + listed(names) + " facets are deeper in each other than drawn, by no more than " +
+         um(most_m) +
+         " um, which the distance of meshes from the faces and 5 um allow. No way without that was "
+         "found: a finer mesh tells more, and a hole may be too small.\n";
+}
+
+std::string benchText(const scenes::PlannedAssembly& assembly) {
+  std::vector<std::string> left;
+  bool is_any = false;
+  for (const scenes::PlannedStep& step : assembly.steps) {
+    is_any = is_any || step.is_on_bench;
+    if (!step.is_on_bench) left.push_back(step.name);
+  }
+  if (!is_any || left.empty()) return "";
+  return "Covered on all sides when it is mounted, so not laid out on the bench: " + listed(left) + ".\n";
+}
+
+std::string assemblyTable(const scenes::PlannedAssembly& assembly) {
+  std::string out =
+      assembly.name + " begins with '" + assembly.fixed.front() + "' (" + assembly.fixed_reason + ").\n";
+  Table table({"step", "<part", "<way", "<moves", "<stays", "passes [mm]", "fit [mm]", "<order"});
+  for (std::size_t i = 0; i < assembly.steps.size(); ++i) {
+    const scenes::PlannedStep& step = assembly.steps[i];
+    const std::string name = step.parts.size() == 1 ? step.name : step.name + " (" + listed(step.parts) + ")";
+    table.add(
+        {std::to_string(i + 1), name, wayText(step), directionText(step.insertion_W),
+         step.is_carried ? "by itself" : "held",
+         step.clearance_m ? fixed(1e3 * *step.clearance_m, 3) : "> " + fixed(1e3 * scenes::kNearWay_m, 0),
+         step.fit_clearance_m ? fixed(1e3 * *step.fit_clearance_m, 3) : "", needsText(assembly, step)});
+  }
+  if (!assembly.steps.empty()) out += table.text();
+  out += tightestText(assembly);
+  out += allowanceText(assembly);
+  out += benchText(assembly);
+  std::vector<std::string> held;
+  for (const scenes::PlannedStep& step : assembly.steps)
+    if (!step.is_carried) held.push_back(step.name);
+  if (!held.empty())
+    out += "Nothing carries " + listed(held) +
+           "; the hand holds each until the end of its step. If a fixture holds it "
+           "afterwards, give the fixture as a part; what is not to be assembled is scenery = true.\n";
+  for (const scenes::PlannedStep& step : assembly.steps)
+    if (!step.falling.empty())
+      out += "Until '" + step.name + "' is in place, nothing carries " + listed(step.falling) + ".\n";
+  for (const scenes::BlockedPart& blocked : assembly.blocked)
+    out += "'" + blocked.name + "' cannot be taken off: " +
+           (blocked.by.empty() ? std::string("no way was found") : "it is stopped by " + listed(blocked.by)) +
+           (blocked.is_searched ? "" : "; the search for ways of several legs ended at its limit") + ".\n";
+  return out;
+}
+
+std::size_t partCount(const scenes::PlannedAssembly& whole) {
+  std::size_t count = whole.fixed.size() + whole.blocked.size();
+  for (const scenes::PlannedStep& step : whole.steps) count += step.parts.size();
+  return count;
+}
+
+double depthOf(const scenes::PlanResult& plan, const scenes::OverlapChoice& choice) {
+  const auto pair = std::ranges::find_if(
+      plan.overlaps, [&](const scenes::CheckedPair& one) { return one.a == choice.a && one.b == choice.b; });
+  return pair == plan.overlaps.end() ? 0 : pair->interference_depth_m;
+}
+
+/// Parts that are drawn so deep in each other that no fit can be meant.
+class DrawnThrough {
+ public:
+  explicit DrawnThrough(const scenes::PlanResult& plan) {
+    constexpr double kLeast_m = 0.5e-3;  // assumed: what is to be pressed or glued overlaps by less
+    for (const scenes::OverlapChoice& choice : plan.choices) {
+      const double depth_m = depthOf(plan, choice);
+      if (choice.kind != scenes::OverlapKind::Clash || depth_m < kLeast_m) continue;
+      ++clashes_;
+      most_m_ = std::max(most_m_, depth_m);
+      join(choice.a, choice.b);
+    }
+  }
+  [[nodiscard]] std::size_t parts() const { return set_of_.size(); }
+  [[nodiscard]] std::size_t clashes() const { return clashes_; }
+  [[nodiscard]] double most_m() const { return most_m_; }
+  /// Parts of the largest set that hangs together by such overlaps.
+  [[nodiscard]] std::size_t largest() const {
+    std::map<std::size_t, std::size_t> sizes;
+    std::size_t most = 0;
+    for (const auto& [name, set] : set_of_) most = std::max(most, ++sizes[set]);
+    return most;
+  }
+
+ private:
+  void join(const std::string& a, const std::string& b) {
+    const std::size_t to = set_of_.try_emplace(a, set_of_.size()).first->second;
+    const std::size_t from = set_of_.try_emplace(b, set_of_.size()).first->second;
+    for (auto& [name, set] : set_of_)
+      if (set == from) set = to;
+  }
+
+  std::map<std::string, std::size_t> set_of_;
+  std::size_t clashes_ = 0;
+  double most_m_ = 0;
+};
+
+// Files of single parts are often drawn each in a frame of its own, so that all lie in one another. Models
+// that are made for pictures have bodies of several shapes that run into one another.
+std::string framesText(const scenes::PlanResult& plan) {
+  constexpr std::size_t kFewest = 3;  // assumed: two that overlap are a drawn interference
+  const DrawnThrough drawn(plan);
+  const std::size_t count = drawn.parts(), pairs = count * (count - 1) / 2;
+  if (count < kFewest || 2 * count < partCount(plan.assemblies.front())) return "";
+  if (2 * drawn.clashes() >= pairs)
+    return std::to_string(count) + " parts overlap one another, " + std::to_string(drawn.clashes()) + " of " +
+           std::to_string(pairs) +
+           " pairs: it seems that they are drawn each in a frame of its own. Export the assembly as one "
+           "file, or give each part its pose in a scene.\n";
+  if (drawn.largest() < kFewest) return "";
+  return std::to_string(drawn.largest()) + " parts hang together by overlaps of up to " +
+         fixed(1e3 * drawn.most_m(), 3) +
+         " mm: it seems that bodies are drawn as several shapes that run into one another, as for pictures. "
+         "Make one body of those that belong together, by --group 'NAME*' or [[group]] in a scene.\n";
+}
+
+}  // namespace
+
+std::string fastenerText(const std::vector<scenes::Fastener>& fasteners) {
+  std::vector<std::pair<std::string, std::vector<std::string>>> by_words;
+  for (const scenes::Fastener& one : fasteners) {
+    const auto known = std::ranges::find(by_words, one.words, [](const auto& entry) { return entry.first; });
+    if (known == by_words.end())
+      by_words.emplace_back(one.words, std::vector<std::string>{one.part});
+    else
+      known->second.push_back(one.part);
+  }
+  std::string out;
+  for (const auto& [words, parts] : by_words)
+    out += "  " + std::to_string(parts.size()) + " x " + words + ": " + listed(parts) + "\n";
+  return out.empty() ? "" : "Fasteners, by their shapes:\n" + out;
+}
+
+std::string planTables(const scenes::PlanResult& plan) {
+  std::string out;
+  for (const scenes::PlannedAssembly& assembly : plan.assemblies)
+    out += (out.empty() ? "" : "\n") + assemblyTable(assembly);
+  if (const std::string fasteners = fastenerText(plan.fasteners); !fasteners.empty()) out += "\n" + fasteners;
+  if (!plan.choices.empty()) out += "\n";
+  out += framesText(plan);
+  for (const scenes::OverlapChoice& choice : plan.choices) out += choice.words + ".\n";
+  if (plan.cut_motions > 0)
+    out +=
+        std::to_string(plan.cut_motions) +
+        " straight motions were too long to follow to their end and count as stopped; a greater --deflection "
+        "makes them shorter.\n";
+  for (const scenes::CheckedPair& pair : plan.uncertain)
+    out += "Whether '" + pair.a + "' and '" + pair.b +
+           "' overlap cannot be told, because a part has no inside there; their surfaces were used.\n";
+  return out;
+}
+
+std::string planHeadline(const scenes::PlanResult& plan) {
+  std::string out =
+      plan.assembly + ": " + std::to_string(plan.steps()) + (plan.steps() == 1 ? " step" : " steps");
+  if (const std::size_t subs = plan.assemblies.size() - 1; subs > 0)
+    out += ", " + std::to_string(subs) + (subs == 1 ? " subassembly" : " subassemblies");
+  const std::size_t blocked = plan.blocked();
+  out += blocked == 0 ? std::string(", all parts planned")
+                      : ", " + std::to_string(blocked) + (blocked == 1 ? " part" : " parts") + " blocked";
+  return out + " in " + fixed(plan.check_wall_s + plan.plan_wall_s, 1) + " s";
+}
+
+std::string inWords(const scenes::WayFault& fault) {
+  if (fault.kind == scenes::WayFaultKind::Support)
+    return "nothing in place carries '" + fault.part +
+           "' when it is let go; mount what carries it before, or say holds = true in its step";
+  if (fault.kind == scenes::WayFaultKind::Clearance)
+    return "the way of '" + fault.part + "' passes '" + fault.against + "' at " +
+           fixed(1e3 * fault.clearance_m, 3) + " mm, where " + fixed(1e3 * fault.planned_m, 3) +
+           " mm were planned; give other way_points";
+  const std::string remedy = fault.kind == scenes::WayFaultKind::Order
+                                 ? "; mount '" + fault.against + "' after it, or give other way_points"
+                                 : "; give other way_points, or another order";
+  return "the way of '" + fault.part + "' leads through '" + fault.against + "', " +
+         fixed(1e3 * fault.depth_m, 3) + " mm deep at (" + fixed(1e3 * fault.at_W.x(), 2) + ", " +
+         fixed(1e3 * fault.at_W.y(), 2) + ", " + fixed(1e3 * fault.at_W.z(), 2) + ") mm (" +
+         fixed(1e3 * fault.allowed_m, 3) + " mm allowed)" + remedy;
+}
+
+}  // namespace vps::viewer

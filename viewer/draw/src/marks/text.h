@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Text on images, by FreeType with the font DejaVu Sans.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "vps_viewer/draw/image.h"
+
+namespace vps::viewer {
+
+enum class FontWeight { Regular, Bold };
+
+struct TextStyle {
+  double size_px = 18;
+  FontWeight weight = FontWeight::Regular;
+  std::uint8_t level = 40;  ///< grey, 0 black
+};
+
+class Lettering {
+ public:
+  Lettering();  ///< does not throw: without the font, write() does nothing and isReady() is false
+  ~Lettering();
+  Lettering(Lettering&&) noexcept;
+  Lettering& operator=(Lettering&&) noexcept;
+  [[nodiscard]] bool isReady() const;
+  /// Width in pixels of one line of UTF-8.
+  [[nodiscard]] double width(const std::string& utf8, const TextStyle& style) const;
+  /// Draws one line whose baseline begins at (x, y). Returns its width.
+  double write(Image& image, double x, double y, const std::string& utf8, const TextStyle& style) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace vps::viewer

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The parts of a scene to draw, and the plane of a section through them.
+#include <algorithm>
+#include <cmath>
+
+#include "vps_viewer/draw/render_scene.h"
+
+namespace vps::viewer {
+
+RenderScene drawnMeshes(const scenes::Scene& scene) {
+  // Linear RGB of muted steel, brass, sage, clay, slate and sand. Blue is reserved for the part in hand.
+  static constexpr std::array<std::array<float, 3>, 6> kPalette = {{{0.55f, 0.57f, 0.60f},
+                                                                    {0.60f, 0.43f, 0.17f},
+                                                                    {0.34f, 0.46f, 0.36f},
+                                                                    {0.52f, 0.27f, 0.18f},
+                                                                    {0.26f, 0.30f, 0.34f},
+                                                                    {0.66f, 0.58f, 0.45f}}};
+  RenderScene drawn;
+  std::size_t next = 0;
+  for (const scenes::ScenePart& part : scene.parts) {
+    const bool has_color = part.part.color != scenes::Part().color;
+    drawn.push_back({&part.part.mesh, has_color ? part.part.color : kPalette[next++ % kPalette.size()],
+                     part.is_fixed, part.X_WP});
+    if (!part.part.face_colors.isNone()) drawn.back().face_colors = &part.part.face_colors;
+  }
+  return drawn;
+}
+
+CutPlane sectionAlong(const Vec3& p_W, const Vec3& d_W, const Vec3& to_viewer_W) {
+  const Vec3 viewer = to_viewer_W.normalized();
+  const Vec3 d = d_W.norm() > 0 ? Vec3(d_W.normalized()) : Vec3(Vec3::UnitZ());
+  CutPlane cut;
+  cut.p_W = p_W;
+  double best = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vec3 n = Vec3::Unit(axis) * (viewer[axis] < 0 ? -1 : 1);
+    constexpr double kSinFiveDegrees = 0.087;  // a motion at a smaller angle to the plane counts as in it
+    if (std::abs(n.dot(d)) < kSinFiveDegrees && n.dot(viewer) > best) {
+      best = n.dot(viewer);
+      cut.n_W = n;
+    }
+  }
+  if (best < 0.3) {  // no axis qualifies: the plane through the motion that faces the viewer most
+    const Vec3 across = viewer - viewer.dot(d) * d;
+    cut.n_W = across.norm() > 1e-6 ? Vec3(across.normalized()) : Vec3(d.unitOrthogonal());
+  }
+  return cut;
+}
+
+}  // namespace vps::viewer

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Which parts of a scene a snapshot shows, where, and the box around them.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "vps_viewer/draw/render_scene.h"
+
+namespace vps::viewer {
+
+/// A part's extent and, if it is fixed, its pose. A renderer keeps this after the meshes are uploaded.
+struct PartExtent {
+  Box bounds_P;
+  bool is_fixed = false;
+  Pose X_WP;  ///< of a fixed part; others stand where the snapshot says
+};
+
+std::vector<PartExtent> partExtents(const RenderScene& scene);
+
+/// Calls visit(part, X_WP, role) for each part to draw. Fixed parts are drawn even if the snapshot does not
+/// list them; bodies with an unknown part or a pose that is not finite are left out.
+void forEachVisiblePart(
+    const std::vector<PartExtent>& parts, const scenes::Snapshot& snapshot, bool show_waiting,
+    const std::function<void(std::size_t part, const Pose& X_WP, scenes::BodyRole role)>& visit);
+
+/// The box in W around all visible parts and, with show_target, the target. Empty if nothing is visible.
+Box visibleBounds(const std::vector<PartExtent>& parts, const scenes::Snapshot& snapshot, bool show_waiting,
+                  bool show_target);
+
+}  // namespace vps::viewer

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "render/view.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "mesh/box_corners.h"
+
+namespace vps::viewer {
+namespace {
+
+using Eigen::Matrix4f;
+using Eigen::Vector2f;
+
+Matrix4f perspectiveProjection(const Vector2f& half_view, const Vector2f& shift, double near_m,
+                               double far_m) {
+  Matrix4f m = Matrix4f::Zero();
+  m(0, 2) = shift.x() / half_view.x();
+  m(1, 2) = shift.y() / half_view.y();
+  m(0, 0) = 1 / half_view.x();
+  m(1, 1) = 1 / half_view.y();
+  m(2, 2) = static_cast<float>(-(far_m + near_m) / (far_m - near_m));
+  m(2, 3) = static_cast<float>(-2 * far_m * near_m / (far_m - near_m));
+  m(3, 2) = -1;
+  return m;
+}
+
+/// From [-1, 1] to [0, 1], for texture lookups.
+Matrix4f clipToTexture() {
+  Matrix4f m = Matrix4f::Identity() * 0.5f;
+  m.topRightCorner<3, 1>().setConstant(0.5f);
+  m(3, 3) = 1;
+  return m;
+}
+
+void setLens(View& view, const Camera& camera, const DrawOptions& options) {
+  // Marks stick out of the box by up to a third of its size.
+  const double reach_m = (options.is_draft ? 2.2 : 1.6) * view.radius_m;  // see coarseBounds()
+  const double depth_m = -view.center_C.z();
+  const double far_m = std::max(depth_m + reach_m, 1e-6);
+  const double near_m = std::max(depth_m - reach_m, 1e-3 * far_m);
+  view.near_m = static_cast<float>(near_m);
+  const double tan_y = std::tan(0.5 * camera.fov_rad);
+  view.detail_m = std::min(view.radius_m, 1.5 * tan_y * (camera.eye_W - camera.target_W).norm());
+  const auto [half_x, half_y] = camera.halfView(options.width, options.height);
+  view.px_m = 0.5 * options.height * std::max(1, options.supersampling) / half_y;
+  view.half_view = Vector2f(static_cast<float>(half_x), static_cast<float>(half_y));
+  view.shift = Vector2f(static_cast<float>(camera.shift_x), static_cast<float>(camera.shift_y));
+  // The floor extends beyond the box, so the far plane lies further out than the box requires.
+  view.projection = perspectiveProjection(view.half_view, view.shift, near_m, far_m + 3 * view.radius_m);
+}
+
+void setFloor(View& view, const Box& box_W, const Camera& camera) {
+  const Vec3 up_C = view.X_CW.R * camera.up_W.normalized();
+  view.up_C = up_C.cast<float>();
+  double lowest = 1e300;
+  for (const Vec3& p_W : corners(box_W)) lowest = std::min(lowest, up_C.dot(view.X_CW * p_W));
+  view.floor_C = view.center_C + (lowest - up_C.dot(view.center_C)) * up_C;
+}
+
+void setCut(View& view, const CutPlane& cut) {
+  const Vec3 n_C = view.X_CW.R * cut.n_W.normalized();
+  const double offset = n_C.dot(view.X_CW * cut.p_W);
+  view.cut_C << n_C.cast<float>(), static_cast<float>(offset);
+  view.has_caps = offset < 0;  // the eye is the origin; from behind the plane it sees no cut face
+}
+
+}  // namespace
+
+Matrix4f parallelProjection(const Vec3& center, double radius_m, const Vec3& back, const Vec3& up) {
+  const Vec3 x = up.cross(back).normalized();
+  Mat3 R;
+  R << x, back.cross(x), back;
+  Matrix4f m = Matrix4f::Identity();
+  const Mat3 scaled = Vec3(1, 1, -1).asDiagonal() * R.transpose() / radius_m;
+  m.topLeftCorner<3, 3>() = scaled.cast<float>();
+  m.topRightCorner<3, 1>() = (-(scaled * center)).cast<float>();
+  return m;
+}
+
+View makeView(const Box& drawn_W, const Camera& camera, const DrawOptions& options) {
+  const Box box_W = drawn_W.isEmpty() ? Box{Vec3::Constant(-1), Vec3::Constant(1)} : drawn_W;
+  View view;
+  view.X_CW = camera.pose().inverse();
+  view.center_C = view.X_CW * box_W.center();
+  view.radius_m = std::max(1e-9, 0.5 * box_W.size().norm());
+  setLens(view, camera, options);
+  setFloor(view, box_W, camera);
+  if (options.cut) setCut(view, *options.cut);
+  const Vec3 key = Vec3(-0.55, 0.75, 0.60).normalized();  // kKey in shaders.h
+  view.shadow_projection = parallelProjection(view.center_C, 1.05 * view.radius_m, key, Vec3::UnitX());
+  view.shadow_from_C = clipToTexture() * view.shadow_projection;
+  return view;
+}
+
+}  // namespace vps::viewer

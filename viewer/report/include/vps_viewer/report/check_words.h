@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What is said of a check in words, in the text and on the page.
+#pragma once
+
+#include <string>
+
+#include "vps_scenes/fits/check_types.h"
+#include "vps_viewer/export.h"
+
+namespace vps::viewer {
+
+/// How the overlap in the tables is meant.
+inline constexpr const char* kOverlapMeaning =
+    "overlap: greatest depth of a point of one part's surface below the other's, or thickness of what both "
+    "share (diameter of the greatest ball in it) if more; up to 0.5 um beyond its error it counts as contact";
+static_assert(scenes::kContactDepth_m == 0.5e-6);
+
+/// The volume that two parts share, in cubic millimetres: "7.9840"; "<= 12.3" where its error is as large;
+/// "not known" where no piece of its surface was found.
+VPS_VIEWER_API std::string volumeWords(const scenes::CheckedPair& pair);
+
+/// How far a part moves one way: "free", "1009.0"; "1009.0 (+- 962.4)" where its error is more than twice
+/// that of the part's play, as in a taper; ">= 909.7" where the search ended before.
+/// @param usual  CheckedPart::play_error_m, or of a turn play_error_rad
+/// @param form   of a number, as "%.1f"
+VPS_VIEWER_API std::string playWords(double way, double error, double usual, double scale, const char* form);
+
+/// Why the play of a part is not certain, and by how much: "facets cross others as drawn; ..."; empty if
+/// it is.
+VPS_VIEWER_API std::string playDoubt(const scenes::CheckedPart& part, const scenes::CheckResult& result);
+
+/// The answer to "do the parts go together?" where it is not yes as drawn: "can be assembled: free if 'bolt'
+/// moves by 0.050 mm along +x", "cannot be assembled: ...", "not shown: ..."; empty for yes as drawn.
+VPS_VIEWER_API std::string assemblyWords(const scenes::CheckResult& result);
+
+}  // namespace vps::viewer

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// CSV (RFC 4180), and field tables as CSV.
+#pragma once
+
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "vps/pose.h"
+#include "vps_scenes/run/result.h"
+#include "vps_scenes/scene/fields.h"
+#include "vps_viewer/export.h"
+
+namespace vps::viewer {
+
+/// One line, with its line end; a cell stands in quotes where it must.
+VPS_VIEWER_API std::string csvLine(const std::vector<std::string>& cells);
+/// The shortest text that reads back as the same value; "NaN" if it is not finite.
+VPS_VIEWER_API std::string csvNumber(double value);
+
+// --- Columns of one value. A vector's are "force_x_N", "force_y_N", "force_z_N" for the key "force_N"; those
+// of a pose "part_x_m" to "part_z_m" and "part_qx" to "part_qw" for the key "part".
+
+VPS_VIEWER_API void addColumns(std::vector<std::string>& columns, const std::string& key, const Vec3*);
+VPS_VIEWER_API void addColumns(std::vector<std::string>& columns, const std::string& key, const Pose*);
+inline void addColumns(std::vector<std::string>& columns, const std::string& key, const void*) {
+  columns.push_back(key);
+}
+VPS_VIEWER_API void addCells(std::vector<std::string>& cells, const Vec3& v);
+VPS_VIEWER_API void addCells(std::vector<std::string>& cells, const Pose& X);
+template <class T>
+void addCells(std::vector<std::string>& cells, const T& x) {
+  if constexpr (std::is_same_v<T, std::string>)
+    cells.push_back(x);
+  else if constexpr (std::is_enum_v<T>)
+    cells.emplace_back(toText(x));
+  else if constexpr (std::is_floating_point_v<T>)
+    cells.push_back(csvNumber(x));
+  else
+    cells.push_back(std::to_string(x));  // a bool is 0 or 1
+}
+
+// --- Field tables: columns of a nested object have its key before theirs, as "probe_force_error"
+
+template <class Struct, class Get>
+void addRowColumns(std::vector<std::string>& columns, const std::string& prefix,
+                   const scenes::Field<Get>& row) {
+  using Value = std::remove_cvref_t<std::invoke_result_t<Get, const Struct&>>;
+  addColumns(columns, prefix + siKey(row), static_cast<const Value*>(nullptr));
+}
+template <class Struct, class Get, class Rows>
+void addRowColumns(std::vector<std::string>& columns, const std::string& prefix,
+                   const scenes::Group<Get, Rows>& group) {
+  using Inner = std::remove_cvref_t<decltype(*scenes::pointerTo(
+      std::invoke(group.get, std::declval<const Struct&>())))>;
+  const std::string key(group.key);
+  scenes::forEachRow(group.rows, [&](const auto& row) {
+    addRowColumns<Inner>(columns, key.empty() ? prefix : prefix + key + "_", row);
+  });
+}
+
+template <class Struct, class Rows>
+std::vector<std::string> csvColumns(const Rows& rows) {
+  std::vector<std::string> columns;
+  scenes::forEachRow(rows, [&](const auto& row) { addRowColumns<Struct>(columns, "", row); });
+  return columns;
+}
+
+template <class Struct, class Get>
+void addRowCells(std::vector<std::string>& cells, const Struct& of, const scenes::Field<Get>& row) {
+  addCells(cells, std::invoke(row.get, of));
+}
+/// The cells of a group that is left out are empty.
+template <class Struct, class Get, class Rows>
+void addRowCells(std::vector<std::string>& cells, const Struct& of, const scenes::Group<Get, Rows>& group) {
+  const auto* inner = scenes::pointerTo(std::invoke(group.get, of));
+  using Inner = std::remove_cvref_t<decltype(*inner)>;
+  if (inner == nullptr)
+    cells.resize(cells.size() + csvColumns<Inner>(group.rows).size());
+  else
+    scenes::forEachRow(group.rows, [&](const auto& row) { addRowCells(cells, *inner, row); });
+}
+
+/// A header line, and a line for each struct.
+template <class Struct, class Rows>
+std::string toCsv(const std::vector<Struct>& structs, const Rows& rows) {
+  std::string out = csvLine(csvColumns<Struct>(rows));
+  std::vector<std::string> cells;
+  for (const Struct& of : structs) {
+    cells.clear();
+    scenes::forEachRow(rows, [&](const auto& row) { addRowCells(cells, of, row); });
+    out += csvLine(cells);
+  }
+  return out;
+}
+
+/// Writes the time series as CSV: a header line, then one row per sample, with SI units in the column names.
+/// The folder must exist. Throws LoadError when the file cannot be written.
+VPS_VIEWER_API void writeTraceCsv(const std::vector<scenes::TraceRow>& trace, const std::string& file);
+
+}  // namespace vps::viewer

@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vps_viewer/report/check_page.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+
+#include "files/html.h"
+#include "files/length_text.h"
+#include "pages/clearance_pictures.h"
+#include "pages/section_svg.h"
+#include "vps_viewer/report/check_words.h"
+
+namespace vps::viewer {
+
+namespace {
+
+using html::Cell;
+using html::format;
+using scenes::PairState;
+
+std::string place(const Vec3& p_W) {
+  std::string out;
+  for (int i = 0; i < 3; ++i) out.append(i > 0 ? ", " : "").append(format(1e3 * p_W[i], "%.2f"));
+  return out;
+}
+
+std::string pairs(const scenes::CheckResult& result) {
+  std::vector<std::vector<Cell>> rows;
+  for (const scenes::CheckedPair& pair : result.pairs) {
+    const bool is_clash = pair.state >= PairState::PressFit;
+    rows.push_back({{escapeHtml(pair.a), ""},
+                    {escapeHtml(pair.b), ""},
+                    {std::string(pair.is_uncertain ? "not known" : toText(pair.state)) +
+                         (pair.state == PairState::Clash && pair.is_allowed ? " (allowed)" : ""),
+                     pair.isClash() ? "bad" : ""},
+                    {is_clash ? "" : micrometres(pair.clearance_m), "n"},
+                    {pair.interference_depth_m > 0 ? micrometres(pair.interference_depth_m) : "", "n"},
+                    {is_clash ? escapeHtml(volumeWords(pair)) : "", "n"},
+                    {micrometres(pair.error_m), "n"},
+                    {place(pair.at_W), "n"}});
+  }
+  return std::string(
+             "<h2>Pairs near each other</h2>\n<p>As drawn. Surfaces that meet to within the error are in "
+             "contact, "
+             "which is no clash. The error holds the distance of the meshes from the curved faces that they "
+             "stand "
+             "for; ")
+             .append(kOverlapMeaning)
+             .append(".</p>\n") +
+         html::table({"part", "and", "state", "clearance [µm]", "overlap [µm]", "volume [mm³]", "error [µm]",
+                      "at [mm]"},
+                     rows);
+}
+
+const char* kindOf(scenes::FitKind kind) {
+  if (kind == scenes::FitKind::Thread) return "thread";
+  return kind == scenes::FitKind::Shaft ? "round" : "two parallel faces";
+}
+
+std::string fits(const scenes::CheckResult& result) {
+  std::vector<std::vector<Cell>> rows;
+  for (const scenes::CheckedFit& fit : result.fits)
+    rows.push_back({{kindOf(fit.kind), ""},
+                    {escapeHtml(fit.shaft), ""},
+                    {escapeHtml(fit.bore), ""},
+                    {format(1e3 * fit.shaft_m, "%.4f"), "n"},
+                    {format(1e3 * fit.bore_m, "%.4f"), "n"},
+                    {micrometres(fit.diametral_clearance_m), fit.diametral_clearance_m < 0 ? "n bad" : "n"},
+                    {micrometres(fit.error_m), "n"},
+                    {format(1e3 * fit.length_m, "%.2f"), "n"},
+                    {escapeHtml(standardOf(fit)), ""}});
+  return "<h2>Fits</h2>\n<p>Found on the meshes, whose corners lie on the true faces. Of a thread the sizes "
+         "are its "
+         "major diameters, and the play along the axis says how loose its flanks are. The last column names "
+         "a "
+         "common fit of ISO 286 in whose zones both sizes lie, or a thread of ISO 262.</p>\n" +
+         html::table({"kind", "inner part", "outer part", "inner [mm]", "outer [mm]", "clearance [µm]",
+                      "error [µm]", "length [mm]", "standard"},
+                     rows);
+}
+
+std::string pressFits(const scenes::CheckResult& result) {
+  std::vector<std::vector<Cell>> rows;
+  for (const scenes::CheckedFit& fit : result.fits) {
+    if (!fit.press) continue;
+    const scenes::CheckedPress& press = *fit.press;
+    const auto pair = std::ranges::find_if(result.pairs, [&](const scenes::CheckedPair& p) {
+      return (p.a == fit.shaft && p.b == fit.bore) || (p.b == fit.shaft && p.a == fit.bore);
+    });
+    const bool is_clash = pair->isClash();
+    rows.push_back(
+        {{escapeHtml(fit.shaft), ""},
+         {escapeHtml(fit.bore), ""},
+         {micrometres(-fit.diametral_clearance_m), is_clash ? "n bad" : "n"},
+         {micrometres(pair->press_fit_m), "n"},
+         {std::isfinite(press.hub_m) ? format(1e3 * press.hub_m, "%.2f") : "endless", "n"},
+         {format(1e3 * press.hole_m, "%.2f"), "n"},
+         {format(1e-9 * press.shaft_modulus_Pa, "%.0f") + " / " + format(1e-9 * press.hub_modulus_Pa, "%.0f"),
+          "n"},
+         {format(press.friction, "%.2f"), "n"},
+         {format(1e-6 * press.pressure_Pa, "%.1f"), "n"},
+         {format(1e-6 * press.hub_stress_Pa, "%.0f"), "n"},
+         {format(press.force_N, "%.0f"), "n"},
+         {format(press.declared_force_N, "%.0f"), "n"}});
+  }
+  if (rows.empty()) return "";
+  return "<h2>Press fits</h2>\n<p>The interference as drawn, in diameter, against the declared one. Pressure "
+         "and stress follow from Lamé's formula for elastic thick-walled cylinders; the hub is the largest "
+         "ring of material around the bore over the middle half of the fit. The force moves the shaft along "
+         "the fit's whole length. Young's modulus (210 GPa), Poisson's ratio (0.3: steel, EN 1993-1-1) and "
+         "friction (0.15) are assumed where the scene does not state them. Where the stress is above the "
+         "material's yield point, the formula does not hold and the force is less.</p>\n" +
+         html::table({"inner part", "outer part", "drawn [µm]", "declared [µm]", "hub [mm]", "hole [mm]",
+                      "E inner / outer [GPa]", "friction", "pressure [MPa]", "hub stress [MPa]", "force [N]",
+                      "force if as declared [N]"},
+                     rows);
+}
+
+/// Both ways along one axis.
+std::string both(const std::array<double, 6>& way, const std::array<double, 6>& error, std::size_t i,
+                 double usual, double scale, const char* form) {
+  return escapeHtml("+" + playWords(way[i], error[i], usual, scale, form) + " / −" +
+                    playWords(way[i + 1], error[i + 1], usual, scale, form));
+}
+
+std::string coordinates(const Vec3& d) {
+  return format(d.x(), "%.2f") + ", " + format(d.y(), "%.2f") + ", " + format(d.z(), "%.2f");
+}
+
+std::string play(const scenes::CheckResult& result) {
+  std::vector<std::vector<Cell>> rows;
+  for (const scenes::CheckedPart& part : result.parts) {
+    std::vector<Cell> row = {{escapeHtml(part.name), ""}};
+    for (std::size_t i = 0; i < 12; i += 2) {
+      const bool is_turn = i >= 6;
+      if (!part.play)
+        row.push_back({"", "n"});
+      else if (is_turn)
+        row.push_back(
+            {both(part.play->rad, part.play->error_rad, i - 6, part.play_error_rad, 1e3, "%.2f"), "n"});
+      else
+        row.push_back({both(part.play->m, part.play->error_m, i, part.play_error_m, 1e6, "%.1f"), "n"});
+    }
+    std::string ways = part.play ? "" : "it overlaps another part";
+    for (const Vec3& way : part.ways_out_W) ways += (ways.empty() ? "(" : ", (") + coordinates(way) + ")";
+    for (const scenes::ScrewWay& way : part.screw_ways_out)
+      ways += (ways.empty() ? "by screw along (" : "; by screw along (") + coordinates(way.axis_W) + "), " +
+              format(1e3 * std::abs(way.lead_m), "%.3f") + " mm a turn";
+    if (ways.empty()) ways = part.is_play_certain ? "none" : "not known";
+    if (const std::string doubt = playDoubt(part, result); !doubt.empty()) ways += "; " + escapeHtml(doubt);
+    row.push_back({ways, ""});
+    rows.push_back(row);
+  }
+  return "<h2>Play</h2>\n<p>How far each part moves along and turns about its axes before it touches, the "
+         "other "
+         "parts held; free: it moves away, or turns a whole turn. Ways out are directions in which it leaves "
+         "on a "
+         "straight line, or by a screw.</p>\n" +
+         html::table({"part", "x [µm]", "y [µm]", "z [µm]", "about x [mrad]", "about y [mrad]",
+                      "about z [mrad]", "ways out"},
+                     rows);
+}
+
+std::string meshes(const scenes::CheckResult& result) {
+  std::vector<std::vector<Cell>> rows;
+  for (const scenes::CheckedPart& part : result.parts)
+    rows.push_back({{escapeHtml(part.name), ""},
+                    {std::to_string(part.triangles), "n"},
+                    {micrometres(part.chord_error_m), "n"},
+                    {escapeHtml(part.mesh_faults), ""},
+                    {escapeHtml(part.no_inside), part.no_inside.empty() ? "" : "bad"}});
+  return "<h2>Meshes</h2>\n" +
+         html::table({"part", "triangles", "distance from curved faces [µm]", "faults", "no inside"}, rows);
+}
+
+}  // namespace
+
+std::string checkTablesOfRun(const scenes::CheckResult& result) {
+  return pairs(result) + (result.fits.empty() ? "" : fits(result)) + pressFits(result);
+}
+
+std::string checkSection(const scenes::CheckResult& result) {
+  const bool has_play =
+      std::ranges::any_of(result.parts, [](const auto& part) { return part.play.has_value(); });
+  return pairs(result) + (result.fits.empty() ? "" : fits(result)) + pressFits(result) +
+         sectionPictures(result) + clearancePictures(result) + (has_play ? play(result) : "") +
+         meshes(result);
+}
+
+std::string checkPage(const scenes::CheckResult& result) {
+  const std::size_t clashes = result.clashes();
+  std::string answer = escapeHtml(assemblyWords(result));
+  if (!answer.empty()) answer.front() = static_cast<char>(std::toupper(answer.front()));
+  std::string verdict =
+      answer.empty() ? "No parts overlap as drawn, beyond the stated errors." : answer + ".";
+  if (clashes > 0) {
+    const scenes::CheckedPair& worst = *result.deepestClash();
+    verdict = (clashes == 1 ? "Two parts overlap as drawn: "
+                            : std::to_string(clashes) + " pairs of parts overlap as drawn, the deepest: ") +
+              escapeHtml(worst.a) + " and " + escapeHtml(worst.b) + " by " +
+              micrometres(worst.interference_depth_m) + " µm (± " + micrometres(worst.error_m) + "). " +
+              verdict;
+  }
+  constexpr std::array kClass = {"good", "bad", "unsure"};
+  static_assert(static_cast<int>(scenes::Verdict::NotShown) == 2);
+  return html::page("Check of " + result.assembly, "<h1>Check of " + escapeHtml(result.assembly) +
+                                                       "</h1>\n<p class=\"verdict " +
+                                                       kClass[static_cast<std::size_t>(result.verdict())] +
+                                                       "\">" + verdict + "</p>\n" + checkSection(result));
+}
+
+}  // namespace vps::viewer

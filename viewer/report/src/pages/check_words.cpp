@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vps_viewer/report/check_words.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "files/html.h"
+
+namespace vps::viewer {
+
+namespace {
+
+/// "+x", or "(0.71, 0.71, 0.00)".
+std::string directionWords(const Vec3& d) {
+  constexpr double kAlong = 0.9995;  // within two degrees
+  constexpr std::array kAxes = {"x", "y", "z"};
+  for (int i = 0; i < 3; ++i)
+    if (std::abs(d[i]) > kAlong) return std::string(d[i] > 0 ? "+" : "-") + kAxes[std::size_t(i)];
+  const auto rounded = [](double x) {
+    constexpr double kZero = 0.005;
+    return html::format(std::abs(x) < kZero ? 0 : x, "%.2f");
+  };
+  return "(" + rounded(d.x()) + ", " + rounded(d.y()) + ", " + rounded(d.z()) + ")";
+}
+
+/// "'bolt' moves by 0.050 mm along +x and turns by 0.010 degrees about (1.00, 0.00, 0.00)"
+std::string motionWords(const scenes::MovedPart& part) {
+  constexpr double kNone = 0.01;  // a share of the whole motion that is not worth a word
+  const double by_m = part.by_W.norm(), turn_rad = part.turn_W.norm();
+  std::string out = "'" + part.name + "'";
+  const bool is_moved = by_m > kNone * part.most_m;
+  if (is_moved)
+    out += " moves by " + html::format(1e3 * by_m, "%.4f") + " mm along " + directionWords(part.by_W / by_m);
+  // What a turn adds to the way of the farthest corner.
+  if (part.most_m - by_m <= kNone * part.most_m) return out;
+  return out + (is_moved ? " and" : "") + " turns by " +
+         html::format(turn_rad * 180 / std::numbers::pi, "%.4f") + " degrees about " +
+         directionWords(part.turn_W / turn_rad);
+}
+
+std::string aloneWords(const std::vector<std::string>& alone) {
+  const bool is_one = alone.size() == 1;
+  return "'" + alone.front() + "'" +
+         (is_one ? " is"
+                 : " and " + std::to_string(alone.size() - 1) +
+                       (alone.size() == 2 ? " other are" : " others are")) +
+         " nowhere near another part, so that nothing shows whether " + (is_one ? "it fits" : "they fit");
+}
+
+std::string uncertainWords(const scenes::CheckResult& result) {
+  const scenes::CheckedPair& first =
+      *std::ranges::find(result.pairs, true, &scenes::CheckedPair::is_uncertain);
+  std::string why;
+  for (const scenes::CheckedPart& part : result.parts)
+    if (why.empty() && (part.name == first.a || part.name == first.b) && !part.no_inside.empty())
+      why = "because of " + part.name + ": " + part.no_inside;
+  const std::size_t others = result.uncertain() - 1;
+  return "it cannot be told whether " + first.a + " and " + first.b + " overlap, " + why +
+         (others == 0   ? ""
+          : others == 1 ? "; so is 1 other pair"
+                        : "; so are " + std::to_string(others) + " other pairs");
+}
+
+/// "free if 'bolt' moves by 0.050 mm along +x"; empty: nothing is moved.
+std::string freeWords(const std::vector<scenes::MovedPart>& moved) {
+  constexpr std::size_t kMost = 4;
+  if (moved.empty()) return {};
+  std::string out = "free if ";
+  for (std::size_t i = 0; i < std::min(moved.size(), kMost); ++i)
+    out += (i == 0 ? "" : i + 1 == moved.size() ? " and " : ", ") + motionWords(moved[i]);
+  return moved.size() > kMost ? out + " and " + std::to_string(moved.size() - kMost) + " more parts move"
+                              : out;
+}
+
+}  // namespace
+
+std::string assemblyWords(const scenes::CheckResult& result) {
+  switch (result.places.verdict) {
+    case scenes::Verdict::Blocked:
+      return "cannot be assembled: " + result.places.reason;
+    case scenes::Verdict::NotShown:
+      return "whether it can be assembled is not shown: " + result.places.reason;
+    case scenes::Verdict::Fits:
+      break;
+  }
+  const std::string freed = freeWords(result.places.moved);
+  std::string doubt;
+  if (result.uncertain() > 0)
+    doubt = uncertainWords(result);
+  else if (!result.alone.empty())
+    doubt = aloneWords(result.alone);
+  if (!doubt.empty()) return "not shown: " + doubt + (freed.empty() ? "" : "; what overlaps is " + freed);
+  return freed.empty() ? freed : "can be assembled: " + freed;
+}
+
+std::string volumeWords(const scenes::CheckedPair& pair) {
+  if (pair.volume_error_m3 < pair.interference_volume_m3)
+    return html::format(1e9 * pair.interference_volume_m3, "%.4f");
+  const double most_m3 = pair.interference_volume_m3 + pair.volume_error_m3;
+  return most_m3 > 0 ? "<= " + html::format(1e9 * most_m3, "%.4g") : "not known";
+}
+
+std::string playWords(double way, double error, double usual, double scale, const char* form) {
+  if (std::isinf(way)) return "free";
+  const std::string words = html::format(scale * way, form);
+  if (std::isinf(error)) return ">= " + words;
+  return error > 2 * usual ? words + " (+- " + html::format(scale * error, form) + ")" : words;
+}
+
+std::string playDoubt(const scenes::CheckedPart& part, const scenes::CheckResult& result) {
+  if (!part.play || part.is_play_certain) return {};
+  constexpr double kEqual_m = 0.1e-6;  // as the check takes sizes for equal
+  const bool has_equal = std::ranges::any_of(result.fits, [&](const scenes::CheckedFit& fit) {
+    return fit.kind == scenes::FitKind::Shaft && (fit.shaft == part.name || fit.bore == part.name) &&
+           std::abs(fit.diametral_clearance_m) <= fit.error_m + kEqual_m;
+  });
+  return std::string(has_equal ? "round faces of equal size touch" : "facets cross others as drawn")
+      .append("; its play is uncertain by ")
+      .append(html::format(1e6 * part.play_error_m, "%.1f"))
+      .append(" um and ")
+      .append(html::format(1e3 * part.play_error_rad, "%.2g"))
+      .append(" mrad, and is more where meshes stop what the faces allow");
+}
+
+}  // namespace vps::viewer

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pages/section_svg.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "files/html.h"
+#include "files/length_text.h"
+#include "vps_scenes/fits/outline_clip.h"
+
+namespace vps::viewer {
+
+namespace {
+
+using html::format;
+using Point = std::array<double, 2>;
+using Chain = std::vector<Point>;
+
+constexpr double kSide = 440, kGap = 30, kTop = 6, kFoot = 34;  // [px]
+
+/// One of the two pictures.
+struct Window {
+  Point middle_m{};
+  double half_m = 0, left = 0;
+
+  [[nodiscard]] double scale() const { return kSide / (2 * half_m); }
+  [[nodiscard]] Point toPixel(const Point& p) const {
+    return {left + (p[0] - middle_m[0] + half_m) * scale(), kTop + (middle_m[1] + half_m - p[1]) * scale()};
+  }
+};
+
+/// Points nearer than a third of a pixel to the one before are left out.
+std::string pathOf(const scenes::SectionOutline& outline, const Window& window) {
+  std::string out;
+  for (const Chain& chain : outline.chains) {
+    Point last{-1e9, -1e9};
+    bool is_first = true;
+    // A little beyond the window, so that numbers stay small.
+    for (const Point& p : scenes::clippedToSquare(chain, window.middle_m, 1.1 * window.half_m)) {
+      const Point at = window.toPixel(p);
+      if (!is_first && std::hypot(at[0] - last[0], at[1] - last[1]) < 0.3) continue;
+      out.append(is_first ? "M" : "L").append(format(at[0], "%.1f ")).append(format(at[1], "%.1f"));
+      is_first = false;
+      last = at;
+    }
+    if (!is_first) out += "Z";
+  }
+  return out;
+}
+
+/// 1, 2 or 5 times a power of ten, at most a third of the window.
+double barLength(double half_m) {
+  const double most_m = 2 * half_m / 3, power = std::pow(10, std::floor(std::log10(most_m)));
+  for (const double of : {5.0, 2.0})
+    if (of * power <= most_m) return of * power;
+  return power;
+}
+
+std::string text(double x, double y, const std::string& words, const char* anchor = "start") {
+  return "<text x=\"" + format(x, "%.1f") + "\" y=\"" + format(y, "%.1f") + "\" text-anchor=\"" + anchor +
+         "\">" + words + "</text>\n";
+}
+
+std::string scaleBar(const Window& window) {
+  const double bar_m = barLength(window.half_m), x = window.left + 2, y = kTop + kSide + 12;
+  return "<path d=\"M" + format(x, "%.1f") + " " + format(y - 4, "%.1f") + "v8m0 -4h" +
+         format(bar_m * window.scale(), "%.1f") + "m0 -4v8\" stroke=\"#222\" fill=\"none\"/>\n" +
+         text(x + bar_m * window.scale() + 6, y + 4, lengthText(bar_m));
+}
+
+std::string rectangle(double x, double y, double w, double h, const char* style) {
+  return "<rect x=\"" + format(x, "%.1f") + "\" y=\"" + format(y, "%.1f") + "\" width=\"" +
+         format(w, "%.1f") + "\" height=\"" + format(h, "%.1f") + "\" " + style + "/>\n";
+}
+
+/// Fills of the two parts; the first is the inner one of a fit.
+constexpr std::array kFills = {"#9db9dd", "#dcc79c"};
+
+std::string filled(const std::string& path, const std::string& fill, const std::string& more = {}) {
+  return "<path d=\"" + path + "\" fill=\"" + fill +
+         "\" fill-rule=\"evenodd\" stroke=\"#333\" stroke-width=\"0.8\" " + more + "/>\n";
+}
+
+std::string drawn(const scenes::CheckedSection& section, const Window& window, const std::string& id) {
+  std::string out = "<clipPath id=\"w" + id + "\">" + rectangle(window.left, kTop, kSide, kSide, "") +
+                    "</clipPath>\n<g clip-path=\"url(#w" + id + ")\">\n" +
+                    rectangle(window.left, kTop, kSide, kSide, "fill=\"#fff\"");
+  for (std::size_t i = 2; i < section.parts.size(); ++i) {
+    const std::string path = pathOf(section.parts[i], window);
+    if (!path.empty())
+      out += filled(path, i % 2 == 0 ? "#e3e3e3" : "#cfd3cf",
+                    "data-part=\"" + escapeHtml(section.parts[i].part) + "\"");
+  }
+  // The outer part first, so that a shaft is not hidden by it.
+  const std::array<std::string, 2> paths = {pathOf(section.parts[0], window),
+                                            pathOf(section.parts[1], window)};
+  for (const std::size_t i : {1U, 0U})
+    out += filled(paths[i], kFills[i], "data-part=\"" + escapeHtml(section.parts[i].part) + "\"");
+  out += "<clipPath id=\"o" + id + "\"><path d=\"" + paths[1] + "\" clip-rule=\"evenodd\"/></clipPath>\n" +
+         "<g clip-path=\"url(#o" + id + ")\">" + filled(paths[0], "#e0202f") + "</g>\n";
+  return out + "</g>\n" + rectangle(window.left, kTop, kSide, kSide, "fill=\"none\" stroke=\"#999\"") +
+         scaleBar(window);
+}
+
+std::string key(double x, double y, const char* fill, const std::string& words) {
+  return rectangle(x, y - 10, 12, 12, (std::string("fill=\"") + fill + "\" stroke=\"#333\"").c_str()) +
+         text(x + 18, y, words);
+}
+
+std::string captionOf(const scenes::CheckResult& result, const scenes::CheckedSection& section) {
+  std::string out;
+  if (section.is_fit) {
+    const scenes::CheckedFit& fit = result.fits[section.of];
+    const bool is_shaft = fit.kind != scenes::FitKind::Key;
+    out = "<b>" + escapeHtml(fit.shaft) + "</b> in <b>" + escapeHtml(fit.bore) +
+          "</b>: " + (is_shaft ? "⌀ " : "width ") + format(1e3 * fit.shaft_m, "%.4f") + " in " +
+          format(1e3 * fit.bore_m, "%.4f") + " mm, " +
+          (fit.diametral_clearance_m < 0 ? "interference " : "clearance ") +
+          micrometres(std::abs(fit.diametral_clearance_m)) + " µm ± " + micrometres(fit.error_m) + " µm" +
+          (is_shaft ? " in diameter, so half of it to each side if centred" : " both sides together") +
+          (standardOf(fit).empty() ? "" : "; " + standardOf(fit));
+    out += is_shaft ? ". Section through the axis" : ". Section across the length";
+  } else {
+    const scenes::CheckedPair& pair = result.pairs[section.of];
+    out = "<b>" + escapeHtml(pair.a) + "</b> and <b>" + escapeHtml(pair.b) + "</b> overlap by " +
+          micrometres(pair.interference_depth_m) + " µm ± " + micrometres(pair.error_m) + " µm (" +
+          toText(pair.state) + "). Section through the deepest place, along the depth";
+  }
+  out += "; the right picture shows the small square " +
+         format(section.half_m / section.near_half_m, "%.0f") + " times as large.";
+  if (std::ranges::any_of(section.parts, &scenes::SectionOutline::is_open))
+    out += " A surface has holes here; its outline is closed by straight lines.";
+  return out;
+}
+
+}  // namespace
+
+std::string sectionSvg(const scenes::CheckResult& result, const scenes::CheckedSection& section,
+                       std::size_t id) {
+  const Window whole{{0, 0}, section.half_m, 1}, near{section.near_m, section.near_half_m, 1 + kSide + kGap};
+  const double width = 2 * kSide + kGap + 2, height = kTop + kSide + kFoot + 22;
+  std::string out = "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + format(width, "%.0f") + " " +
+                    format(height, "%.0f") + "\" font-family=\"DejaVu Sans, sans-serif\" font-size=\"12\">\n";
+  const std::string name = std::to_string(id);
+  out += drawn(section, whole, name + "a") + drawn(section, near, name + "b");
+  // Where the right picture is.
+  const Point middle = whole.toPixel(section.near_m);
+  const double half = std::max(5.0, section.near_half_m * whole.scale());
+  out += rectangle(middle[0] - half, middle[1] - half, 2 * half, 2 * half,
+                   "fill=\"none\" stroke=\"#d0007f\" stroke-width=\"1.6\"");
+  out += rectangle(near.left, kTop, kSide, kSide, "fill=\"none\" stroke=\"#d0007f\" stroke-width=\"1.6\"");
+  const double y = kTop + kSide + kFoot + 10;
+  out += key(3, y, kFills[0], escapeHtml(section.parts[0].part)) +
+         key(3 + 0.5 * kSide, y, kFills[1], escapeHtml(section.parts[1].part));
+  const bool overlaps = section.is_fit ? result.fits[section.of].diametral_clearance_m < 0 : true;
+  if (overlaps) out += key(near.left, y, "#e0202f", "overlap");
+  if (section.parts.size() > 2) out += key(near.left + 0.5 * kSide, y, "#e3e3e3", "other parts");
+  return out + "</svg>\n";
+}
+
+std::string sectionPictures(const scenes::CheckResult& result) {
+  if (result.sections.empty()) return "";
+  std::size_t wanted = result.fits.size();
+  for (const scenes::CheckedPair& pair : result.pairs) wanted += pair.state >= scenes::PairState::PressFit;
+  std::string out = "<h2>Sections</h2>\n<p>Cut through the meshes at each overlap and each fit";
+  if (wanted > result.sections.size())
+    out += format(static_cast<double>(result.sections.size()), ": the first %.0f") +
+           format(static_cast<double>(wanted), " of %.0f, the deepest and tightest");
+  out += ". The facets are shown as they are; the numbers of a fit are those of the true cylinders.</p>\n";
+  for (std::size_t i = 0; i < result.sections.size(); ++i)
+    out += "<figure class=\"section\">" + sectionSvg(result, result.sections[i], i) + "<figcaption>" +
+           captionOf(result, result.sections[i]) + "</figcaption></figure>\n";
+  return out;
+}
+
+}  // namespace vps::viewer

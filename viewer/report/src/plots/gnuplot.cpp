@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plots/gnuplot.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+
+#include "files/run_program.h"
+#include "vps/write_file.h"
+
+namespace vps::viewer {
+namespace {
+
+constexpr const char* kMissing = "gnuplot is not installed (Debian: apt install gnuplot-nox)";
+
+/// Runs gnuplot on a script. Returns nothing on success, and otherwise the reason of the failure.
+std::string run(const std::string& script) {
+  // From its standard input gnuplot reads one byte at a time; from a file that it opens itself, blocks.
+  return runProgram({"gnuplot", "/dev/stdin"}, script, kMissing);
+}
+
+}  // namespace
+
+bool hasGnuplot() {
+  return hasProgram("gnuplot");
+}
+
+namespace gnuplot {
+
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) continue;
+    if (c == '"' || c == '\\') out += '\\';
+    out += c;
+  }
+  return out + '"';
+}
+
+std::string number(double value) {
+  if (!std::isfinite(value)) return "NaN";
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof text, value).ptr};
+}
+
+std::string dataBlock(const std::string& name, const std::vector<std::vector<double>>& rows) {
+  std::string out = std::string("$").append(name) + " << END_OF_DATA\n";
+  for (const std::vector<double>& row : rows) {
+    for (const double value : row) out += number(value) + ' ';
+    out += '\n';
+  }
+  return out + "END_OF_DATA\n";
+}
+
+std::vector<std::pair<double, double>> thinned(const std::vector<std::pair<double, double>>& points,
+                                               std::size_t bucket_count) {
+  if (points.size() <= 2 * bucket_count) return points;
+  std::vector<std::pair<double, double>> kept;
+  for (std::size_t b = 0; b < bucket_count; ++b) {
+    const auto begin = points.begin() + static_cast<std::ptrdiff_t>(b * points.size() / bucket_count);
+    const auto end = points.begin() + static_cast<std::ptrdiff_t>((b + 1) * points.size() / bucket_count);
+    auto [least, greatest] =
+        std::minmax_element(begin, end, [](const auto& p, const auto& q) { return p.second < q.second; });
+    if (least > greatest) std::swap(least, greatest);
+    kept.push_back(*least);
+    if (least != greatest) kept.push_back(*greatest);
+  }
+  return kept;
+}
+
+PlotOutcome draw(const std::string& body, const std::string& file, int width, int height) {
+  namespace fs = std::filesystem;
+  if (std::any_of(file.begin(), file.end(), [](unsigned char c) { return c < 0x20; }))
+    return {false, "the plot's file name has control characters"};
+  const std::string size = std::to_string(width) + "," + std::to_string(height);
+  // gnuplot's pngcairo renders fonts at 72 dots per inch and svg at 96, hence the different point sizes.
+  const std::pair<const char*, std::string> kinds[] = {
+      {".png", "set terminal pngcairo size " + size + " font \"DejaVu Sans,11\" linewidth 1.2 noenhanced\n"},
+      {".svg", "set terminal svg size " + size +
+                   " font \"DejaVu Sans,13\" linewidth 1.2 background \"white\" noenhanced\n"}};
+  std::error_code error;
+  if (const fs::path folder = fs::path(file).parent_path(); !folder.empty())
+    fs::create_directories(folder, error);
+  for (const auto& [ending, terminal] : kinds) {
+    WholeFile target(file + ending);
+    const std::string failure_reason = run(terminal + "set output " + quoted(target.temporary().string()) +
+                                           "\n" + body + "\nunset output\n");
+    if (!failure_reason.empty()) return {false, failure_reason};
+    if (const std::error_code failed = target.commit())
+      return {false, file + ending + ": cannot be written: " + failed.message()};
+  }
+  return {true, {}};
+}
+
+}  // namespace gnuplot
+}  // namespace vps::viewer

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "beast/server.h"
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <chrono>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "beast/connection.h"
+#include "beast/tls.h"
+#include "vps/load_error.h"
+
+namespace vps::viewer {
+
+namespace {
+
+namespace asio = boost::asio;
+using asio::ip::tcp;
+using ErrorCode = boost::system::error_code;
+
+// A browser opens up to six connections for the files of a page.
+constexpr std::size_t kConnectionsPerBrowser = 8;
+
+std::string hostText(const tcp::endpoint& end) {
+  const std::string address = end.address().to_string();
+  return (end.address().is_v6() ? "[" + address + "]" : address) + ":" + std::to_string(end.port());
+}
+
+asio::ip::address addressOf(const std::string& text) {
+  ErrorCode failed;
+  const asio::ip::address address = asio::ip::make_address(text == "localhost" ? "127.0.0.1" : text, failed);
+  if (failed || address.is_unspecified() || address.is_multicast())
+    throw LoadError("", "",
+                    "--listen " + text +
+                        ": name one address of this machine, such as 192.168.1.20; `ip addr` "
+                        "lists them");
+  return address;
+}
+
+std::string remedyFor(const ErrorCode& failed) {
+  if (failed == boost::system::errc::address_not_available)
+    return "--listen takes an address of this machine; `ip addr` lists them";
+  if (failed == boost::system::errc::permission_denied) return "choose a port above 1023";
+  return "choose another port";
+}
+
+std::string tokenOf(const WebOptions& options, bool is_loopback) {
+  if (options.token.empty()) return is_loopback ? std::string() : newToken();
+  if (isGoodToken(options.token)) return options.token;
+  throw LoadError("", "",
+                  "the token is too easily guessed; use at least " + std::to_string(kShortestToken) +
+                      " letters, digits, - and _");
+}
+
+}  // namespace
+
+struct WebServer::Impl {
+  Impl(WatchedRun& run, const WebOptions& given)
+      : options(given), hub(run, given.rate_hz), acceptor(io), timer(io) {
+    if (!page.missing().empty()) throw LoadError("", "", page.missing());
+    const asio::ip::address address = addressOf(options.address);
+    if (!given.tls_certificate.empty()) tls = tlsContext(given.tls_certificate, given.tls_key);
+    const std::string token = tokenOf(options, address.is_loopback());
+    ErrorCode failed;
+    const tcp::endpoint end(address, options.port);
+    acceptor.open(end.protocol(), failed);
+    acceptor.set_option(asio::socket_base::reuse_address(true), failed);
+    acceptor.bind(end, failed);
+    if (!failed) acceptor.listen(asio::socket_base::max_listen_connections, failed);
+    if (failed)
+      throw LoadError(
+          "", "", "cannot listen at " + hostText(end) + ": " + failed.message() + "; " + remedyFor(failed));
+    access.emplace(hostText(acceptor.local_endpoint()), token, tls != nullptr);
+    shared.emplace(WebShared{hub, page, *access, options.most_browsers, tls.get()});
+    hub.poll(webClock_s());  // so that the parts are there for the first request
+    accept();
+    wait();
+  }
+  ~Impl() { shared->is_over = true; }
+
+  void accept() {
+    acceptor.async_accept([this](ErrorCode failed, tcp::socket socket) {
+      if (failed == asio::error::operation_aborted) return;
+      const bool has_room = shared->connections < kConnectionsPerBrowser * options.most_browsers;
+      if (!failed && has_room) serveConnection(std::move(socket), *shared);
+      accept();
+    });
+  }
+  void wait() {
+    const auto period = std::chrono::duration<double>(0.5 / options.rate_hz);
+    timer.expires_after(std::chrono::duration_cast<std::chrono::steady_clock::duration>(period));
+    timer.async_wait([this](ErrorCode failed) {
+      if (failed) return;
+      if (options.stop != nullptr && options.stop->load()) return io.stop();
+      hub.poll(webClock_s());
+      wait();
+    });
+  }
+
+  WebOptions options;
+  WebPage page;
+  WebHub hub;
+  std::unique_ptr<asio::ssl::context> tls;  ///< null: without encryption
+  std::optional<WebAccess> access;
+  std::optional<WebShared> shared;
+  asio::io_context io{1};  // destroyed before what its handlers use
+  tcp::acceptor acceptor;
+  asio::steady_timer timer;
+};
+
+WebServer::WebServer(WatchedRun& run, const WebOptions& options)
+    : impl_(std::make_unique<Impl>(run, options)) {}
+WebServer::~WebServer() = default;
+
+std::string WebServer::address() const {
+  return impl_->access->address();
+}
+std::uint16_t WebServer::port() const {
+  return impl_->acceptor.local_endpoint().port();
+}
+void WebServer::serve() {
+  impl_->io.run();
+}
+
+std::string missingForWeb() {
+  return WebPage().missing();
+}
+
+namespace {
+
+void serveRun(WatchedRun& run, const WebOptions& options) {
+  WebServer server(run, options);
+  if (options.say) options.say("open " + server.address());
+  server.serve();
+}
+
+}  // namespace
+
+void serveSession(const WebOptions& options) {
+  serveRun(*watchedSession(options), options);
+}
+void serveScene(const scenes::Scene& scene, const WebOptions& options) {
+  serveRun(*watchedScene(scene, options), options);
+}
+void serveRecording(const device::RecordedRun& run, const WebOptions& options) {
+  serveRun(*watchedRecording(run), options);
+}
+
+}  // namespace vps::viewer

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The web server: HTTP for the page and the parts, a WebSocket for each browser.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "vps_viewer/web/web.h"
+#include "web/watched_run.h"
+
+namespace vps::viewer {
+
+/// Used by one thread.
+class VPS_VIEWER_API WebServer {
+ public:
+  /// Listens from now on. Throws LoadError as serveSession().
+  WebServer(WatchedRun& run, const WebOptions& options);
+  ~WebServer();
+  WebServer(const WebServer&) = delete;
+  WebServer& operator=(const WebServer&) = delete;
+
+  /// What a user opens.
+  [[nodiscard]] std::string address() const;
+  [[nodiscard]] std::uint16_t port() const;
+  /// Until options.stop is set.
+  void serve();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace vps::viewer

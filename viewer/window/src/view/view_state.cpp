@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "view/view_state.h"
+
+#include <algorithm>
+#include <array>
+
+#include "view/section_drag.h"
+
+namespace vps::viewer {
+namespace {
+
+constexpr double kNudge_s = 0.02;  // of the arrow keys: five rows of a trace at 250 Hz
+
+void goTo(ViewState& state, const Timeline& line, double time_s) {
+  state.time_s = std::clamp(time_s, 0.0, line.end_s);
+}
+
+/// From within a step back to its start, from its start to that of the one before.
+void goToLastStep(ViewState& state, const Timeline& line) {
+  std::size_t now = line.chapterAt(state.time_s);
+  if (now > 0 && state.time_s - line.chapters[now].start_s < kNudge_s) --now;
+  goTo(state, line, line.chapters[now].start_s);
+}
+
+void goToNextStep(ViewState& state, const Timeline& line) {
+  const std::size_t next = line.chapterAt(state.time_s) + 1;
+  goTo(state, line, next < line.chapters.size() ? line.chapters[next].start_s : line.end_s);
+}
+
+void toggleSection(ViewState& state, const Box& box_W) {
+  if (state.draw.cut)
+    state.draw.cut.reset();
+  else
+    state.draw.cut = sectionFacing(state.camera, box_W);
+}
+
+/// All, the first alone, ..., the last alone, all.
+void nextOutput(ViewState& state) {
+  const std::size_t next = state.output ? *state.output + 1 : 0;
+  state.output = next < state.outputs && state.outputs > 1 ? std::optional(next) : std::nullopt;
+}
+
+/// Of a display file, Spectral has a picture for each eye in place of one; what is shown alone stays so.
+void switchStereo(ViewState& state) {
+  const bool had_eyes = state.stereo == StereoMode::Spectral;
+  state.stereo = nextStereo(state.stereo);
+  const bool has_eyes = state.stereo == StereoMode::Spectral;
+  if (!state.output || had_eyes == has_eyes) return;
+  state.output = has_eyes ? 2 * *state.output : *state.output / 2;
+}
+
+void playOrPause(ViewState& state, const Timeline& line) {
+  if (!state.is_playing && state.time_s >= line.end_s) state.time_s = 0;
+  state.is_playing = !state.is_playing;
+}
+
+}  // namespace
+
+StereoMode nextStereo(StereoMode mode) {
+  switch (mode) {
+    case StereoMode::Mono:
+      return StereoMode::SideBySide;
+    case StereoMode::SideBySide:
+      return StereoMode::TopBottom;
+    case StereoMode::TopBottom:
+      return StereoMode::Anaglyph;
+    case StereoMode::Anaglyph:
+      return StereoMode::Interleaved;
+    case StereoMode::Interleaved:
+      return StereoMode::Spectral;
+    case StereoMode::Spectral:
+      break;
+  }
+  return StereoMode::Mono;
+}
+
+std::span<const KeyBinding> keyBindings() {
+  static constexpr std::array kKeys = {
+      KeyBinding{Action::Help, "?", "shows or hides this list"},
+      KeyBinding{Action::Fit, "F", "fits the view to what is shown"},
+      KeyBinding{Action::View1, "1", "looks from the front, right and above"},
+      KeyBinding{Action::View2, "2", "front view"},
+      KeyBinding{Action::View3, "3", "back view"},
+      KeyBinding{Action::View4, "4", "left view"},
+      KeyBinding{Action::View5, "5", "right view"},
+      KeyBinding{Action::View6, "6", "top view"},
+      KeyBinding{Action::View7, "7", "bottom view"},
+      KeyBinding{Action::Explode, "E", "exploded view on or off"},
+      KeyBinding{Action::Section, "X", "section on or off, across what you look along"},
+      KeyBinding{Action::FlipSection, "V", "cuts away the other half"},
+      KeyBinding{Action::CutHand, "C", "the section cuts the part in hand too, or not"},
+      KeyBinding{Action::Target, "T", "shows or hides the target"},
+      KeyBinding{Action::Edges, "L", "shows or hides edge lines"},
+      KeyBinding{Action::Ground, "G", "shows or hides the shadow on the floor"},
+      KeyBinding{Action::Theme, "D", "dark or light"},
+      KeyBinding{Action::PlayPause, "Space", "plays or pauses"},
+      KeyBinding{Action::Back, "Left", "20 ms back"},
+      KeyBinding{Action::Forward, "Right", "20 ms ahead"},
+      KeyBinding{Action::LastStep, "Up", "to the start of this step, then of the one before"},
+      KeyBinding{Action::NextStep, "Down", "to the next step"},
+      KeyBinding{Action::ToStart, "Home", "to the start"},
+      KeyBinding{Action::ToEnd, "End", "to the end"},
+      KeyBinding{Action::RunLive, "R", "runs the procedure, or goes back to the tour"},
+      KeyBinding{Action::TakeByMouse, "H", "takes the parts in hand by the mouse, or goes back to the tour"},
+      KeyBinding{Action::OneStep, "N", "of a paused run: one physics step"},
+      KeyBinding{Action::Undo, "Z", "takes back the last step that was done, and goes on from there"},
+      KeyBinding{Action::Redo, "Y", "does again, as it was, what Z took back"},
+      KeyBinding{Action::Free, "U", "free assembly without a procedure, or back to the tour"},
+      KeyBinding{Action::TakeOrPutDown, "Enter",
+                 "in free assembly: takes the picked part in hand, or puts it down"},
+      KeyBinding{Action::Snap, "A", "axis snap: a spring guides the part in hand to its axis, or not"},
+      KeyBinding{Action::Path, "W", "shows or hides the planned path"},
+      KeyBinding{Action::Stereo, "S",
+                 "stereo: none, side by side, top and bottom, anaglyph, interleaved, spectral"},
+      KeyBinding{Action::Output, "O", "of a display file: all its pictures, or one after the other alone"},
+      KeyBinding{Action::FullScreen, "F11", "the picture alone, on the whole monitor, or no longer"},
+      KeyBinding{Action::Point, "M", "of a session: marks the picked place for all who watch, or no longer"},
+      KeyBinding{Action::SavePicture, "P", "saves the picture to a PNG file"},
+      KeyBinding{Action::Deselect, "Escape", "deselects the part"},
+      KeyBinding{Action::Close, "Q", "closes the window"}};
+  return kKeys;
+}
+
+std::span<const KeyBinding> mouseBindings() {
+  static constexpr std::array kMouse = {
+      KeyBinding{Action::Help, "left drag", "orbits"},
+      KeyBinding{Action::Help, "middle or right drag", "pans"},
+      KeyBinding{Action::Help, "wheel", "zooms at the cursor"},
+      KeyBinding{Action::Help, "left click", "picks a part"},
+      KeyBinding{Action::Help, "Ctrl + left drag", "moves the section"},
+      KeyBinding{Action::Help, "Ctrl + right drag", "tilts the section"},
+      KeyBinding{Action::Help, "by hand, on the part in hand:", ""},
+      KeyBinding{Action::Help, "left drag", "moves it along the screen"},
+      KeyBinding{Action::Help, "Shift + left drag, wheel", "moves it in depth"},
+      KeyBinding{Action::Help, "right drag", "turns it"},
+      KeyBinding{Action::Help, "Shift + right drag", "turns it about the line of sight"}};
+  return kMouse;
+}
+
+void apply(Action action, ViewState& state, const Timeline& line, const Box& box_W) {
+  const auto look = [&](std::size_t view) {
+    state.camera = cameraFor(standardViews()[view], box_W, state.size);
+  };
+  switch (action) {
+    case Action::Help:
+      state.shows_help = !state.shows_help;
+      break;
+    case Action::Fit:
+      state.camera = fitted(state.camera, box_W, state.size);
+      break;
+    case Action::View1:
+    case Action::View2:
+    case Action::View3:
+    case Action::View4:
+    case Action::View5:
+    case Action::View6:
+    case Action::View7:
+      look(static_cast<std::size_t>(action) - static_cast<std::size_t>(Action::View1));
+      break;
+    case Action::Explode:
+      state.explode = state.explode > 0 ? 0 : 1;
+      state.wants_fit = true;  // once the parts are where they are shown then
+      break;
+    case Action::Section:
+      toggleSection(state, box_W);
+      break;
+    case Action::FlipSection:
+      if (state.draw.cut) state.draw.cut->n_W = -state.draw.cut->n_W;
+      break;
+    case Action::CutHand:
+      if (state.draw.cut) state.draw.cut->cuts_hand = !state.draw.cut->cuts_hand;
+      break;
+    case Action::Target:
+      state.draw.show_target = !state.draw.show_target;
+      break;
+    case Action::Edges:
+      state.draw.show_edges = !state.draw.show_edges;
+      break;
+    case Action::Ground:
+      state.draw.show_ground = !state.draw.show_ground;
+      break;
+    case Action::Theme:
+      state.is_dark = !state.is_dark;
+      state.draw.is_dark = state.is_dark;
+      break;
+    case Action::PlayPause:
+      playOrPause(state, line);
+      break;
+    case Action::Back:
+      goTo(state, line, state.time_s - kNudge_s);
+      break;
+    case Action::Forward:
+      goTo(state, line, state.time_s + kNudge_s);
+      break;
+    case Action::LastStep:
+      goToLastStep(state, line);
+      break;
+    case Action::NextStep:
+      goToNextStep(state, line);
+      break;
+    case Action::ToStart:
+      state.time_s = 0;
+      break;
+    case Action::ToEnd:
+      state.time_s = line.end_s;
+      break;
+    case Action::RunLive:
+      state.wants_run = true;
+      break;
+    case Action::TakeByMouse:
+      state.wants_mouse = true;
+      break;
+    case Action::OneStep:
+      state.wants_one_step = true;
+      break;
+    case Action::Undo:
+      state.wants_undo = true;
+      break;
+    case Action::Redo:
+      state.wants_redo = true;
+      break;
+    case Action::Free:
+      state.wants_free = true;
+      break;
+    case Action::TakeOrPutDown:
+      state.wants_take = true;
+      break;
+    case Action::Snap:
+      state.snaps = !state.snaps;
+      break;
+    case Action::Path:
+      state.shows_path = !state.shows_path;
+      break;
+    case Action::Stereo:
+      switchStereo(state);
+      break;
+    case Action::Output:
+      nextOutput(state);
+      break;
+    case Action::FullScreen:
+      state.is_full_screen = !state.is_full_screen;
+      break;
+    case Action::SavePicture:
+      state.wants_picture_file = true;
+      break;
+    case Action::Point:
+      state.wants_point = true;
+      break;
+    case Action::Deselect:
+      state.picked.reset();
+      state.shows_help = false;
+      break;
+    case Action::Close:
+      state.wants_close = true;
+      break;
+  }
+}
+
+void advance(ViewState& state, const Timeline& line, double elapsed_s) {
+  if (!state.is_playing) return;
+  state.time_s += state.speed * elapsed_s;
+  if (state.time_s < line.end_s) return;
+  state.time_s = line.end_s;
+  state.is_playing = false;
+}
+
+}  // namespace vps::viewer

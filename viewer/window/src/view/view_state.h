@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a person has chosen in the window, and what each key does to it. Knows no window.
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "view/camera_motion.h"
+#include "view/picking.h"
+#include "view/timeline.h"
+#include "vps_viewer/draw/stereo.h"
+
+namespace vps::viewer {
+
+enum class Action {
+  Help,
+  Fit,
+  View1,
+  View2,
+  View3,
+  View4,
+  View5,
+  View6,
+  View7,
+  Explode,
+  Section,
+  FlipSection,
+  CutHand,
+  Target,
+  Edges,
+  Ground,
+  Theme,
+  PlayPause,
+  Back,
+  Forward,
+  LastStep,
+  NextStep,
+  ToStart,
+  ToEnd,
+  RunLive,
+  TakeByMouse,
+  OneStep,
+  Undo,
+  Redo,
+  Free,
+  TakeOrPutDown,
+  Snap,
+  Path,
+  Stereo,
+  Output,
+  FullScreen,
+  Point,
+  SavePicture,
+  Deselect,
+  Close,
+};
+
+struct KeyBinding {
+  Action action;
+  const char* key;   ///< as it is written in the list: "F", "Space"
+  const char* does;  ///< "fits the view to what is shown"
+};
+/// All keys, in the order of the list that `?` shows.
+VPS_VIEWER_API std::span<const KeyBinding> keyBindings();
+/// What the mouse does, for the same list.
+VPS_VIEWER_API std::span<const KeyBinding> mouseBindings();
+
+struct ViewState {
+  Camera camera;
+  PictureSize size;
+  DrawOptions draw;
+  double explode = 0;  ///< share, see exploded()
+  std::optional<PickedPlace> picked;
+  double time_s = 0;
+  bool is_playing = false;
+  double speed = 1;  ///< of playing, 1: real time
+  bool shows_help = false, is_dark = false;
+  bool snaps = false;       ///< axis snap on the part in hand
+  bool shows_path = false;  ///< the planned path of the part in hand
+  StereoMode stereo = StereoMode::Mono;
+  /// Of the pictures of a display file, the one that is shown alone; none: all, beside each other.
+  std::optional<std::size_t> output;
+  std::size_t outputs = 1;      ///< how many there are
+  bool is_full_screen = false;  ///< without panels
+  // What the window carries out and clears.
+  bool wants_close = false, wants_picture_file = false, wants_run = false, wants_one_step = false,
+       wants_mouse = false, wants_undo = false, wants_redo = false, wants_free = false, wants_take = false,
+       wants_point = false, wants_fit = false;
+};
+
+/// The mode that the key switches to from that one: those that one picture of a window can show.
+VPS_VIEWER_API StereoMode nextStereo(StereoMode mode);
+
+/// @param box_W  around what is shown
+VPS_VIEWER_API void apply(Action action, ViewState& state, const Timeline& line, const Box& box_W);
+
+/// Lets time go on where it is played; at the end it stops.
+VPS_VIEWER_API void advance(ViewState& state, const Timeline& line, double elapsed_s);
+
+}  // namespace vps::viewer
