@@ -24,7 +24,7 @@ namespace {
 
 constexpr mode_t kMode = 0600;
 constexpr const char* kFolder = "/dev/shm";  // where Linux shows the names; elsewhere nothing is swept
-constexpr int kTries = 20;                   // another process may be sweeping: its lock is held for moments
+constexpr int kLockTries = 20;               // another process may be sweeping: its lock is held for moments
 constexpr std::chrono::milliseconds kPause{10};
 constexpr off_t kWatchers = 1000;          // bytes from here on are watchers' marks
 constexpr off_t kMostProcesses = 1 << 22;  // greatest number of a process in Linux
@@ -126,7 +126,7 @@ void SharedRegion::removeName() {
 
 SharedRegion SharedRegion::create(const std::string& session, std::size_t bytes) {
   const std::string name = nameOf(session);
-  for (int i = 0; i < kTries; ++i) {
+  for (int i = 0; i < kLockTries; ++i) {
     const int file = shm_open(name.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, kMode);
     if (file < 0 && errno != EEXIST)
       refuse(session, std::string("shared memory cannot be made: ") + std::strerror(errno));

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "marks/text.h"
+#include "vps_viewer/draw/image.h"
 #include "vps_viewer/draw/render_scene.h"
 
 namespace vps::viewer {

@@ -11,6 +11,7 @@
 #include "render/gpu_resources.h"
 #include "render/screen_box.h"
 #include "render/view.h"
+#include "vps_viewer/draw/image.h"
 
 namespace vps::viewer {
 

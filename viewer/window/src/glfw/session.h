@@ -9,11 +9,11 @@
 #include <string>
 
 #include "glfw/glfw_window.h"
-#include "openxr/headset_session.h"
 #include "run/followed_session.h"
 #include "run/gap_watch.h"
 #include "run/hand_drag.h"
 #include "run/hand_work.h"
+#include "run/headset_session.h"
 #include "run/live_run.h"
 #include "run/neighbours.h"
 #include "view/picture_worker.h"

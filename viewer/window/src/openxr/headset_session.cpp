@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "openxr/headset_session.h"
+#include "run/headset_session.h"
 
 #include <algorithm>
 #include <atomic>
@@ -16,6 +16,7 @@
 #include "openxr/xr_instance.h"
 #include "view/table_room.h"
 #include "vps_device/metronome.h"
+#include "vps_viewer/draw/renderer.h"
 
 namespace vps::viewer {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A build without OpenXR.
-#include "openxr/headset_session.h"
+#include "run/headset_session.h"
 
 namespace vps::viewer {
 
