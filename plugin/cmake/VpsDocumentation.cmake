@@ -12,9 +12,11 @@ set(DOXYGEN_STRIP_FROM_INC_PATH)
 file(GLOB_RECURSE documented_texts CONFIGURE_DEPENDS
      ${PROJECT_SOURCE_DIR}/plugin/*.md ${PROJECT_SOURCE_DIR}/bullet_bridge/*.md ${PROJECT_SOURCE_DIR}/device/*.md
      ${PROJECT_SOURCE_DIR}/scenes/*.md ${PROJECT_SOURCE_DIR}/viewer/*.md ${PROJECT_SOURCE_DIR}/tests/*.md)
+# The public headers of each folder, or of each of its wings.
 foreach(folder IN ITEMS plugin bullet_bridge device scenes viewer)
-  list(APPEND documented_folders ${PROJECT_SOURCE_DIR}/${folder}/include)
-  list(APPEND DOXYGEN_STRIP_FROM_INC_PATH ${PROJECT_SOURCE_DIR}/${folder}/include)
+  file(GLOB includes CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${folder}/include ${PROJECT_SOURCE_DIR}/${folder}/*/include)
+  list(APPEND documented_folders ${includes})
+  list(APPEND DOXYGEN_STRIP_FROM_INC_PATH ${includes})
 endforeach()
 set(DOXYGEN_PREDEFINED VPS_API= VPS_VDB_API= VPS_BULLET_API= VPS_DEVICE_API= VPS_SCENES_API= VPS_VIEWER_API=)
 set(DOXYGEN_MACRO_EXPANSION YES)
