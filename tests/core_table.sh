@@ -189,7 +189,7 @@ elif [[ -z $only || peer_scenes =~ $only ]]; then
   names+=(peer_scenes)
   printf 'peer_scenes\truns\tno folder %s\tskipped\t0.0\n' "$scenes" >"$out/peer_scenes.rows"
 fi
-add replay $limit gtest "$bin/test_scenes" --gtest_filter='*Replay*'
+add replay $limit gtest "$bin/test_scenes_run" --gtest_filter='*Replay*'
 for kind in G H J M N A B C D E F I K L; do
   add "families_$kind" $limit rows "$bin/families/vps_families" --families=$kind ${short:+$short} --tsv="$out/families_$kind.rows"
 done
