@@ -12,6 +12,7 @@
 #include <string>
 
 #include "scene/read_fields.h"
+#include "vps_scenes/cad/import.h"
 #include "vps_scenes/fits/check_fields.h"
 #include "vps_scenes/planning/margin_fields.h"
 #include "vps_scenes/planning/plan_fields.h"

@@ -20,6 +20,7 @@
 #include "viewer/small_run.h"
 #include "vps_scenes/fits/check.h"
 #include "vps_viewer/draw/image.h"
+#include "vps_viewer/report/csv.h"
 #include "vps_viewer/report/plot.h"
 
 namespace vps::viewer {
