@@ -16,22 +16,22 @@ namespace vps {
 
 class CacheFolder;
 
-/// Bytes that can be made again, each in a file that is named by a 128-bit hash (XXH3) of what they were made
-/// from. What VoxMapCache promises of damage, sharing, the limit and disks that cannot be written holds here
-/// too, and both may use one folder, whose limit then counts the files of both.
+/// A cache of byte strings that can be computed again. Each is kept in a file whose name is the 128-bit hash
+/// (XXH3) of its inputs. Damage, sharing between programs, the size limit and read-only disks are handled as
+/// in VoxMapCache. Both caches may use one folder; the limit then applies to the files of both together.
 class VPS_API ByteCache {
  public:
   using Warn = std::function<void(const std::string&)>;
 
-  /// @param limit_bytes  of all files together; 0: no limit
+  /// @param limit_bytes  limit of the total size of all files; 0: no limit
   explicit ByteCache(std::filesystem::path folder, Warn warn = {}, std::uint64_t limit_bytes = 0);
 
-  /// @param made_from  everything that determines the bytes, with a version of what makes them
-  /// @return nothing where they are not kept, or, after a warning, where their file cannot be trusted
+  /// @param made_from  everything that determines the bytes, and the version of the program that makes them
+  /// @return nothing if the cache has no such file or, after a warning, if the file is damaged
   [[nodiscard]] std::optional<std::string> find(std::string_view made_from) const;
-  /// Replaces a file that is there. A failure is a warning, once.
+  /// Writes the file, replacing an older one. If that fails, a warning is given once.
   void keep(std::string_view made_from, std::string_view bytes) const;
-  /// Whether the file exists or not.
+  /// Path of the file for these inputs. The file need not exist.
   [[nodiscard]] std::filesystem::path fileOf(std::string_view made_from) const;
 
  private:

@@ -9,8 +9,8 @@
 
 namespace vps {
 
-/// A 6-DOF spring-damper. The limits bound the spring's share and keep its direction, so that a part that
-/// lags behind the proxy pulls with a known largest force.
+/// A 6-DOF spring-damper. The limits apply to the spring's part of the force and keep its direction, so that
+/// the force on a part that lags behind the proxy has a known upper bound.
 struct CouplingGains {
   double k_N_per_m = 2000;
   double b_Ns_per_m = 10;
@@ -20,7 +20,7 @@ struct CouplingGains {
   double max_torque_Nm = 2.5;
 };
 
-/// State of one coupled frame, proxy or part: at the grasp point, in W.
+/// State of one coupled frame (of the proxy or of the part) at the grasp point, in W.
 struct CouplingState {
   Pose X_W;
   Twist V_W;

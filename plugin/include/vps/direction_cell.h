@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Directions in a few cells, so that contacts which face different ways are told apart.
+// Classifies directions into a few cells, so that contacts that face different ways are kept apart.
 #pragma once
 
 #include <cstdint>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The convex sharp edges of parts, and where those of two parts cross.
 //
-// Two parts touch where a point meets a face, or where an edge crosses an edge. Pointshells do not sample the
-// second kind: the nearest points on both edges may be half their spacing away from the crossing.
+// Two parts touch where a point meets a face, or where an edge crosses an edge. Pointshells do not sample
+// crossings of edges: the nearest points on both edges may be half their spacing away from the crossing.
 #pragma once
 
 #include <cstdint>
@@ -20,20 +20,20 @@ struct EdgeSegment {
   Vec3 from = Vec3::Zero(), to = Vec3::Zero();
   Vec3 into[2] = {Vec3::Zero(), Vec3::Zero()};  ///< unit, across the edge into each face
   Vec3 outward = Vec3::Zero();                  ///< mean of the faces' outward normals, unit
-  std::uint16_t owner = 0;                      ///< part
-  bool ends[2] = {true, true};  ///< at from, at to: false where the edge goes on in another segment
-  /// True where it goes on in one that turns by less than 8 degrees: both stand for a curve.
+  std::uint16_t owner = 0;                      ///< index of the part
+  bool ends[2] = {true, true};  ///< at from, at to: false where the edge continues in another segment
+  /// True where the edge continues in a segment that turns by less than 8 degrees: both approximate a curve.
   bool is_curved[2] = {false, false};
 
-  /// Outward normal of the face beside it, unit; not defined where the edge has no length.
+  /// Outward unit normal of the face beside the segment; not defined for a segment without length.
   [[nodiscard]] Vec3 normal(int face) const {
     const Vec3 n = (to - from).cross(into[face]).normalized();
     return n.dot(outward) < 0 ? Vec3(-n) : n;
   }
 };
 
-/// Appends a mesh's convex edges whose faces turn by more than 20 degrees, placed by X_MP. Edges of one face,
-/// of more than two, and of faces without area are left out. O(n log n).
+/// Appends a mesh's convex edges whose faces turn by more than 20 degrees, placed by X_MP. Edges with one
+/// face or more than two, and edges of faces without area, are left out. O(n log n).
 VPS_API void appendEdges(const Mesh& mesh, const Pose& X_MP, std::uint16_t owner,
                          std::vector<EdgeSegment>& out);
 
@@ -62,14 +62,15 @@ struct EdgeCrossing {
   std::uint32_t edge[2] = {0, 0};
   Vec3 p[2] = {Vec3::Zero(), Vec3::Zero()};  ///< the point on each, in the frame of set 0
   Vec3 n = Vec3::Zero();                     ///< across both edges, from set 1 to set 0, unit
-  /// n (p[0] - p[1]); negative where they overlap. Before they touch, either point may lie past its edge's
-  /// end by a tenth of the gap (0.18 where the edge goes on): the distance there is up to 2 % more (7 %).
+  /// n (p[0] - p[1]); negative where the parts overlap. While the gap is open, each point may lie past its
+  /// edge's end by a tenth of the gap (0.18 of it where the edge continues); the distance there is up to 2 %
+  /// (7 %) more.
   double gap_m = 0;
 };
 
 /// Which crossings are looked for.
 struct CrossingRange {
-  double cutoff_m = 0;  ///< greatest gap, beside what the edges come nearer in the step
+  double cutoff_m = 0;  ///< greatest gap, in addition to the approach of the edges in the step
   double depth_m = 0;   ///< greatest overlap
   Pose X_01_end;        ///< set 1 in set 0 after the step
 };
@@ -91,7 +92,7 @@ class VPS_API CrossingMemory {
   struct Pair {
     std::uint32_t edge[2];
   };
-  /// Searches again, unless the last search was for all that comes near on a motion.
+  /// Searches again, unless the last search covered the expected motion from X_01 to X_01_end.
   void find(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_01, const Pose& X_01_end,
             double reach_m);
   void search(const EdgeSet& edges0, const EdgeSet& edges1, double reach_m);
@@ -106,10 +107,10 @@ class VPS_API CrossingMemory {
 /// first order, sorted by edge of set 0, then of set 1. Edges within 5 degrees of parallel have no single
 /// crossing; the shells' points find their contacts.
 /// @param X_01  frame of set 1 in that of set 0
-/// @param memory  of these two sets, from earlier poses; it changes the cost and not the answer
-/// Cost: a search for near pairs, with a memory only when the parts have left the motion for which the last
-/// one was made, and 30 ns for each pair. Allocates in `out` and the memory.
-/// Source for the test of sides: the arcs of the edges' normals on the Gauss sphere must cross.
+/// @param memory  state of these two sets from earlier poses; it changes the cost and not the answer
+/// Cost: 30 ns for each near pair, and a search for near pairs; with a memory the search is repeated only
+/// when the parts have left the motion that it covered. Allocates in `out` and the memory. Source for the
+/// test of sides: the arcs of the edges' normals on the Gauss sphere must cross.
 VPS_API void findCrossings(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_01,
                            const CrossingRange& range, std::vector<EdgeCrossing>& out,
                            CrossingMemory* memory = nullptr);

@@ -20,19 +20,19 @@ class VPS_API EdgeTree {
   struct Node {
     Vec3 center = Vec3::Zero();
     double radius_m = 0;
-    Vec3 from = Vec3::Zero(), to = Vec3::Zero();  ///< each place is within width_m of the line between these
+    Vec3 from = Vec3::Zero(), to = Vec3::Zero();  ///< the node's edges lie within width_m of this line
     double width_m = 0;
     Vec3 along = Vec3::Zero();  ///< unit, either way: each edge of the node is within spread_rad of it
     double spread_rad = 0;
-    std::uint32_t first = 0;    ///< left child, the right one after it; of a leaf its edge
+    std::uint32_t first = 0;    ///< left child (the right child follows); in a leaf the edge
     std::uint32_t is_leaf = 0;  ///< 1 or 0
   };
 
   EdgeTree() = default;
-  /// Of edges that have a length. O(n log n).
+  /// Every edge must have a length above zero. O(n log n).
   explicit EdgeTree(std::vector<Line> lines);
   [[nodiscard]] const std::vector<Line>& lines() const noexcept { return lines_; }
-  /// The first is the root; none without edges.
+  /// The first node is the root; empty if there are no edges.
   [[nodiscard]] const std::vector<Node>& nodes() const noexcept { return nodes_; }
   /// Calls visit(index) for each edge within radius_m of a point. The order is fixed but not ascending.
   template <typename Visit>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whether the corners, sharp edges and facets of two parts come too near to each other within a step.
+// Tests whether the corners, sharp edges and facets of two parts come too near to each other within a step.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,8 @@
 
 namespace vps {
 
-/// Where a corner of one part reaches a facet of the other, or an edge an edge, on the way from one relative
-/// pose to another.
+/// The place where a corner of one part reaches a facet of the other, or an edge reaches an edge, during the
+/// motion from one relative pose to another.
 struct FeatureContact {
   enum class Kind : std::uint8_t { CornerOnFacet, FacetOnCorner, EdgeOnEdge };  ///< of part 0, on part 1
   Kind kind = Kind::CornerOnFacet;
@@ -22,7 +22,7 @@ struct FeatureContact {
   Vec3 p[2] = {Vec3::Zero(), Vec3::Zero()};  ///< the points that meet, each in its part's own frame
   Vec3 n = Vec3::Zero();      ///< from part 1 to part 0, unit, in the frame of part 1 or 0: see plane_of
   std::uint8_t plane_of = 1;  ///< the part with which the plane moves
-  Vec3 along[2] = {Vec3::Zero(), Vec3::Zero()};  ///< of two edges: unit, each in its part's own frame
+  Vec3 along[2] = {Vec3::Zero(), Vec3::Zero()};  ///< of EdgeOnEdge: unit, each in its part's own frame
   double start_m = 0;                            ///< distance of the features at the start, positive
 
   /// Distance of p[0] from p[1] along the plane's normal at a pose of part 1 in part 0.
@@ -42,41 +42,45 @@ class VPS_API FeatureMotion {
   FeatureMotion& operator=(FeatureMotion&&) noexcept;
 
   /// Sharp features rest at this gap instead of at zero, so that the direction between them is always known.
-  /// A polygon that rolls is stopped by a corner in front of it that is higher than the lowest one by less;
-  /// the rest gap is as small as rounding allows, 100 times what the solver leaves.
+  /// A rolling polygon is stopped by a corner in front of it that is less than this gap above the lowest one.
+  /// Therefore the gap is as small as rounding allows: 100 times the solver's remaining error.
   static constexpr double kRest_m = 0.1e-6;
-  /// The same for two parts: less where the smaller one's radius is less than 0.1 mm, a thousandth of that.
+  /// The rest gap of two parts: kRest_m, but a thousandth of the smaller part's radius if that is below
+  /// 0.1 mm.
   [[nodiscard]] static double rest_m(const FeatureSet& part0, const FeatureSet& part1);
-  /// Features that come nearer than this share of it on the way are looked at, or than half of what they had.
+  /// A pair is examined if its gap falls below this fraction of the rest gap, or of half its gap at the
+  /// start.
   static constexpr double kLeastShare = 0.9;
-  /// Features nearer than so many rest gaps are kept as contacts from step to step: between features that are
-  /// farther apart, the direction of the nearest points is not the one in which they will touch. Assumed.
+  /// Features nearer than this many rest gaps are kept as contacts from step to step. Between features that
+  /// are farther apart, the direction of the nearest points is not the one in which they will touch. Assumed.
   static constexpr double kKeptGaps = 4;
-  /// Features that end the way nearer than they may, by less than this share of it, are not reported.
+  /// Features whose gap at the end falls short by less than this fraction are not reported.
   static constexpr double kMissedShare = 0.5 * (1 - kLeastShare);
 
-  /// Appends the features that come too near on the way from `start` to `end` (poses of part 1 in part 0) and
-  /// whose gap at the end is less than the rest gap and less than at the start, each with the plane in which
-  /// they touch first, or, where they pass each other, in which they are nearest. On the way the smaller
-  /// part's centre moves on a straight line in the frame of the other, and it turns evenly; between places on
-  /// it, vertices move on straight lines, which leave their arcs by at most a tenth of the rest gap.
+  /// Appends the features that come too near during the motion from `start` to `end` (poses of part 1 in part
+  /// 0) and whose gap at the end is less than the rest gap and less than at the start. Each is reported with
+  /// the plane in which the features touch first or, if they pass each other, in which they are nearest. The
+  /// smaller part's centre moves on a straight line in the frame of the other part, and the smaller part
+  /// turns at a constant rate. The motion is divided so that vertices on straight lines leave their arcs by
+  /// at most a tenth of the rest gap.
   ///
-  /// @param holds_close  also those nearer than a fifth of the rest gap at the start that do not come nearer:
-  /// held by contacts, the gap is restored, and does not creep to nothing by less than rounding in each step
+  /// @param holds_close  also reports features that start nearer than a fifth of the rest gap and do not
+  /// approach. Contacts then restore the gap, which would otherwise shrink by a rounding error in each step.
   ///
-  /// A way longer than a twentieth of the smaller part's radius is looked at in stretches that long, until
-  /// some hundred contacts are found; the same features may be found in several.
+  /// A motion longer than a twentieth of the smaller part's radius is examined in segments of that length,
+  /// until about a hundred contacts are found; the same features may be found in several segments.
   ///
-  /// Edges that cross at the end, but not at the start, count as well if they come nearer on the way than the
-  /// way and curved edges bend: so an edge that slides past the end of another is held by the next one.
+  /// Edges that cross at the end, but not at the start, are reported as well if they approach by more than
+  /// the deviation of the motion and of curved edges from straight lines. So an edge that slides past the end
+  /// of another edge is held by the next one.
   ///
-  /// Features that intersect at the start are not seen. Neither are those of curved surfaces that lie flush
-  /// in each other, as a thread in its nut: points of pointshells meet these along the normals of the curved
-  /// surfaces, so that they slide smoothly.
+  /// Features that intersect at the start are not detected. Features of curved surfaces that lie flush in
+  /// each other, as a thread in its nut, are not detected either: pointshells find these contacts, with the
+  /// normals of the curved surfaces, so that the surfaces slide smoothly.
   ///
-  /// Cost: some 50 ns for each pair of features that may come near, 3 us for one that does, and a search for
-  /// these pairs when the parts have left the motion for which the last one was made, or reached its end.
-  /// Allocates where the lists grow. Source: conservative advancement (Mirtich 1996), here along the
+  /// Cost: about 50 ns for each pair of features that may come near, 3 us for each pair that does, and a
+  /// search for such pairs when the parts have left the motion that the last search covered, or reached its
+  /// end. Allocates where the lists grow. Source: conservative advancement (Mirtich 1996), here along the
   /// separating plane of the nearest points, which sliding features never reach.
   void check(const FeatureSet& part0, const FeatureSet& part1, const Pose& start, const Pose& end,
              bool holds_close, std::vector<FeatureContact>& out);
@@ -87,10 +91,10 @@ class VPS_API FeatureMotion {
   struct Near {
     FeatureContact::Kind kind;
     std::uint32_t feature[2];
-    double distance_m;  // at least this when they were last measured
-    double path_m;      // way of the parts until then
+    double distance_m;  // lower bound, from the last measurement
+    double path_m;      // path length of the parts at that measurement
   };
-  /// A piece of the way of a step; poses of part 1 in part 0.
+  /// A segment of the motion of a step; poses of part 1 in part 0.
   struct Stretch {
     const Pose &start, &end;  // of the step
     const Pose &from, &to;    // of the piece
@@ -105,12 +109,12 @@ class VPS_API FeatureMotion {
   bool is_valid_ = false;
   Pose last_;                         // X_01 of the last call
   std::unique_ptr<MotionTube> tube_;  // of the search
-  double path_m_ = 0;                 // way since the search, upper bound
+  double path_m_ = 0;                 // path length since the search, upper bound
 };
 
-/// Measures the features of a contact anew at another pose of part 1 in part 0: points, plane and `start_m`.
-/// False where they are not near each other from outside there, at more than 1 nm and less than most_m; the
-/// contact is then of no use. Cost: some 100 ns.
+/// Measures the features of a contact again at another pose of part 1 in part 0: points, plane and `start_m`.
+/// Returns false, and the contact is then of no use, unless the features are separate at that pose, by more
+/// than 1 nm and less than most_m. Cost: about 100 ns.
 VPS_API bool measureAgain(const FeatureSet& part0, const FeatureSet& part1, const Pose& X_01, double most_m,
                           FeatureContact& contact);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Corners, sharp edges and facets of a part: what two polyhedra first touch with.
+// Corners, sharp edges and facets of a part: the features at which two polyhedra first touch.
 #pragma once
 
 #include <array>
@@ -17,19 +17,19 @@ struct CornerTree;
 class EdgeTree;
 struct FacetTree;
 
-/// A sharp edge that is not a groove, or an edge that does not have exactly two facets. Sharp are edges that
-/// turn by 8 degrees or more, lone kinks between two planes, and edges that stand out by more than 0.5 um
-/// from the curved surface that their facets stand for.
+/// A sharp edge that is not a groove, or an edge that does not have exactly two facets. An edge is sharp if
+/// it turns by 8 degrees or more, is a lone kink between two planes, or stands out by more than 0.5 um from
+/// the curved surface that its facets approximate.
 struct FeatureEdge {
   std::uint32_t from = 0, to = 0;               ///< vertices
   Vec3 into[2] = {Vec3::Zero(), Vec3::Zero()};  ///< unit, across the edge into each facet
   bool has_faces = false;                       ///< false: `into` is unknown
-  /// At an end it goes on in one other edge, which turns by less than 8 degrees.
+  /// At one of its ends the edge continues in exactly one other edge, which turns by less than 8 degrees.
   bool is_curved = false;
-  /// Between two facets of one curved surface, from which it stands out.
+  /// The edge lies between two facets of one curved surface and stands out from it.
   bool is_slight = false;
   Vec3 normal[2] = {Vec3::Zero(), Vec3::Zero()};  ///< of each facet, outward, unit; zero if unknown
-  bool has_curved_face[2] = {false, false};       ///< the facet stands for a curved surface
+  bool has_curved_face[2] = {false, false};       ///< the facet approximates a curved surface
 };
 
 /// The features of one or several meshes in one frame, with a tree over each kind.
@@ -41,26 +41,28 @@ class VPS_API FeatureSet {
   FeatureSet& operator=(FeatureSet&&) noexcept;
 
   /// Adds a mesh placed by X_MP; call build() afterwards. Facets without area are left out. O(n log n).
-  /// @param is_sheet  its facets are met from both sides
+  /// @param is_sheet  true if other parts may touch the facets from both sides
   void append(const Mesh& mesh, const Pose& X_MP, bool is_sheet);
   /// O(n log n).
   void build();
 
   [[nodiscard]] const std::vector<Vec3>& vertices() const { return vertices_; }
   [[nodiscard]] const std::vector<std::array<std::uint32_t, 3>>& facets() const { return facets_; }
-  /// Outward, unit.
+  /// Outward unit normal.
   [[nodiscard]] const Vec3& normal(std::uint32_t facet) const { return normals_[facet]; }
   [[nodiscard]] bool isTwoSided(std::uint32_t facet) const { return (facet_flags_[facet] & kTwoSided) != 0; }
-  /// True if the facet stands for a curved surface: it is one of three or more in a row that turn by less
-  /// than 8 degrees each.
+  /// True if the facet approximates a curved surface: it is one of three or more facets in a row that turn by
+  /// less than 8 degrees each.
   [[nodiscard]] bool isCurved(std::uint32_t facet) const { return (facet_flags_[facet] & kCurved) != 0; }
-  /// The same of a triangle of a mesh, numbered as they were added; false for triangles without area.
+  /// As above, for a triangle of a mesh; meshes are numbered in the order in which they were added. False for
+  /// triangles without area.
   [[nodiscard]] bool isCurved(std::size_t mesh, std::uint32_t triangle) const {
     const std::uint32_t facet = facet_of_[first_triangle_[mesh] + triangle];
     return facet != kNone && isCurved(facet);
   }
   static constexpr std::uint32_t kNone = ~0U;
-  /// The facets across the sides of a facet, from corner k to the next; kNone where there is not exactly one.
+  /// The facets across the sides of a facet; side k runs from corner k to the next. kNone if a side has no
+  /// neighbour or more than one.
   [[nodiscard]] const std::array<std::uint32_t, 3>& neighbours(std::uint32_t facet) const {
     return neighbours_[facet];
   }

@@ -18,11 +18,11 @@ enum class ContactMethod {
   Penalty,     ///< each touching point exerts stiffness times area times depth, solved implicitly
 };
 
-/// Names in scene files, JSON and tables.
+/// The name in scene files, JSON and tables.
 inline const char* toText(Sides sides) {
   return sides == Sides::One ? "one" : "both";
 }
-/// For sentences in messages and reports.
+/// The words in messages and reports.
 inline const char* inWords(Sides sides) {
   return sides == Sides::One ? "one side" : "both sides";
 }
@@ -38,16 +38,16 @@ struct Fidelity {
   double spacing_m = 0.5e-3;  ///< distance between shell points
   Sides sides = Sides::Both;  ///< One: only the moving part's points against the fixed part's field
   Gradient gradient = Gradient::Continuous;
-  int contact_limit = 32;  ///< of each pair, given to the solver; checks of solved steps add up to 16
+  int contact_limit = 32;  ///< contacts per pair for the solver; checks of solved steps add up to 16
   double haptic_rate_hz = 1000;
   double physics_rate_hz = 1000;
-  /// Parts of equal length of each physics step. 0: in each step as many as the bodies' rotation needs.
+  /// Number of equal parts of each physics step. 0: in each step as many as the bodies' rotation needs.
   int substeps = 1;
   int solver_iterations = 100;
   ContactMethod contact_method = ContactMethod::Constraint;
 };
 
-/// Presets "fast", "normal", "fine"; throws LoadError for another name.
+/// The preset "fast", "normal" or "fine"; throws LoadError for another name.
 VPS_API Fidelity fidelityPreset(std::string_view name);
 
 }  // namespace vps

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Coulomb's law of dry friction, |f_t| <= mu f_n, in the three forms that contact needs it: the cone for
-// impulses that a solver finds, a bristle for penalty contact, a damper for equations that must be linear.
+// Coulomb's law of dry friction, |f_t| <= mu f_n, in three forms: a cone for impulses of a solver, a bristle
+// for penalty contact, and a damper for linear equations.
 //
 //     f_t                  f_t                 f_t
 //      |                    |   ____            |   ____
@@ -18,8 +18,8 @@
 
 namespace vps {
 
-/// A body's share in the coefficient of friction, for engines that multiply the values of both bodies, as
-/// Bullet does. Two bodies of one material have that material's coefficient together.
+/// A body's factor of the coefficient of friction, for engines such as Bullet that multiply the values of
+/// both bodies. For two bodies of one material the product is that material's coefficient.
 inline double frictionFactor(double mu) {
   return std::sqrt(mu);
 }
@@ -29,8 +29,8 @@ inline double combinedFriction(double mu_a, double mu_b) {
   return frictionFactor(mu_a) * frictionFactor(mu_b);
 }
 
-/// Length of a tangential impulse or force. Impulses are far from the ends of a double's range; std::hypot
-/// guards those and took a sixth of the solving time of a heap.
+/// Length of a tangential impulse or force. Not std::hypot: impulses are far from the ends of a double's
+/// range, and std::hypot took a sixth of the solving time of a heap.
 inline double tangentLength(double t1, double t2) {
   return std::sqrt(t1 * t1 + t2 * t2);
 }
@@ -44,15 +44,15 @@ inline void limitToCone(double& t1, double& t2, double limit) {
 }
 
 /// Force of a bristle: a tangential spring between two bodies that slips where its force would exceed the
-/// limit. It holds a part at rest without creep, since it is bent by displacement and not by velocity.
+/// limit. It holds a part at rest without creep, because its force follows displacement and not velocity.
 struct BristleForce {
   Vec3 f_N = Vec3::Zero();        ///< along the bend
   double slip_m = 0;              ///< length of the bend if nothing had slipped; 0: the bristle sticks
   Vec3 direction = Vec3::Zero();  ///< of the slip, unit; zero: it sticks
 };
 
-/// @param bend_m   displacement of the bristle's root against its tip, in the tangent plane
-/// @param limit_N  mu times the normal force; without one there is no friction
+/// @param bend_m   displacement of the bristle's root relative to its tip, in the tangent plane
+/// @param limit_N  mu times the normal force; if it is not positive, there is no friction
 inline BristleForce bristleForce(const Vec3& bend_m, double k_N_per_m, double limit_N) {
   BristleForce force;
   if (!(limit_N > 0)) return force;
@@ -68,8 +68,9 @@ inline BristleForce bristleForce(const Vec3& bend_m, double k_N_per_m, double li
   return force;
 }
 
-/// Damper: the viscous coefficient [N s/m] that gives `limit_N` at the slip speed, and less below
-/// `creep_m_s`, where the law is made linear. Also for an impulse as limit [N s], or a torque with rad/s.
+/// Damper: the viscous coefficient [N s/m] whose force is `limit_N` at the slip speed. Below `creep_m_s` the
+/// coefficient is constant, so that the force is linear and smaller. The limit may also be an impulse [N s],
+/// or a torque with speeds in rad/s.
 inline double frictionDamping(double limit_N, double speed_m_s, double creep_m_s) {
   return limit_N / std::max(speed_m_s, creep_m_s);
 }

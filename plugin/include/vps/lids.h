@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What closes an open mesh.
+// Lids that close an open mesh.
 #pragma once
 
 #include "vps/mesh.h"
@@ -8,8 +8,9 @@
 namespace vps {
 
 /// Lids for an open mesh: each group of connected open edges is joined to its centre, so that a flat hole is
-/// closed exactly. An edge is open where its facets do not run along it both ways equally often. Empty for a
-/// closed mesh. Expects shared vertices (see welded()), which the lids keep the numbers of. O(n log n).
+/// closed exactly. An edge is open if its facets do not run along it equally often in both directions. Empty
+/// for a closed mesh. Expects shared vertices (see welded()); the lids use the mesh's vertex numbers.
+/// O(n log n).
 VPS_API Mesh lidsOf(const Mesh& mesh);
 
 }  // namespace vps

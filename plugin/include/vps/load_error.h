@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The exception of loading and saving: which file, which part, what was found, what would help.
+// The exception of loading and saving: in which file and part, what was found, and what would help.
 #pragma once
 
 #include <stdexcept>

@@ -13,10 +13,10 @@ namespace vps {
 /// would not fit. It holds for surfaces of many bricks; a part smaller than a brick may take somewhat more.
 /// O(triangles).
 VPS_API double expectedMapBytes(const Mesh& mesh, const VoxMapSettings& settings);
-/// buildVoxMap() builds no map that takes more by this estimate.
+/// The limit of this estimate above which buildVoxMap() refuses to build a map.
 VPS_API double largestMapBytes();
-/// The smallest voxel, but not below that of the settings, at which the estimate is at most `most_bytes`; to
-/// 0.1 %. Infinite where no voxel is large enough. O(triangles).
+/// The smallest voxel size, not below the settings' own, at which the estimate is at most `most_bytes`; to
+/// 0.1 %. Infinite if no voxel size is large enough. O(triangles).
 VPS_API double fittingVoxel_m(const Mesh& mesh, const VoxMapSettings& settings, double most_bytes);
 
 }  // namespace vps

@@ -27,7 +27,7 @@ struct MassProperties {
   Mat3 inertia_m5 = Mat3::Zero();
 };
 
-/// What a mesh consists of. checkMesh() fills the members up to flipped_edges and shells; repairMesh()
+/// The composition of a mesh and its faults. checkMesh() fills the members up to `shells`; repairMesh()
 /// (mesh_repair.h) fills all.
 struct MeshReport {
   std::size_t triangles = 0;
@@ -41,19 +41,19 @@ struct MeshReport {
     return open_edges == 0 && non_manifold_edges == 0 && flipped_edges == 0;
   }
 
-  std::size_t joined_corners = 0;      ///< moved onto another one, to close cracks narrower than 2 um
-  double joined_m = 0;                 ///< greatest way that one was moved
+  std::size_t joined_corners = 0;      ///< corners moved onto another one, to close cracks narrower than 2 um
+  double joined_m = 0;                 ///< greatest distance by which a corner was moved
   std::size_t holes = 0;               ///< groups of connected open edges
   std::size_t t_junctions = 0;         ///< vertices within an open edge: cracks without width
   std::size_t flipped_facets = 0;      ///< turned to agree with their neighbours
   std::size_t turned_shells = 0;       ///< whole shells that faced in and were turned
   std::size_t overlapping_shells = 0;  ///< shells with facets within another shell
   std::size_t internal_facets = 0;     ///< facets with solid on both sides: not surface, left out
-  std::size_t sheet_facets = 0;        ///< of free sheets: a surface without an inside
-  std::size_t united_shells = 0;       ///< that touch or cross others; their union took their place
-  bool signed_by_winding = false;      ///< else by pseudonormals, which closed meshes allow
+  std::size_t sheet_facets = 0;        ///< facets of free sheets: a surface without an inside
+  std::size_t united_shells = 0;       ///< shells that touch or cross others and were replaced by their union
+  bool signed_by_winding = false;      ///< false: signed by pseudonormals, which closed meshes allow
   /// Shells touch or cross each other, and their union was not found: depths near them are those of single
-  /// shells, and the mass counts twice what two of them share.
+  /// shells, and their common volume counts twice in the mass.
   bool is_union_incomplete = false;
   /// Share of the voxmap's nodes in the band whose winding number is more than 0.25 from 0.5; 1 for a closed
   /// mesh.
@@ -63,7 +63,7 @@ struct MeshReport {
 VPS_API Box bounds(const Mesh& mesh);
 VPS_API double area(const Mesh& mesh);
 
-/// By the divergence theorem; exact for a closed, outward-oriented mesh. O(triangles).
+/// Mass properties by the divergence theorem; exact for a closed, outward-oriented mesh. O(triangles).
 /// Source: Mirtich 1996 in the tetrahedron form of Eberly 2002.
 VPS_API MassProperties massProperties(const Mesh& mesh);
 
@@ -74,7 +74,7 @@ VPS_API Mesh transformed(const Mesh& mesh, const Pose& X_AB);
 VPS_API void append(Mesh& a, const Mesh& b);
 
 /// Merges vertices that are equal to within tolerance_m (0: to the bit) and drops triangles that collapse.
-/// CAD exports repeat vertices for each face or triangle; connectivity needs them shared.
+/// CAD exports repeat vertices for each face or triangle; only shared vertices tell which triangles connect.
 VPS_API Mesh welded(const Mesh& mesh, double tolerance_m = 0);
 
 /// Counts edges, shells, degenerate and duplicate triangles. O(n log n). Expects shared vertices (see

@@ -28,41 +28,43 @@ class VPS_API MeshDistance {
  public:
   struct Closest {
     Vec3 q = Vec3::Zero();       ///< nearest point on the mesh, in the mesh's frame
-    Vec3 normal = Vec3::Zero();  ///< outward pseudonormal of its feature, unit
+    Vec3 normal = Vec3::Zero();  ///< outward unit pseudonormal of the nearest feature
     std::uint32_t triangle = 0;
     double distance_m = 0;  ///< unsigned; max_m when nothing is nearer
     bool found = false;
   };
 
-  /// Copies what it needs of the mesh. O(n log n). Expects welded vertices for the sign.
+  /// Copies the data that it needs. O(n log n). The sign requires welded vertices.
   explicit MeshDistance(const Mesh& mesh);
 
   /// O(log n) typical. Thread-safe, does not allocate.
   [[nodiscard]] Closest closest(const Vec3& p, double max_m = 1e300) const noexcept;
   /// Negative inside. Clamped to +-max_m; beyond max_m the sign is not computed and the answer is +max_m.
   [[nodiscard]] double signedDistance(const Vec3& p, double max_m = 1e300) const noexcept;
-  /// A value L with L <= distance <= L (1 + slack), unsigned; faster than closest() where many triangles are
-  /// about equally far. If nothing is nearer than max_m: max_m / (1 + slack).
+  /// A lower bound L of the unsigned distance with L <= distance <= L (1 + slack); faster than closest()
+  /// where many triangles are about equally far. If nothing is nearer than max_m: max_m / (1 + slack).
   [[nodiscard]] double lowerBound(const Vec3& p, double slack, double max_m = 1e300) const noexcept;
-  /// Outward pseudonormal of a triangle's feature (numbered as in TrianglePoint), unit.
+  /// Outward unit pseudonormal of a triangle's feature (numbered as in TrianglePoint).
   [[nodiscard]] Vec3 featureNormal(std::uint32_t triangle, int feature) const noexcept;
 
-  /// Outward normal at point q of a triangle, of the curved surface that the facets stand for: interpolated
-  /// between the corners' (Phong 1975), each the mean of the faces around it that are within 20 degrees of
-  /// this one. On a flat face it is the face's own. Unit.
+  /// Outward unit normal, at point q of a triangle, of the curved surface that the facets approximate. It is
+  /// interpolated between the normals of the triangle's corners (Phong 1975). A corner's normal is the mean
+  /// of the faces around it that are within 20 degrees of this triangle. On a flat face it is the face's
+  /// normal.
   [[nodiscard]] Vec3 smoothNormal(std::uint32_t triangle, const Vec3& q) const noexcept;
-  /// How that normal turns along a triangle: dn = S dx, symmetric, zero across [1/m]. A ball of radius r has
-  /// 1/r in both directions, a hollow the negative; a flat face, and a triangle without an area, zero.
+  /// Derivative S of smoothNormal() along a triangle [1/m]: dn = S dx, symmetric, zero across the triangle. A
+  /// ball of radius r has 1/r in both directions, a hollow of radius r has -1/r. Zero for a flat face and for
+  /// a triangle without area.
   [[nodiscard]] Mat3 smoothCurvature(std::uint32_t triangle) const noexcept;
 
-  /// Writes up to `most` triangles whose own boxes may overlap `box`, in no particular order; returns false
-  /// if there are more. Boxes are those of floats, rounded outwards.
+  /// Writes up to `most` triangles whose bounding boxes may overlap `box`, in no particular order; returns
+  /// false if there are more. The bounding boxes are in single precision, rounded outwards.
   bool overlapping(const Box& box, std::size_t most, std::vector<std::uint32_t>& triangles) const;
 
-  /// Appends where segment ab crosses the triangles, as fractions of the segment, not sorted. A crossing at
-  /// the border of two triangles may appear twice. A triangle in whose plane the segment lies is not crossed,
-  /// up to rounding; an end in the plane counts as below it. O(log n + triangles whose boxes the segment
-  /// meets).
+  /// Appends the places where segment ab crosses the triangles, as fractions of the segment, not sorted. A
+  /// crossing at the border of two triangles may appear twice. A triangle in whose plane the segment lies is
+  /// not crossed, up to rounding; an end of the segment in the plane counts as below it. O(log n + triangles
+  /// whose boxes the segment meets).
   void appendCrossings(const Vec3& a, const Vec3& b, std::vector<double>& out) const;
 
   [[nodiscard]] const Mesh& mesh() const noexcept { return mesh_; }

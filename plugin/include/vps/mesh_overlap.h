@@ -23,10 +23,10 @@ class VPS_API OverlapMesh {
   [[nodiscard]] const Solid& solid() const { return *solid_; }
   [[nodiscard]] const Mesh& mesh() const { return solid_->mesh(); }
   [[nodiscard]] const Box& box() const { return box_; }
-  /// Vertex pairs of all edges between faces that are not in one plane, and of all that do not have exactly
+  /// Vertex pairs of all edges between faces that are not coplanar, and of all edges that do not have exactly
   /// two faces.
   [[nodiscard]] const std::vector<std::array<std::uint32_t, 2>>& edges() const { return edges_; }
-  /// For each of edges(), the first and the last of its triangles.
+  /// The first and the last triangle at each of edges().
   [[nodiscard]] const std::vector<std::array<std::uint32_t, 2>>& trianglesAtEdges() const {
     return triangles_at_edges_;
   }
@@ -43,22 +43,22 @@ class VPS_API OverlapMesh {
 struct Overlap {
   double depth_m = 0;       ///< 0 when free
   Vec3 p_W = Vec3::Zero();  ///< the deepest point found
-  /// What the search cost: a count of edges and facets, of about a microsecond each. The same in every run.
+  /// Cost of the search: a count of edges and facets, each of about a microsecond. The same in every run.
   std::size_t work = 0;
 };
 
-/// Depths are found to within this.
+/// Accuracy of depths.
 inline constexpr double kOverlapCertain_m = 0.1e-6;
 
-/// The deepest point of the edges of each mesh in the other one. Surfaces that intersect do so at an edge of
-/// one of them, so no overlap is missed; the point of a face that is deepest in the other mesh is represented
-/// by the other's edges there. Where faces are flush, edges may lie in the other surface while bodies
-/// overlap: so triangles at edges that are not clearly outside are probed between their edges too, up to 80
-/// times each. A depth found there counts if it is at least twice that of the edges; it is a lower bound, as
-/// the depth of two equal bodies in one place is. O(edges near the other mesh x log triangles). Allocates.
-/// Thread-safe.
-/// @param with_sheets  measures sheets too, which have no inside: the depth of their points in the other
-///                     mesh, a lower bound by a sixteenth or where 80 probes for a facet find less
+/// Finds the deepest point of the edges of each mesh in the other one. Surfaces that intersect do so at an
+/// edge of one of them, so no overlap is missed. If the deepest point of one mesh lies within a face, the
+/// other mesh's edges there represent it. Where faces are flush, edges may lie in the other surface although
+/// the bodies overlap: therefore triangles at edges that are not clearly outside are also probed between
+/// their edges, up to 80 times each. A depth found by probing counts if it is at least twice the depth of the
+/// edges; it is a lower bound, as is the depth of two equal bodies at one place. O(edges near the other mesh
+/// x log triangles). Allocates. Thread-safe.
+/// @param with_sheets  also measures sheets, which have no inside: the depth of their points in the other
+///                     mesh. It may be a sixteenth too small, or smaller if 80 probes of a facet find less.
 VPS_API Overlap deepestOverlap(const OverlapMesh& a, const Pose& X_WA, const OverlapMesh& b, const Pose& X_WB,
                                bool with_sheets = false);
 

@@ -11,11 +11,11 @@
 namespace vps {
 
 struct WeldedMesh {
-  Mesh mesh;                           ///< as welded() gives it
-  std::vector<std::uint32_t> sources;  ///< by triangle: its number before, ascending
+  Mesh mesh;                           ///< as returned by welded()
+  std::vector<std::uint32_t> sources;  ///< for each triangle its number in the given mesh, ascending
 };
 
-/// As welded(), with the triangle that each one was.
+/// As welded(), but also tells which triangle of the given mesh each triangle was.
 VPS_API WeldedMesh weldedWithSources(const Mesh& mesh, double tolerance_m = 0);
 
 }  // namespace vps

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the models of a part will cost in memory, estimated from its mesh; nothing is built.
+// Estimates, from a mesh, how much memory the models of a part will need; nothing is built.
 #pragma once
 
 #include <vector>
@@ -12,23 +12,24 @@
 
 namespace vps {
 
-/// The size of a part's voxmap and pointshell, whole or cropped to some boxes. Bricks and face points follow
-/// from the surface's area, points on sharp edges are counted. The mesh should have shared vertices: without
-/// them every edge counts as sharp.
+/// The size of a part's voxmap and pointshell, whole or cropped to some boxes. Bricks and face points are
+/// estimated from the surface's area, points on sharp edges are counted. The mesh should have shared
+/// vertices; otherwise every edge counts as sharp.
 class VPS_API ModelEstimate {
  public:
-  /// Which models are asked for: whole or cropped ones, or whole ones alone.
+  /// WholeOnly: only whole models are asked for; no pieces of surface are stored, and cropped models get the
+  /// size of whole ones.
   enum class Extent { Any, WholeOnly };
-  /// O(n log n) for n triangles, at most some 20,000 pieces of larger ones, and the points of sharp edges.
-  /// @param extent  WholeOnly: a few numbers are kept, no pieces of surface; cropped models count as whole
+  /// O(n log n) for n triangles. Stores at most about 20,000 pieces of large triangles, and the points of
+  /// sharp edges.
   ModelEstimate(const Mesh& mesh, const VoxMapSettings& voxels, const PointShellSettings& points,
                 Extent extent = Extent::Any);
 
-  /// Of VoxMap::memoryBytes(), of the map as croppedVoxMap() leaves it; no boxes: the whole map.
+  /// Estimate of VoxMap::memoryBytes() of the map that croppedVoxMap() returns; no boxes: of the whole map.
   [[nodiscard]] double mapBytes(const std::vector<Box>& kept_P = {}) const;
-  /// Of PointShell::size(), of the shell as croppedShell() leaves it; no boxes: the whole shell.
+  /// Estimate of PointShell::size() of the shell that croppedShell() returns; no boxes: of the whole shell.
   [[nodiscard]] double pointCount(const std::vector<Box>& kept_P = {}) const;
-  /// Of PointShell::memoryBytes() of a shell with so many points.
+  /// Estimate of PointShell::memoryBytes() of a shell with so many points.
   [[nodiscard]] static double shellBytes(double point_count);
 
  private:

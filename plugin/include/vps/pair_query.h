@@ -13,18 +13,18 @@ struct PairSide {
   const PointShell* shell = nullptr;
 };
 
-/// Temporal coherence of one pair, both ways.
+/// Temporal coherence of one pair, for both directions.
 struct PairMemory {
   QueryMemory b_in_a, a_in_b;
   PairMemory(const PairSide& a, const PairSide& b) : b_in_a(*a.map, *b.shell), a_in_b(*b.map, *a.shell) {}
 };
 
 /// Penalty wrench on B about O, in A, from B's points in A's field and A's points in B's field. Each
-/// direction counts half, so that refining both converges to the same force as one side alone. Counts are
-/// added; area and volume are the mean of both; max_depth_m and min_distance_m are over both. One part's edge
-/// points find what the other field's rounded edges miss, so sharp fits need both directions. Action equals
-/// reaction: with A and B exchanged and X_AB inverted the wrench is the opposite, up to rounding. Never
-/// throws, allocates or locks. BadPose as queryWrench().
+/// direction has weight one half, so that refining both models converges to the same force as one direction
+/// alone. Counts are added; area and volume are the means of both directions; max_depth_m and min_distance_m
+/// are over both. Sharp fits need both directions, since one part's edge points find overlaps that the other
+/// field's rounded edges miss. Action equals reaction: with A and B exchanged and X_AB inverted the wrench is
+/// the opposite, up to rounding. Never throws, allocates or locks. BadPose as queryWrench().
 /// @param X_AB  pose of B in A
 /// @param p_AO  the point the wrench is about, in A
 VPS_API QueryResult queryBothSides(const PairSide& a, const PairSide& b, const Pose& X_AB,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Everything that contact needs of one part, built once and never changed: name, mesh, material, voxmap,
+// All models of one part that contact needs, built once and never changed: name, mesh, material, voxmap,
 // pointshell and solid.
 #pragma once
 
@@ -15,17 +15,17 @@
 namespace vps {
 
 struct Material {
-  double density_kg_m3 = 7850;       ///< steel
-  double friction = 0.15;            ///< Coulomb, of the material on itself; two materials: geometric mean
-  double restitution = 0;            ///< 0 inelastic to 1 elastic
+  double density_kg_m3 = 7850;  ///< steel
+  double friction = 0.15;       ///< Coulomb coefficient of the material on itself; see combinedFriction()
+  double restitution = 0;       ///< 0 inelastic to 1 elastic
   double stiffness_N_per_m3 = 1e12;  ///< penalty stiffness per area (paper, section 4.1)
 };
 
-/// What a mesh with a hole that is wider than the spacing of its points stands for. Narrower holes, cracks,
+/// How to read a mesh with a hole that is wider than the spacing of its points. Narrower holes, cracks,
 /// T-junctions and single missing facets are faults of a solid in either case.
 enum class OpenMesh {
-  Sheet,  ///< for what is drawn: a surface that is met from both sides, and never closed over
-  Solid,  ///< for the solid that it would be without the hole
+  Sheet,  ///< a surface that other parts touch from both sides; its hole stays open
+  Solid,  ///< a solid whose hole is a fault
 };
 
 /// The models of one part, all in the part's own frame P. It is held as `std::shared_ptr<const PartModel>` by
@@ -41,10 +41,10 @@ struct PartModel {
   std::shared_ptr<const Solid> solid;  ///< what map and shell are built from
 };
 
-/// Builds all models of a part, from one Solid. `mesh` is the given one, or the solid's where facets had to
-/// be turned, so that it has a positive volume; that of a sheet is as given. Throws LoadError as
-/// buildVoxMap() and buildPointShell().
-/// @param open  what a mesh with a wide hole stands for; of a sheet, `solid` is a Solid::sheet()
+/// Builds all models of a part, from one Solid. `mesh` is the given one, or the solid's if facets had to be
+/// turned, so that its volume is positive; for a sheet it is the given one. Throws LoadError as buildVoxMap()
+/// and buildPointShell().
+/// @param open  how to read a mesh with a wide hole; for a sheet, `solid` is a Solid::sheet()
 VPS_API std::shared_ptr<const PartModel> buildPartModel(const std::string& name, Mesh mesh,
                                                         const VoxMapSettings& voxels = {},
                                                         const PointShellSettings& points = {},

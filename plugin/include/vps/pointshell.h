@@ -51,17 +51,17 @@ struct VPS_API PointShell {
 /// Samples mesh corners, sharp edges (evenly, at half the spacing, on the vertices of rims) and faces (blue
 /// noise). Every surface point has a shell point within spacing_m that faces the same way; face points are at
 /// least 0.75 spacing_m apart, except on bumps: no vertex protrudes by more than a hundredth of spacing_m
-/// beyond the point nearest to it, measured along the mean of both normals, so that even curvature counts as
-/// none, or along its own where the normals are over 20 degrees apart. Face points have the triangle's
-/// normal, since interpolated normals would describe another surface than the mesh's exact distance; points
-/// on edges and corners have the angle-weighted pseudonormal. Deterministic. O(area / spacing^2). Throws
-/// LoadError for unusable meshes, for a spacing that is not positive, and for one that would give more points
-/// than fit in memory; the message names one that would fit.
+/// beyond its nearest point. The protrusion is measured along the mean of both normals, so that even
+/// curvature counts as none; if the normals are more than 20 degrees apart, along the vertex's own. Face
+/// points have the triangle's normal, because interpolated normals would describe another surface than the
+/// mesh's exact distance; points on edges and corners have the angle-weighted pseudonormal. Deterministic.
+/// O(area / spacing^2). Throws LoadError for unusable meshes, for a spacing that is not positive, and for a
+/// spacing that would give more points than fit in memory; the message names a spacing that would fit.
 VPS_API PointShell buildPointShell(const Mesh& mesh, const PointShellSettings& settings,
                                    const std::string& part = "", const Progress& progress = {});
 
-/// As above, of a solid's repaired surface: the normals point into the solid. A sheet has each point twice,
-/// once for each side, with its whole area, and points of its border whose normals point into the sheet.
+/// As above, for a solid's repaired surface: the normals point into the solid. A sheet has each point twice,
+/// once for each side with the whole area, and points on its border whose normals point into the sheet.
 VPS_API PointShell buildPointShell(const Solid& solid, const PointShellSettings& settings,
                                    const std::string& part = "", const Progress& progress = {});
 

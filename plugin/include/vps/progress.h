@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How long computations report their progress.
+// Callback for the progress of long computations.
 #pragma once
 
 #include <functional>

@@ -23,7 +23,7 @@ struct Contact {
   double distance_m = 0;    ///< signed: negative when inside (depth = -distance_m)
   double area_m2 = 0;       ///< surface area that the point represents
   std::uint32_t id = 0;     ///< index of the point in its shell; the same from step to step
-  std::uint16_t owner = 0;  ///< which part of a cooked map it is against
+  std::uint16_t owner = 0;  ///< the part of a cooked map that the point is near
 };
 
 struct QueryOptions {
@@ -50,8 +50,8 @@ struct QueryResult {
 };
 
 /// Finds all points of the shell within options.cutoff_m of the map, in ascending id. The culled answer
-/// equals the exhaustive one to the bit, for a rigid pose and a map of closed meshes; signs that contradict
-/// each other cannot be culled exactly. O(points near contact).
+/// equals the exhaustive one to the bit, for a rigid pose and a map of closed meshes. In a field whose signs
+/// contradict each other culling is not exact. O(points near contact).
 ///
 /// A point deeper than the band reports -band_m() as its distance and its own inward normal as the direction
 /// out. min_distance_m is exact when there is a contact; otherwise it may be a bound (is_beyond_band), since
@@ -64,7 +64,7 @@ VPS_API QueryResult queryContacts(const VoxMap& map, const PointShell& shell, co
                                   QueryMemory* memory = nullptr) noexcept;
 
 /// Finds the least signed distance of the shell to the map, by branch and bound over the spheres. Within the
-/// band it is exact: the field's least reading; -band_m() means that deep or deeper. Beyond the band the
+/// band it is exact: the field's least reading; -band_m() stands for that depth or more. Beyond the band the
 /// status is BeyondBand and min_distance_m a lower bound of the true distance, infinite for an empty shell.
 /// Never throws, allocates or locks.
 VPS_API QueryResult queryDistance(const VoxMap& map, const PointShell& shell, const Pose& X_MP,
@@ -87,8 +87,8 @@ VPS_API QueryResult queryWrench(const VoxMap& map, const PointShell& shell, cons
                                 const QueryOptions& options, double k_N_per_m3, const Vec3& p_MO,
                                 TouchSummary& out, QueryMemory* memory = nullptr) noexcept;
 
-/// Penalty wrench of a contact set: F = sum of k A d n over touching points. The point's area A as weight
-/// makes it converge under refinement. Source: Tripicchio et al., section 4.1.
+/// Penalty wrench of a contact set: F = sum of k A d n over touching points. The weight A, the point's area,
+/// makes the sum converge under refinement. Source: Tripicchio et al., section 4.1.
 /// @param k_N_per_m3  stiffness per area, >= 0
 /// @param p_MO        the point the wrench is about, in M
 /// @return wrench on the shell's part about O, in M [N m, N]

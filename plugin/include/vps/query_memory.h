@@ -12,18 +12,18 @@
 
 namespace vps {
 
-/// Temporal coherence of one map and one shell. When a leaf of points is read, or it or sixteen neighbouring
-/// leaves are bounded, that says how far they may move before any of their points can come within the cutoff.
+/// Temporal coherence of one map and one shell. Reading a leaf of points, or bounding it or sixteen
+/// neighbouring leaves, tells how far they may move before any of their points can come within the cutoff.
 /// Every group of leaves has an odometer: the sum over poses of the largest displacement of any of its
-/// points. A leaf is skipped until the odometer has passed that distance. Proof: for the field I as it is
-/// read, |I(p') - I(p)| <= s |p' - p| with s the steepest slope of its nodes times sqrt 3; the distance
+/// points. A leaf is skipped until the odometer has passed that distance. Proof: the interpolated field I
+/// fulfils |I(p') - I(p)| <= s |p' - p| with s the steepest slope of its nodes times sqrt 3; the distance
 /// between two poses is at most the sum of the distances between the poses in between (triangle inequality);
-/// and rounding always increases the odometer. So no touching point is missed: the answer is the exhaustive
-/// one for every motion, jumps included.
+/// and rounding always increases the odometer. So no touching point is missed: the answer equals the
+/// exhaustive one for every motion, jumps included.
 ///
-/// One memory serves one pair and one thread at a time. Queries may have different cutoffs; a larger one than
-/// the last query's counts as a motion by the difference. A query of another map or shell ignores the memory.
-/// Queries with a memory do not allocate. It can be moved, not copied.
+/// One memory serves one pair and one thread at a time. Queries may have different cutoffs; a cutoff larger
+/// than the last query's counts as a motion by the difference. A query of another map or shell ignores the
+/// memory. Queries with a memory do not allocate. A memory can be moved, not copied.
 class VPS_API QueryMemory {
  public:
   /// The shell must outlive the memory and not change. Memory: about 10 bytes for each leaf of 16 points.
@@ -43,7 +43,7 @@ class VPS_API QueryMemory {
     double radius_m = 0;
     double odometer = 0;       ///< [voxels]
     double next = -1;          ///< no leaf of the group needs a test before the odometer has passed this
-    std::uint16_t closed = 0;  ///< bit i: row i was never near, and its leaves have no thresholds yet
+    std::uint16_t closed = 0;  ///< bit i: row i was never near; its leaves have no thresholds yet
   };
   void openRow(std::size_t row) noexcept;
 
@@ -54,7 +54,7 @@ class VPS_API QueryMemory {
   std::vector<double> row_next_;         ///< as Group::next, for each row of sixteen leaves
   std::unique_ptr<double[]> leaf_next_;  ///< as Group::next, for each leaf of opened rows, in whole rows
   std::vector<std::uint16_t>
-      row_near_;  ///< bit i: leaf i was too near for a bound of its sphere, so it is read
+      row_near_;  ///< bit i: leaf i was too near for a bound of its sphere, so its points are read
   Pose X_MP_;
   static constexpr double kNoQuery = -1e300;
   double cutoff_ = kNoQuery;  ///< of the last query [voxels]

@@ -12,12 +12,12 @@
 
 namespace vps {
 
-/// Divides a shell into tiles: nodes of its hierarchy up to a given size, and in each tile the points into
+/// Divides a shell into tiles (nodes of its hierarchy up to a given size) and the points of each tile into
 /// groups whose normals agree within 20 degrees. find() reports for each group the point that is nearest to
 /// the map now and the point that will be nearest after a given step. The change of the gap within a group is
-/// taken to first order: its inward normals are a linear function of position, fitted once.
+/// taken to first order: the group's inward normals are a linear function of position, fitted once.
 ///
-/// find() reads the same points as queryContacts(), but computes normals for and reports only a few of each
+/// find() reads the same points as queryContacts(), but computes normals for, and reports, only a few of each
 /// thousand: with 153,000 near points it takes a fifth of the time (plugin/README.md).
 class VPS_API RepresentativePoints {
  public:
@@ -26,51 +26,53 @@ class VPS_API RepresentativePoints {
     Twist step_M;  ///< displacement of the shell's part against the map in the step, about M's origin, in M
                    ///< [rad, m]
     std::span<const std::uint32_t> required;  ///< ids, ascending, that are always reported if they are near
-    /// With this many near points or fewer (counted in leaves of sixteen) all are reported, as by
+    /// If there are at most this many near points (counted in leaves of sixteen), all are reported, as by
     /// queryContacts().
     std::size_t full_count = 0;
-    /// With more groups than this, those whose centres and mean normals lie in the same cell are merged,
-    /// cells being doubled as long as they are no larger than most_cell_m. 0: groups are never merged.
+    /// If there are more groups than this, groups whose centres and mean normals lie in the same cell are
+    /// merged; the cell size is doubled until few enough groups remain or most_cell_m is reached. 0: groups
+    /// are never merged.
     std::size_t most_groups = 0;
     double most_cell_m = 0;
   };
 
   /// The shell must outlive this object and not change. O(points); about 200 bytes for each group and 2 for
   /// each point. Throws std::invalid_argument if the size is not positive.
-  /// @param on_edge  by point: not 0 for those on sharp edges. The plane in which such a point touches
-  /// depends on the other part, so these stand for each other only within a quarter of a tile's size. May be
-  /// empty.
+  /// @param on_edge  by point: nonzero for points on sharp edges. The plane in which such a point touches
+  /// depends on the other part, so such points represent each other only within a quarter of a tile's size.
+  /// May be empty.
   RepresentativePoints(const PointShell& shell, double tile_size_m,
                        std::span<const std::uint8_t> on_edge = {});
 
-  /// False if no group has more than the two points that are reported of it: find() then reports the same
+  /// False if every group has at most the two points that are reported of it: find() then reports the same
   /// contacts as queryContacts().
   [[nodiscard]] bool reducesContacts() const noexcept { return reduces_contacts_; }
-  /// The group of a point; kNone if it belongs to none and is reported whenever it is near.
+  /// The group of a point; kNone if the point belongs to no group and is reported whenever it is near.
   [[nodiscard]] std::uint32_t groupOf(std::uint32_t id) const noexcept;
   static constexpr std::uint32_t kNone = UINT32_MAX;
 
   /// As queryContacts(), with fewer points; the reported contacts have the same bits. For each point left
   /// out, a reported point of the same group is as near now, to 1/16384 voxel, and a reported point is as
-  /// near after the step (to first order), or less than kSame_m farther. Where groups were merged, the
-  /// reported point is of the same cell. Never throws, allocates or locks.
+  /// near after the step (to first order), or less than kSame_m farther. If groups were merged, the reported
+  /// point is of the same cell instead. Never throws, allocates or locks.
   QueryResult find(const VoxMap& map, const Pose& X_MP, const Request& request, ContactSet& out,
                    QueryMemory* memory = nullptr) noexcept;
 
-  /// A part of the surface.
+  /// A piece of the surface.
   struct Surface {
     double area_m2 = 0;
     Vec3 center = Vec3::Zero();  ///< in P [m]
     Mat3 spread = Mat3::Zero();  ///< mean of d d', d a point's place from the centre [m2]
   };
-  /// The near surface that each contact of the last find() stands for, to a leaf of sixteen points at its
-  /// border. Empty if each stands for itself.
+  /// The near surface that each contact of the last find() represents, accurate to a leaf of sixteen points
+  /// at its border. Empty if each contact represents only itself.
   [[nodiscard]] std::span<const Surface> surfaces() const noexcept { return surfaces_; }
 
-  /// Edge of the cells in which the last find() merged groups; 0: it merged none.
+  /// Size of the cells in which the last find() merged groups; 0 if it merged none.
   [[nodiscard]] double mergedTo_m() const noexcept { return merged_to_m_; }
 
-  /// Gaps that differ by less are treated as equal [m]. assumed: well below what matters, above rounding
+  /// Gaps that differ by less are treated as equal [m]. Assumed: far below any gap that matters, above
+  /// rounding.
   static constexpr double kSame_m = 0.1e-6;
 
  private:
@@ -82,7 +84,7 @@ class VPS_API RepresentativePoints {
     double radius_m = 0;         ///< greatest distance of its points from the centre
     bool is_edge = false;        ///< its points are on sharp edges
   };
-  /// A grid of cells, by position in P, direction of the normal and whether on an edge.
+  /// A grid of cells, by position in P, direction of the normal, and whether the points are on an edge.
   struct Level {
     double cell_m = 0;
     std::vector<std::uint32_t> cell_of_group;
@@ -147,10 +149,10 @@ class VPS_API RepresentativePoints {
   std::vector<Group> groups_;
   std::vector<std::uint32_t> tile_of_leaf_;
   std::vector<Area> area_of_leaf_;
-  std::vector<std::uint8_t> group_of_;       ///< by point: in its tile, or kNoGroup
-  std::vector<std::uint8_t> group_of_leaf_;  ///< that of all its points, or kMixed
-  std::vector<Level> levels_;                ///< by size
-  // Of a find(), with capacity for all points or groups:
+  std::vector<std::uint8_t> group_of_;       ///< by point: index of its group in its tile, or kNoGroup
+  std::vector<std::uint8_t> group_of_leaf_;  ///< group of all points of the leaf, or kMixed
+  std::vector<Level> levels_;                ///< in ascending size
+  // Results of a find(), with capacity for all points or groups:
   std::vector<Chosen> chosen_;
   std::vector<Area> areas_;
   std::vector<Surface> surfaces_;

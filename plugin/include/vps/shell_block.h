@@ -9,13 +9,13 @@ namespace vps {
 /// Points or spheres per block: one AVX-512 vector of floats, two of AVX2.
 inline constexpr int kLanes = 16;
 
-/// Positions are floats relative to the block's centre: a relative error of 1e-7 of some millimetres,
-/// wherever the block lies. Only plain members, since sources that are compiled for several processors
-/// include this header.
+/// Positions are floats relative to the block's centre, so that their relative error of 1e-7 refers to some
+/// millimetres, wherever the block lies. Only plain members, because sources that are compiled for several
+/// processors include this header.
 struct alignas(64) ShellBlock {
   double center[3] = {0, 0, 0};  ///< of a sphere that holds all lanes' points or spheres, in P [m]
   double radius_m = 0;
-  std::uint32_t first = 0;  ///< of a leaf its first point; otherwise the block that lane 0 bounds
+  std::uint32_t first = 0;  ///< in a leaf its first point; otherwise the block that lane 0 bounds
   std::uint32_t count = 0;  ///< lanes in use; the unused ones repeat lane 0
   std::uint32_t is_leaf = 0;
   alignas(64) float x[kLanes] = {};  ///< from the centre, in P [m]

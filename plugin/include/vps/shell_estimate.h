@@ -7,8 +7,8 @@
 
 namespace vps {
 
-/// The smallest spacing, but not below the given one, at which buildPointShell() does not refuse the mesh for
-/// its number of points. O(triangles).
+/// The smallest spacing, not below the given one, at which buildPointShell() accepts the number of points.
+/// O(triangles).
 VPS_API double fittingSpacing_m(const Mesh& mesh, double spacing_m);
 
 }  // namespace vps

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A part's surface and what is inside of it: the one place where the sign of a distance is decided.
+// A part's surface and its inside: the one place where the sign of a distance is decided.
 #pragma once
 
 #include <memory>
@@ -18,10 +18,10 @@ struct RepairedMesh;
 /// A repaired mesh (see repairMesh()) with its exact signed distance. The voxmap, the pointshell, the overlap
 /// judge and the Bullet bridge all take surface and sign from the same Solid, so that they agree.
 ///
-/// The sign is that of the angle-weighted pseudonormal at the nearest point where the mesh is closed,
-/// consistently oriented and free of crossings. Otherwise inside is where the generalised winding number of
-/// the repaired mesh exceeds 0.5, within the mesh's box. Of such a mesh, facets around which both rules are
-/// known to give the same answer are found in advance, so that most queries need no winding number.
+/// The sign is that of the angle-weighted pseudonormal at the nearest point if the mesh is closed,
+/// consistently oriented and free of crossings. Otherwise a point is inside if the generalised winding number
+/// of the repaired mesh exceeds 0.5 and the point lies within the mesh's box. Facets around which both rules
+/// are known to give the same answer are found in advance, so that most queries need no winding number.
 ///
 /// In the middle of a hole the sign changes where there is no surface: there the signed distance jumps by up
 /// to the hole's width.
@@ -30,21 +30,21 @@ class VPS_API Solid {
   using Closest = MeshDistance::Closest;
 
   /// Merges equal vertices, repairs the mesh and prepares it for queries. A mesh with shared vertices and
-  /// without faults keeps its facets in their order. O(n log n); with faults some six winding numbers for
+  /// without faults keeps its facets in their order. O(n log n); with faults about six winding numbers for
   /// each facet. Throws LoadError as requireUsable(), naming the part.
   explicit Solid(const Mesh& mesh, const std::string& part = "");
-  /// A surface without an inside, used as it is: every point is outside, normals are the facets' own. For
-  /// surfaces that are met from either side. Accepts an empty mesh.
+  /// A surface without an inside, not repaired: every point is outside, and normals are the facets' own. For
+  /// surfaces that other parts touch from either side. Accepts an empty mesh.
   static Solid sheet(const Mesh& mesh);
-  /// The same solid, larger by a factor. Costs as much as building it.
+  /// The same solid, scaled by a factor. Costs as much as building it.
   [[nodiscard]] Solid scaled(double factor) const;
   Solid(Solid&&) noexcept;
   Solid& operator=(Solid&&) noexcept;
   ~Solid();
 
-  /// The nearest point of the surface; as MeshDistance::closest(), but its normal points out of the solid:
-  /// its product with p - q has the sign of the distance. Where the facets' pseudonormal does not, the normal
-  /// is the direction between p and q. Thread-safe; never allocates. O(log n) typical.
+  /// The nearest point of the surface; as MeshDistance::closest(), but the normal points out of the solid:
+  /// its product with p - q has the sign of the distance. If the facets' pseudonormal has the wrong sign, the
+  /// normal is the direction between p and q. Thread-safe; never allocates. O(log n) typical.
   [[nodiscard]] Closest closest(const Vec3& p, double max_m = 1e300) const noexcept;
   /// Negative inside; +max_m if no surface is nearer than that, on either side.
   [[nodiscard]] double signedDistance(const Vec3& p, double max_m = 1e300) const noexcept;
@@ -52,11 +52,11 @@ class VPS_API Solid {
   /// True if it was made by sheet().
   [[nodiscard]] bool isSheet() const noexcept { return is_sheet_; }
 
-  /// Where segment ab crosses the surface; see MeshDistance.
+  /// The places where segment ab crosses the surface; see MeshDistance.
   void appendCrossings(const Vec3& a, const Vec3& b, std::vector<double>& out) const {
     distance_.appendCrossings(a, b, out);
   }
-  /// Of single facets; see MeshDistance. Triangles are numbered as in mesh().
+  /// Normals of single facets; see MeshDistance. Triangles are numbered as in mesh().
   [[nodiscard]] Vec3 featureNormal(std::uint32_t triangle, int feature) const noexcept {
     return distance_.featureNormal(triangle, feature);
   }
@@ -67,12 +67,13 @@ class VPS_API Solid {
     return distance_.smoothCurvature(triangle);
   }
 
-  /// The repaired surface: facets face out, without duplicates, inner walls and facets within the solid. Of
+  /// The repaired surface: facets face out, without duplicates, inner walls and facets within the solid. For
   /// shells that touch or cross each other it is the surface of their union.
   [[nodiscard]] const Mesh& mesh() const noexcept { return distance_.mesh(); }
-  /// What was found and repaired. `certain_share` is that of a voxmap and is not set.
+  /// The faults found and repaired. `certain_share` belongs to a voxmap and is not set.
   [[nodiscard]] const MeshReport& report() const noexcept { return report_; }
-  /// Volume, centre and inertia of the solid: of the repaired mesh, as massOf() in mesh_repair.h says. All
+  /// Volume, centre and inertia of the solid: of the repaired mesh, as by massOf() in mesh_repair.h. All zero
+  /// for a sheet.
   /// zero for a sheet.
   [[nodiscard]] const MassProperties& mass() const noexcept { return mass_; }
   /// True if pseudonormals do not decide everywhere.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How near two parts come to each other while one turns about an axis, at any angle.
+// How near two parts come to each other at any angle while one turns about an axis.
 #pragma once
 
 #include "vps/export.h"
@@ -8,18 +8,18 @@
 
 namespace vps {
 
-/// Two parts of which one turns: a shaft in its bore, a wheel beside its fork. Points of a part that turns
-/// move far without coming nearer to the other part. But as long as its axis stays in place, the part stays
-/// within what it sweeps in a whole turn.
+/// Two parts of which one turns: a shaft in its bore, a wheel beside its fork. Points of the turning part
+/// move far without approaching the other part. As long as its axis stays in place, the part stays within the
+/// volume that it sweeps in a whole turn.
 class VPS_API SpinClearance {
  public:
-  /// True if the surfaces of the parts are known to stay farther apart than least_m >= 0 on the way between
-  /// two poses of part 1 in part 0, on which the axis that they turn about moves on a straight line. False if
-  /// that is not known. A part that is whole inside the other's material is apart in this sense. Cost: some
-  /// 100 ns; in the fourth call in which the parts turn by 20 mrad or more about an axis that is not known, a
-  /// search of O(n log n) in their facets, and the next one 64 such calls after one that helped, or twice as
-  /// many as the last time. Allocates in searches.
-  /// @param part0, part1  the same in each call, until reset()
+  /// Returns true if the surfaces of the parts are known to stay farther apart than least_m >= 0 between two
+  /// poses of part 1 in part 0, while the axis about which they turn moves on a straight line. Returns false
+  /// if that is not known. A part that lies wholly inside the other's material is apart in this sense.
+  /// Cost: about 100 ns. The fourth call in which the parts turn by 20 mrad or more about an axis that is not
+  /// known makes a search of O(n log n) in their facets. The next search is made 64 such calls after one that
+  /// helped, otherwise after twice as many calls as the last time. Allocates in searches.
+  /// @param part0, part1  the same parts in each call, until reset()
   bool staysApart(const FeatureSet& part0, const FeatureSet& part1, const Pose& start, const Pose& end,
                   double least_m);
   /// To be called when a part's features change.
@@ -37,7 +37,7 @@ class VPS_API SpinClearance {
   double lever_m_ = 0;                 // greatest distance of a point of the smaller part from smaller_.p
   double clearance_m_ = 0;             // at any angle, with the axes in line; 0: not known
   int waits_ = 0, wait_ = kFirstWait;  // calls
-  // assumed: slower parts are cheap without it; a search costs as much as some steps
+  // Assumed: slower parts are cheap without a search; a search costs as much as some steps.
   static constexpr double kLeast_rad = 20e-3;
   static constexpr int kFirstWait = 4, kWait = 64, kMostWait = 4096;
 };

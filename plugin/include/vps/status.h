@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What functions of the haptic loop return instead of throwing.
+// The status that functions of the haptic loop return instead of throwing.
 #pragma once
 
 namespace vps {

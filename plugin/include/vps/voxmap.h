@@ -21,7 +21,7 @@ struct VoxMapSettings {
 
 /// How the normal is read from the field. `Continuous` interpolates nodal gradients: the force does not jump
 /// from cell to cell, but is only nearly conservative. `Trilinear` is the exact derivative of the
-/// interpolated distance, and jumps at cell borders. Cost and error: plugin/README.md.
+/// interpolated distance, and jumps at cell borders. Cost and error of both: plugin/README.md.
 enum class Gradient { Continuous, Trilinear };
 
 class Solid;
@@ -54,8 +54,9 @@ class VPS_API VoxMap {
   /// True if both are copies of one map.
   [[nodiscard]] bool isSame(const VoxMap& other) const noexcept { return layout_ == other.layout_; }
   /// Bricks of 8^3 cells that store nodes.
+  /// Number of bricks of 8^3 cells that store nodes.
   [[nodiscard]] std::size_t brickCount() const noexcept;
-  /// Memory of this map. A map and the map it was mounted on share most of it.
+  /// Memory of this map. A map and the map that it was mounted on share most of it.
   [[nodiscard]] std::size_t memoryBytes() const noexcept;
   /// Memory of this map that it does not share with `other`.
   [[nodiscard]] std::size_t additionalMemoryBytes(const VoxMap& other) const noexcept;
@@ -91,11 +92,11 @@ class VPS_API VoxMap {
 
 /// Builds the map of one mesh, with the exact distance to its triangles at every node within the band. The
 /// sign comes from pseudonormals if the mesh is closed, faces out and does not overlap itself, and otherwise
-/// from the winding number of the mesh as repaired by repairMesh(). A Solid of the mesh decides alike, except
-/// that it also sees crossings that are smaller than a voxel. `report`, if given, says what was found and for
-/// what share of the nodes the sign is certain. O(surface area / h^2). Throws LoadError for a mesh
-/// that requireUsable() refuses, a voxel size that is not positive, or a grid that would not fit in memory;
-/// the message names a voxel size that would fit.
+/// from the winding number of the mesh as repaired by repairMesh(). A Solid of the mesh decides in the same
+/// way, except that it also detects crossings that are smaller than a voxel. `report`, if given, tells which
+/// faults were found and for what fraction of the nodes the sign is certain. O(surface area / h^2). Throws
+/// LoadError for a mesh that requireUsable() refuses, a voxel size that is not positive, or a grid that would
+/// not fit in memory; the message names a voxel size that would fit.
 VPS_API VoxMap buildVoxMap(const Mesh& mesh, const VoxMapSettings& settings, const std::string& part = "",
                            const Progress& progress = {}, MeshReport* report = nullptr);
 
@@ -105,7 +106,7 @@ struct PlacedSolid {
   Pose X_MP;
 };
 
-/// As above, of a solid that exists already: with its surface and its signs. O(surface area / h^2).
+/// As above, for a solid that exists already: uses its surface and its signs. O(surface area / h^2).
 VPS_API VoxMap buildVoxMap(const Solid& solid, const VoxMapSettings& settings, const std::string& part = "",
                            const Progress& progress = {}, MeshReport* report = nullptr);
 VPS_API VoxMap buildVoxMap(const PlacedSolid& solid, const VoxMapSettings& settings,
@@ -128,8 +129,8 @@ VPS_API VoxMap cookVoxMap(const std::vector<PlacedMesh>& parts, const VoxMapSett
 VPS_API VoxMap cookVoxMap(const std::vector<PlacedSolid>& parts, const VoxMapSettings& settings,
                           const Progress& progress = {});
 
-/// Adds a part to a cooked map and returns the new map; the old one is unchanged. The cost follows the new
-/// part.
+/// Adds a part to a cooked map and returns the new map; the old one is unchanged. The cost is proportional to
+/// the new part's surface.
 VPS_API VoxMap mountVoxMap(const VoxMap& cooked, const PlacedMesh& part);
 VPS_API VoxMap mountVoxMap(const VoxMap& cooked, const PlacedSolid& part);
 
@@ -144,8 +145,8 @@ struct PlacedMap {
 /// Throws LoadError if the map's band is narrower than the requested one, or as buildVoxMap().
 VPS_API VoxMap resampledVoxMap(const PlacedMap& part, const VoxMapSettings& settings);
 
-/// As mountVoxMap() for a mesh, but resamples the part's own map: takes milliseconds where the mesh takes a
-/// tenth of a second or more.
+/// As mountVoxMap() for a mesh, but resamples the part's own map: milliseconds instead of a tenth of a second
+/// or more.
 VPS_API VoxMap mountVoxMap(const VoxMap& cooked, const PlacedMap& part);
 
 }  // namespace vps

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A folder of voxmaps and pointshells, so that each part is modelled once.
+// A folder of voxmaps and pointshells, so that the models of each part are built once.
 #pragma once
 
 #include <cstdint>
@@ -20,13 +20,13 @@ class CacheFolder;
 /// determines the model: every vertex and triangle to the bit, the settings, and the version of the file. A
 /// model from the folder has the same bits as one that is built from the mesh's Solid.
 ///
-/// A file is used only if it is whole, of this version and this byte order, and its content matches the hash
-/// it ends with; otherwise the model is built again and the file replaced, with a warning. The hash detects
-/// damage, not malice: use a folder that only your own account can write, as a folder that the cache creates.
-/// Several threads and programs may share the folder. With a limit, the files that were not used for the
-/// longest time are removed when the folder exceeds it. The folder or any file in it may be deleted at any
-/// time. Where a file cannot be written (a disk that is full or read-only), there is one warning, and no
-/// other file is written.
+/// A file is used only if it is complete, has this version and byte order, and its content matches the hash
+/// at its end; otherwise the model is built again and the file replaced, with a warning. The hash detects
+/// damage, not malice: use a folder that only your own account can write, such as one that the cache created.
+/// Several threads and programs may share the folder. If there is a limit and the folder exceeds it, the
+/// files that were not used for the longest time are removed. The folder or any file in it may be deleted at
+/// any time. If a file cannot be written (full or read-only disk), there is one warning, and no other file is
+/// written.
 class VPS_API VoxMapCache {
  public:
   using Warn = std::function<void(const std::string&)>;
@@ -34,7 +34,7 @@ class VPS_API VoxMapCache {
   /// @param folder  created when the first map is written
   /// @param warn    called with one line of text if a file could not be read or written; by one thread at a
   ///                time
-  /// @param limit_bytes  of all files together; 0: no limit
+  /// @param limit_bytes  limit of the total size of all files; 0: no limit
   explicit VoxMapCache(std::filesystem::path folder, Warn warn = {}, std::uint64_t limit_bytes = 0);
 
   /// As vps::buildVoxMap() for the mesh's Solid, but reads the map from the folder if it is there: O(bytes)

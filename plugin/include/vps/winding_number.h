@@ -14,7 +14,8 @@ namespace vps {
 
 /// The solid angle of all triangles as seen from a point, over 4 pi: how often they wind around it. It is 1
 /// inside and 0 outside of a closed mesh that faces out. Over a hole it falls smoothly from 1 to 0, so that
-/// `> 0.5` means inside of an open mesh too. It jumps by 1 across a triangle, and nowhere else.
+/// `> 0.5` defines the inside of an open mesh too. It jumps by 1 across a triangle and is continuous
+/// elsewhere.
 ///
 /// Distant clusters of triangles are replaced by their first three moments, where the rest of the series is
 /// provably at most `cluster_error`. Sources: Jacobson et al., Robust inside-outside segmentation using
@@ -28,12 +29,12 @@ class VPS_API WindingNumber {
     double error = 0;
   };
 
-  /// Copies what it needs. O(n log n). Triangles without area do not contribute.
+  /// Copies the data that it needs. O(n log n). Triangles without area do not contribute.
   explicit WindingNumber(const Mesh& mesh, double cluster_error = 1e-2);
   /// As above, for some of a mesh's triangles.
   WindingNumber(const Mesh& mesh, std::span<const std::uint32_t> triangles, double cluster_error = 1e-2);
 
-  /// O(log n) typical. Thread-safe; never throws or allocates. The same bits on every thread.
+  /// O(log n) typical. Thread-safe; never throws or allocates. Every thread gets the same bits.
   [[nodiscard]] Value at(const Vec3& p) const noexcept;
   /// The sum over every triangle by van Oosterom and Strackee 1983. O(n).
   [[nodiscard]] double exact(const Vec3& p) const noexcept;

@@ -6,8 +6,8 @@
 
 namespace vps {
 
-/// Torque tau [N m] about a point and force f [N]. The variable's name says which: F_Po_W acts on P, about
-/// P's origin, in W.
+/// Torque tau [N m] about a point and force f [N]. The variable's name states point and frame: F_Po_W acts on
+/// P, about P's origin, in W.
 struct Wrench {
   Vec3 tau = Vec3::Zero();
   Vec3 f = Vec3::Zero();

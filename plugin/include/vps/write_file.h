@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Files that appear whole or not at all.
+// Writing files so that readers find either the complete file or the old one.
 #pragma once
 
 #include <filesystem>
@@ -11,7 +11,7 @@
 namespace vps {
 
 /// A file that is written under a temporary name in the target's folder and then renamed to the target, so
-/// that readers find the old content or the new, never a part of it.
+/// that readers find either the old content or the complete new content.
 ///
 ///     WholeFile file("part.voxmap");
 ///     std::ofstream out(file.temporary(), std::ios::binary);
@@ -20,8 +20,8 @@ namespace vps {
 ///     if (const std::error_code error = out ? file.commit() : std::make_error_code(std::errc::io_error)) ...
 class VPS_API WholeFile {
  public:
-  /// Chooses the temporary name: the target's, the process, and a count, so that no two writers share one.
-  /// Creates nothing. Thread-safe.
+  /// Chooses a temporary name from the target's name, the process id and a count, so that no two writers
+  /// share it. Creates nothing. Thread-safe.
   explicit WholeFile(std::filesystem::path target);
   /// Removes the temporary file unless commit() has succeeded.
   ~WholeFile();
@@ -31,7 +31,7 @@ class VPS_API WholeFile {
   [[nodiscard]] const std::filesystem::path& target() const noexcept { return target_; }
   /// The file to write; close it before commit().
   [[nodiscard]] const std::filesystem::path& temporary() const noexcept { return temporary_; }
-  /// Replaces the target by the temporary file. On an error the target is as it was.
+  /// Renames the temporary file to the target. On an error the target is unchanged.
   [[nodiscard]] std::error_code commit() noexcept;
 
  private:
@@ -40,7 +40,7 @@ class VPS_API WholeFile {
 };
 
 /// Writes `bytes` as the whole content of `file`. The folder must exist. Throws LoadError with the system's
-/// reason; `file` is then as it was.
+/// reason; `file` is then unchanged.
 VPS_API void writeWholeFile(const std::filesystem::path& file, std::string_view bytes);
 
 }  // namespace vps

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is not needed in inner loops: Eigen's rotations take long to compile in every file that includes them.
+// Functions that inner loops do not need; Eigen's rotations take long to compile.
 #include "vps/pose.h"
 
 namespace vps {

@@ -28,7 +28,7 @@ std::filesystem::path temporaryName(const std::filesystem::path& target) {
       "cannot be written: " + error.message() + "; check the folder, its permissions and the free space");
 }
 
-/// The reason of the last failed operation; streams report none of their own.
+/// The reason of the last failed operation, since streams report none of their own.
 std::error_code lastError() {
   return errno != 0 ? std::error_code(errno, std::generic_category())
                     : std::make_error_code(std::errc::io_error);
