@@ -10,7 +10,7 @@ namespace vps {
 
 namespace {
 
-/// By vertex: how many facets have it.
+/// For each vertex the number of facets that have it as a corner.
 std::vector<std::uint32_t> usesOf(const Mesh& mesh) {
   std::vector<std::uint32_t> uses(mesh.vertices.size(), 0);
   for (const auto& t : mesh.triangles)
@@ -18,7 +18,7 @@ std::vector<std::uint32_t> usesOf(const Mesh& mesh) {
   return uses;
 }
 
-/// By vertex: the one with which it is joined, which is its own where there is none.
+/// For each vertex the vertex with which it is joined; its own number if it is joined with none.
 std::vector<std::uint32_t> groupsOf(const Mesh& mesh, const JoinedFacets& joined) {
   std::vector<std::uint32_t> group(mesh.vertices.size());
   std::iota(group.begin(), group.end(), 0U);
@@ -35,7 +35,7 @@ ClosedCracks closeCracks(const Mesh& mesh, const std::vector<HalfEdge>& edges) {
   const double widest = size_m > 0 ? std::min(kClosedCrackShare, kClosedCrack_m / size_m) : 0;
   const std::vector<std::uint32_t> group = groupsOf(mesh, joinFacets(mesh, edges, widest)),
                                    uses = usesOf(mesh);
-  std::vector<std::uint32_t> place(mesh.vertices.size());  // by group: the vertex that most facets have
+  std::vector<std::uint32_t> place(mesh.vertices.size());  // by group: the vertex with the most facets
   std::iota(place.begin(), place.end(), 0U);
   for (std::uint32_t v = 0; v < group.size(); ++v)
     if (uses[v] > uses[place[group[v]]]) place[group[v]] = v;

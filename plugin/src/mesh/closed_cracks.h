@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Closes narrow cracks. Along a crack every facet ends in an edge of its own, and contact would take each for
-// a sharp edge of the part.
+// Closes narrow cracks. Along a crack every facet has an edge of its own, which contact would take for a
+// sharp edge of the part.
 #pragma once
 
 #include "mesh/mesh_edges.h"
@@ -10,16 +10,16 @@ namespace vps {
 struct ClosedCracks {
   Mesh mesh;
   std::size_t corners = 0;  ///< vertices that were moved onto another one
-  double widest_m = 0;      ///< greatest way that one was moved
+  double widest_m = 0;      ///< greatest distance by which a vertex was moved
 };
 
-/// Widest crack that is closed: this share of the mesh's size, and no more than kClosedCrack_m. assumed: a
-/// surface that moves by less is not told from another by any verdict, which counts 2 um (DESIGN.md).
+/// Widest crack that is closed: this share of the mesh's size, and at most kClosedCrack_m. Assumed: a motion
+/// of the surface by less changes no verdict, because verdicts tolerate 2 um (DESIGN.md).
 inline constexpr double kClosedCrackShare = 1e-4, kClosedCrack_m = 2e-6;
 
-/// Moves vertices of open edges that are that near to each other, and nearer than a quarter of the edges
-/// beside them, to the one of them that most facets have. Facets without a third corner are left out.
-/// Without such vertices, as given. O(n log n).
+/// Joins vertices of open edges that are this near to each other, and nearer than a quarter of the edges
+/// beside them: all move to the one with the most facets. Facets that lose a corner are left out. Returns the
+/// mesh unchanged if there are no such vertices. O(n log n).
 ClosedCracks closeCracks(const Mesh& mesh, const std::vector<HalfEdge>& edges);
 
 }  // namespace vps

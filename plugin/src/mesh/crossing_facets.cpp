@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Two triangles that cross do so along a segment, whose ends lie on an edge of one and in the other. So it is
-// enough to test edges against triangles.
+// Two triangles that cross do so along a segment. Its ends lie on an edge of one triangle and in the other.
+// So it is enough to test edges against triangles.
 #include "mesh/crossing_facets.h"
 
 #include <tbb/blocked_range.h>
@@ -15,7 +15,8 @@
 namespace vps {
 namespace {
 
-/// What counts as touching, relative to the greatest coordinate: some fifty times its rounding.
+/// Distance that counts as contact, relative to the greatest coordinate: about fifty times its rounding
+/// error.
 constexpr double kContact = 1e-14;
 
 double greatestCoordinate(const Mesh& mesh) {
@@ -25,14 +26,14 @@ double greatestCoordinate(const Mesh& mesh) {
 
 struct Triangle {
   Vec3 corner[3];
-  Vec3 n;  // unit; zero for a triangle too thin to have one
+  Vec3 n;  // unit; zero for a triangle too thin to have a normal
 };
 
 double cross2(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
-/// True if the segments share a point, of four points in a plane.
+/// True if segments ab and cd share a point. All four points lie in a plane.
 bool meetInPlane(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c,
                  const Eigen::Vector2d& d) {
   const double c_side = cross2(b - a, c - a), d_side = cross2(b - a, d - a);
@@ -66,8 +67,8 @@ bool meets(const Triangle& t, const Vec3& a, const Vec3& b, double touch_m) {
   return false;
 }
 
-/// A facet whose box overlaps more boxes than this is given up: the hub of a fan of 100,000 facets would take
-/// 10^10 tests.
+/// A facet whose box overlaps more boxes than this is not tested: the hub of a fan of 100,000 facets would
+/// take 10^10 tests.
 constexpr std::size_t kMostNear = 4096;
 
 class Crossings {
@@ -90,7 +91,7 @@ class Crossings {
     for (const std::uint32_t v : mesh_.triangles[own]) box.add(mesh_.vertices[v]);
     const bool is_complete = all_.overlapping(box, kMostNear, near);
     for (const std::uint32_t other : near) {
-      // Each pair once; a triangle that is not asked for is seen only from the other.
+      // Each pair is tested once; triangles from number `count` on are tested only as the other of a pair.
       if (other == own || (other < found_.size() && other < own) || !doMeet(own, other)) continue;
       found_[own].store(Crossed::Yes, std::memory_order_relaxed);
       if (other < found_.size()) found_[other].store(Crossed::Yes, std::memory_order_relaxed);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Finds facets that other facets of their mesh pass through.
+// Finds facets that are crossed by other facets of their mesh.
 #pragma once
 
 #include <cstdint>
@@ -9,13 +9,13 @@
 
 namespace vps {
 
-/// Unknown: too many others are near.
+/// Unknown: too many other facets are near.
 enum class Crossed : std::uint8_t { No, Yes, Unknown };
 
 /// For each of the first `count` triangles of a mesh: whether another triangle crosses it, or touches it
-/// elsewhere than at a common vertex. Triangles that share an edge count only if one lies on the other.
-/// Expects shared vertices; a triangle that is there twice does not count as crossing itself. Parallel; O(n
-/// log n) for usual meshes.
+/// elsewhere than at a common vertex. Triangles that share an edge count only if one lies on the other;
+/// copies of a triangle do not count as crossing. Expects shared vertices. Parallel; O(n log n) for usual
+/// meshes.
 std::vector<Crossed> crossedFacets(const MeshDistance& all, std::size_t count);
 
 }  // namespace vps

@@ -25,13 +25,13 @@ Vec3 normalOf(const Mesh& mesh, std::uint32_t facet) {
   return length > 0 ? Vec3(n / length) : Vec3(Vec3::Zero());
 }
 
-/// A straight edge with the points that lie on it: a side of facets, or where facets meet.
+/// A straight edge with the points that lie on it: a side of facets, or a line along which facets meet.
 struct Segment {
   std::uint32_t a = 0, b = 0;
-  std::vector<std::uint32_t> points;  ///< between its ends, not sorted
+  std::vector<std::uint32_t> points;  ///< points between its ends, not sorted
 };
 
-/// The nearest points of two lines, as fractions of ab and cd; nothing if they are parallel.
+/// The nearest points of lines ab and cd, as fractions of ab and cd; nothing if the lines are parallel.
 std::optional<std::array<double, 2>> nearestOnLines(const Vec3& a, const Vec3& b, const Vec3& c,
                                                     const Vec3& d) {
   constexpr double kParallel = 1e-12;  // the square of a sine
@@ -104,7 +104,7 @@ class Arranger {
     p = find(p), q = find(q);
     if (p != q) alias_[std::max(p, q)] = std::min(p, q);
   }
-  /// A point at p, or one that is near: where three sides meet, it was found before.
+  /// An existing point near p, or a new one: where three sides meet, the point may have been found before.
   std::uint32_t newPoint(const Vec3& p) {
     if (const auto near = nearPoint(p)) return *near;
     points_.push_back(p);
@@ -206,7 +206,7 @@ class Arranger {
     return true;
   }
 
-  // ---- what two facets have in common
+  // ---- common points of two facets
 
   void verticesOnSides(std::uint32_t f, std::uint32_t g) {
     for (const std::uint32_t v : facet(f).corners)
@@ -228,7 +228,7 @@ class Arranger {
            (low(r).array() <= high(s).array() + touch_m_).all();
   }
 
-  /// Gives two segments a common point where they nearly meet.
+  /// Gives two segments a common point at the place where they nearly meet.
   bool crossSegments(std::uint32_t s, std::uint32_t r) {
     const Segment &of_s = segments_[s], &of_r = segments_[r];
     if (isOn(of_s, of_r.a) || isOn(of_s, of_r.b) || isOn(of_r, of_s.a) || isOn(of_r, of_s.b)) return false;
@@ -262,7 +262,7 @@ class Arranger {
         static_cast<std::uint32_t>(f.inner.size()));
     f.inner.push_back(p);
   }
-  /// Of the facet's inner points that are near p the first.
+  /// The first of the facet's inner points near p.
   [[nodiscard]] std::optional<std::uint32_t> innerNear(const Facet& f, const Vec3& p) const {
     std::uint32_t first = UINT32_MAX;
     forEachCellAround(p, [&](const Cell& cell) {
@@ -315,7 +315,7 @@ class Arranger {
     if (sections_.insert(keyOf(in, s)).second) in.sections.push_back(s);
   }
 
-  /// All corners of one lie in the plane of the other.
+  /// True if all corners of one facet lie in the plane of the other.
   [[nodiscard]] bool areFlush(const Facet& f, const Facet& g) const {
     const auto isFlat = [&](const Facet& in, const Facet& of) {
       return std::all_of(of.corners.begin(), of.corners.end(),
@@ -334,7 +334,7 @@ class Arranger {
     }
   }
 
-  /// Sections do not change what two facets have in common.
+  /// Uses the common points found so far; adding sections does not change them.
   void addSections() {
     std::vector<std::vector<std::uint32_t>> own;
     for (const Facet& f : facets_) own.push_back(pointsOf(f));
@@ -365,7 +365,8 @@ class Arranger {
     addRow(f, g, common, along);
   }
 
-  /// Where three facets meet, segments cross or touch within a facet.
+  /// Gives sections that cross or touch within a facet common points; such places occur where three facets
+  /// meet.
   bool settleSections() {
     constexpr int kRounds = 8;
     for (int round = 0; round < kRounds; ++round) {
@@ -405,7 +406,7 @@ class Arranger {
     }
     return has_changed;
   }
-  /// In ascending order. Counts them as work.
+  /// Returns overlaps in ascending order and counts them as work.
   void findOverlaps(const BoxTree& tree, const Box& box, std::vector<std::uint32_t>& found) {
     found.clear();
     tree.forEachOverlap(box, [&](std::uint32_t i) {
@@ -418,7 +419,7 @@ class Arranger {
 
   // ---- pieces
 
-  /// The points of a segment from `from` to its other end, without that.
+  /// The points of a segment in order from `from` to its other end.
   [[nodiscard]] std::vector<std::uint32_t> inOrder(const Segment& s, std::uint32_t from) const {
     std::vector<std::uint32_t> row = {find(s.a), find(s.b)};
     for (const std::uint32_t p : s.points) row.push_back(find(p));

@@ -15,19 +15,19 @@ namespace vps {
 /// A mesh whose facets have been cut.
 struct Arrangement {
   Mesh mesh;                          ///< the given vertices keep their numbers and places
-  std::vector<std::uint32_t> source;  ///< of each triangle: the facet that it is a piece of
+  std::vector<std::uint32_t> source;  ///< for each triangle the facet from which it was cut
 };
 
 /// True if two facets share a point, or come nearer to each other than `touch_m` and are not clearly apart.
 bool mayTouch(const Mesh& mesh, std::uint32_t f, std::uint32_t g, double touch_m);
 
-/// Cuts the facets of each of the given pairs along their intersection. What is nearer than touch_m is one:
-/// vertices are merged, vertices near an edge or a facet become part of it, edges that nearly meet get a
-/// common point. Facets that lie on each other are both cut along each other's edges. As in: OpenCASCADE,
-/// Boolean operations, General Fuse (vertices first, then edges, then faces). Nothing if some facet cannot be
-/// triangulated, or if work_left falls below 0: from it what is tested for being near within facets is
-/// subtracted, a microsecond each. O(pairs) and, in each facet, O(n log n) for points and segments with few
-/// others near.
+/// Cuts the facets of each of the given pairs along their intersection. Features nearer to each other than
+/// touch_m become one: vertices are merged, vertices near an edge or a facet become part of it, edges that
+/// nearly meet get a common point. Facets that lie on each other are both cut along each other's edges. As
+/// in: OpenCASCADE, Boolean operations, General Fuse (vertices first, then edges, then faces). Returns
+/// nothing if some facet cannot be triangulated or if work_left falls below 0. Each test for nearness within
+/// facets subtracts 1 from work_left and takes about a microsecond. O(pairs) and, in each facet, O(n log n)
+/// for points and segments with few others near.
 std::optional<Arrangement> arrange(const Mesh& mesh, std::span<const std::array<std::uint32_t, 2>> pairs,
                                    double touch_m, std::int64_t& work_left);
 

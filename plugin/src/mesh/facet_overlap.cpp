@@ -11,10 +11,11 @@ namespace vps {
 
 namespace {
 
-constexpr int kProbes = 16;        ///< for a facet in which no deeper point is found
-constexpr int kMoreProbes = 80;    ///< once one is found
-constexpr double kThin = 16;       ///< a gap of less than a side of the piece by this is thin
-constexpr double kParallel = 0.9;  ///< the normals of flush faces differ by much less, those at edges by more
+constexpr int kProbes = 16;      ///< probes for a facet while no deeper point is found
+constexpr int kMoreProbes = 80;  ///< probes for a facet once a deeper point is found
+constexpr double kThin = 16;     ///< a gap is thin if this times the gap is less than a side of the piece
+/// Cosine: the normals of flush faces differ by much less, the normals at edges by more.
+constexpr double kParallel = 0.9;
 
 using Polygon = std::vector<Vec3>;
 
@@ -38,8 +39,8 @@ Polygon clipped(Polygon polygon, const Box& box) {
   return polygon;
 }
 
-/// At least the radius of the greatest circle in a convex polygon: its area is at least half of its
-/// circumference times that radius.
+/// An upper bound of the radius of the largest circle in a convex polygon: the area of the polygon is at
+/// least half its circumference times that radius.
 double greatestRadius_m(const Polygon& polygon) {
   Vec3 area2 = Vec3::Zero();
   double around_m = 0;
@@ -53,7 +54,7 @@ double greatestRadius_m(const Polygon& polygon) {
 
 struct Piece {
   std::array<Vec3, 3> corners;
-  double bound_m;  ///< no point of it is deeper
+  double bound_m;  ///< upper bound of the depth of its points
 };
 
 std::array<Piece, 2> halves(const Piece& piece, const Vec3& probe, double depth_m) {
@@ -73,8 +74,8 @@ std::array<Piece, 2> halves(const Piece& piece, const Vec3& probe, double depth_
   return out;
 }
 
-/// Depths that are worth a change: that of the edges stands for the facets' if these are less than twice as
-/// deep. Between edges, to a sixteenth.
+/// The depth above which a new depth is recorded. The depth at edges is kept unless a depth between edges is
+/// twice as large; a depth between edges is refined to a sixteenth.
 double needed_m(const Deepest& deepest) {
   return deepest.is_between_edges ? deepest.depth_m * (1 + 1.0 / 16)
                                   : 2 * deepest.depth_m + kOverlapCertain_m;
@@ -117,7 +118,7 @@ class FacetSearch {
     const double facing = nearest.normal.dot(normal_S_);
     record(deepest_, depth_m, probe);
     if (std::abs(depth_m) <= kOverlapCertain_m && facing > kParallel) flush_.push_back({probe, normal_S_});
-    // Two faces in contact, or with a gap that is thin beside the piece.
+    // Two faces in contact, or with a gap that is thin compared with the piece.
     const double contact_m = deepest_.is_between_edges ? kOverlapCertain_m : needed_m(deepest_);
     const double gap_m = kOverlapCertain_m + (piece.corners[1] - piece.corners[0]).norm() / kThin;
     if (depth_m >= -gap_m && depth_m <= contact_m && facing < -kParallel) return;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The depth of facets whose edges lie in the other mesh's surface, where the edges alone show no overlap.
+// The depth of facets whose edges lie in the other mesh's surface, so that the edges alone show no overlap.
 #pragma once
 
 #include <cstdint>
@@ -14,22 +14,22 @@ namespace vps {
 struct Deepest {
   double depth_m = 0;
   Vec3 p_S = Vec3::Zero();
-  bool is_between_edges = false;  ///< found by the functions below
+  bool is_between_edges = false;  ///< found by searchFacets() or searchBelow()
 };
 
-/// A point of a facet that is in both surfaces, which face the same way there: both solids are below it.
+/// A point of a facet that lies in both surfaces. Both face the same way there, so both solids are below it.
 struct FlushPoint {
   Vec3 p_S, normal_S;
 };
 
-/// Probes some facets of `other` at points between their edges, and records what is at least twice as deep in
-/// `in` as its edges. The depth found is a lower bound, by a sixteenth or where it exceeds what 80 probes for
-/// a facet find; 16 for each as long as none is deeper. Allocates.
+/// Probes some facets of `other` at points between their edges, and records depths in `in` that are at least
+/// twice the depth of the edges. A recorded depth is a lower bound: it may be a sixteenth too small, or
+/// smaller if 80 probes of a facet find less (16 probes as long as none finds a deeper point). Allocates.
 std::vector<FlushPoint> searchFacets(const OverlapMesh& in, const OverlapMesh& other, const Pose& X_SO,
                                      std::span<const std::uint32_t> facets, Deepest& deepest);
 
-/// Looks below points that are in both surfaces, half way to where the first of the solids ends. This comes
-/// last, since it finds half of a depth that a probe between edges may show.
+/// Searches below points that are in both surfaces, half way to the end of the first of the solids. Call it
+/// last, because it finds half of a depth that a probe between edges may find.
 void searchBelow(const OverlapMesh& in, const OverlapMesh& other, const Pose& X_SO,
                  std::span<const FlushPoint> points, Deepest& deepest);
 

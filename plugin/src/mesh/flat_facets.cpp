@@ -22,20 +22,20 @@ std::size_t longestSide(const Mesh& mesh, const FacetCorners& t) {
   return longest;
 }
 
-/// As checkMesh() counts them.
+/// True if the facet counts as degenerate in checkMesh().
 bool hasNoArea(const Mesh& mesh, const FacetCorners& t) {
   const Vec3& a = mesh.vertices[t[0]];
   const Vec3 n = (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a);
   return hasRepeatedCorner(t) || n.norm() <= 1e-12 * sideLength2(mesh, t, longestSide(mesh, t));
 }
 
-/// One round over facets that do not share a facet to split.
+/// One round of leaving out facets without area. Each round splits a facet at most once.
 class FlatFacets {
  public:
   explicit FlatFacets(Mesh& mesh)
       : mesh_(mesh), edges_(sortedHalfEdges(mesh)), is_done_(mesh.triangles.size(), 0) {}
 
-  /// False if there were none.
+  /// False if there were no facets without area.
   bool leaveOut() {
     const std::size_t count = mesh_.triangles.size();
     bool has_any = false;
@@ -46,7 +46,7 @@ class FlatFacets {
   }
 
  private:
-  /// Facets that are left out get one corner for all three.
+  /// A facet that is left out gets the same vertex for all three corners.
   void leaveOut(std::uint32_t i) {
     const FacetCorners t = mesh_.triangles[i];
     if (hasRepeatedCorner(t) || is_done_[i] != 0) return;
@@ -61,7 +61,7 @@ class FlatFacets {
     is_done_[i] = 1;
   }
 
-  /// A facet whose side runs from `to` to `from`, if there is one; if possible one that was not split.
+  /// A facet whose side runs from `to` to `from`, or null; if possible one that was not split in this round.
   [[nodiscard]] const HalfEdge* facetAcross(std::uint32_t from, std::uint32_t to) const {
     const std::uint32_t low = std::min(from, to), high = std::max(from, to);
     auto e = std::lower_bound(edges_.begin(), edges_.end(), low, [&](const HalfEdge& edge, std::uint32_t) {
@@ -83,13 +83,13 @@ class FlatFacets {
 
   Mesh& mesh_;
   const std::vector<HalfEdge> edges_;
-  std::vector<char> is_done_;  // of the given facets: left out, or split
+  std::vector<char> is_done_;  // by given facet: left out, or split
 };
 
 }  // namespace
 
 std::optional<Mesh> withoutFlatFacets(Mesh mesh) {
-  constexpr int kRounds = 64;  // of a fan of facets without area each takes one
+  constexpr int kRounds = 64;  // a fan of facets without area needs one round for each of them
   for (int round = 0; round < kRounds; ++round)
     if (!FlatFacets(mesh).leaveOut()) return mesh;
   return std::nullopt;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Facets without area, which come from T-junctions that a program filled: three corners in a line.
+// Removes facets without area. Programs that fill T-junctions make them: three corners in a line.
 #pragma once
 
 #include <optional>
@@ -8,9 +8,9 @@
 
 namespace vps {
 
-/// The mesh without facets of no area. The facet across the longest side of each is split at its middle
-/// corner, so that a closed mesh stays closed. Vertices stay. Nothing if some could not be left out. O(n log
-/// n).
+/// The mesh without facets of no area. The facet across the longest side of each such facet is split at its
+/// middle corner, so that a closed mesh stays closed. Vertices stay. Nothing if some facet could not be left
+/// out. O(n log n).
 std::optional<Mesh> withoutFlatFacets(Mesh mesh);
 
 }  // namespace vps

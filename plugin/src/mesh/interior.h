@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is inside of a mesh that is not closed, or that overlaps itself. Solid and the voxeliser both use it.
+// The inside of a mesh that is not closed, or that overlaps itself. Solid and the voxeliser both use it.
 #pragma once
 
 #include <utility>
@@ -10,12 +10,12 @@
 
 namespace vps {
 
-/// Inside is where the winding number exceeds 0.5, within the box of the surface. Beyond that box nothing is
-/// inside, whatever the winding number: walls that face the wrong way raise it above 0.5 far from the part.
+/// A point is inside if its winding number exceeds 0.5 and it lies within the box of the surface. The box is
+/// needed because walls that face the wrong way raise the winding number above 0.5 far from the part.
 class Interior {
  public:
-  /// Several times the error of WindingNumber::at(), as tests measure it. Nothing is concluded from a winding
-  /// number that is nearer to 0.5 than this.
+  /// Several times the error of WindingNumber::at(), as tests measure it. A winding number that is nearer to
+  /// 0.5 than this proves nothing.
   static constexpr double kDoubt = 0.02;
 
   /// @param solid  RepairedMesh::solid: facets face out, vertices are shared
@@ -24,7 +24,7 @@ class Interior {
 
   [[nodiscard]] const Mesh& mesh() const noexcept { return mesh_; }
   [[nodiscard]] const Box& box() const noexcept { return box_; }
-  /// Its gradient, away from facets, is at most slope().
+  /// The gradient away from facets is bounded by slope().
   [[nodiscard]] double windingNumber(const Vec3& p) const noexcept { return winding_.at(p).w; }
   [[nodiscard]] const WindingSlope& slope() const noexcept { return slope_; }
   [[nodiscard]] bool mayHold(const Vec3& p) const noexcept {

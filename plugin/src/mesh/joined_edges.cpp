@@ -11,10 +11,10 @@ namespace vps {
 namespace {
 
 constexpr double kNarrowest = 1e-7;
-/// A gap may be this share of the edges beside it: wider ones may be the part's shape.
+/// A gap may be at most this share of the edges beside it; a wider gap may be the part's shape.
 constexpr double kMaxGapShare = 0.25;
 
-/// Calls visit with every edge that has one facet.
+/// Calls visit with every edge that has exactly one facet.
 template <typename Visit>
 void forEachOpenEdge(const std::vector<HalfEdge>& edges, Visit visit) {
   forEachEdge(edges, [&](std::span<const HalfEdge> same) {
@@ -80,7 +80,7 @@ class Joiner {
     return points;
   }
 
-  /// Of vertices.
+  /// Calls visit with the vertices near segment ab.
   template <typename Visit>
   void forEachNear(const Vec3& a, const Vec3& b, double tolerance_m, Visit visit) const {
     Box box;
@@ -134,7 +134,7 @@ class Joiner {
   const Mesh& mesh_;
   const std::vector<HalfEdge>& edges_;
   std::vector<std::uint8_t> is_open_;  // by vertex: ends an edge that has one facet
-  std::vector<double> reach_m_;        // by vertex: the widest gap to a vertex that is the same
+  std::vector<double> reach_m_;        // by vertex: the widest gap across which it may be joined
   const std::vector<Box> points_;      // by vertex
   const BoxTree tree_;                 // of points_
 };
@@ -160,7 +160,7 @@ LinkedPatches linkPatches(const Mesh& mesh, const std::vector<HalfEdge>& edges,
   for (const std::uint32_t patch : patch_of) count = std::max(count, patch + 1);
   struct Link {
     std::uint32_t a, b;
-    double agree_m;  // length of edges that agree, less that of edges that do not
+    double agree_m;  // length of edges that agree minus length of edges that disagree
   };
   std::vector<Link> links;
   forEachEdge(edges, [&](std::span<const HalfEdge> same) {
@@ -183,7 +183,7 @@ LinkedPatches linkPatches(const Mesh& mesh, const std::vector<HalfEdge>& edges,
   if (!links.empty()) links.resize(last + 1);
   std::stable_sort(links.begin(), links.end(),
                    [](const Link& a, const Link& b) { return std::abs(a.agree_m) > std::abs(b.agree_m); });
-  // Every patch stands for two, itself and itself turned, 2 patch and 2 patch + 1.
+  // Every patch has two numbers in the groups: 2 patch as given, and 2 patch + 1 turned.
   Groups groups(2 * std::size_t{count});
   for (const Link& link : links) {
     if (groups.find(2 * link.a) == groups.find(2 * link.b) ||
@@ -198,7 +198,7 @@ LinkedPatches linkPatches(const Mesh& mesh, const std::vector<HalfEdge>& edges,
   linked.is_opposed.resize(count);
   std::uint32_t next = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
-    // The root is the lowest member, so that of a group's first patch.
+    // The root is the lowest member, so it belongs to the first patch of the group.
     const std::uint32_t root = groups.find(2 * i);
     linked.is_opposed[i] = root % 2;
     linked.group_of[i] = root / 2 == i ? next++ : linked.group_of[root / 2];

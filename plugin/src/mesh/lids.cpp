@@ -13,7 +13,7 @@ namespace {
 
 struct OpenEdge {
   std::uint32_t low, high;
-  int surplus;  ///< facets that run from low to high, less the others
+  int surplus;  ///< number of facets that run from low to high, minus those that run from high to low
 };
 
 std::vector<OpenEdge> openEdges(const Mesh& mesh) {
@@ -34,7 +34,7 @@ Mesh lidsOf(const Mesh& mesh) {
   if (open.empty()) return lids;
   Groups groups(mesh.vertices.size());
   for (const OpenEdge& edge : open) groups.join(edge.low, edge.high);
-  std::map<std::uint32_t, std::pair<Vec3, double>> center;  // times length; length
+  std::map<std::uint32_t, std::pair<Vec3, double>> center;  // by group: sum of length times place; length
   for (const OpenEdge& edge : open) {
     const Vec3 &a = mesh.vertices[edge.low], &b = mesh.vertices[edge.high];
     auto& [sum, length_m] = center.try_emplace(groups.find(edge.low), Vec3::Zero(), 0.0).first->second;

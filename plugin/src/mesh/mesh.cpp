@@ -41,8 +41,8 @@ double area(const Mesh& mesh) {
 }
 
 MassProperties massProperties(const Mesh& mesh) {
-  // Tetrahedra from a point in the middle of the body to each triangle: far from the origin the sums would
-  // cancel.
+  // Sums over tetrahedra from a point in the middle of the body to each triangle. From a point far from the
+  // body the terms would cancel.
   const Vec3 o = bounds(mesh).center();
   double det_sum = 0;
   Vec3 first = Vec3::Zero();

@@ -16,10 +16,10 @@
 namespace vps {
 namespace {
 
-/// The distance that counts as contact, relative to the size of the mesh: more than the height of a thin
+/// The distance that counts as contact, relative to the size of the mesh; greater than the height of a thin
 /// triangle.
 constexpr double kTouch = 1e-9;
-/// Seven children wait on each level, and the last one that was taken.
+/// On each level of the tree seven children may wait, and the eighth is being visited.
 constexpr int kStack = 256;
 static_assert(7 * kTreeLevels + 1 <= kStack);
 
@@ -85,8 +85,8 @@ void MeshDistance::computeNormals() {
   return is_met;
 }
 
-/// True where the segment middle +- half may meet a box: their shadows overlap along the axes and along the
-/// products of the axes with the segment (separating axes).
+/// True where the segment middle +- half may meet a box: their projections overlap on the axes and on the
+/// cross products of the axes with the segment (separating axes).
 [[gnu::always_inline]] inline MeshDistance::IsLane MeshDistance::Node::meets(
     const Eigen::Vector3f& middle, const Eigen::Vector3f& half) const {
   // Each product below has a few roundings of floats, relative to the size of its terms.
@@ -110,9 +110,9 @@ void MeshDistance::computeNormals() {
 
 namespace {
 
-/// Visits the triangles in those boxes of a tree that are near, in no particular order, until visit(triangle)
-/// returns false. Returns true if it never did.
-/// @param isNear  of the boxes of a node
+/// Visits the triangles in the near boxes of a tree, in no particular order, until visit(triangle) returns
+/// false. Returns true if it never did.
+/// @param isNear  returns for each box of a node whether it is near
 template <typename Nodes, typename IsNear, typename Visit>
 bool descend(const Nodes& nodes, std::uint32_t triangle_bit, IsNear isNear, Visit visit) {
   std::uint32_t stack[kStack];
@@ -135,8 +135,9 @@ bool descend(const Nodes& nodes, std::uint32_t triangle_bit, IsNear isNear, Visi
 }  // namespace
 
 void MeshDistance::appendCrossings(const Vec3& a, const Vec3& b, std::vector<double>& out) const {
-  // Barycentric coordinates round by 1e-11 where a facet is long and thin and the segment grazes it. A
-  // crossing at a shared border must not fall between both; one too many only divides a segment once more.
+  // Barycentric coordinates have an error of 1e-11 where a facet is long and thin and the segment grazes it.
+  // A crossing at a border shared by two facets must not be missed; a crossing counted twice only divides a
+  // segment once more.
   constexpr double kBorder = -1e-9;
   const Eigen::Vector3f middle = (0.5 * (a + b) - center_).cast<float>(),
                         half = (0.5 * (b - a)).cast<float>();
@@ -172,14 +173,14 @@ bool MeshDistance::overlapping(const Box& box, std::size_t most,
       });
 }
 
-/// Visits triangles in order of distance and calls onNearer(triangle, point) for each that is nearer than all
-/// before (or as near, with a lower number, so that the tree's order does not matter) and than max_m; returns
-/// the least squared distance. Skips boxes whose squared distance times box_weight is greater.
+/// Visits triangles in order of distance. Calls onNearer(triangle, point) for each that is nearer than max_m
+/// and than all triangles before (or as near, with a lower number, so that the tree's order does not matter).
+/// Returns the least squared distance. Skips boxes whose squared distance times box_weight is greater.
 template <typename Visit>
 double MeshDistance::search(const Vec3& p, double max_m, double box_weight, Visit onNearer) const noexcept {
   double best2 = max_m * max_m;
   if (nodes_.empty()) return best2;
-  std::uint32_t best_triangle = 0;  // none is before it
+  std::uint32_t best_triangle = 0;  // no triangle has a lower number
   // Rounded up to a float, and finite: unused lanes are infinitely far.
   const auto limitOf = [box_weight](double squared) {
     constexpr float kRoundingUp = 1 + 4e-7f, kMost = std::numeric_limits<float>::max() / 2;
@@ -213,7 +214,7 @@ double MeshDistance::search(const Vec3& p, double max_m, double box_weight, Visi
     const Node& node = nodes_[next.child];
     float distance2[kLanes];
     Eigen::Map<Lanes>{distance2} = node.distance2(from_center);
-    // First all near lanes, without a branch that could be predicted wrong, then the nearest on top.
+    // Collect all near lanes without a branch that could be mispredicted, then sort the nearest to the top.
     int near[kLanes], count = 0;
     for (int lane = 0; lane < kLanes; ++lane) {
       near[count] = lane;
@@ -267,8 +268,8 @@ bool MeshDistance::isNextToThin(std::uint32_t triangle, int feature) const noexc
   return is_corner_of_thin_[mesh_.triangles[triangle][feature - 4]] != 0;
 }
 
-/// The pseudonormal at a point of the surface from all facets that touch it, each weighted by the angle that
-/// it covers around the point.
+/// The pseudonormal at a point of the surface, from all facets that touch the point. Each facet is weighted
+/// by the angle that it covers around the point.
 Vec3 MeshDistance::normalThrough(const Vec3& q) const noexcept {
   Vec3 sum = Vec3::Zero();
   const Eigen::Vector3f from_center = (q - center_).cast<float>();

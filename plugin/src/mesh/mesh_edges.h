@@ -18,16 +18,16 @@ inline bool hasRepeatedCorner(const std::array<std::uint32_t, 3>& t) {
   return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
 }
 
-/// One side of a triangle: vertices low < high, which triangle, which of its sides (0 ab, 1 bc, 2 ca).
+/// One side of a triangle: vertices low < high, the triangle, and the side's number in it (0 ab, 1 bc, 2 ca).
 struct HalfEdge {
   std::uint32_t low, high;
   std::uint32_t triangle;
   std::uint8_t side;
-  bool is_forward;  ///< the triangle runs from low to high
+  bool is_forward;  ///< the triangle's side runs from low to high
 };
 
 /// All half-edges of all triangles, grouped by edge and sorted by triangle. Triangles with a repeated corner
-/// have none. O(n): counted by low vertex, which has few each, then sorted.
+/// have none. O(n): a counting sort by low vertex, then a sort of the few edges of each low vertex.
 inline std::vector<HalfEdge> sortedHalfEdges(const Mesh& mesh) {
   const auto forEachSide = [&](auto visit) {
     for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
@@ -39,7 +39,8 @@ inline std::vector<HalfEdge> sortedHalfEdges(const Mesh& mesh) {
       }
     }
   };
-  std::vector<std::size_t> end(mesh.vertices.size() + 1, 0);  // of each low vertex's edges; first their start
+  // By low vertex: first the start of its edges, then their end.
+  std::vector<std::size_t> end(mesh.vertices.size() + 1, 0);
   forEachSide([&](const HalfEdge& e) { ++end[e.low + 1]; });
   for (std::size_t i = 1; i < end.size(); ++i) end[i] += end[i - 1];
   std::vector<HalfEdge> edges(end.back());
@@ -65,7 +66,7 @@ class Groups {
     a = find(a), b = find(b);
     if (a != b) parent_[std::max(a, b)] = std::min(a, b);
   }
-  /// The number of each member's set, counted from 0 by lowest members.
+  /// The number of each member's set; sets are counted from 0 in the order of their lowest members.
   [[nodiscard]] std::vector<std::uint32_t> numbered() {
     std::vector<std::uint32_t> number(parent_.size());
     std::uint32_t next = 0;
@@ -80,9 +81,9 @@ class Groups {
   std::vector<std::uint32_t> parent_;
 };
 
-/// checkMesh() for callers that have the edges already.
-/// @param shell_of  if given, each triangle's shell, counted from 0; undefined for triangles with repeated
-/// corners
+/// checkMesh() for callers that already have the edges.
+/// @param shell_of  if given, receives each triangle's shell, counted from 0; undefined for triangles with
+/// repeated corners
 MeshReport checkMesh(const Mesh& mesh, const std::vector<HalfEdge>& edges,
                      std::vector<std::uint32_t>* shell_of = nullptr);
 
@@ -90,10 +91,11 @@ MeshReport checkMesh(const Mesh& mesh, const std::vector<HalfEdge>& edges,
 struct Twin {
   std::array<std::uint32_t, 3> corners;
   std::uint32_t triangle;
-  bool is_even;  ///< runs through them in that order
+  bool is_even;  ///< the triangle runs through its corners in that order
 };
 
-/// Calls visit with the triangles of each set of corners that has more than one, by triangle. O(n log n).
+/// Calls visit for each set of corners that has more than one triangle, with these triangles in ascending
+/// order. O(n log n).
 template <typename Visit>
 void forEachTwin(const std::vector<std::array<std::uint32_t, 3>>& triangles, Visit visit) {
   std::vector<Twin> twins;
@@ -120,7 +122,7 @@ void forEachTwin(const std::vector<std::array<std::uint32_t, 3>>& triangles, Vis
   }
 }
 
-/// Calls visit with the half-edges of each edge in turn.
+/// Calls visit for each edge, with its half-edges.
 template <typename Visit>
 void forEachEdge(std::span<const HalfEdge> edges, Visit visit) {
   for (std::size_t i = 0; i < edges.size();) {

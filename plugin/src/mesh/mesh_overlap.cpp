@@ -18,7 +18,8 @@ struct EdgeGroups {
   EdgeGroups(const EdgeGroups&) = delete;
   EdgeGroups& operator=(const EdgeGroups&) = delete;
 
-  /// The groups whose boxes share a point with this one, in ascending order. Rounding may move a box's side.
+  /// The groups whose boxes share a point with `box`, in ascending order. The box is grown by rounding
+  /// errors.
   [[nodiscard]] std::vector<std::uint32_t> near(const Box& box) const {
     std::vector<std::uint32_t> found;
     tree.forEachOverlap(grown(box, 1e-9 * box.size().norm()), [&](std::uint32_t group) {
@@ -35,10 +36,11 @@ struct EdgeGroups {
 
 namespace {
 
-/// Rounding turns the diagonal of a flat face by about 1e-8; edges of curved surfaces turn by more than 1e-3.
+/// Rounding turns the diagonal of a flat face by about 1e-8 rad; edges of curved surfaces turn by more than
+/// 1e-3.
 constexpr double kFlat_rad = 1e-6;
 
-/// The first and the last triangle at each of some edges, which are in ascending order.
+/// The first and the last triangle at each of the given edges, which are in ascending order.
 std::vector<std::array<std::uint32_t, 2>> trianglesAt(const std::vector<std::array<std::uint32_t, 2>>& edges,
                                                       const Mesh& mesh) {
   std::vector<std::array<std::uint32_t, 2>> triangles;
@@ -63,7 +65,8 @@ Vec3 at(const Vec3& a, const Vec3& b, double fraction) {
   return a + fraction * (b - a);
 }
 
-/// Edges of near numbers are mostly near each other, since vertices are numbered along the surface.
+/// Edges in a group. Edges of near numbers are mostly near each other, since vertices are numbered along the
+/// surface.
 constexpr std::size_t kGroup = 16;
 
 std::vector<Box> groupBoxes(const std::vector<std::array<std::uint32_t, 2>>& edges, const Mesh& mesh) {
@@ -94,7 +97,7 @@ std::vector<CrossedEdge> edgesNear(const OverlapMesh& in, const OverlapMesh& oth
   return near;
 }
 
-/// Returns those edges, by index, that are not wholly outside of the surface.
+/// Returns the edges, by index, that are not wholly outside of the surface.
 std::vector<std::size_t> searchEdges(const OverlapMesh& in, std::vector<CrossedEdge>& edges,
                                      Deepest& deepest) {
   std::vector<std::size_t> touching;
@@ -127,8 +130,8 @@ bool isAnyCrossed(const std::vector<CrossedEdge>& edges) {
   return std::any_of(edges.begin(), edges.end(), [](const CrossedEdge& e) { return !e.crossings.empty(); });
 }
 
-/// The depth of a sheet in a solid. Where the solid's edges cross the sheet they surround what is inside: its
-/// middle is a first guess.
+/// Finds the depth of a sheet in a solid. The first guess is the middle of the places where the solid's edges
+/// cross the sheet, because these surround the part of the sheet that is inside.
 /// @param crossed  edges of the solid in the sheet's frame
 void searchSheet(const OverlapMesh& sheet, const OverlapMesh& solid, const Pose& X_SolidSheet,
                  const std::vector<CrossedEdge>& crossed, Deepest& deepest) {
@@ -136,7 +139,7 @@ void searchSheet(const OverlapMesh& sheet, const OverlapMesh& solid, const Pose&
   int count = 0;
   for (const CrossedEdge& edge : crossed)
     for (const double fraction : edge.crossings) {
-      if (fraction == 1) continue;  // the end of the edge, which closes its last stretch
+      if (fraction == 1) continue;  // not a crossing: the end of the edge, added by searchEdges()
       sum += at(edge.a, edge.b, fraction);
       ++count;
     }
@@ -160,7 +163,7 @@ std::size_t workOf(const std::vector<CrossedEdge>& edges) {
   return work;
 }
 
-/// True if the first vertex is outside and does not touch the surface.
+/// True if the first vertex of `other` is outside of `in` and does not touch its surface.
 bool isClearlyOutside(const OverlapMesh& in, const OverlapMesh& other, const Pose& X_SO) {
   const Vec3 p = X_SO * other.mesh().vertices.front();
   return !meet(boxOf(p, p), in.box()) || in.solid().signedDistance(p) > kOverlapCertain_m;
@@ -191,7 +194,7 @@ Overlap deepestOverlap(const OverlapMesh& a, const Pose& X_WA, const OverlapMesh
   Overlap deepest = in_b.depth_m > in_a.depth_m ? Overlap{in_b.depth_m, X_WB * in_b.p_S, 0}
                                                 : Overlap{in_a.depth_m, X_WA * in_a.p_S, 0};
   deepest.work = work + 4 * (edges_a.size() + edges_b.size());
-  // Between edges: first all facets, then below those that are flush.
+  // Search between edges: first in all facets, then below flush facets.
   bool is_between_edges = false;
   const auto keep = [&](const Pose& X_WS, const auto& search) {
     Deepest found{deepest.depth_m, Vec3::Zero(), is_between_edges};

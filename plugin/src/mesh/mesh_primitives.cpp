@@ -31,7 +31,7 @@ void joinRings(Mesh& mesh, std::uint32_t low, std::uint32_t high, int segments) 
   }
 }
 
-/// Closes a ring by a fan about its centre; `is_up` says which way it faces.
+/// Closes a ring by a fan about its centre, which faces up or down.
 void capRing(Mesh& mesh, std::uint32_t ring, double z_m, int segments, bool is_up) {
   const auto center = static_cast<std::uint32_t>(mesh.vertices.size());
   mesh.vertices.emplace_back(0, 0, z_m);
@@ -77,7 +77,7 @@ Mesh makeTube(double outer_m, double inner_m, double height_m, int segments) {
   const std::uint32_t outer_high = addRing(mesh, outer_m, height_m / 2, segments);
   const std::uint32_t inner_low = addRing(mesh, inner_m, -height_m / 2, segments);
   const std::uint32_t inner_high = addRing(mesh, inner_m, height_m / 2, segments);
-  // Round the section, so that every band faces out: outside, top, bore, bottom.
+  // In the order around the section, so that every band faces out: outside, top, bore, bottom.
   joinRings(mesh, outer_low, outer_high, segments);
   joinRings(mesh, outer_high, inner_high, segments);
   joinRings(mesh, inner_high, inner_low, segments);

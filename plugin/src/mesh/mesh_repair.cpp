@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Repairs meshes for the sign of distances: orientation, duplicates, internal facets and sheets. One file of
-// more than 400 lines, since its steps share the state of one repair.
+// Repairs meshes for the sign of distances: orientation, duplicates, internal facets and sheets. The file has
+// more than 400 lines because its steps share the state of one repair.
 #include "vps/mesh_repair.h"
 
 #include <tbb/parallel_for.h>
@@ -25,23 +25,23 @@
 namespace vps {
 namespace {
 
-/// Number of facets sampled to classify a whole patch. Assumed: enough for a mean, and fast.
+/// Number of sampled facets that classify a whole patch. Assumed: enough for a mean, and fast.
 constexpr std::size_t kSamples = 48;
-/// Number of rays that classify the sides of open patches, over the whole mesh. Assumed: seconds, in a soup
-/// of 100,000 facets.
+/// Number of rays that classify the sides of open patches, over the whole mesh. Assumed: takes seconds for an
+/// unconnected set of 100,000 facets.
 constexpr std::size_t kMaxRays = 20000;
-/// How far a patch's mean winding number must be from 0.5 to be classified as not being surface.
+/// A patch whose mean winding number differs from 0.5 by at least this is classified as not being surface.
 constexpr double kClearly = 0.35;
-/// Most sheets and walls among which copies of the surface are looked for, at a winding number of the whole
-/// mesh each. Assumed: copies are few.
+/// If there are at most this many sheets and walls, they are searched for copies of the surface, at the cost
+/// of a winding number of the whole mesh each. Assumed: copies are few.
 constexpr std::size_t kMaxCopies = 32;
-/// Winding number in a facet's plane above which both sides are clearly inside: it is 0.5 more behind the
-/// facet and 0.5 less in front, and a threshold of 0.75 leaves a quarter of margin on both sides.
+/// Winding number in a facet's plane above which both sides are clearly inside. It is 0.5 more behind the
+/// facet and 0.5 less in front, and a threshold of 0.75 leaves a margin of a quarter on both sides.
 constexpr double kInternal = 1.25;
-/// In the same way, below it both sides are clearly outside.
+/// Winding number in a facet's plane below which both sides are clearly outside, by the same margin.
 constexpr double kExternal = -0.25;
 
-/// Facets that are connected by edges of two facets, and so must have one orientation.
+/// Facets that are connected by edges of two facets, and therefore must have one orientation.
 struct Patch {
   std::vector<std::uint32_t> triangles;
   Box box;
@@ -129,15 +129,15 @@ class Repairer {
   }
 
  private:
-  /// Without a union of shells.
+  /// For a repair without a union of shells.
   Repairer(const Mesh& mesh, bool is_single) : is_crossing_(false), is_single_(is_single) {
     result_.solid = mesh;
   }
 
   enum class Keep : std::uint8_t { Both, Solid, Surface, None };
 
-  /// The union of closed shells, if some of them touch, with the other patches repaired beside it.
-  /// Duplicates come first: if these are the only fault, they are copies of facets.
+  /// The union of closed shells, if some of them touch, with the other patches repaired beside it. Duplicates
+  /// are tested first: if they are the only fault, they are copies of facets.
   std::optional<RepairedMesh> unitedShells() {
     if (is_crossing_ || is_single_) return std::nullopt;
     std::optional<Mesh> solid = report().degenerate_triangles > 0 ? withoutFlatFacets(mesh()) : mesh();
@@ -162,14 +162,15 @@ class Repairer {
     return united;
   }
 
-  /// Without one facet of each set of duplicates nothing is wrong. If a shell faces in, back-to-back facets
-  /// may be the same surface of two solids rather than a wall between them, so that none may be lost.
+  /// True if the mesh is sound when one facet of each set of duplicates is left out. False if a shell faces
+  /// in: back-to-back facets may then be the same surface of two solids rather than a wall between them, so
+  /// that none may be lost.
   bool areOnlyCopies(const Repairer& shells) {
     Repairer single(mesh(), true);
     return single.run().is_sound && !(single.has_cancelled_ && shells.hasShellFacingIn());
   }
   [[nodiscard]] bool hasShellFacingIn() const {
-    constexpr double kFlat = 1e-9;  // of the box: rounding, as of a facet and its copy
+    constexpr double kFlat = 1e-9;  // share of the box: rounding error, as of a facet and its copy
     return std::any_of(patches_.begin(), patches_.end(), [](const Patch& p) {
       return p.is_closed && p.volume_m3 < -kFlat * std::pow(p.box.size().norm(), 3);
     });
@@ -186,7 +187,7 @@ class Repairer {
     repaired.is_sound = false;
     return repaired;
   }
-  /// Counts of the mesh as it was given, and what was repaired before and after the union.
+  /// Combines the counts of the given mesh with the repairs before and after the union.
   [[nodiscard]] MeshReport reportOf(const MeshReport& before, const MeshReport& after) const {
     MeshReport all = before;
     all.triangles = result_.report.triangles;
@@ -200,7 +201,7 @@ class Repairer {
     return all;
   }
 
-  /// Finds patches, and which of them are closed without cracks.
+  /// Finds patches, and which of them are closed and without cracks.
   void findClosed() {
     edges_ = sortedHalfEdges(mesh());
     result_.report = checkMesh(mesh(), edges_);
@@ -208,8 +209,8 @@ class Repairer {
     findPatches();
     markOpen(edges_);  // cracks stay open in the union
   }
-  /// After findClosed(). Nothing if there are no two closed shells whose boxes touch. Turns shells that face
-  /// in.
+  /// Call after findClosed(). Turns shells that face in. Returns nothing if there are no two closed shells
+  /// whose boxes touch.
   std::optional<ShellUnion> uniteClosed() {
     if (!boxesTouch(boxesOfClosed(), touchDistance(mesh()))) return std::nullopt;
     turnClosed();
@@ -225,7 +226,7 @@ class Repairer {
     return facets.mesh.triangles.size() > 1 && vps::haveContact(facets.mesh, facets.shell_of);
   }
 
-  /// The facets of closed patches, with area; what was united before is one shell.
+  /// The facets of closed patches that have area; the facets of an earlier union count as one shell.
   ShellFacets closedFacets() {
     ShellFacets out{{mesh().vertices, {}}, {}};
     std::vector<std::uint32_t> number(patches_.size() + 1, UINT32_MAX);
@@ -245,7 +246,7 @@ class Repairer {
       if (!patches_[patch_of_[i]].is_closed) others.triangles.push_back(mesh().triangles[i]);
     return others;
   }
-  /// Closed shells touch that were not united, as far as their boxes tell.
+  /// True if the boxes of closed shells that were not united touch.
   bool mayNeedUnion() {
     if (is_crossing_ || is_contact_known_ || report().is_union_incomplete) return false;
     if (is_single_ && united_facets_ == 0) return false;
@@ -287,7 +288,7 @@ class Repairer {
     return boxes;
   }
 
-  /// Every edge has two triangles that agree.
+  /// True if every edge has two triangles that agree.
   bool agreesOnEdges() {
     bool agrees = true;
     forEachEdge(edges_, [&](std::span<const HalfEdge> same) {
@@ -314,12 +315,12 @@ class Repairer {
     return true;
   }
 
-  /// Turns facets to agree within each patch, and patches that cracks part to agree with each other; the
-  /// minority is turned.
+  /// Turns facets to agree within each patch, and turns patches that cracks separate to agree with each
+  /// other; the minority is turned.
   void findPatches() {
     const std::size_t count = mesh().triangles.size();
-    // Two facets that share an edge need not be neighbours: they may be copies of one, if an odd number of
-    // facets ends there.
+    // Two facets that share an edge need not be neighbours: they may be copies of one facet, if an odd number
+    // of facets ends there.
     std::vector<std::array<std::uint8_t, 3>> has_copy(count, {0, 0, 0});
     forEachEdge(joined_.edges, [&](std::span<const HalfEdge> same) {
       if (same.size() > 1 && same.size() % 2 == 1)
@@ -334,7 +335,7 @@ class Repairer {
       across[same[0].triangle][same[0].side] = 2 * same[1].triangle + disagrees;
       across[same[1].triangle][same[1].side] = 2 * same[0].triangle + disagrees;
     });
-    std::vector<std::vector<std::uint32_t>> parts;  // triangles that edges connect
+    std::vector<std::vector<std::uint32_t>> parts;  // sets of triangles that edges connect
     patch_of_.assign(count, UINT32_MAX);
     is_flipped_.assign(count, 0);
     std::vector<std::uint8_t> is_turned(count, 0);
@@ -380,7 +381,7 @@ class Repairer {
     measurePatches();
   }
 
-  /// Where shells have an edge in common, their facets follow each other in the list.
+  /// Pairs facets at an edge that several shells share: the facets of a shell follow each other in the list.
   static void pairInOrder(std::span<const HalfEdge> same, std::vector<std::array<std::uint32_t, 3>>& across) {
     std::vector<const HalfEdge*> forward, backward;
     for (const HalfEdge& e : same) (e.is_forward ? forward : backward).push_back(&e);
@@ -402,9 +403,9 @@ class Repairer {
     markOpen(joined_.edges);
   }
 
-  /// Patches some of whose edges have more facets in one direction than in the other are not closed.
+  /// Marks a patch as not closed if one of its edges has more facets in one direction than in the other.
   void markOpen(const std::vector<HalfEdge>& edges) {
-    std::vector<std::pair<std::uint32_t, int>> uses;  // of an edge: by which patch, and in which direction
+    std::vector<std::pair<std::uint32_t, int>> uses;  // of an edge: the patch, and the direction of the side
     forEachEdge(edges, [&](std::span<const HalfEdge> same) {
       uses.clear();
       for (const HalfEdge& e : same) uses.emplace_back(patch_of_[e.triangle], isForward(e) ? 1 : -1);
@@ -418,12 +419,12 @@ class Repairer {
     });
   }
 
-  /// The direction in the triangle as it is now; the half-edge has the direction from before it was turned.
+  /// The direction in the triangle as it is now; the half-edge holds the direction before any turning.
   [[nodiscard]] bool isForward(const HalfEdge& e) const {
     return e.is_forward != (is_flipped_[e.triangle] != 0);
   }
 
-  /// Closed patches, the largest volume first.
+  /// Closed patches, in order of descending volume.
   [[nodiscard]] std::vector<std::size_t> closedByVolume() const {
     std::vector<std::size_t> closed;
     for (std::size_t i = 0; i < patches_.size(); ++i)
@@ -435,7 +436,7 @@ class Repairer {
     return closed;
   }
 
-  /// These patches' facets with area; shells are numbered as in the list.
+  /// The facets of these patches that have area; shells are numbered in the order of the list.
   ShellFacets facetsOf(const std::vector<std::size_t>& closed) {
     ShellFacets facets{{mesh().vertices, {}}, {}};
     for (std::uint32_t shell = 0; shell < closed.size(); ++shell)
@@ -448,7 +449,7 @@ class Repairer {
   }
 
   /// Turns closed patches that face in and lie within no other patch, with everything that lies within them.
-  /// Patches that cross each other lie within none, and neither do copies, so that all of them face out
+  /// Patches that cross each other, and copies of a patch, lie within no patch, so that all of them face out
   /// before coincident facets cancel each other.
   void turnClosed() {
     const std::vector<std::size_t> closed = closedByVolume();
@@ -497,7 +498,7 @@ class Repairer {
     return samples;
   }
 
-  /// The winding number in the plane of a facet of the mesh: half a turn more than just in front of it.
+  /// The winding number in the plane of a facet of the mesh: a half more than just in front of the facet.
   static double inPlane(const WindingNumber& w, const Facet& f) {
     return w.at(f.center + 1e-5 * std::sqrt(f.area_m2) * f.normal).w + 0.5;
   }
@@ -521,7 +522,7 @@ class Repairer {
       if (!patches_[i].is_closed && mean[i] < 0.5 - kClearly - 0.25) flip(patches_[i]);
   }
 
-  /// What a ray hits first: outside if nothing or a front, inside if a back, 0 if its own patch.
+  /// What a ray hits first: 1 (outside) for nothing or a front, -1 (inside) for a back, 0 for its own patch.
   int sideSeen(const MeshDistance& all, const Facet& from, const Vec3& way, std::uint32_t own,
                double size_m) {
     Vec3 p = from.center + 1e-3 * std::sqrt(from.area_m2) * way;
@@ -537,7 +538,7 @@ class Repairer {
     return 0;
   }
 
-  /// Turns patches whose front faces the solid and whose back faces out, as rays show.
+  /// Turns patches for which rays show that the front faces the solid and the back faces out.
   void turnOpenByRays() {
     std::vector<std::size_t> open;
     for (std::size_t i = 0; i < patches_.size(); ++i)
@@ -555,7 +556,7 @@ class Repairer {
           const auto own = static_cast<std::uint32_t>(open[k]);
           votes += sideSeen(all, f, f.normal, own, size_m) - sideSeen(all, f, -f.normal, own, size_m);
         }
-        is_wrong[k] = votes < -static_cast<int>(samples.size());  // of twice as many rays
+        is_wrong[k] = votes < -static_cast<int>(samples.size());  // each sample has two rays
       });
       for (std::size_t k = 0; k < open.size(); ++k)
         if (is_wrong[k]) flip(patches_[open[k]]);
@@ -563,8 +564,8 @@ class Repairer {
     }
   }
 
-  /// A nearly flat patch with solid on both sides or on none does not bound a solid; in the sum it would
-  /// raise one side and lower the other by a half.
+  /// Sets aside nearly flat patches with solid on both sides or on neither. Such a patch does not bound a
+  /// solid, but would raise the winding number on one side and lower it on the other by a half.
   void setAsideWallsAndSheets() {
     const std::vector<double> mean = meanInPlane(WindingNumber(mesh()));
     std::vector<std::size_t> aside;
@@ -590,8 +591,8 @@ class Repairer {
     for (const std::uint32_t t : patch.triangles) is_kept_[t] = keep;
   }
 
-  /// Two copies of a patch of the surface, cut into different facets, look like sheets, since there the
-  /// winding number falls by two. Without the others the first does not.
+  /// Keeps one of several copies of a patch of the surface that are cut into different facets. Together they
+  /// look like sheets, since the winding number falls by two there; alone the first copy does not.
   void keepOneOfCopies(const std::vector<std::size_t>& aside) {
     std::vector<std::uint32_t> bounding;
     for (std::uint32_t i = 0; i < is_kept_.size(); ++i)
@@ -615,7 +616,7 @@ class Repairer {
     for (std::uint32_t i = 0; i < is_kept_.size(); ++i)
       if (is_kept_[i] == Keep::Both) bounding.push_back(i);
     const WindingNumber w(mesh(), bounding);
-    // Every facet needs a test only where shells' boxes overlap or a patch shows it.
+    // Test every facet only if shells' boxes overlap or a sample of a patch lies within the solid.
     if (!mayOverlap(w)) return;
     const double size_m = bounds(mesh()).size().norm();
     tbb::parallel_for(std::size_t{0}, bounding.size(), [&](std::size_t k) {
@@ -641,9 +642,10 @@ class Repairer {
     return false;
   }
 
-  /// Whether both sides are solid, or, of a closed shell, neither: a void within a void. Judged at its
-  /// middle, near its corners and, for a facet that is large enough to pass through several shells, on a
-  /// grid: corners and middle of a floor can be in the walls of a box whose inside is free.
+  /// True if both sides of a facet are solid or, for a facet of a closed shell, neither is: a void within a
+  /// void. The facet is tested at its middle, near its corners and, if it is large enough to pass through
+  /// several shells, on a grid: corners and middle of a floor can be in the walls of a box whose inside is
+  /// free.
   bool isWithinSolidOrVoid(const WindingNumber& w, std::uint32_t triangle, double size_m) {
     Facet f = facetOf(mesh(), triangle);
     if (!(f.area_m2 > 0)) return false;
@@ -658,7 +660,7 @@ class Repairer {
       f.center = middle + 0.9 * (mesh().vertices[v] - middle);
       if (isSurface()) return false;
     }
-    constexpr double kLarge = 0.05;  // of the mesh, for each division of a side
+    constexpr double kLarge = 0.05;  // share of the mesh's size for each division of a side
     constexpr int kMostDivisions = 24;
     const auto& [a, b, c] = mesh().triangles[triangle];
     const Vec3 u = 0.95 * (mesh().vertices[b] - mesh().vertices[a]),
@@ -694,15 +696,15 @@ class Repairer {
   }
 
   const bool is_crossing_, is_single_;
-  bool has_cancelled_ = false;     // of some duplicates, which are back to back, none was kept
-  bool is_contact_known_ = false;  // all closed shells were looked at, and none touch
-  std::size_t united_facets_ = 0;  // the first ones, which were united before
+  bool has_cancelled_ = false;     // of some back-to-back duplicates no facet was kept
+  bool is_contact_known_ = false;  // all closed shells were tested, and none touch
+  std::size_t united_facets_ = 0;  // the number of first facets that come from an earlier union
   RepairedMesh result_;
-  std::vector<HalfEdge> edges_;  // as the facets were at first
-  JoinedFacets joined_;          // as the facets were at first
+  std::vector<HalfEdge> edges_;  // with the facets' original directions
+  JoinedFacets joined_;          // with the facets' original directions
   std::vector<Patch> patches_;
   std::vector<std::uint32_t> patch_of_;   // by triangle
-  std::vector<std::uint8_t> is_flipped_;  // by triangle: since edges_ were found
+  std::vector<std::uint8_t> is_flipped_;  // by triangle: turned since edges_ were found
   std::vector<Keep> is_kept_;             // by triangle
 };
 
@@ -726,7 +728,7 @@ RepairedMesh repairCrossing(const RepairedMesh& sound) {
 }
 
 MassProperties massOf(const RepairedMesh& repaired) {
-  constexpr double kFlat = 1e-12;  // of the area times the size: rounding
+  constexpr double kFlat = 1e-12;  // share of the area times the size: rounding error
   const auto isClosed = [](const Mesh& mesh) { return lidsOf(mesh).triangles.empty(); };
   Mesh solid;
   const bool is_closed =
@@ -774,7 +776,7 @@ std::string describe(const MeshReport& report) {
     text += joined;
   }
   char certain[64];
-  // Rounded down, so that 100 % means all.
+  // Rounded down, so that 100 % means all nodes.
   std::snprintf(certain, sizeof certain, "; the sign is certain for %.4g %%",
                 std::floor(1e4 * report.certain_share) / 1e2);
   return text + certain;

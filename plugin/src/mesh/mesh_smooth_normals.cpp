@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The curved surface that a mesh's facets stand for: its normals and curvatures.
+// Normals and curvatures of the curved surface that a mesh's facets approximate.
 #include <cmath>
 #include <numeric>
 #include <optional>
@@ -11,8 +11,8 @@
 namespace vps {
 namespace {
 
-/// Faces whose normals differ by less are facets of one curved surface: 20 degrees, as
-/// PointShellSettings::edge_angle_rad.
+/// Faces whose normals differ by less than 20 degrees (as PointShellSettings::edge_angle_rad) are facets of
+/// one curved surface.
 constexpr double kCosSmooth = 0.94;
 /// Corners with more faces than this are the hubs of nearly flat fans; comparing all pairs of faces would
 /// take quadratic time.
@@ -22,12 +22,12 @@ constexpr std::size_t kMaxFaces = 64;
 struct Corner {
   std::uint32_t triangle = 0, k = 0;
   std::uint32_t next = 0, previous = 0;  ///< the triangle's other vertices
-  Vec3 weighted = Vec3::Zero();          ///< the face's normal times its angle here
+  Vec3 weighted = Vec3::Zero();          ///< the face's normal times its angle at the vertex
 };
 
-/// Where a curved surface ends at a smooth rim: the rim's direction at a vertex, unit, as that of the
-/// parabola through the vertex and its neighbours on the rim. None: the surface goes on around the vertex, or
-/// the rim has a corner there.
+/// The unit direction of a smooth rim, at which a curved surface ends, at a vertex: that of the parabola
+/// through the vertex and its neighbours on the rim. Nothing if the surface continues around the vertex, or
+/// if the rim has a corner there.
 std::optional<Vec3> rimDirection(std::span<const Corner* const> fan, const std::vector<Vec3>& vertices,
                                  const Vec3& at) {
   std::uint32_t ends[2] = {0, 0};
@@ -79,9 +79,10 @@ void MeshDistance::computeSmoothCorners() {
           sum += other.weighted;
           fan.push_back(&other);
         }
-      // At a rim the facets' angles are a poor weight: on a thread's flank those before a vertex are wider
-      // than those after it, and the mean leant by 0.003 rad along the thread, which drove a frictionless
-      // screw with 5 % more than its torque. But the surface holds its rim, so its normal is normal to it.
+      // At a rim the facets' angles are a poor weight: on a thread's flank the angles before a vertex are
+      // wider than those after it. The mean leant by 0.003 rad along the thread, which drove a frictionless
+      // screw with 5 % more than its torque. But the rim lies in the surface, so the surface's normal is
+      // normal to the rim.
       Vec3 n = unitOrZero(sum);
       if (const auto rim = rimDirection(fan, mesh_.vertices, mesh_.vertices[v]); rim && fan.size() > 1)
         n = unitOrZero(n - n.dot(*rim) * *rim);
@@ -115,7 +116,7 @@ Mat3 MeshDistance::smoothCurvature(std::uint32_t triangle) const noexcept {
     const auto& corners = smooth_corners_[triangle];
     return (corners[static_cast<std::size_t>(corner)] - corners[0]).cast<double>();
   };
-  // The dual vectors of the edges split a displacement in the triangle into its shares of the edges.
+  // The dual vectors of the edges give a displacement in the triangle as fractions of the edges.
   const Mat3 S =
       (turn(1) * e2.cross(face).transpose() + turn(2) * face.cross(e1).transpose()) / twice_area_m2;
   const Mat3 along = Mat3::Identity() - face * face.transpose();

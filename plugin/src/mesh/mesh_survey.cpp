@@ -7,8 +7,8 @@ namespace vps {
 
 std::vector<std::uint8_t> findDuplicates(const std::vector<std::array<std::uint32_t, 3>>& triangles,
                                          const std::vector<HalfEdge>& edges) {
-  // Of each set of duplicates the first of the majority is kept, or, if they are back to back, a pair that is
-  // decided below.
+  // In each set of duplicates the first triangle of the majority orientation is kept; if the two orientations
+  // balance, the first triangle is kept for now, and the code below decides about it.
   std::vector<std::uint8_t> is_dropped(triangles.size(), 0), is_pair(triangles.size(), 0);
   forEachTwin(triangles, [&](std::span<const Twin> same) {
     const auto& corners = same[0].corners;
@@ -24,7 +24,7 @@ std::vector<std::uint8_t> findDuplicates(const std::vector<std::array<std::uint3
       is_pair[t.triangle] = is_balanced;
     }
   });
-  Groups groups(triangles.size());  // of pairs
+  Groups groups(triangles.size());  // connected pairs
   std::vector<std::uint8_t> ends_at_even(triangles.size(), 0), ends_at_odd(triangles.size(), 0);
   forEachEdge(edges, [&](std::span<const HalfEdge> same) {
     std::uint32_t first = UINT32_MAX;
@@ -61,7 +61,7 @@ void surveyOpenEdges(const Mesh& mesh, const std::vector<HalfEdge>& edges, MeshR
   std::sort(corners.begin(), corners.end(),
             [&](std::uint32_t a, std::uint32_t b) { return x(a) != x(b) ? x(a) < x(b) : a < b; });
   corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
-  // Exporters round to floats: 1e-7 of the size, and some more after a rotation.
+  // Exporters round to floats: 1e-7 of the size, and somewhat more after a rotation.
   const double tolerance_m = 1e-6 * bounds(mesh).size().norm();
   Groups groups(mesh.vertices.size());
   for (const auto& [a, b] : open) {

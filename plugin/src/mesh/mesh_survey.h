@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Faults of a mesh that its edges show independently of orientation: duplicate facets and borders.
+// Faults of a mesh that do not depend on orientation: duplicate facets, holes and T-junctions.
 #pragma once
 
 #include <array>
@@ -10,12 +10,12 @@
 
 namespace vps {
 
-/// Flags all but one of each set of triangles with the same corners; the first of the majority stays. Of
-/// back-to-back pairs none stays if an even number of other facets ends at each edge of them and of pairs
-/// connected to them, since these close without it: a wall between two solids. Otherwise one stays, of
-/// undecided orientation: a surface that was exported for both sides, or given twice and turned once.
-/// O(n log n).
-/// @param edges  of the same triangles
+/// Flags all but one of each set of triangles with the same corners; the first triangle of the majority
+/// orientation stays. Of back-to-back pairs none stays if an even number of other facets ends at each edge of
+/// the pair and of pairs connected to it, since these facets close without it: a wall between two solids.
+/// Otherwise one stays, of undecided orientation: a surface that was exported for both sides, or given twice
+/// and turned once. O(n log n).
+/// @param edges  half-edges of the same triangles
 std::vector<std::uint8_t> findDuplicates(const std::vector<std::array<std::uint32_t, 3>>& triangles,
                                          const std::vector<HalfEdge>& edges);
 

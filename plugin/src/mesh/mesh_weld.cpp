@@ -27,8 +27,7 @@ struct CellHash {
 
 using CellKey = std::array<std::int64_t, 3>;
 
-/// Gives every vertex the index of the first vertex equal to it, and that list. Exact case: the key is the
-/// value.
+/// Gives every vertex the index of the first vertex equal to it, and the list of such first vertices.
 struct Merger {
   const Mesh& mesh;
   std::vector<Vec3> kept;
@@ -44,13 +43,13 @@ struct Merger {
     return static_cast<std::uint32_t>(kept.size() - 1);
   }
 
-  /// A table of indices, open addressing: half full at most, so that a search ends soon.
+  /// Finds vertices that are equal to the bit, in a hash table of indices that is at most half full.
   void exact() {
     std::size_t size = 16;
     while (size < 2 * mesh.vertices.size()) size *= 2;
     std::vector<std::uint32_t> table(size, UINT32_MAX);
     for (const Vec3& p : mesh.vertices) {
-      // Squares of numbers below 1e-150 underflow, and lengths with them. Adding +0 turns -0 into +0.
+      // Squares of numbers below 1e-150 underflow, so lengths would be zero. Adding +0 turns -0 into +0.
       const Vec3 q = (p.array().abs() < 1e-150).select(0.0, p.array()).matrix() + Vec3::Zero();
       CellKey key;
       for (int i = 0; i < 3; ++i) key[i] = static_cast<std::int64_t>(std::bit_cast<std::uint64_t>(q[i]));
@@ -61,7 +60,7 @@ struct Merger {
     }
   }
 
-  /// Cells as wide as the tolerance: all near vertices are in the 27 cells around a vertex.
+  /// Finds vertices in cells as wide as the tolerance: all near vertices are in the 27 cells around a vertex.
   void within(double tolerance_m) {
     std::unordered_map<CellKey, std::vector<std::uint32_t>, CellHash> cells(mesh.vertices.size());
     for (const Vec3& p : mesh.vertices) {

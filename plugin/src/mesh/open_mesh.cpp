@@ -14,7 +14,7 @@ namespace vps {
 
 namespace {
 
-/// Shared vertices, without narrow cracks, and each facet once, in whatever orientation.
+/// Shares vertices, closes narrow cracks, and keeps each facet once, in any orientation.
 Mesh joinedOnce(const Mesh& mesh) {
   Mesh once = welded(mesh);
   once = closeCracks(once, sortedHalfEdges(once)).mesh;
@@ -30,9 +30,9 @@ Mesh joinedOnce(const Mesh& mesh) {
 }
 
 struct Hole {
-  Vec3 center = Vec3::Zero();  ///< times length
+  Vec3 center = Vec3::Zero();  ///< sum over edges of length times middle
   double length_m = 0, lid_m2 = 0;
-  std::vector<std::uint32_t> facets;  ///< at each edge
+  std::vector<std::uint32_t> facets;  ///< the facet at each edge
 };
 
 bool isMissingFacet(Hole& hole) {
@@ -69,7 +69,7 @@ double widestHole_m(const Mesh& once, const JoinedFacets& joined) {
   return widest_m;
 }
 
-/// True if every open shell is a sheet for itself beside closed ones.
+/// True if the mesh has closed shells and every open shell is a sheet beside them.
 bool isSolidBesideSheets(const Mesh& once, const JoinedFacets& joined) {
   Groups shells(once.triangles.size());
   std::vector<std::uint32_t> at_border;
@@ -94,11 +94,11 @@ bool isOpenSurface(const Mesh& mesh, double wider_than_m) {
 
 namespace {
 
-/// The facet beside each side of each facet, where two facets meet; by 3 * facet + side.
+/// The facet beside a side of a facet, where exactly two facets meet. In lists by 3 * facet + side.
 struct Neighbour {
   std::uint32_t facet = UINT32_MAX;
   std::uint8_t side = 0;
-  bool agrees = true;  ///< as the facets are given
+  bool agrees = true;  ///< the two facets agree on orientation, as given
 };
 
 std::vector<Neighbour> neighboursOf(const Mesh& mesh) {
@@ -113,7 +113,7 @@ std::vector<Neighbour> neighboursOf(const Mesh& mesh) {
   return beside;
 }
 
-/// By facet: to be turned, to agree with the first facet of its piece, as far as that is possible.
+/// For each facet whether it must be turned to agree with the first facet of its piece, as far as possible.
 std::vector<std::uint8_t> turnedFacets(std::size_t count, const std::vector<Neighbour>& beside) {
   std::vector<std::uint8_t> is_turned(count, 0), is_seen(count, 0);
   std::vector<std::uint32_t> next;
@@ -133,7 +133,7 @@ std::vector<std::uint8_t> turnedFacets(std::size_t count, const std::vector<Neig
   return is_turned;
 }
 
-/// Gives each group of corners that facets share across edges where they agree a vertex of its own.
+/// Gives a vertex of its own to each group of corners that are connected by edges whose facets agree.
 Mesh apart(const Mesh& mesh, const std::vector<Neighbour>& beside,
            const std::vector<std::uint8_t>& is_turned) {
   Groups corners(3 * mesh.triangles.size());

@@ -13,20 +13,21 @@ namespace {
 
 using Edge = std::pair<std::uint32_t, std::uint32_t>;  ///< directed
 
-/// Weights of the facet's second and third corner, times kWhole: points on sides are exactly on them.
+/// Barycentric weights of the facet's second and third corner, times kWhole: points on sides are exactly on
+/// them.
 struct GridPoint {
   std::int64_t second, third;
 };
 constexpr std::int64_t kWhole = std::int64_t{1} << 40;
 
-/// Positive if a, b, c run counter-clockwise, which weights tell as coordinates do.
+/// Positive if a, b, c run counter-clockwise. Barycentric weights tell this as well as coordinates do.
 int turn(const GridPoint& a, const GridPoint& b, const GridPoint& c) {
   const __int128 twice = static_cast<__int128>(b.second - a.second) * (c.third - a.third) -
                          static_cast<__int128>(b.third - a.third) * (c.second - a.second);
   return twice > 0 ? 1 : twice < 0 ? -1 : 0;
 }
 
-/// Of the angle at p between a and b.
+/// The cotangent of the angle at p between a and b.
 double cotangent(const Vec3& p, const Vec3& a, const Vec3& b) {
   const Vec3 u = a - p, v = b - p;
   return u.dot(v) / u.cross(v).norm();
@@ -51,7 +52,7 @@ class Triangulation {
 
   [[nodiscard]] std::vector<std::array<std::uint32_t, 3>> triangles() const {
     std::vector<std::array<std::uint32_t, 3>> all;
-    // Each triangle is found at the side that begins at its lowest corner.
+    // Each triangle is listed once, at the side that begins at its lowest corner.
     for (const auto& [edge, c] : third_)
       if (edge.first < edge.second && edge.first < c) all.push_back({edge.first, edge.second, c});
     return all;
@@ -114,7 +115,7 @@ class Triangulation {
     return true;
   }
 
-  /// A triangle that holds p, by walking; else by trying all.
+  /// A triangle that holds p, found by walking, or by trying all triangles if walking fails.
   [[nodiscard]] std::optional<std::array<std::uint32_t, 3>> holder(std::uint32_t p) const {
     std::array<std::uint32_t, 3> t = {last_.first, last_.second, 0};
     const std::uint32_t* c = across(last_);
@@ -157,7 +158,7 @@ class Triangulation {
     if (on >= 0) {
       const std::uint32_t a = (*t)[on], b = (*t)[(on + 1) % 3];
       const std::uint32_t* beyond = across({b, a});
-      if (beyond == nullptr) return false;  // on the border, where only points of sides may be
+      if (beyond == nullptr) return false;  // on the border, where only points of sides may lie
       const std::uint32_t d = *beyond;
       remove(b, a, d);
       add(a, d, p);
@@ -229,7 +230,7 @@ class Triangulation {
     std::vector<Edge> open;
     for (const auto& [edge, c] : third_)
       if (edge.first < edge.second) open.push_back(edge);
-    // Rounding might turn an edge back and forth.
+    // The number of turns is limited, because rounding might turn an edge back and forth.
     for (std::size_t left_to_do = 64 * third_.size(); !open.empty() && left_to_do > 0; --left_to_do) {
       const Edge e = open.back();
       open.pop_back();
@@ -248,7 +249,7 @@ class Triangulation {
   const CutFacet& facet_;
   const std::span<const Vec3> points_;
   std::unordered_map<std::uint32_t, GridPoint> at_;
-  std::map<Edge, std::uint32_t> third_;  ///< of each side of each triangle, the corner to its left
+  std::map<Edge, std::uint32_t> third_;  ///< for each side of each triangle, the corner to its left
   std::set<Edge> fixed_;                 ///< the smaller end first
   Edge last_ = {0, 0};
 };

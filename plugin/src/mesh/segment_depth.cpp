@@ -33,12 +33,12 @@ struct Probe {
   }
 };
 
-/// Bounds a search at which the nearest triangle is found for certain.
+/// A search limit slightly above the distance, so that the search is certain to find the nearest triangle.
 double reached(double distance_m) {
   return distance_m * (1 + 1e-12) + 1e-12;
 }
 
-/// Without the use of crossings: the surface may have holes.
+/// Searches without the use of crossings, for surfaces that may have holes.
 void searchAnywhere(const Solid& solid, const Probe& from, const Probe& to, double certain_m,
                     PointDepth& deepest) {
   struct Piece {
@@ -60,19 +60,19 @@ void searchAnywhere(const Solid& solid, const Probe& from, const Probe& to, doub
     const double most_m = std::min(std::abs(piece.a.signed_m), std::abs(piece.b.signed_m)) + 0.5 * length_m;
     const Probe middle(solid, 0.5 * (a + b), reached(most_m));
     keep(deepest, -middle.signed_m, middle.p);
-    // Rounding: nothing lies between the ends.
+    // No number lies between the ends.
     if ((middle.p - a).norm() == 0 || (middle.p - b).norm() == 0) continue;
     stack.push_back({piece.a, middle});
     stack.push_back({middle, piece.b});
   }
 }
 
-/// True if the segment is inside and outside in turn between its crossings, as it is unless rounding has lost
-/// or added one.
+/// True if the pieces between crossings are alternately inside and outside. This holds unless rounding has
+/// lost or added a crossing.
 bool doAlternate(const Solid& solid, const Probe& from, const Probe& to, const std::vector<double>& ends,
                  double certain_m) {
   const double length_m = (to.p - from.p).norm();
-  // An end on the surface, and a stretch shorter than what is certain, may be either.
+  // An end on the surface, and a piece shorter than certain_m, may be on either side.
   int before = from.side(certain_m);
   bool is_same_stretch = true;  // as the end before it
   double begin = 0;
@@ -86,7 +86,7 @@ bool doAlternate(const Solid& solid, const Probe& from, const Probe& to, const s
     begin = end;
   }
   const int last = to.side(certain_m);
-  // Without crossings both ends are on the same side; otherwise the last stretch ends with the segment.
+  // Without crossings both ends are on the same side; otherwise the last piece ends with the segment.
   return last * before != -1 || (ends.size() > 1 && (1 - ends[ends.size() - 2]) * length_m <= certain_m);
 }
 
@@ -98,8 +98,8 @@ double distanceToTriangle(const Solid& solid, std::uint32_t triangle, const Vec3
   return (closestOnTriangle(p, v[t[0]], v[t[1]], v[t[2]]).q - p).norm();
 }
 
-// The depth is the distance to the nearest triangle, so it is at most that to any one triangle, which is
-// convex along the segment: at most that of the farther end.
+// The depth of a point is the distance to the nearest triangle, so it is at most the distance to any one
+// triangle. That distance is convex along the segment, so it is at most the value at the farther end.
 bool searchUncrossed(const Solid& solid, const Vec3& a, const Vec3& b, double certain_m, double& depth_m,
                      Vec3& p_S) {
   struct Piece {

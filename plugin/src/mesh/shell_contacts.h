@@ -13,17 +13,17 @@ namespace vps {
 
 using FacetPair = std::array<std::uint32_t, 2>;
 
-/// More pairs of near facets than these are not cut. Assumed: a minute.
+/// If there are more pairs of near facets than this, they are not cut. Assumed: cutting them takes a minute.
 inline constexpr std::size_t kMostPairs = 4'000'000;
 
 /// The box of one facet, grown by a margin on every side.
 Box boxOf(const Mesh& mesh, std::uint32_t triangle, double margin_m);
-/// By shell, grown by a margin.
+/// The box of each shell, grown by a margin on every side.
 std::vector<Box> boxesOf(const Mesh& mesh, const std::vector<std::uint32_t>& shell_of, double margin_m);
 
-/// Pairs of facets of different shells that may touch, in ascending order; more than kMostPairs if there are
-/// too many.
-/// @param shell_of  by triangle, counted from 0
+/// Pairs of facets of different shells that may touch, in ascending order. The list is cut off after more
+/// than kMostPairs.
+/// @param shell_of  by triangle: its shell, counted from 0
 std::vector<FacetPair> nearPairs(const Mesh& mesh, const std::vector<std::uint32_t>& shell_of,
                                  double touch_m);
 

@@ -13,7 +13,7 @@
 namespace vps {
 namespace {
 
-/// What may be spent on cutting for this.
+/// Work that may be spent on cutting facets to find the nesting.
 constexpr std::int64_t kMostNestingWork = kMostUnionWork / 2;
 
 std::vector<Box> boxesOfFacets(const Mesh& mesh) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which closed shells lie within others.
+// Tells which closed shells lie within others.
 #pragma once
 
 #include <cstdint>
@@ -12,21 +12,21 @@
 
 namespace vps {
 
-/// Shells are cut along each other as unite() cuts them. No cut piece of a shell crosses another shell, so
-/// that one point of each patch of pieces tells where the patch is. Which way shells face does not matter.
+/// Shells are cut along each other as in unite(). No piece of a shell then crosses another shell, so one
+/// point of each patch of pieces tells where the patch is. The orientation of the shells does not matter.
 class ShellNesting {
  public:
   /// O(n log n) for the boxes of shells that overlap.
-  /// @param shell_of  by triangle, counted from 0; each shell is closed and has one orientation
+  /// @param shell_of  by triangle: its shell, counted from 0; each shell is closed and has one orientation
   ShellNesting(Mesh mesh, std::vector<std::uint32_t> shell_of);
 
   ShellNesting(const ShellNesting&) = delete;  // the tree refers to the boxes
   ShellNesting& operator=(const ShellNesting&) = delete;
 
   /// True if no point of shell `inner` is outside of shell `outer` by more than twice touchDistance(), and
-  /// some point is inside by more than that. So it may touch the other from within; it may not reach through
-  /// its surface; and a copy of the whole shell or of a part of it does not lie within it. Where facets
-  /// cannot be cut, their corners and middles decide. One winding number a patch.
+  /// some point is inside by more than that. So `inner` may touch `outer` from within but not reach through
+  /// its surface, and a copy of all or part of `outer` does not lie within it. If facets cannot be cut, their
+  /// corners and middles decide. One winding number for each patch.
   [[nodiscard]] bool liesWithin(std::uint32_t inner, std::uint32_t outer);
 
  private:
@@ -43,8 +43,8 @@ class ShellNesting {
   const std::vector<Box> facet_boxes_;
   const BoxTree facets_;
   std::vector<std::vector<std::uint32_t>> triangles_;   // by shell
-  std::vector<std::vector<Vec3>> points_;               // by shell: of each patch one
-  std::vector<std::optional<WindingNumber>> windings_;  // by shell: made at first need
+  std::vector<std::vector<Vec3>> points_;               // by shell: one point of each patch
+  std::vector<std::optional<WindingNumber>> windings_;  // by shell: built when first needed
 };
 
 }  // namespace vps

@@ -21,22 +21,22 @@
 namespace vps {
 namespace {
 
-constexpr std::int64_t kAnglesInStep = 16;  ///< solid angles of triangles that are as much work
+constexpr std::int64_t kAnglesInStep = 16;  ///< number of solid angles of triangles in a step of work
 
-/// Over 4 pi. Source: van Oosterom and Strackee 1983.
+/// Solid angle over 4 pi. Source: van Oosterom and Strackee 1983.
 double solidAngle(const Vec3& a, const Vec3& b, const Vec3& c) {
   const double la = a.norm(), lb = b.norm(), lc = c.norm();
   const double up = a.dot(b.cross(c)), across = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
   return std::atan2(up, across) / (2 * std::numbers::pi);
 }
 
-/// Where the solid is, around points of the shells' surfaces.
+/// Tells on which sides of points of the shells' surfaces the solid is.
 class Shells {
  public:
-  /// How the facets of other shells lie at a point of a facet.
+  /// The facets of other shells that are flush with a facet at a point.
   struct Flush {
     int same = 0, opposite = 0;  ///< shells with a facet there that faces the same way, or the other way
-    bool is_first = true;        ///< no shell before the facet's own has one that faces the same way
+    bool is_first = true;        ///< no shell before the facet's own has a facet that faces the same way
   };
 
   Shells(const Mesh& mesh, const std::vector<std::uint32_t>& shell_of, double touch_m)
@@ -52,19 +52,20 @@ class Shells {
     for (std::uint32_t i = 0; i < shell_of.size(); ++i) triangles_[shell_of[i]].push_back(i);
   }
 
-  /// Whether the surface of the union has a piece of facet f at p, of f's own orientation: then of all flush
-  /// facets of that orientation the one of the first shell stands for it. Nothing if it takes a sum over the
-  /// triangles of all shells around.
+  /// True if a piece of facet f at p, with f's own orientation, belongs to the surface of the union. If
+  /// several flush facets have that orientation, only the facet of the first shell is kept. Returns nothing
+  /// if only isKeptBySum() can tell.
   [[nodiscard]] std::optional<bool> isKeptBySeries(std::uint32_t f, const Vec3& p) const {
     const Vec3 up = kBeside * touch_m_ * normal(f);
     if (hasFacetBeside(f, p)) return std::nullopt;
-    // Half a turn more behind a flush facet and half a turn less in front of it: in the mean it has no share.
+    // A flush facet adds a half behind it and subtracts a half in front of it: the mean does not depend on
+    // it.
     const WindingNumber::Value front = winding_.at(p + up), back = winding_.at(p - up);
     constexpr double kMostError = 0.2;  // of a margin of 0.5
     if (0.5 * (front.error + back.error) > kMostError) return std::nullopt;
     return isKept(flushAt(f, p), 0.5 * (front.w + back.w));
   }
-  /// The same, by that sum.
+  /// As isKeptBySeries(), by the sum over the triangles of all shells around p.
   [[nodiscard]] bool isKeptBySum(std::uint32_t f, const Vec3& p) const {
     double w = 0;
     for (const std::uint32_t shell : around(p))
@@ -72,7 +73,7 @@ class Shells {
         if (i != f && !isFlush(i, p)) w += solidAngleOf(i, p);
     return isKept(flushAt(f, p), w);
   }
-  /// The number of triangles of that sum.
+  /// The number of triangles in the sum of isKeptBySum().
   [[nodiscard]] std::int64_t sizeOfSum(const Vec3& p) const {
     std::int64_t size = 0;
     for (const std::uint32_t shell : around(p)) size += static_cast<std::int64_t>(triangles_[shell].size());
@@ -87,7 +88,7 @@ class Shells {
       for (const std::uint32_t i : triangles_[shell]) w += solidAngleOf(i, p);
     return w > 0.5;
   }
-  /// Whether p is so near to a facet that rounding decides on which side it is.
+  /// True if p is so near to a facet that rounding decides on which side it is.
   [[nodiscard]] bool isOnSurface(const Vec3& p) const {
     const double near_m = kBeside * touch_m_;
     return !forEachNear(p, near_m, [&](std::uint32_t i) { return distance(i, p) > near_m; });
@@ -95,7 +96,8 @@ class Shells {
 
  private:
   static constexpr double kClusterError = 1e-4;
-  /// Where the winding number is taken beside a facet, in touch_m_. Flush facets are at most 2 away.
+  /// Distance from a facet at which the winding number is evaluated, in touch_m_. Flush facets are at most 2
+  /// away.
   static constexpr double kBeside = 8;
 
   static std::vector<Box> facetBoxes(const Mesh& mesh) {
@@ -108,7 +110,7 @@ class Shells {
     return w - step < 0.5 && w + step > 0.5 && flush.is_first;
   }
 
-  /// The shells in whose boxes p is, in ascending order.
+  /// The shells whose boxes contain p, in ascending order.
   [[nodiscard]] std::vector<std::uint32_t> around(const Vec3& p) const {
     std::vector<std::uint32_t> shells;
     tree_.forEachOverlap({p, p}, [&](std::uint32_t shell) {
@@ -118,7 +120,7 @@ class Shells {
     std::sort(shells.begin(), shells.end());
     return shells;
   }
-  /// Calls visit for facets that may be nearer to p than a distance, until it returns false.
+  /// Calls visit for facets that may be nearer to p than distance_m, until visit returns false.
   template <typename Visit>
   bool forEachNear(const Vec3& p, double distance_m, Visit visit) const {
     return facets_.forEachOverlap({p.array() - distance_m, p.array() + distance_m}, visit);
@@ -127,7 +129,7 @@ class Shells {
     std::vector<std::uint32_t> same = {shell_of_[f]}, opposite;
     const Vec3 n = normal(f);
     forEachNear(p, 2 * touch_m_, [&](std::uint32_t i) {
-      // Of its own shell it is a neighbour, beyond p's nearest side.
+      // A facet of the same shell is a neighbour, beyond p's nearest side.
       if (shell_of_[i] != shell_of_[f] && isWithin(p, boxes_[shell_of_[i]]) && isFlush(i, p))
         (normal(i).dot(n) > 0 ? same : opposite).push_back(shell_of_[i]);
       return true;
@@ -141,8 +143,8 @@ class Shells {
     flush.is_first = same.front() == shell_of_[f];
     return flush;
   }
-  /// Whether a facet that is not flush at p is so near that it might be between p and where the winding
-  /// number is taken: a neighbour, or a shell whose distance is a few times touch_m_.
+  /// True if a facet that is not flush may lie between p and the point where the winding number is evaluated:
+  /// a neighbour, or a facet of a shell at a distance of a few times touch_m_.
   [[nodiscard]] bool hasFacetBeside(std::uint32_t f, const Vec3& p) const {
     const double near_m = 2 * kBeside * touch_m_;
     return !forEachNear(p, near_m, [&](std::uint32_t i) {
@@ -193,8 +195,8 @@ double halton(int i, int base) {
   return value;
 }
 
-/// Whether at points spread over the box both have the same inside. Points on a surface tell nothing; where
-/// faces lie in planes of round coordinates some of the points do too.
+/// True if the mesh and the shells have the same inside, tested at points spread over the box. Points on a
+/// surface prove nothing and are skipped; faces in planes of round coordinates contain some of the points.
 bool agree(const Mesh& mesh, const Shells& shells) {
   constexpr int kPoints = 64;
   const std::vector<std::uint32_t> all(mesh.triangles.size(), 0);
@@ -209,7 +211,7 @@ bool agree(const Mesh& mesh, const Shells& shells) {
   return std::find(agrees.begin(), agrees.end(), 0) == agrees.end();
 }
 
-/// Without vertices that no triangle has.
+/// The mesh without vertices that no triangle uses.
 Mesh compacted(const Mesh& mesh) {
   Mesh out;
   std::vector<std::uint32_t> number(mesh.vertices.size(), UINT32_MAX);
@@ -226,7 +228,7 @@ Mesh compacted(const Mesh& mesh) {
   return out;
 }
 
-/// Shells that have facets which were cut, or that have edges in common with others.
+/// Counts shells with facets that were cut, or with edges in common with other shells.
 std::size_t countMet(const Arrangement& cut, const std::vector<std::uint32_t>& shell_of) {
   std::vector<std::uint32_t> met;
   for (std::size_t i = 1; i < cut.source.size(); ++i)
@@ -248,7 +250,7 @@ double touchDistance(const Mesh& mesh) {
 
 namespace {
 
-/// Which patches bound the union, each by its widest piece; nothing if that is too much work.
+/// Which patches bound the union, each decided at its widest piece; nothing if that takes too much work.
 std::optional<std::vector<char>> keptPatches(const Arrangement& cut, const std::vector<std::uint32_t>& widest,
                                              const Shells& shells, std::int64_t& work_left) {
   constexpr char kOpen = 2;
@@ -268,7 +270,7 @@ std::optional<std::vector<char>> keptPatches(const Arrangement& cut, const std::
   return is_kept;
 }
 
-/// The pieces that bound the union; none if that is too much work. Counts what is left out.
+/// The pieces that bound the union; empty if that takes too much work. Counts the pieces that are left out.
 Mesh surfaceOf(const Arrangement& cut, const std::vector<std::uint32_t>& shell_of, const Shells& shells,
                ShellUnion& out, std::int64_t& work_left) {
   const auto [patch_of, widest] = patchesOf(cut.mesh);
@@ -311,9 +313,9 @@ ShellUnion uniteWithin(const Mesh& mesh, const std::vector<std::uint32_t>& shell
 }  // namespace
 
 ShellUnion unite(const Mesh& mesh, const std::vector<std::uint32_t>& shell_of) {
-  // What is about as far apart as touch_m may be merged at one place and not at the next; then another
-  // distance decides. Overlaps of a micrometre are more than eight times touch_m in parts of up to half a
-  // metre.
+  // Vertices about touch_m apart may be merged at one place and not at the next; the union may then succeed
+  // with another distance. Overlaps of a micrometre are more than eight times touch_m in parts of up to half
+  // a metre.
   constexpr double kOtherShares[] = {8, 1.0 / 32, 1.0 / 1024};
   const double touch_m = touchDistance(mesh);
   std::int64_t work_left = kMostUnionWork;

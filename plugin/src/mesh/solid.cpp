@@ -13,15 +13,15 @@
 namespace vps {
 namespace {
 
-constexpr double kInPlane = 1e-9;  ///< a sine: above rounding, below any angle of a mesh
+constexpr double kInPlane = 1e-9;  ///< a sine: above rounding errors, below any angle of a mesh
 
 template <typename T>
 bool contains(const std::vector<T>& flags, T value) {
   return std::find(flags.begin(), flags.end(), value) != flags.end();
 }
 
-/// True if pseudonormals may be wrong although the mesh is closed and consistent: it crosses or touches
-/// itself.
+/// True if the mesh crosses or touches itself. Pseudonormals may then be wrong although the mesh is closed
+/// and consistent.
 bool touchesItself(const MeshDistance& surface) {
   const std::size_t count = surface.mesh().triangles.size();
   return contains(regularVertices(surface.mesh()), std::uint8_t{0}) ||

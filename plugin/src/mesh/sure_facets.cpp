@@ -13,9 +13,9 @@
 namespace vps {
 namespace {
 
-/// Beyond this margin a winding number may change by crossing facets inside the solid, from 2 to 1.
+/// Limit of the margin: crossing facets inside the solid may change the winding number by more, from 2 to 1.
 constexpr double kMaxMargin = 0.5;
-/// The distances that are tried: the mesh's size times 1/16, then each a quarter of the one before.
+/// The distances that are tried: 1/16 of the mesh's size, then a quarter of the previous distance each time.
 constexpr double kWidest = 1.0 / 16;
 constexpr int kTries = 6;
 
@@ -33,7 +33,7 @@ std::vector<std::uint8_t> isFacetRegular(const MeshDistance& surface) {
   return is_regular;
 }
 
-/// Tests the surface's facets against all on which the winding number jumps or to which distances are
+/// Tests the surface's facets against all facets on which the winding number jumps or to which distances are
 /// measured. Surface and solid share their vertices.
 std::vector<Crossed> crossedBySolid(const MeshDistance& surface, const Mesh& solid) {
   const std::size_t count = surface.mesh().triangles.size();
@@ -101,7 +101,7 @@ std::vector<float> sureDistances(const MeshDistance& surface, const Interior& in
   tbb::parallel_for(std::size_t{0}, sure_m.size(), [&](std::size_t i) {
     if (is_regular[i] == 0 || crossed[i] != Crossed::No) return;
     const auto triangle = static_cast<std::uint32_t>(i);
-    // Rounded down: a float may be larger than the number it is made from.
+    // Rounded down, because the conversion to float may round up.
     sure_m[i] = static_cast<float>(
         (1 - 1e-6) * sureDistance(mesh, triangle, surface.featureNormal(triangle, 0), interior, size_m));
   });

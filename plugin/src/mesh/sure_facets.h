@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where pseudonormals can be relied on.
+// Finds vertices and facets at which pseudonormals give the right sign.
 #pragma once
 
 #include <cstdint>
@@ -12,16 +12,17 @@ namespace vps {
 
 class Interior;
 
-/// A flag for each vertex: every edge there has two triangles that agree on orientation, and the triangles
-/// form one fan. There pseudonormals tell the two sides of the surface apart. O(n log n).
+/// A flag for each vertex: every edge at it has two triangles that agree on orientation, and its triangles
+/// form one fan. At such a vertex pseudonormals distinguish the two sides of the surface. O(n log n).
 std::vector<std::uint8_t> regularVertices(const Mesh& mesh);
 
-/// For each triangle of `surface` a distance up to which the pseudonormal at a nearest point on it gives the
-/// same side as the winding number; 0 where that is not known. It is known where
-/// - all its vertices are regular, and no triangle crosses it, so that the surface near it has two sides;
-/// - the winding number is below 0.5 in front of it and above behind it;
-/// - the winding number's slope cannot carry it past 0.5 from there to any point of that distance.
-/// Two winding numbers a triangle; parallel.
+/// For each triangle of `surface` a distance up to which the pseudonormal at a nearest point on the triangle
+/// gives the same side as the winding number; 0 if no such distance is known. A distance is known if
+/// - all vertices of the triangle are regular, and no triangle crosses it, so that the surface there has two
+///   sides;
+/// - the winding number is below 0.5 in front of the triangle and above 0.5 behind it;
+/// - the winding number's slope is too small to carry it past 0.5 within that distance.
+/// Two winding numbers for each triangle; parallel.
 std::vector<float> sureDistances(const MeshDistance& surface, const Interior& interior);
 
 }  // namespace vps

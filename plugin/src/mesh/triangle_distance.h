@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The inner loop of mesh_distance.cpp and the voxeliser, in a header so that both inline the same arithmetic
+// The inner loop of MeshDistance and of the voxeliser, in a header so that both inline the same arithmetic
 // and get the same bits.
 #pragma once
 
@@ -7,7 +7,7 @@
 
 namespace vps {
 
-/// Closest point of segment ab; feature is that of the segment, of a, or of b.
+/// Closest point of segment ab; its feature is `segment`, `at_a` or `at_b`.
 inline TrianglePoint closestOnSegment(const Vec3& p, const Vec3& a, const Vec3& b, int segment, int at_a,
                                       int at_b) noexcept {
   const Vec3 ab = b - a;
@@ -18,7 +18,7 @@ inline TrianglePoint closestOnSegment(const Vec3& p, const Vec3& a, const Vec3& 
 }
 
 /// See closestOnTriangle(). The plane is divided into the seven regions nearest to each feature; dot products
-/// with two edges from each corner decide into which one p projects. Source: Ericson, section 5.1.5.
+/// with two edges from each corner tell the region into which p projects. Source: Ericson, section 5.1.5.
 inline TrianglePoint closestOnTriangleInline(const Vec3& p, const Vec3& a, const Vec3& b,
                                              const Vec3& c) noexcept {
   const Vec3 ab = b - a, ac = c - a;
@@ -34,8 +34,8 @@ inline TrianglePoint closestOnTriangleInline(const Vec3& p, const Vec3& a, const
   const double ab_cp = ab.dot(cp), ac_cp = ac.dot(cp);
   if (ac_cp >= 0 && ab_cp <= ac_cp) return {c, 6};
 
-  // Barycentric weights of the projection, times twice the squared area; not positive: beyond the edge
-  // opposite.
+  // Barycentric weights of the projection, times twice the squared area. A weight that is not positive means
+  // that the projection is beyond the opposite edge.
   const double weight_c = ab_ap * ac_bp - ab_bp * ac_ap;
   if (weight_c <= 0 && ab_ap >= 0 && ab_bp <= 0) return {a + (ab_ap / (ab_ap - ab_bp)) * ab, 1};
   const double weight_b = ab_cp * ac_ap - ab_ap * ac_cp;

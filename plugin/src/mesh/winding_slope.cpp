@@ -61,7 +61,7 @@ WindingSlope::WindingSlope(const Mesh& mesh) {
 double WindingSlope::bound(const Box& box) const noexcept {
   if (nodes_.empty()) return 0;
   double sum = 0;
-  std::uint32_t stack[64];  // halving by count: 32 levels at most, one waiting child each
+  std::uint32_t stack[64];  // halving by count limits the depth to 32, with one waiting child on each level
   int waiting = 0;
   stack[waiting++] = 0;
   while (waiting > 0) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How fast the winding number of an open mesh changes away from its triangles.
+// A bound of how fast the winding number of an open mesh changes away from its triangles.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,8 @@ namespace vps {
 
 /// A bound of the gradient of the winding number away from triangles. The gradient is the field of a current
 /// along the mesh's border (Biot and Savart), so it is at most the sum of length / distance^2 over border
-/// edges, over 4 pi; zero for a closed mesh. The border consists of the edges that do not have as many facets
-/// in one direction as in the other.
+/// edges, over 4 pi; zero for a closed mesh. An edge belongs to the border unless it has as many facets in
+/// one direction as in the other.
 class WindingSlope {
  public:
   explicit WindingSlope(const Mesh& mesh);
@@ -25,7 +25,7 @@ class WindingSlope {
   struct Node {
     Box box;
     double length_m = 0;
-    std::uint32_t first = 0, count = 0;  ///< edges of a leaf; or count 0 and the left child
+    std::uint32_t first = 0, count = 0;  ///< edges of a leaf; in an inner node the left child and 0
   };
   std::vector<Node> nodes_;
   std::vector<std::pair<Box, double>> edges_;  // box and length [m]
