@@ -12,7 +12,7 @@ Vec3 limited(const Vec3& v, double limit) {
   return length > limit ? Vec3(v * (limit / length)) : v;
 }
 
-/// Energy of a spring of stiffness k at this stretch, whose force does not exceed `limit`.
+/// Energy of a spring of stiffness k at this stretch; its force does not exceed `limit`.
 double storedEnergy(double k, double stretch, double limit) {
   const double elastic = std::min(stretch, limit / k);
   return 0.5 * k * elastic * elastic + limit * (stretch - elastic);
@@ -22,7 +22,7 @@ double storedEnergy(double k, double stretch, double limit) {
 
 Wrench couplingWrench(const CouplingGains& gains, const CouplingState& proxy,
                       const CouplingState& part) noexcept {
-  if (!proxy.X_W.isFinite() || !part.X_W.isFinite()) return {};  // a rotation vector of NaN has no meaning
+  if (!proxy.X_W.isFinite() || !part.X_W.isFinite()) return {};  // NaN has no rotation vector
   const Vec3 p_error_W = proxy.X_W.p - part.X_W.p;
   const Vec3 r_error_W = rotationVector(proxy.X_W.R * part.X_W.R.transpose());
 

@@ -10,8 +10,8 @@ namespace {
 
 constexpr auto kFarBits = std::bit_cast<std::uint32_t>(kFar);
 
-/// Copies the sign of `from` to a far node if `from` is not far. Works on the bits, since compilers do not
-/// vectorise comparisons of floats by default.
+/// Gives a far node the band's distance with the sign of `from`, if `from` is not far. Works on the bits,
+/// because compilers do not vectorise comparisons of floats by default.
 float signedFar(float d, float from, float band_m) {
   const auto bits = std::bit_cast<std::uint32_t>(d), other = std::bit_cast<std::uint32_t>(from);
   const std::uint32_t saturated = std::bit_cast<std::uint32_t>(band_m) | (other & 0x80000000U);
@@ -19,9 +19,10 @@ float signedFar(float d, float from, float band_m) {
   return std::bit_cast<float>(takes ? saturated : bits);
 }
 
-/// One step of saturate(): `count` nodes from those `back` before (or, negative, behind) them.
+/// One step of saturate(): `count` nodes take signs from the nodes `back` before them (behind them if
+/// negative).
 void takeSigns(float* __restrict nodes, int count, int back, float band_m) {
-  const float* __restrict from = nodes - back;  // as many nodes, but none of them
+  const float* __restrict from = nodes - back;  // does not overlap with the `count` nodes
   for (int i = 0; i < count; ++i) nodes[i] = signedFar(nodes[i], from[i], band_m);
 }
 
@@ -31,7 +32,7 @@ class Filler {
   explicit Filler(VoxLayout& layout) : layout_(layout) {}
 
   /// The surface does not pass through empty cells, so a sign spreads from cell to cell. It starts at the
-  /// rim, which is outside, so that a fault of the mesh cannot turn the outside in.
+  /// rim, which is outside, so that a fault of the mesh cannot make the outside inside.
   void run() {
     is_filled_.resize(layout_.bricks.size());
     for (std::size_t i = 0; i < layout_.bricks.size(); ++i) is_filled_[i] = !isConstant(layout_.bricks[i]);
@@ -39,7 +40,7 @@ class Filler {
     for (std::size_t i = 0; i < layout_.bricks.size(); ++i) {
       if (isConstant(layout_.bricks[i])) continue;
       const NodeValue* nodes = layout_.nodesOf(i);
-      // An empty neighbour shares a face with the brick, whose middle node has the sign.
+      // An empty neighbour shares a face with the brick; the middle node of the face has the sign.
       for (int axis = 0; axis < 3; ++axis)
         for (const int step : {-1, 1}) {
           Index3 node = Index3::Constant(kBrick / 2);
@@ -82,7 +83,7 @@ class Filler {
   }
 
   VoxLayout& layout_;
-  std::vector<std::uint8_t> is_filled_;  // has its brick or its sign
+  std::vector<std::uint8_t> is_filled_;  // by cell: has its brick or its sign
   std::vector<Index3> waiting_;
 };
 
@@ -90,7 +91,7 @@ class Filler {
 
 void saturate(BrickNodes& distance, float band) {
   if (std::find(distance.begin(), distance.end(), kFar) == distance.end()) return;
-  // Plane by plane along x, then row by row along y: both many nodes at a time.
+  // Plane by plane along x, then row by row along y: both process many nodes at a time.
   constexpr int kPlane = kNodes * kNodes;
   for (int x = 1; x < kNodes; ++x) takeSigns(&distance[x * kPlane], kPlane, kPlane, band);
   for (int x = kNodes - 2; x >= 0; --x) takeSigns(&distance[x * kPlane], kPlane, -kPlane, band);
@@ -98,7 +99,7 @@ void saturate(BrickNodes& distance, float band) {
     for (int y = 1; y < kNodes; ++y) takeSigns(&distance[nodeIndex(x, y, 0)], kNodes, kNodes, band);
     for (int y = kNodes - 2; y >= 0; --y) takeSigns(&distance[nodeIndex(x, y, 0)], kNodes, -kNodes, band);
   }
-  // Each plane across z is now known completely, or not at all.
+  // Each plane across z is now either completely known or not at all.
   for (int z = 1; z < kNodes; ++z) {
     if (distance[z] != kFar || distance[z - 1] == kFar) continue;
     for (int i = z; i < kBrickNodes; i += kNodes) takeSigns(&distance[i], 1, 1, band);

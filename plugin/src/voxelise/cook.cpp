@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Several parts in one voxmap, each voxelised at its own pose.
+// Cooks several parts into one voxmap, each voxelised at its own pose.
 #include "voxmap/map_limits.h"
 #include "voxmap/voxmap_merge.h"
 #include "vps/load_error.h"

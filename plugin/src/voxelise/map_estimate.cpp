@@ -10,13 +10,13 @@
 namespace vps {
 namespace {
 
-/// Bytes for a map of this surface: bricks that meet a slab as thick as the band and a brick's own slant, and
-/// the directory.
+/// Bytes for a map of this surface: the directory, and bricks that meet a slab around the surface. The slab
+/// is as thick as the band plus a brick's slant.
 double estimatedBytes(double area_m2, const Vec3& size_m, double h, double band_voxels) {
   const double cell_m = VoxMap::kBrick * h;
   const double bricks = area_m2 / (cell_m * cell_m) * (2 * band_voxels / VoxMap::kBrick + 1.5);
   const Vec3 cells = (size_m.array() + 2 * band_voxels * h) / cell_m + 3;
-  constexpr double kTemporary = 15;  // bytes a cell, assumed: what building needs besides the directory
+  constexpr double kTemporary = 15;  // bytes a cell, assumed: temporary memory of building
   return bricks * VoxPool::kBytes + directoryBytes(cells) + cells.prod() * kTemporary;
 }
 
@@ -38,7 +38,7 @@ double fittingVoxel_m(const Mesh& mesh, const VoxMapSettings& settings, double m
   };
   double low = settings.voxel_m, high = low;
   if (!(low > 0) || !std::isfinite(area_m2) || fits(low)) return low;
-  constexpr double kCoarsest_m = 1e30;  // as requireSettings()
+  constexpr double kCoarsest_m = 1e30;  // the limit of requireSettings()
   while (!fits(high *= 2))
     if (high > kCoarsest_m) return std::numeric_limits<double>::infinity();
   for (low = high / 2; high > 1.001 * low;) {

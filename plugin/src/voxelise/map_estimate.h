@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Refuses meshes whose map would not fit, before any memory is taken.
+// Refuses meshes whose map would not fit in memory, before any memory is allocated.
 #pragma once
 
 #include <string>

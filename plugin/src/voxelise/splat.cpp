@@ -7,11 +7,11 @@
 namespace vps {
 namespace {
 
-/// How far beyond its region a feature is still used: more than rounding moves a border, so that no node
-/// falls between two regions, and less than a float distance can resolve.
+/// Margin around a region in which its feature is still used. It is more than rounding moves a border, so
+/// that no node falls between two regions, and less than a float distance can resolve.
 constexpr double kBorder = 1e-7;
-/// Faces that turn less than this at an edge leave the edge no region: the band is narrower than kBorder
-/// divided by it.
+/// If the faces at an edge turn by less than this, the edge has no region: within the band the region is
+/// narrower than kBorder.
 constexpr double kFlat = 1e-9;
 
 double taxicab(const Vec3& v) {
@@ -30,7 +30,7 @@ void put(float* node, double distance) {
 
 }  // namespace
 
-/// The prism above and below a triangle.
+/// The region of a face: the prism above and below a triangle.
 struct Splatter::Face {
   Vec3 n, side[3];
   double n_at, side_at[3], border[3];
@@ -76,7 +76,7 @@ struct Splatter::Face {
   }
 };
 
-/// The wedge about an edge.
+/// The region of an edge: the wedge about it.
 struct Splatter::Edge {
   Vec3 a, along, pseudonormal = Vec3::Zero();
   double length, band;
@@ -102,8 +102,8 @@ struct Splatter::Edge {
     bound();
   }
 
-  /// Used where a triangle at the edge has no normal. The foot counts as within the edge even if t is at its
-  /// end, or past it by rounding: only facets along the edge matter.
+  /// The pseudonormal if a triangle at the edge has no normal. The foot counts as within the edge even if t
+  /// is at its end, or past it by rounding, because only facets along the edge matter.
   [[nodiscard]] Vec3 normalAt(double t) const {
     const double margin = std::min(2 * SurfaceFeatures::kTouch, 0.5 * length);
     const double within = std::clamp(t, margin, length - margin);
@@ -165,12 +165,12 @@ struct Splatter::Edge {
   }
 };
 
-/// The cone about a vertex.
+/// The region of a vertex: the cone about it.
 struct Splatter::Corner {
   Vec3 v, pseudonormal;
   double band;
   Box box;
-  std::span<const Vec3> spokes;  // along the edges
+  std::span<const Vec3> spokes;  // vectors along the edges
   const SurfaceFeatures& features;
   std::uint32_t vertex;
   bool has_normal = false;

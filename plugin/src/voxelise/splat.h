@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Writes the features of a surface into tiles of grid nodes: each node gets the signed distance to the
-// nearest feature whose region it lies in, which is the distance to the surface (surface_features.h).
+// Writes the features of a surface into tiles of grid nodes. Each node gets the signed distance to the
+// nearest feature in whose region it lies; this is the distance to the surface (surface_features.h).
 //
-// The cost is proportional to the nodes within the band, not to their number times the triangles around: most
-// nodes are in the region of one or two features only.
+// The cost is proportional to the number of nodes within the band, not to that number times the triangles
+// around each: most nodes are in the region of only one or two features.
 #pragma once
 
 #include <array>
@@ -30,12 +30,12 @@ class Splatter {
     return features_.faceCount() + features_.edgeCount() + features_.vertexCount();
   }
 
-  /// Box around the nodes that a feature can be nearest to, empty (min > max) if there are none [voxels].
+  /// Box around the nodes to which a feature can be nearest, empty (min > max) if there are none [voxels].
   [[nodiscard]] Box reach(std::uint32_t feature);
-  /// True if a feature may come within the band of a ball; never false if it does.
+  /// False only if a feature is certain not to come within the band of a ball.
   [[nodiscard]] bool reaches(std::uint32_t feature, const Vec3& center, double radius) const;
 
-  /// Writes to the nodes of a tile, whose first one lies at `origin`. Nodes hold FLT_MAX or a signed distance
+  /// Writes to the nodes of a tile whose first node lies at `origin`. Nodes hold FLT_MAX or a signed distance
   /// in voxels, negative inside; of two equal distances the first is kept.
   void splat(std::uint32_t feature, const Vec3& origin, float* tile);
 

@@ -29,7 +29,7 @@ int findRowsBaseline(const SplatRegion& region, SplatRow* rows) {
 }
 
 void SplatRegion::add(double a, double b, double c, double d, double scale) {
-  // Nearly vertical planes are tilted slightly: within a tile that moves them by less than the margin.
+  // Nearly vertical planes are tilted slightly; within a tile this moves them by less than the margin.
   const double least = 1e-6 * scale;
   const double lean = c >= 0 ? std::max(c, least) : std::min(c, -least);
   const double per = -1 / lean;

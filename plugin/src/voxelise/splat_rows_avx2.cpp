@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Compiled for AVX2; see splat_rows.cpp.
+// The body of findRows() compiled for AVX2; see splat_rows.cpp.
 #include "voxelise/splat_rows_kernel.h"
 
 namespace vps {

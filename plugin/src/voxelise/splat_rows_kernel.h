@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The body of findRows(), compiled once for each set of vector instructions. All of them do the same
-// operations on each value, so the bits are the same. Includes no header with inline functions: the linker
-// would keep one copy of them for all processors.
+// The body of findRows(), compiled once for each set of vector instructions. All copies do the same
+// operations on each value, so the bits are the same. This file includes no header with inline functions,
+// because the linker would keep one copy of such functions for all processors.
 #pragma once
 
 #include "voxelise/splat_rows.h"
@@ -9,15 +9,15 @@
 namespace vps {
 namespace {  // one copy for each set of instructions
 
-/// Vectors of eight, which GCC and Clang split where the processor's are shorter. GCC 12 did not vectorise
-/// loops over arrays of eight.
+/// Vectors of eight, which GCC and Clang split if the processor's vectors are shorter. GCC 12 did not
+/// vectorise loops over arrays of eight.
 using Floats = float __attribute__((vector_size(32)));
 using Ints = int __attribute__((vector_size(32)));
 inline constexpr int kRowLanes = 8;
 
 inline int findRowsHere(const SplatRegion& region, SplatRow* rows) {
   constexpr Floats kLane = {0, 1, 2, 3, 4, 5, 6, 7};
-  // Both ends are moved outwards by the rounding error of a z of this size.
+  // Both ends are moved outwards by the rounding error of z.
   constexpr float kMargin = 1e-3F;
   const Floats first = static_cast<float>(region.low[2]) - kMargin - Floats{};
   const Floats last = static_cast<float>(region.high[2]) + kMargin - Floats{};
@@ -32,13 +32,14 @@ inline int findRowsHere(const SplatRegion& region, SplatRow* rows) {
         low = low > from ? low : from;
         high = high < to ? high : to;
       }
-      // Truncation is the floor where nothing is negative; low is at least -kMargin.
+      // Truncation equals the floor for numbers that are not negative; low is at least -kMargin.
       const Floats kFar = 1e3F - Floats{}, kBelow = -1.F - Floats{};
       low = low < kFar ? low : kFar;
       high = high > kBelow ? high : kBelow;
       const Ints from = __builtin_convertvector(low + (1 - 2 * kMargin), Ints);
       const Ints end = __builtin_convertvector(high + (1 + 2 * kMargin), Ints);
-      // NaN, from features too thin or too far away for floats, converts to the least integer: no row.
+      // NaN, from features too thin or too far away for floats, converts to the least integer, which is no
+      // row.
       const Ints is_row = (from < end) & (from >= 0);
       using Pairs = long long __attribute__((vector_size(32)));
       const auto pairs = reinterpret_cast<Pairs>(is_row);

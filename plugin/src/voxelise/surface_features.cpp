@@ -11,9 +11,10 @@
 namespace vps {
 namespace {
 
-/// A triangle lower than this share of a voxel is replaced by its edges, which are as near.
+/// A triangle lower than this fraction of a voxel is replaced by its edges, which are as near.
 constexpr double kMinHeight = 1e-7;
-/// So is one lower than this share of its longest side: its normal is rounding noise.
+/// A triangle lower than this fraction of its longest side is replaced too, since its normal is rounding
+/// noise.
 constexpr double kMinSlimness = 1e-12;
 
 double distanceToSegment(const Vec3& p, const Vec3& a, const Vec3& b) {
@@ -60,7 +61,7 @@ void SurfaceFeatures::collectCorners() {
   corners_.resize(sum);
   for (std::uint32_t i = 0; i < triangles_.size(); ++i)
     for (std::uint32_t k = 0; k < 3; ++k) corners_[first_corner_[triangles_[i][k]]++] = {i, k};
-  // Filling has moved each start to the next one.
+  // Filling has moved each start to the next start; move them back.
   for (std::size_t v = points_.size(); v > 0; --v) first_corner_[v] = first_corner_[v - 1];
   first_corner_[0] = 0;
 }

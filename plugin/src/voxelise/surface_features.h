@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A mesh as its features: faces, edges and vertices with their neighbours. The part of space that is nearest
-// to a feature then has a simple description.
+// The features of a mesh: faces, edges and vertices with their neighbours. The part of space that is nearest
+// to a feature has a simple description.
 //
 // The point q of a surface that is nearest to p lies within a face, within an edge, or at a vertex. Then
 //   face:   p lies above or below the triangle, within its three sides;
@@ -29,13 +29,14 @@ class SurfaceFeatures {
  public:
   struct Edge {
     std::uint32_t a, b;   ///< vertices, a < b
-    std::uint32_t first;  ///< of its sides
+    std::uint32_t first;  ///< index of the first of its sides
   };
 
   /// A point within this distance of a corner or a side lies on it [voxels].
   static constexpr double kTouch = 1e-6;
 
-  /// Positions are p / voxel_m - origin: voxels. Expects welded vertices and at most 2^30 triangles. O(n).
+  /// Converts positions to voxels: p / voxel_m - origin. Expects welded vertices and at most 2^30 triangles.
+  /// O(n).
   SurfaceFeatures(const Mesh& mesh, double voxel_m, const Vec3& origin);
 
   [[nodiscard]] std::uint32_t faceCount() const { return static_cast<std::uint32_t>(triangles_.size()); }
@@ -44,7 +45,7 @@ class SurfaceFeatures {
 
   [[nodiscard]] const Vec3& point(std::uint32_t vertex) const { return points_[vertex]; }
   [[nodiscard]] const std::array<std::uint32_t, 3>& triangle(std::uint32_t i) const { return triangles_[i]; }
-  /// Unit outward; zero for a triangle too thin to have one, which its edges then replace.
+  /// Unit outward normal; zero for a triangle too thin to have one, which its edges then replace.
   [[nodiscard]] const Vec3& normal(std::uint32_t triangle) const { return normals_[triangle]; }
   [[nodiscard]] const Edge& edge(std::uint32_t i) const { return edges_[i]; }
   /// The sides that make up an edge.
@@ -60,9 +61,9 @@ class SurfaceFeatures {
   [[nodiscard]] bool isRegular(std::uint32_t vertex) const { return is_regular_[vertex] != 0; }
   /// Sum of the normals at a vertex, weighted by angle. Source: Baerentzen and Aanaes 2005.
   [[nodiscard]] Vec3 pseudonormal(std::uint32_t vertex) const;
-  /// As above, at a point q of the surface, from the triangles `around` it and from those that touch q behind
-  /// triangles without a normal: a collinear triangle that closes a T-junction hides the face that it belongs
-  /// to. Slower.
+  /// As above, at a point q of the surface, from the triangles `around` it and from triangles that touch q
+  /// behind triangles without a normal: a collinear triangle that closes a T-junction hides the face to which
+  /// it belongs. Slower than pseudonormal().
   [[nodiscard]] Vec3 pseudonormalThrough(const Vec3& q, std::span<const TriangleSide> around) const;
   /// True if one of the triangles has no normal.
   [[nodiscard]] bool hasThin(std::span<const TriangleSide> sides) const;
@@ -78,11 +79,11 @@ class SurfaceFeatures {
   std::vector<Vec3> points_, normals_;
   std::vector<std::uint32_t> first_corner_;
   std::vector<TriangleSide> corners_;
-  std::vector<Edge> edges_;  // with one entry more for the end
+  std::vector<Edge> edges_;  // with one more entry for the end
   std::vector<TriangleSide> sides_;
   std::vector<std::uint8_t> is_regular_;
   bool has_thin_ = false;
-  std::vector<std::uint32_t> edge_of_;  // of each triangle's three sides; only where a triangle is thin
+  std::vector<std::uint32_t> edge_of_;  // by 3 triangle + side; empty unless a triangle is thin
 };
 
 }  // namespace vps

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Mesh to voxmap: the exact distance at every node within the band.
+// Builds a voxmap from a mesh: the exact distance at every node within the band.
 //
 // 1. Features: faces, edges and vertices with their neighbours (surface_features.h).
 // 2. Gather: the tiles of 32^3 nodes that each feature can reach, then the features of each tile.
-// 3. Splat: tile by tile, each feature writes to the nodes that may be nearest to it (splat.h). Bricks are
+// 3. Splat: tile by tile, each feature writes to the nodes to which it may be nearest (splat.h). Bricks are
 // cut from the tile while it is in the cache.
 // 4. Bricks: the neighbours' border, a sign for the nodes beyond the band (brick_assembly.h), and a bound of
 // the distance at every cell's centre (center_bounds.h).
@@ -34,25 +34,25 @@ namespace {
 
 constexpr int kTileBricks = kTile / kBrick;
 
-/// A feature that reaches a tile.
+/// A feature and a tile that it reaches.
 struct Reached {
   std::uint32_t tile, feature;
 };
 
-/// A brick in a tile: its first node there, and its cell.
+/// A brick to be cut from a tile: its first node in the tile, and its cell.
 struct CutBrick {
   Index3 node;
   std::size_t cell;
 };
 
-/// As kFar == d, but on the bits: compilers do not vectorise comparisons of floats by default.
+/// d == kFar, compared by bits, because compilers do not vectorise comparisons of floats by default.
 bool isFar(float d) {
   return std::bit_cast<std::uint32_t>(d) == std::bit_cast<std::uint32_t>(kFar);
 }
 
 class Voxeliser {
  public:
-  /// @param signer   signs nodes by winding number; null: by pseudonormals
+  /// @param signer   signs nodes by winding number; null: pseudonormals decide
   Voxeliser(const Mesh& mesh, const Box& box, const VoxMapSettings& settings, WindingSigner* signer)
       : mesh_(mesh),
         box_(box),
@@ -92,11 +92,11 @@ class Voxeliser {
   const Mesh& mesh_;
   const Box box_;
   const double h_, band_m_;
-  const double reach_;  // of the nodes that are computed [voxels]
+  const double reach_;  // greatest distance that is computed [voxels]
   WindingSigner* const signer_;
   bool are_signs_consistent_ = true;
   std::shared_ptr<VoxLayout> layout_ = std::make_shared<VoxLayout>();
-  std::vector<std::size_t> first_;       // where a tile's features start, and one more for the end
+  std::vector<std::size_t> first_;       // start of each tile's features, and one more entry for the end
   std::vector<std::uint32_t> features_;  // by tile, ascending within each
   std::vector<std::int32_t> brick_of_;   // by cell; -1: none
   std::vector<SurfaceBits> surface_;     // by brick
@@ -104,7 +104,7 @@ class Voxeliser {
 
 void Voxeliser::layOutDirectory() {
   const double cell_m = kBrick * h_;
-  // One cell more than the band on each side: normals look into the neighbour, and bounds get a margin.
+  // One cell more than the band on each side: normals read the neighbouring cell, and bounds get a margin.
   const Vec3 low = ((box_.min.array() - band_m_) / cell_m).floor() - 1;
   const Vec3 high = ((box_.max.array() + band_m_) / cell_m).floor() + 2;
   layout_->low = low.cast<int>();
@@ -113,8 +113,8 @@ void Voxeliser::layOutDirectory() {
   layout_->parts = {{box_, layout_->low, layout_->low + layout_->size}};
 }
 
-/// Halves the range of tiles until one is left and drops halves that the feature cannot reach: the cost of a
-/// large oblique triangle is that of its surface, not of its box.
+/// Halves the range of tiles until one is left, and drops halves that the feature cannot reach. So the cost
+/// of a large oblique triangle is proportional to its surface, not to its box.
 void Voxeliser::gatherRange(const Splatter& splatter, std::uint32_t feature, const Index3& low,
                             const Index3& size, std::vector<Reached>& out) const {
   const Vec3 half = 0.5 * kTile * size.cast<double>();
@@ -135,12 +135,12 @@ void Voxeliser::gatherRange(const Splatter& splatter, std::uint32_t feature, con
 void Voxeliser::gatherFeature(Splatter& splatter, std::uint32_t feature, std::vector<Reached>& out) const {
   const Box box = splatter.reach(feature);
   if (box.isEmpty()) return;
-  // A tile's last nodes are the next one's first.
+  // A tile's last nodes are the next tile's first nodes.
   const Index3 low = ((box.min.array() - (kTile + 1e-6)) / kTile).ceil().max(0).cast<int>();
   const Index3 high = (box.max / kTile).cast<int>();
   const Index3 size = high - low + Index3::Ones();
   if (size.maxCoeff() > 2) return gatherRange(splatter, feature, low, size, out);
-  // For few tiles taking all of them is faster than testing.
+  // For few tiles it is faster to take all of them than to test them.
   for (int x = low.x(); x <= high.x(); ++x)
     for (int y = low.y(); y <= high.y(); ++y)
       for (int z = low.z(); z <= high.z(); ++z) out.push_back({tileNumber({x, y, z}), feature});
@@ -175,7 +175,7 @@ void Voxeliser::splatTile(Splatter& splatter, std::size_t at, Tile& tile) const 
 
 /// The bricks of a tile that have a node within the band.
 std::vector<CutBrick> Voxeliser::bricksOf(const Tile& tile, const Index3& low) const {
-  // Bit b of a row along z: brick b has a node there. A brick's last node is the next one's first.
+  // Bit b of a row along z: brick b has a known node there. A brick's last node is the next brick's first.
   std::array<std::uint8_t, std::size_t{kTileNodes}* kTileNodes> rows = {};
   for (std::size_t row = 0; row < rows.size(); ++row) {
     const float* d = &tile[row * kTileNodes];
@@ -202,17 +202,18 @@ std::vector<CutBrick> Voxeliser::bricksOf(const Tile& tile, const Index3& low) c
   return bricks;
 }
 
-/// Bit z of a brick's row: the node is so near the surface that it may be the nearest to a point of it.
+/// Bits of a row along z in a brick; bit z: the node is so near the surface that it may be nearest to a point
+/// of it.
 std::uint8_t nearBits(const float* row) {
   constexpr auto kNearBits = std::bit_cast<std::uint32_t>(static_cast<float>(SurfaceBits::kNear));
   unsigned bits = 0;
-  // Without their sign, floats sort as their bits do.
+  // Without their sign, floats have the same order as their bits.
   for (unsigned z = 0; z < kBrick; ++z)
     bits |= (std::bit_cast<std::uint32_t>(row[z]) & 0x7FFFFFFFU) <= kNearBits ? 1U << z : 0U;
   return static_cast<std::uint8_t>(bits);
 }
 
-/// Copies a brick from its tile and records where the surface is.
+/// Copies a brick from its tile and records the nodes near the surface.
 void Voxeliser::cutBrick(const Tile& tile, const CutBrick& brick, std::size_t slot, BrickWriter& writer) {
   BrickNodes distance;
   SurfaceBits& surface = surface_[static_cast<std::size_t>(brick_of_[brick.cell])];
@@ -226,8 +227,8 @@ void Voxeliser::cutBrick(const Tile& tile, const CutBrick& brick, std::size_t sl
   layout_->bricks[brick.cell] = writer.write(slot, distance);
 }
 
-/// Processes a batch of tiles at a time in the same memory: first access to new pages for all of them would
-/// cost more than the computation.
+/// Processes a batch of tiles at a time in the same memory, because the first access to new pages for all
+/// tiles would cost more than the computation.
 void Voxeliser::splatTiles(const SurfaceFeatures& features) {
   constexpr std::size_t kBatch = 16;
   std::vector<std::size_t> wanted;
@@ -270,7 +271,7 @@ void Voxeliser::boundCenters() {
   tbb::parallel_for(std::size_t{0}, bound.size(), [&](std::size_t i) {
     constexpr int kCenter = kBrick / 2;
     const int center = layout_->nodesOf(i)[nodeIndex(kCenter, kCenter, kCenter)];
-    // Within the band the distance itself is known, but for rounding; beyond, it is at least nearly the band.
+    // Within the band the distance is known, up to rounding; beyond, it is at least nearly the band.
     const double known_m = std::max(0.0, (std::abs(center) - 0.51) * quantum_m);
     const double least_m = std::abs(center) < kFullBand ? known_m : std::max(known_m, bound[i] * h_);
     layout_->centers_m[i] = static_cast<float>(center < 0 ? -least_m : least_m);
@@ -322,7 +323,7 @@ std::optional<VoxMap> voxelised(const Mesh& surface, const Interior* interior, c
   return VoxMapAccess::make(layout, settings.voxel_m, settings.band_voxels * settings.voxel_m, box);
 }
 
-/// As above, of a mesh whose interior is decided by winding numbers.
+/// As above, for a mesh whose interior is decided by winding numbers.
 VoxMap voxelised(RepairedMesh repaired, const Box& box, const VoxMapSettings& settings,
                  const Progress& progress, MeshReport* report) {
   const Interior interior(std::move(repaired.solid), bounds(repaired.surface));
@@ -332,7 +333,7 @@ VoxMap voxelised(RepairedMesh repaired, const Box& box, const VoxMapSettings& se
   return *map;
 }
 
-/// A surface with its interior, null where pseudonormals decide.
+/// A surface with its interior; the interior is null if pseudonormals decide.
 struct Body {
   const Mesh& surface;
   const Interior* interior;
@@ -343,7 +344,7 @@ VoxMap voxelised(Body body, const Box& box, const VoxMapSettings& settings, cons
                  MeshReport* report) {
   const std::optional<VoxMap> map =
       voxelised(body.surface, body.interior, box, settings, progress, body.report);
-  if (!map) {  // it crosses itself
+  if (!map) {  // the surface crosses itself
     const RepairedMesh sound{{}, body.surface, body.report, true};
     return voxelised(repairCrossing(sound), box, settings, progress, report);
   }

@@ -13,14 +13,14 @@
 namespace vps {
 namespace {
 
-/// A winding number this far from 0.5 is certain, and may be passed to neighbours.
+/// A winding number that differs from 0.5 by more than this is certain, and may be passed to neighbours.
 constexpr double kCertainMargin = 0.25;
-/// Values are limited to this distance from 0.5: crossing a facet inside the solid, which distances do not
-/// show, changes the winding number from 2 to 1.
+/// The margin is limited to this: crossing a facet inside the solid, which distances do not show, changes the
+/// winding number from 2 to 1.
 constexpr double kMaxMargin = 0.5;
 
-/// Which nodes and cells may have an inside. The directory's rim, a band or more from the surface's box, has
-/// none, and so everything beyond reads as outside.
+/// Tells which nodes and cells may be inside. The directory's rim, a band or more from the surface's box, is
+/// outside, so all space beyond it reads as outside.
 class Within {
  public:
   Within(const Interior& interior, double voxel_m) : interior_(interior), voxel_m_(voxel_m) {}
@@ -52,20 +52,20 @@ void forEachNeighbour(const Index3& at, const Index3& size, Visit visit) {
     }
 }
 
-/// A sign that a signed node passes on, and what is left of its margin; below 0: none.
+/// A sign that a signed node passes on, and the rest of its margin; a margin below 0 means no sign.
 struct Passed {
   int sign = 1;
   double margin = -1;
 };
 
 /// The sign that a node takes from one of its up to 26 neighbours: the surface cannot pass between two nodes
-/// whose distances exceed their own in sum.
-/// @param lossAt  of margin, per voxel from a node, up to the nodes next to it
+/// if the sum of their distances exceeds the distance between them.
+/// @param lossAt  returns the loss of margin per voxel around a node
 template <typename Loss>
 Passed passedAcross(int node, const NodeValue* nodes, const std::array<int, kBrickNodes>& size,
                     const std::array<float, kBrickNodes>& margin, double voxel_quanta, const Loss& lossAt) {
-  constexpr std::array<double, 4> kLength = {0, 1, 1.4142135623731,
-                                             1.7320508075689};  // rounded up, of offsets
+  // Lengths of offsets, rounded up.
+  constexpr std::array<double, 4> kLength = {0, 1, 1.4142135623731, 1.7320508075689};
   const Index3 at = nodeAt(node), low = (at.array() - 1).max(0), high = (at.array() + 1).min(kNodes - 1);
   Passed best;
   for (int x = low.x(); x <= high.x(); ++x)
@@ -76,7 +76,7 @@ Passed passedAcross(int node, const NodeValue* nodes, const std::array<int, kBri
         const double length = kLength[(Index3(x, y, z) - at).cwiseAbs().sum()];
         // Distances are rounded by half a quantum each.
         if (!(size[node] + size[other] > length * voxel_quanta * (1 + 1e-5) + 1)) continue;
-        // The doubt about the winding number that a sign began with is counted here again, to be safe.
+        // The doubt about the winding number from which a sign spread is subtracted again, to be safe.
         const double left = margin[other] - lossAt(other) * length - Interior::kDoubt;
         if (left > best.margin) best = {nodes[other] < 0 ? -1 : 1, left};
       }
@@ -90,7 +90,7 @@ WindingSigner::Count WindingSigner::signBrick(NodeValue* nodes, const Index3& lo
   Box box;
   box.add(voxel_m * low.cast<double>());
   box.add(voxel_m * (low + Index3::Constant(kBrick)).cast<double>());
-  const double loss = interior_.slope().bound(box) * voxel_m;  // of margin, per step, anywhere in the brick
+  const double loss = interior_.slope().bound(box) * voxel_m;  // of margin per step, bound for the brick
   Count count;
   std::array<int, kBrickNodes> size;
   std::array<float, kBrickNodes> margin;
@@ -102,8 +102,9 @@ WindingSigner::Count WindingSigner::signBrick(NodeValue* nodes, const Index3& lo
   // Distances are rounded by half a quantum each.
   const double step = voxel_m / quantum_m * (1 + 1e-5) + 1;
   std::array<std::int16_t, kBrickNodes> queue;
-  // Near a border one bound for the brick would leave each of its nodes to be decided alone.
-  constexpr double kSmallLoss = 0.005;  // of the margins of 0.25 that a brick's sixteen steps may use up
+  // Near a border, with one bound for the whole brick, each of its nodes would need a winding number of its
+  // own.
+  constexpr double kSmallLoss = 0.005;  // of a margin of 0.25, of which a brick has sixteen steps
   std::array<float, kBrickNodes> loss_of;
   if (loss > kSmallLoss) loss_of.fill(-1);
   const auto lossAt = [&](int i) {
@@ -115,7 +116,7 @@ WindingSigner::Count WindingSigner::signBrick(NodeValue* nodes, const Index3& lo
     }
     return static_cast<double>(loss_of[i]);
   };
-  // Signs a node, and all that it can pass its sign to along the axes.
+  // Signs a node, and all nodes to which it can pass its sign along the axes.
   const auto spread = [&](int from, int sign, double margin_there, double doubt) {
     margin[from] = static_cast<float>(margin_there);
     int end = 0;
@@ -123,7 +124,7 @@ WindingSigner::Count WindingSigner::signBrick(NodeValue* nodes, const Index3& lo
     for (int next = 0; next < end; ++next) {
       const int i = queue[next];
       const double left = margin[i] - lossAt(i) - (i == from ? doubt : 0);
-      // On the surface itself both signs are right, and the winding number leaves it open.
+      // On the surface itself both signs are right, and the winding number does not decide.
       count.certain += size[i] < kFullBand && (margin[i] > kCertainMargin || size[i] <= 1);
       nodes[i] = static_cast<NodeValue>(sign * size[i]);
       if (!(left > kCertainMargin)) continue;
@@ -135,12 +136,12 @@ WindingSigner::Count WindingSigner::signBrick(NodeValue* nodes, const Index3& lo
       });
     }
   };
-  // First the nodes from which a sign spreads. Those next to the surface follow, most of them across a
-  // diagonal: next to an oblique surface no neighbour along an axis is far enough.
+  // First the nodes from which a sign spreads. Nodes next to the surface follow; most take their sign across
+  // a diagonal, because next to an oblique surface no neighbour along an axis is far enough.
   for (const bool is_first : {true, false})
     for (int seed = 0; seed < kBrickNodes; ++seed) {
       if (margin[seed] >= 0 || (is_first && !(2 * size[seed] > step))) continue;
-      if (size[seed] == 0) {  // on the surface, as are a brick's 81 nodes in a face along the grid: no sign
+      if (size[seed] == 0) {  // on the surface, no sign; a face along the grid has 81 such nodes in a brick
         margin[seed] = 0;
         ++count.certain;
         continue;
@@ -160,7 +161,7 @@ WindingSigner::Count WindingSigner::signBrick(NodeValue* nodes, const Index3& lo
 
 namespace {
 
-/// Sets those nodes of a brick outside that cannot be inside.
+/// Makes nodes of a brick positive that cannot be inside.
 void clip(NodeValue* nodes, const Index3& cell, const Within& within) {
   if (within.holdsAllOf(cell)) return;
   for (int i = 0; i < kBrickNodes; ++i) {
@@ -204,7 +205,8 @@ void WindingSigner::signCells(VoxLayout& layout, const std::vector<std::size_t>&
 
 std::vector<std::size_t> WindingSigner::cutCells(const VoxLayout& layout, double voxel_m,
                                                  const std::vector<std::uint8_t>& is_uncertain) const {
-  const CellBox corners = {layout.low, layout.size + Index3::Ones()};  // each by the cell above it
+  // A corner has the index of the cell above it.
+  const CellBox corners = {layout.low, layout.size + Index3::Ones()};
   const auto cornerOf = [&](std::size_t cell, int corner) {
     return corners.cellIndex(layout.cellAt(cell) + Index3(corner >> 2, corner >> 1 & 1, corner & 1));
   };
@@ -273,8 +275,8 @@ void WindingSigner::signEmptyCells(VoxLayout& layout, double voxel_m, double qua
       layout.bricks[i] = kOutside;
       continue;
     }
-    // The distance from a cell's centre to its corners: half its diagonal. Where passing values on ends,
-    // corners may disagree.
+    // 0.87 is half a cell's diagonal, the distance from its centre to its corners. If passing the centre's
+    // value to the corners uses up the margin, corners may disagree.
     is_uncertain[i] =
         margin[i] < 0.87f * loss[i] + float{Interior::kDoubt} || !within.holdsAllOf(layout.cellAt(i));
   }
@@ -296,8 +298,8 @@ double WindingSigner::certainShare() const noexcept {
 
 namespace {
 
-/// True if any of `count` pairs of neighbours in the band have opposite signs and are more than a step apart
-/// in sum; a mask of 0 leaves a pair out. In 16 bits and without branches, so that it is vectorised.
+/// True if any of `count` pairs of neighbours in the band have opposite signs and distances whose sum exceeds
+/// a step. A mask of 0 leaves a pair out. Uses 16 bits and no branches, so that compilers vectorise it.
 bool hasJump(const NodeValue* a, const NodeValue* b, int count, std::uint16_t step,
              const std::uint16_t* mask) {
   using U16 = std::uint16_t;

@@ -10,9 +10,9 @@
 
 namespace vps {
 
-/// Signs nodes as an Interior does. Between neighbouring nodes that are farther from the surface than their
-/// step, the winding number changes at most by its slope, so that one value serves many nodes: all nodes of a
-/// brick on one side of a closed surface. Near a border every node needs its own.
+/// Signs nodes as an Interior does. Between neighbouring nodes that are farther from the surface than the
+/// distance between them, the winding number changes at most by its slope. So one value serves many nodes: in
+/// a brick all nodes on one side of a closed surface. Near a border every node needs a value of its own.
 class WindingSigner {
  public:
   explicit WindingSigner(const Interior& interior) : interior_(interior) {}
@@ -21,18 +21,18 @@ class WindingSigner {
   /// without a surface. Parallel over bricks; the result does not depend on the threads.
   void signBricks(VoxLayout& layout, double voxel_m, double quantum_m);
   /// Decides by the winding number at their centres whether empty cells are inside. Call after
-  /// fillEmptyCells(), whose signs spread through holes that are wider than the band. Cells whose corners
-  /// disagree, in the middle of such a hole, become bricks with a sign for each node. Does nothing for a
+  /// fillEmptyCells(), whose signs spread through holes wider than the band. In the middle of such a hole the
+  /// corners of a cell disagree; these cells become bricks with a sign for each node. Does nothing for a
   /// closed mesh.
   void signEmptyCells(VoxLayout& layout, double voxel_m, double quantum_m);
-  /// Share of the nodes signed so far, in the band, whose winding number is more than 0.25 from 0.5.
+  /// Of the nodes in the band signed so far, the fraction whose winding number is more than 0.25 from 0.5.
   [[nodiscard]] double certainShare() const noexcept;
 
  private:
   struct Count {
     std::size_t nodes = 0, certain = 0;
   };
-  /// The cells, ascending, through which the middle of a hole passes; `is_uncertain` by cell.
+  /// The cells, in ascending order, through which the middle of a hole passes; `is_uncertain` is by cell.
   [[nodiscard]] std::vector<std::size_t> cutCells(const VoxLayout& layout, double voxel_m,
                                                   const std::vector<std::uint8_t>& is_uncertain) const;
   /// Signs the nodes of these cells' bricks.
@@ -43,8 +43,8 @@ class WindingSigner {
   Count count_;
 };
 
-/// True if no two neighbours within a brick have different signs unless the surface can pass between them.
-/// False means that pseudonormals were wrong, most likely because the mesh crosses itself.
+/// False if two neighbours within a brick have different signs although the surface cannot pass between them.
+/// Then pseudonormals are wrong, most likely because the mesh crosses itself.
 bool signsAgree(const VoxLayout& layout, double voxel_m, double quantum_m);
 
 }  // namespace vps

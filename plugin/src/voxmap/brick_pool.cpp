@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Memory for bricks: a pool, and the move to a larger one.
+// The pool of memory for bricks, and the move of a map's bricks to a larger pool.
 #ifdef __linux__
 #include <sys/mman.h>
 #endif
@@ -21,7 +21,7 @@ VoxPool::VoxPool(std::size_t capacity)
       mixed_(new const NodeOwners*[capacity_]) {
 #ifdef __linux__
   // Reads are scattered over the nodes; small pages exceed the TLB (5 to 10 % of the time of a read of 20
-  // MB). The call is a hint: where it is refused nothing else changes.
+  // MB). The call is a hint: if the system refuses it, nothing else changes.
   const std::size_t bytes = capacity_ * kBrickStride * sizeof(NodeValue);
   if (bytes >= kPage) (void)madvise(nodes_.get(), bytes / kPage * kPage, MADV_HUGEPAGE);
 #endif
@@ -38,7 +38,7 @@ std::uint32_t VoxPool::take(std::size_t count) noexcept {
   std::size_t first = used_;
   const auto run = std::find_if(free_.begin(), free_.end(), [&](const auto& r) { return r.second >= count; });
   if (run != free_.end()) {
-    // From its end: the rest keeps its entry in the list, and nothing is allocated.
+    // Taken from the end of the run: its entry in the list stays, and nothing is allocated.
     first = run->first + (run->second -= count);
     if (run->second == 0) free_.erase(run);
   } else {
@@ -82,7 +82,7 @@ void forNames(VoxLayout& layout, Visit visit) {
     if (!isConstant(brick)) visit(brick);
 }
 
-/// The bricks that a layout uses; bricks that several cells share are moved once.
+/// The bricks that a layout uses. A brick that several cells share is listed once.
 struct Named {
   std::vector<std::uint8_t> is_named;  ///< by index in the pool
   std::size_t count = 0, mixed = 0;
@@ -119,9 +119,9 @@ void moveToNewPool(VoxLayout& layout, std::size_t room) {
   const std::shared_ptr<const VoxPool> from = layout.pool;
   auto to = std::make_shared<VoxPool>(named.count + room);
   auto owners = std::make_shared<std::vector<NodeOwners>>();
-  owners->reserve(named.mixed);  // bricks point into it
+  owners->reserve(named.mixed);  // never reallocated, since bricks point into it
   std::uint32_t next = to->take(named.count);
-  std::vector<std::uint32_t> name(from->size(), 0);  // in the new pool, by index in the old one
+  std::vector<std::uint32_t> name(from->size(), 0);  // name in the new pool, by index in the old one
   forNames(layout, [&](std::uint32_t& brick) {
     std::uint32_t& renamed = name[brick / kBrickStride];
     if (renamed == 0) {

@@ -9,11 +9,11 @@ namespace vps {
 namespace {
 
 constexpr int kCenter = kBrick / 2;
-constexpr int kWide = 2, kColumns = kBrick / kWide;  // nodes a column is wide, columns along a brick
+constexpr int kWide = 2, kColumns = kBrick / kWide;  // width of a column in nodes; columns along a brick
 constexpr float kNone = 1e30F;
 
-/// One row of cells along z, squared distances from their centres to the nearest cube in one column.
-/// Returns whether the column has any.
+/// For one row of cells along z, the squared distances from the cells' centres to the nearest cube in one
+/// column. Returns false if the column has no cube.
 bool measureColumn(std::size_t first_cell, int count, int column, const std::vector<std::int32_t>& brick,
                    const std::vector<SurfaceBits>& bits, float* row) {
   const auto bitsAt = [&](int z) -> unsigned {
@@ -44,8 +44,8 @@ bool measureColumn(std::size_t first_cell, int count, int column, const std::vec
   return true;
 }
 
-/// out[z] = min over columns of (in[column][z] + squared distance across), columns near first, until no other
-/// can be nearer.
+/// out[z] = min over columns of (in[column][z] + squared distance across). Visits near columns first, and
+/// stops when no other column can be nearer.
 void nearestColumn(int cell, int columns, const float* const* in, int count, float* out) {
   std::fill_n(out, count, kNone);
   const int middle = kColumns * cell + kColumns / 2;

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Cells with only empty cells around them: points near such a cell need not be read.
+// Marks cells that have only empty cells around them: points near such a cell need not be read.
 #include "voxmap/voxmap_layout.h"
 
 namespace vps {
 namespace {
 
-/// Spreads set entries to their neighbours along one axis. `stride`: from neighbour to neighbour; `length`:
-/// of a whole row of them.
+/// Spreads set entries to their neighbours along one axis.
+/// @param stride  distance in memory from neighbour to neighbour
+/// @param length  entries of a whole row of neighbours
 void spread(const std::vector<std::uint8_t>& from, std::size_t stride, std::size_t length,
             std::vector<std::uint8_t>& to) {
   for (std::size_t row = 0; row < from.size(); row += length) {

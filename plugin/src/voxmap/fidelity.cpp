@@ -7,8 +7,8 @@
 
 namespace vps {
 
-// All values are assumed: the paper gives none of them. The grid step is half the point spacing, so that the
-// area of a point covers a few cells; `vps trade` measures what a scene needs.
+// All values are assumed; the paper gives none of them. The grid step is half the point spacing, so that the
+// area of a point covers a few cells. `vps trade` measures the settings that a scene needs.
 Fidelity fidelityPreset(std::string_view name) {
   Fidelity f;  // "normal": fits of tens of micrometres on parts of a few centimetres
   if (name == "normal") return f;

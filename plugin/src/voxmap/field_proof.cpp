@@ -19,10 +19,10 @@ namespace {
 /// sqrt 2)|.
 constexpr double kLattice = 1.1281;
 
-/// Measurements over bricks: only minima and maxima, so that the order does not matter.
+/// Measurements over bricks. They are minima and maxima only, so that their order does not matter.
 struct Measure {
-  int along = 0, across = 0, diagonal = 0;  ///< differences on a cell's edges, faces, and through it [quanta]
-  Box surface;                              ///< of zeros on edges [voxels]
+  int along = 0, across = 0, diagonal = 0;  ///< differences on a cell's edges, faces, and diagonals [quanta]
+  Box surface;                              ///< of the field's zeros on edges [voxels]
 
   void add(const Measure& other) {
     along = std::max(along, other.along);
@@ -40,7 +40,7 @@ struct Measure {
     diagonal = std::max({diagonal, mostDifference<1, 1, 1>(n), mostDifference<1, 1, -1>(n),
                          mostDifference<1, -1, 1>(n), mostDifference<1, -1, -1>(n)});
   }
-  /// Zeros between a node and the next along an axis.
+  /// Adds the zeros between a node and the next node along an axis.
   void addZeros(const NodeValue* nodes, const Index3& first) {
     for (int i = 0; i < kBrickNodes; ++i) {
       const Index3 at = nodeAt(i);
@@ -76,7 +76,7 @@ class Proof {
     layout_.steepest = static_cast<float>(measure.along * quantum_ * (1 + 1e-6));
     const double s = quantum_ * std::max({measure.along / 1.0, measure.across / std::sqrt(2.0),
                                           measure.diagonal / std::sqrt(3.0)});
-    // A small margin for rounding in this computation.
+    // A small margin covers the rounding errors of this computation.
     error_ = std::max({1e-6, band_ * (1 - 1 / (kLattice * s)), shortfall(measure.surface)}) * (1 + 1e-6);
     layout_.node_error = static_cast<float>(error_ * (1 + 1e-6));
     layout_.is_metric = true;
@@ -116,7 +116,7 @@ class Proof {
         [&](std::size_t cell, double& most) {
           const std::uint32_t brick = layout_.bricks[cell];
           if (brick == kOutside) return;
-          // The distance to a box is convex: over a constant brick it is greatest at a corner.
+          // The distance to a box is convex, so over a constant brick it is greatest at a corner.
           const int step = brick == kInside ? kBrick : 1;
           const NodeValue* nodes = layout_.nodesOf(cell);
           const Index3 first = kBrick * layout_.cellAt(cell);
@@ -142,10 +142,10 @@ class Proof {
     return boundCellCenters(layout_.size, is_other, {all});
   }
 
-  /// Within a constant region, nodes below the band are at least the distance to the region's border away. A
-  /// saturated node lies within sqrt(1/2) of any point on the region's faces, and from there f falls at most
-  /// by the distance. boundCellCenters() measures to cubes around nodes: sqrt(3)/2 more than to the cell that
-  /// has them.
+  /// Within a constant region, nodes below the band are at least as far as the region's border. A saturated
+  /// node lies within sqrt(1/2) of any point on the region's faces, and from there f falls by at most the
+  /// distance. boundCellCenters() measures to cubes around nodes, which may be sqrt(3)/2 farther than the
+  /// cell that contains the nodes.
   void boundCenters() {
     constexpr double kMargin = 0.7072 + 0.8661;
     const std::vector<float> outside = wayOutOf(kOutside), inside = wayOutOf(kInside);
@@ -156,15 +156,15 @@ class Proof {
         least =
             std::max(least, band_ - kMargin +
                                 static_cast<double>(layout_.bricks[i] == kOutside ? outside[i] : inside[i]));
-      // Rounding down keeps it a bound.
+      // Rounded down, so that it stays a bound.
       const double least_m = std::max(0.0, least - error_) * voxel_m_ * (1 - 1e-6);
       layout_.centers_m[i] = static_cast<float>(center < 0 ? -least_m : least_m);
     });
   }
 
   VoxLayout& layout_;
-  const double voxel_m_, quantum_, band_;  // the latter two in voxels
-  double error_ = 0;                       // e in the header [voxels]
+  const double voxel_m_, quantum_, band_;  // quantum_ and band_ in voxels
+  double error_ = 0;                       // e of the header's comment [voxels]
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A map and a pose as the kernels take them.
+// A map and a pose in the form that the kernels use.
 #include <cmath>
 
 #include "voxmap/read_kernel.h"
@@ -41,7 +41,7 @@ FieldView::FieldView(const VoxMap& map) noexcept : voxel_m(map.voxel_m()), quant
   is_metric = layout.is_metric;
   error = 0.8661f + layout.node_error + quantum;
   diagonal = 1.7322f + 2 * layout.node_error + quantum;
-  // Along each axis nodes differ by `steepest` at most, and each is rounded by half a quantum.
+  // Neighbouring nodes along an axis differ by at most `steepest`, and each is rounded by half a quantum.
   slope = 1.7320509f * (layout.steepest + quantum) * (1 + 1e-6f);
 }
 

@@ -13,10 +13,10 @@
 namespace vps {
 namespace {
 
-constexpr int kCells = 4;  // of the field, along each axis; the outermost are empty
+constexpr int kCells = 4;  // cells of the field along each axis; the outermost cells are empty
 
-/// A plane through the middle of a small field, and sixteen leaves of points around it. A reading's time does
-/// not depend on the values, only on where the nodes are.
+/// A plane through the middle of a small field, and sixteen leaves of points around it. The time of a read
+/// depends only on the places of the nodes, not on their values.
 class Workload {
  public:
   Workload() : nodes_(kBrickStride * (kCells * kCells * kCells + 2), NodeValue{0}) {
@@ -39,7 +39,7 @@ class Workload {
     for (int i = 0; i < kBatch; ++i) addBlock(i);
   }
 
-  /// Seconds for one batch: all its leaves read, and every fourth one's touching points added.
+  /// Seconds for one batch: all its leaves are read, and the touching points of every fourth leaf are added.
   double run(const ReadKernels& kernels) {
     const Motion motion(view_, Pose());
     const std::int32_t reference[3] = {0, 0, 0};
@@ -81,7 +81,7 @@ class Workload {
 }  // namespace
 
 bool isFaster(const ReadKernels& a, const ReadKernels& b) {
-  constexpr int kRuns = 25;  // the first ones fill the caches and wake the wide vector units
+  constexpr int kRuns = 25;  // the first runs fill the caches and wake the wide vector units
   const auto work = std::make_unique<Workload>();
   double a_s = work->run(a), b_s = work->run(b);
   for (int run = 0; run < kRuns; ++run) {

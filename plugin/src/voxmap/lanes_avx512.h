@@ -19,7 +19,7 @@ inline Ints sumOfProducts(Ints pairs, Ints weights) {
   return (Ints)_mm512_madd_epi16((__m512i)pairs, (__m512i)weights);
 }
 
-// With a mask of all ones: gcc 12 warns of what the plain form leaves undefined.
+// With a mask of all ones: gcc 12 warns of an undefined operand in the plain form.
 inline Floats squareRoots(Floats v) {
   return (Floats)_mm512_maskz_sqrt_ps(0xffff, (__m512)v);
 }
@@ -38,7 +38,7 @@ inline std::uint32_t bitsOf(Ints mask) {
   return _mm512_test_epi32_mask((__m512i)mask, (__m512i)mask);
 }
 
-/// Whether x, y and z of four numbers are at least `least`.
+/// True if x, y and z are at least `least`.
 inline bool areAtLeast(Axes v, double least) {
   return (_mm256_movemask_pd(_mm256_cmp_pd((__m256d)v, _mm256_set1_pd(least), _CMP_GE_OQ)) & 7) == 7;
 }
@@ -48,8 +48,8 @@ inline Ints toNearest(Floats v) {
   return (Ints)_mm512_maskz_cvtps_epi32(0xffff, (__m512)v);
 }
 
-/// Pairs of nodes at p and p + kY, of two lanes: four words of each 32 bytes, so that one load brings both
-/// pairs. They go to the low or the high half.
+/// Pairs of nodes at p and p + kY, for two lanes, as four words in the low or the high half. One load of 32
+/// bytes brings both pairs of a lane.
 template <int kY, bool kIsHigh>
 inline __m256i twoLanes(const std::int16_t* p, const std::int16_t* q) {
   constexpr int a = kY, b = kY + 1, c = kY + 16, d = kY + 17;
@@ -61,7 +61,7 @@ inline __m256i twoLanes(const std::int16_t* p, const std::int16_t* q) {
   return _mm256_permutex2var_epi16(load(p), words, load(q));
 }
 
-/// The same of four lanes.
+/// Pairs of nodes as in twoLanes(), for four lanes.
 template <int kY>
 inline __m256i fourLanes(const std::int16_t* a, const std::int16_t* b, const std::int16_t* c,
                          const std::int16_t* d) {
@@ -69,11 +69,12 @@ inline __m256i fourLanes(const std::int16_t* a, const std::int16_t* b, const std
   return _mm256_blend_epi32(low, high, 0xf0);  // a macro in some compilers, which would split a<b, c>()
 }
 
-/// The node at(i) of each lane i and the next; the same kY further, kX further, and both.
+/// The node at(i) of each lane i and the next node along z; the same pairs kY further, kX further, and both.
 template <int kY, int kX, typename At>
 inline void fetchPairs(At at, Ints* pairs) {
-  __m256i even[2][2], odd[2][2];          // twos of lanes
-  for (int half = 0; half < 2; ++half) {  // all lanes' addresses would not fit the registers
+  __m256i even[2][2], odd[2][2];  // pairs of lanes
+  // In halves, because the addresses of all lanes exceed the registers.
+  for (int half = 0; half < 2; ++half) {
     const std::int16_t* p[8];
     for (int i = 0; i < 8; ++i) p[i] = at(8 * half + i);
     for (int x = 0; x < 2; ++x) {

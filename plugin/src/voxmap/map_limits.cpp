@@ -17,7 +17,7 @@ static_assert(kMemoryLimit_bytes / VoxPool::kBytes < VoxPool::kMaxBricks, "all b
 void requireSettings(const VoxMapSettings& settings, const std::string& part) {
   if (!(settings.voxel_m > 0) || !std::isfinite(settings.voxel_m))
     throw LoadError("", part, "voxel size must be above 0; 0.25 mm suits fits of 20 um and more");
-  // Distances are floats. No part comes near these limits, but a damaged file may.
+  // Distances are floats. No part comes near these limits, but the values of a damaged file may.
   if (!(settings.voxel_m > 1e-30) || !(settings.voxel_m < 1e30))
     throw LoadError("", part, "voxel size must lie between 1e-30 and 1e30 m; is the unit right?");
   // A band read from a map is rounded, see quantumOf().

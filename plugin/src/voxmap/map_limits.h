@@ -15,20 +15,20 @@ void requireSettings(const VoxMapSettings& settings, const std::string& part = "
 /// Refuses a pose that is not finite.
 void requirePose(const Pose& X_MP);
 
-/// Refuses a surface's box so far from the origin that indices of its cells would overflow: beyond half of
-/// the range of 32 bits; the other half is for the size of the box. Refuses NaN too.
+/// Refuses a surface's box so far from the origin that indices of its cells would overflow: at more than half
+/// the range of 32 bits. The other half is for the size of the box. Refuses NaN too.
 void requireNear(const Box& bounds_M, double voxel_m, const std::string& part = "");
 
-/// Bytes of a directory of so many cells.
+/// Bytes of a directory with this number of cells along each axis.
 double directoryBytes(const Vec3& cells);
 
 /// Refuses a directory that would not fit in memory; one that fits has indices of 31 bits, as queries need.
-/// @param cells  along each axis; as doubles, since the count may exceed the range of an index
+/// @param cells  along each axis; of type double, since the count may exceed the range of an index
 VPS_API void requireDirectory(const Vec3& cells, const std::string& file = "", const std::string& part = "");
 
-/// Refuses what would not fit in memory, with the message "needs 12 GiB for its bricks, the limit is 4;
+/// Refuses data that would not fit in memory, with the message "needs 12 GiB for its bricks, the limit is 4;
 /// REMEDY".
-/// @param what_for  " for its bricks"
+/// @param what_for  the purpose in the message, such as " for its bricks"
 VPS_API void requireMemory(double bytes, const std::string& what_for, const std::string& remedy,
                            const std::string& file = "", const std::string& part = "");
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Differences of neighbouring nodes of a brick, which bound how steep the field is.
+// Differences of neighbouring nodes of a brick. They bound the slope of the field.
 #pragma once
 
 #include <algorithm>
@@ -23,13 +23,13 @@ int mostDifference(const NodeValue* nodes) {
   return most;
 }
 
-/// The same along the axes.
+/// The largest difference of neighbours along the three axes [quanta].
 inline int mostAlongAxes(const NodeValue* nodes) {
   return std::max(
       {mostDifference<1, 0, 0>(nodes), mostDifference<0, 1, 0>(nodes), mostDifference<0, 0, 1>(nodes)});
 }
 
-/// A difference of neighbours along an axis as VoxLayout::steepest has it; rounding alone makes a quantum.
+/// Converts a difference of neighbours along an axis to VoxLayout::steepest. Rounding alone makes a quantum.
 inline float steepnessOf(int difference, double voxel_m, double quantum_m) {
   return static_cast<float>((difference - 1) * quantum_m / voxel_m * (1 + 1e-6));
 }

@@ -25,8 +25,8 @@ Simd widest() noexcept {
   return Simd::Scalar;
 }
 
-/// The faster one of the two widest sets: on some processors AVX2 reads as fast as AVX-512 or faster, and all
-/// give the same bits. Where memory is short the wider set is taken.
+/// The faster of the two widest sets: on some processors AVX2 reads as fast as AVX-512 or faster, and all
+/// sets give the same bits. If memory is short, the wider set is taken.
 Simd fastest(Simd widest_here) noexcept {
 #ifdef VPS_HAS_X86_KERNELS
   try {
@@ -38,8 +38,8 @@ Simd fastest(Simd widest_here) noexcept {
   return widest_here;
 }
 
-/// Determined when the program starts, so that no query waits for the first one. A constructor of another
-/// global object that runs earlier reads zero: Best, and with it the scalar path.
+/// Determined when the program starts, so that the first query does not wait. The constructor of another
+/// global object that runs earlier reads zero, which is Best and leads to the scalar kernels.
 const Simd kWidest = widest();
 const Simd kFastest = fastest(kWidest);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The nodes of a map that lie in or near some boxes.
+// Reduces a map to the nodes in or near some boxes.
 #include <algorithm>
 
 #include "voxmap/voxmap_access.h"
@@ -8,7 +8,7 @@
 namespace vps {
 namespace {
 
-/// True for cells of 8 voxels in a box or next to it: gradients at its border read nodes beyond it.
+/// True for cells of 8 voxels in a box or next to it; gradients at a box's border read nodes beyond it.
 bool isNear(const std::vector<Box>& boxes_M, const Index3& cell, double cell_m) {
   Box room;
   room.add(cell_m * (cell - Index3::Ones()).cast<double>());

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The memory layout of a VoxMap.
 //
-//   directory: dense 3-D array of cells over the part's box, its band and one empty cell more on each side
+//   directory: dense 3-D array of cells over the part's box, its band and one more empty cell on each side
 //     cell --> brick: 9^3 nodes at spacing h, cells of 8h; the last layer repeats the next brick's first
 //         `---> or one of two constant bricks: all +band (far outside) or all -band (far inside)
 //
 // Why 9^3 and not 8^3: each of a brick's 8^3 cells then finds its eight nodes in one brick, without a branch
-// or a second look-up, for 1.42 times the memory. Why constant bricks: reading a missing brick takes no
-// branch either. Why 16 bits: an error of 6e-5 voxel at a band of 4 halves the memory traffic.
+// or a second look-up, for 1.42 times the memory. Why constant bricks: reading an empty cell then takes no
+// branch either. Why 16 bits: it halves the memory traffic, at an error of 6e-5 voxel for a band of 4.
 #pragma once
 
 #include <algorithm>
@@ -27,11 +27,11 @@ namespace vps {
 
 using Index3 = Eigen::Vector3i;
 
-/// Nodes of one brick along an edge, border included, and in all.
+/// Number of nodes along an edge of a brick, border included, and in the whole brick.
 inline constexpr int kBrick = VoxMap::kBrick;
 inline constexpr int kNodes = kBrick + 1;
 inline constexpr int kBrickNodes = kNodes * kNodes * kNodes;
-/// Nodes from one brick to the next in memory: whole cache lines.
+/// Distance from one brick to the next in memory [nodes]: whole cache lines.
 inline constexpr std::uint32_t kBrickStride = (kBrickNodes + 31) / 32 * 32;
 static_assert(kBrickStride * sizeof(std::int16_t) % 64 == 0);
 
@@ -53,22 +53,23 @@ constexpr bool isConstant(std::uint32_t brick) {
   return brick <= kInside;
 }
 
-/// The most memory a map may take. An assumed share of a workstation of 16 GiB, with room for several parts.
+/// The most memory that a map may take. Assumed: a share of a workstation of 16 GiB that leaves room for
+/// several parts.
 inline constexpr double kMemoryLimit_bytes = 4.0 * 1024 * 1024 * 1024;
 
 /// Size of a large page, where the system has them; nodes begin at a page.
 inline constexpr std::size_t kPage = std::size_t{2} << 20;
 
-/// The most that VoxLayout::far_cells counts: 40 voxels. 4096 neighbouring points of the benchmarks' shells
-/// have a radius of 24 to 36.
+/// The largest value of VoxLayout::far_cells: 40 voxels. Groups of 4096 neighbouring points of the
+/// benchmarks' shells have a radius of 24 to 36 voxels.
 inline constexpr int kMostFarCells = 5;
 
 /// The owner of each node of a brick where parts meet.
 using NodeOwners = std::array<std::uint16_t, kBrickNodes>;
 
 /// A pool of bricks. A brick's name is the index of its first node. Memory is reserved once and filled from
-/// the front, and a brick does not change while a map uses it: maps that were mounted on one another share a
-/// pool, so that mounting costs only the new part. Reserved memory that is not filled yet costs nothing on
+/// the front. A brick does not change while a map uses it, so maps that were mounted on one another share a
+/// pool, and mounting costs only the new part. Reserved memory that is not filled yet costs nothing on
 /// systems that allocate pages at the first access.
 class VPS_API VoxPool {
  public:
@@ -84,7 +85,7 @@ class VPS_API VoxPool {
   [[nodiscard]] std::uint32_t take(std::size_t count) noexcept;
   /// Frees the bricks of a take(). Thread-safe.
   void giveBack(std::uint32_t first, std::size_t count) noexcept;
-  [[nodiscard]] std::size_t size() const noexcept { return used_; }  ///< bricks, constant ones too
+  [[nodiscard]] std::size_t size() const noexcept { return used_; }  ///< bricks, including the constant ones
 
   [[nodiscard]] NodeValue* nodes(std::uint32_t brick) noexcept { return nodes_.get() + brick; }
   [[nodiscard]] const NodeValue* nodes(std::uint32_t brick) const noexcept { return nodes_.get() + brick; }
@@ -93,7 +94,7 @@ class VPS_API VoxPool {
   [[nodiscard]] std::uint16_t owner(std::uint32_t brick) const noexcept {
     return owner_[brick / kBrickStride];
   }
-  /// Null, or an owner for each node.
+  /// An owner for each node; null if the brick has one owner.
   [[nodiscard]] const NodeOwners*& mixed(std::uint32_t brick) noexcept {
     return mixed_[brick / kBrickStride];
   }
@@ -113,17 +114,17 @@ class VPS_API VoxPool {
   struct Free {
     void operator()(NodeValue* p) const { ::operator delete (p, std::align_val_t{kPage}); }
   };
-  std::size_t capacity_;  // constant bricks too
+  std::size_t capacity_;  // including the constant bricks
   std::atomic<std::size_t> used_ = 0;
-  std::mutex mutex_;                         // of take() and giveBack()
+  std::mutex mutex_;                         // for take() and giveBack()
   std::map<std::size_t, std::size_t> free_;  // freed runs: first and count, in bricks; never adjacent
   std::unique_ptr<NodeValue[], Free> nodes_;
   std::unique_ptr<std::uint16_t[]> owner_;
   std::unique_ptr<const NodeOwners*[]> mixed_;
 };
 
-/// Frees bricks of a pool when no map uses them any more, so that a mounting that is given up leaves its
-/// memory to the next.
+/// Frees bricks of a pool when no map uses them any more, so that the memory of an abandoned mounting serves
+/// the next one.
 class BrickLease {
  public:
   BrickLease(std::shared_ptr<VoxPool> pool, std::uint32_t first, std::size_t count)
@@ -138,11 +139,11 @@ class BrickLease {
   std::size_t count_;
 };
 
-/// What mounting needs to know of the parts already in the map.
+/// Data of a part in a map that mounting another part needs.
 struct VoxPartRange {
   Box bounds;   ///< of the part's surface, in M [m]
   Index3 low;   ///< first cell of the part's own directory
-  Index3 high;  ///< one past the last
+  Index3 high;  ///< one past the last cell
 };
 
 /// A box of cells, z fastest.
@@ -171,23 +172,23 @@ struct CellBox {
 };
 
 struct VoxLayout : CellBox {
-  std::vector<std::uint32_t> bricks;  ///< of each cell
-  /// Of each cell, at its centre: a lower bound of the distance to the surface [m], with the sign of inside
-  /// or outside.
+  std::vector<std::uint32_t> bricks;  ///< by cell
+  /// By cell, at its centre: a lower bound of the distance to the surface [m], with the sign of inside or
+  /// outside.
   std::vector<float> centers_m;
-  /// Of each cell: how many cells around it in every direction are, as it is itself, the outer constant
-  /// brick; 0 if it or a neighbour is another one, and at most kMostFarCells. markFarCells() computes it from
-  /// `bricks`; if empty, queries are slower and otherwise the same.
+  /// By cell: within how many cells in every direction all cells, including itself, are the outer constant
+  /// brick; 0 if the cell or a neighbour is another brick, and at most kMostFarCells. markFarCells() computes
+  /// it from `bricks`; if empty, queries are slower but otherwise the same.
   std::vector<std::uint8_t> far_cells;
   std::shared_ptr<VoxPool> pool;
   std::vector<std::shared_ptr<const std::vector<NodeOwners>>> owners;  ///< memory that mixed bricks point to
-  std::vector<std::shared_ptr<const BrickLease>> leases;               ///< of bricks that were mounted
+  std::vector<std::shared_ptr<const BrickLease>> leases;               ///< of mounted bricks
   std::vector<VoxPartRange> parts;
   /// The largest difference of neighbouring nodes, in voxels: 1 for true distances; more where signs change
   /// without a surface, and in level sets of other programs.
   float steepest = 1;
-  /// The largest error of a node, in voxels, besides rounding: 0 as voxelised, half a cell's diagonal once
-  /// resampled, and as measured (field_proof.h) in a level set of another program.
+  /// The largest error of a node, in voxels, besides rounding: 0 after voxelising, half a cell's diagonal
+  /// after resampling, and the measured error (field_proof.h) in a level set of another program.
   float node_error = 0;
   /// False where signs contradict each other: nodes are then not distances, and only `steepest` bounds them.
   bool is_metric = true;
@@ -195,7 +196,7 @@ struct VoxLayout : CellBox {
     bricks.assign(cellCount(), kOutside);
     centers_m.assign(bricks.size(), 0);
   }
-  /// Bytes of a cell: its brick's name, its centre's distance, how far it is.
+  /// Bytes of a cell: its brick's name, its entry of centers_m, its entry of far_cells.
   static constexpr std::size_t kCellBytes = sizeof(std::uint32_t) + sizeof(float) + sizeof(std::uint8_t);
   /// The nodes of a cell's brick.
   [[nodiscard]] const NodeValue* nodesOf(std::size_t cell) const noexcept {
@@ -204,25 +205,25 @@ struct VoxLayout : CellBox {
 };
 
 /// Allocates consecutive bricks for a layout and returns the first one's name, 0 for none. If the pool is
-/// full, the layout moves to a larger one first, and its bricks get new names. Not thread-safe for one
+/// full, the layout first moves to a larger one, and its bricks get new names. Not thread-safe for one
 /// layout; other layouts of the same pool may be read and written meanwhile. Throws LoadError for more bricks
-/// than can be named.
+/// than names.
 std::uint32_t takeBricks(VoxLayout& layout, std::size_t count);
 
-/// Copies the bricks that a layout uses to a pool of its own with room for `room` more: mounting leaves
-/// unused bricks behind, and a shared pool also has bricks of other maps, which other threads may be writing.
-/// Throws as takeBricks().
+/// Copies the bricks that a layout uses to a new pool with room for `room` more. Mounting leaves unused
+/// bricks behind, and a shared pool also has bricks of other maps, which other threads may be writing. Throws
+/// as takeBricks().
 void moveToNewPool(VoxLayout& layout, std::size_t room);
 
 /// Computes VoxLayout::far_cells from the final bricks. Cells beyond the directory count as outer constant.
 VPS_API void markFarCells(VoxLayout& layout);
 
-/// The unit of nodes [m]. A float, so that its product with any node is exact in double, and the full band is
-/// exactly VoxMap::band_m().
+/// The quantum of nodes [m]. Rounded to float, so that its product with any node is exact in double, and the
+/// full band is exactly VoxMap::band_m().
 inline double quantumOf(double band_m) {
   return static_cast<float>(band_m / kFullBand);
 }
-/// The band as nodes represent it: the reading of a saturated node.
+/// The band as nodes represent it: the distance that a saturated node reads as.
 inline double bandHeld(double band_m) {
   return kFullBand * quantumOf(band_m);
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Two fields on one grid become one, the union: the minimum of the parts' own distances.
+// Merges two fields on one grid into their union: the minimum of the parts' own distances.
 //
 // The union does not depend on the order, to the bit: nodes, centre distances and the box are minima over the
-// parts; a brick is stored where the merged nodes are not all one constant.
+// parts, and a cell stores a brick unless its merged nodes are all one constant.
 #include "voxmap/voxmap_merge.h"
 
 #include <tbb/parallel_for.h>
@@ -24,9 +24,9 @@ bool inRange(const VoxPartRange& part, const Index3& cell) {
   return (cell.array() >= part.low.array()).all() && (cell.array() < part.high.array()).all();
 }
 
-/// A lower bound of the distance from a cell's centre to the parts whose own range does not contain the cell.
-/// Other parts have better bounds in their directories. Rounded towards zero as a float, so that it stays a
-/// bound.
+/// A lower bound of the distance from a cell's centre to the parts whose own range does not contain the cell;
+/// for the other parts the directories have better bounds. Rounded towards zero when converted to float, so
+/// that it stays a bound.
 float boxBound(const std::vector<VoxPartRange>& parts, const Index3& cell, double voxel_m) {
   const Vec3 center = voxel_m * (VoxMap::kBrick * cell + Index3::Constant(VoxMap::kBrick / 2)).cast<double>();
   double least_m = 1e30;
@@ -55,7 +55,7 @@ class Merger {
   }
 
  private:
-  /// Allocates the new bricks, in a's own pool if it has room; returns the first one's name.
+  /// Allocates the new bricks, in the pool of a_ if it has room; returns the first one's name.
   std::uint32_t takeRoom() {
     out_->pool = a_.pool;
     out_->owners = a_.owners;
@@ -74,10 +74,10 @@ class Merger {
   struct NewBrick {
     std::size_t cell = 0;  ///< in the result's directory
     std::size_t cell_of_b = 0;
-    std::size_t mixed = SIZE_MAX;  ///< its owners, where both fields have bricks
+    std::size_t mixed = SIZE_MAX;  ///< index of its owners, if both fields have bricks there
   };
 
-  /// The range of both. A directory without cells has no position, whatever its `low` says.
+  /// The range that covers both fields. A directory without cells has no position, whatever its `low` is.
   [[nodiscard]] VoxPartRange rangeOfBoth() const {
     const VoxPartRange a = {{}, a_.low, a_.low + a_.size}, b = {{}, b_.low, b_.low + b_.size};
     if (b_.size.minCoeff() == 0) return a;
@@ -85,7 +85,7 @@ class Merger {
     return {{}, a.low.cwiseMin(b.low), a.high.cwiseMax(b.high)};
   }
 
-  /// The directory over both, filled with a's cells and with bounds from the parts' boxes.
+  /// Creates the directory over both fields, with the cells of a_ and with bounds from the parts' boxes.
   void layOut() {
     const VoxPartRange range = rangeOfBoth();
     const Index3 low = range.low, high = range.high;
@@ -113,7 +113,7 @@ class Merger {
     out_->centers_m[cell] = std::min(from_a, from_b);
   }
 
-  /// Decides the cells where one field is constant; lists the others.
+  /// Decides the cells where one field is constant; lists the other cells.
   void findNewBricks() {
     const Index3 low = b_.low.cwiseMax(out_->low);
     const Index3 high = (b_.low + b_.size).cwiseMin(out_->low + out_->size);
@@ -171,7 +171,7 @@ class Merger {
   std::shared_ptr<std::vector<NodeOwners>> mixed_ = std::make_shared<std::vector<NodeOwners>>();
 };
 
-/// A map on the same grid, as an added field.
+/// A map on the same grid in the form of an added field.
 class AddedMap final : public AddedField {
  public:
   explicit AddedMap(const VoxLayout& layout) : layout_(layout) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Merging of another field into a map: another map on the same grid, or one that is resampled meanwhile.
+// Merges another field into a map: another map on the same grid, or a map that is resampled during the merge.
 #pragma once
 
 #include "voxmap/voxmap_layout.h"
@@ -10,12 +10,12 @@ namespace vps {
 class AddedField : public CellBox {
  public:
   virtual ~AddedField() = default;
-  /// Writes the nodes of a cell that is not constant, all kBrickStride of them.
+  /// Writes all kBrickStride nodes of a cell that is not constant.
   virtual void write(std::size_t cell, NodeValue* nodes) const = 0;
   [[nodiscard]] virtual std::uint16_t ownerOf(std::size_t cell, int node) const = 0;
   [[nodiscard]] virtual bool hasMixedOwners(std::size_t cell) const = 0;
 
-  std::vector<std::uint32_t> kinds;  ///< of each cell: kOutside, kInside, or another value if it has nodes
+  std::vector<std::uint32_t> kinds;  ///< by cell: kOutside, kInside, or another value if it has nodes
   std::vector<float> centers_m;      ///< as in VoxLayout
   std::vector<VoxPartRange> parts;
   float steepest = 1, node_error = 0;  ///< as in VoxLayout
@@ -27,7 +27,7 @@ VoxMap mergedVoxMap(const VoxMap& a, const AddedField& b, const Box& bounds_of_b
 /// As above, for two maps with equal voxel and band.
 VoxMap mergedVoxMap(const VoxMap& a, const VoxMap& b);
 
-/// The map with its bricks in a pool of its own: merging leaves bricks behind that no map uses any more.
+/// The map with its bricks in a pool of its own, without the bricks that merging leaves unused.
 VoxMap packedVoxMap(const VoxMap& map);
 
 }  // namespace vps

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rigid resampling: a part's own field is read at the nodes of another grid. Mounting writes the result
+// Rigid resampling: a part's own field is read at the nodes of another grid. Mounting writes the values
 // directly into the cooked map.
 #include <tbb/parallel_for.h>
 
@@ -24,7 +24,7 @@ std::vector<ShellBlock> nodeBlocks(double voxel_m) {
   std::vector<ShellBlock> blocks(kBlocksOfBrick);
   for (int i = 0; i < static_cast<int>(kBrickStride); ++i) {
     ShellBlock& block = blocks[static_cast<std::size_t>(i / kLanes)];
-    const int node = std::min(i, kBrickNodes - 1);  // the space after the last node repeats it
+    const int node = std::min(i, kBrickNodes - 1);  // the padding after the last node repeats it
     const Vec3 offset = voxel_m * (nodeAt(node) - Index3::Constant(kBrick / 2)).cast<double>();
     block.x[i % kLanes] = static_cast<float>(offset.x());
     block.y[i % kLanes] = static_cast<float>(offset.y());
@@ -65,7 +65,7 @@ class ResampledField final : public AddedField {
   [[nodiscard]] const Box& bounds() const { return bounds_; }
 
   void write(std::size_t cell, NodeValue* nodes) const override {
-    // All bricks have the same blocks; the pose carries them to this one.
+    // All bricks have the same blocks; the pose moves them to this brick.
     const Motion motion(field_, {X_PM_.R, X_PM_ * centerOf(cellAt(cell))});
     const ShellBlock* batch[kBatch];
     ReadBatch read;
@@ -90,8 +90,8 @@ class ResampledField final : public AddedField {
   /// Converts the map's quanta to the grid's, rounded to nearest. The map's band is at least as wide as the
   /// grid's, so that saturated values stay saturated.
   void toNodes(const float* __restrict value, int count, NodeValue* __restrict nodes) const {
-    // Compares the bits, since floats of one sign sort as their bits do: compilers do not vectorise
-    // comparisons of floats by default.
+    // Compares the bits, since floats of one sign have the same order as their bits, and compilers do not
+    // vectorise comparisons of floats by default.
     constexpr auto kBand = std::bit_cast<std::int32_t>(float{kFullBand});
     for (int i = 0; i < count; ++i) {
       const auto bits = std::bit_cast<std::int32_t>(value[i] * quanta_);
@@ -140,7 +140,7 @@ class ResampledField final : public AddedField {
     kinds[cell] = constant == VoxSampler::kMixed ? kInside + kBrickStride : constant;
   }
 
-  /// The constant that all nodes of the cell centred at p_P read; VoxSampler::kMixed if they differ.
+  /// The constant that all nodes of the cell centred at p_P read as; VoxSampler::kMixed if they differ.
   [[nodiscard]] std::uint32_t constantAround(const Vec3& p_P) const {
     const Vec3 half = X_PM_.R.cwiseAbs() * Vec3::Constant((4 + 1e-3) * voxel_m_);
     return sampler_.constantIn({p_P - half, p_P + half});
@@ -153,7 +153,7 @@ class ResampledField final : public AddedField {
   const FieldView field_;
   const ReadKernels& kernels_;
   const std::vector<ShellBlock> blocks_;
-  const float quanta_;  ///< the grid's quanta per quantum of the map
+  const float quanta_;  ///< quanta of the grid per quantum of the map
   Box bounds_;
 };
 

@@ -54,8 +54,8 @@ class VoxSampler {
 
   /// Trilinear distance [m]; +band outside the directory.
   [[nodiscard]] double distance(const Place& at) const noexcept {
-    // Interpolation in a constant brick could differ from its constant by rounding. Returning the constant is
-    // exact, and fast where most points are.
+    // Returning the constant of a constant brick is exact, where interpolation could round, and fast where
+    // most points are.
     if (at.brick == kOutside) return band_m_;
     if (at.brick == kInside) return -band_m_;
     const Corners d = corners(at);
@@ -64,13 +64,13 @@ class VoxSampler {
     return quantum_m_ * mix(x0, x1, at.t.x());
   }
 
-  /// Unit outward normal at a place, zero in constant bricks and outside.
+  /// Unit outward normal at a place; zero in constant bricks and outside the directory.
   [[nodiscard]] Vec3 normal(const Place& at, Gradient gradient) const noexcept {
     if (isConstant(at.brick)) return Vec3::Zero();
     const Vec3 g = gradient == Gradient::Trilinear ? trilinearGradient(at) : continuousGradient(at);
     const double length = g.norm();
-    // There is no direction where opposite walls cancel: a gradient below two quanta is rounding noise (a
-    // true one has length 1, some thousand quanta per voxel).
+    // Where opposite walls cancel there is no direction: a gradient below two quanta is rounding noise (a
+    // true gradient has length 1, some thousand quanta per voxel).
     return length > 2 ? Vec3(g / length) : Vec3(Vec3::Zero());
   }
 
@@ -99,8 +99,8 @@ class VoxSampler {
     double least_m = -std::numeric_limits<double>::infinity();
     double most_m = std::numeric_limits<double>::infinity();
   };
-  /// Bounds of the signed distance at p_M from the centres of the eight cells around it; the one in the
-  /// direction away from the surface gives the best bound. Only for true distances.
+  /// Bounds of the signed distance at p_M from the centres of the eight cells around it; the cell in the
+  /// direction away from the surface gives the best bound. Valid only for true distances.
   [[nodiscard]] Range rangeAround(const Vec3& p_M) const noexcept {
     const Vec3 x = (p_M * per_voxel_ - low_) / VoxMap::kBrick - Vec3::Constant(0.5);
     const Vec3 low = x.array().floor();
@@ -116,14 +116,14 @@ class VoxSampler {
     return range;
   }
 
-  /// The constant brick that all cells of a box are; kMixed if they are not.
+  /// The constant brick of all cells that a box touches; kMixed if they are not one constant brick.
   static constexpr std::uint32_t kMixed = UINT32_MAX;
   [[nodiscard]] std::uint32_t constantIn(const Box& box_M) const noexcept {
     const Vec3 last = size_ / VoxMap::kBrick - Vec3::Ones();
     const Vec3 from = ((box_M.min * per_voxel_ - low_) / VoxMap::kBrick).array().floor();
     const Vec3 to = ((box_M.max * per_voxel_ - low_) / VoxMap::kBrick).array().floor();
     if ((to.array() < 0).any() || (from.array() > last.array()).any()) return kOutside;
-    // The directory's rim and everything beyond are outside.
+    // The directory's rim, and all space beyond it, is outside.
     const Index3 low = from.cwiseMax(0).cast<int>(), high = to.cwiseMin(last).cast<int>();
     const std::uint32_t all = bricks_[layout_.cellIndex(layout_.low + low)];
     if (!isConstant(all)) return kMixed;
@@ -150,8 +150,8 @@ class VoxSampler {
   }
 
  private:
-  using Corners = std::array<double, 8>;  // bits of the index: x y z; quanta
-  /// Centre distances were rounded to float: bounds are reduced by this factor.
+  using Corners = std::array<double, 8>;  // [quanta]; bits of the index: x y z
+  /// Bounds are reduced by this factor, because centre distances were rounded to float.
   static constexpr double kRoundDown = 1 - 2e-7;
 
   static double mix(double a, double b, double t) noexcept { return a + t * (b - a); }
@@ -177,7 +177,7 @@ class VoxSampler {
   }
 
   /// Trilinear interpolation of the nodes' central differences, times two voxels, in quanta. Along its own
-  /// axis a component needs one more node on each side of the cell, which may lie in a neighbour brick.
+  /// axis a component needs one more node on each side of the cell, which may lie in a neighbouring brick.
   [[nodiscard]] Vec3 continuousGradient(const Place& at) const noexcept {
     constexpr int kStride[3] = {nodeIndex(1, 0, 0), nodeIndex(0, 1, 0), nodeIndex(0, 0, 1)};
     const std::ptrdiff_t cell_stride[3] = {std::ptrdiff_t{layout_.size.y()} * layout_.size.z(),
@@ -209,13 +209,13 @@ class VoxSampler {
            0.51 * quantum_m_;  // half a quantum of storage, and rounding
   }
 
-  /// The directory is a box that contains the surface. With c its nearest point to p, the angle between cp
-  /// and every point of the surface, as seen from c, is at least 90 degrees: distance(p)^2 >= |p - c|^2 +
-  /// distance(c)^2.
+  /// A lower bound of the distance outside the directory, a box that contains the surface. Let c be the box's
+  /// nearest point to p. The angle between cp and every point of the surface, as seen from c, is at least 90
+  /// degrees: distance(p)^2 >= |p - c|^2 + distance(c)^2.
   [[nodiscard]] double leastDistanceOutside(const Vec3& p_M) const noexcept {
     if (layout_.bricks.empty()) return boxDistance(p_M);
     const Vec3 low = low_ * voxel_m_, high = (low_ + size_) * voxel_m_;
-    // Slightly inside, so that rounding cannot move it out of the directory.
+    // Slightly inside, so that rounding cannot move the point out of the directory.
     const Vec3 hair = Vec3::Constant(1e-6 * voxel_m_);
     const Vec3 c = p_M.cwiseMax(low + hair).cwiseMin(high - hair);
     const Place at = place(c);
@@ -231,7 +231,7 @@ class VoxSampler {
   }
 
   const VoxLayout& layout_;
-  const std::uint32_t* bricks_;  // this and nodes_: copies of the layout's pointers
+  const std::uint32_t* bricks_;  // bricks_ and nodes_ are copies of the layout's pointers
   const NodeValue* nodes_;
   double voxel_m_, band_m_, quantum_m_;
   const Box& bounds_;
