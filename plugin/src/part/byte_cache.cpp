@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A file has a BytesHeader, the bytes, and a hash of everything before it.
+// A file of a ByteCache has a BytesHeader, the bytes, and a hash of everything before it.
 #include "vps/byte_cache.h"
 
 #include "part/cache_file.h"
@@ -40,11 +40,11 @@ std::optional<std::string> readBytes(const fs::path& file, const Digest& key, st
     return why = "is of another version of this program", std::nullopt;
   std::error_code error;
   const std::uintmax_t size = fs::file_size(file, error);
-  // Before memory is taken.
+  // Tested before memory is allocated.
   if (error || size < sizeof(BytesHeader) + sizeof(Digest) ||
       size - sizeof(BytesHeader) - sizeof(Digest) != header.bytes)
     return why = "is damaged or cut short", std::nullopt;
-  if (header.start.key != key) return why = "is of something else", std::nullopt;
+  if (header.start.key != key) return why = "was made from other data", std::nullopt;
   std::string bytes(header.bytes, '\0');
   reader.read(bytes.data(), bytes.size());
   if (!reader.isGood() || !reader.endsWell()) return why = "is damaged", std::nullopt;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Binary files that end with a hash of what they hold. Numbers are stored as in memory.
+// Binary files that end with a hash of their content. Numbers are stored as in memory.
 #pragma once
 
 #define XXH_INLINE_ALL
@@ -48,10 +48,10 @@ class Hash {
   XXH3_state_t state_;
 };
 
-/// The digest as a file's name without extension.
+/// The digest in hexadecimal, used as a file's name without extension.
 std::string nameOf(const Digest& key);
 
-/// Reads and hashes; isGood() becomes false at the first missing byte.
+/// Reads a file and hashes what it reads; isGood() becomes false at the first missing byte.
 class HashedReader {
  public:
   explicit HashedReader(const std::filesystem::path& file) : in_(file, std::ios::binary) {}
@@ -64,7 +64,7 @@ class HashedReader {
   void read(std::vector<T>& to) {
     read(to.data(), to.size() * sizeof(T));
   }
-  /// True if the file ends with the hash of all that was read, and nothing follows.
+  /// True if the file ends with the hash of all that was read.
   [[nodiscard]] bool endsWell() {
     const Digest found = hash_.digest();
     Digest kept = {};

@@ -18,7 +18,7 @@ struct Kept {
   std::uint64_t bytes;
 };
 
-/// Only what this library writes: a user's own files are neither counted nor removed.
+/// True for files that this library writes. A user's own files are neither counted nor removed.
 bool isOurs(const fs::path& file) {
   constexpr std::size_t kDigits = 32;  // of nameOf()
   const std::string name = file.filename().string(), end = file.extension().string();
@@ -26,12 +26,12 @@ bool isOurs(const fs::path& file) {
          (end == ".voxmap" || end == ".shell" || end == ".bytes" || end == ".unfinished");
 }
 
-/// The folder's files, the longest unused first.
+/// The folder's files, in the order of their last use.
 std::vector<Kept> filesOf(const fs::path& folder) {
   std::vector<Kept> files;
   std::error_code error;
   for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
-    std::error_code gone;  // another program may remove files meanwhile
+    std::error_code gone;  // another program may remove files at any time
     const std::uint64_t bytes = isOurs(it->path()) ? it->file_size(gone) : 0;
     if (!isOurs(it->path()) || gone) continue;
     const fs::file_time_type used = it->last_write_time(gone);
@@ -43,7 +43,7 @@ std::vector<Kept> filesOf(const fs::path& folder) {
   return files;
 }
 
-/// The rest of a program that was killed while it wrote.
+/// True for an unfinished file of a program that was killed while it wrote.
 bool isAbandoned(const Kept& kept) {
   return kept.file.extension() == ".unfinished" &&
          fs::file_time_type::clock::now() - kept.used > std::chrono::hours(1);
@@ -67,7 +67,7 @@ bool CacheFolder::write(const fs::path& file, const std::function<bool(const fs:
   if (!fs::exists(folder_, error)) {
     fs::create_directories(folder_, error);
     if (error) return false;
-    fs::permissions(folder_, fs::perms::owner_all, error);  // what is read from it is trusted
+    fs::permissions(folder_, fs::perms::owner_all, error);  // because files of the folder are trusted
   }
   WholeFile whole(file);
   return write(whole.temporary()) && !whole.commit();
@@ -84,10 +84,10 @@ void CacheFolder::keep(const fs::path& file, const std::function<bool(const fs::
     if (has_failed_) return;
     has_failed_ = true;
   }
-  warn(
-      folder_,
-      "models could not be kept there, so that they are built again next time; is it a folder, may you write "
-      "to it, is the disk full?");
+  warn(folder_,
+       "models could not be kept in this folder, so that they are built again next time; is it a folder, may "
+       "you "
+       "write to it, is the disk full?");
 }
 
 void CacheFolder::limit(const fs::path& newest) {
@@ -96,7 +96,7 @@ void CacheFolder::limit(const fs::path& newest) {
   std::error_code error;
   const std::uint64_t bytes = fs::file_size(newest, error);
   if (!error) bytes_ += bytes;
-  // The folder is read at the first file and when it may be too large, not at each file.
+  // The folder is read for the first file and when it may be too large, not for each file.
   if (is_counted_ && bytes_ <= limit_bytes_) return;
   is_counted_ = true;
   bytes_ = removeLongestUnused(newest);

@@ -10,14 +10,14 @@
 namespace vps {
 namespace {
 
-/// Largest piece of surface over the size of a brick, and the greatest number of pieces that large triangles
-/// are cut into (assumed: a hundredth of a second).
+/// Largest piece of surface over the size of a brick.
 constexpr double kPiece = 0.5;
+/// The greatest number of pieces into which large triangles are cut. Assumed: a hundredth of a second.
 constexpr double kMostPieces = 1e4;
-/// Around a box, a map keeps the cells next to it: one and a half on average.
+/// Cells that a map keeps around a box: one and a half on average.
 constexpr double kKeptCells = 1.5;
-/// Face points per square of spacing, and the squares of face that a point on an edge takes from them.
-/// Measured: with these, the counts of the bearing block's parts are off by up to a tenth.
+/// Face points per square of spacing, and the number of these squares that a point on an edge replaces.
+/// Measured: with these values, the counts of the bearing block's parts are off by up to a tenth.
 constexpr double kDensity = 1.12, kTakenByEdge = 0.3;
 
 bool isWithinAny(const Vec3& p, const std::vector<Box>& boxes) {
@@ -29,13 +29,14 @@ bool isWithinAny(const Vec3& p, const std::vector<Box>& boxes) {
 ModelEstimate::ModelEstimate(const Mesh& mesh, const VoxMapSettings& voxels, const PointShellSettings& points,
                              Extent extent)
     : extent_(extent) {
-  // A mesh that cannot be built costs nothing; building it says why.
+  // The estimate of a mesh that cannot be built is zero; building it reports the reason.
   const bool is_finite = std::all_of(mesh.vertices.begin(), mesh.vertices.end(),
                                      [](const Vec3& vertex) { return vertex.allFinite(); });
   if (!is_finite) return;
   area_m2_ = area(mesh);
   cell_m_ = VoxMap::kBrick * voxels.voxel_m;
-  // The bricks that meet a slab as thick as the band: its thickness, and one for where the slab starts.
+  // Bricks across a slab as thick as the band: its thickness in bricks, and one for the position of its
+  // start.
   bricks_per_m2_ = (2 * voxels.band_voxels / VoxMap::kBrick + 1.2) / (cell_m_ * cell_m_);
   const Vec3 size_m = bounds(mesh).size();
   directory_bytes_ =
@@ -59,7 +60,7 @@ void ModelEstimate::addPieces(const Vec3& a, const Vec3& b, const Vec3& c, doubl
   if (bc > ab && bc >= ca) return addPieces(b, c, a, piece_m);
   if (ca > ab) return addPieces(c, a, b, piece_m);
   const double area_m2 = 0.5 * (b - a).cross(c - a).norm();
-  // A sliver's area lies along its longest edge: halves of equal area are enough where they are narrow.
+  // A sliver's area lies along its longest edge, so it need not be halved further once it is narrow.
   if (ab <= piece_m * piece_m || area_m2 <= 1e-3 * piece_m * piece_m) {
     pieces_.push_back({(a + b + c) / 3, area_m2});
     return;
@@ -96,7 +97,7 @@ double ModelEstimate::pointCount(const std::vector<Box>& kept_P) const {
 }
 
 double ModelEstimate::shellBytes(double point_count) {
-  // Per point: position, normal, area, order, its lane of a block and its share of the nodes above.
+  // Per point: position, normal, area, order, its lane of a block and its fraction of the nodes above.
   return sizeof(PointShell) + point_count * (2 * sizeof(Vec3) + sizeof(double) + sizeof(std::uint32_t) +
                                              (sizeof(ShellBlock) * 17.0 / 16 + 2 * sizeof(ShellNode)) / 16);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A file has a ShellHeader, then points, normals, areas and progressive order, and a hash of everything
-// before it. The hierarchy of spheres takes a hundredth of the time of sampling, and is made again.
+// A file of a shell has a ShellHeader, then points, normals, areas and progressive order, and a hash of
+// everything before it. The hierarchy of spheres is built again, which takes a hundredth of the time of
+// sampling.
 #include "part/shell_file.h"
 
 #include "pointshell/shell_hierarchy.h"
@@ -8,7 +9,7 @@
 namespace vps {
 namespace {
 
-/// Incremented when the file's layout changes, or sampling gives other bits.
+/// Incremented when the file's layout changes, or when sampling gives other bits.
 constexpr std::uint32_t kShellVersion = 3;
 constexpr std::array<char, 8> kShellMagic = {'v', 'p', 's', 's', 'h', 'e', 'l', 'l'};
 
@@ -45,7 +46,7 @@ std::optional<PointShell> readShell(const std::filesystem::path& file, const Dig
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(file, error);
   constexpr std::uint64_t kFrame = sizeof(ShellHeader) + sizeof(Digest);
-  // Before memory is taken for the points.
+  // Tested before memory is allocated for the points.
   if (error || size < kFrame || (size - kFrame) % kPointBytes != 0 ||
       (size - kFrame) / kPointBytes != header.points)
     return why = "is damaged or cut short", std::nullopt;

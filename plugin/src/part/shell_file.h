@@ -11,7 +11,7 @@
 
 namespace vps {
 
-/// Of everything that determines the shell of a mesh's Solid.
+/// Digest of everything that determines the shell of a mesh's Solid.
 Digest shellKeyOf(const Mesh& mesh, const PointShellSettings& settings);
 /// Returns nothing, and a reason in `why`, if the file cannot be trusted.
 std::optional<PointShell> readShell(const std::filesystem::path& file, const Digest& key, std::string& why);

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Incremented when the file's layout changes, or building gives other bits.
+/// Incremented when the file's layout changes, or when building gives other bits.
 constexpr std::uint32_t kVersion = 8;
 constexpr std::array<char, 8> kMagic = {'v', 'p', 's', 'c', 'a', 'c', 'h', 'e'};
 
@@ -29,11 +29,11 @@ struct Header {
   std::array<std::int32_t, 3> low = {}, size = {};
   float steepest = 1, node_error = 0;
   std::uint64_t is_metric = 1;
-  std::uint64_t bricks = 0;  ///< without the constant ones
+  std::uint64_t bricks = 0;  ///< not counting the constant bricks
 };
 static_assert(std::is_trivially_copyable_v<Header> && sizeof(Header) == 144);  // no gaps
 
-/// All members of a report, one by one: gaps between them would put undefined bytes into the file.
+/// All members of a report, separately, because gaps between them would put undefined bytes into the file.
 template <typename Report>
 auto membersOf(Report& r) {
   static_assert(sizeof(MeshReport) == 19 * 8, "a member was added");
@@ -75,9 +75,9 @@ std::optional<std::uint64_t> bytesOf(const Header& header) {
 
 constexpr const char *kMapEnding = ".voxmap", *kShellEnding = ".shell";
 
-/// What the file holds; where there is none, or none that can be trusted, it is made and kept.
-/// @param read   (file, why), nothing and a reason if the file cannot be trusted
-/// @param write  (what was made, file), true if it is written
+/// Reads the file's content. If there is no file, or it cannot be trusted, makes the content and keeps it.
+/// @param read   (file, why): returns nothing, and a reason, if the file cannot be trusted
+/// @param write  (content, file): returns true if the file was written
 template <class What, class Read, class Make, class Write>
 What readOrMake(CacheFolder& folder, const fs::path& file, Read read, Make make, Write write) {
   std::error_code error;
@@ -171,7 +171,7 @@ class VoxMapCacheFile {
     reader.read(layout->bricks);
     reader.read(layout->centers_m);
     layout->pool = std::make_shared<VoxPool>(header.bricks);
-    (void)layout->pool->take(header.bricks);  // all of a new pool, so from its first brick on
+    (void)layout->pool->take(header.bricks);  // the pool is new, so the bricks start at its first one
     reader.read(layout->pool->nodes(2 * kBrickStride), header.bricks * kBrickStride * sizeof(NodeValue));
     if (!reader.isGood() || !reader.endsWell() || !areNamesGood(*layout)) return std::nullopt;
     report = kept;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pointshells as PLY files (Turk 1994): little-endian doubles, so that a shell is read back to the bit.
+// Pointshells as PLY files (Turk 1994). Numbers are little-endian doubles, so that a shell is read back to
+// the bit.
 #include <array>
 #include <bit>
 #include <charconv>
@@ -23,10 +24,10 @@ namespace {
 static_assert(std::endian::native == std::endian::little,
               "binary PLY is written and read as it lies in memory");
 
-/// The properties that are written and required, in this order.
+/// The properties of a point that files must have, in the order in which they are written.
 constexpr std::array<std::string_view, 7> kNames = {"x", "y", "z", "nx", "ny", "nz", "area"};
 using Row = std::array<double, kNames.size()>;
-/// Comments of our own: the spacing of the shell, and that points are in the hierarchy's order.
+/// Comments that savePly() adds: the shell's spacing, and that the points are in the hierarchy's order.
 constexpr std::string_view kSpacing = "comment vps spacing_m ", kSorted = "comment vps sorted";
 
 enum class Type { Int8, Uint8, Int16, Uint16, Int32, Uint32, Float, Double };
@@ -57,7 +58,7 @@ constexpr std::array<TypeName, 16> kTypes = {{
 
 struct Property {
   TypeName type;
-  int column = -1;  ///< in a Row; -1: not needed
+  int column = -1;  ///< in a Row; -1: the property is not needed
 };
 
 struct Header {
@@ -128,7 +129,7 @@ class PlyReader {
  private:
   [[noreturn]] void fail(const std::string& what) const { throw LoadError(file_, "", what); }
 
-  /// The next line without its end; a line without an end means a cut file.
+  /// The next line without its end. A line without an end means that the file is cut.
   std::string_view line() {
     const std::size_t end = rest_.find('\n');
     if (end == std::string_view::npos) fail("ends early; the file is cut, write it again");
@@ -203,7 +204,7 @@ class PlyReader {
     }
   }
 
-  /// Checked before memory is allocated: a damaged count can be any number.
+  /// Checked before memory is allocated, because the count in a damaged file can be any number.
   void requireSize() const {
     const std::size_t least_bytes = header_.is_binary ? row_bytes_ : 2 * header_.properties.size();
     if (header_.count > rest_.size() / least_bytes)
@@ -242,7 +243,7 @@ class PlyReader {
     double value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc() || end != text.data() + text.size())
-      fail("holds what is not a number: " + std::string(text.substr(0, 40)));
+      fail("holds a word that is not a number: " + std::string(text.substr(0, 40)));
     return value;
   }
 
@@ -256,7 +257,8 @@ class PlyReader {
       fail(where() + " has a normal of length " + std::to_string(length) + ", not 1");
   }
 
-  /// Normals of unit length up to rounding keep their bits; normals written with few digits are normalised.
+  /// Keeps the bits of a normal that has unit length up to rounding; normalises one that was written with few
+  /// digits.
   static Vec3 unit(const Vec3& n) { return std::abs(n.squaredNorm() - 1) < 1e-14 ? n : n.normalized(); }
 
   std::string_view rest_;

@@ -17,13 +17,13 @@ namespace {
 
 /// Face points per square of spacing (measured 1.25), rounded up for the estimate.
 constexpr double kDensity = 1.3;
-/// Assumed: about 1.5 GB of shell.
+/// The largest number of points. Assumed: about 1.5 GB of shell.
 constexpr double kMaxPoints = 16e6;
 
 }  // namespace
 
 double fittingSpacing_m(const Mesh& mesh, double spacing_m) {
-  // A needle has little area: the edges of its box replace its own.
+  // A needle has little area; the edges of its bounding box stand for its own edges.
   const double by_area = kDensity * area(mesh) / (spacing_m * spacing_m);
   const double by_length = bounds(mesh).size().sum() / spacing_m;
   constexpr double kRounding = 1 + 1e-9;
@@ -69,7 +69,7 @@ PointShell laidOut(const std::vector<ShellSample>& samples, double spacing_m) {
   return shell;
 }
 
-/// One node over all shells, then the nodes of each shell. Points keep their order, so that ids are
+/// One root node over all shells, then the nodes of each shell. Points keep their order, so that ids are
 /// consecutive.
 std::vector<ShellNode> joinedNodes(const std::vector<const PointShell*>& shells,
                                    const std::vector<Pose>& X_MPs, std::size_t point_count) {
@@ -80,7 +80,7 @@ std::vector<ShellNode> joinedNodes(const std::vector<const PointShell*>& shells,
     const auto first_node = static_cast<std::uint32_t>(nodes.size());
     for (ShellNode node : shells[s]->nodes) {
       node.center = X_MPs[s] * node.center;
-      node.radius_m *= 1 + 1e-12;  // points and centre were rounded separately
+      node.radius_m *= 1 + 1e-12;  // points and centre were rounded independently
       node.first += first_point;
       node.skip += first_node;
       nodes.push_back(node);
@@ -99,7 +99,7 @@ std::vector<ShellNode> joinedNodes(const std::vector<const PointShell*>& shells,
 }
 
 /// The shell of a mesh with shared vertices.
-/// @param is_sheet  the surface is met from both sides, and at its border
+/// @param is_sheet  other parts touch the surface from both sides, and at its border
 PointShell sampled(const Mesh& mesh, const PointShellSettings& settings, const Progress& progress,
                    bool is_sheet = false) {
   const auto report = [&progress](double share) {
@@ -131,7 +131,8 @@ PointShell buildPointShell(const Mesh& mesh, const PointShellSettings& settings,
                            const Progress& progress) {
   requireUsable(mesh, "", part);
   requireSettings(mesh, settings, part);
-  return sampled(welded(mesh), settings, progress);  // otherwise every edge would be open, and so sharp
+  return sampled(welded(mesh), settings,
+                 progress);  // unwelded, every edge would be open, and therefore sharp
 }
 
 PointShell buildPointShell(const Solid& solid, const PointShellSettings& settings, const std::string& part,

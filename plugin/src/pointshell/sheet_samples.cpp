@@ -8,8 +8,8 @@
 namespace vps {
 namespace {
 
-/// Appends samples of the border; those of its corners face the mean of the ways out of the edges there. Each
-/// stands for a square of step_m.
+/// Appends samples of the border. A sample at a corner faces the mean of the directions out of its edges.
+/// Each sample represents a square of step_m.
 void addBorder(const Mesh& mesh, double step_m, std::vector<ShellSample>& samples) {
   std::map<std::uint32_t, Vec3> corners;
   forEachEdge(sortedHalfEdges(mesh), [&](std::span<const HalfEdge> same) {

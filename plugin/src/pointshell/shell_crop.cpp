@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The points of a shell that lie in some boxes.
+// Reduces a shell to the points in some boxes.
 
 #include <algorithm>
 
@@ -23,8 +23,8 @@ std::vector<std::uint8_t> pointsWithin(const PointShell& shell, const std::vecto
   return is_kept;
 }
 
-/// The nodes that keep a point. Their spheres do not change: a leaf's points are stored as offsets from its
-/// centre, and must be rounded as before.
+/// The nodes that still have a point. Their spheres do not change, because a leaf's points are stored as
+/// offsets from its centre and must be rounded as before.
 std::vector<ShellNode> keptNodes(const PointShell& shell, const std::vector<std::uint32_t>& points_before) {
   const auto countOf = [&](const ShellNode& node) {
     return points_before[node.first + node.count] - points_before[node.first];

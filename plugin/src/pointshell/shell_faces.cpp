@@ -15,21 +15,22 @@
 namespace vps {
 namespace {
 
-/// Least gap over spacing (assumed): leaves a quarter of the spacing to the fill pass.
+/// Least gap between points over spacing. Assumed: leaves a quarter of the spacing to the fill pass.
 constexpr double kMinGap = 0.75;
-/// Candidates per square of spacing (assumed): about five for each point kept; more change little.
+/// Candidates per square of spacing. Assumed: about five for each point that is kept; more change little.
 constexpr double kCandidates = 6;
-/// Greatest extent over spacing of a piece of surface that is assigned to a point (assumed): some 15 pieces a
+/// Greatest extent over spacing of a piece of surface that is assigned to a point. Assumed: about 15 pieces a
 /// point.
 constexpr double kAreaPiece = 0.3;
 
-/// Height over spacing of a bump that gets points of its own (assumed): 10 um at 1 mm, what counts as contact
-/// to a verdict.
+/// Height over spacing of a bump that gets points of its own. Assumed: 10 um at 1 mm, the depth that a
+/// verdict counts as contact.
 constexpr double kBump = 0.01;
-/// Normals this far apart, 20 degrees, are those of a tight curve: contact moves along a face no farther.
+/// Cosine of 20 degrees: normals that are farther apart belong to a tight curve. A contact that moves along a
+/// face turns no farther.
 constexpr double kCosTight = 0.94;
-constexpr double kLeastMean =
-    1e-3;  ///< of the weighted normals around a vertex, whose angles are a few radians
+/// Least length of the weighted sum of normals around a vertex, whose angles are a few radians.
+constexpr double kLeastMean = 1e-3;
 
 /// A convex piece of a triangle. Pieces are cut across the longest side of their box, so that slivers become
 /// short pieces. (Cutting triangles at an edge keeps slivers slivers: 18 times as many pieces on a cylinder's
@@ -38,13 +39,13 @@ class Piece {
  public:
   Piece(const Vec3& a, const Vec3& b, const Vec3& c) : corners_{a, b, c}, count_(3) {}
 
-  /// The mean of the corners: on the surface, and inside.
+  /// The mean of the corners, which lies on the surface and inside the piece.
   [[nodiscard]] Vec3 center() const {
     Vec3 sum = Vec3::Zero();
     for (int i = 0; i < count_; ++i) sum += corners_[i];
     return sum / count_;
   }
-  /// Radius about the centre.
+  /// Greatest distance of a corner from the centre.
   [[nodiscard]] double extent() const {
     const Vec3 m = center();
     double squared = 0;
@@ -56,8 +57,8 @@ class Piece {
     for (int i = 2; i < count_; ++i) sum += fanArea(i);
     return sum;
   }
-  /// Maps two uniform random numbers to a uniform point. Source: Turk 1990, on the fan's triangle that u
-  /// picks.
+  /// Maps two uniform random numbers to a uniform point. Source: Turk 1990, on the triangle of the fan that u
+  /// selects.
   [[nodiscard]] Vec3 pointAt(double u, double v) const {
     double share = u * area();
     int i = 2;
@@ -124,12 +125,12 @@ class FaceSampler {
       grid_.insert(samples_[i].p, static_cast<std::uint32_t>(i));
   }
 
-  /// A few candidates for each block of the surface, kept where no point is too near. Proceeding block by
-  /// block is as random as over the whole surface and ten times as fast, since near points are near in
-  /// memory.
+  /// Tries some candidates in each block of the surface, and keeps those with no point too near. Proceeding
+  /// block by block is as random as proceeding over the whole surface and ten times as fast, since near
+  /// points are near in memory.
   void throwDarts() {
     const double darts_per_m2 = kCandidates / (spacing_m_ * spacing_m_);
-    double owed = 0;  // fractions left over from small triangles
+    double owed = 0;  // fractions of darts left over from small triangles
     std::uint64_t index = 0;
     forEachBlock([&](const Piece& block, const Vec3& n) {
       for (owed += darts_per_m2 * block.area(); owed >= 1; --owed) {
@@ -144,8 +145,9 @@ class FaceSampler {
     forEachBlock([this](const Piece& block, const Vec3& n) { cover(block, n); });
   }
 
-  /// A bump smaller than the spacing may lie between all points, and a surface of triangles is highest at its
-  /// vertices. Those that protrude get a point, the highest first, until none does.
+  /// Adds points on bumps. A bump smaller than the spacing may lie between all points, and a surface of
+  /// triangles is highest at its vertices. Vertices that protrude get a point, the highest first, until no
+  /// vertex protrudes.
   void addBumps() {
     struct Bump {
       double height_m;
@@ -172,10 +174,11 @@ class FaceSampler {
   }
 
  private:
-  /// Edge of the grid's cells over the spacing.
+  /// Edge of the grid's cells, in spacings.
   static constexpr double kCell = 2;
 
-  /// Samples near a block of surface, collected once and searched for each of its pieces.
+  /// A sample near a block of surface. Candidates are collected once and searched for each piece of the
+  /// block.
   struct Candidate {
     Vec3 p;
     std::uint32_t id;
@@ -189,7 +192,7 @@ class FaceSampler {
     return samples_[id].outward.dot(n) > 0;
   }
 
-  /// Collects the samples that face as n and are within the spacing of any point of the block.
+  /// Collects the samples that face the same way as n and are within the spacing of any point of the block.
   void gather(const Piece& block, const Vec3& n) {
     candidates_.clear();
     grid_.visitNear(block.center(), block.extent() + spacing_m_, [&](std::uint32_t id, double) {
@@ -220,8 +223,8 @@ class FaceSampler {
     samples_.push_back({p, n, 0});
   }
 
-  /// Mean normals of the vertices, unit; zero at a blade. Sharp edges need no exception: their own points are
-  /// nearer to their vertices than any other, and as high.
+  /// Mean unit normals of the vertices; zero at the edge of a blade. Sharp edges need no exception: their own
+  /// points are nearer to their vertices than any other, and as high.
   [[nodiscard]] std::vector<Vec3> vertexNormals() const {
     std::vector<Vec3> mean = angleWeightedNormals(mesh_, normals_);
     for (Vec3& n : mean) n = n.norm() > kLeastMean ? n.normalized() : Vec3(Vec3::Zero());
@@ -229,8 +232,8 @@ class FaceSampler {
   }
 
   /// How far a place on the surface protrudes beyond the nearest point, along the mean of both normals: zero
-  /// on planes, cylinders, spheres and all else that curves evenly between them, convex or hollow. Where it
-  /// curves so tightly that the normals are far apart, along the place's own normal.
+  /// on planes, cylinders, spheres and other surfaces that curve evenly between the two, convex or hollow.
+  /// Where the surface curves so tightly that the normals are far apart, along the place's own normal.
   [[nodiscard]] double heightOf(const Vec3& p, const Vec3& n) const {
     constexpr std::uint32_t kNone = 0xffffffff;
     std::uint32_t found = kNone;
@@ -271,9 +274,9 @@ class FaceSampler {
     for (const Piece& half : piece.halves()) forEachBlock(half, n, visit);
   }
 
-  /// A piece of extent e whose centre is d from a sample lies within d + e of it. When that is too far,
-  /// either the centre is free for a new sample or the piece is halved; it ends at e <= (1 - kMinGap)
-  /// spacing at the latest.
+  /// Adds samples until every point of the piece has one within the spacing. A piece of extent e whose centre
+  /// is d from a sample lies within d + e of it. If that is too far, either the centre is free for a new
+  /// sample or the piece is halved; halving ends at e <= (1 - kMinGap) spacing at the latest.
   void cover(const Piece& piece, const Vec3& n) {
     const double extent_m = piece.extent();
     const Vec3 center = piece.center();

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::uint32_t kNone = 0xffffffff;
 
-/// An edge sharper than the limit, or one that does not join exactly two triangles.
+/// An edge sharper than the limit, or an edge that does not join exactly two triangles.
 struct SharpEdge {
   std::uint32_t low, high;
   Vec3 normal;  ///< pseudonormal: the mean of its triangles' normals
@@ -40,7 +40,7 @@ class FeatureSampler {
   std::vector<ShellSample> run() {
     for (std::uint32_t v = 0; v < mesh_.vertices.size(); ++v)
       if (is_corner_[v]) addVertex(v);
-    // First chains between corners; the remaining chains are loops without a corner.
+    // First chains between corners; the edges that remain form loops without a corner.
     for (const bool starts_at_corner : {true, false})
       for (std::uint32_t e = 0; e < edges_.size(); ++e)
         for (const std::uint32_t start : {edges_[e].low, edges_[e].high})
@@ -49,7 +49,8 @@ class FeatureSampler {
   }
 
  private:
-  /// Each triangle counts with its angle at the vertex, so that the sum does not depend on the triangulation.
+  /// Weights each triangle with its angle at the vertex, so that the sum does not depend on the
+  /// triangulation.
   void sumVertexNormals() {
     vertex_normals_.assign(mesh_.vertices.size(), Vec3::Zero());
     for (std::size_t t = 0; t < mesh_.triangles.size(); ++t)
@@ -66,7 +67,7 @@ class FeatureSampler {
     forEachEdge(sortedHalfEdges(mesh_), [this](std::span<const HalfEdge> sides) {
       Vec3 sum = Vec3::Zero();
       for (const HalfEdge& side : sides) sum += normals_[side.triangle];
-      // A triangle without a normal hides the facet behind it: its edges count as sharp.
+      // A triangle without a normal hides the facet behind it; therefore its edges count as sharp.
       if (sides.size() == 2 && normals_[sides[0].triangle].dot(normals_[sides[1].triangle]) >= cos_limit_)
         return;
       edges_.push_back({sides[0].low, sides[0].high, unitOr(sum, normals_[sides[0].triangle])});
@@ -95,7 +96,7 @@ class FeatureSampler {
       if (range.count == 0) continue;
       is_corner_[v] = range.count != 2 || turnsAt(v);
     }
-    // Tips: vertices without a sharp edge, but with a normal far from that of a triangle around it.
+    // Tips: vertices without a sharp edge whose normal differs much from that of a triangle around them.
     for (std::size_t t = 0; t < mesh_.triangles.size(); ++t)
       for (const std::uint32_t v : mesh_.triangles[t])
         if (edges_of_[v].count == 0 && !normals_[t].isZero(0) &&
@@ -123,7 +124,7 @@ class FeatureSampler {
     return chain;
   }
 
-  /// Repeatedly keeps the farthest vertex that the step and the tolerance allow.
+  /// Adds points along a chain. From each point it goes to the farthest vertex that step and tolerance allow.
   void sample(const Chain& chain) {
     addVertex(chain.vertices.front());
     for (std::size_t i = 0; i + 1 < chain.vertices.size();) {
@@ -149,7 +150,7 @@ class FeatureSampler {
     return true;
   }
 
-  /// Points inside one long segment, evenly.
+  /// Adds evenly spaced points inside one long segment.
   void addBetween(const Chain& chain, std::size_t i) {
     const Vec3 &a = mesh_.vertices[chain.vertices[i]], &b = mesh_.vertices[chain.vertices[i + 1]];
     const double parts = std::ceil((b - a).norm() / step_m_ * (1 - 1e-9));  // rounding must not add a point
@@ -182,7 +183,7 @@ class FeatureSampler {
   [[nodiscard]] double edgeLength(const Chain& chain, std::size_t i) const {
     return (mesh_.vertices[chain.vertices[i + 1]] - mesh_.vertices[chain.vertices[i]]).norm();
   }
-  /// Normalises v; returns the fallback where v is too short to have a direction (two faces back to back).
+  /// Normalises v; returns the fallback if v is too short to have a direction (two faces back to back).
   static Vec3 unitOr(const Vec3& v, const Vec3& fallback) {
     const double length = v.norm();
     if (length > 1e-9) return v / length;
@@ -197,7 +198,7 @@ class FeatureSampler {
   double step_m_, tolerance_m_, cos_limit_;
   std::vector<Vec3> vertex_normals_;
   std::vector<SharpEdge> edges_;
-  std::vector<EdgeRange> edges_of_;  ///< of each vertex, into edge_list_
+  std::vector<EdgeRange> edges_of_;  ///< by vertex: its range of edge_list_
   std::vector<std::uint32_t> edge_list_;
   std::vector<bool> is_corner_, is_added_;
   std::vector<ShellSample> samples_;

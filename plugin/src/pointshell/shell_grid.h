@@ -17,8 +17,8 @@ namespace vps {
 /// visits follow a fixed order, so results depend on the input alone.
 class PointGrid {
  public:
-  /// @param cell_m    edge of a cell; best near twice the search radius (measured)
-  /// @param expected  number of points for which memory is reserved; there may be more
+  /// @param cell_m    edge of a cell; fastest near twice the search radius (measured)
+  /// @param expected  number of points for which memory is reserved; the grid takes more
   explicit PointGrid(double cell_m, std::size_t expected = 64) : inverse_cell_(1 / cell_m) {
     std::size_t slots = 64;
     while (slots < 2 * expected) slots *= 2;
@@ -37,7 +37,7 @@ class PointGrid {
     slot.cell = cell;
   }
 
-  /// Calls visit(id, squared distance) for each point within radius of p until it returns false.
+  /// Calls visit(id, squared distance) for each point within radius of p until visit returns false.
   template <class Visit>
   void visitNear(const Vec3& p, double radius, Visit&& visit) const {
     const Cell low = cellOf(p - Vec3::Constant(radius)), high = cellOf(p + Vec3::Constant(radius));
@@ -66,13 +66,13 @@ class PointGrid {
   };
 
   [[nodiscard]] Cell cellOf(const Vec3& p) const {
-    // Saturated, so that a coordinate far beyond the grid's resolution stays defined.
+    // Saturated, so that the result is defined for a coordinate far beyond the grid's resolution.
     const auto index = [this](double x) {
       return static_cast<std::int32_t>(std::clamp(std::floor(x * inverse_cell_), -1e9, 1e9));
     };
     return {index(p.x()), index(p.y()), index(p.z())};
   }
-  /// The slot that holds the cell, or the free one where it would go. Four neighbours along x share a cache
+  /// The slot that holds the cell, or the free slot where it would go. Four neighbours along x share a cache
   /// line; probing steps from line to line.
   [[nodiscard]] std::size_t find(const Cell& cell) const {
     const std::size_t mask = slots_.size() - 1;

@@ -34,7 +34,7 @@ VdbArchive::VdbArchive(std::string bytes, double limit_bytes) : stream_(std::mov
   }
 }
 
-/// Reads metadata and transform; leaves the stream where the grid begins.
+/// Reads metadata and transform; leaves the stream at the begin of the grid.
 void VdbArchive::list(Entry& entry) {
   entry.grid = entry.descriptor.read(stream_);
   entry.grid->setSaveFloatAsHalf(entry.descriptor.saveFloatAsHalf());
@@ -53,7 +53,7 @@ openvdb::GridBase::Ptr VdbArchive::read(std::size_t index) {
   readGrid(entry.grid, entry.descriptor, stream_);
   entry.is_read = true;
   if (!entry.descriptor.isInstance()) return entry.grid;
-  // Its tree is stored with another grid.
+  // The tree of an instance is stored with another grid.
   for (std::size_t i = 0; i < entries_.size(); ++i)
     if (i != index && entries_[i].descriptor.uniqueName() == entry.descriptor.instanceParentName())
       entry.grid->setTree(read(i)->baseTreePtr());

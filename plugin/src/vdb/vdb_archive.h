@@ -19,15 +19,15 @@ class VdbArchive : private openvdb::io::Archive {
  public:
   struct Entry {
     openvdb::io::GridDescriptor descriptor;
-    openvdb::GridBase::Ptr grid;  ///< metadata and transform; with the tree only if it had to be read
+    openvdb::GridBase::Ptr grid;  ///< metadata and transform; includes the tree only if it had to be read
     bool is_read = false;
     [[nodiscard]] std::string name() const;
-    /// Size of the tree in memory as recorded in the file; 0 if it is not.
+    /// Size of the tree in memory as recorded in the file; 0 if it is not recorded.
     [[nodiscard]] double bytes() const;
   };
 
-  /// Lists the grids. A file that was written as a stream has no table of grids: all are read, unless one is
-  /// recorded as larger than `limit_bytes`; the list ends with that one.
+  /// Lists the grids. A file that was written as a stream has no table of grids: all grids are read, up to
+  /// the first one that is recorded as larger than `limit_bytes`, with which the list ends.
   VdbArchive(std::string bytes, double limit_bytes);
 
   [[nodiscard]] const std::vector<Entry>& entries() const { return entries_; }

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The content of our .vdb files. Only files of this folder include OpenVDB: its headers are slow to compile.
+// The content of .vdb files that saveVdb() writes. Only files of this folder include OpenVDB, because its
+// headers are slow to compile.
 //
-// Other programs read the grid "surface". Two more make a reload exact: "vps_center" (one value per directory
-// cell: the bound at its centre) and, where parts are merged, "vps_owner". A mark with a checksum ends the
-// file. Files of other programs have none of these; their bounds are proven from the nodes (field_proof.h).
+// Other programs read the grid "surface". Two more grids make a reload exact: "vps_center" (one value per
+// directory cell: the bound at its centre) and, if parts are merged, "vps_owner". A mark with a checksum ends
+// the file. Files of other programs have none of these; their bounds are computed from the nodes
+// (field_proof.h).
 #pragma once
 
 #include <openvdb/openvdb.h>
@@ -30,14 +32,14 @@ inline std::string partKey(std::size_t part, const char* what) {
 /// Initialises OpenVDB once. Thread-safe.
 void initializeOpenVdb();
 
-/// The end of our files. OpenVDB's reader trusts the file, and a wrong byte can make it write out of bounds,
-/// so the checksum is verified first.
+/// The mark and checksum that end a file of saveVdb(). OpenVDB's reader trusts the file, and a wrong byte can
+/// make it write out of bounds, so the checksum is verified first.
 std::string endOf(std::string_view bytes);
 
 enum class Origin {
-  Ours,     ///< unchanged
-  Changed,  ///< ours, but changed
-  Others
+  Ours,     ///< written by saveVdb() and unchanged
+  Changed,  ///< written by saveVdb(), but changed
+  Others    ///< of another program
 };
 Origin originOf(std::string_view bytes);
 

@@ -25,7 +25,7 @@ std::string digits(double number) {
   return text;
 }
 
-// Which grid
+// Choice of the grid
 // -------------------------------------------------------------------------------------------------------------
 
 bool isScalar(const Entry& entry) {
@@ -38,7 +38,7 @@ std::string namesOf(const std::vector<Entry>& entries) {
   return names;
 }
 
-/// The reason why a grid cannot be a level set, as far as its type shows; empty if there is none.
+/// The reason why a grid cannot be a level set, as far as its type shows; empty if there is no reason.
 std::string objection(const Entry& entry) {
   const std::string grid = "grid '" + entry.name() + "' ";
   if (entry.descriptor.gridType().find("ptdataidx") != std::string::npos ||
@@ -53,7 +53,7 @@ std::string objection(const Entry& entry) {
   return "";
 }
 
-/// The only entry of a class; if there are several, none can be chosen.
+/// The only entry of a class, null if there is none. Throws LoadError if there are several.
 const Entry* onlyOf(const std::vector<Entry>& entries, openvdb::GridClass wanted, const std::string& file) {
   std::vector<Entry> found;
   for (const Entry& entry : entries)
@@ -84,10 +84,11 @@ FloatGrid::Ptr asFloats(const openvdb::GridBase::Ptr& grid) {
   return std::make_shared<FloatGrid>(*openvdb::gridPtrCast<DoubleGrid>(grid));
 }
 
-// Where its lattice lies
+// Position of the grid's lattice
 // -------------------------------------------------------------------------------------------------------------
 
-/// A matrix of floats keeps half of its digits, which over a thousand voxels is a thousandth of a voxel.
+/// A matrix of floats has half the digits of a double; over a thousand voxels its error is a thousandth of a
+/// voxel.
 constexpr double kSameLength = 1e-6;
 
 void findLattice(const std::string& file, LevelSet& out) {
@@ -112,22 +113,22 @@ void findLattice(const std::string& file, LevelSet& out) {
   const Vec3 p(m(3, 0), m(3, 1), m(3, 2));
   if (!p.allFinite()) refuseVdb(file, "has a grid that lies nowhere; set its transform");
   out.voxel_m = h;
-  // Deviations that rounding alone can cause do not justify a resampling.
+  // Deviations within rounding error do not justify a resampling.
   const bool is_straight = (R - Mat3::Identity()).cwiseAbs().maxCoeff() <= 1e-9;
   const bool is_home = is_straight && p.cwiseAbs().maxCoeff() <= 1e-6 * h;
   if (!is_home) out.X_FM = is_straight ? Pose::translation(p) : Pose(Quat(R), p);
 }
 
-// Its values
+// The grid's values
 // -------------------------------------------------------------------------------------------------------------
 
-constexpr double kMinBand = 3, kMaxBand = 32;  // voxels: half a quantum of the latter is 1/2000 voxel
+constexpr double kMinBand = 3, kMaxBand = 32;  // voxels; at kMaxBand half a quantum is 1/2000 voxel
 
 [[noreturn]] void refuseNan(const std::string& file) {
   refuseVdb(file, "holds values that are not numbers; export it again");
 }
 
-/// Values of tiles, which cover many voxels; values of leaves are tested one by one.
+/// Tests the values of tiles, which cover many voxels. Values of leaves are tested one by one elsewhere.
 void requireTiles(const std::string& file, const FloatGrid& grid) {
   auto tile = grid.tree().cbeginValueAll();
   tile.setMaxDepth(openvdb::FloatTree::ValueAllCIter::LEAF_DEPTH - 1);
@@ -156,7 +157,7 @@ void requireValues(const std::string& file, const FloatGrid& grid) {
                         "; a fog volume or a distance without sign must be converted to a level set");
 }
 
-/// Some programs leave the inside beyond the band marked as outside.
+/// Gives the inside beyond the band its sign, because some programs leave it marked as outside.
 void signInside(FloatGrid& grid) {
   for (auto value = grid.cbeginValueOff(); value; ++value)
     if (*value < 0) return;
@@ -170,7 +171,7 @@ void widenBand(const std::string& file, LevelSet& level_set) {
                         " voxels; at least 1 is needed, 3 would do (Houdini: VDB " +
                         "Renormalize or VDB Rebuild)");
   const int missing = static_cast<int>(std::ceil(kMinBand - band + 1e-3));
-  // Steps along edges too: the new band is as wide in every direction.
+  // Steps across edges too, so that the new band is as wide in every direction.
   const auto wider = openvdb::tools::dilateSdf(*level_set.grid, missing, openvdb::tools::NN_FACE_EDGE);
   const auto background = static_cast<float>(kMinBand * level_set.voxel_m);
   openvdb::tools::changeLevelSetBackground(wider->tree(), background);

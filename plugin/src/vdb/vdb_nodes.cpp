@@ -50,7 +50,7 @@ class Bricks {
     return nodeOf(std::clamp<double>(per_m_ * static_cast<double>(distance_m), -kFullBand, kFullBand));
   }
 
-  /// Cells covered by one value; the others need nodes.
+  /// Finds cells covered by one value; the other cells need nodes.
   void findConstants() {
     is_wanted_.assign(layout_.bricks.size(), 0);
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, layout_.bricks.size()), [&](const auto& range) {
@@ -65,8 +65,8 @@ class Bricks {
     });
   }
 
-  /// A cell's last nodes are the first ones of its neighbours: where those belong to another brick, the cell
-  /// needs one too.
+  /// Adds cells at borders. A cell's last nodes are the first nodes of its neighbours; if a neighbour has
+  /// another brick, the cell needs a brick too.
   void addBorderCells() {
     std::vector<std::uint8_t> is_met(is_wanted_.size(), 0);
     tbb::parallel_for(std::size_t{0}, is_met.size(), [&](std::size_t i) {
@@ -82,7 +82,7 @@ class Bricks {
   }
 
   void makeBricks(const std::vector<std::size_t>& cells) {
-    std::vector<std::uint32_t> slot(cells.size());  // 1 if the brick is kept, later its index
+    std::vector<std::uint32_t> slot(cells.size());  // first 1 if the brick is kept, later its index
     overCells(cells, [&](std::size_t i, const NodeValue* nodes) {
       const NodeValue first = nodes[0];
       const bool is_constant =
@@ -116,7 +116,7 @@ class Bricks {
     });
   }
 
-  /// A brick's own nodes, and the first ones of seven neighbours as its border.
+  /// Collects a brick's own nodes, and the first nodes of seven neighbours as its border.
   void collect(Accessor& accessor, const Index3& cell, NodeValue* nodes) const {
     for (int part = 0; part < 8; ++part) {
       const Index3 step(part >> 2, part >> 1 & 1, part & 1);

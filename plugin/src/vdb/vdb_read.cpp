@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// .vdb to voxmap.
+// Reads a voxmap from a .vdb file.
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -32,7 +32,7 @@ std::string bytesOf(const std::string& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// Reads an unchanged file of ours.
+/// Reads an unchanged file of saveVdb().
 class OwnFile {
  public:
   OwnFile(const std::string& file, VdbArchive& archive) : file_(file) {
@@ -97,7 +97,7 @@ class OwnFile {
 
   void readOwners(const openvdb::Int32Grid& grid, int parts) {
     auto mixed = std::make_shared<std::vector<NodeOwners>>();
-    mixed->reserve(layout_->pool->size());  // bricks point into it
+    mixed->reserve(layout_->pool->size());  // never reallocated, since bricks point into it
     auto accessor = grid.getConstAccessor();
     NodeOwners nodes;
     for (std::size_t i = 0; i < layout_->bricks.size(); ++i) {

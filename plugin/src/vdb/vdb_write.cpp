@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Voxmap to .vdb.
+// Writes a voxmap to a .vdb file.
 #include <openvdb/io/Stream.h>
 
 #include <cmath>
@@ -31,7 +31,8 @@ openvdb::FloatGrid::Ptr surfaceGrid(const VoxLayout& layout, double voxel_m, dou
       tree.addTile(1, origin, static_cast<float>(-band_m), false);
       continue;
     }
-    // A leaf stores nodes in our order. Values beyond the band are inactive and have the right sign.
+    // A leaf stores its nodes in the same order as a brick. Values beyond the band are inactive and have the
+    // right sign.
     auto* leaf = tree.touchLeaf(origin);
     const NodeValue* nodes = layout.nodesOf(i);
     for (int n = 0; n < kOwnNodes; ++n) {
@@ -63,8 +64,8 @@ openvdb::Int32Grid::Ptr ownerGrid(const VoxLayout& layout, double voxel_m) {
   const auto grid = openvdb::Int32Grid::create(0);
   grid->setName(kOwner);
   grid->setTransform(openvdb::math::Transform::createLinearTransform(voxel_m));
-  // Every node of a brick, with its border: the neighbour that owns a border node may have no brick to store
-  // it in.
+  // Stores every node of a brick, including its border, because the neighbour that owns a border node may
+  // have no brick in which to store it.
   auto accessor = grid->getAccessor();
   for (std::size_t i = 0; i < layout.bricks.size(); ++i) {
     const std::uint32_t brick = layout.bricks[i];
