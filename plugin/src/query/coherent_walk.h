@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Selects the leaves that a query reads: all, those that spheres cannot exclude, or those that may have come
-// near since the last pose.
+// Selects the leaves that a query reads: all leaves, leaves that spheres cannot exclude, or leaves that may
+// have come near since the last pose.
 #pragma once
 
 #include <Eigen/Eigenvalues>
@@ -33,8 +33,9 @@ class CoherentWalk {
         turn_norm_(largestStretch(turn_)),
         reader_(reading, Reader{this, consume}) {}
 
-  /// Call before the first group of a pose. Thresholds of a smaller cutoff than this one's are too late by no
-  /// more than the cutoffs differ, and those of a larger one too early, which costs only readings.
+  /// Call before the first group of a pose. If the last cutoff was smaller, its thresholds are too late by at
+  /// most the difference of the cutoffs, which is added to the odometers. If it was larger, they are too
+  /// early, which only costs readings.
   static void begin(QueryMemory& memory, const Reading& reading, double cutoff, const Pose& X_MP) noexcept {
     const double last = std::exchange(memory.cutoff_, cutoff);
     if (last == QueryMemory::kNoQuery) memory.X_MP_ = X_MP;
@@ -47,32 +48,32 @@ class CoherentWalk {
   /// Call after the last group of a pose.
   static void end(QueryMemory& memory, const Pose& X_MP) noexcept { memory.X_MP_ = X_MP; }
 
-  /// Every visited leaf has been read when flush() returns.
   void visit(std::size_t group) noexcept { visitGroup(group); }
+  /// When flush() returns, every visited leaf has been read.
   void flush() noexcept { reader_.flush(); }
   [[nodiscard]] std::size_t pointsRead() const noexcept { return reader_.pointsRead(); }
 
  private:
-  /// A generous bound of the rounding of positions, readings and sums; it costs only a little culling.
+  /// A generous bound of the rounding errors of positions, readings and sums; it costs only a little culling.
   static constexpr double kRounding = 3e-4;
-  /// Where odometers are reset [voxels], and half the last place of a double there.
+  /// The value at which odometers are reset [voxels], and half the last place of a double of that size.
   static constexpr double kFarthest = 1 << 20, kRoundingOfSum = kFarthest * 0x1p-53;
   static constexpr double kNever = std::numeric_limits<double>::infinity();
 
-  /// A true distance above this gives readings above the cutoff.
+  /// The true distance above which the field reads above the cutoff.
   static double beyond(const Reading& reading, double cutoff) noexcept {
     const double least = cutoff + reading.field.error;
     return least < reading.field.band ? least : reading.field.band + reading.field.diagonal;
   }
   /// The largest singular value of a matrix, rounded up: the root of the largest eigenvalue of its square.
-  /// For any matrix, since poses may be rotations to a few digits only.
+  /// Works for any matrix, since poses may be rotations to only a few digits.
   static double largestStretch(const Mat3& m) noexcept {
     const double scale = m.cwiseAbs().maxCoeff();
     if (!(scale > 0)) return 0;
     const Mat3 unit = m / scale, square = unit.transpose() * unit;
     Eigen::SelfAdjointEigenSolver<Mat3> solver;
     solver.computeDirect(square, Eigen::EigenvaluesOnly);
-    // If the two largest eigenvalues are equal, as for a difference of rotations, they are exact to 1e-8.
+    // Two equal largest eigenvalues, as of a difference of rotations, are accurate to 1e-8.
     return scale * std::sqrt(solver.eigenvalues()[2]) * (1 + 1e-6);
   }
 
@@ -85,11 +86,12 @@ class CoherentWalk {
     }
   };
 
-  /// note() lowers the thresholds of leaf, row and group when a leaf is read, now or in a later batch.
+  /// Visits the rows of a group that are due. When a leaf is read, now or in a later batch, note() lowers the
+  /// thresholds of leaf, row and group.
   void visitGroup(std::size_t g) noexcept {
     QueryMemory::Group& group = memory_.groups_[g];
     const double moved_m = (turn_ * group.center + shift_).norm() + turn_norm_ * group.radius_m;
-    // The last term covers the rounding of the sum, below kFarthest.
+    // The last term bounds the rounding error of the sum, below kFarthest.
     group.odometer += moved_m / reading_.field.voxel_m * (1 + kRoundingShare) + kRoundingOfSum;
     if (!(group.odometer < kFarthest)) restart(g);
     if (group.odometer < group.next) return;
@@ -102,7 +104,8 @@ class CoherentWalk {
     }
   }
 
-  /// Rows that were never near are bounded by their own spheres, and opened when those no longer suffice.
+  /// Rows that were never near are bounded by their own spheres, and opened when these bounds no longer
+  /// suffice.
   void openNearRows(std::size_t g) noexcept {
     QueryMemory::Group& group = memory_.groups_[g];
     double* next = &memory_.row_next_[g * kGroupRows];
@@ -123,8 +126,7 @@ class CoherentWalk {
     }
   }
 
-  /// Large odometers would lose small steps to rounding: they are reset, and all leaves of the group are
-  /// tested.
+  /// Resets a group's odometer and tests all its leaves. A large odometer would lose small steps to rounding.
   void restart(std::size_t g) noexcept {
     memory_.groups_[g].odometer = 0;
     memory_.groups_[g].next = -1;
@@ -138,7 +140,7 @@ class CoherentWalk {
     }
   }
 
-  /// Tests up to sixteen leaves: those whose threshold has passed are read, unless the bounds of their
+  /// Tests up to sixteen leaves: leaves whose threshold has passed are read, unless the bounds of their
   /// spheres suffice.
   void visitRow(std::size_t row, double odometer) noexcept {
     double* next = &memory_.leaf_next_[row * kLanes];
@@ -167,7 +169,7 @@ class CoherentWalk {
     memory_.row_next_[row] = std::min(memory_.row_next_[row], earliest);
   }
 
-  /// Bounds of a row's leaves, or of a group's rows.
+  /// Bounds of the leaves of a row, or of the rows of a group.
   void boundChildren(std::size_t parent, SphereBounds& bounds) const noexcept {
     const auto& blocks = reading_.shell.blocks;
     if (parent < blocks.size()) {
@@ -179,14 +181,14 @@ class CoherentWalk {
     std::fill_n(bounds.free, kLanes, -1.0f);
   }
 
-  /// Called after a read: computes how far the leaf may move. A saturated reading counts as a bound.
+  /// Called after a read: computes how far the leaf may move. A saturated reading counts as a lower bound.
   void note(const ReadLeaf& leaf) noexcept {
     const double least = static_cast<double>(leaf.least()) * reading_.field.quantum;
     double free = (least - cutoff_) / reading_.field.slope;
     if (reading_.field.is_metric) free = std::max(free, least - error_ - beyond_);
     QueryMemory::Group& group = memory_.groups_[leaf.index / kGroupLeaves];
     double& leaf_next = memory_.leaf_next_[leaf.index];
-    // A leaf may be read in several pieces: the first sets the threshold, the others lower it.
+    // A leaf may be read in several pieces: the first piece sets the threshold, the others lower it.
     const double until = group.odometer + std::max(0.0, free - kRounding);
     leaf_next = leaf.index == noted_ ? std::min(leaf_next, until) : until;
     noted_ = leaf.index;
@@ -202,16 +204,16 @@ class CoherentWalk {
   const Reading& reading_;
   QueryMemory& memory_;
   const double cutoff_;
-  const double error_;  ///< of the field: half a cell's diagonal and a quantum
+  const double error_;  ///< error of the field: half a cell's diagonal and a quantum
   const double beyond_;
-  const Mat3 turn_;  // since the last pose
+  const Mat3 turn_;  // change of the pose since the last one
   const Vec3 shift_;
   const double turn_norm_;
   std::uint32_t noted_ = UINT32_MAX;
   LeafReader<Reader> reader_;
 };
 
-/// The memory if it belongs to this pair, otherwise null.
+/// The memory if it belongs to this map and shell, otherwise null.
 inline QueryMemory* memoryFor(QueryMemory* memory, const VoxMap& map, const PointShell& shell) noexcept {
   return memory != nullptr && memory->isFor(map, shell) ? memory : nullptr;
 }
@@ -250,7 +252,7 @@ double readNearLeaves(const Reading& reading, const Pose& X_MP, const QueryOptio
 inline void setDistance(const VoxMap& map, const Reading& reading, float least_read, double least_skipped,
                         QueryResult& result) noexcept {
   const double read_m = reading.field.quantum_m * least_read;
-  // If nothing was skipped both are infinite; saturated bounds were rounded to floats.
+  // If nothing was skipped both are infinite; min() because saturated bounds were rounded to floats.
   const double skipped_m = std::isfinite(least_skipped)
                                ? std::min(map.band_m(), reading.field.voxel_m * least_skipped)
                                : least_skipped;

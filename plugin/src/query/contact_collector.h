@@ -11,7 +11,8 @@
 
 namespace vps {
 
-/// A saturated reading means only "far": it is never a contact, however large the cutoff.
+/// The cutoff limited to slightly less than the band: a saturated reading only means "far" and is never a
+/// contact.
 inline double usedCutoff(const VoxMap& map, double cutoff_m) noexcept {
   return std::min(cutoff_m, map.band_m() - 0.01 * map.voxel_m());
 }
@@ -65,7 +66,7 @@ class ContactCollector {
     for (int i = 0; i < count; ++i) {
       Contact& c = out_.contacts[done_++];
       c.n_M = normals_.normal(i);
-      // Deeper than the band the field has no direction: the point's own inward normal is used, as in the
+      // A point deeper than the band has no direction in the field; its own inward normal is used, as in the
       // original VPS.
       if (c.n_M.isZero(0)) c.n_M = X_MP_.R * reading_.shell.inward[c.id];
     }

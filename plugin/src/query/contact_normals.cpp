@@ -8,7 +8,7 @@ float mix(float a, float b, float t) {
   return a + t * (b - a);
 }
 
-/// Of a voxel, of a position in steps.
+/// Fraction of a voxel of a position in steps.
 float fractionOf(std::int32_t steps) {
   return static_cast<float>(steps & (kSteps - 1)) / kSteps;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Normals at touching points, several at a time.
+// Computes normals at touching points, several at a time.
 #pragma once
 
 #include "query/leaf_walk.h"
@@ -7,14 +7,15 @@
 
 namespace vps {
 
-/// The reading of a lane [quanta], extrapolated along the trilinear slope from the step to which its point
-/// was rounded to the point itself: a stiff contact would show the steps of 1/16384 voxel (15 nm at 0.25 mm).
-/// @param p_P  the lane's point
+/// The reading of a lane [quanta] at its exact position: extrapolated along the trilinear slope from the step
+/// to which the point was rounded. Otherwise a stiff contact would show the steps of 1/16384 voxel (15 nm at
+/// 0.25 mm).
+/// @param p_P  position of the lane's point
 double readingAt(const ReadLeaf& leaf, int lane, const Motion& motion, const Vec3& p_P) noexcept;
 
 /// Collects points of leaves that have been read and computes their unit outward normals. `Continuous` reads
-/// the field one voxel before and behind along each axis: the difference is the interpolated central
-/// difference of the nodes.
+/// the field one voxel before and one voxel behind along each axis: the difference equals the interpolated
+/// central difference of the nodes.
 class ContactNormals {
  public:
   ContactNormals(const Reading& reading, Gradient gradient) noexcept
@@ -28,7 +29,7 @@ class ContactNormals {
   [[nodiscard]] Vec3 normal(int i) const noexcept {
     const Vec3 g(n_[0][i], n_[1][i], n_[2][i]);
     const double length = g.norm();
-    // There is no direction where opposite walls cancel; below two quanta it is rounding noise.
+    // Where opposite walls cancel there is no direction; a gradient below two quanta is rounding noise.
     return length > 2 ? Vec3(g / length) : Vec3(Vec3::Zero());
   }
   void clear() noexcept { count_ = 0; }

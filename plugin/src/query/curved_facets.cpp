@@ -20,8 +20,8 @@ Turn turnBetween(const Vec3& a, const Vec3& b) {
 
 bool isSmoothEdge(const Vec3& normal0, const Vec3& normal1, bool is_one_curved, double width_m) {
   const Turn turn = turnBetween(normal0, normal1);
-  // An arc whose chord has this width, and which turns by this angle, rises above it by width times angle
-  // / 8.
+  // An arc that turns by this angle, and whose chord has this width, rises above the chord by width times
+  // angle / 8.
   const double rise_m = width_m * normal0.cross(normal1).norm() / 8;
   return turn == Turn::Flat || (turn == Turn::Slight && is_one_curved && rise_m < 0.5 * kSamePlace_m);
 }

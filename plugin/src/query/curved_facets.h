@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which facets of a mesh stand for a curved surface.
+// Finds the facets of a mesh that approximate a curved surface.
 #pragma once
 
 #include <cstdint>
@@ -12,17 +12,17 @@
 
 namespace vps {
 
-/// Facets that meet at less than 8 degrees belong to one curved surface if one of them has such a neighbour
-/// on another side, too. Where neither has, the edge is a lone kink between two planes.
-/// Triangles of one plane are one facet. O(n) after the edges are sorted.
+/// Facets that meet at less than 8 degrees belong to one curved surface if one of them also has such a
+/// neighbour on another side. If neither has, the edge is a lone kink between two planes. Triangles in one
+/// plane count as one facet. O(n) after the edges are sorted.
 /// @param edges    sortedHalfEdges()
 /// @param normals  one for each triangle, unit; zero for triangles without area
-/// @return for each triangle whether it stands for a curved surface
+/// @return for each triangle whether it approximates a curved surface
 std::vector<std::uint8_t> findCurvedFacets(std::span<const HalfEdge> edges, std::span<const Vec3> normals);
 
-/// True if two triangles that meet at an edge are parts of one surface: of a plane, or of a curved one from
-/// which the edge stands out by less than 0.5 * kSamePlace_m.
-/// @param width_m  of the narrower one, across the edge
+/// True if two triangles that meet at an edge are parts of one surface: of a plane, or of a curved surface
+/// from which the edge stands out by less than 0.5 * kSamePlace_m.
+/// @param width_m  width of the narrower triangle across the edge
 bool isSmoothEdge(const Vec3& normal0, const Vec3& normal1, bool is_one_curved, double width_m);
 
 }  // namespace vps

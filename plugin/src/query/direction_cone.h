@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Cones of directions, which bound where the normals of many facets point.
+// Cones of directions, which bound the normals of many facets.
 #pragma once
 
 #include <algorithm>
@@ -23,13 +23,13 @@ struct DirectionCone {
   }
   static DirectionCone everywhere() { return {}; }
 
-  /// The greatest angle between a direction of the cone and this one.
+  /// The greatest angle between a direction of the cone and `direction`.
   [[nodiscard]] double farthest_rad(const Vec3& direction) const {
     return std::acos(std::clamp(axis.dot(direction), -1.0, 1.0)) + angle_rad;
   }
 };
 
-/// A cone that holds all of them; everywhere() if there are none. Its axis is the mean of theirs.
+/// A cone that contains all given cones; everywhere() if there are none. Its axis is the mean of their axes.
 inline DirectionCone coneOver(std::span<const DirectionCone> cones) {
   Vec3 sum = Vec3::Zero();
   for (const DirectionCone& c : cones) sum += c.axis;
@@ -40,15 +40,16 @@ inline DirectionCone coneOver(std::span<const DirectionCone> cones) {
   return DirectionCone::around(axis, angle_rad);
 }
 
-/// True if no direction of a cone is within slack_rad of one of another.
+/// True if no direction of cone `a` is within slack_rad of a direction of cone `b`.
 /// @param axis  of the first cone, in the frame of the second
 inline bool areApart(const DirectionCone& a, const Vec3& axis, const DirectionCone& b, double slack_rad) {
-  // cos(alpha + beta + slack) >= cos(alpha + beta) - slack, while the angle is less than a half turn.
+  // cos(alpha + beta + slack) >= cos(alpha + beta) - slack, as long as the angle is less than half a turn.
   return a.angle_rad + b.angle_rad + slack_rad < std::numbers::pi &&
          axis.dot(b.axis) < a.cosine * b.cosine - a.sine * b.sine - slack_rad;
 }
 
-/// True if all directions of a cone are within angle_rad (up to a quarter turn) of all opposite to another's.
+/// True if every direction of cone `a` is within angle_rad (up to a quarter turn) of the opposite of every
+/// direction of cone `b`.
 /// @param axis  of the first cone, in the frame of the second
 inline bool areOpposite(const DirectionCone& a, const Vec3& axis, const DirectionCone& b, double angle_rad) {
   const double left_rad = angle_rad - a.angle_rad - b.angle_rad, square = left_rad * left_rad;

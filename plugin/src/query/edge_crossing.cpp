@@ -31,7 +31,7 @@ Face faceOf(const Mesh& mesh, const Pose& X_MP, const HalfEdge& e) {
   return {n.normalized(), corner[(e.side + 2) % 3], hasArea(corner[0], corner[1], corner[2])};
 }
 
-// Two edges that meet in a line with no third are one edge.
+// Marks ends as joined where two edges, and no third, meet in a line.
 void joinEnds(std::vector<EdgeEnd>& ends, std::vector<EdgeSegment>& segments) {
   forEachJoint(ends, [&](const EdgeEnd& a, const EdgeEnd& b) {
     const double cos = -a.away.dot(b.away);
@@ -62,8 +62,8 @@ void appendEdges(const Mesh& mesh, const Pose& X_MP, std::uint16_t owner, std::v
       s.into[i] = (way - along * along.dot(way)).normalized();
     }
     if (!(face[0].normal.dot(s.into[1]) < 0)) return;  // a groove
-    // The normals of a blade with faces back to back cancel; the direction away from both faces is still
-    // outward.
+    // The normals of a blade, whose faces are back to back, cancel; the direction away from both faces is
+    // still outward.
     const Vec3 mean = face[0].normal + face[1].normal;
     s.outward = mean.norm() > kNoDirection ? mean.normalized() : Vec3(-(s.into[0] + s.into[1]).normalized());
     s.owner = owner;
@@ -82,7 +82,7 @@ EdgeSet::EdgeSet(std::vector<EdgeSegment> segments) : segments_(std::move(segmen
 
 namespace {
 
-/// Looks for the pairs of segments that can cross and come within reach_m while those of set 1 move in a
+/// Finds the pairs of segments that can cross and come within reach_m while the segments of set 1 move in a
 /// tube.
 class CrossingSearch {
  public:
@@ -93,7 +93,7 @@ class CrossingSearch {
         turn_rad_(tube.turn_rad()),
         reach_m_(reach_m + tube.margin_m()) {}
 
-  /// Calls found(i0, i1) for each.
+  /// Calls found(i0, i1) for each pair.
   template <typename Visit>
   void run(const Visit& found) const {
     EdgePairSearch(edges0_.tree(), edges1_.tree(), X_01_, turn_rad_, reach_m_, kSinLean)
@@ -104,8 +104,8 @@ class CrossingSearch {
   }
 
  private:
-  // False if no pose of the tube turns the segments so that CrossingTest takes them for a crossing. A turn by
-  // t moves unit vectors and their product by up to t.
+  // False if at no pose of the tube CrossingTest takes the segments for a crossing. A turn by t moves unit
+  // vectors and their product by up to t.
   [[nodiscard]] bool mayCross(const EdgeSegment& s0, const EdgeSegment& s1) const {
     const Vec3 d0 = (s0.to - s0.from).normalized(), d1 = X_01_.from.R * (s1.to - s1.from).normalized();
     const Vec3 n = d0.cross(d1);
@@ -122,7 +122,7 @@ class CrossingSearch {
   }
 
   [[nodiscard]] bool comeNear(const EdgeSegment& s0, const EdgeSegment& s1) const {
-    Features f;  // the moving ones first
+    Features f;  // the moving features first
     f.a_count = f.b_count = 2;
     f.own[0] = s1.from;
     f.own[1] = s1.to;
@@ -141,7 +141,7 @@ class CrossingSearch {
   double turn_rad_, reach_m_;
 };
 
-// Segments that cross with this gap are within this distance of each other: both points may lie past an end.
+// Greatest distance of segments that cross with this gap: both points may lie past an end.
 double reachOfCrossing_m(double gap_m) {
   return gap_m + 2 * (kSamePlace_m + kTanPastEnd * gap_m);
 }
@@ -193,12 +193,13 @@ class CrossingTest {
   }
 
  private:
-  // How far any place of a segment of set 1 comes nearer in the step.
+  // How much nearer any point of a segment of set 1 comes in the step.
   [[nodiscard]] double nearer_m(const Vec3& n, const EdgeSegment& s1) const {
     const Vec3 from = X_01_ * s1.from, to = X_01_ * s1.to;
     return std::max({0.0, n.dot(X_01_end_ * s1.from - from), n.dot(X_01_end_ * s1.to - to)});
   }
-  // True for edges that overlap then, or are near: not for those that have passed each other's ends.
+  // True for edges that overlap or are near after the step; false for edges that have passed each other's
+  // ends.
   [[nodiscard]] bool meetsInStep(const EdgeSegment& s0, const EdgeSegment& s1, const Vec3& n) const {
     const Nearest then = nearestOfSegments(s0.from, s0.to, X_01_end_ * s1.from, X_01_end_ * s1.to);
     const bool is_between = then.end[0] == Nearest::kBetween && then.end[1] == Nearest::kBetween;
@@ -211,7 +212,7 @@ class CrossingTest {
   std::vector<EdgeCrossing>& out_;
 };
 
-/// Around all edges of a set.
+/// A ball around all edges of a set.
 Ball ballOf(const EdgeSet& edges) {
   const EdgeTree::Node& root = edges.tree().nodes()[0];
   return {root.center, root.radius_m};
@@ -241,7 +242,7 @@ void CrossingMemory::search(const EdgeSet& edges0, const EdgeSet& edges1, double
 
 void CrossingMemory::find(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_01,
                           const Pose& X_01_end, double reach_m) {
-  constexpr double kMore = 1.2;  // assumed: the cutoff follows the speed
+  constexpr double kMore = 1.2;  // assumed: the cutoff grows with the speed
   if (is_valid_ && reach_m <= reach_m_ && tube_->holds(X_01) && tube_->holds(X_01_end))
     return tube_->see(X_01);
   const Pose last = is_valid_ ? tube_->seen() : X_01;
@@ -257,7 +258,7 @@ void findCrossings(const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_0
                    std::vector<EdgeCrossing>& out, CrossingMemory* memory) {
   if (edges0.segments().empty() || edges1.segments().empty()) return;
   const auto first = static_cast<std::ptrdiff_t>(out.size());
-  // Near now, or at the end of the step.
+  // The range of crossings that are near now, or at the end of the step.
   const double reach_m = reachOfCrossing_m(std::max(range.cutoff_m, range.depth_m));
   CrossingTest test(edges0, edges1, X_01, range, out);
   if (memory == nullptr) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where edges go on in others.
+// Finds the places where an edge continues in another edge.
 #pragma once
 
 #include <algorithm>
@@ -18,8 +18,8 @@ struct EdgeEnd {
   Vec3 away;  ///< unit, along the edge
 };
 
-/// Calls visit(a, b) for each two ends that meet at a vertex at which no third one ends. O(n log n); sorts
-/// the ends.
+/// Calls visit(a, b) for each vertex at which exactly two ends meet, with these ends. O(n log n); sorts the
+/// ends.
 template <typename Visit>
 void forEachJoint(std::vector<EdgeEnd>& ends, Visit visit) {
   std::sort(ends.begin(), ends.end(), [](const EdgeEnd& a, const EdgeEnd& b) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which edges of two parts come near each other on a motion.
+// Finds the edges of two parts that come near each other during a motion.
 #pragma once
 
 #include <algorithm>
@@ -10,17 +10,19 @@
 
 namespace vps {
 
-/// Two poses of a part in another; its points move on straight lines.
+/// Two poses of a part in another. The part's points move on straight lines from the first pose to the
+/// second.
 struct Sweep {
   Pose from, to;
 };
 
-/// Descends the trees of two parts at once. The edges of part 1 move, and turn by no more than turn_rad from
-/// the first pose.
+/// Descends the trees of two parts at once. The edges of part 1 move, and turn by at most turn_rad from their
+/// first pose.
 class EdgePairSearch {
  public:
-  /// @param reach_m  edges that come nearer are near
-  /// @param least_sine  pairs are left out whose directions differ by less than this at every pose; 0: none
+  /// @param reach_m  distance below which edges count as near
+  /// @param least_sine  pairs whose directions differ by less than this at every pose are left out; 0: none
+  /// is
   EdgePairSearch(const EdgeTree& edges0, const EdgeTree& edges1, const Sweep& X_01, double turn_rad,
                  double reach_m, double least_sine = 0)
       : edges0_(edges0),
@@ -30,8 +32,8 @@ class EdgePairSearch {
         reach_m_(reach_m),
         least_sine_(least_sine) {}
 
-  /// Calls found(i0, i1) for each pair that may be near, in a fixed order: all that are, and some more. Cost:
-  /// some 50 ns for each pair of nodes that are looked at.
+  /// Calls found(i0, i1) for each pair that may be near, in a fixed order: all near pairs, and some more.
+  /// Cost: about 50 ns for each pair of nodes that is tested.
   template <typename Visit>
   void run(const Visit& found) const {
     if (edges0_.nodes().empty() || edges1_.nodes().empty()) return;
@@ -45,12 +47,13 @@ class EdgePairSearch {
   /// A node of part 1 in the frame of part 0.
   struct Placed {
     const Node& node;
-    Vec3 center, way;  ///< of the sphere's centre
+    Vec3 center, way;  ///< start and displacement of the sphere's centre
     double way2_m2;
-    // Computed when first needed: most nodes are far away.
+    // The members below are computed when first needed, since most nodes are far away.
     bool has_line = false;
-    Vec3 from, to;       ///< of the line, at the start
-    double reach_m = 0;  ///< how far from it any place comes, and what counts as near
+    Vec3 from, to;  ///< of the line, at the start
+    double reach_m =
+        0;  ///< greatest distance of an edge from the line during the motion, plus the search's reach
   };
   [[nodiscard]] Placed place(const Node& b) const {
     Placed at{b, X_.from * b.center, Vec3(), 0, false, Vec3(), Vec3(), 0};
@@ -59,7 +62,7 @@ class EdgePairSearch {
     return at;
   }
 
-  // Depth: both trees halve by count, so at most some 2 x 32 deep.
+  // Recursion depth: both trees halve by count, so at most about 2 x 32.
   template <typename Visit>
   void visit(const Node& a, Placed& at, const Visit& found) const {
     const Node& b = at.node;
@@ -82,16 +85,16 @@ class EdgePairSearch {
     const double near_m = a.radius_m + at.node.radius_m + reach_m_;
     return (off - share * at.way).squaredNorm() <= near_m * near_m;
   }
-  // The sphere of a long edge, or of an arc, contains much space that is far from it.
+  // Tested because the sphere of a long edge, or of an arc, contains much space that is far from the edge.
   [[nodiscard]] bool linesComeNear(const Node& a, Placed& at) const {
     const Node& b = at.node;
-    constexpr double kThin = 0.5;  // assumed; wider nodes are hardly ever told apart so
+    constexpr double kThin = 0.5;  // assumed; this test hardly ever separates wider nodes
     if (a.width_m + b.width_m + reach_m_ > kThin * (a.radius_m + b.radius_m + reach_m_)) return true;
     if (!at.has_line) {
       at.has_line = true;
       at.from = at.center + X_.from.R * (b.from - b.center);
       at.to = at.center + X_.from.R * (b.to - b.center);
-      // No place moves farther than the centre, and by the turn around it.
+      // No point moves farther than the centre's way plus its own rotation about the centre.
       at.reach_m = std::sqrt(at.way2_m2) + turn_rad_ * b.radius_m + b.width_m + reach_m_;
     }
     const double near_m = a.width_m + at.reach_m;
@@ -99,8 +102,8 @@ class EdgePairSearch {
     return (nearest.p - nearest.q).squaredNorm() <= near_m * near_m;
   }
 
-  // True if all pairs of the nodes' edges are left out: the sine of a sum is at most the sine of one angle
-  // plus the others.
+  // True if all pairs of the nodes' edges are left out: the sine of a sum of angles is at most the sine of
+  // one plus the others.
   [[nodiscard]] bool areParallel(const Node& a, const Node& b) const {
     const double least = least_sine_ - turn_rad_ - a.spread_rad - b.spread_rad;
     return least > 0 && a.along.cross(X_.from.R * b.along).squaredNorm() <= least * least;

@@ -14,7 +14,7 @@ EdgeTree::EdgeTree(std::vector<Line> lines) : lines_(std::move(lines)) {
   if (!lines_.empty()) build();
 }
 
-// The direction of a node's edges, and the line along it that they are near to.
+// Computes the direction of a node's edges, and the line along it to which they are near.
 void EdgeTree::bound(Node& node, std::span<const std::uint32_t> own) const {
   const auto along = [&](std::uint32_t i) { return Vec3((lines_[i].to - lines_[i].from).normalized()); };
   Vec3 middle = Vec3::Zero();

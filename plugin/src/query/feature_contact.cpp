@@ -15,7 +15,7 @@ using Kind = FeatureContact::Kind;
 
 namespace {
 
-// The corner of a facet that another does not have, as a place.
+// The corner of a facet that another facet does not have.
 Vec3 apexOf(const FeatureSet& part, std::uint32_t facet, std::uint32_t other) {
   const auto &t = part.facets()[facet], &u = part.facets()[other];
   const auto* apex = std::find_if(
@@ -23,9 +23,9 @@ Vec3 apexOf(const FeatureSet& part, std::uint32_t facet, std::uint32_t other) {
   return part.vertices()[*apex];
 }
 
-// True if a facet's neighbour is nearer than the facet's nearest point p, which then lies on its border; so
-// the neighbour's own contact counts. A nut's corner that slides on a flank passes below the crest's facets,
-// which end there, and does not touch them.
+// True if a facet's nearest point p lies on its border and a neighbouring facet is nearer; the neighbour's
+// own contact then counts. A nut's corner that slides on a flank passes below the crest's facets, which end
+// there, and does not touch them.
 bool isNeighbourNearer(const FeatureSet& part, std::uint32_t facet, const Vec3& p, const Vec3& n) {
   for (std::size_t k = 0; k < 3; ++k) {
     const std::uint32_t other = part.neighbours(facet)[k];
@@ -36,8 +36,8 @@ bool isNeighbourNearer(const FeatureSet& part, std::uint32_t facet, const Vec3& 
   return false;
 }
 
-// A facet is met from outside, an edge from between its facets. Other pairs are nearest through the solid,
-// behind a feature that is met first.
+// True if the feature is touched from outside: a facet from its front, an edge from between its facets. Other
+// pairs are nearest through the solid, behind a feature that is touched first.
 // @param p  the nearest point, in the part's frame
 bool isMetFromOutside(const FeatureSet& part, Kind kind, int i, std::uint32_t feature, const Vec3& p,
                       const Vec3& n) {
@@ -67,7 +67,8 @@ double FeatureContact::gap_m(const Pose& X_01) const {
 
 namespace {
 
-// The same point of part 0 in its own frame, by its weights among the feature's vertices.
+// Maps point p of a moved feature of part 0 to the part's own frame, by its weights among the feature's
+// vertices.
 Vec3 inOwnFrame(Kind kind, const Vec3 (&own)[3], const Vec3 (&at)[3], const Vec3& p) {
   if (kind == Kind::CornerOnFacet) return own[0];
   if (kind == Kind::EdgeOnEdge) {
@@ -80,7 +81,7 @@ Vec3 inOwnFrame(Kind kind, const Vec3 (&own)[3], const Vec3 (&at)[3], const Vec3
   return own[0] + s * (own[1] - own[0]) + t * (own[2] - own[0]);
 }
 
-// A contact of features, without its place.
+// A contact of features whose points and plane are not set yet.
 FeatureContact contactOf(Kind kind, const std::uint32_t (&feature)[2], const Features& f) {
   FeatureContact contact;
   contact.kind = kind;
@@ -93,7 +94,7 @@ FeatureContact contactOf(Kind kind, const std::uint32_t (&feature)[2], const Fea
   return contact;
 }
 
-// The plane in which features touch that were carried a share of their way.
+// A contact whose points are those of features that were moved by a share of their way.
 FeatureContact contactAt(Kind kind, const std::uint32_t (&feature)[2], const Features& f,
                          const Reach& reach) {
   FeatureContact contact = contactOf(kind, feature, f);
@@ -104,7 +105,8 @@ FeatureContact contactAt(Kind kind, const std::uint32_t (&feature)[2], const Fea
   return contact;
 }
 
-// Whose contact it is, where features that were carried a share of their way come within the rest gap.
+// Decides which feature has the contact, for features that come within the rest gap after a share of their
+// way.
 BorderOwner ownerOf(const FeatureSet& part0, const FeatureSet& part1, const FeatureContact& contact,
                     const Features& f, const Reach& reach, const Mat3& R_10) {
   const auto [p, q] = std::pair(reach.nearest.p, reach.nearest.q);
@@ -123,9 +125,9 @@ BorderOwner ownerOf(const FeatureSet& part0, const FeatureSet& part1, const Feat
   return ownerAtBorder(part0, contact.feature[0], contact.p[0], corner, kTolerated_m);
 }
 
-// True if two edges are nearest at a corner that meets the other part by itself. A corner in a valley does
-// not: inside a ring, at the joint of two of its sections, an edge of another ring slides from one section to
-// the next.
+// True if two edges are nearest at a corner that has a contact of its own. A corner in a valley has none:
+// inside a ring, at the joint of two of its sections, an edge of another ring slides from one section to the
+// next.
 // @param n_1, n_0  from part 1 to part 0, in each part's frame
 bool isLeftToCorner(const FeatureSet& part0, const FeatureSet& part1, const std::uint32_t (&feature)[2],
                     const Nearest& nearest, const Vec3& n_0, const Vec3& n_1) {
@@ -137,7 +139,7 @@ bool isLeftToCorner(const FeatureSet& part0, const FeatureSet& part1, const std:
   return isOutermost(part0, 0, -n_0) || isOutermost(part1, 1, n_1);
 }
 
-// Two features at rest, part 0 at X_10.
+// Two features that do not move, part 0 at X_10.
 Features featuresAt(const FeatureSet& part0, const FeatureSet& part1, Kind kind,
                     const std::uint32_t (&feature)[2], const Pose& X_10) {
   Features f;
@@ -184,7 +186,7 @@ bool findCrossing(const FeatureSet& part0, const FeatureSet& part1, const std::u
     return isMetFromOutside(part0, Kind::EdgeOnEdge, 0, feature[0], contact.p[0], n_0) &&
            isMetFromOutside(part1, Kind::EdgeOnEdge, 1, feature[1], contact.p[1], contact.n);
   };
-  // Beside an end of an edge, the line to it does not tell on which side of the other edge it is.
+  // Beside an end of an edge, the direction to it does not tell on which side of the other edge it is.
   if (!areMetFromOutside()) contact.n = -contact.n;
   return contact.n.dot(end_10 * contact.p[0] - contact.p[1]) < 0 && areMetFromOutside() &&
          !isLeftToPoints(part0, part1, contact, end_10.R, contact.n);

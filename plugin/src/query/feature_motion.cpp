@@ -32,7 +32,8 @@ double FeatureMotion::rest_m(const FeatureSet& part0, const FeatureSet& part1) {
 
 namespace {
 
-// The distance at the start; in a face's plane the height above it: a corner may be far and slide onto it.
+// The distance at the start. For a contact in a face's plane it is the height above the plane, since a corner
+// may be far away and slide onto the face.
 double startOf(const FeatureSet& part0, const FeatureSet& part1, const FeatureContact& contact,
                double distance_m, const Pose& start) {
   if (contact.kind == Kind::EdgeOnEdge) return distance_m;
@@ -41,7 +42,7 @@ double startOf(const FeatureSet& part0, const FeatureSet& part1, const FeatureCo
   return std::min(distance_m, std::max(contact.gap_m(start), kRounding_m));
 }
 
-/// The piece of the way in which features reach a distance first.
+/// The first piece of the motion in which features come within a distance.
 struct Met {
   std::size_t piece = 0;
   Features features;
@@ -52,7 +53,7 @@ void placeAt(Features& f, const std::vector<Pose>& way_10, std::size_t piece) {
   f.moveFrom(way_10[piece], way_10[piece + 1]);
 }
 
-// Rotation from part 0 to part 1 where the features met.
+// Rotation from part 0 to part 1 at the place where the features met.
 Mat3 rotationAt(const std::vector<Pose>& way_10, const Met& met) {
   const Mat3 &from = way_10[met.piece].R, &to = way_10[met.piece + 1].R;
   return rotationFromVector(met.reach.share * rotationVector(to * from.transpose())) * from;
@@ -73,7 +74,7 @@ bool findFirst(Kind kind, const std::vector<Pose>& way_10, double least_m, doubl
   return false;
 }
 
-constexpr int kHalvings = 40;  // to a picometre of a way of a metre
+constexpr int kHalvings = 40;  // accurate to a picometre on a way of a metre
 
 Nearest nearestAt(const Features& f, double share) {
   Vec3 at[3];
@@ -81,7 +82,7 @@ Nearest nearestAt(const Features& f, double share) {
   return nearestOf(Kind::EdgeOnEdge, at, f.b);
 }
 
-// True if the distance of two edges grows there, by more than rounding.
+// True if the distance of two edges grows at this share, by more than rounding error.
 bool opensAt(const Features& f, double share, Nearest& nearest) {
   Vec3 at[3];
   f.moveTo(share, at);
@@ -100,7 +101,7 @@ double lineGap_m(const Features& f, double share) {
   return across.isZero(0) ? 0 : across.normalized().dot(at[0] - f.b[0]);
 }
 
-// True if a way ends with a gap that is less than the rest gap, and less than at its start.
+// True if a contact's gap at the end is less than the rest gap, and less than at the start.
 bool endsTooNear(const FeatureContact& contact, const Pose& end, double rest_m) {
   return contact.gap_m(end) < std::min(rest_m, contact.start_m) - FeatureMotion::kMissedShare * rest_m;
 }
@@ -109,10 +110,10 @@ bool isBetweenEnds(const Nearest& at) {
   return at.end[0] == Nearest::kBetween && at.end[1] == Nearest::kBetween;
 }
 
-// True if edges whose lines cross within a range of shares meet there, between their ends or within rounding
-// of one: where two edges of either part meet in a corner, each pair of them may miss the other by that. The
-// place is then moved to before they do, where both are nearest between their ends: the line from an end
-// still leans.
+// True if two edges meet at the place where their lines cross within a range of shares: between their ends,
+// or within rounding of an end. The latter is needed where two edges of one part meet in a corner, since each
+// of the two may miss the other part's edge by rounding. The place is then moved back to where both edges are
+// nearest between their ends, because the direction from an end still leans.
 bool doMeet(const Features& f, double last, Reach& reach) {
   const double before_m = lineGap_m(f, reach.share);
   if (before_m == 0 || before_m * lineGap_m(f, last) > 0) return false;
@@ -130,10 +131,11 @@ bool doMeet(const Features& f, double last, Reach& reach) {
   return true;
 }
 
-// Edges that pass each other at a distance touch where they are nearest. Where they first come near, the line
-// between them still leans against the way, and over the rest of a fast step a plane that leans would throw
-// them apart. Edges that meet touch where they come near first. The nearest place may be beyond the end of
-// the piece: the next one goes on in nearly the same way.
+// Moves the place of contact of two edges. Edges that pass each other at a distance touch where they are
+// nearest: where they first come near, the direction between them still leans against the motion, and over
+// the rest of a fast step a plane that leans would throw them apart. Edges that meet keep the place where
+// they come near first. The nearest place may be beyond the end of the piece, since the next piece continues
+// in nearly the same direction.
 void moveToTouch(Met& met) {
   Nearest after;
   double closes = met.reach.share, opens = 1;
@@ -149,7 +151,8 @@ void moveToTouch(Met& met) {
     opens = share;
     after = here;
   }
-  // Along a plateau the place would be one of rounding; and a turn may lead to a place that is farther.
+  // On a plateau of the distance the place would be determined by rounding; and a rotation may lead to a
+  // farther place.
   const bool is_nearer = after.distance_m() < (1 - kRoundingShare) * met.reach.nearest.distance_m();
   if (after.distance_m() > kRounding_m && is_nearer) met.reach = {std::min(opens, 1.0), after};
 }
@@ -160,16 +163,17 @@ bool findCrossingOf(const FeatureSet& part0, const FeatureSet& part1, const std:
                       contact);
 }
 
-// Of the curve that an edge stands for, 0 for a straight one: a chord of length l leaves it by l^2 / 8 times
-// this.
+// Curvature of the curve that an edge approximates, 0 for a straight edge: a chord of length l leaves the
+// curve by l^2 / 8 times this.
 double curvature_per_m(const FeatureSet& part, const FeatureEdge& edge) {
   if (!edge.is_curved) return 0;
   const double sagitta_m = std::max(part.sagitta_m(edge.from), part.sagitta_m(edge.to));
   return 8 * sagitta_m / (part.vertices()[edge.to] - part.vertices()[edge.from]).squaredNorm();
 }
 
-// How far edges that cross at the end may have been held from where they do: a row holds two straight lines
-// on a straight way. So it is off by what the way bends, and what curved edges do along the slide.
+// Upper bound of the distance from the place where edges cross at the end to the place at which a contact
+// held them. A row of the solver holds two straight lines on a straight way, so it is off by the bend of the
+// way, and by the bend of curved edges along the slide.
 double bendOf_m(const FeatureSet& part0, const FeatureSet& part1, const Pose& start, const Pose& end,
                 const Way& way, const FeatureContact& contact) {
   const double slide_m = std::max((start.inverse() * contact.p[0] - end.inverse() * contact.p[0]).norm(),
@@ -180,9 +184,9 @@ double bendOf_m(const FeatureSet& part0, const FeatureSet& part1, const Pose& st
 }
 
 // True if edges cross at the end of the step, but not at its start, and come nearer than the way and the
-// edges bend. An edge that slides past the end of another dips below it on a way that bends, though its
-// contact holds it at the end; it then enters the next edge from that end, deeper than features are looked
-// for. Along a fine rim it passes several such ends in a step.
+// edges bend. An edge that slides past the end of another may dip below it on a way that bends, although its
+// contact holds it at the end. It then enters the next edge from that end, deeper than features are searched.
+// Along a fine rim it passes several such ends in a step.
 bool entersFromItsEnd(const FeatureSet& part0, const FeatureSet& part1, const std::uint32_t (&feature)[2],
                       const Pose& start, const Pose& end, Met& met, FeatureContact& contact) {
   FeatureContact before;
@@ -216,7 +220,7 @@ void FeatureMotion::check(const FeatureSet& part0, const FeatureSet& part1, cons
   const double gap_m = rest_m(part0, part1);
   const std::size_t first = out.size();
   Pose from = start;
-  // The last: more than a solver adds at once.
+  // Stops at more contacts than a solver adds at once.
   for (int k = 0; k < stretches && out.size() < first + 32 * kMostAdded; ++k) {
     const bool is_last = k + 1 == stretches;
     const Pose to = is_last ? end : way.at((k + 1.0) / stretches).inverse();
@@ -228,7 +232,7 @@ void FeatureMotion::check(const FeatureSet& part0, const FeatureSet& part1, cons
       out[i].start_m = startOf(part0, part1, out[i], distanceAt(part0, part1, out[i], start), start);
     }
     if (k == 0) continue;
-    // A stretch may begin farther apart than the way did, whose end may be as near as its start.
+    // A segment may begin with a larger gap than the whole motion, whose end may be as near as its start.
     const auto first_of_stretch = out.begin() + static_cast<std::ptrdiff_t>(found);
     out.erase(std::remove_if(first_of_stretch, out.end(),
                              [&](const FeatureContact& c) { return !endsTooNear(c, end, gap_m); }),
@@ -236,7 +240,7 @@ void FeatureMotion::check(const FeatureSet& part0, const FeatureSet& part1, cons
   }
 }
 
-// A contact counts if the gap is too small at the end of the step.
+// A contact is reported if the gap is too small at the end of the step.
 void FeatureMotion::checkStretch(const FeatureSet& part0, const FeatureSet& part1, const Stretch& stretch,
                                  bool holds_close, std::vector<FeatureContact>& out) {
   const Pose &start = stretch.from, &to = stretch.to;

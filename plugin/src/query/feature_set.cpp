@@ -58,7 +58,7 @@ void FeatureSet::append(const Mesh& mesh, const Pose& X_MP, bool is_sheet) {
     neighbours_.push_back({kNone, kNone, kNone});
   }
   const std::size_t first_edge = edges_.size();
-  std::vector<std::uint32_t> facets_beside;  // two for each edge
+  std::vector<std::uint32_t> facets_beside;  // two entries for each edge
   const std::vector<HalfEdge> half_edges = sortedHalfEdges(mesh);
   std::vector<Vec3> normals(mesh.triangles.size(), Vec3::Zero());
   for (std::size_t i = 0; i < normals.size(); ++i)
@@ -130,7 +130,7 @@ void FeatureSet::markCurvedEdges(std::size_t first) {
       edge.is_curved = true;
       length_m = std::max(length_m, (vertices_[edge.to] - vertices_[edge.from]).norm());
     }
-    // Of an arc that turns by this angle over the length: length times angle / 8.
+    // The sagitta of an arc that turns by this angle over the length is length times angle / 8.
     sagitta_m_[a.vertex] = static_cast<float>(length_m * sine / 8);
   });
 }

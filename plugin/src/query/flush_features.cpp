@@ -18,7 +18,7 @@ namespace {
 
 using Kind = FeatureContact::Kind;
 
-/// The corner and the facet of a pair, whichever part has which.
+/// The corner and the facet of a pair, with the parts to which they belong.
 struct CornerAndFacet {
   const FeatureSet& with_corner;
   std::uint32_t corner;
@@ -34,8 +34,8 @@ CornerAndFacet cornerAndFacet(const FeatureSet& part0, const FeatureSet& part1, 
   return {part1, j, part0, i, R_10.transpose()};
 }
 
-// True if one of the faces around the corner lies flush on a facet that stands for a curved surface.
-// @param facet  the pair's, or another one of the same part
+// True if one of the faces around the corner lies flush on a facet that approximates a curved surface.
+// @param facet  the pair's facet, or another facet of the same part
 bool isFlushOn(const CornerAndFacet& pair, std::uint32_t facet) {
   if (!pair.with_facet.isCurved(facet)) return false;
   const Vec3 n = pair.R.transpose() * pair.with_facet.normal(facet);
@@ -45,9 +45,9 @@ bool isFlushOn(const CornerAndFacet& pair, std::uint32_t facet) {
   return false;
 }
 
-// True if curved surfaces lie flush in each other beside two curved edges, or edges within them, and the
-// edges meet across them. Where a round peg's rim comes down on that of its hole, the walls are opposite too,
-// but the edges meet along them.
+// True if curved surfaces lie flush in each other beside two edges, and the edges meet across these surfaces.
+// Both edges must be curved, or lie within a curved surface. Where a round peg's rim comes down on the rim of
+// its hole, the walls are opposite too, but the edges meet along the walls.
 // @param n_1  direction between the edges, in the frame of part 1
 bool isFlush(const FeatureEdge& edge0, const FeatureEdge& edge1, const Mat3& R_10, const Vec3& n_1) {
   const auto isOnCurve = [](const FeatureEdge& edge) { return edge.is_curved || edge.is_slight; };
@@ -62,8 +62,9 @@ bool isFlush(const FeatureEdge& edge0, const FeatureEdge& edge1, const Mat3& R_1
 }
 
 // True if a corner slides over the border of a facet from a curved neighbour on which it lies flush, as a
-// thread's crest does where it comes out of its nut. There the polygons overlap by as much as they leave
-// their curves; twice that, since a border that meets another edge at its end has no curve known there.
+// thread's crest does where it leaves its nut. There the polygons overlap by as much as they deviate from
+// their curves. The test allows twice that, since at the end of a border that meets another edge no curve is
+// known.
 // @param p  the nearest point of the facet, in its part's frame
 bool slidesOverBorder(const CornerAndFacet& pair, const Vec3& p) {
   const double own_m = pair.with_corner.sagitta_m(pair.with_corner.corners()[pair.corner]);

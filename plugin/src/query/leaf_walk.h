@@ -19,8 +19,8 @@ struct Reading {
     field.prefetches = shell.leaf_blocks > kCachedLeaves;
   }
 
-  /// Number of leaves whose nodes stay in the L2 cache from query to query: about 20 lines of 64 bytes each,
-  /// in 1 MB (assumed). Prefetching nodes that are there costs a tenth of a read.
+  /// Number of leaves whose nodes stay in the L2 cache from query to query. Assumed: about 20 lines of 64
+  /// bytes for each leaf, in 1 MB. Prefetching nodes that are in the cache costs a tenth of a read.
   static constexpr std::size_t kCachedLeaves = 512;
 
   FieldView field;
@@ -32,7 +32,7 @@ struct Reading {
 /// A leaf that has been read: its block, and its slot in the batch.
 struct ReadLeaf {
   const ShellBlock& block;
-  std::uint32_t index;  ///< of the leaf among the shell's blocks
+  std::uint32_t index;  ///< index of the leaf among the shell's blocks
   const ReadBatch& batch;
   int slot;
 
@@ -40,7 +40,8 @@ struct ReadLeaf {
   [[nodiscard]] float value(int lane) const { return batch.value[kLanes * slot + lane]; }
 };
 
-/// True if every point under a block lies where all cells are the outer constant: its reading is the band.
+/// True if every point under a block lies where all cells are the outer constant, so that it reads as the
+/// band.
 inline bool isFarOutside(const Reading& reading, const ShellBlock& block) noexcept {
   const FieldView& f = reading.field;
   const double reach = block.radius_m / f.voxel_m + 1;  // as in read()
@@ -84,12 +85,13 @@ class LeafReader {
     count_ = 0;
   }
 
-  /// Counts the points of leaves whose reading is known.
+  /// Counts the points of leaves whose reading is known without a read.
   void countKnown(std::size_t points) noexcept { points_ += points; }
   [[nodiscard]] std::size_t pointsRead() const noexcept { return points_; }
 
  private:
-  /// Largest radius of a leaf, in voxels, at which the rounding of floats stays within a step, 6e-5 voxel.
+  /// Largest radius of a leaf, in voxels, at which the rounding error of floats stays within a step, 6e-5
+  /// voxel.
   static constexpr double kFineEnough = 100;
 
   [[nodiscard]] std::size_t countPoints() const noexcept {
@@ -133,13 +135,14 @@ inline std::size_t groupCount(const PointShell& shell) noexcept {
 }
 
 /// Hands every leaf to a reader, except groups and rows where all cells are the outer constant. Returns a
-/// lower bound of the readings of those [voxels]; above the band, which is what they read.
+/// lower bound of the readings of the leaves that were left out [voxels]; it is above the band, which is
+/// their reading.
 template <typename Reader>
 double readEverything(const Reading& reading, Reader& reader) noexcept {
   const auto& blocks = reading.shell.blocks;
   const std::size_t leaves = reading.shell.leaf_blocks, rows = rowCount(reading.shell);
   double least = std::numeric_limits<double>::infinity();
-  // The leaves from `first` on have the block `parent` above them, if there is one.
+  // True if the leaves from `first` on need no reading; `parent` is the block above them, if there is one.
   const auto isKnown = [&](std::size_t parent, std::size_t first, std::size_t count) {
     if (parent >= blocks.size() || !isFarOutside(reading, blocks[parent])) return false;
     const ShellBlock& last = blocks[std::min(first + count, leaves) - 1];
@@ -164,7 +167,7 @@ template <typename Take>
 float walkNear(const Reading& reading, std::uint32_t root, float cutoff, Take take) noexcept {
   const auto& blocks = reading.shell.blocks;
   float least_skipped = std::numeric_limits<float>::infinity();
-  // Sixteen children wait on each level; 2^32 points make eight levels.
+  // On each level sixteen children wait; 2^32 points make eight levels.
   std::uint32_t waiting[8 * kLanes];
   int count = 0;
   waiting[count++] = root;
@@ -177,7 +180,7 @@ float walkNear(const Reading& reading, std::uint32_t root, float cutoff, Take ta
     }
     SphereBounds bounds;
     reading.kernels.bound(reading.field, reading.motion, block, cutoff, bounds);
-    // Backwards, so that the first child is on top: leaves come in ascending order.
+    // Backwards, so that the first child is on top and leaves come in ascending order.
     for (std::uint32_t i = block.count; i-- > 0;) {
       if (bounds.least[i] > cutoff)
         least_skipped = std::min(least_skipped, bounds.least[i]);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How long a list of near pairs of two parts stays complete while they move.
+// Tells how long a list of near pairs of two parts stays complete while the parts move.
 #pragma once
 
 #include <algorithm>
@@ -9,20 +9,21 @@
 
 namespace vps {
 
-/// A motion that is expected of two parts, and a margin around it. A list of what comes near on this motion
-/// stays complete while the parts follow it to within the margin. In a thread that turns, hundred times more
-/// features are as near as its steps are long than come near on its motion.
+/// The expected motion of two parts, and a margin around it. A list of pairs that come near on this motion
+/// stays complete as long as the parts follow it to within the margin. In a turning thread the features
+/// within the length of a step are a hundred times as many as the features that come near on its motion.
 class MotionTube {
  public:
   MotionTube() = default;
 
-  /// The motion from `start` to `end` goes on with the same twist for a few steps. Poses of part 1 in part 0.
-  /// @param width  of the margin, relative to the narrowest; see nextWidth()
+  /// Expects the motion from `start` to `end` to continue with the same twist for a few steps. Poses of part
+  /// 1 in part 0.
+  /// @param width  width of the margin, relative to the narrowest; see nextWidth()
   MotionTube(const Ball& ball0, const Ball& ball1, const Pose& start, const Pose& end, double width = 1)
       : ball0_(ball0), ball1_(ball1), width_(width) {
-    // assumed, by measurement on threads, gears and a heap: a wider margin lasts longer, but more is near.
-    // The margin is for what the expectation lacks, which does not grow with the step: gears whose teeth roll
-    // on each other have steps of half a millimetre.
+    // Assumed, by measurement on threads, gears and a heap: with a wider margin the list lasts longer, but
+    // more pairs are near. The margin covers the error of the expectation, which does not grow with the step:
+    // gears whose teeth roll on each other have steps of half a millimetre.
     constexpr double kLeast_m = 50e-6, kMost_m = 150e-6, kOfStep = 0.1;
     constexpr double kLongest = 24;
     const double step_m = travel_m(ball0, ball1, start, end);
@@ -41,9 +42,9 @@ class MotionTube {
     bend_m_ = bendOf(travel_m(ball0, ball1, start, to), way_.turn_rad());
   }
 
-  /// The same, where the parts are expected to go on as they came from their last pose, if the tube then
-  /// holds `end` as well: the motion of a step that is not solved yet has the fall and the pull that contact
-  /// takes.
+  /// As the constructor, but expects the parts to continue as they moved from their last pose, if that tube
+  /// holds `end` as well. The motion of a step that is not solved yet includes gravity and other loads that
+  /// contacts will take.
   static MotionTube following(const Ball& ball0, const Ball& ball1, const Pose& last, const Pose& start,
                               const Pose& end, double width) {
     const Pose onward = start * (last.inverse() * start);
@@ -54,43 +55,44 @@ class MotionTube {
     return {ball0, ball1, start, end, width};
   }
 
-  /// A wider tube lasts longer, but each pair of its list costs time in each step. The width for the next
-  /// one, when a search of this one listed so many pairs:
+  /// The width for the next tube, if a search with this tube listed so many pairs. A wider tube lasts longer,
+  /// but each pair of its list costs time in each step.
   [[nodiscard]] double nextWidth(std::size_t pairs) const {
     if (pairs < kFewPairs) return std::min(2 * width_, kWidest);
     return isTooWide(pairs) ? std::max(0.5 * width_, 1.0) : width_;
   }
   [[nodiscard]] bool isTooWide(std::size_t pairs) const { return width_ > 1 && pairs > kManyPairs; }
-  /// Notes where part 1 is in part 0.
+  /// Records the pose of part 1 in part 0.
   void see(const Pose& X_01) { seen_ = X_01; }
-  /// Where it was when that was last noted, or when the tube was made.
+  /// The pose that was recorded last; at first the tube's first pose.
   [[nodiscard]] const Pose& seen() const { return seen_; }
   /// Poses of part 1 in part 0.
   [[nodiscard]] const Pose& from() const { return from_; }
   [[nodiscard]] const Pose& to() const { return to_; }
-  /// While holds() is true for the ends of a motion, each point of a part near the other is within this of
-  /// the straight line from its place at from() to that at to(), in the frame of the other part.
+  /// While holds() is true for the ends of a motion, each point of a part near the other part is within this
+  /// distance of the straight line from its place at from() to its place at to(), in the frame of the other
+  /// part.
   [[nodiscard]] double margin_m() const { return slack_m_ + bend_m_; }
   /// Greatest turn from from() to a pose within the tube.
   [[nodiscard]] double turn_rad() const {
     return way_.turn_rad() + slack_m_ / std::min(ball0_.radius_m, ball1_.radius_m);
   }
-  /// True if a pose of part 1 in part 0 is so near the motion that the way between two such poses lies in the
-  /// tube.
+  /// True if a pose of part 1 in part 0 is so near the expected motion that the motion between two such poses
+  /// lies in the tube.
   [[nodiscard]] bool holds(const Pose& X_01) const {
-    constexpr double kShare = 0.9;  // turns interpolate by rotations, which lie on a curved space
+    constexpr double kShare = 0.9;  // less than 1, because rotations are interpolated on a curved space
     const Pose nearest_10 = way_.at(way_.nearestShare(X_01));
     return travel_m(ball0_, ball1_, nearest_10.inverse(), X_01) <= kShare * slack_m_;
   }
 
  private:
-  // assumed, by measurement: a search takes as long as some thousand pairs.
+  // Assumed, by measurement: a search takes as long as some thousand pairs.
   static constexpr std::size_t kFewPairs = 128, kManyPairs = 512;
   static constexpr double kWidest = 8;
   // How far a point leaves the straight line from its first to its last place, on a way of this length and
-  // turn: an eighth of its second derivative. Of a point of the smaller part, which turns about its centre c,
-  // that is turn^2 radius. Of a point q of the larger part, seen from the smaller one: R'(q - c) has
-  // turn^2 |q - c| + 2 turn |c'| at most, and q is near the smaller part.
+  // turn: an eighth of its second derivative. For a point of the smaller part, which turns about its centre
+  // c, the derivative is turn^2 radius. For a point q of the larger part, seen from the smaller one, R'(q -
+  // c) has at most turn^2 |q - c| + 2 turn |c'|, and q is near the smaller part.
   [[nodiscard]] double bendOf(double way_m, double turn_rad) const {
     const double radius_m = std::min(ball0_.radius_m, ball1_.radius_m);
     const double center_way_m = way_m - turn_rad * radius_m;  // see travel_m()

@@ -11,7 +11,7 @@ namespace {
 
 using Kind = FeatureContact::Kind;
 
-// Up to which share of the step the slab between both features along n stays wider than least_m.
+// The share of the step up to which the slab between both features along n stays wider than least_m.
 double slabShare(const Features& f, const Vec3& n, double least_m) {
   double top = n.dot(f.b[0]);
   for (int i = 1; i < f.b_count; ++i) top = std::max(top, n.dot(f.b[i]));
@@ -28,7 +28,8 @@ struct Linear {
   Vec3 from, to;
 };
 
-// The vectors whose product C = A x B is across both edges, or across the facet, and r between them.
+// Two vectors A and B whose product is normal to both edges, or to the facet, and a vector r between the
+// features.
 void vectorsOf(Kind kind, const Features& f, double from, double to, Linear& A, Linear& B, Linear& r) {
   Vec3 at[2][3];
   f.moveTo(from, at[0]);
@@ -51,7 +52,8 @@ void vectorsOf(Kind kind, const Features& f, double from, double to, Linear& A, 
 }
 
 // True if the lines of both edges, or the corner and the facet's plane, stay farther apart than least_m
-// between two shares: C . r is a cubic polynomial, which lies between its Bernstein coefficients.
+// between two shares. With C = A x B, C . r is a cubic polynomial, which lies between its Bernstein
+// coefficients.
 bool staysApart(Kind kind, const Features& f, double from, double to, double least_m) {
   Linear A, B, r;
   vectorsOf(kind, f, from, to, A, B, r);
@@ -63,7 +65,7 @@ bool staysApart(Kind kind, const Features& f, double from, double to, double lea
   return sign * h[0] > limit && sign * h[1] > limit && sign * h[2] > limit && sign * h[3] > limit;
 }
 
-// The share up to which they are known to stay apart in that sense; at least `least_share`.
+// The share up to which staysApart() is known to hold; at least `least_share`.
 double planeShare(Kind kind, const Features& f, double from, double least_share, double least_m) {
   double to = 1;
   for (int k = 0; k < kMostRounds && to > least_share; ++k, to = 0.5 * (from + to))
@@ -80,11 +82,13 @@ bool findReach(Kind kind, const Features& f, double least_m, double start_m, Rea
   for (int i = 0; i < f.a_count; ++i) fastest_m = std::max(fastest_m, f.way[i].norm());
   for (int k = 0; k < kMostIterations; ++k) {
     const Vec3 n = (reach.nearest.p - reach.nearest.q) / distance_m;
-    // The slab is as wide as the distance, so it lasts at least as long as the fastest point needs for that.
+    // The slab is as wide as the distance, so it lasts at least until the fastest point has covered that
+    // distance.
     const double least_step = fastest_m > 0 ? (distance_m - least_m) / fastest_m : 2;
     const double slab = std::max(slabShare(f, n, least_m), reach.share + least_step);
     if (!(slab < 1)) return false;
-    // A long edge that turns leaves its slab soon, though the edges stay apart where they are nearest.
+    // Tested because a long edge that turns soon leaves its slab, although the edges stay apart where they
+    // are nearest.
     reach.share = planeShare(kind, f, reach.share, slab, least_m);
     if (!(reach.share < 1)) return false;
     Vec3 at[3];

@@ -6,7 +6,7 @@
 namespace vps {
 
 Wrench bothWays(const Wrench& F_B_A, const Wrench& F_A_B, const Mat3& R_AB) {
-  return F_B_A * 0.5 + rotated(R_AB, -F_A_B) * 0.5;  // B gets the opposite of what A gets
+  return F_B_A * 0.5 + rotated(R_AB, -F_A_B) * 0.5;  // the wrench on B is the opposite of the wrench on A
 }
 
 QueryResult queryBothSides(const PairSide& a, const PairSide& b, const Pose& X_AB,

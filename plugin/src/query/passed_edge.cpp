@@ -12,12 +12,12 @@ namespace vps {
 
 namespace {
 
-// When the corner passes a plane, as a multiple of its way.
+// The multiple of its way after which the corner passes a plane.
 double passes(double height_m, double way_m) {
   return way_m < 0 ? std::max(height_m, 0.0) / -way_m : std::numeric_limits<double>::infinity();
 }
 
-// A neighbour across a convex sharp edge on which q lies; kNone: there is none.
+// The neighbour across a convex sharp edge on which q lies; kNone if there is none.
 std::uint32_t neighbourAt(const FeatureSet& part, std::uint32_t facet, const Vec3& q) {
   for (std::size_t k = 0; k < 3; ++k) {
     const std::uint32_t other = part.neighbours(facet)[k];
@@ -48,7 +48,7 @@ BorderOwner ownerAtBorder(const FeatureSet& part, std::uint32_t facet, const Vec
     return then < std::numeric_limits<double>::infinity() && height_m[i] + then * way_m[i] >= -tolerated_m;
   };
   if (isOver(0) && (!isOver(1) || at[1] < at[0])) return BorderOwner::Facet;
-  // Only such pairs are surely found by the search for corners and facets.
+  // The search for corners and facets is certain to find only pairs that can touch.
   const bool can_touch = risesFrom(corner.rays, corner.R.transpose() * n[1], kSinTouch);
   return isOver(1) && can_touch ? BorderOwner::Neighbour : BorderOwner::Edge;
 }

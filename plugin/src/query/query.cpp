@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Contacts and least distance. Whole clusters are skipped where the field proves that none of their points
-// matters. The proof must hold for the field as it is read, not for the true distance, because the result
-// must equal that of reading the field at every point (read_kernel.inc has the bounds).
+// Contacts and least distance. Clusters of points are skipped if the field proves that none of their points
+// matters. The proof must hold for the field as it is interpolated, not for the true distance, because the
+// result must equal that of reading the field at every point (read_kernel.inc has the bounds).
 #include "vps/query.h"
 
 #include <algorithm>
@@ -17,7 +17,7 @@
 namespace vps {
 namespace {
 
-/// The least lower bound of the true distance over a shell that is entirely beyond the band: spheres are
+/// The least lower bound of the true distance over a shell that lies entirely beyond the band. Spheres are
 /// opened until they are small compared with their distance; a quarter is precise enough.
 double farBound(const VoxSampler& sampler, const PointShell& shell, const Pose& X_MP) noexcept {
   constexpr double kSmall = 0.25;  // assumed
@@ -43,7 +43,7 @@ double farBound(const VoxSampler& sampler, const PointShell& shell, const Pose& 
   return least_m;
 }
 
-/// Branch and bound for the least reading [quanta]: spheres with the nearest centres first.
+/// Branch and bound for the least reading [quanta]: spheres with the nearest centres are opened first.
 class LeastReading {
  public:
   explicit LeastReading(const Reading& reading) noexcept : reading_(reading), reader_(reading, {this}) {}

@@ -11,7 +11,7 @@ namespace vps {
 QueryMemory::QueryMemory(const VoxMap& map, const PointShell& shell)
     : map_(map), shell_(&shell), blocks_(shell.blocks.data()) {
   const std::size_t rows = rowCount(shell);
-  // Up to sixteen rows have one block above them; one leaf, or one row, is itself the last block.
+  // Up to sixteen rows have one block above them; a single leaf, or a single row, is itself the last block.
   for (std::size_t g = 0; g < groupCount(shell); ++g) {
     const ShellBlock& block = shell.blocks[std::min(shell.blocks.size() - 1, shell.leaf_blocks + rows + g)];
     groups_.push_back({Vec3(block.center[0], block.center[1], block.center[2]), block.radius_m, 0, -1, 0});

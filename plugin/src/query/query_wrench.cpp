@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The wrench of all touching points without a list of them, for haptic loops.
+// Computes the wrench of all touching points without a list of them, for haptic loops.
 #include "query/coherent_walk.h"
 #include "query/wrench_collector.h"
 #include "vps/query.h"
@@ -28,7 +28,7 @@ QueryResult queryWrench(const VoxMap& map, const PointShell& shell, const Pose& 
 
 Wrench penaltyWrench(std::span<const Contact> contacts, double k_N_per_m3, const Vec3& p_MO) noexcept {
   Wrench F_O_M;
-  // In the order of ids: a sum whose order depends on anything else would change from run to run.
+  // Summed in the order of ids, so that the result is the same in every run.
   for (const Contact& c : contacts) {
     if (!(c.distance_m < 0)) continue;
     const Vec3 f_M = k_N_per_m3 * c.area_m2 * -c.distance_m * c.n_M;

@@ -13,14 +13,14 @@
 namespace vps {
 namespace {
 
-constexpr double kEdgeShare = 0.25;  // of a tile's size. assumed
-// Of the spread of a tile's points: it bounds the bend in directions in which they do not spread. The
-// recorded peg depends on it (Replay.TheCommittedRecordingRunsAgainBitForBit).
+constexpr double kEdgeShare = 0.25;  // share of a tile's size; assumed
+// Share of the spread of a tile's points. It bounds the bend in directions in which the points do not spread.
+// The recorded peg depends on it (Replay.TheCommittedRecordingRunsAgainBitForBit).
 constexpr double kRidge = 1e-3;
 
 }  // namespace
 
-/// Sorts the points of a tile into groups: each joins the first that takes it.
+/// Sorts the points of a tile into groups: each point joins the first group that takes it.
 class RepresentativePoints::Grouping {
  public:
   Grouping(const PointShell& shell, double size_m, std::span<const std::uint8_t> on_edge)
@@ -78,9 +78,9 @@ RepresentativePoints::RepresentativePoints(const PointShell& shell, double tile_
       area.add(shell.blocks[leaf], static_cast<int>(lane));
   }
   surfaces_.reserve(shell.size());
-  chosen_.reserve(4 * shell.size());  // a point may be there as required, loose, and nearest twice
-  // Nodes of the hierarchy keep their size when a shell is cropped, so that the tiles of what is left are the
-  // same.
+  chosen_.reserve(4 * shell.size());  // a point may be listed as required, loose, and nearest twice
+  // Nodes of the hierarchy keep their size when a shell is cropped, so that the tiles of the remaining points
+  // are the same.
   std::size_t leaf = 0;
   for (std::size_t i = 0; i < shell.nodes.size();) {
     const ShellNode& node = shell.nodes[i];
@@ -101,7 +101,7 @@ RepresentativePoints::RepresentativePoints(const PointShell& shell, double tile_
   place_of_cell_.resize(groups_.size());
 }
 
-// A leaf that is larger than a tile may be: its points stand for themselves.
+// Adds a leaf that is larger than a tile may be: each of its points represents only itself.
 void RepresentativePoints::addLoose(std::size_t leaf) {
   tile_of_leaf_[leaf] = static_cast<std::uint32_t>(tiles_.size());
   tiles_.push_back({static_cast<std::uint32_t>(groups_.size()), 0});
@@ -136,7 +136,7 @@ RepresentativePoints::Group RepresentativePoints::fitted(std::span<const std::ui
     group.inward += shell_->inward[id] / count;
   }
   // Least squares: bend = sum(dn dp^T) sum(dp dp^T)^-1. A flat group does not determine the derivative along
-  // its own normal; the ridge makes it zero.
+  // its own normal; the ridge sets that derivative to zero.
   Mat3 places = Mat3::Zero(), turns = Mat3::Zero();
   for (const std::uint32_t id : ids) {
     const Vec3 dp = shell_->points[id] - group.center;
@@ -149,7 +149,7 @@ RepresentativePoints::Group RepresentativePoints::fitted(std::span<const std::ui
   return group;
 }
 
-// Cells of twice the size on each level, until one is as large as the part.
+// Adds levels, each with cells of twice the size, until a cell is as large as the part.
 void RepresentativePoints::addLevels(double tile_size_m) {
   Box box;
   for (const Group& group : groups_) box.add(group.center);

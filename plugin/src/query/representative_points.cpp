@@ -45,7 +45,7 @@ class RepresentativePoints::Search {
     takeRequired(leaf);
     const std::uint8_t group = self_.group_of_leaf_[leaf.index];
     if (group == kMixed) return takeMixed(leaf);
-    // A leaf whose points were read one by one comes in as many parts.
+    // A leaf whose points were read one by one comes in as many pieces.
     if (leaf.block.count == self_.shell_->blocks[leaf.index].count)
       best_[group].area.add(self_.area_of_leaf_[leaf.index]);
     else
@@ -54,7 +54,7 @@ class RepresentativePoints::Search {
     if (best_[group].has_slope) updateThen(leaf, best_[group]);
   }
 
-  /// After the last leaf.
+  /// Call after the last leaf.
   void finish() noexcept {
     if (tile_ == kNone) return;
     const Tile& tile = self_.tiles_[tile_];
@@ -74,12 +74,12 @@ class RepresentativePoints::Search {
  private:
   /// The nearest points of a group, now and after the step.
   struct GroupBest {
-    Best now, then;    ///< the latter without what the group has in common
-    float common = 0;  ///< change of the gap at its centre in the step
+    Best now, then;    ///< `then` does not include `common`
+    float common = 0;  ///< change of the gap at the group's centre in the step
     Area area;
     bool has_slope = false;
     Vec3 center;
-    Eigen::Vector3f slope;  ///< of the change of the gap in the step [quanta/m]
+    Eigen::Vector3f slope;  ///< slope of the change of the gap in the step [quanta/m]
     float steepest = 0;
   };
 
@@ -115,13 +115,13 @@ class RepresentativePoints::Search {
     return at;
   }
 
-  /// Compares gaps at the end of the step; the part that the whole group has in common is left out.
+  /// Compares gaps at the end of the step, without the change that all points of the group have in common.
   void updateThen(const ReadLeaf& leaf, GroupBest& best) const noexcept {
     const ShellBlock& block = leaf.block;
     const float at_center = slopeAt(best, block);
     if (leaf.least() + at_center - best.steepest * static_cast<float>(block.radius_m) >= best.then.value)
       return;
-    // Unused lanes repeat the first.
+    // Unused lanes repeat the first lane.
     float then[kLanes];
     for (int i = 0; i < kLanes; ++i) {
       const float now = leaf.value(i);
@@ -174,7 +174,7 @@ class RepresentativePoints::Search {
   const Vec3 turn_P_, shift_P_;  ///< the step, about P's origin, in P
   std::span<const std::uint32_t> required_;
   std::uint32_t tile_ = kNone;
-  GroupBest best_[kNoGroup];  ///< of the tile
+  GroupBest best_[kNoGroup];  ///< by group of the tile
   float least_ = std::numeric_limits<float>::infinity();
   std::size_t near_ = 0;
 };
@@ -203,7 +203,8 @@ void RepresentativePoints::mergeTo(const Level& level) noexcept {
   }
 }
 
-// Adds the nearest points of the groups, or of the smallest cells of which there are no more than wanted.
+// Adds the nearest points of the groups or, if there are too many groups, of the smallest cells that are few
+// enough.
 void RepresentativePoints::merge(const Request& request) noexcept {
   if (request.most_groups > 0 && of_groups_.size() > request.most_groups)
     for (const Level& level : levels_) {
@@ -213,14 +214,15 @@ void RepresentativePoints::merge(const Request& request) noexcept {
       if (of_cells_.size() <= request.most_groups) break;
     }
   choose(merged_to_m_ > 0 ? of_cells_ : of_groups_);
-  // Of two entries for a point, the one with an area comes first.
+  // Of two entries for a point, the entry with an area comes first.
   std::sort(chosen_.begin(), chosen_.end(),
             [](const Chosen& a, const Chosen& b) { return a.id != b.id ? a.id < b.id : a.area < b.area; });
   const auto isSame = [](const Chosen& a, const Chosen& b) { return a.id == b.id; };
   chosen_.erase(std::unique(chosen_.begin(), chosen_.end(), isSame), chosen_.end());
 }
 
-// A point that only had to be reported stands for no surface: its group's nearest one does.
+// The surface that a point represents. A point that is reported only because it is required represents none,
+// since the nearest point of its group represents it.
 RepresentativePoints::Surface RepresentativePoints::surfaceOf(const Chosen& chosen) const noexcept {
   if (chosen.area == kNone) {
     const double own_m2 = group_of_[chosen.id] == kNoGroup ? shell_->area_m2[chosen.id] : 0;
@@ -252,8 +254,8 @@ QueryResult RepresentativePoints::find(const VoxMap& map, const Pose& X_MP, cons
   search.finish();
   merge(request);
 
-  // The chosen points are in few leaves, which are read again: a batch keeps its readings only until the
-  // next.
+  // The chosen points are in few leaves. These are read again, because a batch keeps its readings only until
+  // the next.
   ContactCollector collector(map, reading, X_MP, options, cutoff_m, out);
   auto next = chosen_.begin();
   const auto takeChosen = [&](const ReadLeaf& leaf) {

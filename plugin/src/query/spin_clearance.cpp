@@ -12,8 +12,8 @@ namespace vps {
 
 namespace {
 
-// Of a triangle's projection along the axis: the least distance from the axis, which the triangle may
-// surround.
+// The least distance of a triangle's projection along the axis from the axis; 0 if the triangle surrounds the
+// axis.
 double leastRadius_m(const Eigen::Vector2d (&corner)[3]) {
   const auto cross = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
     return a.x() * b.y() - a.y() * b.x();
@@ -31,8 +31,8 @@ double leastRadius_m(const Eigen::Vector2d (&corner)[3]) {
   return left == 3 || right == 3 ? 0 : least_m;
 }
 
-// What each facet sweeps about an axis: ranges of the radius and of the height above the place on the axis,
-// as boxes without extent in the third direction.
+// The region that each facet sweeps about an axis: ranges of the radius and of the height above the place on
+// the axis, as boxes without extent in the third direction.
 std::vector<Box> sweptAbout(const FeatureSet& part, const Vec3& p, const Vec3& along) {
   const Vec3 u = along.unitOrthogonal(), v = along.cross(u);
   std::vector<Box> swept;
@@ -49,20 +49,21 @@ std::vector<Box> sweptAbout(const FeatureSet& part, const Vec3& p, const Vec3& a
     swept.push_back(box);
   };
   for (const auto& facet : part.facets()) sweep(facet);
-  // Facets without area are left out, but not their edges.
+  // Facets without area are left out, but their edges are not.
   for (const FeatureEdge& edge : part.edges())
     if (!edge.has_faces) sweep({edge.from, edge.to, edge.to});
   return swept;
 }
 
-// True if boxes of both parts come nearer than this, in radius and in height.
+// True if boxes of both parts are nearer to each other than distance_m, in radius and in height.
 bool comeNear(const std::vector<Box>& boxes, const BoxTree& others, double distance_m) {
   return std::any_of(boxes.begin(), boxes.end(), [&](const Box& box) {
     return !others.forEachOverlap(grown(box, distance_m), [](std::uint32_t) { return false; });
   });
 }
 
-// A lower bound, to within a sixteenth, of the distance between what two parts sweep; 0 below most_m / 1024.
+// A lower bound, to within a sixteenth, of the distance between the regions that two parts sweep; 0 below
+// most_m / 1024.
 double clearance_m(const std::vector<Box>& a, const std::vector<Box>& b, double most_m) {
   const BoxTree tree(b);
   double near_m = most_m;
@@ -80,9 +81,9 @@ double clearance_m(const std::vector<Box>& a, const std::vector<Box>& b, double 
 
 }  // namespace
 
-// How far any point of the smaller part is from where it would be with the axes in line, on the way between
-// two of its poses in the larger one. A turn by less than half a turn takes the axis no farther from its
-// first direction than its last direction is.
+// Upper bound of the distance of any point of the smaller part from its place with the axes in line, on the
+// way between two poses of the smaller part in the larger one. A rotation by less than half a turn takes the
+// axis no farther from its first direction than its last direction is.
 double SpinClearance::deviation_m(const Pose& start, const Pose& end) const {
   const Vec3 from = start * smaller_.p, to = end * smaller_.p;
   const Vec3 before = start.R * smaller_.along, after = end.R * smaller_.along;
@@ -90,11 +91,11 @@ double SpinClearance::deviation_m(const Pose& start, const Pose& end) const {
          lever_m_ * ((before - larger_.along).norm() + (after - before).norm());
 }
 
-// Finds the axis of the screw that takes the smaller part from one pose in the larger one to another, and
-// what both sweep about it.
+// Finds the axis of the screw motion that takes the smaller part from one pose in the larger one to another,
+// and the clearance between the regions that both parts sweep about it.
 void SpinClearance::search(const FeatureSet& smaller, const FeatureSet& larger, const Pose& start,
                            const Pose& end, const Vec3& turn) {
-  constexpr double kOfRadius = 0.1;  // assumed: a greater clearance is not needed
+  constexpr double kOfRadius = 0.1;  // share of the radius; assumed: a greater clearance is not needed
   larger_.along = turn.normalized();
   const Vec3 from = start * smaller.box().center(), way = end * smaller.box().center() - from;
   const Vec3 across = way - larger_.along.dot(way) * larger_.along;
@@ -118,7 +119,7 @@ bool SpinClearance::staysApart(const FeatureSet& part0, const FeatureSet& part1,
   const Vec3 turn = rotationVector(to.R * from.R.transpose());
   if (!(turn.squaredNorm() > kLeast_rad * kLeast_rad) || ++waits_ < wait_) return false;
   waits_ = 0;
-  SpinClearance found;  // an axis that is known is kept where the new one does not help
+  SpinClearance found;  // a known axis is kept if the new one does not help
   found.search(is_first ? part0 : part1, is_first ? part1 : part0, from, to, turn);
   const bool helps = isApart(found);
   if (helps) *this = found;

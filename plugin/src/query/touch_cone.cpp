@@ -10,7 +10,7 @@ namespace vps {
 
 namespace {
 
-/// The directions whose products with all rays are `least` or more: a part of the unit sphere, bounded by
+/// The directions whose products with all rays are at least `least`: a part of the unit sphere, bounded by
 /// circles around the rays.
 class Allowed {
  public:
@@ -18,7 +18,7 @@ class Allowed {
 
   [[nodiscard]] bool has(const Vec3& n) const { return risesFrom(rays_, n, kSinFlat - least_); }
 
-  // The places where two of the circles cross.
+  // The points at which two of the circles cross.
   [[nodiscard]] std::vector<Vec3> vertices() const {
     std::vector<Vec3> found;
     for (std::size_t i = 0; i < rays_.size(); ++i)
@@ -35,7 +35,7 @@ class Allowed {
     return found;
   }
 
-  // The place of the circle around a ray that is farthest from an axis.
+  // The point of the circle around a ray that is farthest from an axis.
   [[nodiscard]] Vec3 farthest(const Vec3& ray, const Vec3& axis) const {
     Vec3 away = ray * ray.dot(axis) - axis;
     if (!(away.norm() > kRoundingShare)) away = ray.unitOrthogonal();

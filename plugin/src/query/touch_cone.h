@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which planes the corner of a solid can touch.
+// The planes that the corner of a solid can touch.
 #pragma once
 
 #include <algorithm>
@@ -10,17 +10,17 @@
 
 namespace vps {
 
-/// True if a corner's surface rises from a plane with this normal all around, or falls from it by no more
-/// than the slope. A corner touches a facet of another part only then: a nut's crest cannot touch the flank
-/// it faces away from. Slopes down to kSinTouch are left in, since facets of curved surfaces stand for each
-/// other there.
+/// True if a corner's surface rises from a plane with normal n all around, or falls from it by no more than
+/// the slope. Only then can the corner touch a facet of another part in that plane: a nut's crest cannot
+/// touch the flank from which it faces away. Slopes down to kSinTouch are allowed, since facets only
+/// approximate curved surfaces.
 /// @param rays  from the corner along its surface, unit; in the normal's frame
 inline bool risesFrom(std::span<const Vec3> rays, const Vec3& n, double slope) {
   return std::all_of(rays.begin(), rays.end(), [&](const Vec3& ray) { return n.dot(ray) >= -slope; });
 }
 
-/// A cone that holds every unit vector n with n . ray >= -slope for all rays; nothing if there is none.
-/// O(rays^3), of which the first twelve are used.
+/// A cone that contains every unit vector n with n . ray >= -slope for all rays; nothing if there is no such
+/// vector. Uses the first twelve rays. O(rays^3).
 std::optional<DirectionCone> touchCone(std::span<const Vec3> rays, double slope);
 
 }  // namespace vps

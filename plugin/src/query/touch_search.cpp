@@ -15,7 +15,7 @@ namespace {
 
 const double kFlush_rad = std::acos(kCosSameFace);
 
-/// A straight way, in the frame of the facets.
+/// The straight way of a point, in the frame of the facets.
 struct Track {
   Vec3 from, to;
 
@@ -25,16 +25,16 @@ struct Track {
 /// A node of the corners, in the frame of the facets.
 struct Placed {
   Track center;
-  Vec3 half;  ///< of a box around them at each place of the track
+  Vec3 half;  ///< of a box around the corners at each point of the track
   Vec3 touch, faces[2];
 
-  // At most the distance from a box on the way; of a place that does not move, exactly the distance.
+  // A lower bound of the squared distance from a box during the motion; exact for a place that does not move.
   [[nodiscard]] double leastSquaredDistance(const Box& box) const {
     const Vec3 above = center.from.cwiseMin(center.to) - half - box.max,
                below = box.min - half - center.from.cwiseMax(center.to);
     return above.cwiseMax(below).cwiseMax(0.0).squaredNorm();
   }
-  // True if they stay farther than margin_m from a slab along n.
+  // True if the corners stay farther than margin_m from a slab along n.
   [[nodiscard]] bool isBeside(const Vec3& n, double low_m, double high_m, double radius_m,
                               double margin_m) const {
     const double a_m = n.dot(center.from), b_m = n.dot(center.to);
@@ -65,13 +65,13 @@ class TouchSearch {
   }
 
  private:
-  // The facets' nodes that may be touched by a node of corners are those in the list from `first` on, or
-  // within them. Appends what is left of them for the corners' children, and takes it off again.
+  // Visits a node of corners. The nodes of facets that its corners may touch are in the list from `first` on,
+  // or within these nodes. Appends the remaining nodes for the corners' children, and removes them again.
   void visit(std::uint32_t c, std::vector<std::uint32_t>& list, std::size_t first) {
     const CornerTree::Bounds& corner = corners_.bounds[c];
     const DirectedTree::Node& node = corners_.tree.nodes[c];
     const Mat3& R = X_.from.R;
-    // Corners on straight ways between two poses stay in the box that holds them at both.
+    // Corners that move straight between two poses stay in the box that contains them at both.
     const Placed at{Track(X_, corner.center),
                     (R.cwiseAbs() * corner.half).cwiseMax(X_.to.R.cwiseAbs() * corner.half),
                     R * corner.touch.axis,
@@ -87,9 +87,9 @@ class TouchSearch {
     list.resize(end);
   }
 
-  // Appends the nodes within f that the corners may touch: leaves, or for several corners nodes as large. (By
-  // the facets' places: long facets beside each other, as in a bore, would all be listed for each node of
-  // corners that is smaller than they are long.)
+  // Appends the nodes within f that the corners may touch: leaves, or for several corners nodes as large as
+  // theirs. The size of a node of facets is that of their centres: otherwise long facets beside each other,
+  // as in a bore, would all be listed for each node of corners that is smaller than the facets' length.
   void descend(const CornerTree::Bounds& corner, const Placed& at, bool is_leaf, std::uint32_t f,
                std::vector<std::uint32_t>& list) const {
     const FacetTree::Bounds& facet = facets_.bounds[f];
@@ -144,7 +144,7 @@ class TouchSearch {
   const Sweep& X_;
   double margin_m_, slack_rad_, surely_flush_;
   std::vector<TouchPair>& found_;
-  // What surrounds a corner, in the frame of the facets.
+  // Directions around a corner, in the frame of the facets.
   std::vector<Vec3> rays_, faces_;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The trees that a search for corners and facets descends.
+// The trees for the search for corners and facets that can touch.
 #include <algorithm>
 #include <limits>
 #include <numeric>
@@ -15,9 +15,9 @@ namespace vps {
 
 namespace {
 
-// Measured on threads in their nuts and on a bearing block with its bores: nodes that are halved by direction
-// first overlap in place, and cost fifteen times as much in the block; by place first, twice as much in the
-// threads. Shares of the part of 0.06 and of 0.25 are alike.
+// Measured on threads in their nuts and on a bearing block with its bores. If nodes are always halved by
+// direction first, they overlap in place, which costs fifteen times as much in the block; by place first,
+// twice as much in the threads. Values of kOfPart of 0.06 and of 0.25 cost the same.
 constexpr double kSimilar = 0.3, kOfPart = 0.12;
 
 Box boxAround(const std::vector<DirectedTree::Item>& items, std::span<const std::uint32_t> which,
@@ -27,8 +27,8 @@ Box boxAround(const std::vector<DirectedTree::Item>& items, std::span<const std:
   return box;
 }
 
-// The place in the order at which a node's items are parted.
-// @param length_m  a difference in place that counts as much as opposite directions
+// The index at which a node's items are divided.
+// @param length_m  difference in place that counts as much as opposite directions
 std::uint32_t part(const std::vector<DirectedTree::Item>& items, std::span<std::uint32_t> which,
                    double length_m) {
   int axis = 0, place_axis = 0;
@@ -115,7 +115,7 @@ void FacetTree::build(const FeatureSet& part) {
 
 namespace {
 
-/// Two different directions of the faces around a corner, or everywhere() where there are fewer.
+/// Two different directions of the faces around a corner; everywhere() for a direction that is missing.
 struct Faces {
   DirectionCone cone[2];
 };
@@ -134,7 +134,7 @@ Faces facesAt(const FeatureSet& part, std::uint32_t corner) {
   return {{coneOver(groups[0]), coneOver(groups[1])}};
 }
 
-// The faces of several corners, in the order in which they are most alike.
+// Cones over the faces of several corners, of which each corner's two are taken in the more similar order.
 Faces facesOver(const std::vector<Faces>& all) {
   std::vector<DirectionCone> cones[2];
   for (const Faces& f : all) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The motion of two parts against each other between two poses.
+// The relative motion of two parts between two poses.
 #pragma once
 
 #include <algorithm>
@@ -19,26 +19,27 @@ struct Ball {
 };
 
 /// Upper bound of how far any point of the smaller ball moves relative to the other part between two poses of
-/// part 1 in part 0: its centre's way, and its turn.
+/// part 1 in part 0: its centre's path length plus the rotation's share.
 inline double travel_m(const Ball& ball0, const Ball& ball1, const Pose& X_01_start, const Pose& X_01_end) {
   const bool is_first = ball0.radius_m <= ball1.radius_m;
   const Ball& smaller = is_first ? ball0 : ball1;
   const Pose start = is_first ? X_01_start.inverse() : X_01_start;
   const Pose end = is_first ? X_01_end.inverse() : X_01_end;
-  // 2 asin(|R - 1| / sqrt(8)): exact for a rotation, and above it by rounding only.
+  // 2 asin(|R - 1| / sqrt(8)): exact for a rotation up to rounding.
   const Mat3 turn = end.R * start.R.transpose();
   const double turn_rad = 2 * std::asin(std::min(1.0, (turn - Mat3::Identity()).norm() / std::sqrt(8.0)));
   return (end * smaller.center - start * smaller.center).norm() + turn_rad * smaller.radius_m;
 }
 
-/// A longer way is looked at in stretches of this length: else all pairs of fast parts would be near.
+/// Length of the segments into which a longer motion is divided; without them all pairs of fast parts would
+/// be near.
 inline double longestStretch_m(const Ball& ball0, const Ball& ball1) {
   constexpr double kLeast_m = 100e-6, kOfRadius = 0.05;  // assumed
   return std::max(kLeast_m, kOfRadius * std::min(ball0.radius_m, ball1.radius_m));
 }
 
-/// The way between two poses of part 1 in part 0: the smaller part's centre moves on a straight line in the
-/// other's frame, and it turns evenly.
+/// The motion between two poses of part 1 in part 0: the smaller part's centre moves on a straight line in
+/// the other part's frame, and the smaller part turns at a constant rate.
 class Way {
  public:
   Way() = default;
@@ -50,7 +51,7 @@ class Way {
         center_(is_first_ ? ball0.center : ball1.center),
         radius_m_(is_first_ ? ball0.radius_m : ball1.radius_m) {}
 
-  /// Of part 0 in part 1.
+  /// Pose of part 0 in part 1 after this share of the motion.
   [[nodiscard]] Pose at(double share) const {
     Pose X = share < 1 ? from_ : to_;
     if (share > 0 && share < 1) {
@@ -62,7 +63,7 @@ class Way {
 
   /// Poses of part 0 in part 1 between which vertices move on nearly straight lines.
   void divide(std::vector<Pose>& way_10) const {
-    // What a check allows of the rest gap.
+    // The fraction of the rest gap that FeatureMotion::check() allows.
     constexpr double kMost_m = (1 - FeatureMotion::kLeastShare) * FeatureMotion::kRest_m;
     const double sagitta_m = turn_.squaredNorm() * radius_m_ / 8;
     const int pieces =
@@ -71,7 +72,7 @@ class Way {
     for (int k = 0; k <= pieces; ++k) way_10.push_back(at(static_cast<double>(k) / pieces));
   }
 
-  /// The share at which this way is nearest to a pose of part 1 in part 0, in the motion of the smaller part.
+  /// The share at which this motion is nearest to a pose of part 1 in part 0, as the smaller part moves.
   [[nodiscard]] double nearestShare(const Pose& X_01) const {
     const Pose X = is_first_ ? X_01.inverse() : X_01;
     const Vec3 moved = X * center_ - centerAt(0), way = centerAt(1) - centerAt(0);
@@ -89,7 +90,7 @@ class Way {
   }
 
   bool is_first_ = true;
-  Pose from_, to_;  // of the smaller part in the other
+  Pose from_, to_;  // of the smaller part in the other part
   Vec3 turn_ = Vec3::Zero(), center_ = Vec3::Zero();
   double radius_m_ = 0;
 };

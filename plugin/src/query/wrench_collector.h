@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Sums over the touching points of leaves that have been read.
 //
-// The order of summation is the same for every processor and every way of culling: sixteen lanes, leaf by
-// leaf in ascending order within a row of sixteen leaves; rows in ascending order within a group of 256
-// leaves; lanes by halves; groups in ascending order. A leaf that does not touch adds nothing.
+// The order of summation is the same for every processor and every way of culling: leaf by leaf in ascending
+// order within a row of sixteen leaves, separately for sixteen lanes; rows in ascending order within a group
+// of 256 leaves; then the lanes, by halves; then groups in ascending order. A leaf that does not touch adds
+// nothing.
 #pragma once
 
 #include <algorithm>
@@ -59,7 +60,7 @@ class WrenchCollector {
   /// Least reading so far [quanta].
   [[nodiscard]] float least() const noexcept { return least_; }
 
-  /// The result with stiffness, about O.
+  /// The sums multiplied by the stiffness, with the wrench about O.
   [[nodiscard]] TouchSummary summary(double k_N_per_m3) const noexcept {
     TouchSummary out;
     const double quantum_m = reading_.field.quantum_m, h = reading_.field.voxel_m;
@@ -75,9 +76,9 @@ class WrenchCollector {
  private:
   struct Entry {
     int lane;
-    double arm[3];     ///< from the reference [voxels]
+    double arm[3];     ///< vector from the reference [voxels]
     double weight;     ///< area times depth [m^2 quanta]
-    std::uint32_t id;  ///< of the point
+    std::uint32_t id;  ///< id of the point
   };
 
   [[nodiscard]] Entry entryOf(const ReadLeaf& leaf, int lane) const noexcept {
@@ -93,7 +94,7 @@ class WrenchCollector {
     entry.weight = static_cast<double>(leaf.block.weight[lane]) * std::max(0.0, -reading);
     return entry;
   }
-  /// Deeper than the band the field has no direction: the point's own inward normal is used, as in the
+  /// For a point deeper than the band the field has no direction; its own inward normal is used, as in the
   /// original VPS.
   [[nodiscard]] Vec3 inwardOf(const ReadLeaf& leaf, int lane) const noexcept {
     return X_MP_.R * reading_.shell.inward[leaf.block.first + static_cast<std::uint32_t>(lane)];
@@ -170,7 +171,7 @@ class WrenchCollector {
   Entry waiting_[kBatchLanes];
   int waiting_count_ = 0;
   struct {
-    Vec3 f = Vec3::Zero(), tau = Vec3::Zero();  ///< as TouchSums
+    Vec3 f = Vec3::Zero(), tau = Vec3::Zero();  ///< as in TouchSums
     double area_m2 = 0, area_depth = 0;
     std::size_t count = 0;
   } totals_;  // over whole groups
