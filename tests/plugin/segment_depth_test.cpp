@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "vps/segment_depth.h"
+#include "vps/mesh_overlap.h"
 
 #include <gtest/gtest.h>
 

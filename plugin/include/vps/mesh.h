@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Triangle meshes, the input for every part.
+// Triangle meshes, the input for every part: mass, welding, survey and primitives.
 #pragma once
 
 #include <array>
@@ -77,9 +77,21 @@ VPS_API void append(Mesh& a, const Mesh& b);
 /// CAD exports repeat vertices for each face or triangle; only shared vertices tell which triangles connect.
 VPS_API Mesh welded(const Mesh& mesh, double tolerance_m = 0);
 
+struct WeldedMesh {
+  Mesh mesh;                           ///< as returned by welded()
+  std::vector<std::uint32_t> sources;  ///< for each triangle its number in the given mesh, ascending
+};
+
+/// As welded(), but also tells which triangle of the given mesh each triangle was.
+VPS_API WeldedMesh weldedWithSources(const Mesh& mesh, double tolerance_m = 0);
+
 /// Counts edges, shells, degenerate and duplicate triangles. O(n log n). Expects shared vertices (see
 /// welded()).
 VPS_API MeshReport checkMesh(const Mesh& mesh);
+
+/// Returns the vertex pairs of edges whose two faces differ by more than angle_rad, and of all edges that do
+/// not have exactly two triangles, in ascending order. Expects shared vertices (see welded()). O(n log n).
+VPS_API std::vector<std::array<std::uint32_t, 2>> sharpEdges(const Mesh& mesh, double angle_rad);
 
 /// Refuses meshes from which nothing can be built: no triangles, an index out of range, a coordinate that is
 /// not finite, zero area. Throws LoadError naming file and part.

@@ -53,6 +53,12 @@ VPS_API RepairedMesh repairMesh(Mesh mesh, Crossing crossing = Crossing::Unknown
 /// Repairs a sound mesh again as a mesh that is known to cross itself. The report covers both repairs.
 VPS_API RepairedMesh repairCrossing(const RepairedMesh& sound);
 
+/// Lids for an open mesh: each group of connected open edges is joined to its centre, so that a flat hole is
+/// closed exactly. An edge is open if its facets do not run along it equally often in both directions. Empty
+/// for a closed mesh. Expects shared vertices (see welded()); the lids use the mesh's vertex numbers.
+/// O(n log n).
+VPS_API Mesh lidsOf(const Mesh& mesh);
+
 /// Volume, centre and inertia of the repaired solid: of its surface if that is closed; otherwise of all
 /// shells, with flat lids over their holes. A volume within its rounding error is 0, as that of a flat sheet.
 /// Where a single shell crosses itself and encloses a region twice, the region counts twice, also after

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "vps/lids.h"
+#include "vps/mesh_repair.h"
 
 #include <cstdlib>
 #include <map>

@@ -9,7 +9,7 @@
 #include "mesh/facet_overlap.h"
 #include "mesh/mesh_edges.h"
 #include "mesh/segment_search.h"
-#include "vps/sharp_edges.h"
+#include "vps/mesh.h"
 
 namespace vps {
 

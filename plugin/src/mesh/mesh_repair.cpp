@@ -18,7 +18,6 @@
 #include "mesh/mesh_survey.h"
 #include "mesh/shell_nesting.h"
 #include "mesh/shell_union.h"
-#include "vps/lids.h"
 #include "vps/mesh_distance.h"
 #include "vps/winding_number.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "vps/mesh_weld.h"
+#include "vps/mesh.h"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "vps/sharp_edges.h"
+#include "vps/mesh.h"
 
 #include <cmath>
 
