@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vps/box.h"
-#include "vps/shell_crop.h"
-#include "vps/voxmap_crop.h"
+#include "vps/pointshell.h"
+#include "vps/voxmap.h"
 
 #include <gtest/gtest.h>
 

@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "vps/mesh.h"
-#include "vps/shell_crop.h"
+#include "vps/pointshell.h"
 #include "vps/solid.h"
-#include "vps/voxmap_crop.h"
+#include "vps/voxmap.h"
 
 namespace vps {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Contact of a pair both ways.
-#include "vps/pair_query.h"
+#include "vps/query.h"
 
 #include <gtest/gtest.h>
 

@@ -11,8 +11,8 @@
 
 #include "support/no_alloc.h"
 #include "support/random_draw.h"
+#include "vps/pointshell.h"
 #include "vps/query.h"
-#include "vps/shell_crop.h"
 
 namespace vps {
 namespace {

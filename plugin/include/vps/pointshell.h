@@ -65,9 +65,17 @@ VPS_API PointShell buildPointShell(const Mesh& mesh, const PointShellSettings& s
 VPS_API PointShell buildPointShell(const Solid& solid, const PointShellSettings& settings,
                                    const std::string& part = "", const Progress& progress = {});
 
+/// The smallest spacing, not below the given one, at which buildPointShell() accepts the number of points.
+/// O(triangles).
+VPS_API double fittingSpacing_m(const Mesh& mesh, double spacing_m);
+
 /// Merges shells at their poses into one, for mounted parts. Point i of shell s gets the id i plus the sizes
 /// of the shells before s. The shells' hierarchies become children of one root.
 VPS_API PointShell mergedShells(const std::vector<const PointShell*>& shells, const std::vector<Pose>& X_MPs);
+
+/// A shell of the points in the boxes, in the same order and clusters: a query against a field that stays in
+/// the boxes finds the same contacts to the bit, under smaller ids. O(points).
+VPS_API PointShell croppedShell(const PointShell& shell, const std::vector<Box>& boxes_P);
 
 /// Writes PLY with the properties x y z, nx ny nz (inward) and area, as binary little-endian doubles, so that
 /// the shell is read back to the bit. An existing file is replaced whole or not at all. Throws LoadError.

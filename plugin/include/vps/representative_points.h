@@ -12,6 +12,14 @@
 
 namespace vps {
 
+/// Classifies directions, so that contacts that face different ways are kept apart: the cell of a direction among 6 x 2 x 2 cells of a cube's surface: below 24.
+inline std::uint32_t directionCell(const Vec3& n) {
+  int axis = 0;
+  n.cwiseAbs().maxCoeff(&axis);
+  const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+  return static_cast<std::uint32_t>(((axis * 2 + (n[axis] > 0)) * 2 + (n[u] > 0)) * 2 + (n[v] > 0));
+}
+
 /// Divides a shell into tiles (nodes of its hierarchy up to a given size) and the points of each tile into
 /// groups whose normals agree within 20 degrees. find() reports for each group the point that is nearest to
 /// the map now and the point that will be nearest after a given step. The change of the gap within a group is

@@ -149,4 +149,21 @@ VPS_API VoxMap resampledVoxMap(const PlacedMap& part, const VoxMapSettings& sett
 /// or more.
 VPS_API VoxMap mountVoxMap(const VoxMap& cooked, const PlacedMap& part);
 
+/// Estimates the bytes that building a mesh's map takes: the bricks that meet a slab of the surface's area,
+/// as thick as the band, and the directory of its box. buildVoxMap() uses this estimate to refuse maps that
+/// would not fit. It holds for surfaces of many bricks; a part smaller than a brick may take somewhat more.
+/// O(triangles).
+VPS_API double expectedMapBytes(const Mesh& mesh, const VoxMapSettings& settings);
+/// The limit of this estimate above which buildVoxMap() refuses to build a map.
+VPS_API double largestMapBytes();
+/// The smallest voxel size, not below the settings' own, at which the estimate is at most `most_bytes`; to
+/// 0.1 %. Infinite if no voxel size is large enough. O(triangles).
+VPS_API double fittingVoxel_m(const Mesh& mesh, const VoxMapSettings& settings, double most_bytes);
+
+/// A copy of the map that keeps only the nodes in and around the boxes; readings there are the same to the
+/// bit. Elsewhere it reads as saturated, with the right sign for each cell, and its bounds do not hold: use
+/// it only for queries whose points, and the centres of their clusters, stay in one of the boxes. More parts
+/// can be mounted on it. O(cells).
+VPS_API VoxMap croppedVoxMap(const VoxMap& map, const std::vector<Box>& boxes_M);
+
 }  // namespace vps

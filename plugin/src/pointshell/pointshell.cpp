@@ -9,7 +9,6 @@
 #include "pointshell/shell_samples.h"
 #include "vps/assert.h"
 #include "vps/load_error.h"
-#include "vps/shell_estimate.h"
 #include "vps/solid.h"
 
 namespace vps {

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "pointshell/shell_hierarchy.h"
-#include "vps/shell_crop.h"
+#include "vps/pointshell.h"
 
 namespace vps {
 namespace {

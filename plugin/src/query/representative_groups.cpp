@@ -7,7 +7,6 @@
 #include <stdexcept>
 
 #include "vps/contact_tolerances.h"
-#include "vps/direction_cell.h"
 #include "vps/representative_points.h"
 
 namespace vps {

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "vps/map_estimate.h"
+#include "vps/voxmap.h"
 
 namespace vps {
 

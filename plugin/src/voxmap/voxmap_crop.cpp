@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "voxmap/voxmap_access.h"
-#include "vps/voxmap_crop.h"
+#include "vps/voxmap.h"
 
 namespace vps {
 namespace {
