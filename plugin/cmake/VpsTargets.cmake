@@ -207,7 +207,7 @@ function(vps_compile_options target)
     target_compile_options(${target} PRIVATE -fsanitize=${VPS_SANITIZE} -fno-omit-frame-pointer)
     target_link_options(${target} PUBLIC -fsanitize=${VPS_SANITIZE})
   endif()
-  # VPS_ASSERT checks in Debug and in sanitized builds (see vps/assert.h).
+  # VPS_ASSERT checks in Debug and in sanitized builds (see vps/errors.h).
   if(VPS_SANITIZE)
     target_compile_definitions(${target} PRIVATE VPS_ASSERT_ON)
   else()

@@ -3,7 +3,7 @@
 // within its limit, is zero after a fault, and returns after rearm().
 #include "fuzz.h"
 #include "support/hostile_arm.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   // The first byte selects a parameter file or a sequence for the controller.

@@ -10,7 +10,7 @@
 #include <cstring>
 
 #include "fuzz.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps/mesh_repair.h"
 #include "vps/voxmap.h"
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "fuzz.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps/pointshell.h"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -3,7 +3,7 @@
 #include "vps_device/recording.h"
 
 #include "fuzz.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {

@@ -3,7 +3,7 @@
 #include "record/scene_archive.h"
 
 #include "fuzz.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {

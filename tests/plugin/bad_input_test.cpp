@@ -8,7 +8,7 @@
 
 #include "support/analytic.h"
 #include "voxmap/voxmap_layout.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps/mesh_distance.h"
 #include "vps/voxmap.h"
 

@@ -8,7 +8,7 @@
 #include <algorithm>
 
 #include "support/analytic.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps/query.h"
 
 namespace vps {

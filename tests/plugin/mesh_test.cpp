@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "support/analytic.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 
 namespace vps::test {
 namespace {

@@ -8,7 +8,7 @@
 #include <iterator>
 #include <string>
 
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps/pointshell.h"
 
 namespace vps {

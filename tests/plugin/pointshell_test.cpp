@@ -10,7 +10,7 @@
 #include <numeric>
 #include <random>
 
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps/mesh_distance.h"
 
 namespace vps {

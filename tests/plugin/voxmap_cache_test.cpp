@@ -13,7 +13,7 @@
 
 #include "support/analytic.h"
 #include "support/temporary_folder.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps/mesh_repair.h"
 #include "vps/solid.h"
 

@@ -7,7 +7,7 @@
 
 #include "support/analytic.h"
 #include "voxmap/voxmap_merge.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps/mesh_distance.h"
 #include "vps/query.h"
 #include "vps/voxmap.h"

@@ -11,7 +11,7 @@
 
 #include "support/analytic.h"
 #include "support/same_map.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps/mesh_distance.h"
 #include "vps/solid.h"
 

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "support/temporary_folder.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 
 namespace vps {
 namespace {

@@ -15,7 +15,7 @@
 
 #include "support/analytic.h"
 #include "support/same_map.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps/query.h"
 #include "vps/vdb.h"
 

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "vps/errors.h"
 #include "vps/export.h"
 #include "vps/mesh.h"
-#include "vps/progress.h"
-#include "vps/shell_block.h"
+#include "vps/simd.h"
 
 namespace vps {
 

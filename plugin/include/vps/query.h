@@ -7,11 +7,11 @@
 #include <span>
 #include <vector>
 
+#include "vps/errors.h"
 #include "vps/export.h"
 #include "vps/pointshell.h"
 #include "vps/query_memory.h"
 #include "vps/simd.h"
-#include "vps/status.h"
 #include "vps/voxmap.h"
 #include "vps/wrench.h"
 

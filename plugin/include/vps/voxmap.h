@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "vps/errors.h"
 #include "vps/export.h"
 #include "vps/mesh.h"
-#include "vps/progress.h"
 
 namespace vps {
 

@@ -8,7 +8,7 @@
 #include <fstream>
 #include <string>
 
-#include "vps/load_error.h"
+#include "vps/errors.h"
 
 namespace vps {
 namespace {

@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "mesh/mesh_edges.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 
 namespace vps {
 namespace {

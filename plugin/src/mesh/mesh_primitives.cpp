@@ -4,7 +4,7 @@
 #include <numbers>
 #include <utility>
 
-#include "vps/assert.h"
+#include "vps/errors.h"
 #include "vps/mesh.h"
 
 namespace vps {

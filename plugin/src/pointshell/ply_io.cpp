@@ -14,7 +14,7 @@
 #include <string_view>
 
 #include "pointshell/shell_hierarchy.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps/pointshell.h"
 #include "vps/write_file.h"
 

@@ -7,8 +7,7 @@
 
 #include "pointshell/shell_hierarchy.h"
 #include "pointshell/shell_samples.h"
-#include "vps/assert.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps/solid.h"
 
 namespace vps {

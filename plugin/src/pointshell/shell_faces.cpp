@@ -10,7 +10,7 @@
 #include "mesh/vertex_normals.h"
 #include "pointshell/shell_grid.h"
 #include "pointshell/shell_samples.h"
-#include "vps/assert.h"
+#include "vps/errors.h"
 
 namespace vps {
 namespace {

@@ -10,7 +10,7 @@
 #include <cstdio>
 
 #include "voxmap/map_limits.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 
 namespace vps {
 namespace {

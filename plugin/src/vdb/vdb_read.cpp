@@ -12,7 +12,7 @@
 #include "vdb/vdb_nodes.h"
 #include "voxmap/field_proof.h"
 #include "voxmap/voxmap_access.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps/vdb.h"
 
 namespace vps {

@@ -7,7 +7,7 @@
 
 #include "vdb/vdb_format.h"
 #include "voxmap/voxmap_access.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps/vdb.h"
 #include "vps/write_file.h"
 

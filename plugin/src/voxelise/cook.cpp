@@ -2,7 +2,7 @@
 // Cooks several parts into one voxmap, each voxelised at its own pose.
 #include "voxmap/map_limits.h"
 #include "voxmap/voxmap_merge.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps/solid.h"
 
 namespace vps {

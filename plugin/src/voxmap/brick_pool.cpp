@@ -8,8 +8,7 @@
 #include <new>
 
 #include "voxmap/voxmap_layout.h"
-#include "vps/assert.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 
 namespace vps {
 

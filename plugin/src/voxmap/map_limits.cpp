@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "vps/load_error.h"
+#include "vps/errors.h"
 
 namespace vps {
 namespace {

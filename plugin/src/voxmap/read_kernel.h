@@ -12,7 +12,6 @@
 
 #include <cstdint>
 
-#include "vps/shell_block.h"
 #include "vps/simd.h"
 
 namespace vps {

@@ -11,7 +11,7 @@
 
 #include "voxmap/map_limits.h"
 #include "voxmap/voxmap_access.h"
-#include "vps/assert.h"
+#include "vps/errors.h"
 
 namespace vps {
 namespace {

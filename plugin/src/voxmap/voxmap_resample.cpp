@@ -11,7 +11,7 @@
 #include "voxmap/read_kernel.h"
 #include "voxmap/voxmap_merge.h"
 #include "voxmap/voxmap_sampler.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 
 namespace vps {
 namespace {
