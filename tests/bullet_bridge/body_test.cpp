@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "bullet_bridge/world.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_bullet/log.h"
 
 namespace vps::bullet {

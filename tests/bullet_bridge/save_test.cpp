@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "bullet_bridge/world.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_bullet/world_importer.h"
 
 namespace vps::bullet {

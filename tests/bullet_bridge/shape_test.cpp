@@ -9,8 +9,8 @@
 
 #include "bullet_bridge/world.h"
 #include "support/lathe.h"
+#include "vps/errors.h"
 #include "vps/feature_motion.h"
-#include "vps/load_error.h"
 #include "vps/query.h"
 
 namespace vps::bullet {

@@ -11,7 +11,7 @@
 #include <Message_Messenger.hxx>
 
 #include "support/temporary_folder.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_scenes/cad/import.h"
 
 namespace vps::scenes {

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <set>
 
-#include "vps/load_error.h"
+#include "vps/errors.h"
 
 namespace vps::device {
 namespace {

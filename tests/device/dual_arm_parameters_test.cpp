@@ -7,7 +7,7 @@
 #include <string>
 
 #include "dual_arm/built_in_parameters.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_device/dual_arm/kinematics.h"
 
 namespace vps::device {

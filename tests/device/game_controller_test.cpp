@@ -9,7 +9,7 @@
 
 #include "support/no_alloc.h"
 #include "support/poll_device.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_device/hand_controllers.h"
 
 namespace vps::device {

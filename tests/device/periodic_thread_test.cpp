@@ -7,7 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "vps/load_error.h"
+#include "vps/errors.h"
 
 namespace vps::device {
 namespace {

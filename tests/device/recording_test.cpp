@@ -15,7 +15,7 @@
 #include "recording/log_fields.h"
 #include "support/no_alloc.h"
 #include "support/temporary_folder.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_device/loop.h"
 #include "vps_device/random.h"
 

@@ -11,7 +11,7 @@
 #include "search/random.h"
 #include "support/gear.h"
 #include "support/lathe.h"
-#include "vps/map_estimate.h"
+#include "vps/voxmap.h"
 #include "vps_scenes/planning/fidelity_choice.h"
 #include "vps_scenes/planning/resolution.h"
 #include "vps_scenes/run/explain.h"

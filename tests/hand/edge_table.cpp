@@ -9,7 +9,7 @@
 
 #include "edge_case.h"
 #include "support/table_rows.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_scenes/run/assemble.h"
 
 namespace vps::hand {

@@ -6,7 +6,7 @@
 #include <cstring>
 
 #include "peg_scenes.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_scenes/run/tries.h"
 
 namespace vps::hand {

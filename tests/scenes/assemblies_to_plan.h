@@ -12,7 +12,7 @@
 
 #include "scenes/scene_part.h"
 #include "support/lathe.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_scenes/fits/check.h"
 #include "vps_scenes/planning/plan.h"
 

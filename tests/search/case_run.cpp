@@ -7,7 +7,7 @@
 #include "dynamics/world.h"
 #include "hand_path.h"
 #include "pass_through.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_bullet/convert.h"
 #include "vps_bullet/coupling.h"
 

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "vps/load_error.h"
+#include "vps/errors.h"
 
 namespace vps::viewer {
 namespace {

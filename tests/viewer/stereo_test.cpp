@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "vps/load_error.h"
+#include "vps/errors.h"
 
 namespace vps::viewer {
 namespace {

@@ -24,7 +24,7 @@
 #include "run/presentation.h"
 #include "support/chromium.h"
 #include "viewer/web_run.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_viewer/draw/image.h"
 
 namespace vps::viewer {

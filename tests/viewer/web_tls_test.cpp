@@ -22,7 +22,7 @@
 #include "support/certificate.h"
 #include "support/temporary_folder.h"
 #include "viewer/web_run.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps/write_file.h"
 
 namespace vps::viewer {

@@ -11,7 +11,6 @@
 
 #include "log/report.h"
 #include "vps/friction.h"
-#include "vps/lids.h"
 #include "vps/mesh_repair.h"
 #include "vps_bullet/convert.h"
 #include "vps_bullet/tune.h"

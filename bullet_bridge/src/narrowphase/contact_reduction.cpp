@@ -8,7 +8,7 @@
 #include "narrowphase/contact_area.h"
 #include "narrowphase/contact_candidate.h"
 #include "vps/contact_tolerances.h"
-#include "vps/direction_cell.h"
+#include "vps/representative_points.h"
 
 namespace vps::bullet {
 

@@ -14,7 +14,7 @@
 #include <stdexcept>
 
 #include "log/report.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_bullet/convert.h"
 
 namespace vps::bullet {

@@ -14,8 +14,8 @@
 #include "shape/scaled_models.h"
 #include "shape/sheet_border.h"
 #include "shape/triangle_tree.h"
+#include "vps/errors.h"
 #include "vps/feature_motion.h"
-#include "vps/load_error.h"
 #include "vps/mesh_repair.h"
 #include "vps_bullet/convert.h"
 

@@ -4,8 +4,8 @@
 
 #include <string_view>
 
+#include "vps/errors.h"
 #include "vps/pose.h"
-#include "vps/status.h"
 #include "vps/wrench.h"
 #include "vps_device/device_events.h"
 #include "vps_device/export.h"

@@ -6,8 +6,8 @@
 #include <cstddef>
 #include <span>
 
+#include "vps/errors.h"
 #include "vps/pose.h"
-#include "vps/status.h"
 #include "vps_device/export.h"
 
 namespace vps::device {

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "drivers/kinds.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_device/pulled_handle.h"
 
 namespace vps::device {

@@ -9,7 +9,7 @@
 #include <variant>
 
 #include "dual_arm/built_in_parameters.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_device/dual_arm/kinematics.h"
 
 // toml++ 3.3 asserts that a table header holds a key, so that "[=]" in a user's file would abort. Without the

@@ -5,7 +5,7 @@
 #include <future>
 #include <utility>
 
-#include "vps/load_error.h"
+#include "vps/errors.h"
 
 namespace vps::device {
 namespace {

@@ -18,7 +18,7 @@
 
 #include "recording/log_fields.h"
 #include "recording/recording_format.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_device/detail/bytes.h"
 #include "vps_device/detail/entry_ring.h"
 

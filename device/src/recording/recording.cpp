@@ -9,7 +9,7 @@
 
 #include "recording/log_fields.h"
 #include "recording/recording_format.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 
 namespace vps::device {
 

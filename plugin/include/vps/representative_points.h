@@ -12,7 +12,8 @@
 
 namespace vps {
 
-/// Classifies directions, so that contacts that face different ways are kept apart: the cell of a direction among 6 x 2 x 2 cells of a cube's surface: below 24.
+/// Classifies directions, so that contacts that face different ways are kept apart: the cell of a direction
+/// among 6 x 2 x 2 cells of a cube's surface: below 24.
 inline std::uint32_t directionCell(const Vec3& n) {
   int axis = 0;
   n.cwiseAbs().maxCoeff(&axis);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Computes the wrench of all touching points without a list of them, for haptic loops; in one direction, and in
-// both directions of a pair.
+// Computes the wrench of all touching points without a list of them, for haptic loops; in one direction, and
+// in both directions of a pair.
 #include <algorithm>
 
 #include "query/coherent_walk.h"

@@ -18,7 +18,7 @@
 
 #include "link/link.h"
 #include "rows.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_device/metronome.h"
 
 namespace vps::bench {

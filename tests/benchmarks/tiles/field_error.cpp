@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "vps/sharp_edges.h"
+#include "vps/mesh.h"
 
 namespace vps::bench {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A user's program without Bullet: the depth of a point in a ball, and an error that
 // crosses the library's border.
-#include <vps/load_error.h>
+#include <vps/errors.h>
 #include <vps/version.h>
 #include <vps/voxmap.h>
 

@@ -10,7 +10,7 @@
 
 #include "import/stored_archive.h"
 #include "support/temporary_folder.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_scenes/cad/import.h"
 #include "vps_scenes/cad/srgb.h"
 

@@ -11,7 +11,7 @@
 #include "import/missing_library.h"
 #include "import/readers.h"
 #include "support/temporary_folder.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_scenes/cad/import.h"
 
 namespace vps::scenes {

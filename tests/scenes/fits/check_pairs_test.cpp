@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "support/faulty_meshes.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps/mesh_overlap.h"
 #include "vps_scenes/fits/check.h"
 

@@ -24,7 +24,7 @@
 #include "import/part_names.h"
 #include "import/readers.h"
 #include "support/stl_box.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_scenes/fits/check.h"
 
 namespace vps::scenes {

@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "support/temporary_folder.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_scenes/network/head_topic.h"
 #include "vps_scenes/network/ros_topics.h"
 #include "vps_scenes/network/tracked_heads.h"

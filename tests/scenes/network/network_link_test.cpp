@@ -15,7 +15,7 @@
 #include "scenes/two_pins.h"
 #include "support/no_alloc.h"
 #include "support/temporary_folder.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_device/recording.h"
 #include "vps_scenes/network/nodes.h"
 #include "vps_scenes/run/replay.h"

@@ -21,7 +21,7 @@
 #include "requests/request_server_work.h"
 #include "scenes/two_pins.h"
 #include "support/temporary_folder.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_device/metronome.h"
 #include "vps_device/recording.h"
 #include "vps_scenes/network/session_recording.h"

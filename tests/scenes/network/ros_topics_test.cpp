@@ -7,7 +7,7 @@
 #include <string>
 
 #include "scenes/two_pins.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 
 #if __has_include(<dds/dds.h>)
 #include <dds/dds.h>

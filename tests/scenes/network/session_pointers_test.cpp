@@ -14,7 +14,7 @@
 #include <thread>
 #include <vector>
 
-#include "vps/load_error.h"
+#include "vps/errors.h"
 
 namespace vps::scenes {
 namespace {

@@ -12,7 +12,7 @@
 #include <filesystem>
 #include <functional>
 
-#include "vps/load_error.h"
+#include "vps/errors.h"
 
 namespace vps::scenes {
 namespace {

@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "scenes/peg_in_cup.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 
 namespace vps::scenes {
 namespace {

@@ -12,7 +12,7 @@
 #include "models/scene_models.h"
 #include "scenes/scene_part.h"
 #include "simulation/scaled_scene.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_scenes/planning/plan.h"
 #include "vps_scenes/run/explain.h"
 #include "vps_scenes/run/simulate.h"

@@ -9,7 +9,7 @@
 #include <set>
 
 #include "scenes/peg_in_cup.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 
 namespace vps::scenes {
 namespace {

@@ -20,9 +20,9 @@
 #include "trade/excerpt.h"
 #include "trade/front.h"
 #include "trade/probe.h"
-#include "vps/load_error.h"
-#include "vps/map_estimate.h"
+#include "vps/errors.h"
 #include "vps/mesh_distance.h"
+#include "vps/voxmap.h"
 #include "vps_scenes/planning/fidelity_choice.h"
 #include "vps_scenes/planning/trade.h"
 

@@ -9,7 +9,7 @@
 #include "scenes/scene_part.h"
 #include "step/way_check.h"
 #include "support/lathe.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps/mesh.h"
 #include "vps_scenes/planning/plan.h"
 #include "vps_scenes/run/assemble.h"

@@ -9,7 +9,7 @@
 #include "scenes/peg_in_cup.h"
 #include "support/recorded.h"
 #include "support/temporary_folder.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_scenes/run/assemble.h"
 #include "vps_scenes/run/record.h"
 #include "vps_scenes/run/replay.h"

@@ -8,7 +8,7 @@
 
 #include "haptics/path_segments.h"
 #include "support/temporary_folder.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_device/random.h"
 #include "vps_scenes/run/assemble.h"
 #include "vps_scenes/run/record.h"

@@ -9,7 +9,7 @@
 
 #include "scenes/scene_part.h"
 #include "vps/box.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_scenes/run/assemble.h"
 #include "vps_scenes/run/explain.h"
 #include "vps_scenes/run/simulate.h"

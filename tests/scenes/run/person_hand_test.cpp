@@ -7,7 +7,7 @@
 #include <functional>
 
 #include "procedure/assembly_run.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_scenes/run/assemble.h"
 
 namespace vps::scenes {

@@ -12,7 +12,7 @@
 #include "record/scene_archive.h"
 #include "support/recorded.h"
 #include "support/temporary_folder.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_scenes/run/assemble.h"
 
 namespace vps::scenes {

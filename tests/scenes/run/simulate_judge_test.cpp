@@ -7,7 +7,7 @@
 
 #include "scenes/scene_part.h"
 #include "simulation/body_overlaps.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_scenes/run/simulate.h"
 
 namespace vps::scenes {

@@ -5,7 +5,7 @@
 #include <fstream>
 
 #include "support/temporary_folder.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_scenes/scene/display.h"
 
 namespace vps::scenes {

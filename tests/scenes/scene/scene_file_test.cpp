@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "support/stl_box.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_scenes/scene/scene.h"
 #include "vps_scenes/scene/scene_text.h"
 

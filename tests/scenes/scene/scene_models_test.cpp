@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "scenes/scene_part.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 
 namespace vps::scenes {
 namespace {

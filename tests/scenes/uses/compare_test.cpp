@@ -8,7 +8,7 @@
 #include "record/scene_archive.h"
 #include "scenes/peg_in_cup.h"
 #include "support/temporary_folder.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps/mesh.h"
 #include "vps_device/operator.h"
 

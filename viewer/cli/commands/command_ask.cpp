@@ -16,7 +16,7 @@
 #include "output/json_out.h"
 #include "output/output.h"
 #include "output/progress_bar.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_scenes/network/session_request.h"
 
 namespace vps::viewer {

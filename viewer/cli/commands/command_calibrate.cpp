@@ -6,7 +6,7 @@
 
 #include "output/command.h"
 #include "output/output.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_device/dual_arm/calibration.h"
 #include "vps_device/dual_arm/parameters.h"
 #include "vps_device/placement.h"

@@ -12,7 +12,7 @@
 #include "output/progress_bar.h"
 #include "output/run_report.h"
 #include "output/terminal.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_scenes/fits/check.h"
 #include "vps_viewer/report/check_page.h"
 

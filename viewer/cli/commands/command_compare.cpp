@@ -10,7 +10,7 @@
 #include "output/pdf_file.h"
 #include "output/table.h"
 #include "output/terminal.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_scenes/uses/compare.h"
 #include "vps_viewer/report/compare_page.h"
 

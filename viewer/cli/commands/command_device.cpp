@@ -15,7 +15,7 @@
 #include "output/progress_bar.h"
 #include "output/table.h"
 #include "output/terminal.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_device/device_kinds.h"
 #include "vps_device/dual_arm/character.h"
 #include "vps_scenes/network/nodes.h"

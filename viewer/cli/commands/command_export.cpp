@@ -14,7 +14,7 @@
 #include "output/progress_bar.h"
 #include "output/table.h"
 #include "output/terminal.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps/mesh_repair.h"
 #include "vps/pointshell.h"
 #include "vps/solid.h"

@@ -17,7 +17,7 @@
 #include "output/progress_bar.h"
 #include "output/table.h"
 #include "output/terminal.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps/mesh_repair.h"
 #include "vps_scenes/cad/import.h"
 #include "vps_scenes/fits/check.h"

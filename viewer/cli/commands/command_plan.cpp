@@ -10,7 +10,7 @@
 #include "output/output.h"
 #include "output/plan_report.h"
 #include "output/terminal.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_scenes/planning/plan.h"
 #include "work/plan_memory.h"
 #include "work/planned_folder.h"

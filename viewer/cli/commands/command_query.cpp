@@ -19,8 +19,7 @@
 #include "output/progress_bar.h"
 #include "output/table.h"
 #include "output/terminal.h"
-#include "vps/load_error.h"
-#include "vps/pair_query.h"
+#include "vps/errors.h"
 #include "vps/query.h"
 #include "vps/solid.h"
 

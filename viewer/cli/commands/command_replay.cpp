@@ -12,7 +12,7 @@
 #include "output/run_report.h"
 #include "output/table.h"
 #include "output/terminal.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_scenes/run/replay.h"
 #include "vps_viewer/report/csv.h"
 

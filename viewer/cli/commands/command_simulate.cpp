@@ -11,7 +11,7 @@
 #include "output/progress_bar.h"
 #include "output/table.h"
 #include "output/terminal.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_scenes/run/simulate.h"
 #include "vps_viewer/report/csv.h"
 

@@ -12,7 +12,7 @@
 #include "output/json_out.h"
 #include "output/output.h"
 #include "output/terminal.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps/solid.h"
 #include "vps_scenes/cad/import.h"
 #include "vps_scenes/network/tracked_heads.h"

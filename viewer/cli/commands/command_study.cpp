@@ -18,7 +18,7 @@
 #include "output/quoted.h"
 #include "output/table.h"
 #include "output/terminal.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_scenes/planning/study.h"
 #include "vps_viewer/report/study_page.h"
 #include "work/study_log.h"

@@ -13,7 +13,7 @@
 #include "output/progress_bar.h"
 #include "output/terminal.h"
 #include "output/trade_report.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_scenes/cad/import.h"
 #include "vps_scenes/planning/fidelity_choice.h"
 #include "vps_scenes/planning/trade.h"

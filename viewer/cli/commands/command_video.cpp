@@ -10,7 +10,7 @@
 #include "output/output.h"
 #include "output/progress_bar.h"
 #include "output/terminal.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_scenes/run/replay.h"
 #include "vps_viewer/window/video.h"
 #include "work/heard_run.h"

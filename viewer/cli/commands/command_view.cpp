@@ -11,7 +11,7 @@
 #include "output/output.h"
 #include "output/run_report.h"
 #include "output/terminal.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_device/device_kinds.h"
 #include "vps_viewer/draw/stereo.h"
 #include "vps_viewer/window/window.h"

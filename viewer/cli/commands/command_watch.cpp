@@ -22,7 +22,7 @@
 #include "output/run_report.h"
 #include "output/table.h"
 #include "output/terminal.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_device/recording.h"
 #include "vps_scenes/network/nodes.h"
 #include "vps_scenes/network/ros_topics.h"

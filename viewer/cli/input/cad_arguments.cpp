@@ -6,7 +6,7 @@
 #include "input/file_kind.h"
 #include "input/scene_arguments.h"
 #include "output/terminal.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_scenes/planning/plan.h"
 #include "vps_scenes/scene/scene_groups.h"
 #include "vps_scenes/scene/scene_text.h"

@@ -6,7 +6,7 @@
 #include <cctype>
 #include <filesystem>
 
-#include "vps/load_error.h"
+#include "vps/errors.h"
 
 namespace vps::viewer {
 

@@ -9,7 +9,7 @@
 #endif
 
 #include "vdb_module/level_set_module.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 
 namespace vps::viewer {
 

@@ -5,9 +5,9 @@
 #include <optional>
 #include <string>
 
+#include "vps/errors.h"
 #include "vps/fidelity.h"
 #include "vps/pointshell.h"
-#include "vps/progress.h"
 #include "vps/voxmap.h"
 #include "vps/voxmap_cache.h"
 

@@ -10,7 +10,7 @@
 #include "output/output.h"
 #include "output/progress_bar.h"
 #include "output/terminal.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_scenes/cad/import.h"
 #include "vps_scenes/planning/fidelity_choice.h"
 #include "vps_scenes/planning/resolution.h"

@@ -4,7 +4,7 @@
 #include <cstdio>
 
 #include "output/terminal.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 
 namespace vps::viewer {
 

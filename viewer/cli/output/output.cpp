@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "output/terminal.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 
 namespace vps::viewer {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "output/pdf_file.h"
 
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_viewer/report/pdf.h"
 
 namespace vps::viewer {

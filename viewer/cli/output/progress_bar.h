@@ -6,7 +6,7 @@
 #include <chrono>
 #include <string>
 
-#include "vps/progress.h"
+#include "vps/errors.h"
 
 namespace vps::viewer {
 

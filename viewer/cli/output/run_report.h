@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "output/output.h"
-#include "vps/progress.h"
+#include "vps/errors.h"
 #include "vps_scenes/run/result.h"
 #include "vps_scenes/scene/scene.h"
 

@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "vps/load_error.h"
+#include "vps/errors.h"
 
 namespace vps::viewer {
 

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_scenes/fits/check.h"
 
 namespace vps::viewer {

@@ -18,7 +18,7 @@
 #include "output/plan_report.h"
 #include "output/table.h"
 #include "output/terminal.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps/write_file.h"
 #include "vps_scenes/planning/plan.h"
 #include "vps_scenes/scene/scene_text.h"

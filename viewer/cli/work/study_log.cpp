@@ -6,7 +6,7 @@
 #include <iterator>
 
 #include "output/json_fields.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_scenes/planning/study_fields.h"
 
 namespace vps::viewer {

@@ -10,7 +10,7 @@
 #include "output/json_fields.h"
 #include "output/quoted.h"
 #include "output/terminal.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 
 namespace vps::viewer {
 

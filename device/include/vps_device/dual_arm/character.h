@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "vps/coupling_law.h"
-#include "vps/progress.h"
+#include "vps/errors.h"
 #include "vps_device/device.h"
 #include "vps_device/dual_arm/forces.h"
 #include "vps_device/export.h"

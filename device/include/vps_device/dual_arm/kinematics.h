@@ -11,8 +11,8 @@
 
 #include <Eigen/Core>
 
+#include "vps/errors.h"
 #include "vps/pose.h"
-#include "vps/status.h"
 #include "vps/wrench.h"
 #include "vps_device/dual_arm/parameters.h"
 #include "vps_device/export.h"

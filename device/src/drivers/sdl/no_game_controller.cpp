@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The game controller in a build without SDL2.
 #include "drivers/kinds.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_device/hand_controllers.h"
 
 namespace vps::device {

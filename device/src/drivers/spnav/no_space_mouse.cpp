@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The space mouse in a build without libspnav.
 #include "drivers/kinds.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_device/hand_controllers.h"
 
 namespace vps::device {

@@ -12,7 +12,7 @@
 
 #include "drivers/kinds.h"
 #include "drivers/polled_device.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_device/hand_controllers.h"
 
 // Last: it brings Xlib's macros (Status, Success, None) along.

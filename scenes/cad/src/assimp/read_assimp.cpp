@@ -25,7 +25,7 @@
 #include "assimp/xml_tags.h"
 #include "color/palette.h"
 #include "import/readers.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 
 namespace vps::scenes::import {
 namespace {

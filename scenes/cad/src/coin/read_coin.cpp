@@ -20,7 +20,7 @@
 
 #include "coin/safe_scene.h"
 #include "import/readers.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 
 namespace vps::scenes::import {
 namespace {

@@ -8,7 +8,7 @@
 #include <fstream>
 
 #include "import/readers.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 
 namespace vps::scenes::import {
 namespace {

@@ -12,8 +12,8 @@
 #include "core/valid_text.h"
 #include "import/readers.h"
 #include "import/unique_names.h"
-#include "vps/load_error.h"
-#include "vps/mesh_weld.h"
+#include "vps/errors.h"
+#include "vps/mesh.h"
 #include "vps_scenes/cad/srgb.h"
 
 namespace vps::scenes::import {

@@ -9,7 +9,7 @@
 #include <optional>
 #include <set>
 
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_scenes/cad/import.h"
 
 namespace vps::scenes {

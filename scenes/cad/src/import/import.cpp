@@ -11,7 +11,7 @@
 #include "import/kept_cad.h"
 #include "import/own_process.h"
 #include "import/readers.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 
 namespace vps::scenes {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "vps/load_error.h"
+#include "vps/errors.h"
 
 namespace vps::scenes::import {
 

@@ -35,7 +35,7 @@ RawCad inOwnProcess(const std::string&, const std::string&, const ImportSettings
 
 #include "import/forked_workers.h"
 #include "import/part_bytes.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 
 namespace vps::scenes::import {
 namespace {

@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "vps/errors.h"
 #include "vps/mesh.h"
-#include "vps/progress.h"
 #include "vps_scenes/cad/import.h"
 
 namespace vps::scenes::import {

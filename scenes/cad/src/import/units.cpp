@@ -3,7 +3,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_scenes/cad/import.h"
 
 namespace vps::scenes {

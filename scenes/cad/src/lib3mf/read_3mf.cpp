@@ -16,7 +16,7 @@
 #include "lib3mf/archive.h"
 #include "lib3mf/model_faults.h"
 #include "lib3mf/model_units.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 
 namespace vps::scenes::import {
 namespace {

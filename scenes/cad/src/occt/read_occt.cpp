@@ -41,7 +41,7 @@
 #include "occt/lost_shapes.h"
 #include "occt/pieces.h"
 #include "occt/tessellate_all.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 
 namespace vps::scenes::import {
 namespace {

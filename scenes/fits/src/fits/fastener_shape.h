@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "fits/fits.h"
-#include "vps/progress.h"
+#include "vps/errors.h"
 #include "vps_scenes/fits/fasteners.h"
 
 namespace vps::scenes {

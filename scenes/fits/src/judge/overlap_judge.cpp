@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vps/mesh.h"
+#include "vps/mesh_overlap.h"
 #include "vps/query.h"
-#include "vps/segment_depth.h"
-#include "vps/sharp_edges.h"
 
 namespace vps::scenes {
 

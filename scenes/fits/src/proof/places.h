@@ -3,7 +3,7 @@
 #pragma once
 
 #include "surface/placed_surface.h"
-#include "vps/progress.h"
+#include "vps/errors.h"
 
 namespace vps::scenes {
 

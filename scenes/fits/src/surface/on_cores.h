@@ -7,7 +7,7 @@
 #include <atomic>
 #include <thread>
 
-#include "vps/progress.h"
+#include "vps/errors.h"
 
 namespace vps::scenes {
 

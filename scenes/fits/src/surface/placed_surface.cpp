@@ -7,7 +7,7 @@
 #include <cstdio>
 
 #include "core/equal_meshes.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 
 namespace vps::scenes {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "surface/part_surface.h"
-#include "vps/progress.h"
+#include "vps/errors.h"
 #include "vps_scenes/fits/check_types.h"
 
 namespace vps::scenes {

@@ -7,7 +7,7 @@
 #include <array>
 #include <filesystem>
 
-#include "vps/load_error.h"
+#include "vps/errors.h"
 
 namespace vps::scenes {
 

@@ -16,7 +16,7 @@
 #include "link/clock_estimate.h"
 #include "link/link.h"
 #include "messages/messages.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_device/detail/bytes.h"
 #include "vps_device/metronome.h"
 #include "vps_device/periodic_thread.h"

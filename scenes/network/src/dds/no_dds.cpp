@@ -3,7 +3,7 @@
 #include "link/link.h"
 #include "link/pointer_topic.h"
 #include "requests/request_channel.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_scenes/network/head_topic.h"
 #include "vps_scenes/network/ros_topics.h"
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "vps/load_error.h"
+#include "vps/errors.h"
 
 namespace vps::scenes::ros {
 

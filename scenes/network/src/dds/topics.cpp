@@ -15,7 +15,7 @@
 
 #include "dds/certificates.h"
 #include "messages/dense_state.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_device/periodic_thread.h"
 
 namespace vps::scenes {

@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-#include "vps/load_error.h"
+#include "vps/errors.h"
 
 namespace vps::scenes {
 

@@ -14,7 +14,7 @@
 
 #include "link/shared_region.h"
 #include "requests/request_channel.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 
 namespace vps::scenes {
 

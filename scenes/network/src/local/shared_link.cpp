@@ -8,7 +8,7 @@
 
 #include "link/link.h"
 #include "messages/messages.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_device/periodic_thread.h"
 
 namespace vps::scenes {

@@ -7,7 +7,7 @@
 #include <thread>
 #include <utility>
 
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_device/metronome.h"
 
 namespace vps::scenes {

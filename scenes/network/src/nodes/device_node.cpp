@@ -14,7 +14,7 @@
 #include "link/clock_doubts.h"
 #include "nodes/device_end.h"
 #include "record/scene_archive.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_device/device_kinds.h"
 #include "vps_device/gains.h"
 #include "vps_device/metronome.h"

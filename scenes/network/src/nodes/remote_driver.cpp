@@ -14,7 +14,7 @@
 #include "haptics/merged_log.h"
 #include "nodes/device_end.h"
 #include "simulation/physics_clock.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 
 namespace vps::scenes {
 

@@ -11,7 +11,7 @@
 #include "record/run_record.h"
 #include "record/scene_archive.h"
 #include "requests/request_server_work.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_device/gains.h"
 #include "vps_scenes/network/nodes.h"
 

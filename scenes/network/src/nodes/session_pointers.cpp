@@ -15,7 +15,7 @@
 #include "link/pointer_topic.h"
 #include "link/shared_region.h"
 #include "messages/messages.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_device/metronome.h"
 
 namespace vps::scenes {

@@ -5,7 +5,7 @@
 #include <thread>
 #include <utility>
 
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_device/metronome.h"
 #include "vps_scenes/network/head_topic.h"
 

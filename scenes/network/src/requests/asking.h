@@ -8,7 +8,7 @@
 
 #include "messages/messages.h"
 #include "requests/request_channel.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_device/metronome.h"
 
 namespace vps::scenes {

@@ -15,7 +15,7 @@
 #include "procedure/assembly_run.h"
 #include "record/scene_archive.h"
 #include "requests/recording_name.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps/write_file.h"
 #include "vps_device/gains.h"
 #include "vps_device/metronome.h"

@@ -15,7 +15,7 @@
 #include "record/scene_archive.h"
 #include "requests/asking.h"
 #include "requests/recording_name.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps/write_file.h"
 
 namespace vps::scenes {

@@ -8,7 +8,7 @@
 #include "messages/messages.h"
 #include "record/scene_archive.h"
 #include "requests/asking.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 
 namespace vps::scenes {
 

@@ -20,7 +20,7 @@
 #include "overlaps/room_beside.h"
 #include "plan/bench.h"
 #include "surface/on_cores.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "ways/way_clearance.h"
 
 namespace vps::scenes {

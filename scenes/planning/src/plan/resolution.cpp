@@ -12,7 +12,7 @@
 #include "models/scene_models.h"
 #include "scene/usual_spacing.h"
 #include "text/length_words.h"
-#include "vps/map_estimate.h"
+#include "vps/voxmap.h"
 #include "vps_scenes/planning/plan.h"
 #include "vps_scenes/run/explain.h"
 

@@ -11,7 +11,7 @@
 #include "study/drawn_fit.h"
 #include "study/varied_scene.h"
 #include "trade/excerpt.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_scenes/fits/check.h"
 #include "vps_scenes/run/assemble.h"
 #include "world/drawn_targets.h"

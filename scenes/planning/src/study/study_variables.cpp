@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "fits/iso_286.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_scenes/fits/check.h"
 #include "vps_scenes/planning/study.h"
 

@@ -12,9 +12,9 @@
 #include "scene/usual_spacing.h"
 #include "trade/seeded_draw.h"
 #include "trade/surface_samples.h"
-#include "vps/load_error.h"
-#include "vps/map_estimate.h"
+#include "vps/errors.h"
 #include "vps/solid.h"
+#include "vps/voxmap.h"
 #include "vps_scenes/planning/resolution.h"
 #include "vps_scenes/scene/settings_fields.h"
 

@@ -6,7 +6,7 @@
 
 #include "simulation/tick_times.h"
 #include "trade/exact_contact.h"
-#include "vps/pair_query.h"
+#include "vps/query.h"
 
 namespace vps::scenes {
 

@@ -15,7 +15,7 @@
 #include "trade/model_store.h"
 #include "trade/probe.h"
 #include "trade/trade_plan.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_scenes/run/assemble.h"
 
 namespace vps::scenes {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "surface/placed_surface.h"
-#include "vps/progress.h"
+#include "vps/errors.h"
 #include "vps_scenes/planning/plan_types.h"
 
 namespace vps::scenes {

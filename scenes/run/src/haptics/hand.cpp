@@ -10,7 +10,7 @@
 
 #include "haptics/haptic_driver.h"
 #include "haptics/path_segments.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_device/device_kinds.h"
 
 namespace vps::scenes {

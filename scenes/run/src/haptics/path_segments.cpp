@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <numbers>
 
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps/mesh.h"
 #include "vps_scenes/scene/part_mass.h"
 

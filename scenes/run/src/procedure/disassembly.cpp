@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "scene/insertion_axis.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps/mesh_repair.h"
 #include "vps_device/operator.h"
 

@@ -12,7 +12,7 @@
 
 #include "models/scene_models.h"
 #include "procedure/assembly_run.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "world/drawn_targets.h"
 
 namespace vps::scenes {

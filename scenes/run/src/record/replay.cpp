@@ -6,7 +6,7 @@
 #include "procedure/assembly_run.h"
 #include "record/run_record.h"
 #include "record/scene_archive.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 
 namespace vps::scenes {
 

@@ -16,7 +16,7 @@
 #include <optional>
 #include <utility>
 
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_device/detail/bytes.h"
 #include "vps_scenes/scene/settings_fields.h"
 

@@ -13,7 +13,7 @@
 #include "simulation/scaled_scene.h"
 #include "simulation/simulation.h"
 #include "simulation/tick_times.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 
 namespace vps::scenes {
 

@@ -9,8 +9,8 @@
 
 #include "models/scene_models.h"
 #include "vps/box.h"
+#include "vps/errors.h"
 #include "vps/friction.h"
-#include "vps/load_error.h"
 #include "vps_bullet/convert.h"
 #include "vps_bullet/coupling.h"
 #include "vps_bullet/install.h"

@@ -10,7 +10,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "scene/parts_in_place.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_device/metronome.h"
 #include "vps_scenes/scene/part_mass.h"
 #include "world/loop_settings.h"

@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "vps/progress.h"
+#include "vps/errors.h"
 #include "vps_scenes/run/result.h"
 #include "vps_scenes/scene/scene.h"
 

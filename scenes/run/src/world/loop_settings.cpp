@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_device/device_kinds.h"
 #include "vps_device/gains.h"
 

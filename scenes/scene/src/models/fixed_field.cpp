@@ -7,8 +7,8 @@
 #include "models/scene_models.h"
 #include "vps/box.h"
 #include "vps/friction.h"
-#include "vps/shell_crop.h"
-#include "vps/voxmap_crop.h"
+#include "vps/pointshell.h"
+#include "vps/voxmap.h"
 
 namespace vps::scenes {
 

@@ -5,8 +5,8 @@
 #include <stdexcept>
 
 #include "models/scene_models.h"
+#include "vps/pointshell.h"
 #include "vps/query.h"
-#include "vps/shell_crop.h"
 
 namespace vps::scenes {
 

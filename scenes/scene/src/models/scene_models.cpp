@@ -21,12 +21,10 @@
 #include "core/wall_clock.h"
 #include "models/shrunk_mesh.h"
 #include "vps/box.h"
-#include "vps/load_error.h"
-#include "vps/map_estimate.h"
+#include "vps/errors.h"
 #include "vps/model_estimate.h"
-#include "vps/shell_crop.h"
-#include "vps/shell_estimate.h"
-#include "vps/voxmap_crop.h"
+#include "vps/pointshell.h"
+#include "vps/voxmap.h"
 #include "vps_scenes/scene/mesh_warning.h"
 
 namespace vps::scenes {

@@ -6,7 +6,7 @@
 
 #include "scene/scene_file_keys.h"
 #include "scene/toml_text.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_scenes/cad/import.h"
 #include "vps_scenes/scene/display.h"
 

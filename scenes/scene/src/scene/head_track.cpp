@@ -6,7 +6,7 @@
 #include <span>
 
 #include "text/pose_numbers.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_scenes/scene/number_table.h"
 
 namespace vps::scenes {

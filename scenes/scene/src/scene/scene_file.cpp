@@ -15,7 +15,7 @@
 #include "scene/screw_keys.h"
 #include "scene/toml_text.h"
 #include "scene/usual_spacing.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_device/device_kinds.h"
 #include "vps_device/dual_arm/parameters.h"
 #include "vps_scenes/cad/import.h"

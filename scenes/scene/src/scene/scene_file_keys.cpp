@@ -7,8 +7,7 @@
 #include <numeric>
 #include <sstream>
 
-#include "vps/assert.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_scenes/cad/import.h"
 
 namespace vps::scenes {

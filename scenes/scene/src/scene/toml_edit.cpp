@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "scene/toml_text.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 
 namespace vps::scenes {
 namespace {

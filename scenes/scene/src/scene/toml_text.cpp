@@ -6,7 +6,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "vps/load_error.h"
+#include "vps/errors.h"
 
 namespace vps::scenes {
 

@@ -7,7 +7,7 @@
 #include <sstream>
 #include <utility>
 
-#include "vps/load_error.h"
+#include "vps/errors.h"
 
 namespace vps::scenes {
 

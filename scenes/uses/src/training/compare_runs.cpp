@@ -6,7 +6,7 @@
 #include <string_view>
 #include <utility>
 
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps/mesh.h"
 #include "vps_device/operator.h"
 #include "vps_scenes/run/replay.h"

@@ -9,7 +9,7 @@
 #include <iterator>
 #include <stdexcept>
 
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps/write_file.h"
 #include "vps_viewer/draw/image.h"
 

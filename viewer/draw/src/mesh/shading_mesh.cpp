@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "mesh/float_vectors.h"
-#include "vps/mesh_weld.h"
+#include "vps/mesh.h"
 
 namespace vps::viewer {
 namespace {

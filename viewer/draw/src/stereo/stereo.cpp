@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "stereo/spectral.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 
 namespace vps::viewer {
 namespace {

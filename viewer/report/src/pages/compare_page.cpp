@@ -8,7 +8,7 @@
 
 #include "files/html.h"
 #include "pages/bar_svg.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps/mesh.h"
 #include "vps/write_file.h"
 #include "vps_viewer/report/plot.h"

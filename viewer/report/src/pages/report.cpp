@@ -13,7 +13,7 @@
 #include "pages/pictures.h"
 #include "pages/run_view.h"
 #include "plots/run_plot.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps/write_file.h"
 #include "vps_device/device_kinds.h"
 #include "vps_scenes/fits/check.h"

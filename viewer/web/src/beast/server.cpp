@@ -11,7 +11,7 @@
 
 #include "beast/connection.h"
 #include "beast/tls.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 
 namespace vps::viewer {
 

@@ -9,7 +9,7 @@
 #include <cstring>
 #include <fstream>
 
-#include "vps/load_error.h"
+#include "vps/errors.h"
 
 namespace vps::viewer {
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "view/timeline.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_device/metronome.h"
 #include "vps_scenes/run/replay.h"
 #include "web/watched_run.h"

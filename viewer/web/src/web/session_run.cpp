@@ -8,7 +8,7 @@
 #include <thread>
 #include <utility>
 
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_scenes/network/nodes.h"
 #include "web/watched_run.h"
 

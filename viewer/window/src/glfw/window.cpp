@@ -14,7 +14,7 @@
 #include "glfw/session.h"
 #include "sound/live_sound.h"
 #include "view/exploded.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_scenes/run/replay.h"
 
 namespace vps::viewer {

@@ -16,7 +16,7 @@
 #include "sound/live_sound.h"
 #include "view/camera_motion.h"
 #include "view/picture_worker.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_device/metronome.h"
 
 namespace vps::viewer {

@@ -11,7 +11,7 @@
 
 #include "run/blow_sounds.h"
 #include "sound/lasting_output.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_device/metronome.h"
 #include "vps_scenes/fits/verdict.h"
 

@@ -12,7 +12,7 @@
 #include "view/camera_motion.h"
 #include "view/picture_worker.h"
 #include "view/timeline.h"
-#include "vps/load_error.h"
+#include "vps/errors.h"
 #include "vps_scenes/network/tracked_heads.h"
 #include "vps_scenes/run/replay.h"
 

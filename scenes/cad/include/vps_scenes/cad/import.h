@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "vps/byte_cache.h"
+#include "vps/errors.h"
 #include "vps/mesh.h"
-#include "vps/progress.h"
 #include "vps_scenes/cad/face_colors.h"
 #include "vps_scenes/export.h"
 

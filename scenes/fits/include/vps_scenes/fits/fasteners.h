@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "vps/progress.h"
+#include "vps/errors.h"
 #include "vps_scenes/fits/check_types.h"
 
 namespace vps::scenes {

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "vps/progress.h"
+#include "vps/errors.h"
 #include "vps_scenes/export.h"
 #include "vps_scenes/scene/scene.h"
 

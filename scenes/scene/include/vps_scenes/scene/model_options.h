@@ -5,7 +5,7 @@
 #include <functional>
 #include <string>
 
-#include "vps/progress.h"
+#include "vps/errors.h"
 #include "vps/voxmap_cache.h"
 
 namespace vps::scenes {

@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "vps/byte_cache.h"
+#include "vps/errors.h"
 #include "vps/fidelity.h"
 #include "vps/part_model.h"
-#include "vps/progress.h"
 #include "vps_scenes/cad/face_colors.h"
 #include "vps_scenes/export.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "vps/progress.h"
+#include "vps/errors.h"
 #include "vps_scenes/run/result.h"
 #include "vps_scenes/scene/scene.h"
 #include "vps_viewer/export.h"

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "vps/progress.h"
+#include "vps/errors.h"
 #include "vps_scenes/scene/model_options.h"
 #include "vps_scenes/scene/scene.h"
 #include "vps_viewer/export.h"

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "vps/progress.h"
+#include "vps/errors.h"
 #include "vps_device/recording.h"
 #include "vps_viewer/draw/stereo.h"
 #include "vps_viewer/export.h"
