@@ -2,7 +2,8 @@
 // Axis-aligned boxes.
 #pragma once
 
-#include "vps/export.h"
+#include <limits>
+
 #include "vps/pose.h"
 
 namespace vps {
@@ -21,18 +22,40 @@ struct Box {
 };
 
 /// True if the boxes share a point. An empty box shares none.
-[[nodiscard]] VPS_API bool overlap(const Box& a, const Box& b) noexcept;
+[[nodiscard]] inline bool overlap(const Box& a, const Box& b) noexcept {
+  return !a.isEmpty() && !b.isEmpty() && (a.min.array() <= b.max.array()).all() &&
+         (b.min.array() <= a.max.array()).all();
+}
 /// True if the point lies in the box. No point lies in an empty box.
 [[nodiscard]] inline bool isWithin(const Vec3& p, const Box& box) noexcept {
   return (p.array() >= box.min.array()).all() && (p.array() <= box.max.array()).all();
 }
 /// True if all of `inner` lies in `outer`. An empty box lies in every box.
-[[nodiscard]] VPS_API bool isWithin(const Box& inner, const Box& outer) noexcept;
+[[nodiscard]] inline bool isWithin(const Box& inner, const Box& outer) noexcept {
+  return inner.isEmpty() ||
+         ((inner.min.array() >= outer.min.array()).all() && (inner.max.array() <= outer.max.array()).all());
+}
 /// The box grown by `by_m` on every side. An empty box stays empty.
-[[nodiscard]] VPS_API Box grown(const Box& box, double by_m) noexcept;
+[[nodiscard]] inline Box grown(const Box& box, double by_m) noexcept {
+  if (box.isEmpty()) return box;
+  Box out = box;
+  out.min.array() -= by_m;
+  out.max.array() += by_m;
+  return out;
+}
 /// Distance of the nearest points; 0 where they overlap, infinite for an empty box.
-[[nodiscard]] VPS_API double distance_m(const Box& a, const Box& b) noexcept;
+[[nodiscard]] inline double distance_m(const Box& a, const Box& b) noexcept {
+  if (a.isEmpty() || b.isEmpty()) return std::numeric_limits<double>::infinity();
+  return (a.min - b.max).cwiseMax(b.min - a.max).cwiseMax(0).norm();
+}
 /// The smallest box around a box that was moved by X. An empty box stays empty.
-[[nodiscard]] VPS_API Box moved(const Box& box, const Pose& X) noexcept;
+[[nodiscard]] inline Box moved(const Box& box, const Pose& X) noexcept {
+  Box out;
+  if (box.isEmpty()) return out;
+  const Vec3 center = X * box.center(), half = X.R.cwiseAbs() * (0.5 * box.size());
+  out.add(center - half);
+  out.add(center + half);
+  return out;
+}
 
 }  // namespace vps

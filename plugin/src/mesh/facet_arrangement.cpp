@@ -10,7 +10,6 @@
 
 #include "mesh/box_tree.h"
 #include "mesh/mesh_edges.h"
-#include "mesh/planar_triangulation.h"
 
 namespace vps {
 namespace {

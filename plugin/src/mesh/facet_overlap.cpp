@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mesh/facet_overlap.h"
+#include "mesh/overlap_search.h"
 
 #include <algorithm>
 #include <array>

@@ -7,11 +7,10 @@
 #include <numbers>
 #include <span>
 
-#include "mesh/directions.h"
 #include "mesh/mesh_distance_tree.h"
 #include "mesh/mesh_edges.h"
+#include "mesh/normals.h"
 #include "mesh/triangle_distance.h"
-#include "mesh/vertex_normals.h"
 
 namespace vps {
 namespace {

@@ -6,9 +6,8 @@
 #include <numeric>
 
 #include "mesh/box_tree.h"
-#include "mesh/facet_overlap.h"
 #include "mesh/mesh_edges.h"
-#include "mesh/segment_search.h"
+#include "mesh/overlap_search.h"
 #include "vps/mesh.h"
 
 namespace vps {

@@ -11,11 +11,8 @@
 #include <optional>
 
 #include "mesh/box_tree.h"
-#include "mesh/closed_cracks.h"
-#include "mesh/flat_facets.h"
-#include "mesh/joined_edges.h"
 #include "mesh/mesh_edges.h"
-#include "mesh/mesh_survey.h"
+#include "mesh/mesh_faults.h"
 #include "mesh/shell_nesting.h"
 #include "mesh/shell_union.h"
 #include "vps/mesh_distance.h"
@@ -724,22 +721,6 @@ RepairedMesh repairCrossing(const RepairedMesh& sound) {
   again.report.joined_corners += sound.report.joined_corners;
   again.report.joined_m = std::max(again.report.joined_m, sound.report.joined_m);
   return again;
-}
-
-MassProperties massOf(const RepairedMesh& repaired) {
-  constexpr double kFlat = 1e-12;  // share of the area times the size: rounding error
-  const auto isClosed = [](const Mesh& mesh) { return lidsOf(mesh).triangles.empty(); };
-  Mesh solid;
-  const bool is_closed =
-      repaired.is_sound || (repaired.report.sheet_facets == 0 && isClosed(repaired.surface));
-  if (!is_closed) {
-    solid = repaired.solid;
-    append(solid, lidsOf(solid));
-  }
-  const Mesh& mesh = is_closed ? repaired.surface : solid;
-  const MassProperties mass = massProperties(mesh);
-  const bool is_flat = std::abs(mass.volume_m3) <= kFlat * area(mesh) * bounds(mesh).size().norm();
-  return is_flat ? MassProperties{} : mass;
 }
 
 std::string describe(const MeshReport& report) {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <span>
 
-#include "mesh/directions.h"
+#include "mesh/normals.h"
 #include "vps/mesh_distance.h"
 
 namespace vps {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mesh/planar_triangulation.h"
+#include "mesh/facet_arrangement.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "mesh/segment_search.h"
+#include "mesh/overlap_search.h"
 
 namespace vps {
 

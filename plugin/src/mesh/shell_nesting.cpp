@@ -4,9 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include "mesh/cut_patches.h"
 #include "mesh/facet_arrangement.h"
-#include "mesh/shell_contacts.h"
+#include "mesh/shell_pieces.h"
 #include "mesh/shell_union.h"
 #include "mesh/triangle_distance.h"
 

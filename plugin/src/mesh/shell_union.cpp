@@ -11,10 +11,9 @@
 #include <span>
 
 #include "mesh/box_tree.h"
-#include "mesh/cut_patches.h"
 #include "mesh/facet_arrangement.h"
 #include "mesh/mesh_edges.h"
-#include "mesh/shell_contacts.h"
+#include "mesh/shell_pieces.h"
 #include "mesh/triangle_distance.h"
 #include "vps/winding_number.h"
 

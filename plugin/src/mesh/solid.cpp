@@ -5,9 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "mesh/crossing_facets.h"
 #include "mesh/interior.h"
-#include "mesh/sure_facets.h"
 #include "vps/mesh_repair.h"
 
 namespace vps {

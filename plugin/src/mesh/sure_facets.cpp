@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mesh/sure_facets.h"
+#include "mesh/interior.h"
 
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "mesh/crossing_facets.h"
-#include "mesh/interior.h"
 #include "mesh/mesh_edges.h"
 
 namespace vps {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "mesh/vertex_normals.h"
+#include "mesh/normals.h"
 #include "pointshell/shell_grid.h"
 #include "pointshell/shell_samples.h"
 #include "vps/errors.h"

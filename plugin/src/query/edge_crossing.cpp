@@ -5,8 +5,8 @@
 #include <cmath>
 #include <utility>
 
-#include "mesh/directions.h"
 #include "mesh/mesh_edges.h"
+#include "mesh/normals.h"
 #include "query/edge_joints.h"
 #include "query/edge_pair_search.h"
 #include "query/feature_points.h"

@@ -5,8 +5,8 @@
 #include <limits>
 #include <span>
 
-#include "mesh/directions.h"
 #include "mesh/mesh_edges.h"
+#include "mesh/normals.h"
 #include "query/curved_facets.h"
 #include "query/edge_joints.h"
 #include "query/touch_search.h"

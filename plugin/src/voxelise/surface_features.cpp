@@ -6,7 +6,7 @@
 #include <numbers>
 #include <utility>
 
-#include "mesh/directions.h"
+#include "mesh/normals.h"
 
 namespace vps {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mesh/winding_slope.h"
+#include "mesh/interior.h"
 
 #include <algorithm>
 #include <cmath>

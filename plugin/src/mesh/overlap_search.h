@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The depth of facets whose edges lie in the other mesh's surface, so that the edges alone show no overlap.
+// The searches of deepestOverlap(): for the deepest point of a piece of an edge, and for the depth of facets
+// whose edges lie in the other mesh's surface, so that the edges alone show no overlap.
 #pragma once
 
 #include <cstdint>
@@ -7,6 +8,7 @@
 #include <vector>
 
 #include "vps/mesh_overlap.h"
+#include "vps/solid.h"
 
 namespace vps {
 
@@ -32,5 +34,15 @@ std::vector<FlushPoint> searchFacets(const OverlapMesh& in, const OverlapMesh& o
 /// last, because it finds half of a depth that a probe between edges may find.
 void searchBelow(const OverlapMesh& in, const OverlapMesh& other, const Pose& X_SO,
                  std::span<const FlushPoint> points, Deepest& deepest);
+
+/// Searches segment ab for points deeper than depth_m by more than certain_m; sets depth_m and p_S to the
+/// deepest point found. The segment must lie wholly inside or wholly outside, except where it passes a crack
+/// of the mesh. The distance changes its sign at a crack, so depths there are accurate to the crack's width.
+/// Returns false if the segment is outside and farther than certain_m from the surface.
+bool searchUncrossed(const Solid& solid, const Vec3& a, const Vec3& b, double certain_m, double& depth_m,
+                     Vec3& p_S);
+
+/// The distance to one triangle, which is at least the distance to the surface.
+double distanceToTriangle(const Solid& solid, std::uint32_t triangle, const Vec3& p);
 
 }  // namespace vps

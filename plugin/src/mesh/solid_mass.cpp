@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Mass of a repaired mesh, with lids over its holes.
 #include "vps/mesh_repair.h"
 
+#include <cmath>
 #include <cstdlib>
 #include <map>
 #include <utility>
@@ -54,6 +56,22 @@ Mesh lidsOf(const Mesh& mesh) {
       lids.triangles.push_back({from, to, apex[groups.find(edge.low)]});
   }
   return lids;
+}
+
+MassProperties massOf(const RepairedMesh& repaired) {
+  constexpr double kFlat = 1e-12;  // share of the area times the size: rounding error
+  const auto isClosed = [](const Mesh& mesh) { return lidsOf(mesh).triangles.empty(); };
+  Mesh solid;
+  const bool is_closed =
+      repaired.is_sound || (repaired.report.sheet_facets == 0 && isClosed(repaired.surface));
+  if (!is_closed) {
+    solid = repaired.solid;
+    append(solid, lidsOf(solid));
+  }
+  const Mesh& mesh = is_closed ? repaired.surface : solid;
+  const MassProperties mass = massProperties(mesh);
+  const bool is_flat = std::abs(mass.volume_m3) <= kFlat * area(mesh) * bounds(mesh).size().norm();
+  return is_flat ? MassProperties{} : mass;
 }
 
 }  // namespace vps

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Facets of different shells that are near each other.
+// Facets of different shells that are near each other, and the patches into which such facets are cut. Each
+// patch lies on one side of every other shell.
 #pragma once
 
 #include <array>
@@ -26,5 +27,15 @@ std::vector<Box> boxesOf(const Mesh& mesh, const std::vector<std::uint32_t>& she
 /// @param shell_of  by triangle: its shell, counted from 0
 std::vector<FacetPair> nearPairs(const Mesh& mesh, const std::vector<std::uint32_t>& shell_of,
                                  double touch_m);
+
+struct CutPatches {
+  std::vector<std::uint32_t> patch_of;  ///< by piece: its patch, counted from 0
+  std::vector<std::uint32_t> widest;    ///< by patch: its widest piece, where rounding matters least
+};
+
+/// Joins pieces across edges that have exactly two pieces; each connected set is a patch. O(n log n).
+CutPatches patchesOf(const Mesh& pieces);
+
+Vec3 middleOf(const Mesh& mesh, std::uint32_t triangle);
 
 }  // namespace vps
