@@ -7,7 +7,7 @@
 #include <cfloat>
 
 #include "support/analytic.h"
-#include "voxmap/center_bounds.h"
+#include "voxmap/field_bounds.h"
 #include "vps/mesh_distance.h"
 
 namespace vps::test {

@@ -8,8 +8,8 @@
 #include <random>
 #include <set>
 
-#include "query/flush_features.h"
-#include "query/touch_cone.h"
+#include "query/direction_cone.h"
+#include "query/feature_contact.h"
 #include "support/random_draw.h"
 #include "support/screw.h"
 #include "vps/contact_tolerances.h"

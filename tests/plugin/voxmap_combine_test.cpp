@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "support/analytic.h"
-#include "voxmap/voxmap_merge.h"
+#include "voxmap/voxmap_access.h"
 #include "vps/errors.h"
 #include "vps/mesh_distance.h"
 #include "vps/query.h"

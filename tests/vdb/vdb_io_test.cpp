@@ -529,7 +529,7 @@ TEST_F(NonMetricVdb, NoReadingIsBelowItsBound) {
 
 TEST_F(NonMetricVdb, BoundsOfTrueDistancesAreNearlyTight) {
   const VoxMap map = stored(ball());
-  // Paths over grid cells cost 0.1135 of the band, whatever the distances (field_proof.h).
+  // Paths over grid cells cost 0.1135 of the band, whatever the distances (field_bounds.h).
   EXPECT_LT(map.sampleError_m(), (0.8661 + 0.1137 * 4) * kVoxel_m + map.quantum_m());
   // Far away, bounds still distinguish far from near, outside and inside.
   saveVdb(buildVoxMap(makeSphere(kRadius_m, 4), {0.1e-3, 4}), file_);

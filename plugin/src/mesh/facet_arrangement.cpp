@@ -10,6 +10,8 @@
 
 #include "mesh/box_tree.h"
 #include "mesh/mesh_edges.h"
+#include "mesh/normals.h"
+#include "mesh/triangle_distance.h"
 
 namespace vps {
 namespace {
@@ -19,9 +21,7 @@ using Corners = std::array<std::uint32_t, 3>;
 Vec3 normalOf(const Mesh& mesh, std::uint32_t facet) {
   const Corners& t = mesh.triangles[facet];
   const Vec3& a = mesh.vertices[t[0]];
-  const Vec3 n = (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a);
-  const double length = n.norm();
-  return length > 0 ? Vec3(n / length) : Vec3(Vec3::Zero());
+  return unitOrZero((mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a));
 }
 
 /// A straight edge with the points that lie on it: a side of facets, or a line along which facets meet.
@@ -38,12 +38,6 @@ std::optional<std::array<double, 2>> nearestOnLines(const Vec3& a, const Vec3& b
   const double uu = u.squaredNorm(), uv = u.dot(v), vv = v.squaredNorm(), det = uu * vv - uv * uv;
   if (!(det > kParallel * uu * vv)) return std::nullopt;
   return std::array{(uv * v.dot(w) - vv * u.dot(w)) / det, (uu * v.dot(w) - uv * u.dot(w)) / det};
-}
-
-double distanceToSegment(const Vec3& p, const Vec3& a, const Vec3& b) {
-  const Vec3 along = b - a;
-  const double t = std::clamp((p - a).dot(along) / along.squaredNorm(), 0.0, 1.0);
-  return (p - a - t * along).norm();
 }
 
 class Arranger {

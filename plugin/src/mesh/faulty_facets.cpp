@@ -99,13 +99,6 @@ std::size_t longestSide(const Mesh& mesh, const FacetCorners& t) {
   return longest;
 }
 
-/// True if the facet counts as degenerate in checkMesh().
-bool hasNoArea(const Mesh& mesh, const FacetCorners& t) {
-  const Vec3& a = mesh.vertices[t[0]];
-  const Vec3 n = (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a);
-  return hasRepeatedCorner(t) || n.norm() <= 1e-12 * sideLength2(mesh, t, longestSide(mesh, t));
-}
-
 /// One round of leaving out facets without area. Each round splits a facet at most once.
 class FlatFacets {
  public:
@@ -117,7 +110,7 @@ class FlatFacets {
     const std::size_t count = mesh_.triangles.size();
     bool has_any = false;
     for (std::uint32_t i = 0; i < count; ++i)
-      if (hasNoArea(mesh_, mesh_.triangles[i])) has_any = true, leaveOut(i);
+      if (isDegenerate(mesh_, mesh_.triangles[i])) has_any = true, leaveOut(i);
     std::erase_if(mesh_.triangles, hasRepeatedCorner);
     return has_any;
   }

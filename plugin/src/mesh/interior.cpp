@@ -21,8 +21,7 @@ double boxGap2(const Box& a, const Box& b) {
 
 WindingSlope::WindingSlope(const Mesh& mesh) {
   forEachEdge(sortedHalfEdges(mesh), [&](std::span<const HalfEdge> same) {
-    int net = 0;
-    for (const HalfEdge& e : same) net += e.is_forward ? 1 : -1;
+    const int net = surplusOf(same);
     if (net == 0) return;
     const Vec3 &a = mesh.vertices[same[0].low], &b = mesh.vertices[same[0].high];
     Box box;

@@ -16,15 +16,6 @@ Vec3 areaVector(const Mesh& mesh, const std::array<std::uint32_t, 3>& t) {
   return 0.5 * (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a);
 }
 
-bool isDegenerate(const Mesh& mesh, const std::array<std::uint32_t, 3>& t) {
-  if (hasRepeatedCorner(t)) return true;
-  double longest_m2 = 0;
-  for (int i = 0; i < 3; ++i)
-    longest_m2 = std::max(longest_m2, (mesh.vertices[t[i]] - mesh.vertices[t[(i + 1) % 3]]).squaredNorm());
-  // Height below 1e-12 of the longest edge: the normal is rounding noise.
-  return 2 * areaVector(mesh, t).norm() <= 1e-12 * longest_m2;
-}
-
 }  // namespace
 
 Box bounds(const Mesh& mesh) {
@@ -76,6 +67,15 @@ void append(Mesh& a, const Mesh& b) {
   a.vertices.insert(a.vertices.end(), b.vertices.begin(), b.vertices.end());
   a.triangles.reserve(a.triangles.size() + b.triangles.size());
   for (const auto& t : b.triangles) a.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
+}
+
+bool isDegenerate(const Mesh& mesh, const std::array<std::uint32_t, 3>& t) {
+  if (hasRepeatedCorner(t)) return true;
+  double longest_m2 = 0;
+  for (int i = 0; i < 3; ++i)
+    longest_m2 = std::max(longest_m2, (mesh.vertices[t[i]] - mesh.vertices[t[(i + 1) % 3]]).squaredNorm());
+  // Height below 1e-12 of the longest edge: the normal is rounding noise.
+  return 2 * areaVector(mesh, t).norm() <= 1e-12 * longest_m2;
 }
 
 MeshReport checkMesh(const Mesh& mesh) {

@@ -81,6 +81,9 @@ class Groups {
   std::vector<std::uint32_t> parent_;
 };
 
+/// True for a triangle that checkMesh() counts as degenerate: its height is below 1e-12 of its longest edge.
+bool isDegenerate(const Mesh& mesh, const std::array<std::uint32_t, 3>& t);
+
 /// checkMesh() for callers that already have the edges.
 /// @param shell_of  if given, receives each triangle's shell, counted from 0; undefined for triangles with
 /// repeated corners
@@ -120,6 +123,13 @@ void forEachTwin(const std::vector<std::array<std::uint32_t, 3>>& triangles, Vis
     if (end - i > 1) visit(std::span<const Twin>(twins).subspan(i, end - i));
     i = end;
   }
+}
+
+/// Number of facets that run from the lower to the higher vertex of an edge, minus those that run back.
+inline int surplusOf(std::span<const HalfEdge> same) {
+  int surplus = 0;
+  for (const HalfEdge& e : same) surplus += e.is_forward ? 1 : -1;
+  return surplus;
 }
 
 /// Calls visit for each edge, with its half-edges.

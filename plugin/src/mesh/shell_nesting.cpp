@@ -15,12 +15,6 @@ namespace {
 /// Work that may be spent on cutting facets to find the nesting.
 constexpr std::int64_t kMostNestingWork = kMostUnionWork / 2;
 
-std::vector<Box> boxesOfFacets(const Mesh& mesh) {
-  std::vector<Box> boxes;
-  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) boxes.push_back(boxOf(mesh, i, 0));
-  return boxes;
-}
-
 }  // namespace
 
 ShellNesting::ShellNesting(Mesh mesh, std::vector<std::uint32_t> shell_of)

@@ -16,6 +16,12 @@ Box boxOf(const Mesh& mesh, std::uint32_t triangle, double margin_m) {
   return {box.min.array() - margin_m, box.max.array() + margin_m};
 }
 
+std::vector<Box> boxesOfFacets(const Mesh& mesh) {
+  std::vector<Box> boxes;
+  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) boxes.push_back(boxOf(mesh, i, 0));
+  return boxes;
+}
+
 std::vector<Box> boxesOf(const Mesh& mesh, const std::vector<std::uint32_t>& shell_of, double margin_m) {
   std::vector<Box> boxes;
   for (std::uint32_t i = 0; i < shell_of.size(); ++i) {

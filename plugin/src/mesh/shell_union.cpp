@@ -43,7 +43,7 @@ class Shells {
         shell_of_(shell_of),
         touch_m_(touch_m),
         boxes_(boxesOf(mesh, shell_of, touch_m)),
-        facet_boxes_(facetBoxes(mesh)),
+        facet_boxes_(boxesOfFacets(mesh)),
         tree_(boxes_),
         facets_(facet_boxes_),
         winding_(mesh, kClusterError) {
@@ -99,11 +99,6 @@ class Shells {
   /// away.
   static constexpr double kBeside = 8;
 
-  static std::vector<Box> facetBoxes(const Mesh& mesh) {
-    std::vector<Box> boxes;
-    for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) boxes.push_back(boxOf(mesh, i, 0));
-    return boxes;
-  }
   static bool isKept(const Flush& flush, double w) {
     const double step = 0.5 * (flush.same - flush.opposite);
     return w - step < 0.5 && w + step > 0.5 && flush.is_first;
@@ -179,11 +174,8 @@ class Shells {
 
 bool isClosed(const Mesh& mesh) {
   bool is_closed = !mesh.triangles.empty();
-  forEachEdge(sortedHalfEdges(mesh), [&](std::span<const HalfEdge> same) {
-    int net = 0;
-    for (const HalfEdge& e : same) net += e.is_forward ? 1 : -1;
-    is_closed = is_closed && net == 0;
-  });
+  forEachEdge(sortedHalfEdges(mesh),
+              [&](std::span<const HalfEdge> same) { is_closed = is_closed && surplusOf(same) == 0; });
   return is_closed;
 }
 

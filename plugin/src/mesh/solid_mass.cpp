@@ -21,9 +21,8 @@ struct OpenEdge {
 std::vector<OpenEdge> openEdges(const Mesh& mesh) {
   std::vector<OpenEdge> open;
   forEachEdge(sortedHalfEdges(mesh), [&](std::span<const HalfEdge> sides) {
-    int surplus = 0;
-    for (const HalfEdge& side : sides) surplus += side.is_forward ? 1 : -1;
-    if (surplus != 0) open.push_back({sides[0].low, sides[0].high, surplus});
+    if (const int surplus = surplusOf(sides); surplus != 0)
+      open.push_back({sides[0].low, sides[0].high, surplus});
   });
   return open;
 }

@@ -3,9 +3,18 @@
 // and get the same bits.
 #pragma once
 
+#include <algorithm>
+
 #include "vps/mesh_distance.h"
 
 namespace vps {
+
+/// Distance of p from segment ab.
+inline double distanceToSegment(const Vec3& p, const Vec3& a, const Vec3& b) {
+  const Vec3 along = b - a;
+  const double t = std::clamp((p - a).dot(along) / along.squaredNorm(), 0.0, 1.0);
+  return (p - a - t * along).norm();
+}
 
 /// Closest point of segment ab; its feature is `segment`, `at_a` or `at_b`.
 inline TrianglePoint closestOnSegment(const Vec3& p, const Vec3& a, const Vec3& b, int segment, int at_a,

@@ -2,6 +2,8 @@
 // A file of a ByteCache has a BytesHeader, the bytes, and a hash of everything before it.
 #include "vps/byte_cache.h"
 
+#include <algorithm>
+
 #include "part/cache_file.h"
 #include "part/cache_folder.h"
 
@@ -31,21 +33,14 @@ Digest bytesKeyOf(std::string_view made_from) {
 /// Returns nothing, and a reason in `why`, if the file cannot be trusted.
 std::optional<std::string> readBytes(const fs::path& file, const Digest& key, std::string& why) {
   HashedReader reader(file);
-  BytesHeader header;
-  if (!reader.isGood()) return why = "cannot be read", std::nullopt;
-  reader.read(&header, sizeof header);
-  if (!reader.isGood() || header.start.magic != kBytesMagic)
-    return why = "is not of this cache", std::nullopt;
-  if (!header.start.isOfSameVersion(BytesHeader().start))
-    return why = "is of another version of this program", std::nullopt;
-  std::error_code error;
-  const std::uintmax_t size = fs::file_size(file, error);
-  // Tested before memory is allocated.
-  if (error || size < sizeof(BytesHeader) + sizeof(Digest) ||
-      size - sizeof(BytesHeader) - sizeof(Digest) != header.bytes)
-    return why = "is damaged or cut short", std::nullopt;
-  if (header.start.key != key) return why = "was made from other data", std::nullopt;
-  std::string bytes(header.bytes, '\0');
+  const auto header = readHeader<BytesHeader>(
+      reader, file, key, "is not of this cache",
+      [](const BytesHeader& h) {
+        return sizeof(BytesHeader) + std::min(h.bytes, kMostBytes) + sizeof(Digest);
+      },
+      why);
+  if (!header) return std::nullopt;
+  std::string bytes(header->bytes, '\0');
   reader.read(bytes.data(), bytes.size());
   if (!reader.isGood() || !reader.endsWell()) return why = "is damaged", std::nullopt;
   return bytes;

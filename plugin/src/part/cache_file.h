@@ -7,9 +7,12 @@
 
 #include <array>
 #include <cstdint>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "vps/mesh.h"
@@ -17,6 +20,9 @@
 namespace vps {
 
 using Digest = std::array<std::uint64_t, 2>;
+
+/// More bytes than a file has; keeps sums of sizes from a damaged header within 64 bits.
+inline constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 60;
 
 /// The first bytes of every file.
 struct CacheFileStart {
@@ -49,7 +55,12 @@ class Hash {
 };
 
 /// The digest in hexadecimal, used as a file's name without extension.
-std::string nameOf(const Digest& key);
+inline std::string nameOf(const Digest& key) {
+  std::array<char, 33> text;
+  std::snprintf(text.data(), text.size(), "%016llx%016llx", static_cast<unsigned long long>(key[0]),
+                static_cast<unsigned long long>(key[1]));
+  return text.data();
+}
 
 /// Reads a file and hashes what it reads; isGood() becomes false at the first missing byte.
 class HashedReader {
@@ -76,6 +87,28 @@ class HashedReader {
   std::ifstream in_;
   Hash hash_;
 };
+
+/// Reads the header of a file. Returns nothing, and a reason in `why`, unless the file is of this kind and
+/// version, was made from the data of `key`, and has the size that bytesOf(header) tells; the size is tested
+/// before memory is allocated for the rest.
+/// @param not_this_kind  the reason if the file is of another kind, such as "is not a voxmap"
+template <class Header, class BytesOf>
+std::optional<Header> readHeader(HashedReader& reader, const std::filesystem::path& file, const Digest& key,
+                                 const char* not_this_kind, BytesOf bytesOf, std::string& why) {
+  Header header;
+  if (!reader.isGood()) return why = "cannot be read", std::nullopt;
+  const CacheFileStart expected = header.start;
+  reader.read(&header, sizeof header);
+  if (!reader.isGood() || header.start.magic != expected.magic) return why = not_this_kind, std::nullopt;
+  if (!header.start.isOfSameVersion(expected))
+    return why = "is of another version of this program", std::nullopt;
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(file, error);
+  const std::optional<std::uint64_t> bytes = bytesOf(header);
+  if (error || !bytes || *bytes != size) return why = "is damaged or cut short", std::nullopt;
+  if (header.start.key != key) return why = "was made from other data", std::nullopt;
+  return header;
+}
 
 class HashedWriter {
  public:

@@ -1,15 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A file of a voxmap has a Header, the MeshReport, the cells' bricks and centre bounds, the nodes of all
-// bricks, and a hash of everything before it. Numbers are stored as in memory.
+// bricks, and a hash of everything before it. A file of a shell has a ShellHeader, then points, normals,
+// areas and progressive order, and a hash; its hierarchy of spheres is built again, which takes a hundredth
+// of the time of sampling. Numbers are stored as in memory.
 #include "vps/voxmap_cache.h"
 
+#include <algorithm>
 #include <array>
+#include <filesystem>
 #include <limits>
 #include <optional>
+#include <string>
 #include <tuple>
 
+#include "part/cache_file.h"
 #include "part/cache_folder.h"
-#include "part/shell_file.h"
+#include "pointshell/shell_hierarchy.h"
 #include "voxmap/voxmap_access.h"
 #include "vps/solid.h"
 
@@ -73,6 +79,73 @@ std::optional<std::uint64_t> bytesOf(const Header& header) {
          header.bricks * kBrickStride * sizeof(NodeValue) + sizeof(Digest);
 }
 
+/// Incremented when the file's layout changes, or when sampling gives other bits.
+constexpr std::uint32_t kShellVersion = 3;
+constexpr std::array<char, 8> kShellMagic = {'v', 'p', 's', 's', 'h', 'e', 'l', 'l'};
+
+struct ShellHeader {
+  CacheFileStart start = {kShellMagic, kShellVersion};
+  double spacing_m = 0;
+  std::uint64_t points = 0;
+};
+static_assert(std::is_trivially_copyable_v<ShellHeader> && sizeof(ShellHeader) == 48);  // no gaps
+
+constexpr std::uint64_t kPointBytes = 2 * sizeof(Vec3) + sizeof(double) + sizeof(std::uint32_t);
+
+/// Digest of everything that determines the shell of a mesh's Solid.
+Digest shellKeyOf(const Mesh& mesh, const PointShellSettings& settings) {
+  const std::array<std::uint64_t, 3> sizes = {kShellVersion, mesh.vertices.size(), mesh.triangles.size()};
+  const std::array<double, 2> values = {settings.spacing_m, settings.edge_angle_rad};
+  Hash hash;
+  hash.add(kShellMagic.data(), kShellMagic.size());
+  hash.add(sizes.data(), sizeof sizes);
+  hash.add(values.data(), sizeof values);
+  hash.add(mesh);
+  return hash.digest();
+}
+
+/// Returns nothing, and a reason in `why`, if the file cannot be trusted.
+std::optional<PointShell> readShell(const std::filesystem::path& file, const Digest& key, std::string& why) {
+  HashedReader reader(file);
+  const auto header = readHeader<ShellHeader>(
+      reader, file, key, "is not a pointshell",
+      [](const ShellHeader& h) {
+        return sizeof(ShellHeader) + std::min(h.points, kMostBytes / kPointBytes) * kPointBytes +
+               sizeof(Digest);
+      },
+      why);
+  if (!header) return std::nullopt;
+  PointShell shell;
+  shell.spacing_m = header->spacing_m;
+  shell.points.resize(header->points);
+  shell.inward.resize(header->points);
+  shell.area_m2.resize(header->points);
+  shell.order.resize(header->points);
+  reader.read(shell.points);
+  reader.read(shell.inward);
+  reader.read(shell.area_m2);
+  reader.read(shell.order);
+  if (!reader.isGood() || !reader.endsWell()) return why = "is damaged", std::nullopt;
+  shell.nodes = sphereHierarchy(shell.points);
+  layOutBlocks(shell);
+  return shell;
+}
+
+/// False if the file could not be written.
+bool writeShell(const PointShell& shell, const std::filesystem::path& file, const Digest& key) {
+  ShellHeader header;
+  header.start.key = key;
+  header.spacing_m = shell.spacing_m;
+  header.points = shell.size();
+  HashedWriter writer(file);
+  writer.write(&header, sizeof header);
+  writer.write(shell.points);
+  writer.write(shell.inward);
+  writer.write(shell.area_m2);
+  writer.write(shell.order);
+  return writer.finish();
+}
+
 constexpr const char *kMapEnding = ".voxmap", *kShellEnding = ".shell";
 
 /// Reads the file's content. If there is no file, or it cannot be trusted, makes the content and keeps it.
@@ -110,17 +183,9 @@ class VoxMapCacheFile {
   static std::optional<VoxMap> read(const fs::path& file, const Digest& key, MeshReport& report,
                                     std::string& why) {
     HashedReader reader(file);
-    if (!reader.isGood()) return why = "cannot be read", std::nullopt;
-    Header header;
-    reader.read(&header, sizeof header);
-    if (!reader.isGood() || header.start.magic != kMagic) return why = "is not a voxmap", std::nullopt;
-    if (!header.start.isOfSameVersion(Header().start))
-      return why = "is of another version of this program", std::nullopt;
-    std::error_code error;
-    const std::uintmax_t size = fs::file_size(file, error);
-    if (error || bytesOf(header) != size) return why = "is damaged or cut short", std::nullopt;
-    if (header.start.key != key) return why = "is of another part", std::nullopt;
-    std::optional<VoxMap> map = readBody(reader, header, report);
+    const auto header = readHeader<Header>(reader, file, key, "is not a voxmap", bytesOf, why);
+    if (!header) return std::nullopt;
+    std::optional<VoxMap> map = readBody(reader, *header, report);
     if (!map) why = "is damaged";
     return map;
   }

@@ -309,9 +309,7 @@ std::vector<Vec3> triangleNormals(const Mesh& mesh) {
   normals.reserve(mesh.triangles.size());
   for (const auto& [a, b, c] : mesh.triangles) {
     const Vec3& p = mesh.vertices[a];
-    const Vec3 n = (mesh.vertices[b] - p).cross(mesh.vertices[c] - p);
-    const double length = n.norm();
-    normals.emplace_back(length > 0 ? Vec3(n / length) : Vec3(Vec3::Zero()));
+    normals.push_back(unitOrZero((mesh.vertices[b] - p).cross(mesh.vertices[c] - p)));
   }
   return normals;
 }

@@ -2,8 +2,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 
 #include "mesh/mesh_edges.h"
+#include "mesh/normals.h"
 #include "pointshell/shell_samples.h"
 
 namespace vps {
@@ -32,7 +34,9 @@ class FeatureSampler {
         step_m_(step_m),
         tolerance_m_(tolerance_m),
         cos_limit_(std::cos(edge_angle_rad)) {
-    sumVertexNormals();
+    vertex_normals_ = angleWeightedNormals(mesh, normals);
+    for (Vec3& n : vertex_normals_)
+      if (n.norm() > 0) n.normalize();
     findSharpEdges();
     findCorners();
   }
@@ -49,20 +53,6 @@ class FeatureSampler {
   }
 
  private:
-  /// Weights each triangle with its angle at the vertex, so that the sum does not depend on the
-  /// triangulation.
-  void sumVertexNormals() {
-    vertex_normals_.assign(mesh_.vertices.size(), Vec3::Zero());
-    for (std::size_t t = 0; t < mesh_.triangles.size(); ++t)
-      for (int k = 0; k < 3; ++k) {
-        const Vec3& p = corner(t, k);
-        const Vec3 u = corner(t, (k + 1) % 3) - p, v = corner(t, (k + 2) % 3) - p;
-        vertex_normals_[mesh_.triangles[t][k]] += std::atan2(u.cross(v).norm(), u.dot(v)) * normals_[t];
-      }
-    for (Vec3& n : vertex_normals_)
-      if (n.norm() > 0) n.normalize();
-  }
-
   void findSharpEdges() {
     forEachEdge(sortedHalfEdges(mesh_), [this](std::span<const HalfEdge> sides) {
       Vec3 sum = Vec3::Zero();
@@ -209,6 +199,39 @@ class FeatureSampler {
 std::vector<ShellSample> sampleFeatures(const Mesh& mesh, const std::vector<Vec3>& normals, double step_m,
                                         double tolerance_m, double edge_angle_rad) {
   return FeatureSampler(mesh, normals, step_m, tolerance_m, edge_angle_rad).run();
+}
+
+namespace {
+
+/// Appends samples of the border. A sample at a corner faces the mean of the directions out of its edges.
+/// Each sample represents a square of step_m.
+void addBorder(const Mesh& mesh, double step_m, std::vector<ShellSample>& samples) {
+  std::map<std::uint32_t, Vec3> corners;
+  forEachEdge(sortedHalfEdges(mesh), [&](std::span<const HalfEdge> same) {
+    if (same.size() != 1) return;
+    const HalfEdge& e = same[0];
+    const Vec3 &a = mesh.vertices[e.low], way = mesh.vertices[e.high] - a;
+    const Vec3 to_apex = mesh.vertices[mesh.triangles[e.triangle][(e.side + 2U) % 3]] - a;
+    const Vec3 into = to_apex - way * (to_apex.dot(way) / way.squaredNorm());
+    if (!(into.norm() > 0)) return;
+    const Vec3 outward = -into.normalized();
+    const int pieces = static_cast<int>(std::ceil(way.norm() / step_m));
+    for (int k = 1; k < pieces; ++k)
+      samples.push_back({a + (double(k) / pieces) * way, outward, step_m * step_m});
+    for (const std::uint32_t v : {e.low, e.high})
+      corners.try_emplace(v, Vec3::Zero()).first->second += outward;
+  });
+  for (const auto& [v, sum] : corners)
+    if (sum.norm() > 1e-6) samples.push_back({mesh.vertices[v], sum.normalized(), step_m * step_m});
+}
+
+}  // namespace
+
+void addOtherSides(const Mesh& mesh, double step_m, std::vector<ShellSample>& samples) {
+  const std::size_t count = samples.size();
+  for (std::size_t i = 0; i < count; ++i)
+    samples.push_back({samples[i].p, -samples[i].outward, samples[i].area_m2});
+  addBorder(welded(mesh), step_m, samples);
 }
 
 }  // namespace vps

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Cones of directions, which bound the normals of many facets.
+// Cones of directions, which bound the normals of many facets, and the cone of planes that a corner can
+// touch.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <span>
 
 #include "vps/contact_tolerances.h"
@@ -55,5 +57,18 @@ inline bool areOpposite(const DirectionCone& a, const Vec3& axis, const Directio
   const double left_rad = angle_rad - a.angle_rad - b.angle_rad, square = left_rad * left_rad;
   return left_rad > 0 && -axis.dot(b.axis) > 1 - square / 2 + square * square / 24;  // at least the cosine
 }
+
+/// True if a corner's surface rises from a plane with normal n all around, or falls from it by no more than
+/// the slope. Only then can the corner touch a facet of another part in that plane: a nut's crest cannot
+/// touch the flank from which it faces away. Slopes down to kSinTouch are allowed, since facets only
+/// approximate curved surfaces.
+/// @param rays  from the corner along its surface, unit; in the normal's frame
+inline bool risesFrom(std::span<const Vec3> rays, const Vec3& n, double slope) {
+  return std::all_of(rays.begin(), rays.end(), [&](const Vec3& ray) { return n.dot(ray) >= -slope; });
+}
+
+/// A cone that contains every unit vector n with n . ray >= -slope for all rays; nothing if there is no such
+/// vector. Uses the first twelve rays. O(rays^3).
+std::optional<DirectionCone> touchCone(std::span<const Vec3> rays, double slope);
 
 }  // namespace vps

@@ -7,11 +7,10 @@
 
 #include "mesh/mesh_edges.h"
 #include "mesh/normals.h"
-#include "query/edge_joints.h"
+#include "query/curved_features.h"
 #include "query/edge_pair_search.h"
-#include "query/feature_points.h"
+#include "query/feature_pair.h"
 #include "query/motion_tube.h"
-#include "query/moving_features.h"
 #include "vps/contact_tolerances.h"
 
 namespace vps {

@@ -5,8 +5,6 @@
 #include <cmath>
 #include <utility>
 
-#include "query/flush_features.h"
-#include "query/passed_edge.h"
 #include "vps/contact_tolerances.h"
 
 namespace vps {

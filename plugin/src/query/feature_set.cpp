@@ -7,8 +7,7 @@
 
 #include "mesh/mesh_edges.h"
 #include "mesh/normals.h"
-#include "query/curved_facets.h"
-#include "query/edge_joints.h"
+#include "query/curved_features.h"
 #include "query/touch_search.h"
 #include "vps/contact_tolerances.h"
 #include "vps/edge_tree.h"

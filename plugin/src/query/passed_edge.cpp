@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "query/passed_edge.h"
+#include "query/feature_contact.h"
 
 #include <algorithm>
 #include <limits>
 
-#include "query/flush_features.h"
-#include "query/touch_cone.h"
+#include "query/direction_cone.h"
 #include "vps/contact_tolerances.h"
 
 namespace vps {

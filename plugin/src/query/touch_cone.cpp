@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "query/touch_cone.h"
+#include "query/direction_cone.h"
 
 #include <algorithm>
 #include <vector>

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <span>
 
-#include "query/touch_cone.h"
+#include "query/direction_cone.h"
 #include "vps/contact_tolerances.h"
 #include "vps/feature_set.h"
 

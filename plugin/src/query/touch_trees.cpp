@@ -6,7 +6,7 @@
 #include <optional>
 #include <span>
 
-#include "query/touch_cone.h"
+#include "query/direction_cone.h"
 #include "query/touch_search.h"
 #include "vps/contact_tolerances.h"
 #include "vps/feature_set.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "vdb/vdb_archive.h"
+#include "vdb/vdb_grids.h"
 
 #include <algorithm>
 

@@ -5,7 +5,7 @@
 // Other programs read the grid "surface". Two more grids make a reload exact: "vps_center" (one value per
 // directory cell: the bound at its centre) and, if parts are merged, "vps_owner". A mark with a checksum ends
 // the file. Files of other programs have none of these; their bounds are computed from the nodes
-// (field_proof.h).
+// (field_bounds.h).
 #pragma once
 
 #include <openvdb/openvdb.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "vdb/vdb_nodes.h"
+#include "vdb/vdb_grids.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>

@@ -8,9 +8,8 @@
 #include <map>
 #include <new>
 
-#include "vdb/vdb_level_set.h"
-#include "vdb/vdb_nodes.h"
-#include "voxmap/field_proof.h"
+#include "vdb/vdb_grids.h"
+#include "voxmap/field_bounds.h"
 #include "voxmap/voxmap_access.h"
 #include "vps/errors.h"
 #include "vps/vdb.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Cooks several parts into one voxmap, each voxelised at its own pose.
 #include "voxmap/map_limits.h"
-#include "voxmap/voxmap_merge.h"
+#include "voxmap/voxmap_access.h"
 #include "vps/errors.h"
 #include "vps/solid.h"
 

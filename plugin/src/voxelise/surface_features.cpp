@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "mesh/normals.h"
+#include "mesh/triangle_distance.h"
 
 namespace vps {
 namespace {
@@ -16,12 +17,6 @@ constexpr double kMinHeight = 1e-7;
 /// A triangle lower than this fraction of its longest side is replaced too, since its normal is rounding
 /// noise.
 constexpr double kMinSlimness = 1e-12;
-
-double distanceToSegment(const Vec3& p, const Vec3& a, const Vec3& b) {
-  const Vec3 along = b - a;
-  const double t = std::clamp((p - a).dot(along) / along.squaredNorm(), 0.0, 1.0);
-  return (p - a - t * along).norm();
-}
 
 std::uint32_t next(std::uint32_t side) {
   return side == 2 ? 0 : side + 1;

@@ -6,7 +6,7 @@
 // 3. Splat: tile by tile, each feature writes to the nodes to which it may be nearest (splat.h). Bricks are
 // cut from the tile while it is in the cache.
 // 4. Bricks: the neighbours' border, a sign for the nodes beyond the band (brick_assembly.h), and a bound of
-// the distance at every cell's centre (center_bounds.h).
+// the distance at every cell's centre (field_bounds.h).
 //
 // Parallel over features, tiles and rows; each result has one writer and a fixed order, so that every number
 // of threads gives the same bits.
@@ -20,10 +20,10 @@
 #include <utility>
 
 #include "voxelise/brick_assembly.h"
-#include "voxelise/map_estimate.h"
 #include "voxelise/splat.h"
 #include "voxelise/winding_signs.h"
-#include "voxmap/center_bounds.h"
+#include "voxmap/field_bounds.h"
+#include "voxmap/map_limits.h"
 #include "voxmap/voxmap_access.h"
 #include "vps/mesh_repair.h"
 #include "vps/solid.h"

@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "voxelise/brick_assembly.h"
-#include "voxmap/node_steps.h"
+#include "voxmap/field_bounds.h"
 
 namespace vps {
 namespace {

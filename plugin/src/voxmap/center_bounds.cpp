@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "voxmap/center_bounds.h"
+#include "voxmap/field_bounds.h"
 
 #include <tbb/parallel_for.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "voxmap/field_proof.h"
+#include "voxmap/field_bounds.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -8,9 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-
-#include "voxmap/center_bounds.h"
-#include "voxmap/node_steps.h"
 
 namespace vps {
 namespace {

@@ -32,4 +32,8 @@ VPS_API void requireDirectory(const Vec3& cells, const std::string& file = "", c
 VPS_API void requireMemory(double bytes, const std::string& what_for, const std::string& remedy,
                            const std::string& file = "", const std::string& part = "");
 
+/// Throws LoadError for settings that no map can have and for a mesh whose map would not fit in memory; the
+/// message names a voxel size that would fit.
+void requireFits(const Mesh& mesh, const VoxMapSettings& settings, const std::string& part);
+
 }  // namespace vps

@@ -188,7 +188,7 @@ struct VoxLayout : CellBox {
   /// without a surface, and in level sets of other programs.
   float steepest = 1;
   /// The largest error of a node, in voxels, besides rounding: 0 after voxelising, half a cell's diagonal
-  /// after resampling, and the measured error (field_proof.h) in a level set of another program.
+  /// after resampling, and the measured error (field_bounds.h) in a level set of another program.
   float node_error = 0;
   /// False where signs contradict each other: nodes are then not distances, and only `steepest` bounds them.
   bool is_metric = true;

@@ -3,14 +3,13 @@
 //
 // The union does not depend on the order, to the bit: nodes, centre distances and the box are minima over the
 // parts, and a cell stores a brick unless its merged nodes are all one constant.
-#include "voxmap/voxmap_merge.h"
+#include "voxmap/voxmap_access.h"
 
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 
 #include "voxmap/map_limits.h"
-#include "voxmap/voxmap_access.h"
 #include "vps/errors.h"
 
 namespace vps {

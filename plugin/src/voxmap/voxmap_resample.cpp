@@ -9,7 +9,7 @@
 
 #include "voxmap/map_limits.h"
 #include "voxmap/read_kernel.h"
-#include "voxmap/voxmap_merge.h"
+#include "voxmap/voxmap_access.h"
 #include "voxmap/voxmap_sampler.h"
 #include "vps/errors.h"
 

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Finds the facets of a mesh that approximate a curved surface.
+// Finds the edges that continue in others, and the facets that approximate a curved surface.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
+#include <tuple>
 #include <vector>
 
 #include "mesh/mesh_edges.h"
@@ -11,6 +13,28 @@
 #include "vps/pose.h"
 
 namespace vps {
+
+/// An end of an edge.
+struct EdgeEnd {
+  std::uint32_t vertex, edge;
+  int end;    ///< 0 or 1
+  Vec3 away;  ///< unit, along the edge
+};
+
+/// Calls visit(a, b) for each vertex at which exactly two ends meet, with these ends. O(n log n); sorts the
+/// ends.
+template <typename Visit>
+void forEachJoint(std::vector<EdgeEnd>& ends, Visit visit) {
+  std::sort(ends.begin(), ends.end(), [](const EdgeEnd& a, const EdgeEnd& b) {
+    return std::tie(a.vertex, a.edge) < std::tie(b.vertex, b.edge);
+  });
+  for (std::size_t i = 0; i < ends.size();) {
+    std::size_t next = i + 1;
+    while (next < ends.size() && ends[next].vertex == ends[i].vertex) ++next;
+    if (next - i == 2) visit(ends[i], ends[i + 1]);
+    i = next;
+  }
+}
 
 /// Facets that meet at less than 8 degrees belong to one curved surface if one of them also has such a
 /// neighbour on another side. If neither has, the edge is a lone kink between two planes. Triangles in one
