@@ -8,7 +8,7 @@
 #include <numbers>
 #include <random>
 
-#include "query/feature_pair.h"
+#include "query/features/feature_pair.h"
 #include "support/lathe.h"
 #include "support/random_draw.h"
 #include "support/screw.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "query/motion_tube.h"
+#include "query/motion/motion_tube.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "query/feature_contact.h"
+#include "query/features/feature_contact.h"
 
 #include <gtest/gtest.h>
 

@@ -10,9 +10,9 @@
 #include <memory>
 #include <random>
 
-#include "query/leaf_walk.h"
+#include "query/points/leaf_walk.h"
 #include "support/random_draw.h"
-#include "voxmap/read_kernel.h"
+#include "voxmap/kernels/read_kernel.h"
 #include "voxmap/voxmap_layout.h"
 
 namespace vps {

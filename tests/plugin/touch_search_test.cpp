@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "query/touch_search.h"
+#include "query/features/touch_search.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <random>
 #include <set>
 
-#include "query/direction_cone.h"
-#include "query/feature_contact.h"
+#include "query/features/direction_cone.h"
+#include "query/features/feature_contact.h"
 #include "support/random_draw.h"
 #include "support/screw.h"
 #include "vps/contact_tolerances.h"

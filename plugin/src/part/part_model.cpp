@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "mesh/interior.h"
 #include "mesh/mesh_edges.h"
-#include "mesh/mesh_faults.h"
+#include "mesh/repair/mesh_faults.h"
+#include "mesh/solid/interior.h"
 #include "vps/mesh_repair.h"
 
 namespace vps {

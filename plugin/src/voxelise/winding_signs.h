@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "mesh/interior.h"
+#include "mesh/solid/interior.h"
 #include "voxmap/voxmap_layout.h"
 
 namespace vps {

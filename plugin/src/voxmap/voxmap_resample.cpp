@@ -7,8 +7,8 @@
 #include <bit>
 #include <cmath>
 
+#include "voxmap/kernels/read_kernel.h"
 #include "voxmap/map_limits.h"
-#include "voxmap/read_kernel.h"
 #include "voxmap/voxmap_access.h"
 #include "voxmap/voxmap_sampler.h"
 #include "vps/errors.h"

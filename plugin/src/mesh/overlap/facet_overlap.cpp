@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mesh/overlap_search.h"
+#include "mesh/overlap/overlap_search.h"
 
 #include <algorithm>
 #include <array>

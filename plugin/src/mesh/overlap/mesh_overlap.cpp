@@ -7,7 +7,7 @@
 
 #include "mesh/box_tree.h"
 #include "mesh/mesh_edges.h"
-#include "mesh/overlap_search.h"
+#include "mesh/overlap/overlap_search.h"
 #include "vps/mesh.h"
 
 namespace vps {

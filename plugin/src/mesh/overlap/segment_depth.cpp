@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "mesh/overlap_search.h"
+#include "mesh/overlap/overlap_search.h"
 
 namespace vps {
 

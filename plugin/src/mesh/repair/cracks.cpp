@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mesh/mesh_faults.h"
+#include "mesh/repair/mesh_faults.h"
 
 #include <algorithm>
 #include <cmath>

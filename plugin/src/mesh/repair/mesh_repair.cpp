@@ -12,9 +12,9 @@
 
 #include "mesh/box_tree.h"
 #include "mesh/mesh_edges.h"
-#include "mesh/mesh_faults.h"
-#include "mesh/shell_nesting.h"
-#include "mesh/shell_union.h"
+#include "mesh/repair/mesh_faults.h"
+#include "mesh/union/shell_nesting.h"
+#include "mesh/union/shell_union.h"
 #include "vps/mesh_distance.h"
 #include "vps/winding_number.h"
 

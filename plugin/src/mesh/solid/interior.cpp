@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mesh/interior.h"
+#include "mesh/solid/interior.h"
 
 #include <algorithm>
 #include <cmath>

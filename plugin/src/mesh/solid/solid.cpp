@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "mesh/interior.h"
+#include "mesh/solid/interior.h"
 #include "vps/mesh_repair.h"
 
 namespace vps {

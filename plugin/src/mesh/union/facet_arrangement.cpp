@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mesh/facet_arrangement.h"
+#include "mesh/union/facet_arrangement.h"
 
 #include <algorithm>
 #include <cmath>

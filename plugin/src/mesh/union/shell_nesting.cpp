@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mesh/shell_nesting.h"
+#include "mesh/union/shell_nesting.h"
 
 #include <cmath>
 #include <utility>
 
-#include "mesh/facet_arrangement.h"
-#include "mesh/shell_pieces.h"
-#include "mesh/shell_union.h"
 #include "mesh/triangle_distance.h"
+#include "mesh/union/facet_arrangement.h"
+#include "mesh/union/shell_pieces.h"
+#include "mesh/union/shell_union.h"
 
 namespace vps {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mesh/shell_pieces.h"
+#include "mesh/union/shell_pieces.h"
 
 #include <algorithm>
 #include <span>
 
 #include "mesh/box_tree.h"
-#include "mesh/facet_arrangement.h"
 #include "mesh/mesh_edges.h"
+#include "mesh/union/facet_arrangement.h"
 
 namespace vps {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mesh/shell_union.h"
+#include "mesh/union/shell_union.h"
 
 #include <tbb/parallel_for.h>
 
@@ -11,10 +11,10 @@
 #include <span>
 
 #include "mesh/box_tree.h"
-#include "mesh/facet_arrangement.h"
 #include "mesh/mesh_edges.h"
-#include "mesh/shell_pieces.h"
 #include "mesh/triangle_distance.h"
+#include "mesh/union/facet_arrangement.h"
+#include "mesh/union/shell_pieces.h"
 #include "vps/winding_number.h"
 
 namespace vps {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "query/curved_features.h"
+#include "query/features/curved_features.h"
 
 #include <array>
 

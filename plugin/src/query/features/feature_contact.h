@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-#include "query/feature_pair.h"
+#include "query/features/feature_pair.h"
 #include "vps/feature_motion.h"
 #include "vps/feature_set.h"
 #include "vps/pose.h"

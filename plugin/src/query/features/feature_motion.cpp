@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "query/feature_contact.h"
-#include "query/feature_pair.h"
-#include "query/motion_tube.h"
-#include "query/touch_search.h"
+#include "query/features/feature_contact.h"
+#include "query/features/feature_pair.h"
+#include "query/features/touch_search.h"
+#include "query/motion/motion_tube.h"
 #include "vps/contact_tolerances.h"
 
 namespace vps {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "query/feature_pair.h"
+#include "query/features/feature_pair.h"
 
 #include <algorithm>
 

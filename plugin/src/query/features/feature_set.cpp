@@ -7,8 +7,8 @@
 
 #include "mesh/mesh_edges.h"
 #include "mesh/normals.h"
-#include "query/curved_features.h"
-#include "query/touch_search.h"
+#include "query/features/curved_features.h"
+#include "query/features/touch_search.h"
 #include "vps/contact_tolerances.h"
 #include "vps/edge_tree.h"
 

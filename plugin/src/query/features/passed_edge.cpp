@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "query/feature_contact.h"
+#include "query/features/feature_contact.h"
 
 #include <algorithm>
 #include <limits>
 
-#include "query/direction_cone.h"
+#include "query/features/direction_cone.h"
 #include "vps/contact_tolerances.h"
 
 namespace vps {

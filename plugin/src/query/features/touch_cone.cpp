@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "query/direction_cone.h"
+#include "query/features/direction_cone.h"
 
 #include <algorithm>
 #include <vector>

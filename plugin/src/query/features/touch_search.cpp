@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "query/touch_search.h"
+#include "query/features/touch_search.h"
 
 #include <algorithm>
 #include <cmath>
 #include <span>
 
-#include "query/direction_cone.h"
+#include "query/features/direction_cone.h"
 #include "vps/contact_tolerances.h"
 #include "vps/feature_set.h"
 

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "query/direction_cone.h"
-#include "query/edge_pair_search.h"
+#include "query/features/direction_cone.h"
+#include "query/motion/edge_pair_search.h"
 #include "vps/mesh.h"
 
 namespace vps {

@@ -6,8 +6,8 @@
 #include <optional>
 #include <span>
 
-#include "query/direction_cone.h"
-#include "query/touch_search.h"
+#include "query/features/direction_cone.h"
+#include "query/features/touch_search.h"
 #include "vps/contact_tolerances.h"
 #include "vps/feature_set.h"
 

@@ -7,10 +7,10 @@
 
 #include "mesh/mesh_edges.h"
 #include "mesh/normals.h"
-#include "query/curved_features.h"
-#include "query/edge_pair_search.h"
-#include "query/feature_pair.h"
-#include "query/motion_tube.h"
+#include "query/features/curved_features.h"
+#include "query/features/feature_pair.h"
+#include "query/motion/edge_pair_search.h"
+#include "query/motion/motion_tube.h"
 #include "vps/contact_tolerances.h"
 
 namespace vps {

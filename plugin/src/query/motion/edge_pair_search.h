@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "query/feature_pair.h"
+#include "query/features/feature_pair.h"
 #include "vps/edge_tree.h"
 
 namespace vps {

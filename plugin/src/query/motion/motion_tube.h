@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "query/way.h"
+#include "query/motion/way.h"
 
 namespace vps {
 

@@ -10,7 +10,7 @@
 #include <limits>
 #include <utility>
 
-#include "query/leaf_walk.h"
+#include "query/points/leaf_walk.h"
 #include "vps/contact_tolerances.h"
 #include "vps/query.h"
 #include "vps/query_memory.h"

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "query/contact_normals.h"
-#include "query/leaf_walk.h"
+#include "query/points/contact_normals.h"
+#include "query/points/leaf_walk.h"
 #include "voxmap/voxmap_sampler.h"
 
 namespace vps {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "query/contact_normals.h"
+#include "query/points/contact_normals.h"
 
 namespace vps {
 namespace {

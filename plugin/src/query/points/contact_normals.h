@@ -2,7 +2,7 @@
 // Computes normals at touching points, several at a time.
 #pragma once
 
-#include "query/leaf_walk.h"
+#include "query/points/leaf_walk.h"
 #include "vps/query.h"
 
 namespace vps {

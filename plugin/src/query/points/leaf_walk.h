@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "voxmap/read_kernel.h"
+#include "voxmap/kernels/read_kernel.h"
 #include "vps/pointshell.h"
 #include "vps/voxmap.h"
 

@@ -8,9 +8,9 @@
 #include <cmath>
 #include <limits>
 
-#include "query/coherent_walk.h"
-#include "query/contact_collector.h"
-#include "query/leaf_walk.h"
+#include "query/points/coherent_walk.h"
+#include "query/points/contact_collector.h"
+#include "query/points/leaf_walk.h"
 #include "voxmap/voxmap_layout.h"
 #include "voxmap/voxmap_sampler.h"
 

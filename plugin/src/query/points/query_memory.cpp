@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "query/coherent_walk.h"
+#include "query/points/coherent_walk.h"
 
 namespace vps {
 

@@ -3,8 +3,8 @@
 // in both directions of a pair.
 #include <algorithm>
 
-#include "query/coherent_walk.h"
-#include "query/wrench_collector.h"
+#include "query/points/coherent_walk.h"
+#include "query/points/wrench_collector.h"
 #include "vps/query.h"
 
 namespace vps {

@@ -5,8 +5,8 @@
 #include <limits>
 #include <utility>
 
-#include "query/coherent_walk.h"
-#include "query/contact_collector.h"
+#include "query/points/coherent_walk.h"
+#include "query/points/contact_collector.h"
 
 namespace vps {
 

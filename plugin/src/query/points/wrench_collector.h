@@ -11,8 +11,8 @@
 #include <cmath>
 #include <limits>
 
-#include "query/contact_normals.h"
-#include "query/leaf_walk.h"
+#include "query/points/contact_normals.h"
+#include "query/points/leaf_walk.h"
 #include "vps/query.h"
 
 namespace vps {

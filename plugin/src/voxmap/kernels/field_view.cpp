@@ -2,7 +2,7 @@
 // A map and a pose in the form that the kernels use.
 #include <cmath>
 
-#include "voxmap/read_kernel.h"
+#include "voxmap/kernels/read_kernel.h"
 #include "voxmap/voxmap_access.h"
 
 namespace vps {

@@ -9,7 +9,7 @@
 #include <new>
 #include <vector>
 
-#include "voxmap/read_kernel.h"
+#include "voxmap/kernels/read_kernel.h"
 #include "voxmap/voxmap_layout.h"
 #include "vps/voxmap.h"
 

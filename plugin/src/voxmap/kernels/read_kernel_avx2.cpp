@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-#include "voxmap/read_kernel.h"
+#include "voxmap/kernels/read_kernel.h"
 
 namespace vps {
 namespace {
@@ -59,7 +59,7 @@ inline void fetchPairs(At at, Ints* pairs) {
   pairs[3] = gather(kX + kY);
 }
 
-#include "voxmap/read_kernel.inc"
+#include "voxmap/kernels/read_kernel.inc"
 
 }  // namespace
 

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "voxmap/read_kernel.h"
+#include "voxmap/kernels/read_kernel.h"
 
 namespace vps {
 namespace {
@@ -92,7 +92,7 @@ inline void fetchPairs(At at, Ints* pairs) {
   }
 }
 
-#include "voxmap/read_kernel.inc"
+#include "voxmap/kernels/read_kernel.inc"
 
 }  // namespace
 

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <cstring>
 
-#include "voxmap/read_kernel.h"
+#include "voxmap/kernels/read_kernel.h"
 
 namespace vps {
 namespace {
@@ -85,7 +85,7 @@ inline void fetchPairs(At at, Ints* pairs) {
   pairs[3] = gather(kX + kY);
 }
 
-#include "voxmap/read_kernel.inc"
+#include "voxmap/kernels/read_kernel.inc"
 
 }  // namespace
 
