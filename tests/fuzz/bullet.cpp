@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Interprets bytes as a sequence of steps, swapped shapes, bodies that come and go, and queries in a Bullet
-// world: nothing crashes, and afterwards a part still rests on a plate.
+// Interprets bytes as a sequence of steps, swapped shapes, bodies that are added and removed, and queries in
+// a Bullet world. Nothing may crash, and afterwards a part still rests on a plate.
 #include "fuzz.h"
 #include "support/hostile_world.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Interprets bytes as faults of a dual arm's hardware, physics and operator, tick by tick: the force stays
-// within its limit, is zero after a fault, and returns after rearm().
+// Interprets bytes as faults of a dual arm's hardware, physics and operator, tick by tick. The force must
+// stay within its limit, be zero after a fault, and return after rearm().
 #include "fuzz.h"
 #include "support/hostile_arm.h"
 #include "vps/errors.h"
@@ -23,7 +23,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
 }
 
 std::vector<std::string> vps::fuzz::seeds() {
-  // No fault; each fault in turn; gains that are not numbers; a parameter file.
+  // Seeds: no fault; each fault in turn; gains that are not numbers; a parameter file.
   std::string calm = {1, char(128)}, all = {2, char(140)}, bad_gains = {0, 100};
   for (int i = 0; i < 40; ++i) calm.append({31, 0});
   for (char code = 0; code < 23; ++code) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Runs a fuzz entry without libFuzzer, so that any compiler's sanitizers can watch: every seed, every seed
-// cut at every byte, then random changes of seeds for some seconds. The same changes each time.
+// cut at every byte, then random changes of seeds for some seconds. The changes are the same in each run.
 //
-//   fuzz_ply [seconds] [file ...]    with files: only those, to see a failure again
+//   fuzz_ply [seconds] [file ...]    with files: runs only these, to reproduce a failure
 //
 // An input that fails is kept as fuzz-failed in the working folder.
 #include <sys/time.h>
@@ -39,7 +39,7 @@ void onSignal(int signal) {
   _exit(1);
 }
 
-/// Sends SIGPROF after so many seconds of processor time, whatever else the machine does; 0: no longer.
+/// Sends SIGPROF after this many seconds of the program's own processor time; 0 cancels it.
 void limitTime(int seconds) {
   itimerval timer{};
   timer.it_value.tv_sec = seconds;
@@ -53,7 +53,8 @@ void runOne(std::string bytes) {
   limitTime(0);
 }
 
-/// One to four changes: a bit, a byte, a number, a piece cut out, doubled or taken from another seed.
+/// Makes one to four changes: a bit, a byte, a number, or a piece that is cut out, doubled or taken from
+/// another seed.
 std::string changed(std::string bytes, const std::string& other, std::mt19937& random) {
   const auto below = [&](std::size_t n) { return n == 0 ? 0 : random() % n; };
   for (std::size_t changes = 1 + below(4); changes > 0 && !bytes.empty(); --changes) {

@@ -10,12 +10,12 @@ using namespace vps::scenes;
 
 constexpr std::size_t kEnvelope = 28;
 
-/// What is read has the bytes that came, so that nothing was made up or left out.
+/// Writing the message that was read gives the same bytes again, so that nothing was invented or lost.
 template <typename Message>
 void read(std::string_view bytes) {
   MessageReader reader;
   Message message;
-  // A dense state is read after a whole one of its sender only.
+  // A dense state can be read only after a whole state of its sender.
   if (isDense(bytes)) {
     MessageWriter whole(denseHead(bytes, 0).sender);
     reader.read(whole.write(Message{}), message);
@@ -26,7 +26,7 @@ void read(std::string_view bytes) {
     return;
   }
   MessageWriter writer(reader.envelope().sender);
-  constexpr char kCompactBit = static_cast<char>(0x80);  // of dense ones, too
+  constexpr char kCompactBit = static_cast<char>(0x80);  // dense states have it too
   if ((bytes[0] & kCompactBit) == 0)
     vps::fuzz::require(writer.write(message).substr(kEnvelope) == bytes.substr(kEnvelope),
                        "a message is read back unchanged");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reads arbitrary bytes as a recording: one that opens can be replayed and written as tables.
+// Reads arbitrary bytes as a recording; a recording that opens can be replayed and written as tables.
 #include "vps_device/recording.h"
 
 #include "fuzz.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reads the bytes as a voxmap's .vdb. The checksum refuses a changed file of ours before OpenVDB, which
-// trusts the file, reads it. Other files go to OpenVDB unchecked, and are not fuzzed here.
+// Reads the bytes as a voxmap's .vdb. A changed file of saveVdb() is refused by its checksum before OpenVDB,
+// which trusts the file, reads it. Other files go to OpenVDB unchecked, and are not fuzzed here.
 #include <cmath>
 
 #include "fuzz.h"

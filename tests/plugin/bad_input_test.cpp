@@ -61,8 +61,7 @@ std::string refusalOf(Do what) {
 
 TEST(BadInput, ResamplingTooFinelyIsRefusedBeforeMemoryIsAllocated) {
   const VoxMap box = buildVoxMap(makeBox(Vec3::Constant(0.1)), {1e-3, 4});
-  // Bricks of 8 um over 50 mm and the band on each side: floor(6250.4) + 2 to the right, the same to the
-  // left.
+  // Bricks of 8 um over 50 mm and over the band on each side: floor(6250.4) + 2 in each direction.
   const std::string text = refusalOf([&] { static_cast<void>(resampledVoxMap({&box, {}}, {1e-6, 3})); });
   EXPECT_NE(text.find("12504 x 12504 x 12504"), std::string::npos) << text;
   double times = 0;
@@ -149,7 +148,7 @@ TEST(BadInput, AVoxelSizeBeyondTheRangeOfFloatsIsRefused) {  // found by fuzzing
   EXPECT_NE(refusal(mesh, {1e-71, 4}).find("is the unit right"), std::string::npos);
 }
 
-/// A rotated tube of any size: signs and distances are as exact as at the usual size.
+/// A rotated tube of any size has signs and distances as exact as at the usual size.
 void expectRightAtSize(double size_m) {
   const Mesh unit = transformed(makeTube(1, 0.6, 1.2, 48), RandomPoints(2).pose(1));
   Mesh mesh = unit;
@@ -163,7 +162,7 @@ void expectRightAtSize(double size_m) {
     const Vec3 at = (bounds(unit).center() + random.inBox(0.7 * bounds(unit).size())) * 20;
     const Vec3 p = at.array().round() / 20;
     const double expected = std::clamp(truth.signedDistance(p), -0.2, 0.2) * size_m;
-    // Half a quantum, the rounding of floats at the band, and of the node's position.
+    // Half a quantum, the rounding of floats at the band, and the rounding of the node's position.
     ASSERT_NEAR(map.distance(size_m * p), expected, 0.51 * map.quantum_m()) << size_m;
   }
 }

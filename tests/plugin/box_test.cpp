@@ -19,8 +19,8 @@ Box drawnBox(std::mt19937& random) {
   return box;
 }
 
-// The nearest point of a box is found by clamping; alternating between two boxes ends at their nearest
-// points.
+// Truth: the nearest point of a box is found by clamping; clamping alternately to two boxes converges to
+// their nearest points.
 TEST(Box, DistanceIsThatOfTheNearestPoints) {
   std::mt19937 random(1);
   int apart = 0;
@@ -41,7 +41,7 @@ TEST(Box, DistanceIsThatOfTheNearestPoints) {
   EXPECT_EQ(distance_m(Box(), drawnBox(random)), std::numeric_limits<double>::infinity());
 }
 
-// A turned box lies in the box around it, so no point of it is nearer.
+// A turned box lies in the box around it, so the distance to the latter is a lower bound.
 TEST(Box, NoPointOfATurnedBoxIsNearerThanTheBoxAroundIt) {
   std::mt19937 random(2);
   std::normal_distribution<double> normal;

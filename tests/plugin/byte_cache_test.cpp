@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bytes are found as they were kept, or not at all.
+// The byte cache returns bytes as they were kept, or nothing.
 #include "vps/byte_cache.h"
 
 #include <gtest/gtest.h>

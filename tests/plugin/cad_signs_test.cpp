@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Signs of voxmaps of real, faulty CAD exports, against rays and against all triangles' solid angles.
+// Signs of voxmaps of real, faulty CAD exports, compared with rays and with the solid angles of all
+// triangles.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -26,7 +27,7 @@ std::string bytesOf(const fs::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// Three corners a facet, in the file's unit times unit_m.
+/// Reads three corners for each facet, in the file's unit times unit_m.
 Mesh readStl(const fs::path& file, double unit_m) {
   const std::string bytes = bytesOf(file);
   Mesh mesh;
@@ -72,7 +73,7 @@ Mesh readObj(const fs::path& file) {
   return mesh;
 }
 
-/// VRML as KiCad writes it: pairs of "coordIndex [...]" and "point [...]", one a face.
+/// Reads VRML as KiCad writes it: pairs of "coordIndex [...]" and "point [...]", one pair for each face.
 Mesh readWrl(const fs::path& file, double unit_m) {
   std::string text = bytesOf(file);
   std::replace(text.begin(), text.end(), ',', ' ');
@@ -94,7 +95,7 @@ Mesh readWrl(const fs::path& file, double unit_m) {
   return mesh;
 }
 
-/// Facets that a ray crosses.
+/// The number of facets that a ray crosses.
 int crossings(const Mesh& mesh, const Vec3& p, const Vec3& way) {
   int count = 0;
   for (const auto& t : mesh.triangles) {
@@ -111,9 +112,9 @@ struct Agreement {
   std::size_t tested = 0, against_windings = 0, doubtful = 0, against_rays = 0;
 };
 
-/// Compares the signs of a map's nodes, at random positions in and around the part, with the winding number
-/// of all triangles (of the cleaned mesh) and with the parity of eleven rays (of the mesh as given), where
-/// nine agree.
+/// Compares the signs of a map's nodes, at random positions in and around the part, with two references: the
+/// winding number of all triangles (of the cleaned mesh), and the parity of eleven rays (of the mesh as
+/// given) if at least nine agree.
 Agreement compare(const std::string& name, const Mesh& mesh, int voxels) {
   Agreement found;
   const double voxel_m = bounds(mesh).size().maxCoeff() / voxels;
@@ -124,7 +125,7 @@ Agreement compare(const std::string& name, const Mesh& mesh, int voxels) {
   std::vector<Vec3> ways;
   for (int i = 0; i < 11; ++i) ways.push_back(random.inBox(Vec3::Ones()).normalized());
   for (int n = 0; n < 400; ++n) {
-    // Half of them near the surface, half anywhere.
+    // Half of the positions near the surface, half anywhere.
     Vec3 p = bounds(mesh).center() + random.inBox(0.6 * bounds(mesh).size());
     if (n % 2) {
       const auto pick = static_cast<std::size_t>((0.5 + 0.5 * random.unit()) * 0.999 *

@@ -23,7 +23,7 @@ class Faults {
   Faults(const Mesh& mesh, unsigned seed) : mesh_(mesh), random_(seed) {}
 
   void unweld() { mesh_ = faulty::unwelded(mesh_, 0); }
-  /// Moves a share of the corners of a soup.
+  /// Moves some of the corners of an unconnected set of facets.
   void crack(double width_m) {
     unweld();
     const double share = uniform(0.1, 1);
@@ -69,17 +69,18 @@ class Faults {
   std::mt19937 random_;
 };
 
-/// Corners along a crack are this far from where they were, along each axis.
+/// Corners along a crack are moved by this much along each axis.
 constexpr double kCrack_m = 0.5e-6;
 
 struct Combination {
   const char* name;
   void (*make)(Faults& faults);
-  /// Half of a cavity's facets may be turned. Nothing then tells it from a solid within the solid.
+  /// Half of a cavity's facets may be turned; nothing then distinguishes the cavity from a solid within the
+  /// solid.
   bool turns_many = false;
 };
 
-// In the order in which they are made.
+// The faults, in the order in which they are made.
 constexpr Combination kCombinations[] = {
     {"CracksAndOneTurned", [](Faults& f) { f.crack(kCrack_m), f.turnOne(); }},
     {"CracksAndAThirdTurned", [](Faults& f) { f.crack(kCrack_m), f.turnShare(0.33); }, true},
@@ -120,13 +121,13 @@ Mesh tetrahedron() {
   return transformed(mesh, faulty::pose());
 }
 
-/// A ball in a block, as a cavity.
+/// A block with a cavity in the form of a ball.
 Mesh hollow() {
   return faulty::joined(faulty::block({0.012, 0.014, 0.016}),
                         faulty::turned(transformed(makeSphere(0.004, 1), faulty::pose())));
 }
 
-/// VPS_FAULT_SEEDS=1000 takes minutes.
+/// The number of seeds; VPS_FAULT_SEEDS=1000 takes minutes.
 unsigned seedCount() {
   const char* given = std::getenv("VPS_FAULT_SEEDS");
   return given != nullptr ? static_cast<unsigned>(std::atoi(given)) : 20;

@@ -39,8 +39,8 @@ TEST(CouplingLaw, PullsThePartTowardsTheProxyByHookesLaw) {
   EXPECT_LT((F.tau - 3 * r).norm(), kEps);
 }
 
-// The energy is the work of the spring's force from zero to this stretch: k x^2 / 2 up to the limit, then
-// force times the remaining stretch.
+// The energy is the work of the spring's force from zero to the stretch: k x^2 / 2 up to the limit, then the
+// constant force times the remaining stretch.
 TEST(CouplingLaw, EnergyIsTheWorkOfTheLimitedSprings) {
   CouplingGains gains;
   gains.k_N_per_m = 1000;

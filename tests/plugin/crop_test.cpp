@@ -73,7 +73,7 @@ TEST(Crop, ACroppedMapReadsTheSameBitsInItsBoxesAndUsesLessMemory) {
     ASSERT_EQ(pair.map.normal(p), cropped.normal(p));
     ASSERT_EQ(pair.map.leastDistance(p), cropped.leastDistance(p));
   }
-  // The region holds the bore's upper half and none of the outer wall: less than half of the surface.
+  // The region contains the bore's upper half and none of the outer wall: less than half of the surface.
   EXPECT_LT(cropped.brickCount(), pair.map.brickCount() / 2);
   EXPECT_LT(cropped.memoryBytes(), pair.map.memoryBytes());
 }

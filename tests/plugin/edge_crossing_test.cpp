@@ -17,7 +17,8 @@
 namespace vps {
 namespace {
 
-// Lengths here are of the order of 1 and sums of a few products: 1e-12 is thousands of roundings.
+// Lengths in this file are of the order of 1 and results are sums of a few products: 1e-12 is thousands of
+// roundings.
 constexpr double kRounding = 1e-12;
 
 EdgeSet edgesOf(const Mesh& mesh) {
@@ -51,7 +52,8 @@ TEST(EdgeSet, ABoxHasTwelveEdgesAndNoneOnItsDiagonals) {
 }
 
 TEST(EdgeSet, GroovesAndFacetBordersOfRoundFacesAreNotEdges) {
-  // A flanged bush of 24 flats, 15 degrees apart. Its five convex rims, and not the root of the flange.
+  // A flanged bush of 24 flats, 15 degrees apart. Expected: its five convex rims, but not the root of the
+  // flange.
   const EdgeSet edges = edgesOf(test::lathe({{6, 0}, {15, 0}, {15, 4}, {9, 4}, {9, 20}, {6, 20}}, 24));
   EXPECT_EQ(edges.segments().size(), 5U * 24U);
 }
@@ -68,12 +70,12 @@ TEST(EdgeSet, FindsTheSegmentsAtAPoint) {
   EXPECT_EQ(countAt({0.5, 0, 0}), 0) << "the middle of a face";
 }
 
-// Two bars standing on edge, one across the other.
+// Two bars that stand on an edge, one across the other.
 TEST(EdgeCrossing, OfTwoBarsLiesAtTheirContact) {
   const EdgeSet along_x = edgesOf(makeBox({10, 1, 1})), along_y = edgesOf(makeBox({1, 10, 1}));
   const double half = std::sqrt(0.5);  // from the axis to an edge
   for (const double gap : {0.01, 0.0, -0.01}) {
-    // In the frame of the upper bar, which is turned 45 degrees about its length.
+    // In the frame of the upper bar, which is turned by 45 degrees about its length.
     const Pose X_W0(turned(Vec3::UnitX(), std::numbers::pi / 4), Vec3(0.3, 0.2, half + gap)),
         X_W1(turned(Vec3::UnitY(), std::numbers::pi / 4), Vec3(0, 0, -half));
     const auto found = crossings(along_x, along_y, X_W0.inverse() * X_W1, 0.05);
@@ -169,8 +171,8 @@ bool pierces(const Vec3& from, const Vec3& to, const Vec3& size) {
   return first < last;
 }
 
-// The distance of separate boxes is that of a corner to the other box or that of two edges; where no corner
-// is nearest, a crossing gives it, and no crossing gives much less.
+// The distance of separate boxes is that of a corner to the other box, or that of two edges. If no corner is
+// nearest, a crossing gives the distance, and no crossing gives much less.
 TEST(EdgeCrossing, GivesTheDistanceOfBoxesWhereNoCornerIsNearest) {
   const Vec3 size0(1, 2, 3), size1(2, 1.5, 1);
   const Mesh box0 = makeBox(size0), box1 = makeBox(size1);
@@ -183,7 +185,7 @@ TEST(EdgeCrossing, GivesTheDistanceOfBoxesWhereNoCornerIsNearest) {
     double corner = 1e300, edge = 1e300, sine = 0;
     for (const Vec3& v : box1.vertices) corner = std::min(corner, to0.signedDistance(X_01 * v));
     for (const Vec3& v : box0.vertices) corner = std::min(corner, to1.signedDistance(X_01.inverse() * v));
-    // Exhaustive: nearest points of segments, and the distance of their lines.
+    // Reference by exhaustive search: nearest points of segments, and the distance of their lines.
     for (const EdgeSegment& s0 : edges0.segments())
       for (const EdgeSegment& s1 : edges1.segments()) {
         const Vec3 a = s0.from, d0 = s0.to - s0.from, b = X_01 * s1.from, d1 = X_01.R * (s1.to - s1.from);
@@ -196,7 +198,7 @@ TEST(EdgeCrossing, GivesTheDistanceOfBoxesWhereNoCornerIsNearest) {
         sine = d0.normalized().cross(d1.normalized()).norm();
       }
     if (corner <= 0 || edge >= corner || edge > 0.5 || sine < 0.1) continue;  // found by points
-    // Overlapping boxes without a corner inside have no distance: an edge pierces a face.
+    // The distance of overlapping boxes without a corner inside is not defined: an edge pierces a face.
     bool overlaps = false;
     for (const EdgeSegment& s : edges0.segments())
       overlaps |= pierces(X_01.inverse() * s.from, X_01.inverse() * s.to, size1);
@@ -206,8 +208,8 @@ TEST(EdgeCrossing, GivesTheDistanceOfBoxesWhereNoCornerIsNearest) {
     for (const EdgeCrossing& c : crossings(edges0, edges1, X_01, 0.5)) {
       if (c.gap_m < 0) continue;
       nearest = std::min(nearest, std::abs(c.gap_m - edge));
-      // A crossing may lie past the ends of both edges, by a tenth of its gap and a micrometre; from there it
-      // is that far along each edge to points of the bodies.
+      // A crossing may lie past the ends of both edges, by a tenth of its gap and a micrometre; it is then
+      // that far along each edge from points of the bodies.
       EXPECT_LE(edge, std::hypot(c.gap_m, 2 * (0.1 * c.gap_m + 1e-6)) + 1e3 * kRounding);
     }
     EXPECT_LE(nearest, 1e3 * kRounding);
@@ -216,11 +218,11 @@ TEST(EdgeCrossing, GivesTheDistanceOfBoxesWhereNoCornerIsNearest) {
   EXPECT_GT(edge_cases, 100);
 }
 
-// A bar's edge that goes around a rim of chords always crosses it, at the joints too.
+// A bar's edge that goes around a rim of chords always crosses the rim, even at the joints.
 TEST(EdgeCrossing, IsFoundAtTheJointsOfARim) {
   const EdgeSet disc = edgesOf(test::lathe({{0, 0}, {1, 0}, {1, 1}, {0, 1}}, 96)),
                 bar = edgesOf(makeBox({1, 4, 1}));
-  // The bar lies on edge across the rim of the disc's top face.
+  // The bar lies on its edge across the rim of the disc's top face.
   for (int k = 0; k <= 400; ++k) {
     const double angle_rad = 0.2 * k / 400;
     const Pose X_W1(turned(Vec3::UnitY(), std::numbers::pi / 4), Vec3(0.9, 0, 1 + std::sqrt(0.5) + 1e-7));
@@ -234,8 +236,9 @@ TEST(EdgeCrossing, IsFoundAtTheJointsOfARim) {
 }
 
 TEST(EdgeCrossing, OfTwoHollowEdgesAtTheirJointsIsFoundAtAnyDepth) {
-  // Two links of a chain: each one's inner edge is a polygon, and they hang in each other's corner. The lines
-  // of the segments then cross beyond the joint, by the gap times the tangent of half the turn of 17 degrees.
+  // Two links of a chain: each link's inner edge is a polygon, and they hang in each other's corner. The
+  // lines of the segments then cross beyond the joint, by the gap times the tangent of half the turn of 17
+  // degrees.
   const double half_rad = 8.5 * std::numbers::pi / 180;
   const auto hollow = [&](const Mat3& R) {
     std::vector<EdgeSegment> segments;
@@ -260,8 +263,8 @@ TEST(EdgeCrossing, OfTwoHollowEdgesAtTheirJointsIsFoundAtAnyDepth) {
   }
 }
 
-// Two roofs whose ridges cross at a right angle, 100 um apart: within the cutoff only if they come nearer in
-// the step, and not if they have passed each other's ends by then.
+// Two roofs whose ridges cross at a right angle, 100 um apart. They are within the cutoff only if they come
+// nearer in the step, and not if they have passed each other's ends by the end of the step.
 TEST(FindCrossings, EdgesThatComeNearInTheStepAreFound) {
   const double gap_m = 100e-6, cutoff_m = 20e-6;
   EdgeSegment s;
@@ -298,7 +301,7 @@ struct NutAndRod {
           rod = edgesOf(test::makeThreadedRod(thread));
 };
 
-// A thread's rod that turns into its nut, fast and slowly, and jumps.
+// The rod of a thread turns into its nut, fast and slowly, and jumps.
 TEST(FindCrossings, AMemoryDoesNotChangeTheAnswer) {
   const NutAndRod parts;
   const test::ThreadShape& thread = parts.thread;
@@ -313,7 +316,7 @@ TEST(FindCrossings, AMemoryDoesNotChangeTheAnswer) {
   for (int i = 0; i < 300; ++i) {
     const Pose X = poseAt(i);
     turn_rad += i % 100 == 50 ? 1.0 : i < 150 ? 1e-3 : 2e-2;
-    // The step is known, or thought to be none.
+    // With the step known, and with a step of zero.
     const CrossingRange range{i % 7 == 0 ? 120e-6 : 30e-6, 60e-6,
                               i % 3 == 0 || i % 100 == 50 ? X : poseAt(i + 1)};
     std::vector<EdgeCrossing> with, without;

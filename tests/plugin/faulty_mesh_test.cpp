@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Voxmaps of faulty meshes against the closed mesh that they were made from.
-// More than 400 lines: each kind of fault is made here, beside the test of it.
+// Voxmaps of faulty meshes, compared with the closed mesh from which the faulty one was made.
+// The file has more than 400 lines because each kind of fault is made beside its test.
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
@@ -30,7 +30,7 @@ using Skip = std::function<bool(const Vec3&)>;
 std::size_t wrongSigns(const VoxMap& map, const Truth& distance_m, const Skip& skip = {}) {
   const double h = map.voxel_m();
   // Half a quantum, and the rounding of the node's own place. A node that is nearer to the surface is stored
-  // as 0, which has no side: its value must be as near to the truth as that.
+  // as 0, which has no side; its value must then be within this of the truth.
   const double rounding_m = 0.51 * map.quantum_m();
   const Eigen::Array3i low = (map.bounds().min / h).array().floor().cast<int>() - 8;
   const Eigen::Array3i high = (map.bounds().max / h).array().ceil().cast<int>() + 8;
@@ -64,7 +64,7 @@ Mesh tube() {
 }
 
 /// A plate of 20 x 20 x 6 mm whose upper face has a square hole of the given size in its middle, and the same
-/// closed; both moved by X.
+/// plate without the hole; both moved by X.
 Mesh plateWithHole(double hole_m, bool is_closed, const Pose& X) {
   const double a = 0.01, b = hole_m / 2, z = 0.003;
   Mesh mesh;
@@ -95,9 +95,9 @@ Mesh plateWithHole(double hole_m, bool is_closed, const Pose& X) {
 
 TEST(FaultyMesh, APlaneHoleOfAnySizeLeavesEverySignRight) {
   // The missing part is plane, so it covers less than half of the solid angle from either side: w stays above
-  // 0.5 inside and below outside, up to the hole. Only the error of the series (0.02 with a margin) blurs the
-  // hole's own plane: over a hole of size a the slope of w is at least 1 / pi a in its middle and larger at
-  // its rim.
+  // 0.5 inside and below 0.5 outside, up to the hole. Only the error of the series (0.02 with a margin) blurs
+  // the hole's own plane: over a hole of size a the slope of w is at least 1 / pi a in its middle and larger
+  // at its rim.
   for (const double hole_voxels : {0.1, 0.5, 1.0, 3.0, 10.0, 30.0}) {
     const double hole_m = hole_voxels * kVoxel_m;
     const Pose X = RandomPoints(3).pose(0.01), X_inverse = X.inverse();
@@ -111,8 +111,8 @@ TEST(FaultyMesh, APlaneHoleOfAnySizeLeavesEverySignRight) {
     EXPECT_EQ(report.open_edges, 4u);
     EXPECT_EQ(report.holes, 1u);
     EXPECT_TRUE(report.signed_by_winding);
-    // Uncertain are the nodes from which the hole covers more than pi, a quarter of the full solid angle:
-    // those nearer than its size.
+    // The sign is uncertain at nodes from which the hole covers more than pi, a quarter of the full solid
+    // angle: nodes nearer than the hole's size.
     EXPECT_EQ(report.certain_share < 1, hole_voxels >= 3) << hole_voxels;
     EXPECT_GT(report.certain_share, 0.8);
   }
@@ -186,14 +186,15 @@ TEST(FaultyMesh, OverlappingShellsAreTheirUnion) {
   EXPECT_TRUE(report.signed_by_winding);
   EXPECT_EQ(report.certain_share, 1);
   EXPECT_EQ(report.united_shells, 2u);
-  // No facet within the other shell is left: there the union is at least as deep as each of the two.
+  // No facet within the other shell is left: in such places the union is at least as deep as each of the two
+  // shells.
   const auto truth = [to_a = distanceTo(a), to_b = distanceTo(b)](const Vec3& p) {
     return std::min(to_a(p), to_b(p));
   };
   EXPECT_EQ(wrongSigns(map, truth), 0u);
 }
 
-// Middle and corners of each facet of the floor are in a wall, and what is between them is not.
+// The middle and the corners of each facet of the floor lie in a wall, and the area between them does not.
 TEST(FaultyMesh, AFloorUnderFourWallsStaysWhereItIsFree) {
   const auto block = [](const Vec3& min, const Vec3& max) {
     return transformed(makeBox(max - min), Pose::translation(0.5 * (min + max)));
@@ -251,7 +252,7 @@ TEST(FaultyMesh, AMeshThatCrossesItselfIsItsUnion) {
   VoxMap map;
   const MeshReport report = reportOf(hose, &map);
   EXPECT_TRUE(report.signed_by_winding);
-  // Truth: crossings of a ray, counted with their sign.
+  // Truth: crossings of a ray, each counted with its sign.
   const auto side = [&](const Vec3& p) {
     int windings = 0;
     const Vec3 way = Vec3(0.3, 0.2, 0.93).normalized();
@@ -268,8 +269,8 @@ TEST(FaultyMesh, AMeshThatCrossesItselfIsItsUnion) {
 }
 
 TEST(FaultyMesh, AnInternalWallIsRemovedFromTheSurface) {
-  // A cuboid in two halves that share the four corners of a wall, once with one wall and once with two back
-  // to back.
+  // A cuboid in two halves that share the four corners of a wall: once with one wall, and once with two walls
+  // back to back.
   Mesh closed;
   for (const double x : {-0.01, 0.0, 0.01})
     for (const auto& [y, z] : {std::pair{-0.004, -0.004}, {0.004, -0.004}, {0.004, 0.004}, {-0.004, 0.004}})
@@ -307,7 +308,7 @@ TEST(FaultyMesh, DuplicateAndDegenerateTrianglesChangeNothing) {
   VoxMap map;
   EXPECT_EQ(reportOf(mesh, &map).duplicate_triangles, 20u);
   EXPECT_EQ(wrongSigns(map, distanceTo(tube())), 0u);
-  // A side of a facet gets a corner in its middle and the sliver that fills the gap.
+  // A side of a facet gets a corner in its middle, and a sliver fills the gap.
   mesh = tube();
   const auto [a, b, c] = mesh.triangles[7];
   mesh.vertices.push_back(0.5 * (mesh.vertices[a] + mesh.vertices[b]));
@@ -345,7 +346,7 @@ TEST(FaultyMesh, TJunctionsAreNotHoles) {
   EXPECT_EQ(wrongSigns(map, distanceTo(tube())), 0u);
 }
 
-/// A box of six faces with their own corners, up to hair_m apart, each face of 2 x 8 x 8 triangles.
+/// A box of six faces, each with corners of its own, up to hair_m apart; each face has 2 x 8 x 8 triangles.
 Mesh partedBox(const Mesh& box, RandomPoints& random, double hair_m, bool has_flipped) {
   Mesh faces;
   for (std::size_t i = 0; i < 6; ++i) {
@@ -378,7 +379,7 @@ TEST(FaultyMesh, OneShellPerFaceIsASolidEvenIfSomeShellsFaceIn) {
     EXPECT_EQ(report.shells, 6u);
     EXPECT_EQ(report.turned_shells, has_flipped ? 1u : 0u);
     EXPECT_EQ(report.joined_corners, 0u);
-    // Cracks of 2 sqrt(3) hairs: nodes that near a face may have either sign.
+    // Cracks of 2 sqrt(3) hairs: a node that near to a face may have either sign.
     const MeshDistance truth(box);
     EXPECT_EQ(wrongSigns(map, distanceTo(box),
                          [&](const Vec3& p) { return std::abs(truth.signedDistance(p)) < 4 * kHair_m; }),
@@ -397,12 +398,12 @@ TEST(FaultyMesh, NarrowCracksAreClosed) {
     EXPECT_EQ(report.open_edges, 0u);
     EXPECT_EQ(report.shells, 1u);
     EXPECT_EQ(report.flipped_facets, has_flipped ? 128u : 0u);
-    // Twelve edges with seven corners of two faces between their ends, and eight corners of three.
+    // Corners that lie apart: seven of two faces on each of twelve edges, and eight of three faces.
     EXPECT_EQ(report.joined_corners, 12u * 7 + 8 * 2);
     EXPECT_GT(report.joined_m, kHair_m / 10);
     EXPECT_LE(report.joined_m, 2 * std::sqrt(3) * kHair_m);
     EXPECT_FALSE(report.signed_by_winding);
-    // Each face has moved by a hair; a corner by up to two.
+    // Each face has moved by a hair, and a corner by up to two hairs.
     for (int i = 0; i < 200; ++i) {
       const Vec3 p = random.inBox(Vec3::Constant(0.02));
       EXPECT_NEAR(solid.signedDistance(p), MeshDistance(box).signedDistance(p), 4 * kHair_m);
@@ -410,8 +411,8 @@ TEST(FaultyMesh, NarrowCracksAreClosed) {
   }
 }
 
-/// A pipe of two open walls, r = 10 and 9 mm, both facing out: its inner wall is flipped, so that winding
-/// numbers are near 2 within, and still above 0.5 some millimetres before its mouths.
+/// A pipe of two open walls, r = 10 and 9 mm, both facing out. Its inner wall is flipped, so that winding
+/// numbers are near 2 within, and still above 0.5 some millimetres in front of its mouths.
 Mesh pipeWithAFlippedWall() {
   Mesh pipe;
   for (const double radius_m : {0.01, 0.009}) {
@@ -429,8 +430,8 @@ Mesh pipeWithAFlippedWall() {
   return pipe;
 }
 
-/// Tests readings a band or more from the surface's box, up to beyond the directory. Normals read two voxels
-/// away.
+/// Tests readings at a band or more from the surface's box, up to beyond the directory. Normals read two
+/// voxels away.
 void expectOutsideBeyondTheBox(const VoxMap& map, double coarsest_m) {
   RandomPoints random(71);
   const Box& box = map.bounds();
@@ -523,7 +524,7 @@ Mesh tetrahedra(int along) {
 }
 
 TEST(FaultyMesh, ManySeparateShellsAreSoundAndAreTurned) {
-  // Comparing all pairs took minutes for half a million shells.
+  // Comparing all pairs would take minutes for half a million shells.
   const Mesh apart = tetrahedra(31);
   const RepairedMesh sound = repairMesh(apart);
   EXPECT_TRUE(sound.is_sound);
@@ -541,7 +542,7 @@ TEST(FaultyMesh, ManySeparateShellsAreSoundAndAreTurned) {
 TEST(FaultyMesh, TwoOverlappingShellsAmongManyAreFound) {
   const Mesh apart = tetrahedra(12);
   for (const std::uint32_t shell : {1u, 700u, 1727u}) {
-    // One reaches into its neighbour, one faces in and lies within its neighbour: a cavity.
+    // One reaches into its neighbour; another faces in and lies within its neighbour, as a cavity.
     Mesh overlapping = apart, hollow = apart;
     for (std::uint32_t v = 4 * shell; v < 4 * shell + 4; ++v) {
       overlapping.vertices[v].z() -= 1.5e-3;

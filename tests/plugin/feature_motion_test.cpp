@@ -66,7 +66,7 @@ TEST(FeatureSet, HasTheCornersAndEdgesOfABox) {
   for (std::uint32_t i = 0; i < 12; ++i) EXPECT_FALSE(a.features.isCurved(i));
 }
 
-/// A prism over the polygon that has its corners at these angles of a circle.
+/// A prism over the polygon with corners at these angles of a circle.
 Mesh prism(const std::vector<double>& angles_rad) {
   const auto count = static_cast<int>(angles_rad.size());
   Mesh mesh = makeCylinder(10e-3, 8e-3, count);
@@ -98,7 +98,7 @@ std::size_t slightEdges(const FeatureSet& features) {
                                                 [](const FeatureEdge& edge) { return edge.is_slight; }));
 }
 
-// Edges of both rims, and those between the sides if these are sharp.
+// Edges of both rims are listed, and edges between the sides only if they are sharp.
 TEST(FeatureSet, SidesThatTurnByLessThanEightDegreesAreACurve) {
   const Body coarse(prism(evenly(40))), fine(prism(evenly(48)));  // 9 and 7.5 degrees
   EXPECT_EQ(coarse.features.edges().size(), 3 * 40u);
@@ -108,8 +108,8 @@ TEST(FeatureSet, SidesThatTurnByLessThanEightDegreesAreACurve) {
   EXPECT_EQ(curvedFacets(fine.features), 2 * 48u);
 }
 
-// A side of length w that turns by an angle stands out by w angle / 8 at its edges: 0.6 mm and 7.5 degrees by
-// 10 um, 80 um and 0.9 degrees by 0.15 um.
+// Edges beside a side of length w that turns by an angle stand out by w angle / 8: for 0.6 mm and 7.5 degrees
+// by 10 um, for 80 um and 0.9 degrees by 0.15 um.
 TEST(FeatureSet, EdgesOfACurveAreFeaturesIfTheyStandOut) {
   const Body coarse(prism(evenly(48))), fine(prism(evenly(800)));
   EXPECT_EQ(coarse.features.edges().size(), 3 * 48u);
@@ -127,7 +127,7 @@ TEST(FeatureSet, ALoneKinkIsASharpEdge) {
     EXPECT_EQ(body.features.edges().size(), 3 * 8u) << kink_rad;
     EXPECT_EQ(curvedFacets(body.features), 0u) << kink_rad;
   }
-  // Three of them are a curve: its two inner edges are slight, and its three sides of two triangles curved.
+  // Three sides are a curve: its two inner edges are slight, and its three sides of two triangles are curved.
   std::vector<double> angles_rad = evenly(6);
   angles_rad.insert(angles_rad.begin() + 1, {0.1, 0.2, 0.3});
   const Body body(prism(angles_rad));
@@ -144,19 +144,19 @@ Mesh tetrahedron() {
   return mesh;
 }
 
-// A corner at height h that falls by d > h meets the face after the share (h - least) / d of its way.
+// A corner at height h that falls by d > h meets the face after the share (h - least) / d of its motion.
 TEST(FeatureMotion, ACornerMeetsAFaceWhereTheFormulaSays) {
   const Body floor(box(Vec3(20e-3, 20e-3, 5e-3)));
   const Body tip(tetrahedron());
   const double height_m = 10e-6, fall_m = 100e-6, slide_m = 300e-6;
   const Pose start = Pose::translation(Vec3(0, 0, 5e-3 + height_m));
   const Pose end = Pose::translation(Vec3(slide_m, 0, 5e-3 + height_m - fall_m));
-  // The tip is part 0, so the poses are those of the floor in it.
+  // The tip is part 0, so the poses are those of the floor in the tip's frame.
   const auto found = check(tip, floor, start.inverse(), end.inverse());
   ASSERT_EQ(found.size(), 1u);
   const FeatureContact& c = found[0];
   EXPECT_EQ(c.kind, FeatureContact::Kind::CornerOnFacet);
-  // It may stop a tenth of the least distance early.
+  // The search may stop a tenth of the least distance early.
   EXPECT_NEAR(c.share, (height_m - kLeast_m) / fall_m, 0.1 * kLeast_m / fall_m);
   EXPECT_NEAR(c.start_m, height_m, 1e-15);
   EXPECT_LE((c.n - Vec3::UnitZ()).norm(), 1e-9);
@@ -165,7 +165,8 @@ TEST(FeatureMotion, ACornerMeetsAFaceWhereTheFormulaSays) {
   EXPECT_NEAR(c.gap_m(end.inverse()), height_m - fall_m, 1e-12);
 }
 
-// The same corner elsewhere above the face: height and place by the formula, while it is near and outside.
+// The same corner at other places above the face: height and place follow the formula, while it is near and
+// outside.
 TEST(FeatureMotion, AContactIsMeasuredAgainAtAnotherPose) {
   const Body floor(box(Vec3(20e-3, 20e-3, 5e-3)));
   const Body tip(tetrahedron());
@@ -181,14 +182,14 @@ TEST(FeatureMotion, AContactIsMeasuredAgainAtAnotherPose) {
   EXPECT_NEAR(c.start_m, 1.7e-6, 1e-12);
   EXPECT_NEAR(c.gap_m(at(1.5e-3, 1.7e-6)), 1.7e-6, 1e-12);
   EXPECT_LE((c.p[1] - Vec3(1.5e-3, 2e-3, 5e-3)).norm(), 1e-12);
-  // Too far, of no known direction, and behind the face.
+  // Not valid: too far, of unknown direction, and behind the face.
   for (const double height_m : {2.3e-6, 0.5e-9, -1e-6}) {
     FeatureContact away = found[0];
     EXPECT_FALSE(measureAgain(tip.features, floor.features, at(1e-3, height_m), 2e-6, away)) << height_m;
   }
 }
 
-// A tip that is far away when the step begins: a long way is looked at in stretches.
+// A tip that is far away when the step begins: a long motion is examined in segments.
 TEST(FeatureMotion, AFastCornerMeetsAFaceWhereTheFormulaSays) {
   const Body floor(box(Vec3(20e-3, 20e-3, 5e-3)));
   const Body tip(tetrahedron());
@@ -201,13 +202,13 @@ TEST(FeatureMotion, AFastCornerMeetsAFaceWhereTheFormulaSays) {
   EXPECT_NEAR(found[0].start_m, height_m, 1e-15);
   EXPECT_NEAR(found[0].gap_m(start.inverse()), height_m, 1e-12);
   EXPECT_NEAR(found[0].gap_m(end.inverse()), height_m - fall_m, 1e-12);
-  // Past the floor's rim it meets nothing.
+  // Past the floor's rim the tip meets nothing.
   const Pose beside = Pose::translation(Vec3(31e-3, 0, 5e-3 + height_m));
   EXPECT_TRUE(check(tip, floor, beside.inverse(), (Pose::translation(Vec3(0, 0, -fall_m)) * beside).inverse())
                   .empty());
 }
 
-// Two roofs whose ridges cross at a right angle touch in no corner.
+// Two roofs whose ridges cross at a right angle touch at no corner.
 TEST(FeatureMotion, AnEdgeMeetsAnEdge) {
   Mesh roof;
   roof.vertices = {{-10e-3, 0, 0},       {10e-3, 0, 0},          {-10e-3, 4e-3, -4e-3},
@@ -225,8 +226,9 @@ TEST(FeatureMotion, AnEdgeMeetsAnEdge) {
   EXPECT_NEAR(found[0].gap_m(end), -30e-6, 1e-12);
 }
 
-// An edge that passes over a rim lower than it may is raised by what is missing, and its way is not turned:
-// where edges come near first, the line between them leans against the way. Starts over a stretch and more.
+// An edge that passes over a rim with too small a gap is raised by the missing height, and its direction is
+// not changed: where edges first come near, the direction between them leans against the motion. Starts are
+// spread over more than a segment.
 TEST(FeatureMotion, EdgesThatPassEachOtherTouchWhereTheyAreNearest) {
   const Body floor(box(Vec3(20e-3, 20e-3, 5e-3))), block(box(Vec3(4e-3, 3e-3, 2e-3)));
   std::mt19937 random(1);
@@ -261,8 +263,9 @@ TEST(FeatureMotion, SlidingAtTheRestGapMeetsNothing) {
   }
 }
 
-// A block that comes from beyond an edge, within half of the rest gap above the face behind it, slides onto
-// that face: the line from its corner to the edge, along its way, would stop it. Lower, it hits the side.
+// A block that comes from beyond an edge, within half of the rest gap above the face behind the edge, slides
+// onto that face: a plane along the line from its corner to the edge would stop it. A lower block hits the
+// side.
 TEST(FeatureMotion, ACornerThatPassesAnEdgeFlushMeetsTheFaceBehindIt) {
   const Body floor(box(Vec3(20e-3, 20e-3, 5e-3))), block(box(Vec3(4e-3, 3e-3, 2e-3)));
   const Mat3 R = rotationFromVector(Vec3(0, 0, 0.3));
@@ -283,13 +286,13 @@ TEST(FeatureMotion, ACornerThatPassesAnEdgeFlushMeetsTheFaceBehindIt) {
   }
 }
 
-// The edge of a wedge that leans across the rim of a hole and slides along it, straight: the rim goes off to
-// the side, and the wedge's edge enters it by d^2 / 2r, after it has passed the ends of several of its edges.
-// Rows of those that it passed hold it on straight lines, which the rim leaves.
+// The edge of a wedge that leans across the rim of a hole slides straight along the rim: the rim curves away
+// to the side, and the wedge's edge enters it by d^2 / 2r, after it has passed the ends of several of the
+// rim's edges. Contacts with the passed edges hold it on straight lines, which the rim leaves.
 TEST(FeatureMotion, AnEdgeThatSlidesAlongAFineRimMeetsTheEdgeWhereItEnds) {
   constexpr double kRadius_m = 4e-3, kHeight_m = 2e-3;
   const double lean = std::sqrt(0.5);  // the edge leans by 45 degrees in the plane of the hole's axis
-  // Along x is the edge, into +z the wedge grows.
+  // The edge lies along x, and the wedge grows into +z.
   Mesh wedge;
   for (const double x : {-1.5e-3, 1.5e-3})
     for (const Vec3& p : {Vec3(x, 0, 0), Vec3(x, 1e-3, 1e-3), Vec3(x, -1e-3, 1e-3)})
@@ -305,18 +308,18 @@ TEST(FeatureMotion, AnEdgeThatSlidesAlongAFineRimMeetsTheEdgeWhereItEnds) {
     for (const double slide_m : {0.1e-3, 0.2e-3, 0.35e-3, 0.5e-3}) {
       const double chord_m = 2 * kRadius_m * std::sin(std::numbers::pi / corners);
       if (slide_m < 1.5 * chord_m) continue;
-      // It rests on the first edge beside x, near its middle.
+      // The wedge rests on the first edge beside x, near that edge's middle.
       const double turn_rad = std::numbers::pi / corners;
       const Mat3 first = rotationFromVector(Vec3(0, 0, turn_rad));
       const Vec3 middle(kRadius_m * std::cos(turn_rad), 0, kHeight_m), up(-lean, 0, lean);
       const Vec3 at = first * (middle + 1.5 * FeatureMotion::kRest_m * up), way = first * Vec3(0, slide_m, 0);
       const Pose start(first * R, at), end(first * R, at + way);
-      // Across the edge, seen along it: the rim leaves the first chord's line by this.
+      // The distance by which the rim leaves the first chord's line, seen along the wedge's edge.
       const double sink_m = lean * slide_m * slide_m / (2 * kRadius_m);
       double deepest_m = 0;
       for (const FeatureContact& c : check(ring, slider, start, end))
         deepest_m = std::min(deepest_m, c.gap_m(end));
-      // The plane of two edges leans with the rim by d / r. A polygon's chords are within its circle.
+      // The plane of two edges leans with the rim by d / r. The chords of a polygon lie within its circle.
       EXPECT_NEAR(deepest_m, 1.5 * FeatureMotion::kRest_m - sink_m,
                   slide_m / kRadius_m * sink_m + chord_m * chord_m / (8 * kRadius_m))
           << corners << " corners, " << 1e3 * slide_m << " mm";
@@ -324,7 +327,7 @@ TEST(FeatureMotion, AnEdgeThatSlidesAlongAFineRimMeetsTheEdgeWhereItEnds) {
   }
 }
 
-// Whenever two tetrahedra overlap at the end of a step, and did not at its start, the way there is reported.
+// Whenever two tetrahedra overlap at the end of a step, and did not at its start, a contact is reported.
 TEST(FeatureMotion, NoOverlapIsMissed) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> unit(0, 1);
@@ -344,12 +347,12 @@ TEST(FeatureMotion, NoOverlapIsMissed) {
     reported_in_vain += is_reported && !overlaps_now;
   }
   EXPECT_GT(overlaps, 200);
-  // What comes near and goes on past is not reported: its gap at the end is large enough.
+  // A feature that comes near and passes is not reported, because its gap at the end is large enough.
   EXPECT_LT(reported_in_vain, overlaps);
 }
 
-// A corner comes within the rest gap of an edge between two faces and goes on into the solid, by a way in
-// which it may pass either face's plane first; its own surface may keep it from touching one of the faces.
+// A corner comes within the rest gap of an edge between two faces and continues into the solid. It may pass
+// either face's plane first, and its own surface may keep it from touching one of the faces.
 TEST(FeatureMotion, NoCornerThatPassesAnEdgeIsMissed) {
   const Vec3 half(3e-3, 2e-3, 2e-3);
   const Body a(box(half));
@@ -360,7 +363,8 @@ TEST(FeatureMotion, NoCornerThatPassesAnEdgeIsMissed) {
     const Body b(tetrahedron(random));
     const Mat3 R = rotationFromVector(draw(0, std::numbers::pi) * direction(random));
     const Vec3 corner = R * b.exact.mesh().vertices[0];
-    // Beside the box's edge along x, within the rest gap of both faces' planes, on either side of them.
+    // Places beside the box's edge along x, within the rest gap of both faces' planes, on either side of
+    // them.
     const Vec3 beside(draw(-2e-3, 2e-3), half.y() + draw(-90e-9, 90e-9), half.z() + draw(-90e-9, 90e-9));
     const Vec3 way(draw(-1, 1), draw(-1, 1), draw(-1, 1));
     const Vec3 turn = draw(0, 0.05) * direction(random);
@@ -377,9 +381,9 @@ TEST(FeatureMotion, NoCornerThatPassesAnEdgeIsMissed) {
   EXPECT_EQ(missed, 0);
 }
 
-// A block's corner starts nearer to a floor than the rest gap, rises on an arc and comes down again not as
-// near: nothing is missed, though the last of the stretches that the way is looked at in begins farther from
-// the floor.
+// A block's corner starts nearer to a floor than the rest gap, rises on an arc and comes down again to a
+// larger gap. Nothing is missed, although the last of the segments in which the motion is examined begins
+// farther from the floor.
 TEST(FeatureMotion, AWayThatEndsAsNearAsItBeganMeetsNothing) {
   const Vec3 half(4e-3, 2e-3, 1e-3);
   const Body floor(box(Vec3(20e-3, 20e-3, 5e-3))), block(box(half));
@@ -394,8 +398,8 @@ TEST(FeatureMotion, AWayThatEndsAsNearAsItBeganMeetsNothing) {
   EXPECT_FALSE(check(floor, block, start, poseAt(R_end, -50e-9)).empty());
 }
 
-// Two rings of straight sections hang in each other where sections meet: inside the ring that is a valley,
-// and the place of contact slides from one section to the next within a step, of both rings at once.
+// Two rings of straight sections hang in each other where sections meet. Inside the ring such a joint is a
+// valley, and the place of contact slides from one section to the next within a step, on both rings at once.
 TEST(FeatureMotion, RingsThatSlideOverTheJointsOfTheirSectionsAreNotMissed) {
   constexpr double kInner_m = 9e-3, kTube_m = 3e-3;
   constexpr int kSections = 20;
@@ -407,7 +411,7 @@ TEST(FeatureMotion, RingsThatSlideOverTheJointsOfTheirSectionsAreNotMissed) {
   const auto draw = [&](double from, double to) { return std::uniform_real_distribution(from, to)(random); };
   int missed = 0;
   for (int i = 0; i < 400; ++i) {
-    // Where the valleys of both rings lie beside each other by y and z, their edges are nearer by the slope.
+    // If the valleys of the rings are offset by y and z, their edges are nearer by the slope.
     const auto poseOf = [&](double gap_m, double y_m, double z_m) {
       const double apart_m = 2 * kInner_m - gap_m - slope * (std::abs(y_m) + std::abs(z_m));
       return Pose(rotationFromVector(std::numbers::pi / 2 * Vec3::UnitX()), {apart_m, y_m, z_m});
@@ -423,9 +427,9 @@ TEST(FeatureMotion, RingsThatSlideOverTheJointsOfTheirSectionsAreNotMissed) {
   EXPECT_EQ(missed, 0);
 }
 
-// Rims of pipes of many sides cross, and slide along each other over several corners in a step that turns. On
-// the outside corners are hills and in the bore valleys. Edges that a contact holds at the end of the step
-// dip below each other on the way by as much as it bends.
+// Rims of pipes of many sides cross, and slide along each other over several corners in a step with a
+// rotation. On the outside corners are hills, and in the bore they are valleys. Edges that a contact holds at
+// the end of the step dip below each other during the motion by as much as it bends.
 TEST(FeatureMotion, NoRimThatSlidesOverTheCornersOfAnotherIsMissed) {
   std::mt19937 random(9);
   const auto draw = [&](double from, double to) { return std::uniform_real_distribution(from, to)(random); };
@@ -451,7 +455,7 @@ TEST(FeatureMotion, NoRimThatSlidesOverTheCornersOfAnotherIsMissed) {
     const Mat3 facing = Quat::FromTwoVectors(on_b.outward, -on_a.outward).toRotationMatrix();
     const Mat3 R = rotationFromVector(draw(0, 0.6) * direction(random)) *
                    rotationFromVector(draw(0, 2 * std::numbers::pi) * on_a.outward) * facing;
-    // The lines of both edges keep the rest gap, wherever on them the edges cross.
+    // The lines of both edges keep the rest gap, wherever the edges cross.
     const auto poseAt = [&](const Mat3& turned, const Vec3& slide) {
       const Vec3 across = on_a.along.cross(turned * on_b.along).normalized();
       const Vec3 n = (across.dot(on_a.outward) < 0 ? -1 : 1) * across;

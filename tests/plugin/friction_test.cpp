@@ -24,7 +24,7 @@ TEST(Friction, TheConeShortensAnImpulseAndKeepsItsDirection) {
   EXPECT_EQ(t2, 0);
 }
 
-// 1 kN/m bent by 2 mm would give 2 N.
+// A bristle of 1 kN/m bent by 2 mm would give 2 N.
 TEST(Friction, ABristleSticksUpToItsLimitAndSlipsBeyond) {
   const Vec3 bend_m(0, 2e-3, 0);
   const BristleForce sticks = bristleForce(bend_m, 1e3, 2.001);

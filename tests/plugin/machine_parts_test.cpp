@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The parts of the benchmarks: closed, outward, of the stated size, and not touching where they have
-// clearance.
+// The parts of the benchmarks are closed, face outward, have the stated size, and do not touch where they
+// have clearance.
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -30,7 +30,7 @@ double leastDistance(const Mesh& of, const Mesh& points, const Pose& X_MP) {
   return least_m;
 }
 
-/// Fewer points than the benchmarks use; the shapes are the same.
+/// Uses fewer points than the benchmarks, for the same shapes.
 GearShape smallGear(int teeth, double other_radius_m) {
   return {.teeth = teeth,
           .backlash_m = 0.02 * kMm,
@@ -59,9 +59,9 @@ TEST(MachineParts, GearsInMeshKeepHalfTheirBacklashOnEachFlankAtEveryAngle) {
     const double ring_rad = planet_rad * planet.teeth / ring.teeth;
     const Pose X_WR(rotationFromVector({0, 0, ring_rad}), Vec3::Zero());
     const Pose X_WP(rotationFromVector({0, 0, planet_rad}), {apart_m, 0, 0});
-    // Both give half of 0.02 mm to each side of a tooth, measured along the pitch circle: 0.02 cos 20 degrees
-    // across the flanks. In steps of 0.19 mm chords lie 0.19^2 / 8r off the involute: 0.9 um on the planet
-    // (r = 5 mm at the pitch circle), 0.4 um in the ring (12 mm). Measured: 0.4 um.
+    // Half of 0.02 mm goes to each side of a tooth, measured along the pitch circle: 0.02 cos 20 degrees
+    // across the flanks. With steps of 0.19 mm chords deviate from the involute by 0.19^2 / 8r: 0.9 um on the
+    // planet (r = 5 mm at the pitch circle), 0.4 um in the ring (12 mm). Measured: 0.4 um.
     const double least_m = leastDistance(ring_mesh, planet_mesh, X_WR.inverse() * X_WP);
     EXPECT_NEAR(least_m, 0.02 * kMm * std::cos(20 * std::numbers::pi / 180), 0.0013 * kMm) << k;
   }
@@ -74,9 +74,9 @@ TEST(MachineParts, RodTurnsInItsNutWithHalfTheRadialClearanceAcrossTheFlanks) {
   const Mesh rod_mesh = makeThreadedRod(rod), nut_mesh = makeNut(nut, 12 * kMm);
   for (const double turn_rad : {0.0, 0.3, 2.0}) {
     const Pose X_MP(rotationFromVector({0, 0, turn_rad}), {0, 0, rod.pitch_m * turn_rad / kTurn_rad});
-    // Flanks stand at 30 degrees to the radius, and climb the helix (5.5 degrees at the root), which takes a
-    // further share 1 - cos. Chords lie inside of circles by 6 mm (1 - cos(pi / 96)) = 3.2 um; half of that
-    // across.
+    // Flanks are inclined by 30 degrees to the radius, and climb the helix (5.5 degrees at the root), which
+    // takes a further fraction 1 - cos. Chords lie inside of circles by 6 mm (1 - cos(pi / 96)) = 3.2 um;
+    // half of that across the flank.
     const double least_m = leastDistance(nut_mesh, rod_mesh, X_MP);
     EXPECT_NEAR(least_m, 0.05 * kMm * std::sin(std::numbers::pi / 6), 0.002 * kMm) << turn_rad;
   }

@@ -50,7 +50,7 @@ TEST(ClosestOnTriangle, ATriangleWithCollinearCornersIsItsEdges) {
   EXPECT_EQ(closestOnTriangle({1, 2, 3}, a, a, a).q, a);
 }
 
-/// Expects the nearest triangle that a search of all of them finds, and of those equally near the first.
+/// Expects the triangle that an exhaustive search finds nearest; of equally near triangles the first.
 void expectExhaustiveSearch(const Mesh& mesh, const std::vector<Vec3>& points) {
   const MeshDistance distance(mesh);
   for (const Vec3& p : points) {
@@ -85,7 +85,7 @@ TEST(MeshDistance, EqualsAnExhaustiveSearchOfTheTriangles) {
 }
 
 TEST(MeshDistance, OfTrianglesEquallyNearTheFirstIsTheNearest) {
-  // Coordinates are exact, so that distances of points above corners, edges and centres are equal to the bit.
+  // Coordinates are exact, so the distances of points above corners, edges and centres are equal to the bit.
   Mesh grid;
   constexpr std::uint32_t kSide = 24;
   for (std::uint32_t i = 0; i <= kSide; ++i)
@@ -107,8 +107,9 @@ TEST(MeshDistance, OfTrianglesEquallyNearTheFirstIsTheNearest) {
 }
 
 TEST(MeshDistance, FindsTheNearestInTreesThatDivideUnevenly) {
-  // Each triangle smaller than the one before, so that divisions by area take off few at a time, and those by
-  // count are reached; all alike, so that none divides; one that is larger than all others together.
+  // Three meshes: each triangle smaller than the one before, so that divisions by area take off few at a time
+  // and the tree reaches divisions by count; all triangles equal, so that no division separates them; one
+  // triangle larger than all others together.
   Mesh shrinking, alike, mixed;
   const auto add = [](Mesh& mesh, const Vec3& at, double size_m) {
     const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
@@ -159,7 +160,7 @@ TEST(MeshDistance, SignIsRightAtSharpSpikesWhereFaceNormalsFail) {
   }
 }
 
-/// A blade along y whose ridge x = 0, z = 1 has a corner C in its middle on one side only: a triangle without
+/// A blade along y whose ridge x = 0, z = 1 has a corner C in its middle on one side only. A triangle without
 /// area, ACB, fills the crack.
 Mesh bladeWithCollinearFiller(double half_width) {
   Mesh mesh;
@@ -228,8 +229,8 @@ TEST(MeshDistance, TheSmoothNormalOfATubeIsThatOfTheTrueCylinder) {
   constexpr int kSegments = 48;
   const double r_m = 0.01, inner_m = 0.006, half_z_m = 0.01;
   const MeshDistance distance(makeTube(r_m, inner_m, 2 * half_z_m, kSegments));
-  // Along a chord, q at (r cos h, x r sin h) for x from -1 to 1, corners' normals (cos h, -+ sin h)
-  // interpolate to (cos h, x sin h): parallel to q, so only their rounding to float is left. The facet's own
+  // Along a chord, with q at (r cos h, x r sin h) for x from -1 to 1, the corners' normals (cos h, -+ sin h)
+  // interpolate to (cos h, x sin h): parallel to q, so only their rounding to float remains. The facet's own
   // normal is off by up to pi / 48.
   const double tol = 2e-7;
   const auto radial = [](const Vec3& q) { return Vec3(q.x(), q.y(), 0).normalized(); };
@@ -241,7 +242,7 @@ TEST(MeshDistance, TheSmoothNormalOfATubeIsThatOfTheTrueCylinder) {
     EXPECT_LE((distance.smoothNormal(outer.triangle, outer.q) - radial(outer.q)).norm(), tol);
     const MeshDistance::Closest inner = distance.closest(0.9 * inner_m * out + z_m * up);
     EXPECT_LE((distance.smoothNormal(inner.triangle, inner.q) + radial(inner.q)).norm(), tol);
-    // The end face meets the wall at 90 degrees: its normal does not bend towards it.
+    // The end face meets the wall at 90 degrees, so its normal does not bend towards the wall.
     const MeshDistance::Closest end = distance.closest(0.5 * (r_m + inner_m) * out + 1.5 * half_z_m * up);
     EXPECT_EQ(distance.smoothNormal(end.triangle, end.q), up);
   }
@@ -249,7 +250,7 @@ TEST(MeshDistance, TheSmoothNormalOfATubeIsThatOfTheTrueCylinder) {
 
 TEST(MeshDistance, TheSmoothNormalOfAFlankIsNormalToItsHelices) {
   // A flank of a V thread, open, as between its sharp crest and root. The facets' angles before and after a
-  // vertex differ: weighted by them alone, normals leaned by 0.003 along the thread.
+  // vertex differ; normals weighted only by these angles leaned by 0.003 along the thread.
   constexpr int kSegments = 50;
   const double lead_m = 3.8e-3, r_m[2] = {5.7e-3, 7.6e-3}, z_m[2] = {1.9e-3, 0};
   Mesh flank;

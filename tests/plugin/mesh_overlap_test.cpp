@@ -20,13 +20,13 @@ OverlapMesh box(double x, double y, double z) {
 
 TEST(MeshOverlap, ACornerInAFaceHasItsDepth) {
   const OverlapMesh floor = box(1, 1, 0.2), block = box(0.1, 0.1, 0.1);
-  // The corner of a cube that points straight down is sqrt(3) / 2 of its side below the centre.
+  // The cube's corner that points straight down is sqrt(3) / 2 of its side below the centre.
   const Mat3 R = Quat::FromTwoVectors(Vec3(-1, -1, -1), Vec3(0, 0, -1)).toRotationMatrix();
   const double below_m = 0.05 * std::sqrt(3.0);
   for (const double depth_m : {1e-9, 1e-6, 1e-3, 0.02}) {
     const Pose X(R, Vec3(0.03, -0.02, 0.1 + below_m - depth_m));
     const Overlap found = deepestOverlap(floor, Pose(), block, X);
-    // A corner is an end of an edge, which the search approaches by halves.
+    // A corner is an end of an edge, which the search approaches by halving.
     EXPECT_NEAR(found.depth_m, depth_m, kOverlapCertain_m + 1e-12);
     if (found.depth_m > 0) {
       EXPECT_NEAR(found.p_W.z(), 0.1 - depth_m, kOverlapCertain_m + 1e-12);
@@ -43,8 +43,8 @@ TEST(MeshOverlap, CrossedBarsWithoutAVertexInsideHaveTheirDepth) {
                 kOverlapCertain_m);
 }
 
-// Two wedges of 90 degrees, edges across each other: each point of an edge is 1 / sqrt(2) of its depth below
-// the other edge away from both faces there.
+// Two wedges of 90 degrees whose edges cross: the depth of a point of an edge, its distance from both faces
+// of the other wedge, is 1 / sqrt(2) of its height below the other edge.
 TEST(MeshOverlap, AnEdgeAcrossAnEdgeHasItsDistanceToTheFaces) {
   const OverlapMesh bar = box(1, 0.1, 0.1);
   const Mat3 up = rotationFromVector(Vec3(M_PI / 4, 0, 0));
@@ -68,11 +68,11 @@ TEST(MeshOverlap, WhatIsApartOrTouchesDoesNotOverlap) {
   const OverlapMesh block = box(0.1, 0.1, 0.1), tube = overlapMesh(makeTube(0.5, 0.4, 0.2, 64));
   EXPECT_EQ(deepestOverlap(block, Pose(), block, Pose::translation(Vec3(0.1001, 0, 0))).depth_m, 0);
   EXPECT_LE(deepestOverlap(block, Pose(), block, Pose::translation(Vec3(0.1, 0.03, 0))).depth_m, 1e-16);
-  // In the bore, where the boxes overlap.
+  // In the bore, at the place where the boxes overlap.
   EXPECT_EQ(deepestOverlap(tube, Pose(), block, Pose()).depth_m, 0);
 }
 
-// A resting part lies on long edges, which must not take longer to judge than short ones.
+// A resting part lies on long edges. Judging them must not take longer than judging short ones.
 TEST(MeshOverlap, AFlatContactNeedsFewPieces) {
   const OverlapMesh floor = box(1, 1, 0.2), block = box(0.3, 0.2, 0.1);
   const Pose X = Pose::translation(Vec3(0, 0, 0.15 - 2e-9));
@@ -94,8 +94,8 @@ double sampledOnFacets_m(const OverlapMesh& in, const OverlapMesh& of, const Pos
   return sampled_m;
 }
 
-// Points of both surfaces, far more of them than edges need: none may be deeper in the other mesh, but for
-// the interior of faces, where the other's edges stand for them.
+// Many more points of both surfaces than the edges have: none may be deeper in the other mesh, except in the
+// interior of faces, which the other mesh's edges represent.
 TEST(MeshOverlap, NoPointOfAnEdgeIsDeeper) {
   test::RandomPoints random(5);
   const OverlapMesh a = box(0.2, 0.15, 0.1), b = overlapMesh(makeTube(0.1, 0.06, 0.15, 8));
@@ -127,7 +127,7 @@ TEST(MeshOverlap, NoPointOfAnEdgeIsDeeper) {
   EXPECT_LT(deeper_on_facets, overlapping / 10);
 }
 
-// Two equal boxes, moved along one axis: their sides stay flush, so that all edges lie in the other surface.
+// Two equal boxes, moved along one axis: their sides stay flush, so all edges lie in the other box's surface.
 TEST(MeshOverlap, FlushBoxesHaveTheDepthOfTheFaceBetweenThem) {
   const OverlapMesh cube = box(0.01, 0.01, 0.01);
   const Mat3 turned = rotationFromVector(Vec3(0.3, -0.5, 0.2));
@@ -143,7 +143,7 @@ TEST(MeshOverlap, FlushBoxesHaveTheDepthOfTheFaceBetweenThem) {
       }
 }
 
-// A point inside both is at most 5 mm deep; the probes find one of at least half of that.
+// A point inside both bodies is at most 5 mm deep; the probes find a point at least half as deep.
 TEST(MeshOverlap, EqualBodiesInOnePlaceOverlap) {
   const OverlapMesh cube = box(0.01, 0.01, 0.01), tube = overlapMesh(makeTube(0.02, 0.01, 0.03, 32));
   const Mat3 quarter = rotationFromVector(Vec3(0, 0, M_PI / 2));
@@ -160,14 +160,14 @@ TEST(MeshOverlap, EqualBodiesInOnePlaceOverlap) {
 
 TEST(MeshOverlap, ABoxFlushInALargerOneOverlaps) {
   const OverlapMesh large = box(0.01, 0.01, 0.01), small = box(4e-3, 4e-3, 4e-3), bar = box(0.03, 0.01, 0.01);
-  // In the corner: the inner corner of the small box is 4 mm below three faces.
+  // In a corner: the inner corner of the small box is 4 mm below three faces.
   EXPECT_NEAR(deepestOverlap(large, Pose(), small, Pose::translation(Vec3::Constant(3e-3))).depth_m, 4e-3,
               kOverlapCertain_m);
-  // Between four sides of the bar, in its middle: the ends of the cube are 5 mm below all four.
+  // Between four sides of the bar, in its middle: the ends of the cube are 5 mm below all four sides.
   const double in_bar_m = deepestOverlap(bar, Pose(), large, Pose()).depth_m;
   EXPECT_GE(in_bar_m, 5e-3 * 0.9);
   EXPECT_LE(in_bar_m, 5e-3 + 1e-12);
-  // Crossed bars, flush above and below: each one's sides are 5 mm below the other's.
+  // Crossed bars, flush above and below: each bar's sides are 5 mm below the other's.
   const Mat3 across = rotationFromVector(Vec3(0, 0, M_PI / 2));
   for (const double along_m : {0.0, 0.008}) {
     const double crossed_m = deepestOverlap(bar, Pose(), bar, Pose(across, Vec3(along_m, 0, 0))).depth_m;
@@ -186,8 +186,8 @@ TEST(MeshOverlap, EqualCylindersOnOneAxisHaveTheDepthOfTheirEnds) {
   }
 }
 
-// The depth of edges is continuous; flush faces that are out of line by less than edges are measured to must
-// give the same.
+// The depth of edges is continuous. Flush faces that are misaligned by less than the accuracy of edges must
+// give the same depth.
 TEST(MeshOverlap, NearlyFlushBoxesHaveTheDepthOfTheFaceBetweenThem) {
   const OverlapMesh cube = box(0.01, 0.01, 0.01);
   for (const double off_m : {1e-15, 1e-12, 1e-9, -1e-9, 1e-7, 1e-6}) {
@@ -206,10 +206,10 @@ TEST(MeshOverlap, FacesInContactDoNotOverlap) {
                         Vec3(0, 0.01, 0.01), Vec3(0, 0, -0.01)})
     EXPECT_LE(deepestOverlap(cube, Pose(), cube, Pose::translation(p)).depth_m, 1e-16);
   EXPECT_LE(deepestOverlap(plate, Pose(), cube, Pose::translation(Vec3(0.01, 0.02, 0.006))).depth_m, 1e-16);
-  // Flush with two sides of the plate too.
+  // A bar that is flush with two sides of the plate too.
   EXPECT_LE(deepestOverlap(plate, Pose(), cube, Pose::translation(Vec3(0.045, 0.045, 0.006))).depth_m, 1e-16);
   EXPECT_LE(deepestOverlap(cylinder, Pose(), cylinder, Pose::translation(Vec3(0, 0, 0.02))).depth_m, 1e-16);
-  // A pin that fills a bore.
+  // A pin that fills a bore exactly.
   EXPECT_LE(deepestOverlap(tube, Pose(), cylinder, Pose()).depth_m, 1e-16);
 }
 

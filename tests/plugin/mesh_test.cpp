@@ -43,7 +43,7 @@ TEST(Mesh, MassPropertiesFollowAPose) {
   const MassProperties at_home = massProperties(box);
   const Pose X_AB(Quat(0.9, 0.1, -0.3, 0.2), Vec3(2, -1, 3));  // far off: sums about the origin would cancel
   const MassProperties moved = massProperties(transformed(box, X_AB));
-  // Vertices 4 m away keep 4e-16 m, 1e-14 of the size; volume and inertia a few times that.
+  // Vertices 4 m away are rounded to 4e-16 m, 1e-14 of the size; volume and inertia to a few times that.
   EXPECT_NEAR(moved.volume_m3, at_home.volume_m3, 1e-12 * at_home.volume_m3);
   EXPECT_LT((moved.com - X_AB.p).norm(), 1e-14);
   const Mat3 expected = X_AB.R * at_home.inertia_m5 * X_AB.R.transpose();

@@ -27,8 +27,9 @@ std::vector<Case> cases() {
           {"sphere", makeSphere(12 * kMm, 4)}};
 }
 
-// The box lies along the grid, where a face meets the fewest bricks: 1.34 times what is built, the others
-// less. Of the tube, whose rims have more points than their length asks for, 0.82 of the cropped points.
+// The bounds contain two extremes. The estimate for the box, whose faces lie along the grid and meet the
+// fewest bricks, is 1.34 times the built size. For the tube, whose rims have more points than their length
+// suggests, it is 0.82 of the cropped points.
 TEST(ModelEstimate, WholeModelsTakeAboutWhatIsEstimated) {
   for (const Case& part : cases()) {
     const ModelEstimate estimate(part.mesh, {}, {});

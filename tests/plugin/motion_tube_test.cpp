@@ -23,8 +23,8 @@ double distanceFromSegment(const Vec3& p, const Vec3& from, const Vec3& to) {
   return (p - from - share * way).norm();
 }
 
-// The promise on which lists rest: between two poses that the tube holds, each point of a part that is near
-// the other is within the margin of its straight line; in the frame of either part.
+// Lists of near pairs rely on this: between two poses that the tube holds, each point of a part that is near
+// the other part is within the margin of its straight line, in the frame of either part.
 TEST(MotionTube, PointsOfMotionsThatItHoldsStayWithinItsMargin) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> unit(0, 1), size(1e-3, 20e-3);
@@ -43,7 +43,7 @@ TEST(MotionTube, PointsOfMotionsThatItHoldsStayWithinItsMargin) {
     const MotionTube tube(ball0, ball1, start, end);
     ASSERT_TRUE(tube.holds(start));
     ASSERT_TRUE(tube.holds(end)) << trial;
-    // Somewhere on the way that is expected, and off it.
+    // A place on the expected motion, and off it.
     const Way way(ball0, ball1, tube.from(), tube.to());
     const double off_m = 1.5 * tube.margin_m() * unit(random);
     Pose X[2];
@@ -60,7 +60,7 @@ TEST(MotionTube, PointsOfMotionsThatItHoldsStayWithinItsMargin) {
     for (int k = 0; k < 20; ++k) {
       const Pose at_10 = between.at(unit(random));
       const Vec3 own = smaller.center + smaller.radius_m * direction(random);
-      // The point in its own part, and its place in the other part.
+      // The point in its own part's frame, and its place in the other part's frame.
       const Vec3 p0 = is_first ? own : Vec3(at_10.inverse() * own), p1 = is_first ? Vec3(at_10 * own) : own;
       const double of_0_m = distanceFromSegment(p1, tube.from().inverse() * p0, tube.to().inverse() * p0);
       const double of_1_m = distanceFromSegment(p0, tube.from() * p1, tube.to() * p1);
@@ -84,7 +84,7 @@ TEST(MotionTube, DoesNotHoldWhatLeavesIt) {
   EXPECT_FALSE(tube.holds(Pose::translation({20e-3, 10e-3, 0})));
 }
 
-// A nut's steps of 40 um, each expected to fall by another 10 um, which the thread does not let it do.
+// A nut moves in steps of 40 um. Each is expected to fall by another 10 um, which the thread prevents.
 TEST(MotionTube, FollowsTheMotionThatThePartsHad) {
   const Ball ball{Vec3::Zero(), 10e-3};
   const auto at = [](double way_m, double fall_m) { return Pose::translation({20e-3, way_m, -fall_m}); };
@@ -92,7 +92,7 @@ TEST(MotionTube, FollowsTheMotionThatThePartsHad) {
   EXPECT_FALSE(MotionTube(ball, ball, start, end).holds(later));
   const MotionTube tube = MotionTube::following(ball, ball, last, start, end, 1);
   for (const Pose& X : {start, end, later}) EXPECT_TRUE(tube.holds(X));
-  // Where the parts were elsewhere, or did not move, the step's own motion counts.
+  // If the parts were far away before, or did not move, the step's own motion is expected.
   for (const Pose& before : {at(0.5e-3, 0), start}) {
     const MotionTube other = MotionTube::following(ball, ball, before, start, end, 1);
     for (const Pose& X : {start, end}) EXPECT_TRUE(other.holds(X));

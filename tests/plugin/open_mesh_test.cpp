@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which open meshes are sheets, and the models of these.
+// Which open meshes are treated as sheets, and the models of sheets.
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -36,7 +36,7 @@ Mesh plateWithHole(double hole_m) {
   return welded(mesh);
 }
 
-/// A strip of 8 x 40 facets that turns over.
+/// A strip of 8 x 40 facets that turns over like a Moebius strip.
 Mesh moebius() {
   Mesh mesh;
   constexpr std::uint32_t kAround = 40, kAcross = 4;
@@ -68,8 +68,8 @@ TEST(OpenMesh, AHoleWiderThanThePointsSpacingMakesASheet) {
 }
 
 TEST(OpenMesh, FaultsOfASolidMakeNoSheet) {
-  // Cracks, T-junctions, turned and repeated facets, walls, shells that touch, and missing facets that are
-  // narrow or alone; but not a whole row of them.
+  // Solids: meshes with cracks, T-junctions, turned and repeated facets, walls, shells that touch, and narrow
+  // or single missing facets. A mesh with a whole row of missing facets is no solid.
   for (const test::FaultyMesh& faulty : test::faultyMeshes())
     EXPECT_FALSE(modelOf(faulty.mesh)->solid->isSheet()) << faulty.fault;
   Mesh box = makeBox(Vec3::Constant(0.02));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Contact of a pair both ways.
+// Contact of a pair in both directions.
 #include "vps/query.h"
 
 #include <gtest/gtest.h>
@@ -32,7 +32,7 @@ const Part& block() {
   return part;
 }
 
-/// The ball sunk into the block's upper face.
+/// Pose of the ball sunk into the block's upper face.
 Pose sunkBall(double depth_m) {
   return Pose(rotationFromVector({0.2, 0.4, 0.1}), Vec3(0.7 * kMm, 0.3 * kMm, 3 * kMm + 4 * kMm - depth_m));
 }
@@ -50,7 +50,7 @@ TEST(PairQuery, ActionEqualsReactionBothWays) {
     EXPECT_EQ(on_a.count, on_b.count);
     if (on_b.count == 0) continue;
     ++touching;
-    // Poses round to 1e-16, floats in positions and normals to 1e-7 of forces that may cancel.
+    // Poses are rounded to 1e-16; floats in positions and normals to 1e-7 of forces that may cancel.
     const double total_N = kStiffness * on_b.volume_m3;
     EXPECT_LT((rotated(X_AB.R, on_a.F_O_M).f + on_b.F_O_M.f).norm(), 1e-6 * total_N);
     EXPECT_LT((rotated(X_AB.R, on_a.F_O_M).tau + on_b.F_O_M.tau).norm(), 1e-6 * total_N * 12 * kMm);
@@ -59,8 +59,8 @@ TEST(PairQuery, ActionEqualsReactionBothWays) {
 }
 
 TEST(PairQuery, BothSidesConvergeToTheIntegral) {
-  // A cap of a ball of radius R sunk by delta: F = k pi R delta^2 from the ball's points. The block's points
-  // see the ball's field: depth there is measured along the ball's normal, R - rho, over the plane:
+  // A cap of a ball of radius R sunk by delta gives F = k pi R delta^2 from the ball's points. The block's
+  // points read the ball's field: the depth is measured along the ball's normal, R - rho, over the plane:
   // integral of (R - rho) n_z dA with rho^2 = r^2 + (R - delta)^2, n_z = (R - delta) / rho.
   const double R = 4 * kMm, delta_m = 0.3 * kMm, c = R - delta_m;
   double plane_side = 0;
@@ -71,7 +71,8 @@ TEST(PairQuery, BothSidesConvergeToTheIntegral) {
   const double expected_N = 0.5 * kStiffness * (std::numbers::pi * R * delta_m * delta_m + plane_side);
   TouchSummary sum;
   queryBothSides(block().side(), ball().side(), sunkBall(delta_m), {}, kStiffness, Vec3::Zero(), sum);
-  // Sums over points of a force that grows from the rim: measured 1 %; spacing 0.2 mm in a cap 1.5 mm wide.
+  // Sums over points of a force that grows from the rim. Measured: 1 % at a spacing of 0.2 mm in a cap 1.5 mm
+  // wide.
   EXPECT_NEAR(sum.F_O_M.f.z(), expected_N, 0.03 * expected_N);
   EXPECT_NEAR(sum.max_depth_m, delta_m, 0.02 * delta_m);
 }

@@ -85,8 +85,8 @@ TEST_P(EveryShell, PointsLieOnTheMeshWithUnitInwardNormals) {
     const MeshDistance::Closest closest = exact.closest(shell.points[i]);
     ASSERT_LT(closest.distance_m, 10 * kRounding);
     ASSERT_NEAR(shell.inward[i].norm(), 1, 1e-14);
-    // Rounding may assign a point near a border of facets to either facet: they are at most 20 degrees apart;
-    // on sharp edges of right angles the pseudonormal is at most acos(1/sqrt 3) from a face's.
+    // Rounding may assign a point near a border of facets to either facet, and these are at most 20 degrees
+    // apart. On sharp edges of right angles the pseudonormal is at most acos(1/sqrt 3) from a face's normal.
     ASSERT_LT(shell.inward[i].dot(closest.normal), -0.55);
   }
 }
@@ -166,8 +166,8 @@ TEST(PointShell, FacePointsKeepThreeQuartersOfTheSpacingFromEachOther) {
 }
 
 TEST(PointShell, CornersAndRimVerticesAreKept) {
-  // The vertices of convex rims touch first. 160 segments of a 5 mm circle are 0.196 mm long: leaving one out
-  // moves the rim by 3.9 um, more than the tolerance of 1 um.
+  // The vertices of convex rims touch first. 160 segments of a 5 mm circle are 0.196 mm long; leaving out a
+  // vertex moves the rim by 3.9 um, more than the tolerance of 1 um.
   for (const std::size_t which : {0, 1, 2, 5})
     for (const Vec3& vertex : samples()[which].mesh.vertices) {
       if (vertex.head<2>().norm() < kRounding) continue;  // a fan's centre on the peg's end is flat
@@ -193,7 +193,7 @@ TEST(PointShell, AFinerTessellationDoesNotCrowdTheRim) {
       static_cast<double>(std::count_if(shell.points.begin(), shell.points.end(), [](const Vec3& p) {
         return p.z() > 2.5 * kMm - kRounding && p.head<2>().norm() > 5 * kMm - 1e-12;
       }));
-  // A chord of c moves the rim by c^2 / 8r: 1 um allows 0.2 mm, so some 157 points, not 2000.
+  // A chord of c moves the rim by c^2 / 8r: 1 um allows 0.2 mm, so about 157 points instead of 2000.
   EXPECT_LT(on_rim, 2 * std::numbers::pi * 5 / 0.2 * 1.2);
   EXPECT_GE(on_rim, 2 * std::numbers::pi * 5 / 0.25);
 }
@@ -223,8 +223,8 @@ Mesh plateWithBump(const Vec3& at, double width_m, double height_m) {
   return mesh;
 }
 
-// Without points of their own, bumps narrower than the spacing lie between all points in most places. A point
-// whose normal leans by 20 degrees from the top's is lower by 1 - cos 20 degrees of the radius there.
+// Without points of their own, bumps narrower than the spacing mostly lie between all points. A point whose
+// normal leans by 20 degrees from the top's is lower than the top by 1 - cos 20 degrees of the radius.
 TEST(PointShell, ASmoothBumpSmallerThanTheSpacingHasPointsNearItsTop) {
   constexpr double kSpacing_m = kMm, kHeight_m = 0.2 * kMm;
   std::mt19937 random(5);
@@ -243,7 +243,7 @@ TEST(PointShell, ASmoothBumpSmallerThanTheSpacingHasPointsNearItsTop) {
     }
 }
 
-// What curves evenly needs no more points, convex or hollow.
+// A surface that curves evenly, convex or hollow, needs no more points.
 TEST(PointShell, EvenCurvatureIsNoBump) {
   Mesh bore = makeCylinder(4 * kMm, 10 * kMm, 400);
   for (auto& t : bore.triangles) std::swap(t[0], t[1]);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The progressive order of shell points against its definition, tried point by point.
+// The progressive order of shell points, compared with its definition point by point.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,8 +11,8 @@
 namespace vps {
 namespace {
 
-/// At each level with half the radius: a point joins if no joined point is within the radius. What waits
-/// after all levels is appended.
+/// Checks the definition. At each level with half the radius, a point joins if no joined point is within the
+/// radius; points that remain after all levels are appended.
 bool followsItsRule(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& order) {
   Box box;
   for (const Vec3& p : points) box.add(p);
@@ -30,7 +30,7 @@ bool followsItsRule(const std::vector<Vec3>& points, const std::vector<std::uint
   return true;
 }
 
-// Few enough points wait through the finest levels that only their neighbours are kept there.
+// So few points wait through the finest levels that only their neighbours are kept there.
 TEST(ProgressiveOrder, FollowsItsRuleWithPointsThatAreNearlyOrExactlyTheSame) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> within(-1, 1);

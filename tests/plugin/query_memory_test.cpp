@@ -81,7 +81,7 @@ TEST_P(QueryMemoryTest, SlowMotionIsNoticedAfterAVeryLongJump) {
   };
   ask(scene.start);
   ask({scene.start.R, scene.start.p + Vec3(1e9, 0, 0)});
-  // Doubles near that distance, in voxels, are at least 2^-11 apart: 100 nm or more, and steps are 50 nm.
+  // Doubles near that distance, in voxels, are at least 2^-11 apart: 100 nm or more. Steps are 50 nm.
   const Vec3 aside(0.6, 0, 0.8);
   std::set<std::size_t> counts;
   for (int i = 0; i <= 6000; ++i) {
@@ -129,7 +129,7 @@ TEST_P(QueryMemoryTest, ContactsAreThoseOfTheExhaustiveQueryInAnyMotionWithAnyCu
   }
 }
 
-/// A stretch of the peg's side with so many leaves. A crop keeps the leaves of its points, so each further
+/// A part of the peg's side with `leaves` leaves. A crop keeps the leaves of its points, so each further
 /// point adds one leaf or none.
 PointShell stretchOf(const PointShell& peg, std::size_t leaves) {
   Box box;
@@ -153,7 +153,7 @@ PointShell stretchOf(const PointShell& peg, std::size_t leaves) {
   return peg;
 }
 
-// The leaves lie under rows of sixteen, and these under groups of sixteen.
+// The leaves have rows of sixteen above them, and the rows groups of sixteen.
 TEST(QueryMemory, ServesShellsOfAnyNumberOfLeavesAlsoAfterClear) {
   const Scene& scene = scenes()[0];
   for (const std::size_t leaves : {1, 2, 16, 17, 256, 257}) {
@@ -224,8 +224,9 @@ TEST_P(QueryMemoryTest, TheWrenchIsThePenaltyOfTheContacts) {
       }
       ASSERT_EQ(sum.count, touching);
       const Wrench expected = penaltyWrench(set.contacts, kStiffness, p_MO);
-      // Normals and arms are floats: 1e-7 of each force, and some quanta where two normals nearly cancel.
-      // Positions are floats of up to 16 voxels from a leaf's base, so depths are exact to 2e-6 voxel.
+      // Normals and arms are floats: errors of 1e-7 of each force, and some quanta where two normals nearly
+      // cancel. Positions are floats of up to 16 voxels from a leaf's base, so depths are accurate to 2e-6
+      // voxel.
       const double tol_N = 3e-6 * total_N + kStiffness * area_m2 * 2e-6 * scene.map.voxel_m();
       ASSERT_LE((sum.F_O_M.f - expected.f).norm(), tol_N);
       ASSERT_LE((sum.F_O_M.tau - expected.tau).norm(), tol_N * 20 * kMm);
@@ -233,7 +234,8 @@ TEST_P(QueryMemoryTest, TheWrenchIsThePenaltyOfTheContacts) {
 }
 
 TEST(QueryMemory, AMemoryOfAnotherPairIsNotUsed) {
-  // Equal except for the position: what is far in one pair touches in the other, at the same pose.
+  // Two pairs that differ only in position: points that are far in one pair touch in the other, at the same
+  // pose.
   const Pose moved = Pose::translation({40 * kMm, 0, 0}), X_MP = Pose::translation({30 * kUm, 0, 0});
   const Mesh bore = makeTube(8 * kMm, 5.02 * kMm, 10 * kMm, 64), peg = makeCylinder(5 * kMm, 12 * kMm, 64);
   const VoxMap here = buildVoxMap(bore, {0.25 * kMm, 4}),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// More than 400 lines: all tests of the contact query, which share the helpers of this file.
+// The file has more than 400 lines because all tests of the contact query share its helpers.
 #include "vps/query.h"
 
 #include <gtest/gtest.h>
@@ -51,8 +51,8 @@ TEST(Query, BallOnBallReportsAnalyticDepthAndNormal) {
   // Trilinear: h^2/8 times the summed second derivatives, 2/r; the facets lie inside the sphere by the
   // sagitta.
   const double tol_m = h * h / (4 * (map_radius_m - map.band_m())) + sagitta_m + map.quantum_m();
-  // Facet normals differ from the sphere's by about sqrt(2 sagitta / r); differences over 2h see h^2/6 of
-  // curvature.
+  // Facet normals differ from the sphere's by about sqrt(2 sagitta / r); differences over 2h are off by h^2/6
+  // of the curvature.
   const double tol_rad = std::sqrt(2 * sagitta_m / map_radius_m) + std::pow(h / map_radius_m, 2);
 
   const Vec3 direction = Vec3(1, 2, 3).normalized();
@@ -67,7 +67,7 @@ TEST(Query, BallOnBallReportsAnalyticDepthAndNormal) {
     EXPECT_EQ(c.p_M, X_MP * shell.points[c.id]);
     deepest_m = std::max(deepest_m, -c.distance_m);
   }
-  // The nearest point is at most a spacing s from the axis: s^2/2r on each ball short of the whole depth.
+  // The nearest point is at most a spacing s from the axis, so each ball is s^2/2r short of the whole depth.
   const double s = shell.spacing_m;
   EXPECT_NEAR(deepest_m, sunk_m, tol_m + s * s / 2 * (1 / map_radius_m + 1 / shell_radius_m) + sagitta_m);
 }
@@ -124,9 +124,9 @@ TEST(Query, PenaltyForceOfABallOnAPlateConvergesToTheIntegral) {
     const Vec3 center_M(1.1 * kMm, 0.7 * kMm, 5 * kMm + R - delta_m);
     const ContactSet set = contactsOf(map, shell, Pose::translation(center_M));
     const Wrench F = penaltyWrench(set.contacts, k, center_M);
-    // A cap of area A = 2 pi R delta has n = A / 0.8 s^2 points; each represents its cell up to the cell's
-    // size, so the error of the sum is that of random cells at the rim: s * perimeter of d/2 ~ (s / cap
-    // radius)^1.5.
+    // A cap of area A = 2 pi R delta has n = A / 0.8 s^2 points. Each represents a cell whose border is known
+    // to the cell's size, so the error of the sum is that of random cells at the rim: s * perimeter of d/2 ~
+    // (s / cap radius)^1.5.
     const double cap_m = std::sqrt(2 * R * delta_m);
     const double tol = std::pow(spacing_m / cap_m, 1.5) + 0.01;  // facets: 2 sagitta / delta
     EXPECT_NEAR(F.f.z() / exact_N, 1, tol) << spacing_m;
@@ -170,7 +170,7 @@ TEST(Query, MovingBothBodiesByOnePoseOnlyRotatesTheWrench) {
   for (int i = 0; i < 20; ++i) {
     const Pose X_WM{rotationFromVector(3 * vec()), vec()};
     const Wrench F_W = wrenchInWorld(X_WM);
-    // Poses round to 1e-16 of a metre: of depths of 1e-5 m that is 1e-11, over some hundred points.
+    // Poses are rounded to 1e-16 of a metre, which is 1e-11 of depths of 1e-5 m, over some hundred points.
     EXPECT_LT((F_W.f - X_WM.R * F_M.f).norm(), 1e-9 * F_M.f.norm());
     EXPECT_LT((F_W.tau - X_WM.R * F_M.tau).norm(), 1e-9 * F_M.f.norm());
   }
@@ -202,8 +202,8 @@ const std::vector<Pair>& pairs() {
   return all;
 }
 
-/// Poses of all kinds: free, near, touching, deep; half of them nearly aligned, where whole faces are near
-/// the cutoff.
+/// Poses of all kinds: free, near, touching, deep. Half of them are nearly aligned, so that whole faces are
+/// near the cutoff.
 std::vector<Pose> manyPoses(const Pair& pair, int count) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> unit(-1, 1);
@@ -243,7 +243,7 @@ TEST_P(EveryPair, CullingFindsExactlyWhatAnExhaustiveQueryFinds) {
         ASSERT_TRUE(i == 0 || all.contacts[i - 1].id < e.id);
         ASSERT_NEAR(e.n_M.norm(), 1, 1e-12);
       }
-      // The least distance is exact when something touches, else a bound.
+      // The least distance is exact when something touches, otherwise a bound.
       ASSERT_LE(a.min_distance_m, b.min_distance_m);
       if (!all.contacts.empty()) {
         ASSERT_EQ(a.min_distance_m, b.min_distance_m);
@@ -272,7 +272,7 @@ TEST_P(EveryPair, TheExhaustiveQueryIsTheFieldReadAtEveryPoint) {
       if (!is_listed) continue;
       const Contact& c = set.contacts[next++];
       ASSERT_NEAR(c.distance_m, distance_m, tol_m);
-      // Between nodes of two parts either owner is right.
+      // At a place between nodes of two parts either owner is right.
       if (pair.map.owner(p_M - Vec3::Constant(tol_m)) == pair.map.owner(p_M + Vec3::Constant(tol_m))) {
         ASSERT_EQ(c.owner, pair.map.owner(p_M));
       }
@@ -312,7 +312,7 @@ TEST_P(EveryPair, DistanceIsTheLeastReadingOrALowerBound) {
 }
 
 TEST_P(EveryPair, WhereNothingIsNearTheExhaustiveQueryReadsTheBandAtEveryPoint) {
-  // From far away to the rim of the map's directory: groups, rows and leaves are known to be outside.
+  // Poses from far away to the rim of the map's directory: groups, rows and leaves are known to be outside.
   const Vec3 aside = Vec3(1, 0.3, 0.2).normalized();
   std::size_t beyond = 0;
   for (double way_m = 0; way_m < 200 * kMm; way_m += 0.7 * kMm) {
@@ -366,7 +366,7 @@ TEST(Query, FarAwayTheDistanceIsALowerBoundWithASmallError) {
   }
 }
 
-// ---- Edges of the contract ----
+// ---- Limits of the contract ----
 
 TEST(Query, AFullContactSetKeepsTheFirstIdsAndCountsTheRest) {
   const Pair& pair = pairs()[1];
@@ -423,7 +423,7 @@ TEST(Query, DeeperThanTheBandThePointsOwnNormalIsUsed) {
 TEST(Query, OwnersDistinguishMountedParts) {
   const Pair& pair = pairs()[4];
   const PointShell& ball = pairs()[2].shell;
-  // First on the ball at x = 4 mm from its far side, then on the box from the other side.
+  // First near the ball at x = 4 mm from its far side, then near the box from the other side.
   const ContactSet on_ball = contactsOf(pair.map, ball, Pose::translation({7.95 * kMm, 0, 0}));
   ASSERT_FALSE(on_ball.contacts.empty());
   for (const Contact& c : on_ball.contacts) EXPECT_EQ(c.owner, 1);

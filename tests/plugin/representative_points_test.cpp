@@ -77,8 +77,9 @@ TEST(RepresentativePoints, EachEqualsTheQuerysContactAndTheyAreFew) {
   }
 }
 
-// A leaf of sixteen points counts as a whole, so that the border is known to a leaf's size, four spacings: of
-// the peg's side that is within the bore's mouth, here all of it.
+// A leaf of sixteen points counts as a whole, so the border of the near surface is accurate to a leaf's size,
+// four spacings. The near surface is the part of the peg's side within the bore's mouth: in this test, all of
+// it.
 TEST(RepresentativePoints, TheirSurfacesHaveTheMomentsOfTheNearPoints) {
   const std::vector<Contact> few = fit().lead(fit().X_MP);
   const auto surfaces = fit().leading.surfaces();
@@ -115,8 +116,8 @@ TEST(RepresentativePoints, EachOmittedPointHasANearerOneInItsGroupNowAndAfterThe
   // Readings are compared at the rounded positions, to 1/16384 voxel, times slopes of at most sqrt 3.
   const double tol_m = 2 * 1.8 * kVoxel_m / 16384 + fit().map.quantum_m();
   // To first order: a facet's normal differs from the linear one by half a facet (2 pi / 1024 / 2) and by the
-  // curvature of the group beyond it, (size / 2 radius)^2 / 2; so does the field's. The step is at most 0.04
-  // mm.
+  // curvature of the group beyond the linear term, (size / 2 radius)^2 / 2; so does the field's. The step is
+  // at most 0.04 mm.
   const double lean_rad = 2 * (3.1e-3 + std::pow(kTile_m / (2 * kRadius_m), 2) / 2);
   const double then_tol_m = tol_m + RepresentativePoints::kSame_m + 40e-6 * lean_rad;
   ASSERT_LT(then_tol_m, 0.8e-6);
@@ -128,7 +129,7 @@ TEST(RepresentativePoints, EachOmittedPointHasANearerOneInItsGroupNowAndAfterThe
     ++left_out;
     ASSERT_TRUE(led.contains(group));
     EXPECT_LE(led[group].first, c.distance_m + tol_m);
-    // The field's normal at a rim is that of the other part: the linear one says nothing there.
+    // At a rim the field's normal is that of the other part, which the linear fit does not describe.
     if (!fit().isAtRim(c.id)) {
       EXPECT_LE(led[group].second, gapAfter(c, fit().request.step_M) + then_tol_m);
     }
@@ -187,8 +188,8 @@ TEST(RepresentativePoints, MergedGroupsLeaveFewerPointsAndEachOmittedPointHasANe
   EXPECT_EQ(f.leading.mergedTo_m(), 0) << "the last find() merged nothing";
   const std::vector<Contact> all = f.all(f.X_MP);
   const double tol_m = kVoxel_m / 16384;
-  // Cells are of the groups' centres, which a tile's size parts from its points at most; directions of one
-  // cell are less than 110 degrees apart, groups within 20.
+  // Cells contain the groups' centres, from which points are at most a tile's size away. Directions of one
+  // cell are less than 110 degrees apart, and normals of a group less than 20.
   const double far_m = std::sqrt(3.0) * cell_m + 2 * kTile_m;
   for (const Contact& c : all)
     EXPECT_TRUE(std::any_of(set.contacts.begin(), set.contacts.end(), [&](const Contact& kept) {
@@ -221,7 +222,7 @@ TEST(RepresentativePoints, FewNearPointsAreAllReported) {
   EXPECT_TRUE(isSame(some, all));
 }
 
-// A plate's edge that is near in each place: one point stands for its neighbours within a quarter of a tile.
+// A plate's edge is near everywhere: one point represents its neighbours within a quarter of a tile.
 TEST(RepresentativePoints, PointsOnEdgesStandForNeighboursOnly) {
   const PointShell shell = buildPointShell(makeBox(Vec3(20e-3, 20e-3, 20e-3)), {0.5e-3, 0.35});
   std::vector<std::uint8_t> on_edge(shell.size());

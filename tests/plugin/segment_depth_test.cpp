@@ -13,7 +13,7 @@ namespace vps {
 namespace {
 
 constexpr double kCertain_m = 0.5e-6;
-// Coordinates of centimetres round to 2e-18 m; a distance is a few operations on them.
+// Coordinates of centimetres are rounded to 2e-18 m; a distance is a few operations on them.
 constexpr double kRounding_m = 1e-15;
 
 Vec3 in(test::RandomPoints& random, double half_m) {
@@ -36,7 +36,7 @@ TEST(SegmentDepth, AnEdgeThatLiesInAFaceOverItsWholeLengthHasItsDepth) {
 
 TEST(SegmentDepth, AnEdgeThatPassesThroughIsDeepestWhereItIsFarthestFromTheFaces) {
   const Solid box(makeBox(Vec3(0.02, 0.02, 0.01)));
-  // Across the box half way up: 5 mm below the top where it is at least so far from the sides.
+  // A segment across the box half way up: 5 mm below the top where it is at least that far from the sides.
   const PointDepth found = deepestOnSegment(box, {-0.03, 0, 0}, {0.03, 0.001, 0}, kCertain_m);
   EXPECT_NEAR(found.depth_m, 0.005, kCertain_m);
 }
@@ -48,7 +48,8 @@ TEST(SegmentDepth, AnEdgeThatIsNearButOutsideHasNone) {
             0);
 }
 
-// Long and short segments through and beside each kind of faulty mesh, against many points of each.
+// Long and short segments through and beside each kind of faulty mesh, compared with many points of each
+// segment.
 TEST(SegmentDepth, NoPointOfASegmentIsDeeperThanFound) {
   test::RandomPoints random(71);
   constexpr int kSamples = 400;
@@ -78,8 +79,8 @@ TEST(SegmentDepth, NoPointOfASegmentIsDeeperThanFound) {
   EXPECT_GT(inside, 300);
 }
 
-// Through the seams of long, thin facets, where the rounding of a crossing is greatest: each enters and
-// leaves a needle of 128 sides through two of its side edges.
+// Segments through the seams of long, thin facets, where the rounding error of a crossing is greatest: each
+// enters and leaves a needle of 128 sides through two of its side edges.
 TEST(SegmentDepth, ASegmentThroughTheSeamsOfThinFacetsIsNotLost) {
   test::RandomPoints random(73);
   constexpr int kSides = 128;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Meshes of several shells against the formulas of their union.
+// Meshes of several shells, compared with the formulas of their union.
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
@@ -43,7 +43,7 @@ TEST(ShellUnion, AChannelOfThreeBoxesIsOneSolid) {
       EXPECT_NEAR(solid.mass().volume_m3 / kChannel_m3, 1, 1e-12) << overlap_m;
       EXPECT_EQ(solid.report().united_shells, 3u);
       EXPECT_FALSE(solid.report().is_union_incomplete);
-      // On the seam, 5 mm from the ends, where single boxes have a face.
+      // A point on the seam, 5 mm from the ends, where single boxes have a face.
       EXPECT_NEAR(solid.signedDistance(X * Vec3(0.004, 0.01, 0.01)), -0.004, 1e-12) << overlap_m;
       EXPECT_NEAR(solid.signedDistance(X * Vec3(0.03, 0.01, 0.02)), 0.01, 1e-12) << overlap_m;
     }
@@ -104,7 +104,7 @@ TEST(ShellUnion, AnInvertedShellThatCrossesAnotherIsASolid) {
   EXPECT_NEAR(solidMass(joined(plate, turned(boss(0.01 + sunk_m)))).volume_m3 / (16e-6 + 0.1e-6), 1, 1e-12);
 }
 
-/// All corners of the bar are on the channel or in it; its middle is in the open.
+/// All corners of the bar lie on the channel or in it; the bar's middle is outside.
 TEST(ShellUnion, AnInvertedShellThatCrossesTheOpenPartOfAnotherIsASolid) {
   const Solid united(channel(0));
   const Mesh channel = united.mesh(), across = block({0.005, 5e-3, 0.02}, {0.055, 15e-3, 0.03});
@@ -116,7 +116,7 @@ TEST(ShellUnion, AnInvertedShellThatCrossesTheOpenPartOfAnotherIsASolid) {
     EXPECT_NEAR(solidMass(joined(channel, bar)).volume_m3 / (kChannel_m3 + 0.04 * 0.02 * 0.01), 1, 1e-12);
 }
 
-/// The block's faces are those of a block, but for a line around its middle.
+/// The block's faces are those of a single block, except for a line around its middle.
 Mesh blockOfTwoHalves(const Vec3& min, const Vec3& max) {
   const double middle_m = 0.5 * (min.z() + max.z());
   Mesh mesh =
@@ -128,7 +128,7 @@ Mesh blockOfTwoHalves(const Vec3& min, const Vec3& max) {
   return mesh;
 }
 
-/// Without the ends, which both have in common, the rest would close to a solid without volume.
+/// Without the ends, which both shells have in common, the rest would close to a solid without volume.
 TEST(ShellUnion, AnInvertedCopyWithOtherFacetsIsTheSameSolid) {
   const Mesh one = block({0, 0, 0}, {0.02, 0.02, 0.02}),
              two = blockOfTwoHalves({0, 0, 0}, {0.02, 0.02, 0.02});
@@ -181,8 +181,8 @@ TEST(ShellUnion, HasTheSameBitsForAnyNumberOfThreads) {
   EXPECT_EQ(many.mesh().triangles, single.mesh().triangles);
 }
 
-/// Facet 0 of the mesh is cut at the middle of its first side, whose other facet is not: a facet without area
-/// fills the gap.
+/// Facet 0 of the mesh is cut at the middle of its first side, but the facet across that side is not; a facet
+/// without area fills the gap.
 Mesh withFlatFacet(Mesh mesh) {
   const std::array<std::uint32_t, 3> t = mesh.triangles[0];
   const auto middle = static_cast<std::uint32_t>(mesh.vertices.size());
@@ -215,8 +215,8 @@ TEST(ShellUnion, AnOpenPatchElsewhereDoesNotPreventIt) {
   EXPECT_NEAR(solid.signedDistance({0.004, 0.01, 0.01}), -0.004, 1e-12);
 }
 
-/// The side of one arm is parted from the rest by a crack that is too wide to be joined, and narrow enough
-/// for the shell to be taken as closed.
+/// A crack separates the side of one arm from the rest. It is too wide to be joined, and narrow enough for
+/// the shell to count as closed.
 TEST(ShellUnion, ShellsThatTouchButHaveCracksAreSaidNotToBeUnited) {
   Mesh arm = block({0, 0, 0.009}, {0.01, 0.02, 0.04});
   Mesh cut = arm;
@@ -231,7 +231,7 @@ TEST(ShellUnion, ShellsThatTouchButHaveCracksAreSaidNotToBeUnited) {
   EXPECT_TRUE(solid.report().is_union_incomplete) << describe(solid.report());
 }
 
-/// Pins that stand on one plate: all have a share of its two facets.
+/// Pins that stand on one plate, so that all of them cover some of its two facets.
 TEST(ShellUnion, ManyPinsOnAPlateAreOneSolid) {
   constexpr int kRow = 10, kSides = 16;
   constexpr double kPitch_m = 4e-3, kRadius_m = 1e-3, kHigh_m = 10e-3;

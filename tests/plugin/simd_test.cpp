@@ -59,7 +59,7 @@ class SteepField {
   [[nodiscard]] const FieldView& view() const { return view_; }
   [[nodiscard]] const VoxLayout& layout() const { return layout_; }
 
-  /// The trilinear formula [quanta]; p in voxels from the directory's corner.
+  /// The trilinear formula [quanta]; p is in voxels from the directory's corner.
   [[nodiscard]] double at(const Vec3& p) const {
     if (!((p.array() >= 0).all() && (p.array() < kExtent).all())) return kFullBand;
     const Index3 low = p.cast<int>();
@@ -79,7 +79,7 @@ class SteepField {
     if (random() % 2 == 0) return static_cast<NodeValue>(random() % 2 ? kFullBand : -kFullBand);
     return static_cast<NodeValue>(static_cast<int>(random() % (2 * kFullBand + 1)) - kFullBand);
   }
-  /// Nodes that an empty cell shares have its constant, so that the field is continuous.
+  /// Nodes that a brick shares with an empty cell have that cell's constant, so that the field is continuous.
   [[nodiscard]] NodeValue node(const Index3& at) const {
     for (int corner = 0; corner < 8; ++corner) {
       const Index3 cell =
@@ -132,7 +132,7 @@ ShellBlock randomBlock(std::mt19937& random, const Vec3& center, double radius_m
   return block;
 }
 
-/// A field, a pose, and a batch of blocks: inside, across the rim, on corners of cells, and very far away.
+/// A field, a pose, and a batch of blocks: inside, across the rim, at corners of cells, and very far away.
 struct Trial {
   explicit Trial(unsigned seed)
       : random(seed), voxel_m(std::pow(10.0, -9 + static_cast<double>(seed % 13))), field(seed, voxel_m) {
@@ -197,15 +197,16 @@ TEST(SimdKernels, ReadingsAreTheTrilinearFormula) {
     const auto batch = trial.read(Simd::Best);
     for (int i = 0; i < kBatch; ++i) {
       const ShellBlock& block = trial.blocks[static_cast<std::size_t>(i)];
-      // Positions are rounded to whole steps. Before that, in floats: the matrix and the point are rounded,
-      // then three products and three sums of numbers up to the block's radius and a cell, each to 2^-24 of
-      // itself.
+      // Positions are rounded to whole steps. Errors before that, in floats: the matrix and the point are
+      // rounded, then three products and three sums of numbers up to the block's radius and a cell, each to
+      // 2^-24 of itself.
       const double radius = block.radius_m / trial.voxel_m;
       const double off_steps = 0.5 + (3 * 3 * radius + 3 * (8 + 2 * radius)) * kSteps * std::exp2(-24);
-      // In doubles: the centre, computed from the far corner of the pose.
+      // Errors in doubles: the centre, computed from the far corner of the pose.
       const double c = Vec3(block.center[0], block.center[1], block.center[2]).norm() / trial.voxel_m;
       const double off_voxels = off_steps / kSteps + 1e-15 * (c + 1000);
-      // Neighbouring nodes differ by at most twice the band along each axis; then sums of floats below it.
+      // Neighbouring nodes differ by at most twice the band along each axis; then there are sums of floats
+      // below it.
       const double tol = 3 * 2 * kFullBand * off_voxels + 12 * kFullBand * std::exp2(-24);
       float least = kFullBand;
       for (int lane = 0; lane < kLanes; ++lane) {
@@ -240,7 +241,8 @@ TEST(SimdKernels, ALeafThatReachesBeyondTheNeighbourCellsIsRead) {
   std::mt19937 random(1);
   const auto batch = std::make_unique<ReadBatch>();
   for (double radius = 0.5; radius < 15; radius += 0.25) {
-    // Two cells beside the lone one, at the side towards it: sixteen points up to the radius nearer.
+    // The block lies two cells beside the lone one; sixteen points on the near side are up to the radius
+    // nearer.
     const Vec3 center(23.9, 36, 36);
     ShellBlock block = randomBlock(random, center, radius, kLanes);
     for (int i = 0; i < kLanes; ++i) {

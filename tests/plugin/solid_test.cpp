@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One meaning of "inside": Solid, voxmap and the truth, on every kind of faulty mesh.
+// Solid and voxmap agree with the truth about "inside", on every kind of faulty mesh.
 #include "vps/solid.h"
 
 #include <gtest/gtest.h>
@@ -20,14 +20,14 @@ namespace {
 
 constexpr VoxMapSettings kVoxels = {0.5e-3, 4};
 
-/// Points for each mesh; VPS_SOLID_POINTS=100000 takes minutes.
+/// Number of points for each mesh; VPS_SOLID_POINTS=100000 takes minutes.
 int pointCount() {
   const char* given = std::getenv("VPS_SOLID_POINTS");
   return given != nullptr ? std::atoi(given) : 3000;
 }
 
-/// A third anywhere in and around the part, a third within some voxels of the surface, a third 0.01 to 300 um
-/// from facets' edges and corners, where signs are hard.
+/// A third of the points anywhere in and around the part, a third within some voxels of the surface, and a
+/// third 0.01 to 300 um from facets' edges and corners, where signs are difficult.
 class Probes {
  public:
   explicit Probes(const Mesh& mesh) : mesh_(mesh) {}
@@ -51,9 +51,9 @@ class Probes {
   int count_ = 0;
 };
 
-/// True if the sign changes without a surface between p and a corner of its cell: they are farther from the
-/// surface, together, than from each other. The middle of a hole passes between them, and a field between
-/// nodes of both signs has no meaning there.
+/// True if the sign changes without a surface between p and a corner of its cell: the sum of their distances
+/// from the surface exceeds the distance between them. The middle of a hole passes between them, and a field
+/// between nodes of both signs has no meaning there.
 bool isInHole(const Solid& solid, double exact_m, const VoxMap& map, const Pose& X_MP, const Vec3& p,
               double crack_m) {
   const double h = map.voxel_m();
@@ -87,7 +87,8 @@ TEST_P(SolidOfFaultyMesh, AgreesWithTheTruth) {
     if (std::abs(truth_m) <= error_m) continue;
     ++claimed;
     wrong += (d < 0) != (truth_m < 0);
-    // Shells that overlap keep the facets that lie in each other in part: inside, these are nearer.
+    // Overlapping shells that are not united keep facets that lie partly in each other; inside, such facets
+    // are nearer.
     if (truth_m < 0 && faulty.is_union) continue;
     worst_m = std::max(worst_m, std::abs(d - truth_m));
     off += std::abs(d - truth_m) > error_m;
@@ -111,7 +112,7 @@ TEST_P(SolidOfFaultyMesh, AgreesWithAllFacetsWindingNumber) {
     const Vec3 p = probes.next();
     const double w = winding.exact(p);
     const Solid::Closest closest = solid.closest(p);
-    // In the middle of a hole, and to rounding on a facet, the winding number leaves it open.
+    // In the middle of a hole, and within rounding of a facet, the winding number does not decide.
     if (std::abs(w - 0.5) < 0.02 || closest.distance_m < 1e-12) continue;
     const Box box = bounds(repaired.surface);
     const bool may = (p.array() > box.min.array()).all() && (p.array() < box.max.array()).all();
@@ -126,7 +127,7 @@ TEST_P(SolidOfFaultyMesh, AgreesWithItsVoxmapWithinTheMapsError) {
   const FaultyMesh& faulty = GetParam();
   const Solid solid(faulty.mesh);
   for (const bool is_placed : {false, true}) {
-    // A placed solid is voxelised on another grid; its own frame's points move with it.
+    // A placed solid is voxelised on another grid; points of its own frame move with it.
     const Pose X_MP = is_placed ? RandomPoints(5).pose(0.01) : Pose();
     const VoxMap map = buildVoxMap(PlacedSolid{&solid, X_MP}, kVoxels);
     Probes probes(faulty.mesh);

@@ -19,7 +19,7 @@ constexpr double kLeast_m = 1e-6;
 
 using Body = test::FeatureBody;
 
-/// A turned ring with facets of 7.5 degrees, so that its bore is narrower than its vertices say.
+/// A turned ring with facets of 7.5 degrees; its bore is narrower than the radius of its vertices.
 Mesh ring(double bore_m) {
   return test::lathe({{bore_m, -5e-3}, {9e-3, -5e-3}, {9e-3, 5e-3}, {bore_m, 5e-3}}, 48);
 }
@@ -34,7 +34,7 @@ Pose turnedAbout(const Pose& at, double angle_rad) {
   return at * Pose(rotationFromVector(Vec3(0, 0, angle_rad)), Vec3::Zero());
 }
 
-// The answer after as many calls as a search may wait for.
+// The answer after the number of calls that a search may wait for.
 bool staysApart(SpinClearance& spin, const Body& a, const Body& b, const Pose& start, const Pose& end,
                 double least_m = kLeast_m) {
   bool is_apart = false;
@@ -45,7 +45,7 @@ bool staysApart(SpinClearance& spin, const Body& a, const Body& b, const Pose& s
 
 TEST(SpinClearance, IsTheRoomAroundAShaftInItsBore) {
   const Body outer(ring(5.025e-3));
-  // A placed axis, as CAD has them, so that nothing is aligned with the axes of coordinates.
+  // An axis placed as in CAD files, so that it is aligned with no coordinate axis.
   const Pose X_01(rotationFromVector(Vec3(0.4, -1.1, 0.7)), Vec3(3e-3, 1e-3, -2e-3));
   Mesh moved = ring(5.025e-3);
   for (Vec3& v : moved.vertices) v = X_01 * v;
@@ -65,11 +65,11 @@ TEST(SpinClearance, IsTheRoomAroundAShaftInItsBore) {
 }
 
 TEST(SpinClearance, IsNoneWhereCornersPassThroughTheOtherPart) {
-  // A square bar in a square hole: room beside its faces, none for its corners.
+  // A square bar in a square hole has room beside its faces, but none for its corners.
   const Body hole(test::lathe({{6e-3, -5e-3}, {12e-3, -5e-3}, {12e-3, 5e-3}, {6e-3, 5e-3}}, 4));
   SpinClearance spin;
   EXPECT_FALSE(staysApart(spin, hole, Body(shaft(5.5e-3, 4)), Pose(), turnedAbout(Pose(), kTurn_rad), 0));
-  // Across the corners it is narrower than the hole across its faces.
+  // Across its corners this bar is narrower than the hole across its faces.
   SpinClearance thinner;
   EXPECT_TRUE(staysApart(thinner, hole, Body(shaft(4.2e-3, 4)), Pose(), turnedAbout(Pose(), kTurn_rad)));
 }
@@ -85,7 +85,8 @@ TEST(SpinClearance, KnowsAFacetThatSurroundsTheAxis) {
   EXPECT_FALSE(staysApart(touching, plate, inner, in, turnedAbout(in, kTurn_rad), 0));
 }
 
-// Poses around the axis, near it and not: whatever is called apart is, at both ends and between them.
+// Poses around the axis, near it and not near it: parts that are reported apart are apart at both ends and in
+// between.
 TEST(SpinClearance, NeverCallsApartWhatOverlaps) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> off(-1, 1);
@@ -143,7 +144,7 @@ TEST(SpinClearance, SweepsEdgesOfFacetsWithoutArea) {
   for (int i = 0; i < 8; ++i) EXPECT_FALSE(with.staysApart(outer.features, with_edge, Pose(), end, kLeast_m));
 }
 
-// One step in which it is pushed aside does not make it look for another axis that is of no use.
+// A single step in which the part is pushed aside does not cause a search for another axis that is of no use.
 TEST(SpinClearance, KeepsTheAxisThatItKnows) {
   const Body outer(ring(5.1e-3)), inner(shaft(5e-3, 48));
   SpinClearance spin;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The parts of the voxeliser, each compared with an exhaustive search; voxmap_test.cpp tests the whole.
+// The components of the voxeliser, each compared with an exhaustive search; voxmap_test.cpp tests the whole.
 #include "voxelise/splat.h"
 
 #include <gtest/gtest.h>
@@ -63,8 +63,8 @@ TEST(SplatRows, ContainEveryNodeOfTheRegionAndNoneFarBeyondIt) {
           if (is_in_box && least >= 0) {
             ASSERT_TRUE(has) << node.transpose();
           }
-          // Beyond the region: the margin, 2e-3 of a node along z, and the tilt of vertical planes over a
-          // tile.
+          // Tolerance beyond the region: the margin, 2e-3 of a node along z, and the tilt of vertical planes
+          // over a tile.
           if (has) {
             ASSERT_TRUE(is_in_box && least > -(SplatRegion::kRoundingMargin + 2e-3 + 1e-6 * kTile)) << least;
           }
@@ -91,8 +91,8 @@ TEST(SplatRows, AreTheSameWithoutVectorInstructions) {
   }
 }
 
-/// Splats a mesh in voxels into the one tile at the origin and compares each node with exhaustive search:
-/// always the distance, and the sign if the mesh determines one.
+/// Splats a mesh in voxels into the one tile at the origin and compares each node with exhaustive search: the
+/// distance always, and the sign if the mesh determines one.
 void expectTileExact(const Mesh& mesh, bool has_sign, const Mesh& truth_mesh) {
   constexpr double kBand = 4;
   const SurfaceFeatures features(mesh, 1, Vec3::Zero());

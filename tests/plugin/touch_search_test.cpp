@@ -29,7 +29,7 @@ bool isAllowed(const std::vector<Vec3>& rays, const Vec3& n, double slope) {
   return std::all_of(rays.begin(), rays.end(), [&](const Vec3& ray) { return n.dot(ray) >= -slope; });
 }
 
-// Rays as of spikes, edges, flat places, saddles and by chance; the cone may be larger than it must.
+// Rays of spikes, edges, flat places, saddles and random directions; the cone may be larger than necessary.
 TEST(TouchCone, HoldsEveryDirectionThatAllRaysAllow) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> wide(0.1, 3.0);
@@ -75,9 +75,9 @@ bool isNear(const FeatureSet& facets, std::uint32_t f, const Vec3& p, double mar
          std::abs(facets.normal(f).dot(p - corner(0))) <= margin_m;
 }
 
-// Every corner against every facet, by the definition.
-// @param turn  of the parts since the search
-// @param slack_rad  for sines and cosines
+// Tests every corner against every facet, by the definition.
+// @param turn  rotation of the parts since the search
+// @param slack_rad  tolerance for sines and cosines
 Pairs searchAll(const FeatureSet& corners, const FeatureSet& facets, const Pose& X, double margin_m,
                 Near near, const Mat3& turn, double slack_rad) {
   const double surely_flush = -std::cos(std::acos(kCosSameFace) - slack_rad);
@@ -123,7 +123,8 @@ TEST(TouchSearch, FindsWhatASearchAmongAllPairsFinds) {
     Pairs pairs;
     for (const TouchPair& pair : found) pairs.emplace(pair.corner, pair.facet);
     EXPECT_EQ(pairs.size(), found.size());
-    // All that can touch after a turn by less than the slack, and not more than a product's slack lets in.
+    // All pairs that can touch after a turn by less than the slack, and no more than the tolerance of a
+    // product adds.
     EXPECT_TRUE(
         holds(searchAll(a, b, X, margin_m, Near::ToItsBoxAndPlane, Mat3::Identity(), slack_rad), pairs));
     for (int k = 0; k < 3; ++k) {
@@ -146,7 +147,7 @@ TEST(TouchSearch, FindsWhatASearchAmongAllPairsFinds) {
   EXPECT_GT(count, 1000u);
 }
 
-// What is found at any place of a straight way is found for the whole way.
+// A pair that is found at any place of a straight motion is found for the whole motion.
 TEST(TouchSearch, FindsWhatComesNearOnAWay) {
   test::ThreadShape thread;
   thread.columns = 48;
@@ -182,7 +183,7 @@ TEST(TouchSearch, FindsWhatComesNearOnAWay) {
   EXPECT_GT(count, 300u);
 }
 
-// A thread in its nut: its crests cannot touch anything but faces that lie flush on theirs.
+// A thread in its nut: the thread's crests can touch only faces that lie flush on theirs.
 TEST(TouchSearch, LeavesOutFlushThreads) {
   test::ThreadShape thread;
   thread.length_m = 10 * thread.pitch_m;

@@ -72,7 +72,8 @@ TEST(NoAllocScope, FailsATestThatAllocates) {
   EXPECT_NONFATAL_FAILURE(
       {
         const vps_test::NoAllocScope guard;
-        // A compiler may leave out a new whose block nobody else sees; not a direct call of the function.
+        // Allocates by a direct call of the function, because a compiler may remove a new whose block nobody
+        // else uses.
         ::operator delete(::operator new(1));
       },
       "heap calls in a scope that must have none");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The cache gives the same maps as building, to the bit, in spite of any damage to its files.
+// The cache gives the same maps as building, to the bit, whatever damage its files have.
 #include "vps/voxmap_cache.h"
 
 #include <gtest/gtest.h>
@@ -61,7 +61,7 @@ class VoxMapCacheTest : public testing::Test {
   VoxMap build(const Mesh& mesh, MeshReport* report = nullptr) {
     return cache_.build(mesh, kSettings, "hub", {}, report);
   }
-  /// The map that is built if `bytes` replace the file of part().
+  /// The map that is built if `bytes` replace the content of part()'s file.
   VoxMap rebuilt(const std::string& bytes) {
     warnings_.clear();
     write(cache_.fileOf(part(), kSettings), bytes);
@@ -113,7 +113,7 @@ TEST_F(VoxMapCacheTest, EveryDamagedFileIsBuiltAgainWithAWarningAndReplaced) {
   std::vector<std::string> damaged = {"", "vpscache", std::string(5000, 'x'), good + "x"};
   for (const std::size_t length : {good.size() / 2, good.size() - 1, std::size_t{144}, std::size_t{150}})
     damaged.push_back(good.substr(0, length));
-  // Any bit of the header, and some of what follows.
+  // Any bit of the header, and some bits of the rest.
   for (std::size_t i = 0; i < good.size(); i += i < 160 ? 1 : good.size() / 40) {
     damaged.push_back(good);
     damaged.back()[i] = static_cast<char>(damaged.back()[i] ^ (1 << i % 8));

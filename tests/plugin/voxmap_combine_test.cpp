@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Union and resampling, compared with the fields they are made from.
+// Union and resampling, compared with the fields from which they are made.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace {
 constexpr double kVoxel_m = 0.25e-3;
 constexpr VoxMapSettings kSettings = {kVoxel_m, 3};
 
-/// A node's position is rounded, which changes the reading by 1e-15 of the distance between nodes.
+/// Rounding error of a node's position, which changes the reading by 1e-15 of the distance between nodes.
 constexpr double kRounding_m = 1e-15;
 
 /// Grid nodes at random within a box.
@@ -42,7 +42,7 @@ TEST(CombinedVoxMap, TheUnionIsTheMinimumAtEveryNode) {
         std::abs(block.distance(p) - ball.distance(p)) > kRounding_m) {
       ASSERT_EQ(both.owner(p), block.distance(p) <= ball.distance(p) ? 0 : 1);
     }
-    // Bounds distinguish far from near in the merged field.
+    // Bounds still distinguish far from near in the merged field.
     const double block_m = boxDistance(p, {0.006, 0.005, 0.004});
     const double ball_m = (p - Vec3(0.005, 0, 0.002)).norm() - 0.004;
     const double sagitta_m = 2e-5;  // of a ball of 5120 triangles
@@ -65,16 +65,17 @@ TEST(ResampledVoxMap, EveryNodeIsTheSourceReadThere) {
     const Pose X_PM = X_MP.inverse();
     forRandomNodes(40000, 0.012, [&](const Vec3& p) {
       const double expected_m = std::clamp(source.distance(X_PM * p), -moved.band_m(), moved.band_m());
-      // Half a quantum of its own, and the rounding of positions in the vectorised reading: 1e-4 voxel.
+      // Half a quantum of the resampled map, and the rounding of positions in the vectorised reading: 1e-4
+      // voxel.
       ASSERT_NEAR(moved.distance(p), expected_m, 0.51 * moved.quantum_m() + 1e-4 * kVoxel_m);
-      // At every distance; the margin is for the rounding of doubles.
+      // Holds at every distance; the margin is for the rounding of doubles.
       ASSERT_LE(moved.lowerBound(p), truth.closest(X_PM * p).distance_m + 1e-12) << p.transpose();
     });
   }
 }
 
 TEST(ResampledVoxMap, SphereStaysWithinTwiceTheSmoothError) {
-  // Trilinear on a sphere: h^2/8 times 2/r, once in the source and once here.
+  // Trilinear on a sphere: h^2/8 times 2/r, once in the source map and once in the resampled one.
   constexpr double kRadius_m = 0.008;
   const VoxMap source = buildVoxMap(makeSphere(kRadius_m, 6), {kVoxel_m, 4});
   const Pose X_MP = RandomPoints(5).pose(0.002);
@@ -150,8 +151,8 @@ TEST(ResampledVoxMap, AChainOfMountingsKeepsTheBricksThatItNeeds) {
     ASSERT_EQ(chain.distance(p), once.distance(p));
     ASSERT_EQ(chain.owner(p), once.owner(p));
   });
-  // A pool has memory for twice the bricks of the map and the mounting, and no more; each has 736 nodes and
-  // owners of 2 bytes and 10 bytes more. The cells are those of `once`.
+  // A pool has memory for twice the bricks of the map and the mounting, and no more. Each brick has 736 nodes
+  // and owners of 2 bytes, and 10 bytes more. The cells are those of `once`.
   const double cells_bytes = static_cast<double>(once.memoryBytes());
   EXPECT_LT(static_cast<double>(chain.memoryBytes()),
             2 * 2 * static_cast<double>(chain.brickCount()) * (2 * 736 * 2 + 10) + cells_bytes);
@@ -169,8 +170,8 @@ TEST(ResampledVoxMap, APartFarFromTheOriginTakesAsLittleMemoryAsOneNearIt) {
 }
 
 TEST(ResampledVoxMap, EachCellThatReadsOneConstantIsThatConstant) {
-  // Cells that are set to a constant without reading must read so: every node of the resampled map, also
-  // beyond the band, equals the source there.
+  // Cells that are set to a constant without reading must read as that constant: every node of the resampled
+  // map, also beyond the band, equals the source at its place.
   for (const int seed : {3, 4, 5}) {
     const Pose X = RandomPoints(seed).pose(0.003), X_inverse = X.inverse();
     const VoxMap ring = buildVoxMap(makeTube(0.005, 0.003, 0.006, 64), kSettings);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// More than 400 lines: all tests of single voxmaps, which share the helpers of this file.
+// The file has more than 400 lines because all tests of single voxmaps share its helpers.
 #include "vps/voxmap.h"
 
 #include <gtest/gtest.h>
@@ -84,7 +84,7 @@ TEST(VoxMap, NodesAreExactAtEveryScale) {  // parts of 1 um, of 100 m and of ato
 TEST(VoxMap, ANodeWithinHalfAQuantumOfTheSurfaceReadsZeroAndTheSolidTellsItsSide) {
   const double h = 0.5e-3, quantum_m = buildVoxMap(makeBox(Vec3::Constant(0.02)), {h, 4}).quantum_m();
   for (const double quanta : {-1.4, -0.55, -0.45, -0.01, 0.01, 0.45, 0.55, 1.4}) {
-    // The node (20, 0, 0) is that far outside of the box.
+    // The node (20, 0, 0) is this far outside of the box.
     const Vec3 node(20 * h, 0, 0);
     const Mesh box = makeBox(2 * Vec3(20 * h - quanta * quantum_m, 0.01, 0.01));
     const VoxMap map = buildVoxMap(box, {h, 4});
@@ -112,15 +112,15 @@ TEST(VoxMap, SphereReportsItsAnalyticDistance) {
   const VoxMap map = buildVoxMap(makeSphere(kRadius_m, 5), kSettings);
   // Trilinear: h^2/8 times the summed second derivatives, 2/r for a sphere, r least at the band's inner edge.
   const double interpolation_m = kVoxel_m * kVoxel_m / 8 * 2 / (kRadius_m - map.band_m());
-  // Facets: the icosahedron's edge of 1.051 r is halved five times, at most 1.15 times longer where it
-  // bulges; a circumradius is edge / sqrt(3), and the sagitta circumradius^2 / (2 r).
+  // Facets: the icosahedron's edge of 1.051 r is halved five times, and at most 1.15 times longer where it
+  // bulges. A circumradius is edge / sqrt(3), and the sagitta is circumradius^2 / (2 r).
   const double edge_m = 1.051 * 1.15 * kRadius_m / 32, facet_m = edge_m * edge_m / 3 / (2 * kRadius_m);
   RandomPoints random(5);
   int near = 0;
   for (int n = 0; n < 50000; ++n) {
     const Vec3 p = random.inBox(Vec3::Constant(0.013));
     const double truth_m = sphereDistance(p, kRadius_m);
-    // The last voxel of the band mixes with saturated nodes.
+    // In the last voxel of the band saturated nodes enter the interpolation.
     if (std::abs(truth_m) > map.band_m() - 2 * kVoxel_m) continue;
     ASSERT_NEAR(map.distance(p), truth_m, interpolation_m + facet_m);
     ++near;
@@ -143,10 +143,11 @@ TEST(VoxMap, CylinderAndBoxReportTheirAnalyticDistanceOnFaces) {
     const double tolerance_m =
         kVoxel_m * kVoxel_m / (8 * (kRadius_m - 3 * kVoxel_m)) + sagitta(kRadius_m, kSegments);
     ASSERT_NEAR(cylinder.distance(p), depth_m * -1, tolerance_m);
-    // Near a face and away from its edges the distance is linear: exact except for the nodes' rounding.
+    // Near a face and away from its edges the distance is linear, so it is exact except for the nodes'
+    // rounding.
     const Vec3 q = Vec3(0, 0, half.z()) + random.inBox({0.005, 0.003, kVoxel_m});
     ASSERT_NEAR(box.distance(q), boxDistance(q, half), 0.51 * box.quantum_m());
-    // Equal nodes round equally: across the plane there is no slope.
+    // Nodes of equal distance are rounded equally, so there is no slope along the plane.
     ASSERT_LT((box.normal(q) - Vec3::UnitZ()).norm(), 1e-6);
     ASSERT_LT((box.normal(q, Gradient::Trilinear) - Vec3::UnitZ()).norm(), 1e-6);
   }
@@ -156,9 +157,8 @@ TEST(VoxMap, NormalsOfASphereAreRadial) {
   constexpr double kRadius_m = 0.01;
   const VoxMap map = buildVoxMap(makeSphere(kRadius_m, 6), kSettings);
   RandomPoints random(7);
-  // Second differences of a distance with curvature 1/r: the gradient is off by about h/r within a cell for
-  // the trilinear one; facets (edge e) turn it by e/r. Averaging over two voxels adds no more than that
-  // again.
+  // Second differences of a distance with curvature 1/r: the trilinear gradient is off by about h/r within a
+  // cell, and facets (edge e) turn it by e/r. Averaging over two voxels adds at most as much again.
   const double edge_m = 1.051 * 1.15 * kRadius_m / 64;
   const double tolerance_rad = (kVoxel_m + edge_m) / (kRadius_m - kVoxel_m);
   for (int n = 0; n < 20000; ++n) {
@@ -186,7 +186,7 @@ TEST(VoxMap, TrilinearNormalIsTheDerivativeOfTheDistance) {
       difference[axis] =
           map.distance(p + step_m * Vec3::Unit(axis)) - map.distance(p - step_m * Vec3::Unit(axis));
     if (difference.norm() < 0.1 * step_m) continue;  // nearly cancelled: its direction is noise
-    // Linear along each axis, so exact but for rounding: 1e-16 of 1e-3 m over a step of 5e-7 m.
+    // Linear along each axis, so exact except for rounding: 1e-16 of 1e-3 m over a step of 5e-7 m.
     ASSERT_LT((n_M - difference.normalized()).norm(), 1e-6);
     ++compared;
   }
@@ -205,7 +205,7 @@ TEST(VoxMap, DistanceIsContinuous) {
     for (int n = 0; n < 3000; ++n) {
       p += step;
       const double d = map.distance(p);
-      // Each partial derivative is at most 1, a mean of differences of neighbours: the gradient at most
+      // Each partial derivative is at most 1, as a mean of differences of neighbours; the gradient is at most
       // sqrt(3).
       ASSERT_LE(std::abs(d - last_m), std::sqrt(3.0) * step_m + 1e-7 * map.band_m());
       last_m = d;
@@ -225,8 +225,8 @@ TEST(VoxMap, TheContinuousNormalIsContinuous) {
     for (int n = 0; n < 100; ++n) {
       p += step;
       const Vec3 n_M = map.normal(p);
-      // Nodal gradients of neighbours differ by about h/r; over a hundredth of a voxel by a hundredth of
-      // that, four times for diagonals and facets. A jump between cells would be h/r at once.
+      // Nodal gradients of neighbours differ by about h/r, and over a hundredth of a voxel by a hundredth of
+      // that; four times as much for diagonals and facets. A jump between cells would be h/r.
       ASSERT_LT((n_M - last).norm(), 4 * 0.01 * kVoxel_m / (kRadius_m - 2 * kVoxel_m));
       last = n_M;
     }
@@ -251,11 +251,11 @@ TEST(VoxMap, BoundsHoldEverywhere) {
       if (std::abs(d) > map.band_m()) {
         ASSERT_EQ(map.isInsideCoarse(p), d < 0);
       }
-      // Farther away, only the distance to the directory counts in full.
+      // Farther away, only the distance to the directory is accurate.
       if (n % 2) shortfall_m = std::max(shortfall_m, std::abs(d) - map.lowerBound(p));
     }
-    // A cell's half diagonal, twice (from the centre to the point, and the surface beyond it), and a tenth of
-    // depth.
+    // A cell's half diagonal, twice (from the centre to the point, and to the surface beyond it), and a tenth
+    // of the depth.
     EXPECT_LT(shortfall_m, 2 * std::sqrt(3.0) * 4 * kVoxel_m + 0.1 * map.bounds().size().norm());
   }
 }

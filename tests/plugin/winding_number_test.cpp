@@ -24,7 +24,7 @@ double byArcTangents(const Mesh& mesh, const Vec3& p) {
   return angle_sr / (4 * std::numbers::pi);
 }
 
-/// Every k-th triangle only: holes everywhere.
+/// Keeps only every k-th triangle, so that there are holes everywhere.
 Mesh riddled(Mesh mesh, std::size_t k) {
   std::size_t i = 0;
   std::erase_if(mesh.triangles, [&](const auto&) { return i++ % k == 0; });
@@ -46,8 +46,8 @@ TEST(WindingNumber, ClosedMeshesWindOnceInsideAndNeverOutside) {
 }
 
 TEST(WindingNumber, ADiscHasItsSolidAngle) {
-  // From height z over a disc of radius r: 2 pi (1 - z / sqrt(z^2 + r^2)), negative in front of it. A polygon
-  // of n corners has the disc's area to 2 pi^2 / 3 n^2.
+  // The solid angle of a disc of radius r from height z is 2 pi (1 - z / sqrt(z^2 + r^2)), negative in front
+  // of it. A polygon of n corners has the disc's area to within 2 pi^2 / 3 n^2.
   constexpr int kSegments = 2000;
   Mesh disc;
   disc.vertices.emplace_back(0, 0, 0);

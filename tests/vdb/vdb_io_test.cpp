@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Voxmaps as .vdb files: our own, what other programs read from them, and level sets of other programs.
-// More than 400 lines: one source is what includes OpenVDB, which takes a minute to compile.
+// Voxmaps as .vdb files: files of saveVdb(), what other programs read from them, and level sets of other
+// programs. The file has more than 400 lines because a second source would include OpenVDB, which takes a
+// minute to compile.
 #include <gtest/gtest.h>
 #include <openvdb/io/Stream.h>
 #include <openvdb/openvdb.h>
@@ -84,7 +85,7 @@ TEST_F(VdbFile, AResampledMapKeepsItsErrorAndItsBounds) {
   RandomPoints random(27);
   for (int n = 0; n < 20000; ++n) {
     const Vec3 p = moved.bounds().center() + random.inBox(moved.bounds().size());
-    // Resampling rounds a node that two bricks share twice; a file has it once.
+    // Resampling rounds a node that two bricks share in each brick; a file stores it once.
     ASSERT_NEAR(loaded.distance(p), moved.distance(p), 1.01 * moved.quantum_m());
     ASSERT_NEAR(loaded.leastDistance(p), moved.leastDistance(p), 1.01 * moved.quantum_m());
   }
@@ -179,7 +180,7 @@ using openvdb::FloatGrid;
 constexpr double kRadius_m = 0.008;
 const Vec3 kCenter_M(0.3e-3, -0.7e-3, 1.1e-3);
 
-/// The distance to a ball at every node of a band, as OpenVDB makes it.
+/// A level set with the distance to a ball at every node of a band, made by OpenVDB.
 FloatGrid::Ptr ball(double half_width = 4) {
   return openvdb::tools::createLevelSetSphere<FloatGrid>(
       static_cast<float>(kRadius_m),
@@ -187,7 +188,7 @@ FloatGrid::Ptr ball(double half_width = 4) {
       static_cast<float>(kVoxel_m), static_cast<float>(half_width));
 }
 
-/// Moves a grid's lattice: its nodes are at p_F = X_FM p_M.
+/// Moves a grid's lattice; its nodes are then at p_F = X_FM p_M.
 void place(openvdb::GridBase& grid, const Pose& X_FM) {
   openvdb::Mat4d m = openvdb::Mat4d::identity();
   for (int axis = 0; axis < 3; ++axis)
@@ -212,7 +213,7 @@ class ForeignVdb : public VdbFile {
     store({grid});
     return loadVdb(file_);
   }
-  /// The reason why the file is refused.
+  /// The reason for which the file is refused.
   [[nodiscard]] std::string complaint(const std::string& name = "") const {
     try {
       static_cast<void>(loadVdb(file_, name));
@@ -226,8 +227,8 @@ class ForeignVdb : public VdbFile {
     return complaint();
   }
 
-  /// The greatest error against the ball in the band except its last two voxels, which mix with saturated
-  /// nodes.
+  /// The greatest error against the ball in the band, except in its last two voxels, where saturated nodes
+  /// enter the interpolation.
   static double worstError_m(const VoxMap& map, const Pose& X_FM, double band_m) {
     RandomPoints random(40);
     double worst_m = 0;
@@ -239,8 +240,8 @@ class ForeignVdb : public VdbFile {
     }
     return worst_m;
   }
-  /// Trilinear on a ball: h^2/8 times 2/r, r least at the inner edge; half a quantum; and voxel size and
-  /// radius as floats, 6e-8 of the distance from the grid's origin.
+  /// Trilinear on a ball: h^2/8 times 2/r, r least at the inner edge; half a quantum; and the rounding of
+  /// voxel size and radius to floats, 6e-8 of the distance from the grid's origin.
   static double interpolation_m(const VoxMap& map, double band_m) {
     return kVoxel_m * kVoxel_m / 8 * 2 / (kRadius_m - band_m) + 0.51 * map.quantum_m() + 2e-9;
   }
@@ -260,7 +261,7 @@ TEST_F(ForeignVdb, ABallReadsItsAnalyticDistanceInAnyNumberType) {
     const VoxMap from_doubles = stored(std::make_shared<openvdb::DoubleGrid>(*grid));
     expectSame(map, from_doubles);
     grid->setSaveFloatAsHalf(true);
-    // 11 bits: half a step at the band's end is 2^-11 of it at most.
+    // 11 bits: half a step at the band's end is at most 2^-11 of the band.
     EXPECT_LT(worstError_m(stored(grid), Pose(), band_m),
               interpolation_m(map, band_m) + std::ldexp(band_m, -11));
   }
@@ -282,9 +283,9 @@ TEST_F(ForeignVdb, ARotatedOrMovedGridIsReadAtItsPose) {
     store({grid});
     const double band_m = 4 * kVoxel_m;
     const VoxMap map = loadVdb(file_);
-    // Interpolated twice, and the rounding of positions in the vectorised reading: 1e-4 voxel.
+    // Interpolated twice, with the rounding of positions in the vectorised reading: 1e-4 voxel.
     EXPECT_LT(worstError_m(map, X_FM, band_m), 2 * interpolation_m(map, band_m) + 1e-4 * kVoxel_m);
-    // Without resampling.
+    // The same without resampling.
     const PlacedVdb placed = loadPlacedVdb(file_);
     EXPECT_LT(worstError_m(placed.map, Pose(), band_m), interpolation_m(map, band_m));
     EXPECT_LT((placed.X_FM.R - X_FM.R).cwiseAbs().maxCoeff(), 1e-12);
@@ -303,11 +304,11 @@ TEST_F(ForeignVdb, AThinBandIsExtended) {
       const double error_m =
           std::abs(map.distance(kCenter_M + (kRadius_m + d) * random.inBox(Vec3::Ones()).normalized()) - d);
       worst_m = std::max(worst_m, error_m);
-      // In a cell whose nodes were all in the old band.
+      // The point is in a cell whose nodes were all in the old band.
       if (std::abs(d) < (half_width - std::sqrt(3.0)) * kVoxel_m) known_m = std::max(known_m, error_m);
     }
     EXPECT_LT(known_m, interpolation_m(map, 3 * kVoxel_m)) << half_width;
-    // A first-order solution, as measured: 0.11 to 0.2 voxel too far, and only as deep as the new band.
+    // A first-order solution. Measured: 0.11 to 0.2 voxel too far, and only as deep as the new band.
     EXPECT_LT(worst_m, 0.25 * kVoxel_m) << half_width;
   }
 }
@@ -529,9 +530,9 @@ TEST_F(NonMetricVdb, NoReadingIsBelowItsBound) {
 
 TEST_F(NonMetricVdb, BoundsOfTrueDistancesAreNearlyTight) {
   const VoxMap map = stored(ball());
-  // Paths over grid cells cost 0.1135 of the band, whatever the distances (field_bounds.h).
+  // Paths over grid cells cost 0.1135 of the band, for any distances (field_bounds.h).
   EXPECT_LT(map.sampleError_m(), (0.8661 + 0.1137 * 4) * kVoxel_m + map.quantum_m());
-  // Far away, bounds still distinguish far from near, outside and inside.
+  // Far away, bounds still distinguish far from near, and outside from inside.
   saveVdb(buildVoxMap(makeSphere(kRadius_m, 4), {0.1e-3, 4}), file_);
   openvdb::io::File file(file_);
   file.open();
