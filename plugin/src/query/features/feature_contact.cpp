@@ -94,7 +94,7 @@ FeatureContact contactOf(Kind kind, const std::uint32_t (&feature)[2], const Fea
 
 // A contact whose points are those of features that were moved by a share of their way.
 FeatureContact contactAt(Kind kind, const std::uint32_t (&feature)[2], const Features& f,
-                         const Reach& reach) {
+                         const Approach& reach) {
   FeatureContact contact = contactOf(kind, feature, f);
   Vec3 at[3];
   f.moveTo(reach.share, at);
@@ -106,7 +106,7 @@ FeatureContact contactAt(Kind kind, const std::uint32_t (&feature)[2], const Fea
 // Decides which feature has the contact, for features that come within the rest gap after a share of their
 // way.
 BorderOwner ownerOf(const FeatureSet& part0, const FeatureSet& part1, const FeatureContact& contact,
-                    const Features& f, const Reach& reach, const Mat3& R_10) {
+                    const Features& f, const Approach& reach, const Mat3& R_10) {
   const auto [p, q] = std::pair(reach.nearest.p, reach.nearest.q);
   if (contact.kind == Kind::EdgeOnEdge || !((p - q).norm() < FeatureMotion::kRest_m))
     return BorderOwner::Edge;
@@ -149,8 +149,8 @@ Features featuresAt(const FeatureSet& part0, const FeatureSet& part1, Kind kind,
 }  // namespace
 
 bool findContact(const FeatureSet& part0, const FeatureSet& part1, Kind kind,
-                 const std::uint32_t (&feature)[2], const Features& f, const Reach& reach, const Mat3& R_10,
-                 FeatureContact& contact) {
+                 const std::uint32_t (&feature)[2], const Features& f, const Approach& reach,
+                 const Mat3& R_10, FeatureContact& contact) {
   const Nearest& nearest = reach.nearest;
   contact = contactAt(kind, feature, f, reach);
   Vec3 n_1 = (nearest.p - nearest.q).normalized(), n_0 = R_10.transpose() * n_1;
@@ -201,7 +201,7 @@ bool measureAgain(const FeatureSet& part0, const FeatureSet& part1, const Pose& 
   const Pose X_10 = X_01.inverse();
   const FeatureContact last = contact;
   const Features f = featuresAt(part0, part1, last.kind, last.feature, X_10);
-  const Reach reach = {0, nearestOf(last.kind, f.a, f.b)};
+  const Approach reach = {0, nearestOf(last.kind, f.a, f.b)};
   const double distance_m = reach.nearest.distance_m();
   if (!(distance_m > kRounding_m && distance_m < most_m)) return false;
   if (!findContact(part0, part1, last.kind, last.feature, f, reach, X_10.R, contact)) return false;

@@ -16,8 +16,8 @@ namespace vps {
 /// between their nearest points or, near an edge, in the plane of the face onto which they slide. Returns
 /// false if other features touch there first, or if pointshells handle this contact.
 bool findContact(const FeatureSet& part0, const FeatureSet& part1, FeatureContact::Kind kind,
-                 const std::uint32_t (&feature)[2], const Features& f, const Reach& reach, const Mat3& R_10,
-                 FeatureContact& contact);
+                 const std::uint32_t (&feature)[2], const Features& f, const Approach& reach,
+                 const Mat3& R_10, FeatureContact& contact);
 
 /// The contact of two edges that came near each other at an end of one of them, and that cross at the end of
 /// the motion: they passed the corner during the motion.

@@ -47,7 +47,7 @@ double startOf(const FeatureSet& part0, const FeatureSet& part1, const FeatureCo
 struct Met {
   std::size_t piece = 0;
   Features features;
-  Reach reach;
+  Approach reach;
 };
 
 void placeAt(Features& f, const std::vector<Pose>& way_10, std::size_t piece) {
@@ -70,7 +70,7 @@ bool findFirst(Kind kind, const std::vector<Pose>& way_10, double least_m, doubl
     }
     met.piece = k;
     met.reach.share = 0;
-    if (findReach(kind, f, least_m, distance_m, met.reach)) return true;
+    if (findApproach(kind, f, least_m, distance_m, met.reach)) return true;
   }
   return false;
 }
@@ -115,7 +115,7 @@ bool isBetweenEnds(const Nearest& at) {
 // or within rounding of an end. The latter is needed where two edges of one part meet in a corner, since each
 // of the two may miss the other part's edge by rounding. The place is then moved back to where both edges are
 // nearest between their ends, because the direction from an end still leans.
-bool doMeet(const Features& f, double last, Reach& reach) {
+bool doMeet(const Features& f, double last, Approach& reach) {
   const double before_m = lineGap_m(f, reach.share);
   if (before_m == 0 || before_m * lineGap_m(f, last) > 0) return false;
   double low = reach.share, high = last;
@@ -176,7 +176,7 @@ double curvature_per_m(const FeatureSet& part, const FeatureEdge& edge) {
 // held them. A row of the solver holds two straight lines on a straight way, so it is off by the bend of the
 // way, and by the bend of curved edges along the slide.
 double bendOf_m(const FeatureSet& part0, const FeatureSet& part1, const Pose& start, const Pose& end,
-                const Way& way, const FeatureContact& contact) {
+                const RelativeMotion& way, const FeatureContact& contact) {
   const double slide_m = std::max((start.inverse() * contact.p[0] - end.inverse() * contact.p[0]).norm(),
                                   (start * contact.p[1] - end * contact.p[1]).norm());
   const double curvature = curvature_per_m(part0, part0.edges()[contact.feature[0]]) +
@@ -194,7 +194,7 @@ bool entersFromItsEnd(const FeatureSet& part0, const FeatureSet& part1, const st
   if (!findCrossingOf(part0, part1, feature, met, end.inverse(), contact) ||
       findCrossingOf(part0, part1, feature, met, start.inverse(), before))
     return false;
-  const Way way(ballAround(part0), ballAround(part1), start, end);
+  const RelativeMotion way(ballAround(part0), ballAround(part1), start, end);
   const double bend_m = bendOf_m(part0, part1, start, end, way, contact);
   thread_local std::vector<Pose> way_10;
   way.divide(way_10);
@@ -217,7 +217,7 @@ void FeatureMotion::check(const FeatureSet& part0, const FeatureSet& part1, cons
   const int stretches = static_cast<int>(
       std::clamp(std::ceil(travel_m(part0, part1, start, end) / stretch_m), 1.0, 10 * kMostStretches));
   if (stretches == 1) return checkStretch(part0, part1, {start, end, start, end, true}, holds_close, out);
-  const Way way(ballAround(part0), ballAround(part1), start, end);
+  const RelativeMotion way(ballAround(part0), ballAround(part1), start, end);
   const double gap_m = rest_m(part0, part1);
   const std::size_t first = out.size();
   Pose from = start;
@@ -250,10 +250,10 @@ void FeatureMotion::search(const FeatureSet& part0, const FeatureSet& part1) {
     Features f;
     f.load(part0, part1, kind, {i, j});
     f.moveFrom(X_10.from, X_10.to);
-    Reach reach;
+    Approach reach;
     reach.nearest = nearestOf(kind, f.a, f.b);
     const double distance_m = reach.nearest.distance_m();
-    if (distance_m <= margin_m || findReach(kind, f, margin_m, distance_m, reach))
+    if (distance_m <= margin_m || findApproach(kind, f, margin_m, distance_m, reach))
       near_.push_back({kind, {i, j}, distance_m, 0});
   };
   thread_local std::vector<TouchPair> pairs;
@@ -291,7 +291,7 @@ void FeatureMotion::checkStretch(const FeatureSet& part0, const FeatureSet& part
     near.distance_m = nearest.distance_m();
     near.path_m = path_m_;
     if (near.distance_m > step_m + looked_at_m || near.distance_m < kRounding_m) continue;
-    if (way_10_.empty()) Way(ballAround(part0), ballAround(part1), start, to).divide(way_10_);
+    if (way_10_.empty()) RelativeMotion(ballAround(part0), ballAround(part1), start, to).divide(way_10_);
     const double least_m = std::min(looked_at_m, 0.5 * near.distance_m);
     const bool is_held = holds_close && near.distance_m < kHeldShare * gap_m;
     const Nearest at_start = nearest;

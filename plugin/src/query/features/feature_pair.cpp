@@ -118,7 +118,7 @@ double planeShare(Kind kind, const Features& f, double from, double least_share,
 
 }  // namespace
 
-bool findReach(Kind kind, const Features& f, double least_m, double start_m, Reach& reach) {
+bool findApproach(Kind kind, const Features& f, double least_m, double start_m, Approach& reach) {
   const double near_m = 1.1 * least_m;
   double distance_m = start_m;
   double fastest_m = 0;

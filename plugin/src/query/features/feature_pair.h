@@ -54,7 +54,7 @@ struct Features {
 };
 
 /// The place at which features come within a distance.
-struct Reach {
+struct Approach {
   double share = 0;
   Nearest nearest;
 };
@@ -64,6 +64,7 @@ struct Reach {
 /// (Mirtich 1996), here along the separating plane of the nearest points.
 /// @param start_m  the features' distance at the start, positive
 /// @param reach  holds the features' nearest points at the start
-bool findReach(FeatureContact::Kind kind, const Features& f, double least_m, double start_m, Reach& reach);
+bool findApproach(FeatureContact::Kind kind, const Features& f, double least_m, double start_m,
+                  Approach& reach);
 
 }  // namespace vps

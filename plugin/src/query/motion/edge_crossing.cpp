@@ -128,11 +128,11 @@ class CrossingSearch {
     f.b[0] = s0.from;
     f.b[1] = s0.to;
     f.moveFrom(X_01_.from, X_01_.to);
-    Reach reach;
+    Approach reach;
     reach.nearest = nearestOf(FeatureContact::Kind::EdgeOnEdge, f.a, f.b);
     const double distance_m = reach.nearest.distance_m();
     return distance_m <= reach_m_ ||
-           findReach(FeatureContact::Kind::EdgeOnEdge, f, reach_m_, distance_m, reach);
+           findApproach(FeatureContact::Kind::EdgeOnEdge, f, reach_m_, distance_m, reach);
   }
 
   const EdgeSet &edges0_, &edges1_;
