@@ -61,6 +61,8 @@ struct MeshReport {
 };
 
 VPS_API Box bounds(const Mesh& mesh);
+/// The box around each triangle.
+VPS_API std::vector<Box> triangleBoxes(const Mesh& mesh);
 VPS_API double area(const Mesh& mesh);
 
 /// Mass properties by the divergence theorem; exact for a closed, outward-oriented mesh. O(triangles).

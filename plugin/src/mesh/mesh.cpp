@@ -25,6 +25,13 @@ Box bounds(const Mesh& mesh) {
   return box;
 }
 
+std::vector<Box> triangleBoxes(const Mesh& mesh) {
+  std::vector<Box> boxes(mesh.triangles.size());
+  for (std::size_t i = 0; i < boxes.size(); ++i)
+    for (const std::uint32_t v : mesh.triangles[i]) boxes[i].add(mesh.vertices[v]);
+  return boxes;
+}
+
 double area(const Mesh& mesh) {
   double sum_m2 = 0;
   for (const auto& t : mesh.triangles) sum_m2 += areaVector(mesh, t).norm();
