@@ -5,9 +5,9 @@
 #include <cmath>
 #include <numeric>
 
-#include "mesh/box_tree.h"
 #include "mesh/mesh_edges.h"
 #include "mesh/overlap/overlap_search.h"
+#include "vps/bounding_volume_hierarchy.h"
 #include "vps/mesh.h"
 
 namespace vps {
@@ -21,7 +21,7 @@ struct EdgeGroups {
   /// errors.
   [[nodiscard]] std::vector<std::uint32_t> near(const Box& box) const {
     std::vector<std::uint32_t> found;
-    tree.forEachOverlap(grown(box, 1e-9 * box.size().norm()), [&](std::uint32_t group) {
+    tree.forEachOverlap(boxes, grown(box, 1e-9 * box.size().norm()), [&](std::uint32_t group) {
       found.push_back(group);
       return true;
     });
@@ -89,7 +89,7 @@ std::vector<CrossedEdge> edgesNear(const OverlapMesh& in, const OverlapMesh& oth
     for (std::size_t i = kGroup * group; i < std::min(kGroup * (group + 1), other.edges().size()); ++i) {
       const auto& [from, to] = other.edges()[i];
       CrossedEdge edge{i, X_SO * vertices[from], X_SO * vertices[to], {}};
-      if (!meet(boxOf(edge.a, edge.b), in.box())) continue;
+      if (!overlap(boxOf(edge.a, edge.b), in.box())) continue;
       in.solid().appendCrossings(edge.a, edge.b, edge.crossings);
       near.push_back(std::move(edge));
     }
@@ -165,7 +165,7 @@ std::size_t workOf(const std::vector<CrossedEdge>& edges) {
 /// True if the first vertex of `other` is outside of `in` and does not touch its surface.
 bool isClearlyOutside(const OverlapMesh& in, const OverlapMesh& other, const Pose& X_SO) {
   const Vec3 p = X_SO * other.mesh().vertices.front();
-  return !meet(boxOf(p, p), in.box()) || in.solid().signedDistance(p) > kOverlapCertain_m;
+  return !overlap(boxOf(p, p), in.box()) || in.solid().signedDistance(p) > kOverlapCertain_m;
 }
 
 }  // namespace
@@ -180,7 +180,7 @@ OverlapMesh::OverlapMesh(std::shared_ptr<const Solid> solid)
 Overlap deepestOverlap(const OverlapMesh& a, const Pose& X_WA, const OverlapMesh& b, const Pose& X_WB,
                        bool with_sheets) {
   const Pose X_AB = X_WA.inverse() * X_WB, X_BA = X_AB.inverse();
-  if (!meet(moved(b.box(), X_AB), a.box()) || !meet(moved(a.box(), X_BA), b.box())) return {};
+  if (!overlap(moved(b.box(), X_AB), a.box()) || !overlap(moved(a.box(), X_BA), b.box())) return {};
   std::vector<CrossedEdge> of_b = edgesNear(a, b, X_AB), of_a = edgesNear(b, a, X_BA);
   std::size_t work = 4 + workOf(of_a) + workOf(of_b);
   if (!isAnyCrossed(of_b) && !isAnyCrossed(of_a) && isClearlyOutside(a, b, X_AB) &&

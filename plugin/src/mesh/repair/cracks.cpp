@@ -6,7 +6,7 @@
 #include <numeric>
 #include <tuple>
 
-#include "mesh/box_tree.h"
+#include "vps/bounding_volume_hierarchy.h"
 
 namespace vps {
 namespace {
@@ -88,7 +88,7 @@ class Joiner {
     box.add(a), box.add(b);
     box.min.array() -= tolerance_m;
     box.max.array() += tolerance_m;
-    tree_.forEachOverlap(box, [&](std::uint32_t v) { return visit(v), true; });
+    tree_.forEachOverlap(points_, box, [&](std::uint32_t v) { return visit(v), true; });
   }
 
   /// Cuts open edges at vertices of other open edges that lie on them.

@@ -10,11 +10,11 @@
 #include <cstdio>
 #include <optional>
 
-#include "mesh/box_tree.h"
 #include "mesh/mesh_edges.h"
 #include "mesh/repair/mesh_faults.h"
 #include "mesh/union/shell_nesting.h"
 #include "mesh/union/shell_union.h"
+#include "vps/bounding_volume_hierarchy.h"
 #include "vps/mesh_distance.h"
 #include "vps/winding_number.h"
 
@@ -65,10 +65,18 @@ double determinant(const Mesh& mesh, std::uint32_t triangle, const Vec3& o) {
   return a.dot(b.cross(c));
 }
 
+/// True if any two of the boxes share a point.
+bool haveOverlap(const std::vector<Box>& boxes) {
+  const BoxTree tree(boxes);
+  for (std::uint32_t i = 0; i < boxes.size(); ++i)
+    if (!tree.forEachOverlap(boxes, boxes[i], [i](std::uint32_t other) { return other == i; })) return true;
+  return false;
+}
+
 bool boxesTouch(std::vector<Box> boxes, double touch_m) {
   if (boxes.size() < 2) return false;
   for (Box& box : boxes) box = {box.min.array() - touch_m, box.max.array() + touch_m};
-  return BoxTree(boxes).hasOverlap();
+  return haveOverlap(boxes);
 }
 
 /// True if all of the given closed and consistently oriented shells face out, and no two shells' boxes
@@ -275,7 +283,7 @@ class Repairer {
   [[nodiscard]] bool isSound() const {
     const auto facesOut = [](const Patch& p) { return p.is_closed && p.volume_m3 > 0; };
     const std::vector<Box> boxes = boxesOfClosed();
-    return std::all_of(patches_.begin(), patches_.end(), facesOut) && !BoxTree(boxes).hasOverlap();
+    return std::all_of(patches_.begin(), patches_.end(), facesOut) && !haveOverlap(boxes);
   }
   [[nodiscard]] std::vector<Box> boxesOfClosed() const {
     std::vector<Box> boxes;
@@ -461,7 +469,7 @@ class Repairer {
     for (std::uint32_t i = 0; i < closed.size(); ++i) {
       Patch& patch = patches_[closed[i]];
       around.clear();
-      tree.forEachOverlap(patch.box, [&](std::uint32_t k) {
+      tree.forEachOverlap(boxes, patch.box, [&](std::uint32_t k) {
         if (is_outermost[k] && isWithin(patch.box, grown(boxes[k], touch_m))) around.push_back(k);
         return true;
       });
@@ -631,7 +639,7 @@ class Repairer {
   bool mayOverlap(const WindingNumber& w) {
     if (is_crossing_) return true;
     const std::vector<Box> boxes = boxesOfClosed();
-    if (BoxTree(boxes).hasOverlap()) return true;
+    if (haveOverlap(boxes)) return true;
     for (const Patch& patch : patches_)
       for (const Facet& f : samplesOf(patch, kSamples))
         if (inPlane(w, f) > kInternal) return true;

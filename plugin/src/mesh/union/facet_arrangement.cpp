@@ -8,10 +8,10 @@
 #include <unordered_set>
 #include <utility>
 
-#include "mesh/box_tree.h"
 #include "mesh/mesh_edges.h"
 #include "mesh/normals.h"
 #include "mesh/triangle_distance.h"
+#include "vps/bounding_volume_hierarchy.h"
 
 namespace vps {
 namespace {
@@ -388,21 +388,22 @@ class Arranger {
     const BoxTree tree_of_points(places), tree(boxes);
     std::vector<std::uint32_t> near;
     for (std::size_t i = 0; i < all.size(); ++i) {
-      findOverlaps(tree_of_points, boxes[i], near);
+      findOverlaps(tree_of_points, places, boxes[i], near);
       for (const std::uint32_t k : near)
         if (isNearSegment(segments_[all[i]], points_[points[k]])) has_changed |= put(all[i], points[k]);
     }
     for (std::size_t i = 3; i < all.size(); ++i) {
-      findOverlaps(tree, boxes[i], near);
+      findOverlaps(tree, boxes, boxes[i], near);
       for (const std::uint32_t k : near)
         if (k >= 3 && k < i) has_changed |= crossSegments(all[k], all[i]);
     }
     return has_changed;
   }
-  /// Returns overlaps in ascending order and counts them as work.
-  void findOverlaps(const BoxTree& tree, const Box& box, std::vector<std::uint32_t>& found) {
+  /// The boxes of a tree that overlap `box`, in ascending order. Counts them as work.
+  void findOverlaps(const BoxTree& tree, const std::vector<Box>& boxes, const Box& box,
+                    std::vector<std::uint32_t>& found) {
     found.clear();
-    tree.forEachOverlap(box, [&](std::uint32_t i) {
+    tree.forEachOverlap(boxes, box, [&](std::uint32_t i) {
       found.push_back(i);
       return true;
     });

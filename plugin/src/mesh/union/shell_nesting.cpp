@@ -21,7 +21,7 @@ ShellNesting::ShellNesting(Mesh mesh, std::vector<std::uint32_t> shell_of)
     : mesh_(std::move(mesh)),
       shell_of_(std::move(shell_of)),
       touch_m_(touchDistance(mesh_)),
-      facet_boxes_(boxesOfFacets(mesh_)),
+      facet_boxes_(triangleBoxes(mesh_)),
       facets_(facet_boxes_) {
   for (std::uint32_t i = 0; i < shell_of_.size(); ++i) {
     if (shell_of_[i] >= triangles_.size()) triangles_.resize(shell_of_[i] + 1);
@@ -73,7 +73,7 @@ bool ShellNesting::isOn(const Vec3& p, std::uint32_t shell) const {
     const Vec3 q = closestOnTriangle(p, mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]).q;
     return (q - p).norm() <= near_m;
   };
-  return !facets_.forEachOverlap({p.array() - near_m, p.array() + near_m},
+  return !facets_.forEachOverlap(facet_boxes_, {p.array() - near_m, p.array() + near_m},
                                  [&](std::uint32_t i) { return shell_of_[i] != shell || !isNear(i); });
 }
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "mesh/box_tree.h"
+#include "vps/bounding_volume_hierarchy.h"
 #include "vps/mesh.h"
 #include "vps/winding_number.h"
 

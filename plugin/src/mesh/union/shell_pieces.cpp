@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <span>
 
-#include "mesh/box_tree.h"
 #include "mesh/mesh_edges.h"
 #include "mesh/union/facet_arrangement.h"
+#include "vps/bounding_volume_hierarchy.h"
 
 namespace vps {
 
@@ -14,12 +14,6 @@ Box boxOf(const Mesh& mesh, std::uint32_t triangle, double margin_m) {
   Box box;
   for (const std::uint32_t v : mesh.triangles[triangle]) box.add(mesh.vertices[v]);
   return {box.min.array() - margin_m, box.max.array() + margin_m};
-}
-
-std::vector<Box> boxesOfFacets(const Mesh& mesh) {
-  std::vector<Box> boxes;
-  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) boxes.push_back(boxOf(mesh, i, 0));
-  return boxes;
 }
 
 std::vector<Box> boxesOf(const Mesh& mesh, const std::vector<std::uint32_t>& shell_of, double margin_m) {
@@ -41,14 +35,14 @@ std::vector<FacetPair> nearPairs(const Mesh& mesh, const std::vector<std::uint32
   std::vector<Box> boxes;
   for (std::uint32_t i = 0; i < shell_of.size(); ++i) {
     const Box box = boxOf(mesh, i, touch_m);
-    if (tree.forEachOverlap(box, [&](std::uint32_t shell) { return shell == shell_of[i]; })) continue;
+    if (tree.forEachOverlap(shells, box, [&](std::uint32_t shell) { return shell == shell_of[i]; })) continue;
     near.push_back(i);
     boxes.push_back(box);
   }
   const BoxTree facets(boxes);
   std::vector<FacetPair> pairs;
   for (std::uint32_t k = 0; k < near.size() && pairs.size() <= kMostPairs; ++k)
-    facets.forEachOverlap(boxes[k], [&](std::uint32_t other) {
+    facets.forEachOverlap(boxes, boxes[k], [&](std::uint32_t other) {
       const std::uint32_t f = near[k], g = near[other];
       if (f < g && shell_of[f] != shell_of[g] && mayTouch(mesh, f, g, touch_m)) pairs.push_back({f, g});
       return pairs.size() <= kMostPairs;

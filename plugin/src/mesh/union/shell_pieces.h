@@ -19,8 +19,6 @@ inline constexpr std::size_t kMostPairs = 4'000'000;
 
 /// The box of one facet, grown by a margin on every side.
 Box boxOf(const Mesh& mesh, std::uint32_t triangle, double margin_m);
-/// The box of each facet.
-std::vector<Box> boxesOfFacets(const Mesh& mesh);
 
 /// The box of each shell, grown by a margin on every side.
 std::vector<Box> boxesOf(const Mesh& mesh, const std::vector<std::uint32_t>& shell_of, double margin_m);

@@ -10,11 +10,11 @@
 #include <optional>
 #include <span>
 
-#include "mesh/box_tree.h"
 #include "mesh/mesh_edges.h"
 #include "mesh/triangle_distance.h"
 #include "mesh/union/facet_arrangement.h"
 #include "mesh/union/shell_pieces.h"
+#include "vps/bounding_volume_hierarchy.h"
 #include "vps/winding_number.h"
 
 namespace vps {
@@ -43,7 +43,7 @@ class Shells {
         shell_of_(shell_of),
         touch_m_(touch_m),
         boxes_(boxesOf(mesh, shell_of, touch_m)),
-        facet_boxes_(boxesOfFacets(mesh)),
+        facet_boxes_(triangleBoxes(mesh)),
         tree_(boxes_),
         facets_(facet_boxes_),
         winding_(mesh, kClusterError) {
@@ -107,7 +107,7 @@ class Shells {
   /// The shells whose boxes contain p, in ascending order.
   [[nodiscard]] std::vector<std::uint32_t> around(const Vec3& p) const {
     std::vector<std::uint32_t> shells;
-    tree_.forEachOverlap({p, p}, [&](std::uint32_t shell) {
+    tree_.forEachOverlap(boxes_, {p, p}, [&](std::uint32_t shell) {
       shells.push_back(shell);
       return true;
     });
@@ -117,7 +117,7 @@ class Shells {
   /// Calls visit for facets that may be nearer to p than distance_m, until visit returns false.
   template <typename Visit>
   bool forEachNear(const Vec3& p, double distance_m, Visit visit) const {
-    return facets_.forEachOverlap({p.array() - distance_m, p.array() + distance_m}, visit);
+    return facets_.forEachOverlap(facet_boxes_, {p.array() - distance_m, p.array() + distance_m}, visit);
   }
   [[nodiscard]] Flush flushAt(std::uint32_t f, const Vec3& p) const {
     std::vector<std::uint32_t> same = {shell_of_[f]}, opposite;

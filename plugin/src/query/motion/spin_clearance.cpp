@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "mesh/box_tree.h"
+#include "vps/bounding_volume_hierarchy.h"
 
 namespace vps {
 
@@ -55,10 +55,12 @@ std::vector<Box> sweptAbout(const FeatureSet& part, const Vec3& p, const Vec3& a
   return swept;
 }
 
-// True if boxes of both parts are nearer to each other than distance_m, in radius and in height.
-bool comeNear(const std::vector<Box>& boxes, const BoxTree& others, double distance_m) {
+// True if boxes of both parts come nearer than this, in radius and in height. The tree is of the second
+// boxes.
+bool comeNear(const std::vector<Box>& boxes, const std::vector<Box>& others, const BoxTree& tree,
+              double distance_m) {
   return std::any_of(boxes.begin(), boxes.end(), [&](const Box& box) {
-    return !others.forEachOverlap(grown(box, distance_m), [](std::uint32_t) { return false; });
+    return !tree.forEachOverlap(others, grown(box, distance_m), [](std::uint32_t) { return false; });
   });
 }
 
@@ -67,14 +69,14 @@ bool comeNear(const std::vector<Box>& boxes, const BoxTree& others, double dista
 double clearance_m(const std::vector<Box>& a, const std::vector<Box>& b, double most_m) {
   const BoxTree tree(b);
   double near_m = most_m;
-  for (int k = 0; comeNear(a, tree, near_m); ++k) {
+  for (int k = 0; comeNear(a, b, tree, near_m); ++k) {
     if (k == 10) return 0;
     near_m *= 0.5;
   }
   double far_m = 2 * near_m;
   for (int k = 0; k < 4 && near_m < most_m; ++k) {
     const double middle_m = 0.5 * (near_m + far_m);
-    (comeNear(a, tree, middle_m) ? far_m : near_m) = middle_m;
+    (comeNear(a, b, tree, middle_m) ? far_m : near_m) = middle_m;
   }
   return near_m;
 }
