@@ -120,5 +120,27 @@ TEST(BoxTree, FindsTheOverlapsThatATestOfAllBoxesFinds) {
   EXPECT_TRUE(tree.forEachOverlap(boxes, Box(), [](std::uint32_t) { return false; }));
 }
 
+TEST(BoxTree, PairsFindTheLeastDistanceOfAllPairs) {
+  std::mt19937 random(3);
+  for (int i = 0; i < 20; ++i) {
+    const std::vector<Box> a = drawnBoxes(40, random), b = drawnBoxes(70, random);
+    const Vec3 moved(0.5 * i, 0, 0);
+    const auto place = [&](const Box& box) { return Box{box.min + moved, box.max + moved}; };
+    const double infinite = std::numeric_limits<double>::infinity();
+    double least2 = infinite, found2 = infinite;
+    for (const Box& of_a : a)
+      for (const Box& of_b : b) least2 = std::min(least2, distance2(of_a, place(of_b)));
+    std::size_t visits = 0;
+    visitPairs(
+        BoxTree(a), BoxTree(b, 2), place, distance2, [&] { return found2; },
+        [&](std::uint32_t k, std::uint32_t l) {
+          ++visits;
+          found2 = std::min(found2, distance2(a[k], place(b[l])));
+        });
+    EXPECT_EQ(found2, least2);
+    EXPECT_LT(visits, a.size() * b.size() / 2);
+  }
+}
+
 }  // namespace
 }  // namespace vps

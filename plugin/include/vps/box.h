@@ -48,6 +48,10 @@ struct Box {
   if (a.isEmpty() || b.isEmpty()) return std::numeric_limits<double>::infinity();
   return (a.min - b.max).cwiseMax(b.min - a.max).cwiseMax(0).norm();
 }
+/// The square of distance_m(). Neither box may be empty.
+[[nodiscard]] inline double distance2(const Box& a, const Box& b) noexcept {
+  return (a.min - b.max).cwiseMax(b.min - a.max).cwiseMax(0.0).squaredNorm();
+}
 /// The smallest box around a box that was moved by X. An empty box stays empty.
 [[nodiscard]] inline Box moved(const Box& box, const Pose& X) noexcept {
   Box out;

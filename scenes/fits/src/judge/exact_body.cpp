@@ -48,7 +48,7 @@ Gap gapOf(const ExactBody& a, const ExactBody& b, const Pose& X_AB, double near_
 }  // namespace
 
 ExactBody::ExactBody(std::shared_ptr<const Solid> solid)
-    : overlap_(std::move(solid)), tree_(overlap_.mesh()) {}
+    : overlap_(std::move(solid)), tree_(triangleBoxes(overlap_.mesh()), 2) {}
 
 double ExactBody::highest_m(const Vec3& n) const {
   const std::vector<BoxTree::Node>& nodes = tree_.nodes();
@@ -57,7 +57,8 @@ double ExactBody::highest_m(const Vec3& n) const {
   int waiting = 0;
   if (!nodes.empty()) stack[waiting++] = 0;
   while (waiting > 0) {
-    const BoxTree::Node& node = nodes[stack[--waiting]];
+    const std::uint32_t index = stack[--waiting];
+    const BoxTree::Node& node = nodes[index];
     if (highestOf(node.box, n) <= highest_m) continue;
     if (node.isLeaf()) {
       for (std::uint32_t i = node.first; i < node.end; ++i)
@@ -65,9 +66,9 @@ double ExactBody::highest_m(const Vec3& n) const {
           highest_m = std::max(highest_m, n.dot(mesh().vertices[v]));
       continue;
     }
-    const bool is_left_higher = highestOf(nodes[node.left].box, n) > highestOf(nodes[node.left + 1].box, n);
-    stack[waiting++] = node.left + (is_left_higher ? 1 : 0);
-    stack[waiting++] = node.left + (is_left_higher ? 0 : 1);
+    const bool is_left_higher = highestOf(nodes[index + 1].box, n) > highestOf(nodes[node.right].box, n);
+    stack[waiting++] = is_left_higher ? node.right : index + 1;
+    stack[waiting++] = is_left_higher ? index + 1 : node.right;
   }
   return highest_m;
 }

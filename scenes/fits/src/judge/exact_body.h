@@ -4,8 +4,8 @@
 
 #include <memory>
 
-#include "surface/box_tree.h"
 #include "surface/triangle_gap.h"
+#include "vps/bounding_volume_hierarchy.h"
 #include "vps/mesh_overlap.h"
 
 namespace vps::scenes {

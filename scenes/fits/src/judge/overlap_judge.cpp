@@ -117,9 +117,9 @@ JudgedBody makeJudgedBody(std::shared_ptr<const PartModel> model) {
   for (const SharpEdge& e : edges) edge_boxes.push_back({e.a.cwiseMin(e.b), e.a.cwiseMax(e.b)});
   for (const Vec3& v : vertices) vertex_boxes.push_back({v, v});
   return {std::move(model), std::make_shared<const std::vector<SharpEdge>>(std::move(edges)),
-          std::make_shared<const BoxTree>(edge_boxes),
+          std::make_shared<const BoxTree>(edge_boxes, 2),
           std::make_shared<const std::vector<Vec3>>(std::move(vertices)),
-          std::make_shared<const BoxTree>(vertex_boxes)};
+          std::make_shared<const BoxTree>(vertex_boxes, 2)};
 }
 
 void OverlapJudge::mount(JudgedBody body, const Pose& X_WB) {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "surface/box_tree.h"
+#include "vps/bounding_volume_hierarchy.h"
 #include "vps/part_model.h"
 #include "vps_scenes/fits/check_types.h"
 

@@ -107,7 +107,7 @@ PassingFacets::PassingFacets(std::size_t of_held, bool of_moving, std::vector<st
   for (std::size_t n = nodes.size(); n-- > 0;) {  // children stand after their parents
     const BoxTree::Node& node = tree.nodes()[n];
     if (!node.isLeaf()) {
-      nodes[n] = nodes[node.left] & nodes[node.left + 1];
+      nodes[n] = nodes[n + 1] & nodes[node.right];
       continue;
     }
     for (std::uint32_t i = node.first; i < node.end; ++i) nodes[n] &= facets[tree.order()[i]];
@@ -287,8 +287,8 @@ double MotionSearch::step(const Near& near, const std::optional<Turning>& turnin
         of_moving.isLeaf() ||
         (!of_held.isLeaf() && of_held.box.size().squaredNorm() >= of_moving.box.size().squaredNorm());
     Waiting first = now, second = now;
-    (halves_held ? first.held : first.moving) = halves_held ? of_held.left : of_moving.left;
-    (halves_held ? second.held : second.moving) = (halves_held ? of_held.left : of_moving.left) + 1;
+    (halves_held ? first.held : first.moving) += 1;
+    (halves_held ? second.held : second.moving) = halves_held ? of_held.right : of_moving.right;
     first.bound = boundOf(first.held, first.moving);
     second.bound = boundOf(second.held, second.moving);
     if (second.bound < first.bound) std::swap(first, second);

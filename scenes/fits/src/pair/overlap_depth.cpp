@@ -155,8 +155,8 @@ class DepthSearch {
   void openNode(std::uint32_t index) {
     const BoxTree::Node& node = of_.tree().nodes()[index];
     if (!node.isLeaf()) {
-      addNode(node.left);
-      addNode(node.left + 1);
+      addNode(index + 1);
+      addNode(node.right);
       return;
     }
     for (std::uint32_t i = node.first; i < node.end; ++i) {

@@ -61,8 +61,8 @@ AxisExtents::AxisExtents(const PartSurface& part, const Vec3& axis, const Vec3& 
   const auto& tree = part.tree().nodes();
   for (std::size_t n = tree.size(); n-- > 0;) {  // children stand after their parents
     if (!tree[n].isLeaf()) {
-      nodes[n].add(nodes[tree[n].left]);
-      nodes[n].add(nodes[tree[n].left + 1]);
+      nodes[n].add(nodes[n + 1]);
+      nodes[n].add(nodes[tree[n].right]);
       continue;
     }
     for (std::uint32_t i = tree[n].first; i < tree[n].end; ++i)

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "surface/box_tree.h"
+#include "vps/bounding_volume_hierarchy.h"
 #include "vps/mesh.h"
 
 namespace vps::scenes {

@@ -32,7 +32,7 @@ int edgeTowards(const std::array<std::uint32_t, 3>& neighbours, std::uint32_t ot
 
 PartSurface::PartSurface(std::shared_ptr<const Solid> solid, std::optional<double> chord_m)
     : overlap_(std::move(solid)),
-      tree_(overlap_.mesh()),
+      tree_(triangleBoxes(overlap_.mesh()), 2),
       neighbours_(neighboursOf(overlap_.mesh())),
       most_chord_m_(chord_m) {
   estimateChords();

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "surface/box_tree.h"
 #include "surface/cracks.h"
 #include "surface/triangle_gap.h"
+#include "vps/bounding_volume_hierarchy.h"
 #include "vps/mesh_overlap.h"
 #include "vps/solid.h"
 

@@ -101,17 +101,12 @@ class PieceTest {
 
 bool meetsAny(const PieceTest& test, const PartSurface& surface, std::size_t& work) {
   const std::vector<BoxTree::Node>& nodes = surface.tree().nodes();
-  std::vector<std::uint32_t> stack{0};
-  while (!stack.empty()) {
-    const BoxTree::Node& node = nodes[stack.back()];
-    stack.pop_back();
+  for (std::size_t n = 0; n < nodes.size();) {
+    const BoxTree::Node& node = nodes[n];
     ++work;
-    if (!test.mayMeet(node.box)) continue;
-    if (!node.isLeaf()) {
-      stack.push_back(node.left + 1);
-      stack.push_back(node.left);
-      continue;
-    }
+    const bool may_meet = test.mayMeet(node.box);
+    n = may_meet ? n + 1 : node.skip;
+    if (!may_meet || !node.isLeaf()) continue;
     for (std::uint32_t i = node.first; i < node.end; ++i, ++work)
       if (test.meets(surface.triangle(surface.tree().order()[i]))) return true;
   }

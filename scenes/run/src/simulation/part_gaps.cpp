@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <array>
 
-#include "surface/box_tree.h"
 #include "surface/triangle_gap.h"
+#include "vps/bounding_volume_hierarchy.h"
 #include "vps/mesh_distance.h"
 
 namespace vps::scenes {
@@ -15,7 +15,7 @@ struct PartGaps::Surface {
   BoxTree tree;
   MeshDistance distance;
 
-  explicit Surface(const Mesh& of_part) : mesh(of_part), tree(mesh), distance(mesh) {}
+  explicit Surface(const Mesh& of_part) : mesh(of_part), tree(triangleBoxes(mesh), 2), distance(mesh) {}
   [[nodiscard]] Triangle triangle(std::uint32_t i) const {
     const auto& corners = mesh.triangles[i];
     return {mesh.vertices[corners[0]], mesh.vertices[corners[1]], mesh.vertices[corners[2]]};
