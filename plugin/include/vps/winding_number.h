@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "vps/bounding_volume_hierarchy.h"
 #include "vps/export.h"
 #include "vps/mesh.h"
 
@@ -42,19 +43,16 @@ class VPS_API WindingNumber {
  private:
   /// (c1(d) + c2(d) / R^2 + c3(d) / R^4) / R^3 at d from the centre: homogeneous polynomials of degree 1, 2,
   /// 3.
-  struct Node {
+  struct Node : HierarchyNode {
     Vec3 center = Vec3::Zero();
     double accept2 = 0;  ///< beyond this squared distance from the centre the series is good enough
     std::array<double, 19> series{};
-    std::uint32_t first = 0;  ///< first triangle, or index of the left child
-    std::uint32_t count = 0;  ///< triangles of a leaf; 0 for an inner node (children first, first + 1)
   };
   struct Moments;
   struct Turn;
 
   void build(std::vector<std::array<Vec3, 3>> triangles, double cluster_error);
-  void split(std::vector<std::array<Vec3, 3>>& triangles);
-  void expand(double cluster_error);
+  void expand();
 
   Vec3 origin_ = Vec3::Zero();
   double scale_ = 1;  ///< a power of two that scales the mesh to size 1, so that no product underflows

@@ -4,14 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 
 namespace vps {
 namespace {
 
 constexpr std::uint32_t kLeafTriangles = 8;
-/// Halving by count limits the depth to 32, with one waiting child on each level.
-constexpr int kTreeStack = 64;
 
 using Corners = std::array<Vec3, 3>;
 
@@ -207,81 +204,56 @@ void WindingNumber::build(std::vector<Corners> triangles, double cluster_error) 
   for (Corners& t : triangles)
     for (Vec3& p : t) p = scale_ * (p - origin_);
   cutSlivers(triangles);
-  split(triangles);
-  expand(cluster_error);
-}
-
-/// Splits the triangles along the longest side of their centres' box until a leaf has few.
-void WindingNumber::split(std::vector<Corners>& triangles) {
-  const auto count = static_cast<std::uint32_t>(triangles.size());
-  std::vector<Vec3> middles(count);
-  for (std::uint32_t i = 0; i < count; ++i) middles[i] = triangles[i][0] + triangles[i][1] + triangles[i][2];
-  std::vector<std::uint32_t> order(count);
-  std::iota(order.begin(), order.end(), 0u);
-  nodes_.reserve(2 * (count / (kLeafTriangles / 2) + 1));
-  nodes_.emplace_back().count = count;
-  for (std::size_t n = 0; n < nodes_.size(); ++n) {
-    const std::uint32_t first = nodes_[n].first, size = nodes_[n].count;
-    if (size <= kLeafTriangles) continue;
-    Box box;
-    for (std::uint32_t i = first; i < first + size; ++i) box.add(middles[order[i]]);
-    int axis = 0;
-    box.size().maxCoeff(&axis);
-    const std::uint32_t half = size / 2;
-    const auto range = order.begin() + first;
-    std::nth_element(range, range + half, range + size, [&](std::uint32_t a, std::uint32_t b) {
-      const double at_a = middles[a][axis], at_b = middles[b][axis];
-      return at_a != at_b ? at_a < at_b
-                          : a < b;  // a strict order, so that the tree is the same with every library
-    });
-    nodes_[n].first = static_cast<std::uint32_t>(nodes_.size());
-    nodes_[n].count = 0;
-    nodes_.emplace_back().first = first;
-    nodes_.back().count = half;
-    nodes_.emplace_back().first = first + half;
-    nodes_.back().count = size - half;
-  }
-  corners_.resize(count);
-  for (std::uint32_t i = 0; i < count; ++i) corners_[i] = triangles[order[i]];
+  std::vector<Vec3> middles;  // three times
+  middles.reserve(triangles.size());
+  for (const Corners& t : triangles) middles.emplace_back(t[0] + t[1] + t[2]);
+  const Hierarchy tree = buildHierarchy(triangles.size(), [&](std::span<std::uint32_t> items) -> std::size_t {
+    if (items.size() <= kLeafTriangles) return 0;
+    divideByPoint(items, items.size() / 2, middles);
+    return items.size() / 2;
+  });
+  corners_.reserve(triangles.size());
+  for (const std::uint32_t i : tree.order) corners_.push_back(triangles[i]);
+  nodes_.resize(tree.nodes.size());
+  for (std::size_t n = 0; n < nodes_.size(); ++n) static_cast<HierarchyNode&>(nodes_[n]) = tree.nodes[n];
+  expand();
 }
 
 /// Moments from the leaves up, and from them each node's series and reach.
-void WindingNumber::expand(double cluster_error) {
+void WindingNumber::expand() {
   std::vector<Moments> moments(nodes_.size());
-  std::vector<std::array<std::uint32_t, 2>> range(nodes_.size());
   for (std::size_t n = nodes_.size(); n-- > 0;) {
     Node& node = nodes_[n];
     Moments& m = moments[n];
-    if (node.count > 0) {
-      range[n] = {node.first, node.first + node.count};
-      for (std::uint32_t i = range[n][0]; i < range[n][1]; ++i) m.addArea(corners_[i]);
+    const std::span<const Corners> triangles = std::span(corners_).subspan(node.first, node.end - node.first);
+    if (node.isLeaf()) {
+      for (const Corners& t : triangles) m.addArea(t);
     } else {
-      range[n] = {range[node.first][0], range[node.first + 1][1]};
-      for (const std::uint32_t child : {node.first, node.first + 1}) {
+      for (const std::size_t child : {n + 1, std::size_t{node.right}}) {
         m.area += moments[child].area;
         m.place += moments[child].place;
       }
     }
     // The centroid of the area: the second term of flat clusters is then zero.
-    m.center = node.center = m.area > 0 ? Vec3(m.place / m.area) : corners_[range[n][0]][0];
-    if (node.count > 0) {
-      for (std::uint32_t i = range[n][0]; i < range[n][1]; ++i) m.add(corners_[i]);
+    m.center = node.center = m.area > 0 ? Vec3(m.place / m.area) : triangles[0][0];
+    if (node.isLeaf()) {
+      for (const Corners& t : triangles) m.add(t);
     } else {
-      m.add(moments[node.first]);
-      m.add(moments[node.first + 1]);
+      m.add(moments[n + 1]);
+      m.add(moments[node.right]);
     }
     node.series = m.series();
     double radius2 = 0, third = 0;
-    for (std::uint32_t i = range[n][0]; i < range[n][1]; ++i) {
+    for (const Corners& t : triangles) {
       double cubes = 0;  // s^3 is convex: its mean over a triangle is at most that over the corners
-      for (const Vec3& p : corners_[i]) {
+      for (const Vec3& p : t) {
         const double s2 = (p - node.center).squaredNorm();
         radius2 = std::max(radius2, s2);
         cubes += s2 * std::sqrt(s2);
       }
-      third += cubes / 6 * (corners_[i][1] - corners_[i][0]).cross(corners_[i][2] - corners_[i][0]).norm();
+      third += cubes / 6 * (t[1] - t[0]).cross(t[2] - t[0]).norm();
     }
-    const double accept = acceptDistance(std::sqrt(radius2), third, cluster_error);
+    const double accept = acceptDistance(std::sqrt(radius2), third, cluster_error_);
     node.accept2 = accept * accept;
   }
 }
@@ -292,30 +264,26 @@ WindingNumber::Value WindingNumber::at(const Vec3& p) const noexcept {
   double far = 0;
   int clusters = 0;
   Turn near;
-  std::uint32_t stack[kTreeStack];
-  int waiting = 0;
-  stack[waiting++] = 0;
-  while (waiting > 0) {
-    const Node& node = nodes_[stack[--waiting]];
+  for (std::size_t n = 0; n < nodes_.size();) {
+    const Node& node = nodes_[n];
     const Vec3 d = x - node.center;
     const double R2 = d.squaredNorm();
-    if (R2 > node.accept2) {
-      const double per_R2 = 1 / R2, per_R = std::sqrt(per_R2);
-      const double X = d.x(), Y = d.y(), Z = d.z(), XX = X * X, YY = Y * Y, ZZ = Z * Z;
-      const auto& c = node.series;
-      const double first = c[0] * X + c[1] * Y + c[2] * Z;
-      const double second = c[3] * XX + c[4] * YY + c[5] * ZZ + X * (c[6] * Y + c[7] * Z) + c[8] * Y * Z;
-      const double third = XX * (c[9] * X + c[10] * Y + c[11] * Z) +
-                           YY * (c[12] * Y + c[13] * X + c[14] * Z) +
-                           ZZ * (c[15] * Z + c[16] * X + c[17] * Y) + c[18] * X * Y * Z;
-      far += (first + (second + third * per_R2) * per_R2) * per_R2 * per_R;
-      ++clusters;
-    } else if (node.count > 0) {
-      for (std::uint32_t i = node.first; i < node.first + node.count; ++i) near.add(corners_[i], x);
-    } else {
-      stack[waiting++] = node.first + 1;
-      stack[waiting++] = node.first;
+    if (!(R2 > node.accept2)) {
+      if (node.isLeaf())
+        for (std::uint32_t i = node.first; i < node.end; ++i) near.add(corners_[i], x);
+      ++n;
+      continue;
     }
+    const double per_R2 = 1 / R2, per_R = std::sqrt(per_R2);
+    const double X = d.x(), Y = d.y(), Z = d.z(), XX = X * X, YY = Y * Y, ZZ = Z * Z;
+    const auto& c = node.series;
+    const double first = c[0] * X + c[1] * Y + c[2] * Z;
+    const double second = c[3] * XX + c[4] * YY + c[5] * ZZ + X * (c[6] * Y + c[7] * Z) + c[8] * Y * Z;
+    const double third = XX * (c[9] * X + c[10] * Y + c[11] * Z) + YY * (c[12] * Y + c[13] * X + c[14] * Z) +
+                         ZZ * (c[15] * Z + c[16] * X + c[17] * Y) + c[18] * X * Y * Z;
+    far += (first + (second + third * per_R2) * per_R2) * per_R2 * per_R;
+    ++clusters;
+    n = node.skip;
   }
   return {near.windings() + far, clusters * cluster_error_};
 }
