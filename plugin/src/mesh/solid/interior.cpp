@@ -13,13 +13,10 @@ namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-double boxGap2(const Box& a, const Box& b) {
-  return (a.min - b.max).cwiseMax(b.min - a.max).cwiseMax(0.0).squaredNorm();
-}
-
 }  // namespace
 
 WindingSlope::WindingSlope(const Mesh& mesh) {
+  std::vector<std::pair<Box, double>> edges;
   forEachEdge(sortedHalfEdges(mesh), [&](std::span<const HalfEdge> same) {
     const int net = surplusOf(same);
     if (net == 0) return;
@@ -27,56 +24,44 @@ WindingSlope::WindingSlope(const Mesh& mesh) {
     Box box;
     box.add(a);
     box.add(b);
-    edges_.emplace_back(box, std::abs(net) * (b - a).norm());
+    edges.emplace_back(box, std::abs(net) * (b - a).norm());
   });
-  if (edges_.empty()) return;
-  constexpr std::uint32_t kLeafEdges = 4;
-  nodes_.emplace_back().count = static_cast<std::uint32_t>(edges_.size());
-  for (std::size_t n = 0; n < nodes_.size(); ++n) {
-    const std::uint32_t first = nodes_[n].first, size = nodes_[n].count, half = size / 2;
-    Box box;
-    double length_m = 0;
-    for (std::uint32_t i = first; i < first + size; ++i) {
-      box.add(edges_[i].first.min);
-      box.add(edges_[i].first.max);
-      length_m += edges_[i].second;
+  const Hierarchy tree = buildHierarchy(edges.size(), [&](std::span<std::uint32_t> items) -> std::size_t {
+    Node& node = nodes_.emplace_back();
+    for (const std::uint32_t i : items) {
+      node.box.add(edges[i].first.min);
+      node.box.add(edges[i].first.max);
+      node.length_m += edges[i].second;
     }
-    nodes_[n].box = box;
-    nodes_[n].length_m = length_m;
-    if (size <= kLeafEdges) continue;
-    int axis = 0;
-    box.size().maxCoeff(&axis);
-    const auto range = edges_.begin() + first;
-    std::stable_sort(range, range + size, [&](const auto& a, const auto& b) {
-      return a.first.min[axis] + a.first.max[axis] < b.first.min[axis] + b.first.max[axis];
+    constexpr std::size_t kLeafEdges = 4;
+    if (items.size() <= kLeafEdges) return 0;
+    const int axis = longestAxis(node.box);
+    std::stable_sort(items.begin(), items.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return edges[a].first.min[axis] + edges[a].first.max[axis] <
+             edges[b].first.min[axis] + edges[b].first.max[axis];
     });
-    nodes_[n].first = static_cast<std::uint32_t>(nodes_.size());
-    nodes_[n].count = 0;
-    nodes_.push_back({{}, 0, first, half});
-    nodes_.push_back({{}, 0, first + half, size - half});
-  }
+    return items.size() / 2;
+  });
+  for (std::size_t n = 0; n < nodes_.size(); ++n) static_cast<HierarchyNode&>(nodes_[n]) = tree.nodes[n];
+  for (const std::uint32_t i : tree.order) edges_.push_back(edges[i]);
 }
 
 double WindingSlope::bound(const Box& box) const noexcept {
-  if (nodes_.empty()) return 0;
   double sum = 0;
-  std::uint32_t stack[64];  // halving by count limits the depth to 32, with one waiting child on each level
-  int waiting = 0;
-  stack[waiting++] = 0;
-  while (waiting > 0) {
-    const Node& node = nodes_[stack[--waiting]];
-    const double gap2 = boxGap2(node.box, box);
+  for (std::size_t n = 0; n < nodes_.size();) {
+    const Node& node = nodes_[n];
+    const double gap2 = distance2(node.box, box);
     if (gap2 > 4 * node.box.size().squaredNorm()) {
       sum += node.length_m / gap2;
-    } else if (node.count > 0) {
-      for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-        const double edge_gap2 = boxGap2(edges_[i].first, box);
-        if (!(edge_gap2 > 0)) return kInfinite;
-        sum += edges_[i].second / edge_gap2;
-      }
-    } else {
-      stack[waiting++] = node.first + 1;
-      stack[waiting++] = node.first;
+      n = node.skip;
+      continue;
+    }
+    ++n;
+    if (!node.isLeaf()) continue;
+    for (std::uint32_t i = node.first; i < node.end; ++i) {
+      const double edge_gap2 = distance2(edges_[i].first, box);
+      if (!(edge_gap2 > 0)) return kInfinite;
+      sum += edges_[i].second / edge_gap2;
     }
   }
   return sum / (4 * std::numbers::pi);

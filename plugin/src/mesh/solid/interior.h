@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "vps/bounding_volume_hierarchy.h"
 #include "vps/mesh.h"
 #include "vps/mesh_distance.h"
 #include "vps/winding_number.h"
@@ -25,10 +26,9 @@ class WindingSlope {
   [[nodiscard]] double bound(const Box& box) const noexcept;
 
  private:
-  struct Node {
+  struct Node : HierarchyNode {
     Box box;
     double length_m = 0;
-    std::uint32_t first = 0, count = 0;  ///< edges of a leaf; in an inner node the left child and 0
   };
   std::vector<Node> nodes_;
   std::vector<std::pair<Box, double>> edges_;  // box and length [m]
