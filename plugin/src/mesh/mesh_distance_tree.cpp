@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How MeshDistance divides a mesh into nodes of eight boxes.
+// How MeshDistance divides a mesh into nodes of eight boxes. buildHierarchy() makes binary trees; here the
+// part that is largest is divided next until there are eight, so that queries compare a point with eight
+// boxes at once.
 #include <algorithm>
 #include <cstdint>
 #include <limits>
@@ -9,6 +11,7 @@
 #include <vector>
 
 #include "mesh/mesh_distance_tree.h"
+#include "vps/bounding_volume_hierarchy.h"
 #include "vps/mesh_distance.h"
 
 namespace vps {
@@ -44,16 +47,11 @@ class Divider {
   [[nodiscard]] std::pair<Range, Range> divided(Range range, bool by_area) const {
     Box centers;
     for (const std::uint32_t i : range) centers.add(boxes_[i].center());
-    int axis = 0;
-    centers.size().maxCoeff(&axis);
+    const int axis = longestAxis(centers);
     const std::size_t wished = by_area ? bestCount(range, axis, centers) : range.size() / 2;
     const std::size_t count =
         std::clamp((wished + whole_ / 2) / whole_ * whole_, whole_, (range.size() - 1) / whole_ * whole_);
-    const auto at = [&](std::uint32_t i) { return boxes_[i].min[axis] + boxes_[i].max[axis]; };
-    std::nth_element(range.begin(), range.begin() + static_cast<std::ptrdiff_t>(count), range.end(),
-                     [&](std::uint32_t a, std::uint32_t b) {  // a strict order: the same tree everywhere
-                       return at(a) != at(b) ? at(a) < at(b) : a < b;
-                     });
+    divideByKey(range, count, [&](std::uint32_t i) { return boxes_[i].min[axis] + boxes_[i].max[axis]; });
     return {range.first(count), range.subspan(count)};
   }
 
@@ -127,12 +125,9 @@ void MeshDistance::Node::set(int lane, const Vec3& min_m, const Vec3& max_m, std
 void MeshDistance::buildTree() {
   const auto count = static_cast<std::uint32_t>(mesh_.triangles.size());
   if (count == 0) return;
-  std::vector<Box> boxes(count);
+  const std::vector<Box> boxes = triangleBoxes(mesh_);
   Box all;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    for (const std::uint32_t v : mesh_.triangles[i]) boxes[i].add(mesh_.vertices[v]);
-    add(all, boxes[i]);
-  }
+  for (const Box& box : boxes) add(all, box);
   center_ = all.center();
   // Boxes and points are rounded to floats relative to the centre: a point as far away as the mesh is large
   // has an error of 2^-24 of that, a corner of a box half as much.
