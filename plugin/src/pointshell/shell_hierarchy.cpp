@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "pointshell/shell_grid.h"
+#include "vps/bounding_volume_hierarchy.h"
 
 namespace vps {
 namespace {
@@ -20,25 +20,6 @@ std::size_t cut(std::size_t count) {
   while (2 * unit * kLanes <= count) unit *= kLanes;
   const std::size_t units = (count + unit - 1) / unit;
   return (units / 2) * unit;
-}
-
-void sortRange(std::span<const Vec3> points, std::span<std::uint32_t> order) {
-  if (order.size() <= kLeafPoints) {
-    std::sort(order.begin(), order.end());
-    return;
-  }
-  Box box;
-  for (const std::uint32_t i : order) box.add(points[i]);
-  int axis = 0;
-  box.size().maxCoeff(&axis);
-  const std::size_t middle = cut(order.size());
-  // Ties by index: the cut must not depend on how the library breaks them.
-  std::nth_element(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(middle), order.end(),
-                   [&](std::uint32_t a, std::uint32_t b) {
-                     return points[a][axis] != points[b][axis] ? points[a][axis] < points[b][axis] : a < b;
-                   });
-  sortRange(points, order.first(middle));
-  sortRange(points, order.subspan(middle));
 }
 
 struct Sphere {
@@ -78,20 +59,6 @@ Sphere enclosingSphere(std::span<const Vec3> points) {
     }
   }
   return {best, std::sqrt(best2) * (1 + 1e-12)};  // more than the rounding errors above
-}
-
-void addNodes(std::span<const Vec3> points, std::size_t first, std::size_t count,
-              std::vector<ShellNode>& nodes) {
-  const std::size_t index = nodes.size();
-  const Sphere sphere = enclosingSphere(points.subspan(first, count));
-  nodes.push_back({sphere.center, sphere.radius_m, static_cast<std::uint32_t>(first),
-                   static_cast<std::uint32_t>(count), 0, count <= kLeafPoints});
-  if (count > kLeafPoints) {
-    const std::size_t left = cut(count);
-    addNodes(points, first, left, nodes);
-    addNodes(points, first + left, count - left, nodes);
-  }
-  nodes[index].skip = static_cast<std::uint32_t>(nodes.size());
 }
 
 /// A block's sphere as kernels read it: offsets are rounded to floats, so the radius grows by their error.
@@ -156,17 +123,29 @@ std::vector<std::uint32_t> bitReversed(std::size_t count) {
 }  // namespace
 
 std::vector<std::uint32_t> sortedOrder(std::span<const Vec3> points) {
-  std::vector<std::uint32_t> order(points.size());
-  std::iota(order.begin(), order.end(), 0);
-  sortRange(points, order);
-  return order;
+  return buildHierarchy(points.size(),
+                        [&](std::span<std::uint32_t> items) -> std::size_t {
+                          if (items.size() <= kLeafPoints) {
+                            std::sort(items.begin(), items.end());
+                            return 0;
+                          }
+                          divideByPoint(items, cut(items.size()), points);
+                          return cut(items.size());
+                        })
+      .order;
 }
 
 std::vector<ShellNode> sphereHierarchy(std::span<const Vec3> points) {
+  const Hierarchy tree = buildHierarchy(points.size(), [](std::span<std::uint32_t> items) {
+    return items.size() <= kLeafPoints ? 0 : cut(items.size());
+  });
   std::vector<ShellNode> nodes;
-  if (points.empty()) return nodes;
-  nodes.reserve(2 * (points.size() / kLeafPoints + 1));
-  addNodes(points, 0, points.size(), nodes);
+  nodes.reserve(tree.nodes.size());
+  for (const HierarchyNode& node : tree.nodes) {
+    const std::uint32_t count = node.end - node.first;
+    const Sphere sphere = enclosingSphere(points.subspan(node.first, count));
+    nodes.push_back({sphere.center, sphere.radius_m, node.first, count, node.skip, node.isLeaf()});
+  }
   return nodes;
 }
 
