@@ -67,14 +67,14 @@ class EdgePairSearch {
   void visit(const Node& a, Placed& at, const Visit& found) const {
     const Node& b = at.node;
     if (!spheresComeNear(a, at) || areParallel(a, b) || !linesComeNear(a, at)) return;
-    if (a.is_leaf != 0 && b.is_leaf != 0) {
-      found(a.first, b.first);
-    } else if (b.is_leaf != 0 || (a.is_leaf == 0 && a.radius_m >= b.radius_m)) {
-      for (std::uint32_t i = 0; i < 2; ++i) visit(edges0_.nodes()[a.first + i], at, found);
+    if (a.isLeaf() && b.isLeaf()) {
+      found(edges0_.edge(a), edges1_.edge(b));
+    } else if (b.isLeaf() || (!a.isLeaf() && a.radius_m >= b.radius_m)) {
+      for (const Node* child : edges0_.children(a)) visit(*child, at, found);
     } else {
-      for (std::uint32_t i = 0; i < 2; ++i) {
-        Placed child = place(edges1_.nodes()[b.first + i]);
-        visit(a, child, found);
+      for (const Node* child : edges1_.children(b)) {
+        Placed placed = place(*child);
+        visit(a, placed, found);
       }
     }
   }
