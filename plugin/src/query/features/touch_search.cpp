@@ -69,7 +69,7 @@ class TouchSearch {
   // or within these nodes. Appends the remaining nodes for the corners' children, and removes them again.
   void visit(std::uint32_t c, std::vector<std::uint32_t>& list, std::size_t first) {
     const CornerTree::Bounds& corner = corners_.bounds[c];
-    const DirectedTree::Node& node = corners_.tree.nodes[c];
+    const HierarchyNode& node = corners_.tree.nodes[c];
     const Mat3& R = X_.from.R;
     // Corners that move straight between two poses stay in the box that contains them at both.
     const Placed at{Track(X_, corner.center),
@@ -77,12 +77,12 @@ class TouchSearch {
                     R * corner.touch.axis,
                     {R * corner.faces[0].axis, R * corner.faces[1].axis}};
     const std::size_t end = list.size();
-    for (std::size_t i = first; i < end; ++i) descend(corner, at, node.left == 0, list[i], list);
-    if (node.left == 0) {
+    for (std::size_t i = first; i < end; ++i) descend(corner, at, node.isLeaf(), list[i], list);
+    if (node.isLeaf()) {
       if (list.size() > end) addPairs(corners_.tree.order[node.first], std::span(list).subspan(end));
     } else if (list.size() > end) {
-      visit(node.left, list, end);
-      visit(node.left + 1, list, end);
+      visit(c + 1, list, end);
+      visit(node.right, list, end);
     }
     list.resize(end);
   }
@@ -94,12 +94,12 @@ class TouchSearch {
                std::vector<std::uint32_t>& list) const {
     const FacetTree::Bounds& facet = facets_.bounds[f];
     if (!canTouch(corner, at, facet)) return;
-    const std::uint32_t left = facets_.tree.nodes[f].left;
-    if (left == 0 || (!is_leaf && facet.spread_m <= 2 * corner.radius_m)) {
+    const HierarchyNode& node = facets_.tree.nodes[f];
+    if (node.isLeaf() || (!is_leaf && facet.spread_m <= 2 * corner.radius_m)) {
       list.push_back(f);
     } else {
-      descend(corner, at, is_leaf, left, list);
-      descend(corner, at, is_leaf, left + 1, list);
+      descend(corner, at, is_leaf, f + 1, list);
+      descend(corner, at, is_leaf, node.right, list);
     }
   }
 

@@ -7,28 +7,14 @@
 
 #include "query/features/direction_cone.h"
 #include "query/motion/edge_pair_search.h"
+#include "vps/bounding_volume_hierarchy.h"
 #include "vps/mesh.h"
 
 namespace vps {
 
 class FeatureSet;
 
-/// A tree whose nodes hold items that are near each other and point in similar directions.
-struct DirectedTree {
-  struct Node {
-    std::uint32_t first = 0, end = 0, left = 0;  ///< range of the order; left child, or 0
-  };
-  struct Item {
-    Vec3 p, direction;
-  };
-  std::vector<Node> nodes;
-  std::vector<std::uint32_t> order;
-
-  /// Halves each node by place or by direction, whichever differs more. O(n log n).
-  void build(const std::vector<Item>& items);
-};
-
-/// A tree of facets with bounds of their places and normals.
+/// Facets with bounds of their places and normals, as nodes of a tree.
 struct FacetTree {
   struct Bounds {
     Box box;
@@ -37,7 +23,7 @@ struct FacetTree {
     double spread_m = 0;           ///< size of a box around the facets' centres; 0 for a single facet
     bool is_curved = true;         ///< all facets approximate curved surfaces
   };
-  DirectedTree tree;
+  Hierarchy tree;              ///< a leaf has one facet
   std::vector<Bounds> bounds;  ///< of the nodes
 
   void build(const FeatureSet& part);
@@ -51,7 +37,7 @@ struct CornerTree {
     DirectionCone touch;
     DirectionCone faces[2];  ///< each corner has a face with its normal in each
   };
-  DirectedTree tree;  ///< does not contain corners that can touch nothing
+  Hierarchy tree;  ///< a leaf has one corner; without the corners that can touch nothing
   std::vector<Bounds> bounds;
 
   void build(const FeatureSet& part);

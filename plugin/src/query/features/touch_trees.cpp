@@ -2,7 +2,6 @@
 // The trees for the search for corners and facets that can touch.
 #include <algorithm>
 #include <limits>
-#include <numeric>
 #include <optional>
 #include <span>
 
@@ -20,55 +19,43 @@ namespace {
 // twice as much in the threads. Values of kOfPart of 0.06 and of 0.25 cost the same.
 constexpr double kSimilar = 0.3, kOfPart = 0.12;
 
-Box boxAround(const std::vector<DirectedTree::Item>& items, std::span<const std::uint32_t> which,
-              Vec3 DirectedTree::Item::*member) {
+struct DirectedItem {
+  Vec3 p, direction;
+};
+
+Box boxAround(const std::vector<DirectedItem>& items, std::span<const std::uint32_t> which,
+              Vec3 DirectedItem::*member) {
   Box box;
   for (const std::uint32_t i : which) box.add(items[i].*member);
   return box;
 }
 
-// The index at which a node's items are divided.
-// @param length_m  difference in place that counts as much as opposite directions
-std::uint32_t part(const std::vector<DirectedTree::Item>& items, std::span<std::uint32_t> which,
-                   double length_m) {
-  int axis = 0, place_axis = 0;
-  const Box directions = boxAround(items, which, &DirectedTree::Item::direction);
-  const double turn = directions.size().maxCoeff(&axis);
-  const double place_m = boxAround(items, which, &DirectedTree::Item::p).size().maxCoeff(&place_axis);
-  if (turn > kSimilar && turn * length_m > place_m) {
-    const double middle = directions.center()[axis];
-    const auto half = std::partition(which.begin(), which.end(),
-                                     [&](std::uint32_t i) { return items[i].direction[axis] < middle; });
-    return static_cast<std::uint32_t>(half - which.begin());
-  }
-  axis = place_axis;
-  const auto half = which.begin() + static_cast<std::ptrdiff_t>(which.size() / 2);
-  // A total order, so that every standard library makes the same halves.
-  std::nth_element(which.begin(), half, which.end(), [&](std::uint32_t a, std::uint32_t b) {
-    const double pa = items[a].p[axis], pb = items[b].p[axis];
-    return pa != pb ? pa < pb : a < b;
+// A tree whose nodes hold items that are near each other and point in similar directions: each node is
+// divided by place or by direction, by what differs more.
+Hierarchy directedHierarchy(const std::vector<DirectedItem>& items) {
+  Box all;
+  for (const DirectedItem& item : items) all.add(item.p);
+  const double length_m = kOfPart * all.size().norm();  // counts as much as opposite directions
+  return buildHierarchy(items.size(), [&](std::span<std::uint32_t> own) -> std::size_t {
+    if (own.size() == 1) return 0;
+    const Box directions = boxAround(items, own, &DirectedItem::direction),
+              places = boxAround(items, own, &DirectedItem::p);
+    int axis = 0;
+    const double turn = directions.size().maxCoeff(&axis);
+    const double place_m = places.size().maxCoeff();
+    if (turn > kSimilar && turn * length_m > place_m) {
+      const double middle = directions.center()[axis];
+      const auto half = std::partition(own.begin(), own.end(),
+                                       [&](std::uint32_t i) { return items[i].direction[axis] < middle; });
+      return static_cast<std::size_t>(half - own.begin());
+    }
+    axis = longestAxis(places);
+    divideByKey(own, own.size() / 2, [&](std::uint32_t i) { return items[i].p[axis]; });
+    return own.size() / 2;
   });
-  return static_cast<std::uint32_t>(which.size() / 2);
 }
 
 }  // namespace
-
-void DirectedTree::build(const std::vector<Item>& items) {
-  nodes.clear();
-  order.resize(items.size());
-  std::iota(order.begin(), order.end(), 0U);
-  if (!order.empty()) nodes.push_back({0, static_cast<std::uint32_t>(order.size()), 0});
-  const double length_m = kOfPart * boxAround(items, order, &DirectedTree::Item::p).size().norm();
-  for (std::size_t n = 0; n < nodes.size(); ++n) {
-    const auto [first, end, left] = nodes[n];
-    if (end - first == 1) continue;
-    const std::uint32_t half =
-        first + vps::part(items, std::span(order).subspan(first, end - first), length_m);
-    nodes[n].left = static_cast<std::uint32_t>(nodes.size());
-    nodes.push_back({first, half, 0});
-    nodes.push_back({half, end, 0});
-  }
-}
 
 void FacetTree::build(const FeatureSet& part) {
   const auto boxOf = [&](std::uint32_t facet) {
@@ -80,18 +67,16 @@ void FacetTree::build(const FeatureSet& part) {
     return part.isTwoSided(facet) ? DirectionCone::everywhere()
                                   : DirectionCone::around(part.normal(facet), 0);
   };
-  std::vector<DirectedTree::Item> items;
+  std::vector<DirectedItem> items;
   for (std::uint32_t i = 0; i < part.facets().size(); ++i)
     items.push_back({boxOf(i).center(), part.normal(i)});
-  tree.build(items);
+  tree = directedHierarchy(items);
   bounds.clear();
   std::vector<DirectionCone> cones;
-  for (const DirectedTree::Node& node : tree.nodes) {
+  for (const HierarchyNode& node : tree.nodes) {
     Bounds& b = bounds.emplace_back();
-    b.spread_m = boxAround(items, std::span(tree.order).subspan(node.first, node.end - node.first),
-                           &DirectedTree::Item::p)
-                     .size()
-                     .norm();
+    const auto own = std::span(tree.order).subspan(node.first, node.end - node.first);
+    b.spread_m = boxAround(items, own, &DirectedItem::p).size().norm();
     cones.clear();
     for (std::uint32_t k = node.first; k < node.end; ++k) {
       const std::uint32_t facet = tree.order[k];
@@ -148,7 +133,7 @@ Faces facesOver(const std::vector<Faces>& all) {
 
 void CornerTree::build(const FeatureSet& part) {
   std::vector<std::uint32_t> corners;
-  std::vector<DirectedTree::Item> items;
+  std::vector<DirectedItem> items;
   std::vector<DirectionCone> touch;
   std::vector<Faces> faces;
   for (std::uint32_t i = 0; i < part.corners().size(); ++i) {
@@ -159,11 +144,11 @@ void CornerTree::build(const FeatureSet& part) {
     touch.push_back(*cone);
     faces.push_back(facesAt(part, i));
   }
-  tree.build(items);
+  tree = directedHierarchy(items);
   bounds.clear();
   std::vector<DirectionCone> cones;
   std::vector<Faces> all;
-  for (const DirectedTree::Node& node : tree.nodes) {
+  for (const HierarchyNode& node : tree.nodes) {
     Bounds& b = bounds.emplace_back();
     Box box;
     cones.clear();
