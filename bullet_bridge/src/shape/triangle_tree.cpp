@@ -6,8 +6,6 @@
 #include <BulletCollision/NarrowPhaseCollision/btRaycastCallback.h>
 
 #include <algorithm>
-#include <array>
-#include <numeric>
 
 #include "vps_bullet/convert.h"
 
@@ -34,26 +32,14 @@ struct Shape::TriangleTree::Path {
   }
 };
 
-Shape::TriangleTree::TriangleTree(const Mesh& mesh, const Pose& X_SM) : triangles_(mesh.triangles) {
-  vertices_.reserve(mesh.vertices.size());
-  for (const Vec3& p : mesh.vertices) vertices_.push_back(X_SM * p);
-  order_.resize(triangles_.size());
-  std::iota(order_.begin(), order_.end(), 0u);
-  nodes_.reserve(triangles_.size());
-  if (!order_.empty()) build(0, order_.size());
-}
+Shape::TriangleTree::TriangleTree(const Mesh& mesh, const Pose& X_SM)
+    : mesh_(transformed(mesh, X_SM)), tree_(triangleBoxes(mesh_), 4, BoxTree::Axis::OfBoxes) {}
 
 void Shape::TriangleTree::visit(const Box& box, btTriangleCallback& callback) const {
-  for (std::size_t i = 0; i < nodes_.size();) {
-    const Node& node = nodes_[i];
-    if (!overlap(node.box, box)) {
-      i = node.skip;
-      continue;
-    }
-    for (std::uint32_t k = node.first; k < node.first + node.count; ++k)
-      if (overlap(boxOf(order_[k]), box)) report(order_[k], callback);
-    ++i;
-  }
+  tree_.forEach([&box](const Box& of_node) { return overlap(of_node, box); },
+                [&](std::uint32_t triangle) {
+                  if (overlap(boxOf(triangle), box)) report(triangle, callback);
+                });
 }
 
 bool Shape::TriangleTree::visitCast(const Box& box, btTriangleCallback& callback) const {
@@ -82,55 +68,21 @@ bool Shape::TriangleTree::visitCast(const Box& box, btTriangleCallback& callback
 
 void Shape::TriangleTree::visitPath(const Path& path, const btScalar& share,
                                     btTriangleCallback& callback) const {
-  for (std::size_t i = 0; i < nodes_.size();) {
-    const Node& node = nodes_[i];
-    if (!path.meets(node.box, share)) {
-      i = node.skip;
-      continue;
-    }
-    for (std::uint32_t k = node.first; k < node.first + node.count; ++k)
-      if (path.meets(boxOf(order_[k]), share)) report(order_[k], callback);
-    ++i;
-  }
+  tree_.forEach([&](const Box& of_node) { return path.meets(of_node, share); },
+                [&](std::uint32_t triangle) {
+                  if (path.meets(boxOf(triangle), share)) report(triangle, callback);
+                });
 }
 
 Box Shape::TriangleTree::boxOf(std::uint32_t triangle) const {
   Box box;
-  for (const std::uint32_t v : triangles_[triangle]) box.add(vertices_[v]);
+  for (const std::uint32_t v : mesh_.triangles[triangle]) box.add(mesh_.vertices[v]);
   return box;
-}
-
-void Shape::TriangleTree::build(std::size_t begin, std::size_t end) {
-  const std::size_t index = nodes_.size();
-  nodes_.emplace_back();
-  Box box;
-  for (std::size_t k = begin; k < end; ++k) {
-    const Box b = boxOf(order_[k]);
-    box.add(b.min);
-    box.add(b.max);
-  }
-  nodes_[index].box = box;
-  if (end - begin <= 4) {
-    nodes_[index].first = static_cast<std::uint32_t>(begin);
-    nodes_[index].count = static_cast<std::uint32_t>(end - begin);
-  } else {
-    int axis = 0;
-    box.size().maxCoeff(&axis);
-    const std::size_t middle = begin + (end - begin) / 2;
-    const auto at = [&](std::size_t k) { return order_.begin() + static_cast<std::ptrdiff_t>(k); };
-    std::nth_element(at(begin), at(middle), at(end), [&](std::uint32_t a, std::uint32_t b) {
-      const double ca = boxOf(a).center()[axis], cb = boxOf(b).center()[axis];
-      return ca != cb ? ca < cb : a < b;
-    });
-    build(begin, middle);
-    build(middle, end);
-  }
-  nodes_[index].skip = static_cast<std::uint32_t>(nodes_.size());
 }
 
 void Shape::TriangleTree::report(std::uint32_t triangle, btTriangleCallback& callback) const {
   btVector3 corners[3];
-  for (std::size_t v = 0; v < 3; ++v) corners[v] = toBt(vertices_[triangles_[triangle][v]]);
+  for (std::size_t v = 0; v < 3; ++v) corners[v] = toBt(mesh_.vertices[mesh_.triangles[triangle][v]]);
   callback.processTriangle(corners, 0, static_cast<int>(triangle));
 }
 
