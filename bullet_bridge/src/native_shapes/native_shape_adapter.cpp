@@ -1,38 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "native_shapes/native_shape_adapter.h"
 
-#include <algorithm>
-#include <iterator>
-#include <numeric>
 #include <span>
 
 #include "native_shapes/content_hash.h"
 #include "native_shapes/native_shape_mesh.h"
 #include "native_shapes/primitive.h"
 #include "shape/sheet_border.h"
+#include "vps/bounding_volume_hierarchy.h"
 #include "vps_bullet/convert.h"
 
 namespace vps::bullet {
 
 namespace {
-
-/// Sorts points so that each sixteen in a row are near each other.
-void sortInSpace(std::vector<std::uint32_t>& order, std::size_t begin, std::size_t end,
-                 const std::vector<Vec3>& points) {
-  if (end - begin <= static_cast<std::size_t>(kLanes)) return;
-  Box box;
-  for (std::size_t i = begin; i < end; ++i) box.add(points[order[i]]);
-  int axis = 0;
-  box.size().maxCoeff(&axis);
-  const std::size_t leaves = (end - begin + kLanes - 1) / kLanes;
-  const std::size_t middle = begin + leaves / 2 * kLanes;
-  const auto at = [&](std::size_t k) { return order.begin() + static_cast<std::ptrdiff_t>(k); };
-  std::nth_element(at(begin), at(middle), at(end), [&](std::uint32_t a, std::uint32_t b) {
-    return points[a][axis] != points[b][axis] ? points[a][axis] < points[b][axis] : a < b;
-  });
-  sortInSpace(order, begin, middle, points);
-  sortInSpace(order, middle, end, points);
-}
 
 // Area of a corner, which penalty contact needs: a square of half a millimetre. Assumed: as much as a shell
 // point represents.
@@ -62,60 +42,57 @@ Corners cornersOf(const Solid& surface, bool is_sheet) {
   return corners;
 }
 
-PointShell leafOf(const Corners& corners, const std::uint32_t* ids, std::size_t count) {
-  PointShell leaf;
+/// The node of some points, from number `first` of a shell.
+ShellNode nodeOver(std::span<const Vec3> points, std::uint32_t first) {
   Box box;
-  for (std::size_t i = 0; i < count; ++i) {
-    leaf.points.push_back(corners.points[ids[i]]);
-    leaf.inward.push_back(corners.inward[ids[i]]);
-    leaf.area_m2.push_back(kCornerArea_m2);
-    box.add(leaf.points.back());
-  }
+  for (const Vec3& p : points) box.add(p);
   ShellNode node;
   node.center = box.center();
   node.radius_m = 0.5 * box.size().norm() * (1 + 1e-12);
-  node.count = static_cast<std::uint32_t>(count);
+  node.first = first;
+  node.count = static_cast<std::uint32_t>(points.size());
+  return node;
+}
+
+PointShell leafOf(const Corners& corners, std::span<const std::uint32_t> ids) {
+  PointShell leaf;
+  for (const std::uint32_t id : ids) {
+    leaf.points.push_back(corners.points[id]);
+    leaf.inward.push_back(corners.inward[id]);
+    leaf.area_m2.push_back(kCornerArea_m2);
+  }
+  ShellNode node = nodeOver(leaf.points, 0);
   node.skip = 1;
   node.is_leaf = true;
   leaf.nodes = {node};
   return leaf;
 }
 
-/// A hierarchy over leaves in a row, so that a walk leaves out many of them at once.
-void addHalves(std::span<const ShellNode> leaves, const std::vector<Vec3>& points,
-               std::vector<ShellNode>& nodes) {
-  const std::size_t index = nodes.size();
-  ShellNode& node = nodes.emplace_back(leaves.front());
-  if (leaves.size() > 1) {
-    node.is_leaf = false;
-    node.count = leaves.back().first + leaves.back().count - node.first;
-    Box box;
-    for (const Vec3& p : std::span(points).subspan(node.first, node.count)) box.add(p);
-    node.center = box.center();
-    node.radius_m = 0.5 * box.size().norm() * (1 + 1e-12);
-    const std::size_t half = leaves.size() / 2;  // as sortInSpace()
-    addHalves(leaves.first(half), points, nodes);
-    addHalves(leaves.subspan(half), points, nodes);
-  }
-  nodes[index].skip = static_cast<std::uint32_t>(nodes.size());
-}
-
+/// Leaves of sixteen corners that are near each other, and a hierarchy over them, so that a walk leaves out
+/// many of them at once.
 PointShell shellOf(const Corners& corners) {
-  const std::size_t count = corners.points.size();
-  std::vector<std::uint32_t> order(count);
-  std::iota(order.begin(), order.end(), 0u);
-  sortInSpace(order, 0, count, corners.points);
+  const Hierarchy tree =
+      buildHierarchy(corners.points.size(), [&](std::span<std::uint32_t> items) -> std::size_t {
+        if (items.size() <= kLanes) return 0;
+        const std::size_t leaves = (items.size() + kLanes - 1) / kLanes, left = leaves / 2 * kLanes;
+        divideByPoint(items, left, corners.points);
+        return left;
+      });
   std::vector<PointShell> leaves;
-  for (std::size_t first = 0; first < count; first += kLanes)
-    leaves.push_back(leafOf(corners, &order[first], std::min<std::size_t>(kLanes, count - first)));
+  for (const HierarchyNode& node : tree.nodes)
+    if (node.isLeaf())
+      leaves.push_back(leafOf(corners, std::span(tree.order).subspan(node.first, node.end - node.first)));
   std::vector<const PointShell*> pointers;
   for (const PointShell& leaf : leaves) pointers.push_back(&leaf);
   PointShell shell = mergedShells(pointers, std::vector<Pose>(leaves.size()));
-  std::vector<ShellNode> last;
-  std::copy_if(shell.nodes.begin(), shell.nodes.end(), std::back_inserter(last),
-               [](const ShellNode& node) { return node.is_leaf; });
-  shell.nodes.clear();
-  if (!last.empty()) addHalves(last, shell.points, shell.nodes);
+  std::vector<ShellNode> nodes;
+  std::size_t leaf = 1;  // the merged shell has a root over all leaves
+  for (const HierarchyNode& node : tree.nodes) {
+    const auto points = std::span(shell.points).subspan(node.first, node.end - node.first);
+    nodes.push_back(node.isLeaf() ? shell.nodes[leaf++] : nodeOver(points, node.first));
+    nodes.back().skip = node.skip;
+  }
+  shell.nodes = std::move(nodes);
   return shell;
 }
 
