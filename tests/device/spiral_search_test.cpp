@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "operator/strategies.h"
+#include "operator/strategies/strategies.h"
 
 namespace vps::device {
 namespace {

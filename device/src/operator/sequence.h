@@ -3,7 +3,7 @@
 // may end with a part that is placed by sight.
 #pragma once
 
-#include "operator/strategies.h"
+#include "operator/strategies/strategies.h"
 
 namespace vps::device {
 

@@ -2,7 +2,7 @@
 // The strategies of insertion; each has a source of its own.
 #pragma once
 
-#include "operator/strategy.h"
+#include "operator/strategies/strategy.h"
 
 namespace vps::device {
 

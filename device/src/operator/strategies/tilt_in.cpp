@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "operator/strategies.h"
+#include "operator/strategies/strategies.h"
 
 namespace vps::device {
 
