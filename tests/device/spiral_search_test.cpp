@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "operator/strategies/strategies.h"
+#include "operator/strategies/strategy.h"
 
 namespace vps::device {
 namespace {
@@ -38,13 +38,13 @@ double reachOfSearch(double friction_N) {
   Situation situation;
   SlidingPart sliding;
   sliding.friction_N = friction_N;
-  SpiralSearch search;
-  search.start(situation, sliding.feel(0, situation.habits.search_N));
+  const std::unique_ptr<Strategy> search = makeSpiralSearch();
+  search->start(situation, sliding.feel(0, situation.habits.search_N));
   double farthest_m = 0;
   Outcome outcome = Outcome::GoingOn;
   for (double t_s = 0; outcome == Outcome::GoingOn && t_s < 60; t_s += kDt_s) {
-    outcome = search.step(sliding.feel(t_s, situation.habits.search_N), kDt_s);
-    sliding.moveHand(search.move().across_m);
+    outcome = search->step(sliding.feel(t_s, situation.habits.search_N), kDt_s);
+    sliding.moveHand(search->move().across_m);
     farthest_m = std::max(farthest_m, sliding.part_m.norm());
   }
   EXPECT_EQ(outcome, Outcome::Failed);  // there is no hole
@@ -68,11 +68,11 @@ TEST(SpiralSearch, EndsWhereThePartDropsWhileItIsLowered) {
   situation.mouth_m = -14e-3;
   Feel feel;
   feel.along_m = situation.mouth_m - situation.habits.back_off_m;
-  SpiralSearch search;
-  search.start(situation, feel);
+  const std::unique_ptr<Strategy> search = makeSpiralSearch();
+  search->start(situation, feel);
   Outcome outcome = Outcome::GoingOn;
   for (; outcome == Outcome::GoingOn && feel.time_s < 10; feel.time_s += kDt_s) {
-    outcome = search.step(feel, kDt_s);
+    outcome = search->step(feel, kDt_s);
     feel.along_m = std::min(0.0, feel.along_m + 10e-3 * kDt_s);
     feel.resist_N = feel.along_m < 0 ? 0 : situation.habits.search_N;
   }

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "vps_device/export.h"
-#include "vps_device/hand_force.h"
+#include "vps_device/simulated_device.h"
 
 namespace vps::device {
 
@@ -131,23 +131,25 @@ struct OperatorView {
 enum class OperatorPhase { Idle, Reach, Insert, Press, Done, Failed, Regrasp };
 VPS_DEVICE_API const char* toText(OperatorPhase phase) noexcept;
 
-/// What the hand does while it inserts or presses.
-enum class OperatorStrategy {
-  None,
-  Approach,       ///< moves ahead, guided by sight, until it touches
-  Touch,          ///< pushes lightly and lets the part slide
-  TiltIn,         ///< puts a corner in first, slides it against the wall, and turns the part upright
-  SpiralSearch,   ///< slides on the surface in a spiral until the part drops
-  AlignByTorque,  ///< pushes, and gives way to the force across and the torque that it feels
-  BackOff,        ///< withdraws, and looks again
-  PressHome,      ///< presses against the stop that it felt
-  PlaceBySight,   ///< nothing stops the part: holds it where it is seen at its target
-  TurnSearch,     ///< turns the part about its axis, to and fro and farther each time, until it drops
-  TurnBack,       ///< turns the part against its thread until it drops into the other thread
-  ScrewOn,        ///< turns the part onto the thread
-};
-inline constexpr int kOperatorStrategies = 12;
-/// "tilt_in"
+/// The strategies of the hand while it inserts or presses, each with its name in results. A recording keeps
+/// the number of the row, so that a new strategy takes the last row; there is room for 15.
+#define VPS_OPERATOR_STRATEGIES(ROW)                                                                    \
+  ROW(Approach, "approach")             /* moves ahead, guided by sight, until it touches */            \
+  ROW(Touch, "touch")                   /* pushes lightly and lets the part slide */                    \
+  ROW(TiltIn, "tilt_in")                /* puts a corner in first, slides it, turns the part upright */ \
+  ROW(SpiralSearch, "spiral_search")    /* slides on the surface in a spiral until the part drops */    \
+  ROW(AlignByTorque, "align_by_torque") /* pushes, and yields to side force and torque */               \
+  ROW(BackOff, "back_off")              /* withdraws, and looks again */                                \
+  ROW(PressHome, "press_home")          /* presses against the stop that it felt */                     \
+  ROW(PlaceBySight, "place_by_sight")   /* nothing stops the part: holds it where its target is seen */ \
+  ROW(TurnSearch, "turn_search")        /* turns about the axis, to and fro, until the part drops */    \
+  ROW(TurnBack, "turn_back")            /* turns against the thread until the part drops into it */     \
+  ROW(ScrewOn, "screw_on")              /* turns the part onto the thread */
+
+#define VPS_ENUMERATOR(Name, name) Name,
+enum class OperatorStrategy { None, VPS_OPERATOR_STRATEGIES(VPS_ENUMERATOR) };
+#undef VPS_ENUMERATOR
+/// The name in results; "none" for None.
 VPS_DEVICE_API const char* toText(OperatorStrategy strategy) noexcept;
 
 /// What the hand does, as a recording keeps it: in one byte.

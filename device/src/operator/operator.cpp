@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vps_device/operator.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+
 #include "operator/person.h"
 
 namespace vps::device {
@@ -26,33 +30,11 @@ const char* toText(OperatorPhase phase) noexcept {
 }
 
 const char* toText(OperatorStrategy strategy) noexcept {
-  switch (strategy) {
-    case OperatorStrategy::None:
-      return "none";
-    case OperatorStrategy::Approach:
-      return "approach";
-    case OperatorStrategy::Touch:
-      return "touch";
-    case OperatorStrategy::TiltIn:
-      return "tilt_in";
-    case OperatorStrategy::SpiralSearch:
-      return "spiral_search";
-    case OperatorStrategy::AlignByTorque:
-      return "align_by_torque";
-    case OperatorStrategy::BackOff:
-      return "back_off";
-    case OperatorStrategy::PressHome:
-      return "press_home";
-    case OperatorStrategy::PlaceBySight:
-      return "place_by_sight";
-    case OperatorStrategy::TurnSearch:
-      return "turn_search";
-    case OperatorStrategy::TurnBack:
-      return "turn_back";
-    case OperatorStrategy::ScrewOn:
-      return "screw_on";
-  }
-  return "unknown";
+#define VPS_NAME(Name, name) , name
+  static constexpr std::array kNames = {"none" VPS_OPERATOR_STRATEGIES(VPS_NAME)};
+#undef VPS_NAME
+  const auto row = static_cast<std::size_t>(strategy);
+  return row < kNames.size() ? kNames[row] : "unknown";
 }
 
 double minimumJerk(double s) noexcept {

@@ -227,13 +227,14 @@ void VirtualOperator::Person::goOnFromSearch(const OperatorView& view) noexcept 
 
 void VirtualOperator::Person::insert(const OperatorView& view, double dt_s) noexcept {
   const OperatorStrategy before = sequence().strategy();
-  const Move last = sequence().move();
+  const bool finds_by_offset = sequence().present().findsByOffset();
+  const Move last = sequence().present().move();
   if (!is_home_ && sequence().step(feel_, dt_s) == Outcome::Done) {
     is_home_ = true;
     done_s_ = view.time_s;
   }
-  if (before == OperatorStrategy::TurnSearch && sequence().strategy() == OperatorStrategy::AlignByTorque) {
-    belief_.across_m += last.across_m;  // that is where the hole was found
+  if (finds_by_offset && sequence().strategy() == OperatorStrategy::AlignByTorque) {
+    belief_.across_m += last.across_m;
     belief_.turn_rad += last.turn_rad;
   }
   if (isSlender() && before == OperatorStrategy::SpiralSearch && sequence().strategy() != before)
@@ -242,7 +243,7 @@ void VirtualOperator::Person::insert(const OperatorView& view, double dt_s) noex
                        sequence().strategy() == OperatorStrategy::PlaceBySight;
   if (is_last != (phase_ == OperatorPhase::Press))
     enter(is_last ? OperatorPhase::Press : OperatorPhase::Insert, view.time_s);
-  const Move& move = sequence().move();
+  const Move& move = sequence().present().move();
   if (move.looks) correctAtTheHole(dt_s);
   if (!move.looks) seen_for_s_ = 0;
   if (move.gives_way) giveWay(dt_s);
@@ -416,7 +417,7 @@ Mat3 VirtualOperator::Person::turnAtTheHole(double along_m) const noexcept {
 
 // Turned about the tip, so that a lean does not move the tip.
 Pose VirtualOperator::Person::wantedAtTheHole() const noexcept {
-  const Move& move = sequence().move();
+  const Move& move = sequence().present().move();
   const Pose& X_to = goal();
   const Mat3 turn = rotationFromVector(belief_.turn_rad + move.turn_rad + turnAboutMouth(move.across_m));
   const Vec3 tip = tip_m_ * axis_W_;
@@ -434,7 +435,7 @@ Vec3 VirtualOperator::Person::turnAboutMouth(const Vec3& end_m) const noexcept {
 void VirtualOperator::Person::serve(const Pose& X_wanted, const Pose& X_hand, double dt_s) noexcept {
   constexpr double kGain_per_s = 5, kLimit_m = 1.5e-3, kLimit_rad = 0.02;
   if (!isInserting() || is_home_) return;
-  if (sequence().move().gives_way) return;
+  if (sequence().present().move().gives_way) return;
   serve_m_ = shortened(serve_m_ + kGain_per_s * dt_s * across(X_wanted.p - X_hand.p), kLimit_m);
   serve_rad_ = shortened(serve_rad_ + kGain_per_s * dt_s * rotationVector(X_wanted.R * X_hand.R.transpose()),
                          kLimit_rad);

@@ -6,8 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "operator/insertion.h"
-#include "operator/screwing.h"
+#include "operator/sequence.h"
 #include "operator/sight.h"
 #include "vps_device/operator.h"
 #include "vps_device/random.h"

@@ -1,39 +1,47 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <cmath>
 
-#include "operator/strategies/strategies.h"
+#include "operator/strategies/strategy.h"
 
 namespace vps::device {
-
 namespace {
-constexpr double kHover_s = 1;  // three fixations
-constexpr double kApproachNear_m =
-    1.5e-3;                    // from here on slowly, so that sight can follow: ten of its errors
-constexpr double kCare = 0.6;  // of the speed of insertion, as an edge may be met at any time
+
+constexpr double kHover_s = 1;              // three fixations
+constexpr double kApproachNear_m = 1.5e-3;  // slow from here on, so that sight can follow: ten of its errors
+constexpr double kCare = 0.6;               // share of the insertion speed, as an edge may be met at any time
 constexpr double kSlow_m_s = 3e-3;
 constexpr double kApproachTouch_s = 0.02;  // shorter than a tap, longer than a jerk of the start
-constexpr double kOvershoot = 4;           // errors of sight beyond the target: nothing stops it
+constexpr double kOvershoot = 4;           // errors of sight beyond the target: nothing stops the part
+
+/// Hovers until the part has been seen for long enough, then moves ahead until the part touches, slowly near
+/// the target.
+class Approach final : public Strategy {
+ public:
+  Outcome step(const Feel& feel, double dt_s) noexcept override {
+    const OperatorHabits& habits = situation_.habits;
+    const bool is_near = std::min(feel.seen_short_m, -feel.along_m) < kApproachNear_m;
+    move_.speed_m_s = !situation_.has_touched && feel.time_s < start_s_ + kHover_s ? 0
+                      : is_near                                                    ? kSlow_m_s
+                                : kCare * habits.insert_share * habits.speed_m_s;
+    if (touch_.step(feel.resist_N > habits.touch_N, dt_s) > kApproachTouch_s) return Outcome::Done;
+    const bool is_beyond = feel.seen_short_m < -kOvershoot * habits.see_error_m;
+    return is_beyond ? Outcome::Unopposed : Outcome::GoingOn;
+  }
+
+ private:
+  void begin(const Feel&) noexcept override {
+    touch_ = {};
+    move_.looks = !situation_.has_touched;
+    move_.push_N = situation_.push_limit_N;
+  }
+
+  Held touch_;
+};
+
 }  // namespace
 
-void Approach::start(const Situation& situation, const Feel& feel) noexcept {
-  situation_ = situation;
-  start_s_ = feel.time_s;
-  touch_.reset();
-  move_ = {};
-  move_.looks = !situation.has_touched;
-  move_.push_N = situation.push_limit_N;
-}
-
-Outcome Approach::step(const Feel& feel, double dt_s) noexcept {
-  const OperatorHabits& habits = situation_.habits;
-  const bool is_near = std::min(feel.seen_short_m, -feel.along_m) < kApproachNear_m;
-  move_.speed_m_s = !situation_.has_touched && feel.time_s < start_s_ + kHover_s ? 0
-                    : is_near                                                    ? kSlow_m_s
-                              : kCare * habits.insert_share * habits.speed_m_s;
-  if (touch_.step(feel.resist_N > habits.touch_N, dt_s) > kApproachTouch_s) return Outcome::Done;
-  const bool is_beyond = feel.seen_short_m < -kOvershoot * habits.see_error_m;
-  return is_beyond ? Outcome::Failed : Outcome::GoingOn;
+std::unique_ptr<Strategy> makeApproach() {
+  return std::make_unique<Approach>();
 }
 
 }  // namespace vps::device
