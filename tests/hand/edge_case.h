@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "peg_scenes.h"
+#include "hand_scenes.h"
 #include "vps_scenes/run/result.h"
 
 namespace vps::hand {
@@ -38,5 +38,18 @@ enum class EdgeOutcome {
   Wrong,      ///< fits or not shown though it is too large, or blocked though it fits
 };
 EdgeOutcome outcomeOf(const EdgeCase& edge, scenes::Verdict verdict);
+
+struct EdgeTableSettings {
+  std::size_t every = 1;  ///< runs each every-th case
+  std::size_t first = 0;  ///< from this one
+  std::uint64_t seed = 1;
+  std::string only;         ///< of the rows whose name contains this
+  bool has_wall = true;     ///< false: only the bottom of each hole is left
+  std::string rows_file;    ///< the rows go to this file as well (support/table_rows.h)
+  bool is_verbose = false;  ///< a line for each case
+};
+
+/// Runs the cases and prints the table. The number of wrong verdicts.
+int printEdgeTable(const EdgeTableSettings& settings);
 
 }  // namespace vps::hand

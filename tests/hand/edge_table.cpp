@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "edge_table.h"
-
 #include <algorithm>
 #include <cstdio>
 #include <ctime>

@@ -7,10 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "edge_table.h"
-#include "peg_scenes.h"
+#include "edge_case.h"
+#include "hand_scenes.h"
 #include "support/table_rows.h"
-#include "thread_scenes.h"
 #include "vps_scenes/run/assemble.h"
 
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "peg_scenes.h"
+#include "hand_scenes.h"
 
 #include <cmath>
 #include <numbers>

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "peg_scenes.h"
+#include "hand_scenes.h"
 #include "vps_scenes/run/assemble.h"
 
 namespace vps::hand {

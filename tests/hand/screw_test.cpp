@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "thread_scenes.h"
+#include "hand_scenes.h"
 #include "vps_scenes/run/assemble.h"
 
 namespace vps::hand {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "peg_scenes.h"
+#include "hand_scenes.h"
 #include "vps/errors.h"
 #include "vps_scenes/run/tries.h"
 
