@@ -6,14 +6,13 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "vps_device/clutch.h"
 #include "vps_device/coupling_port.h"
 #include "vps_device/device.h"
 #include "vps_device/device_events.h"
 #include "vps_device/export.h"
-#include "vps_device/hand_force.h"
 #include "vps_device/local_contact.h"
 #include "vps_device/safety.h"
+#include "vps_device/simulated_device.h"
 #include "vps_device/workspace_map.h"
 
 namespace vps::device {

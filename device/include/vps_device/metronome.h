@@ -37,7 +37,7 @@ struct Beat {
 /// Waits for one beat after the other. A beat that passes while work is still running is missed, and the next
 /// is the first in the future; or, with a limit above 0, it is late: it follows at once, so that work which
 /// is late now and then catches up. Never throws, allocates or locks.
-class VPS_DEVICE_API Metronome {
+class Metronome {
  public:
   /// @param period_ns  > 0
   /// @param most_late_ns  beats that are later than this are missed; >= 0
@@ -45,7 +45,7 @@ class VPS_DEVICE_API Metronome {
       : period_ns_(period_ns), most_late_ns_(most_late_ns), clock_(&clock) {}
 
   /// The next wait() returns a period from now.
-  void start() noexcept;
+  void start() noexcept { due_ns_ = seen_ns_ = clock_->now_ns(); }
   Beat wait() noexcept;
 
   [[nodiscard]] std::int64_t period_ns() const noexcept { return period_ns_; }
@@ -55,5 +55,30 @@ class VPS_DEVICE_API Metronome {
   RealTimeClock* clock_;
   std::int64_t due_ns_ = 0, seen_ns_ = 0;
 };
+
+inline Beat Metronome::wait() noexcept {
+  Beat beat;
+  const std::int64_t now_ns = clock_->now_ns();
+  if (now_ns < seen_ns_) {
+    beat.has_clock_gone_back = true;
+    due_ns_ = now_ns;
+  }
+  const std::int64_t over_ns = now_ns - (due_ns_ + period_ns_) - most_late_ns_;
+  if (over_ns > 0) beat.missed_before = (over_ns + period_ns_ - 1) / period_ns_;
+  due_ns_ += (1 + beat.missed_before) * period_ns_;
+
+  if (due_ns_ > now_ns || most_late_ns_ == 0) clock_->sleepUntil(due_ns_);
+  seen_ns_ = beat.woke_ns = clock_->now_ns();
+  if (beat.woke_ns < now_ns) {  // the clock went back during the sleep
+    beat.has_clock_gone_back = true;
+    due_ns_ = beat.woke_ns;
+  }
+  if (beat.woke_ns - due_ns_ > most_late_ns_)
+    beat.missed_asleep = (beat.woke_ns - due_ns_ - most_late_ns_) / period_ns_;
+  due_ns_ += beat.missed_asleep * period_ns_;
+  beat.due_ns = due_ns_;
+  beat.periods = 1 + beat.missed_before + beat.missed_asleep;
+  return beat;
+}
 
 }  // namespace vps::device

@@ -3,6 +3,8 @@
 // back and give no force: space mice, game controllers.
 #pragma once
 
+#include <memory>
+
 #include "vps_device/device.h"
 #include "vps_device/export.h"
 
@@ -47,5 +49,20 @@ class VPS_DEVICE_API RateControl {
 /// The share of full speed for a deflection from -1 to 1: zero within the dead zone, continuous at its edge,
 /// 1 at 1, odd.
 VPS_DEVICE_API double rateShare(double deflection, const RateSettings& settings) noexcept;
+
+/// Space mouse and game controller. A thread of the device's own calls the library, which may wait, allocate
+/// and search for hardware; the haptic thread reads the latest deflection from a TripleBuffer. A device that
+/// is absent or unplugged reads as lost (Status::Fault), and the thread searches for it again; once it is
+/// back, the handle continues where it stood. The safety guard needs rearm() then, as after every loss.
+
+/// The first space mouse of the spacenavd daemon (socket: SPNAV_SOCKET, /etc/spnavrc or /var/run/spnav.sock).
+/// Button 0 re-centres. Throws LoadError if this build lacks libspnav, or while another one exists: the
+/// library supports one connection per program.
+VPS_DEVICE_API std::unique_ptr<Device> openSpaceMouse(const RateSettings& settings = {});
+
+/// The first game controller that SDL finds. Left stick: sideways, and towards or away from the person;
+/// triggers: up (right) and down; right stick: rotation about z and y; shoulders: about x; start: re-centres.
+/// Throws LoadError if this build lacks SDL2.
+VPS_DEVICE_API std::unique_ptr<Device> openGameController(const RateSettings& settings = {});
 
 }  // namespace vps::device

@@ -2,6 +2,9 @@
 // The log of a run, in the order of its events: a recording holds it, and a replay is compared with it.
 #pragma once
 
+#include <string.h>
+
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <string_view>
@@ -25,7 +28,7 @@ enum class RunEventKind : std::uint8_t {
   Note,   ///< anything else, in words
 };
 
-struct VPS_DEVICE_API RunEvent {
+struct RunEvent {
   double time_s = 0;
   std::int32_t step = -1;
   RunEventKind kind = RunEventKind::Note;
@@ -33,8 +36,13 @@ struct VPS_DEVICE_API RunEvent {
   std::array<char, 96> text{};  ///< zero-terminated
 
   /// Longer words are truncated.
-  void setWords(std::string_view words) noexcept;
-  [[nodiscard]] std::string_view words() const noexcept;
+  void setWords(std::string_view words) noexcept {
+    text.fill(0);
+    std::copy_n(words.begin(), std::min(words.size(), text.size() - 1), text.begin());
+  }
+  [[nodiscard]] std::string_view words() const noexcept {
+    return {text.data(), ::strnlen(text.data(), text.size())};
+  }
 };
 
 /// A sample of the run for graphs, at a lower rate.
@@ -80,7 +88,9 @@ struct SyncEvent {
 
 using LogEntry = std::variant<DeviceSample, WrittenWrench, RunEvent, RunTrace, SyncEvent>;
 
-VPS_DEVICE_API double timeOf(const LogEntry& entry) noexcept;
+inline double timeOf(const LogEntry& entry) noexcept {
+  return std::visit([](const auto& e) { return e.time_s; }, entry);
+}
 
 /// Receives entries. add() is called on the haptic path: it neither throws, allocates, locks nor waits,
 /// unless an implementation states that it is for lockstep only. One thread calls it.
@@ -101,8 +111,16 @@ class VPS_DEVICE_API RunLog {
 class VPS_DEVICE_API TappedDevice final : public Device {
  public:
   TappedDevice(Device& inner, RunLog& log) : inner_(inner), log_(log) {}
-  DeviceSample read() noexcept override;
-  void write(const Wrench& F_Ho_D) noexcept override;
+  DeviceSample read() noexcept override {
+    const DeviceSample sample = inner_.read();
+    time_s_ = sample.time_s;
+    log_.add(sample);
+    return sample;
+  }
+  void write(const Wrench& F_Ho_D) noexcept override {
+    inner_.write(F_Ho_D);
+    log_.add(WrittenWrench{time_s_, F_Ho_D});
+  }
   [[nodiscard]] DeviceLimits limits() const noexcept override { return inner_.limits(); }
   [[nodiscard]] std::string_view name() const noexcept override { return inner_.name(); }
   void rearm() noexcept override { inner_.rearm(); }

@@ -3,11 +3,16 @@
 
 #include <array>
 
-#include "drivers/kinds.h"
-
 namespace vps::device {
 
-// Built explicitly: a linker drops self-registering objects of a static library.
+// Each kind is defined in the source of its driver.
+DeviceKind dualArmKind();
+DeviceKind idealDualArmKind();
+DeviceKind spaceMouseKind();
+DeviceKind gameControllerKind();
+DeviceKind mouseKind();
+
+// An explicit list: a linker drops self-registering objects of a static library.
 std::span<const DeviceKind> deviceKinds() {
   static const std::array kinds = {dualArmKind(), idealDualArmKind(), spaceMouseKind(), gameControllerKind(),
                                    mouseKind()};

@@ -3,9 +3,8 @@
 #include <chrono>
 #include <utility>
 
-#include "drivers/kinds.h"
 #include "vps/errors.h"
-#include "vps_device/pulled_handle.h"
+#include "vps_device/device_kinds.h"
 
 namespace vps::device {
 namespace {

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "vps/triple_buffer.h"
+#include "vps_device/device_kinds.h"
 #include "vps_device/rate_control.h"
 
 namespace vps::device {
@@ -68,5 +69,12 @@ class PolledDevice final : public Device {
   std::atomic<bool> is_ending_{false};
   std::thread thread_;  // last: it uses the others
 };
+
+inline RateSettings rateSettings(const DeviceOptions& options) {
+  RateSettings settings;
+  settings.rate_hz = options.rate_hz;
+  settings.workspace_m = options.workspace_m;
+  return settings;
+}
 
 }  // namespace vps::device

@@ -6,9 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "dual_arm/gravity.h"
 #include "vps_device/dual_arm/controller.h"
-#include "vps_device/dual_arm/structure.h"
+#include "vps_device/dual_arm/statics.h"
 #include "vps_device/gains.h"
 #include "vps_device/random.h"
 

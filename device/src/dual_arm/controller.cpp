@@ -4,8 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dual_arm/gravity.h"
-#include "vps_device/dual_arm/structure.h"
+#include "vps_device/dual_arm/statics.h"
 
 namespace vps::device {
 namespace {

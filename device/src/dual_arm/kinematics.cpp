@@ -98,6 +98,10 @@ double segmentDistance(const Vec3& a, const Vec3& u, const Vec3& b, const Vec3& 
   return (r + s * u - t * v).norm();
 }
 
+Pose between(const DualArmParameters& parameters, DeviceFrame from, DeviceFrame to) {
+  return framePose(parameters, to).inverse() * framePose(parameters, from);
+}
+
 }  // namespace
 
 JointVector toVector(const DualArmJoints& joints) noexcept {
@@ -154,6 +158,38 @@ Mat3 barrelRotation(const DualArmParameters& parameters, const ArmJoints& left) 
   const ArmAxes a = armAxes(left);
   const Mat3 R_A_plate = columns(a.e3, a.e1, a.e2);
   return armBase(parameters, Side::Left).R * R_A_plate * R_plate_3;
+}
+
+const char* toText(DeviceFrame frame) noexcept {
+  switch (frame) {
+    case DeviceFrame::Independent:
+      return "independent";
+    case DeviceFrame::Left:
+      return "left";
+    case DeviceFrame::Right:
+      return "right";
+  }
+  return "unknown";
+}
+
+Pose framePose(const DualArmParameters& parameters, DeviceFrame frame) noexcept {
+  if (frame == DeviceFrame::Independent) return {};
+  return armBase(parameters, frame == DeviceFrame::Left ? Side::Left : Side::Right);
+}
+
+Pose inFrame(const DualArmParameters& parameters, const Pose& X, DeviceFrame from, DeviceFrame to) noexcept {
+  return between(parameters, from, to) * X;
+}
+
+Twist inFrame(const DualArmParameters& parameters, const Twist& V, DeviceFrame from,
+              DeviceFrame to) noexcept {
+  const Mat3 R = between(parameters, from, to).R;
+  return {R * V.w, R * V.v};
+}
+
+Wrench inFrame(const DualArmParameters& parameters, const Wrench& F, DeviceFrame from,
+               DeviceFrame to) noexcept {
+  return rotated(between(parameters, from, to).R, F);
 }
 
 Mat3 gimbalRotation(double q1_rad, double q2_rad, double q3_rad) noexcept {

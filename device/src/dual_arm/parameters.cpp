@@ -8,7 +8,6 @@
 #include <sstream>
 #include <variant>
 
-#include "dual_arm/built_in_parameters.h"
 #include "vps/errors.h"
 #include "vps_device/dual_arm/kinematics.h"
 

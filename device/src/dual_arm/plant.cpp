@@ -6,8 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "dual_arm/gravity.h"
-#include "vps_device/dual_arm/structure.h"
+#include "vps_device/dual_arm/statics.h"
 
 namespace vps::device {
 namespace {

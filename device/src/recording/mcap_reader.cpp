@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "recording/mcap_format.h"
 #include "vps_device/detail/bytes.h"
-#include "vps_device/detail/crc32.h"
 #include "vps_device/detail/mcap.h"
 
 namespace vps::device {

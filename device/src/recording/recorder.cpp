@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "vps_device/recorder.h"
+#include "vps_device/recording.h"
 
 #include <unistd.h>
 

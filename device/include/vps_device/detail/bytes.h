@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Serialises numbers and texts, least significant byte first on every machine. Doubles keep every bit,
-// including those of NaN and -0.
+// Serialises numbers and texts, least significant byte first on every machine, and checksums them. Doubles
+// keep every bit, including those of NaN and -0.
 #pragma once
 
+#include <array>
 #include <bit>
 #include <concepts>
 #include <cstdint>
@@ -80,5 +81,23 @@ class VPS_DEVICE_API ByteReader {
   std::string_view bytes_;
   bool is_good_ = true;
 };
+
+/// CRC-32, the checksum of Ethernet, zip and MCAP (reflected polynomial 0xedb88320, as ISO-HDLC).
+/// @param crc  of the bytes before, to continue a sum; 0 to begin
+/// O(bytes).
+inline std::uint32_t crc32(std::string_view bytes, std::uint32_t crc = 0) {
+  static constexpr std::array<std::uint32_t, 256> kTable = [] {
+    std::array<std::uint32_t, 256> table{};
+    for (std::uint32_t i = 0; i < 256; ++i) {
+      std::uint32_t value = i;
+      for (int bit = 0; bit < 8; ++bit) value = (value & 1) != 0 ? 0xedb88320u ^ (value >> 1) : value >> 1;
+      table[i] = value;
+    }
+    return table;
+  }();
+  crc = ~crc;
+  for (const char c : bytes) crc = kTable[(crc ^ static_cast<unsigned char>(c)) & 0xff] ^ (crc >> 8);
+  return ~crc;
+}
 
 }  // namespace vps::device

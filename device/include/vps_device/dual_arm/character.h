@@ -7,7 +7,7 @@
 #include "vps/coupling_law.h"
 #include "vps/errors.h"
 #include "vps_device/device.h"
-#include "vps_device/dual_arm/forces.h"
+#include "vps_device/dual_arm/statics.h"
 #include "vps_device/export.h"
 
 namespace vps::device {

@@ -9,7 +9,6 @@
 #include "vps_device/device.h"
 #include "vps_device/device_events.h"
 #include "vps_device/dual_arm/hardware.h"
-#include "vps_device/dual_arm/motor_heat.h"
 #include "vps_device/export.h"
 
 namespace vps::device {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Interface to the dual arm's motors and encoders: implemented by hardware drivers and by the simulated
-// plant.
+// The dual arm's motors and encoders: their interface, which hardware drivers and the simulated plant
+// implement, and the heat of the motors.
 #pragma once
 
 #include "vps_device/dual_arm/kinematics.h"
@@ -31,6 +31,28 @@ class VPS_DEVICE_API DualArmHardware {
   DualArmHardware() = default;
   DualArmHardware(const DualArmHardware&) = default;
   DualArmHardware& operator=(const DualArmHardware&) = default;
+};
+
+/// Limits the duration of peak effort: the low-passed square of a motor's effort, which models the
+/// temperature of its winding, stays below that of the continuous limit.
+class VPS_DEVICE_API MotorHeat {
+ public:
+  explicit MotorHeat(const DualArmParameters& parameters) noexcept;
+
+  /// `efforts` held for dt_s.
+  void add(const JointVector& efforts, double dt_s) noexcept;
+
+  /// Present limit of each motor: the peak while it is cool, falling to the continuous limit as it warms.
+  [[nodiscard]] JointVector limits() const noexcept;
+  /// Share of the range from continuous to peak that the warmest motor may use, 0 to 1.
+  [[nodiscard]] double peakShare() const noexcept;
+  /// Heat of each motor: 1 is the steady state at the continuous limit, and the greatest allowed.
+  [[nodiscard]] const JointVector& heat() const noexcept { return heat_; }
+
+ private:
+  JointVector continuous_, peak_;
+  JointVector heat_ = JointVector::Zero();
+  double thermal_s_;
 };
 
 }  // namespace vps::device

@@ -82,6 +82,9 @@ struct DualArmFile {
   std::vector<ParameterNote> notes;  ///< one for each parameter, in the built-in file's order
 };
 
+/// The text of data/dual_arm.toml, embedded at build time.
+VPS_DEVICE_API extern const char* const kDualArmToml;
+
 /// data/dual_arm.toml, as built in. Allocates.
 VPS_DEVICE_API const DualArmFile& builtInDualArm();
 

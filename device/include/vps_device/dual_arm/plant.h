@@ -10,10 +10,9 @@
 #include <array>
 
 #include "vps_device/dual_arm/hardware.h"
-#include "vps_device/dual_arm/motor_heat.h"
 #include "vps_device/export.h"
-#include "vps_device/hand_force.h"
 #include "vps_device/random.h"
+#include "vps_device/simulated_device.h"
 
 namespace vps::device {
 

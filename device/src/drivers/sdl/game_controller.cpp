@@ -6,9 +6,9 @@
 #include <chrono>
 #include <thread>
 
-#include "drivers/kinds.h"
 #include "drivers/polled_device.h"
-#include "vps_device/hand_controllers.h"
+#include "vps_device/device_kinds.h"
+#include "vps_device/rate_control.h"
 
 namespace vps::device {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The game controller in a build without SDL2.
-#include "drivers/kinds.h"
 #include "vps/errors.h"
-#include "vps_device/hand_controllers.h"
+#include "vps_device/device_kinds.h"
+#include "vps_device/rate_control.h"
 
 namespace vps::device {
 
@@ -14,7 +14,7 @@ DeviceKind gameControllerKind() {
   return {"game_controller",
           "game controller through SDL2, moved by a person; gives no force",
           "install libsdl2-dev and build again",
-          [](const DeviceOptions& options) { return openGameController(rateSettings(options)); },
+          [](const DeviceOptions&) { return openGameController(); },
           nullptr,
           [] { return std::string("this build lacks SDL2"); }};
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The space mouse in a build without libspnav.
-#include "drivers/kinds.h"
 #include "vps/errors.h"
-#include "vps_device/hand_controllers.h"
+#include "vps_device/device_kinds.h"
+#include "vps_device/rate_control.h"
 
 namespace vps::device {
 
@@ -14,7 +14,7 @@ DeviceKind spaceMouseKind() {
   return {"space_mouse",
           "6-DOF mouse through spacenavd, moved by a person; gives no force",
           "install libspnav-dev and build again",
-          [](const DeviceOptions& options) { return openSpaceMouse(rateSettings(options)); },
+          [](const DeviceOptions&) { return openSpaceMouse(); },
           nullptr,
           [] { return std::string("this build lacks libspnav"); }};
 }

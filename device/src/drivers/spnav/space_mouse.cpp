@@ -10,10 +10,10 @@
 #include <cstdlib>
 #include <thread>
 
-#include "drivers/kinds.h"
 #include "drivers/polled_device.h"
 #include "vps/errors.h"
-#include "vps_device/hand_controllers.h"
+#include "vps_device/device_kinds.h"
+#include "vps_device/rate_control.h"
 
 // Last: it brings Xlib's macros (Status, Success, None) along.
 #include <spnav.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "vps_device/dual_arm/motor_heat.h"
+#include "vps_device/dual_arm/hardware.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,11 +1,36 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Strength of the dual arm at a place: the least force over all directions, and figure 5's vertical force.
+// Statics of the dual arm at one pose: the handle's weight, the stiffness of the structure, and the greatest force
+// in a direction.
 #pragma once
 
 #include "vps_device/dual_arm/kinematics.h"
 #include "vps_device/export.h"
 
 namespace vps::device {
+
+// --- Weight of the handle, which the plant has and the controller compensates; each arm is balanced
+
+inline constexpr double kGravity_m_s2 = 9.81;
+
+/// On the handle about its centre of mass, in D.
+inline Wrench handleWeight(const DualArmParameters& parameters) noexcept {
+  return {Vec3::Zero(), Vec3(0, 0, -parameters.handle_kg * kGravity_m_s2)};
+}
+
+// --- Elasticity between the motors and the handle, reduced to the joints
+
+/// Stiffness of each joint [N m/rad, N/m, N m/rad] with the arms at `joints`: capstan, tendon and link in
+/// series with the gimbal's and the handle's stiffness, which is the same in every direction and therefore,
+/// since the columns of an arm's Jacobian are orthogonal, adds to each joint alone.
+VPS_DEVICE_API JointVector structureStiffness(const DualArmParameters& parameters,
+                                              const JointVector& joints) noexcept;
+
+/// Force on the joints by the change of that stiffness with the joints, with the springs extended by
+/// `stretch`: -1/2 sum_i dK_i/dq stretch_i^2. Without it a loaded moving arm would not conserve energy.
+VPS_DEVICE_API JointVector structureDrift(const DualArmParameters& parameters, const JointVector& joints,
+                                          const JointVector& stretch) noexcept;
+
+// --- Strength
 
 /// Greatest upward force [N] with the handle straight and its midpoint at p_DE, motors at `limits`.
 struct VerticalForce {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Finds the pose of the right arm's base relative to the left one's from readings of the rigid handle.
+// Calibration: where a device stands in a room, and where the dual arm's right base stands.
 #pragma once
 
 #include <cstddef>
@@ -9,6 +9,29 @@
 #include "vps_device/export.h"
 
 namespace vps::device {
+
+// --- Placement of a device in a room, from touched points whose positions in the room S are known
+
+/// A point touched by the handle's origin.
+struct TouchedPoint {
+  Vec3 p_D = Vec3::Zero();  ///< as the device reads it
+  Vec3 p_S = Vec3::Zero();  ///< where it is in the room
+};
+
+struct Placement {
+  /// Ok; Truncated: fewer than three points; BadPose: one is not finite; Singular: they lie on a line, which
+  /// leaves a turn about it open.
+  Status status = Status::Truncated;
+  Pose X_SD;
+  double rms_m = 0, greatest_m = 0;  ///< residuals | X_SD p_D - p_S |
+  std::size_t worst = 0;             ///< index of the point with the greatest one
+};
+
+/// The pose with the least sum of squared residuals. O(points). Source: Kabsch 1976; Umeyama 1991, for its
+/// sign of reflections.
+VPS_DEVICE_API Placement fitPlacement(std::span<const TouchedPoint> points) noexcept;
+
+// --- Pose of the dual arm's right base relative to the left one, from readings of the rigid handle
 
 struct BaseCalibration {
   /// Ok; Truncated: fewer than twelve readings; BadPose: a reading is not finite; Singular: the readings are
