@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "vps_device/clutch.h"
+#include "vps_device/workspace_map.h"
 
 #include <gtest/gtest.h>
 

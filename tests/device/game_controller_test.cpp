@@ -10,7 +10,7 @@
 #include "support/no_alloc.h"
 #include "support/poll_device.h"
 #include "vps/errors.h"
-#include "vps_device/hand_controllers.h"
+#include "vps_device/rate_control.h"
 
 namespace vps::device {
 namespace {

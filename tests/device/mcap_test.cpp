@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "vps_device/detail/bytes.h"
-#include "vps_device/detail/crc32.h"
 
 namespace vps::device {
 namespace {

@@ -16,7 +16,7 @@
 #include "support/poll_device.h"
 #include "support/temporary_folder.h"
 #include "vps/errors.h"
-#include "vps_device/hand_controllers.h"
+#include "vps_device/rate_control.h"
 
 namespace vps::device {
 namespace {

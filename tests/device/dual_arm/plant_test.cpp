@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "support/no_alloc.h"
-#include "vps_device/dual_arm/structure.h"
+#include "vps_device/dual_arm/statics.h"
 
 namespace vps::device {
 namespace {

@@ -6,7 +6,6 @@
 #include <fstream>
 #include <string>
 
-#include "dual_arm/built_in_parameters.h"
 #include "vps/errors.h"
 #include "vps_device/dual_arm/kinematics.h"
 
