@@ -4,9 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dual_arm/gravity.h"
+#include "vps_device/dual_arm/statics.h"
 #include "vps_device/dual_arm/kinematics.h"
-#include "vps_device/dual_arm/structure.h"
 
 namespace vps::bench {
 

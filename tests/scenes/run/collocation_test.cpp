@@ -7,7 +7,7 @@
 #include <random>
 
 #include "support/random_draw.h"
-#include "vps_device/placement.h"
+#include "vps_device/calibration.h"
 #include "vps_scenes/run/assemble.h"
 #include "vps_scenes/scene/display.h"
 

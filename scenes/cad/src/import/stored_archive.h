@@ -8,7 +8,7 @@
 #include <string_view>
 #include <utility>
 
-#include "vps_device/detail/crc32.h"
+#include "vps_device/detail/bytes.h"
 
 namespace vps::scenes::import {
 

@@ -6,7 +6,8 @@
 #include <string>
 
 #include "vps_device/loop.h"
-#include "vps_device/recorder.h"
+#include "vps_device/recording.h"
+#include "vps_scenes/run/assemble.h"
 #include "vps_scenes/run/assemble_options.h"
 #include "vps_scenes/scene/scene.h"
 

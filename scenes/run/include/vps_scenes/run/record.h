@@ -10,7 +10,7 @@
 
 namespace vps::scenes {
 
-/// Runs assemble() and records it to `file` (format: vps_device/recorder.h), scene and meshes included, so
+/// Runs assemble() and records it to `file` (format: vps_device/recording.h), scene and meshes included, so
 /// that replay() runs it again from this file alone. A run that is stopped or fails leaves the unfinished
 /// recording next to it, and names it through options.warn. Throws as assemble(), LoadError where the file
 /// cannot be written, and LoadError for options.has_local_contact, whose runs cannot be replayed bit for bit.
