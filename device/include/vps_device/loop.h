@@ -8,7 +8,6 @@
 
 #include "vps_device/coupling_port.h"
 #include "vps_device/device.h"
-#include "vps_device/device_events.h"
 #include "vps_device/export.h"
 #include "vps_device/local_contact.h"
 #include "vps_device/safety.h"

@@ -6,7 +6,6 @@
 #include <cstdint>
 
 #include "vps_device/device.h"
-#include "vps_device/device_events.h"
 #include "vps_device/export.h"
 
 namespace vps::device {

@@ -10,7 +10,7 @@
 #include <cstring>
 #include <ctime>
 
-#include "vps_device/device_events.h"
+#include "vps_device/device.h"
 #include "vps_device/periodic_thread.h"
 
 namespace vps::device {

@@ -7,7 +7,6 @@
 #pragma once
 
 #include "vps_device/device.h"
-#include "vps_device/device_events.h"
 #include "vps_device/dual_arm/hardware.h"
 #include "vps_device/export.h"
 

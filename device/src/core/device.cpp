@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "vps_device/device_events.h"
+#include "vps_device/device.h"
 
 namespace vps::device {
 namespace {
