@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "haptics/hand.h"
-#include "vps_device/device_events.h"
+#include "vps_device/device.h"
 #include "vps_device/loop.h"
 #include "vps_device/run_log.h"
 #include "vps_scenes/run/result.h"

@@ -4,7 +4,7 @@
 
 #include <deque>
 
-#include "vps_device/device_events.h"
+#include "vps_device/device.h"
 
 namespace vps::viewer {
 

@@ -8,7 +8,6 @@
 #include <memory>
 
 #include "vps_device/device.h"
-#include "vps_device/device_events.h"
 #include "vps_device/pulled_handle.h"
 #include "vps_scenes/run/result.h"
 #include "vps_scenes/run/run_requests.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "vps_device/device_events.h"
+#include "vps_device/device.h"
 #include "vps_scenes/run/snapshot.h"
 #include "vps_scenes/scene/scene.h"
 #include "vps_viewer/export.h"
