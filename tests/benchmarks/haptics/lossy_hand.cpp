@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "vps_device/dual_arm/statics.h"
 #include "vps_device/dual_arm/kinematics.h"
+#include "vps_device/dual_arm/statics.h"
 
 namespace vps::bench {
 
