@@ -38,8 +38,8 @@ class VPS_DEVICE_API TimedDevice final : public Device {
 struct RealTimeSettings {
   int priority = 80;  ///< SCHED_FIFO; 0: none. assumed: above interrupt threads (50), below the kernel's
   bool locks_memory = true;
-  /// LoopSettings::physics_limit_s where that is 0. assumed: ten steps of 100 Hz physics, and shorter than a
-  /// person needs to notice a part that hangs
+  /// Replaces LoopSettings::physics_limit_s if that is 0. assumed: ten steps of 100 Hz physics, and shorter
+  /// than a person needs to notice that a part has stopped
   double physics_limit_s = 0.1;
   double stale_s = 2e-3;           ///< ticks with an older physics state are counted
   RealTimeClock* clock = nullptr;  ///< null: the system's
@@ -52,8 +52,8 @@ struct RealTimeSettings {
   std::function<void(HapticLoop& loop, std::int32_t code)> on_call;
 };
 
-/// Owns the loop. Requests (grasp to call) come from one thread. Statistics may be read by any thread. What
-/// the last tick did is in CouplingPort::haptic.
+/// Owns the loop. One thread makes the requests (grasp to call); any thread may read the statistics. The
+/// report of the last tick is in CouplingPort::haptic.
 class VPS_DEVICE_API RealTimeLoop {
  public:
   /// device, port and settings.events outlive the loop. settings.period_s is the rate.
@@ -61,35 +61,37 @@ class VPS_DEVICE_API RealTimeLoop {
                const RealTimeSettings& real_time = {});
   ~RealTimeLoop();
 
-  /// What the system refused is in the report, and in settings.events. Throws as PeriodicThread::start().
+  /// Refusals of the system are in the report, and in settings.events. Throws as PeriodicThread::start().
   RealTimeReport start();
   /// Afterwards the wrench is zero. A held part stays held, for the next start().
   void stop();
   [[nodiscard]] bool isRunning() const noexcept { return thread_.isRunning(); }
 
-  /// As HapticLoop's. False if the ring is full: the loop does not run, or is far behind.
-  bool grasp(const Pose& X_WG) noexcept;
-  bool handOver(const Pose& X_WG) noexcept;
-  bool disengage() noexcept;
-  bool engage() noexcept;
-  bool release() noexcept;
-  bool rearm() noexcept;
-  bool setGains(const CouplingGains& gains) noexcept;
+  /// Each requests a call of the function of the same name in HapticLoop. False if the ring is full: the loop
+  /// does not run, or is far behind.
+  bool grasp(const Pose& X_WG) noexcept { return post({Request::Grasp, X_WG}); }
+  bool handOver(const Pose& X_WG) noexcept { return post({Request::HandOver, X_WG}); }
+  bool disengage() noexcept { return post({Request::Disengage}); }
+  bool engage() noexcept { return post({Request::Engage}); }
+  bool release() noexcept { return post({Request::Release}); }
+  bool rearm() noexcept { return post({Request::Rearm}); }
+  bool setGains(const CouplingGains& gains) noexcept { return post({Request::Gains, {}, gains}); }
   /// RealTimeSettings::on_call is called with this code.
-  bool call(std::int32_t code) noexcept;
-  /// True while a request is not yet carried out. Once false, what the loop's thread wrote while carrying
-  /// them out is visible to the caller.
+  bool call(std::int32_t code) noexcept { return post({Request::Call, {}, {}, code}); }
+  /// True while a request is not yet carried out. Once false, all that the loop's thread wrote while it
+  /// carried the requests out is visible to the caller.
   [[nodiscard]] bool hasOpenRequests() const noexcept {
     return posted_.load(std::memory_order_acquire) != handled_.load(std::memory_order_acquire);
   }
-  /// Carries out open requests while the loop does not run, when no tick would.
+  /// Carries out open requests while the loop does not run.
   void handleRequests() noexcept;
 
   [[nodiscard]] const TickStatistics& statistics() const noexcept { return statistics_; }
 
-  /// The loop itself, while not running.
+  /// The loop; only while it is not running.
   [[nodiscard]] HapticLoop& loop() noexcept { return loop_; }
-  /// One period, for a driver of one's own, while not running. Never throws, allocates or locks.
+  /// Runs one period, for a driver that replaces the thread; only while the loop is not running. Never
+  /// throws, allocates or locks.
   void beat(const Beat& beat) noexcept;
 
  private:
@@ -104,8 +106,8 @@ class VPS_DEVICE_API RealTimeLoop {
       Gains,
       Call
     } kind = Release;
-    Pose X_WG;
-    CouplingGains gains{};
+    Pose X_WG = {};
+    CouplingGains gains = {};
     std::int32_t code = 0;
   };
   bool post(const Request& request) noexcept;
@@ -126,7 +128,7 @@ class VPS_DEVICE_API RealTimeLoop {
   std::array<Request, kRequests> requests_{};
   std::atomic<std::size_t> posted_{0}, handled_{0};
   std::atomic<bool> lacks_priority_{false}, lacks_locking_{false};  ///< to be reported by the loop's thread
-  std::int64_t quiet_ticks_ = 0;  ///< remaining until misses are reported again
+  std::int64_t quiet_ticks_ = 0;                                    ///< ticks until misses are reported again
 };
 
 }  // namespace vps::device

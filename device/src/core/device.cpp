@@ -1,77 +1,63 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vps_device/device.h"
 
+#include <algorithm>
+#include <array>
+
 namespace vps::device {
 namespace {
 
 using Kind = DeviceEventKind;
 
-struct Words {
+struct Row {
+  Kind kind;
   const char* text;
   const char* remedy;
 };
 
-Words wordsOf(Kind kind) {
-  switch (kind) {
-    case Kind::BadEncoder:
-      return {"an encoder's value is not a number", "check the encoder and its cable, then re-arm"};
-    case Kind::EncoderJump:
-      return {"an arm's reading jumped", "check the encoder's cable, calibrate, then re-arm"};
-    case Kind::PulledApart:
-      return {"the arms' ends are not the handle's length apart",
-              "check the handle's joints, calibrate, then re-arm"};
-    case Kind::LeftArmLost:
-      return {"the left arm does not answer", "check its power and cable, then re-arm"};
-    case Kind::RightArmLost:
-      return {"the right arm does not answer", "check its power and cable, then re-arm"};
-    case Kind::ClockBackwards:
-      return {"the device's clock went backwards", "re-arm; if it comes again, restart the device"};
-    case Kind::Silent:
-      return {"the device sends nothing new", "check its power and cable, then re-arm"};
-    case Kind::SharpMotion:
-      return {"the handle moved faster than a hand does", "hold the handle, then re-arm"};
-    case Kind::PeerLost:
-      return {"no force was asked for in time", "see that the rendering runs, then re-arm"};
-    case Kind::BadForce:
-      return {"the force worked out is not a number", "report it with a recording, then re-arm"};
-    case Kind::BadPose:
-      return {"the device's pose is not a number", "check the device, then re-arm"};
-    case Kind::PoseJump:
-      return {"the device's pose jumped", "hold the handle, then re-arm"};
-    case Kind::DeviceLost:
-      return {"the device does not answer", "check its power and cable, then re-arm"};
-    case Kind::BadGains:
-      return {"the coupling's gains are out of range", "correct [coupling], or leave it to the device's own"};
-    case Kind::PhysicsStalled:
-      return {"the simulation stands still", "wait until it goes on, then re-arm"};
-    case Kind::NotCalibrated:
-      return {"the encoders do not know where they are", "put the handle into its cradle and calibrate"};
-    case Kind::BadWrench:
-      return {"a force that is not a number was asked for, and not given", "report it with a recording"};
-    case Kind::Saturated:
-      return {"more force was asked for than the motors give", "push less, or scale the force down"};
-    case Kind::MotorHot:
-      return {"a motor is hot: the peak force fades", "rest, or scale the force down"};
-    case Kind::NearStop:
-      return {"an arm is near its end", "move back, or shift the workspace"};
-    case Kind::NearSingular:
-      return {"the handle is turned almost as far as it goes", "turn it back"};
-    case Kind::ArmsNear:
-      return {"the arms come near each other", "turn the handle back towards straight"};
-    case Kind::TicksMissed:
-      return {"the haptic loop came too late", "close other programs, or lower the haptic rate"};
-    case Kind::NoPriority:
-      return {"the system refuses the haptic loop its priority",
-              "allow it: ulimit -r 90, or rtprio in /etc/security/limits.conf"};
-    case Kind::NotLocked:
-      return {"the system refuses to keep the program in memory",
-              "allow it: ulimit -l unlimited, or memlock in /etc/security/limits.conf"};
-    case Kind::Calibrated:
-      return {"calibrated", ""};
-    case Kind::Rearmed:
-      return {"re-armed", ""};
-  }
-  return {"unknown", ""};
+constexpr std::array kRows = {
+    Row{Kind::BadEncoder, "an encoder's value is not a number",
+        "check the encoder and its cable, then re-arm"},
+    Row{Kind::EncoderJump, "an arm's reading jumped", "check the encoder's cable, calibrate, then re-arm"},
+    Row{Kind::PulledApart, "the arms' ends are not the handle's length apart",
+        "check the handle's joints, calibrate, then re-arm"},
+    Row{Kind::LeftArmLost, "the left arm does not answer", "check its power and cable, then re-arm"},
+    Row{Kind::RightArmLost, "the right arm does not answer", "check its power and cable, then re-arm"},
+    Row{Kind::ClockBackwards, "the device's clock went backwards",
+        "re-arm; if it happens again, restart the device"},
+    Row{Kind::Silent, "the device sends nothing new", "check its power and cable, then re-arm"},
+    Row{Kind::SharpMotion, "the handle moved faster than a hand does", "hold the handle, then re-arm"},
+    Row{Kind::PeerLost, "the program sent no force in time", "check that the haptic loop runs, then re-arm"},
+    Row{Kind::BadForce, "the computed force is not a number", "report it with a recording, then re-arm"},
+    Row{Kind::BadPose, "the device's pose is not a number", "check the device, then re-arm"},
+    Row{Kind::PoseJump, "the device's pose jumped", "hold the handle, then re-arm"},
+    Row{Kind::DeviceLost, "the device does not answer", "check its power and cable, then re-arm"},
+    Row{Kind::BadGains, "the coupling's gains are out of range",
+        "correct [coupling], or remove it to use gains derived from the device"},
+    Row{Kind::PhysicsStalled, "the simulation has stopped", "wait until it continues, then re-arm"},
+    Row{Kind::NotCalibrated, "the encoders are not calibrated",
+        "put the handle into its cradle and calibrate"},
+    Row{Kind::BadWrench, "the commanded force is not a number and counts as zero",
+        "report it with a recording"},
+    Row{Kind::Saturated, "the commanded force exceeds the motors' limits",
+        "push less, or scale the force down"},
+    Row{Kind::MotorHot, "a motor is hot: the peak force decreases", "rest, or scale the force down"},
+    Row{Kind::NearStop, "an arm is near its end", "move back, or shift the workspace"},
+    Row{Kind::NearSingular, "the handle is near its greatest rotation", "turn it back"},
+    Row{Kind::ArmsNear, "the arms are near each other", "turn the handle back towards straight"},
+    Row{Kind::TicksMissed, "the haptic loop missed its period",
+        "close other programs, or lower the haptic rate"},
+    Row{Kind::NoPriority, "the system refuses real-time priority for the haptic loop",
+        "allow it: ulimit -r 90, or rtprio in /etc/security/limits.conf"},
+    Row{Kind::NotLocked, "the system refuses to lock the program's memory",
+        "allow it: ulimit -l unlimited, or memlock in /etc/security/limits.conf"},
+    Row{Kind::Calibrated, "calibrated", ""},
+    Row{Kind::Rearmed, "re-armed", ""},
+};
+
+Row rowOf(Kind kind) {
+  const auto* row = std::find_if(kRows.begin(), kRows.end(), [kind](const Row& r) { return r.kind == kind; });
+  return row != kRows.end() ? *row : Row{kind, "unknown", ""};
 }
 
 }  // namespace
@@ -82,11 +68,11 @@ Severity severityOf(Kind kind) noexcept {
 }
 
 const char* toText(Kind kind) noexcept {
-  return wordsOf(kind).text;
+  return rowOf(kind).text;
 }
 
 const char* remedyOf(Kind kind) noexcept {
-  return wordsOf(kind).remedy;
+  return rowOf(kind).remedy;
 }
 
 Beep beepOf(Kind kind) noexcept {

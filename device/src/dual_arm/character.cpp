@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include "vps_device/dual_arm/controller.h"
@@ -15,7 +16,6 @@ namespace vps::device {
 namespace {
 
 using Mat6 = Eigen::Matrix<double, 6, 6>;
-using Mat63 = Eigen::Matrix<double, 6, 3>;
 using Mat73 = Eigen::Matrix<double, 7, 3>;
 using Mat67 = Eigen::Matrix<double, 6, 7>;
 
@@ -26,25 +26,26 @@ constexpr double kTilt_rad = kPi / 4;
 constexpr int kDirections = 4000;  // of a sphere: 0.003 sr each
 constexpr int kFarPoses = 4000;
 
+/// Collects the samples of figures, and makes each figure from its samples.
 class Samples {
  public:
-  void add(double value) { values_.push_back(value); }
-  void addAll(const Vec3& values) {
-    for (int i = 0; i < 3; ++i) values_.push_back(values[i]);
+  void add(Extent& figure, double value) { samples_[&figure].push_back(value); }
+  void add(Extent& figure, const Vec3& values) {
+    for (int i = 0; i < 3; ++i) add(figure, values[i]);
   }
-  [[nodiscard]] Extent extent() {
-    if (values_.empty()) return {};
-    std::sort(values_.begin(), values_.end());
-    return {values_.front(), values_[values_.size() / 2], values_.back()};
+  void add(Duty& figure, double continuous, double peak) {
+    add(figure.continuous, continuous);
+    add(figure.peak, peak);
+  }
+  void finish() {
+    for (auto& [figure, values] : samples_) {
+      std::sort(values.begin(), values.end());
+      *figure = {values.front(), values[values.size() / 2], values.back()};
+    }
   }
 
  private:
-  std::vector<double> values_;
-};
-
-struct DutySamples {
-  Samples continuous, peak;
-  [[nodiscard]] Duty duty() { return {continuous.extent(), peak.extent()}; }
+  std::map<Extent*, std::vector<double>> samples_;
 };
 
 std::vector<Vec3> places(const DualArmParameters& p) {
@@ -69,15 +70,15 @@ Pose poseAt(const DualArmParameters& p, const Vec3& p_DE, const Mat3& R) {
   return {R, Vec3(p_DE + R * p.p_EH)};
 }
 
-/// Evenly over the sphere (Fibonacci's spiral).
+/// Direction i of `count`, distributed evenly over the sphere (Fibonacci's spiral).
 Vec3 direction(int i, int count) {
   const double z = 1 - (2 * i + 1.0) / count, angle = i * kPi * (3 - std::sqrt(5.0)),
                r = std::sqrt(1 - z * z);
   return {r * std::cos(angle), r * std::sin(angle), z};
 }
 
-/// The smallest rotation that takes Y to a direction. As Eigen's Quaternion::FromTwoVectors(), to the bit,
-/// which takes 10 s to compile because it decomposes a matrix where the direction is -Y; here that is half a
+/// The smallest rotation from Y to a direction. Equal to the bit to Eigen's Quaternion::FromTwoVectors(),
+/// which takes 10 s to compile because it decomposes a matrix for the direction -Y; here that case is half a
 /// turn about X.
 Mat3 turnFromY(const Vec3& to) {
   const Vec3 unit = to.normalized();
@@ -159,11 +160,12 @@ Vec3 forceAxes(const Eigen::MatrixXd& efforts, const Eigen::VectorXd& limits) {
   return eigenvalues(shares.transpose() * shares).cwiseMax(1e-30).cwiseSqrt().cwiseInverse();
 }
 
-/// All samples of one run over places and attitudes.
+/// Visits places and attitudes, and writes what it finds to `character`.
 class Survey {
  public:
-  explicit Survey(const DualArmParameters& parameters)
+  Survey(const DualArmParameters& parameters, DualArmCharacter& character)
       : p_(parameters),
+        c_(character),
         continuous_(motorLimits(parameters, 0)),
         peak_(motorLimits(parameters, 1)),
         half_step_(0.5 *
@@ -175,46 +177,42 @@ class Survey {
   void visit(const Pose& X_DH, bool is_straight);
   void visitFar(const Pose& X_DH);
   void visitArm(const Vec3& p_DE);
-  void finish(DualArmCharacter& c);
+  void finish();
 
  private:
   void addMotors(const EffortMap& map, bool is_straight);
   void addMechanics(const Pose& X_DH, const HandleMotion& motion, bool is_straight);
-  void addReading(const JointVector& joints, Samples& shift, Samples& turn) const;
+  void addReading(const JointVector& joints, Extent& shift, Extent& turn);
 
   const DualArmParameters& p_;
+  DualArmCharacter& c_;
   JointVector continuous_, peak_, half_step_, inertia_, coulomb_;
-  DutySamples straight_force_, force_, straight_torque_, torque_, any_force_, any_torque_;
-  DutySamples up_, left_, right_, sum_;
-  Samples held_, free_, mass_, rotary_, shift_, turn_, far_shift_, far_turn_, friction_;
-  Samples load_, arm_load_, even_, arm_even_, arm_manipulability_, mean_, straight_clearance_,
-      tilted_clearance_, far_clearance_;
+  Samples samples_;
+  Extent load_, arm_load_, straight_clearance_, tilted_clearance_, far_clearance_;
 };
 
 void Survey::addMotors(const EffortMap& map, bool is_straight) {
-  const auto add = [&](const Mat73& efforts, DutySamples& worst, DutySamples& straight, DutySamples& any) {
+  const auto add = [&](const Mat73& efforts, Duty& worst, Duty& straight, Duty& any) {
     const double continuous = leastOverDirections(efforts, map.weight, continuous_);
     const double peak = leastOverDirections(efforts, map.weight, peak_);
-    worst.continuous.add(continuous);
-    worst.peak.add(peak);
-    if (is_straight) straight.continuous.add(continuous);
-    if (is_straight) straight.peak.add(peak);
+    samples_.add(worst, continuous, peak);
+    if (is_straight) samples_.add(straight, continuous, peak);
     for (int i = 0; i < 26; ++i) {
       const int code = i < 13 ? i : i + 1;
       const Vec3 u = Vec3(code % 3 - 1, code / 3 % 3 - 1, code / 9 - 1).normalized();
-      any.continuous.add(alongDirection(efforts, map.weight, continuous_, u));
-      any.peak.add(alongDirection(efforts, map.weight, peak_, u));
+      samples_.add(any, alongDirection(efforts, map.weight, continuous_, u),
+                   alongDirection(efforts, map.weight, peak_, u));
     }
   };
-  add(map.force, force_, straight_force_, any_force_);
-  add(map.torque, torque_, straight_torque_, any_torque_);
+  add(map.force, c_.force_N, c_.straight_force_N, c_.any_force_N);
+  add(map.torque, c_.torque_Nm, c_.straight_torque_Nm, c_.any_torque_Nm);
   if (!is_straight) return;
   double plate = 0;
   for (const int i : {0, 1, 3, 4}) plate = std::max(plate, map.force.row(i).norm());
-  load_.add(plate);
+  samples_.add(load_, plate);
   const Vec3 axes = forceAxes(map.force, continuous_);
-  even_.add(axes.minCoeff() / axes.maxCoeff());
-  mean_.add(std::cbrt(axes.prod()));
+  samples_.add(c_.ellipsoid_isotropy, axes.minCoeff() / axes.maxCoeff());
+  samples_.add(c_.pair_force_mean_N, std::cbrt(axes.prod()));
 }
 
 void Survey::addMechanics(const Pose& X_DH, const HandleMotion& motion, bool is_straight) {
@@ -223,23 +221,24 @@ void Survey::addMechanics(const Pose& X_DH, const HandleMotion& motion, bool is_
   M.topLeftCorner<3, 3>() += X_DH.R * p_.handle_kgm2.asDiagonal() * X_DH.R.transpose();
   M.bottomRightCorner<3, 3>().diagonal().array() += p_.handle_kg;
   const Mat6 compliance = K.inverse(), mobility = M.inverse();
-  held_.addAll(eigenvalues(K.bottomRightCorner<3, 3>()));
-  free_.addAll(eigenvalues(compliance.bottomRightCorner<3, 3>()).cwiseInverse());
-  mass_.addAll(eigenvalues(mobility.bottomRightCorner<3, 3>()).cwiseInverse());
-  rotary_.addAll(eigenvalues(mobility.topLeftCorner<3, 3>()).cwiseInverse());
+  samples_.add(c_.held_stiffness_N_per_m, eigenvalues(K.bottomRightCorner<3, 3>()));
+  samples_.add(c_.free_stiffness_N_per_m, eigenvalues(compliance.bottomRightCorner<3, 3>()).cwiseInverse());
+  samples_.add(c_.mass_kg, eigenvalues(mobility.bottomRightCorner<3, 3>()).cwiseInverse());
+  samples_.add(c_.inertia_kgm2, eigenvalues(mobility.topLeftCorner<3, 3>()).cwiseInverse());
   const double clearance_m = armClearance_m(p_, fromVector(motion.joints));
-  (is_straight ? straight_clearance_ : tilted_clearance_).add(clearance_m);
+  samples_.add(is_straight ? straight_clearance_ : tilted_clearance_, clearance_m);
   if (!is_straight) return;
   for (int i = 0; i < 13; ++i) {
     const Vec3 u = Vec3(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1).normalized();
-    friction_.add(coulomb_.dot((motion.J.rightCols<3>() * u).cwiseAbs()));  // power for each m/s
+    // Power for each m/s.
+    samples_.add(c_.friction_N, coulomb_.dot((motion.J.rightCols<3>() * u).cwiseAbs()));
   }
 }
 
-void Survey::addReading(const JointVector& joints, Samples& shift, Samples& turn) const {
+void Survey::addReading(const JointVector& joints, Extent& shift, Extent& turn) {
   const Mat67 errors = readingMap(p_, joints) * half_step_.asDiagonal();
-  turn.add(farthestCorner(errors.topRows<3>()));
-  shift.add(farthestCorner(errors.bottomRows<3>()));
+  samples_.add(turn, farthestCorner(errors.topRows<3>()));
+  samples_.add(shift, farthestCorner(errors.bottomRows<3>()));
 }
 
 void Survey::visit(const Pose& X_DH, bool is_straight) {
@@ -248,74 +247,48 @@ void Survey::visit(const Pose& X_DH, bool is_straight) {
   if (effortMap(p_, X_DH, map) != Status::Ok || handleMotion(p_, X_DH, motion) != Status::Ok) return;
   addMotors(map, is_straight);
   addMechanics(X_DH, motion, is_straight);
-  addReading(motion.joints, shift_, turn_);
+  addReading(motion.joints, c_.resolution_m, c_.resolution_rad);
 }
 
 void Survey::visitFar(const Pose& X_DH) {
   HandleMotion motion;
   if (handleMotion(p_, X_DH, motion) != Status::Ok || std::abs(motion.q2_rad) > p_.q2_max_rad) return;
-  far_clearance_.add(armClearance_m(p_, fromVector(motion.joints)));
+  samples_.add(far_clearance_, armClearance_m(p_, fromVector(motion.joints)));
   if (!isReachable(p_, X_DH)) return;
-  addReading(motion.joints, far_shift_, far_turn_);
+  addReading(motion.joints, c_.far_resolution_m, c_.far_resolution_rad);
 }
 
 void Survey::visitArm(const Vec3& p_DE) {
-  const auto add = [](DutySamples& samples, double continuous, double peak) {
-    samples.continuous.add(continuous);
-    samples.peak.add(peak);
-  };
   const VerticalForce now = verticalForce(p_, p_DE, continuous_), most = verticalForce(p_, p_DE, peak_);
-  add(left_, now.left_N, most.left_N);
-  add(right_, now.right_N, most.right_N);
-  add(up_, now.both_N, most.both_N);
-  add(sum_, now.sum_N, most.sum_N);
+  samples_.add(c_.left_up_N, now.left_N, most.left_N);
+  samples_.add(c_.right_up_N, now.right_N, most.right_N);
+  samples_.add(c_.up_N, now.both_N, most.both_N);
+  samples_.add(c_.sum_up_N, now.sum_N, most.sum_N);
   // One arm alone, at the position of its gimbal on the straight handle.
   ArmJoints joints;
   const Vec3 p_A = armBase(p_, Side::Left).inverse() * Vec3(p_DE - Vec3(0, 0.5 * p_.handle_m, 0));
   if (armInverse(p_A, joints) != Status::Ok) return;
   const Mat3 efforts = armJacobian(joints).transpose();
   const Vec3 limits = continuous_.head<3>();
-  arm_manipulability_.add(std::abs(efforts.determinant()));
-  arm_load_.add(efforts.topRows<2>().rowwise().norm().maxCoeff());
+  samples_.add(c_.arm_manipulability_m2, std::abs(efforts.determinant()));
+  samples_.add(arm_load_, efforts.topRows<2>().rowwise().norm().maxCoeff());
   const Vec3 axes = forceAxes(efforts, limits);
-  arm_even_.add(axes.minCoeff() / axes.maxCoeff());
+  samples_.add(c_.arm_ellipsoid_isotropy, axes.minCoeff() / axes.maxCoeff());
 }
 
-void Survey::finish(DualArmCharacter& c) {
-  c.straight_force_N = straight_force_.duty();
-  c.force_N = force_.duty();
-  c.straight_torque_Nm = straight_torque_.duty();
-  c.torque_Nm = torque_.duty();
-  c.any_force_N = any_force_.duty();
-  c.any_torque_Nm = any_torque_.duty();
-  c.up_N = up_.duty();
-  c.left_up_N = left_.duty();
-  c.right_up_N = right_.duty();
-  c.sum_up_N = sum_.duty();
-  c.held_stiffness_N_per_m = held_.extent();
-  c.free_stiffness_N_per_m = free_.extent();
-  c.mass_kg = mass_.extent();
-  c.inertia_kgm2 = rotary_.extent();
-  c.resolution_m = shift_.extent();
-  c.resolution_rad = turn_.extent();
-  c.far_resolution_m = far_shift_.extent();
-  c.far_resolution_rad = far_turn_.extent();
-  c.friction_N = friction_.extent();
-  c.force_ratio = p_.force_N / c.friction_N.median;
-  c.peak_force_ratio = p_.force_peak_N / c.friction_N.median;
-  const Extent load = load_.extent(), arm_load = arm_load_.extent();
-  c.pair_isotropy = load.least / load.greatest;
-  c.arm_isotropy = arm_load.least / arm_load.greatest;
-  c.ellipsoid_isotropy = even_.extent();
-  c.arm_ellipsoid_isotropy = arm_even_.extent();
-  c.arm_manipulability_m2 = arm_manipulability_.extent();
-  c.pair_force_mean_N = mean_.extent();
-  c.straight_clearance_m = straight_clearance_.extent().least;
-  c.tilted_clearance_m = tilted_clearance_.extent().least;
-  c.far_clearance_m = far_clearance_.extent().least;
+void Survey::finish() {
+  samples_.finish();
+  c_.force_ratio = p_.force_N / c_.friction_N.median;
+  c_.peak_force_ratio = p_.force_peak_N / c_.friction_N.median;
+  c_.pair_isotropy = load_.least / load_.greatest;
+  c_.arm_isotropy = arm_load_.least / arm_load_.greatest;
+  c_.straight_clearance_m = straight_clearance_.least;
+  c_.tilted_clearance_m = tilted_clearance_.least;
+  c_.far_clearance_m = far_clearance_.least;
 }
 
-/// Random directions of the handle anywhere in the workspace. The seed is fixed, so that figures repeat.
+/// Visits random directions of the handle, anywhere in the workspace. The seed is fixed, so that figures
+/// repeat.
 void surveyFar(const DualArmParameters& p, Survey& survey) {
   Random random(1);
   for (int i = 0; i < kFarPoses; ++i) {
@@ -328,15 +301,15 @@ void surveyFar(const DualArmParameters& p, Survey& survey) {
 
 void surveyDirections(const DualArmParameters& p, const Progress& progress, DualArmCharacter& c) {
   c.gimbal_sr = 4 * kPi * std::sin(p.q2_max_rad);
-  Samples angles;
+  Samples samples;
   for (int i = 0; i < 27; ++i) {
     const Vec3 corner(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
     const double angle_sr = solidAngle(p, 0.5 * p.workspace_m.cwiseProduct(corner));
-    angles.add(angle_sr);
+    samples.add(c.solid_angle_sr, angle_sr);
     if (i == 13) c.centre_solid_angle_sr = angle_sr;
     if (progress) progress("directions", i / 27.0);
   }
-  c.solid_angle_sr = angles.extent();
+  samples.finish();
 }
 
 }  // namespace
@@ -347,7 +320,7 @@ DualArmCharacter characterise(const DualArmParameters& p, const Progress& progre
   c.straight_scale = greatestScale(p, 1);
   c.tilted_scale = greatestScale(p, 1 + kTilts);
   surveyDirections(p, progress, c);
-  Survey survey(p);
+  Survey survey(p, c);
   const std::vector<Vec3> all = places(p);
   for (std::size_t i = 0; i < all.size(); ++i) {
     for (int a = 0; a <= kTilts; ++a) survey.visit(poseAt(p, all[i], attitude(a)), a == 0);
@@ -355,7 +328,7 @@ DualArmCharacter characterise(const DualArmParameters& p, const Progress& progre
     if (progress) progress("places", static_cast<double>(i) / static_cast<double>(all.size()));
   }
   surveyFar(p, survey);
-  survey.finish(c);
+  survey.finish();
   c.limits_1kHz = dualArmLimits(p, 1000, true);
   c.limits_4kHz = dualArmLimits(p, 4000, true);
   c.gains_1kHz = deriveGains(c.limits_1kHz, {1000, 1000, 0, 1, 1});

@@ -147,32 +147,6 @@ bool RealTimeLoop::post(const Request& request) noexcept {
   return true;
 }
 
-bool RealTimeLoop::grasp(const Pose& X_WG) noexcept {
-  return post({Request::Grasp, X_WG, {}, 0});
-}
-bool RealTimeLoop::handOver(const Pose& X_WG) noexcept {
-  return post({Request::HandOver, X_WG, {}, 0});
-}
-bool RealTimeLoop::disengage() noexcept {
-  return post({Request::Disengage, {}, {}, 0});
-}
-bool RealTimeLoop::engage() noexcept {
-  return post({Request::Engage, {}, {}, 0});
-}
-bool RealTimeLoop::release() noexcept {
-  return post({Request::Release, {}, {}, 0});
-}
-bool RealTimeLoop::rearm() noexcept {
-  return post({Request::Rearm, {}, {}, 0});
-}
-bool RealTimeLoop::setGains(const CouplingGains& gains) noexcept {
-  return post({Request::Gains, {}, gains, 0});
-}
-
-bool RealTimeLoop::call(std::int32_t code) noexcept {
-  return post({Request::Call, {}, {}, code});
-}
-
 void RealTimeLoop::handleRequests() noexcept {
   const std::size_t posted = posted_.load(std::memory_order_acquire);
   std::size_t handled = handled_.load(std::memory_order_relaxed);

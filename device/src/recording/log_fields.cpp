@@ -20,11 +20,6 @@ constexpr bool kIsByte = std::is_enum_v<T> || std::is_same_v<T, std::uint8_t>;
 
 using Text = decltype(RunEvent::text);
 
-std::string number(double x) {
-  char buffer[32];
-  return {buffer, std::to_chars(buffer, buffer + sizeof buffer, x).ptr};
-}
-
 /// Names and bytes of a field's scalars, in the order of the message.
 template <typename Field, typename Visit>
 void scalars(const std::string& name, Field& field, Visit&& visit) {
@@ -161,6 +156,11 @@ std::vector<std::pair<std::string, std::string>> cells(const LogEntry& entry) {
 }
 
 }  // namespace
+
+std::string number(double x) {
+  char buffer[32];
+  return {buffer, std::to_chars(buffer, buffer + sizeof buffer, x).ptr};
+}
 
 LogEntry blank(std::size_t kind) {
   switch (kind) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The table of fields of each log entry: source of the messages' schema, their bytes, the columns of a CSV
-// file, and the description of a difference.
+// The table of fields of each log entry. The schema and the bytes of the messages, the columns of a CSV file
+// and the description of a difference are made from it.
 #pragma once
 
 #include <string>
@@ -87,19 +87,20 @@ inline constexpr const char* kAbout[kKinds] = {
     ("# Loop and physics by the clock. kind: 0 a tick with that snapshot, 1 a step with that tick's proxy, "
      "...")};
 
-/// An entry of a kind, with its defaults.
+/// The fewest digits that read back to the same value.
+std::string number(double x);
+/// An entry of a kind with default values.
 LogEntry blank(std::size_t kind);
-/// In ROS 2's interface language.
+/// Schema of a kind of entry in ROS 2's interface language.
 std::string schema(std::size_t kind);
-/// As CDR, little-endian: ROS 2's wire format.
+/// Message of an entry in little-endian CDR, ROS 2's wire format.
 std::string encoded(const LogEntry& entry);
-/// False if the bytes are not exactly such a message; the entry must not be used then.
+/// False if the bytes are not exactly one message of that kind; the entry must not be used then.
 bool decode(std::string_view bytes, LogEntry& entry);
-/// "time_s,p_dh_m.x,..." and a row; numbers with the fewest digits that read back to the same value.
+/// "time_s,p_dh_m.x,...", and one row of values.
 std::string csvHeader(std::size_t kind);
 std::string csvRow(const LogEntry& entry);
-/// The name of the first field in which two entries of one kind differ, with both values; empty: equal bit
-/// for bit.
+/// Name and both values of the first field in which two entries of one kind differ; empty: equal bit for bit.
 std::string difference(const LogEntry& recorded, const LogEntry& now);
 
 }  // namespace vps::device::log

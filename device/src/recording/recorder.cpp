@@ -7,7 +7,6 @@
 #include <array>
 #include <atomic>
 #include <cerrno>
-#include <charconv>
 #include <chrono>
 #include <cstdio>
 #include <cstring>
@@ -30,12 +29,7 @@ namespace fs = std::filesystem;
 
 constexpr auto kPoll = std::chrono::milliseconds(5);
 
-std::string exact(double x) {
-  char buffer[32];
-  return {buffer, std::to_chars(buffer, buffer + sizeof buffer, x).ptr};
-}
-
-/// Follows symbolic links: a rename onto a link would replace the link.
+/// The file at the end of symbolic links, since a rename onto a link would replace the link.
 fs::path target(const std::string& file) {
   fs::path path = file;
   std::error_code error;
@@ -50,7 +44,7 @@ void requireRecordingOrNothing(const fs::path& path, const std::string& file) {
   if (!fs::exists(path, error)) return;
   if (!fs::is_regular_file(path, error))
     throw LoadError(file, "", "is not a regular file; name another file for the recording");
-  // The head is short: magic, and the record with profile and library.
+  // The first bytes suffice: magic, and the record with profile and library.
   std::array<char, 256> bytes{};
   std::ifstream in(path, std::ios::binary);
   in.read(bytes.data(), bytes.size());
@@ -60,7 +54,7 @@ void requireRecordingOrNothing(const fs::path& path, const std::string& file) {
                     "exists and is not a recording of this program; name another file for the recording");
 }
 
-/// Unbuffered, so that written bytes survive a crash of this program.
+/// An unbuffered file, so that written bytes survive a crash of this program.
 class PlainFile {
  public:
   explicit PlainFile(const std::string& file) : file_(std::fopen(file.c_str(), "wbx")) {
@@ -91,7 +85,8 @@ std::uint64_t nanoseconds(double time_s, std::uint64_t last_ns) {
   return time_s >= 0 && time_s < kLongest_s ? static_cast<std::uint64_t>(time_s * 1e9 + 0.5) : last_ns;
 }
 
-/// Standard ROS messages, so that its tools and Foxglove show the part and the force without configuration.
+/// Schemas of standard ROS messages, with which ROS tools and Foxglove show part and force without
+/// configuration.
 constexpr const char* kHeaderSchema =
     "================================================================================\n"
     "MSG: std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id\n"
@@ -170,7 +165,8 @@ struct Recorder::Work {
     about["format"] = recording::kFormat;
     writer.addMetadata({recording::kAbout, about});
     std::map<std::string, std::string> device = {{"name", head.device}};
-    recording::eachLimit(head.limits, [&](const std::string& name, double x) { device[name] = exact(x); });
+    recording::eachLimit(head.limits,
+                         [&](const std::string& name, double x) { device[name] = log::number(x); });
     writer.addMetadata({recording::kDevice, device});
     for (const McapAttachment& attachment : head.attachments) writer.addAttachment(attachment);
   }
@@ -225,7 +221,7 @@ struct Recorder::Work {
   bool has_read = false, is_finished = false;
   std::atomic<bool> is_ending{false};
   std::thread thread;
-  std::uint32_t number = 0;  ///< of the next entry; dropped ones have theirs
+  std::uint32_t number = 0;  ///< of the next entry; dropped entries are numbered too
   std::atomic<std::uint64_t> dropped{0};
 };
 
