@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Haptics in an ordinary Bullet world: a hand presses a block on the floor and feels it. In simulated time;
-// where there is hardware, loop.tick() runs in a thread of its own, and nothing else changes.
+// Haptics in an ordinary Bullet world: a hand presses a block on the floor and feels it. The example runs in
+// simulated time; with hardware only loop.tick() changes: it runs in a thread of its own.
 #include <btBulletDynamicsCommon.h>
 #include <vps_bullet/convert.h>
 #include <vps_bullet/coupling.h>
@@ -38,7 +38,7 @@ int main() {
   world.addConstraint(&coupling, true);
   loop.grasp(vps::bullet::fromBt(block.getWorldTransform()));  // wherever the handle is: no jump
 
-  vps::device::HandForce hand;  // a spring of 500 N/m, whose far end goes down 20 mm in a second
+  vps::device::HandForce hand;  // a spring of 500 N/m, whose far end moves down by 20 mm in a second
   hand.k_N_per_m = 500 * vps::Mat3::Identity();
   hand.b_Ns_per_m = 20 * vps::Mat3::Identity();
   hand.k_Nm_per_rad = 3 * vps::Mat3::Identity();

@@ -19,12 +19,12 @@ struct TouchedPoint {
 };
 
 struct Placement {
-  /// Ok; Truncated: fewer than three points; BadPose: one is not finite; Singular: they lie on a line, which
-  /// leaves a turn about it open.
+  /// Ok; Truncated: fewer than three points; BadPose: a point is not finite; Singular: the points lie on a
+  /// line, about which the rotation is not determined.
   Status status = Status::Truncated;
   Pose X_SD;
   double rms_m = 0, greatest_m = 0;  ///< residuals | X_SD p_D - p_S |
-  std::size_t worst = 0;             ///< index of the point with the greatest one
+  std::size_t worst = 0;             ///< index of the point with the greatest residual
 };
 
 /// The pose with the least sum of squared residuals. O(points). Source: Kabsch 1976; Umeyama 1991, for its

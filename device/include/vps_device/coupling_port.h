@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The exchange of state between the haptic thread and the physics thread: one stamped state in each
-// direction.
+// Exchange of state between the haptic thread and the physics thread: one stamped state in each direction.
 //
 //   haptic thread:   HapticLoop::tick()  -- HapticState, after each tick -->  physics thread
 //   physics thread:  one step            -- PhysicsState, after each step --> haptic thread
@@ -16,24 +15,24 @@
 
 namespace vps::device {
 
-/// What one tick of the haptic loop did.
+/// Result of one tick of the haptic loop.
 struct TickReport {
   double time_s = 0;
   Status status = Status::Ok;
   Pose X_WG;  ///< proxy
   Twist V_WG;
   Wrench F_hand_W;          ///< on the hand, after safety, in W about the handle's origin
-  Wrench F_hand_D;          ///< the same as written to the device
+  Wrench F_hand_D;          ///< the wrench that was written to the device, in D about the handle's origin
   double clutch_ratio = 1;  ///< of the clutch after the tick: 0 open, 1 closed
 };
 
 /// Energy that passes the hand [J]. The device's work on the hand is the acting force (delayed as the
 /// device's limits state, and held for a period) times the handle's displacement.
 ///
-/// The balance is net work - dissipation - decrease of stored energy - actuator work. Where device, coupling
-/// and scene generate no energy it never rises; friction of contacts and the coupling's damper decrease it.
-/// Its greatest rise above its own least value so far is therefore the most energy that was generated, net of
-/// dissipation, in any interval. Energy dissipated early does not compensate energy generated later.
+/// The balance is net work - dissipation - decrease of stored energy - actuator work. If device, coupling and
+/// scene generate no energy, the balance never rises; friction of contacts and the coupling's damper decrease
+/// it. Its greatest rise above its own least value so far is therefore the most energy that was generated,
+/// net of dissipation, in any interval. Energy dissipated early does not compensate energy generated later.
 struct PassivityObserver {
   double to_hand_J = 0;     ///< sum of the positive works
   double from_hand_J = 0;   ///< sum of the negative works, as a positive number
@@ -50,7 +49,7 @@ struct PassivityObserver {
   [[nodiscard]] double rise_J() const noexcept { return balance_J - least_J; }
 };
 
-/// What the haptic side publishes after each tick.
+/// State that the haptic side publishes after each tick.
 struct HapticState {
   CouplingState proxy;
   std::int32_t tick = 0;  ///< number of ticks so far, including this one
@@ -59,31 +58,31 @@ struct HapticState {
   PassivityObserver passivity;
 };
 
-/// The part in hand P itself, for whoever looks at it: a virtual operator, say.
+/// True state of the held part P, for example for a virtual operator.
 struct HeldPart {
   Pose X_WP;
   Twist V_WP;
   Vec3 weight_W = Vec3::Zero();  ///< [N]
 };
 
-/// What the physics side publishes after each step.
+/// State that the physics side publishes after each step.
 struct PhysicsState {
   CouplingState part;
   std::int32_t step = 0;  ///< number of states published so far, including this one
   /// Energy stored in the scene (kinetic, gravity, springs, contact), in scene joules. The loop observes it
-  /// once per `step`; empty: not known, as while nothing is held.
+  /// once per `step`; empty if it is not known, for example while nothing is held.
   std::optional<double> stored_J;
   HeldPart held;
 };
 
-/// Physics in another process: takes the place of CouplingPort::physics. The haptic thread calls it, so that
-/// it never throws, allocates, locks or waits.
+/// Physics in another process, instead of CouplingPort::physics. The haptic thread calls it: an
+/// implementation must not throw, allocate, lock or wait.
 class VPS_DEVICE_API RemotePhysics {
  public:
   virtual ~RemotePhysics() = default;
-  /// Replaces `state` by the newest state, if there is a newer one than at the last call.
+  /// Replaces `state` by the newest state, if that is newer than at the last call.
   virtual void receive(PhysicsState& state) noexcept = 0;
-  /// Passes on the state after a tick.
+  /// Sends the state after a tick.
   virtual void send(const HapticState& state) noexcept = 0;
 
  protected:

@@ -33,8 +33,8 @@ enum class DeviceEventKind : std::uint8_t {
   BadPose,         ///< the device's pose is not finite
   PoseJump,        ///< the device's pose jumped
   DeviceLost,      ///< the device reports that it is lost
-  BadGains,        ///< no loop can run with these coupling gains
-  PhysicsStalled,  ///< no new state of the part in hand [s]
+  BadGains,        ///< the coupling gains are out of range
+  PhysicsStalled,  ///< no new state of the held part [s]
   NotCalibrated,
   // Warnings: the device continues.
   BadWrench,     ///< the commanded wrench is not finite and counts as zero
@@ -56,10 +56,10 @@ enum class Severity : std::uint8_t { Notice, Warning, Fault };
 VPS_DEVICE_API Severity severityOf(DeviceEventKind kind) noexcept;
 /// A few words for a person: "an arm's reading jumped".
 VPS_DEVICE_API const char* toText(DeviceEventKind kind) noexcept;
-/// The remedy: "check the encoder's cable, then re-arm".
+/// What the user can do: "check the encoder's cable, then re-arm".
 VPS_DEVICE_API const char* remedyOf(DeviceEventKind kind) noexcept;
-/// Its sound: pitch [Hz] and number of beeps; 0 beeps for a notice. assumed: an octave between warning and
-/// fault, both where hearing is most sensitive.
+/// Sound of an event; a notice has none. assumed: an octave between warning and fault, both where hearing is
+/// most sensitive.
 struct Beep {
   double pitch_hz = 0;
   int count = 0;
@@ -69,11 +69,11 @@ VPS_DEVICE_API Beep beepOf(DeviceEventKind kind) noexcept;
 struct DeviceEvent {
   double time_s = 0;
   DeviceEventKind kind = DeviceEventKind::Rearmed;
-  double value = 0;  ///< the quantity in brackets at the kind
+  double value = 0;  ///< the quantity in brackets in the comment of the kind
 };
 
-/// From the haptic thread to one reader; neither waits. A full queue keeps the older events, which show where
-/// a problem began, and counts those it refuses.
+/// Queue from the haptic thread to one reader; neither waits. A full queue keeps the older events, which show
+/// where a problem began, and counts the events that it refuses.
 class VPS_DEVICE_API DeviceEventQueue {
  public:
   static constexpr std::size_t kCapacity = 256;
@@ -116,12 +116,13 @@ struct DeviceLimits {
   double coulomb_Nm = 0;
   double resolution_m = 0;  ///< greatest error of a position read
   double resolution_rad = 0;
-  /// The handle reaches every rotation from the identity up to this one, anywhere in that box [rad]. 0: all.
+  /// The handle reaches every rotation from the identity up to this angle, anywhere in the box [rad]; 0: any
+  /// rotation.
   double workspace_rad = 0;
 };
 
 /// A 6-DOF haptic device. One thread calls read() and write() in turn; neither throws, allocates or waits.
-/// Code that does (a driver, a socket, a window) runs on a thread of its own. A new device is:
+/// Code that may do so (a driver, a socket, a window) runs on a thread of its own. A new device is:
 ///
 ///   class MyDevice final : public Device {
 ///     DeviceSample read() noexcept override { return sample_.read(); }
@@ -132,8 +133,8 @@ struct DeviceLimits {
 ///     TripleBuffer<Wrench> wrench_;        // and reads this one; neither thread waits
 ///   };
 ///
-/// A device that may stop sending stamps its samples, and returns Fault once the last is too old. To make it
-/// available to scenes by name, see device_kinds.h.
+/// A device that may stop sending stamps its samples, and returns Fault once the last sample is too old. To
+/// make a device available to scenes by name: device/DRIVERS.md.
 class VPS_DEVICE_API Device {
  public:
   virtual ~Device() = default;
@@ -148,7 +149,7 @@ class VPS_DEVICE_API Device {
   /// Clears a fault that the device itself has latched. The next pose may be anywhere.
   virtual void rearm() noexcept {}
 
-  /// What the device itself reports, for one reader; null: nothing.
+  /// Queue of the events that the device itself reports, for one reader; null if it reports none.
   [[nodiscard]] virtual DeviceEventQueue* ownEvents() noexcept { return nullptr; }
 
   [[nodiscard]] virtual DeviceLimits limits() const noexcept = 0;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The kinds of device that this build knows, by the name that a scene's [device] kind and `vps device --list`
-// use.
-//
-// To add one: device/README.md, "A device of your own".
+// The kinds of device in this build, by the name that a scene's [device] kind and `vps device --list` use. To
+// add a kind: device/DRIVERS.md, "A device of your own".
 #pragma once
 
 #include <memory>
@@ -16,7 +14,7 @@
 
 namespace vps::device {
 
-/// The options with which a device is opened. A kind ignores those that do not apply to it.
+/// Options for opening a device. A kind ignores options that do not apply to it.
 struct DeviceOptions {
   std::string parameter_file;          ///< of the dual arm; empty: the built-in parameters
   double rate_hz = 1000;               ///< of read-write cycles
@@ -30,14 +28,14 @@ struct DeviceOptions {
 /// Exactly one of `open` and `simulate` is set.
 struct DeviceKind {
   std::string_view name;         ///< "space_mouse"
-  std::string_view description;  ///< one line
-  std::string_view remedy;       ///< what helps where it does not answer
-  /// Opens a device that a person moves. Throws LoadError. A device that is not plugged in opens, and reads
-  /// as lost (Status::Fault) until it is.
+  std::string_view description;  ///< in one line
+  std::string_view remedy;       ///< what to do if the device does not answer
+  /// Opens a device that a person moves. Throws LoadError. A device that is not plugged in opens too, and
+  /// reads as lost (Status::Fault) until it is plugged in.
   std::unique_ptr<Device> (*open)(const DeviceOptions&) = nullptr;
   /// Makes a simulated device. Throws LoadError.
   std::unique_ptr<SimulatedDevice> (*simulate)(const DeviceOptions&) = nullptr;
-  /// In words, what keeps it from being used here and now; empty: nothing that is known.
+  /// Why the device cannot be used here and now; empty: no reason is known.
   std::string (*missing)() = nullptr;
 
   [[nodiscard]] bool isSimulated() const { return simulate != nullptr; }
@@ -45,7 +43,7 @@ struct DeviceKind {
 
 /// All kinds, in the order of a listing.
 VPS_DEVICE_API std::span<const DeviceKind> deviceKinds();
-/// Null: no such kind.
+/// Null if there is no such kind.
 VPS_DEVICE_API const DeviceKind* findDeviceKind(std::string_view name);
 /// The names of all kinds for a message: "dual_arm, ideal_dual_arm, ..."
 VPS_DEVICE_API std::string deviceKindNames();

@@ -28,10 +28,10 @@ VPS_DEVICE_API double couplingDelay_s(const CouplingTiming& timing) noexcept;
 /// Okamura 2005] for f_c and D. Terms whose device value is not known (zero) are omitted.
 VPS_DEVICE_API CouplingGains deriveGains(const DeviceLimits& limits, const CouplingTiming& timing) noexcept;
 
-/// The smaller one of each of two gains, the springs' limits included.
+/// For each gain and each spring limit the smaller value of both.
 VPS_DEVICE_API CouplingGains softerOf(const CouplingGains& a, const CouplingGains& b) noexcept;
 
-/// Whether the gains are finite, not negative, and at most 1 MN/m, 10 kN m/rad, dampers 10 kN s/m, 1 kN m
+/// True if the gains are finite, not negative, and at most 1 MN/m, 10 kN m/rad, dampers 10 kN s/m, 1 kN m
 /// s/rad, springs limited to 1 kN and 1 kN m. Stability on a device is a separate matter: see deriveGains().
 VPS_DEVICE_API bool areUsable(const CouplingGains& gains) noexcept;
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Predicts the part in hand between two physics states: one small implicit step per tick against the fixed
 // voxmap, in the haptic thread, for contact forces without delay where physics is slower than the loop.
-// Its limits are in README.md.
+// Its limits are in HAPTIC_LOOP.md.
 #pragma once
 
 #include <optional>
@@ -14,24 +14,25 @@
 namespace vps::device {
 
 struct LocalContactSettings {
-  /// Without a new physics state for longer, the part stands still. assumed: five steps of 100 Hz physics
+  /// The part stands still once the last physics state is older. assumed: five steps of 100 Hz physics
   double hold_limit_s = 0.05;
-  std::size_t contact_limit = 4096;  ///< near points; with more, the last state is held
-  std::size_t solve_limit = 64;      ///< of these enter the step; of more, every second, third, ... does
+  std::size_t contact_limit = 4096;  ///< of near points; with more, the last state is held
+  /// Of contacts in the step; of more contacts only every second, third, ... one enters the step.
+  std::size_t solve_limit = 64;
   /// Points this near may touch within the tick. assumed: 50 mm/s at 1 kHz
   double margin_m = 50e-6;
 };
 
-/// The part in hand and what it may touch. Map and shell outlive their use.
+/// The held part and the map that it may touch. Map and shell must outlive their use.
 struct LocalPart {
-  const VoxMap* map = nullptr;        ///< of what is fixed
+  const VoxMap* map = nullptr;        ///< of the fixed parts
   const PointShell* shell = nullptr;  ///< of the part
   Pose X_WM;
   Pose X_PG;                      ///< the grasp frame, at the centre of mass
   double mass_kg = 0;             ///< > 0
   Mat3 inertia_G = Mat3::Zero();  ///< about G, in G [kg m^2], positive
   Vec3 gravity_W = Vec3::Zero();
-  /// Of contacts with one part of the map.
+  /// Contact parameters against one part of the map.
   struct Material {
     double friction = 0;       ///< coefficient between both parts
     double k_N_per_m3 = 1e12;  ///< contact stiffness per area
@@ -49,7 +50,7 @@ struct LocalPart {
 ///
 /// Each tick is one backward-Euler step of the part under the coupling, gravity, the fixed map's contacts
 /// (penalty along their normals, linear in the step) and friction (viscous, up to the cone), as one 6 x 6
-/// system. Each of these only stores or dissipates energy, and backward Euler dissipates more: between
+/// system. Each of these terms only stores or dissipates energy, and backward Euler dissipates more: between
 /// physics states the model adds no energy. The energy that a new state adds by moving the part is reported
 /// as jump_J.
 class VPS_DEVICE_API LocalContact {
@@ -60,12 +61,12 @@ class VPS_DEVICE_API LocalContact {
   void letGo() noexcept { part_.reset(); }
 
   /// The predicted state of the part; call once per tick.
-  /// @param snapshot  latest physics state; a new time stamp makes it a new one
+  /// @param snapshot  latest physics state; a state with another time stamp is a new state
   CouplingState follow(const CouplingGains& gains, const CouplingState& proxy, const CouplingState& snapshot,
                        double dt_s) noexcept;
 
   struct Report {
-    std::size_t contacts = 0;  ///< of the last tick, touching
+    std::size_t contacts = 0;  ///< touching, in the last tick
     /// Ticks in which the part was held instead: too many contacts, state too old, or result not finite.
     std::uint64_t held = 0;
     double jump_J = 0;  ///< sum of the energy that new states added to the coupling's springs

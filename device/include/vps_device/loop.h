@@ -19,8 +19,8 @@ namespace vps::device {
 struct LoopSettings {
   CouplingGains gains;
   WorkspaceMap map;
-  /// The map says where the device stands (calibrated), so the grasp frame's origin is at the handle from the
-  /// moment of grasping on, and the part is seen where the hand is. Hand over a part there.
+  /// The map is calibrated: it gives the true place of the device. From grasping on, the grasp frame's origin
+  /// is at the handle, so that the part is seen where the hand is. A part is to be handed over only there.
   bool is_collocated = false;
   SafetyLimits safety;
   double period_s = 1e-3;
@@ -31,14 +31,14 @@ struct LoopSettings {
   double injected_bound_J = 1e-3;
   bool has_passivity_controller = true;  ///< active once stored energy is observed
   double clutch_s = 0.1;  ///< duration of opening and closing the clutch. assumed: longer than a startle
-  /// A part in hand whose state (by its time stamp) stays the same for longer is a fault. 0: never, as in
-  /// lockstep, where physics cannot fall behind. RealTimeLoop defaults to 0.1 s.
+  /// It is a fault if the state of a held part (by its time stamp) stays the same for longer. 0: never a
+  /// fault, as in lockstep, where physics cannot fall behind. RealTimeLoop defaults to 0.1 s.
   double physics_limit_s = 0;
   LocalContact* local = nullptr;       ///< predicts the part between physics states; may be null
   DeviceEventQueue* events = nullptr;  ///< receives safety faults, from the loop's thread; may be null
 };
 
-/// The haptic loop. Owned by the haptic thread or by a lockstep driver. tick() never throws, allocates, locks
+/// The haptic loop, owned by the haptic thread or by a lockstep driver. tick() never throws, allocates, locks
 /// or waits.
 class VPS_DEVICE_API HapticLoop {
  public:
@@ -58,23 +58,23 @@ class VPS_DEVICE_API HapticLoop {
   /// Closes the clutch over clutch_s: the hand holds the part again, from wherever the handle is now.
   void engage() noexcept { clutch_.close(); }
   [[nodiscard]] const Clutch& clutch() const noexcept { return clutch_; }
-  /// Changes parts: grasps one whose grasp frame is at X_WG, as grasp(), with the clutch open, and closes it.
-  /// Nothing jumps if the clutch was open before and nothing else holds that part. The energy in the springs
-  /// to the part before is dropped.
+  /// Changes parts: grasps the part whose grasp frame is at X_WG with the clutch open, then closes the
+  /// clutch. No force jumps if the clutch was open before and nothing else holds that part. The energy in the
+  /// springs to the previous part is lost.
   void handOver(const Pose& X_WG) noexcept;
   /// Clears a safety fault. If a part is held, it is grasped again at its last received pose.
   void rearm() noexcept;
 
   /// One tick of one period: receivePart() and tickWithReceivedPart().
   const TickReport& tick() noexcept { return tick(settings_.period_s); }
-  /// The same, dt_s after the last tick: a driver that missed periods passes the longer time. It counts as
-  /// one to four periods, so that the force never jumps after a pause.
+  /// One tick, dt_s after the last one: a driver that missed periods passes the longer time. The time counts
+  /// as one to four periods, so that the force never jumps after a pause.
   const TickReport& tick(double dt_s) noexcept;
 
   /// Takes the latest PhysicsState from the port; the next tick uses it. Observes its stored energy if it is
   /// a new step, against the work on the hand until the tick whose proxy that step answers: over a network
-  /// that tick is a round trip ago, and the way gone since would count as energy. Separate from the tick so
-  /// that a recording can note which state a tick used.
+  /// that tick is a round trip ago, and the motion since then would count as energy. The call is separate
+  /// from the tick, so that a recording can note which state a tick used.
   void receivePart() noexcept;
   /// The rest of tick(), with the state that receivePart() took.
   /// @return  Status of the device, or Fault while safety holds the force at zero
@@ -82,11 +82,11 @@ class VPS_DEVICE_API HapticLoop {
   [[nodiscard]] const PhysicsState& received() const noexcept { return received_; }
 
   /// Other gains from the next tick on, as when physics changes its rate. Softer gains take energy out of the
-  /// springs, stiffer ones add some: delay those until nothing is held. Unusable gains are a fault, as in the
-  /// constructor.
+  /// springs, stiffer gains add energy: set stiffer gains only while nothing is held. Unusable gains are a
+  /// fault, as in the constructor.
   void setGains(const CouplingGains& gains) noexcept;
 
-  /// Latches a fault that a driver has found; recovery is rearm().
+  /// Latches a fault that a driver has found; rearm() clears it.
   void latchFault(SafetyFault fault) noexcept;
 
   /// Observes the energy stored in the scene now (kinetic, gravity, springs, contact) and the work done so
@@ -100,16 +100,16 @@ class VPS_DEVICE_API HapticLoop {
   [[nodiscard]] const PassivityObserver& passivity() const noexcept { return passivity_; }
   [[nodiscard]] const SafetyState& safety() const noexcept { return guard_.state(); }
   [[nodiscard]] const LoopSettings& settings() const noexcept { return settings_; }
-  /// What a tick publishes, as of now: changes since the last tick are included.
+  /// The state that a tick would publish now; it includes changes since the last tick.
   [[nodiscard]] HapticState state() const noexcept;
-  /// Ticks that ended with each Status, indexed by its value.
+  /// Number of ticks that ended with this status.
   [[nodiscard]] std::uint64_t count(Status status) const noexcept;
   [[nodiscard]] std::uint64_t ticks() const noexcept { return ticks_; }
-  /// How long the part's state has been the same, counted in ticks.
+  /// Time for which the part's state has stayed the same, counted in ticks.
   [[nodiscard]] double snapshotAge_s() const noexcept { return snapshot_age_s_; }
 
-  /// The grasp frame for a handle pose in D, and a hand's impedance about G in W as one about H in D. They
-  /// connect a VirtualOperator to a SimulatedDevice.
+  /// Convert a handle pose in D to the grasp frame, and a hand's impedance about G in W to the impedance
+  /// about H in D. They connect a VirtualOperator to a SimulatedDevice.
   [[nodiscard]] Pose toGrasp(const Pose& X_DH) const noexcept;
   [[nodiscard]] HandForce toDevice(const HandForce& hand_W) const noexcept;
 
@@ -145,11 +145,11 @@ class VPS_DEVICE_API HapticLoop {
   Pose X_DH_before_;
   bool has_before_ = false;
   std::array<Wrench, kMaxDelay + 2> F_written_D_{};         ///< newest first
-  double delay_ticks_ = 0;                                  ///< the device's own
+  double delay_ticks_ = 0;                                  ///< of the device itself
   Wrench F_accounted_D_;                                    ///< by the last accountEnergy()
   double force_variation_N_ = 0, torque_variation_Nm_ = 0;  ///< sums of its changes
   double net_scene_J_ = 0, balance_start_J_ = 0;            // scene joules
-  /// What passed the hand until a tick, less the device's own dissipation.
+  /// Energy that passed the hand until a tick, less the device's own dissipation.
   struct Work {
     double time_s = 0;  ///< of the tick's sample
     double scene_J = 0;

@@ -8,7 +8,7 @@
 
 namespace vps::device {
 
-/// The clock; tests use another. Called by one thread at a time.
+/// A clock, which tests replace. Called by one thread at a time.
 class VPS_DEVICE_API RealTimeClock {
  public:
   virtual ~RealTimeClock() = default;
@@ -27,16 +27,16 @@ VPS_DEVICE_API RealTimeClock& monotonicClock() noexcept;
 /// One period that was waited for.
 struct Beat {
   std::int64_t due_ns = 0;
-  std::int64_t woke_ns = 0;          ///< by how much it is late: woke_ns - due_ns
-  std::int64_t periods = 1;          ///< since the last beat: 1 when none was missed
-  std::int64_t missed_before = 0;    ///< of these, missed because the work of the last beat took too long
-  std::int64_t missed_asleep = 0;    ///< and because the system woke the thread late
+  std::int64_t woke_ns = 0;          ///< the delay is woke_ns - due_ns
+  std::int64_t periods = 1;          ///< since the last beat; 1 if none was missed
+  std::int64_t missed_before = 0;    ///< periods missed because the work of the last beat took too long
+  std::int64_t missed_asleep = 0;    ///< periods missed because the system woke the thread late
   bool has_clock_gone_back = false;  ///< the beats restart from now
 };
 
-/// Waits for one beat after the other. A beat that passes while work is still running is missed, and the next
-/// is the first in the future; or, with a limit above 0, it is late: it follows at once, so that work which
-/// is late now and then catches up. Never throws, allocates or locks.
+/// Waits for one beat after the other. A beat that falls due while work is still running is missed, and
+/// wait() returns at the next one. With a limit above 0 such a beat is late instead: wait() returns at once,
+/// so that occasional late work is made up for. Never throws, allocates or locks.
 class Metronome {
  public:
   /// @param period_ns  > 0

@@ -20,8 +20,8 @@ struct OperatorHabits {
   std::uint64_t seed = 1;
   double aim_error_m = 0.3e-3;  ///< standard deviation across the path, each axis
   double aim_error_rad = 0.005;
-  /// Greatest error about the axis of insertion that sight does not correct: how far a hole is turned about
-  /// its axis is hard to see where the part covers it. Drawn evenly, once per task.
+  /// Greatest error about the axis of insertion. Sight does not correct it, since the part covers the hole.
+  /// Drawn from a uniform distribution, once per task.
   double aim_turn_rad = 0;
   double speed_m_s = 0.05;    ///< average along the path
   double turn_rad_s = 0.5;    ///< average rotation
@@ -29,7 +29,7 @@ struct OperatorHabits {
   double force_limit_N = 15;  ///< limit of the hand's spring force
   double torque_limit_Nm = 0.8;
   double k_N_per_m = 700;        ///< translation
-  double k_lateral_share = 0.5;  ///< of k across the axis while inserting: compliant, so that chamfers guide
+  double k_lateral_share = 0.5;  ///< of k across the axis while inserting: soft, so that chamfers guide
   double k_Nm_per_rad = 3;
   double damping_ratio = 0.7;
   double mass_kg = 1.5;  ///< of hand and forearm, as felt at the handle
@@ -37,56 +37,59 @@ struct OperatorHabits {
   double insert_share = 0.5;  ///< of speed_m_s while inserting
   double lag_rad_s = 40;      ///< natural frequency of the muscles' lag, critically damped
   double see_rate_hz = 60;    ///< rate of visual samples
-  /// Errors of sight, standard deviations. A minute of arc, which normal eyes resolve, at 0.35 m; the least
-  /// turn of a line that is seen [Regan and Price 1986: 0.2 to 0.5 degrees]; the delay until a seen error is
-  /// corrected [Saunders and Knill 2003: 0.12 to 0.16 s]. assumed: for a part in hand the same
+  /// Standard deviations and delay of sight. Position: a minute of arc, which normal eyes resolve, at 0.35 m.
+  /// Rotation: the smallest visible rotation of a line [Regan and Price 1986: 0.2 to 0.5 degrees]. Delay:
+  /// until a seen error is corrected [Saunders and Knill 2003: 0.12 to 0.16 s]. assumed: the same holds for a
+  /// held part
   double see_error_m = 0.1e-3;
   double see_error_rad = 0.0035;
   double see_delay_s = 0.15;  ///< at most 1 s
-  double fixation_s = 0.3;    ///< the eye looks again, with a new error [Rayner 1998: 0.26 to 0.33 s]
-  double see_gain_per_s = 2;  ///< correction of a seen error at first; it averages what is seen later on
+  double fixation_s = 0.3;    ///< each fixation of the eye has a new error [Rayner 1998: 0.26 to 0.33 s]
+  double see_gain_per_s = 2;  ///< initial gain of the correction of a seen error; later pictures are averaged
   double see_limit_m = 3e-3;  ///< bound of that correction
   double see_limit_rad = 0.05;
-  double stuck_s = 0.4;         ///< without progress while pushing: the strategy has failed
-  double progress_m = 0.05e-3;  ///< least progress in that time
+  double stuck_s = 0.4;         ///< a pushed part without progress for this long is stuck
+  double progress_m = 0.05e-3;  ///< a shorter advance is no progress
   double back_off_m = 1e-3;     ///< how far it withdraws to try again
   double touch_N = 1;         ///< resistance that counts as touching. assumed: ten times what a finger feels
   double search_N = 1.5;      ///< push while searching. assumed: light, so that the part slides
-  double tilt_rad = 0.1;      ///< of the tilt with which a corner is put in first. assumed
+  double tilt_rad = 0.1;      ///< with which a corner is put in first. assumed
   double search_m = 0.08e-3;  ///< pitch of the spiral. assumed: below the error of sight
   double search_limit_m = 0.5e-3;  ///< radius of the spiral: five errors of sight
   double turn_limit_rad = 0.11;    ///< of the search about the axis, to each side. assumed: 6 degrees
   double press_s = 0.3;
-  double rest_m_s = 1e-3;   ///< slower counts as held
-  double still_m_s = 1e-4;  ///< slower, at the part's origin, counts as still: then the hand releases
+  double rest_m_s = 1e-3;   ///< a slower hand is at rest
+  double still_m_s = 1e-4;  ///< a hand that is slower stands still, and releases the part
   double still_rad_s = 5e-3;
 };
 
-/// The hand's damping of a spring k against an inertia m: N s/m of N/m and kg, N m s/rad of N m/rad and kg
-/// m^2.
+/// Damping of the hand for a spring k and an inertia m: [N s/m] for [N/m] and [kg], [N m s/rad] for [N m/rad]
+/// and [kg m^2].
 VPS_DEVICE_API double handDamping(const OperatorHabits& habits, double k, double m) noexcept;
 /// A hand with equal stiffness in every direction, about the identity.
 VPS_DEVICE_API HandForce evenHand(const OperatorHabits& habits) noexcept;
 
 /// A part that is screwed on: it is turned about the axis of insertion, through G, and pushed lightly.
 struct ScrewTask {
-  /// An M16 nut that is crossed by half a pitch leans by that across its diameter, 3.6 degrees; a loose one
-  /// leans by less than a degree within its play. assumed: between.
+  /// Tilt that shows a crossed thread. An M16 nut that is crossed by half a pitch tilts by 3.6 degrees; a
+  /// loose nut tilts by less than a degree within its play. assumed: between both
   static constexpr double kCrossedLean_rad = 0.035;
-  /// Of the pitch: a part that skips threads or does not catch is off by more. assumed.
+  /// Tolerance of the advance per turn, as a share of the pitch. assumed: a part that skips threads or does
+  /// not catch is off by more
   static constexpr double kOffPitch = 0.5;
 
-  /// Way of the part in one turn; positive: a right-hand thread. 0: the part is not screwed.
+  /// Advance of the part in one turn; positive for a right-hand thread; 0: the part is not screwed.
   double pitch_m = 0;
-  double torque_Nm = 0;   ///< tight at this torque; 0: it is turned until it is seen at its target
-  double handle_rad = 0;  ///< how far the handle turns to each side before it is re-grasped; 0: no limit
+  double torque_Nm = 0;   ///< the part is tight at this torque; 0: turn it until it is seen at its target
+  double handle_rad = 0;  ///< rotation of the handle to each side before it is re-grasped; 0: no limit
 };
 
 /// One step of a procedure. The hand holds the part at the grasp frame G, fixed in the part P. G is best at
 /// the part's centre of mass, where the hand carries the weight without torque.
 struct OperatorTask {
   Pose X_WP_start;
-  std::vector<Pose> way_points;  ///< X_WP; the last is where insertion begins (the start, if there are none)
+  std::vector<Pose>
+      way_points;  ///< X_WP; insertion begins at the last one, or at the start if there are none
   /// Indices of way points at which the device reaches its workspace limit: the hand stops there for
   /// indexing.
   std::vector<std::size_t> index_points;
@@ -96,37 +99,36 @@ struct OperatorTask {
   double tolerance_rad = 0.01;
   double timeout_s = 20;
   Vec3 weight_W = Vec3::Zero();  ///< of the part [N], which the hand carries by feed-forward
-  /// What a person sees of the part's shape: of the end that goes in first, the point farthest from the axis
-  /// of insertion through G. In P; zero: not known, then the hand does not tilt.
+  /// Visible shape of the part: the point of its leading end (the end that goes in first) that is farthest
+  /// from the axis of insertion through G, in P. Zero: not known, and the hand does not tilt the part.
   Vec3 tip_P = Vec3::Zero();
-  /// How far the part stays behind the handle under force, which a person feels as its stiffness [m/N].
+  /// Compliance between handle and part [m/N], which a person feels.
   double give_m_per_N = 0;
-  /// The end that goes in first is not round, so that it may have to be turned about the axis to find its
-  /// hole.
+  /// The leading end is not round, so that it may have to be turned about the axis to find its hole.
   bool has_corners = false;
-  /// The part is in its place at the start and is taken off: every leg is followed alike, without a search, a
-  /// press or an error of the aim, since there is no hole to find at its end.
+  /// The part starts in its place and is taken off. The hand follows every leg in the same way, without a
+  /// search, a press or an aim error, since there is no hole at its end.
   bool is_taking_off = false;
   ScrewTask screw;
 };
 
-/// How far a part hangs below the hand that carries it, by the spring between them: the hand holds it so much
-/// higher. Zero for a light part, which is where the hand is as far as sight, which corrects that, can tell.
+/// Displacement of a part below the hand that carries it, by the spring between them; the hand is held higher
+/// by as much. Zero for a light part, whose displacement sight corrects.
 VPS_DEVICE_API Vec3 sagBelowHand_m(const OperatorHabits& habits, const Vec3& weight_W,
                                    double give_m_per_N) noexcept;
 
-/// What the hand senses at one instant.
+/// State that the hand senses at one instant.
 struct OperatorView {
   double time_s = 0;
-  /// The grasp frame as the hand holds it (the coupling's proxy); not delayed, as for one's own arm.
+  /// The grasp frame as the hand holds it (the coupling's proxy), without delay: the sense of the own arm.
   Pose X_WG_hand;
   Twist V_WG_hand;
-  Pose X_WP;  ///< the part; the operator itself samples and delays it
+  Pose X_WP;  ///< of the part; the operator samples and delays it
   Twist V_WP;
-  Wrench F_hand_W;  ///< felt: wrench of the device on the hand
+  Wrench F_hand_W;  ///< wrench of the device on the hand
 };
 
-/// Regrasp: indexing. The hand stopped at a way point of OperatorTask::index_points, or where the handle
+/// Regrasp (indexing): the hand has stopped at a way point of OperatorTask::index_points, or where the handle
 /// turns no farther, and waits for goOn().
 enum class OperatorPhase { Idle, Reach, Insert, Press, Done, Failed, Regrasp };
 VPS_DEVICE_API const char* toText(OperatorPhase phase) noexcept;
@@ -152,7 +154,7 @@ enum class OperatorStrategy { None, VPS_OPERATOR_STRATEGIES(VPS_ENUMERATOR) };
 /// The name in results; "none" for None.
 VPS_DEVICE_API const char* toText(OperatorStrategy strategy) noexcept;
 
-/// What the hand does, as a recording keeps it: in one byte.
+/// Phase and strategy of the hand, which a recording keeps in one byte.
 struct OperatorState {
   OperatorPhase phase = OperatorPhase::Idle;
   OperatorStrategy strategy = OperatorStrategy::None;
@@ -187,16 +189,16 @@ class VPS_DEVICE_API VirtualOperator {
   /// is not finite it returns the last result without feed-forward.
   HandForce step(const OperatorView& view, double dt_s) noexcept;
 
-  /// In Regrasp while it screws: the turn about W's axes, from the middle of its range, with which the handle
-  /// is to be grasped again. Zero otherwise.
+  /// In Regrasp of a screw: the rotation vector of the handle, in W and from the middle of its range, at
+  /// which it is to be grasped again. Zero otherwise.
   [[nodiscard]] Vec3 regraspTurn_rad() const noexcept;
-  /// Continues from Regrasp to the next way point or turn, with the hand elsewhere and the part unmoved.
+  /// Continues from Regrasp to the next way point or turn; the hand has moved and the part has not.
   /// Never throws or allocates.
   void goOn() noexcept;
 
   [[nodiscard]] OperatorPhase phase() const noexcept;
   [[nodiscard]] OperatorStrategy strategy() const noexcept;
-  /// How often it backed off to try again, in all searches of the task.
+  /// How often the operator backed off to try again, in all searches of the task.
   [[nodiscard]] int retries() const noexcept;
   [[nodiscard]] const OperatorHabits& habits() const noexcept;
 

@@ -21,15 +21,15 @@ struct PeriodicSettings {
   RealTimeClock* clock = nullptr;  ///< null: the system's monotonic clock
 };
 
-/// What the system granted.
+/// What the system granted of a request for real time.
 struct RealTimeReport {
   bool has_priority = false;
   bool has_locked_memory = false;
-  std::vector<std::string> warnings;  ///< for the user: what was refused, and the remedy
+  std::vector<std::string> warnings;  ///< for the user: each refusal, and the remedy
 };
 
-/// Beats on a thread of its own, by absolute times, with SCHED_FIFO and locked memory where requested and
-/// granted. Its stack is touched beforehand, so that no page fault occurs later.
+/// Calls a function at absolute times on a thread of its own, with SCHED_FIFO and locked memory if requested
+/// and granted. The stack is touched beforehand, so that no page fault occurs later.
 class VPS_DEVICE_API PeriodicThread {
  public:
   explicit PeriodicThread(const PeriodicSettings& settings);

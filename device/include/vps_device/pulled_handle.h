@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A handle that exists only in the program: a spring pulls it to where a cursor is, in six degrees of
-// freedom.
+// A handle that exists only in the program: a spring pulls it to a cursor, in six degrees of freedom.
 #pragma once
 
 #include <memory>
@@ -11,7 +10,7 @@
 
 namespace vps::device {
 
-/// Where a cursor wants the handle, as one thread says and another reads. Neither waits.
+/// The pose to which a cursor pulls the handle, from one thread to another; neither waits.
 using HandleWish = TripleBuffer<Pose>;  ///< X_DH
 
 struct PulledHandleSettings {
@@ -25,14 +24,15 @@ struct PulledHandleSettings {
 };
 
 /// The handle has no inertia. Damped by its surroundings it moves under the spring and under the force on the
-/// hand:  b v = pull + f,  pull = k (p_wish - p), limited. So it stands still where a part meets a wall, and
-/// the pull is what the hand exerts. Deterministic: same calls, same bits. Nothing allocates.
+/// hand:  b v = pull + f,  pull = k (p_wish - p), limited. It therefore stands still where a part meets a
+/// wall, and the pull is the force of the hand. Deterministic: same calls, same bits. Nothing allocates.
 class VPS_DEVICE_API PulledHandle {
  public:
   explicit PulledHandle(const PulledHandleSettings& settings = {}) : settings_(settings) {}
 
   /// The handle at time now_s, after the force on the hand since the last call was F_Ho_D. Without progress
-  /// of time it does not move; a gap counts as at most 20 ms. What is not finite counts as none.
+  /// of time the handle does not move; a gap counts as at most 20 ms. Values that are not finite have no
+  /// effect.
   const DeviceSample& step(const Pose& X_DH_wish, const Wrench& F_Ho_D, double now_s) noexcept;
   [[nodiscard]] DeviceLimits limits() const noexcept;
 
@@ -42,7 +42,7 @@ class VPS_DEVICE_API PulledHandle {
   bool has_time_ = false;
 };
 
-/// The mouse as a device: a PulledHandle by the clock, which a window's thread pulls through `wish`.
+/// The mouse as a device: a PulledHandle in real time, which a window's thread pulls through `wish`.
 VPS_DEVICE_API std::unique_ptr<Device> openMouse(std::shared_ptr<HandleWish> wish,
                                                  const PulledHandleSettings& settings = {});
 

@@ -20,7 +20,7 @@ struct Deflection {
 struct RateSettings {
   double speed_m_s = 0.08;  ///< at full deflection. assumed: across the dual arm's workspace in 5 s
   double turn_rad_s = 0.8;  ///< assumed: half a turn in 4 s
-  double dead_zone = 0.1;   ///< share of full deflection that counts as none. assumed: rest of worn sticks
+  double dead_zone = 0.1;   ///< share of full deflection that counts as none. assumed: where worn sticks rest
   double curve = 2;         ///< exponent of the deflection beyond the dead zone, for fine control. assumed
   double recentre_m_s =
       0.2;  ///< speed of the return to the middle. assumed: a tenth of the guard's jump limit
@@ -34,8 +34,8 @@ class VPS_DEVICE_API RateControl {
  public:
   explicit RateControl(const RateSettings& settings = {}) : settings_(settings) {}
 
-  /// The handle at time now_s. Without progress of time it does not move; a gap counts as at most 50 ms, so
-  /// that a late reader sees no jump. A deflection that is not finite counts as none.
+  /// The handle at time now_s. Without progress of time the handle does not move; a gap counts as at most 50
+  /// ms, so that a late reader sees no jump. A deflection that is not finite counts as none.
   const DeviceSample& step(const Deflection& deflection, double now_s) noexcept;
   /// Zero force; damping is not known (zero).
   [[nodiscard]] DeviceLimits limits() const noexcept;

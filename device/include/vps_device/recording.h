@@ -18,7 +18,7 @@ namespace vps::device {
 
 /// The head of a recording.
 struct RecordingHead {
-  std::map<std::string, std::string> about;  ///< version, scene, seed, rates, choices: for users and tools
+  std::map<std::string, std::string> about;  ///< version, scene, seed, rates, choices, for users and tools
   std::string device;
   DeviceLimits limits;  ///< a replay derives the same gains from them
   std::vector<McapAttachment> attachments;
@@ -40,11 +40,11 @@ class VPS_DEVICE_API Recorder final : public RunLog {
   /// Never waits: a full ring drops the entry and counts it.
   void add(const LogEntry& entry) noexcept override;
 
-  /// Counts entries that were lost before they could be added: the recording then ends there. Called by the
-  /// thread that adds.
+  /// Counts entries that were lost before they could be added: the recording then ends there. Only the thread
+  /// that adds entries calls this function.
   void lose(std::uint64_t count) noexcept override;
 
-  /// For lockstep, where waiting is allowed: returns once half of the ring is free. Never on a haptic path.
+  /// Waits until half of the ring is free. For lockstep only, never on a haptic path.
   void waitForRoom() const;
 
   /// Writes the remaining entries and the index, and renames the file. Throws std::runtime_error with the
@@ -64,8 +64,7 @@ struct VPS_DEVICE_API RecordedRun {
   std::string file;
   RecordingHead head;
   std::vector<LogEntry> entries;
-  std::string
-      damage;  ///< empty: the file is complete. Else, in words, what is wrong, where, and what was kept
+  std::string damage;  ///< empty if the file is complete; else what is wrong, where, and what was kept
 
   [[nodiscard]] const McapAttachment* attachment(std::string_view name) const;
   [[nodiscard]] std::size_t reads() const;
@@ -74,17 +73,17 @@ struct VPS_DEVICE_API RecordedRun {
 /// Throws LoadError if the file is no recording or lacks a head. A truncated or damaged recording is kept up
 /// to the damage, which RecordedRun::damage describes.
 VPS_DEVICE_API RecordedRun loadRecording(const std::string& file);
-/// The same from bytes; `file` is for messages.
+/// Reads a recording from bytes; `file` is its name in messages.
 VPS_DEVICE_API RecordedRun recordingFrom(std::string_view bytes, const std::string& file);
 
-/// One CSV table of the entries of each kind: name without folder or ending, and its text.
+/// One CSV table for each kind of entry: its name without folder or ending, and its text.
 VPS_DEVICE_API std::vector<std::pair<std::string, std::string>> csvTables(const RecordedRun& run);
 
 /// A device that repeats a recording: each read() returns the next sample, whatever is written. After the
 /// last sample it is lost (Status::Fault).
 class VPS_DEVICE_API Recording final : public Device {
  public:
-  /// Keeps the run.
+  /// Takes the run over.
   explicit Recording(RecordedRun run);
   explicit Recording(const std::string& file) : Recording(loadRecording(file)) {}
 
@@ -94,9 +93,9 @@ class VPS_DEVICE_API Recording final : public Device {
   [[nodiscard]] std::string_view name() const noexcept override { return run_.head.device; }
 
   [[nodiscard]] const RecordedRun& run() const noexcept { return run_; }
-  /// Samples not yet read.
+  /// Number of samples not yet read.
   [[nodiscard]] std::size_t left() const noexcept { return reads_.size() - next_; }
-  /// The last phase logged before the next read; empty at first.
+  /// The last phase that was logged before the next read; empty before the first phase.
   [[nodiscard]] std::optional<std::uint8_t> phase() const noexcept;
 
  private:
@@ -106,13 +105,13 @@ class VPS_DEVICE_API Recording final : public Device {
   std::size_t next_ = 0;
 };
 
-/// Compares a run with a recorded one, entry by entry, bit for bit. For lockstep only: it allocates.
+/// Compares a run with a recording, entry by entry and bit for bit. For lockstep only, since add() allocates.
 class VPS_DEVICE_API ReplayCheck final : public RunLog {
  public:
   explicit ReplayCheck(const RecordedRun& run) : run_(run) {}
   void add(const LogEntry& entry) noexcept override;
 
-  /// In words, the first difference: tick, time, channel and field; empty while all entries are equal.
+  /// The first difference: tick, time, channel and field; empty while all entries are equal.
   [[nodiscard]] const std::string& departure() const noexcept { return departure_; }
   /// Number of equal entries.
   [[nodiscard]] std::size_t equal() const noexcept { return equal_; }

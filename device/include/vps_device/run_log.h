@@ -25,7 +25,7 @@ enum class RunEventKind : std::uint8_t {
   Take,   ///< the hand grasps the part of a step
   Phase,  ///< the hand enters an OperatorPhase, or changes its strategy
   LetGo,  ///< the hand releases the part
-  Note,   ///< anything else, in words
+  Note,   ///< any other event, as text
 };
 
 struct RunEvent {
@@ -35,7 +35,7 @@ struct RunEvent {
   std::uint8_t phase = 0;       ///< of Phase: toByte(OperatorState)
   std::array<char, 96> text{};  ///< zero-terminated
 
-  /// Longer words are truncated.
+  /// Truncates longer text.
   void setWords(std::string_view words) noexcept {
     text.fill(0);
     std::copy_n(words.begin(), std::min(words.size(), text.size() - 1), text.begin());
@@ -63,7 +63,8 @@ enum class SyncEventKind : std::uint8_t {
   Step,     ///< a physics step, with the proxy of that tick
   Settled,  ///< background work has finished
   Paused,   ///< the loop has stopped
-  Begin,    ///< a command of the physics thread that the loop's thread has carried out; so are those below
+  // Commands of the physics thread that the loop's thread has carried out:
+  Begin,
   GoBack,
   Recentre,
   GoOn,
@@ -72,10 +73,11 @@ enum class SyncEventKind : std::uint8_t {
   CloseClutch,
   LetGo,
   Rearm,
+  // Others:
   SnapOn,  ///< axis snap acts from this physics step on
   SnapOff,
-  GiveUp,  ///< the part is let go of on request, after this physics step
-  Silent,  ///< physics in another process shows no sign of life, which is a fault in the tick that follows
+  GiveUp,  ///< the part is released on request, after this physics step
+  Silent,  ///< physics in another process does not answer, which is a fault in the next tick
 };
 
 struct SyncEvent {
@@ -93,12 +95,12 @@ inline double timeOf(const LogEntry& entry) noexcept {
 }
 
 /// Receives entries. add() is called on the haptic path: it neither throws, allocates, locks nor waits,
-/// unless an implementation states that it is for lockstep only. One thread calls it.
+/// unless an implementation is stated to be for lockstep only. One thread calls it.
 class VPS_DEVICE_API RunLog {
  public:
   virtual ~RunLog() = default;
   virtual void add(const LogEntry& entry) noexcept = 0;
-  /// This many entries were lost before they could be added.
+  /// Reports that this many entries were lost before they could be added.
   virtual void lose(std::uint64_t) noexcept {}
 
  protected:

@@ -37,9 +37,9 @@ VPS_DEVICE_API DeviceEventKind eventOf(SafetyFault fault) noexcept;
 
 struct SafetyState {
   SafetyFault fault = SafetyFault::None;  ///< latched until rearm()
-  std::uint64_t faults = 0;               ///< how often it tripped
-  std::uint64_t limited = 0;              ///< ticks with force or torque cut back
-  std::uint64_t slewed = 0;               ///< ticks with the change cut back
+  std::uint64_t faults = 0;               ///< number of faults so far
+  std::uint64_t limited = 0;              ///< ticks in which force or torque was limited
+  std::uint64_t slewed = 0;               ///< ticks in which the change was limited
 };
 
 class VPS_DEVICE_API SafetyGuard {

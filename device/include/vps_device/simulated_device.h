@@ -10,7 +10,7 @@ namespace vps::device {
 /// Force of a hand on a handle, as an impedance about an equilibrium, so that a plant can integrate it
 /// implicitly. Wrench of the hand on the handle about the handle's origin, in one frame (W from an operator,
 /// D for a device):
-///   f   = k (p_eq - p) + b (v_eq - v) + F.f,     tau = the same with rotation vectors + F.tau,
+///   f   = k (p_eq - p) + b (v_eq - v) + F.f,     tau = the same formula with rotation vectors + F.tau,
 /// and the hand's own inertia moves with the handle. k and b are symmetric and not negative. Default: no
 /// hand.
 struct HandForce {

@@ -13,7 +13,7 @@
 namespace vps::device {
 
 /// Histogram of times with 64 buckets per octave: percentiles have a relative error of 1/64, from 1 ns to 18
-/// minutes (longer times count as that). One writer, any number of readers; neither waits. 18 kB.
+/// minutes (longer times count as 18 minutes). One writer, any number of readers; neither waits. 18 kB.
 class VPS_DEVICE_API TickHistogram {
  public:
   static constexpr int kSplit = 64;    ///< buckets per octave
@@ -27,7 +27,7 @@ class VPS_DEVICE_API TickHistogram {
     std::int64_t p50_ns = 0, p99_ns = 0, p999_ns = 0, max_ns = 0;
   };
   /// Nearest rank, rounded up to the bucket's end (at most 1/64 too large, never too small); the maximum is
-  /// exact. O(buckets). While ticks are being added the last may be missing.
+  /// exact. O(buckets). While ticks are being added, the last ones may be missing.
   [[nodiscard]] Summary summary() const noexcept;
   /// The least value that this share of all times does not exceed, as in summary().
   [[nodiscard]] std::int64_t percentile(double share) const noexcept;
@@ -38,7 +38,7 @@ class VPS_DEVICE_API TickHistogram {
   std::atomic<std::int64_t> max_ns_{0};
 };
 
-/// What a tick's time was spent on, or what delayed it.
+/// Cause of the duration or the delay of a tick.
 enum class TickCause : std::uint8_t {
   WokenLate,  ///< the system woke the thread late
   Device,     ///< reading or writing the device
@@ -50,27 +50,27 @@ VPS_DEVICE_API const char* toText(TickCause cause) noexcept;
 
 /// One tick's times [ns].
 struct VPS_DEVICE_API TickTiming {
-  std::uint64_t tick = 0;          ///< its number
+  std::uint64_t tick = 0;          ///< number of the tick
   std::int64_t late_ns = 0;        ///< from its due time to its start
   std::int64_t device_ns = 0;      ///< in the device's read and write
-  std::int64_t own_ns = 0;         ///< the rest, until the wrench was written
-  std::int64_t after_tick_ns = 0;  ///< after that
-  std::int64_t snapshot_ns = 0;    ///< how long the physics state has been the same
+  std::int64_t own_ns = 0;         ///< other time until the wrench was written
+  std::int64_t after_tick_ns = 0;  ///< from then to the end of RealTimeSettings::after_tick
+  std::int64_t snapshot_ns = 0;    ///< time for which the physics state has stayed the same
 
   /// From the due time until the wrench is written: the delay that the hand feels.
   [[nodiscard]] std::int64_t response_ns() const noexcept { return late_ns + device_ns + own_ns; }
-  /// The greatest of its parts; after_tick_ns counts only if `includes_after_tick`.
+  /// The part that took longest; after_tick_ns counts only if `includes_after_tick`.
   [[nodiscard]] TickCause cause(bool includes_after_tick = false) const noexcept;
 };
 
-/// All ticks of a loop. Written by its thread, read by any.
+/// Statistics of all ticks of a loop. The loop's thread writes them, any thread reads them.
 class VPS_DEVICE_API TickStatistics {
  public:
-  /// @param stale_ns  a snapshot that has been the same for longer counts as old; 0: never
+  /// @param stale_ns  a physics state that stays the same for longer counts as old; 0: never
   explicit TickStatistics(std::int64_t stale_ns = 0) noexcept : stale_ns_(stale_ns) {}
 
   void add(const TickTiming& timing) noexcept;
-  /// `periods` passed without a tick, because of `cause`.
+  /// Counts `periods` that passed without a tick, because of `cause`.
   void miss(std::uint64_t periods, TickCause cause) noexcept;
 
   struct Summary {

@@ -73,7 +73,7 @@ class Clutch {
   void open() noexcept { is_closing_ = false; }
   /// Closes over fade_s.
   void close() noexcept { is_closing_ = true; }
-  /// Close and open at once, where the coupling exerts no force.
+  /// Closes and opens at once; only while the coupling exerts no force.
   void closeAtOnce() noexcept {
     is_closing_ = true;
     ratio_ = 1;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A device under rate control whose input is read by a thread of its own.
+// A device under rate control, with a thread of its own that reads the input.
 #pragma once
 
 #include <atomic>
@@ -18,11 +18,11 @@ struct HandInput {
   bool is_connected = false;
 };
 
-/// Reads a library. All its functions, construction and destruction included, are called by one thread.
+/// Reads the input through a library. One thread calls all functions, construction and destruction included.
 class HandSource {
  public:
   virtual ~HandSource() = default;
-  /// Updates `input`; takes some milliseconds at most (an attempt to connect: a second).
+  /// Updates `input`. Takes some milliseconds at most, and an attempt to connect at most a second.
   virtual void poll(HandInput& input) = 0;
 };
 
@@ -67,7 +67,7 @@ class PolledDevice final : public Device {
   TripleBuffer<HandInput> input_;
   std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now();
   std::atomic<bool> is_ending_{false};
-  std::thread thread_;  // last: it uses the others
+  std::thread thread_;  // the last member: it uses the other ones
 };
 
 inline RateSettings rateSettings(const DeviceOptions& options) {

@@ -13,10 +13,10 @@ using Mat6 = Eigen::Matrix<double, 6, 6>;
 constexpr std::size_t kMinReadings = 12;  // two for each unknown
 constexpr int kMaxIterations = 50;
 constexpr double kSettled = 1e-13;  // m and rad: a few roundings of lengths of 1 m
-constexpr double kBlur_m = 1e-3;    // readings that determine the base less precisely are too similar
+constexpr double kBlur_m = 1e-3;    // readings from which the base is less certain than this are too similar
 
-// Sums of the least squares: J^T J, J^T r and r^T r for a rotation and shift (w, v) of the right base in its
-// frame.
+// Sums of the least squares: J^T J, J^T r and r^T r, for a rotation and shift (w, v) of the right base in its
+// own frame.
 struct Sums {
   Mat6 JJ = Mat6::Zero();
   Vec6 Jr = Vec6::Zero();

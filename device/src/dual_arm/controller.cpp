@@ -15,7 +15,8 @@ constexpr double kHot = 0.8;            // share of the allowed heat: warns befo
 constexpr double kNearStop_rad = 0.03;  // plates, q2, q3: 2 deg
 constexpr double kNearStop_m = 0.02;    // slides
 constexpr double kArmsNear_m = 0.02;    // between their surfaces
-constexpr double kNearSingular_rad = 1.2;  // q2: 21 deg before it locks; the motor's torque is trebled there
+constexpr double kNearSingular_rad =
+    1.2;  // q2: 21 deg before the singularity; the motor needs 3 times the torque
 
 bool isTwistWithin(const Twist& V, double v_m_s, double w_rad_s) {
   return V.v.norm() <= v_m_s && V.w.norm() <= w_rad_s;
@@ -53,7 +54,6 @@ void DualArmController::warn(Kind kind, bool is_so, double value) noexcept {
 }
 
 // --- Encoders -> pose
-// ------------------------------------------------------------------------------------------
 
 bool DualArmController::isSane(const DualArmReading& reading) noexcept {
   if (!reading.has_left)
@@ -161,7 +161,6 @@ DeviceSample DualArmController::read() noexcept {
 }
 
 // --- Wrench -> motors
-// ------------------------------------------------------------------------------------------
 
 void DualArmController::write(const Wrench& F_Ho_D) noexcept {
   const DualArmParameters& p = settings_.arms;

@@ -91,7 +91,7 @@ double segmentDistance(const Vec3& a, const Vec3& u, const Vec3& b, const Vec3& 
   const Vec3 r = a - b;
   const double uu = u.dot(u), vv = v.dot(v), uv = u.dot(v), ur = u.dot(r), vr = v.dot(r);
   const double det = uu * vv - uv * uv;
-  // Parallel segments: start at any s, the clamps below correct it.
+  // Parallel segments may start at any s; the clamps below correct it.
   double s = det > 1e-12 * uu * vv ? std::clamp((uv * vr - vv * ur) / det, 0.0, 1.0) : 0.0;
   const double t = std::clamp((uv * s + vr) / vv, 0.0, 1.0);
   s = std::clamp((uv * t - ur) / uu, 0.0, 1.0);
@@ -152,8 +152,8 @@ Pose armBase(const DualArmParameters& parameters, Side side) noexcept {
 }
 
 Mat3 barrelRotation(const DualArmParameters& parameters, const ArmJoints& left) noexcept {
-  // Fixed to the plate such that (6) at q = 0 and t = 0 gives the identity for the handle in D. Its z3, along
-  // which the handle is singular, then lies across the arm and level.
+  // The barrel is fixed to the plate such that (6) at q = 0 and t = 0 gives the identity for the handle in D.
+  // Its z3, along which the handle is singular, then is horizontal and across the arm.
   const Mat3 R_plate_3 = columns({-1, 0, 0}, {0, 0, -1}, {0, -1, 0});
   const ArmAxes a = armAxes(left);
   const Mat3 R_A_plate = columns(a.e3, a.e1, a.e2);
@@ -304,9 +304,9 @@ Status motorEfforts(const DualArmParameters& parameters, const Pose& X_DH, const
   const Status status = configure(parameters, X_DH, c);
   if (status != Status::Ok) return status;
   const Wrench F_E = shifted(F_Ho_D, c.p_EH);
-  // The gimbal passes torque along n only, so the motor's C.Y arrives as T_h; the arms take the rest. The
-  // rest has no part along Y: T_h . Y = C . Y. Signs of the couple: (L/2) Y x (f_R - f_L) = Y x (C x Y) = C
-  // for C normal to Y.
+  // The gimbal transmits torque along n only, so that the motor's torque C.Y acts as T_h. The arms give the
+  // other torque C - T_h, which has no part along Y: T_h . Y = C . Y. Signs of the couple: (L/2) Y x (f_R -
+  // f_L) = Y x (C x Y) = C for C normal to Y.
   const double motor_Nm = F_E.tau.dot(c.Y);
   const Vec3 T_h = motor_Nm / c.cos_q2 * c.n;
   const Vec3 couple_N = (F_E.tau - T_h).cross(c.Y) / parameters.handle_m;

@@ -10,11 +10,11 @@ namespace {
 
 using Mat6 = Eigen::Matrix<double, 6, 6>;
 
-// Beyond this tilt, in the workspace's corners, the gimbal is near its singularity, where the motor no longer
-// brakes all rotations.
+// Beyond this tilt, in the corners of the workspace, the gimbal is near its singularity, where the motor does
+// not brake every rotation.
 constexpr double kGreatestTilt_rad = 0.5236;
 
-// Within this range of rotations the middle of two of them is unique.
+// Within this range the rotation midway between two rotations is unique.
 constexpr double kGreatestTurn_rad = 1.5;
 constexpr int kTurnBisections = 10;  // to 1.5 mrad
 constexpr int kCubeMiddle = 13;
@@ -28,8 +28,8 @@ double leastEigenvalue(const Mat3& m) {
   return Eigen::SelfAdjointEigenSolver<Mat3>(m).eigenvalues()[0];
 }
 
-// The sum of joint frictions |f_i v_i| is never less than the root of the sum of their squares, which an
-// eigenvalue bounds.
+// The sum of the joint frictions |f_i v_i| is at least the root of the sum of their squares, which an
+// eigenvalue bounds from below.
 void leastFriction(const DualArmParameters& p, DeviceLimits& limits) {
   const JointVector damping = jointVector(p.plate_damping_Nms, p.link_damping_Ns_per_m, p.rotor_damping_Nms);
   const JointVector coulomb2 =
@@ -51,8 +51,8 @@ void leastFriction(const DualArmParameters& p, DeviceLimits& limits) {
   }
 }
 
-/// The share of a rotation vector that is reachable at a place, by bisection: the joint ranges cut it off
-/// once.
+/// The share of a rotation vector that is reachable at a place, by bisection: up to that share every rotation
+/// is reachable, and beyond it none.
 double reachableShare(const DualArmParameters& p, const Vec3& p_DH, const Vec3& turn_rad) {
   double least = 0, most = 1;
   for (int i = 0; i < kTurnBisections; ++i) {

@@ -24,14 +24,14 @@ namespace {
 
 using P = DualArmParameters;
 
-// Not with +: GCC 12 takes "text" + std::string for an overflow (its bugs 105329 and 105651).
+// Joins without +, since GCC 12 reports "text" + std::string as an overflow (its bugs 105329 and 105651).
 std::string joined(std::initializer_list<std::string_view> parts) {
   std::string text;
   for (const std::string_view part : parts) text.append(part);
   return text;
 }
 
-// Range of a value. Upper ends are far beyond any haptic device; they catch wrong units.
+// Range of a value. The upper ends are far beyond any haptic device, and catch wrong units.
 struct Span {
   double min, max;
   bool is_open = false;  // min itself is not allowed
@@ -106,7 +106,7 @@ const std::array kFields = {
     Field{"timing", "velocity_filter_s", &P::velocity_filter_s, {0, 1}},
 };
 
-// A value that may not be less than another.
+// Two values of which `low` must not exceed `high`.
 struct Order {
   double P::*low;
   double P::*high;
@@ -134,7 +134,7 @@ const Field& fieldOf(double P::*member) {
   });
 }
 
-/// Keys of one section, or all sections, for a message.
+/// The keys of one section for a message; without a section, the names of all sections.
 std::string known(std::string_view section) {
   std::string out;
   std::string_view last;
@@ -162,7 +162,7 @@ std::string slurp(const std::string& file) {
 
 }  // namespace
 
-/// Reads one file over the values that are already set.
+/// Reads one file; its values replace those that are already set.
 struct DualArmFileReader {
   static DualArmParameters unset() { return DualArmParameters(DualArmParameters::Unset{}); }
 
@@ -281,7 +281,7 @@ struct DualArmFileReader {
     }
   }
 
-  /// Where a message about two keys points: the line of the one that the file has.
+  /// File and line for a message about two keys: the line of the first key that the file has.
   [[nodiscard]] std::string place(const toml::table& root, const Field& a, const Field& b) const {
     for (const Field* field : {&a, &b})
       if (const auto node = root[field->section][field->key])

@@ -11,8 +11,8 @@
 namespace vps::device {
 namespace {
 
-// Below this joint speed dry friction is proportional to speed: about 2 mm/s at the handle, slower than the
-// tremor of a hand.
+// Below these joint speeds dry friction is proportional to the speed: about 2 mm/s at the handle, slower than
+// the tremor of a hand.
 constexpr double kPlateSlip_rad_s = 2e-3, kLinkSlip_m_s = 2e-3, kRotorSlip_rad_s = 2e-2;
 constexpr int kIterations = 3;  // for friction and stops, which depend on the unknown speed
 
@@ -42,7 +42,7 @@ double rounded(double value, double step) {
 
 // Implicit Euler of each motor's side, with u the handle side's rate:
 //   (I + dt f + g) w' = I w + dt tau - dt K e + g u,   g = dt B + dt^2 K,   e = stretch
-// and what the handle's side then feels, dt K e + g (w' - u), as a resistance to u and an impulse.
+// The handle's side then receives dt K e + g (w' - u), expressed as a resistance to u and an impulse.
 struct DualArmPlant::Motors {
   bool is_rigid;
   double dt_s;
@@ -133,7 +133,7 @@ DualArmPlant::Motors DualArmPlant::motorsOf(double dt_s) const noexcept {
   return m;
 }
 
-// Stops only push: one whose damper would pull is left out. Returns their energy now.
+// Stops only push: a stop whose damper would pull is left out. Returns the energy stored in the stops.
 double DualArmPlant::addStops(double dt_s, const Vec6& V_next, Mat6& A, Vec6& b) const noexcept {
   const DualArmParameters& p = settings_.arms;
   double stored_J = 0;
@@ -157,9 +157,9 @@ double DualArmPlant::addStops(double dt_s, const Vec6& V_next, Mat6& A, Vec6& b)
   return stored_J;
 }
 
-// (M + dt (B + friction) + dt^2 K) V' = momentum + dt F. Momentum is kept, the joints' in joint space and
-// the handle's in D, so that the change of inertia with the pose needs no term of its own. Dry
-// friction is a damper f_c / max(|q'|, slip), found by a few iterations on q'.
+// (M + dt (B + friction) + dt^2 K) V' = momentum + dt F. The state is momentum (of the joints in joint space,
+// of the handle in D), so that the change of inertia with the pose needs no term of its own. Dry friction is
+// a damper f_c / max(|q'|, slip), found by a few iterations on q'.
 DualArmPlant::Vec6 DualArmPlant::solve(double dt_s, const HandForce& hand, const Motors& motors,
                                        JointVector& damper, double& stops_J) const noexcept {
   const JointMatrix& J = motion_.J;

@@ -6,9 +6,8 @@
 namespace vps::device {
 namespace {
 
-constexpr double kMargin = 0.8;  // of the passive stiffness, since the device's numbers are estimates
-constexpr double kDampingShare =
-    0.2;  // of the device's damping; more would reduce the stiffness in proportion
+constexpr double kMargin = 0.8;        // of the passive stiffness, since the device's numbers are estimates
+constexpr double kDampingShare = 0.2;  // of the device's damping; a greater share reduces the stiffness
 
 struct Spring {
   double k = 0, b = 0;
@@ -36,7 +35,8 @@ CouplingGains deriveGains(const DeviceLimits& limits, const CouplingTiming& timi
                                delay_s, {unknown.k_N_per_m, unknown.b_Ns_per_m});
   const Spring turn = stiffest(limits.damping_Nms_per_rad, limits.coulomb_Nm, limits.resolution_rad, period_s,
                                delay_s, {unknown.k_Nm_per_rad, unknown.b_Nms_per_rad});
-  // A handle displacement d is scale d in the scene, and a force there is felt force_scale times.
+  // A handle displacement d is scale * d in the scene; a force f in the scene is force_scale * f at the
+  // handle.
   const double line_scale = 1 / (timing.scale * timing.force_scale), turn_scale = 1 / timing.force_scale;
   CouplingGains gains;
   gains.k_N_per_m = line.k * line_scale;

@@ -22,7 +22,7 @@ struct StepSystem {
   Vec6 b = Vec6::Zero();
 };
 
-// For this step, a spring at its limit is replaced by a softer one with the same force.
+// Stiffness for this step: a spring at its limit is replaced by a softer spring with the same force.
 double softened(double k, double stretch, double limit) {
   return k * stretch > limit ? limit / stretch : k;
 }
@@ -39,8 +39,8 @@ void addCoupling(const CouplingGains& gains, const CouplingState& proxy, const C
   system.b.tail<3>() += dt_s * (k_line * p_error_W + gains.b_Ns_per_m * proxy.V_W.v);
 }
 
-// Normal force k A (-(gap + dt n.v)) where that is positive; friction opposes sliding with at most mu times
-// it.
+// Adds the normal force k A (-(gap + dt n.v)) where it is positive, and friction of at most mu times that
+// force against sliding. Returns the number of touching contacts.
 std::size_t addContacts(const LocalPart& part, const ContactSet& near, std::size_t stride, const Vec3& p_WG,
                         double dt_s, const Vec6& V, StepSystem& system) {
   std::size_t touching = 0;
@@ -125,7 +125,7 @@ bool LocalContact::step(const CouplingGains& gains, const CouplingState& proxy, 
   free.b.tail<3>() += dt_s * part.mass_kg * part.gravity_W;
   addCoupling(gains, proxy, now_, dt_s, free);
 
-  // The touching set depends on the step and the step on the touching set: iterate, from the last velocity.
+  // The set of touching contacts and the step depend on each other: iterate from the last velocity.
   const std::size_t stride = 1 + near_.contacts.size() / std::max<std::size_t>(1, settings_.solve_limit);
   std::size_t touching = 0;
   for (int round = 0; round < kRounds; ++round) {

@@ -42,7 +42,7 @@ void HapticLoop::grasp(const Pose& X_WG) noexcept {
 
 void HapticLoop::handOver(const Pose& X_WG) noexcept {
   grasp(X_WG);
-  if (settings_.is_collocated) return;  // a clutch that closes slowly would leave the hand's way meanwhile
+  if (settings_.is_collocated) return;  // while a clutch closes, the proxy would not follow the hand exactly
   clutch_.openAtOnce();
   clutch_.close();
 }
@@ -76,8 +76,8 @@ void HapticLoop::reportFault() noexcept {
     settings_.events->push({report_.time_s, eventOf(state.fault), snapshot_age_s_});
 }
 
-// Counted in ticks, since physics and the device need not share a clock. A time that is not a number is not
-// new.
+// The age is counted in ticks, since physics and the device need not share a clock. A time stamp that is not
+// a number does not count as new.
 void HapticLoop::watchPhysics(double dt_s) noexcept {
   const CouplingState& part = received_.part;
   const bool is_new = part.time_s < snapshot_time_s_ || part.time_s > snapshot_time_s_;
@@ -177,8 +177,8 @@ Wrench HapticLoop::passivityDamping(const Twist& V_DH) const noexcept {
   return {-spare_Nms_per_rad_ * V_DH.w, -spare_Ns_per_m_ * V_DH.v};
 }
 
-// The mean over the period that ends now: a force that acts from within the period on is averaged with the
-// one before it.
+// The mean wrench over the period that ends now. If the delay is not a whole number of periods, two
+// successive wrenches act within one period, and are averaged by their shares.
 Wrench HapticLoop::actingWrench() const noexcept {
   const auto whole = static_cast<std::size_t>(delay_ticks_);
   const double late = delay_ticks_ - static_cast<double>(whole);
@@ -215,7 +215,7 @@ void HapticLoop::accountEnergy(const DeviceSample& sample, const Twist& step) no
   const double w = std::min(step.w.norm() / dt_s, sample.V_DH.w.norm());
   passivity_.dissipated_J += dt_s * (limits_.damping_Ns_per_m * v * v + limits_.damping_Nms_per_rad * w * w);
 
-  // Scene joules: scene wrench times scene displacement.
+  // In scene joules: scene wrench times scene displacement.
   net_scene_J_ += power(settings_.map.toScene(F_acting_D), settings_.map.toScene(step));
 }
 
@@ -234,7 +234,7 @@ void HapticLoop::keepWork(double time_s) noexcept {
   works_[ticks_ % works_.size()] = {time_s, net_scene_J_ - dissipated_J};
 }
 
-// Until the tick with this sample; the last tick's, where none of those that are kept has it.
+// Work until the tick with this sample time; until the last tick if no stored tick has that time.
 double HapticLoop::workAt_J(double time_s) const noexcept {
   const std::uint64_t kept = std::min<std::uint64_t>(ticks_, works_.size());
   for (std::uint64_t age = 1; age <= kept; ++age) {

@@ -7,8 +7,8 @@
 namespace vps::device {
 namespace {
 
-// Factor that brings both parts of F within their limits, at most 1. Dividing first keeps huge values from
-// overflow.
+// Factor of at most 1 that brings force and torque within their limits. Dividing first avoids overflow for
+// huge values.
 double scaleWithin(const Wrench& F, double force_N, double torque_Nm) {
   const double f = F.f.stableNorm(), tau = F.tau.stableNorm();
   double scale = 1;
@@ -98,7 +98,7 @@ Wrench SafetyGuard::guard(const DeviceSample& sample, const Wrench& wanted, doub
   ramp_ = std::min(1.0, ramp_ + dt_s / limits_.rearm_s);
   const Wrench F = wanted * (scale * ramp_);
 
-  // last_ and F lie within the limits, which are convex: so does every wrench between them.
+  // last_ and F are within the limits, which are convex, and so is every wrench between both.
   const Wrench change = F + -last_;
   const double share = scaleWithin(change, limits_.slew_N_per_s * dt_s, limits_.slew_Nm_per_s * dt_s);
   if (share < 1) ++state_.slewed;

@@ -6,17 +6,16 @@ namespace {
 
 constexpr double kMinSegment_s = 0.3;   // assumed: no aimed movement is shorter
 constexpr double kArrived_m = 2e-3;     // distance from a way point that counts as reached
-constexpr double kArrivalWait_s = 0.5;  // longest wait for that
+constexpr double kArrivalWait_s = 0.5;  // longest wait until a way point counts as reached
 constexpr double kRestWait_s = 2;
-constexpr double kFeel_s = 0.01;    // time constant of touch. assumed: a finger follows 16 Hz
-constexpr double kSoon_s = 0.2;     // of what is seen along the axis
-constexpr double kLeastGain = 0.2;  // of the first gain: what was seen long ago counts less
+constexpr double kFeel_s = 0.01;    // time constant of touch. assumed: a finger feels up to 16 Hz
+constexpr double kSoon_s = 0.2;     // time constant of what is seen along the axis
+constexpr double kLeastGain = 0.2;  // share of the first gain, so that old pictures are forgotten
 constexpr double kGiveWay_per_s = 4;
-constexpr double kNear = 4;  // errors of sight, to the target
-constexpr double kGuided =
-    0.25;  // of the lever of a slender part: this deep in its hole it no longer leans freely
+constexpr double kNear = 4;       // distance to the target, in errors of sight
+constexpr double kGuided = 0.25;  // share of tip_m_: this deep in its hole a slender part cannot tilt freely
 constexpr double kPivots_m = 5e-3;  // this deep in a hole a slender part turns about its mouth
-constexpr double kHome_per_s = 4;   // of a slender part's end to where its hole was seen
+constexpr double kHome_per_s = 4;   // rate of a slender part's end towards the seen hole
 
 Vec3 shortened(const Vec3& v, double limit) noexcept {
   const double length = v.norm();
@@ -53,7 +52,7 @@ void VirtualOperator::Person::begin(const OperatorTask& task, double now_s) {
   begin_s_ = now_s;
   next_ = 1;
   phase_ = OperatorPhase::Reach;
-  // Where the person looks: the middle of the end that goes in first.
+  // The person looks at the middle of the leading end.
   const Vec3 p_tip_W = goal().p + tip_m_ * axis_W_;
   sight_.begin(task.X_WP_target.inverse() * p_tip_W, now_s);
 }
@@ -150,7 +149,7 @@ void VirtualOperator::Person::reach(const OperatorView& view) noexcept {
   arrive(view);
 }
 
-// A way point was reached.
+// Continues after a way point was reached.
 void VirtualOperator::Person::arrive(const OperatorView& view) noexcept {
   const double now_s = view.time_s;
   const auto& index_points = task_.index_points;
@@ -163,7 +162,7 @@ void VirtualOperator::Person::arrive(const OperatorView& view) noexcept {
   startSegment(segment_.X_to, path_[next_], now_s);
 }
 
-// Of a leg before the last one: the part is seen behind its end, and is felt to be held back.
+// On a leg before the last one: the part is seen before the leg's end, and contact is felt to hold it back.
 bool VirtualOperator::Person::isStoppedOnTheWay(const OperatorView& view) const noexcept {
   const Vec3 leg = segment_.X_to.p - path_[next_ - 1].p;
   if (task_.is_taking_off || isScrew() || !sight_.hasSeen() || leg.norm() < kArrived_m) return false;
@@ -172,8 +171,7 @@ bool VirtualOperator::Person::isStoppedOnTheWay(const OperatorView& view) const 
   return short_m >= kArrived_m && -along.dot(view.F_hand_W.f - task_.weight_W) > habits_.touch_N;
 }
 
-// What is felt and done along an axis is along this leg from now on. The task tells of the last leg only
-// which end goes in first.
+// From now on the axis of insertion is along this leg. The task gives the leading end only for the last leg.
 void VirtualOperator::Person::lookAlong(std::size_t goal) noexcept {
   goal_ = goal;
   feel_.seen_for_s = 0;
@@ -185,7 +183,7 @@ void VirtualOperator::Person::lookAlong(std::size_t goal) noexcept {
 
 void VirtualOperator::Person::startInsertion(const OperatorView& view) noexcept {
   belief_.across_m = across(belief_.across_m);
-  // Before the last free leg's end the aim is no part of what is wanted (wanted()).
+  // On earlier legs the aim error is not part of the wanted pose: wanted().
   if (!has_aimed_ && next_ + 2 >= path_.size()) addAim();
   hole_m_ = isSlender() ? Vec3(belief_.across_m + across(sag_m_)) : Vec3(Vec3::Zero());
   seen_for_s_ = 0;
@@ -198,7 +196,7 @@ void VirtualOperator::Person::startInsertion(const OperatorView& view) noexcept 
     const Vec3 corner_W = across(task_.X_WP_target * task_.tip_P - X_to.p);
     if (corner_W.norm() > 1e-9) situation.corner_W = corner_W.normalized();
   }
-  if (isSlender()) situation.corner_W = Vec3::Zero();  // a tilt would take the hand too far to find back
+  if (isSlender()) situation.corner_W = Vec3::Zero();  // a tilt would move the hand too far from the hole
   situation.is_slender = isSlender();
   situation.tip_m = tip_m_;
   situation.has_corners = task_.has_corners || !isLastGoal();
@@ -216,7 +214,7 @@ void VirtualOperator::Person::addAim() noexcept {
   has_aimed_ = true;
 }
 
-// From a search on the way back to the path.
+// Continues along the path after a search on the way.
 void VirtualOperator::Person::goOnFromSearch(const OperatorView& view) noexcept {
   serve_m_ = serve_rad_ = Vec3::Zero();
   is_home_ = false;
@@ -238,7 +236,7 @@ void VirtualOperator::Person::insert(const OperatorView& view, double dt_s) noex
     belief_.turn_rad += last.turn_rad;
   }
   if (isSlender() && before == OperatorStrategy::SpiralSearch && sequence().strategy() != before)
-    belief_.across_m = tip_felt_m_ - across(sag_m_);  // it led the end by more than it goes back by
+    belief_.across_m = tip_felt_m_ - across(sag_m_);  // the lead of the hand in the spiral ends
   const bool is_last = sequence().strategy() == OperatorStrategy::PressHome ||
                        sequence().strategy() == OperatorStrategy::PlaceBySight;
   if (is_last != (phase_ == OperatorPhase::Press))
@@ -247,7 +245,8 @@ void VirtualOperator::Person::insert(const OperatorView& view, double dt_s) noex
   if (move.looks) correctAtTheHole(dt_s);
   if (!move.looks) seen_for_s_ = 0;
   if (move.gives_way) giveWay(dt_s);
-  // The reach leads the hand by the push at most, so that a part that comes free does not shoot ahead.
+  // The push limits how far the reach is ahead of the hand, so that a part that comes free does not jump
+  // ahead.
   const double hand_m = axis_W_.dot(view.X_WG_hand.p - goal().p);
   reach_m_ += dt_s * move.speed_m_s;
   reach_m_ = std::min(reach_m_, hand_m + move.push_N / habits_.k_N_per_m);
@@ -260,8 +259,8 @@ void VirtualOperator::Person::insert(const OperatorView& view, double dt_s) noex
   if (is_still || view.time_s > done_s_ + kRestWait_s) finish(OperatorPhase::Done, view);
 }
 
-// The wanted turn leads the hand by its torque at most. Where the handle turns no farther it is grasped
-// again, at the other end of its range.
+// The hand's torque limits how far the wanted rotation is ahead of the hand. Where the handle turns no
+// farther, it is grasped again at the other end of its range.
 void VirtualOperator::Person::turn(const OperatorView& view, double spin_rad_s, double dt_s) noexcept {
   const double lead_rad = habits_.torque_limit_Nm / habits_.k_Nm_per_rad;
   spin_rad_ = std::clamp(spin_rad_ + dt_s * spin_rad_s, feel_.spin_rad - lead_rad, feel_.spin_rad + lead_rad);
@@ -314,18 +313,18 @@ void VirtualOperator::Person::sense(const OperatorView& view, double dt_s) noexc
   if (is_new && phase_ == OperatorPhase::Reach) correctOnTheWay(1 / habits_.see_rate_hz);
 }
 
-// From the grasp to the end that goes in first, in the part's attitude R_WG, across the axis.
+// Offset of the leading end from the grasp across the axis, in the part's attitude R_WG.
 Vec3 VirtualOperator::Person::tipFromGrasp(const Mat3& R_WG) const noexcept {
   return path_.empty() ? Vec3(Vec3::Zero()) : across(tip_m_ * (R_WG * goal().R.transpose() * axis_W_));
 }
 
-// That end, as it is seen beside the line on which it belongs.
+// Offset of the leading end from the line through the target, as seen.
 Vec3 VirtualOperator::Person::seenTip() const noexcept {
   const Pose X_seen = seenGrasp();
   return across(X_seen.p - goal().p) + tipFromGrasp(X_seen.R);
 }
 
-// Integral action on the seen error across the path. Along the path the error is only the visual delay.
+// Integral control of the seen error across the path. Along the path the error is only the delay of sight.
 void VirtualOperator::Person::correctOnTheWay(double dt_s) noexcept {
   const Pose X_seen = seenGrasp();
   const Vec3 leg = segment_.X_to.p - segment_.X_from.p;
@@ -343,10 +342,10 @@ void VirtualOperator::Person::correctOnTheWay(double dt_s) noexcept {
       shortened(belief_.turn_rad + gain * rotationVector(X_path.R * X_seen.R.transpose()), seeLimit_rad());
 }
 
-// The longer it looks, the more it averages: the gain falls as 1/t. The end of a slender part is taken
-// far off by a little lean, and the hand would sway after what it sees late: it keeps where the hole is seen
-// from the end as it is felt at the same time, over all that it has seen of it, and moves the end there by
-// touch.
+// The gain falls as 1/t, so that all pictures are averaged. A small tilt displaces the end of a slender part
+// by much, and a hand that followed the delayed picture would sway. For such a part the operator averages,
+// over all pictures, the position of the hole relative to the end as felt at the same time, and moves the end
+// there by touch.
 void VirtualOperator::Person::correctAtTheHole(double dt_s) noexcept {
   if (!sight_.hasSeen()) return;
   const Pose X_seen = seenGrasp(), &X_to = goal();
@@ -371,8 +370,9 @@ void VirtualOperator::Person::correctAtTheHole(double dt_s) noexcept {
   belief_.turn_rad = shortened(belief_.turn_rad, seeLimit_rad());
 }
 
-// The belief moves to where the hand is pushed, until side force and torque vanish. A slender part that is
-// pushed falls over on its end if the hand yields to its lean, until the hole guides it.
+// The belief follows the hand, which contact pushes aside, until side force and torque vanish. The hand does
+// not yield to the tilt of a slender part before the hole guides it: a pushed part would fall over on its
+// end.
 void VirtualOperator::Person::giveWay(double dt_s) noexcept {
   const double share = std::min(1.0, kGiveWay_per_s * dt_s);
   const Pose& X_to = goal();
@@ -399,14 +399,14 @@ Pose VirtualOperator::Person::wanted(double now_s) const noexcept {
   if (phase_ != OperatorPhase::Reach) return X_rest_;
   const double share = minimumJerk((now_s - segment_.start_s) / segment_.duration_s);
   Pose X = interpolate(segment_.X_from, segment_.X_to, share);
-  // The aim error grows over the last free segment; it models the misjudged position of the hole.
+  // The aim error grows over the last free segment; it models an error of the believed position of the hole.
   const double aim = next_ + 2 == path_.size() && !has_aimed_ ? share : 0;
   X.p += aim * aim_m_ + belief_.across_m;
   X.R = rotationFromVector(aim * aim_rad_ + belief_.turn_rad) * X.R;
   return X;
 }
 
-// The attitude at this place of the last leg; of a leg that only turns, at this time.
+// The attitude of the path at this position along the leg; for a leg that only turns, at this time.
 Mat3 VirtualOperator::Person::turnAtTheHole(double along_m) const noexcept {
   const Pose &X_from = path_[goal_ - 1], &X_to = goal();
   const double length_m = (X_to.p - X_from.p).norm();
@@ -415,7 +415,7 @@ Mat3 VirtualOperator::Person::turnAtTheHole(double along_m) const noexcept {
   return interpolate(X_from, X_to, share).R;
 }
 
-// Turned about the tip, so that a lean does not move the tip.
+// Rotates about the leading end, so that a tilt does not move that end.
 Pose VirtualOperator::Person::wantedAtTheHole() const noexcept {
   const Move& move = sequence().present().move();
   const Pose& X_to = goal();
@@ -426,12 +426,12 @@ Pose VirtualOperator::Person::wantedAtTheHole() const noexcept {
   return {Mat3(turn * spun(spin_rad_) * turnAtTheHole(reach_m_)), p};
 }
 
-// A slender part that is in one hole, before the next, turns about the first one where its end is to move.
+// A slender part that is in one hole and before the next one turns about the first hole to displace its end.
 Vec3 VirtualOperator::Person::turnAboutMouth(const Vec3& end_m) const noexcept {
   return depth_m() > kPivots_m ? Vec3(axis_W_.cross(end_m) / depth_m()) : Vec3(Vec3::Zero());
 }
 
-// Integral action of the hand on its own position, against friction of the device.
+// Integral control of the hand's position, against friction of the device.
 void VirtualOperator::Person::serve(const Pose& X_wanted, const Pose& X_hand, double dt_s) noexcept {
   constexpr double kGain_per_s = 5, kLimit_m = 1.5e-3, kLimit_rad = 0.02;
   if (!isInserting() || is_home_) return;
@@ -448,7 +448,7 @@ Pose VirtualOperator::Person::limited(const Pose& X_wanted, const Pose& X_hand) 
   return {Mat3(rotationFromVector(twist_rad) * X_hand.R), Vec3(X_hand.p + pull_m)};
 }
 
-// Muscle lag: a critically damped second-order filter, solved implicitly, between the wanted pose and the
+// Lag of the muscles: a critically damped second-order filter, solved implicitly, from the wanted pose to the
 // equilibrium.
 void VirtualOperator::Person::follow(const Pose& X_wanted, double dt_s) noexcept {
   const double omega = habits_.lag_rad_s, implicit = 1 / ((1 + dt_s * omega) * (1 + dt_s * omega));
@@ -467,7 +467,7 @@ HandForce VirtualOperator::Person::impedance() const noexcept {
   const Mat3 along = axis_W_ * axis_W_.transpose(), across = Mat3::Identity() - along;
   hand.k_N_per_m = k * along + k_across * across;
   hand.b_Ns_per_m = damping(k) * along + damping(k_across) * across;
-  // A heavy part is carried until the hand has let go; a light one leans on its stop meanwhile.
+  // The hand carries a heavy part until it has released it; a light part rests on its stop meanwhile.
   const bool has_done = phase_ == OperatorPhase::Done && sag_m_.isZero();
   if (phase_ != OperatorPhase::Idle && !has_done) hand.F.f = -task_.weight_W;
   return hand;

@@ -13,7 +13,7 @@
 
 namespace vps::device {
 
-/// Where the person believes the part's path and hole to be, as an offset from where they are.
+/// Offset of the path and the hole, as the person believes, from their true place.
 struct Belief {
   Vec3 across_m = Vec3::Zero();
   Vec3 turn_rad = Vec3::Zero();
@@ -50,11 +50,11 @@ class VirtualOperator::Person {
   void addAim() noexcept;
   void goOnFromSearch(const OperatorView& view) noexcept;
   [[nodiscard]] bool isStoppedOnTheWay(const OperatorView& view) const noexcept;
-  /// Seen where the leg ends, and no longer searching there.
+  /// The part is seen at the end of the leg, so that the search there is over.
   [[nodiscard]] bool isPastSearch() const noexcept {
     return feel_.seen_for_s > 0 && feel_.seen_short_m < habits_.see_error_m;
   }
-  /// The pose of G at the end of the leg along which it feels, and searches if it has to.
+  /// The pose of G at the end of the leg along which the operator feels, and searches if necessary.
   [[nodiscard]] const Pose& goal() const noexcept { return path_[goal_]; }
   [[nodiscard]] bool isLastGoal() const noexcept { return goal_ + 1 == path_.size(); }
   void insert(const OperatorView& view, double dt_s) noexcept;
@@ -80,8 +80,7 @@ class VirtualOperator::Person {
   [[nodiscard]] Vec3 across(const Vec3& v) const noexcept { return v - axis_W_ * axis_W_.dot(v); }
   [[nodiscard]] Vec3 tipFromGrasp(const Mat3& R_WG) const noexcept;
   [[nodiscard]] Vec3 seenTip() const noexcept;
-  /// Friction at the end that goes in first leans the part in the hand by more than a search for the hole
-  /// goes.
+  /// Friction at the leading end tilts the part in the hand by more than the range of a search.
   [[nodiscard]] bool isSlender() const noexcept {
     return tip_m_ > 0 && habits_.search_N * tip_m_ * tip_m_ > habits_.k_Nm_per_rad * habits_.search_limit_m;
   }
@@ -96,7 +95,7 @@ class VirtualOperator::Person {
   [[nodiscard]] Pose wanted(double now_s) const noexcept;
   [[nodiscard]] Pose wantedAtTheHole() const noexcept;
   [[nodiscard]] Vec3 turnAboutMouth(const Vec3& end_m) const noexcept;
-  /// How deep a slender part is in the first hole that it found; 0 for others.
+  /// Depth of a slender part in the first hole that it found; 0 for other parts.
   [[nodiscard]] double depth_m() const noexcept {
     return isSlender() && !isScrew() && insertion_.hasTouched() ? feel_.along_m - insertion_.firstMouth_m()
                                                                 : 0;
@@ -109,7 +108,8 @@ class VirtualOperator::Person {
   [[nodiscard]] bool isInserting() const noexcept {
     return phase_ == OperatorPhase::Insert || phase_ == OperatorPhase::Press;
   }
-  /// Of a part that is screwed, only what tilts it: the turn about the axis is the hand's own.
+  /// The part of a rotation that a belief may have: for a screw only the tilt, since the hand turns about the
+  /// axis.
   [[nodiscard]] Vec3 tiltOf(const Vec3& turn) const noexcept { return isScrew() ? across(turn) : turn; }
   [[nodiscard]] Mat3 spun(double spin_rad) const noexcept { return rotationFromVector(spin_rad * axis_W_); }
 
@@ -125,36 +125,37 @@ class VirtualOperator::Person {
   std::size_t goal_ = 0;    // of goal()
   Segment segment_;
   Vec3 axis_W_ = Vec3::UnitZ();                         // of insertion
-  double tip_m_ = 0;                                    // from G along the axis to the end that goes in first
+  double tip_m_ = 0;                                    // from G along the axis to the leading end
   Vec3 aim_m_ = Vec3::Zero(), aim_rad_ = Vec3::Zero();  // aim error, drawn once per task
-  bool has_aimed_ = false;                              // it is part of belief_
+  bool has_aimed_ = false;                              // the aim error is part of belief_
 
   Vec3 misread_rad_ = Vec3::Zero();  // about the axis; sight does not correct it
 
   Belief belief_;
-  Vec3 sag_m_ = Vec3::Zero();  // how far a heavy part hangs below the hand; zero of others
+  Vec3 sag_m_ = Vec3::Zero();  // of a heavy part below the hand; zero for other parts
   double seen_for_s_ = 0;
   Feel feel_;
-  // How far the end that goes in first is felt beside the grasp, and beside its line.
+  // Felt offset of the leading end from the grasp, and from its line.
   Vec3 lean_m_ = Vec3::Zero(), tip_felt_m_ = Vec3::Zero();
-  // Of a slender part: where its end is felt when it is at its hole, and how long that was seen.
+  // Of a slender part: felt offset of its leading end when it is at its hole, and how long that was observed.
   Vec3 hole_m_ = Vec3::Zero();
   double hole_seen_for_s_ = 0;
   Insertion insertion_;
   Screwing screwing_;
-  double spin_rad_ = 0;             // wanted, about the axis
-  double handle_rad_ = 0;           // of the handle about the axis, from the middle of its range
-  double handle_goal_rad_ = 0;      // where it is grasped again
+  double spin_rad_ = 0;             // wanted rotation about the axis
+  double handle_rad_ = 0;           // rotation of the handle about the axis, from the middle of its range
+  double handle_goal_rad_ = 0;      // handle_rad_ at which the handle is grasped again
   Mat3 R_felt_ = Mat3::Identity();  // of the hand, one step ago
-  bool is_regrasping_ = false;      // while it screws
-  double reach_m_ = 0;              // of the hand along the axis, beyond the target
+  bool is_regrasping_ = false;      // in Regrasp of a screw
+  double reach_m_ = 0;              // wanted position of the hand along the axis, beyond the target
   bool is_home_ = false;
 
   bool has_view_ = false;
   Pose X_eq_;  // equilibrium, after the muscles' lag
   Twist V_eq_;
-  Pose X_rest_;                                             // equilibrium while there is no task
-  Vec3 serve_m_ = Vec3::Zero(), serve_rad_ = Vec3::Zero();  // of the hand against friction of the device
+  Pose X_rest_;  // equilibrium while there is no task
+  Vec3 serve_m_ = Vec3::Zero(),
+       serve_rad_ = Vec3::Zero();  // correction of the hand against friction of the device
 };
 
 }  // namespace vps::device

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the operator sees of the part: late, and with an error that changes with each fixation of the eye.
+// The operator's sight of the part: delayed, with an error that changes with each fixation of the eye.
 #pragma once
 
 #include <algorithm>
@@ -16,12 +16,12 @@ class Sight {
  public:
   explicit Sight(const OperatorHabits& habits) : habits_(habits), random_(habits.seed ^ kStream) {}
 
-  /// @param tip_P  where the person looks: the error of position is that of this point
+  /// @param tip_P  the point at which the person looks, to which the error of position applies
   void begin(const Vec3& tip_P, double now_s) noexcept;
-  /// Takes a visual sample if one is due. True: there is a new one, and `seen()` is late by the delay.
-  /// @param felt_m  what the hand feels now; `felt_m()` gives it back with the picture of the same time
+  /// Takes a visual sample if one is due. True if there is a new seen(), which is delayed.
+  /// @param felt_m  offset that the hand feels now; felt_m() returns it with the picture of the same time
   bool look(const OperatorView& view, const Vec3& felt_m = Vec3::Zero()) noexcept;
-  /// What the hand felt when it was as `seen()`.
+  /// The offset that the hand felt at the time of seen().
   [[nodiscard]] const Vec3& felt_m() const noexcept { return felt_m_; }
   /// The part's pose as seen.
   [[nodiscard]] const Pose& seen() const noexcept { return X_seen_; }
@@ -34,7 +34,7 @@ class Sight {
     Vec3 felt_m = Vec3::Zero();
   };
   static constexpr std::size_t kPictures = 64;              // in the delay line
-  static constexpr std::uint64_t kStream = 0x5159ac0ffee5;  // apart from the draws of the aim
+  static constexpr std::uint64_t kStream = 0x5159ac0ffee5;  // other random numbers than those of the aim
 
   OperatorHabits habits_;
   Random random_;

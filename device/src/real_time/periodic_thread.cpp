@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kStack_bytes = 256 * 1024;  // assumed: a tick needs some kilobytes
 constexpr std::size_t kPage_bytes = 4096;
 
-// Touches the stack's pages once; volatile, so that the compiler keeps it.
+// Touches the stack's pages once. The pointer is volatile, so that the compiler keeps the writes.
 void touchStack() noexcept {
   char room[kStack_bytes];
   volatile char* const page = room;

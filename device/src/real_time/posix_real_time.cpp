@@ -36,7 +36,7 @@ std::string refusal(DeviceEventKind kind, int error) {
   return std::string(toText(kind)) + " (" + std::strerror(error) + "); " + remedyOf(kind);
 }
 
-// With a limit, locking future pages would make later allocations fail, so only the present ones are locked.
+// If locked memory is limited, only the present pages are locked: later allocations would fail otherwise.
 int lockMemory() {
   rlimit limit{};
   const bool is_free =
@@ -44,7 +44,8 @@ int lockMemory() {
   return mlockall(is_free ? MCL_CURRENT | MCL_FUTURE : MCL_CURRENT) == 0 ? 0 : errno;
 }
 
-// Made before main(): the first call of a function's own static may be on the haptic thread, and allocates.
+// Constant-initialised: a function's static variable might be initialised, and allocate, on the haptic
+// thread.
 constinit MonotonicClock the_monotonic_clock;  // no state
 
 }  // namespace

@@ -12,7 +12,7 @@ constexpr int kSplitBits = 6;
 static_assert(TickHistogram::kSplit == 1 << kSplitBits);
 constexpr std::int64_t kMax_ns = (std::int64_t{1} << (kSplitBits + TickHistogram::kOctaves)) - 1;
 
-// Below 64 one bucket per nanosecond; above, the octave and the six bits that follow the highest.
+// One bucket per nanosecond below 64 ns; above, the octave and the six bits after the highest bit.
 std::size_t bucketOf(std::int64_t ns) {
   const auto value = static_cast<std::uint64_t>(std::clamp<std::int64_t>(ns, 0, kMax_ns));
   const int octave = std::max(0, static_cast<int>(std::bit_width(value)) - kSplitBits);
@@ -28,7 +28,7 @@ std::int64_t endOf(std::size_t bucket) {
   return static_cast<std::int64_t>(((TickHistogram::kSplit + part + 1) << (octave - 1)) - 1);
 }
 
-// Only one thread writes, so that no read-modify-write is needed.
+// Only one thread writes, so that no atomic read-modify-write is needed.
 template <typename T>
 void increase(std::atomic<T>& value, T by = 1) {
   value.store(value.load(std::memory_order_relaxed) + by, std::memory_order_relaxed);
@@ -73,7 +73,7 @@ const char* toText(TickCause cause) noexcept {
     case TickCause::OwnWork:
       return "the tick's own work";
     case TickCause::AfterTick:
-      return "work beside the tick";
+      return "work after the tick";
   }
   return "unknown";
 }
@@ -96,8 +96,8 @@ void TickStatistics::miss(std::uint64_t periods, TickCause cause) noexcept {
   increase(missed_by_[static_cast<std::size_t>(cause)], periods);
 }
 
-// A reader that sees a field of the new value also sees the odd version before it (release, acquire), and
-// retries.
+// A reader that sees a field of the new value also sees the odd version before that field (release, acquire),
+// and retries.
 void TickStatistics::keepWorst(const TickTiming& timing) noexcept {
   worst_response_ns_ = timing.response_ns();
   const std::uint64_t version = worst_version_.load(std::memory_order_relaxed);

@@ -29,7 +29,9 @@ class Parser {
   McapContent parse() {
     if (!isMcap(bytes_)) {
       const bool is_cut = kMagic.starts_with(bytes_);
-      fail(0, is_cut ? "ends before it has begun" : "does not begin as an MCAP file does", is_cut);
+      fail(0,
+           is_cut ? "is shorter than the first bytes of an MCAP file" : "does not begin as an MCAP file does",
+           is_cut);
       return std::move(content_);
     }
     for (std::size_t at = kMagic.size(); !content_.damage && !is_over_;) at = record(at);
@@ -47,8 +49,8 @@ class Parser {
     const auto opcode = in.get<std::uint8_t>();
     const auto length = in.get<std::uint64_t>();
     if (!in.isGood() || length > in.left()) {
-      // A corrupt length looks like a cut file. Messages that no checksum covers are therefore kept only from
-      // a chunk at the file's end.
+      // A corrupt length looks like a truncated file. Messages that no checksum covers are therefore kept
+      // only from a chunk at the end of the file.
       fail(at,
            in.left() == 0 && !in.isGood() ? "ends without its closing record"
                                           : "ends in the middle of a record",
@@ -165,7 +167,8 @@ class Parser {
     inside(static_cast<std::size_t>(records.data() - bytes_.data()), records);
   }
 
-  /// The complete messages of a chunk that the file's end cuts; its checksum cannot be verified.
+  /// Reads the complete messages of a chunk that the end of the file truncates; its checksum cannot be
+  /// verified.
   void cutChunk(std::string_view body) {
     ByteReader in(body);
     in.take(8 + 8 + 8 + 4);
@@ -176,7 +179,7 @@ class Parser {
     inside(static_cast<std::size_t>(records.data() - bytes_.data()), records);
   }
 
-  /// The records of a chunk, which begin at `at`.
+  /// Reads the records of a chunk, which begin at `at`.
   void inside(std::size_t at, std::string_view records) {
     ByteReader in(records);
     const bool was_cut = content_.damage.has_value();
@@ -200,7 +203,7 @@ class Parser {
       fail(at, "has a changed byte outside of its messages");
   }
 
-  /// From the summary to the file's end. Its content is not needed; only its checksum is verified.
+  /// Reads from the summary to the end of the file. Only the checksum is verified; the content is not needed.
   void summary(std::size_t at) {
     constexpr std::size_t kEnd = kRecordHead + kFooterBytes;
     const std::string_view rest = bytes_.substr(at);

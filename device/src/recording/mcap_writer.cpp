@@ -81,7 +81,7 @@ void McapWriter::emit(std::string_view bytes) {
 
 std::uint64_t McapWriter::emitRecord(std::uint8_t opcode, const std::string& content) {
   const std::uint64_t begin = at_;
-  // In one piece, so that an unbuffered sink leaves whole records.
+  // One call per record, so that an unbuffered sink writes whole records.
   emit(built([&](ByteWriter& w) {
     w.put(opcode);
     w.text<std::uint64_t>(content);
@@ -107,7 +107,7 @@ std::uint16_t McapWriter::addChannel(McapChannel channel) {
 void McapWriter::addAttachment(const McapAttachment& attachment) {
   flush();
   std::string content = built([&](ByteWriter& w) {
-    w.put(std::uint64_t{0});  // times of recording and creation: zero, so that files repeat byte for byte
+    w.put(std::uint64_t{0});  // times of recording and creation are zero, so that files repeat byte for byte
     w.put(std::uint64_t{0});
     w.text(attachment.name);
     w.text(attachment.media_type);

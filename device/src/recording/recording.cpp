@@ -47,7 +47,7 @@ RecordingHead headOf(const McapContent& content, const std::string& file) {
   const McapMetadata *about = metadata(content, recording::kAbout),
                      *device = metadata(content, recording::kDevice);
   if (about == nullptr || device == nullptr)
-    throw LoadError(file, "", why + ", so that nothing of it can be replayed; record the run again");
+    throw LoadError(file, "", why + ", so that it cannot be replayed; record the run again");
   RecordingHead head;
   head.about = about->values;
   if (head.about["format"] != recording::kFormat)
@@ -61,13 +61,13 @@ RecordingHead headOf(const McapContent& content, const std::string& file) {
     if (found == device->values.end()) return;
     const std::string& text = found->second;
     if (std::from_chars(text.data(), text.data() + text.size(), x).ptr != text.data() + text.size())
-      throw LoadError(file, "", "says '" + text + "' where the device's " + key + " should stand");
+      throw LoadError(file, "", "has '" + text + "' instead of a number for the device's " + key);
   });
   head.attachments = content.attachments;
   return head;
 }
 
-/// The kind of entry on a channel; kKinds: none of ours.
+/// The kind of entry on a channel; kKinds if the channel holds no entries.
 std::size_t kindOf(const McapChannel& channel) {
   const std::string_view topic = channel.topic == recording::kOldSyncTopic
                                      ? std::string_view(log::kTopics[log::kSyncKind])
@@ -85,10 +85,10 @@ std::string readEntries(const McapContent& content, RecordedRun& run) {
     if (kind == log::kKinds) continue;
     if (message.sequence != expected)
       return message.sequence > expected ? "lacks " + std::to_string(message.sequence - expected) +
-                                               " entries that came too fast to be written, or are damaged"
+                                               " entries, which came too fast to be written or are damaged"
                                          : "repeats an entry";
     LogEntry entry = log::blank(kind);
-    if (!log::decode(message.data, entry)) return "holds a message that is not what its channel says";
+    if (!log::decode(message.data, entry)) return "holds a message that does not match its channel";
     run.entries.push_back(entry);
     ++expected;
   }
@@ -121,7 +121,7 @@ RecordedRun recordingFrom(std::string_view bytes, const std::string& file) {
   if (!content.library.starts_with(recording::kLibrary) && !content.damage)
     throw LoadError(
         file, "",
-        "is an MCAP file, but no recording of this program; it was written by '" + content.library + "'");
+        "is an MCAP file, but not a recording of this program; it was written by '" + content.library + "'");
   RecordedRun run;
   run.file = file;
   run.head = headOf(content, file);
@@ -182,9 +182,9 @@ void ReplayCheck::add(const LogEntry& entry) noexcept {
   if (is_beyond && !run_.damage.empty()) return;
   std::string what;
   if (is_beyond)
-    what = "goes on where the recording ends";
+    what = "continues after the end of the recording";
   else if (run_.entries[next_].index() != entry.index())
-    what = std::string("comes with ") + log::kTopics[entry.index()] + " where the recording has " +
+    what = std::string("has ") + log::kTopics[entry.index()] + " where the recording has " +
            log::kTopics[run_.entries[next_].index()];
   else if (const std::string field = log::difference(run_.entries[next_], entry); !field.empty())
     what = std::string(log::kTopics[entry.index()]) + ": " + field;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Names in the file that the recorder and the reader of recordings share.
+// Names in the file of a recording, for its writer and its reader.
 #pragma once
 
 #include <map>
@@ -10,7 +10,7 @@
 
 namespace vps::device::recording {
 
-inline constexpr const char* kLibrary = "bullet-vps";  ///< marks a file as ours
+inline constexpr const char* kLibrary = "bullet-vps";  ///< marks a file as a recording of this program
 inline constexpr const char* kProfile = "ros2";
 inline constexpr const char* kAbout = "vps.run";
 inline constexpr const char* kDevice = "vps.device";

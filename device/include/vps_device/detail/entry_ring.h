@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Lock-free ring of numbered log entries, from a thread that must not wait to one that may.
+// Lock-free ring of numbered log entries, from a thread that must not wait to a thread that may wait.
 #pragma once
 
 #include <atomic>
@@ -22,7 +22,7 @@ class VPS_DEVICE_API EntryRing {
 
   explicit EntryRing(std::size_t entries) : slots_(std::bit_ceil(entries)) {}
 
-  /// Writer. False: the ring is full, nothing was done.
+  /// Writer. False if the ring is full; the entry is then not added.
   bool push(std::uint32_t number, const LogEntry& entry) noexcept {
     const std::size_t head = head_.load(std::memory_order_relaxed);
     if (head - tail_.load(std::memory_order_acquire) == slots_.size()) return false;
@@ -33,7 +33,7 @@ class VPS_DEVICE_API EntryRing {
     return true;
   }
 
-  /// Reader: the oldest entry, or null; it stays until pop().
+  /// Reader. The oldest entry, which stays until pop(); null if the ring is empty.
   [[nodiscard]] const Slot* front() const noexcept {
     const std::size_t tail = tail_.load(std::memory_order_relaxed);
     return tail == head_.load(std::memory_order_acquire) ? nullptr : &slots_[tail & (slots_.size() - 1)];

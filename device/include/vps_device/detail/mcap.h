@@ -62,11 +62,11 @@ struct McapMessage {
   std::string_view data;
 };
 
-/// Where reading stopped, or what is wrong.
+/// Place and cause of damage in a file.
 struct McapDamage {
   std::size_t at_byte = 0;
-  std::string words;    ///< "ends in the middle of a record"; no file name
-  bool is_cut = false;  ///< the file just ends; what is there reads well
+  std::string words;    ///< "ends in the middle of a record", without the file name
+  bool is_cut = false;  ///< the file is truncated, and not damaged before its end
 };
 
 struct McapContent {
@@ -76,7 +76,7 @@ struct McapContent {
   std::vector<McapMessage> messages;  ///< in the file's order
   std::vector<McapAttachment> attachments;
   std::vector<McapMetadata> metadata;
-  std::optional<McapDamage> damage;  ///< none: whole, and every checksum right
+  std::optional<McapDamage> damage;  ///< empty: the file is complete, and every checksum is right
 };
 
 /// True for bytes that begin with the magic of MCAP.
@@ -99,7 +99,7 @@ class VPS_DEVICE_API McapWriter {
 
   McapWriter(Sink sink, const std::string& profile, const std::string& library);
 
-  /// Returns the id. Add all before the first message that needs them.
+  /// Both return the id. A schema and a channel must be added before the first message that needs them.
   std::uint16_t addSchema(const std::string& name, const std::string& encoding, const std::string& data);
   std::uint16_t addChannel(McapChannel channel);
   void addAttachment(const McapAttachment& attachment);
@@ -142,7 +142,7 @@ class VPS_DEVICE_API McapWriter {
   std::vector<ChunkPlace> chunks_;
   std::string chunk_;
   std::uint64_t chunk_first_ns_ = 0, chunk_last_ns_ = 0, first_ns_ = 0, last_ns_ = 0;
-  std::map<std::uint16_t, std::string> chunk_index_;  ///< entries, as they stand in the file
+  std::map<std::uint16_t, std::string> chunk_index_;  ///< entries as written to the file
   std::map<std::uint16_t, std::uint64_t> counts_;
   std::uint64_t message_count_ = 0;
 };

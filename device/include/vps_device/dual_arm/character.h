@@ -24,17 +24,17 @@ struct Duty {
 
 struct DualArmCharacter {
   // Workspace.
-  Vec3 workspace_m = Vec3::Zero();  ///< as stated
+  Vec3 workspace_m = Vec3::Zero();  ///< as the parameters state
   /// Greatest box of that shape that is reached with the handle straight, as a multiple of it.
   double straight_scale = 0;
-  double tilted_scale = 0;           ///< the same with every tilt of up to 45 deg
+  double tilted_scale = 0;           ///< straight_scale with every tilt of up to 45 deg
   double gimbal_sr = 0;              ///< handle directions within the gimbal's range
   Extent solid_angle_sr;             ///< directions that joints and arms allow, over the workspace
-  double centre_solid_angle_sr = 0;  ///< the same at its centre
+  double centre_solid_angle_sr = 0;  ///< solid_angle_sr at the workspace's centre
   // Motors. "Worst": available in every direction at that place and attitude. Attitudes: straight, and 45 deg
   // tilts.
   Duty straight_force_N, force_N;              ///< worst direction; handle straight, and all attitudes
-  Duty straight_torque_Nm, torque_Nm;          ///< likewise
+  Duty straight_torque_Nm, torque_Nm;          ///< worst direction; handle straight, and all attitudes
   Duty any_force_N, any_torque_Nm;             ///< also over directions: the median is the typical value
   Duty up_N, left_up_N, right_up_N, sum_up_N;  ///< figure 5, straight
   // Mechanics.
@@ -42,16 +42,18 @@ struct DualArmCharacter {
   Extent free_stiffness_N_per_m;  ///< the handle may rotate
   Extent mass_kg, inertia_kgm2;   ///< reflected, each direction
   // Reading and friction.
-  Extent resolution_m, resolution_rad;  ///< error of one reading with each encoder half a step off; 45 deg
-  Extent far_resolution_m, far_resolution_rad;  ///< the same in all directions within the gimbal's range
-  /// Dry, against a shift of the straight handle, each direction. A weaker force is not felt.
+  Extent resolution_m,
+      resolution_rad;  ///< error of a reading with each encoder half a step off; tilts to 45 deg
+  Extent far_resolution_m,
+      far_resolution_rad;  ///< error of a reading in all directions within the gimbal's range
+  /// Dry friction against a shift of the straight handle, each direction. A weaker force is not felt.
   Extent friction_N;
   double force_ratio = 0, peak_force_ratio = 0;  ///< greatest force over typical friction
-  // Evenness.
+  // Isotropy.
   /// Greatest motor load for a force: least place over greatest place.
   double pair_isotropy = 0, arm_isotropy = 0;
-  Extent ellipsoid_isotropy;      ///< weakest over strongest direction at a place, of the pair
-  Extent arm_ellipsoid_isotropy;  ///< of one arm
+  Extent ellipsoid_isotropy;      ///< of the pair: weakest over strongest direction at a place
+  Extent arm_ellipsoid_isotropy;  ///< of one arm: weakest over strongest direction at a place
   Extent arm_manipulability_m2;   ///< Yoshikawa's, sqrt(det J J^T) = d^2 cos t2 of one arm
   Extent pair_force_mean_N;       ///< geometric mean of the force ellipsoid's half axes, continuous
   // Between the arms' sliding links.

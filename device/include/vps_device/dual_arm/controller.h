@@ -39,11 +39,11 @@ class VPS_DEVICE_API DualArmController final : public Device {
   /// that are not finite; the zero then stays.
   Status calibrate(const Pose& X_DH, int readings = 64) noexcept;
 
-  /// For a handle that was moved by other means: the next reading is accepted at any pose.
+  /// Accepts the next reading at any pose, after the handle was moved by other means.
   void forgetMotion() noexcept;
 
   [[nodiscard]] bool hasFault() const noexcept { return has_fault_; }
-  [[nodiscard]] DeviceEventKind fault() const noexcept { return fault_; }  ///< meaningful while hasFault()
+  [[nodiscard]] DeviceEventKind fault() const noexcept { return fault_; }  ///< only while hasFault()
   [[nodiscard]] const JointVector& efforts() const noexcept {
     return efforts_;
   }  ///< the last command to the motors

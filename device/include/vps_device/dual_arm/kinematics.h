@@ -147,7 +147,7 @@ VPS_DEVICE_API double armClearance_m(const DualArmParameters& parameters,
 [[nodiscard]] VPS_DEVICE_API Status motorEfforts(const DualArmParameters& parameters, const Pose& X_DH,
                                                  const Wrench& F_Ho_D, JointVector& efforts) noexcept;
 
-/// The wrench that motor efforts give to the hand, by the balance of the arms and the gimbal.
+/// The wrench that motor efforts exert on the hand, from the balance of the arms and the gimbal.
 [[nodiscard]] VPS_DEVICE_API Status handleWrench(const DualArmParameters& parameters, const Pose& X_DH,
                                                  const JointVector& efforts, Wrench& F_Ho_D) noexcept;
 

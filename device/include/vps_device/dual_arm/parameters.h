@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The parameters of the dual-arm device. Values and sources are in data/dual_arm.toml, which is built in; a
-// user's file overrides those that differ.
+// user's file overrides single values.
 #pragma once
 
 #include <string>
@@ -16,12 +16,12 @@ struct VPS_DEVICE_API DualArmParameters {
   DualArmParameters();
 
   // Geometry.
-  Vec3 workspace_m = Vec3::Zero();          ///< box of the handle's origin, centred at D's origin
-  double handle_m = 0;                      ///< L, between gimbal centres
-  Vec3 p_EH = Vec3::Zero();                 ///< from the midpoint (1) to the handle's centre of mass H, in E
-  double base_m = 0;                        ///< from D's origin to each base, along y
-  Vec3 right_shift_m = Vec3::Zero();        ///< of the right base against its nominal pose, in its frame
-  Vec3 right_turn_rad = Vec3::Zero();       ///< likewise, as a rotation vector
+  Vec3 workspace_m = Vec3::Zero();     ///< box of the handle's origin, centred at D's origin
+  double handle_m = 0;                 ///< L, between gimbal centres
+  Vec3 p_EH = Vec3::Zero();            ///< from the midpoint (1) to the handle's centre of mass H, in E
+  double base_m = 0;                   ///< from D's origin to each base, along y
+  Vec3 right_shift_m = Vec3::Zero();   ///< of the right base against its nominal pose, in its frame
+  Vec3 right_turn_rad = Vec3::Zero();  ///< of the right base against its nominal pose, as a rotation vector
   double reach_min_m = 0, reach_max_m = 0;  ///< d3
   double plate_max_rad = 0;                 ///< |t1|, |t2|
   double q2_max_rad = 0, q3_max_rad = 0;    ///< |q2|, |q3|

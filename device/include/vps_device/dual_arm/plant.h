@@ -38,7 +38,7 @@ class VPS_DEVICE_API DualArmPlant final : public DualArmHardware {
   /// implicitly: stable at any stiffness.
   void step(double dt_s, const HandForce& hand) noexcept;
 
-  /// Puts the handle elsewhere, at rest, its weight carried by the motors.
+  /// Puts the handle at X_DH, at rest; the motors carry its weight.
   void moveTo(const Pose& X_DH) noexcept;
 
   [[nodiscard]] const DualArmPlantSettings& settings() const noexcept { return settings_; }
@@ -48,12 +48,12 @@ class VPS_DEVICE_API DualArmPlant final : public DualArmHardware {
   /// The acting efforts, after delay, limits and watchdog.
   [[nodiscard]] const JointVector& efforts() const noexcept { return efforts_; }
   [[nodiscard]] const MotorHeat& heat() const noexcept { return heat_; }
-  /// What the hand gave the handle in the last step, in D.
+  /// Wrench of the hand on the handle in the last step, in D.
   [[nodiscard]] const Wrench& lastHandWrench() const noexcept { return F_hand_; }
   [[nodiscard]] double kinetic_J() const noexcept { return kinetic_J_; }  ///< of arms, handle and hand
   [[nodiscard]] double structure_J() const noexcept {
     return structure_J_;
-  }  ///< in the elastic structure and the stops
+  }  ///< stored in the elastic structure and the stops
   [[nodiscard]] double friction_J() const noexcept { return friction_J_; }  ///< dissipated so far, >= 0
 
  private:
@@ -77,7 +77,7 @@ class VPS_DEVICE_API DualArmPlant final : public DualArmHardware {
   JointVector motor_inertia_, link_inertia_, viscous_, coulomb_;
   Pose X_DH_;
   Twist V_DH_;
-  HandleMotion motion_;  ///< at the handle's pose; at a singularity the last valid one
+  HandleMotion motion_;  ///< at the handle's pose; at a singularity that of the last valid pose
   JointVector link_rate_ = JointVector::Zero();  ///< joint rates on the handle's side, at the last step
   JointVector motor_ = JointVector::Zero();      ///< joints on the motors' side
   JointVector motor_rate_ = JointVector::Zero();

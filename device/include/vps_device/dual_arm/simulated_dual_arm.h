@@ -11,14 +11,15 @@ namespace vps::device {
 
 struct SimulatedDualArmSettings {
   DualArmParameters arms;
-  bool has_quantised_encoders = true;  ///< false: exact readings, without noise too
-  bool is_rigid = false;               ///< true: nothing bends
+  bool has_quantised_encoders = true;  ///< false: exact readings, without noise
+  bool is_rigid = false;               ///< true: no elasticity
   double rate_hz = 1000;               ///< of read-write cycles
   std::uint64_t seed = 1;              ///< of the encoders' noise
   Pose X_DH_start;
 };
 
-/// Exact readings, a rigid structure, no delay: to measure the effect of those imperfections.
+/// Settings with exact readings, a rigid structure and no delay, to measure the effect of these
+/// imperfections.
 VPS_DEVICE_API SimulatedDualArmSettings idealDualArm();
 
 /// Deterministic; nothing allocates after construction.
@@ -37,7 +38,7 @@ class VPS_DEVICE_API SimulatedDualArm final : public SimulatedDevice {
   /// See DualArmPlant::step().
   void step(double dt_s, const HandForce& hand) noexcept override { plant_.step(dt_s, hand); }
 
-  /// Places the handle elsewhere, at rest, and clears the controller's state. For calibration and tests.
+  /// Puts the handle at X_DH, at rest, and clears the controller's state. For calibration and tests.
   void moveTo(const Pose& X_DH) noexcept;
 
   [[nodiscard]] const Pose& truePose() const noexcept override { return plant_.pose(); }

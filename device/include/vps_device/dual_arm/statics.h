@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Statics of the dual arm at one pose: the handle's weight, the stiffness of the structure, and the greatest force
-// in a direction.
+// Statics of the dual arm at one pose: the handle's weight, the stiffness of the structure, and the greatest
+// force in a direction.
 #pragma once
 
 #include "vps_device/dual_arm/kinematics.h"
@@ -20,8 +20,8 @@ inline Wrench handleWeight(const DualArmParameters& parameters) noexcept {
 // --- Elasticity between the motors and the handle, reduced to the joints
 
 /// Stiffness of each joint [N m/rad, N/m, N m/rad] with the arms at `joints`: capstan, tendon and link in
-/// series with the gimbal's and the handle's stiffness, which is the same in every direction and therefore,
-/// since the columns of an arm's Jacobian are orthogonal, adds to each joint alone.
+/// series with the gimbal and the handle. The stiffness of these two is equal in every direction; since the
+/// columns of an arm's Jacobian are orthogonal, it acts on each joint separately.
 VPS_DEVICE_API JointVector structureStiffness(const DualArmParameters& parameters,
                                               const JointVector& joints) noexcept;
 
@@ -52,12 +52,13 @@ struct EffortMap {
 [[nodiscard]] VPS_DEVICE_API Status effortMap(const DualArmParameters& parameters, const Pose& X_DH,
                                               EffortMap& map) noexcept;
 
-/// Greatest force (or torque) available in every direction in addition to `weight`, exactly: a motor whose
-/// row is a needs |a| per newton in its own worst direction. `efforts` is either map.
+/// Greatest force (or torque) that is available in every direction in addition to `weight`, exactly: the
+/// motor with row a of `efforts` needs |a| per newton in its worst direction. `efforts` is EffortMap::force
+/// or torque.
 VPS_DEVICE_API double leastOverDirections(const Eigen::Matrix<double, 7, 3>& efforts,
                                           const JointVector& weight, const JointVector& limits) noexcept;
 
-/// Greatest force or torque along one direction.
+/// Greatest force or torque along one direction in addition to `weight`.
 VPS_DEVICE_API double alongDirection(const Eigen::Matrix<double, 7, 3>& efforts, const JointVector& weight,
                                      const JointVector& limits, const Vec3& direction) noexcept;
 

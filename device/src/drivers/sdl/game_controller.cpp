@@ -24,9 +24,9 @@ double button(SDL_GameController* controller, SDL_GameControllerButton which) {
   return SDL_GameControllerGetButton(controller, which) != 0 ? 1 : 0;
 }
 
-/// SDL's sticks are positive to the right and towards the person. D: x towards the person, y right, z up. A
-/// stick pulled tilts the handle's top towards the person, which is about +y; one pushed right turns it
-/// clockwise seen from above; the right shoulder tilts it right.
+/// SDL's sticks are positive to the right and towards the person. D: x towards the person, y right, z up.
+/// Pulling the right stick tilts the handle's top towards the person, about +y; pushing it right turns the
+/// handle clockwise, seen from above; the right shoulder button tilts the handle to the right.
 Deflection deflectionOf(SDL_GameController* c) {
   Deflection d;
   d.push = Vec3(axis(c, SDL_CONTROLLER_AXIS_LEFTY), axis(c, SDL_CONTROLLER_AXIS_LEFTX),
@@ -41,25 +41,25 @@ Deflection deflectionOf(SDL_GameController* c) {
 class GameController final : public HandSource {
  public:
   GameController() {
-    // Leave Ctrl-C to the program, and read the controller whichever window has the focus.
+    // The program keeps Ctrl-C, and the controller is read whichever window has the focus.
     SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");
     SDL_SetHint(SDL_HINT_JOYSTICK_ALLOW_BACKGROUND_EVENTS, "1");
     const bool is_first = SDL_WasInit(SDL_INIT_GAMECONTROLLER) == 0;
-    is_there_ = SDL_InitSubSystem(SDL_INIT_GAMECONTROLLER) == 0;
-    if (!is_there_ || !is_first) return;
-    // Nothing else takes events: do not let them accumulate.
+    has_library_ = SDL_InitSubSystem(SDL_INIT_GAMECONTROLLER) == 0;
+    if (!has_library_ || !is_first) return;
+    // No other code reads the events, so they must not accumulate.
     SDL_JoystickEventState(SDL_IGNORE);
     SDL_GameControllerEventState(SDL_IGNORE);
   }
   ~GameController() override {
     close();
-    if (is_there_) SDL_QuitSubSystem(SDL_INIT_GAMECONTROLLER);
-    SDL_TLSCleanup();  // SDL's data of this thread, which SDL did not create
+    if (has_library_) SDL_QuitSubSystem(SDL_INIT_GAMECONTROLLER);
+    SDL_TLSCleanup();  // frees SDL's data of this thread, which SDL did not create
   }
 
   void poll(HandInput& input) override {
     std::this_thread::sleep_for(kPause);
-    if (!is_there_) return;
+    if (!has_library_) return;
     SDL_GameControllerUpdate();
     if (controller_ != nullptr && SDL_GameControllerGetAttached(controller_) == SDL_FALSE) close();
     if (controller_ == nullptr) open();
@@ -79,7 +79,7 @@ class GameController final : public HandSource {
     controller_ = nullptr;
   }
 
-  bool is_there_ = false;
+  bool has_library_ = false;
   SDL_GameController* controller_ = nullptr;
 };
 

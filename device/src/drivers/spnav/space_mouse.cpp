@@ -15,7 +15,7 @@
 #include "vps_device/device_kinds.h"
 #include "vps_device/rate_control.h"
 
-// Last: it brings Xlib's macros (Status, Success, None) along.
+// The last include, since it defines Xlib's macros (Status, Success, None).
 #include <spnav.h>
 
 namespace vps::device {
@@ -28,8 +28,8 @@ constexpr auto kRetry = std::chrono::milliseconds(500);
 
 std::atomic<bool> is_in_use{false};  // libspnav keeps its connection in globals
 
-/// Whether a daemon may be running. Checked first, since spnav_open() of version 1.0 leaks some bytes at each
-/// failure.
+/// True if a daemon may be running. Checked before spnav_open(), which in version 1.0 leaks some bytes at
+/// each failure.
 bool mayBeRunning() {
   const char* named = std::getenv("SPNAV_SOCKET");
   return (named != nullptr && access(named, F_OK) == 0) || access("/etc/spnavrc", F_OK) == 0 ||
@@ -48,8 +48,8 @@ Deflection deflectionOf(const spnav_event_motion& motion) {
 class SpaceMouse final : public HandSource {
  public:
   SpaceMouse() {
-    // libspnav may write to a daemon that has ended, and SIGPIPE would end the program. The signal is
-    // delivered to the thread that writes, which is this one.
+    // libspnav may write to a daemon that has ended, and SIGPIPE would end the program. The signal goes to
+    // the thread that writes, which is this thread.
     sigset_t pipe;
     sigemptyset(&pipe);
     sigaddset(&pipe, SIGPIPE);
@@ -80,7 +80,7 @@ class SpaceMouse final : public HandSource {
       return;
     }
     is_open_ = true;
-    if (isHungUp()) {  // it ended while we connected
+    if (isHungUp()) {  // the daemon ended while we connected
       next_try_ = now + kRetry;
       return close();
     }
