@@ -44,10 +44,10 @@ TEST(Placement, OfNoisyPointsHasTheResidualOfTheNoise) {
   constexpr std::size_t kCount = 400;
   const Placement found = fitPlacement(touched(kCount, kNoise_m));
   ASSERT_EQ(found.status, Status::Ok);
-  // Three coordinates a point, of which six numbers are fitted; the rms varies by 1 / sqrt(2 x 3 x 400).
+  // Each point has three coordinates, and six numbers are fitted; the rms varies by 1 / sqrt(2 x 3 x 400).
   EXPECT_NEAR(found.rms_m, std::sqrt(3.0) * kNoise_m,
               4 * kNoise_m / std::sqrt(6.0 * kCount) * std::sqrt(3.0));
-  // The position is a mean of all: four standard deviations of it.
+  // The position is a mean over all points: the bound is four standard deviations of the mean.
   EXPECT_LT((found.X_SD.p - kPlacement.p).norm(),
             4 * std::sqrt(3.0) * kNoise_m / std::sqrt(double(kCount)) * 1.5);
 }
@@ -78,7 +78,7 @@ DualArmParameters displaced() {
   return p;
 }
 
-// Readings of its encoders with the handle moved about; `noise_steps` in encoder steps, deviation.
+// Readings of the encoders at random poses of the handle. noise_steps: standard deviation, in encoder steps.
 std::vector<DualArmJoints> readingsOf(const DualArmParameters& truth, int count, double tilt_rad,
                                       double noise_steps, std::uint64_t seed) {
   Random random(seed);
@@ -129,14 +129,15 @@ TEST(BaseCalibration, WithNoiseItsErrorMatchesTheStatedDeviation) {
   double mean_square_m = 0, mean_square_rad = 0;
   constexpr int kRuns = 40;
   for (int run = 0; run < kRuns; ++run) {
-    // Rounding to a step is noise of 0.29 steps; 0.5 is more than the encoders have.
+    // Rounding to a step is noise of 0.29 steps; 0.5 is more than the noise of the encoders.
     const BaseCalibration found =
         calibrateBases(DualArmParameters{}, readingsOf(truth, 200, 1.0, 0.5, 10 + run));
     ASSERT_EQ(found.status, Status::Ok);
     EXPECT_GT(found.sigma_m, 0);
     const double share_m = errorOf_m(found.parameters, truth) / found.sigma_m;
     const double share_rad = errorOf_rad(found.parameters, truth) / found.sigma_rad;
-    // Three directions of at most one deviation each: beyond 5 in one of 1e5 runs (chi square of three).
+    // Three directions have at most one deviation each: the sum exceeds 5 in one of 1e5 runs (chi square of
+    // three).
     EXPECT_LT(share_m, 5);
     EXPECT_LT(share_rad, 5);
     mean_square_m += share_m * share_m / kRuns;
@@ -172,7 +173,7 @@ TEST(BaseCalibration, CorrectsTheReadingsOfTheRealEncoders) {
 TEST(BaseCalibration, ReportsWhyItCannotSolve) {
   const DualArmParameters p;
   EXPECT_EQ(calibrateBases(p, readingsOf(p, 11, 1.0, 0, 3)).status, Status::Truncated);
-  // Never turned, the handle pulls in one direction only.
+  // Without rotations the handle measures in one direction only.
   EXPECT_EQ(calibrateBases(p, readingsOf(p, 100, 0, 0, 4)).status, Status::Singular);
   std::vector<DualArmJoints> bad = readingsOf(p, 20, 1.0, 0, 5);
   bad[7].right.d3_m = NAN;
@@ -201,7 +202,7 @@ TEST(DeviceFrames, ThreeFramesAgreeOnPositionsPowersAndTheArmsReadings) {
                       inFrame(p, V_D, DeviceFrame::Independent, frame)),
                 power(F_D, V_D), 1e-13);
   }
-  // A gimbal centre in an arm's own frame is what that arm alone reads.
+  // An arm alone reads the position of its gimbal centre in its own frame.
   DualArmJoints joints;
   ASSERT_EQ(handleJoints(p, X_DH, joints), Status::Ok);
   const Vec3 p_HE = -p.p_EH, half = Vec3(0, 0.5 * p.handle_m, 0);

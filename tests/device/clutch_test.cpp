@@ -72,7 +72,7 @@ struct Hanging {
   [[nodiscard]] Vec3 proxy() { return port.haptic.read().proxy.X_W.p; }
 };
 
-// Straight from one place to another at this speed, on average.
+// Moves the handle straight to a place at this average speed.
 template <typename Visit>
 void travel(const Vec3& from, const Vec3& to, double speed_m_s, const Visit& visit) {
   const int ticks = static_cast<int>(std::ceil((to - from).norm() / (speed_m_s * kPeriod_s)));
@@ -164,8 +164,8 @@ TEST(Clutch, IndexingMovesAPartByAMetreWithADeviceOfFourTenths) {
   EXPECT_NEAR(rig.proxy().x(), 0.2 + 0.4 * (segments - 1), 1e-9);
   EXPECT_EQ(segments, 3);
   EXPECT_LT(std::abs(rig.proxy().z()), 1e-12);
-  // The fade of its weight, and what the spring to a part one tick behind changes by: K a T^2, a <= 2.4
-  // m/s^2.
+  // Two changes per tick: the fade of the weight, and the spring to a part one tick behind, K a T^2 with
+  // a <= 2.4 m/s^2.
   EXPECT_LT(rig.most_jump_N, 6 * kPeriod_s / 0.1 + 2000 * 2.4e-6);
   EXPECT_LT(rig.loop.passivity().injected_J, 1e-9);  // level travel: only rounding
 }
@@ -186,7 +186,7 @@ TEST(Clutch, HandOverToAnotherPartNeitherJumpsNorReturnsTheSpringsEnergy) {
   for (int i = 0; i < 120; ++i) rig.tick(Vec3::Zero());
   EXPECT_LT((rig.proxy() - elsewhere).norm(), 1e-12);
   EXPECT_LT((rig.device.written.f - rig.weight_N).norm(), 1e-9);
-  // In the first tick the part does not hang yet, so the second brings two ticks' share.
+  // In the first tick the part does not hang yet, so the second tick adds the share of two ticks.
   EXPECT_LT(rig.most_jump_N, 2.01 * rig.weight_N.norm() * kPeriod_s / 0.1);
   EXPECT_EQ(rig.loop.passivity().to_hand_J, to_hand_J);
 }

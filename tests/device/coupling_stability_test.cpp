@@ -24,7 +24,7 @@ void forEachWall(const Visit& visit) {
 
 TEST(SampledWall, TheLoopGeneratesTheEnergyOfTheFormulaAtEveryFrequency) {
   forEachWall([](const SampledWall& w) {
-    // Sums of 400 terms of rounding, each relative to K T and B at most.
+    // The error is the rounding of 400 terms, each at most that of K T and B.
     const double tol = 1e-10 * (w.K_N_per_m * (w.period_s + w.delay_s) + w.B_Ns_per_m);
     for (const int index : {1, 2, 7, 40, 99, 160, 200})
       EXPECT_NEAR(measuredPassiveDamping(w, index), passiveDampingAt(w, sineAngle_rad(index)), tol)
@@ -56,7 +56,7 @@ TEST(SampledWall, WithDelayAndDamperRequiresAtMostTheSumAndAtLeastTheGreaterOfTh
   EXPECT_NEAR(least, 0.53, 0.005);
 }
 
-// The hand motion that gains most energy: faster while the smaller of a period's two forces acts.
+// The hand motion that gains most energy moves faster while the smaller of a period's two forces acts.
 double energyMade_J(const SampledWall& w, int index, double damping_Ns_per_m) {
   const double T = w.period_s, ticks = w.delay_s / T, whole = std::floor(ticks), phi = ticks - whole;
   const auto x_m = [&](double k) { return 1e-3 * std::sin(sineAngle_rad(index) * k + 0.3); };
@@ -83,7 +83,8 @@ TEST(SampledWall, AForceThatChangesWithinThePeriodRequiresUpToSixPercentMore) {
     }
   }
   const SampledWall half{2000, 0, 1e-3, 0.5e-3};
-  // (1 + sqrt(5/4)) / 2 of the formula, at standstill; the grid's first frequency misses it by 0.01%.
+  // The worst value is (1 + sqrt(5/4)) / 2 times the formula, at standstill; the first frequency of the grid
+  // is 0.01% off.
   EXPECT_NEAR(passiveDamping(half) / passiveDampingFormula(half), (1 + std::sqrt(1.25)) / 2, 2e-4);
 }
 
@@ -178,7 +179,7 @@ TEST(Coupling, DerivedGainsOnTheRealArmHaveNoLimitCycleInAnyDirection) {
       WallPress press;
       press.along_D = along_D;
       const CouplingGains gains = gainsForAStillWall(device);
-      // What one encoder step of 60 um moves against the damping that holds it; a cycle spans a step or more.
+      // The bound is less than one encoder step of 60 um: a limit cycle spans a step or more.
       EXPECT_LT(pressOnWall(device, gains, press).late_m, device.arms.resolution_m / 2);
     }
 }

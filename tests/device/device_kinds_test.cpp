@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <fstream>
+#include <iterator>
 #include <set>
 
 #include "vps/errors.h"
@@ -19,8 +21,14 @@ TEST(DeviceKinds, NamesAreUniqueAndEachIsFoundByItsName) {
     EXPECT_FALSE(kind.description.empty()) << kind.name;
     EXPECT_NE(deviceKindNames().find(kind.name), std::string::npos) << kind.name;
   }
-  EXPECT_EQ(names.size(), 5u);
   EXPECT_EQ(findDeviceKind("spoon"), nullptr);
+}
+
+TEST(DeviceKinds, EachIsInTheTableOfTheDocumentation) {
+  std::ifstream in(std::string(VPS_SOURCE_DIR) + "/device/DRIVERS.md");
+  const std::string page(std::istreambuf_iterator<char>(in), {});
+  for (const DeviceKind& kind : deviceKinds())
+    EXPECT_NE(page.find("| `" + std::string(kind.name) + "` |"), std::string::npos) << kind.name;
 }
 
 TEST(DeviceKinds, AKindIsEitherSimulatedOrOpenedAndThenNamesARemedy) {

@@ -127,7 +127,7 @@ Motion press(double t_s) {
   return {Vec3(0, 0, -z_m), z_m < 5e-3 ? Vec3(0, 0, -50e-3) : Vec3(Vec3::Zero())};
 }
 
-// The same, then along the wall at 50 mm/s.
+// Down onto the wall, then along it at 50 mm/s.
 Motion slide(double t_s) {
   Motion m = press(t_s);
   const double x_m = 50e-3 * std::max(0.0, t_s - 0.2);
@@ -147,8 +147,8 @@ TEST(LocalContact, PressedOnAWallThePartStopsAtTheDepthOfTheContactStiffness) {
     vps_test::NoAllocScope guard;
     for (int i = 0; i < 40; ++i) part = local.follow(gains, proxy, snapshot, kTick_s);
   }
-  // In series with the coupling: depth k A = K (3 mm - depth), A the face's points, the rim's among them.
-  // The voxmap's nodes are rounded to half a quantum.
+  // Contact and coupling are springs in series: depth k A = K (3 mm - depth), with the area A of the face's
+  // points, those of the rim included. The voxmap's nodes are rounded to half a quantum.
   double area_m2 = 0;
   for (std::uint32_t i = 0; i < wall().shell.size(); ++i)
     if (wall().shell.points[i].z() < -kHalf_m + 1e-9) area_m2 += wall().shell.area_m2[i];
@@ -187,11 +187,11 @@ TEST(LocalContact, FrictionHoldsAPartThatIsPulledWithinTheCone) {
     CouplingState now{Pose::translation(Vec3(0, 0, kHalf_m)), {}, 1, true};
     for (int i = 0; i < 40; ++i)
       now = local.follow(gains, proxy, {Pose::translation(Vec3(0, 0, kHalf_m)), {}, 1, true}, kTick_s);
-    // Within the cone it creeps, at most at the speed at which friction has its full value.
+    // Within the cone the part creeps, at most at the speed at which friction has its full value.
     if (pull_m < 1e-3) {
       EXPECT_LT(now.X_W.p.x(), 1e-3 * 40 * kTick_s);
     } else {
-      // It slides, beyond the middle too, until the spring pulls or pushes by no more than the cone.
+      // The part slides, also beyond the middle, until the spring's force is within the cone.
       EXPECT_GT(now.X_W.p.x(), 0.5e-3);
       EXPECT_LT(gains.k_N_per_m * std::abs(pull_m - now.X_W.p.x()), 0.3 * 3.45);
       EXPECT_LT(now.V_W.v.norm(), 1e-3);
@@ -199,7 +199,7 @@ TEST(LocalContact, FrictionHoldsAPartThatIsPulledWithinTheCone) {
   }
 }
 
-// Greatest difference of force, tick by tick.
+// Greatest difference of force between two runs, tick by tick.
 double apart_N(const Played& a, const Played& b) {
   double most_N = 0;
   for (std::size_t i = 0; i < std::min(a.forces_N.size(), b.forces_N.size()); ++i)
@@ -215,14 +215,14 @@ TEST(LocalContact, WithSlowPhysicsATouchMatchesThatOfFastPhysics) {
   RecordProperty("step_1kHz_N", std::to_string(truth.greatest_step_N));
   RecordProperty("step_100Hz_N", std::to_string(jagged.greatest_step_N));
   RecordProperty("step_100Hz_local_N", std::to_string(crisp.greatest_step_N));
-  EXPECT_LT(apart_N(crisp, truth), apart_N(jagged, truth) / 3) << "or it would not be worth its while";
+  EXPECT_LT(apart_N(crisp, truth), apart_N(jagged, truth) / 3) << "local contact has no benefit";
 }
 
 TEST(LocalContact, WithSlowPhysicsSlidingHasNoSawTooth) {
   const Played jagged = play(slide, 10, false, 0.3, 0.6), smooth = play(slide, 10, true, 0.3, 0.6);
   RecordProperty("side_100Hz_N", std::to_string(jagged.worst_side_N));
   RecordProperty("side_100Hz_local_N", std::to_string(smooth.worst_side_N));
-  // Held for ten periods at 50 mm/s the part lags by 0.5 mm: 0.58 N, nine tenths of it in one step.
+  // Held for ten periods at 50 mm/s the part lags by 0.5 mm, which is 0.58 N; nine tenths come in one step.
   EXPECT_GT(jagged.greatest_step_N, 0.4);
   EXPECT_LT(smooth.worst_side_N, jagged.worst_side_N / 4);
   EXPECT_LT(smooth.greatest_step_N, jagged.greatest_step_N / 4);
@@ -293,7 +293,8 @@ TEST(LocalContact, AStateThatIsNotFiniteIsReturnedUnchanged) {
   }
   snapshot.V_W.v.x() = 0;
   snapshot.time_s += 1;
-  EXPECT_TRUE(local.follow(dualArmGains(), proxy, snapshot, kTick_s).X_W.isFinite()) << "and it goes on";
+  EXPECT_TRUE(local.follow(dualArmGains(), proxy, snapshot, kTick_s).X_W.isFinite())
+      << "the prediction continues";
 }
 
 }  // namespace

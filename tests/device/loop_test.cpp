@@ -59,7 +59,7 @@ TEST(HapticLoop, GraspingAnywhereGivesNoForce) {
   loop.grasp(X_WG);
   port.physics.write({partAt(X_WG), 0, {}, {}});
   loop.tick();
-  // A spring of 2000 N/m times a rounding of 1e-15.
+  // The bound is a spring of 2000 N/m times a rounding of 1e-15.
   EXPECT_LT(device.written.f.norm() + device.written.tau.norm(), 1e-10);
   EXPECT_LT((port.haptic.read().proxy.X_W.p - X_WG.p).norm(), 1e-14);
 }
@@ -219,7 +219,8 @@ TEST(HapticLoop, EarlyDissipationDoesNotOffsetLaterGeneration) {
   lead(loop, device, -x_m, 0);
   EXPECT_NEAR(loop.passivity().balance_J, -k * x_m * x_m, 1e-12);
   EXPECT_EQ(loop.passivity().injected_J, 0);
-  // Now half as much appears without a source. The greatest balance over time is still the initial zero.
+  // Now half of that energy appears without a source. The greatest balance over time is still the initial
+  // zero.
   lead(loop, device, -x_m, 0.5 * k * x_m * x_m);
   EXPECT_LT(loop.passivity().balance_J, 0);
   EXPECT_NEAR(loop.passivity().injected_J, 0.5 * k * x_m * x_m, 1e-12);
@@ -247,9 +248,9 @@ TEST(HapticLoop, EnergyAccountUsesTheActingForceNotTheOneJustWritten) {
   }
 }
 
-// A wall at the end of a connection that takes 20 ticks: its spring's energy is that of a hand 20 ticks ago.
-// The way that the hand has gone since would count as 20 steps times the force otherwise, 20 times the bound
-// here.
+// A wall at the end of a connection that takes 20 ticks: the energy of its spring belongs to the hand 20
+// ticks ago. Balanced against the present hand, the motion since then would add 20 steps times the force, 20
+// times the bound of this test.
 TEST(HapticLoop, EnergyStoredWhenATickAgoWasAnsweredIsBalancedAgainstTheWorkUntilThatTick) {
   Puppet device;
   CouplingPort port;
@@ -421,7 +422,7 @@ TEST(Coupling, DerivedGainsPressSteadilyOnARigidFloor) {
       EXPECT_LT(gains.k_N_per_m, 5000);
       const Press press = pressOnFloor(gains, haptic_per_physics, hand_k);
       const double force_N = 5 * gains.k_N_per_m / (gains.k_N_per_m + hand_k);  // two springs in series
-      // Dry friction may hold up to 0.35 N of it; one encoder error of 0.1 mm moves the reading.
+      // Dry friction may hold up to 0.35 N of the force; one encoder error of 0.1 mm moves the reading.
       EXPECT_NEAR(press.force_N, force_N, 0.35 + 1e-4 * gains.k_N_per_m) << hand_k;
       // One encoder error in the spring, and its speed through the filter (20 mm/s, both ways) in the damper.
       EXPECT_LT(press.ripple_N, 1e-4 * gains.k_N_per_m + 0.04 * gains.b_Ns_per_m) << hand_k;

@@ -46,7 +46,7 @@ TEST(Metronome, AfterAMissedPeriodContinuesAtTheNextBoundaryWithoutBursts) {
   EXPECT_EQ(metronome.wait().due_ns, 7000);
 }
 
-// Late by up to 3500, of which each further beat of 200 makes up for 800.
+// The beats are up to 3500 ns late, and each further beat, with 200 ns of work, makes up for 800 ns.
 TEST(Metronome, LateBeatsFollowAtOnceUntilTheClockIsReached) {
   FakeClock clock;
   Metronome metronome(kPeriod_ns, clock, 20 * kPeriod_ns);
@@ -69,7 +69,7 @@ TEST(Metronome, BeatsBeyondTheLimitAreMissedAndTheRestIsMadeUpFor) {
   metronome.wait();  // 1000
   clock.now += 7500;
   Beat beat = metronome.wait();
-  EXPECT_EQ(beat.due_ns, 7000) << "1500 late; the one before would be 2500 late";
+  EXPECT_EQ(beat.due_ns, 7000) << "1500 ns late; the previous beat would be 2500 ns late";
   EXPECT_EQ(beat.missed_before, 5);
   EXPECT_EQ(beat.periods, 6);
   beat = metronome.wait();

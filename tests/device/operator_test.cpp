@@ -19,8 +19,7 @@ namespace {
 
 const Vec3 kTip_P(0, 0, -0.03);
 
-/// Looks at a part that stands still for so long that `fixations` errors are drawn; gives the sums of
-/// squares.
+/// Sums of squares of the errors in this number of fixations, of a part that stands still.
 struct Errors {
   double square_m2 = 0, square_rad2 = 0;
 };
@@ -31,7 +30,7 @@ Errors errorsOf(const OperatorHabits& habits, int fixations) {
   view.X_WP = Pose(rotationFromVector(Vec3(0.3, 0.2, 0.1)), Vec3(1, 2, 3));
   Errors errors;
   for (int i = 1; i <= fixations; ++i) {
-    // Once late in each fixation, when what is seen belongs to it.
+    // The sample is late in each fixation, when the picture belongs to that fixation.
     for (view.time_s = (i - 1) * habits.fixation_s; view.time_s < (i - 0.01) * habits.fixation_s;
          view.time_s += 1e-3)
       sight.look(view);
@@ -45,7 +44,7 @@ TEST(Sight, ErrsAtTheTipByItsStandardDeviationInEachFixation) {
   const OperatorHabits habits;
   const int n = 1000;
   const Errors errors = errorsOf(habits, n);
-  // The sum of 3 n squares has a relative deviation of sqrt(2 / 3n); four of them.
+  // The sum of 3 n squares has a relative deviation of sqrt(2 / 3n); the bound is four deviations.
   const double share = 4 * std::sqrt(2.0 / (3 * n));
   EXPECT_NEAR(errors.square_m2 / (3 * n * habits.see_error_m * habits.see_error_m), 1, share);
   EXPECT_NEAR(errors.square_rad2 / (3 * n * habits.see_error_rad * habits.see_error_rad), 1, share);
@@ -230,8 +229,9 @@ TEST(VirtualOperator, FindsTheHoleFromFiveSeedsWithATightMouth) {
   }
 }
 
-// The hole is on the way to the target, and not at its end: without a search there the hand goes on along y
-// with the peg still on the mouth. Beside five errors of the aim the mouth is met at most once by luck.
+// The hole is on the way to the target, not at the end of the path: without a search on the way the hand
+// would move on along y with the peg still on the mouth. Of five aim errors at most one meets the mouth by
+// chance.
 TEST(VirtualOperator, FindsAHoleOnTheWayAndGoesOnBehindIt) {
   int retries = 0;
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
@@ -244,7 +244,7 @@ TEST(VirtualOperator, FindsAHoleOnTheWayAndGoesOnBehindIt) {
     EXPECT_EQ(run.phase, OperatorPhase::Done) << "seed " << seed << ", " << run.retries << " retries";
     EXPECT_LE(run.error_m, 0.25e-3) << "seed " << seed;
     RecordProperty("seed_" + std::to_string(seed), std::to_string(run.time_s));
-    EXPECT_EQ(run.retries, run.most_retries) << "the search behind the hole forgot those of the first";
+    EXPECT_EQ(run.retries, run.most_retries) << "retries of the first search are lost";
     retries += run.retries;
   }
   EXPECT_GT(retries, 0);
@@ -269,15 +269,15 @@ double unguidedError_m(double see_error_m) {
 
 TEST(VirtualOperator, PlacesWhatNothingGuidesOnlyAsWellAsItSees) {
   const double sharp_m = unguidedError_m(0.1e-3), blurred_m = unguidedError_m(0.4e-3);
-  // It averages about five fixations, across in two directions; a chi-square of sixteen values is below a
-  // ninth of its mean once in a million.
+  // The operator averages about five fixations, in two directions across the axis; a chi-square of sixteen
+  // values is below a ninth of its mean once in a million.
   EXPECT_GT(sharp_m, 0.1e-3 * std::sqrt(2.0 / 5) / 3);
   EXPECT_GT(blurred_m, 2 * sharp_m);
   RecordProperty("errors_um", std::to_string(1e6 * sharp_m) + " and " + std::to_string(1e6 * blurred_m));
 }
 
-// The hand pushes the part past its place, where friction holds it on the way back. What it then saw late,
-// while the part moved, once counted as what it saw at its place, and it let go 3.6 mm off.
+// The hand pushes the part past its target, and friction holds the part on the way back. The delayed pictures
+// of the moving part once counted as pictures of the part at its target, and the hand released it 3.6 mm off.
 TEST(VirtualOperator, PushesOnWhereFrictionHoldsWhatNothingStops) {
   constexpr double kBound = 4;  // errors of sight; assumed of a hand that works against friction
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
@@ -289,7 +289,7 @@ TEST(VirtualOperator, PushesOnWhereFrictionHoldsWhatNothingStops) {
     const Mounting run = mountPeg(habits, world, 40);
     EXPECT_EQ(run.phase, OperatorPhase::Done) << "seed " << seed;
     EXPECT_LE(std::abs(run.along_m), kBound * habits.see_error_m) << "seed " << seed;
-    // It has 15 s from where it saw that nothing stops the part.
+    // The hand takes at most 15 s after it has seen that nothing stops the part.
     EXPECT_LE(run.time_s, 26) << "seed " << seed;
   }
 }

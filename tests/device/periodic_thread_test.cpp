@@ -44,7 +44,7 @@ TEST(PeriodicThread, AnExceptionOfTheWorkEndsTheThreadAndIsRethrownByStop) {
   thread.start([](const Beat&) { throw std::runtime_error("the step failed"); });
   while (thread.isRunning()) std::this_thread::yield();
   EXPECT_THROW(thread.stop(), std::runtime_error);
-  EXPECT_NO_THROW(thread.stop()) << "told once";
+  EXPECT_NO_THROW(thread.stop()) << "an exception is rethrown once";
 }
 
 TEST(PeriodicThread, RefusesARateOutOfRange) {
@@ -55,7 +55,7 @@ TEST(PeriodicThread, RefusesARateOutOfRange) {
 TEST(RequestRealTime, ReportsWhatWasRefusedAndTheRemedy) {
   std::thread([] {
     const RealTimeReport none = requestRealTime(0, false);
-    EXPECT_TRUE(none.warnings.empty()) << "nothing asked, nothing refused";
+    EXPECT_TRUE(none.warnings.empty()) << "without a request nothing is refused";
     const RealTimeReport report = requestRealTime(200, false);  // no system has such a priority
     EXPECT_FALSE(report.has_priority);
     ASSERT_EQ(report.warnings.size(), 1u);

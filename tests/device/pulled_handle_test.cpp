@@ -26,7 +26,7 @@ TEST(PulledHandle, FollowsItsWishWithTheTimeConstantOfSpringAndDamper) {
   PulledHandle handle;
   const double way_m = 1e-3;  // 3 N: below the limit
   const DeviceSample sample = pulled(handle, Pose::translation({way_m, 0, 0}), {}, 0.02);
-  // Backward Euler: the rest shrinks by 1 / (1 + k dt / b) a tick.
+  // With backward Euler the remaining distance shrinks by 1 / (1 + k dt / b) per tick.
   const double rest_m = way_m * std::pow(1 + s.k_N_per_m * kTick_s / s.b_Ns_per_m, -20);
   EXPECT_NEAR(sample.X_DH.p.x(), way_m - rest_m, 20 * 1e-18);
   EXPECT_EQ(sample.X_DH.p.y(), 0);

@@ -84,7 +84,7 @@ TEST(RealTimeLoop, EachBeatIsATickWithTheCouplingsForce) {
   EXPECT_EQ(rig.loop.statistics().summary().missed, 0u);
 }
 
-// 2 mm at 1000 N/m, then at 250 N/m; an excessive stiffness is refused.
+// The force is that of 2 mm at 1000 N/m, then at 250 N/m; an excessive stiffness is refused.
 TEST(RealTimeLoop, SofterGainsActFromTheNextTickAndUnusableOnesAreAFault) {
   Rig rig;
   rig.run(100);
@@ -103,8 +103,8 @@ TEST(RealTimeLoop, SofterGainsActFromTheNextTickAndUnusableOnesAreAFault) {
   EXPECT_EQ(rig.port.haptic.read().safety.fault, SafetyFault::BadGains);
 }
 
-// The proxy holds the part 2 mm off, wherever the handle moves meanwhile; after the hand-over there is no
-// offset.
+// The proxy holds the part at an offset of 2 mm while the handle moves; after the hand-over the offset is
+// zero.
 TEST(RealTimeLoop, ClutchRequestsOpenCloseAndHandOver) {
   Rig rig;
   rig.run(100);
@@ -132,24 +132,24 @@ TEST(RealTimeLoop, PhysicsThatStallsForASecondGivesNoForceUntilRearmed) {
   Rig rig;
   rig.run(100);
   rig.run(99, false);
-  EXPECT_GT(rig.force_N(), 1.9) << "a tenth of a second is waited for";
+  EXPECT_GT(rig.force_N(), 1.9) << "the fault needs a tenth of a second";
   rig.run(901, false);
   EXPECT_EQ(rig.force_N(), 0);
   const std::vector<DeviceEvent> told = rig.heard();
-  ASSERT_EQ(told.size(), 1u) << "told once";
+  ASSERT_EQ(told.size(), 1u) << "reported once";
   EXPECT_EQ(told[0].kind, DeviceEventKind::PhysicsStalled);
   EXPECT_NEAR(told[0].value, 0.1, 2e-3);
   EXPECT_EQ(rig.port.haptic.read().safety.fault, SafetyFault::PhysicsStalled);
 
   rig.run(200);
-  EXPECT_EQ(rig.force_N(), 0) << "it stays so when physics goes on";
+  EXPECT_EQ(rig.force_N(), 0) << "the fault stays latched when physics continues";
   rig.loop.rearm();
   rig.run(500);
   EXPECT_EQ(rig.heard().at(0).kind, DeviceEventKind::Rearmed);
-  EXPECT_EQ(rig.force_N(), 0) << "held anew where the part is";
+  EXPECT_EQ(rig.force_N(), 0) << "the part is grasped again where it is";
   rig.device.sample.X_DH.p.x() += 1e-3;
   rig.run(1);
-  EXPECT_NEAR(rig.force_N(), 1, 1e-9) << "and it pulls again";
+  EXPECT_NEAR(rig.force_N(), 1, 1e-9) << "the coupling pulls again";
 }
 
 TEST(RealTimeLoop, RearmedWhilePhysicsStillStallsItGivesNoForce) {
@@ -201,7 +201,7 @@ TEST(RealTimeLoop, ADeviceThatIsLostGivesNoForceUntilItIsBackAndRearmed) {
   EXPECT_EQ(rig.heard().at(0).kind, DeviceEventKind::DeviceLost);
   rig.loop.rearm();
   rig.run(5);
-  EXPECT_EQ(rig.port.haptic.read().safety.fault, SafetyFault::DeviceLost) << "it is still lost";
+  EXPECT_EQ(rig.port.haptic.read().safety.fault, SafetyFault::DeviceLost) << "the device is still lost";
   rig.device.sample.status = Status::Ok;
   rig.run(5);
   EXPECT_EQ(rig.port.haptic.read().safety.fault, SafetyFault::DeviceLost) << "latched";

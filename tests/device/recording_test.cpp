@@ -227,7 +227,7 @@ TEST(Recorder, AKilledProgramLeavesARecordingUpToAQuarterSecondBefore) {
   ASSERT_FALSE(fs::exists(file));
   const RecordedRun run = loadRecording(fs::directory_iterator(folder.path())->path());
   EXPECT_NE(run.damage.find("ends without its closing record"), std::string::npos) << run.damage;
-  // A chunk spans 250 ms of samples, or 64 KiB of messages; 1 kHz makes 250 samples the more.
+  // A chunk holds 250 ms of samples or 64 KiB of messages; at 1 kHz the limit is 250 samples.
   EXPECT_GE(run.entries.size(), 1750u);
   for (std::size_t i = 0; i < run.entries.size(); ++i)
     ASSERT_EQ(log::difference(sampleAt(static_cast<int>(i)), run.entries[i]), "");
@@ -237,7 +237,7 @@ TEST(Recorder, AFullRingDropsEntriesCountsAndReportsThem) {
   const test::TemporaryFolder folder;
   const std::string file = folder.path() / "run.mcap";
   Recorder recorder(file, smallHead(), 4);
-  // Far faster than a thread that polls every 5 ms.
+  // Entries come far faster than a thread that polls every 5 ms can write.
   for (int i = 0; i < 100'000; ++i) recorder.add(sampleAt(i % 100));
   recorder.finish();
   EXPECT_GT(recorder.dropped(), 0u);
@@ -290,7 +290,7 @@ TEST(Recording, SyncEventsOnTheOldChannelNameAreRead) {
 
 // --- As a device
 
-/// Oscillates by itself.
+/// A device whose handle oscillates.
 class Oscillator final : public Device {
  public:
   DeviceSample read() noexcept override {
@@ -307,7 +307,7 @@ class Oscillator final : public Device {
   int n_ = 0;
 };
 
-/// Holds a part that does not move, for some ticks.
+/// Runs the loop for some ticks; it holds a part that does not move.
 void hold(Device& device, double k_N_per_m, int ticks) {
   CouplingPort port;
   LoopSettings settings;
@@ -344,7 +344,8 @@ TEST(Recording, ADepartureIsReportedWithTickChannelAndField) {
   ReplayCheck check(device.run());
   TappedDevice tapped(device, check);
   hold(tapped, std::nextafter(1000.0, 2000.0), 400);
-  // The first sample is at the grasp, so the first tick's force is of the second, in the last digit.
+  // The first sample is read by the grasp, so the force of the first tick comes from the second sample, and
+  // differs in the last digit.
   EXPECT_NE(check.departure().find("/device/write: force_n.x was "), std::string::npos) << check.departure();
   EXPECT_EQ(check.departure().find("tick "), 0u);
 }

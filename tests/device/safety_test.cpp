@@ -67,7 +67,7 @@ TEST(SafetyGuard, DetectsJumpsLostDevicesAndBadPoses) {
   EXPECT_EQ(guard.state().fault, SafetyFault::Jump);
   guard.rearm();
   guard.guard(sample, {}, kDt_s);
-  EXPECT_EQ(guard.state().fault, SafetyFault::None) << "after re-arming the new place is where it is";
+  EXPECT_EQ(guard.state().fault, SafetyFault::None) << "after re-arming the first pose may be anywhere";
   sample.status = Status::Fault;
   guard.guard(sample, {}, kDt_s);
   EXPECT_EQ(guard.state().fault, SafetyFault::DeviceLost);
@@ -84,7 +84,7 @@ TEST(SafetyGuard, DetectsAClockThatGoesBackwards) {
   sample.time_s = 1;
   const Wrench wanted{Vec3::Zero(), Vec3(1, 0, 0)};
   EXPECT_GT(guard.guard(sample, wanted, kDt_s).f.norm(), 0);
-  EXPECT_GT(guard.guard(sample, wanted, kDt_s).f.norm(), 0) << "the same time is none";
+  EXPECT_GT(guard.guard(sample, wanted, kDt_s).f.norm(), 0) << "an unchanged time is no fault";
   sample.time_s = 0.999;
   EXPECT_EQ(guard.guard(sample, wanted, kDt_s).f, Vec3(Vec3::Zero()));
   EXPECT_EQ(guard.state().fault, SafetyFault::ClockBackwards);

@@ -27,7 +27,7 @@ using test::within10s;
 using Packet = std::array<std::int32_t, 8>;
 constexpr std::int32_t kMotion = 0, kPress = 1, kRelease = 2, kDevice = 3;
 
-/// Does what spacenavd does: listens, answers the handshake, sends events.
+/// Stands for spacenavd: listens, answers the handshake, sends events.
 class FakeDaemon {
  public:
   explicit FakeDaemon(const std::string& socket_file) : file_(socket_file) {
@@ -47,10 +47,10 @@ class FakeDaemon {
   FakeDaemon(const FakeDaemon&) = delete;
   FakeDaemon& operator=(const FakeDaemon&) = delete;
 
-  /// Waits for a client; returning its number agrees on protocol 1.
+  /// Waits for a client, and returns the number that it sends, which agrees on protocol 1.
   void acceptClient() {
     pollfd waited{listener_, POLLIN, 0};
-    ASSERT_EQ(::poll(&waited, 1, 10'000), 1) << "nobody came";
+    ASSERT_EQ(::poll(&waited, 1, 10'000), 1) << "no client connected";
     client_ = accept(listener_, nullptr, nullptr);
     std::int32_t request = 0;
     ASSERT_EQ(recv(client_, &request, sizeof request, MSG_WAITALL), 4);

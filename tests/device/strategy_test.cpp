@@ -5,19 +5,38 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <numbers>
+#include <string>
 #include <vector>
 
-#include "operator/strategies/strategy.h"
+#include "operator/sequence.h"
 #include "vps_device/operator.h"
 
 namespace vps::device {
 namespace {
 
+TEST(Strategy, EachHasANameARowInTheDocumentationAndAMaker) {
+  std::ifstream in(std::string(VPS_SOURCE_DIR) + "/device/VIRTUAL_OPERATOR.md");
+  const std::string page(std::istreambuf_iterator<char>(in), {});
+  const Insertion insertion;  // makes all strategies
+  for (std::size_t row = 1; row < kStrategies; ++row) {
+    const std::string name = toText(static_cast<OperatorStrategy>(row));
+    EXPECT_NE(page.find("| `" + name + "` |"), std::string::npos) << name;
+  }
+  EXPECT_STREQ(toText(OperatorStrategy::None), "none");
+  EXPECT_STREQ(toText(OperatorStrategy::ScrewOn), "screw_on");
+  EXPECT_STREQ(toText(static_cast<OperatorStrategy>(kStrategies)), "unknown");
+  // A recording keeps the number of the row.
+  EXPECT_EQ(static_cast<int>(OperatorStrategy::Approach), 1);
+  EXPECT_EQ(static_cast<int>(OperatorStrategy::ScrewOn), 11);
+}
+
 constexpr double kDt_s = 1e-3;
 
-/// A part that is coupled to the hand by a spring, pressed on a plane with Coulomb's friction: it follows the
-/// hand up to friction / spring behind.
+/// A part that a spring couples to the hand, pressed on a plane with Coulomb friction: it follows the hand at
+/// a distance of up to friction / spring.
 struct SlidingPart {
   double k_N_per_m = 1000, friction_N = 0;
   Vec3 part_m = Vec3::Zero(), hand_m = Vec3::Zero();
@@ -38,7 +57,7 @@ struct SlidingPart {
   }
 };
 
-/// How far the part goes from where it began, until the search ends.
+/// Greatest distance of the part from its start until the search ends.
 double reachOfSearch(double friction_N) {
   Situation situation;
   SlidingPart sliding;
@@ -56,8 +75,8 @@ double reachOfSearch(double friction_N) {
   return farthest_m;
 }
 
-// A friction of 0.5 N behind a spring of 1 kN/m is as far as the whole spiral: a hand that does not lead the
-// part moves it nowhere.
+// A friction of 0.5 N deflects a spring of 1 kN/m by as much as the radius of the spiral: a hand that does
+// not move ahead of the part would not move it at all.
 TEST(SpiralSearch, LeadsAPartThatFrictionHolds) {
   const double limit_m = OperatorHabits().search_limit_m;
   for (const double friction_N : {0.0, 0.2, 0.5}) {
@@ -66,8 +85,8 @@ TEST(SpiralSearch, LeadsAPartThatFrictionHolds) {
   }
 }
 
-// It was backed off before its hole, and sight has moved it above the hole since: it drops while it is
-// lowered, past where it touched before. There is nothing to search for then.
+// The part was backed off to before its hole, and sight has corrected its position since: it drops into the
+// hole while it is lowered, past the depth of the first touch. The search is then over.
 TEST(SpiralSearch, EndsWhereThePartDropsWhileItIsLowered) {
   Situation situation;
   situation.mouth_m = -14e-3;
@@ -92,8 +111,8 @@ constexpr double kTurn_rad = 2 * std::numbers::pi;
 struct ThreadWorld {
   double pitch_m = 2e-3;
   double drop_m = 0.5e-3;       ///< 0: nothing to feel
-  double ends_meet_rad = -2.5;  ///< and every turn from there
-  double along_share = 1;       ///< of the pitch, which the nut moves on by in a turn; 0: it does not catch
+  double ends_meet_rad = -2.5;  ///< at this angle and every whole turn from it
+  double along_share = 1;       ///< advance per turn, as a share of the pitch; 0: the thread does not catch
   double play_m = 0.2e-3;
   double target_m = -3e-3;  ///< height
   bool is_on = false;
@@ -107,7 +126,7 @@ struct ThreadWorld {
       is_on = true;
       on_rad = s_now_rad;
     }
-    // Turned back by more than the play allows, it comes off again.
+    // A nut that is turned back by more than the play allows comes off again.
     if (is_on && (on_rad - s_now_rad) / kTurn_rad * pitch_m > play_m) is_on = false;
     s_rad = s_now_rad;
     if (is_on) return -along_share * pitch_m * (s_now_rad - on_rad) / kTurn_rad - play_m;
@@ -120,7 +139,7 @@ struct Screwed {
   OperatorPhase phase = OperatorPhase::Idle;
   double height_m = 0;      ///< of the nut beyond its target
   double turned_rad = 0;    ///< in the direction that screws it on, at the end
-  double drop_rad = 0;      ///< where it began to be screwed on first
+  double drop_rad = 0;      ///< angle at which ScrewOn first began
   double farthest_rad = 0;  ///< turn of the handle from the middle of its range
   int retries = 0, grips = 0;
   std::vector<OperatorStrategy> strategies;
@@ -160,7 +179,8 @@ Screwed screwOn(ThreadWorld world, const ScrewTask& screw, double timeout_s = 60
       hand.goOn();
       continue;
     }
-    // Springs in a row from where the hand wants to be to the nut; across and in rotation nothing resists.
+    // Springs in series from the hand's equilibrium to the nut; nothing resists across the axis or in
+    // rotation.
     const Pose& X_eq = force.X_eq;
     const double turn_rad = -rotationVector(X_eq.R * view.X_WP.R.transpose()).z();
     handle_rad += turn_rad;
@@ -194,10 +214,10 @@ TEST(Screw, TurnsBackUntilTheThreadDropsAndThenOnToTheHeightOfTheTarget) {
     EXPECT_EQ(run.retries, 0) << seed;
     using enum OperatorStrategy;
     EXPECT_EQ(run.strategies, (std::vector{Approach, Touch, TurnBack, ScrewOn})) << seed;
-    // 1.2 rad/s, until the drop is over for 0.15 s, and the lag of the hand.
+    // The hand turns on at 1.2 rad/s for 0.15 s after the drop, and lags.
     EXPECT_NEAR(run.drop_rad, -2.5, 0.5) << seed;
     EXPECT_NEAR(run.height_m, 0, kHeight_m) << seed;
-    // The way down from the mouth is 3 mm: one and a half turns from where it dropped, less the play.
+    // The nut moves 3 mm down from the mouth: one and a half turns from the drop, less the play.
     EXPECT_NEAR(run.turned_rad + 2.5, (3e-3 - 0.2e-3) / 2e-3 * kTurn_rad, kHeight_m / 2e-3 * kTurn_rad)
         << seed;
   }
@@ -213,8 +233,8 @@ TEST(Screw, ALeftHandThreadTurnsTheOtherWay) {
 
 TEST(Screw, TheHandleStaysWithinItsRange) {
   const Screwed run = screwOn({}, kNut);
-  // 2.6 rad back and 8.8 on: the first stroke is half a range, those after a change of direction what is
-  // left.
+  // The nut turns 2.6 rad back and 8.8 rad on; the first stroke is half the handle's range, and a stroke
+  // after a change of direction is shorter.
   EXPECT_NEAR(run.grips, (2.6 - 0.7) / 1.4 + 8.8 / 1.4, 1.5);
   EXPECT_LT(run.farthest_rad, 0.7 + 0.1);  // what the hand's lag adds at 1.2 rad/s
   EXPECT_EQ(screwOn({}, {.pitch_m = 2e-3}).grips, 0);
@@ -242,11 +262,11 @@ TEST(Screw, ACrossedThreadIsNoThread) {
   for (const double share : {0.3, 1.7}) {
     ThreadWorld crossed;
     crossed.along_share = share;
-    crossed.target_m = -6e-3;  // farther than it comes in the turn after which the hand knows
+    crossed.target_m = -6e-3;  // farther than the advance in the turn after which the hand decides
     const Screwed run = screwOn(crossed, kNut, 90);
     EXPECT_GT(run.retries, 0) << share;
   }
-  for (const double share : {0.8, 1.2}) {  // within what play and the hand's errors explain
+  for (const double share : {0.8, 1.2}) {  // within the play and the errors of the hand
     ThreadWorld worn;
     worn.along_share = share;
     EXPECT_EQ(screwOn(worn, kNut, 90).retries, 0) << share;

@@ -14,7 +14,7 @@
 namespace vps::device {
 namespace {
 
-// Nearest rank, of all values kept and sorted.
+// Reference: nearest rank in the sorted list of all values.
 std::int64_t exact(const std::vector<std::int64_t>& sorted, double share) {
   const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(sorted.size())));
   return sorted[std::max<std::size_t>(rank, 1) - 1];
@@ -42,8 +42,8 @@ TEST(TickHistogram, PercentilesMatchTheSortedListToOnePartIn64) {
 }
 
 TEST(TickHistogram, EveryValueIsRoundedUpToItsBucketsEnd) {
-  // At each power of two and next to it, where an index may be one off. A second, greater value keeps the
-  // exact maximum from hiding the bucket's end.
+  // Values at and next to each power of two, where an index may be one off. A second, greater value is
+  // needed, since the exact maximum would hide the end of the bucket.
   for (int bit = 0; bit < 40; ++bit)
     for (const std::int64_t off : {-1, 0, 1}) {
       const std::int64_t ns = (std::int64_t{1} << bit) + off;

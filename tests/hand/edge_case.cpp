@@ -11,7 +11,7 @@ namespace vps::hand {
 
 namespace {
 
-constexpr double kPress_s = 5;  // of a peg that is too large: the hand need not try for long
+constexpr double kPress_s = 5;  // timeout for a peg that is too large, which needs no long trial
 
 PegFit fitOf(bool is_round, int size_mm, bool has_chamfer, int clearance_um) {
   PegFit fit;

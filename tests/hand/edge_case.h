@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pegs from 50 um too large to 50 um of clearance: the answer to "does it fit?" changes at zero.
+// Pegs from 50 um too large to 50 um of clearance, as cases and as a table of verdicts: the answer to "does
+// it fit?" changes at zero.
 #pragma once
 
 #include <cstdint>
@@ -28,28 +29,29 @@ std::string rowName(const EdgeCase& edge);
 std::string caseName(const EdgeCase& edge);
 scenes::Scene edgeScene(const EdgeCase& edge);
 
-/// Nearer to zero than this, Not shown is allowed: 2 um, and the chord of one mesh across its diameter.
+/// The verdict Not shown is allowed for clearances nearer to zero than this: 2 um, and the chord of one mesh
+/// across its diameter.
 double edgeBand_m(const EdgeCase& edge);
 
 enum class EdgeOutcome {
   Right,
-  NotShown,   ///< within the band
-  MissedFit,  ///< not shown, though it has more clearance than the band
-  Wrong,      ///< fits or not shown though it is too large, or blocked though it fits
+  NotShown,   ///< Not shown, within the band
+  MissedFit,  ///< Not shown, although the clearance is greater than the band
+  Wrong,      ///< Fits or Not shown although the peg is too large, or Blocked although it fits
 };
 EdgeOutcome outcomeOf(const EdgeCase& edge, scenes::Verdict verdict);
 
 struct EdgeTableSettings {
   std::size_t every = 1;  ///< runs each every-th case
-  std::size_t first = 0;  ///< from this one
+  std::size_t first = 0;  ///< index of the first case
   std::uint64_t seed = 1;
-  std::string only;         ///< of the rows whose name contains this
+  std::string only;         ///< runs only rows whose name contains this text
   bool has_wall = true;     ///< false: only the bottom of each hole is left
-  std::string rows_file;    ///< the rows go to this file as well (support/table_rows.h)
-  bool is_verbose = false;  ///< a line for each case
+  std::string rows_file;    ///< a file that gets the rows too (support/table_rows.h)
+  bool is_verbose = false;  ///< prints a line for each case
 };
 
-/// Runs the cases and prints the table. The number of wrong verdicts.
+/// Runs the cases and prints the table. Returns the number of wrong verdicts.
 int printEdgeTable(const EdgeTableSettings& settings);
 
 }  // namespace vps::hand

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Verdicts on both sides of the edge between fit and misfit. README.md has the whole table.
+// Verdicts on both sides of the edge between fit and misfit; README.md has the whole table.
 #include <gtest/gtest.h>
 
 #include "edge_case.h"
@@ -42,11 +42,11 @@ TEST(Edge, ARectangularPegIsBlockedFiveMicrometresBelowZeroAndFitsAbove) {
   expectRight("rectangular 4 mm chamfered faulty", {-10, 30});
 }
 
-// The hole's mesh has cracks of up to 0.5 um, which were taken for edges of the part. The other peg settles
-// by 9 um within its clearance when it is let go, and is at rest then.
+// The mesh of the hole has cracks of up to 0.5 um, which were once taken for edges of the part. The peg with
+// 40 um settles by 9 um within its clearance when it is released, and is at rest then.
 TEST(Edge, ASharpPegFitsAMeshWithCracksAndMaySettleInItsHole) {
   expectRight("round 4 mm sharp faulty", {30, 40});
-  // A crack moved a corner of the peg by 0.3 um into the bottom of the hole, which is no clash.
+  // A crack once moved a corner of the peg by 0.3 um into the bottom of the hole, which is no clash.
   expectRight("rectangular 8 mm sharp faulty", {10});
 }
 

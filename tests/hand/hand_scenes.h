@@ -20,7 +20,7 @@ struct PegFit {
   double depth_m = 10e-3;    ///< of the hole; the peg is 2.5 times as long
   double outer_m = 12e-3;    ///< from the axis to the outer side of the part with the hole
   double hole_turn_rad = 0;  ///< of the hole about its axis
-  bool has_wall = true;      ///< false: of the hole only the bottom is left, a plate with nothing beside it
+  bool has_wall = true;      ///< false: only the bottom of the hole is left, a plate
 };
 
 /// Round parts are drawn with this many flats. The hole's flats touch its circle from outside and the peg's
@@ -46,13 +46,13 @@ struct PegScene {
 const std::vector<PegScene>& pegScenes();
 
 /// A nut with a coarse right-hand thread (12 mm, pitch 3 mm) above an upright rod. The target is this far
-/// below where the nut meets the rod.
+/// below the height at which the nut meets the rod.
 scenes::Scene coarseThread(double depth_m, std::uint64_t seed);
 
-/// The same, aimed with a standard deviation of six degrees, so that the nut may start crossed.
+/// coarseThread(), aimed with a standard deviation of six degrees, so that the nut may start crossed.
 scenes::Scene leaningNut(double depth_m, std::uint64_t seed);
 
-/// The same nut over a smooth rod that it passes: nothing catches.
+/// The nut of coarseThread() over a smooth rod, on which no thread catches.
 scenes::Scene smoothRod(double depth_m, std::uint64_t seed);
 
 /// The nut and bolt in the folder $VPS_CAD_DIR/thread-m16-loose, from above the first thread. Throws

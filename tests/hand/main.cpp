@@ -31,7 +31,7 @@ int usage() {
       "       vps_hand edge [--every N] [--from K] [--seed S] [--only WORDS] [--no-wall] [--verbose] [--tsv "
       "FILE]\n"
       "Pegs from 50 um too large to 50 um of clearance; the exit status is 1 if a verdict is wrong.\n"
-      "  --no-wall  takes away the bores' walls; wrong is then what says 'by contact'\n"
+      "  --no-wall  removes the bores' walls; a verdict 'by contact' is then wrong\n"
       "cases:\n");
   for (const PegScene& scene : allScenes()) std::printf("  %-13s %s\n", scene.name, scene.description);
   return 2;

@@ -21,7 +21,7 @@ Mesh squareLathe(Profile profile) {
                      Pose(rotationFromVector(Vec3(0, 0, eighth_rad)), Vec3(Vec3::Zero())));
 }
 
-/// Both halves moved apart along x. Points on the axis stay.
+/// Moves both halves apart along x; points on the axis stay.
 Mesh stretched(Mesh mesh, double by_m) {
   for (Vec3& p : mesh.vertices)
     if (p.x() != 0) p.x() += std::copysign(0.5 * by_m, p.x());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A pin that is pressed in: physics lets it pass, the judge allows the declared interference, and the hand is
-// told the force.
+// A pin that is pressed in: physics lets it pass, the judge allows the declared interference, and the result
+// states the force.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -31,8 +31,8 @@ scenes::StepResult assembled(scenes::Scene scene) {
   return scenes::assemble(scene, options).steps.at(0);
 }
 
-// Lame with d = 8 mm, D = 24 mm, no hole in the pin, E and nu of both alike; the length is that of the fit,
-// between the chamfers of 0.5 mm.
+// Lame's formula with d = 8 mm, D = 24 mm, a solid pin, and equal E and nu of both parts; length_m is the
+// length of the fit between the chamfers of 0.5 mm.
 double force_N(double modulus_Pa, double interference_m, double length_m) {
   const double d = 8e-3, D = 24e-3, share = d * d / (D * D), nu = 0.3;
   const double pressure_Pa = interference_m * modulus_Pa / d / ((1 + share) / (1 - share) + nu + 1 - nu);
@@ -43,7 +43,7 @@ TEST(PressFit, ASteelPinFitsButTheHandIsNotStrongEnough) {
   const scenes::StepResult step = assembled(pinScene(12e-6, 210e9));
   EXPECT_TRUE(step.completed) << step.failure_reason;
   EXPECT_EQ(step.verdict, scenes::Verdict::NotShown);
-  // Between 8.5 and 9.5 mm of the pin's 10 lie in the bore; the bore's flats add 0.03 % to its size.
+  // 8.5 to 9.5 mm of the pin are in the bore; the flats of the bore add 0.03 % to its size.
   EXPECT_GT(step.press_needed_N, 0.98 * force_N(210e9, 12e-6, 8.5e-3));
   EXPECT_LT(step.press_needed_N, 1.02 * force_N(210e9, 12e-6, 9.5e-3));
   EXPECT_NE(step.reason.find(std::to_string(std::lround(step.press_needed_N)) + " N"), std::string::npos)

@@ -19,15 +19,15 @@ scenes::StepResult assembled(const scenes::Scene& scene, int judge_stride = 500)
 }
 
 TEST(Screw, ANutIsTurnedBackUntilItDropsAndThenScrewedOn) {
-  // Judged often enough to see the end of the nut's thread pass the end of the bolt's, which takes ten ticks:
-  // there the field reads up to 30 um too much, and it once was 12 um deep.
+  // The run is judged often enough to see the end of the nut's thread pass the end of the bolt's, which takes
+  // ten ticks: the field reads up to 30 um too much there, and the nut once was 12 um deep.
   const scenes::StepResult step = assembled(coarseThread(4.5e-3, 1), 10);
   EXPECT_EQ(step.verdict, scenes::Verdict::Fits) << step.reason;
   std::vector<std::string> order;
   for (const scenes::StrategyUse& use : step.strategies) order.push_back(use.strategy);
   EXPECT_EQ(order, (std::vector<std::string>{"approach", "touch", "turn_back", "screw_on"}));
-  // 4.5 mm less the chamfers, in which it drops: about a turn. Its play of 0.17 mm is 6 % of the pitch, and
-  // the way through the chamfers is none of the thread.
+  // 4.5 mm less the chamfers, in which the nut drops, is about a turn. The play of 0.17 mm is 6 % of the
+  // pitch, and the advance through the chamfers does not follow the thread.
   EXPECT_NEAR(step.turns, 1, 0.3);
   EXPECT_NEAR(step.advance_per_turn_m, 3e-3, 0.2 * 3e-3);
   EXPECT_GT(step.index_count, 4);  // a turn back and a turn on, in strokes of 78 degrees

@@ -23,7 +23,7 @@ test::ThreadShape coarse(double length_m, double clearance_m) {
   thread.pitch_m = kPitch_m;
   thread.length_m = length_m;
   thread.clearance_m = clearance_m;
-  thread.chamfer_m = 1.4e-3;  // a little below the root, as a lathe does
+  thread.chamfer_m = 1.4e-3;  // ends a little below the root, as turned on a lathe
   thread.columns = 96;
   thread.rows_per_pitch = 16;
   thread.face_steps = 4;
@@ -31,7 +31,7 @@ test::ThreadShape coarse(double length_m, double clearance_m) {
   return thread;
 }
 
-/// Both parts are drawn around the origin, where their threads are in phase.
+/// A scene of a rod and a nut. Both meshes are centred at the origin, where their threads are in phase.
 scenes::Scene threadScene(const std::string& name, Mesh rod, Mesh nut, double pitch_m, const Vec3& p_mouth,
                           double depth_m, std::uint64_t seed) {
   constexpr double kStart_m = 4e-3;  // above the mouth

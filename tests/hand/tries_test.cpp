@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Several seeds of the hand: one success is enough, and the share that succeeds is the ease of assembly.
+// Several seeds of the hand: one success shows that the parts fit, and the share of successes is the ease of
+// assembly.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,7 +13,7 @@
 namespace vps::hand {
 namespace {
 
-/// So little time that seeds succeed which need no search, and the others do not.
+/// A timeout with which seeds that need no search succeed, and other seeds do not.
 constexpr double kHurried_s = 8;
 
 scenes::Scene hurried() {
@@ -52,7 +53,7 @@ TEST(Tries, OneSuccessShowsThatThePartsGoTogetherAndTheShareIsTheEase) {
     return one.verdict == scenes::Verdict::Fits;
   });
   ASSERT_GT(good, 0);
-  ASSERT_LT(good, 6);  // else this test shows nothing; then choose another kHurried_s
+  ASSERT_LT(good, 6);  // otherwise the test shows nothing, and kHurried_s has to change
   EXPECT_EQ(result.verdict, scenes::Verdict::Fits);
   EXPECT_TRUE(result.steps.at(0).completed);
   ASSERT_TRUE(result.ease_share.has_value());

@@ -15,7 +15,7 @@
 namespace vps::device {
 namespace {
 
-// Computed once: it takes a second.
+// Computed once, since it takes a second.
 const DualArmCharacter& character() {
   static const DualArmCharacter c = characterise(DualArmParameters{});
   return c;
@@ -38,7 +38,7 @@ TEST(DualArmForces, WorstDirectionIsTheMinimumOverAllDirections) {
         ASSERT_GE(along, least * (1 - 1e-12));
         found = std::min(found, along);
       }
-      // 20000 directions leave at most 0.05 rad to the worst: its cosine, 0.1%.
+      // Of 20000 directions one is within 0.05 rad of the worst direction; the cosine of that is 0.1% off.
       EXPECT_LT(found, least * 1.002);
     }
   }
@@ -94,7 +94,7 @@ TEST(Characterise, TableOneIsMetWhereTheDeviceStatesIt) {
   EXPECT_LE(c.far_resolution_m.greatest, p.resolution_m);
   EXPECT_LE(c.far_resolution_rad.greatest, 0.005);
   EXPECT_GT(c.pair_isotropy, c.arm_isotropy);
-  // The links' ends are the nearest: the handle's length less two tubes' radii.
+  // The ends of the links are nearest: at the handle's length less the radii of two tubes.
   EXPECT_NEAR(c.tilted_clearance_m, p.handle_m - 2 * p.link_radius_m, 1e-12);
   EXPECT_LT(c.far_clearance_m, 0);
   EXPECT_EQ(c.gains_1kHz.k_N_per_m, characterise(p).gains_1kHz.k_N_per_m);
@@ -108,12 +108,12 @@ TEST(Characterise, GainsAreDerivedFromTheArmsLimits) {
   EXPECT_EQ(c.gains_1kHz.k_N_per_m, deriveGains(limits, {1000, 1000, 0, 1, 1}).k_N_per_m);
   EXPECT_EQ(c.gains_4kHz.k_N_per_m,
             deriveGains(dualArmLimits(p, 4000, true), {4000, 1000, 0, 1, 1}).k_N_per_m);
-  // By hand: b from the arm, B = b / 5, T/2 + the arm's tick + a physics step = 2.5 ms, and 0.8 of the
-  // rest.
+  // Expected value: b of the arm, B = b / 5, a delay of T/2 + the arm's tick + a physics step = 2.5 ms, and
+  // the margin of 0.8.
   const double b = limits.damping_Ns_per_m;
   EXPECT_NEAR(c.gains_1kHz.k_N_per_m, 0.8 * 0.8 * b / 2.5e-3, 1e-9);
   EXPECT_NEAR(c.gains_1kHz.b_Ns_per_m, 0.2 * b, 1e-12);
-  // At 4 kHz friction and encoders bound it.
+  // At 4 kHz friction and encoders limit the stiffness.
   EXPECT_NEAR(c.gains_4kHz.k_N_per_m,
               std::min(0.8 * 0.8 * b / 1.375e-3, 0.8 * 2 * limits.coulomb_N / limits.resolution_m), 1e-9);
 }
@@ -121,8 +121,8 @@ TEST(Characterise, GainsAreDerivedFromTheArmsLimits) {
 TEST(Characterise, ASingleArmsFiguresFollowFromItsReach) {
   const DualArmParameters p;
   const DualArmCharacter& c = character();
-  // The gimbal's place over the workspace: from 0.45 m straight ahead to the far edge, 1.05 m off and 0.2 m
-  // aside.
+  // Over the workspace the gimbal is between 0.45 m straight ahead of the base and the far edge, 1.05 m ahead
+  // and 0.2 m aside.
   const double near_m = p.base_m - 0.5 * p.handle_m - 0.3, far_m = near_m + 0.6;
   EXPECT_NEAR(c.arm_manipulability_m2.least, near_m * near_m, 1e-9);  // d^2 cos t2, straight ahead
   const double most = std::hypot(far_m, std::hypot(0.2, 0.2)) * std::hypot(far_m, 0.2);
@@ -153,7 +153,7 @@ TEST(Characterise, NoReadingsErrorExceedsTheStatedResolution) {
   }
   EXPECT_LE(worst_m, c.resolution_m.greatest * 1.01);  // between the grid's places it may be a little more
   EXPECT_LE(worst_rad, c.resolution_rad.greatest * 1.01);
-  EXPECT_GT(worst_m, 0.6 * c.resolution_m.greatest) << "the bound is idle";
+  EXPECT_GT(worst_m, 0.6 * c.resolution_m.greatest) << "the bound is much too wide";
 }
 
 }  // namespace

@@ -165,9 +165,9 @@ TEST(DualArmController, IncrementalEncodersGiveNoForceUntilCalibratedInTheCradle
   EXPECT_EQ(rig.tick(wanted).status, Status::Fault);
   EXPECT_TRUE(rig.controller.efforts().isZero());
   rig.controller.rearm();
-  EXPECT_EQ(rig.tick(wanted).status, Status::Fault) << "re-arming is no calibration";
+  EXPECT_EQ(rig.tick(wanted).status, Status::Fault) << "re-arming does not calibrate";
 
-  // The encoders count from where they were switched on.
+  // The encoders count from the position at which they were switched on.
   rig.hardware.set(vps_test::HostileArm::kDrift, 4);
   for (int i = 0; i < 100; ++i) rig.controller.read();  // 40 mrad and 40 mm off in each joint
   rig.hardware.set(vps_test::HostileArm::kNone, 0);
@@ -175,7 +175,7 @@ TEST(DualArmController, IncrementalEncodersGiveNoForceUntilCalibratedInTheCradle
   const Pose cradle(rotationFromVector(Vec3(0.1, 0, -0.2)), Vec3(0.02, -0.03, 0.01));
   DualArmPlantSettings bare;
   rig.plant.moveTo(cradle);
-  // In the cradle motors are off and nothing deflects: wait for the plant's watchdog.
+  // In the cradle the motors are off and nothing deflects, so the test waits for the plant's watchdog.
   rig.hand.X_eq = cradle;
   rig.hand.k_N_per_m = 1e6 * Mat3::Identity();
   rig.hand.k_Nm_per_rad = 1e4 * Mat3::Identity();
@@ -183,8 +183,8 @@ TEST(DualArmController, IncrementalEncodersGiveNoForceUntilCalibratedInTheCradle
   ASSERT_EQ(rig.controller.calibrate(cradle), Status::Ok);
   const DeviceSample sample = rig.controller.read();
   ASSERT_EQ(sample.status, Status::Ok);
-  // The error is the deflection of 0.14 mm that the controller subtracts although the motors carry no weight
-  // here, and a reading's.
+  // The error is that of a reading, and the deflection of 0.14 mm, which the controller subtracts although
+  // the motors carry no weight here.
   EXPECT_LT((sample.X_DH.p - cradle.p).norm(), 0.25e-3);
   EXPECT_EQ(rig.controller.calibrate(Pose::translation(Vec3(NAN, 0, 0))), Status::BadPose);
   rig.hardware.set(vps_test::HostileArm::kNan, 0);
@@ -202,15 +202,15 @@ TEST(DualArmController, WarnsOnceOfStopsHeatSaturationAndBadWrenches) {
     return out;
   };
   for (int i = 0; i < 5; ++i) rig.tick({Vec3::Zero(), Vec3(NAN, 0, 0)});
-  EXPECT_EQ(kinds(), "a force that is not a number was asked for, and not given; ");
+  EXPECT_EQ(kinds(), "the commanded force is not a number and counts as zero; ");
   for (int i = 0; i < 5; ++i) rig.tick({Vec3::Zero(), Vec3(50, 0, 0)});
-  EXPECT_EQ(kinds(), "more force was asked for than the motors give; ");
+  EXPECT_EQ(kinds(), "the commanded force exceeds the motors' limits; ");
   rig.tick();
   for (int i = 0; i < 5; ++i) rig.tick({Vec3::Zero(), Vec3(50, 0, 0)});
-  EXPECT_EQ(kinds(), "more force was asked for than the motors give; ") << "a new one, after it had gone";
+  EXPECT_EQ(kinds(), "the commanded force exceeds the motors' limits; ") << "a second warning";
   rig.hand.k_N_per_m *= 4;
   for (int i = 0; i < 8000; ++i) rig.tick({Vec3::Zero(), Vec3(20, 20, 0)});
-  EXPECT_NE(kinds().find("a motor is hot: the peak force fades"), std::string::npos);
+  EXPECT_NE(kinds().find("a motor is hot: the peak force decreases"), std::string::npos);
   rig.hand.X_eq.p = Vec3(0, 0.35, 0);
   for (int i = 0; i < 1000; ++i) {
     rig.hand.X_eq.p.y() = 0.35 * i / 1000.0;

@@ -37,7 +37,7 @@ TEST(Arm, InverseFindsTheJointsOfEveryPosition) {
     const ArmJoints joints{2 * random.uniform() - 1, 2 * random.uniform() - 1, 0.4 + random.uniform()};
     ArmJoints found;
     ASSERT_EQ(armInverse(armPosition(joints), found), Status::Ok);
-    // A dozen roundings of values of order 1.
+    // The bound is a dozen roundings of values of order 1.
     EXPECT_NEAR(found.t1_rad, joints.t1_rad, 1e-14);
     EXPECT_NEAR(found.t2_rad, joints.t2_rad, 1e-14);
     EXPECT_NEAR(found.d3_m, joints.d3_m, 1e-14);
@@ -168,7 +168,7 @@ TEST(Handle, ForwardUndoesInverseOverTheWholeWorkspaceAndAllDirections) {
     });
     EXPECT_GT(visited, 15000);
     RecordProperty("worst_m", std::to_string(1e15 * worst_m) + "e-15");
-    // Required: 1e-9 m and 1e-9 rad. Roundings of 1e-16, times 1 / L and 1 / cos q2 (3.4 at its limit):
+    // Required are 1e-9 m and 1e-9 rad. Roundings of 1e-16 times 1 / L and 1 / cos q2 (3.4 at its limit) give
     // 1e-13.
     EXPECT_LE(worst_m, 1e-13);
     EXPECT_LE(worst_rad, 1e-13);
@@ -240,7 +240,7 @@ TEST(Statics, PowerAndWrenchHoldToOneBillionthOverTheWholeWorkspace) {
     Wrench back;
     ASSERT_EQ(motorEfforts(p, X_DH, F, efforts), Status::Ok);
     ASSERT_EQ(handleWrench(p, X_DH, efforts, back), Status::Ok);
-    // Against the sum of all powers' sizes, since they may cancel.
+    // Relative to the sum of the magnitudes of all powers, since the powers may cancel.
     const JointVector powers = efforts.cwiseProduct(motion.J * twist);
     worst_power = std::max(worst_power, std::abs(powers.sum() - wrench.dot(twist)) / powers.cwiseAbs().sum());
     worst_wrench =
@@ -248,10 +248,10 @@ TEST(Statics, PowerAndWrenchHoldToOneBillionthOverTheWholeWorkspace) {
   });
   RecordProperty("worst_power", std::to_string(1e15 * worst_power) + "e-15");
   RecordProperty("worst_wrench", std::to_string(1e15 * worst_wrench) + "e-15");
-  // Required: 1e-9. Roundings of 1e-16, ten of them, times 1 / L and 1 / cos q2: 1e-13.
+  // Required is 1e-9. Ten roundings of 1e-16 times 1 / L and 1 / cos q2 give 1e-13.
   EXPECT_LE(worst_power, 1e-13);
   EXPECT_LE(worst_wrench, 1e-13);
-  EXPECT_GT(worst_wrench, 0) << "nothing was tried";
+  EXPECT_GT(worst_wrench, 0) << "no wrench was compared";
 }
 
 TEST(Handle, WholeWorkspaceIsReachableWithTheHandleTurnedBy45Degrees) {
@@ -278,7 +278,7 @@ TEST(Handle, ArmsDoNotCollideWithTheHandleUpTo70DegreesFromStraight) {
     least_m = std::min(least_m, armClearance_m(p, joints));
   }
   EXPECT_GT(least_m, 0.02);
-  // With the handle turned end for end they cross.
+  // With the handle turned end for end the arms cross.
   DualArmJoints joints;
   ASSERT_EQ(handleJoints(p, Pose(rotationFromVector(Vec3(0, 0, kPi - 0.01)), Vec3::Zero()), joints),
             Status::Ok);
@@ -347,7 +347,7 @@ TEST(Statics, WrenchIsRecoveredFromMotorEfforts) {
   }
 }
 
-// One function uses the balance of forces, the other power: they share no formula.
+// One function uses the balance of forces and the other uses power, so that they share no formula.
 TEST(Statics, AnyEffortsGiveTheWrenchOfTheJacobian) {
   const DualArmParameters p;
   Random random(9);
@@ -416,7 +416,7 @@ TEST(Statics, SaturationKeepsTheDirection) {
     const JointVector efforts = bias + scale * wish;
     EXPECT_LE((efforts.cwiseAbs() - limit).maxCoeff(), 1e-12);
     if (scale < 1) {
-      EXPECT_NEAR((efforts.cwiseAbs() - limit).maxCoeff(), 0, 1e-12) << "more was possible";
+      EXPECT_NEAR((efforts.cwiseAbs() - limit).maxCoeff(), 0, 1e-12) << "a greater wrench was possible";
     }
     Wrench back;
     ASSERT_EQ(handleWrench(p, X_DH, efforts, back), Status::Ok);

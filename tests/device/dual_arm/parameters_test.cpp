@@ -36,8 +36,8 @@ TEST(DualArmParameters, EachParameterStatesItsSource) {
     sourced += note.is_sourced ? 1 : 0;
   }
   EXPECT_EQ(file.notes.size(), 57u);
-  EXPECT_EQ(sourced, 7);  // what the paper gives
-  // Numbers of the paper's section 3, one of each shape.
+  EXPECT_EQ(sourced, 7);  // the paper gives seven values
+  // Values of the paper's section 3: a number and a vector.
   EXPECT_EQ(DualArmParameters().handle_kg, 0.2);
   EXPECT_EQ(DualArmParameters().workspace_m, Vec3(0.4, 0.6, 0.4));
 }

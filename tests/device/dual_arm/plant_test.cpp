@@ -69,7 +69,8 @@ TEST(DualArmPlant, WithFixedMotorsTheHandleYieldsByTheStructureAlone) {
         Vec6 F;
         F << Vec3::Zero(), hand.F.f;
         const Vec3 expected = K_all.ldlt().solve(F).tail<3>(), moved = plant.pose().p - settings.X_DH_start.p;
-        // Linear for 0.4 mm of 0.45 m; friction below its slip creeps, 1e4 N m at 2e-3 rad/s, over 0.4 s.
+        // The structure is linear for 0.4 mm of 0.45 m; dry friction below its slip speed creeps for 0.4 s,
+        // 1e4 N m at 2e-3 rad/s.
         EXPECT_LT((moved - expected).norm(), 0.01 * moved.norm()) << i << " " << axis;
         if (!is_held) continue;
         softest = std::min(softest, 5 / moved[axis]);
@@ -167,7 +168,7 @@ TEST(DualArmPlant, AmplifiersSwitchOffWithoutCommandsAndLimitEfforts) {
 TEST(DualArmPlant, StopsHoldEachJointAndReturnNoEnergy) {
   DualArmPlantSettings settings = frictionless();
   const DualArmParameters& p = settings.arms;
-  // Far along each axis, by a hand that pulls with 15 N at most, and about each axis with 1 N m.
+  // A hand pulls the handle far along each axis with at most 15 N, and about each axis with 1 N m.
   for (int axis = 0; axis < 12; ++axis) {
     DualArmPlant plant(settings);
     const double sign = axis % 2 == 0 ? 1 : -1;
@@ -178,7 +179,7 @@ TEST(DualArmPlant, StopsHoldEachJointAndReturnNoEnergy) {
     for (int tick = 0; tick < 3000; ++tick) {
       HandForce hand;
       (is_turn ? hand.F.tau : hand.F.f) = (is_turn ? 0.5 : 15.0) * pull;
-      // A damping hand: its own work is accounted for, and the rest must balance.
+      // The hand damps; its own work is accounted for, and the remaining energy must balance.
       hand.b_Ns_per_m = 30 * Mat3::Identity();
       hand.b_Nms_per_rad = 0.2 * Mat3::Identity();
       plant.drive(carryOf(p, plant.pose()));
@@ -292,8 +293,8 @@ TEST(DualArmPlant, MotorsNeverHeatBeyondTheirContinuousRating) {
     hottest = std::max(hottest, heat.heat().maxCoeff());
   }
   EXPECT_LT(hottest, 1 + 1e-9);
-  EXPECT_GT(hottest, 0.99) << "less than it could give";
-  // From cold: 1 - exp(-t / tau) = 0.9 (c / p)^2.
+  EXPECT_GT(hottest, 0.99) << "the motor could give more";
+  // A cold motor gives its peak for t with 1 - exp(-t / tau) = 0.9 (c / p)^2.
   const double ratio = p.plate_torque_Nm / p.plate_peak_Nm;
   EXPECT_NEAR(peak_s, -p.thermal_s * std::log(1 - 0.9 * ratio * ratio), 3e-3);
 }

@@ -72,8 +72,8 @@ TEST(SimulatedDualArm, DeflectionUnderTheHandlesWeightIsSubtracted) {
   settings.X_DH_start = Pose(rotationFromVector(Vec3(0.3, -0.2, 0.4)), Vec3(0.1, -0.2, 0.05));
   SimulatedDualArm arm(settings);
   const DeviceSample sample = arm.read();
-  // 2 N over 14 N/mm is 0.14 mm, and 2 mrad at the gimbals. The rest is of second order: the weight is
-  // compensated as at the deflected pose.
+  // 2 N over 14 N/mm is 0.14 mm, and 2 mrad at the gimbals. The remaining error is of second order, since the
+  // weight is compensated for the deflected pose.
   EXPECT_LT((sample.X_DH.p - settings.X_DH_start.p).norm(), 1e-7);
   EXPECT_LT((sample.X_DH.R - settings.X_DH_start.R).norm(), 1e-6);
 }
@@ -150,7 +150,7 @@ TEST(SimulatedDualArm, StaysStableWithAStiffDampedHandAtBothRates) {
       arm.write({});
       arm.step(dt_s, hand);
     }
-    // Rests where the spring gives no more than dry friction: 0.3 N over 2000 N/m.
+    // The handle rests where the spring's force is within dry friction: 0.3 N over 2000 N/m.
     EXPECT_LT((arm.truePose().p - hand.X_eq.p).norm(), 0.15e-3);
     EXPECT_LT(arm.trueTwist().v.norm(), 1e-4);
   }
@@ -207,7 +207,7 @@ TEST(SimulatedDualArm, VelocityOfAStillHandleIsNearZeroAndOfAMovingOneCorrect) {
     arm.write({});
     arm.step(1e-3, hand);
   }
-  // An error of a read (0.1 mm at worst, here half) over the filter's 3 ms, from two reads.
+  // The errors of two reads (0.1 mm at worst, here half) over the filter's 3 ms.
   EXPECT_LT(worst_m_s, 0.035);
 }
 
