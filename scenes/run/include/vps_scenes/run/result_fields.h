@@ -106,13 +106,11 @@ inline constexpr auto kStepFields = std::make_tuple(
           "the same in the second half of that time; more than 5 um: it is not at rest"),
     field("rest_s", &StepResult::rest_s, "simulated time that the part was watched after release"));
 
-inline constexpr auto kStrategyFields = std::make_tuple(
-    field(
-        "strategy", &StrategyUse::strategy,
-        "what the virtual operator did: approach, touch, tilt_in, spiral_search, align_by_torque, back_off, "
-        "press_home, place_by_sight, turn_search, turn_back or screw_on"),
-    field("start_s", &StrategyUse::start_s, "simulated time at which it began"),
-    field("duration_s", &StrategyUse::duration_s, "how long it took"));
+inline constexpr auto kStrategyFields =
+    std::make_tuple(field("strategy", &StrategyUse::strategy,
+                          "strategy of the virtual operator: device/VIRTUAL_OPERATOR.md lists them"),
+                    field("start_s", &StrategyUse::start_s, "simulated time at which it began"),
+                    field("duration_s", &StrategyUse::duration_s, "how long it took"));
 static_assert(coversAllMembers<StrategyUse>(kStrategyFields));
 
 /// Lists, which a table of steps has no column for.
