@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "bullet_bridge/world.h"
-#include "solver/dispatch_table.h"
+#include "solver/contact_stores.h"
 
 namespace vps::bullet {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The contacts of a flush face stand for its area, and share its load evenly.
-#include "narrowphase/contact_area.h"
+#include "narrowphase/contact_selection.h"
 
 #include <gtest/gtest.h>
 

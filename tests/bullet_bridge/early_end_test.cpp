@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Where a step ends whose rounds of checks were used up. The pairs are made up: each says by a formula how
 // deep its bodies would be.
-#include "solver/early_end.h"
+#include "solver/contact_loop.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 
 #include "bullet_bridge/small_island.h"
 #include "bullet_bridge/world.h"
-#include "solver/penalty_contacts.h"
+#include "solver/contact_stores.h"
 
 namespace vps::bullet {
 namespace {

@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "bullet_bridge/native_shapes.h"
-#include "native_shapes/native_shape_mesh.h"
+#include "native_shapes/native_shape.h"
 
 namespace vps::bullet {
 namespace {

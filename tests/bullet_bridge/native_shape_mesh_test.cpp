@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "native_shapes/native_shape_mesh.h"
+#include "native_shapes/native_shape.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <random>
 
 #include "bullet_bridge/native_shapes.h"
-#include "native_shapes/primitive.h"
+#include "native_shapes/native_shape.h"
 #include "support/random_draw.h"
 
 namespace vps::bullet {

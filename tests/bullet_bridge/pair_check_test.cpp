@@ -9,7 +9,7 @@
 
 #include "bullet_bridge/world.h"
 #include "search/random.h"
-#include "solver/penalty_contacts.h"
+#include "solver/contact_stores.h"
 #include "solver/step_check.h"
 #include "vps/feature_motion.h"
 

@@ -7,8 +7,7 @@
 
 #include "bullet_bridge/native_shapes.h"
 #include "narrowphase/contact_candidate.h"
-#include "narrowphase/query_state.h"
-#include "native_shapes/content_hash.h"
+#include "native_shapes/native_shape.h"
 #include "support/random_draw.h"
 
 namespace vps::bullet {

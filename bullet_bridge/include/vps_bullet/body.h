@@ -15,7 +15,6 @@
 #include "vps/part_model.h"
 #include "vps_bullet/export.h"
 #include "vps_bullet/precision.h"
-#include "vps_bullet/saved_shape.h"
 #include "vps_bullet/shape.h"
 
 namespace vps::bullet {

@@ -17,6 +17,8 @@
 #include "vps_bullet/export.h"
 #include "vps_bullet/precision.h"
 
+class btStridingMeshInterface;
+
 namespace vps::bullet {
 
 /// A body's mass, and the frame that Bullet requires: origin at the centre of mass, principal axes.
@@ -167,6 +169,11 @@ class VPS_BULLET_API Shape : public btConcaveShape {
  private:
   class TriangleTree;
   struct Saved;
+  /// Models of the part scaled by `factor` about the origin of their frame M. Shell and mesh are scaled
+  /// copies. The map and the exact surfaces are built again, the map on a grid scaled by the same factor,
+  /// with as many voxels and the same quality; that costs as much as building them the first time. Throws
+  /// std::invalid_argument for models with a map but neither surfaces nor a mesh to build it from.
+  static ShapeModels scaled(const ShapeModels& models, double factor);
   void use(ShapeModels models, const Pose& X_SM);
 
   ShapeModels unscaled_, models_;
@@ -184,5 +191,16 @@ class VPS_BULLET_API Shape : public btConcaveShape {
   std::unique_ptr<const TriangleTree> triangles_;
   mutable std::shared_ptr<Saved> saved_;  // a serializer refers to it
 };
+
+/// All triangles, with equal vertices joined and the interface's scaling applied. Throws
+/// std::invalid_argument for a mesh without triangles, with a vertex that is not finite, or with an index
+/// beyond its vertices.
+VPS_BULLET_API Mesh meshOf(const btStridingMeshInterface& triangles);
+
+/// Null if `saved_as` is not what Shape::serialize() writes. Throws LoadError for numbers out of range and as
+/// buildPartModel().
+/// @param saved_as  the name that the file gives the shape
+VPS_BULLET_API std::unique_ptr<Shape> restoreShape(const char* saved_as,
+                                                   const btStridingMeshInterface& triangles);
 
 }  // namespace vps::bullet

@@ -15,7 +15,6 @@
 #include <utility>
 #include <vector>
 
-#include "vps_bullet/saved_shape.h"
 #include "vps_bullet/shape.h"
 
 namespace vps::bullet {

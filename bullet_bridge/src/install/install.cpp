@@ -19,21 +19,20 @@
 #include <set>
 #include <stdexcept>
 
-#include "install/probe.h"
+#include <BulletCollision/CollisionDispatch/btCollisionDispatcherMt.h>
+#include <BulletCollision/CollisionDispatch/btDefaultCollisionConfiguration.h>
+#include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
+#include <LinearMath/btPoolAllocator.h>
+#include <LinearMath/btThreads.h>
+#include <string>
 #include "log/report.h"
-#include "narrowphase/compound_pair.h"
-#include "narrowphase/contact_algorithm.h"
-#include "narrowphase/context.h"
-#include "narrowphase/empty_pair.h"
-#include "narrowphase/native_shape_algorithm.h"
-#include "narrowphase/pair_renewal.h"
+#include "narrowphase/pair_algorithm.h"
+#include "narrowphase/pair_state.h"
+#include "native_shapes/native_shape.h"
 #include "native_shapes/native_shape_adapter.h"
-#include "native_shapes/primitive.h"
-#include "shape/forgotten_install.h"
-#include "solver/dispatch_table.h"
-#include "solver/penalty_contacts.h"
+#include "solver/contact_stores.h"
 #include "solver/step_check.h"
-#include "solver/turn_check.h"
+#include "vps_bullet/precision.h"
 
 namespace vps::bullet {
 
@@ -231,6 +230,60 @@ void restoreForCompounds(btCollisionDispatcher& dispatcher, const Installation& 
     if (DispatchTable::closest(dispatcher)[a][b] == &functions[1])
       dispatcher.registerClosestPointsCreateFunc(a, b, functions[1].before);
   }
+}
+
+// The size that the library's compiled code gives a manifold. Neither the configuration nor its pool has a
+// member whose size depends on the precision, so that asking is safe.
+int manifoldBytesOfLibrary() {
+  btDefaultCollisionConstructionInfo small;
+  small.m_defaultMaxPersistentManifoldPoolSize = 1;
+  small.m_defaultMaxCollisionAlgorithmPoolSize = 1;
+  btDefaultCollisionConfiguration configuration(small);
+  return configuration.getPersistentManifoldPool()->getElementSize();
+}
+
+[[noreturn]] void refuse(const char* whose, int theirs) {
+  const bool is_double = VPS_BULLET_SCALAR_BYTES == 8;
+  std::string words = "install: ";
+  words.append(whose)
+      .append(" a manifold of ")
+      .append(std::to_string(theirs))
+      .append(" bytes, and this package one of ");
+  words.append(std::to_string(sizeof(btPersistentManifold)));
+  words.append(": it is Bullet in another precision. vps::bullet was built for ")
+      .append(is_double ? "double" : "single");
+  words.append(
+      is_double
+          ? " precision; link LinearMath-float64, BulletCollision-float64 and BulletDynamics-float64 and no "
+            "other of Bullet's libraries, or build vps with VPS_BULLET_DOUBLE=OFF"
+          : " precision; link Bullet's libraries without -float64, or build vps with VPS_BULLET_DOUBLE=ON");
+  throw std::invalid_argument(words);
+}
+
+/// Throws std::invalid_argument where Bullet's library, or the code that made the dispatcher, was compiled in
+/// the other precision: the headers of this package were not, and the two would not agree about any type.
+void requireSamePrecision(const btCollisionDispatcher& dispatcher) {
+  constexpr int kOurs = static_cast<int>(sizeof(btPersistentManifold));
+  static const int library = manifoldBytesOfLibrary();
+  if (library != kOurs) refuse("Bullet's library has", library);
+  // A host may give a pool of its own, with larger elements.
+  const int pool = dispatcher.getInternalManifoldPool()->getElementSize();
+  if (pool < kOurs) refuse("the dispatcher's pool has", pool);
+}
+
+/// Throws std::invalid_argument for a btCollisionDispatcherMt with a task scheduler of several threads, whose
+/// manifolds come in another order in each run.
+void requireOneThread(const btCollisionDispatcher& dispatcher) {
+  const btITaskScheduler* scheduler = btGetTaskScheduler();
+  if (!dynamic_cast<const btCollisionDispatcherMt*>(&dispatcher) || !scheduler ||
+      scheduler->getNumThreads() < 2)
+    return;
+  throw std::invalid_argument(
+      "install: btCollisionDispatcherMt with several threads gives manifolds in another order in each run, "
+      "so that "
+      "no two runs would have the same bits. Use vps::bullet::Dispatcher (vps_bullet/dispatcher.h), which "
+      "finds the "
+      "contacts of VPS parts in parallel with the bits of one thread, or set a task scheduler of one thread");
 }
 
 void requireUsable(const Settings& s) {

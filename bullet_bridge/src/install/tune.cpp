@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <type_traits>
 
-#include "solver/penalty_contacts.h"
+#include "solver/contact_stores.h"
 #include "vps_bullet/convert.h"
 #include "vps_bullet/solver.h"
 

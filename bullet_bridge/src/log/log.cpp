@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vps_bullet/log.h"
 
+#include <atomic>
 #include <chrono>
 #include <cstdio>
 #include <mutex>
@@ -78,6 +79,32 @@ void report(LogLevel level, const std::string& message) noexcept {
       std::fprintf(stderr, "vps: %s\n", words.c_str());
   } catch (...) {  // no memory, or a hook that throws: a step must go on
   }
+}
+
+namespace {
+
+std::atomic<bool> g_is_installed{false};
+std::atomic<int> g_boxes{0};
+
+}  // namespace
+
+void setContactInstalled() {
+  g_is_installed = true;
+}
+
+bool isContactInstalled() {
+  return g_is_installed.load(std::memory_order_relaxed);
+}
+
+void warnOfForgottenInstall() {
+  // A body asks once when it is added and then once in each step. assumed: a world of one part that is
+  // stepped a hundredth of a second.
+  constexpr int kBoxes = 12;
+  if (++g_boxes != kBoxes) return;
+  report(LogLevel::Error,
+         "a bullet::Shape is in a world, and install() was not called for any dispatcher: it collides with "
+         "nothing, or as a mesh that Bullet does not support. Call vps::bullet::install(dispatcher) before "
+         "the first step");
 }
 
 }  // namespace vps::bullet

@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The solved step as a pair's check sees it.
+// What the sources of PairCheck share: the solved step, and vertices of curved faces.
 #pragma once
 
-#include "narrowphase/carried_contact.h"
+#include <span>
+#include <vector>
+
+#include "narrowphase/contact_at_pose.h"
+#include "narrowphase/contact_candidate.h"
 #include "narrowphase/pair_check.h"
+#include "narrowphase/pair_view.h"
 #include "narrowphase/step_path.h"
 #include "vps/contact_tolerances.h"
 #include "vps_bullet/turn.h"
@@ -49,5 +54,15 @@ struct PairCheck::Motion {
 inline bool isMissed(double start_m, double end_m, double tolerated_m) {
   return end_m < -tolerated_m && end_m < start_m - kGrowthShare * tolerated_m;
 }
+
+/// Moves candidates of curved faces to the deepest vertex of the facet where they are, if that is high enough
+/// and deeper in the other body than the candidate. Distance and normal become those of the vertex, exactly.
+/// Each vertex takes one candidate.
+/// @param candidates        refined where the bodies are
+/// @param contact_margin_m  of the settings
+void moveToFacetCorners(const PairView& pair, double contact_margin_m, std::vector<Candidate>& candidates);
+
+/// True if one of the points lies on a facet with vertices high enough to be features.
+bool haveFacetCorners(const PairView& pair, double contact_margin_m, std::span<const Candidate> candidates);
 
 }  // namespace vps::bullet

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "narrowphase/compound_pair.h"
+#include "narrowphase/pair_algorithm.h"
 
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 #include <BulletCollision/CollisionDispatch/btCompoundCollisionAlgorithm.h>
@@ -11,8 +11,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "narrowphase/context.h"
-#include "narrowphase/motion.h"
+#include "narrowphase/pair_state.h"
+#include "narrowphase/pair_view.h"
 #include "vps_bullet/convert.h"
 #include "vps_bullet/shape.h"
 

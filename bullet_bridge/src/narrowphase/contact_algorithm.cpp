@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "narrowphase/contact_algorithm.h"
+#include "narrowphase/pair_algorithm.h"
 
 #include <BulletCollision/CollisionDispatch/btConvexConcaveCollisionAlgorithm.h>
 #include <BulletCollision/CollisionDispatch/btManifoldResult.h>
@@ -13,12 +13,9 @@
 
 #include "log/report.h"
 #include "narrowphase/contact_selection.h"
-#include "narrowphase/far_points.h"
 #include "narrowphase/pair_check.h"
-#include "narrowphase/pair_loop.h"
-#include "solver/penalty_contacts.h"
+#include "solver/contact_stores.h"
 #include "solver/step_check.h"
-#include "solver/turn_check.h"
 #include "vps/contact_tolerances.h"
 #include "vps_bullet/turn.h"
 

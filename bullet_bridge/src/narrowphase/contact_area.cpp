@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "narrowphase/contact_area.h"
+#include "narrowphase/contact_selection.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -10,14 +11,13 @@
 #include "vps/edge_crossing.h"
 #include "vps/pose.h"
 #include "vps/query.h"
+#include "vps/representative_points.h"
 #include "vps_bullet/settings.h"
 #include "vps_bullet/shape.h"
 
 class btCollisionShape;
 
 namespace vps::bullet {
-
-struct QueryState;
 
 /// Gap of a contact that does not act: farther than any step moves.
 inline constexpr double kOutOfReach_m = 1;
@@ -89,6 +89,26 @@ struct SideView {
   std::uint8_t side = 0;
 };
 
+struct QueryState {
+  /// O(points / 16). The shell must outlive it.
+  QueryState(const VoxMap& map, const PointShell& shell) : query(map, shell) {}
+
+  QueryMemory query;
+  /// Two representative points of each group of neighbours with similar normals; for constraint contact, as
+  /// soon as more points than smallQueryLimit() have been near. O(points) to make: most pairs never need it.
+  std::optional<RepresentativePoints> leading;
+  /// @param radius_m  of the pair's smaller body
+  void lead(const PointShell& shell, std::span<const std::uint8_t> on_edge, double radius_m);
+};
+
+/// Up to this number of near points of one side, all of them are examined.
+std::size_t smallQueryLimit(const Settings& settings);
+/// About this number of candidates is refined by the exact surfaces: enough although some turn out to be out
+/// of reach. With half of it a shaft in its bushings had to be solved again in most steps, which cost more.
+std::size_t refinedLimit(const Settings& settings);
+/// True if representative points serve for so many near points.
+bool needsLeading(std::size_t near_points, const PointShell& shell, const Settings& settings);
+
 /// Input of a query of one side's points in a step.
 struct SideQuery {
   QueryState* state = nullptr;  ///< null: all near points, and nothing is stored
@@ -136,6 +156,9 @@ std::size_t findCrossingCandidates(const SideView& body0, const SideView& body1,
                                    std::vector<Candidate>& out);
 
 // Reducing.
+
+/// Adds the surface that one point represents to that of another.
+void addArea(const Candidate& from, Candidate& to);
 
 /// Keeps the most urgent candidates of each cell of position and direction, now and at the end of the step:
 /// depth, extent and every direction of contact are preserved. Last step's contacts are kept, so that the set

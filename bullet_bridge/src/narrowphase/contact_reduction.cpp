@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "narrowphase/contact_area.h"
 #include "narrowphase/contact_candidate.h"
+#include "narrowphase/contact_selection.h"
 #include "vps/contact_tolerances.h"
 #include "vps/representative_points.h"
 

@@ -3,10 +3,9 @@
 #include <cmath>
 #include <span>
 
+#include "narrowphase/curved_contact.h"
 #include "narrowphase/exact_contact.h"
-#include "narrowphase/round_contact.h"
-#include "narrowphase/sampling_error.h"
-#include "native_shapes/primitive.h"
+#include "native_shapes/native_shape.h"
 #include "vps/contact_tolerances.h"
 #include "vps/feature_motion.h"
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "narrowphase/contact_area.h"
-#include "native_shapes/primitive.h"
+#include "narrowphase/contact_selection.h"
+#include "native_shapes/native_shape.h"
 #include "vps/contact_tolerances.h"
 
 namespace vps::bullet {

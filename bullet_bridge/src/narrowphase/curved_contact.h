@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where two curved faces are nearest: between the points of their shells.
+// Contact of curved faces between the points of their shells.
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <span>
+
 #include "narrowphase/contact_candidate.h"
+#include "narrowphase/pair_view.h"
 
 namespace vps::bullet {
 
@@ -51,5 +56,49 @@ bool moveToFoot(Candidate& c, const SideView& side, const Vec3& from_q_W);
 /// much nearer than the face.
 /// @param from_q_W  p - q
 void moveToClosest(Candidate& c, const SideView& side, const Vec3& from_q_W);
+
+/// How much farther than the contact itself the nearest shell point of a face can be from a primitive's round
+/// side: s^2 / (2 r) for points s apart on a ball of radius r, at most s. 0 for primitives without a round
+/// side.
+double roundReach_m(const btCollisionShape& primitive, double spacing_m);
+
+/// Moves a candidate of `side` on a face from its shell point to where that face touches the primitive, if
+/// that is nearer: the primitive's farthest point against the face's normal, near the candidate, and its foot
+/// on the part's exact surface. That point belongs to the primitive's solid, so the distance found is never
+/// less than the true one. Exact for a flat face. Returns false, and changes nothing, for points on edges,
+/// parts without exact surfaces, flat sides of primitives, and where the distance would not decrease.
+bool refineOnRound(Candidate& c, const SideView& side, const SideView& other,
+                   const btCollisionShape& primitive);
+
+/// Greatest and least curvature of a curved surface [1/m]; convex is positive, a plane has none.
+struct Curvature {
+  double most_per_m = 0, least_per_m = 0;
+
+  Curvature() = default;
+  /// @param turn_per_m  turn of the outward normal along ways in its plane: symmetric, zero along the normal
+  explicit Curvature(const Mat3& turn_per_m);
+};
+
+/// How much nearer two bodies may be between points of a shell than at the nearest of these [m]. Every place
+/// has a point of its face within the spacing; there the gap of two surfaces has risen by this parabola at
+/// most.
+/// @param curvature_per_m  greatest sum of both surfaces' curvatures
+inline double samplingError_m(double spacing_m, double curvature_per_m) {
+  return 0.5 * spacing_m * spacing_m * std::max(curvature_per_m, 0.0);
+}
+
+/// The same of points whose readings alone are known: their own face curves as it does around them, and the
+/// other's as it does most around its own near points.
+class SamplingError {
+ public:
+  /// @param near  points of both sides
+  SamplingError(const PairView& pair, std::span<const Candidate> near);
+  /// Zero of points on edges, of crossings and of parts without surfaces.
+  [[nodiscard]] double of_m(const Candidate& c) const;
+
+ private:
+  const PairView& pair_;
+  std::array<double, 2> most_per_m_{0, 0};
+};
 
 }  // namespace vps::bullet

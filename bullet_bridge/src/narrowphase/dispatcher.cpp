@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "narrowphase/pair_algorithm.h"
-#include "narrowphase/pair_renewal.h"
 
 namespace vps::bullet {
 

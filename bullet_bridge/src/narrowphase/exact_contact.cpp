@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "native_shapes/native_shape.h"
 #include "native_shapes/native_shape_adapter.h"
-#include "native_shapes/primitive.h"
 #include "shape/sheet_border.h"
 #include "vps/contact_tolerances.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "narrowphase/facet_corners.h"
+#include "narrowphase/checked_step.h"
 
 #include <algorithm>
 #include <optional>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "narrowphase/far_points.h"
+#include "narrowphase/contact_selection.h"
 
 #include <algorithm>
 #include <optional>
@@ -7,8 +7,8 @@
 #include "narrowphase/contact_selection.h"
 #include "narrowphase/curved_contact.h"
 #include "narrowphase/surface_view.h"
+#include "native_shapes/native_shape.h"
 #include "native_shapes/native_shape_adapter.h"
-#include "native_shapes/primitive.h"
 #include "vps/contact_tolerances.h"
 
 namespace vps::bullet {

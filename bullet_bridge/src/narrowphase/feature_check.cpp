@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
+#include "narrowphase/contact_at_pose.h"
 #include "narrowphase/contact_selection.h"
-#include "narrowphase/contacts_there.h"
 #include "narrowphase/surface_view.h"
 #include "vps/contact_tolerances.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "narrowphase/manifold_point.h"
+#include "narrowphase/manifold_writer.h"
 
 #include <BulletCollision/CollisionDispatch/btManifoldResult.h>
 

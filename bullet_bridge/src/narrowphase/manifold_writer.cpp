@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "narrowphase/manifold_point.h"
+#include "narrowphase/manifold_writer.h"
 #include "vps/contact_tolerances.h"
 #include "vps_bullet/convert.h"
 

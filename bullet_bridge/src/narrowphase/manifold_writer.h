@@ -2,6 +2,8 @@
 // Writes a pair's contacts into Bullet's manifolds and keeps their impulses by id.
 #pragma once
 
+#include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
+#include <BulletCollision/NarrowPhaseCollision/btManifoldPoint.h>
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 #include <LinearMath/btAlignedObjectArray.h>
 
@@ -9,13 +11,34 @@
 #include <vector>
 
 #include "narrowphase/contact_candidate.h"
+#include "narrowphase/pair_view.h"
 
-class btDispatcher;
 class btCollisionObject;
+class btDispatcher;
 class btManifoldResult;
 struct btCollisionObjectWrapper;
 
 namespace vps::bullet {
+
+// Bits of m_contactPointFlags far above Bullet's own: the point was given to gContactAddedCallback, which set
+// friction directions, or a normal, of its own.
+constexpr int kWasAdded = 1 << 25, kOwnDirections = 1 << 26, kOwnNormal = 1 << 27;
+
+/// Positions on both bodies: the shell point on its own side, its foot on the other's surface.
+void positions(const Candidate& c, Vec3& on0, Vec3& on1);
+
+/// Index of the shell point on its own side; at a crossing, of the edge on either side.
+int indexOn(const Candidate& c, int side);
+
+/// With all that btManifoldResult::addContactPoint() would set from the bodies, without impulses.
+btManifoldPoint makePoint(const Candidate& c, const PairMaterial& material,
+                          const btCollisionObjectWrapper* const (&bodies)[2], const RelativeMotion& motion);
+
+/// Gives a point the last step's impulses, in its own friction directions.
+void copyImpulses(btManifoldPoint& point, const btManifoldPoint& old);
+
+/// Gives a point that is not added again what the user's callback has set.
+void keepMaterial(btManifoldPoint& point, const btManifoldPoint& old);
 
 class ManifoldWriter {
  public:

@@ -4,10 +4,9 @@
 #include <cmath>
 
 #include "narrowphase/checked_step.h"
+#include "narrowphase/contact_at_pose.h"
 #include "narrowphase/contact_selection.h"
-#include "narrowphase/contacts_there.h"
-#include "narrowphase/facet_corners.h"
-#include "narrowphase/sampling_error.h"
+#include "narrowphase/curved_contact.h"
 
 namespace vps::bullet {
 

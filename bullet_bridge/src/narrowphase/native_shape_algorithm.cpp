@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "narrowphase/native_shape_algorithm.h"
+#include "narrowphase/pair_algorithm.h"
 
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 #include <BulletCollision/CollisionDispatch/btConvexConcaveCollisionAlgorithm.h>
@@ -7,8 +7,8 @@
 #include <stdexcept>
 
 #include "log/report.h"
-#include "narrowphase/contact_algorithm.h"
-#include "narrowphase/context.h"
+#include "narrowphase/pair_algorithm.h"
+#include "narrowphase/pair_state.h"
 #include "native_shapes/native_shape_adapter.h"
 
 namespace vps::bullet {

@@ -6,15 +6,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "narrowphase/carried_contact.h"
+#include "narrowphase/checked_step.h"
+#include "narrowphase/contact_at_pose.h"
 #include "narrowphase/contact_selection.h"
-#include "narrowphase/contacts_there.h"
 #include "narrowphase/curved_contact.h"
-#include "narrowphase/facet_corners.h"
 #include "narrowphase/feature_check.h"
-#include "narrowphase/sampling_error.h"
 #include "narrowphase/step_path.h"
-#include "native_shapes/primitive.h"
+#include "native_shapes/native_shape.h"
 #include "vps/contact_tolerances.h"
 #include "vps_bullet/turn.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "narrowphase/pair_loop.h"
+#include "narrowphase/pair_check.h"
 
 #include <BulletCollision/BroadphaseCollision/btDispatcher.h>
 #include <BulletDynamics/ConstraintSolver/btContactSolverInfo.h>
@@ -11,7 +11,7 @@
 #include "narrowphase/contact_selection.h"
 #include "narrowphase/feature_check.h"
 #include "solver/contact_loop.h"
-#include "solver/penalty_contacts.h"
+#include "solver/contact_stores.h"
 #include "vps/contact_tolerances.h"
 #include "vps_bullet/convert.h"
 

@@ -1,28 +1,45 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a pair of bodies stores from step to step.
+// What is stored from step to step: for a pair of bodies, and for all pairs of one installation.
 #pragma once
 
 #include <algorithm>
+#include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
 
 #include "narrowphase/contact_candidate.h"
-#include "narrowphase/context.h"
 #include "narrowphase/manifold_writer.h"
-#include "narrowphase/motion.h"
 #include "narrowphase/pair_view.h"
-#include "narrowphase/query_state.h"
-#include "native_shapes/shape_key.h"
+#include "native_shapes/native_shape.h"
 #include "solver/contact_loop.h"
 #include "solver/penalty_pair.h"
 #include "solver/step_check.h"
 #include "vps/edge_crossing.h"
 #include "vps/feature_motion.h"
 #include "vps/spin_clearance.h"
+#include "vps_bullet/settings.h"
 
 namespace vps::bullet {
+
+class NativeShapeCache;
+class PenaltyContacts;
+class StepChecks;
+struct TurnReports;
+
+struct Context {
+  Settings settings;
+  std::shared_ptr<NativeShapeCache> native_shapes;
+  std::shared_ptr<PenaltyContacts> penalty_contacts;
+  std::shared_ptr<StepChecks> step_checks;
+  std::shared_ptr<TurnReports> turn_reports;
+  // Atomic: btCollisionDispatcherMt processes pairs in parallel.
+  std::atomic<std::size_t> pair_updates{0}, points_tested{0}, candidates{0}, contacts{0}, left_out{0},
+      overlapping_starts{0};
+  std::atomic<double> deepest_start_m{0};
+};
 
 /// The contacts selected by a full query, and where the bodies were.
 struct Selection {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Two bodies that may touch, at one instant: shapes, poses and relative motion.
+// Two bodies that may touch, at one instant: shapes, poses, predicted motion and materials.
 #pragma once
 
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
@@ -7,12 +7,24 @@
 #include <algorithm>
 
 #include "narrowphase/contact_candidate.h"
-#include "narrowphase/motion.h"
-#include "native_shapes/shape_key.h"
+#include "native_shapes/native_shape.h"
+#include "vps/pose.h"
 #include "vps_bullet/convert.h"
 #include "vps_bullet/shape.h"
 
+class btCollisionObject;
+struct btCollisionObjectWrapper;
+
 namespace vps::bullet {
+
+/// Velocity about the world's origin, in W, that the object would reach by the end of the step without
+/// contact: its own, plus external forces, plus (with_couplings) the pull of its CouplingConstraints. A link
+/// of a btMultiBody has the velocity that its joints give it. Zero for static objects.
+Twist predictedVelocity(const btCollisionObject& object, double dt_s, bool with_couplings = true);
+
+/// Where a twist about the world's origin, constant for t_s, takes the object, in W. It turns about its own
+/// centre, wherever the world's origin is.
+Pose displacement(const btCollisionObject& object, const Twist& V, double t_s);
 
 /// Both bodies of a pair at one instant.
 struct PairView {
@@ -102,5 +114,25 @@ void advance(PairView& pair, const PairView& start, double dt_s, double t_s);
 
 /// Displacement of both bodies in the step at constant velocity, in W.
 void coast(const PairView& pair, double dt_s, Pose (&way)[2]);
+
+/// Combines both sides' materials as Bullet does: friction and restitution are multiplied. Bodies and shapes
+/// must outlive it.
+class PairMaterial {
+ public:
+  explicit PairMaterial(const btCollisionObjectWrapper* const (&bodies)[2]);
+
+  [[nodiscard]] double friction(const Candidate& c) const;
+  [[nodiscard]] double restitution(const Candidate& c) const;
+  /// Of penalty contact, per area: of both sides the lesser.
+  /// @param usual_N_per_m3  of a side whose surface has none
+  [[nodiscard]] double stiffness_N_per_m3(const Candidate& c, double usual_N_per_m3) const;
+
+ private:
+  [[nodiscard]] const SurfaceMaterial& at(const Candidate& c, int i) const;
+
+  const btCollisionObject* object_[2];
+  const Shape* shape_[2];          // null: none of its surfaces has a material of its own
+  double friction_, restitution_;  // of the bodies
+};
 
 }  // namespace vps::bullet

@@ -5,8 +5,8 @@
 
 #include "narrowphase/contact_selection.h"
 #include "narrowphase/feature_check.h"
-#include "narrowphase/pair_loop.h"
-#include "narrowphase/pair_material.h"
+#include "narrowphase/pair_check.h"
+#include "narrowphase/pair_view.h"
 
 namespace vps::bullet {
 

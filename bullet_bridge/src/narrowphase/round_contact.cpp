@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "narrowphase/round_contact.h"
+#include "narrowphase/curved_contact.h"
 
 #include <BulletCollision/CollisionShapes/btCapsuleShape.h>
 #include <BulletCollision/CollisionShapes/btConeShape.h>
@@ -12,7 +12,7 @@
 #include <cmath>
 #include <optional>
 
-#include "native_shapes/primitive.h"
+#include "native_shapes/native_shape.h"
 #include "shape/sheet_border.h"
 #include "vps/contact_tolerances.h"
 #include "vps_bullet/convert.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "narrowphase/contact_selection.h"
-#include "narrowphase/pair_loop.h"
+#include "narrowphase/pair_check.h"
 #include "vps/contact_tolerances.h"
 
 namespace vps::bullet {

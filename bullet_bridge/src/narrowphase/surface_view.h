@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "narrowphase/contact_candidate.h"
-#include "native_shapes/primitive.h"
+#include "native_shapes/native_shape.h"
 
 namespace vps::bullet {
 

@@ -3,9 +3,7 @@
 
 #include <span>
 
-#include "native_shapes/content_hash.h"
-#include "native_shapes/native_shape_mesh.h"
-#include "native_shapes/primitive.h"
+#include "native_shapes/native_shape.h"
 #include "shape/sheet_border.h"
 #include "vps/bounding_volume_hierarchy.h"
 #include "vps_bullet/convert.h"

@@ -7,7 +7,7 @@
 #include <memory>
 #include <mutex>
 
-#include "native_shapes/shape_key.h"
+#include "native_shapes/native_shape.h"
 #include "vps_bullet/shape.h"
 
 namespace vps::bullet {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "shape/scaled_models.h"
+#include "vps_bullet/shape.h"
 
 #include <stdexcept>
 
@@ -71,7 +71,7 @@ std::shared_ptr<const VoxMap> scaled(const VoxMap& map, const ShapeModels& large
 
 }  // namespace
 
-ShapeModels scaledModels(const ShapeModels& models, double factor) {
+ShapeModels Shape::scaled(const ShapeModels& models, double factor) {
   ShapeModels larger;
   if (models.mesh) larger.mesh = scaled(*models.mesh, factor);
   if (models.shell) larger.shell = scaled(*models.shell, factor);

@@ -10,8 +10,6 @@
 #include <string>
 
 #include "log/report.h"
-#include "shape/forgotten_install.h"
-#include "shape/scaled_models.h"
 #include "shape/sheet_border.h"
 #include "shape/triangle_tree.h"
 #include "vps/errors.h"
@@ -189,7 +187,7 @@ Shape::~Shape() = default;
 void Shape::setModels(ShapeModels models) {
   requireModels(models);
   const double scale = scaling_.x();
-  ShapeModels scaled = scale == 1 ? models : scaledModels(models, scale);
+  ShapeModels scaled = scale == 1 ? models : Shape::scaled(models, scale);
   unscaled_ = std::move(models);
   use(std::move(scaled), Pose(X_SM_unscaled_.R, scale * X_SM_unscaled_.p));
 }
@@ -291,7 +289,7 @@ void Shape::setLocalScaling(const btVector3& scaling) {
     throw std::invalid_argument(words.str());
   }
   if (scaling == scaling_) return;
-  ShapeModels scaled = scale == 1 ? unscaled_ : scaledModels(unscaled_, scale);
+  ShapeModels scaled = scale == 1 ? unscaled_ : Shape::scaled(unscaled_, scale);
   scaling_ = scaling;
   use(std::move(scaled), Pose(X_SM_unscaled_.R, scale * X_SM_unscaled_.p));
 }

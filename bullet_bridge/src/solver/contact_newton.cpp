@@ -7,8 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "solver/line_search.h"
-#include "solver/patch_math.h"
+#include "solver/newton_math.h"
 #include "vps/contact_tolerances.h"
 #include "vps_bullet/convert.h"
 

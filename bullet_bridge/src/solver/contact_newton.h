@@ -29,7 +29,7 @@
 
 #include "solver/contact_sweeps.h"
 #include "solver/island_matrix.h"
-#include "solver/patch_math.h"
+#include "solver/newton_math.h"
 
 namespace vps::bullet {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "solver/early_end.h"
+#include "solver/contact_loop.h"
 
 #include <algorithm>
 #include <cstdint>

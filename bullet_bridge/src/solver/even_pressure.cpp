@@ -6,7 +6,7 @@
 #include <cmath>
 #include <functional>
 
-#include "solver/patch_math.h"
+#include "solver/newton_math.h"
 #include "vps/contact_tolerances.h"
 #include "vps/friction.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "solver/free_rotation.h"
+#include "solver/island.h"
 
 #include <Eigen/LU>
 #include <algorithm>

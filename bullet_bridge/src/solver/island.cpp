@@ -9,7 +9,7 @@
 #include <cmath>
 #include <limits>
 
-#include "solver/free_rotation.h"
+#include "solver/island.h"
 #include "vps_bullet/convert.h"
 
 namespace vps::bullet {

@@ -6,8 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solver/line_search.h"
-#include "solver/patch_math.h"
+#include "solver/newton_math.h"
 #include "vps/contact_tolerances.h"
 #include "vps_bullet/convert.h"
 

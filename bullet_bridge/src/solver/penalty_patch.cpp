@@ -7,7 +7,7 @@
 #include <cmath>
 #include <span>
 
-#include "solver/patch_math.h"
+#include "solver/newton_math.h"
 #include "vps_bullet/convert.h"
 
 namespace vps::bullet {

@@ -8,7 +8,6 @@
 
 #include "solver/island.h"
 #include "solver/penalty_pair.h"
-#include "solver/point_groups.h"
 #include "vps/friction.h"
 
 namespace vps::bullet {

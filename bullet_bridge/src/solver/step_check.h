@@ -9,8 +9,6 @@
 #pragma once
 
 #include <cstddef>
-#include <map>
-#include <mutex>
 #include <vector>
 
 #include "vps/contact_tolerances.h"
@@ -18,7 +16,6 @@
 
 class btCollisionObject;
 class btManifoldPoint;
-class btPersistentManifold;
 
 namespace vps::bullet {
 
@@ -67,21 +64,6 @@ class StepCheck {
   /// The step is solved: until the narrow phase visits the pair again, there is nothing to check. It may not
   /// do so, where the user made the bodies ignore each other.
   virtual void endStep() = 0;
-};
-
-/// The check behind the first manifold of each pair, for the pairs of one installation.
-class StepChecks {
- public:
-  /// Thread-safe: btCollisionDispatcherMt processes pairs in parallel.
-  void add(const btPersistentManifold* manifold, StepCheck* check);
-  void remove(const btPersistentManifold* manifold);
-  /// Null: not of a pair that checks, or not its first manifold. Takes no lock: Bullet solves after all pairs
-  /// have been processed.
-  [[nodiscard]] StepCheck* find(const btPersistentManifold* manifold) const;
-
- private:
-  std::mutex mutex_;
-  std::map<const btPersistentManifold*, StepCheck*> checks_;
 };
 
 }  // namespace vps::bullet

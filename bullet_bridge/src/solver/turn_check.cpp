@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "solver/turn_check.h"
+#include "solver/contact_stores.h"
 
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 

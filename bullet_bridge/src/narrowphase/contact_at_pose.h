@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Contacts of points measured anew where the bodies are: by exact distances, not by planes that went along.
+// Contacts at other poses of their bodies: carried along with the bodies, or measured again.
 #pragma once
 
 #include <vector>
@@ -9,6 +9,22 @@
 #include "narrowphase/pair_view.h"
 
 namespace vps::bullet {
+
+/// Displacements of both bodies.
+struct Displacement {
+  Pose D[2];
+
+  [[nodiscard]] Vec3 normal(const Candidate& c) const;
+  /// The contact where its points and its plane go.
+  [[nodiscard]] Candidate moved(const Candidate& c) const;
+  [[nodiscard]] Displacement inverse() const { return {{D[0].inverse(), D[1].inverse()}}; }
+};
+
+/// Sets a crossing to where its two edges cross now. False: beyond the end of one of them.
+bool crossAt(Candidate& c, const SideView& body0, const SideView& body1);
+
+/// How deep a contact overlaps where the bodies are; 0 or less. Edges that cross later may not cross yet.
+double overlapOf(Candidate c, const PairView& pair);
 
 /// True if a point is deeper than tolerated in the other side; where that is no solid, always.
 /// @param near_m  how far the other's surface is searched for

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "solver/penalty_contacts.h"
-
-#include "solver/dispatch_table.h"
+#include "solver/contact_stores.h"
 
 namespace vps::bullet {
 
@@ -24,6 +22,21 @@ ContactCreateFunction* contactFunctionOf(const btDispatcher* dispatcher) {
   const auto* table = dynamic_cast<const btCollisionDispatcher*>(dispatcher);
   if (!table) return nullptr;
   return dynamic_cast<ContactCreateFunction*>(DispatchTable::contact(*table)[kShapeType][kShapeType]);
+}
+
+void StepChecks::add(const btPersistentManifold* manifold, StepCheck* check) {
+  const std::lock_guard lock(mutex_);
+  checks_[manifold] = check;
+}
+
+void StepChecks::remove(const btPersistentManifold* manifold) {
+  const std::lock_guard lock(mutex_);
+  checks_.erase(manifold);
+}
+
+StepCheck* StepChecks::find(const btPersistentManifold* manifold) const {
+  const auto it = checks_.find(manifold);
+  return it == checks_.end() ? nullptr : it->second;
 }
 
 }  // namespace vps::bullet
