@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The contacts of a flush face stand for its area, and share its load evenly.
-#include "narrowphase/contact_selection.h"
+#include "narrowphase/selection/contact_selection.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include "bullet_bridge/small_island.h"
 #include "search/random.h"
 #include "solver/contact_key.h"
-#include "solver/even_pressure.h"
+#include "solver/rigid/even_pressure.h"
 
 namespace vps::bullet {
 namespace {

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "bullet_bridge/small_island.h"
-#include "solver/contact_newton.h"
+#include "solver/rigid/contact_newton.h"
 
 namespace vps::bullet {
 namespace {

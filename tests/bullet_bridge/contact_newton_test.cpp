@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The method of multipliers for rigid contacts, by the laws of contact and where sweeps would take very long.
-#include "solver/contact_newton.h"
+#include "solver/rigid/contact_newton.h"
 
 #include <gtest/gtest.h>
 

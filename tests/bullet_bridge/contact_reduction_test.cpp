@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "narrowphase/contact_candidate.h"
+#include "narrowphase/candidates/contact_candidate.h"
 #include "search/random.h"
 
 namespace vps::bullet {

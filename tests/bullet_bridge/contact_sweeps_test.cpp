@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The sweeps over rigid contacts, by the laws of contact and on problems whose solution is known. Without
 // restitution.
-#include "solver/contact_sweeps.h"
+#include "solver/rigid/contact_sweeps.h"
 
 #include <gtest/gtest.h>
 

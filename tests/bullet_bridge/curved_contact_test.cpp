@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Where curved faces are nearest, compared with formulas for balls and cylinders.
-#include "narrowphase/curved_contact.h"
+#include "narrowphase/refinement/curved_contact.h"
 
 #include <gtest/gtest.h>
 

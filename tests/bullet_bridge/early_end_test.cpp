@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Where a step ends whose rounds of checks were used up. The pairs are made up: each says by a formula how
 // deep its bodies would be.
-#include "solver/contact_loop.h"
+#include "solver/rigid/contact_loop.h"
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "bullet_bridge/world.h"
-#include "narrowphase/contact_selection.h"
+#include "narrowphase/selection/contact_selection.h"
 
 namespace vps::bullet {
 namespace {

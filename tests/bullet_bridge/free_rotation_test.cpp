@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Rotation of a free body within a step, against conservation and against the exact turn about a principal
 // axis.
-#include "solver/island.h"
+#include "solver/island/island.h"
 
 #include <LinearMath/btTransformUtil.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Bodies of a step that is cut short go on as one: against conservation.
-#include "solver/island.h"
+#include "solver/island/island.h"
 
 #include <gtest/gtest.h>
 

@@ -10,7 +10,7 @@
 #include "bullet_bridge/world.h"
 #include "search/random.h"
 #include "solver/contact_stores.h"
-#include "solver/step_check.h"
+#include "solver/rigid/step_check.h"
 #include "vps/feature_motion.h"
 
 namespace vps::bullet {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Penalty points of a few bodies: the velocities at which inertia, springs and bristles balance.
-#include "solver/penalty_newton.h"
+#include "solver/penalty/penalty_newton.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Projections and reflections of velocities, against the conditions of optimality, conservation and known
 // impacts.
-#include "solver/reflections.h"
+#include "solver/impact/reflections.h"
 
 #include <gtest/gtest.h>
 

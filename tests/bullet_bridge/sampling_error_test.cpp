@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Between the points of a curved face gaps are smaller than at these, by no more than the bound.
-#include "narrowphase/curved_contact.h"
+#include "narrowphase/refinement/curved_contact.h"
 
 #include <gtest/gtest.h>
 

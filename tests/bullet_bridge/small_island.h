@@ -15,7 +15,7 @@
 #include <limits>
 
 #include "search/random.h"
-#include "solver/contact_sweeps.h"
+#include "solver/rigid/contact_sweeps.h"
 #include "vps_bullet/convert.h"
 
 namespace vps::bullet::test_island {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The lever of a contact's row in a step: wheels that roll, bodies that turn about a corner, impacts.
-#include "narrowphase/step_path.h"
+#include "narrowphase/check/step_path.h"
 
 #include <BulletCollision/CollisionShapes/btSphereShape.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>

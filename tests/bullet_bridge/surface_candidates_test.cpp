@@ -6,7 +6,7 @@
 #include <random>
 
 #include "bullet_bridge/native_shapes.h"
-#include "narrowphase/contact_candidate.h"
+#include "narrowphase/candidates/contact_candidate.h"
 #include "native_shapes/native_shape.h"
 #include "support/random_draw.h"
 

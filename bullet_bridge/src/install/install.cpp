@@ -26,12 +26,12 @@
 #include <LinearMath/btThreads.h>
 #include <string>
 #include "log/report.h"
-#include "narrowphase/pair_algorithm.h"
-#include "narrowphase/pair_state.h"
+#include "narrowphase/pair/pair_algorithm.h"
+#include "narrowphase/pair/pair_state.h"
 #include "native_shapes/native_shape.h"
 #include "native_shapes/native_shape_adapter.h"
 #include "solver/contact_stores.h"
-#include "solver/step_check.h"
+#include "solver/rigid/step_check.h"
 #include "vps_bullet/precision.h"
 
 namespace vps::bullet {

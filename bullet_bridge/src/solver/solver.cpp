@@ -24,12 +24,12 @@
 #include <vector>
 
 #include "log/report.h"
-#include "solver/contact_loop.h"
 #include "solver/contact_stores.h"
-#include "solver/island.h"
-#include "solver/penalty_newton.h"
-#include "solver/restitution.h"
-#include "solver/step_check.h"
+#include "solver/impact/restitution.h"
+#include "solver/island/island.h"
+#include "solver/penalty/penalty_newton.h"
+#include "solver/rigid/contact_loop.h"
+#include "solver/rigid/step_check.h"
 #include "vps/contact_tolerances.h"
 #include "vps_bullet/convert.h"
 #include "vps_bullet/coupling.h"

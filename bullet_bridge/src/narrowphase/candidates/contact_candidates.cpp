@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "narrowphase/candidates/contact_candidate.h"
+#include "narrowphase/refinement/curved_contact.h"
+#include "narrowphase/refinement/surface_view.h"
+#include "native_shapes/native_shape.h"
+#include "native_shapes/native_shape_adapter.h"
+#include "vps/contact_tolerances.h"
+
+namespace vps::bullet {
+
+namespace {
+
+// A cell of merged groups is at most this share of the smaller body's radius. assumed
+constexpr double kMostCellShare = 0.5;
+
+std::size_t limitOf(const Settings& settings, const PointShell& shell) {
+  return settings.candidate_limit > 0 ? static_cast<std::size_t>(settings.candidate_limit) : shell.size();
+}
+
+// Finds a shell's points near anything with a distance function, by the hierarchy of bounding spheres.
+template <typename CanBeNear, typename At>
+std::size_t findByDistance(const SideView& side, const Pose& X_WS, double cutoff_m, const Settings& settings,
+                           const CanBeNear& canBeNear, const At& at, std::vector<Candidate>& out,
+                           std::size_t& points_tested) {
+  const PointShell& shell = *side.shape->models().shell;
+  const double sign = side.side == 0 ? 1 : -1;
+  const std::size_t limit = limitOf(settings, shell);
+  std::size_t left_out = 0;
+  for (std::size_t i = 0; i < shell.nodes.size();) {
+    const ShellNode& node = shell.nodes[i];
+    if (!canBeNear(node)) {
+      i = node.skip;
+      continue;
+    }
+    ++i;
+    if (!node.is_leaf) continue;
+    points_tested += node.count;
+    for (std::uint32_t id = node.first; id < node.first + node.count; ++id) {
+      const SurfaceDistance surface = at(id);
+      if (surface.distance_m > cutoff_m) continue;
+      if (out.size() >= limit) {
+        ++left_out;
+        continue;
+      }
+      Candidate c;
+      c.p_W = side.X_WM * shell.points[id];
+      c.n_W = sign * (X_WS.R * surface.n);
+      c.distance_m = surface.distance_m;
+      c.area_m2 = shell.area_m2[id];
+      c.id = id;
+      c.side = side.side;
+      c.surface[c.side] = side.shape->surfaceAt(id);
+      c.surface[1 - c.side] = surface.surface;
+      out.push_back(c);
+    }
+  }
+  return left_out;
+}
+
+// All points around the place where a ball touches a face move there; the one that moved least is kept.
+// Points that neither touch nor move are dropped.
+void mergeOnRound(const SideView& side, const SideView& other, const btCollisionShape& primitive,
+                  double cutoff_m, std::vector<Candidate>& out, std::size_t first) {
+  struct Moved {
+    std::size_t index;
+    double way_m;
+  };
+  thread_local std::vector<Moved> moved;
+  moved.clear();
+  std::size_t kept = first;
+  for (std::size_t i = first; i < out.size(); ++i) {
+    Candidate c = out[i];
+    const bool is_moved = refineOnRound(c, side, other, primitive);
+    if (c.distance_m > cutoff_m) continue;
+    if (is_moved) {
+      const double way_m = (c.p_W - out[i].p_W).norm();
+      const auto same = std::find_if(moved.begin(), moved.end(), [&](const Moved& m) {
+        return (out[m.index].p_W - c.p_W).squaredNorm() < kSamePlace_m * kSamePlace_m;
+      });
+      if (same != moved.end()) {
+        if (way_m < same->way_m) {
+          out[same->index] = c;
+          same->way_m = way_m;
+        }
+        continue;
+      }
+      moved.push_back({kept, way_m});
+    }
+    out[kept++] = c;
+  }
+  out.resize(kept);
+}
+
+// The same motion about the origin of M, in M.
+Twist aboutMap(const Twist& V_W, const Pose& X_MW) {
+  const Vec3 p_WM = -(X_MW.R.transpose() * X_MW.p);
+  return {X_MW.R * V_W.w, X_MW.R * (V_W.v + V_W.w.cross(p_WM))};
+}
+
+}  // namespace
+
+bool RelativeMotion::canTouch(Candidate& c) const {
+  const double approach_m = -c.n_W.dot(velocityAt(c.p_W)) * dt_s;
+  c.predicted_m = c.distance_m - approach_m;
+  // Contact changes the free motion: a part that lands on one edge swings its other edge faster than it fell.
+  // So a share of the greatest speed counts in every direction. Half: assumed; it covers a rod struck at one
+  // end. The pull of couplings is not included: on a part that is pressed against its seat it is large, and
+  // contact balances it.
+  return c.distance_m <= contact_margin_m + std::max(approach_m, anyWay_m());
+}
+
+Candidate candidateOf(const Contact& contact, const SideView& side, const SideView& other) {
+  const double sign = side.side == 0 ? 1 : -1;  // the field's normal points out of `other`
+  Candidate c;
+  c.p_W = other.X_WM * contact.p_M;
+  c.n_W = sign * (other.X_WM.R * contact.n_M);
+  c.distance_m = contact.distance_m;
+  c.area_m2 = contact.area_m2;
+  c.id = contact.id;
+  c.side = side.side;
+  c.surface[c.side] = side.shape->surfaceAt(c.id);
+  c.surface[1 - c.side] = contact.owner;
+  return c;
+}
+
+std::size_t findMapCandidates(const SideView& side, const SideView& other, double cutoff_m,
+                              const Settings& settings, const SideQuery& query, std::vector<Candidate>& out,
+                              std::size_t& points_tested) {
+  const ShapeModels& theirs = other.shape->models();
+  const PointShell& shell = *side.shape->models().shell;
+  // One buffer for each thread, as large as the largest shell so far, instead of megabytes for each pair.
+  thread_local ContactSet near(0);
+  near.contacts.reserve(shell.size());
+  QueryOptions options;
+  options.cutoff_m = cutoff_m;
+  options.gradient = settings.gradient;
+  const Pose X_MW = other.X_WM.inverse(), X_MP = X_MW * side.X_WM;
+  QueryMemory* memory = query.state ? &query.state->query : nullptr;
+  const RepresentativePoints::Request leaders{options,
+                                              aboutMap(query.step_W, X_MW),
+                                              query.always,
+                                              smallQueryLimit(settings),
+                                              refinedLimit(settings),
+                                              kMostCellShare * query.radius_m};
+  if (!query.state || !query.state->leading) {
+    points_tested += queryContacts(*theirs.map, shell, X_MP, options, near, memory).points_tested;
+    if (query.state && needsLeading(near.contacts.size(), shell, settings))
+      query.state->lead(shell, side.shape->edgePoints(), query.radius_m);
+  }
+  if (query.state && query.state->leading)
+    points_tested += query.state->leading->find(*theirs.map, X_MP, leaders, near, memory).points_tested;
+  // The buffer's capacity depends on other pairs; the limit must not.
+  const std::size_t count = std::min(near.contacts.size(), limitOf(settings, shell));
+  for (const Contact& contact : std::span(near.contacts).first(count))
+    out.push_back(candidateOf(contact, side, other));
+  if (query.state && query.state->leading) {
+    const auto surfaces = query.state->leading->surfaces();
+    for (std::size_t i = 0; i < std::min(count, surfaces.size()); ++i) {
+      Candidate& c = out[out.size() - count + i];
+      c.area_m2 = surfaces[i].area_m2;
+      c.area_off_W = side.X_WM * surfaces[i].center - c.p_W;
+      c.area_spread = (side.X_WM.R * surfaces[i].spread * side.X_WM.R.transpose()).cast<float>();
+    }
+  }
+  return near.contacts.size() - count;
+}
+
+std::size_t findPrimitiveCandidates(const SideView& side, const btCollisionShape& primitive, const Pose& X_WS,
+                                    double cutoff_m, const Settings& settings, std::vector<Candidate>& out,
+                                    std::size_t& points_tested) {
+  const btCollisionShape& exact = unwrapped(primitive);
+  const SideView other{nullptr, X_WS, static_cast<std::uint8_t>(1 - side.side)};
+  const Pose X_SM = X_WS.inverse() * side.X_WM;
+  const PointShell& shell = *side.shape->models().shell;
+  const double reach_m = isExact(settings) ? roundReach_m(exact, shell.spacing_m) : 0;
+  const auto at = [&](std::uint32_t id) { return primitiveDistance(exact, X_SM * shell.points[id]); };
+  const auto canBeNear = [&](const ShellNode& node) {
+    return primitiveDistance(exact, X_SM * node.center).distance_m - node.radius_m <= cutoff_m + reach_m;
+  };
+  const std::size_t first = out.size();
+  const std::size_t left_out =
+      findByDistance(side, X_WS, cutoff_m + reach_m, settings, canBeNear, at, out, points_tested);
+  if (reach_m > 0) mergeOnRound(side, other, exact, cutoff_m, out, first);
+  return left_out;
+}
+
+std::size_t findSurfaceCandidates(const SideView& side, const SideView& other, double cutoff_m,
+                                  const Settings& settings, std::vector<Candidate>& out,
+                                  std::size_t& points_tested) {
+  if (other.shape->models().surfaces.empty()) return 0;
+  SurfaceView view(side, other);
+  const PointShell& shell = *side.shape->models().shell;
+  const auto at = [&](std::uint32_t id) { return view.at(shell.points[id], shell.inward[id], cutoff_m); };
+  const auto canBeNear = [&](const ShellNode& node) {
+    return view.leastDistance(node.center, node.radius_m + cutoff_m) - node.radius_m <= cutoff_m;
+  };
+  return findByDistance(side, other.X_WM, cutoff_m, settings, canBeNear, at, out, points_tested);
+}
+
+namespace {
+
+// Points of a surface tile, four by four: where more points are near than smallQueryLimit(), there are more
+// tiles than contacts.
+constexpr std::size_t kTilePoints = 16;
+constexpr double kTileSpacings = 6;  // the diagonal and a margin
+// Tiles of a dense shell are larger: three of the cells in which the most urgent candidate is kept
+// afterwards. Neither depends on how many points of the shell are left: contact must not change when it is
+// cropped.
+constexpr double kTileShare = 0.18;  // of the smaller body's radius
+
+}  // namespace
+
+void QueryState::lead(const PointShell& shell, std::span<const std::uint8_t> on_edge, double radius_m) {
+  leading.emplace(shell, std::max(kTileSpacings * shell.spacing_m, kTileShare * radius_m), on_edge);
+}
+
+// Every penalty point counts; of the points of rigid contact only a few do.
+bool needsLeading(std::size_t near_points, const PointShell& shell, const Settings& settings) {
+  return settings.contact_method == ContactMethod::Constraint && near_points > smallQueryLimit(settings) &&
+         shell.spacing_m > 0;
+}
+
+std::size_t refinedLimit(const Settings& settings) {
+  return 4 * static_cast<std::size_t>(settings.contact_limit);
+}
+
+std::size_t smallQueryLimit(const Settings& settings) {
+  return kTilePoints * static_cast<std::size_t>(settings.contact_limit);
+}
+
+}  // namespace vps::bullet

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the sources of PairCheck share: the solved step, and vertices of curved faces.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "narrowphase/candidates/contact_candidate.h"
+#include "narrowphase/check/contact_at_pose.h"
+#include "narrowphase/check/pair_check.h"
+#include "narrowphase/check/step_path.h"
+#include "narrowphase/pair/pair_view.h"
+#include "vps/contact_tolerances.h"
+#include "vps_bullet/turn.h"
+
+namespace vps::bullet {
+
+/// Both bodies at other poses than Bullet's.
+struct PairCheck::Placed {
+  btTransform X_WS[2];
+  btCollisionObjectWrapper wrapper0, wrapper1;
+  PairView pair;
+
+  Placed(const PairCheck& check, const Pose (&X)[2])
+      : X_WS{toBt(X[0]), toBt(X[1])},
+        wrapper0(nullptr, check.shape_[0], check.object_[0], X_WS[0], -1, -1),
+        wrapper1(nullptr, check.shape_[1], check.object_[1], X_WS[1], -1, -1),
+        pair(&wrapper0, &wrapper1) {}
+  Placed(const Placed&) = delete;
+  Placed& operator=(const Placed&) = delete;
+};
+
+/// The solved step.
+struct PairCheck::Motion {
+  Pose start[2], end[2];        ///< of the shapes
+  Displacement step;            ///< from start to end
+  Displacement since_selected;  ///< from where the contacts were selected to the end
+  double tolerated_m = 0;
+  double travel_m = 0;     ///< greatest of a point of the smaller body relative to the other body
+  double deviation_m = 0;  ///< greatest from where the selection predicted the point
+  double turn_rad = 0, turn_deviation_rad = 0;  ///< the same of the rotation
+  StepPath path;
+  Vec3 center_W = Vec3::Zero();                        ///< of the smaller body at the start
+  double radius_m = 0;                                 ///< of the smaller body
+  Vec3 moved_W = Vec3::Zero(), turned = Vec3::Zero();  ///< of body 0 relative to body 1
+  double bend_m = 0;                                   ///< how far a point's path may bend from its tangent
+
+  /// True if the bodies turn too far against each other from a share of the step to its end for a plane to be
+  /// carried along: on a curved face another plane is the nearest one then.
+  [[nodiscard]] bool turnsFar(double share) const { return (1 - share) * turn_rad > kContactTurn_rad; }
+};
+
+/// True if the overlap at the end is more than tolerated, and more than it was.
+inline bool isMissed(double start_m, double end_m, double tolerated_m) {
+  return end_m < -tolerated_m && end_m < start_m - kGrowthShare * tolerated_m;
+}
+
+/// Moves candidates of curved faces to the deepest vertex of the facet where they are, if that is high enough
+/// and deeper in the other body than the candidate. Distance and normal become those of the vertex, exactly.
+/// Each vertex takes one candidate.
+/// @param candidates        refined where the bodies are
+/// @param contact_margin_m  of the settings
+void moveToFacetCorners(const PairView& pair, double contact_margin_m, std::vector<Candidate>& candidates);
+
+/// True if one of the points lies on a facet with vertices high enough to be features.
+bool haveFacetCorners(const PairView& pair, double contact_margin_m, std::span<const Candidate> candidates);
+
+}  // namespace vps::bullet

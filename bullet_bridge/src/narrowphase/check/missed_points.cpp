@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The points that a solved step lets overlap: PairCheck's stages 2 and 4.
+#include <algorithm>
+#include <cmath>
+
+#include "narrowphase/check/checked_step.h"
+#include "narrowphase/check/contact_at_pose.h"
+#include "narrowphase/refinement/curved_contact.h"
+#include "narrowphase/selection/contact_selection.h"
+
+namespace vps::bullet {
+
+// Points out of reach had a greater gap than this at the predicted end of the step, so they do not touch if
+// the deviation is less. Or they were out of reach of this motion in any direction.
+bool PairCheck::mayMissPoints(const Motion& m, const PairView& at_start) const {
+  const double margin_m = state_.context->settings.contact_margin_m;
+  const bool is_in_reach = !state_.selection.is_of_path &&
+                           (m.deviation_m <= margin_m || m.travel_m <= margin_m + state_.selection.any_way_m);
+  // Among neighbours, those nearest now and at the predicted end were selected; another becomes nearer if the
+  // part turns otherwise.
+  const double sampling_m = state_.selection.sampling_m * std::min(m.turn_rad, m.turn_deviation_rad);
+  if (!is_in_reach || sampling_m > m.tolerated_m) return true;
+  if (std::any_of(state_.selection.refined.begin(), state_.selection.refined.end(),
+                  [&](const Candidate& c) { return leavesCurve(m, at_start, c); }))
+    return true;
+  // Vertices of curved faces are no points.
+  return haveFacetCorners(at_start, margin_m, state_.selection.refined);
+}
+
+// True where the step takes the bodies so far along curved faces that the planes of known points do not tell:
+// a hollow face bends off its plane towards the point, and between the points of round faces gaps are smaller
+// by more than what is left of the margin.
+bool PairCheck::leavesCurve(const Motion& m, const PairView& at_start, const Candidate& c) const {
+  if (c.isCrossing() || (!(c.hollow_per_m > 0) && !(c.curvature_per_m > 0))) return false;
+  const double margin_m = state_.context->settings.contact_margin_m;
+  const double spacing_m = at_start.shape[c.side]->models().shell->spacing_m;
+  if (m.deviation_m + samplingError_m(spacing_m, c.curvature_per_m) > margin_m) return true;
+  const Vec3 way = m.step.D[0] * c.p_W - m.step.D[1] * c.p_W;
+  return 0.5 * c.hollow_per_m * (way - c.n_W.dot(way) * c.n_W).squaredNorm() > m.tolerated_m;
+}
+
+void PairCheck::findAmongRefined(const Motion& m, std::vector<Candidate>& missed) const {
+  if (m.turnsFar(0)) return;
+  if (!state_.selection.leaves_out && m.bend_m <= m.tolerated_m) return;
+  const Placed at_end(*this, m.end);
+  const SideView side[2] = {at_end.pair.side(0), at_end.pair.side(1)};
+  for (const Candidate& c : state_.selection.refined) {
+    Candidate end = m.since_selected.moved(c);
+    // Where edges cross, the normal turns otherwise than the bodies do.
+    if (c.isCrossing() && !crossAt(end, side[0], side[1])) continue;
+    if (!isMissed(c.distance_m, end.distance_m, m.tolerated_m)) continue;
+    const double near_m = std::abs(end.distance_m) + at_end.pair.voxel_m(1 - c.side);
+    if (!c.isCrossing() && !isInside(end.p_W, side[1 - c.side], near_m, m.tolerated_m)) continue;
+    missed.push_back(end);
+  }
+}
+
+// Points that overlap by more than tolerated.
+void PairCheck::findOverlaps(const Motion& m, const PairView& pair, std::vector<Candidate>& found) const {
+  found.clear();
+  Context& context = *state_.context;
+  const double cutoff_m = std::min(std::max(m.tolerated_m, fieldError_m(pair)), queryRange_m(pair));
+  RelativeMotion still;
+  still.contact_margin_m = context.settings.contact_margin_m;
+  findPointCandidates(pair, cutoff_m, context, found, &state_, &still);
+  const SamplingError sampling(pair, found);
+  std::erase_if(found, [&](Candidate& c) {
+    c.predicted_m = c.distance_m;
+    return c.distance_m > fieldError_m(pair, c) + sampling.of_m(c);
+  });
+  const double radius_m = pair.radius_m();
+  reduceByCell(found, refinedLimit(context.settings), radius_m / 16, radius_m, pair.X_WS[1].inverse());
+  refineAll(pair, still, context.settings, found);
+  moveToFacetCorners(pair, still.contact_margin_m, found);
+  std::erase_if(found, [&](const Candidate& c) { return c.distance_m >= -m.tolerated_m; });
+}
+
+// A point was behind its plane before, so it did not enter through it. The plane that it had then decides. If
+// the point keeps to that one, and yet was outside before, then it slid past the edge of what it faced: its
+// way out is through the plane that it has now.
+bool PairCheck::refineAtStart(const Motion& m, const PairView& at_start, Candidate& start,
+                              Candidate& end) const {
+  Candidate then = start;
+  if (refineAt(at_start, m.travel_m, state_.context->settings, then)) {
+    const Candidate there = m.step.moved(then);
+    if (isMissed(then.distance_m, there.distance_m, m.tolerated_m)) {
+      start = then;
+      end = there;
+      return true;
+    }
+  }
+  if (!wasOutside(m, at_start, start)) return false;
+  start.distance_m = 0;
+  return true;
+}
+
+// True of a point behind its plane at the start, but beside the face that this is the plane of. Not of one
+// that is deeper inside than that. Bodies that begin in each other are moved apart by the push: what comes
+// into a face by that needs no velocity that separates.
+bool PairCheck::wasOutside(const Motion& m, const PairView& at_start, const Candidate& start) const {
+  if (start.isCrossing() || !(start.distance_m < -m.tolerated_m)) return false;
+  const double margin_m = state_.context->settings.contact_margin_m;
+  const std::vector<Candidate>& refined = state_.selection.refined;
+  const bool are_in_each_other = std::any_of(refined.begin(), refined.end(),
+                                             [&](const Candidate& c) { return c.distance_m < -margin_m; });
+  return !are_in_each_other &&
+         !isInside(start.p_W, at_start.side(1 - start.side), kOutOfReach_m, m.tolerated_m);
+}
+
+void PairCheck::findAlongPath(const Motion& m, std::vector<Candidate>& missed) const {
+  const Placed at_start(*this, m.start);
+  const double range_m = std::max(queryRange_m(at_start.pair), m.tolerated_m);
+  const int places = static_cast<int>(std::ceil(std::min<double>(m.travel_m / range_m, kMostPlaces)));
+  thread_local std::vector<Candidate> entered;
+  for (int k = 1; k <= places && missed.empty(); ++k) {
+    const double share = static_cast<double>(k) / places;
+    const Pose then[2] = {interpolate(m.start[0], m.end[0], share), interpolate(m.start[1], m.end[1], share)};
+    const Placed placed(*this, then);
+    findOverlaps(m, placed.pair, missed);
+    const Displacement back = {{m.start[0] * then[0].inverse(), m.start[1] * then[1].inverse()}};
+    const Displacement onward = {{m.end[0] * then[0].inverse(), m.end[1] * then[1].inverse()}};
+    entered.clear();
+    for (const Candidate& c : missed) {
+      Candidate start = back.moved(c), end = onward.moved(c);
+      if (m.turnsFar(share)) continue;  // later places tell
+      if (m.turnsFar(0)) {
+        if (!measureAtStart(m, at_start.pair, start)) continue;
+      } else if (start.distance_m < -m.tolerated_m && !refineAtStart(m, at_start.pair, start, end)) {
+        continue;
+      }
+      if (isMissed(start.distance_m, end.distance_m, m.tolerated_m)) entered.push_back(end);
+    }
+    missed.swap(entered);
+  }
+}
+
+// The gap that a point had before the step, of whatever was nearest to it then. False: it was inside, deeper
+// than the step's motion.
+bool PairCheck::measureAtStart(const Motion& m, const PairView& at_start, Candidate& start) const {
+  if (refineAt(at_start, m.travel_m, state_.context->settings, start)) return true;
+  start.distance_m = m.travel_m;
+  return !isInside(start.p_W, at_start.side(1 - start.side), m.travel_m, m.tolerated_m);
+}
+
+void PairCheck::emit(const Motion& m, std::vector<Candidate>& missed, std::vector<MissedContact>& out) {
+  for (Candidate& c : missed) c.predicted_m = c.distance_m;
+  const Placed at_start(*this, m.start);
+  reduceBySpread(missed, kMostAdded, at_start.pair.radius_m(), state_.context->settings.contact_margin_m,
+                 m.start[1].R.transpose());
+  for (const Candidate& end : missed) {
+    Candidate start = m.step.inverse().moved(end);
+    if (m.turnsFar(0) && !end.isCrossing()) measureAtStart(m, at_start.pair, start);
+    put(m, at_start, start, end, out);
+    if (wasOutside(m, at_start.pair, start)) out.back().kept_m = 0;
+  }
+}
+
+// The contact acts where it is on the way of the step: with its lever and normal there. With the point moved
+// back and the plane of the other body as it is, the lever would be turned against the normal by the step's
+// rotation, and contact would brake a screw that turns by 2 degrees a step by two thirds of the slope of its
+// thread.
+void PairCheck::put(const Motion& m, const Placed& at_start, const Candidate& start, const Candidate& end,
+                    std::vector<MissedContact>& out) {
+  MissedContact added;
+  added.point = state_.writer->put(m.path.acting(start, end), at_start.pair.wrapper, state_.motion);
+  for (int i = 0; i < 2; ++i) added.object[i] = object_[i];
+  added.end_gap_m = end.distance_m;
+  added.kept_m = overlapOf(start, at_start.pair);
+  out.push_back(added);
+}
+
+}  // namespace vps::bullet

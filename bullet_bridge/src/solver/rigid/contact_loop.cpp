@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "solver/rigid/contact_loop.h"
+
+#include <BulletDynamics/ConstraintSolver/btContactSolverInfo.h>
+
+#include "vps/contact_tolerances.h"
+
+namespace vps::bullet {
+
+// For parts near rest sweeps converge within a few microseconds; otherwise Newton's method follows, which
+// sees the whole island.
+SolveOutcome ContactLoop::solveContacts(const SolverSettings& settings) {
+  constexpr int kSweepsFirst = 30, kSweepsPerNewtonStep = 10;  // assumed; the second: ratio of their costs
+  // An arch of 101 stones needs 120 until it stands, where 60 leave it moving, and so as many in each step.
+  constexpr int kStepsPerBody = 3;
+  // Where it is cut short, each step is solved again and again for the contacts that it misses: that takes
+  // longer than to converge.
+  const int newton_share = std::max(0, settings.iteration_limit - kSweepsFirst) / kSweepsPerNewtonStep;
+  const int most = std::max(kMostIterations, kStepsPerBody * static_cast<int>(island.bodies.size()));
+  const int newton_limit = newton_share > 0 ? std::max(most, newton_share) : 0;
+  contacts.start();
+  SolveOutcome outcome =
+      contacts.sweep(settings.residual_m_s, newton_limit > 0 ? kSweepsFirst : settings.iteration_limit);
+  if (outcome.is_converged || newton_limit == 0) return outcome;
+  const double near_m_s =
+      std::max(settings.residual_m_s, std::min(kSpeedErrorShare * topSpeed(), allowedError_m_s(dt_s_)));
+  const SolveOutcome solved = newton_.solve(contacts.contacts(), near_m_s, newton_limit);
+  outcome.steps += kSweepsPerNewtonStep * solved.steps;
+  outcome.is_converged = solved.is_converged;
+  contacts.applyImpulses();  // even without convergence, velocities are those of the impulses
+  if (solved.is_converged) return outcome;
+  const SolveOutcome end =
+      contacts.sweep(settings.residual_m_s, std::max(kSweepsFirst, settings.iteration_limit - outcome.steps));
+  return {outcome.steps + end.steps, end.is_converged};
+}
+
+// A body that flies by does not blur those that rest.
+double ContactLoop::topSpeed() {
+  u_.assign(island.bodies.size(), Vec6::Zero());
+  const auto read = [&](int body) {
+    if (body >= 0) u_[static_cast<std::size_t>(body)] = island.bodies[static_cast<std::size_t>(body)].u;
+  };
+  for (int k : {0, 1}) {
+    for (const RigidContact& c : contacts.contacts()) read(c.normal.side[k].body);
+    for (const JointRow& joint : joints.rows) read(joint.body[k]);
+  }
+  return island.topSpeed(u_);
+}
+
+/// visit(check, where its bodies are at the end of the step)
+template <typename Visit>
+void ContactLoop::forEachCheck(std::span<const Vec6> push, double dt_s, const Visit& visit) const {
+  for (StepCheck* check : checks) {
+    const Pose X_WB_end[2] = {island.endPose(check->object(0), push, dt_s),
+                              island.endPose(check->object(1), push, dt_s)};
+    visit(*check, X_WB_end);
+  }
+}
+
+// Contacts whose lever or normal turns on the way get their rows where the bodies will be if they go on as
+// they do.
+void ContactLoop::linearise(const btContactSolverInfo& info) {
+  missed_.clear();
+  forEachCheck({}, info.m_timeStep,
+               [&](StepCheck& check, const Pose(&X_WB_end)[2]) { check.linearise(X_WB_end, missed_); });
+  contacts.addMissed(missed_, info);
+}
+
+// True if contacts were added, so that the step must be solved again.
+bool ContactLoop::addMissed(const btContactSolverInfo& info, CheckRound round) {
+  missed_.clear();
+  contacts.finish();  // a check asks which contacts carry load
+  forEachCheck(contacts.push(), info.m_timeStep, [&](StepCheck& check, const Pose(&X_WB_end)[2]) {
+    check.findMissed(X_WB_end, round, missed_);
+  });
+  contacts.addMissed(missed_, info);
+  return std::any_of(missed_.begin(), missed_.end(),
+                     [](const MissedContact& m) { return m.point != nullptr; });
+}
+
+}  // namespace vps::bullet

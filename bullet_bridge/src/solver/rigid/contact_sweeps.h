@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Constraint contact: projected Gauss-Seidel over joints and the few contacts in Bullet's manifolds.
+//
+// Signorini's condition in the normal direction (gap at the end of the step >= 0), Coulomb's cone (not a
+// pyramid) in the tangent plane. A second, frictionless solve then removes overlap; its velocities move the
+// bodies once and are discarded, so that no energy is added (split impulse). Restitution is no part of
+// either: see restitution.h. Sources: Catto 2005 (sequential impulses); Jourdan, Alart and Jean 1998
+// (Gauss-Seidel for frictional contact).
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "solver/island/island.h"
+#include "solver/island/joint_rows.h"
+#include "solver/rigid/step_check.h"
+#include "vps_bullet/solver.h"
+
+class btCollisionObject;
+class btManifoldPoint;
+class btPersistentManifold;
+struct btContactSolverInfo;
+
+namespace vps::bullet {
+
+/// One direction of a contact: a row of its Jacobian.
+struct ContactRow {
+  struct Side {
+    int body = -1;          ///< -1: not moved by contact
+    Vec6 J = Vec6::Zero();  ///< so that J . u is the velocity along the row's direction
+    Vec6 MinvJ = Vec6::Zero();
+  };
+  Side side[2];
+  double fixed_velocity = 0;  ///< of a kinematic body, along the direction
+  double W = 0;               ///< J effective_mass^-1 J'
+
+  /// Along the direction.
+  /// @param twistOf  velocity of a body, by its index
+  template <typename TwistOf>
+  [[nodiscard]] double velocity(const TwistOf& twistOf) const {
+    double v = fixed_velocity;
+    for (const Side& each : side)
+      if (each.body >= 0) v += each.J.dot(twistOf(static_cast<std::size_t>(each.body)));
+    return v;
+  }
+};
+
+/// A contact of a manifold, with its rows.
+struct RigidContact {
+  btManifoldPoint* point = nullptr;
+  const btCollisionObject* object[2] = {nullptr, nullptr};
+  ContactRow normal, tangent[2];
+  double target_m_s = 0;  ///< least normal velocity
+  double push_m_s = 0;    ///< least normal velocity of the push
+  double gap_m = 0;
+  double area_m2 = 0;  ///< of a touching face, that it stands for
+  double mu = 0;
+  double restitution = 0;                       ///< 0 to 1
+  bool is_sharp = false;                        ///< of sharp features apart, whose gap no push may take
+  double p_n = 0, p_t[2] = {0, 0}, p_push = 0;  ///< impulses [N s]
+  double W_t_inverse[3] = {0, 0, 0};            ///< of the 2x2 tangent block: 11, 12, 22
+  double W_t = 0;                               ///< its greatest eigenvalue
+
+  /// Where its forces act, the middle of the gap, and their directions.
+  [[nodiscard]] Vec3 position_W() const;
+  [[nodiscard]] Vec3 normal_W() const;
+  [[nodiscard]] Vec3 tangent_W(int k) const;
+};
+
+class ContactSweeps {
+ public:
+  ContactSweeps(Island& island, JointRows& joints) : island_(island), joints_(joints) {}
+
+  void clear() {
+    contacts_.clear();
+    push_.clear();  // of another island
+  }
+  void add(btPersistentManifold& manifold, btManifoldPoint& point, const btContactSolverInfo& info);
+  /// Starts from last step's impulses, with the bodies' effective masses.
+  void start();
+  /// Sweeps until no row's velocity changes by more than residual_m_s, at most `limit` times.
+  SolveOutcome sweep(double residual_m_s, int limit);
+  /// Sets the bodies' velocities from the present impulses.
+  void applyImpulses();
+  [[nodiscard]] std::vector<RigidContact>& contacts() { return contacts_; }
+  /// Finds the push that removes a share of the overlap left at the end of the step, without adding velocity.
+  void solvePush(const btContactSolverInfo& info, int sweep_limit);
+  /// Adds contacts that the solved step lacks, or gives those that it has another plane. Each then keeps its
+  /// bodies apart at the end of the step, to first order about the present velocities and push. A step must
+  /// not end deeper than it began, so a contact may ask for a velocity that separates.
+  void addMissed(std::span<const MissedContact> missed, const btContactSolverInfo& info);
+  /// Velocities of the push, one for each body; empty: none is needed.
+  [[nodiscard]] std::span<const Vec6> push() const { return push_; }
+  /// Writes the impulses to the manifolds.
+  void finish() const;
+
+ private:
+  [[nodiscard]] IslandBody& body(const ContactRow::Side& side) const {
+    return island_.bodies[static_cast<std::size_t>(side.body)];
+  }
+  bool makeRows(RigidContact& contact) const;
+  void prepareRow(ContactRow& row) const;
+  void prepare();
+  void setFreeVelocities();
+  [[nodiscard]] double pushVelocity(const ContactRow& row) const;
+  double sweepOnce();
+  double sweepJoints();
+  [[nodiscard]] double velocity(const ContactRow& row) const;
+  void apply(const ContactRow& row, double impulse);
+
+  /// A joint's row with its inverse masses.
+  struct JointState {
+    JointRow* row;
+    Vec6 MinvJ[2];
+    double W;
+  };
+
+  void pushJoint(const JointState& joint);
+
+  Island& island_;
+  JointRows& joints_;
+  std::vector<JointState> joint_states_;
+  std::vector<RigidContact> contacts_;
+  std::vector<Vec6> push_;  // velocities that change positions only, in one step
+};
+
+}  // namespace vps::bullet
