@@ -1,6 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// From triangles to a body in one call: models, shape, mass, inertia, material and a motion state that speaks
-// in the part's own frame.
+// SPDX-License-Identifier: BSD-3-Clause Makes a body from triangles in one call: models, shape, mass,
+// inertia, material, and a motion state in the part's own frame.
 #pragma once
 
 #include <BulletDynamics/Dynamics/btRigidBody.h>
@@ -25,36 +24,37 @@ struct Resolution {
   double spacing_m = 0;
 };
 
-/// The finest that keeps to about so many points; the field's memory then follows. Contact distances are
-/// those of the exact surfaces, so that a coarse field of a large part costs no accuracy on its faces;
+/// Finest resolution with about `point_budget` points; the field's memory follows from it. Contact distances
+/// are those of the exact surfaces, so that a coarse field of a large part costs no accuracy on its faces;
 /// features smaller than the spacing may be missed. O(triangles). Throws std::invalid_argument for a mesh
 /// without area or a budget below 100.
 VPS_BULLET_API Resolution resolutionFor(const Mesh& mesh, std::size_t point_budget);
 
-/// A body's friction and restitution, by Bullet's rule: it multiplies those of both bodies, so that two
-/// bodies of one material have that material's friction. Throws std::invalid_argument for a friction that is
-/// negative or not finite, and a restitution outside 0 to 1.
+/// Sets a body's friction and restitution. Bullet multiplies the values of both bodies; setMaterial() sets
+/// them so that two bodies of one material have that material's friction. Throws std::invalid_argument for a
+/// friction that is negative or not finite, and a restitution outside 0 to 1.
 VPS_BULLET_API void setMaterial(btCollisionObject& body, const Material& material);
 
 struct BodySettings {
   Material material;  ///< density of the body, friction, restitution
-  /// Its voxel and spacing are used. Without it, they follow from the part's size and the budget, and a
-  /// message (LogLevel::Info) says what was chosen.
+  /// Voxel size and spacing of the models. If not set, they follow from the part's size and point_budget, and
+  /// a message (LogLevel::Info) reports the choice.
   std::optional<Fidelity> fidelity;
   std::size_t point_budget = 20'000;
-  Pose X_WP;              ///< where the part's frame is at the start
-  bool is_fixed = false;  ///< without mass: it may be a sheet, and its density is not used
+  Pose X_WP;              ///< initial pose of the part's frame
+  bool is_fixed = false;  ///< a body without mass; it may be a sheet, and its density is ignored
   std::string name = "part";
-  /// What a mesh with wide holes stands for; a message (LogLevel::Info) says that it is a sheet.
+  /// Whether a mesh with wide holes is a sheet or a solid. A message (LogLevel::Info) reports a sheet.
   OpenMesh open_mesh = OpenMesh::Sheet;
 };
 
-/// Where a part is, in the frame of its mesh. Bullet's bodies have their frame at the centre of mass.
+/// A motion state that gives the pose of the part's mesh. Bullet's bodies have their frame at the centre of
+/// mass.
 class VPS_BULLET_API PartMotionState : public btMotionState {
  public:
   BT_DECLARE_ALIGNED_ALLOCATOR();
   PartMotionState(const Pose& X_WP, const Pose& X_PB) : X_WP_(X_WP), X_PB_(X_PB) {}
-  /// Of the mesh's frame; between steps of a fixed length interpolated by Bullet.
+  /// Pose of the mesh's frame. With fixed substeps Bullet interpolates it between steps.
   [[nodiscard]] const Pose& X_WP() const { return X_WP_; }
   void getWorldTransform(btTransform& X_WB) const override;
   void setWorldTransform(const btTransform& X_WB) override;
@@ -63,22 +63,23 @@ class VPS_BULLET_API PartMotionState : public btMotionState {
   Pose X_WP_, X_PB_;
 };
 
-/// A body with all that it needs, in the order in which it must be destroyed. Remove it from its world first.
+/// A rigid body with everything that it needs; members are declared so that they are destroyed in the right
+/// order. Remove the rigid body from its world before this object is destroyed.
 struct Body {
   std::shared_ptr<const PartModel> model;
-  BodyFrame frame;  ///< frame.X_PB: the body's frame in the mesh's
+  BodyFrame frame;  ///< frame.X_PB: pose of the body's frame in the mesh's frame
   std::shared_ptr<Shape> shape;
   std::unique_ptr<PartMotionState> motion;
   std::unique_ptr<btRigidBody> rigid;  ///< with tuneBody()'s sleeping thresholds
 
-  /// Where the mesh's frame is now.
+  /// Present pose of the mesh's frame.
   [[nodiscard]] Pose X_WP() const;
 };
 
-/// From a file: this library reads none. importCad() of vps::scenes does, and its parts have a mesh
+/// Makes a body from a mesh. This library reads no files; importCad() of vps::scenes does
 /// (examples/body_from_file.cpp). The mass of an open mesh is that of the part with flat lids on its holes,
-/// which a message says. Throws LoadError as buildPartModel() and makeBodyFrame(), std::invalid_argument as
-/// meshOf(), resolutionFor() and setMaterial(), and for X_WP that is not finite or no rotation.
+/// which a message reports. Throws LoadError as buildPartModel() and makeBodyFrame(), std::invalid_argument
+/// as meshOf(), resolutionFor() and setMaterial(), and for X_WP that is not finite or no rotation.
 VPS_BULLET_API Body makeBody(const Mesh& mesh, const BodySettings& settings = {});
 VPS_BULLET_API Body makeBody(const btStridingMeshInterface& triangles, const BodySettings& settings = {});
 

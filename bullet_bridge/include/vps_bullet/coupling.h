@@ -1,6 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// The virtual coupling in physics: a spring-damper between proxy and part that is solved together with the
-// contacts.
+// SPDX-License-Identifier: BSD-3-Clause The virtual coupling: a spring-damper between a device's proxy and a
+// part, solved together with the contacts.
 #pragma once
 
 #include <BulletDynamics/ConstraintSolver/btTypedConstraint.h>
@@ -16,8 +15,8 @@ namespace vps::bullet {
 
 /// A 6-DOF spring-damper between a target (the device's proxy at the end of the step) and a point of a
 /// dynamic body. Implicit: the wrench is that of the coupling law at the end of the step, solved together
-/// with the contact impulses. So it is stable for any gains, and on a part at rest it equals
-/// couplingWrench(). The spring's force and torque are limited separately, keeping their directions.
+/// with the contact impulses. So the coupling is stable for any gains, and on a part at rest its wrench
+/// equals couplingWrench(). The spring's force and torque are limited separately, keeping their directions.
 ///
 /// It has no solver rows; the 6x6 block is solved in solveConstraintObsolete, once per iteration. Add it with
 /// world.addConstraint(&coupling, true): with `true` the contact query includes the coupling's pull in its
@@ -26,8 +25,9 @@ class VPS_BULLET_API CouplingConstraint : public btTypedConstraint {
  public:
   BT_DECLARE_ALIGNED_ALLOCATOR();
 
-  /// @param X_BG  the grasp frame G in the part's body frame. Until setTarget() the coupling is open (no
-  /// wrench). Throws std::invalid_argument for a body without mass, or gains that are negative or not finite.
+  /// @param X_BG  the grasp frame G in the part's body frame. The coupling is open (no wrench) until
+  ///   setTarget(). Throws std::invalid_argument for a body without mass, or gains that are negative or not
+  ///   finite.
   CouplingConstraint(btRigidBody& part, const Pose& X_BG, const CouplingGains& gains);
   /// The target follows a kinematic body: X_AG is the grasp frame in the proxy's body frame. Sets
   /// CF_NO_CONTACT_RESPONSE on the proxy, so that it does not collide. Throws std::invalid_argument also for
@@ -36,7 +36,8 @@ class VPS_BULLET_API CouplingConstraint : public btTypedConstraint {
                      const CouplingGains& gains);
 
   /// The proxy's grasp frame at the END of the coming step, in W, and its velocity; valid until the next
-  /// call. If it is not finite or not is_coupled, the coupling is open. Takes precedence over the proxy body.
+  /// call. A target that is not finite, or not is_coupled, opens the coupling. The target takes precedence
+  /// over the proxy body.
   void setTarget(const CouplingState& target);
   /// Opens the coupling: no wrench until the next setTarget.
   void release();
@@ -45,15 +46,15 @@ class VPS_BULLET_API CouplingConstraint : public btTypedConstraint {
 
   /// The part's grasp frame now, in W; time_s is the target's.
   [[nodiscard]] CouplingState partState() const;
-  /// Wrench of the last step on the part about its grasp point (as at the start of the step), in W: impulse /
-  /// dt.
+  /// Wrench on the part in the last step (impulse / dt), in W, about the position of its grasp point at the
+  /// start of the step.
   [[nodiscard]] const Wrench& wrench() const { return F_PG_W_; }
   /// Velocity (about the body's origin, in W) that the coupling alone would add to the part in a step. The
-  /// contact query predicts with it how far points can move.
+  /// contact query uses it to predict how far points can move.
   [[nodiscard]] Twist freeVelocity(double dt_s) const;
 
-  /// Reason why the coupling has no effect with that solver; nullptr if it has. It needs a solver that calls
-  /// solveConstraintObsolete: btSequentialImpulseConstraintSolver or bullet::Solver.
+  /// Reason why the coupling has no effect with that solver; nullptr if it works. A coupling needs a solver
+  /// that calls solveConstraintObsolete: btSequentialImpulseConstraintSolver or bullet::Solver.
   [[nodiscard]] static const char* unsupportedReason(const btConstraintSolver& solver);
 
   void buildJacobian() override;
@@ -72,7 +73,7 @@ class VPS_BULLET_API CouplingConstraint : public btTypedConstraint {
   struct Step {
     bool is_open = true;
     double dt_s = 0;
-    Vec3 r_W = Vec3::Zero();  ///< from the body's origin to the grasp point
+    Vec3 r_W = Vec3::Zero();  ///< vector from the body's origin to the grasp point
     Vec6 error, V_target;     ///< present pose error and target velocity
     Mat6 A;                   ///< inverse inertia seen at the grasp point
   };
@@ -85,9 +86,10 @@ class VPS_BULLET_API CouplingConstraint : public btTypedConstraint {
 
   [[nodiscard]] CouplingState currentTarget() const;
   [[nodiscard]] Step makeStep(double dt_s) const;
-  /// The law with the limits of the springs as they act at V_G; with `unlimited` without limits.
+  /// The law at the velocity V_G, with the limits of the springs; with `unlimited`, without limits.
   [[nodiscard]] Law lawAt(const Step& step, const Vec6& V_G, bool unlimited = false) const;
-  /// The impulse that satisfies the law, given the velocity the grasp point would have without it.
+  /// The impulse that satisfies the law, given the velocity that the grasp point would have without the
+  /// coupling.
   [[nodiscard]] Vec6 solveImpulse(const Step& step, const Vec6& V_without) const;
   void setImpulse(const Vec6& impulse, double dt_s);
 

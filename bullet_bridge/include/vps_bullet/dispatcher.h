@@ -15,7 +15,7 @@ namespace vps::bullet {
 /// Bullet visits the pairs one by one. Results have the same bits as with the stock dispatcher, for any
 /// number of threads, and nothing in Bullet needs to be thread-safe: manifolds and callbacks are processed by
 /// the calling thread, in Bullet's own order. Pairs that are new in this step, and children of compounds, are
-/// computed at their turn.
+/// computed one by one when Bullet visits them.
 class VPS_BULLET_API Dispatcher : public btCollisionDispatcher {
  public:
   /// @param threads  at least 1; 0: one for each core

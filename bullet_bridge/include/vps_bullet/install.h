@@ -12,20 +12,21 @@ class btCollisionDispatcher;
 namespace vps::bullet {
 
 /// Makes every bullet::Shape collide in worlds that use this dispatcher: with each other and with Bullet's
-/// own shapes, in contact and closest-point queries, in both orders, for every shape type (README.md lists
-/// them); existing pairs too. Installing again replaces the settings. Sets a near callback, which calls the
-/// host's. See tuneWorld for the parameters of the world. Throws std::invalid_argument for settings out of
-/// range, Bullet in another precision, and btCollisionDispatcherMt with several threads.
+/// own shapes, in contact and closest-point queries, in both orders, for every shape type (listed in
+/// native_shapes.md). This includes existing pairs. A second call replaces the settings. Sets a near
+/// callback, which calls the host's near callback. See tuneWorld() for the parameters of the world. Throws
+/// std::invalid_argument for settings out of range, Bullet in another precision, and btCollisionDispatcherMt
+/// with several threads.
 VPS_BULLET_API void install(btCollisionDispatcher& dispatcher, const Settings& settings = {});
 
-/// Restores the functions that were registered before, except where others have been registered since.
+/// Restores the functions that were registered before install(), except those that have been replaced since.
 /// Existing pairs keep VPS contact until their bodies separate or are removed; a message (log.h) says so.
 /// Does nothing without an installation. A dispatcher may also be destroyed without this call; another
 /// dispatcher created later at the same address starts without an installation.
 VPS_BULLET_API void uninstall(btCollisionDispatcher& dispatcher);
 
 [[nodiscard]] VPS_BULLET_API bool isInstalled(const btCollisionDispatcher& dispatcher);
-/// All zero without an installation.
+/// Counters since install(); all zero without an installation.
 [[nodiscard]] VPS_BULLET_API Stats stats(const btCollisionDispatcher& dispatcher);
 
 }  // namespace vps::bullet

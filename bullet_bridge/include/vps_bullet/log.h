@@ -11,8 +11,8 @@
 namespace vps::bullet {
 
 enum class LogLevel {
-  Info,     ///< what was chosen or done
-  Warning,  ///< it goes on, but not as the host may expect
+  Info,     ///< a choice that the library made, or an action
+  Warning,  ///< the run continues, but possibly not as the host expects
   Error,    ///< something has no contact, or no effect
 };
 
@@ -20,13 +20,14 @@ enum class LogLevel {
 /// the same time from several; it must not throw.
 using LogHook = std::function<void(LogLevel level, const std::string& message)>;
 
-/// Replaces the receiver, for all dispatchers of the process. An empty hook: stderr, as at the start, with
-/// "vps: " before each message.
+/// Sets the receiver of messages, for all dispatchers of the process. With an empty hook, as at the start,
+/// messages go to stderr, each after "vps: ".
 VPS_BULLET_API void setLogHook(LogHook hook);
-/// Messages below it are dropped. At the start: Warning.
+/// Drops messages below this level. The initial level is Warning.
 VPS_BULLET_API void setLogLevel(LogLevel least);
 
-/// At most so many messages within a second reach the hook; the next one that does says how many did not.
+/// Greatest number of messages per second that reach the hook. The next message that does tells how many were
+/// dropped.
 inline constexpr int kLogLimit = 20;
 
 }  // namespace vps::bullet

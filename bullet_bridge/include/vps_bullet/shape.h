@@ -34,15 +34,17 @@ VPS_BULLET_API BodyFrame makeBodyFrame(const MassProperties& unit_density, doubl
 
 class SheetBorder;
 
-/// What a contact takes from the surface that it touches. A value that is not set is that of the body:
-/// btCollisionObject::getFriction() and getRestitution(), and Settings::stiffness_N_per_m3.
+/// Contact properties of a surface. For a value that is not set, the contact uses the body's value
+/// (btCollisionObject::getFriction() and getRestitution()) or Settings::stiffness_N_per_m3.
 struct SurfaceMaterial {
-  /// As btCollisionObject::setFriction(): the values of both bodies are multiplied, so that two equal ones
-  /// are frictionFactor() of their coefficient (vps/friction.h). A host's own rule
-  /// (gCalculateCombinedFrictionCallback) is given the bodies, and takes precedence.
+  /// As btCollisionObject::setFriction(): the values of both sides are multiplied, so a surface gets the
+  /// frictionFactor() (vps/friction.h) of its material's coefficient. A host's own rule
+  /// (gCalculateCombinedFrictionCallback) takes precedence; it receives the bodies.
   std::optional<double> friction;
-  std::optional<double> restitution;         ///< as btCollisionObject::setRestitution(), and likewise
-  std::optional<double> stiffness_N_per_m3;  ///< of penalty contact, per area; of both sides the lesser acts
+  std::optional<double>
+      restitution;  ///< as btCollisionObject::setRestitution(); a host's own rule takes precedence
+  std::optional<double>
+      stiffness_N_per_m3;  ///< stiffness per area of penalty contact; the lesser value of both sides acts
 
   [[nodiscard]] bool isNone() const { return !friction && !restitution && !stiffness_N_per_m3; }
 };
@@ -51,12 +53,12 @@ struct SurfaceMaterial {
 struct Surface {
   std::shared_ptr<const Solid> distance;
   Pose X_MP;
-  /// For an open surface without an inside, where a point meets the side that it faces; null for a solid.
-  /// `distance` is then a Solid::sheet().
+  /// Border of an open surface without an inside (a sheet), where a point meets the side that it faces;
+  /// `distance` is then a Solid::sheet(). Null for a solid.
   std::shared_ptr<const SheetBorder> sheet = nullptr;
-  /// Of contacts with this part. A contact belongs to the surface that its distance is measured from, or,
-  /// where no exact surface is asked, to the map's owner (btManifoldPoint::m_partId0 and m_partId1 say
-  /// which).
+  /// Material of contacts with this part. A contact belongs to the surface from which its distance is
+  /// measured, or, without exact surfaces, to the map's owner (given in btManifoldPoint::m_partId0 and
+  /// m_partId1).
   SurfaceMaterial material = {};
 };
 
@@ -69,48 +71,49 @@ struct ShapeModels {
   std::shared_ptr<const VoxMap> map;
   std::shared_ptr<const PointShell> shell;
   std::shared_ptr<const Mesh> mesh;
-  /// The exact surfaces that the map was built from, in the map's owner order. The field finds the contacts;
-  /// the surfaces refine the distance and normal of the few that reach the solver, which removes the field's
-  /// interpolation error (up to 0.3 voxel at a sharp inner edge). Empty: contacts have the field's values.
+  /// The exact surfaces that the map was built from, in the map's owner order. The field finds the contacts,
+  /// and the surfaces refine distance and normal of those that reach the solver. This removes the field's
+  /// interpolation error (up to 0.3 voxel at a sharp inner edge). If empty, contacts have the field's values.
   std::vector<Surface> surfaces;
 };
 
-/// The models of one part, whose frame is M. They are shared, not copied: O(1).
+/// The models of one part, whose frame is M. O(1): models are shared, not copied.
 VPS_BULLET_API ShapeModels makeModels(const PartModel& part);
 
-/// Concave shape of type FAST_CONCAVE_MESH_PROXYTYPE. Bullet itself does not use that type; it is concave for
-/// ray and sweep tests, and without a registered algorithm falls back to convex against triangles.
-/// CUSTOM_CONCAVE_SHAPE_TYPE would be cast to btSdfCollisionShape. Unlike Bullet's mesh shapes it may be
-/// dynamic. Any number of bodies may share it, and it may outlive every dispatcher. Its margin is 0.
+/// A part as a concave collision shape, which, unlike Bullet's mesh shapes, may be dynamic. Any number of
+/// bodies may share a Shape, and it may outlive every dispatcher. Its margin is 0. Its type is
+/// FAST_CONCAVE_MESH_PROXYTYPE, which Bullet itself does not use: it is concave for ray and sweep tests, and
+/// falls back to convex against triangles without a registered algorithm. (Bullet would cast
+/// CUSTOM_CONCAVE_SHAPE_TYPE to btSdfCollisionShape.)
 class VPS_BULLET_API Shape : public btConcaveShape {
  public:
   BT_DECLARE_ALIGNED_ALLOCATOR();
 
-  /// @param X_SM  the models' frame in the shape's; for a dynamic body of a part it is
-  /// BodyFrame::X_PB.inverse().
+  /// @param X_SM  pose of the models' frame in the shape's frame; for a dynamic body of one part,
+  ///   BodyFrame::X_PB.inverse().
   /// Throws std::invalid_argument for models without map, shell and mesh, and for a pose that is not finite.
   explicit Shape(ShapeModels models, const Pose& X_SM = {});
   ~Shape() override;
 
-  /// Replaces the models, for example of a merged body that received one more part; the shape's scale applies
-  /// to them. Only between steps. If the bounding box grew, call btCollisionWorld::updateSingleAabb for each
-  /// static body of this shape. Throws as the constructor; the shape is then unchanged.
+  /// Replaces the models, for example of a merged body that received another part; the shape's scale applies
+  /// to them. Allowed only between steps. If the bounding box grew, call btCollisionWorld::updateSingleAabb
+  /// for each static body of this shape. Throws as the constructor; the shape is then unchanged.
   void setModels(ShapeModels models);
   /// The models in use, scaled.
   [[nodiscard]] const ShapeModels& models() const { return models_; }
   [[nodiscard]] const Pose& X_SM() const { return X_SM_; }
-  /// Changes with the models, and no two Shapes of a process ever have the same; point ids are valid for one
-  /// revision.
+  /// A number that changes with the models and is unique among all Shapes of the process. Point ids are valid
+  /// for one revision.
   [[nodiscard]] std::uint64_t revision() const { return revision_; }
   /// True for a shell point on a sharp edge or corner of the surfaces, where the part has no unique normal.
   /// False for all points if there are no surfaces.
   [[nodiscard]] bool isEdgePoint(std::uint32_t id) const {
     return !is_edge_point_.empty() && is_edge_point_[id];
   }
-  /// The same by point; empty if there are no surfaces.
+  /// isEdgePoint() of all points; empty if there are no surfaces.
   [[nodiscard]] std::span<const std::uint8_t> edgePoints() const { return is_edge_point_; }
-  /// Inward unit normal at a shell point on a face, of the curved surface that the facets approximate, in the
-  /// models' frame. On edges, and without surfaces, the shell's own normal.
+  /// Inward unit normal, in the models' frame, at a shell point on a face: that of the curved surface that
+  /// the facets approximate. On edges, and without surfaces, it is the shell's own normal.
   [[nodiscard]] const Vec3& smoothInward(std::uint32_t id) const {
     return smooth_inward_.empty() ? models_.shell->inward[id] : smooth_inward_[id];
   }
@@ -140,7 +143,8 @@ class VPS_BULLET_API Shape : public btConcaveShape {
   /// Bounding box of all models in the shape's frame.
   [[nodiscard]] const Box& bounds() const { return bounds_S_; }
 
-  /// Larger than bounds() by 0.2 um on each side: parts rest on each other with a gap of 0.1 um.
+  /// The box is larger than bounds() by 0.2 um on each side, since parts rest on each other with a gap of 0.1
+  /// um.
   void getAabb(const btTransform& X_WS, btVector3& min, btVector3& max) const override;
   /// Diagonal of the inertia of the solid mesh about the shape's origin (exact if X_SM comes from
   /// makeBodyFrame); of the bounding box if there is no closed mesh. Zero for a mass of zero, Bullet's
@@ -149,20 +153,20 @@ class VPS_BULLET_API Shape : public btConcaveShape {
   void processAllTriangles(btTriangleCallback* callback, const btVector3& min,
                            const btVector3& max) const override;
   /// Scales the part about the shape's origin, for all bodies of this shape. Costs as much as building its
-  /// models. Only between steps; afterwards call btCollisionWorld::updateSingleAabb, and setMassProps, since
-  /// Bullet keeps a body's mass. Throws std::invalid_argument for a scale that is not positive, finite and
-  /// equal in x, y and z (otherwise the field would no longer hold distances), and for models with a map but
-  /// without surfaces or a mesh; the shape is then unchanged.
+  /// models. Allowed only between steps. Afterwards call btCollisionWorld::updateSingleAabb, and
+  /// setMassProps, since Bullet keeps a body's mass. Throws std::invalid_argument for a scale that is not
+  /// positive, finite and equal in x, y and z (otherwise the field would no longer hold distances), and for
+  /// models with a map but without surfaces or a mesh; the shape is then unchanged.
   void setLocalScaling(const btVector3& scaling) override;
   const btVector3& getLocalScaling() const override { return scaling_; }
-  /// Has no effect, since contact is at the part's surface; a margin other than 0 is reported once.
-  /// Throws std::invalid_argument for a margin that is negative or not a number.
+  /// Has no effect, since contact is at the part's surface. A margin other than 0 is reported once. Throws
+  /// std::invalid_argument for a margin that is negative or not a number.
   void setMargin(btScalar margin) override;
   btScalar getMargin() const override { return 0; }
   const char* getName() const override { return "Shape"; }
   /// Bullet's file format has no voxmap, so a Shape is written as a compound of one mesh, that of its
-  /// triangles, with the resolution of its models in its name. Bullet's importer reads the mesh; that of
-  /// world_importer.h makes a Shape of it again.
+  /// triangles, with the resolution of its models in its name. Bullet's importer reads the mesh;
+  /// WorldImporter (world_importer.h) makes a Shape of it again.
   [[nodiscard]] int calculateSerializeBufferSize() const override;
   const char* serialize(void* data, btSerializer* serializer) const override;
 
@@ -173,7 +177,7 @@ class VPS_BULLET_API Shape : public btConcaveShape {
   /// copies. The map and the exact surfaces are built again, the map on a grid scaled by the same factor,
   /// with as many voxels and the same quality; that costs as much as building them the first time. Throws
   /// std::invalid_argument for models with a map but neither surfaces nor a mesh to build it from.
-  static ShapeModels scaled(const ShapeModels& models, double factor);
+  static ShapeModels atScale(const ShapeModels& models, double factor);
   void use(ShapeModels models, const Pose& X_SM);
 
   ShapeModels unscaled_, models_;
@@ -184,22 +188,23 @@ class VPS_BULLET_API Shape : public btConcaveShape {
   std::vector<std::uint8_t> is_edge_point_;
   std::vector<Vec3> smooth_inward_;
   std::vector<PointFace> face_at_;         // by point
-  std::vector<std::uint16_t> surface_at_;  // by point; empty: there is one surface or none
+  std::vector<std::uint16_t> surface_at_;  // by point; empty if there is at most one surface
   EdgeSet edges_;
   FeatureSet features_;
-  std::vector<std::uint32_t> edges_at_, first_edge_;  // those of a point start at edges_at_[first_edge_[id]]
+  std::vector<std::uint32_t> edges_at_,
+      first_edge_;  // entries of point id start at edges_at_[first_edge_[id]]
   std::unique_ptr<const TriangleTree> triangles_;
-  mutable std::shared_ptr<Saved> saved_;  // a serializer refers to it
+  mutable std::shared_ptr<Saved> saved_;  // data to which a serializer refers
 };
 
-/// All triangles, with equal vertices joined and the interface's scaling applied. Throws
+/// All triangles of a Bullet mesh, with equal vertices joined and the interface's scaling applied. Throws
 /// std::invalid_argument for a mesh without triangles, with a vertex that is not finite, or with an index
 /// beyond its vertices.
 VPS_BULLET_API Mesh meshOf(const btStridingMeshInterface& triangles);
 
-/// Null if `saved_as` is not what Shape::serialize() writes. Throws LoadError for numbers out of range and as
-/// buildPartModel().
-/// @param saved_as  the name that the file gives the shape
+/// Makes a Shape from the data of a file in Bullet's format. Returns null if `saved_as` was not written by
+/// Shape::serialize(). Throws LoadError for numbers out of range and as buildPartModel().
+/// @param saved_as  name of the shape in the file
 VPS_BULLET_API std::unique_ptr<Shape> restoreShape(const char* saved_as,
                                                    const btStridingMeshInterface& triangles);
 

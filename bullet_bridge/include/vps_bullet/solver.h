@@ -13,14 +13,14 @@
 namespace vps::bullet {
 
 struct SolverSettings {
-  double residual_m_s = 1e-7;  ///< converged when no contact's velocity changes by more; > 0
-  /// For rigid contacts: sweeps, where a step of Newton's method counts as ten; below 40 there are only
-  /// sweeps. Where Newton's method is needed it may take sixty steps, or three for each of its
-  /// bodies, even if that is more. For penalty contacts: steps of Newton's method in all rounds. >= 1
+  double residual_m_s = 1e-7;  ///< converged when no contact's velocity changes by more than this; > 0
+  /// For rigid contacts: number of sweeps, where a step of Newton's method counts as ten; below 40 only
+  /// sweeps are used. Newton's method may always take sixty steps, or three per body, even if that exceeds
+  /// this limit. For penalty contacts: steps of Newton's method in all rounds. >= 1
   int iteration_limit = 400;
-  /// Penalty points of one island that are solved one by one; 0: all. Where more are near, up to 256
-  /// neighbours are solved as one point, the deepest, with the stiffness of all; a message (log.h) says so
-  /// once. A step takes 1 to 2 us for each point that is solved.
+  /// Greatest number of penalty points of one island that are solved one by one; 0: no limit. If more are
+  /// near, up to 256 neighbours are solved as one point, the deepest, with the stiffness of all, which a
+  /// message (log.h) reports once. A step takes 1 to 2 us per solved point.
   std::size_t point_limit = 8000;
 };
 
@@ -43,21 +43,21 @@ class VPS_BULLET_API Solver : public btSequentialImpulseConstraintSolver {
                       int manifold_count, btTypedConstraint** constraints, int constraint_count,
                       const btContactSolverInfo& info, btIDebugDraw* draw, btDispatcher* dispatcher) override;
 
-  /// Iterations of the last island that this method solved, counted as for iteration_limit. At most 30 final
-  /// sweeps come on top.
+  /// Iterations of the last island that this solver solved, counted as for iteration_limit, without up to 30
+  /// final sweeps.
   [[nodiscard]] int iterationsUsed() const { return iterations_used_; }
-  /// Penalty points that were solved for that island, of as many as were near.
+  /// Number of penalty points that were solved for that island, and number of points that were near.
   [[nodiscard]] std::size_t pointsSolved() const { return points_solved_; }
   [[nodiscard]] std::size_t pointsNear() const { return points_near_; }
-  /// True if that island reached the residual, or 1e-5 of the bodies' greatest speed if that is more.
+  /// True if that island reached the residual, or 1e-5 of the bodies' greatest speed if this is larger.
   [[nodiscard]] bool hasConverged() const { return is_converged_; }
-  /// How often bodies of an island made only a share of a step's way, because no contacts were found that
-  /// keep them apart at its end. They keep their velocities.
+  /// Number of steps in which bodies of an island moved only a share of their motion, because no contacts
+  /// were found that keep them apart at the end of the step. Their velocities are not changed.
   [[nodiscard]] std::size_t shortenedSteps() const { return shortened_steps_; }
-  /// How often bodies of an island were moved apart without a velocity, because they overlapped or their
-  /// sharp features were nearer than they rest at. Such a step does not keep the angular momentum: that
-  /// changes by m d x v of each body, with its displacement d, which is below a micrometre where bodies did
-  /// not begin in each other.
+  /// Number of steps in which bodies of an island were moved apart without a velocity, because they
+  /// overlapped or their sharp features were nearer than the rest gap. Such a step does not conserve angular
+  /// momentum: it changes by m d x v for each body, where the displacement d is below a micrometre unless
+  /// bodies began inside each other.
   [[nodiscard]] std::size_t pushedSteps() const { return pushed_steps_; }
 
  private:

@@ -16,25 +16,26 @@ class btRigidBody;
 
 namespace vps::bullet {
 
-/// What tuneWorld changed, as text and as input for restoreWorld.
+/// The changes that tuneWorld() made, as text and as input for restoreWorld().
 struct WorldTuning {
   /// One line for each parameter: "split impulse threshold [m]: -0.04 -> 0".
   std::vector<std::string> changes;
   [[nodiscard]] bool empty() const { return changes.empty(); }
 
-  /// Values before and after, by parameter.
+  /// Values before and after, for each parameter.
   std::vector<std::pair<double, double>> values;
-  /// Bodies that received tuneBody()'s thresholds. Only their addresses are compared; they may be gone.
+  /// Bodies that received tuneBody()'s thresholds. Only the addresses are compared, so the bodies may have
+  /// been deleted.
   std::vector<const btRigidBody*> bodies;
 };
 
-/// Sets a world's parameters to what contact at part scale needs; tune.cpp gives the reason for each.
-/// Also calls tuneBody() for the bodies of the world that have Bullet's default sleeping thresholds, so call
-/// it after they are added. One parameter, the margin of the broadphase, applies to the whole process. Throws
-/// std::invalid_argument for fewer than one iteration.
+/// Sets a world's parameters for contact at part scale; tune.cpp gives the reason for each. Also calls
+/// tuneBody() for the bodies of the world that have Bullet's default sleeping thresholds, so call tuneWorld()
+/// after the bodies are added. One parameter, the margin of the broadphase, applies to the whole process.
+/// Throws std::invalid_argument for fewer than one iteration.
 VPS_BULLET_API WorldTuning tuneWorld(btDiscreteDynamicsWorld& world, int solver_iterations = 100);
 
-/// Restores what tuneWorld changed, except for values that have been changed again since.
+/// Restores the values that tuneWorld() changed, except those that have been changed again since.
 VPS_BULLET_API void restoreWorld(btDiscreteDynamicsWorld& world, const WorldTuning& tuning);
 
 /// A body that stays below both speeds for two seconds (Bullet's gDeactivationTime) may fall asleep. Bullet's

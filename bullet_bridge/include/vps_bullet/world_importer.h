@@ -19,10 +19,10 @@
 
 namespace vps::bullet {
 
-/// Drop-in for btBulletWorldImporter. Bodies whose shape was a Shape, or a compound with one at any depth,
-/// get one again; its models are built anew at the resolution that they had. Rigid bodies also get the
-/// inertia, velocities and sleeping thresholds that they had, which Bullet's importer leaves out. Owns the
-/// Shapes, so it must outlive the bodies.
+/// Drop-in for btBulletWorldImporter. Bodies whose shape was a Shape, or a compound that contains one at any
+/// depth, get a Shape again; its models are built again at their previous resolution. Rigid bodies also get
+/// back their inertia, velocities and sleeping thresholds, which Bullet's importer drops. Owns the Shapes, so
+/// it must outlive the bodies.
 class WorldImporter : public btBulletWorldImporter {
  public:
   using btBulletWorldImporter::btBulletWorldImporter;
@@ -37,7 +37,7 @@ class WorldImporter : public btBulletWorldImporter {
       if (body && is_double) restoreState(*static_cast<const btRigidBodyDoubleData*>(data), *body);
       if (body && !is_double) restoreState(*static_cast<const btRigidBodyFloatData*>(data), *body);
     }
-    shape_of_.clear();  // the file's memory, whose addresses are the keys, is freed
+    shape_of_.clear();  // the keys are addresses in the file's memory, which is freed
     return is_converted;
   }
   btRigidBody* createRigidBody(bool is_dynamic, btScalar mass, const btTransform& X_WB,
@@ -80,13 +80,14 @@ class WorldImporter : public btBulletWorldImporter {
                         shape);
     return shape;
   }
-  /// @param saved  what the file holds of `shape`
+  /// @param saved  data of `shape` in the file
   btCollisionShape* restored(const btCollisionShapeData& saved, btCollisionShape* shape) {
     if (!shape->isCompound()) return shape;
     auto& compound = *static_cast<btCompoundShape*>(shape);
     if (Shape* own = restoredPart(saved, compound)) return own;
     const auto& children = reinterpret_cast<const btCompoundShapeData&>(saved);
-    if (children.m_numChildShapes != compound.getNumChildShapes()) return shape;  // some were not readable
+    if (children.m_numChildShapes != compound.getNumChildShapes())
+      return shape;  // some children were not readable
     std::vector<std::pair<btTransform, btCollisionShape*>> again;
     for (int i = 0; i < compound.getNumChildShapes(); ++i)
       again.emplace_back(compound.getChildTransform(i),
@@ -96,7 +97,7 @@ class WorldImporter : public btBulletWorldImporter {
     for (const auto& [X_SC, child] : again) compound.addChildShape(X_SC, child);
     return shape;
   }
-  /// Null if it was not saved by a Shape.
+  /// The Shape that was saved as this compound; null if it was not saved by a Shape.
   Shape* restoredPart(const btCollisionShapeData& saved, const btCompoundShape& compound) {
     if (!saved.m_name || compound.getNumChildShapes() != 1) return nullptr;
     const btCollisionShape* child = compound.getChildShape(0);

@@ -54,15 +54,15 @@ void requireUsable(const Material& material) {
 void requireUsable(const BodySettings& settings) {
   requireUsable(settings.material);
   const Mat3& R = settings.X_WP.R;
-  constexpr double kRounding = 1e-5;  // of a rotation in single precision, multiplied a few times
+  constexpr double kRounding = 1e-5;  // error of a product of a few rotations in single precision
   if (!settings.X_WP.isFinite() || !((R.transpose() * R - Mat3::Identity()).norm() < kRounding) ||
       R.determinant() < 0)
     throw std::invalid_argument("makeBody: X_WP of '" + settings.name +
                                 "' is not a finite position with a rotation");
 }
 
-/// Lids over its holes are part of an open mesh's solid: without one, a box lacks up to a third of its
-/// volume.
+/// Mass properties of the part with flat lids over the holes of an open mesh. Without its lid a box would
+/// lack up to a third of its volume.
 MassProperties massWithLids(const PartModel& part, const std::string& name) {
   const bool has_inside = part.solid && !part.solid->isSheet();
   const MassProperties whole = has_inside ? part.solid->mass() : solidMass(*part.mesh, name);
@@ -72,7 +72,8 @@ MassProperties massWithLids(const PartModel& part, const std::string& name) {
   return whole;
 }
 
-/// A fixed body needs no mass; a part without a volume, such as a sheet, then has its mesh's frame.
+/// Mass and frame of the body. A fixed body needs no mass: if its part has no volume, as a sheet, the body
+/// has the mesh's frame.
 BodyFrame frameOf(const PartModel& part, const BodySettings& settings) {
   const MassProperties mass = massWithLids(part, settings.name);
   const double density_kg_m3 = settings.material.density_kg_m3;
@@ -100,7 +101,7 @@ Resolution resolutionFor(const Mesh& mesh, std::size_t point_budget) {
 void setMaterial(btCollisionObject& body, const Material& material) {
   requireUsable(material);
   body.setFriction(toBt(frictionFactor(material.friction)));
-  // As for friction: two bodies of one material bounce as that material does.
+  // The square root makes two bodies of one material bounce as that material does, as with friction.
   body.setRestitution(toBt(std::sqrt(material.restitution)));
 }
 

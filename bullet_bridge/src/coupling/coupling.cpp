@@ -15,7 +15,7 @@ namespace vps::bullet {
 
 namespace {
 
-// Bullet casts by type when it draws or saves a constraint; it ignores a type that it does not know.
+// Bullet casts a constraint by type when it draws or saves it, and ignores unknown types.
 constexpr btTypedConstraintType kNoStockType = MAX_CONSTRAINT_TYPE;
 
 void requireDynamic(const btRigidBody& part) {
@@ -114,8 +114,7 @@ CouplingConstraint::Step CouplingConstraint::makeStep(double dt_s) const {
 
 CouplingConstraint::Law CouplingConstraint::lawAt(const Step& step, const Vec6& V_G, bool unlimited) const {
   // At the end of the step the error is e - dt V (the target is that of the end), so the law gives
-  //   impulse = dt k (e - dt V) + dt b (V_target - V)
-  // where the first term, the spring, is limited.
+  // impulse = dt k (e - dt V) + dt b (V_target - V) where the first term, the spring, is limited.
   Law law;
   const double dt = step.dt_s;
   const double k[2] = {gains_.k_Nm_per_rad, gains_.k_N_per_m},
@@ -135,8 +134,8 @@ CouplingConstraint::Law CouplingConstraint::lawAt(const Step& step, const Vec6& 
 }
 
 CouplingConstraint::Vec6 CouplingConstraint::solveImpulse(const Step& step, const Vec6& V_without) const {
-  // V = V_without + A (c - D V). With a limit the law depends on V; its direction converges in a few rounds,
-  // and their fixed number bounds the cost.
+  // Solves V = V_without + A (c - D V). At a limit the law depends on V: its direction converges in a few
+  // rounds, whose fixed number bounds the cost.
   constexpr int kRounds = 4;  // assumed; the direction turns by less than dt * velocity / error a round
   Law law = lawAt(step, V_without, true);
   Vec6 V;
@@ -172,7 +171,7 @@ const char* CouplingConstraint::unsupportedReason(const btConstraintSolver& solv
 }
 
 void CouplingConstraint::buildJacobian() {
-  is_prepared_ = false;  // dt is known only at the first iteration
+  is_prepared_ = false;  // the step size is known only at the first iteration
   impulse_.setZero();
   F_PG_W_ = Wrench();
 }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // install(): the create function that Bullet calls for each new pair with a Shape.
 //
-// An installation lives in a map keyed by dispatcher, behind a mutex: a dispatcher neither owns the create
-// functions in its table nor has a user pointer, yet install(), uninstall() and stats() are given nothing
-// else. No step reads the map; pairs share their Context, and the solver finds the create function in the
-// dispatcher's table (penalty_contacts.h).
+// Installations are kept in a map by dispatcher, behind a mutex. A dispatcher neither owns the create
+// functions in its table nor has a user pointer, and install(), uninstall() and stats() have no other
+// argument. No step reads the map: pairs share their Context, and the solver finds the create function in the
+// dispatcher's table (contact_stores.h).
 #include "vps_bullet/install.h"
 
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
@@ -46,8 +46,8 @@ bool hasSurface(const Shape& shape) {
   return shape.models().map || !shape.models().surfaces.empty();
 }
 
-// Contact needs the points of one side and the surface of the other. A pair without them would do nothing,
-// silently.
+// Contact needs the points of one side and the surface of the other. A pair without these would silently have
+// no contact.
 void requireContact(bool is_possible) {
   if (!is_possible)
     throw std::invalid_argument(
@@ -109,7 +109,7 @@ struct CreateFunction : ContactCreateFunction {
     return make<NativeShapeAlgorithm>(info, bodies[0], bodies[1], context, side);
   }
 
-  // A sleeping threshold of 0.8 m/s stops sliding parts; see tuneBody.
+  // Warns of Bullet's default sleeping threshold of 0.8 m/s, which stops sliding parts; see tuneBody().
   void warnOfSleep(const btCollisionObject& object) {
     const btRigidBody* body = btRigidBody::upcast(&object);
     constexpr double kFast_m_s = 0.1;  // a part that is pushed by hand
@@ -121,7 +121,7 @@ struct CreateFunction : ContactCreateFunction {
              " m/s; call tuneWorld when all bodies are added, or tuneBody");
   }
 
-  // Once for each message, since pairs are created and destroyed often.
+  // Reports each message once, since pairs are created and destroyed often.
   void warnOnce(const std::string& message) {
     const std::lock_guard lock(mutex_);
     if (reported_.insert(message).second) report(LogLevel::Warning, message);
@@ -130,8 +130,8 @@ struct CreateFunction : ContactCreateFunction {
   std::set<std::string> reported_;
 };
 
-// Called for every pair of a compound with another shape that is no Shape. Where neither has a Shape among
-// its children, it calls the function that was there before.
+// Called for every pair of a compound with another shape that is not a Shape. If neither contains a Shape, it
+// calls the function that was registered before.
 struct CompoundCreateFunction : btCollisionAlgorithmCreateFunc {
   const CreateFunction* ours = nullptr;
   btCollisionAlgorithmCreateFunc* before = nullptr;
@@ -145,7 +145,7 @@ struct CompoundCreateFunction : btCollisionAlgorithmCreateFunc {
   }
 };
 
-// Bullet calls it for each pair near each other in each step.
+// Bullet calls the near callback for each pair of near bodies in each step.
 void nearCallback(btBroadphasePair& pair, btCollisionDispatcher& dispatcher, const btDispatcherInfo& info) {
   renewIfSwapped(pair, dispatcher);
   const auto* ours = dynamic_cast<const CreateFunction*>(contactFunctionOf(&dispatcher));
@@ -155,10 +155,11 @@ void nearCallback(btBroadphasePair& pair, btCollisionDispatcher& dispatcher, con
 struct Installation {
   std::shared_ptr<Context> context = std::make_shared<Context>();
   CreateFunction create;
-  /// The functions registered before, contact and closest, by type, in both orders.
+  /// Functions for contact and for closest points that were registered before install(), by type, in both
+  /// orders.
   std::map<std::pair<int, int>, std::pair<btCollisionAlgorithmCreateFunc*, btCollisionAlgorithmCreateFunc*>>
       before;
-  /// For pairs of a compound, by type: contact and closest.
+  /// Functions for pairs of a compound, for contact and for closest points, by type.
   std::map<std::pair<int, int>, std::array<CompoundCreateFunction, 2>> of_compound;
 
   Installation() {
@@ -176,8 +177,8 @@ std::map<const btCollisionDispatcher*, std::unique_ptr<Installation>>& installat
   return all;
 }
 
-// A dispatcher that was destroyed without uninstall leaves an entry, which does not apply to another
-// dispatcher that was later created at the same address. So the dispatcher's table decides.
+// Finds the installation of a dispatcher. A dispatcher that was destroyed without uninstall() leaves an entry
+// that must not apply to another dispatcher at the same address, so the dispatcher's table decides.
 Installation* find(const btCollisionDispatcher& dispatcher) {
   const auto it = installations().find(&dispatcher);
   const bool is_there = it != installations().end() &&
@@ -194,7 +195,7 @@ void forEachPair(int mine, const Visit& visit) {
   }
 }
 
-// GImpact has algorithms of its own for compounds.
+// Visits the types that a compound can be paired with. GImpact has its own algorithms for compounds.
 template <typename Visit>
 void forEachCompoundPair(const Visit& visit) {
   forEachPair(COMPOUND_SHAPE_PROXYTYPE, [&](int a, int b) {
@@ -232,8 +233,8 @@ void restoreForCompounds(btCollisionDispatcher& dispatcher, const Installation& 
   }
 }
 
-// The size that the library's compiled code gives a manifold. Neither the configuration nor its pool has a
-// member whose size depends on the precision, so that asking is safe.
+// Size of a manifold in Bullet's compiled library. Neither the configuration nor its pool has a member whose
+// size depends on the precision, so that this call is safe in either precision.
 int manifoldBytesOfLibrary() {
   btDefaultCollisionConstructionInfo small;
   small.m_defaultMaxPersistentManifoldPoolSize = 1;
@@ -260,19 +261,19 @@ int manifoldBytesOfLibrary() {
   throw std::invalid_argument(words);
 }
 
-/// Throws std::invalid_argument where Bullet's library, or the code that made the dispatcher, was compiled in
-/// the other precision: the headers of this package were not, and the two would not agree about any type.
+/// Throws std::invalid_argument if Bullet's library, or the code that made the dispatcher, was compiled in
+/// the other precision, in which all of Bullet's types have another size.
 void requireSamePrecision(const btCollisionDispatcher& dispatcher) {
   constexpr int kOurs = static_cast<int>(sizeof(btPersistentManifold));
   static const int library = manifoldBytesOfLibrary();
   if (library != kOurs) refuse("Bullet's library has", library);
-  // A host may give a pool of its own, with larger elements.
+  // A host may provide its own pool, with larger elements.
   const int pool = dispatcher.getInternalManifoldPool()->getElementSize();
   if (pool < kOurs) refuse("the dispatcher's pool has", pool);
 }
 
-/// Throws std::invalid_argument for a btCollisionDispatcherMt with a task scheduler of several threads, whose
-/// manifolds come in another order in each run.
+/// Throws std::invalid_argument for a btCollisionDispatcherMt with a task scheduler of several threads, since
+/// the order of its manifolds differs from run to run.
 void requireOneThread(const btCollisionDispatcher& dispatcher) {
   const btITaskScheduler* scheduler = btGetTaskScheduler();
   if (!dynamic_cast<const btCollisionDispatcherMt*>(&dispatcher) || !scheduler ||
@@ -328,7 +329,8 @@ void install(btCollisionDispatcher& dispatcher, const Settings& settings) {
 void uninstall(btCollisionDispatcher& dispatcher) {
   const std::lock_guard lock(g_mutex);
   Installation* installation = find(dispatcher);
-  constexpr long kOurs = 2;  // references of the installation and its create function; others belong to pairs
+  constexpr long kOurs =
+      2;  // references held by the installation and its create function; all others belong to pairs
   if (installation && installation->context.use_count() > kOurs)
     report(LogLevel::Warning,
            "uninstalled while pairs of bodies with a bullet::Shape exist; they keep VPS contact");

@@ -32,20 +32,21 @@ int wantedMode(int mode) {
 template <typename Visit>
 void forEachParameter(btDiscreteDynamicsWorld& world, int solver_iterations, const Visit& visit) {
   btContactSolverInfo& info = world.getSolverInfo();
-  // The stock solver's residual decreases with them (Bullet: 10); bullet::Solver has its own settings.
+  // The stock solver's residual decreases with the number of iterations (Bullet: 10). bullet::Solver has its
+  // own settings.
   visit(info.m_numIterations, solver_iterations, "solver iterations");
-  // Position errors are corrected without adding velocity, from the first micrometre on: Bullet's threshold
-  // of 40 mm is never reached by a part.
+  // Position errors are corrected without adding velocity, from the first micrometre on. Parts never reach
+  // Bullet's threshold of 40 mm.
   visit(info.m_splitImpulse, 1, "split impulse");
   visit(info.m_splitImpulsePenetrationThreshold, btScalar(0), "split impulse threshold [m]");
   // Overlap is corrected by rotation as much as by translation (Bullet: a tenth).
   visit(info.m_splitImpulseTurnErp, btScalar(1), "split impulse turn erp");
-  // Share of an overlap that is corrected in one step. Bullet's own value.
+  // Share of an overlap that is corrected in one step; this is Bullet's own value.
   visit(info.m_erp2, btScalar(0.2), "contact erp");
   // Both a tolerated overlap and a compliance of contacts let a part sink by that much.
   visit(info.m_linearSlop, btScalar(0), "linear slop [m]");
   visit(info.m_globalCfm, btScalar(0), "global cfm");
-  // Contacts keep their ids, so last step's impulses are nearly those of this step (Bullet: 0.85).
+  // Contacts keep their ids, so last step's impulses are close to this step's (Bullet: 0.85).
   visit(info.m_warmstartingFactor, btScalar(1), "warm starting factor");
   // Islands are solved one by one, so that a part's result does not depend on other bodies in the world.
   visit(info.m_minimumSolverBatchSize, 1, "least solver batch size");
@@ -75,7 +76,7 @@ WorldTuning tuneWorld(btDiscreteDynamicsWorld& world, int solver_iterations) {
   if (solver_iterations < 1)
     throw std::invalid_argument("tuneWorld: the solver needs at least one iteration, not " +
                                 std::to_string(solver_iterations));
-  // The narrow phase would know it from the second step on.
+  // Otherwise the narrow phase would know the solver only from the second step on.
   const ContactCreateFunction* stores = contactFunctionOf(world.getDispatcher());
   if (stores && dynamic_cast<Solver*>(world.getConstraintSolver())) stores->penalty_contacts->setHasSolver();
   WorldTuning tuning;

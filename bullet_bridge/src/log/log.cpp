@@ -20,7 +20,7 @@ struct Log {
   LogHook hook;
   LogLevel least = LogLevel::Warning;
   Clock::time_point second_began;
-  int passed = 0;  ///< in the second that began then
+  int passed = 0;  ///< messages passed in the second that began at second_began
   int dropped = 0;
 };
 
@@ -29,7 +29,8 @@ Log& theLog() {
   return log;
 }
 
-/// False: too many. Otherwise `dropped` tells how many there were before this one.
+/// Returns false if the limit of messages is reached. Otherwise sets `dropped` to the number of messages
+/// dropped before this one.
 bool mayPass(Log& log, int& dropped) {
   const Clock::time_point now = Clock::now();
   if (now - log.second_began >= std::chrono::seconds(1)) {
@@ -77,7 +78,7 @@ void report(LogLevel level, const std::string& message) noexcept {
       hook(level, words);
     else
       std::fprintf(stderr, "vps: %s\n", words.c_str());
-  } catch (...) {  // no memory, or a hook that throws: a step must go on
+  } catch (...) {  // out of memory, or a hook that throws: the step must continue
   }
 }
 
@@ -97,8 +98,8 @@ bool isContactInstalled() {
 }
 
 void warnOfForgottenInstall() {
-  // A body asks once when it is added and then once in each step. assumed: a world of one part that is
-  // stepped a hundredth of a second.
+  // Bullet requests a body's box once when it is added and once per step. Assumed: a world with one part that
+  // is stepped for a hundredth of a second.
   constexpr int kBoxes = 12;
   if (++g_boxes != kBoxes) return;
   report(LogLevel::Error,

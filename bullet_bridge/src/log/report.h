@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// How the library's messages reach the log hook.
+// SPDX-License-Identifier: BSD-3-Clause Messages of the library: how they reach the log hook, and the warning
+// about a forgotten install().
 #pragma once
 
 #include <string>
@@ -8,15 +8,16 @@
 
 namespace vps::bullet {
 
-/// Passes a message to the hook, within the limits of log.h. Never throws. Thread-safe.
+/// Passes a message to the log hook, within the limits of log.h. Never throws. Thread-safe.
 void report(LogLevel level, const std::string& message) noexcept;
 
-/// install() was called for any dispatcher of the process.
+/// Notes that install() was called for a dispatcher of this process.
 void setContactInstalled();
 [[nodiscard]] bool isContactInstalled();
 
-/// Called with each bounding box that Bullet asks of a Shape while there is no installation. Bodies may be
-/// added before install() is called, so it speaks at a later call, once.
+/// Must be called for each bounding box that Bullet requests of a Shape while there is no installation.
+/// Without install() parts would fall through planes without a message. Bodies may be added before install(),
+/// so the warning is given at a later call, once.
 void warnOfForgottenInstall();
 
 }  // namespace vps::bullet

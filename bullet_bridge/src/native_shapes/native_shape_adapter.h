@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// Presents one of Bullet's own shapes as a Shape, for pairs with a Shape; and the cache of such adapters.
+// SPDX-License-Identifier: BSD-3-Clause Adapters that present Bullet's own shapes as a Shape, for pairs with
+// a Shape; and their cache.
 #pragma once
 
 #include <cstdint>
@@ -13,9 +13,10 @@
 namespace vps::bullet {
 
 /// A native shape's surface as models without a map: the exact distance of its triangles, and its corners as
-/// a shell. So each side's points are queried in the other: the Shape's on the surface, the corners in the
-/// Shape's map. For a primitive with corners only the corners are used; the primitive has its own distance
-/// function. Refers to the native shape, but keeps the geometry that it had at construction.
+/// a shell. So the points of each side are queried in the other side: the Shape's points on the native
+/// surface, the corners in the Shape's map. For a primitive with corners only the corners are used, since
+/// primitiveDistance() measures the surface. Refers to the native shape, but keeps the geometry that it had
+/// at construction.
 class NativeShapeAdapter : public Shape {
  public:
   BT_DECLARE_ALIGNED_ALLOCATOR();
@@ -27,14 +28,15 @@ class NativeShapeAdapter : public Shape {
   const btCollisionShape* primitive_ = nullptr;
 };
 
-/// The primitive that the adapter `shape` represents; nullptr if `shape` is no adapter of a primitive.
+/// The primitive that the adapter `shape` represents; nullptr if `shape` is not an adapter of a primitive.
 const btCollisionShape* primitiveOf(const btCollisionShape& shape);
-/// That primitive, or else `shape` itself.
+/// The primitive that the adapter `shape` represents, or `shape` itself if it is not such an adapter.
 const btCollisionShape& unwrapped(const btCollisionShape& shape);
 
-/// The adapters of an installation: built when a native shape first meets a Shape, shared by its pairs.
-/// A shape is identified by its address. Another shape may later have the same address, so it is checked: by
-/// its key always, and by a hash of its corners when no pair uses the adapter. Thread-safe.
+/// The adapters of an installation. An adapter is built when a native shape first meets a Shape, and shared
+/// by all pairs of the native shape. Shapes are identified by address. Since another shape may later have the
+/// same address, the shape's key is compared in each call, and a hash of its corners too if no pair uses the
+/// adapter. Thread-safe.
 class NativeShapeCache {
  public:
   /// Throws as nativeShapeMesh(). O(triangles log triangles) the first time.

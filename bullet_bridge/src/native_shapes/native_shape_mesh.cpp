@@ -28,8 +28,8 @@ namespace vps::bullet {
 
 namespace {
 
-// A closed surface that is flatter than this, relative to its size, is a sheet: float coordinates cannot
-// resolve it.
+// A closed surface whose volume is smaller than this, relative to its size cubed, is a sheet, since float
+// coordinates cannot resolve its thickness.
 constexpr double kFlat = 1e-6;
 
 [[noreturn]] void refuse(const btCollisionShape& shape, const std::string& why) {
@@ -78,7 +78,7 @@ Vec3 areaNormal(const Mesh& mesh, const std::array<std::uint32_t, 3>& t) {
   return (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a);
 }
 
-// Keeps one side of a hull without volume.
+// Removes one of the two coinciding sides of a flat hull.
 void keepOneSide(Mesh& mesh) {
   Vec3 front = Vec3::Zero();
   for (const auto& t : mesh.triangles)
@@ -96,7 +96,8 @@ NativeShapeMesh hullOf(const btCollisionShape& shape, const std::vector<Vec3>& p
   btConvexHullComputer computer;
   computer.compute(coordinates.data(), 3 * sizeof(double), static_cast<int>(points.size()), 0, 0);
   NativeShapeMesh hull;
-  // Bullet rounds to 1/10216 of the size to find the corners; we use the corners' unrounded coordinates.
+  // Bullet rounds coordinates to 1/10216 of the size to find the corners. The mesh uses the corners'
+  // unrounded coordinates.
   for (int i = 0; i < computer.vertices.size(); ++i)
     hull.mesh.vertices.push_back(points[static_cast<std::size_t>(computer.original_vertex_index[i])]);
   for (int f = 0; f < computer.faces.size(); ++f) {
@@ -147,9 +148,9 @@ std::vector<Vec3> cloudPoints(const btConvexPointCloudShape& shape) {
   return points;
 }
 
-// For shapes of which only the support function is known: the hull of its values in 10,242 directions. A
-// corner rounded by radius r has one of them within 2.6 degrees of any direction it supports, so the rounding
-// is cut by at most r (1 - cos 2.6 deg) = 1.03e-3 r.
+// Points of a shape of which only the support function is known: its values in 10,242 directions. One of the
+// directions lies within 2.6 degrees of any direction that a rounding of radius r supports, so the hull cuts
+// the rounding by at most r (1 - cos 2.6 deg) = 1.03e-3 r.
 std::vector<Vec3> supportPoints(const btConvexShape& shape) {
   std::vector<Vec3> points;
   for (const Vec3& direction : makeSphere(1, 5).vertices)
@@ -209,7 +210,8 @@ std::vector<std::array<std::uint32_t, 2>> borderOf(const Mesh& mesh) {
   return border;
 }
 
-// A terrain is closed by walls along its border and a floor, as far below as it is wide.
+// Closes a terrain by walls along its border and a floor. The floor lies below the terrain by the terrain's
+// width.
 //
 //    ~~~~~~~~~~~   the field, facing up
 //    |         |   walls
@@ -253,7 +255,7 @@ NativeShapeMesh scaledBy(double factor, NativeShapeMesh native) {
   return native;
 }
 
-// Not from Bullet's corners of it, which lie a margin below its plane.
+// The rectangle of a 2D box. Bullet's own corners are not used, since they lie a margin below its plane.
 NativeShapeMesh flatBox(const btBox2dShape& shape) {
   const Vec3 half = fromBt(shape.getHalfExtentsWithMargin());
   Mesh mesh;

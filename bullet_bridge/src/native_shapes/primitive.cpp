@@ -26,8 +26,8 @@ SurfaceDistance aroundPoint(const Vec3& p_from_center, double radius_m) {
   return {r - radius_m, r > 0 ? Vec3(p_from_center / r) : Vec3::UnitZ().eval()};
 }
 
-// Distance to a product of intervals: q are the distances to each pair of faces, with their normals. Outside,
-// the positive distances are components of the distance; inside, the nearest face counts.
+// Distance to a product of intervals. q holds the distance to each pair of faces, with their normals.
+// Outside, the positive values are components of the distance; inside, the nearest face counts.
 template <int N>
 SurfaceDistance productDistance(const double (&q)[N], const Vec3 (&normals)[N]) {
   Vec3 outside = Vec3::Zero();
@@ -74,7 +74,8 @@ double nearestShare(const Point2& p, const Point2& a, const Point2& b) {
   return std::clamp(((p.x - a.x) * dx + (p.y - a.y) * dy) / (dx * dx + dy * dy), 0.0, 1.0);
 }
 
-// In the half plane of axis (y) and radius (x) a cone is a triangle of rim, apex and centre of the base.
+// In the half plane of axis (y) and radius (x), the section of a cone is the triangle of rim, apex and centre
+// of the base.
 //
 //   apex
 //    |  .      inside: below the side and above the base
@@ -136,12 +137,13 @@ class SphereHull {
   [[nodiscard]] Vec3 from(int i) const { return p_ - spheres_[i].center; }
 
   void consider(const Vec3& n) {
-    if (!(n.squaredNorm() > 0.5)) return;  // a point in a sphere's centre has no direction
+    if (!(n.squaredNorm() > 0.5)) return;  // a point at a sphere's centre has no direction
     double least = 1e300;
     for (int i = 0; i < count_; ++i) least = std::min(least, n.dot(from(i)) - spheres_[i].radius_m);
     if (least > best_.distance_m) best_ = {least, n};
   }
-  // Equal for both spheres: n.u = a along the axis u between them, and otherwise towards p.
+  // Directions with equal values for two spheres: n.u = a along the axis u between them, and otherwise
+  // towards p.
   void considerPair(int i, int j) {
     const Vec3 between = spheres_[j].center - spheres_[i].center;
     const double length = between.norm(), a = (spheres_[i].radius_m - spheres_[j].radius_m) / length;
@@ -151,7 +153,8 @@ class SphereHull {
     if (!(w.norm() > 1e-12 * length)) w = u.unitOrthogonal();  // on the axis all directions are equal
     consider(a * u + std::sqrt(1 - a * a) * w.normalized());
   }
-  // Equal for all three spheres: n = s + t m, with s in their plane and m the plane's normal.
+  // Directions with equal values for three spheres: n = s + t m, with s in their plane and m the plane's
+  // normal.
   void considerTriple(int i, int j, int k) {
     const Vec3 u = spheres_[j].center - spheres_[i].center, v = spheres_[k].center - spheres_[i].center;
     const Vec3 m = u.cross(v);

@@ -37,11 +37,11 @@ namespace {
 
 constexpr std::uint64_t kPrime = 0x100000001b3ull;
 
-/// FNV-1a over words of eight bytes. The three words of a row go to three sums, which do not wait for each
-/// other's multiplications.
+/// FNV-1a over words of eight bytes. The three words of a row go to three independent sums, so that their
+/// multiplications overlap.
 class Hash {
  public:
-  /// @param bytes  of a row: three coordinates or indices
+  /// @param bytes  size of a row, which has three coordinates or indices
   void addRows(const void* first, std::size_t rows, std::ptrdiff_t stride, std::size_t bytes) {
     const auto* at = static_cast<const unsigned char*>(first);
     switch (bytes) {

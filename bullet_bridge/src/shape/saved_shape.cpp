@@ -21,8 +21,8 @@ namespace vps::bullet {
 
 namespace {
 
-// Followed by voxel, band in voxels, spacing, and the models' pose in the shape's frame: position,
-// quaternion.
+// First word of a saved shape's name. Voxel size, band in voxels, spacing, and the models' pose in the
+// shape's frame (position, quaternion) follow.
 constexpr const char* kName = "vps::bullet::Shape/1";
 
 struct Resolved {
@@ -53,7 +53,7 @@ bool read(const char* saved_as, Resolved& saved) {
       saved.X_SM.p.z() >> q.w() >> q.x() >> q.y() >> q.z();
   if (!words || !(std::abs(q.norm() - 1) < 1e-6) || !saved.X_SM.p.allFinite())
     throw LoadError("", "",
-                    "the name of a saved bullet::Shape has numbers that cannot be: " + std::string(saved_as));
+                    "the name of a saved bullet::Shape contains invalid numbers: " + std::string(saved_as));
   saved.X_SM.R = q.normalized().toRotationMatrix();
   return true;
 }
@@ -69,7 +69,7 @@ std::uint32_t indexAt(const unsigned char* at, PHY_ScalarType type) {
   return type == PHY_SHORT ? of_two : of_four;
 }
 
-// Bullet reads whatever lies there.
+// Throws if an index is beyond the vertices, since Bullet reads them unchecked.
 void requireIndicesInRange(const btStridingMeshInterface& triangles) {
   for (int part = 0; part < triangles.getNumSubParts(); ++part) {
     const unsigned char *vertices = nullptr, *indices = nullptr;
@@ -118,7 +118,7 @@ std::unique_ptr<Shape> restoreShape(const char* saved_as, const btStridingMeshIn
   PointShellSettings points;
   if (saved.voxel_m != 0) voxels = {saved.voxel_m, saved.band_voxels};
   if (saved.spacing_m != 0) points.spacing_m = saved.spacing_m;
-  // Only a sheet has a shell and no map.
+  // Only a sheet has a shell but no map.
   const OpenMesh open = saved.voxel_m != 0 ? OpenMesh::Solid : OpenMesh::Sheet;
   const auto part = buildPartModel("saved shape", transformed(meshOf(triangles), saved.X_SM.inverse()),
                                    voxels, points, {}, open);
@@ -128,7 +128,7 @@ std::unique_ptr<Shape> restoreShape(const char* saved_as, const btStridingMeshIn
   return std::make_unique<Shape>(std::move(models), saved.X_SM);
 }
 
-/// What a serializer knows by address.
+/// Data to which a serializer refers by address.
 struct Shape::Saved {
   std::string name;
   std::vector<btVector3> vertices;

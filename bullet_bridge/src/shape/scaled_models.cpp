@@ -18,7 +18,7 @@ std::shared_ptr<const Mesh> scaled(const Mesh& mesh, double factor) {
 ShellBlock scaled(const ShellBlock& from, double factor) {
   ShellBlock block = from;
   for (double& c : block.center) c *= factor;
-  block.radius_m *= factor * (1 + 1e-6);  // for the rounding of the scaled offsets
+  block.radius_m *= factor * (1 + 1e-6);  // margin for the rounding of the scaled offsets
   const auto f = static_cast<float>(factor);
   for (int i = 0; i < kLanes; ++i) {
     block.x[i] *= f;
@@ -52,7 +52,7 @@ std::vector<Surface> scaled(const std::vector<Surface>& surfaces, double factor)
   return larger;
 }
 
-// `larger` holds the models scaled so far.
+// Builds the map from the models in `larger`, which are scaled already.
 std::shared_ptr<const VoxMap> scaled(const VoxMap& map, const ShapeModels& larger, double factor) {
   VoxMapSettings settings;
   settings.voxel_m = factor * map.voxel_m();
@@ -71,7 +71,7 @@ std::shared_ptr<const VoxMap> scaled(const VoxMap& map, const ShapeModels& large
 
 }  // namespace
 
-ShapeModels Shape::scaled(const ShapeModels& models, double factor) {
+ShapeModels Shape::atScale(const ShapeModels& models, double factor) {
   ShapeModels larger;
   if (models.mesh) larger.mesh = scaled(*models.mesh, factor);
   if (models.shell) larger.shell = scaled(*models.shell, factor);

@@ -21,7 +21,7 @@ namespace vps::bullet {
 
 namespace {
 
-// For calls without effect that do no harm.
+// Reports, once, a harmless call without effect.
 void warnOnce(std::atomic_flag& was_reported, const char* message) {
   if (!was_reported.test_and_set()) report(LogLevel::Warning, message);
 }
@@ -55,7 +55,7 @@ void requireModels(const ShapeModels& models) {
   for (const Surface& surface : models.surfaces) requireUsable(surface.material);
 }
 
-/// Of the solid that the mesh stands for.
+/// Mass properties, at unit density, of the solid that the mesh describes.
 MassProperties solidMass(const ShapeModels& models) {
   const bool has_own_solid = models.surfaces.size() == 1 && models.surfaces[0].X_MP.R.isIdentity(0) &&
                              models.surfaces[0].X_MP.p.isZero(0) && !models.surfaces[0].distance->isSheet();
@@ -72,12 +72,12 @@ struct PointNormals {
   std::vector<std::uint8_t> is_edge;  // by point
   std::vector<Vec3> smooth_inward;
   std::vector<Shape::PointFace> faces;
-  std::vector<std::uint16_t> surfaces;  // of edge points as well; empty: there is only one
+  std::vector<std::uint16_t> surfaces;  // by point, also for edge points; empty if there is only one surface
 };
 
 constexpr double kOnSurface_m = 1e-6;
 
-// Where repair has moved a part's surface, its points are not on that of its solid.
+// Surface nearest to a point. Mesh repair may move a part's surface, so that the point lies on none exactly.
 std::uint16_t nearestSurface(const ShapeModels& models, const Vec3& p_M) {
   std::uint16_t nearest = 0;
   double least_m = models.shell->spacing_m;
@@ -115,7 +115,7 @@ PointNormals findNormals(const ShapeModels& models) {
       const Vec3 face = surface.distance->featureNormal(closest.triangle, 0);
       const double side = surface.sheet && outward.dot(face) < 0 ? -1 : 1;  // a sheet has points on both
       if (side * outward.dot(face) <= kCosFace) continue;
-      // A face's plane goes on beyond its border, and the sheet does not.
+      // A point on the border of a sheet counts as an edge point, since the sheet ends there.
       if (surface.sheet && surface.sheet->isOnBorder(closest.triangle, closest.q)) continue;
       normals.is_edge[i] = 0;
       normals.smooth_inward[i] =
@@ -129,8 +129,8 @@ PointNormals findNormals(const ShapeModels& models) {
   return normals;
 }
 
-// Whether an edge of a sheet is a ridge or a groove depends on the side from which it is met: its points and
-// features act there.
+// Sheets contribute no edges: whether an edge of a sheet is a ridge or a groove depends on the side from
+// which it is met. Points and features act there.
 EdgeSet edgesOf(const std::vector<Surface>& surfaces) {
   std::vector<EdgeSegment> segments;
   for (std::size_t i = 0; i < surfaces.size(); ++i)
@@ -187,7 +187,7 @@ Shape::~Shape() = default;
 void Shape::setModels(ShapeModels models) {
   requireModels(models);
   const double scale = scaling_.x();
-  ShapeModels scaled = scale == 1 ? models : Shape::scaled(models, scale);
+  ShapeModels scaled = scale == 1 ? models : atScale(models, scale);
   unscaled_ = std::move(models);
   use(std::move(scaled), Pose(X_SM_unscaled_.R, scale * X_SM_unscaled_.p));
 }
@@ -246,8 +246,8 @@ void Shape::getAabb(const btTransform& X_WS, btVector3& min, btVector3& max) con
   if (!isContactInstalled()) warnOfForgottenInstall();
   const Pose X = fromBt(X_WS);
   const Vec3 center = X * bounds_S_.center();
-  // btCompoundShape's algorithm tests only children whose boxes overlap; parts that rest on each other have a
-  // gap.
+  // btCompoundShape's algorithm visits only children whose boxes overlap, and parts at rest on each other
+  // have a gap.
   const Vec3 half =
       X.R.cwiseAbs() * (0.5 * bounds_S_.size()) + Vec3(Vec3::Constant(2 * FeatureMotion::kRest_m));
   min = toBt(Vec3(center - half));
@@ -289,7 +289,7 @@ void Shape::setLocalScaling(const btVector3& scaling) {
     throw std::invalid_argument(words.str());
   }
   if (scaling == scaling_) return;
-  ShapeModels scaled = scale == 1 ? unscaled_ : Shape::scaled(unscaled_, scale);
+  ShapeModels scaled = scale == 1 ? unscaled_ : atScale(unscaled_, scale);
   scaling_ = scaling;
   use(std::move(scaled), Pose(X_SM_unscaled_.R, scale * X_SM_unscaled_.p));
 }

@@ -15,7 +15,7 @@ namespace vps::bullet {
 struct Shape::TriangleTree::Path {
   Vec3 from, way, half;
 
-  /// True if it meets the box within this share of its way.
+  /// True if the moving box meets `box` within this share of its path.
   [[nodiscard]] bool meets(const Box& box, double share) const {
     double enter = 0, leave = share;
     for (int k = 0; k < 3; ++k) {
@@ -43,7 +43,7 @@ void Shape::TriangleTree::visit(const Box& box, btTriangleCallback& callback) co
 }
 
 bool Shape::TriangleTree::visitCast(const Box& box, btTriangleCallback& callback) const {
-  // Bullet's box is larger than the path by what it takes for rounding, which is more than 1e-6 of its size.
+  // Bullet adds a margin for rounding to the box of the path. It is more than 1e-6 of the box's size.
   const double rounding_m = 1e-6 * box.size().norm();
   if (auto* ray = dynamic_cast<btTriangleRaycastCallback*>(&callback)) {
     const Vec3 from = fromBt(ray->m_from);
@@ -53,7 +53,7 @@ bool Shape::TriangleTree::visitCast(const Box& box, btTriangleCallback& callback
   }
   const auto* cast = dynamic_cast<btTriangleConvexcastCallback*>(&callback);
   if (!cast) return false;
-  // One that turns may be larger on its way than at both ends: the box is then Bullet's answer.
+  // A turning shape may need more room on its path than at both ends; the caller then uses Bullet's box.
   if (!(cast->m_convexShapeFrom.getBasis() == cast->m_convexShapeTo.getBasis())) return false;
   const btTransform to_shape = cast->m_triangleToWorld.inverse();
   const btTransform start = to_shape * cast->m_convexShapeFrom;

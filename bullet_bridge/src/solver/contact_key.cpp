@@ -7,7 +7,7 @@ namespace vps::bullet {
 
 namespace {
 
-// Bits of m_contactPointFlags far above Bullet's own.
+// Bits of m_contactPointFlags above Bullet's own.
 constexpr int kHasRestGap = 1 << 24, kBounces = 1 << 28, kHasArea = 1 << 29;
 constexpr int kIsSoft = BT_CONTACT_FLAG_HAS_CONTACT_CFM | BT_CONTACT_FLAG_CONTACT_STIFFNESS_DAMPING;
 

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// The number by which a contact is known from step to step.
+// SPDX-License-Identifier: BSD-3-Clause The key that identifies a contact from step to step, and values that
+// a contact point carries for the solver.
 #pragma once
 
 #include <cstdint>
@@ -8,35 +8,35 @@ class btManifoldPoint;
 
 namespace vps::bullet {
 
-/// @param side     0 or 1: whose shell the point belongs to
-/// @param crossed  at a crossing of edges 1 + body 1's edge; 0: a shell point
-/// @param id       of the point in its shell; at a crossing body 0's edge
+/// @param side  0 or 1: the body whose shell the point belongs to
+/// @param crossed  for an edge crossing: 1 + index of body 1's edge; 0 for a shell point
+/// @param id  index of the point in its shell; for a crossing: index of body 0's edge
 constexpr std::uint64_t contactKey(std::uint8_t side, std::uint32_t crossed, std::uint32_t id) {
   return (std::uint64_t(side) << 63) | (std::uint64_t(crossed) << 32) | id;
 }
 
-/// Sets the gap that bullet::Solver keeps at a contact of sharp features. Bullet has no member for it: it is
-/// kept in that of a softness that the contact does not have. Contacts with a stiffness of their own have
-/// none.
+/// Sets the rest gap that bullet::Solver keeps at a contact of sharp features. It is stored in m_contactCFM,
+/// since Bullet has no member for it; contacts with their own softness get no rest gap.
 void setRestGap(btManifoldPoint& point, double rest_m);
-/// 0: it has none.
+/// The rest gap; 0 without one.
 double restGap_m(const btManifoldPoint& point);
 
-/// Sets how much of a touching face the contact stands for; kept as the gap is.
+/// Sets the area of a touching face that the contact represents. It is stored in m_contactERP; contacts with
+/// their own softness get none.
 void setArea(btManifoldPoint& point, double area_m2);
-/// 0: it stands for none.
+/// The area; 0 without one.
 double area_m2(const btManifoldPoint& point);
 
-/// Marks a contact at which the bodies will bounce within the step. Bullet's solver subtracts the gap from
-/// the speed of the rebound, which would suppress a bounce within the step; so it is given no gap. The two
-/// positions keep it.
+/// Marks a contact at which the bodies will bounce within the step, and sets its distance to 0. Bullet's
+/// solver subtracts the gap from the speed of the rebound, which would suppress the bounce. The two positions
+/// still contain the gap.
 void setBounces(btManifoldPoint& point);
 bool bounces(const btManifoldPoint& point);
-/// The distance that bullet::Solver solves for: getDistance(), except where setBounces() removed it.
+/// The distance for bullet::Solver: getDistance(), or, after setBounces(), the distance of the two positions.
 double solvedDistance_m(const btManifoldPoint& point);
 
-/// Key of a contact that ManifoldWriter wrote: the side with the shell has the point's id as its index, the
-/// other -1; at a crossing each index is that body's edge.
+/// Key of a contact that ManifoldWriter wrote. The index of the side with the shell is the point's id, the
+/// other index is -1; for a crossing both indices are edges.
 std::uint64_t keyOf(const btManifoldPoint& point);
 
 }  // namespace vps::bullet

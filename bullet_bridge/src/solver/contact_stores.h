@@ -24,21 +24,21 @@ namespace vps::bullet {
 struct PenaltyPair;
 class StepCheck;
 
-/// The pair of penalty points behind each manifold, for the pairs of one installation.
+/// The penalty points that belong to each manifold, for the pairs of one installation.
 class PenaltyContacts {
  public:
   /// Thread-safe: btCollisionDispatcherMt processes pairs in parallel.
   void add(const btPersistentManifold* manifold, PenaltyPair* pair);
   void remove(const PenaltyPair* pair);
 
-  /// Null: the manifold's own contacts are all there is. Takes no lock: Bullet solves after all pairs have
-  /// been processed.
+  /// Null if the manifold has no penalty points, only its own contacts. Takes no lock, since Bullet solves
+  /// after all pairs have been processed.
   [[nodiscard]] PenaltyPair* find(const btPersistentManifold* manifold) const;
 
   /// True once a Solver has used this store.
   [[nodiscard]] bool hasSolver() const { return has_solver_; }
   void setHasSolver() { has_solver_ = true; }
-  /// True once it has left an island to Bullet's own solver, which asks no pair for its missing contacts.
+  /// True once a Solver has passed an island to Bullet's own solver, which calls no StepCheck.
   [[nodiscard]] bool hasLeftIslands() const { return has_left_islands_; }
   void setHasLeftIslands() { has_left_islands_ = true; }
 
@@ -48,14 +48,14 @@ class PenaltyContacts {
   std::atomic<bool> has_solver_{false}, has_left_islands_{false};
 };
 
-/// The check behind the first manifold of each pair, for the pairs of one installation.
+/// The check of each pair, by the pair's first manifold, for the pairs of one installation.
 class StepChecks {
  public:
   /// Thread-safe: btCollisionDispatcherMt processes pairs in parallel.
   void add(const btPersistentManifold* manifold, StepCheck* check);
   void remove(const btPersistentManifold* manifold);
-  /// Null: not of a pair that checks, or not its first manifold. Takes no lock: Bullet solves after all pairs
-  /// have been processed.
+  /// Null if the manifold is not the first one of a pair with a check. Takes no lock, since Bullet solves
+  /// after all pairs have been processed.
   [[nodiscard]] StepCheck* find(const btPersistentManifold* manifold) const;
 
  private:
@@ -63,28 +63,29 @@ class StepChecks {
   std::map<const btPersistentManifold*, StepCheck*> checks_;
 };
 
-/// What one installation has reported.
+/// Which warnings about turns one installation has reported.
 struct TurnReports {
   bool is_on = true;  ///< Settings::warns_of_turns
   std::atomic_flag clamped, in_contact;
 };
 
-/// Reports (log.h) a body that Bullet turns by less than its speed, once. O(bodies).
+/// Reports once (log.h) a body that Bullet turns in a step by less than its angular velocity times the step.
+/// O(bodies).
 void reportClampedTurn(TurnReports& reports, std::span<btCollisionObject* const> bodies, double dt_s);
 
-/// Reports bodies in contact that turn too far against each other, once.
-/// @param w_rad_s  of their relative rotation
+/// Reports once bodies in contact that turn too far against each other in a step.
+/// @param w_rad_s  rate of their relative rotation
 void reportContactTurn(TurnReports& reports, const btCollisionObject& body0, const btCollisionObject& body1,
                        double w_rad_s, double dt_s);
 
-/// Base of the create function that install() registers.
+/// The create function that install() registers, as the solver sees it.
 struct ContactCreateFunction : btCollisionAlgorithmCreateFunc {
   std::shared_ptr<PenaltyContacts> penalty_contacts;
   std::shared_ptr<StepChecks> step_checks;
   std::shared_ptr<TurnReports> turn_reports;
 };
 
-/// The create function of the installation on this dispatcher, with its stores; null without one.
+/// The create function of the installation on this dispatcher; null without an installation.
 ContactCreateFunction* contactFunctionOf(const btDispatcher* dispatcher);
 
 /// Bullet's shape type of a bullet::Shape. See shape.h for the reason.

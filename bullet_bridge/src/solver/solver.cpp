@@ -4,10 +4,10 @@
 //     (M + J' D J) u = M u0 + J' c + sum of contact impulses        (J, c, D: the couplings' linear laws)
 //
 // so a coupling only adds effective mass and a constant impulse: M_eff = M + J' D J, a 6x6 matrix for each
-// body. Contacts are then solved with M_eff, by the constraint or the penalty method. As one more block of
-// rows, a stiff coupling on a light part would converge like (1 - 1 / (1 + A D)): 20 kN/m on 1 g at 1 kHz
-// would need hundreds of iterations. Sources: Todorov 2014 and Castro et al. 2021 for implicit springs as
-// effective mass.
+// body. Contacts are then solved with M_eff, by the constraint or the penalty method. If a coupling were a
+// block of solver rows instead, a stiff one on a light part would converge like (1 - 1 / (1 + A D)): 20 kN/m
+// on 1 g at 1 kHz would need hundreds of iterations. Sources: Todorov 2014 and Castro et al. 2021 for
+// implicit springs as effective mass.
 #include "vps_bullet/solver.h"
 
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
@@ -38,11 +38,11 @@ namespace vps::bullet {
 
 /// Working data of one island; kept between calls to reuse its memory.
 struct Solver::Work {
-  /// A coupling whose part is in the island.
+  /// A coupling whose part belongs to the island.
   struct ActiveCoupling {
     CouplingConstraint* coupling;
     int body;
-    Mat6 J;  // body's twist -> grasp point's
+    Mat6 J;  // maps the body's twist to the grasp point's
     CouplingConstraint::Law law;
   };
   ContactLoop loop;
@@ -56,10 +56,10 @@ struct Solver::Work {
   std::vector<CouplingConstraint*> couplings;
   std::vector<ActiveCoupling> active_couplings;
   std::vector<PenaltyManifold> manifolds;  // with penalty contact
-  std::deque<PenaltyPair> converted;       // of manifolds without VPS contact
-  std::vector<PenaltyPair*> pairs;         // each once
-  std::size_t points_near = 0;             // of all pairs
-  StepSolution solution;                   // before a step is cut short
+  std::deque<PenaltyPair> converted;       // penalty points made from manifolds without VPS contact
+  std::vector<PenaltyPair*> pairs;         // all pairs, each once
+  std::size_t points_near = 0;             // number of points of all pairs
+  StepSolution solution;                   // solution of the island, before a step is shortened
 
   bool gatherBodies(std::span<btCollisionObject*> objects, double dt_s);
   void gatherConstraints(std::span<btTypedConstraint*> constraints, const btContactSolverInfo& info);
@@ -175,7 +175,7 @@ void Solver::Work::applyLaws() {
   for (IslandBody& b : island.bodies) b.effective_inverse = b.effective_mass.llt().solve(Mat6::Identity());
 }
 
-// True if the laws are valid at the present velocities; otherwise replaces those that are not.
+// Replaces the couplings' laws that are not valid at the present velocities. Returns true if all were valid.
 bool Solver::Work::updateLaws() {
   bool is_converged = true;
   for (ActiveCoupling& h : active_couplings) {
@@ -193,8 +193,8 @@ SolveOutcome Solver::Work::solveContacts(const SolverSettings& settings) {
                     : loop.solveContacts(settings);
 }
 
-// The law of a coupling at its limit depends on the solution, and so do the limits of friction: solves,
-// updates both, and solves again if they changed.
+// The law of a coupling at its limit depends on the solution, and so do the limits of friction. Solves,
+// updates laws and limits, and solves again if they changed.
 SolveOutcome Solver::Work::solveWithLaws(const SolverSettings& settings) {
   const int rounds = is_penalty ? 20 : 6;  // assumed; limits of couplings converge in two or three
   SolveOutcome last;
@@ -255,7 +255,7 @@ btScalar Solver::solveGroup(btCollisionObject** bodies, int body_count, btPersis
     return btSequentialImpulseConstraintSolver::solveGroup(
         bodies, body_count, manifolds, manifold_count, constraints, constraint_count, info, draw, dispatcher);
   }
-  if (work.island.bodies.empty()) return 0;  // Bullet ends each step with a call without bodies
+  if (work.island.bodies.empty()) return 0;  // Bullet ends each step with a call that has no bodies
   points_near_ = points_solved_ = 0;
   if (work.is_penalty) {
     work.gatherPenaltyPoints(settings_.point_limit, dt_s);

@@ -48,7 +48,7 @@ double relativeTurn_rad_s(const btCollisionObject* a, const btCollisionObject* b
   return (rotation(a) - rotation(b)).norm();
 }
 
-// The box of a body on its way in a step.
+// Bounding box of a body's motion in a step.
 void readBox(const btCollisionObject& object, double dt_s, btVector3& min, btVector3& max) {
   object.getCollisionShape()->getAabb(object.getWorldTransform(), min, max);
   const btRigidBody* body = btRigidBody::upcast(&object);

@@ -14,7 +14,7 @@ namespace vps::bullet {
 
 namespace {
 
-// A cell of merged groups is at most this share of the smaller body's radius. assumed
+// Greatest cell of merged groups, as a share share of the smaller body's radius. Assumed.
 constexpr double kMostCellShare = 0.5;
 
 std::size_t limitOf(const Settings& settings, const PointShell& shell) {
@@ -61,8 +61,8 @@ std::size_t findByDistance(const SideView& side, const Pose& X_WS, double cutoff
   return left_out;
 }
 
-// All points around the place where a ball touches a face move there; the one that moved least is kept.
-// Points that neither touch nor move are dropped.
+// Where a ball touches a face, all points of the face around the contact move to it; only the point that
+// moved least is kept. Points that neither touch nor move are dropped.
 void mergeOnRound(const SideView& side, const SideView& other, const btCollisionShape& primitive,
                   double cutoff_m, std::vector<Candidate>& out, std::size_t first) {
   struct Moved {
@@ -95,7 +95,7 @@ void mergeOnRound(const SideView& side, const SideView& other, const btCollision
   out.resize(kept);
 }
 
-// The same motion about the origin of M, in M.
+// Converts a twist about W's origin, in W, to one about M's origin, in M.
 Twist aboutMap(const Twist& V_W, const Pose& X_MW) {
   const Vec3 p_WM = -(X_MW.R.transpose() * X_MW.p);
   return {X_MW.R * V_W.w, X_MW.R * (V_W.v + V_W.w.cross(p_WM))};
@@ -107,9 +107,9 @@ bool RelativeMotion::canTouch(Candidate& c) const {
   const double approach_m = -c.n_W.dot(velocityAt(c.p_W)) * dt_s;
   c.predicted_m = c.distance_m - approach_m;
   // Contact changes the free motion: a part that lands on one edge swings its other edge faster than it fell.
-  // So a share of the greatest speed counts in every direction. Half: assumed; it covers a rod struck at one
-  // end. The pull of couplings is not included: on a part that is pressed against its seat it is large, and
-  // contact balances it.
+  // So half of the greatest speed is assumed in every direction, which covers a rod struck at one end. The
+  // pull of couplings is not included: it is large on a part that is pressed against its seat, and contact
+  // balances it.
   return c.distance_m <= contact_margin_m + std::max(approach_m, anyWay_m());
 }
 
@@ -203,13 +203,12 @@ std::size_t findSurfaceCandidates(const SideView& side, const SideView& other, d
 
 namespace {
 
-// Points of a surface tile, four by four: where more points are near than smallQueryLimit(), there are more
-// tiles than contacts.
+// A surface tile has four by four points, so that more tiles than contacts are near when smallQueryLimit() is
+// exceeded.
 constexpr std::size_t kTilePoints = 16;
-constexpr double kTileSpacings = 6;  // the diagonal and a margin
-// Tiles of a dense shell are larger: three of the cells in which the most urgent candidate is kept
-// afterwards. Neither depends on how many points of the shell are left: contact must not change when it is
-// cropped.
+constexpr double kTileSpacings = 6;  // diagonal of a tile and a margin, in spacings
+// Tiles of a dense shell are larger: three of reduceByCell()'s cells. The tile size does not depend on the
+// number of points, since contact must not change when the shell is cropped.
 constexpr double kTileShare = 0.18;  // of the smaller body's radius
 
 }  // namespace
@@ -218,7 +217,7 @@ void QueryState::lead(const PointShell& shell, std::span<const std::uint8_t> on_
   leading.emplace(shell, std::max(kTileSpacings * shell.spacing_m, kTileShare * radius_m), on_edge);
 }
 
-// Every penalty point counts; of the points of rigid contact only a few do.
+// Penalty contact needs every point; rigid contact needs a few.
 bool needsLeading(std::size_t near_points, const PointShell& shell, const Settings& settings) {
   return settings.contact_method == ContactMethod::Constraint && near_points > smallQueryLimit(settings) &&
          shell.spacing_m > 0;

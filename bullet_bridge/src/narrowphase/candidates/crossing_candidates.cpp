@@ -36,8 +36,8 @@ bool isCurved(const EdgeSegment& s) {
   return s.is_curved[0] || s.is_curved[1];
 }
 
-// The direction of a joint of a curved edge, as that of the parabola through it and the far ends of both
-// segments. Where the edge ends, that of the segment.
+// Direction of a curved edge at the joint of two segments: tangent of the parabola through the joint and the
+// far ends of both segments. At the end of the edge it is the direction of the segment.
 Vec3 directionAt(const EdgeSet& edges, const EdgeSegment& s, int end) {
   const Vec3 way = s.to - s.from;
   if (!s.is_curved[end]) return way;
@@ -58,7 +58,7 @@ Vec3 directionAt(const EdgeSet& edges, const EdgeSegment& s, int end) {
   return direction;
 }
 
-// The direction at a point of a segment of the curved edge that the segments stand for.
+// Direction, at a point of a segment, of the curved edge that the segments approximate.
 Vec3 smoothDirection(const EdgeSet& edges, std::uint32_t i, const Vec3& p) {
   const EdgeSegment& s = edges.segments()[i];
   const Vec3 way = s.to - s.from;
@@ -68,8 +68,8 @@ Vec3 smoothDirection(const EdgeSet& edges, std::uint32_t i, const Vec3& p) {
 }
 
 // Where curved edges cross, the normal of the segments leans by up to half the angle between segments, so a
-// screw's crest would seem to approach the rim of its nut's thread at each joint. That of the curved edges
-// does not.
+// screw's crest would seem to approach the rim of its nut's thread at each joint. The normal of the curved
+// edges does not lean.
 Vec3 smoothNormal(const EdgeCrossing& at, const EdgeSet& edges0, const EdgeSet& edges1, const Pose& X_01) {
   const Vec3 n = smoothDirection(edges0, at.edge[0], at.p[0])
                      .cross(X_01.R * smoothDirection(edges1, at.edge[1], X_01.inverse() * at.p[1]))

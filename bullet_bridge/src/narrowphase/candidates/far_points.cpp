@@ -15,7 +15,7 @@ namespace vps::bullet {
 
 namespace {
 
-/// One side's shell, and the distances of its points from the other side's surface.
+/// The shell of one side, and the distances of its points from the other side's surface.
 class FarSide {
  public:
   FarSide(const PairView& pair, int i)
@@ -30,7 +30,7 @@ class FarSide {
 
   [[nodiscard]] const PointShell& shell() const { return *side_.shape->models().shell; }
 
-  /// Lower bound of the distances of all points in a block; most_m or more if they are all farther than that.
+  /// Lower bound of the distances of all points in a block; at least most_m if all are farther than most_m.
   [[nodiscard]] double leastOf(const ShellBlock& block, double most_m) {
     const Vec3 center(block.center[0], block.center[1], block.center[2]);
     const double center_m = primitive_ ? primitiveDistance(*primitive_, X_NM_ * center).distance_m
@@ -38,7 +38,7 @@ class FarSide {
     return center_m - block.radius_m;
   }
 
-  /// Of one point; greater than most_m if it is farther than that.
+  /// Distance of one point; a value greater than most_m if the point is farther than most_m.
   [[nodiscard]] double at(std::uint32_t id, double most_m) const {
     const Vec3& p = shell().points[id];
     return primitive_ ? primitiveDistance(*primitive_, X_NM_ * p).distance_m
@@ -67,7 +67,7 @@ struct Waiting {
 };
 
 /// The least distance between a point of one body and the surface of the other, by branch and bound over the
-/// spheres around the points, nearest first; none if it is greater than most_m.
+/// spheres around the points, nearest first. Nothing if the distance is greater than most_m.
 std::optional<double> leastDistance(const PairView& pair, double most_m, Context& context) {
   std::optional<FarSide> sides[2];
   std::vector<Waiting> waiting;
@@ -117,8 +117,8 @@ void findWithin(const PairView& pair, double distance_m, Context& context, std::
   context.points_tested += tested;
 }
 
-// Points that are farther than the nearest by no more than this are reported too: those of a face that lies
-// opposite a face.
+// Points that are farther than the nearest one by no more than this are reported too, so that a face that
+// lies opposite a face gets several points.
 double beyond_m(const PairView& pair) {
   double spacing_m = 0;
   for (const Shape* shape : pair.shape)
@@ -126,7 +126,8 @@ double beyond_m(const PairView& pair) {
   return kBeyondShare * spacing_m + kRounding_m;
 }
 
-/// The nearest of two surfaces around a candidate: each point moves to the one nearest to the other, in turn.
+/// Moves the points of a candidate to the nearest places of both surfaces: each point in turn moves to the
+/// place nearest to the other point.
 Candidate polished(Candidate c, const PairView& pair) {
   const int i = c.side, j = 1 - i;
   if (!pair.shape[i] || !pair.shape[j] || isPrimitive(*pair.wrapper[j]->getCollisionShape())) return c;
@@ -161,7 +162,8 @@ std::vector<Candidate> nearestFarPoints(const PairView& pair, double wanted_m, C
   findWithin(pair, still.contact_margin_m, context, points);
   dropUnreachable(still, points);
   if (points.empty()) return points;
-  // Not refined, as contacts are: the plane of a curved face is no distance from a point that is far away.
+  // These points are not refined as contacts are: the distance from a curved face's plane is not the distance
+  // from the face if the point is far away.
   const auto limit = static_cast<std::size_t>(context.settings.contact_limit);
   const double radius_m = pair.radius_m();
   const Pose X_GW = pair.X_WS[1].inverse();

@@ -1,6 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// The candidates of a step. A fast body is queried at several places on its way, and its candidates are
-// refined there.
+// SPDX-License-Identifier: BSD-3-Clause Finds the candidates of a step. A fast body is queried, and its
+// candidates are refined, at several places along its path.
 #include <algorithm>
 #include <cmath>
 
@@ -20,9 +19,9 @@ void useOwnNormalsForPenalty(const PairView& pair, const Settings& settings,
       useOwnNormals(candidates, pair.side(i));
 }
 
-// Edges that come to overlap in a step are found in its solution; edges that overlap already have no distance
-// there. So crossings are candidates only where edges may overlap, by more than an impact may leave (as in
-// PairCheck), and with solvers that do not know joints and other bodies when they look for what a step lacks.
+// Edges that come to overlap in a step are found by the check of its solution, which cannot measure edges
+// that overlap already. So crossings are candidates only where edges may overlap by more than an impact may
+// leave (as in PairCheck), and with solvers whose check does not know joints and other bodies.
 using Find = void (*)(const PairView&, double cutoff_m, Context&, std::vector<Candidate>&, PairState*,
                       const RelativeMotion*);
 Find findingFor(const PairView& pair, const PairState& state) {
@@ -32,16 +31,16 @@ Find findingFor(const PairView& pair, const PairState& state) {
 }
 
 constexpr double kAtStart_s =
-    -1;  // of a candidate that is refined where the bodies are now, although met later
+    -1;  // marks a candidate that is met later but refined at the bodies' present poses
 
-// True if a plane that is met on the way says where it is from now. Where bodies turn, the way of a point
-// bends from its tangent, and the plane turns.
+// True if a contact plane that is met along the path can be referred to the present poses. Where bodies turn,
+// the path of a point bends from its tangent, and the plane turns.
 bool isStraight(const PairView& pair, const RelativeMotion& motion) {
   const double turn_rad = motion.V.w.norm() * motion.dt_s, travel_m = motion.speed_m_s * motion.dt_s;
   return turn_rad * (0.5 * turn_rad * pair.radius_m() + travel_m) <= motion.contact_margin_m;
 }
 
-/// A pair where its bodies are at a time of the step in free motion.
+/// The pair at a time within the step, in free motion.
 struct Later {
   const PairView& now;
   const RelativeMotion& motion;
@@ -52,7 +51,7 @@ struct Later {
       : now(at_start), motion(in_step), t_s(time_s), pair(at_start) {
     if (t_s > 0) advance(pair, now, motion.dt_s, t_s);
   }
-  /// The same plane, relative to where the bodies are now.
+  /// Refers a plane found at that time to the bodies' present poses.
   void moveBack(Candidate& c) const {
     if (!(t_s > 0)) return;
     c.distance_m -= c.n_W.dot(motion.velocityAt(c.p_W) * t_s);
@@ -74,7 +73,7 @@ void findStepCandidates(const PairView& pair, const RelativeMotion& motion, Pair
   const double range_m = queryRange_m(pair);
   const double travel_m = motion.speed_m_s * motion.dt_s;
   // Bullet's broadphase widens boxes of moving bodies by 50 mm (gDbvtMargin), so most pairs are far apart.
-  // This is as far as canTouch() and crossingRange() look.
+  // canTouch() and crossingRange() use the same range.
   const double way_m = std::max(travel_m, motion.anyWay_m());
   if (pair.leastDistance_m() > motion.contact_margin_m + way_m) return;
   if (isQueriedOnce(pair, motion) || turnsInPlace(pair, motion)) {
@@ -95,7 +94,7 @@ void findStepCandidates(const PairView& pair, const RelativeMotion& motion, Pair
          nullptr);
     useOwnNormalsForPenalty(later.pair, context.settings, met);
     // Keep what a point meets first, as planes relative to where the bodies are now. A point that is behind a
-    // plane when the stride begins has met another before.
+    // plane when the stride begins has met another plane before.
     std::erase_if(met, [&](Candidate& c) {
       const double approach_m = -c.n_W.dot(motion.velocityAt(c.p_W)) * motion.dt_s / strides;
       if (c.distance_m - approach_m > motion.contact_margin_m) return true;
@@ -135,7 +134,7 @@ void refineOnWay(const PairView& pair, const RelativeMotion& motion, const Setti
       if (c.met_s != t_s) continue;
       Candidate& found = here[next++];
       later.moveBack(found);
-      // A plane that the point is behind already is not the one that it will meet, and would push.
+      // The point cannot meet a plane that it is behind already; such a plane would push it.
       if (t_s > 0 && found.distance_m < 0)
         c.met_s = kAtStart_s;
       else

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// What the sources of PairCheck share: the solved step, and vertices of curved faces.
+// SPDX-License-Identifier: BSD-3-Clause Internals of PairCheck: the solved step, and vertices of curved
+// faces.
 #pragma once
 
 #include <span>
@@ -15,7 +15,7 @@
 
 namespace vps::bullet {
 
-/// Both bodies at other poses than Bullet's.
+/// The pair at given poses, which differ from Bullet's present ones.
 struct PairCheck::Placed {
   btTransform X_WS[2];
   btCollisionObjectWrapper wrapper0, wrapper1;
@@ -36,33 +36,34 @@ struct PairCheck::Motion {
   Displacement step;            ///< from start to end
   Displacement since_selected;  ///< from where the contacts were selected to the end
   double tolerated_m = 0;
-  double travel_m = 0;     ///< greatest of a point of the smaller body relative to the other body
-  double deviation_m = 0;  ///< greatest from where the selection predicted the point
-  double turn_rad = 0, turn_deviation_rad = 0;  ///< the same of the rotation
+  double travel_m = 0;  ///< greatest displacement of a point of the smaller body relative to the other body
+  double deviation_m = 0;  ///< greatest distance of a point from the position that the selection predicted
+  double turn_rad = 0, turn_deviation_rad = 0;  ///< rotation, and its difference from the predicted one
   StepPath path;
-  Vec3 center_W = Vec3::Zero();                        ///< of the smaller body at the start
-  double radius_m = 0;                                 ///< of the smaller body
-  Vec3 moved_W = Vec3::Zero(), turned = Vec3::Zero();  ///< of body 0 relative to body 1
-  double bend_m = 0;                                   ///< how far a point's path may bend from its tangent
+  Vec3 center_W = Vec3::Zero();  ///< centre of the smaller body at the start
+  double radius_m = 0;           ///< of the smaller body
+  Vec3 moved_W = Vec3::Zero(),
+       turned = Vec3::Zero();  ///< displacement and rotation of body 0 relative to body 1
+  double bend_m = 0;           ///< greatest distance of a point's path from its tangent
 
-  /// True if the bodies turn too far against each other from a share of the step to its end for a plane to be
-  /// carried along: on a curved face another plane is the nearest one then.
+  /// True if, after `share` of the step, the bodies still turn too far against each other for planes to be
+  /// carried along: on a curved face another plane becomes the nearest.
   [[nodiscard]] bool turnsFar(double share) const { return (1 - share) * turn_rad > kContactTurn_rad; }
 };
 
-/// True if the overlap at the end is more than tolerated, and more than it was.
+/// True if the overlap at the end of the step is more than tolerated and has grown.
 inline bool isMissed(double start_m, double end_m, double tolerated_m) {
   return end_m < -tolerated_m && end_m < start_m - kGrowthShare * tolerated_m;
 }
 
-/// Moves candidates of curved faces to the deepest vertex of the facet where they are, if that is high enough
-/// and deeper in the other body than the candidate. Distance and normal become those of the vertex, exactly.
+/// Moves candidates of curved faces to the deepest vertex of their facet, if that vertex protrudes enough and
+/// is deeper in the other body than the candidate. Distance and normal are then those of the vertex, exactly.
 /// Each vertex takes one candidate.
-/// @param candidates        refined where the bodies are
-/// @param contact_margin_m  of the settings
+/// @param candidates  refined at the pair's poses
+/// @param contact_margin_m  Settings::contact_margin_m
 void moveToFacetCorners(const PairView& pair, double contact_margin_m, std::vector<Candidate>& candidates);
 
-/// True if one of the points lies on a facet with vertices high enough to be features.
+/// True if one of the points lies on a facet whose vertices protrude enough to matter.
 bool haveFacetCorners(const PairView& pair, double contact_margin_m, std::span<const Candidate> candidates);
 
 }  // namespace vps::bullet

@@ -17,8 +17,9 @@ void pointsOf(const Candidate& c, Vec3 (&on)[2]) {
   on[1 - c.side] = c.p_W - (c.side == 0 ? 1 : -1) * c.distance_m * c.n_W;
 }
 
-// True if a place on an edge, as a share of its length, is not beyond its end. Where a curved edge goes on in
-// another segment, a crossing may lie past the joint, as findCrossings() allows.
+// True if the position `at` on an edge, as a fraction of the edge's length, lies between the edge's ends.
+// Where a curved edge continues in another segment, the crossing may lie past the joint, as findCrossings()
+// allows.
 bool isOn(const EdgeSegment& s, double at, double gap_m) {
   const double past = kTanPastEnd * std::abs(gap_m) / (s.to - s.from).norm();
   return at >= (s.ends[0] ? 0 : -past) && at <= 1 + (s.ends[1] ? 0 : past);
@@ -112,7 +113,7 @@ void findThere(const PairView& there, const PairState& state, bool only_loaded, 
   ends = now;
   for (Candidate& end : ends) {
     end.p_W = there.side(end.side).X_WM * there.shape[end.side]->models().shell->points[end.id];
-    end.n_W.setZero();  // stays so if the point is then out of reach
+    end.n_W.setZero();  // remains zero if the point is out of reach at the end
   }
   RelativeMotion still;
   still.contact_margin_m = settings.contact_margin_m;

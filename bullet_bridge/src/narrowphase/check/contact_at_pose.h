@@ -10,38 +10,41 @@
 
 namespace vps::bullet {
 
-/// Displacements of both bodies.
+/// Rigid motions of both bodies between two instants, in W.
 struct Displacement {
   Pose D[2];
 
   [[nodiscard]] Vec3 normal(const Candidate& c) const;
-  /// The contact where its points and its plane go.
+  /// The contact after both bodies have moved: its points and its plane move with the bodies.
   [[nodiscard]] Candidate moved(const Candidate& c) const;
   [[nodiscard]] Displacement inverse() const { return {{D[0].inverse(), D[1].inverse()}}; }
 };
 
-/// Sets a crossing to where its two edges cross now. False: beyond the end of one of them.
+/// Updates an edge crossing to the present poses. Returns false if the edges cross beyond the end of one of
+/// them.
 bool crossAt(Candidate& c, const SideView& body0, const SideView& body1);
 
-/// How deep a contact overlaps where the bodies are; 0 or less. Edges that cross later may not cross yet.
+/// Overlap of a contact at the pair's poses, as a distance <= 0. It is 0 for edges that do not cross at these
+/// poses.
 double overlapOf(Candidate c, const PairView& pair);
 
-/// True if a point is deeper than tolerated in the other side; where that is no solid, always.
-/// @param near_m  how far the other's surface is searched for
+/// True if a point is deeper inside the other body than `tolerated_m`. Always true if the other body is not a
+/// solid.
+/// @param near_m  search radius for the other body's surface
 bool isInside(const Vec3& p_W, const SideView& other, double near_m, double tolerated_m);
 
-/// Sets the contact of a shell point to the one that it has where the bodies are, if its distance is less
-/// than max_m; else false.
+/// Measures the contact of a shell point again at the pair's poses. Returns false if its distance is not less
+/// than max_m.
 bool refineAt(const PairView& pair, double max_m, const Settings& settings, Candidate& c);
 
-/// True if both shapes have curved faces. Where these may lie flush in each other, as in threads and
-/// bearings, gaps differ from facet to facet by more than the motion bends them, and rows that follow them
-/// would drive a screw.
+/// True if both shapes have curved faces. Curved faces may lie flush in each other, as in threads and
+/// bearings. Their gaps then differ from facet to facet by more than the motion changes them, and solver rows
+/// that follow the facets would drive a screw.
 bool areBothCurved(const PairView& pair, PairState& state);
 
-/// The contacts of shell points, as they are in the step and where the bodies are `there`. A point that is
-/// out of reach there has no normal.
-/// @param only_loaded  those that carry load
+/// Lists the contacts of shell points twice: `now` as the step has them, `ends` measured at the poses of
+/// `there`. A contact that is out of reach at those poses has a zero normal in `ends`.
+/// @param only_loaded  list only the contacts that carry load
 void findThere(const PairView& there, const PairState& state, bool only_loaded, std::vector<Candidate>& now,
                std::vector<Candidate>& ends);
 

@@ -22,7 +22,7 @@ std::optional<std::uint32_t> facetOf(const Candidate& c, const SideView& side) {
   return closest.triangle;
 }
 
-// Moves the candidate to a vertex that is deeper, in one of the other side's solids.
+// Moves the candidate to a vertex if it is deeper in one of the other side's solids.
 bool moveTo(const Vec3& vertex_W, const SideView& other, double reach_m, Candidate& c) {
   bool is_moved = false;
   const std::vector<Surface>& surfaces = other.shape->models().surfaces;
@@ -44,8 +44,8 @@ bool moveTo(const Vec3& vertex_W, const SideView& other, double reach_m, Candida
   return is_moved;
 }
 
-// True if a vertex is higher than the middle of its facet by height_m, along the normal of the curved
-// surface. In a hollow it is lower.
+// True if a vertex of a facet is higher than the facet's middle by height_m, along the normal of the curved
+// surface. On a concave face vertices are lower.
 bool protrudes(const Surface& surface, std::uint32_t triangle, double height_m) {
   if (surface.sheet) return false;
   const Mesh& mesh = surface.distance->mesh();
@@ -84,7 +84,7 @@ void moveToFacetCorners(const PairView& pair, double contact_margin_m, std::vect
     const Shape& own = *pair.shape[c.side];
     if (c.isCrossing() || own.isEdgePoint(c.id)) continue;
     const SideView side = pair.side(c.side), other = pair.side(1 - c.side);
-    // Within the facet a vertex is no deeper than the candidate and the way to it.
+    // A vertex is no deeper than the candidate's depth plus its distance from the candidate.
     const double reach_m = std::abs(c.distance_m) + own.models().shell->spacing_m;
     if (c.distance_m > own.models().shell->spacing_m) continue;
     const std::optional<std::uint32_t> facet = facetOf(c, side);

@@ -12,8 +12,8 @@ namespace vps::bullet {
 
 namespace {
 
-// A feature's index in a contact's key, by kind, so that no two contacts have the same one. Edges have the
-// indices of edges(), as crossings do; they are renumbered so as not to meet them.
+// Bits that mark a feature's kind in a contact's key, so that keys are unique. Edges have the same indices as
+// in edge crossings, so they have a bit too.
 constexpr std::uint32_t kCorner = 1U << 28, kFacet = 2U << 28, kEdge = 4U << 28;
 
 Pose poseBetween(const PairView& pair, const Pose (&X_WS)[2]) {
@@ -24,9 +24,9 @@ double restGapOf_m(const PairView& pair) {
   return FeatureMotion::rest_m(pair.shape[0]->features(), pair.shape[1]->features());
 }
 
-// True if the corner of a contact goes no deeper into the other body than tolerated, from where they meet to
-// the end of the step. In a far turn a corner that grazes a curved face would be held by the plane of one
-// facet of it, which leads away from that face.
+// True if the corner of a contact stays within the tolerated depth of the other body from the time at which
+// they meet to the end of the step. In a far turn a corner that grazes a curved face would otherwise be held
+// by the plane of one facet, which leads away from the face.
 bool grazes(const FeatureContact& c, const PairView& start, const EndPoses& end, double tolerated_m) {
   if (c.kind == FeatureContact::Kind::EdgeOnEdge) return false;
   const int i = c.kind == FeatureContact::Kind::CornerOnFacet ? 0 : 1;
@@ -42,7 +42,7 @@ bool grazes(const FeatureContact& c, const PairView& start, const EndPoses& end,
   return true;
 }
 
-// In a late round any gap will do from which the next step can restore the rest gap.
+// In a late round, gaps from which the next step can restore the rest gap are accepted.
 void findContacts(const PairView& start, const EndPoses& end, CheckRound round, PairState& state,
                   std::vector<FeatureContact>& found) {
   found.clear();
@@ -78,7 +78,8 @@ std::uint16_t surfaceOf(const FeatureContact& c, int i, const Shape& shape) {
   return shape.surfaceOfVertex(is_corner ? features.corners()[feature] : features.facets()[feature][0]);
 }
 
-// Facets of one plane, and edges that meet in a corner, give the same contact several times.
+// True if a chosen contact has the same place and plane: coplanar facets, and edges that meet in a corner,
+// give a contact several times.
 bool isRepeated(const FeatureContact& c, const std::vector<const FeatureContact*>& chosen) {
   return std::any_of(chosen.begin(), chosen.end(), [&](const FeatureContact* other) {
     return other->plane_of == c.plane_of && other->n.dot(c.n) > kCosSamePlane &&
@@ -86,14 +87,15 @@ bool isRepeated(const FeatureContact& c, const std::vector<const FeatureContact*
   });
 }
 
-// A corner that is behind a sheet, as after a start in it, is pushed back through it by the other contacts.
+// True if the contact's facet belongs to a sheet. A corner that starts behind a sheet is pushed back through
+// it by other contacts.
 bool isOnSheet(const FeatureContact& c, const PairView& pair) {
   if (c.kind == FeatureContact::Kind::EdgeOnEdge) return false;
   const int with_facet = c.kind == FeatureContact::Kind::CornerOnFacet ? 1 : 0;
   return pair.shape[with_facet]->features().isTwoSided(c.feature[with_facet]);
 }
 
-/// Contacts of features, where both bodies are at the start or at the end of a step.
+/// Makes candidates of feature contacts, at the poses of the start or of the end of a step.
 struct FeaturePlacer {
   Pose X_01, X_WM0;
   const Shape* shape[2];
@@ -119,8 +121,8 @@ struct FeaturePlacer {
   }
 };
 
-// A point of a shell or a crossing at the same place of the same plane: its own point may be the one of the
-// other body, across the gap. Null: there is none.
+// Finds a shell point or edge crossing at the same place of the same plane. Its point may lie on the other
+// body, across the gap. Returns null if there is none.
 Candidate* findAt(std::vector<Candidate>& contacts, const Candidate& at) {
   const auto found = std::find_if(contacts.begin(), contacts.end(), [&](const Candidate& c) {
     const Vec3 to = c.p_W - at.p_W;
@@ -132,7 +134,7 @@ Candidate* findAt(std::vector<Candidate>& contacts, const Candidate& at) {
 }
 
 void remember(const FeatureContact& c, std::vector<FeatureContact>& known) {
-  constexpr std::size_t kMost = 2 * kMostAdded;  // assumed; a body is held by six
+  constexpr std::size_t kMost = 2 * kMostAdded;  // assumed; six contacts hold a body
   std::erase_if(known, [&](const FeatureContact& k) {
     return k.kind == c.kind && std::equal(k.feature, k.feature + 2, c.feature);
   });
@@ -152,7 +154,7 @@ class Linearised {
 
   MissedContact operator()(const FeatureContact& c, PairState& state) const {
     const Candidate start = at_start_(c), end = at_end_(c);
-    // In a far turn no single lever stands for the way.
+    // In a far turn no single lever represents the whole path.
     const Candidate acting = end_.turns_far && !end_.path.isSettled() ? start : end_.path.acting(start, end);
     MissedContact missed;
     missed.point = state.writer->put(acting, start_.wrapper, state.motion);
@@ -164,7 +166,7 @@ class Linearised {
     return missed;
   }
   [[nodiscard]] std::uint64_t key(const FeatureContact& c) const { return at_end_(c).key(); }
-  // As if nothing were there.
+  // The contact with a gap that is out of reach, so that it loses its load.
   MissedContact without(const FeatureContact& c, PairState& state) const {
     MissedContact missed = (*this)(c, state);
     missed.end_gap_m = kOutOfReach_m;
@@ -178,8 +180,8 @@ class Linearised {
     if (!point || (!which.isBefore() && isLoaded(*point) != which.isOfLoad())) return false;
     return vps::bullet::isOutOfPlace(at_start_(c), end, end_.path, which, state.context->settings);
   }
-  // True if a corner carries load and ends the step where nothing faces it along its plane: one that has left
-  // a face, or passes its rim, would go on along a plane that does not.
+  // True if a corner carries load and ends the step where no surface faces it along its plane, since it has
+  // left the face or passed the face's rim.
   [[nodiscard]] bool hasLeft(const FeatureContact& c, const Relinearising& which,
                              const PairState& state) const {
     if (!which.isOfLoad() || c.kind == FeatureContact::Kind::EdgeOnEdge || isOnSheet(c, start_)) return false;
@@ -218,7 +220,7 @@ double restGap_m(const PairView& pair, const Settings& settings) {
 bool spinsFreely(const PairView& start, const Pose (&X_WS_end)[2], PairState& state) {
   const Settings& settings = state.context->settings;
   const double least_m = kToleratedShare * settings.contact_margin_m;
-  // Where bodies touch there is no room, and a search for it would take as long as many steps.
+  // Bodies that touch have no room, and the search for room would take as long as many steps.
   if (!hasFeatures(start, settings) || mayOverlap(state.selection, -least_m)) return false;
   return state.spin.staysApart(start.shape[0]->features(), start.shape[1]->features(), start.X_01_models(),
                                poseBetween(start, X_WS_end), least_m);
@@ -296,8 +298,9 @@ void addMissedFeatures(const PairView& pair, const Settings& settings, PairState
   for (const FeatureContact& c : state.missed_features) {
     Candidate at = place(c);
     Candidate* same = findAt(contacts, at);
-    // Where curved edges lie flush, a crossing rests without a gap; but not where the gap was missed.
-    // Its distance may be that of the curved surface, and the feature's is that of the facets.
+    // A crossing of flush curved edges rests without a gap, but a missed one needs the rest gap. The
+    // crossing's distance may be measured from the curved surface, while the feature's is measured from the
+    // facets.
     if (same)
       same->rest_m = std::max(same->rest_m, at.rest_m + same->distance_m - at.distance_m);
     else if (state.motion.canTouch(at))

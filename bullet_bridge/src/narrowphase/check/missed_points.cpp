@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// The points that a solved step lets overlap: PairCheck's stages 2 and 4.
+// SPDX-License-Identifier: BSD-3-Clause Stages 2 and 4 of PairCheck: finds the points that a solved step lets
+// overlap.
 #include <algorithm>
 #include <cmath>
 
@@ -10,26 +10,27 @@
 
 namespace vps::bullet {
 
-// Points out of reach had a greater gap than this at the predicted end of the step, so they do not touch if
-// the deviation is less. Or they were out of reach of this motion in any direction.
+// Points out of reach had a gap above the contact margin at the predicted end of the step, so they do not
+// touch if the deviation is less than the margin, or if the travel is within the distance that was searched
+// in every direction.
 bool PairCheck::mayMissPoints(const Motion& m, const PairView& at_start) const {
   const double margin_m = state_.context->settings.contact_margin_m;
   const bool is_in_reach = !state_.selection.is_of_path &&
                            (m.deviation_m <= margin_m || m.travel_m <= margin_m + state_.selection.any_way_m);
-  // Among neighbours, those nearest now and at the predicted end were selected; another becomes nearer if the
-  // part turns otherwise.
+  // Of neighbouring points, those nearest now and at the predicted end were selected. Another point becomes
+  // nearer if the part turns differently.
   const double sampling_m = state_.selection.sampling_m * std::min(m.turn_rad, m.turn_deviation_rad);
   if (!is_in_reach || sampling_m > m.tolerated_m) return true;
   if (std::any_of(state_.selection.refined.begin(), state_.selection.refined.end(),
                   [&](const Candidate& c) { return leavesCurve(m, at_start, c); }))
     return true;
-  // Vertices of curved faces are no points.
+  // Vertices of curved faces are not shell points.
   return haveFacetCorners(at_start, margin_m, state_.selection.refined);
 }
 
-// True where the step takes the bodies so far along curved faces that the planes of known points do not tell:
-// a hollow face bends off its plane towards the point, and between the points of round faces gaps are smaller
-// by more than what is left of the margin.
+// True if the step moves the bodies so far along curved faces that the planes of known points do not suffice:
+// a concave face bends from its plane towards the point, or the gaps between the points of round faces are
+// smaller by more than the rest of the margin.
 bool PairCheck::leavesCurve(const Motion& m, const PairView& at_start, const Candidate& c) const {
   if (c.isCrossing() || (!(c.hollow_per_m > 0) && !(c.curvature_per_m > 0))) return false;
   const double margin_m = state_.context->settings.contact_margin_m;
@@ -46,7 +47,7 @@ void PairCheck::findAmongRefined(const Motion& m, std::vector<Candidate>& missed
   const SideView side[2] = {at_end.pair.side(0), at_end.pair.side(1)};
   for (const Candidate& c : state_.selection.refined) {
     Candidate end = m.since_selected.moved(c);
-    // Where edges cross, the normal turns otherwise than the bodies do.
+    // The normal of an edge crossing does not turn with the bodies.
     if (c.isCrossing() && !crossAt(end, side[0], side[1])) continue;
     if (!isMissed(c.distance_m, end.distance_m, m.tolerated_m)) continue;
     const double near_m = std::abs(end.distance_m) + at_end.pair.voxel_m(1 - c.side);
@@ -55,7 +56,7 @@ void PairCheck::findAmongRefined(const Motion& m, std::vector<Candidate>& missed
   }
 }
 
-// Points that overlap by more than tolerated.
+// Finds the points that overlap by more than tolerated.
 void PairCheck::findOverlaps(const Motion& m, const PairView& pair, std::vector<Candidate>& found) const {
   found.clear();
   Context& context = *state_.context;
@@ -75,9 +76,9 @@ void PairCheck::findOverlaps(const Motion& m, const PairView& pair, std::vector<
   std::erase_if(found, [&](const Candidate& c) { return c.distance_m >= -m.tolerated_m; });
 }
 
-// A point was behind its plane before, so it did not enter through it. The plane that it had then decides. If
-// the point keeps to that one, and yet was outside before, then it slid past the edge of what it faced: its
-// way out is through the plane that it has now.
+// For a point that was behind its present plane at the start and so did not enter through it. The plane that
+// the point had at the start decides. If the point does not cross that plane either, but was outside at the
+// start, it slid past the edge of the face that it faced; it must leave through its present plane.
 bool PairCheck::refineAtStart(const Motion& m, const PairView& at_start, Candidate& start,
                               Candidate& end) const {
   Candidate then = start;
@@ -94,9 +95,9 @@ bool PairCheck::refineAtStart(const Motion& m, const PairView& at_start, Candida
   return true;
 }
 
-// True of a point behind its plane at the start, but beside the face that this is the plane of. Not of one
-// that is deeper inside than that. Bodies that begin in each other are moved apart by the push: what comes
-// into a face by that needs no velocity that separates.
+// True for a point that was behind its plane at the start, but outside the other body, beside the face of
+// that plane. Bodies that begin inside each other are moved apart by the push; a point that enters a face by
+// the push needs no separating velocity.
 bool PairCheck::wasOutside(const Motion& m, const PairView& at_start, const Candidate& start) const {
   if (start.isCrossing() || !(start.distance_m < -m.tolerated_m)) return false;
   const double margin_m = state_.context->settings.contact_margin_m;
@@ -122,7 +123,7 @@ void PairCheck::findAlongPath(const Motion& m, std::vector<Candidate>& missed) c
     entered.clear();
     for (const Candidate& c : missed) {
       Candidate start = back.moved(c), end = onward.moved(c);
-      if (m.turnsFar(share)) continue;  // later places tell
+      if (m.turnsFar(share)) continue;  // a later place along the path decides
       if (m.turnsFar(0)) {
         if (!measureAtStart(m, at_start.pair, start)) continue;
       } else if (start.distance_m < -m.tolerated_m && !refineAtStart(m, at_start.pair, start, end)) {
@@ -134,8 +135,8 @@ void PairCheck::findAlongPath(const Motion& m, std::vector<Candidate>& missed) c
   }
 }
 
-// The gap that a point had before the step, of whatever was nearest to it then. False: it was inside, deeper
-// than the step's motion.
+// Measures the gap of a point at the start of the step, to the nearest surface at that time. Returns false if
+// the point was inside, deeper than the step's motion.
 bool PairCheck::measureAtStart(const Motion& m, const PairView& at_start, Candidate& start) const {
   if (refineAt(at_start, m.travel_m, state_.context->settings, start)) return true;
   start.distance_m = m.travel_m;
@@ -155,10 +156,9 @@ void PairCheck::emit(const Motion& m, std::vector<Candidate>& missed, std::vecto
   }
 }
 
-// The contact acts where it is on the way of the step: with its lever and normal there. With the point moved
-// back and the plane of the other body as it is, the lever would be turned against the normal by the step's
-// rotation, and contact would brake a screw that turns by 2 degrees a step by two thirds of the slope of its
-// thread.
+// The contact acts with its lever and normal at one time within the step (StepPath). With the point at the
+// start and the plane at the end, the lever would be turned against the normal by the step's rotation.
+// Contact would then brake a screw that turns by 2 degrees per step by two thirds of the slope of its thread.
 void PairCheck::put(const Motion& m, const Placed& at_start, const Candidate& start, const Candidate& end,
                     std::vector<MissedContact>& out) {
   MissedContact added;

@@ -20,7 +20,7 @@ namespace vps::bullet {
 
 namespace {
 
-// A contact that carries load ends the step no farther apart than this.
+// Greatest gap at which a contact that carries load may end the step.
 double apartOf_m(const Settings& settings) {
   return kApartShare * settings.contact_margin_m;
 }
@@ -98,15 +98,15 @@ void PairCheck::linearise(const Pose (&X_WB_end)[2], std::vector<MissedContact>&
   relinearise(m, at_start, {Relinearising::Rows::Predicted, apartOf_m(state_.context->settings)}, out);
 }
 
-// Features, then points.
+// Checks features, then points.
 void PairCheck::findOnWay(Motion& m, const Placed& at_start, CheckRound round,
                           std::vector<MissedContact>& out) {
   const std::size_t had = out.size();
   if (hasFeatures(at_start.pair, state_.context->settings))
     addFeatureContacts(at_start.pair, {{m.end[0], m.end[1]}, m.path, m.turnsFar(0)}, round, state_, out);
   if (m.travel_m <= m.tolerated_m) return;
-  // In a step with so much rotation many facets of round parts pass each other: contacts that follow each of
-  // them brake a shaft in its bore. What may protrude from a facet elsewhere is tolerated here.
+  // In a step with so much rotation many facets of round parts pass each other, and contacts that follow each
+  // facet would brake a shaft in its bore. So the height of a facet's corners is tolerated.
   if (m.turnsFar(0)) m.tolerated_m = kFacetCornerShare * state_.context->settings.contact_margin_m;
   thread_local std::vector<Candidate> missed;
   missed.clear();
@@ -141,19 +141,19 @@ void PairCheck::findMissed(const Pose (&X_WB_end)[2], CheckRound round, std::vec
   if (!round.mayRetake() || out.size() != had || !(m.bend_m > apart_m)) return;
   if (m.turnsFar(0) && areBothCurved(at_start.pair, state_)) return;
   relinearise(m, at_start, {Relinearising::Rows::Loaded, apart_m}, out);
-  // A row that is taken anew leaves its load to those beside it, which are as wrong.
+  // A row that is taken again leaves its load to neighbouring rows that are equally wrong.
   if (out.size() != had) relinearise(m, at_start, {Relinearising::Rows::Others, apart_m}, out);
 }
 
-// Between two curved bodies a row is taken anew only in the plane that it had: the plane of the next facet is
-// another contact, and rows that go from facet to facet never settle. Without rows taken anew a frictionless
-// bolt loses 2.2 % of its acceleration; with those of the next facet a peg in a bore of 10 um clearance stays
-// out.
+// Between two curved bodies a row is taken again only in the plane that it had. The plane of the next facet
+// is another contact, and rows that go from facet to facet never converge. Without rows that are taken again
+// a frictionless bolt loses 2.2 % of its acceleration; with rows of the next facet a peg does not enter a
+// bore of 10 um clearance.
 //
-// The rows of the step's contacts as they are at the end of a motion: before the step is solved, those for
-// which it matters where they are taken; after it, those that carry load and end the step apart: of a body
-// that rolls, the contacts in front of it, which come down but do not arrive, and those that it leaves; and
-// those that would get their load.
+// Appends the rows of the step's contacts as they are at the end of a motion. Before the step is solved: the
+// contacts whose row depends on the time at which it is taken. After it: contacts that carry load and end the
+// step apart (under a rolling body, contacts in front of it that do not arrive, and contacts that it leaves),
+// and contacts that would get their load.
 void PairCheck::relinearise(const Motion& m, const Placed& at_start, const Relinearising& which,
                             std::vector<MissedContact>& out) {
   const Settings& settings = state_.context->settings;
@@ -174,7 +174,7 @@ void PairCheck::relinearise(const Motion& m, const Placed& at_start, const Relin
       if (isOutOfPlace(now[k], ends[k], m.path, which, settings)) put(m, at_start, now[k], ends[k], out);
     } else if (which.isOfLoad() && !are_both_curved && ends[k].distance_m > ends[k].rest_m + which.apart_m &&
                state_.letGo(now[k].key())) {
-      // It carries load, and nothing is there: its plane goes beyond the face that it was taken from.
+      // The contact carries load but faces nothing: its plane extends beyond the face that it was taken from.
       Candidate end = m.step.moved(now[k]);
       end.distance_m = kOutOfReach_m;
       put(m, at_start, now[k], end, out);
@@ -192,8 +192,8 @@ double PairCheck::freeShare(const Pose (&X_WB_end)[2]) {
   return freeShareOf(at_start.pair, {{m.end[0], m.end[1]}, m.path, m.turnsFar(0)}, state_);
 }
 
-// Of points that are deeper before the step than allowed, a share that lets them go a little deeper: what is
-// jammed goes on.
+// Points that are deeper than allowed before the step may go a little deeper, so that jammed bodies are not
+// frozen.
 double PairCheck::freeShareOfPoints(const Pose (&X_WB_end)[2]) {
   Motion m;
   if (!isValid() || !read(X_WB_end, m)) return 1;
@@ -211,7 +211,7 @@ double PairCheck::freeShareOfPoints(const Pose (&X_WB_end)[2]) {
     Candidate start = m.step.inverse().moved(end);
     if (m.turnsFar(0) && !end.isCrossing()) measureAtStart(m, at_start.pair, start);
     const double way_m = start.distance_m - end.distance_m;
-    if (!(way_m > slack_m)) continue;  // along another plane it went in, or not at all
+    if (!(way_m > slack_m)) continue;  // the point entered along another plane, or did not enter
     share = std::min(share, std::max(start.distance_m + m.tolerated_m, slack_m) / way_m);
   }
   return share;

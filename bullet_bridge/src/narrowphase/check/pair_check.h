@@ -1,6 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// Checks whether the bodies of a pair overlap at the end of a solved step, and adds the contacts that
-// prevent it.
+// SPDX-License-Identifier: BSD-3-Clause Checks whether a solved step lets the bodies of a pair overlap, and
+// finds the contacts that prevent it.
 #pragma once
 
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
@@ -17,35 +16,34 @@ class btDispatcher;
 
 namespace vps::bullet {
 
-/// A pair's check of the solved step, in four stages, each only where the one before cannot exclude an
-/// overlap:
+/// Checks the solved step of one pair in four stages. Each stage runs only if the one before cannot exclude
+/// an overlap:
 ///
-///   1. Bounds of the motion: how far any point moved relative to the other body, and how far from where it
-///   was
-///      predicted.
-///   2. The points that were refined for the step's selection, including those that were left out of it: the
-///      gaps of their planes at the end of the step, exactly. (The solver's are to first order in the
+///   1. Bounds of the motion: how far any point moved relative to the other body, and how far from the
+///      position that was predicted.
+///   2. The points that were refined for the step's selection, including those that were left out of it:
+///      the exact gaps of their planes at the end of the step. (The solver's gaps are first-order in the
 ///      motion.)
 ///   3. The exact motion of corners, sharp edges and facets (feature_check.h).
-///   4. A query of all points at the end of the step, and of a fast body at places on its way; and of the
-///      vertices of facets that protrude from the points on these (facet_corners.h). Curved faces are looked
-///      at between their points as well (sampling_error.h).
+///   4. A query of all points at the end of the step, and, for a fast body, at places along its path; and
+///      of the vertices of facets that protrude between the points (facet_corners.cpp). Curved faces are
+///      checked between their points as well (SamplingError).
 ///
-/// Bodies that turn against each other by more than kContactTurn_rad are checked in stages 3 and 4 only:
-/// planes are not carried along then, and a point's gaps before the step and after it are each measured where
-/// it is.
+/// Bodies that turn against each other by more than kContactTurn_rad are checked in stages 3 and 4 only.
+/// Planes are then not carried along: a point's gaps before and after the step are measured at the poses of
+/// these times.
 ///
-/// A contact that is missing gets the plane through which the point entered.
+/// A missing contact gets the plane through which the point entered.
 ///
-/// The reverse is looked at as well: a contact that carries load although it ends the step apart. Its plane
-/// is to first order in the motion, and the step turned it away. It gets the plane that it has at the end.
+/// The check also corrects contacts that carry load although they end the step apart. A contact plane is
+/// first-order in the motion; if the step turned it away, the contact gets the plane that it has at the end.
 class PairCheck final : public StepCheck {
  public:
   explicit PairCheck(PairState& state) : state_(state) {}
 
-  /// To be called in each step before it is solved, since Bullet's wrappers live for one call.
+  /// Must be called in each step before the step is solved, since Bullet's wrappers live for one call.
   void setBodies(const PairView& pair);
-  /// False in a pair that Bullet did not process in this step: its shapes may be others by now, or gone.
+  /// False if Bullet did not process the pair in this step: its shapes may have changed or been deleted.
   [[nodiscard]] bool isValid() const;
   [[nodiscard]] const btCollisionObject* object(int i) const override { return object_[i]; }
   void linearise(const Pose (&X_WB_end)[2], std::vector<MissedContact>& out) override;
@@ -82,28 +80,30 @@ class PairCheck final : public StepCheck {
   Pose X_BS_[2];
 };
 
-/// True if bullet::Solver asks the pair for its missing contacts.
+/// True if bullet::Solver calls this pair's check.
 bool isCheckedBySolver(const PairView& pair, const PairState& state);
 
-/// True if, moreover, nothing suggests that the solver may leave the pair's island to Bullet's own: no body
-/// with anisotropic friction, and no island that was left to it before. Contacts that arise because other
-/// bodies push this pair are found then, so that the first guess need not have them. False for sensors.
+/// True if isCheckedBySolver() and nothing suggests that bullet::Solver will pass the pair's island to
+/// Bullet's solver: no body has anisotropic friction, and no island was passed on before. The check then
+/// finds contacts that arise because other bodies push this pair, so the selection need not have them. False
+/// for sensors.
 bool isSurelyChecked(const PairView& pair, const PairState& state);
 
-/// True if no solver asks the pair for its missing contacts: in a world that bullet::Solver does not solve,
-/// and for bodies with linear or angular factors, or without inertia, which it passes to Bullet's. In the
-/// first step of a world that tuneWorld() has not seen the solver is not known yet. False for links of a
-/// btMultiBody and for anisotropic friction.
+/// True if no solver calls this pair's check: in a world that bullet::Solver does not solve, and for bodies
+/// with linear or angular factors, or without inertia, which bullet::Solver passes to Bullet's solver. In the
+/// first step of a world without tuneWorld() the solver is not known yet, and the result is true. False for
+/// links of a btMultiBody and for anisotropic friction.
 bool checksAlone(const PairView& pair, const PairState& state);
 
-/// Where checksAlone(), solves the step for the pair's two bodies alone, with the contacts in its manifolds,
-/// asks state.check which contacts the solution lacks, and adds them to the manifolds, until none is missing
-/// or the rounds are used up. The distances in the manifolds are then those for which a solver whose rows are
-/// linear ends the step with the gaps that were found, less the contacts' rest gaps.
+/// Runs the rounds of a step (solver/rigid/contact_loop.h) for one pair, if checksAlone(): solves the step
+/// for the pair's two bodies with the contacts in its manifolds, adds the contacts that state.check finds
+/// missing, and repeats until none is missing or the rounds are used up. The manifolds then hold distances
+/// for which a solver with linear rows ends the step with the gaps that were found, less the contacts' rest
+/// gaps.
 ///
-/// Gravity, the user's forces and the pull of couplings act as they were predicted. Other bodies and joints
-/// are not known, so that a contact is missed to which only these lead. Bodies are left as they were, and so
-/// are the impulses of all contacts that the last step had.
+/// Gravity, the user's forces and the pull of couplings act as predicted. Other bodies and joints are not
+/// known, so contacts that only they cause are missed. Bodies are not changed, nor are the impulses of
+/// contacts that existed in the last step.
 void addMissedAlone(btDispatcher& dispatcher, const PairView& pair, PairState& state);
 
 }  // namespace vps::bullet

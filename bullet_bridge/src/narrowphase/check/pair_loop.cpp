@@ -28,8 +28,8 @@ bool isTaken(const btCollisionObject& object) {
   return !isMoved(object) || Island::takes(*btRigidBody::upcast(&object));
 }
 
-// What moves a body in Bullet: its linear and angular factors, or an inertia of zero, hold it in some
-// directions. There it is a million times as heavy.
+// Mass matrix of a body whose linear and angular factors, or an inertia of zero, lock some directions. The
+// mass in a locked direction is a million times as large.
 Mat6 massWithFactors(const btRigidBody& body, double reach_m) {
   const Mat3 R = fromBt(body.getWorldTransform()).R;
   const Vec3 v_factor = fromBt(body.getLinearFactor()), w_factor = fromBt(body.getAngularFactor());
@@ -44,14 +44,14 @@ Mat6 massWithFactors(const btRigidBody& body, double reach_m) {
   return inverse.inverse();
 }
 
-// What the couplings of a body add to its velocity about its centre, if nothing holds it.
+// Velocity about its centre that a body's couplings add in free motion.
 Vec6 pullOf(const btCollisionObject& object, double dt_s) {
   const Twist with = predictedVelocity(object, dt_s), own = predictedVelocity(object, dt_s, false);
   const Vec3 w = with.w - own.w, center = fromBt(object.getWorldTransform().getOrigin());
   return stacked(w, with.v - own.v + w.cross(center));
 }
 
-// How Bullet's solvers change the angular velocity of a body in free rotation.
+// Change of a body's angular velocity by the gyroscopic terms of Bullet's solvers.
 Vec3 gyroscopicChange(const btRigidBody& body, const btContactSolverInfo& info) {
   const btScalar dt = info.m_timeStep;
   btVector3 change(0, 0, 0);
@@ -82,7 +82,7 @@ void placeBodies(const PairView& pair, const btContactSolverInfo& info, Island& 
   }
 }
 
-/// The contacts of a pair before the rounds, whose impulses the rounds change.
+/// Saves the impulses of a pair's contacts before the rounds, which change them, and restores them.
 class Impulses {
  public:
   explicit Impulses(std::span<btPersistentManifold* const> manifolds) : manifolds_(manifolds) {
@@ -91,9 +91,10 @@ class Impulses {
       for (int i = 0; i < counts_.back(); ++i) points_.push_back(manifold->getContactPoint(i));
     }
   }
-  /// Contacts that are new in this step share the load of those that have gone, as they were solved. Bullet's
-  /// solvers leave the friction of contacts that are loaded and unloaded again while they iterate: with no
-  /// impulse to start from, contacts that take the load of others would make a body slide too slowly.
+  /// Contacts that are new in this step share the load of contacts that have gone, in proportion to their
+  /// solved impulses. Bullet's solvers keep the friction of contacts that are loaded and unloaded again while
+  /// they iterate. Without starting impulses, contacts that take the load of others would make a body slide
+  /// too slowly.
   void restore(double lost_load_Ns) const {
     const double new_load_Ns = loadOfNew_Ns();
     const double share = new_load_Ns > 0 ? std::clamp(lost_load_Ns / new_load_Ns, 0.0, 1.0) : 0;
@@ -129,8 +130,8 @@ class Impulses {
   std::vector<btManifoldPoint> points_;
 };
 
-// Bullet's solvers know no gap at which sharp features rest, and no gap at the end of the step but to first
-// order from the distance.
+// Writes the gaps of the rounds as distances, since Bullet's solvers know no rest gap and predict the end of
+// the step to first order only.
 void writeDistances(const RelativeMotion& motion, std::span<const RigidContact> contacts) {
   for (const RigidContact& c : contacts) {
     if (bounces(*c.point)) continue;
@@ -185,9 +186,9 @@ void addMissedAlone(btDispatcher& dispatcher, const PairView& pair, PairState& s
     for (int i = 0; i < manifold->getNumContacts(); ++i)
       loop.contacts.add(*manifold, manifold->getContactPoint(i), info);
   loop.checks.assign(1, state.check.get());
-  SolverSettings settings;  // end poses to a hundredth of the overlap that a check tolerates
+  SolverSettings settings;  // end poses are accurate to a hundredth of the overlap that a check tolerates
   settings.residual_m_s = 0.01 * kToleratedShare * state.motion.contact_margin_m / dt_s;
-  // The rows stay where they were selected: the motion of the pair alone is not that of the world.
+  // Rows are not taken again (is_own is false), since the motion of the pair alone is not that of the world.
   loop.run(info, settings.iteration_limit, false, [&] { return loop.solveContacts(settings); });
   loop.contacts.finish();
   before.restore(state.writer->lostLoad_Ns());

@@ -31,13 +31,13 @@ StepPath::StepPath(const btCollisionObject* const (&objects)[2], const Pose (&st
   if (sum > 0) common_way_W_ /= sum;
 }
 
-// How far the bodies part along a row in the step.
+// Displacement of the bodies from each other along a row in the step.
 double StepPath::way_m(const Row& row) const {
   const auto wayOf = [&](const Body& b) { return Vec3(b.way_W + b.turn.cross(row.p_W - b.center_W)); };
   return row.n_W.dot(wayOf(body_[0]) - wayOf(body_[1]));
 }
 
-// Velocity along one row by a unit impulse on another.
+// Velocity along row `of` caused by a unit impulse along row `on`.
 double StepPath::effect(const Row& of, const Row& on) const {
   double sum = 0;
   for (const Body& b : body_) {
@@ -49,7 +49,7 @@ double StepPath::effect(const Row& of, const Row& on) const {
 
 namespace {
 
-// Neither the bend nor the gap is known better: with floats, differences of places a decimetre from the
+// Accuracy of the change of velocity and of the gap: in floats, differences of positions a decimetre from the
 // centre.
 constexpr double kKnown_m = 10 * kRounding_m;
 

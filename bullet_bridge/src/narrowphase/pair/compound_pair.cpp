@@ -45,7 +45,7 @@ struct Aabb {
   }
 };
 
-/// How far a point of the box can move relative to the other body within the step.
+/// Greatest displacement of a point of the box relative to the other body within the step.
 double travel_m(const Aabb& box, const Twist& V, double dt_s) {
   const Vec3 center = 0.5 * fromBt(box.min + box.max);
   const double radius_m = 0.5 * fromBt(box.max - box.min).norm();
@@ -75,7 +75,7 @@ std::vector<int> childrenWithin(const btCompoundShape& compound, const btTransfo
   return within;
 }
 
-/// While it exists, Bullet's result speaks of a child of one body.
+/// Sets a child of one body in Bullet's result, as long as this object exists.
 class ResultOfChild {
  public:
   ResultOfChild(btManifoldResult& result, const btCollisionObjectWrapper& child) : result_(result) {
@@ -107,7 +107,8 @@ class ResultOfChild {
 
 bool containsShape(const btCollisionShape& shape) {
   if (!shape.isCompound()) return dynamic_cast<const Shape*>(&shape) != nullptr;
-  const auto* compound = dynamic_cast<const btCompoundShape*>(&shape);  // GImpact has one of its own
+  const auto* compound =
+      dynamic_cast<const btCompoundShape*>(&shape);  // GImpact compounds are not btCompoundShape
   for (int i = 0; compound && i < compound->getNumChildShapes(); ++i)
     if (containsShape(*compound->getChildShape(i))) return true;
   return false;
@@ -115,9 +116,9 @@ bool containsShape(const btCollisionShape& shape) {
 
 struct CompoundPair::State {
   std::shared_ptr<Context> context;
-  int side = 0;  ///< whose children are visited
+  int side = 0;  ///< the body whose children are visited
   int revision = 0;
-  std::vector<OwnedAlgorithm> children;  // null where none is near
+  std::vector<OwnedAlgorithm> children;  // null for children that are not near
 };
 
 CompoundPair::CompoundPair(const btCollisionAlgorithmConstructionInfo& info,
@@ -147,7 +148,7 @@ void CompoundPair::processCollision(const btCollisionObjectWrapper* body0,
   const Twist V1 = predictedVelocity(*body1->getCollisionObject(), info.m_timeStep);
   const Twist V{V0.w - V1.w, V0.v - V1.v};
   Aabb reach(*other.getCollisionShape(), other.getWorldTransform());
-  // They meet within both boxes, and either bounds the speed there.
+  // The bodies meet within both boxes, so the lesser of both speed bounds holds.
   reach.extend(asked_m + state.context->settings.contact_margin_m +
                std::min(travel_m(Aabb(compound, mine.getWorldTransform()), V, info.m_timeStep),
                         travel_m(reach, V, info.m_timeStep)));

@@ -21,12 +21,12 @@
 
 namespace vps::bullet {
 
-// Elements of Bullet's pool are as large as its own largest algorithm, whatever size is requested.
+// Elements of Bullet's pool are as large as Bullet's largest algorithm, whatever size is requested.
 static_assert(sizeof(ContactAlgorithm) <= sizeof(btConvexConcaveCollisionAlgorithm));
 
 namespace {
 
-// Point ids are valid for one set of models only.
+// Point ids are valid for one revision of the models only.
 void resetIfModelsChanged(PairState& state, const PairView& pair) {
   for (int i = 0; i < 2; ++i) {
     const std::uint64_t revision = pair.shape[i] ? pair.shape[i]->revision() : 0;
@@ -46,8 +46,8 @@ void resetIfModelsChanged(PairState& state, const PairView& pair) {
   }
 }
 
-// Bodies that overlap at their first query by more than their motion explains were placed into each other,
-// usually by mistake.
+// Counts, and reports once, bodies that overlap at their first query by more than their motion explains. They
+// were placed into each other, usually by mistake.
 void countInitialOverlap(const PairView& pair, PairState& state) {
   if (std::exchange(state.was_queried, true)) return;
   double overlap_m = 0;
@@ -70,22 +70,22 @@ void countInitialOverlap(const PairView& pair, PairState& state) {
   report(LogLevel::Warning, words);
 }
 
-// A contactTest passes a result of its own type, which the library does not export. A host may also pass one
-// of its own: with a distance for a query, without one for a step.
+// True for a query, false for a step. Bullet's contactTest passes a result type that the library does not
+// export. A host may pass its own type: with a distance threshold for a query, without one for a step.
 bool isQuery(const btManifoldResult& result) {
   if (typeid(result) == typeid(btManifoldResult)) return false;
   return result.m_closestPointDistanceThreshold > 0 ||
          std::strstr(typeid(result).name(), "btBridgedManifoldResult") != nullptr;
 }
 
-// Reports the points that are near now, rather than contacts for a step.
+// Reports the points that are near at the present poses, for a query.
 void reportClosestPoints(const PairView& pair, Context& context, btManifoldResult& result) {
   const double wanted_m = std::max<double>(result.m_closestPointDistanceThreshold, 0);
   RelativeMotion still;
   std::vector<Candidate> candidates;
   still.contact_margin_m = std::min(wanted_m, queryRange_m(pair));
   findCandidates(pair, still.contact_margin_m, context, candidates);
-  // Beyond the band of the fields only the exact surfaces know distances.
+  // Beyond the band of the fields only the exact surfaces give distances.
   if (candidates.empty() && wanted_m > still.contact_margin_m)
     candidates = nearestFarPoints(pair, wanted_m, context);
   else
@@ -93,7 +93,7 @@ void reportClosestPoints(const PairView& pair, Context& context, btManifoldResul
   reportContacts(candidates, pair.wrapper, result);
 }
 
-// Other solvers than bullet::Solver do not know penalty points.
+// Solvers other than bullet::Solver do not use penalty points.
 void warnWithoutSolver() {
   static std::atomic_flag was_reported;
   if (!was_reported.test_and_set())
@@ -102,7 +102,7 @@ void warnWithoutSolver() {
            "as rigid");
 }
 
-// Greatest way by which a point that touches leaves its plane in the step; none where bodies roll on each
+// Greatest distance by which a touching point leaves its plane in the step; zero for bodies that roll on each
 // other.
 double sagitta_m(const PairState& state) {
   const RelativeMotion& motion = state.motion;
@@ -114,7 +114,8 @@ double sagitta_m(const PairState& state) {
   return most_m;
 }
 
-// Planes are off where bodies turn farther, and a check no longer carries them along (PairCheck).
+// Reports bodies that turn so far in a step that contact planes are inaccurate (PairCheck does not carry them
+// along).
 void warnOfTurn(PairState& state, const PairView& pair) {
   const double w_rad_s = state.motion.V.w.norm(), dt_s = state.motion.dt_s;
   const bool is_fast = w_rad_s * dt_s > kContactTurn_rad && sagitta_m(state) > kContactSagitta_m;
@@ -125,7 +126,7 @@ void warnOfTurn(PairState& state, const PairView& pair) {
                     *pair.wrapper[1]->getCollisionObject(), state.fastest_rad_s, dt_s);
 }
 
-// Pairs without penalty points, as all pairs of constraint contact, leave nothing for the solver.
+// Registers the pair's penalty points for the solver, or removes them.
 void passToSolver(PairState& state) {
   PenaltyContacts& contacts = *state.context->penalty_contacts;
   const bool has_points = !state.penalty.points.empty();
@@ -137,15 +138,16 @@ void passToSolver(PairState& state) {
       contacts.add(manifold, &state.penalty);
 }
 
-// Contact with others may throw the bodies at each other within the step, so the solver may need contacts
-// where none was predicted. But Bullet wakes a sleeping body for each manifold with a kinematic one.
+// True if the pair gets spare manifolds for contacts that the solver may add. Contact with other bodies may
+// throw the pair's bodies at each other within the step. A pair with a kinematic body and no contact gets
+// none, since Bullet wakes a sleeping body for each manifold with a kinematic one.
 bool mayNeedMore(const PairView& pair, const PairState& state) {
   if (state.context->settings.contact_method != ContactMethod::Constraint) return false;
   const auto isKinematic = [&](int i) { return pair.wrapper[i]->getCollisionObject()->isKinematicObject(); };
   return !state.contacts.empty() || !(isKinematic(0) || isKinematic(1));
 }
 
-// The solver finds a pair's check by its first manifold.
+// Registers the pair's check under its first manifold, where the solver looks for it.
 void registerCheck(const PairView& pair, PairState& state) {
   const bool has_manifold = !state.writer->manifolds().empty();
   if (state.context->settings.contact_method != ContactMethod::Constraint || !has_manifold) return;
@@ -184,14 +186,14 @@ void ContactAlgorithm::prepare(const btCollisionObjectWrapper* body0, const btCo
   state.contacts.clear();
   state.motion = {};
   state.is_prepared = true;
-  // A child of a compound that was replaced by another compound: Bullet does not renew its algorithm.
+  // Bullet does not renew the algorithm of a compound's child if another compound replaces the compound.
   if (!isFor(body0->getCollisionShape(), body1->getCollisionShape())) return;
   resetIfModelsChanged(state, pair);
   const Settings& settings = state.context->settings;
   const bool is_penalty = settings.contact_method == ContactMethod::Penalty;
   if (!pair.X_WS[0].isFinite() || !pair.X_WS[1].isFinite() || !is_penalty) state.penalty.points.clear();
   if (!pair.X_WS[0].isFinite() || !pair.X_WS[1].isFinite()) return;
-  // Penalty points press from the first touch on, so points beyond the step's travel are not needed.
+  // Penalty points press only once they touch, so points beyond the step's travel are not needed.
   const double contact_margin_m =
       is_penalty ? std::min(2 * kSamePlace_m, settings.contact_margin_m) : settings.contact_margin_m;
   const bool is_held = !is_penalty && state.selection.is_valid && !state.selection.contacts.empty();

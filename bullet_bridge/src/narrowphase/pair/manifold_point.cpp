@@ -21,8 +21,8 @@ int indexOn(const Candidate& c, int side) {
 
 namespace {
 
-// Along the slip, so that the solver's friction pyramid is exact for a sliding part; for a part at rest,
-// along a direction that depends on the normal only, so that it does not turn with noise.
+// Sets the first friction direction along the slip, so that the solver's friction pyramid is exact for a
+// sliding part. For a part at rest the direction depends on the normal only, so that noise does not turn it.
 void setFrictionDirections(btManifoldPoint& point, const Vec3& n, const Vec3& velocity) {
   const Vec3 slip = velocity - n * n.dot(velocity);
   Vec3 t1;
@@ -80,7 +80,7 @@ btManifoldPoint makePoint(const Candidate& c, const PairMaterial& material,
   setArea(point, c.area_m2);
   if (c.bounces) setBounces(point);
   setFrictionDirections(point, c.n_W, motion.velocityAt(c.p_W));
-  // Bullet's solver scales the directions by the bodies' factors, but only those that it chooses itself.
+  // For anisotropic friction Bullet's solver scales only directions that it chooses itself.
   if (hasAnisotropicFriction(*bodies[0]->getCollisionObject(), *bodies[1]->getCollisionObject()))
     point.m_contactPointFlags &= ~BT_CONTACT_FLAG_LATERAL_FRICTION_INITIALIZED;
   return point;

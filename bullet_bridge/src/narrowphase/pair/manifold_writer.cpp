@@ -29,7 +29,7 @@ ManifoldWriter::ManifoldWriter(btDispatcher& dispatcher, const btCollisionObject
     : dispatcher_(dispatcher), objects_{object0, object1} {}
 
 ManifoldWriter::~ManifoldWriter() {
-  // Bullet would report the end of contact for each manifold.
+  // Bullet would report the end of contact once per manifold.
   for (btPersistentManifold* manifold : manifolds_) {
     for (int i = 0; i < manifold->getNumContacts(); ++i)
       manifold->clearUserCache(manifold->getContactPoint(i));
@@ -44,7 +44,7 @@ void ManifoldWriter::append(btAlignedObjectArray<btPersistentManifold*>& manifol
 }
 
 void ManifoldWriter::invalidateIds() {
-  // Without a valid id they match no candidate, and the next write() returns their user data.
+  // Points without a valid id match no candidate, and the next write() destroys their user data.
   for (btPersistentManifold* manifold : manifolds_)
     for (int i = 0; i < manifold->getNumContacts(); ++i) {
       btManifoldPoint& point = manifold->getContactPoint(i);
@@ -57,7 +57,7 @@ void ManifoldWriter::readManifolds() {
   for (const btPersistentManifold* manifold : manifolds_)
     for (int i = 0; i < manifold->getNumContacts(); ++i)
       old_.push_back({keyOf(manifold->getContactPoint(i)), manifold->getContactPoint(i)});
-  // They were usually written in this order, and sorting them is expensive.
+  // The points are usually in this order already, and sorting them is expensive.
   const auto isBefore = [](const Old& a, const Old& b) { return a.key < b.key; };
   if (!std::is_sorted(old_.begin(), old_.end(), isBefore)) std::sort(old_.begin(), old_.end(), isBefore);
 }
@@ -79,7 +79,7 @@ void ManifoldWriter::write(std::span<const Candidate> contacts,
                            bool keeps_spare) {
   readManifolds();
   const std::size_t used = (contacts.size() + kPerManifold - 1) / kPerManifold;
-  // assumed: a pair with many contacts lacks some of its many neighbours
+  // Assumed: a pair with many contacts may lack more of them.
   const std::size_t manifold_count = keeps_spare ? used + 4 + used / 2 : used;
   while (manifolds_.size() < manifold_count) {
     btPersistentManifold* manifold = dispatcher_.getNewManifold(objects_[0], objects_[1]);
@@ -88,8 +88,8 @@ void ManifoldWriter::write(std::span<const Candidate> contacts,
   }
   const bool is_custom = wantsAdded(objects_[0], objects_[1]);
   const PairMaterial material(bodies);
-  // Bullet's own algorithms add up to four points again in each step, and keep what others have: so do we,
-  // one manifold after the other.
+  // Bullet's own algorithms call the added callback again for up to four points in each step and keep the
+  // other points' values. Here one manifold per step is added again, in turn.
   const std::size_t added_again = used > 0 ? turn_++ % used : 0;
   lost_load_Ns_ = 0;
   for (const Old& had : old_) lost_load_Ns_ += had.point.m_appliedImpulse;

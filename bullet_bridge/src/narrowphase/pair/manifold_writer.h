@@ -20,24 +20,26 @@ struct btCollisionObjectWrapper;
 
 namespace vps::bullet {
 
-// Bits of m_contactPointFlags far above Bullet's own: the point was given to gContactAddedCallback, which set
-// friction directions, or a normal, of its own.
+// Bits of m_contactPointFlags above Bullet's own: gContactAddedCallback was called for the point; the
+// callback set friction directions; the callback set a normal.
 constexpr int kWasAdded = 1 << 25, kOwnDirections = 1 << 26, kOwnNormal = 1 << 27;
 
-/// Positions on both bodies: the shell point on its own side, its foot on the other's surface.
+/// Positions of a contact on both bodies: the shell point, and the nearest point of the other body's surface.
 void positions(const Candidate& c, Vec3& on0, Vec3& on1);
 
-/// Index of the shell point on its own side; at a crossing, of the edge on either side.
+/// Index of the shell point, for the side that has it, else -1; for a crossing, index of the side's edge.
 int indexOn(const Candidate& c, int side);
 
-/// With all that btManifoldResult::addContactPoint() would set from the bodies, without impulses.
+/// Makes a manifold point with all values that btManifoldResult::addContactPoint() would set from the bodies,
+/// without impulses.
 btManifoldPoint makePoint(const Candidate& c, const PairMaterial& material,
                           const btCollisionObjectWrapper* const (&bodies)[2], const RelativeMotion& motion);
 
-/// Gives a point the last step's impulses, in its own friction directions.
+/// Copies the last step's impulses to a point, in the point's friction directions.
 void copyImpulses(btManifoldPoint& point, const btManifoldPoint& old);
 
-/// Gives a point that is not added again what the user's callback has set.
+/// Copies to a point the values that the user's callback set in an earlier step, if the callback is not
+/// called again.
 void keepMaterial(btManifoldPoint& point, const btManifoldPoint& old);
 
 class ManifoldWriter {
@@ -48,23 +50,23 @@ class ManifoldWriter {
   ManifoldWriter(const ManifoldWriter&) = delete;
   ManifoldWriter& operator=(const ManifoldWriter&) = delete;
 
-  /// Marks the candidates that are contacts in the manifolds as they are now, with their impulses.
+  /// Sets was_contact and impulse_Ns of the candidates that are contacts in the present manifolds.
   void markExistingContacts(std::vector<Candidate>& candidates);
-  /// Replaces all contacts. Points that stay keep impulses, lifetime and user data. Bullet's callbacks are
-  /// called as Bullet does for a pair with one manifold (README.md, "Callbacks").
-  /// @param keeps_spare  more manifolds than needed, so that the solver can add contacts
+  /// Replaces all contacts. Points that remain keep impulses, lifetime and user data. Bullet's callbacks are
+  /// called as for a pair with one manifold (see "Callbacks" in contact_callbacks.md).
+  /// @param keeps_spare  allocate spare manifolds, so that the solver can add contacts
   void write(std::span<const Candidate> contacts, const btCollisionObjectWrapper* const (&bodies)[2],
              const RelativeMotion& motion, bool keeps_spare);
-  /// Adds a contact in a free place, or replaces the one with its key. Null if no place is free. The contact
-  /// stays where it is until the next write().
+  /// Adds a contact, or replaces the contact with its key. Returns null if the manifolds are full. The
+  /// pointer is valid until the next write().
   btManifoldPoint* put(const Candidate& contact, const btCollisionObjectWrapper* const (&bodies)[2],
                        const RelativeMotion& motion);
-  /// The contact with this key, as it is now; null if there is none.
-  /// @param place  where it probably is: its index among those that write() was given
+  /// The present contact with this key; null if there is none.
+  /// @param place  likely index among the contacts of the last write()
   [[nodiscard]] btManifoldPoint* find(std::uint64_t key, std::size_t place = 0) const;
-  /// Normal impulse of the contacts that the last write() left out.
+  /// Sum of the normal impulses of the contacts that the last write() dropped.
   [[nodiscard]] double lostLoad_Ns() const { return lost_load_Ns_; }
-  /// To be called when ids refer to other points: no impulse passes from the old contacts to new ones.
+  /// Must be called when ids refer to other points: no impulse then passes from old contacts to new ones.
   void invalidateIds();
   void append(btAlignedObjectArray<btPersistentManifold*>& manifolds) const;
   [[nodiscard]] std::span<btPersistentManifold* const> manifolds() const { return manifolds_; }
@@ -83,9 +85,9 @@ class ManifoldWriter {
   const btCollisionObject* objects_[2];
   std::vector<btPersistentManifold*> manifolds_;
   std::vector<Old> old_;      // last step's points, ascending by key
-  bool has_started_ = false;  // gContactStartedCallback was due, and gContactEndedCallback is not yet
+  bool has_started_ = false;  // contact has started, and has not ended
   double lost_load_Ns_ = 0;
-  std::size_t turn_ = 0;  // of the manifold whose points are added again in this step
+  std::size_t turn_ = 0;  // counter that selects the manifold whose points are added again in this step
 };
 
 /// Passes contacts to a contactTest's result, one by one.

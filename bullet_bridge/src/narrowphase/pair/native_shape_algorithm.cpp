@@ -41,7 +41,7 @@ struct NativeShapeAlgorithm::State {
   std::shared_ptr<Context> context;
   int native_side = 0;
   ShapeKey key;
-  std::shared_ptr<const NativeShapeAdapter> adapter;  // null: the shape has become one without contact
+  std::shared_ptr<const NativeShapeAdapter> adapter;  // null if the shape has become one without contact
   std::unique_ptr<ContactAlgorithm> inner;
 
   void renew(btDispatcher& dispatcher, const btCollisionObjectWrapper* const (&bodies)[2]) {
@@ -53,7 +53,7 @@ struct NativeShapeAlgorithm::State {
     btCollisionAlgorithmConstructionInfo info(&dispatcher, 0);
     inner = std::make_unique<ContactAlgorithm>(info, adapted.wrapper[0], adapted.wrapper[1], context);
   }
-  // Bullet's step is not exception-safe.
+  // Reports errors instead of throwing, since Bullet's step is not exception-safe.
   void renewOrReport(btDispatcher& dispatcher, const btCollisionObjectWrapper* const (&bodies)[2]) {
     if (key == keyOf(*bodies[native_side]->getCollisionShape())) return;
     try {

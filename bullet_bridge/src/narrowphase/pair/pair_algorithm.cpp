@@ -28,7 +28,7 @@ const btCollisionShape* shapeOf(const btBroadphaseProxy* proxy) {
   return static_cast<const btCollisionObject*>(proxy->m_clientObject)->getCollisionShape();
 }
 
-// GImpact registers itself for all types when it is asked to, which may be after install().
+// GImpact registers itself for all types, which may happen after install().
 void restoreFunction(btCollisionDispatcher& dispatcher, int type0, int type1) {
   ContactCreateFunction* ours = contactFunctionOf(&dispatcher);
   if (!ours) return;
@@ -54,7 +54,7 @@ void renewIfSwapped(btBroadphasePair& pair, btCollisionDispatcher& dispatcher) {
     if (ours->isFor(shape0, shape1)) return;
   } else if (!has_shape ||
              DispatchTable::contact(dispatcher)[type0][type1] != contactFunctionOf(&dispatcher)) {
-    return;  // Bullet's own, or a function that the user registered
+    return;  // an algorithm of Bullet, or of a function that the user registered
   }
   pair.m_algorithm->~btCollisionAlgorithm();
   dispatcher.freeCollisionAlgorithm(pair.m_algorithm);

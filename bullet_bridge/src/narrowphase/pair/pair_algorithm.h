@@ -17,13 +17,13 @@ struct PairState;
 
 class PairAlgorithm : public btActivatingCollisionAlgorithm {
  public:
-  /// True if the pair was made for these shapes. A body's shape may be swapped while its pairs exist; another
-  /// shape at the address of a deleted one is told by its type, and a Shape also by its revision().
+  /// True if the pair was made for these shapes. A body's shape may be swapped while its pairs exist. Another
+  /// shape at the address of a deleted one is recognised by its type, and a Shape also by its revision().
   [[nodiscard]] bool isFor(const btCollisionShape* shape0, const btCollisionShape* shape1) const;
 
   /// Finds the contacts of the coming step: everything in processCollision() except writing manifolds.
   /// Changes only this pair, so that different pairs may be prepared in parallel; processCollision() then
-  /// uses the result. Nothing by default.
+  /// uses the result. Does nothing by default.
   virtual void prepare(const btCollisionObjectWrapper* /*body0*/, const btCollisionObjectWrapper* /*body1*/,
                        const btDispatcherInfo& /*info*/) {}
   /// Bullet never runs CCD on concave shapes; speculative contacts replace it.
@@ -50,9 +50,9 @@ class PairAlgorithm : public btActivatingCollisionAlgorithm {
 ///   4. Write them into as many manifolds of four as needed, each contact with its impulse of the last step.
 ///
 /// Manifold points are written directly: addContactPoint would merge neighbours nearer than the breaking
-/// threshold. gContactAddedCallback and the contact-stiffness flags are served nevertheless.
-/// m_index0/m_index1 hold the point's id in the shell of body 0/1 (-1 on the side that has the map), or, at a
-/// crossing, the edge of each body.
+/// threshold. gContactAddedCallback and the contact-stiffness flags still work. m_index0/m_index1 hold the
+/// point's id in the shell of body 0/1 (-1 on the side that has the map), or, at a crossing, the edge of each
+/// body.
 class ContactAlgorithm final : public PairAlgorithm {
  public:
   ContactAlgorithm(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* body0,
@@ -66,7 +66,8 @@ class ContactAlgorithm final : public PairAlgorithm {
   void getAllContactManifolds(btManifoldArray& manifolds) override;
 
  private:
-  // Behind a pointer: elements of Bullet's algorithm pool have a fixed size, which Release does not check.
+  // Held by pointer, since elements of Bullet's algorithm pool have a fixed size, which Release builds do not
+  // check.
   std::unique_ptr<PairState> state_;
 };
 
@@ -74,13 +75,14 @@ class ContactAlgorithm final : public PairAlgorithm {
 /// shape's key changes (scaled, resized, refitted); the impulses of its contacts are then dropped.
 class NativeShapeAlgorithm final : public PairAlgorithm {
  public:
-  /// @param native_side  0 or 1: whose shape is replaced. Throws as NativeShapeCache::get().
+  /// @param native_side  0 or 1: the body whose shape is replaced by its adapter. Throws as
+  ///   NativeShapeCache::get().
   NativeShapeAlgorithm(const btCollisionAlgorithmConstructionInfo& info,
                        const btCollisionObjectWrapper* body0, const btCollisionObjectWrapper* body1,
                        std::shared_ptr<Context> context, int native_side);
   ~NativeShapeAlgorithm() override;
 
-  /// Does nothing where the adapter must be built again: processCollision() does that, one pair at a time.
+  /// Does nothing if the adapter must be built again; processCollision() builds it, one pair at a time.
   void prepare(const btCollisionObjectWrapper* body0, const btCollisionObjectWrapper* body1,
                const btDispatcherInfo& info) override;
   void processCollision(const btCollisionObjectWrapper* body0, const btCollisionObjectWrapper* body1,
@@ -93,14 +95,14 @@ class NativeShapeAlgorithm final : public PairAlgorithm {
   std::unique_ptr<State> state_;
 };
 
-/// True for a Shape, and for a compound that has one among its children at any depth.
+/// True for a Shape, and for a compound that contains a Shape at any depth.
 bool containsShape(const btCollisionShape& shape);
 
-/// Gives each child of a compound, with the other body, the algorithm that the dispatcher has for them.
+/// Runs, for each child of a compound and the other body, the algorithm that the dispatcher has for them.
 ///
-/// Bullet's own algorithm for compounds visits a child when its box touches the other's. That is too late for
-/// speculative contact: a part that falls at 0.6 m/s was found when it was up to a step's travel deep (0.4 mm
-/// at 1 kHz, 7 mm at 60 Hz). Here a child is visited when it can touch within the step.
+/// Bullet's own algorithm for compounds visits a child when its box touches the other's. This is too late for
+/// speculative contact: a part that falls at 0.6 m/s was found only when it was up to a step's travel deep
+/// (0.4 mm at 1 kHz, 7 mm at 60 Hz). CompoundPair visits a child when it can touch within the step.
 class CompoundPair final : public PairAlgorithm {
  public:
   CompoundPair(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* body0,
@@ -116,7 +118,7 @@ class CompoundPair final : public PairAlgorithm {
   std::unique_ptr<State> state_;
 };
 
-/// No contact: with an empty shape, or where contact was refused.
+/// A pair without contact: with an empty shape, or with a shape for which contact was refused.
 class EmptyPair final : public PairAlgorithm {
  public:
   EmptyPair(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* body0,
@@ -127,9 +129,10 @@ class EmptyPair final : public PairAlgorithm {
   void getAllContactManifolds(btManifoldArray&) override {}
 };
 
-/// Bullet keeps a pair's algorithm while its bodies are near each other, whatever shapes they get. Frees it
-/// where it was made for other shapes, or before install(), or by a function that GImpact registered over
-/// ours. Does nothing for pairs that VPS contact has no part in, and without an installation.
+/// Frees a pair's algorithm if it was made for other shapes, before install(), or by a function that GImpact
+/// registered over ours, so that Bullet makes a new one. Bullet itself keeps the algorithm while the bodies
+/// are near each other, whatever shapes they get. Does nothing for pairs without a Shape, and without an
+/// installation.
 void renewIfSwapped(btBroadphasePair& pair, btCollisionDispatcher& dispatcher);
 
 }  // namespace vps::bullet

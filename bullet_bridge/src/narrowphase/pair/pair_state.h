@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// What is stored from step to step: for a pair of bodies, and for all pairs of one installation.
+// SPDX-License-Identifier: BSD-3-Clause State that is kept from step to step: of one pair of bodies, and of
+// all pairs of one installation.
 #pragma once
 
 #include <algorithm>
@@ -35,32 +35,32 @@ struct Context {
   std::shared_ptr<PenaltyContacts> penalty_contacts;
   std::shared_ptr<StepChecks> step_checks;
   std::shared_ptr<TurnReports> turn_reports;
-  // Atomic: btCollisionDispatcherMt processes pairs in parallel.
+  // Counters are atomic since btCollisionDispatcherMt processes pairs in parallel.
   std::atomic<std::size_t> pair_updates{0}, points_tested{0}, candidates{0}, contacts{0}, left_out{0},
       overlapping_starts{0};
   std::atomic<double> deepest_start_m{0};
 };
 
-/// The contacts selected by a full query, and where the bodies were.
+/// The contacts selected by a full query, and the bodies' poses at that time.
 struct Selection {
   std::vector<Candidate> contacts;
   bool is_valid = false;
-  Pose X_01;                              ///< body 1 in body 0
-  double reach_m = 0;                     ///< margin and the bodies' own motion in the step
-  Pose X_W0;                              ///< of body 0
+  Pose X_01;                              ///< pose of body 1 in body 0
+  double reach_m = 0;                     ///< contact margin plus the bodies' own motion in the step
+  Pose X_W0;                              ///< pose of body 0
   Twist V;                                ///< RelativeMotion::V
-  ShapeKey key[2];                        ///< of sides that are no Shape
-  std::vector<Candidate> penalty_points;  ///< with penalty contact: all that can touch
-  std::vector<Candidate> refined;         ///< with rigid contact: all whose exact distance is known
-  bool leaves_out = false;                ///< not all of these are contacts
-  bool is_of_path = false;  ///< only what a fast body met first on its predicted path was considered
-  double any_way_m = 0;     ///< otherwise: points that could move so far in any direction were
-  double sampling_m = 0;  ///< greatest size of an area from which only the most urgent points were considered
+  ShapeKey key[2];                        ///< keys of sides that are not a Shape
+  std::vector<Candidate> penalty_points;  ///< with penalty contact: all points that can touch
+  std::vector<Candidate> refined;  ///< with rigid contact: all candidates whose exact distance is known
+  bool leaves_out = false;         ///< some refined candidates are not contacts
+  bool is_of_path = false;         ///< only what a fast body meets first on its predicted path was considered
+  double any_way_m = 0;            ///< distance within which points were searched in every direction
+  double sampling_m = 0;  ///< greatest size of an area of which only the most urgent points were considered
 };
 
-/// The way of a step on which a check found nothing that was missed. What it found holds for any way that
-/// begins and ends within a share of the rest gap of this one: most pairs move alike in the rounds of a step,
-/// and what rests, from step to step.
+/// Motion in a step for which a check found no missed contact. The result holds for any motion that begins
+/// and ends within a share of the rest gap of it. Most pairs repeat their motion from round to round, and
+/// bodies at rest from step to step.
 class ClearWay {
  public:
   void forget() { is_known_ = false; }
@@ -71,8 +71,8 @@ class ClearWay {
     is_known_ = true;
     has_small_gaps_ = with_small_gaps;
   }
-  /// @param with_small_gaps  gaps that were small at the start are looked at, too
-  /// @param apart_m          how far a point may be from where it was on this way
+  /// @param with_small_gaps  the check also looks at gaps that were small at the start
+  /// @param apart_m  greatest allowed displacement of a point from the remembered motion
   [[nodiscard]] bool covers(const PairView& start, const Pose& X_01_end, bool with_small_gaps,
                             double apart_m) const {
     const auto isNear = [&](const Pose& X_01, const Pose& had) {
@@ -92,30 +92,32 @@ struct PairState {
   std::shared_ptr<Context> context;
   std::unique_ptr<ManifoldWriter> writer;
   Selection selection;
-  std::vector<Candidate> contacts;  ///< of the coming step
+  std::vector<Candidate> contacts;  ///< contacts of the coming step
   RelativeMotion motion;
   bool is_prepared = false;
-  int turns_in_row = 0;               ///< steps in which the bodies turned too far against each other
-  double fastest_rad_s = 0;           ///< their greatest rotation in these
-  bool was_queried = false;           ///< in an earlier step
-  bool is_incomplete = false;         ///< the solved step needed more contacts than the selection has
+  int turns_in_row = 0;        ///< consecutive steps in which the bodies turned too far against each other
+  double fastest_rad_s = 0;    ///< their greatest rotation rate in these steps
+  bool was_queried = false;    ///< the pair was queried in an earlier step
+  bool is_incomplete = false;  ///< the solved step needed contacts that the selection lacks
   std::unique_ptr<StepCheck> check;   ///< with rigid contact
-  std::unique_ptr<ContactLoop> loop;  ///< with rigid contact, in a world whose solver asks no check
-  FeatureMotion features;             ///< with rigid contact: of the models
-  std::vector<FeatureContact> missed_features;  ///< with rigid contact: what earlier steps lacked, still near
+  std::unique_ptr<ContactLoop> loop;  ///< with rigid contact, in a world whose solver calls no check
+  FeatureMotion features;             ///< with rigid contact: features of the models
+  std::vector<FeatureContact> missed_features;  ///< with rigid contact: feature contacts that earlier steps
+                                                ///< missed and that are still near
   ClearWay clear_way;                           ///< with rigid contact
-  std::vector<std::uint64_t> let_go;            ///< keys of contacts, in this step: see letGo()
-  SpinClearance spin;                           ///< with rigid contact: of the models
-  CrossingMemory crossings;                     ///< with rigid contact: of the models' edges
-  PenaltyPair penalty;                          ///< with penalty contact
-  bool is_registered = false;                   ///< penalty is in the context's PenaltyContacts
-  std::optional<QueryState> query_state[2];     ///< of side 0's points in side 1's map, and the reverse
-  std::vector<std::uint32_t> always[2];         ///< ids of the points last selected, for the query
-  std::optional<bool> are_both_curved;          ///< both shapes have facets that stand for curved surfaces
-  std::uint64_t revision[2] = {0, 0};  ///< of the shapes that the ids in writer and selection belong to
+  std::vector<std::uint64_t> let_go;  ///< keys of the contacts of this step that letGo() was called for
+  SpinClearance spin;                 ///< with rigid contact: of the models
+  CrossingMemory crossings;           ///< with rigid contact: crossings of the models' edges
+  PenaltyPair penalty;                ///< with penalty contact
+  bool is_registered = false;         ///< `penalty` is registered in the context's PenaltyContacts
+  std::optional<QueryState> query_state[2];  ///< for side 0's points in side 1's map, and the reverse
+  std::vector<std::uint32_t> always[2];      ///< ids of the points last selected, for the query
+  std::optional<bool> are_both_curved;       ///< cached result of areBothCurved()
+  std::uint64_t revision[2] = {
+      0, 0};  ///< revisions of the shapes to which the ids in writer and selection refer
 
-  /// Lets go of a contact that carries load though nothing faces its point any more. False: it was let go in
-  /// this step already, and found again without its row. So the rounds of a step end.
+  /// Notes that a contact is let go: it carries load although no surface faces its point. Returns false if it
+  /// was let go in this step before, so that the rounds of a step end.
   bool letGo(std::uint64_t key) {
     if (std::find(let_go.begin(), let_go.end(), key) != let_go.end()) return false;
     let_go.push_back(key);

@@ -18,8 +18,8 @@ namespace vps::bullet {
 
 namespace {
 
-// Velocity of a link about its centre, in W. Its joints will hold back what its own forces give it; that is a
-// step's share of gravity, and at most makes a contact known early.
+// Velocity of a multibody's link about its centre, in W. The joints' reaction to the link's own forces is
+// ignored; the error is at most a step of gravity, so that a contact is found early.
 Twist linkVelocity(const btMultiBodyLinkCollider& collider, double dt_s) {
   const btMultiBody& multi = *collider.m_multiBody;
   const int link = collider.m_link;
@@ -57,7 +57,7 @@ Twist predictedVelocity(const btCollisionObject& object, double dt_s, bool with_
   if (!body->isKinematicObject()) {
     V.v += dt_s * fromBt(body->getTotalForce() * (body->getInvMass() * body->getLinearFactor()));
     V.w += dt_s * fromBt(body->getInvInertiaTensorWorld() * body->getTotalTorque());
-    // The reference list holds the constraints added with world.addConstraint(coupling, true).
+    // A body's reference list holds the constraints added with world.addConstraint(coupling, true).
     for (int i = 0; with_couplings && i < const_cast<btRigidBody*>(body)->getNumConstraintRefs(); ++i) {
       const auto* coupling =
           dynamic_cast<const CouplingConstraint*>(const_cast<btRigidBody*>(body)->getConstraintRef(i));
@@ -97,7 +97,7 @@ RelativeMotion relativeMotion(const PairView& pair, double dt_s, double contact_
   motion.own_speed_m_s = greatestSpeed(own);
   const double range_m_s = (queryRange_m(pair) - contact_margin_m) / dt_s;
   if (!is_held || motion.speed_m_s <= range_m_s || motion.own_speed_m_s >= range_m_s) return motion;
-  // Contact holds the pull, so a body is not looked for along all the way that it would go without.
+  // Contact resists the couplings' pull, so the search does not cover the whole free motion.
   const Twist pull{motion.V.w - own.w, motion.V.v - own.v};
   const double left_m_s = range_m_s - motion.own_speed_m_s;
   motion.pull_share = left_m_s / std::max(greatestSpeed(pull), left_m_s);
@@ -158,7 +158,7 @@ const Shape* shapeWithMaterials(const btCollisionObjectWrapper& wrapper) {
   return is_any ? shape : nullptr;
 }
 
-// As btManifoldResult::calculateCombinedFriction(), which is given the bodies only.
+// Limits friction as btManifoldResult::calculateCombinedFriction() does.
 double limitedFriction(double product) {
   constexpr double kMost = 10;
   return std::clamp(product, -kMost, kMost);

@@ -22,14 +22,14 @@ namespace vps::bullet {
 /// of a btMultiBody has the velocity that its joints give it. Zero for static objects.
 Twist predictedVelocity(const btCollisionObject& object, double dt_s, bool with_couplings = true);
 
-/// Where a twist about the world's origin, constant for t_s, takes the object, in W. It turns about its own
-/// centre, wherever the world's origin is.
+/// Displacement of the object, in W, by a twist about the world's origin that is constant for t_s. The object
+/// turns about its own centre.
 Pose displacement(const btCollisionObject& object, const Twist& V, double t_s);
 
 /// Both bodies of a pair at one instant.
 struct PairView {
   const btCollisionObjectWrapper* wrapper[2];
-  const Shape* shape[2];  // null: a native shape without adapter
+  const Shape* shape[2];  // null for a native shape without adapter
   Pose X_WS[2];
 
   PairView(const btCollisionObjectWrapper* body0, const btCollisionObjectWrapper* body1)
@@ -42,32 +42,33 @@ struct PairView {
   [[nodiscard]] SideView side(int i) const {
     return {shape[i], shape[i] ? X_WS[i] * shape[i]->X_SM() : X_WS[i], static_cast<std::uint8_t>(i)};
   }
-  /// Body 1 in body 0.
+  /// Pose of body 1 in body 0.
   [[nodiscard]] Pose X_01() const { return X_WS[0].inverse() * X_WS[1]; }
-  /// Upper bound of how far a motion of body 1 in body 0 moves the bodies' points near the smaller one
-  /// against each other.
+  /// Upper bound of the relative displacement combined values of the two bodies' points near the smaller
+  /// body, for a motion of body 1 given in body 0.
   [[nodiscard]] double movedBy_m(const Pose& motion_0) const {
     const Vec3 center_0 = X_WS[0].inverse() * center_W();
     return (motion_0 * center_0 - center_0).norm() + (motion_0.R - Mat3::Identity()).norm() * radius_m();
   }
-  /// Models' frame of side 1 in that of side 0.
+  /// Models' frame of side 1 in the models' frame of side 0.
   [[nodiscard]] Pose X_01_models() const { return side(0).X_WM.inverse() * side(1).X_WM; }
-  /// No points of the two bodies are nearer than this. 0 where their boxes overlap, or a side's is not known.
+  /// Lower bound of the distance of the two bodies, from their boxes. 0 if the boxes overlap or a box is not
+  /// known.
   [[nodiscard]] double leastDistance_m() const {
-    // Without a mesh the box is that of the models, which may leave out much of the part.
+    // Without a mesh the box covers the models only, which may lack much of the part.
     for (const Shape* each : shape)
       if (!each || !each->models().mesh) return 0;
     const Box &box0 = shape[0]->bounds(), &box1 = shape[1]->bounds();
     const Pose X_01 = this->X_01();
     return std::max(distance_m(box0, moved(box1, X_01)), distance_m(moved(box0, X_01.inverse()), box1));
   }
-  /// Of a side that is no Shape; changes with its size.
+  /// Key of a side that is not a Shape; it changes with the shape's size.
   [[nodiscard]] ShapeKey key(int i) const {
     return shape[i] ? ShapeKey{} : keyOf(*wrapper[i]->getCollisionShape());
   }
   [[nodiscard]] bool hasShell(int i) const { return shape[i] && shape[i]->models().shell; }
   [[nodiscard]] bool hasMap(int i) const { return shape[i] && shape[i]->models().map; }
-  /// Of the side's map; 0 without one.
+  /// Voxel size of the side's map; 0 without a map.
   [[nodiscard]] double voxel_m(int i) const { return hasMap(i) ? shape[i]->models().map->voxel_m() : 0; }
   [[nodiscard]] bool isTwoSided() const { return hasMap(0) && hasMap(1) && hasShell(0) && hasShell(1); }
   /// Half the diagonal of the smaller body.
@@ -77,7 +78,7 @@ struct PairView {
       if (each) radius_m = std::min(radius_m, 0.5 * each->bounds().size().norm());
     return std::max(radius_m, 1e-6);
   }
-  /// Centre of the smaller Shape, in W.
+  /// Centre of the smaller Shape's bounding box, in W.
   [[nodiscard]] Vec3 center_W() const {
     const bool second =
         !shape[0] || (shape[1] && shape[1]->bounds().size().norm() < shape[0]->bounds().size().norm());
@@ -86,52 +87,52 @@ struct PairView {
   }
 };
 
-/// @param is_held  by contacts in the last step: then the pull of couplings counts only as far as the query
-/// range
+/// @param is_held  contacts held the bodies in the last step. The pull of couplings is then limited to the
+///   query range
 RelativeMotion relativeMotion(const PairView& pair, double dt_s, double contact_margin_m, bool is_held);
 
-/// Greatest distance that the fields can measure [m]; their band bounds it.
+/// Greatest distance that the fields of both shapes can measure [m], limited by their bands.
 double queryRange_m(const PairView& pair);
 
-/// How much nearer than the field says a point may be [m]. The field interpolates between nodes: along the
-/// edges of a part it reads too much, and those are met by the other part's edges. Zero where the distance is
-/// exact: of crossings, and from native shapes.
+/// Greatest error by which the field overestimates the distance of a point [m]. The field interpolates
+/// between nodes, so it reads too much along the edges of a part. Zero for exact distances: of crossings, and
+/// from native shapes.
 double fieldError_m(const PairView& pair, const Candidate& c);
-/// The greatest of any point of the pair.
+/// Greatest such error of any point of the pair [m].
 double fieldError_m(const PairView& pair);
 
-/// True if the points of side i are queried. One-sided: only those of the smaller body, since points of a
-/// larger one may be too far apart to touch it.
+/// True if the points of side i are queried. With Sides::One only the smaller body's points are, since points
+/// of a larger body may be too far apart to touch it.
 bool queriesPoints(const PairView& pair, int i, Sides sides);
 
-/// How many sides' points are queried, so that their areas overlap.
+/// Number of sides whose points are queried. With two sides their areas overlap.
 int sideCount(const PairView& pair, Sides sides);
 
-/// Moves both bodies to where they are t_s into a step of dt_s, in free motion at the velocity of the step's
-/// end, as every prediction assumes. (The velocity at t_s differs: a stiff coupling pulls nearly as far in a
-/// part of the step.)
+/// Moves both bodies to their poses at t_s within a step of dt_s, in free motion at the velocity of the
+/// step's end, as all predictions assume. (The true velocity at t_s differs: a stiff coupling pulls nearly as
+/// far in a part of the step.)
 void advance(PairView& pair, const PairView& start, double dt_s, double t_s);
 
-/// Displacement of both bodies in the step at constant velocity, in W.
+/// Displacements of both bodies in the step at their present velocities, in W.
 void coast(const PairView& pair, double dt_s, Pose (&way)[2]);
 
-/// Combines both sides' materials as Bullet does: friction and restitution are multiplied. Bodies and shapes
-/// must outlive it.
+/// Materials of a pair's contacts. Combines both sides as Bullet does: friction and restitution are
+/// multiplied. Bodies and shapes must outlive it.
 class PairMaterial {
  public:
   explicit PairMaterial(const btCollisionObjectWrapper* const (&bodies)[2]);
 
   [[nodiscard]] double friction(const Candidate& c) const;
   [[nodiscard]] double restitution(const Candidate& c) const;
-  /// Of penalty contact, per area: of both sides the lesser.
-  /// @param usual_N_per_m3  of a side whose surface has none
+  /// Stiffness per area of penalty contact: the lesser value of both sides.
+  /// @param usual_N_per_m3  value of a side whose surface has none of its own
   [[nodiscard]] double stiffness_N_per_m3(const Candidate& c, double usual_N_per_m3) const;
 
  private:
   [[nodiscard]] const SurfaceMaterial& at(const Candidate& c, int i) const;
 
   const btCollisionObject* object_[2];
-  const Shape* shape_[2];          // null: none of its surfaces has a material of its own
+  const Shape* shape_[2];          // null if no surface of the shape has a material of its own
   double friction_, restitution_;  // of the bodies
 };
 

@@ -6,6 +6,7 @@
 #include "narrowphase/refinement/curved_contact.h"
 #include "narrowphase/refinement/exact_contact.h"
 #include "native_shapes/native_shape.h"
+#include "native_shapes/native_shape_adapter.h"
 #include "vps/contact_tolerances.h"
 #include "vps/feature_motion.h"
 
@@ -13,10 +14,10 @@ namespace vps::bullet {
 
 namespace {
 
-// A point that is inside near an edge of the other side, and is not first along the nearest face there: a
-// corner that slides down a wall, a micrometre inside, to the wall's lower rim. The face that it entered
-// through is one of the others at that edge. Or a point on it: where edges lie flush, rounding decides on
-// which side, and the next face would be half a millimetre deep.
+// Contact of a point that is inside the other body near one of its edges and is not first along the nearest
+// face. Example: a corner slides down a wall, a micrometre inside, to the wall's lower rim. The point entered
+// through another face at that edge. The same holds for a point on the edge: where edges lie flush, rounding
+// decides on which side the point is, and the next face would be half a millimetre deep.
 Exact besideEdge(const Refiner& refiner, const OwnPoint& own, double reach_m) {
   Exact best;
   if (!refiner.other.shape) return best;
@@ -33,7 +34,7 @@ Exact besideEdge(const Refiner& refiner, const OwnPoint& own, double reach_m) {
       if (distance_m > kSamePlace_m || r.dot(s.into[face]) < -kSamePlace_m ||
           (best.found && distance_m <= best.distance_m))
         continue;
-      // An edge that runs through the face's plane goes on behind it.
+      // An edge that runs through the face's plane continues behind the plane.
       if (!own.isFirstAlong(X_WM.R * n) || own.runsAlong(X_WM.R * n)) continue;
       best.found = best.is_contact = best.is_their_face = true;
       best.distance_m = distance_m;
@@ -44,8 +45,8 @@ Exact besideEdge(const Refiner& refiner, const OwnPoint& own, double reach_m) {
   return best;
 }
 
-// True if a point beside an edge passes that edge no lower than the rest gap below the plane that it meets at
-// the end of the step: it slides onto the face, and sinks into it only if nothing holds it there.
+// True if a point beside an edge passes the edge no lower than the rest gap below the plane that it meets at
+// the end of the step. Such a point slides onto the face.
 bool slidesOnto(const Exact& end, const Exact& now, const Vec3& way_W) {
   const double height_m = end.distance_m - end.n.dot(way_W);
   const Vec3 beside = now.from_q - now.from_q.dot(end.n) * end.n;
@@ -56,9 +57,9 @@ bool slidesOnto(const Exact& end, const Exact& now, const Vec3& way_W) {
 }
 
 // The line between two edges turns fast as they pass each other, and would stop a point that is about to pass
-// without contact. So the surface that the point meets at the end of the step counts, unless that is an
-// overlap. Its plane may lie beyond where the point is now, by as much as the bodies would move if nothing
-// stopped them. It must not push: no contact is deeper than it is now.
+// without contact. So the contact is taken from the surface that the point faces at the end of the step,
+// unless the point overlaps it there. The plane of that surface may lie beyond the point's present position
+// by the free motion of the step. It must not push, so the contact is no deeper than it is now.
 Exact atEndOfStep(const Exact& now, const Refiner& refiner, const OwnPoint& own, const Vec3& way_W,
                   double max_m) {
   Exact end = refiner.at(own.movedTo(own.p_W + way_W), max_m + way_W.norm());
@@ -67,7 +68,7 @@ Exact atEndOfStep(const Exact& now, const Refiner& refiner, const OwnPoint& own,
   return end;
 }
 
-// How the faces around a contact curve: see Candidate.
+// Sets Candidate::curvature_per_m and hollow_per_m.
 void setCurvature(Candidate& c, const Exact& exact, const SideView& side) {
   c.curvature_per_m = c.hollow_per_m = 0;
   if (!exact.is_contact || !exact.is_their_face || !exact.face.surface) return;
@@ -79,7 +80,7 @@ void setCurvature(Candidate& c, const Exact& exact, const SideView& side) {
     c.curvature_per_m = std::max(Curvature(theirs + own.curvature_W()).most_per_m, 0.0);
 }
 
-// True if a point of a flat face lies on a flat face of the other part, or on an edge of it.
+// True if a point of a flat face lies on a flat face or on an edge of the other part.
 bool isFlat(const Candidate& c, const Exact& exact, const SideView& side) {
   const bool is_on_flat = exact.is_smooth && !exact.is_curved,
              is_on_edge = exact.is_own_face && exact.is_on_edge;
@@ -101,8 +102,9 @@ void refine(std::vector<Candidate>& candidates, const SideView& side, const Side
   // The field's error is below a voxel; a surface farther away is not the one that the field measured.
   const double field_error_m =
       other.shape && other.shape->models().map ? other.shape->models().map->voxel_m() : kSamePlace_m;
-  // The line between edges that do not touch yet turns as they pass each other: as a plane it would stop a
-  // body that slides over the seam of two plates. The check of the solved step finds edges that meet.
+  // The line between edges that do not touch yet turns as the edges pass each other. Used as a contact normal
+  // it would stop a body that slides over the seam of two plates. The check of the solved step finds edges
+  // that meet.
   const bool leaves_edges = motion.is_checked && side.shape && other.shape &&
                             !side.shape->features().isEmpty() && !other.shape->features().isEmpty();
   constexpr double kResting_m = FeatureMotion::kKeptGaps * FeatureMotion::kRest_m;
@@ -119,8 +121,8 @@ void refine(std::vector<Candidate>& candidates, const SideView& side, const Side
     const double max_m = std::abs(c.distance_m) + field_error_m;
     Exact exact = refiner.at(own, std::abs(c.distance_m) + kFaceError_voxels * field_error_m);
     if (!exact.is_contact && !exact.found_all) exact = refiner.at(own, max_m);
-    // Outside an edge the field may read less than half of the distance, along a normal of its own: such a
-    // plane would stop or lift a body that does not come near the point.
+    // Outside an edge the field may read less than half of the distance, with a normal that no face has. Such
+    // a plane would stop or lift a body that does not come near the point.
     if (!exact.found)
       if (Candidate by_field = c; motion.canTouch(by_field))
         exact = refiner.at(own, max_m + motion.dt_s * motion.velocityAt(c.p_W).norm());

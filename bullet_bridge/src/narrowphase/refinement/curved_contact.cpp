@@ -12,9 +12,9 @@ namespace vps::bullet {
 
 namespace {
 
-// How far a point is from the triangle of a face. The nearest triangle is mostly that one or one beside it,
-// so the search of the mesh need not look farther; with the search's own rounding as a margin, its answer is
-// the same to the bit.
+// Distance of a point from the triangle of a face. The nearest triangle is mostly this one or a neighbour, so
+// the distance bounds the search of the mesh. It includes the search's own rounding, so that the result has
+// the same bits.
 double distanceTo(const FacePoint& face, const Pose& X_WM, const Vec3& p_W) {
   const Mesh& mesh = face.surface->distance->mesh();
   const auto& t = mesh.triangles[face.triangle];
@@ -23,7 +23,7 @@ double distanceTo(const FacePoint& face, const Pose& X_WM, const Vec3& p_W) {
   return (1 + kRoundingShare) * (p - q).norm() + kRoundingShare * kSameGap_m;
 }
 
-// The face nearest to p; none where an edge or an open surface is nearer.
+// The face nearest to p; nothing if an edge or an open surface is nearer.
 std::optional<FacePoint> nearestFace(const SideView& side, const Vec3& p_W, double max_m,
                                      const FacePoint* guess = nullptr) {
   std::optional<FacePoint> nearest;
@@ -56,8 +56,8 @@ double gapBetween_m(const FacePoint& own, const FacePoint& their) {
   return (own.q_W - their.q_W).dot(their.outward_W);
 }
 
-// Displacement in the tangent plane to the minimum of the gap's parabola; zero where it is too flat to
-// matter.
+// Displacement in the tangent plane to the minimum of the gap's parabola; zero along directions in which the
+// parabola is too flat to matter.
 Vec3 wayToLeast(const FacePoint& own, const FacePoint& their, double reach_m) {
   const Eigen::Matrix<double, 3, 2> T = across(their.outward_W);
   const Eigen::Vector2d slope = T.transpose() * own.outward_W;
@@ -94,7 +94,7 @@ bool moveToNearest(Candidate& c, const SideView& side, const SideView& other, co
   for (int i = 0; i < kMostRetakes; ++i) {
     const Vec3 way = wayToLeast(*own, *their, reach_m);
     if (way.norm() < kNearestShare * reach_m) break;
-    // Beyond the reach another shell point is nearer, and finds the same place.
+    // Beyond the reach another shell point is nearer and finds the same place.
     const Vec3 to_W = own->q_W + way;
     if ((to_W - c.p_W).norm() > reach_m) return false;
     if (i == kMostRetakes - 1) {
@@ -162,7 +162,7 @@ Curvature::Curvature(const Mat3& turn_per_m) {
 
 namespace {
 
-// Of the face that a candidate's point lies on.
+// Greatest curvature of the face on which a candidate's point lies.
 double ownCurvature_per_m(const PairView& pair, const Candidate& c) {
   const Shape* shape = pair.shape[c.side];
   if (c.isCrossing() || !shape || shape->models().surfaces.empty() || shape->isEdgePoint(c.id)) return 0;

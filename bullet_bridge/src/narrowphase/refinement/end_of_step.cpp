@@ -1,8 +1,7 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// Gaps at the end of the step. A contact's plane is to first order in the motion. On facets of a curved face,
-// and where one face goes on in another, a point that slides by a facet or more finds another gap than its
-// plane predicts: the part then sinks or drops by up to the facets' height in each step, and the next step's
-// impact takes that energy.
+// SPDX-License-Identifier: BSD-3-Clause Gaps at the end of the step. A contact plane is first-order in the
+// motion. On the facets of a curved face, and where one face continues smoothly in another, a point that
+// slides by a facet or more has another gap than its plane predicts. The part would then sink or drop by up
+// to the facets' height in each step, and the next step's impact would take that energy.
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
 
 #include <cmath>
@@ -15,7 +14,7 @@ namespace vps::bullet {
 
 namespace {
 
-// With the share of the pull of couplings that the motion has.
+// Displacement in free motion, with the share RelativeMotion::pull_share of the couplings' pull.
 Pose freeWay(const btCollisionObject& object, const RelativeMotion& motion) {
   const double dt_s = motion.dt_s;
   Twist V = predictedVelocity(object, dt_s);
@@ -26,15 +25,15 @@ Pose freeWay(const btCollisionObject& object, const RelativeMotion& motion) {
   return displacement(object, V, dt_s);
 }
 
-// Contacts whose points move along their planes. Others meet the plane: where they would be at the end of the
-// step is no place to look at.
+// True for a contact whose point moves along its plane. Other points meet the plane, so their position at the
+// end of free motion is meaningless.
 bool slides(const Candidate& c, const Vec3& way_W, double contact_margin_m) {
   return !c.isCrossing() && c.plane_of != Candidate::kBetween && way_W.norm() > contact_margin_m &&
          std::abs(c.n_W.dot(way_W)) < kSinGrazing * way_W.norm();
 }
 
-// True if the point is then on the same curved face, or on one that goes on from it. On a flat face its plane
-// says all.
+// True if the point is, at the end, on the same curved face or on a face that continues it smoothly. On a
+// flat face the plane is exact already.
 bool isOnCurve(const Candidate& now, const Candidate& end, const Pose (&way)[2], double contact_margin_m) {
   return end.plane_of == now.plane_of && (end.n_W - way[now.plane_of].R * now.n_W).norm() > kNoDirection &&
          end.n_W.dot(now.n_W) > kCosSameFace &&
@@ -73,7 +72,7 @@ void measureAtEnd(const PairView& pair, const RelativeMotion& motion, const Sett
            queriesPoints(pair, 1 - i, settings.sides));
     for (std::size_t k = 0; k < ends.size(); ++k) {
       Candidate& c = candidates[sliding[k]];
-      // The normal remains that of now, where the contact acts.
+      // The present normal remains, since the contact acts now.
       if (isOnCurve(c, ends[k], way, motion.contact_margin_m))
         c.distance_m = ends[k].distance_m - c.n_W.dot(motion.dt_s * motion.velocityAt(c.p_W));
     }

@@ -21,8 +21,8 @@ bool OwnPoint::isFlushOn(const Vec3& n_W) const {
 
 bool OwnPoint::isFirstAlong(const Vec3& n_W) const {
   const Vec3 n = inModel(n_W);
-  // Around a corner the part lies within the cone of its edges. A face may fall off across one of them, as
-  // on a slanted tetrahedron, and yet the corner is lowest.
+  // Around a corner the part lies within the cone of the corner's edges. The corner may be the lowest point
+  // although a face falls off across one of the edges, as on a slanted tetrahedron.
   const bool is_corner = edges.size() >= 3;
   for (const std::uint32_t i : edges) {
     const EdgeSegment& s = segment(i);
@@ -53,14 +53,14 @@ namespace {
 struct Foot {
   bool found = false;
   Vec3 from_q = Vec3::Zero();  ///< p - q
-  Vec3 normal = Vec3::Zero();  ///< outward at q; at an edge the mean of the normals of its faces
+  Vec3 normal = Vec3::Zero();  ///< outward at q; at an edge the mean of the adjacent faces' normals
   Vec3 smooth = Vec3::Zero();  ///< normal of the curved surface that the mesh approximates
   bool is_edge = false;
-  bool is_sheet = false;             ///< its edges may be wound either way, so that features cover them
+  bool is_sheet = false;             ///< a sheet's edges may be wound either way; FeatureSet covers them
   const Surface* surface = nullptr;  ///< null: a primitive
-  Mat3 R_WP = Mat3::Identity();      ///< of the surface's part
+  Mat3 R_WP = Mat3::Identity();      ///< orientation of the surface's part
   std::uint32_t triangle = 0;
-  bool is_curved = false;  ///< the triangle stands for a curved surface
+  bool is_curved = false;  ///< the triangle approximates a curved surface
 };
 
 Foot footOn(const Surface& surface, const Pose& X_WM, const OwnPoint& own, double max_m) {
@@ -95,15 +95,15 @@ Foot footOn(const btCollisionShape& primitive, const Pose& X_WS, const Vec3& p_W
   return {true, at.distance_m * n, n, n, at.is_edge};
 }
 
-// Where two smooth areas meet, the contact's normal is that of the curved surface that the facets
-// approximate. A facet's normal gives the same gap, but not how the gap changes in sliding: each step would
-// end slightly above or below the prediction, and closing these gaps slowed a frictionless nut on its thread
-// by 9 % (384 facets a turn).
+// Where two smooth areas meet, the contact takes the normal of the curved surface that the facets
+// approximate. A facet's normal gives the same gap but not the change of the gap in sliding: each step would
+// end slightly above or below the prediction. Closing these gaps slowed a frictionless nut on its thread by 9
+// % (384 facets a turn).
 //
 // Elsewhere a point on a face must keep its own tangent plane clear of the other part, so the contact takes
-// its own normal. The other's normal would be wrong near edges: the plane of a chamfer, met slightly below
-// the chamfer's rim, would stop a peg that slides past. A point on an edge has no tangent plane, so it takes
-// the normal of the other's face.
+// its own normal. The normal of the other part would be wrong near edges: the plane of a chamfer, met
+// slightly below the chamfer's rim, would stop a peg that slides past. A point on an edge has no tangent
+// plane, so it takes the normal of the other's face.
 Exact contactAt(const Foot& foot, const OwnPoint& own) {
   Exact exact;
   exact.found = exact.found_all = foot.found;
@@ -116,9 +116,9 @@ Exact contactAt(const Foot& foot, const OwnPoint& own) {
   exact.is_contact = own.edges.empty() || is_edge_on_edge
                          ? is_facing
                          : own.isFirstAlong(foot.normal) || (is_facing && !own.is_two_sided);
-  // Where the point's edge leads on towards the face, a later one of its points or its crossing with the
-  // face's border is nearer. A curved surface has no border between its facets, and may bend towards the
-  // edge.
+  // Where the point's edge continues towards the face, a later point of the edge, or its crossing with the
+  // face's border, is nearer. A curved surface has no border between its facets and may bend towards the
+  // edge, so it is excepted.
   if (own.is_edge && !foot.is_edge && !foot.is_sheet && !foot.is_curved && own.leadsOn(foot.normal))
     exact.is_contact = false;
   exact.is_curved = foot.is_curved;
@@ -147,7 +147,7 @@ Exact contactAt(const Foot& foot, const OwnPoint& own) {
 
 Exact Refiner::at(const OwnPoint& own, double max_m) const {
   if (is_primitive) return contactAt(footOn(theirs, other.X_WM, own.p_W), own);
-  // A cooked body is the union of its parts: the least of their signed distances.
+  // The signed distance of a merged body, which is the union of its parts, is the least of theirs.
   Exact nearest;
   bool found_all = true;
   const std::vector<Surface>& surfaces = other.shape->models().surfaces;

@@ -23,7 +23,7 @@ namespace {
 
 using Point = std::optional<Vec3>;
 
-// The farthest point in a direction on the circle of radius r about the axis at height h. None for a
+// The extreme point in a direction on the circle of radius r about the axis at height h. Nothing for a
 // direction along the axis.
 Point onCircle(int axis, double radius_m, double height_m, const Vec3& direction) {
   Vec3 radial = direction;
@@ -46,7 +46,8 @@ Point onCone(const btConeShape& shape, const SurfaceDistance& at, const Vec3& p,
   return onCircle(axis, std::max(radius_m, 0.0), height_m, inward);
 }
 
-// On the part of the hull nearest to p: one sphere, or the cone between two; three spheres make it flat.
+// The extreme point on the part of the hull nearest to p: one sphere, or the cone between two spheres. Where
+// three spheres are active the hull is flat.
 Point onMultiSphere(const btMultiSphereShape& shape, const SurfaceDistance& at, const Vec3& p,
                     const Vec3& inward) {
   const double scale = shape.getLocalScaling().x();
@@ -71,8 +72,8 @@ Point onMultiSphere(const btMultiSphereShape& shape, const SurfaceDistance& at, 
   return Vec3(centers[0] + share * (centers[1] - centers[0]) + radius_m * inward);
 }
 
-// A point of the solid, near p's foot, that reaches far into a face with this inward normal; in the shape's
-// frame.
+// A point of the solid, near the surface point nearest to p, that is extreme in the direction of a face's
+// inward normal; in the shape's frame.
 Point farthestPoint(const btCollisionShape& shape, const SurfaceDistance& at, const Vec3& p,
                     const Vec3& inward) {
   switch (shape.getShapeType()) {
@@ -132,11 +133,11 @@ double leastRadius_m(const btCollisionShape& shape) {
 
 /// The nearest point of the part's exact surface to x, in the models' frame.
 struct OwnFoot {
-  double distance_m = 1e30;  ///< of x, negative inside the part, or behind a sheet
+  double distance_m = 1e30;  ///< distance of x, negative inside the part or behind a sheet
   Vec3 q = Vec3::Zero(), outward = Vec3::Zero();
 };
 
-// A sheet is seen from the side that a point with this inward normal faces.
+// A sheet is taken as seen by a point with this inward normal.
 OwnFoot footOnOwn(const ShapeModels& models, const Vec3& x_M, const Vec3& inward_M, double max_m) {
   OwnFoot nearest;
   for (const Surface& surface : models.surfaces) {
@@ -169,7 +170,7 @@ bool refineOnRound(Candidate& c, const SideView& side, const SideView& other,
   const SurfaceDistance at = primitiveDistance(primitive, p);
   if (at.n.dot(inward) < kSinGrazing) return false;
   const Point x = farthestPoint(primitive, at, p, inward);
-  // In a socket of nearly its own radius a face touches at its point; the query of the surface is then saved.
+  // A face in a socket of nearly the same radius touches at its shell point; no surface query is needed.
   if (!x || at.distance_m - (p - *x).dot(inward) < kSameGap_m) return false;
   const Vec3 x_M = X_SM.inverse() * *x;
   const OwnFoot foot =

@@ -99,7 +99,8 @@ SurfaceDistance SurfaceView::atSheet(const Surface& surface, const Vec3& p_M, co
   if (!closest.found) return never;
   const SheetFoot foot = surface.sheet->seenFrom(p, inward, closest);
   const Vec3 normal = foot.normal;
-  // Where the point looks nearly along the sheet, its side depends on rounding; such points do not touch.
+  // If the point's normal is nearly parallel to the sheet, rounding decides its side; such points do not
+  // touch.
   if (inward.dot(normal) < kSinLean) return never;
   const SurfaceDistance d = make(closest, p, normal, surface);
   return d.distance_m < 0 && !hasEnteredBy(-d.distance_m, X_PM.inverse() * closest.q) ? never : d;

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// Distances of one body's points from the exact surfaces of another.
+// SPDX-License-Identifier: BSD-3-Clause Distances of one body's points from the exact surfaces of another
+// body.
 #pragma once
 
 #include <vector>
@@ -24,23 +24,24 @@ class SurfaceView {
   static constexpr double kNever_m = 1e30;
 
  private:
-  /// The last distance from a solid that was computed for a node of the shell: of p, at q.
+  /// Last distance from a solid that was computed for a node of the shell, between its centre p and the
+  /// surface point q.
   struct Known {
     Vec3 p = Vec3::Zero(), q = Vec3::Zero();
     double distance_m = 0;
     bool is_set = false;
   };
 
-  // How far the nearest surface can be from p, since q is a point of it; where p must lie outside, no farther
-  // than matters. Inside a solid every depth counts, so the sign is needed at any distance. A search
-  // without a limit would be long where much of the surface is about equally far. 0: p is outside and beyond
-  // max_m. With a winding number the sign may change off the surface, at holes.
+  // Upper bound of the distance of p, from the known surface point q; for a p that must lie outside also
+  // bounded by max_m. Without a bound, a search is slow where much of the surface is about equally far.
+  // Inside a solid every depth counts, so the sign is needed at any distance. Returns 0 if p is outside and
+  // beyond max_m. If the sign is found by winding number, it may change at holes, away from the surface.
   static double searchLimit_m(const Surface& surface, const Vec3& p, double max_m, const Known& known);
 
-  // max_m if p is farther.
+  // Signed distance of p; max_m if p is farther.
   static double solidDistance(const Surface& surface, const Vec3& p, double max_m, Known& known);
 
-  // Greatest depth behind a sheet at which a point counts: as far as its part's field can measure.
+  // Greatest depth behind a sheet at which a point counts: the range of the field of the point's part.
   [[nodiscard]] double depthBehindSheets_m() const;
 
   [[nodiscard]] double sheetBound(const Surface& surface, const Vec3& p, double max_m) const;
@@ -49,9 +50,9 @@ class SurfaceView {
   [[nodiscard]] SurfaceDistance atSheet(const Surface& surface, const Vec3& p_M, const Vec3& inward_M,
                                         double cutoff_m) const;
 
-  // A face that looks at a sheet from a wall's thickness above has not passed through it from below: the
-  // sheet is then nearer to the wall's other face. The part's own field tells, with an error of half a voxel
-  // at its edges.
+  // True if the sheet has entered the part by this depth through the point's own face. If the point belongs
+  // to the far face of a wall, the sheet is nearer to the wall's other face, as the part's own field tells
+  // (error at its edges: half a voxel).
   [[nodiscard]] bool hasEnteredBy(double depth_m, const Vec3& q_M) const;
 
   const SideView& side_;

@@ -27,14 +27,14 @@ namespace {
 
 using Moments = Eigen::Matrix<double, 10, 1>;
 
-// The polynomials of second degree.
+// Values of the polynomials of up to second degree.
 Moments momentsAt(const Vec3& r) {
   Moments m;
   m << 1, r, r.cwiseAbs2(), r.x() * r.y(), r.y() * r.z(), r.z() * r.x();
   return m;
 }
 
-// The same of the surface that a point represents, about its mean.
+// Integrals of these polynomials over the surface that a point represents.
 Moments momentsOf(const Candidate& c, const Vec3& center, double length_m) {
   const Mat3 spread = c.area_spread.cast<double>() / (length_m * length_m);
   Moments m = momentsAt((c.areaCenter_W() - center) / length_m);
@@ -60,7 +60,8 @@ std::size_t nearestOf(const std::vector<Candidate>& chosen, const Vec3& p_W, con
   return nearest;
 }
 
-// The points of both sides cover the same area; those of the greater face also what lies around it.
+// Side whose touching points have the smaller area. The points of both sides cover the contact area; those of
+// the larger face also cover its surroundings.
 std::uint8_t sideOfLess(const std::vector<Candidate>& all) {
   double area_m2[2] = {0, 0};
   for (const Candidate& c : all)
@@ -68,9 +69,9 @@ std::uint8_t sideOfLess(const std::vector<Candidate>& all) {
   return area_m2[0] > 0 && (area_m2[0] <= area_m2[1] || !(area_m2[1] > 0)) ? 0 : 1;
 }
 
-// Of curved faces that lie flush in each other no contact keeps a body from tipping over its rim: each goes
-// to the middle of its area, as far as points touch there. At the rim of a thread a contact would hold more
-// friction than the thread does.
+// Moves the contacts of curved faces that lie flush in each other to the middle of their areas, as far as
+// points touch there. Such faces need no contact at the rim against tipping, and a contact at the rim of a
+// thread would hold more friction than the thread does.
 void moveToMiddle(const std::vector<Candidate>& all, const std::vector<Candidate>& areas,
                   std::vector<Candidate>& chosen) {
   if (std::none_of(chosen.begin(), chosen.end(), [](const Candidate& c) { return c.is_flush; })) return;
@@ -89,9 +90,9 @@ void moveToMiddle(const std::vector<Candidate>& all, const std::vector<Candidate
   }
 }
 
-// By the least change, relative to the areas, after which they have these moments.
+// Corrects the areas to the wanted moments, by the least change relative to the areas.
 void correct(std::vector<Candidate>& chosen, const Vec3& center, double length_m, const Moments& wanted) {
-  constexpr double kLeast = 0.1;  // of an area, that is left of it; assumed
+  constexpr double kLeast = 0.1;  // least share of an area that remains; assumed
   Eigen::Matrix<double, 10, 10> gram = Eigen::Matrix<double, 10, 10>::Zero();
   Moments missing = wanted;
   for (const Candidate& c : chosen) {
@@ -99,7 +100,7 @@ void correct(std::vector<Candidate>& chosen, const Vec3& center, double length_m
     gram += c.area_m2 * m * m.transpose();
     missing -= c.area_m2 * m;
   }
-  // In a plane some of the polynomials are the same.
+  // In a plane some of the polynomials are linearly dependent.
   gram.diagonal().array() += kSettledShare * gram.trace();
   const Moments factors = gram.ldlt().solve(missing);
   if (!factors.allFinite()) return;
@@ -115,8 +116,8 @@ void keepFacingShares(const PairView& pair, std::vector<Candidate>& points) {
                              dynamic_cast<const NativeShapeAdapter*>(pair.shape[1]) != nullptr};
   for (Candidate& c : points) {
     if (c.isCrossing() || !side[c.side].shape) continue;
-    if (is_native[c.side]) c.area_m2 = 0;  // corners of a native shape stand for no part of its faces
-    // The squares of a direction's components along the normals of square faces have the sum 1.
+    if (is_native[c.side]) c.area_m2 = 0;  // corners of a native shape represent no area
+    // The squared components of a direction along the normals of perpendicular faces add up to 1.
     const double facing = c.n_W.dot(side[c.side].X_WM.R * side[c.side].shape->models().shell->inward[c.id]);
     c.area_m2 *= facing * facing;
   }

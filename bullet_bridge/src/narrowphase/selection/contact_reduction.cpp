@@ -16,9 +16,10 @@ namespace {
 
 constexpr std::uint64_t kEmpty = ~std::uint64_t{0};
 
-// Two measures are needed. The gap at the end of free motion finds the points that are about to touch. But
-// contact changes that motion: a light part on a stiff coupling, turned by its contacts against the
-// coupling's pull, sank 25 um at points that free motion would have lifted. So the gap now counts equally.
+// Two measures of urgency are needed. The gap at the end of free motion finds the points that are about to
+// touch. But contact changes that motion: a light part on a stiff coupling, turned by its contacts against
+// the coupling's pull, sank 25 um at points that free motion would have lifted. So the present gap counts
+// equally.
 enum class Measure { Now, EndOfStep };
 
 double urgency(const Candidate& c, Measure measure) {
@@ -34,7 +35,7 @@ bool isMoreUrgent(const Candidate& a, const Candidate& b, Measure measure) {
   return ua != ub ? ua < ub : a.key() < b.key();
 }
 
-/// What the reduction needs to know of a candidate, so that each pass reads half of its size.
+/// The data of a candidate that the reduction needs: half of its size, so that each pass reads less memory.
 struct Brief {
   std::int32_t at[3];   // cell of the finest grid
   std::uint32_t kind;   // direction, side, crossing or point
@@ -47,7 +48,7 @@ struct Brief {
     const double own = urgency[static_cast<int>(measure)], theirs = other.urgency[static_cast<int>(measure)];
     return own != theirs ? own < theirs : key < other.key;
   }
-  /// Each level has cells of twice the size.
+  /// Cells of each level are twice as large as those of the level before.
   [[nodiscard]] std::uint64_t cell(int level) const {
     const auto of = [&](int axis) {
       return static_cast<std::uint64_t>(static_cast<std::uint32_t>(at[axis] >> level) & 0xFFFF);
@@ -63,9 +64,9 @@ Brief briefOf(const Candidate& c, double cell_m, const Pose& X_GW, std::uint32_t
               c.key(),
               index,
               c.was_contact};
-  constexpr double kMost = 1e9;  // cells; beyond them positions are no longer told apart
-  // Evenly spaced points and flat faces would lie on the borders of cells, where rounding decides: by these
-  // shares of a cell they do not. Test: the bridge's tests with Bullet in single precision.
+  constexpr double kMost = 1e9;  // cells from the origin; positions beyond share one cell
+  // Evenly spaced points and flat faces would lie on the borders of cells, where rounding decides; these
+  // offsets, as shares of a cell, prevent that. Tested by the bridge's tests in single precision.
   constexpr double kOffset[3] = {0.05, 0.079, 0.104};
   const Vec3 p_G = X_GW * c.p_W;
   for (int k = 0; k < 3; ++k)
@@ -74,10 +75,10 @@ Brief briefOf(const Candidate& c, double cell_m, const Pose& X_GW, std::uint32_t
   return brief;
 }
 
-// Keeps the most urgent of each cell, by both measures, and last step's contacts. A small open-addressed
-// table from cell to its best candidate so far needs one pass; sorting 5000 candidates took five times as
-// long. The table is at most half full where there are fewer than 2048 candidates; one that finds
-// no place in 16 probes is kept. The area of the others goes to the most urgent one of their cell.
+// Keeps the most urgent candidates of each cell, by both measures, and last step's contacts. A small
+// open-addressing table from cell to best candidate needs one pass; sorting 5000 candidates took five times
+// as long. The table is at most half full for fewer than 2048 candidates; a candidate that finds no slot in
+// 16 probes is kept. The area of a dropped candidate goes to the most urgent one of its cell.
 void keepMostUrgent(std::vector<Brief>& briefs, int level, std::vector<Candidate>& candidates) {
   constexpr std::size_t kFewestSlots = 64, kMostSlots = 4096, kProbes = 16;
   const std::size_t slot_count = std::clamp(std::bit_ceil(2 * briefs.size()), kFewestSlots, kMostSlots);
@@ -117,12 +118,13 @@ void keepMostUrgent(std::vector<Brief>& briefs, int level, std::vector<Candidate
   briefs.resize(kept);
 }
 
-// Candidates as reduceBySpread() weighs them: in columns of floats, so that a pass over all is fast.
+// Positions, normals and urgencies of the candidates for reduceBySpread(), in columns of floats, so that a
+// pass over all candidates is fast.
 struct Spread {
-  Eigen::Array<float, Eigen::Dynamic, 6> place;  // by candidate: position in units of length, and normal
-  Eigen::ArrayXf nearest2;                       // squared distance to the nearest selected one; selected: -1
-  Eigen::ArrayXf urgency;                        // -1 to 1, in contact margins
-  Eigen::Index size = 0;                         // entries in use
+  Eigen::Array<float, Eigen::Dynamic, 6> place;  // per candidate: position in units of length_m, and normal
+  Eigen::ArrayXf nearest2;  // squared distance to the nearest selected candidate; -1 for a selected one
+  Eigen::ArrayXf urgency;   // -1 to 1, in contact margins
+  Eigen::Index size = 0;    // entries in use
 
   void assign(const std::vector<Candidate>& candidates, double length_m, double contact_margin_m,
               const Mat3& R_GW) {
@@ -132,7 +134,7 @@ struct Spread {
     if (nearest2.size() < count) nearest2.resize(count);
     nearest2.head(count).setConstant(std::numeric_limits<float>::infinity());
     size = count;
-    // Relative to the first: floats are too coarse for positions far from the world's origin.
+    // Positions are relative to the first candidate, since floats are too coarse far from the world's origin.
     const Vec3 origin = candidates.front().p_W;
     for (Eigen::Index i = 0; i < count; ++i) {
       const Candidate& c = candidates[static_cast<std::size_t>(i)];
@@ -145,7 +147,7 @@ struct Spread {
     }
   }
 
-  // Selects i, and updates the distances of the others.
+  // Selects candidate i and updates the distances of the others.
   void select(std::size_t i) {
     const auto at = static_cast<Eigen::Index>(i);
     nearest2[at] = -1;
@@ -156,14 +158,13 @@ struct Spread {
 
   [[nodiscard]] bool isSelected(std::size_t i) const { return nearest2[static_cast<Eigen::Index>(i)] < 0; }
 
-  // Extent is weighed against the gap: a gap of one contact margin costs as much as one body length of spread
-  // is worth.
+  // Weighs extent against gap: one contact margin of gap counts as much as one body length of spread.
   [[nodiscard]] std::size_t best() const {
     Eigen::Index best = size;
     float best_worth = -std::numeric_limits<float>::infinity();
     for (Eigen::Index i = 0; i < size; ++i) {
       if (nearest2[i] < 0) continue;
-      const float wanted = best_worth + urgency[i];  // skips the root where it cannot matter
+      const float wanted = best_worth + urgency[i];  // skips the square root where the result cannot change
       if (wanted > 0 && nearest2[i] < (1 - 1e-6f) * wanted * wanted) continue;
       const float worth = std::sqrt(nearest2[i]) - urgency[i];
       if (worth > best_worth) {
@@ -190,7 +191,7 @@ double reduceByCell(std::vector<Candidate>& candidates, std::size_t limit, doubl
     keepMostUrgent(briefs, level, candidates);
     used_m = size_m;
   }
-  // In ascending order: each moves to the front of its own place, or stays.
+  // Briefs are in ascending order, so that each candidate moves to the front or stays.
   for (std::size_t i = 0; i < briefs.size(); ++i)
     if (briefs[i].index != i) candidates[i] = candidates[briefs[i].index];
   candidates.resize(briefs.size());
@@ -209,11 +210,11 @@ void reduceBySpread(std::vector<Candidate>& candidates, std::size_t limit, doubl
       selected.push_back(candidates[i]);
       spread.select(i);
     };
-    // Those that carried load in the last step, since dropping one causes a jolt; at most half of the limit,
-    // so that new ones are selected too.
+    // First the contacts that carried load in the last step, since dropping one causes a jolt; at most half
+    // of the limit, so that new contacts are selected too.
     for (std::size_t i = 0; i < count && selected.size() < limit / 2; ++i)
       if (candidates[i].impulse_Ns > 0) select(i);
-    // The most urgent.
+    // Then the most urgent candidate by each measure.
     for (const Measure measure : {Measure::Now, Measure::EndOfStep}) {
       std::size_t first = 0;
       for (std::size_t i = 1; i < count; ++i)

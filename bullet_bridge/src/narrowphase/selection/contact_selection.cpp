@@ -12,23 +12,23 @@ namespace vps::bullet {
 
 namespace {
 
-// Rounds up to a geometric series of lengths: a larger cutoff than the last one's costs a QueryMemory
-// readings.
+// Rounds up to a geometric series of lengths, since a cutoff larger than the last one makes a QueryMemory
+// read points again.
 double roundedUp(double cutoff_m, double most_m) {
   constexpr double kStep = 1.5;
   const double steps = std::ceil(std::log(cutoff_m / kSamePlace_m) / std::log(kStep));
   return std::min(kSamePlace_m * std::pow(kStep, steps), most_m);
 }
 
-// Greatest overlap of edges that counts as a crossing, as a share of the query range. assumed: at greater
-// depth shell points lie inside and act instead.
+// Greatest overlap of edges that counts as a crossing. At greater depth shell points lie inside and act
+// instead. Assumed.
 double edgeDepth_m(const PairView& pair, double cutoff_m) {
   return pair.hasMap(0) || pair.hasMap(1) ? std::max(cutoff_m, kEdgeDepthShare * queryRange_m(pair))
                                           : cutoff_m;
 }
 
-// Edges do not come to overlap by more than the cutoff in a step: only where contacts were found to overlap,
-// or in a pair's first step, can they be deep.
+// Edges do not come to overlap by more than the cutoff within a step. They can be deep only where contacts
+// were found to overlap, or in a pair's first step.
 double edgeDepth_m(const PairView& pair, const Selection& last, double cutoff_m) {
   return mayOverlap(last, kEdgeDepthShare * cutoff_m) ? edgeDepth_m(pair, cutoff_m) : cutoff_m;
 }
@@ -50,8 +50,8 @@ bool haveCrossings(const PairView& pair, const Settings& settings) {
   return isExact(settings) && pair.shape[0] && pair.shape[1];
 }
 
-// Points are looked for as far as they may move in any direction; edges, whose motion is known, only where
-// they come near on it.
+// Points are searched within the distance that they may move in any direction; edges, whose motion is known,
+// only where they come near each other on that motion.
 CrossingRange crossingRange(const PairView& pair, double cutoff_m, const PairState* state,
                             const RelativeMotion* motion) {
   if (!state) return {cutoff_m, edgeDepth_m(pair, cutoff_m), pair.X_01_models()};
@@ -59,9 +59,9 @@ CrossingRange crossingRange(const PairView& pair, double cutoff_m, const PairSta
   return {near_m, edgeDepth_m(pair, state->selection, near_m), poseAfterStep(pair, *motion)};
 }
 
-// How far a point may be from what it touches in the step. The pull of couplings is left out, as in
-// RelativeMotion::canTouch(): a hand that presses a part against its seat never pulls with the same force in
-// two steps.
+// Greatest distance of a point from a surface that it can touch within the step. The pull of couplings is
+// left out, as in RelativeMotion::canTouch(): a hand that presses a part against its seat never pulls with
+// the same force in two steps.
 double reach_m(const RelativeMotion& motion) {
   return motion.contact_margin_m + motion.own_speed_m_s * motion.dt_s;
 }
@@ -142,7 +142,7 @@ void dropUnreachable(const RelativeMotion& motion, std::vector<Candidate>& candi
 
 namespace {
 
-// Of a body that turns fast in place, drops the points that stay away from the surface on their way.
+// For a body that turns fast in place, drops the points that stay away from the surface on their paths.
 template <typename Error>
 void dropStayingAway(const PairView& pair, const RelativeMotion& motion, const Error& error_m,
                      std::vector<Candidate>& candidates) {
@@ -154,7 +154,7 @@ void dropStayingAway(const PairView& pair, const RelativeMotion& motion, const E
   for (int k = 0; k < kPlaces; ++k) way[k] = displacementIn(pair, motion, motion.dt_s * (k + 1) / kPlaces);
   std::erase_if(candidates, [&](const Candidate& c) {
     double nearest_m = c.distance_m;
-    // A point of body 1 is met by a plane that turns with body 0.
+    // The contact plane of a point of body 1 turns with body 0.
     for (const Pose& X : way)
       nearest_m = std::min(nearest_m,
                            c.distance_m + (c.side == 1 ? Vec3(X.R * c.n_W) : c.n_W).dot(X * c.p_W - c.p_W));
@@ -164,8 +164,8 @@ void dropStayingAway(const PairView& pair, const RelativeMotion& motion, const E
   });
 }
 
-// Drops candidates that are out of reach even if the field reads too much. Those that are in reach only then
-// are moved to `doubtful`.
+// Drops candidates that are out of reach. Candidates that are in reach only if the field reads too much are
+// moved to `doubtful`.
 void dropUnreachableByField(const PairView& pair, const RelativeMotion& motion, const Settings& settings,
                             std::vector<Candidate>& candidates, std::vector<Candidate>& doubtful) {
   doubtful.clear();
@@ -197,7 +197,7 @@ void selectContacts(const PairView& pair, const RelativeMotion& motion, const Se
   keepFacingShares(pair, candidates);
   keepFacingShares(pair, doubtful);
   const double sampling_m = reduceByCell(candidates, refinedLimit(settings), radius_m / 16, radius_m, X_GW);
-  // The others apart, so that they take no room from those.
+  // Doubtful candidates are reduced separately, so that they do not displace the certain ones.
   reduceByCell(doubtful, 2 * limit, radius_m / 16, radius_m, X_GW);
   candidates.insert(candidates.end(), doubtful.begin(), doubtful.end());
   refineOnWay(pair, motion, settings, candidates);

@@ -1,6 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// From all points of a pair that are near the other side to those that the solver is given: a few rigid
-// contacts (rigid_selection.cpp), or every point that presses (penalty_selection.cpp).
+// SPDX-License-Identifier: BSD-3-Clause Selects the contacts of the solver from all near points of a pair: a
+// few rigid contacts (rigid_selection.cpp), or every point that presses (penalty_selection.cpp).
 #pragma once
 
 #include <vector>
@@ -11,56 +10,57 @@
 
 namespace vps::bullet {
 
-// Both contact methods use these.
+// Functions of both contact methods.
 
-/// Adds the points nearer to the other side than the cutoff, both ways if the settings say so. With a pair's
-/// state, which makes repeated queries cheaper, possibly more points than that, and of many near points only
-/// the most urgent of each place.
-/// @param motion  with a state: that of the bodies from where they are
+/// Appends the points that are nearer to the other side than the cutoff, of both sides if the settings say
+/// so. A pair's state makes repeated queries cheaper; points beyond the cutoff may then be included, and
+/// where many points are near only the most urgent of each place is.
+/// @param motion  with a state: the bodies' motion from their present poses
 void findPointCandidates(const PairView& pair, double cutoff_m, Context& context, std::vector<Candidate>& out,
                          PairState* state = nullptr, const RelativeMotion* motion = nullptr);
 
-/// True in a pair's first step, and where contacts of the last selection overlap by more than depth_m.
+/// True in a pair's first step, and if a contact of the last selection overlaps by more than depth_m.
 bool mayOverlap(const Selection& last, double depth_m);
 
-/// Adds points, as findPointCandidates(), and crossings of edges.
+/// Appends points, as findPointCandidates(), and crossings of edges.
 void findCandidates(const PairView& pair, double cutoff_m, Context& context, std::vector<Candidate>& out,
                     PairState* state = nullptr, const RelativeMotion* motion = nullptr);
 
-/// Adds the candidates of the step. A body that moves less than the query range is queried once, where it is.
-/// So is one that is fast only because it turns: what it needs beside the points that come to the surface on
-/// their way from there, the check of the solved step finds. Another fast one is queried at several places
-/// along its path, so that it cannot tunnel; the plane that it meets first then holds for the whole step.
+/// Appends the candidates of the step. A body that moves less than the query range is queried once, at its
+/// present pose. So is a body that is fast only because it turns in place (turnsInPlace()); the check of the
+/// solved step finds the contacts that this query lacks. Any other fast body is queried at several places
+/// along its path, so that it cannot tunnel; the plane that a point meets first then holds for the whole
+/// step.
 void findStepCandidates(const PairView& pair, const RelativeMotion& motion, PairState& state,
                         std::vector<Candidate>& out);
 
 /// True if a body is so slow that it cannot leave the query range within the step.
 bool isQueriedOnce(const PairView& pair, const RelativeMotion& motion);
 
-/// True if it could, but only by its turn, its centre stays within the query range, and the solved step is
-/// checked.
+/// True if a body could leave the query range, but only by its rotation: its centre stays within the range,
+/// and the solved step is checked.
 bool turnsInPlace(const PairView& pair, const RelativeMotion& motion);
 
 /// Refines the candidates by the exact surfaces, if the settings say so.
 void refineAll(const PairView& pair, const RelativeMotion& motion, const Settings& settings,
                std::vector<Candidate>& candidates);
 
-/// The same for those of findStepCandidates(), each where it was found: from where a fast body is now,
-/// another surface may be the nearest, or none within reach.
+/// Refines the candidates of findStepCandidates(), each at the place of the path where it was found. At the
+/// present pose of a fast body another surface may be the nearest one, or none may be within reach.
 void refineOnWay(const PairView& pair, const RelativeMotion& motion, const Settings& settings,
                  std::vector<Candidate>& candidates);
 
-/// Replaces the distances of refined contacts that slide along a face by those that give the right gap at the
-/// end of the step in free motion.
+/// Corrects the distances of refined contacts that slide along a face, so that their gaps at the end of the
+/// step in free motion are exact.
 void measureAtEnd(const PairView& pair, const RelativeMotion& motion, const Settings& settings,
                   std::vector<Candidate>& candidates);
 
 void dropUnreachable(const RelativeMotion& motion, std::vector<Candidate>& candidates);
 
 /// Reduces thousands of near points to the few contacts that support the part.
-/// @param writer  knows last step's contacts; may be null
-/// @param selection  gets what a check of the solved step needs, of the candidates left out as well; may be
-/// null
+/// @param writer  has last step's contacts; may be null
+/// @param selection  receives what a check of the solved step needs, including the candidates that are left
+/// out; may be null
 void selectContacts(const PairView& pair, const RelativeMotion& motion, const Settings& settings,
                     ManifoldWriter* writer, std::vector<Candidate>& candidates,
                     Selection* selection = nullptr);
@@ -71,40 +71,43 @@ void storeSelection(const std::vector<Candidate>& contacts, const PairView& pair
 /// True if the stored selection is still valid for this step.
 bool hasNotMoved(const Selection& selection, const PairView& pair, const RelativeMotion& motion);
 
-/// How much farther than at the time of the selection any point of the smaller body may go in the step [m].
+/// Upper bound of how much the step's motion of any point of the smaller body differs from its motion at the
+/// time of the selection [m].
 double motionChange_m(const Selection& selection, const PairView& pair, const RelativeMotion& motion);
 
-/// Carries a selection's planes to where the bodies are now. Within kSamePlace_m that is as good as a query.
+/// Motion that carries a selection's planes to the present poses. Within kSamePlace_m this is as good as a
+/// query.
 CandidateMotion motionSince(const Selection& selection, const PairView& pair);
 
 /// True if bodies meet within the step at a contact with restitution. Bullet's own solver then lets them
-/// bounce at once: early by less than a step's travel, with the right speed. bullet::Solver solves for the
-/// gap, and has restitution.h.
-/// @param gap_m, predicted_m  now, and at the end of the step in free motion
+/// bounce at once, with the right speed but early by less than a step's travel. bullet::Solver solves for the
+/// gap and applies restitution.h.
+/// @param gap_m, predicted_m  the gap now, and at the end of the step in free motion
 bool meetsWithBounce(double restitution, double gap_m, double predicted_m, double dt_s);
 
-/// Leaves the points their shares of the faces that the other body faces: a point on an edge belongs in part
-/// to each of its faces, and one on a wall beside a face that touches to none that touches.
+/// Reduces each point's area to the share on faces that face the other body. A point on an edge belongs in
+/// part to each adjacent face; a point on a wall beside a touching face has no share.
 void keepFacingShares(const PairView& pair, std::vector<Candidate>& points);
 
-/// Gives the contacts that were chosen the area of all points that touch: each point's to the contact nearest
-/// to it, then so corrected that the contacts have the same area, centre and second moments as the points.
-/// Of curved faces that lie flush in each other, a contact may be exchanged for a point nearer to the middle
-/// of its part. Polynomials of second degree are then integrated exactly, and the mean distance of a face
-/// from an axis, on which the moment of friction depends, to a few per cent.
-/// @param all       points with their areas
-/// @param chosen    some of them; in ascending key order afterwards
+/// Distributes the area of all touching points over the chosen contacts. Each point's area goes to the
+/// nearest contact; the areas are then corrected so that the contacts have the same total area, centre and
+/// second moments as the points. On curved faces that lie flush in each other, a contact may be exchanged for
+/// a point nearer to the middle of its area. Polynomials of second degree are then integrated exactly, and
+/// the mean distance of a face from an axis, on which the moment of friction depends, to a few per cent.
+/// @param all  all candidates, with their areas
+/// @param chosen  some of `all`; sorted by key on return
 /// @param length_m  size of the smaller body
 /// Cost: all times chosen, some 2 ns each, and 5 us.
 void shareAreas(const std::vector<Candidate>& all, double length_m, std::vector<Candidate>& chosen);
 
-/// The nearest points of two bodies that are within `wanted_m`, measured by the exact surfaces: the nearest
-/// place around the nearest shell point of either side, and the points that are farther by no more than a
-/// tenth of the spacing. Only the spheres and triangles that can hold them are visited, so the cost hardly
-/// depends on `wanted_m`.
+/// Nearest points of two bodies within `wanted_m`, beyond the range of the fields, measured by the exact
+/// surfaces: the nearest place around the nearest shell point of either side, and the points that are farther
+/// by no more than a tenth of the spacing. Only the spheres and triangles that can hold them are visited, so
+/// the cost hardly depends on `wanted_m`.
 std::vector<Candidate> nearestFarPoints(const PairView& pair, double wanted_m, Context& context);
 
-// The two contact methods: set state.contacts for the coming step; with penalty, state.penalty as well.
+// The two contact methods. Each sets state.contacts for the coming step; selectPenalty() also sets
+// state.penalty.
 
 void selectRigid(const PairView& pair, PairState& state);
 void selectPenalty(const PairView& pair, PairState& state);

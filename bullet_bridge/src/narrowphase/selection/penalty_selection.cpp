@@ -1,5 +1,4 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// Penalty contact: every point that can touch presses.
+// SPDX-License-Identifier: BSD-3-Clause Penalty contact: selects every point that can touch.
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
 
 #include <algorithm>
@@ -15,9 +14,9 @@ namespace vps::bullet {
 
 namespace {
 
-// A point on an edge has no normal of its own, and the field has its greatest errors near the other side's
-// edges: 14 um at the root of an M10 thread with voxels of 0.2 mm, with normals that follow the grid. A nut
-// supported by such points lost 21 % of its acceleration.
+// Refines the points on edges. Such a point has no normal of its own, and the field has its greatest errors
+// near the other side's edges: 14 um at the root of an M10 thread with voxels of 0.2 mm, with normals that
+// follow the grid. A nut supported by unrefined points lost 21 % of its acceleration.
 void refinePenaltyPoints(const PairView& pair, const RelativeMotion& motion, const Settings& settings,
                          std::vector<Candidate>& candidates) {
   // Candidates of a fast body were found elsewhere along its path.
@@ -32,8 +31,8 @@ void refinePenaltyPoints(const PairView& pair, const RelativeMotion& motion, con
   dropUnreachable(motion, candidates);
 }
 
-// Selects all points that can touch, and the few of them that are written to the manifolds, for users and for
-// solvers without penalty contact.
+// Selects all points that can touch, and a few of them for the manifolds, which users and solvers without
+// penalty contact read.
 void selectPenaltyPoints(const PairView& pair, PairState& state) {
   Context& context = *state.context;
   const RelativeMotion& motion = state.motion;
@@ -51,8 +50,8 @@ void selectPenaltyPoints(const PairView& pair, PairState& state) {
   storeSelection(candidates, pair, motion, selection);
 }
 
-// As reuseSelection() for rigid contact, but for thousands of points: the motion must be unchanged too, so
-// that the points that were out of reach still are.
+// As reuseSelection() for rigid contact. Here the motion must be unchanged too, so that points that were out
+// of reach still are.
 bool reusePenaltyPoints(const PairView& pair, PairState& state, CandidateMotion& moved) {
   const Selection& selection = state.selection;
   const RelativeMotion& motion = state.motion;
@@ -64,10 +63,11 @@ bool reusePenaltyPoints(const PairView& pair, PairState& state, CandidateMotion&
   return true;
 }
 
-/// Updates a pair's points from candidates (ascending by key), carried from where they were found to where
-/// the bodies are now; points that stay keep bend, force and tolerated overlap.
-/// @param usual_N_per_m3  stiffness per area of surfaces that have none of their own
-/// @param sides  how many sides' points are queried: they share the stiffness, since their areas overlap
+/// Updates a pair's points from candidates (ascending by key), which `moved` carries from the poses of their
+/// query to the present ones. Points that remain keep bend, force and tolerated overlap.
+/// @param usual_N_per_m3  stiffness per area of surfaces without a value of their own
+/// @param sides  number of sides whose points are queried. They share the stiffness, since their areas
+/// overlap
 void updatePenaltyPoints(PenaltyPair& pair, std::span<const Candidate> candidates,
                          const PairMaterial& material, double usual_N_per_m3, int sides,
                          const RelativeMotion& motion, const CandidateMotion& moved) {
@@ -88,7 +88,7 @@ void updatePenaltyPoints(PenaltyPair& pair, std::span<const Candidate> candidate
     point.n_W = c.n_W;
     point.k_N_per_m = material.stiffness_N_per_m3(c, usual_N_per_m3) / sides * c.area_m2;
     point.mu = material.friction(c);
-    double before_m = 0;  // a new point has had no depth
+    double before_m = 0;  // zero for a new point
     while (before != old.end() && before->key < point.key) ++before;
     if (before != old.end() && before->key == point.key) {
       const Vec3 bend_W = turned * before->bend_W;
@@ -96,12 +96,12 @@ void updatePenaltyPoints(PenaltyPair& pair, std::span<const Candidate> candidate
       point.f_n_N = before->f_n_N;
       point.is_leader = before->is_leader;
       before_m = std::min(0.0, before->gap_m);
-      // The share that is no longer tolerated is pressed out within the step: at most separation_m of it.
+      // In each step at most separation_m of the tolerated overlap is pressed out.
       if (before->tolerated_m > 0)
         point.tolerated_m = std::max(before->tolerated_m - separation_m, -c.distance_m - separation_m);
     }
-    // The point is deeper than the approach in the step explains: the bodies were placed into each other, or
-    // another surface became the nearest.
+    // The point is deeper than its approach in the step explains, so the bodies were placed into each other,
+    // or another surface became the nearest.
     const double deeper_m = before_m - motion.contact_margin_m - c.distance_m;
     if (deeper_m > point.tolerated_m) {
       const double approach_m = std::max(0.0, -c.n_W.dot(motion.velocityAt(c.p_W)) * motion.dt_s) +

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// Constraint contact: few points, each a constraint of the solver.
+// SPDX-License-Identifier: BSD-3-Clause Constraint contact: selects a few points, each of which becomes a
+// constraint of the solver.
 #include <algorithm>
 #include <utility>
 
@@ -12,14 +12,14 @@ namespace vps::bullet {
 
 namespace {
 
-// A part that has not moved since its contacts were selected keeps them, and their planes move with it: a
-// part at rest needs no more work. If planes were searched again each step, they would turn with rounding
-// where an edge lies on an edge and let the part fall for a step, so that a heap would never sleep. False:
-// select again.
+// Reuses the contacts of a part that has not moved since they were selected; their planes move with the part.
+// If planes were searched again in each step, they would turn with rounding where an edge lies on an edge and
+// let the part fall for a step, so that a heap would never sleep. Returns false if the contacts must be
+// selected again.
 bool reuseSelection(const PairView& pair, PairState& state) {
   if (std::exchange(state.is_incomplete, false)) return false;
   if (!hasNotMoved(state.selection, pair, state.motion)) return false;
-  // Points that were out of reach were farther away than the contact margin.
+  // Points that were out of reach had a greater gap than the contact margin.
   if (motionChange_m(state.selection, pair, state.motion) > state.motion.contact_margin_m) return false;
   const CandidateMotion moved = motionSince(state.selection, pair);
   state.contacts = state.selection.contacts;
@@ -28,7 +28,7 @@ bool reuseSelection(const PairView& pair, PairState& state) {
   return true;
 }
 
-// The size of the areas from which the queries of both sides reported only the most urgent points.
+// Greatest size of an area from which a query reported only the most urgent point.
 double mergedTo_m(const PairState& state) {
   double most_m = 0;
   for (const auto& query : state.query_state)
@@ -42,7 +42,8 @@ void markBounces(std::vector<Candidate>& candidates, const RelativeMotion& motio
     c.bounces = meetsWithBounce(material.restitution(c), c.distance_m, c.predicted_m, motion.dt_s);
 }
 
-// Contacts that arise because other bodies push the pair are found in the solved step.
+// True for bodies that spin freely about an axis with room around it. The check of the solved step finds
+// contacts that arise because other bodies push the pair.
 bool needsNoContacts(const PairView& pair, PairState& state) {
   if (!state.motion.is_checked) return false;
   PairView end = pair;
@@ -66,7 +67,7 @@ void selectRigid(const PairView& pair, PairState& state) {
     state.selection.refined.clear();
     state.selection.leaves_out = false;
     state.selection.is_of_path = true;
-    state.is_incomplete = true;  // not to be used again where there is no room
+    state.is_incomplete = true;  // this empty selection must not be reused
     storeSelection(state.contacts, pair, state.motion, state.selection);
     return;
   }

@@ -30,7 +30,7 @@ void ImpactRow::apply(double impulse_Ns, std::span<Vec6> v) const {
     if (body[i] >= 0) v[static_cast<std::size_t>(body[i])] += impulse_Ns * MinvJ[i];
 }
 
-// J M^-1 J' of two rows.
+// J M^-1 J' of rows i and j.
 double ImpactProjection::product(std::size_t i, std::size_t j) const {
   const ImpactRow &a = rows_[i], &b = rows_[j];
   double sum = 0;
@@ -40,7 +40,8 @@ double ImpactProjection::product(std::size_t i, std::size_t j) const {
   return sum;
 }
 
-// Measured by the velocity that it takes from a body of one kilogram, so that turns and translations compare.
+// Finds the most violated row; -1 if there is none. Violations are scaled to a body of one kilogram, so that
+// rotations and translations compare.
 int ImpactProjection::mostViolated(std::span<const std::uint8_t> chosen, double tolerance_m_s,
                                    const std::vector<Vec6>& v) const {
   int most = -1;
@@ -81,7 +82,7 @@ void ImpactProjection::append(const Eigen::VectorXd& y, double rest) {
 void ImpactProjection::leave(std::size_t k) {
   is_active_[active_[k].row] = 0;
   active_.erase(active_.begin() + static_cast<std::ptrdiff_t>(k));
-  // The rows before it keep their factor; those after it are appended again.
+  // Rows before k keep their factor; rows after k are appended again.
   const std::vector<Active> after(active_.begin() + static_cast<std::ptrdiff_t>(k), active_.end());
   active_.resize(k);
   for (const Active& a : after) {
@@ -99,7 +100,7 @@ void ImpactProjection::leave(std::size_t k) {
   }
 }
 
-// False: the row depends on the active ones, of which none can leave.
+// Returns false if the row depends linearly on the active rows, none of which can leave.
 bool ImpactProjection::join(std::size_t row, std::vector<Vec6>& v) {
   const double velocity_m_s = rows_[row].velocity(v);
   Active joining{row, velocity_m_s < 0 ? 1.0 : -1.0, 0};
@@ -144,7 +145,8 @@ bool ImpactProjection::join(std::size_t row, std::vector<Vec6>& v) {
   }
 }
 
-// True: active_ is the solution, and v are its velocities. Otherwise v stays.
+// Returns true if the known active set is the solution; v then holds its velocities. Otherwise v is
+// unchanged.
 bool ImpactProjection::solveAsBefore(const Known& known, double tolerance_m_s, std::vector<Vec6>& v) {
   const auto n = static_cast<Eigen::Index>(known.active.size());
   Eigen::VectorXd p(n);
@@ -162,7 +164,7 @@ bool ImpactProjection::solveAsBefore(const Known& known, double tolerance_m_s, s
     active_[k].p_Ns = p[static_cast<Eigen::Index>(k)];
     rows_[active_[k].row].apply(active_[k].sign * active_[k].p_Ns, v);
   }
-  // Active rows too: nearly dependent ones may be left with a velocity.
+  // Active rows are tested too, since nearly dependent rows may keep a velocity.
   if (std::all_of(active_.begin(), active_.end(),
                   [&](const Active& a) { return std::abs(velocityOf(a)) <= tolerance_m_s; }) &&
       mostViolated(known.chosen, tolerance_m_s, v) < 0)
@@ -196,7 +198,7 @@ void ImpactProjection::solve(std::span<const std::uint8_t> chosen, double tolera
     for (const Active& a : active_) p_Ns[a.row] = a.sign * a.p_Ns;
     return;
   }
-  // Far more than are needed; rounding may let rows join and leave again.
+  // Far more steps than needed; rounding may let rows join and leave repeatedly.
   const std::size_t most = 20 + 4 * rows_.size();
   for (std::size_t step = 0; step < most && work_ < most_work_; ++step) {
     work_ += rows_.size();

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// Rows of an impact, and the projection of velocities onto them.
+// SPDX-License-Identifier: BSD-3-Clause Rows of an impact, and the projection of velocities onto the states
+// that violate no row.
 #pragma once
 
 #include <Eigen/Dense>
@@ -12,15 +12,15 @@
 
 namespace vps::bullet {
 
-/// A contact's normal, or a degree of freedom that a joint takes, in an impact.
+/// Normal direction of a contact, or a degree of freedom that a joint removes, in an impact.
 struct ImpactRow {
-  int body[2] = {-1, -1};  ///< -1: not moved by contact
+  int body[2] = {-1, -1};  ///< index of the body; -1 for a body that contact does not move
   Vec6 J[2] = {Vec6::Zero(), Vec6::Zero()};
   Vec6 MinvJ[2] = {Vec6::Zero(), Vec6::Zero()};
-  double fixed_velocity = 0;  ///< of bodies that contact does not move, along the row
+  double fixed_velocity = 0;  ///< velocity along the row of bodies that contact does not move
   double W = 0;               ///< J M^-1 J'
   double lower_Ns = 0, upper_Ns = std::numeric_limits<double>::infinity();  ///< each 0 or infinite
-  double restitution = 0;  ///< 0 to 1; only of rows that push
+  double restitution = 0;  ///< 0 to 1; only for rows that push
 
   /// Sets MinvJ and W.
   void prepare(std::span<const Mat6> inverse_mass);
@@ -32,35 +32,35 @@ struct ImpactRow {
 /// Finds the velocities nearest to v, in the norm of the masses, that violate no row: J v >= 0 for one that
 /// pushes, J v <= 0 for one that pulls, J v = 0 for one with two sides (J v with the fixed velocity).
 ///
-/// The dual active set method: one violated row after the other joins the active set, and rows that would
-/// have to pull leave it. It ends after a finite number of rows with the exact solution, also for the dozens
-/// of contacts of flush faces, of which three say all: there sweeps (Gauss-Seidel) need thousands of
-/// iterations, and a reflection doubles the rotation that they leave. Source: Goldfarb and Idnani 1983.
+/// Uses the dual active set method: violated rows join the active set one by one, and rows that would have to
+/// pull leave it. It ends after a finite number of rows with the exact solution. On flush faces with dozens
+/// of redundant contacts Gauss-Seidel sweeps would need thousands of iterations, and a reflection doubles the
+/// rotation that they leave. Source: Goldfarb and Idnani 1983.
 ///
-/// A light body between heavy ones bounces thousands of times, from one to the other. So the last few active
-/// sets are tried first, each for the chosen rows that it was found for: where all impulses push and no other
-/// row is violated, it is the solution.
+/// A light body between heavy ones bounces between them thousands of times. So the last few active sets are
+/// tried first, each for the same chosen rows: if all impulses push and no other row is violated, the set is
+/// the solution.
 class ImpactProjection {
  public:
   explicit ImpactProjection(std::span<const ImpactRow> rows) : rows_(rows) {}
 
-  /// @param chosen        for each row: is it looked at
-  /// @param tolerance_m_s violations up to this are none
-  /// @param v             the velocities; they become those of the impulses
-  /// @param p_Ns          for each row its impulse, within its limits; 0 if it is not chosen
-  /// Cost: for each row that joins, a product for each row and k^2 for k active ones.
+  /// @param chosen  for each row, whether it takes part
+  /// @param tolerance_m_s  smaller violations are ignored
+  /// @param v  velocities before; on return, after the impulses
+  /// @param p_Ns  impulse of each row, within its limits; 0 if not chosen
+  /// Cost per row that joins: one product for each row, and k^2 operations for k active rows.
   void solve(std::span<const std::uint8_t> chosen, double tolerance_m_s, std::vector<Vec6>& v,
              std::vector<double>& p_Ns);
-  /// Steps of all solutions so far, each weighted by its cost in products.
+  /// Cost of all solutions so far, in products.
   [[nodiscard]] std::size_t work() const { return work_; }
-  /// Solutions end early, with violations, where all work so far reaches this.
+  /// Sets the work() at which solutions end early, with violations left.
   void limitWork(std::size_t most) { most_work_ = most; }
 
  private:
   struct Active {
     std::size_t row;
-    double sign;  // the row counts as sign * J
-    double p_Ns;  // along that
+    double sign;  // the row acts as sign * J
+    double p_Ns;  // impulse along sign * J
   };
   /// The active rows of an earlier solution.
   struct Known {
@@ -83,7 +83,7 @@ class ImpactProjection {
   std::vector<std::uint8_t> is_active_, is_skipped_;
   std::vector<Known> known_;
   std::size_t oldest_ = 0;  // of known_
-  Eigen::MatrixXd factor_;  // Cholesky's of the active rows' products, in its lower triangle
+  Eigen::MatrixXd factor_;  // Cholesky factor of the active rows' products, in the lower triangle
   std::size_t work_ = 0, most_work_ = std::numeric_limits<std::size_t>::max();
 };
 

@@ -18,7 +18,8 @@ class Impact {
       if (isContact(row)) fastest_m_s_ = std::max(fastest_m_s_, -row.velocity(before));
   }
 
-  /// v(t) of the header. With others that are still to come, it gets a share of the work that is left.
+  /// Computes v(t) of the header. The remaining work budget is shared with the `others` values of t that
+  /// follow.
   [[nodiscard]] ImpactState at(double t, const std::vector<Vec6>& before, std::size_t others) {
     if (projection_.work() >= kMostImpactWork) return inelastic(before);
     ImpactState state{before, std::vector<double>(rows_.size(), 0)};
@@ -36,8 +37,8 @@ class Impact {
   }
 
  private:
-  // The limit of bodies without mass between others, to which the impacts go one after the other: all
-  // contacts are reflected at once, and what lies between two bodies passes their impact on as a spacer.
+  // The limit of massless bodies between others, which a sequence of impacts approaches: all contacts are
+  // reflected at once, and a massless body transmits the impact of its neighbours like a spacer.
   ImpactState together(double t, const std::vector<Vec6>& before) {
     projection_.limitWork(std::numeric_limits<std::size_t>::max());
     ImpactState state{before, std::vector<double>(rows_.size(), 0)};
@@ -49,7 +50,7 @@ class Impact {
     }
     return state;
   }
-  // Computed once, after which it costs nothing.
+  // The inelastic solution, computed once.
   const ImpactState& inelastic(const std::vector<Vec6>& before) {
     if (inelastic_.v.empty()) {
       inelastic_ = {before, std::vector<double>(rows_.size(), 0)};
@@ -57,7 +58,7 @@ class Impact {
     }
     return inelastic_;
   }
-  // Whatever work it takes: one projection.
+  // One projection onto all rows, without a work limit.
   void stop(ImpactState& state) {
     projection_.limitWork(std::numeric_limits<std::size_t>::max());
     chosen_.assign(rows_.size(), 1);
@@ -79,9 +80,9 @@ class Impact {
     }
     return is_any;
   }
-  // Changes v by `times` what a projection onto the chosen rows does, or less where this would make energy,
-  // because the projection is not exact. The energy after t times its impulses has grown by t a + t^2 (b - a)
-  // / 2, with the impulses' work a at the velocities before them and b after them.
+  // Changes v by `times` the change of a projection onto the chosen rows, or by less if this would add
+  // energy, since the projection is not exact. With t times its impulses the energy grows by t a + t^2 (b -
+  // a) / 2, where a and b are the impulses' work at the velocities before and after them.
   void project(double times, ImpactState& state) {
     before_ = state.v;
     projection_.solve(chosen_, kRoundingShare * fastest_m_s_, state.v, lambda_);
@@ -111,7 +112,7 @@ void addShare(double share, const ImpactState& part, ImpactState& sum) {
 
 }  // namespace
 
-// v(t) is constant between two values of e: the mean is a sum over these intervals.
+// v(t) is constant between two values of e, so the mean is a sum over these intervals.
 ImpactState afterImpact(std::span<const ImpactRow> rows, const std::vector<Vec6>& before) {
   std::vector<double> ends{1};
   for (const ImpactRow& row : rows) ends.push_back(std::clamp(row.restitution, 0.0, 1.0));

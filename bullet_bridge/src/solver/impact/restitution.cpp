@@ -19,7 +19,8 @@
 namespace vps::bullet {
 namespace {
 
-// Rows of joints with a bounded impulse, motors, are no part of an impact. False: such a row.
+// Bounds of a joint's row in an impact. Returns false for rows with a bounded impulse (motors), which take no
+// part.
 bool boundsOf(const JointRow& row, double& lower_Ns, double& upper_Ns) {
   const auto isBound = [](double limit_Ns) {
     return limit_Ns == 0 || std::abs(limit_Ns) >= JointRow::kAny_Ns;
@@ -30,7 +31,7 @@ bool boundsOf(const JointRow& row, double& lower_Ns, double& upper_Ns) {
   return lower_Ns < upper_Ns;
 }
 
-// True if its bodies touch there at the end of the step.
+// True if the contact's bodies touch at the end of the step.
 bool touchesAtEnd(const RigidContact& c, double touch_m, double velocity_m_s, double dt_s) {
   return c.p_n > 0 || std::min(velocity_m_s - c.target_m_s, velocity_m_s + c.gap_m / dt_s) * dt_s <= touch_m;
 }
@@ -48,9 +49,9 @@ int Restitution::rootOf(int body) const {
   return body;
 }
 
-// Sharp features rest at a gap, and hold the faces between them at it. So all contacts of a face touch that
-// are no farther apart: with its edges alone, of which one side may have been left out, a face that lands
-// flush would turn.
+// Finds the gap at which each contact counts as touching. Sharp features rest at a gap and hold the faces
+// between them at that gap, so all contacts of a face within it touch. With contacts of the edges alone, of
+// which one side may be missing, a face that lands flush would turn.
 void Restitution::findTouch(std::span<const RigidContact> contacts) {
   std::map<std::pair<const btCollisionObject*, const btCollisionObject*>, double> rest_m;
   const auto restOf_m = [&](const RigidContact& c) -> double& { return rest_m[{c.object[0], c.object[1]}]; };
@@ -82,9 +83,8 @@ void Restitution::connect(std::span<RigidContact> contacts, const StepSolution& 
   }
 }
 
-// Where a contact acts at the end of the step: it goes with the body that turns more easily. A light body
-// between others, for which the solver found no place, may be anywhere: in a step that was cut short the
-// contact goes with the heavier one.
+// Place at which a contact acts at the end of the step. It moves with the body that turns more easily. In a
+// shortened step it moves with the heavier body, since a light body between others may be anywhere.
 Vec3 Restitution::placeOf(const RigidContact& c, const StepSolution& solution,
                           std::span<const BodyEnd> ends) const {
   const Vec3 x_W = c.position_W();
@@ -160,8 +160,8 @@ void Restitution::gather(int root, std::span<RigidContact> contacts, const StepS
   }
 }
 
-// The change of momentum in the step without the impulses of contacts and joints, which acted at the poses
-// before it.
+// Finds the change of momentum in the step without the impulses of contacts and joints, which acted at the
+// poses before the step.
 void Restitution::takeExternal(const StepSolution& solution) {
   for (const int i : group_.bodies) {
     const IslandBody& body = island_.bodies[static_cast<std::size_t>(i)];
@@ -202,7 +202,7 @@ void Restitution::settleFriction(Contact& c, double limit_Ns, double& most_m_s) 
 
 void Restitution::settle() {
   Group& g = group_;
-  // Without friction first: exactly, also where flush faces have dozens of contacts.
+  // First without friction: an exact solution, also for flush faces with dozens of contacts.
   std::vector<double> p;
   ImpactProjection(g.rows).solve(std::vector<std::uint8_t>(g.rows.size(), 1), kRoundingSpeed_m_s, g.v, p);
   const auto limitOf_Ns = [&](std::size_t k) {

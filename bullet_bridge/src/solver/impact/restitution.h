@@ -1,49 +1,46 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Restitution: the end velocities of bodies that met in a step.
 //
-// The step was solved without restitution, and its displacement stays that of this solution, so that gaps are
-// kept as without restitution, however narrow they are. What remains is a problem of velocities at the end
-// pose:
+// The step was solved without restitution, and its displacement is not changed, so that gaps are kept as
+// without restitution, however narrow they are. Restitution only changes the velocities at the end pose, in
+// three stages:
 //
-//   group     bodies that hang together by contacts that touch at the end of the step, and by joints. Nothing
-//   happens
-//             in a group without an impact: a contact with e > 0 that carried load in the step and whose
-//             bodies approached each other before it, faster than the threshold of Bullet's
-//             btContactSolverInfo. Gravity of the step itself is no approach, so a body at rest does not
-//             bounce.
-//   bounce    The velocities before the step, at the end pose, with the kick of the time up to the impact,
-//             are reflected (reflections.h). The solution's impulses acted at the lines of the start: what
-//             angular momentum the displacement changes by that is given back as one rotation of the group,
-//             not to single bodies, of which a light one between heavy ones would spin without bound.
-//   settle    The external impulses are given back, and what then approaches (a part that rests on another)
-//   is stopped,
-//             with Coulomb's friction, whose limit is that of the whole normal impulse of the step: sweeps
-//             that start from the impulses of the solution. Friction only reduces slip.
+// 1. Group: bodies connected by contacts that touch at the end of the step, and by joints. Nothing happens
+//    in a group without an impact. An impact is a contact with e > 0 that carried load in the step and whose
+//    bodies approached each other before the step, faster than the threshold of Bullet's
+//    btContactSolverInfo. The gravity of the step itself does not count as approach, so a body at rest does
+//    not bounce.
+// 2. Bounce: the velocities before the step, referred to the end pose and with the kick of the time up to
+//    the impact, are reflected (reflections.h). The solution's impulses acted along the lines of the start.
+//    The angular momentum that the displacement changes thereby is given back as one rotation of the group.
+//    Given back to single bodies, it would make a light body between heavy ones spin without bound.
+// 3. Settle: the external impulses are added again, and contacts that then approach (a part that rests on
+//    another) are stopped, with Coulomb's friction, whose limit is that of the whole normal impulse of the
+//    step. The sweeps start from the impulses of the solution. Friction only reduces slip.
 //
 // Time of the impact. Bullet adds the kick of gravity and other forces, dt f / m, to the velocity and then
 // moves the body (symplectic Euler). Its poses lie exactly on a parabola, whose velocity there is the stored
-// one plus half a kick. So the velocity at an impact, tau after the beginning of the step, is the stored one
-// plus 1/2 + tau / dt of the kick; this is reflected, and half a kick is taken from it again. The rest of
-// the step's kick, 1 - tau / dt, would only act after the displacement, which ends at the contact: contacts
-// that were hit keep their velocities in it. So a body bounces e^2 times as high at each impact, whatever
-// the step is. What rests on contacts or hangs on joints has no approach by the kick: these stop it before.
+// one plus half a kick. So the velocity at an impact at time tau of the step is the stored velocity plus (1/2
+// + tau / dt) of the kick. This velocity is reflected, and half a kick is subtracted again. The rest of the
+// step's kick, 1 - tau / dt, would only act after the displacement, which ends at the contact: contacts that
+// were hit keep their velocities in it. So a body bounces e^2 times as high at each impact, for any step
+// size. Bodies that rest on contacts or hang on joints do not approach by the kick, since these stop it.
 //
-// The impulses that come on top of those of the solution act at the end pose, on both bodies in one line. So
-// linear and angular momentum are kept to rounding, although the displacement is not that of the end
-// velocities. The line goes with the body that turns more easily, so that a box that bounces off a plate is
-// not turned by it.
+// The additional impulses act at the end pose, on both bodies along one line. So linear and angular momentum
+// are conserved to rounding, although the displacement does not match the end velocities. The line moves with
+// the body that turns more easily, so that a box that bounces off a plate is not turned by it.
 //
-// Energy. In one pose, reflections keep it and settling takes it. But the pose of the bounce is not that
-// before the step, which is a difference of the order of the step. Therefore the group's change of velocities
-// is scaled down where its energy, with half a kick, would be above what the bodies had before the step, plus
-// the work in the displacement of all that is no contact (gravity, couplings, motors), plus that of bodies
-// which contact does not move. So no group ever gains energy by restitution, whatever has not converged. The
-// masses are those of the bodies, not the effective ones: a coupling's spring and damper have no share in an
-// impact.
+// Energy. At one pose, reflections keep the energy and settling reduces it. But the bounce happens at another
+// pose than the one before the step, a difference of the order of the step. Therefore the group's change of
+// velocities is scaled down where its energy, with half a kick, would be above what the bodies had before the
+// step, plus the work of all other forces in the displacement (gravity, couplings, motors), plus the work of
+// bodies that contact does not move. So no group ever gains energy by restitution, even if an iteration has
+// not converged. The masses are those of the bodies, not the effective ones: a coupling's spring and damper
+// have no share in an impact.
 //
-// A step that was cut short, because its solution would leave overlaps, bounces as well. Its end poses are
-// not quite those of the contacts, but the velocities before the step and the contacts that carry load are
-// known, and these are all that a bounce needs: momentum and energy are kept as above.
+// A shortened step (endEarly()) bounces as well. Its end poses are not exactly those of the contacts, but a
+// bounce needs only the velocities before the step and the loaded contacts. Momentum and energy are kept as
+// above.
 #pragma once
 
 #include <cstdint>
@@ -65,10 +62,10 @@ class Restitution {
 
   /// Changes the end velocities of groups with an impact, and adds the impulses to those of contacts and
   /// joints.
-  /// @param contacts  of the solved island
-  /// @param solution  of the island. A step that was cut short has other displacements, but the end
-  /// velocities are those of the solution's momenta.
-  /// @param ends      from Island::readEnds()
+  /// @param contacts  contacts of the solved island
+  /// @param solution  solution of the island. A shortened step has other displacements, but its end
+  ///   velocities have the solution's momenta.
+  /// @param ends  ends from Island::readEnds()
   void apply(std::span<RigidContact> contacts, const StepSolution& solution, std::span<BodyEnd> ends,
              const btContactSolverInfo& info);
 
@@ -76,23 +73,23 @@ class Restitution {
   struct Contact {
     RigidContact* of = nullptr;
     ImpactRow tangent[2];
-    double p_t[2] = {0, 0};  // in all
-    double W_t = 0;          // at least the greatest eigenvalue of its tangent block
-    double touch_m = 0;      // its bodies touch at this gap
+    double p_t[2] = {0, 0};  // total friction impulses
+    double W_t = 0;          // upper bound of the greatest eigenvalue of the tangent block
+    double touch_m = 0;      // gap at which the bodies count as touching
   };
   struct Group {
     std::vector<int> bodies;  // of the island
     std::vector<Mat6> inverse_mass;
-    std::vector<Vec6> impulse;   // change of momentum in the step, all impulses of the solution together
-    std::vector<Vec6> external;  // change of velocity by what is no contact or joint
-    std::vector<Vec6> kick;      // that by gravity and the user's forces
+    std::vector<Vec6> impulse;   // change of momentum in the step by all impulses of the solution
+    std::vector<Vec6> external;  // change of velocity by everything except contacts and joints
+    std::vector<Vec6> kick;      // change of velocity by gravity and the user's forces
     std::vector<Vec6> solved;    // end velocities of the solution
-    std::vector<Vec6> v;         // those that are sought
+    std::vector<Vec6> v;         // end velocities that are sought
     std::vector<Contact> contacts;
     std::vector<JointRow*> joints;
-    std::vector<ImpactRow> rows;     // normals of the contacts, then joints
-    std::vector<double> solved_Ns;   // their impulses in the solution
-    std::vector<double> bounced_Ns;  // in the impact alone
+    std::vector<ImpactRow> rows;     // normals of the contacts, then rows of joints
+    std::vector<double> solved_Ns;   // impulses of the rows in the solution
+    std::vector<double> bounced_Ns;  // impulses of the impact alone
     std::vector<double> p_Ns;        // in all
   };
 
@@ -120,9 +117,9 @@ class Restitution {
 
   const Island& island_;
   JointRows& joints_;
-  std::vector<int> parent_;            // of each body, towards the root of its group
-  std::vector<int> local_;             // index of each body in group_; -1: of another group
-  std::vector<double> touch_m_;        // of each contact, the gap at which its bodies touch
+  std::vector<int> parent_;      // parent of each body in the union-find forest of groups
+  std::vector<int> local_;       // index of each body in group_; -1 for bodies of other groups
+  std::vector<double> touch_m_;  // gap whether the bodies of each contact touch at which its bodies touch
   std::vector<std::uint8_t> touches_;  // of each contact
   Group group_;
 };

@@ -13,11 +13,10 @@
 
 namespace vps::bullet {
 
-// The velocities before the step, at the end pose. The bodies moved there by the solution's velocities, whose
-// impulses act at the lines of the start: the group's angular momentum differs by those from what it was. The
-// difference is given back as a rotation of the whole group. Given to each body by its own contacts, it would
-// spin a light one between heavy ones without bound: 1 um times the impulse of bodies of 1e5 times its
-// inertia.
+// The velocities before the step, referred to the end pose. The solution's impulses acted along the lines of
+// the start, so the displacement changed the group's angular momentum. The difference is given back as a
+// rotation of the whole group. Given back to each body, it would spin a light body between heavy ones without
+// bound: the error is 1 um times the impulse of bodies with 1e5 times its inertia.
 std::vector<Vec6> Restitution::beforeStep(std::span<const BodyEnd> ends, double dt_s) const {
   std::vector<BodyEnd> group_ends;
   std::vector<Vec6> lost(group_.bodies.size(), Vec6::Zero());
@@ -39,7 +38,7 @@ std::vector<Vec6> Restitution::beforeStep(std::span<const BodyEnd> ends, double 
   }
   const bool is_free = std::all_of(group_.rows.begin(), group_.rows.end(),
                                    [](const ImpactRow& row) { return row.body[0] >= 0 && row.body[1] >= 0; });
-  // A push moves bodies past their momenta.
+  // A push moves bodies without momentum.
   for (std::size_t i = 0; is_free && i < group_ends.size(); ++i) {
     const IslandBody& body = island_.bodies[static_cast<std::size_t>(group_.bodies[i])];
     const Vec3 pushed_W =
@@ -52,7 +51,8 @@ std::vector<Vec6> Restitution::beforeStep(std::span<const BodyEnd> ends, double 
   return before;
 }
 
-// When in the step the group's impact is, as a share of it: the mean over its contacts, by their impulses.
+// Time of the group's impact, as a share of the step: the mean over its contacts, weighted by impulse and
+// approach.
 double Restitution::shareOfImpact(const std::vector<Vec6>& before, double dt_s) const {
   double sum = 0, weight = 0;
   for (std::size_t k = 0; k < group_.contacts.size(); ++k) {
@@ -70,12 +70,12 @@ double Restitution::shareOfImpact(const std::vector<Vec6>& before, double dt_s) 
   return weight > 0 ? sum / weight : 0;
 }
 
-// Rows that hold bodies before the impact: joints, and contacts that touch and have no approach but the
-// kick's.
+// Marks the rows that hold bodies before the impact: joints, and touching contacts that approach by the kick
+// only.
 std::vector<std::uint8_t> Restitution::holding(const std::vector<Vec6>& before, double dt_s) const {
   std::vector<std::uint8_t> rows(group_.rows.size(), 1);
   for (std::size_t k = 0; k < group_.contacts.size(); ++k) {
-    const double kick_m_s = 2 * std::abs(kickAlong(k));  // above the 3/2 of the reflected velocity
+    const double kick_m_s = 2 * std::abs(kickAlong(k));  // more than the 3/2 kick in the reflected velocity
     rows[k] = group_.rows[k].velocity(before) >= -kick_m_s &&
               group_.contacts[k].of->gap_m <= group_.contacts[k].touch_m + kick_m_s * dt_s;
   }
@@ -86,8 +86,8 @@ double Restitution::kickAlong(std::size_t row) const {
   return group_.rows[row].velocity(group_.kick) - group_.rows[row].fixed_velocity;
 }
 
-// What is left of the kick after the impact, without what would change the velocities of contacts that were
-// hit. Their impulses for that are added to those of the bounce.
+// The rest of the kick after the impact, without the part that would change the velocities of contacts that
+// were hit. The contacts' impulses for that are added to those of the bounce.
 std::vector<Vec6> Restitution::restOfKick(double share) {
   std::vector<Vec6> rest = group_.kick;
   for (Vec6& v : rest) v *= 1 - share;
@@ -105,7 +105,7 @@ std::vector<Vec6> Restitution::restOfKick(double share) {
   return rest;
 }
 
-// Sets the velocities with all external impulses and those of the bounce, before contacts settle.
+// Sets the velocities after the bounce and with all external impulses, before contacts settle.
 void Restitution::bounce(std::span<const BodyEnd> ends, double dt_s) {
   const std::vector<Vec6> start = beforeStep(ends, dt_s);
   const bool has_kick =
@@ -126,8 +126,8 @@ void Restitution::bounce(std::span<const BodyEnd> ends, double dt_s) {
     group_.v[i] += (after.v[i] - before[i]) + (group_.external[i] - (1 - share) * group_.kick[i]) + rest[i];
 }
 
-// The greatest share s of the change of velocities for which a s^2 + b s + c, the energy above what is
-// allowed, is not positive, or else least.
+// Greatest share s of the change of velocities for which the excess of energy, a s^2 + b s + c, is not
+// positive; or the s with the least excess.
 double Restitution::shareWithoutGain(std::span<const BodyEnd> ends) const {
   const Group& g = group_;
   double a = 0, b = 0, c = 0, scale_J = 0;
@@ -135,8 +135,7 @@ double Restitution::shareWithoutGain(std::span<const BodyEnd> ends) const {
     const auto at = static_cast<std::size_t>(g.bodies[i]);
     const IslandBody& body = island_.bodies[at];
     const Vec6 change = g.v[i] - g.solved[i], momentum = ends[at].mass * change;
-    // The velocities of the poses, half a kick from those that Bullet stores: their energy is what a step
-    // keeps.
+    // Bullet's stored velocities plus half a kick: a step keeps the energy of these velocities.
     const Vec6 start = body.start + 0.5 * body.mass.llt().solve(body.external_Ns),
                solved = g.solved[i] + 0.5 * g.kick[i];
     const double before_J = 0.5 * start.dot(body.mass * start);
@@ -145,7 +144,7 @@ double Restitution::shareWithoutGain(std::span<const BodyEnd> ends) const {
     c += 0.5 * solved.dot(ends[at].mass * solved) - before_J - g.impulse[i].dot(body.u);
     scale_J += before_J;
   }
-  // Contacts work against bodies that they do not move only; their other work is not allowed.
+  // Contacts may do work only against bodies that they do not move.
   const auto twistOf = [&](std::size_t i) -> const Vec6& { return island_.bodies[i].u; };
   for (std::size_t k = 0; k < g.rows.size(); ++k)
     b += g.rows[k].fixed_velocity * (g.p_Ns[k] - g.solved_Ns[k]);
@@ -158,9 +157,9 @@ double Restitution::shareWithoutGain(std::span<const BodyEnd> ends) const {
     }
   }
   if (a + b + c <= kSumRounding * scale_J) return 1;
-  if (!(a > 0)) return 0;  // also where a value is not finite
-  // A solution that has not converged may have more energy than is allowed by itself: then the share with the
-  // least.
+  if (!(a > 0)) return 0;  // also if a value is not finite
+  // A solution that has not converged may exceed the allowed energy by itself; the share with the least
+  // energy is then taken.
   const double root = std::max(b * b - 4 * a * c, 0.0);
   return std::clamp((-b + std::sqrt(root)) / (2 * a), 0.0, 1.0);
 }

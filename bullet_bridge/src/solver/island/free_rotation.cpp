@@ -12,14 +12,14 @@
 namespace vps::bullet {
 namespace {
 
-// h of the header, for a speed of rotation. Above kBulletTurn_rad Bullet limits the angle in sine and cosine,
-// but not the length of the axis: the turn goes on growing, by half its tangent.
+// The factor h of meanAngularVelocity(). Above kBulletTurn_rad Bullet limits the angle in sine and cosine but
+// not the length of the axis, so that the turn continues to grow by half its tangent.
 double halfTangent_s(double speed_rad_s, double dt_s) {
   const double angle_rad = std::min(speed_rad_s * dt_s, kBulletTurn_rad);
   return angle_rad > 0 ? dt_s * std::tan(0.5 * angle_rad) / angle_rad : 0.5 * dt_s;
 }
 
-/// The equation of the header for one body.
+/// The equation of meanAngularVelocity() for one body.
 struct MeanVelocity {
   Vec3 inertia_kg_m2, L;
 
@@ -27,8 +27,8 @@ struct MeanVelocity {
     const Vec3 JW = inertia_kg_m2.cwiseProduct(W);
     return JW - L + halfTangent_s(W.norm(), dt_s) * W.cross(JW);
   }
-  /// Newton's method from W. The dependence of h on W is of second order in the step, and is left out of the
-  /// slope.
+  /// Newton's method, starting at W. The slope neglects the dependence of h on W, which is of second order in
+  /// the step.
   [[nodiscard]] Vec3 solve(Vec3 W, double dt_s) const {
     double last_change_rad_s = std::numeric_limits<double>::infinity();
     for (int i = 0; i < kMostIterations; ++i) {
@@ -51,13 +51,13 @@ struct MeanVelocity {
 
 Vec3 meanAngularVelocity(const Vec3& inertia_kg_m2, const Vec3& w_B, double dt_s) {
   const MeanVelocity mean{inertia_kg_m2, inertia_kg_m2.cwiseProduct(w_B)};
-  // A longer step is solved from the solution of half of it: from W = w, Newton's method may find none.
+  // A long turn starts from the solution of half of it, since Newton's method may not converge from W = w.
   const double turn_rad = w_B.norm() * dt_s;
   Vec3 W = w_B;
   if (std::isfinite(turn_rad))
     for (double share = kBulletTurn_rad / turn_rad; share < 1; share *= 2) W = mean.solve(W, share * dt_s);
   W = mean.solve(W, dt_s);
-  // w_B also where a value is not finite
+  // returns w_B also if a value is not finite
   return mean.rest(W, dt_s).norm() <= kRoundingShare * mean.L.norm() ? W : w_B;
 }
 

@@ -15,13 +15,13 @@
 namespace vps::bullet {
 namespace {
 
-// Angular, then linear.
+// Impulse of external torques and forces: angular, then linear.
 Vec6 externalImpulse(const btRigidBody& b, double dt_s) {
   return dt_s * stacked(fromBt(b.getTotalTorque()), fromBt(b.getTotalForce()));
 }
 
-// Bullet has three approximations of one torque, of which each takes or makes energy; with any of them the
-// body turns as free bodies do.
+// Bullet has three approximations of the gyroscopic torque, and each of them dissipates or adds energy. If
+// any of them is enabled, the island rotates the body exactly (meanAngularVelocity()).
 bool turnsFreely(const btRigidBody& b) {
   constexpr int kAny = BT_ENABLE_GYROSCOPIC_FORCE_EXPLICIT | BT_ENABLE_GYROSCOPIC_FORCE_IMPLICIT_WORLD |
                        BT_ENABLE_GYROSCOPIC_FORCE_IMPLICIT_BODY;
@@ -32,8 +32,8 @@ Vec3 inertia_kg_m2(const btRigidBody& b) {
   return fromBt(b.getInvInertiaDiagLocal()).cwiseInverse();
 }
 
-// Mass of a body with this orientation and its inverse. Not Bullet's own tensor: a body that was placed by
-// setWorldTransform() has that of its orientation before.
+// Mass matrix of a body with this orientation, and its inverse. Bullet's own tensor is not used: after
+// setWorldTransform() it still belongs to the previous orientation.
 void setMass(const btRigidBody& b, const Mat3& R, Mat6& mass, Mat6& inverse_mass) {
   const Vec3 inertia = inertia_kg_m2(b);
   mass = inverse_mass = Mat6::Zero();
@@ -49,7 +49,8 @@ btTransform moved(const btTransform& X, const Vec6& by, double dt_s) {
   return to;
 }
 
-// Bullet sweeps these bodies from where the solver leaves them to where they end, and stops them on the way.
+// True for bodies with Bullet's continuous collision detection, which sweeps them from the pose that the
+// solver leaves to their end pose and may stop them in between.
 bool isSweptByBullet(const btRigidBody& b) {
   return b.getCcdSquareMotionThreshold() > 0 && b.getCollisionShape()->isConvex();
 }
@@ -102,7 +103,7 @@ void addTurn(const Vec3& w_W, std::span<BodyEnd> ends) {
 bool Island::takes(const btRigidBody& rigid) {
   const btVector3 one(1, 1, 1), &inverse = rigid.getInvInertiaDiagLocal();
   if (rigid.getLinearFactor() != one || rigid.getAngularFactor() != one) return false;
-  // In Bullet a body that cannot rotate has zero inertia.
+  // Bullet's convention for a body that cannot rotate is an inverse inertia of zero.
   return !(rigid.getInvMass() > 0) || (inverse.x() > 0 && inverse.y() > 0 && inverse.z() > 0);
 }
 
@@ -168,7 +169,7 @@ void Island::readEnds(std::span<const Vec6> push, double dt_s, std::vector<BodyE
     end.X_WB = fromBt(endTransform(i, push, dt_s));
     setMass(*b.rigid, end.X_WB.R, end.mass, end.inverse_mass);
     end.v = b.u;
-    // The end velocity w1 of the momentum that u and the rest have: I1 w1 = I0 w + rest.
+    // The end velocity w1 has the momentum of u plus rest_momentum_Nms: I1 w1 = I0 w + rest.
     const Mat3 turned = b.mass.topLeftCorner<3, 3>() - end.mass.topLeftCorner<3, 3>();
     if (b.turns_freely)
       end.v.head<3>() +=

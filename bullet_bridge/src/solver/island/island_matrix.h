@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// A matrix over the bodies of an island, in blocks of 6x6, and its factorisation.
+// SPDX-License-Identifier: BSD-3-Clause A sparse matrix over the bodies of an island, in blocks of 6x6, and
+// its factorisation.
 #pragma once
 
 #include <Eigen/Dense>
@@ -12,27 +12,28 @@
 
 namespace vps::bullet {
 
-/// Blocks on the diagonal and of bodies that touch; the pattern is symmetric, the values need not be.
-/// Factorised as LU without exchange of blocks, in an order of bodies that leaves few further blocks (minimum
-/// degree). The pattern and the order are kept as long as the same bodies touch.
+/// Has blocks on the diagonal and for bodies that touch. The pattern is symmetric; the values need not be.
+/// Factorised as LU without pivoting of blocks, in an elimination order with little fill-in (minimum degree).
+/// Pattern and order are kept as long as the same bodies touch.
 ///
-/// Cost: some 70 ns for each product of two blocks, d^2 of them for a body that d later ones touch.
+/// Cost: some 70 ns for each product of two blocks, and d^2 products for a body that touches d bodies that
+/// are eliminated later.
 class IslandMatrix {
  public:
-  /// The blocks that there are: the diagonal, and those of `pairs` (any order, repeats allowed).
+  /// Sets which blocks exist: the diagonal, and those of `pairs` (any order, repeats allowed).
   void setPattern(std::size_t body_count, std::span<const std::pair<int, int>> pairs);
   void setZero();
-  /// Adds to the block of two bodies.
+  /// Adds a matrix to the block of two bodies.
   void add(int row_body, int column_body, const Mat6& block);
-  /// Adds to the blocks of one pair of bodies, each with itself and with the other.
-  /// @param blockOf  (i, j): block of sides i and j; a side whose body is -1 has none
+  /// Adds matrices to the four blocks of one pair of bodies.
+  /// @param blockOf  (i, j): matrix for sides i and j; a side whose body is -1 has no block
   template <typename BlockOf>
   void addPair(const int (&body)[2], const BlockOf& blockOf) {
     for (int i = 0; i < 2; ++i)
       for (int j = 0; j < 2; ++j)
         if (body[i] >= 0 && body[j] >= 0) add(body[i], body[j], blockOf(i, j));
   }
-  /// False: a block that is divided by has no inverse.
+  /// Returns false if a diagonal block has no inverse.
   [[nodiscard]] bool factorise();
   /// Newton's step: minus the inverse of the factorised matrix times the gradient.
   void solve(std::span<const Vec6> gradient, std::vector<Vec6>& step);
@@ -43,11 +44,11 @@ class IslandMatrix {
 
   std::size_t body_count_ = 0;
   std::vector<std::pair<int, int>> pairs_, wanted_;  // lower body first; ascending
-  std::vector<int> place_, body_;  // of a body in the order of elimination; the body at a place
-  // Of each place: the later places that it has blocks with, ascending.
+  std::vector<int> place_, body_;  // place of each body in the order of elimination; body at each place
+  // For each place: the later places with which it has blocks, ascending.
   std::vector<std::size_t> first_;
   std::vector<int> later_;
-  // Products of the elimination, in order: the block from which each is subtracted.
+  // For each product of the elimination, in order: the block from which it is subtracted.
   std::vector<Mat6*> targets_;
   std::vector<Mat6> diagonal_, inverse_;
   std::vector<Mat6> below_, beside_;  // by index in later_: row later, column place; and the transposed place

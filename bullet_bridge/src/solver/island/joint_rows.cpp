@@ -15,7 +15,7 @@
 namespace vps::bullet {
 namespace {
 
-/// A row as getInfo2() fills it.
+/// A row in the layout that btTypedConstraint::getInfo2() fills.
 struct BulletRow {
   btScalar linear[2][4] = {}, angular[2][4] = {};
   btScalar error = 0, cfm = 0, lower = -SIMD_INFINITY, upper = SIMD_INFINITY;

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// What the Newton methods of both contact methods share: wrenches, sums of stiffness, the line search.
+// SPDX-License-Identifier: BSD-3-Clause Functions that Newton's method uses for both contact methods:
+// wrenches, sums of stiffness, the line search.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace vps::bullet {
 
-/// Of a force at r.
+/// Wrench about the origin of a force f at r.
 inline Vec6 wrenchOf(const Vec3& r, const Vec3& f) {
   return stacked(r.cross(f), f);
 }
@@ -32,7 +32,7 @@ class SymmetricSum {
       for (int r = 0; r < 6; ++r) sum_(r, c) += scaled * g[r];
     }
   }
-  // A spring at a point, equally stiff in all directions.
+  // Adds a spring at a point that is equally stiff in all directions.
   void addEven(double k, const Vec3& r) {
     k_ += k;
     kr_ += k * r;
@@ -55,9 +55,9 @@ class SymmetricSum {
   Mat3 krr_ = Mat3::Zero();
 };
 
-/// How much of a step to take: 1, or the share at which the function is nearly least. The function is convex,
-/// so its slope along the step increases; the minimum is where it is zero.
-/// @param slope    at the start of the step; negative
+/// Minimises a convex function along a step: returns 1, or the share of the step at which the slope is nearly
+/// zero. The slope increases along the step, since the function is convex.
+/// @param slope  slope at the start of the step; negative
 /// @param slopeAt  the slope at a share of the step
 template <typename SlopeAt>
 double lineSearch(double slope, const SlopeAt& slopeAt) {

@@ -22,7 +22,7 @@ void PenaltyNewton::add(PenaltyPair& pair, int level, bool follows_rotation) {
   patch.center /= static_cast<double>(pair.points.size());
   patch.fixed.setZero();
   // Points of a rotating body move along circles, not along the tangents that a twist describes. Without this
-  // term a nut would end each step slightly off its thread, and the forces that return it would slow it down.
+  // term a nut would end each step slightly off its thread, and the restoring forces would slow it down.
   Mat3 off_tangent[2];
   for (int i = 0; i < 2; ++i) {
     patch.body[i] = body[i];
@@ -168,12 +168,12 @@ SolveOutcome PenaltyNewton::solve(double residual_m_s, int iteration_limit, End 
     }
     if (!newtonStep(gradient_, step_)) break;
     const double slope = sumOfProducts(gradient_, step_);
-    if (!(slope < 0)) {  // balanced as well as rounding allows, or not finite
+    if (!(slope < 0)) {  // balanced as well as rounding allows, or a value is not finite
       outcome.is_converged =
           slope >= 0 && (end == End::Short || imbalance_m_s() < residual_m_s / kAccuracyShare);
       break;
     }
-    // The last step is so short that a line search does not matter.
+    // The last step is so short that it needs no line search.
     outcome.is_converged = end == End::Short && greatestSpeed(step_) < residual_m_s;
     const double share = outcome.is_converged ? 1 : shareOfStep(u_, step_, slope);
     for (std::size_t i = 0; i < u_.size(); ++i) u_[i] += share * step_[i];

@@ -1,16 +1,15 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// Penalty contact: the end-of-step velocities at which inertia, couplings and thousands of penalty points
-// balance.
+// SPDX-License-Identifier: BSD-3-Clause Penalty contact: finds the end-of-step velocities at which inertia,
+// couplings and thousands of penalty points balance.
 //
 // They minimise a convex function, the incremental potential of an implicit Euler step,
 //
 //     1/2 (u - u0)' M (u - u0) + sum 1/2 k min(gap + dt n.v, 0)^2 + sum H(bend + dt v_t)
 //
 // where v is a point's relative velocity and H the potential of the bristle: 1/2 k |x|^2 while it sticks,
-// with the constant slope mu f_n when it slips. Newton's method with an exact line search finds the minimum;
-// f_n in H is that of the previous round. The energy of the solution never exceeds that of resting in the
-// overlap. Sources: Tripicchio et al., section 4.1, for the force; Kaufman et al. 2008 and Castro et al. 2021
-// for contact as convex minimisation; Dahl 1968 for the bristle.
+// with the constant slope mu f_n when it slips. Newton's method with an exact line search finds the minimum.
+// The f_n in H is that of the previous round. The energy of the solution never exceeds the energy of resting
+// in the overlap. Sources: Tripicchio et al., section 4.1, for the force; Kaufman et al. 2008 and Castro et
+// al. 2021 for contact as convex minimisation; Dahl 1968 for the bristle.
 #pragma once
 
 #include <span>
@@ -31,21 +30,22 @@ class PenaltyNewton {
     patch_count_ = 0;
     dt_s_ = dt_s;
   }
-  /// The pair must outlive finish(). The limits of friction are initially those of last step's forces.
-  /// @param level  of PointGroup
-  /// @param follows_rotation  points of a rotating body move along circles, not along their tangents
+  /// Adds a pair, which must outlive finish(). The initial limits of friction are those of last step's
+  /// forces.
+  /// @param level  level of groupPoints()
+  /// @param follows_rotation  points of a rotating body move along circles instead of tangents
   void add(PenaltyPair& pair, int level = 0, bool follows_rotation = true);
-  /// Points that are solved: groups count as one.
+  /// Number of points that are solved; a group counts as one.
   [[nodiscard]] std::size_t pointCount() const;
-  /// When to stop: after a step that changes no point's velocity by more than the residual (Short), or when
-  /// the missing momentum would change no point's velocity by more (Balanced), which is stricter for stiff
-  /// contacts.
+  /// Stopping criterion: a step changes no point's velocity by more than the residual (Short), or the missing
+  /// momentum would change no point's velocity by more than the residual (Balanced; stricter for stiff
+  /// contacts).
   enum class End { Short, Balanced };
-  /// Finds the velocities for the present effective masses and friction limits. Not converged: the iteration
-  /// limit was reached, or a value is not finite.
+  /// Finds the velocities for the present effective masses and friction limits. The outcome is not converged
+  /// if the iteration limit was reached or a value is not finite.
   SolveOutcome solve(double residual_m_s, int iteration_limit, End end = End::Short);
-  /// Change of the bodies' velocities by the momentum that is missing at the last velocities evaluated. After
-  /// a solve with End::Balanced those are the bodies' velocities.
+  /// Greatest change of the bodies' velocities by the missing momentum at the velocities evaluated last.
+  /// After a solve with End::Balanced these are the bodies' velocities.
   [[nodiscard]] double imbalance_m_s();
   /// Updates the limits of friction from the present forces. Returns the greatest change, relative to the
   /// greatest limit.
@@ -60,21 +60,21 @@ class PenaltyNewton {
   /// Gradient of the potential at u; with_hessian: also the Hessians of the patches.
   void evaluateAll(const std::vector<Vec6>& u, bool with_hessian, std::vector<Vec6>& gradient);
   void startMatrix();
-  /// False: the matrix is not positive definite.
+  /// Returns false if the matrix is not positive definite.
   [[nodiscard]] bool newtonStep(const std::vector<Vec6>& gradient, std::vector<Vec6>& step);
   [[nodiscard]] double shareOfStep(const std::vector<Vec6>& u, const std::vector<Vec6>& step, double slope);
   [[nodiscard]] double greatestSpeed(const std::vector<Vec6>& step) const;
 
-  /// Joints are springs on the velocity, so stiff that they miss their target by a millionth. At their limits
-  /// the slope of the potential is constant, as for a bristle.
+  /// Joints are modelled as dampers of velocity error, so stiff that they miss their target by a millionth.
+  /// At a limit the slope of their potential is constant, as for a bristle.
   void prepareJoints();
   [[nodiscard]] double jointImpulse(const JointRow& row, double stiffness_kg,
                                     const std::vector<Vec6>& u) const;
 
   Island& island_;
   JointRows& joints_;
-  std::vector<double> joint_kg_;       // stiffness of each row, against velocity
-  std::vector<std::uint8_t> is_free_;  // rows within their limits at the last evaluation
+  std::vector<double> joint_kg_;       // impulse per velocity error of each row
+  std::vector<std::uint8_t> is_free_;  // rows that were within their limits at the last evaluation
   double dt_s_ = 0;
   IslandMatrix hessian_;
   std::vector<PenaltyPatch> patches_;  // kept to reuse their memory

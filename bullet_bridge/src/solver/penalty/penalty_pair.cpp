@@ -14,7 +14,7 @@ namespace vps::bullet {
 
 namespace {
 
-/// Stiffness of a point without an area: a steel corner of a millimetre. Assumed.
+/// Stiffness of a point without an area: that of a steel corner of a millimetre. Assumed.
 constexpr double kPointStiffness_N_per_m = 1e7;
 
 Vec3 lateralImpulse(const btManifoldPoint& point) {
@@ -27,7 +27,7 @@ void setLateralImpulse(btManifoldPoint& point, const Vec3& impulse_Ns) {
   point.m_appliedImpulseLateral2 = point.m_lateralFrictionDir2.dot(toBt(impulse_Ns));
 }
 
-/// The point of the pair that a manifold's contact was made from; null: none.
+/// The pair's point from which a manifold's contact was made; null if there is none.
 const PenaltyPoint* pointOf(const PenaltyPair& pair, const btManifoldPoint& contact, int index) {
   if (pair.is_of_manifold) return &pair.points[static_cast<std::size_t>(index)];
   const std::uint64_t key = keyOf(contact);
@@ -51,7 +51,7 @@ PenaltyPair penaltyPairOf(const btPersistentManifold& manifold, double dt_s) {
     point.gap_m = contact.getDistance();
     point.k_N_per_m = kPointStiffness_N_per_m;
     point.f_n_N = contact.m_appliedImpulse / dt_s;
-    // The impulse acted on body 0, against its displacement.
+    // The impulse acted on body 0, opposite to its displacement.
     point.bend_W = -lateralImpulse(contact) / (dt_s * point.k_N_per_m);
     point.mu = contact.m_combinedFriction;
     pair.points.push_back(point);

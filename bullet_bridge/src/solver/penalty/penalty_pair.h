@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// The penalty points of one pair of bodies, and groups of neighbours that are solved as one point each.
+// SPDX-License-Identifier: BSD-3-Clause The penalty points of one pair of bodies, and groups of neighbouring
+// points that are solved as one.
 #pragma once
 
 #include <cstddef>
@@ -14,26 +14,26 @@ class btPersistentManifold;
 
 namespace vps::bullet {
 
-/// A point of one side near the other's surface: a spring along the normal and a bristle in the tangent
-/// plane (vps/friction.h). Both are fixed to the point, so friction holds without creep.
+/// A point of one side near the other's surface: a spring along the normal and a bristle in the tangent plane
+/// (vps/friction.h). Both are fixed to the point, so friction holds without creep.
 struct PenaltyPoint {
   std::uint64_t key = 0;       ///< contactKey() of the point
   Vec3 p_W = Vec3::Zero();     ///< now
   Vec3 n_W = Vec3::Zero();     ///< unit, from body 1 to body 0
-  double gap_m = 0;            ///< now, plus tolerated_m
-  double k_N_per_m = 0;        ///< of spring and bristle: stiffness per area times area
+  double gap_m = 0;            ///< present gap plus tolerated_m
+  double k_N_per_m = 0;        ///< stiffness of spring and bristle: stiffness per area times area
   double mu = 0;               ///< coefficient of friction
-  Vec3 bend_W = Vec3::Zero();  ///< of the bristle [m]: displacement of body 0 against body 1
+  Vec3 bend_W = Vec3::Zero();  ///< bend of the bristle [m]: displacement of body 0 against body 1
   double f_n_N = 0;            ///< normal force at the end of the last step solved
-  bool is_leader = false;      ///< stood for its PointGroup in the last step solved
-  double tolerated_m = 0;      ///< share of an initial overlap that is not pressed out yet
+  bool is_leader = false;      ///< represented its PointGroup in the last step solved
+  double tolerated_m = 0;      ///< part of an initial overlap that is not pressed out yet
 };
 
 /// The points of a pair, ascending by key.
 struct PenaltyPair {
   const btCollisionObject* object[2] = {nullptr, nullptr};
-  bool is_of_manifold = false;   ///< points are in the order of a manifold's contacts
-  Mat3 R_W1 = Mat3::Identity();  ///< orientation of body 1 for which bends are given
+  bool is_of_manifold = false;   ///< the points are in the order of a manifold's contacts
+  Mat3 R_W1 = Mat3::Identity();  ///< orientation of body 1 to which the bends refer
   std::vector<PenaltyPoint> points;
   double total_N = 0;     ///< normal force of all points
   double manifold_N = 0;  ///< normal force of the points that are contacts in a manifold
@@ -45,31 +45,31 @@ struct PenaltyManifold {
   PenaltyPair* pair = nullptr;
 };
 
-/// The contacts of a manifold without VPS contact, as penalty points.
+/// Converts the contacts of a manifold without VPS contact to penalty points.
 PenaltyPair penaltyPairOf(const btPersistentManifold& manifold, double dt_s);
 
 /// Writes the points' impulses into the manifolds' contacts, scaled so that each pair's contacts add up to
 /// the impulse of all its points.
 void writeImpulses(std::span<const PenaltyManifold> manifolds, double dt_s);
 
-/// The points [first, end) of a pair, solved as its point `leader` with the stiffness of all.
+/// The points [first, end) of a pair, solved as the point `leader` with the stiffness of all.
 struct PointGroup {
   std::uint32_t leader = 0, first = 0, end = 0;
   double k_N_per_m = 0;
-  double f_n_N = 0;  ///< of all at the end of the last step
+  double f_n_N = 0;  ///< sum of the forces at the end of the last step
 };
 
 /// Groups of up to 2^level points with neighbouring ids, which are neighbours in space (PointShell), and with
-/// normals within 45 degrees and the same friction. The leader is the deepest, or one that led in the last
-/// step and is not clearly less deep: a new leader would be another place to hold by friction, and a part
-/// would creep. Level 0: each point alone. Contacts of a manifold stay alone. O(points).
+/// normals within 45 degrees and the same friction. The leader is the deepest point, or the last step's
+/// leader if it is not clearly less deep: a new leader would hold friction at another place, and the part
+/// would creep. At level 0, and for contacts of a manifold, each point is a group. O(points).
 void groupPoints(const PenaltyPair& pair, int level, std::vector<PointGroup>& groups);
 
-/// Greatest level; a group is then as large as an eighth of a cube's face of 20,000 points.
+/// Greatest level. A group is then as large as an eighth of a face of a cube with 20,000 points.
 inline constexpr int kCoarsestLevel = 8;
 
-/// The least level at which the pairs have at most `limit` groups; 0 for a limit of 0; at most
-/// kCoarsestLevel. O(points) for each level.
+/// Lowest level at which the pairs have at most `limit` groups, at most kCoarsestLevel; 0 for a limit of 0.
+/// O(points) per level.
 int levelFor(std::span<const PenaltyPair* const> pairs, std::size_t limit);
 
 }  // namespace vps::bullet

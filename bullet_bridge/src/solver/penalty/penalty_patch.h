@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// The penalty forces of one pair of bodies, as functions of their relative twist.
+// SPDX-License-Identifier: BSD-3-Clause Penalty forces of one pair of bodies, as functions of their relative
+// twist.
 #pragma once
 
 #include <array>
@@ -13,7 +13,8 @@
 namespace vps::bullet {
 
 /// Twists are of body 0 relative to body 1, about center, in W. Most points of a pair are near but do not
-/// press. The data that decides this is stored in columns, so that these points cost little.
+/// press. The data that decides whether a point presses is stored in columns, so that such points cost
+/// little.
 class PenaltyPatch {
  public:
   /// Force of a point at a twist.
@@ -23,9 +24,8 @@ class PenaltyPatch {
   };
 
   /// @param off_tangent  for body 0 and 1: maps a point's position from its body's origin to its displacement
-  /// in the
-  ///                     step beyond that of the body's present velocity
-  /// @param level  of the groups that are solved as one point each; 0: each point alone
+  ///   in the step beyond that of the body's present velocity
+  /// @param level  level of groupPoints()
   void build(PenaltyPair& pair, const Mat3 (&off_tangent)[2], double dt_s, int level);
 
   /// Sets the gradient, and with_hessian the Hessian, of the potential at a twist. O(points), cheap for
@@ -42,7 +42,7 @@ class PenaltyPatch {
 
   PenaltyPair* pair = nullptr;
   int body[2] = {-1, -1};
-  Mat6 X[2];  ///< each body's twist -> its share of the relative twist at the centre
+  Mat6 X[2];  ///< maps each body's twist to its share of the relative twist at the centre
   Vec6 fixed = Vec6::Zero();
   Vec3 center = Vec3::Zero();
   double radius_m = 0;
@@ -63,12 +63,12 @@ class PenaltyPatch {
   [[nodiscard]] PointForce forceAt(std::size_t i) const;
 
   double dt_s_ = 0;
-  std::vector<PointGroup> groups_;             // of the pair's points
-  std::vector<Point> points_;                  // one for each group
-  std::array<std::vector<double>, 6> wrench_;  // of a unit normal force, by component: r x n, n
+  std::vector<PointGroup> groups_;             // groups of the pair's points
+  std::vector<Point> points_;                  // one point per group
+  std::array<std::vector<double>, 6> wrench_;  // wrench of a unit normal force, by component: r x n, n
   std::vector<double> gap_m_, limit_N_;
   Columns r_m_, bend_m_;
-  // At the end of the step, for the last twist evaluated: gaps, and bends if nothing slipped.
+  // At the end of the step, for the last twist evaluated: gaps, and bends without slip.
   mutable std::vector<double> end_m_;
   mutable Columns bent_m_;
 };

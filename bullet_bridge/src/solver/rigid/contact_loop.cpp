@@ -7,14 +7,16 @@
 
 namespace vps::bullet {
 
-// For parts near rest sweeps converge within a few microseconds; otherwise Newton's method follows, which
-// sees the whole island.
+// For parts near rest, sweeps converge within a few microseconds. Otherwise Newton's method follows, which
+// solves the whole island at once.
 SolveOutcome ContactLoop::solveContacts(const SolverSettings& settings) {
-  constexpr int kSweepsFirst = 30, kSweepsPerNewtonStep = 10;  // assumed; the second: ratio of their costs
-  // An arch of 101 stones needs 120 until it stands, where 60 leave it moving, and so as many in each step.
+  constexpr int kSweepsFirst = 30,
+                kSweepsPerNewtonStep = 10;  // assumed; the second is the ratio of the costs
+  // An arch of 101 stones needs 120 steps of Newton's method until it stands. With 60 it keeps moving, and
+  // needs as many in each step.
   constexpr int kStepsPerBody = 3;
-  // Where it is cut short, each step is solved again and again for the contacts that it misses: that takes
-  // longer than to converge.
+  // A lower limit costs more time than convergence: each step would then be solved repeatedly for the
+  // contacts that it misses.
   const int newton_share = std::max(0, settings.iteration_limit - kSweepsFirst) / kSweepsPerNewtonStep;
   const int most = std::max(kMostIterations, kStepsPerBody * static_cast<int>(island.bodies.size()));
   const int newton_limit = newton_share > 0 ? std::max(most, newton_share) : 0;
@@ -34,7 +36,7 @@ SolveOutcome ContactLoop::solveContacts(const SolverSettings& settings) {
   return {outcome.steps + end.steps, end.is_converged};
 }
 
-// A body that flies by does not blur those that rest.
+// A body that flies by without contact does not lower the accuracy of bodies at rest.
 double ContactLoop::topSpeed() {
   u_.assign(island.bodies.size(), Vec6::Zero());
   const auto read = [&](int body) {
@@ -47,7 +49,7 @@ double ContactLoop::topSpeed() {
   return island.topSpeed(u_);
 }
 
-/// visit(check, where its bodies are at the end of the step)
+/// Calls visit(check, end poses of its bodies) for each check.
 template <typename Visit>
 void ContactLoop::forEachCheck(std::span<const Vec6> push, double dt_s, const Visit& visit) const {
   for (StepCheck* check : checks) {
@@ -57,8 +59,8 @@ void ContactLoop::forEachCheck(std::span<const Vec6> push, double dt_s, const Vi
   }
 }
 
-// Contacts whose lever or normal turns on the way get their rows where the bodies will be if they go on as
-// they do.
+// Takes the rows of contacts whose lever or normal turns during the step at the end poses of motion at the
+// present velocities.
 void ContactLoop::linearise(const btContactSolverInfo& info) {
   missed_.clear();
   forEachCheck({}, info.m_timeStep,
@@ -66,7 +68,7 @@ void ContactLoop::linearise(const btContactSolverInfo& info) {
   contacts.addMissed(missed_, info);
 }
 
-// True if contacts were added, so that the step must be solved again.
+// Returns true if contacts were added, so that the step must be solved again.
 bool ContactLoop::addMissed(const btContactSolverInfo& info, CheckRound round) {
   missed_.clear();
   contacts.finish();  // a check asks which contacts carry load

@@ -1,6 +1,6 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// The rounds of a step with rigid contact: it is solved with the contacts that are known, each pair is asked
-// which ones the solution lacks (step_check.h), these are added, and it is solved again.
+// SPDX-License-Identifier: BSD-3-Clause The rounds of a step with rigid contact: solve with the known
+// contacts, call the check of each pair (step_check.h), add the contacts that the solution lacks, and solve
+// again.
 #pragma once
 
 #include <algorithm>
@@ -21,17 +21,17 @@ struct btContactSolverInfo;
 
 namespace vps::bullet {
 
-/// Bodies, joints and contacts of one problem, and the pairs that check its solution. The caller fills them;
-/// the memory is kept from one problem to the next.
+/// Bodies, joints and contacts of one problem, and the checks of its pairs. The caller fills them; the memory
+/// is reused for the next problem.
 class ContactLoop {
  public:
   Island island;
   JointRows joints;
   ContactSweeps contacts{island, joints};
-  std::vector<StepCheck*> checks;  ///< one for each pair
+  std::vector<StepCheck*> checks;  ///< one check per pair
 
-  /// Error of a solution with which no check finds again what was solved: a row misses its target by twice
-  /// the bodies' imbalance, and by a tenth of the residual. See FeatureMotion::kMissedShare.
+  /// Greatest error of a solution for which a check does not find the same contact again: a row misses its
+  /// target by twice the bodies' imbalance plus a tenth of the residual. See FeatureMotion::kMissedShare.
   [[nodiscard]] static double allowedError_m_s(double dt_s) {
     return FeatureMotion::kMissedShare * FeatureMotion::kRest_m / (2.1 * dt_s);
   }
@@ -39,10 +39,11 @@ class ContactLoop {
   SolveOutcome solveContacts(const SolverSettings& settings);
 
   /// Solves the step until no pair lacks a contact, at most nine times.
-  /// @param solve  called without arguments in each round: solveContacts(), with what depends on its result
-  /// @param is_own  bullet::Solver solves the step: contacts get the rows that they have at its end, where
-  /// these differ, and flush faces an even pressure to start from
-  /// @return the most steps of a round, and whether the last one converged
+  /// @param solve  called without arguments in each round; calls solveContacts() and updates what depends on
+  ///   its result
+  /// @param is_own  true if bullet::Solver solves the step: rows are then taken at the end of the step if
+  ///   they differ there, and flush faces start from an even pressure
+  /// @return greatest number of steps of a round, and whether the last round converged
   template <typename Solve>
   SolveOutcome run(const btContactSolverInfo& info, int push_sweeps, bool is_own, const Solve& solve) {
     dt_s_ = info.m_timeStep;
@@ -56,11 +57,11 @@ class ContactLoop {
       if (checked == kMostRounds || !addMissed(info, {checked, is_own})) return outcome;
     }
   }
-  /// True if the rounds were used up, or no room was left, with contacts still missed.
+  /// True if contacts are still missed because the rounds or the manifolds' room were used up.
   [[nodiscard]] bool hasMissed() const { return !missed_.empty(); }
 
  private:
-  /// Of the bodies that contacts and joints act on.
+  /// Greatest speed of the bodies on which contacts and joints act.
   [[nodiscard]] double topSpeed();
   template <typename Visit>
   void forEachCheck(std::span<const Vec6> push, double dt_s, const Visit& visit) const;
@@ -74,14 +75,14 @@ class ContactLoop {
   double dt_s_ = 0;
 };
 
-/// Where points would be too deep at the end of the step, or sharp features too near to each other, the
-/// bodies of the pair, and those that hang together with them by joints and by contacts with load, move only
-/// a share of their way: IslandBody::way_share. They keep the velocities of the solution, and the rest of the
-/// step is spent in place. So they hit nothing harder than was solved, and the next step begins near contacts
-/// that it then knows. A kinematic body goes on; what it comes to is not stopped for it in vain.
+/// Shortens the motion of bodies for which contacts are still missed: if points would be too deep at the end
+/// of the step, or sharp features too close, the bodies of the pair, and bodies connected to them by joints
+/// and loaded contacts, move only a share of the step (IslandBody::way_share). They keep the velocities of
+/// the solution, so they hit nothing harder than was solved, and the next step begins near contacts that it
+/// then finds. A kinematic body is not shortened.
 /// @param contacts, joints  of the solved island
-/// @param push              its velocities, as ContactSweeps::push()
-/// @return true if a body's way is shorter
+/// @param push  the push, as from ContactSweeps::push()
+/// @return true if the motion of a body was shortened
 bool endEarly(Island& island, std::span<const RigidContact> contacts, const JointRows& joints,
               std::span<StepCheck* const> checks, std::span<const Vec6> push, double dt_s);
 

@@ -74,7 +74,7 @@ void addProduct(Mat6& sum, double factor, const Vec3& r, const Vec3& a, const Ve
 
 }  // namespace
 
-// The impulse at a relative velocity: the projection onto the cone.
+// Sets the impulse at a relative velocity: the projection onto the friction cone.
 void ContactNewton::project(Point& p, const Vec3& v, Slips slips, Stiffness* stiffness) {
   const double k = 1 / p.softness;
   const Vec3 v_t = v - p.n.dot(v) * p.n;
@@ -121,7 +121,7 @@ void ContactNewton::evaluateJoints(const std::vector<Vec6>& u, std::vector<Vec6>
   }
 }
 
-// The momentum that is missing at u; with_jacobian: also its derivatives.
+// Evaluates the missing momentum at u; with_jacobian: also its derivatives.
 void ContactNewton::evaluate(const std::vector<Vec6>& u, Slips slips, bool with_jacobian,
                              std::vector<Vec6>& missing) {
   missing.resize(u.size());
@@ -147,7 +147,7 @@ void ContactNewton::evaluate(const std::vector<Vec6>& u, Slips slips, bool with_
   }
 }
 
-// False: the matrix has no inverse.
+// Computes step_. Returns false if the matrix has no inverse.
 bool ContactNewton::findStep() {
   matrix_.setZero();
   for (std::size_t i = 0; i < u_.size(); ++i)
@@ -167,7 +167,7 @@ bool ContactNewton::findStep() {
   return true;
 }
 
-// Square of the missing momentum, in the metric of the bodies' energy.
+// Squared norm of the missing momentum, in the metric of kinetic energy.
 double ContactNewton::sizeOf(const std::vector<Vec6>& missing) {
   double sum = 0;
   for (std::size_t i = 0; i < missing.size(); ++i)
@@ -180,10 +180,10 @@ void ContactNewton::moveTo(double share) {
   for (std::size_t i = 0; i < u_.size(); ++i) trial_[i] = u_[i] + share * step_[i];
 }
 
-// Newton's step, or a share of it. False: none of these shares reduces what is missing. Mostly the whole step
-// does, so that the next one's derivatives are found with it.
+// Takes Newton's step, or a share of it. Returns false if no share reduces the missing momentum. The whole
+// step usually does, so the derivatives for the next step are computed with it.
 bool ContactNewton::step() {
-  constexpr double kSufficient = 1e-2;  // of the reduction that a linear equation would have
+  constexpr double kSufficient = 1e-2;  // required share of the reduction that a linear equation would have
   if (!findStep()) return false;
   const double size = sizeOf(missing_);
   double share = 1;
@@ -201,7 +201,8 @@ bool ContactNewton::step() {
   return false;
 }
 
-// A step of the convex problem in which the terms of slip stay as they are. False: there is no way down.
+// Takes a step of the convex problem, in which the slip terms are constant. Returns false if the step is not
+// a descent direction.
 bool ContactNewton::convexStep() {
   evaluate(u_, Slips::Follow, false, missing_);
   evaluate(u_, Slips::Stay, true, missing_);
@@ -219,7 +220,7 @@ bool ContactNewton::convexStep() {
   return true;
 }
 
-// Change of the bodies' velocities by the momentum that is missing at u.
+// Greatest change of the bodies' velocities by the missing momentum.
 double ContactNewton::imbalance_m_s() {
   scratch_.resize(u_.size());
   for (std::size_t i = 0; i < u_.size(); ++i) scratch_[i] = island_.bodies[i].effective_inverse * missing_[i];
@@ -250,10 +251,10 @@ void ContactNewton::writeImpulses(std::span<RigidContact> contacts) const {
     const Vec3 &n = points_[i].n, t[2] = {c.tangent_W(0), c.tangent_W(1)};
     c.p_n = n.dot(impulse);
     for (int k = 0; k < 2; ++k) c.p_t[k] = t[k].dot(impulse);
-    // Directions of floats are not quite of unit length, nor quite at right angles. Where a light body is
-    // between heavy ones, the rest of an impulse moves it by a micrometre a second.
+    // In single precision the directions are not exactly orthonormal, and the rest of an impulse would move a
+    // light body between heavy ones by a micrometre per second.
     const Vec3 rest = impulse - (c.p_n * n + c.p_t[0] * t[0] + c.p_t[1] * t[1]);
-    // Above the rounding of doubles, so that these keep their bits.
+    // The threshold is above the rounding of doubles, so that results in double precision are not changed.
     if (rest.norm() <= kRoundingShare * impulse.norm()) continue;
     c.p_n += n.dot(rest);
     for (int k = 0; k < 2; ++k) c.p_t[k] += t[k].dot(rest);
@@ -272,7 +273,7 @@ void ContactNewton::start(std::span<const RigidContact> contacts) {
   island_.readVelocities(u_);
 }
 
-// Takes the round's impulses. Returns by how much a contact misses its law at most [m/s].
+// Adopts the round's impulses. Returns the greatest error of a contact's law [m/s].
 double ContactNewton::endRound() {
   double law_m_s = 0;
   for (Point& p : points_) {
@@ -300,7 +301,7 @@ SolveOutcome ContactNewton::solve(std::span<RigidContact> contacts, double resid
       continue;
     }
     const double law_m_s = endRound();
-    // The bodies get the velocities of the impulses, which differ from those of the laws by the imbalance.
+    // The bodies get the velocities of the impulses, which differ from the laws' velocities by the imbalance.
     outcome.is_converged = off_m_s_ <= residual_m_s && law_m_s <= kAccuracyShare * residual_m_s;
     if (outcome.is_converged || outcome.steps >= step_limit) break;
     if (law_m_s > kAccuracyShare * last_m_s)

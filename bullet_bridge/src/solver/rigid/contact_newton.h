@@ -7,18 +7,18 @@
 //
 // where v is a contact's relative velocity, p the impulse found so far, t the least normal velocity, s the
 // contact's compliance [m/s per N s] and P the projection onto Coulomb's cone |x_t| <= mu x_n. The impulses
-// at the solution are those of the next round. So the compliance is only the weight of a proximal step (the
-// method of multipliers) and leaves no error; rounds begin soft, which Newton's method likes, and become
-// stiffer. Sticking and slipping need no case of their own.
+// at the solution are the p of the next round. So the compliance is only the weight of a proximal step
+// (method of multipliers) and leaves no error. Rounds begin soft, where Newton's method converges well, and
+// become stiffer. Sticking and slipping need no separate cases.
 //
-// The term mu |v_t| is De Saxce's: without it a contact that slides would rise by as much, since its force
-// would otherwise not be along its cone. It makes the matrix of Newton's method unsymmetric, and the equation
-// is not that of a minimum: a step is taken if it reduces the momentum that is missing. Where no share of it
-// does, a step of the convex problem is taken instead, in which that term is as it is now; its exact line
-// search goes ahead from any place. A round that still does not end is softened.
+// The term mu |v_t| is De Saxce's. Without it a sliding contact would separate at that speed. The term makes
+// the matrix of Newton's method unsymmetric, and the equation is not the condition of a minimum. So a step,
+// or a share of it, is accepted if it reduces the missing momentum. If no share does, a step of the convex
+// problem with the present value of the term is taken instead; its exact line search makes progress from any
+// point. A round that still does not converge is repeated with more compliance.
 //
-// With the term of the round before, rounds approach the solution by a constant factor only: of 47 problems
-// of ten brackets that lie on each other, 30 were solved in 60 steps; so 46 are.
+// If the term were taken from the previous round, the rounds would converge linearly only: of 47 problems of
+// ten brackets that lie on each other, 30 were solved in 60 steps, instead of 46.
 //
 // Sources: De Saxce and Feng 1998 for the term of slip; Alart and Curnier 1991 for Newton's method on it;
 // Castro, Permenter and Han 2022 for the convex problem; Rockafellar 1976 for the proximal steps.
@@ -38,46 +38,47 @@ class ContactNewton {
   ContactNewton(Island& island, JointRows& joints) : island_(island), joints_(joints) {}
 
   /// Updates the impulses of contacts and joints and the bodies' velocities. The contacts' rows must be
-  /// prepared. Where it does not converge, the impulses are within their cones all the same. Cost of a step:
-  /// a factorisation (IslandMatrix), and about 0.2 us a contact.
-  /// @param residual_m_s  converged: no contact misses its law by a tenth of this velocity, nor does
-  ///                      any point of a body by more when it gets the impulses' velocity
-  /// @param step_limit    Newton's steps, over all rounds
+  /// prepared. If it does not converge, the impulses are still within their cones. Cost of a step: a
+  /// factorisation (IslandMatrix), and about 0.2 us a contact.
+  /// @param residual_m_s  converged if no contact misses its law by more than a tenth of this velocity, and
+  ///   the impulses' velocities differ from the solution by no more than this at any point of a body
+  /// @param step_limit  greatest number of Newton steps, over all rounds
   SolveOutcome solve(std::span<RigidContact> contacts, double residual_m_s, int step_limit);
 
  private:
-  /// A contact; impulses are those on body 0, in W.
+  /// A contact. Impulses act on body 0, in W.
   struct Point {
-    Vec3 r, n;        ///< position from the patch's centre; normal
+    Vec3 r, n;        ///< position relative to the patch's centre; normal
     double mu;        ///< friction
     double W;         ///< inverse mass
     double softness;  ///< s
     double target;    ///< t [m/s], without the term of slip
-    double slip;      ///< mu |v_t|, of now or, in a convex step, of its start [m/s]
+    double slip;      ///< mu |v_t|, at present or, in a convex step, at the start of the step [m/s]
     Vec3 impulse;     ///< p
-    Vec3 next;        ///< p at the velocities that were evaluated last
+    Vec3 next;        ///< p at the velocities evaluated last
   };
   /// Consecutive contacts of one pair of bodies.
   struct Patch {
     int body[2] = {-1, -1};
     Vec3 center = Vec3::Zero();
-    Mat6 X[2];  ///< twist of a body about its own centre -> its share in the relative one about `center`
-    Vec6 fixed = Vec6::Zero();       ///< share of a body that the solver does not move
-    std::size_t first = 0, end = 0;  ///< in points_
-    Mat6 jacobian;                   ///< of the wrench that it misses, by the relative twist
+    Mat6
+        X[2];  ///< maps a body's twist about its own centre to its share of the relative twist about `center`
+    Vec6 fixed = Vec6::Zero();       ///< share of the relative twist of a body that the solver does not move
+    std::size_t first = 0, end = 0;  ///< range in points_
+    Mat6 jacobian;                   ///< derivative of the patch's missing wrench by the relative twist
   };
-  /// Minus the derivative of a patch's wrench: of the contacts that stick, and the rest.
+  /// Minus the derivative of a patch's wrench: springs of the sticking contacts, and the rest.
   struct Stiffness {
     SymmetricSum springs;
     Mat6 rest = Mat6::Zero();
   };
-  /// Whether the terms of slip follow the velocities, or stay.
+  /// Whether the slip terms are updated with the velocities or kept.
   enum class Slips : std::uint8_t { Follow, Stay };
   /// A row of a joint.
   struct Joint {
     JointRow* row;
-    double softness, next_Ns;  ///< velocity per impulse; impulse at the velocities that were evaluated last
-    bool is_free;              ///< within its limits there
+    double softness, next_Ns;  ///< velocity per impulse; impulse at the velocities evaluated last
+    bool is_free;              ///< that impulse is within the row's limits
   };
   void start(std::span<const RigidContact> contacts);
   void gather(std::span<const RigidContact> contacts);

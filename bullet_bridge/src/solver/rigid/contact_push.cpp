@@ -1,5 +1,4 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// Moves bodies that overlap apart, without a velocity that remains.
+// SPDX-License-Identifier: BSD-3-Clause The push: moves overlapping bodies apart without leaving a velocity.
 #include <BulletDynamics/ConstraintSolver/btContactSolverInfo.h>
 
 #include <algorithm>
@@ -49,8 +48,8 @@ void ContactSweeps::solvePush(const btContactSolverInfo& info, int sweep_limit) 
       double v = 0;  // the motion of kinematic bodies does not belong to the push
       for (const ContactRow::Side& side : c.normal.side)
         if (side.body >= 0) v += side.J.dot(body(side).u);
-      // What is to be removed may contradict itself, as for a part that is jammed; what must not be added
-      // cannot. So a gap is restored softly, but no other row's push takes from that of sharp features.
+      // The overlaps to be removed may contradict each other, as for a jammed part, so they are restored
+      // softly. Gaps of sharp features are a hard limit: no other row's push may reduce them.
       const double W = c.normal.W;
       double p = c.push_m_s <= 0 || c.is_sharp ? c.p_push + (std::min(0.0, c.push_m_s) - v) / W : 0;
       if (c.push_m_s > 0)
@@ -62,15 +61,15 @@ void ContactSweeps::solvePush(const btContactSolverInfo& info, int sweep_limit) 
       residual_m_s = std::max(residual_m_s, std::abs(p - c.p_push) * c.normal.W);
       c.p_push = p;
     }
-    // With ten times this tolerance, each step's velocity lowered a heavy load on light bodies as much as
-    // each push had raised it.
+    // With ten times this tolerance a heavy load on light bodies sank in each step as much as each push
+    // raised it.
     if (residual_m_s * dt < kRounding_m) break;
   }
   for (std::size_t i = 0; i < push_.size(); ++i) {
     IslandBody& b = island_.bodies[i];
     Vec6& push = push_[i];
     std::swap(b.u, push);
-    // Each row's push is limited, but contradictory rows add up.
+    // The push of each row is limited, but contradictory rows may add up.
     const double fastest_m_s = push.tail<3>().norm() + push.head<3>().norm() * b.reach_m;
     if (fastest_m_s > kSeparation_m_s) push *= kSeparation_m_s / fastest_m_s;
   }

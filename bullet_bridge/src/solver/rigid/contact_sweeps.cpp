@@ -15,7 +15,7 @@
 namespace vps::bullet {
 namespace {
 
-// More than 1 would make energy. Bullet accepts any value, also one that is not a number.
+// Limits the restitution to 0..1, since more than 1 would add energy. Bullet accepts any value, even NaN.
 double restitutionOf(const btManifoldPoint& point) {
   const double e = point.m_combinedRestitution;
   return e > 0 ? std::min(e, 1.0) : 0.0;
@@ -46,10 +46,10 @@ void ContactSweeps::apply(const ContactRow& row, double impulse) {
     if (side.body >= 0) body(side).u += impulse * side.MinvJ;
 }
 
-// False: no body of the island is part of the contact.
+// Returns false if no body of the island is part of the contact.
 bool ContactSweeps::makeRows(RigidContact& c) const {
-  // Both forces act at the middle of the gap: forces in one line preserve the angular momentum. The levers
-  // are doubles, since floats would round each on its own, and move the two forces apart.
+  // Both forces act at the middle of the gap, since opposite forces along one line conserve angular momentum.
+  // The levers are doubles: rounding to floats would move the two forces apart.
   const Vec3 at = c.position_W();
   ContactRow* const rows[3] = {&c.normal, &c.tangent[0], &c.tangent[1]};
   const Vec3 directions[3] = {c.normal_W(), c.tangent_W(0), c.tangent_W(1)};
@@ -161,9 +161,9 @@ void ContactSweeps::prepare() {
   }
 }
 
-// Last step's impulses p are a good start if they lower the function that the solution minimises,
-// p A p / 2 + p (v - target), with A p the change of velocity that they cause. Where contacts contradict each
-// other, as in parts that start in each other, impulses that balanced each other would otherwise grow from
+// Last step's impulses p are a good start if they lower the function that the solution minimises, p A p / 2 +
+// p (v - target), where A p is the change of velocity that they cause. Otherwise the sweeps start from zero:
+// in parts that start inside each other contacts contradict each other, and balanced impulses would grow from
 // step to step with every contact that comes or goes.
 void ContactSweeps::start() {
   prepare();
@@ -202,8 +202,7 @@ void ContactSweeps::applyImpulses() {
             joint.row->impulse_Ns * joint.MinvJ[i];
 }
 
-// Rows of joints have their own units: an angular velocity counts as the velocity at a radius of 10 mm.
-// Assumed.
+// In the residual, an angular velocity of a joint counts as the velocity at a radius of 10 mm. Assumed.
 double ContactSweeps::sweepJoints() {
   double residual_m_s = 0;
   for (const JointState& joint : joint_states_) {
@@ -238,8 +237,8 @@ double ContactSweeps::sweepOnce() {
     double p1 = c.p_t[0] - (c.W_t_inverse[0] * v1 + c.W_t_inverse[1] * v2);
     double p2 = c.p_t[1] - (c.W_t_inverse[1] * v1 + c.W_t_inverse[2] * v2);
     if (tangentLength(p1, p2) > limit) {
-      // The contact slides. The step must be along the slip itself: a step by the block's inverse, scaled
-      // back, would converge to friction along W^-1 v, not along the slip, and 1 % too weak.
+      // The contact slides. The change must be along the slip: a change by the block's inverse, scaled back,
+      // would converge to friction along W^-1 v instead of along the slip, 1 % too weak.
       p1 = c.p_t[0] - v1 / c.W_t;
       p2 = c.p_t[1] - v2 / c.W_t;
       limitToCone(p1, p2, limit);

@@ -3,8 +3,8 @@
 //
 // Signorini's condition in the normal direction (gap at the end of the step >= 0), Coulomb's cone (not a
 // pyramid) in the tangent plane. A second, frictionless solve then removes overlap; its velocities move the
-// bodies once and are discarded, so that no energy is added (split impulse). Restitution is no part of
-// either: see restitution.h. Sources: Catto 2005 (sequential impulses); Jourdan, Alart and Jean 1998
+// bodies once and are discarded, so that no energy is added (split impulse). Neither solve includes
+// restitution: see restitution.h. Sources: Catto 2005 (sequential impulses); Jourdan, Alart and Jean 1998
 // (Gauss-Seidel for frictional contact).
 #pragma once
 
@@ -26,16 +26,16 @@ namespace vps::bullet {
 /// One direction of a contact: a row of its Jacobian.
 struct ContactRow {
   struct Side {
-    int body = -1;          ///< -1: not moved by contact
-    Vec6 J = Vec6::Zero();  ///< so that J . u is the velocity along the row's direction
+    int body = -1;          ///< index in the island; -1 for a body that contact does not move
+    Vec6 J = Vec6::Zero();  ///< J . u is the velocity along the row's direction
     Vec6 MinvJ = Vec6::Zero();
   };
   Side side[2];
-  double fixed_velocity = 0;  ///< of a kinematic body, along the direction
+  double fixed_velocity = 0;  ///< velocity of a kinematic body along the direction
   double W = 0;               ///< J effective_mass^-1 J'
 
-  /// Along the direction.
-  /// @param twistOf  velocity of a body, by its index
+  /// Velocity along the direction.
+  /// @param twistOf  returns the twist of a body, by its index
   template <typename TwistOf>
   [[nodiscard]] double velocity(const TwistOf& twistOf) const {
     double v = fixed_velocity;
@@ -53,15 +53,15 @@ struct RigidContact {
   double target_m_s = 0;  ///< least normal velocity
   double push_m_s = 0;    ///< least normal velocity of the push
   double gap_m = 0;
-  double area_m2 = 0;  ///< of a touching face, that it stands for
+  double area_m2 = 0;  ///< area of a touching face that the contact represents
   double mu = 0;
-  double restitution = 0;                       ///< 0 to 1
-  bool is_sharp = false;                        ///< of sharp features apart, whose gap no push may take
+  double restitution = 0;  ///< 0 to 1
+  bool is_sharp = false;   ///< contact of sharp features with a gap, which no push may reduce
   double p_n = 0, p_t[2] = {0, 0}, p_push = 0;  ///< impulses [N s]
-  double W_t_inverse[3] = {0, 0, 0};            ///< of the 2x2 tangent block: 11, 12, 22
-  double W_t = 0;                               ///< its greatest eigenvalue
+  double W_t_inverse[3] = {0, 0, 0};            ///< inverse of the 2x2 tangent block: entries 11, 12, 22
+  double W_t = 0;                               ///< greatest eigenvalue of the tangent block
 
-  /// Where its forces act, the middle of the gap, and their directions.
+  /// Point at which the contact forces act (the middle of the gap), and the directions of the forces.
   [[nodiscard]] Vec3 position_W() const;
   [[nodiscard]] Vec3 normal_W() const;
   [[nodiscard]] Vec3 tangent_W(int k) const;
@@ -73,10 +73,10 @@ class ContactSweeps {
 
   void clear() {
     contacts_.clear();
-    push_.clear();  // of another island
+    push_.clear();  // they belong to another island
   }
   void add(btPersistentManifold& manifold, btManifoldPoint& point, const btContactSolverInfo& info);
-  /// Starts from last step's impulses, with the bodies' effective masses.
+  /// Prepares the rows with the bodies' effective masses, and starts from last step's impulses.
   void start();
   /// Sweeps until no row's velocity changes by more than residual_m_s, at most `limit` times.
   SolveOutcome sweep(double residual_m_s, int limit);
@@ -85,11 +85,11 @@ class ContactSweeps {
   [[nodiscard]] std::vector<RigidContact>& contacts() { return contacts_; }
   /// Finds the push that removes a share of the overlap left at the end of the step, without adding velocity.
   void solvePush(const btContactSolverInfo& info, int sweep_limit);
-  /// Adds contacts that the solved step lacks, or gives those that it has another plane. Each then keeps its
-  /// bodies apart at the end of the step, to first order about the present velocities and push. A step must
-  /// not end deeper than it began, so a contact may ask for a velocity that separates.
+  /// Adds the missed contacts, or gives existing contacts another plane. Each contact then keeps its bodies
+  /// apart at the end of the step, to first order about the present velocities and push. A step must not end
+  /// deeper than it began, so a contact may require a separating velocity.
   void addMissed(std::span<const MissedContact> missed, const btContactSolverInfo& info);
-  /// Velocities of the push, one for each body; empty: none is needed.
+  /// Velocities of the push, one per body; empty if no push is needed.
   [[nodiscard]] std::span<const Vec6> push() const { return push_; }
   /// Writes the impulses to the manifolds.
   void finish() const;

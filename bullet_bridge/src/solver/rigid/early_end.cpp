@@ -11,14 +11,14 @@ namespace vps::bullet {
 
 namespace {
 
-/// The bodies that a share of the way is for.
+/// The bodies whose motion is shortened.
 class Held {
  public:
   explicit Held(std::size_t count) : is_held_(count, 0) {}
   void add(int body) {
     if (body >= 0) is_held_[static_cast<std::size_t>(body)] = 1;
   }
-  /// Adds all that hang together with them.
+  /// Adds all bodies that are connected to them by joints or loaded contacts.
   void spread(std::span<const RigidContact> contacts, const JointRows& joints) {
     bool has_grown = true;
     while (has_grown) {

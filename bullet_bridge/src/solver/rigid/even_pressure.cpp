@@ -14,7 +14,8 @@ namespace vps::bullet {
 
 namespace {
 
-constexpr std::size_t kSingleWay = 3;  // contacts of a face that share its load in one way
+constexpr std::size_t kSingleWay =
+    3;  // up to this number of contacts, a face's load is shared in a unique way
 
 bool isOfPair(const RigidContact& c, const RigidContact& of) {
   return std::equal(c.object, c.object + 2, of.object);
@@ -24,17 +25,18 @@ bool touches(const RigidContact& c) {
   return c.p_n > 0 || std::abs(c.gap_m) < kRounding_m;
 }
 
-/// Impulses a_k w_k . f, with the least sum of p_k^2 / a_k, that have a wrench.
+/// Finds impulses p_k = a_k w_k . f that have a given wrench and the least sum of p_k^2 / a_k.
 class LeastSquares {
  public:
   void add(double weight, const Vec6& row) { gram_ += weight * row * row.transpose(); }
-  /// Factors f; what rows cannot carry is left out.
+  /// Returns the factors f. Components that the rows cannot carry are left out.
   [[nodiscard]] Vec6 solve(const Vec6& wanted) const {
     const double least = kSettledShare * gram_.trace();
     if (!(least > 0)) return Vec6::Zero();
     const Eigen::LDLT<Mat6> solver(gram_ + least * Mat6::Identity());
     const Vec6 factors = solver.solve(wanted);
-    return factors + solver.solve(wanted - gram_ * factors);  // without what was added
+    return factors +
+           solver.solve(wanted - gram_ * factors);  // one refinement removes the effect of the regularisation
   }
 
  private:
@@ -49,7 +51,7 @@ void EvenPressure::spread(std::span<RigidContact> contacts) {
     if (i == 0 || !isOfPair(contacts[i], contacts[i - 1])) runs_.push_back({i, i});
     runs_.back().end = i + 1;
   }
-  // A pair has several manifolds, which need not follow each other. The order of pairs does not matter.
+  // A pair's manifolds need not be consecutive. The order of pairs does not matter.
   std::stable_sort(runs_.begin(), runs_.end(), [&](const Run& a, const Run& b) {
     return std::lexicographical_compare(contacts[a.first].object, contacts[a.first].object + 2,
                                         contacts[b.first].object, contacts[b.first].object + 2,
@@ -79,7 +81,7 @@ void EvenPressure::spreadPair(std::span<RigidContact> contacts) {
     rows_.push_back(wrenchOf((contacts[i].position_W() - center) / length_m, contacts[i].normal_W()));
     wanted += contacts[i].p_n * rows_.back();
   }
-  impulses_Ns_.assign(group_.size(), 1);  // positive: takes part
+  impulses_Ns_.assign(group_.size(), 1);  // a positive value takes part
   for (int round = 0; round < kMostRounds; ++round) {
     LeastSquares spread;
     for (std::size_t k = 0; k < group_.size(); ++k)
@@ -105,8 +107,8 @@ void EvenPressure::spreadPair(std::span<RigidContact> contacts) {
   }
 }
 
-// What slides has friction along its slip; what sticks shares it by the limits. False: that would be beyond
-// them.
+// Sliding contacts get friction along their slip; sticking ones share it in proportion to their limits.
+// Returns false if that would exceed the limits.
 bool EvenPressure::spreadFriction(std::span<RigidContact> contacts, const Vec3& center, double length_m) {
   const auto slipOf = [&](const ContactRow& row) {
     return row.velocity([&](std::size_t i) -> const Vec6& { return island_.bodies[i].u; });

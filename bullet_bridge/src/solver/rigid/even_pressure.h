@@ -1,6 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// Statics leaves open how the contacts of a flush face share its load. The pressure that a solver starts from
-// is made the even one.
+// SPDX-License-Identifier: BSD-3-Clause Evens the pressure from which the solver starts. Statics does not
+// determine how the contacts of a flush face share its load.
 #pragma once
 
 #include <array>
@@ -11,11 +10,11 @@
 
 namespace vps::bullet {
 
-/// Spreads the normal impulses of each pair of bodies over its contacts that touch, so that force and moment
-/// stay and the sum of p^2 / area is least: as under a body on an even, soft layer. Friction is spread
-/// likewise. A solver that starts from them goes to the solution nearest to them, so that the even pressure
-/// stays wherever it is one. Where contacts hold bodies in a single way, or no such impulses all
-/// press, they stay. Cost: some 50 ns a contact and 1 us a pair.
+/// Redistributes the normal impulses of each pair of bodies over its touching contacts: force and moment are
+/// kept, and the sum of p^2 / area becomes least, as under a body on an even, soft layer. Friction is
+/// redistributed likewise. The solver then converges to the solution nearest to this start, so the even
+/// pressure remains wherever it is a solution. Impulses are not changed if the contacts determine them
+/// uniquely, or if the even ones would not all press. Cost: some 50 ns per contact and 1 us per pair.
 class EvenPressure {
  public:
   explicit EvenPressure(const Island& island) : island_(island) {}
@@ -25,14 +24,14 @@ class EvenPressure {
   void spreadPair(std::span<RigidContact> contacts);
   bool spreadFriction(std::span<RigidContact> contacts, const Vec3& center, double length_m);
 
-  /// Contacts of one pair that follow each other.
+  /// Consecutive contacts of one pair.
   struct Run {
     std::size_t first, end;
   };
   const Island& island_;
   std::vector<Run> runs_;
-  std::vector<std::size_t> group_;  // indices of the contacts of one pair that touch
-  std::vector<Vec6> rows_;          // wrench of a unit impulse on each
+  std::vector<std::size_t> group_;  // indices of one pair's touching contacts
+  std::vector<Vec6> rows_;          // wrench of a unit impulse on each of them
   std::vector<double> impulses_Ns_;
   std::vector<std::array<double, 2>> friction_Ns_;
 };
