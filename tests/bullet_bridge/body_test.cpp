@@ -16,7 +16,7 @@ namespace {
 
 using test::World;
 
-/// The mesh moved away from its frame's origin and turned, as CAD parts are.
+/// Moves the mesh away from its frame's origin and turns it, as in CAD files.
 Mesh displacedBox(const Vec3& size_m) {
   return transformed(makeBox(size_m), Pose(rotationFromVector(Vec3(0.3, 0.2, 0.1)), Vec3(0.05, -0.02, 0.01)));
 }
@@ -55,7 +55,7 @@ TEST(MakeBody, FollowsItsMotionInThePartsFrame) {
 }
 
 TEST(MakeBody, GivesThePartsFrictionByBulletsRule) {
-  // On a slope of 20 degrees (tan 0.364): steel on steel of mu 0.15 slides, of 0.5 stays.
+  // On a slope of 20 degrees (tan 0.364) a body slides with a friction of 0.15 and stays with 0.5.
   for (const double mu : {0.15, 0.5}) {
     BodySettings settings;
     settings.material.friction = mu;
@@ -171,7 +171,8 @@ TEST(MakeBody, NeedsNoMassForAFixedSheet) {
 
 TEST(MakeBody, HasTheMassOfTheSolidWhereTheMeshLacksALid) {
   const Vec3 size_m(0.02, 0.03, 0.04);
-  for (const bool is_tube : {false, true}) {  // without the face above, or without that and the one below
+  for (const bool is_tube :
+       {false, true}) {  // without the upper face, or without both the upper and the lower one
     for (const Vec3& place : {Vec3(0, 0, 0), Vec3(0.1, -0.2, 0.3)}) {
       Mesh open = makeBox(size_m);
       std::erase_if(open.triangles, [&](const auto& t) {

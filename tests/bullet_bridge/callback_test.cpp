@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// Bullet's contact callbacks: for a part as for a box, measured side by side.
+// SPDX-License-Identifier: BSD-3-Clause Bullet's contact callbacks are called for a part as for one of
+// Bullet's boxes; both are compared.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -82,7 +82,8 @@ class Callbacks : public testing::Test {
     gContactEndedCallback = nullptr;
     gContactDestroyedCallback = nullptr;
   }
-  /// A cube that rests on another for some steps: parts, or Bullet's boxes. Then it is lifted, or removed.
+  /// A cube rests on another cube for some steps and is then lifted or removed. Both are parts, or Bullet's
+  /// boxes.
   Calls rest(bool is_part, int steps, bool is_lifted) {
     calls_ = {};
     World world;
@@ -100,7 +101,7 @@ class Callbacks : public testing::Test {
     if (is_lifted) {
       world.world->setGravity(btVector3(0, 0, 0));
       body.setGravity(btVector3(0, 0, 0));
-      body.setLinearVelocity(btVector3(0, 0, 1));  // 10 mm in ten steps: still near the other
+      body.setLinearVelocity(btVector3(0, 0, 1));  // 10 mm in in ten steps it is still near the other cube
       world.step(10);
       body.setWorldTransform(toBt(Pose::translation(Vec3(0, 0, 0.1))));
       world.step(30);
@@ -140,8 +141,8 @@ TEST_F(Callbacks, AreCalledForAPartAsForABox) {
 }
 
 TEST_F(Callbacks, ACallbacksFrictionStaysWithItsPoint) {
-  // Gravity leans by 34 degrees, less than would tip the cube; without the callback's friction of 2 it would
-  // slide.
+  // Gravity is tilted by 34 degrees, too little to tip the cube. Without the callback's friction of 2 the
+  // cube would slide.
   for (const btScalar friction : {btScalar(2), btScalar(0)}) {
     calls_ = {};
     calls_.friction = friction;
@@ -151,7 +152,8 @@ TEST_F(Callbacks, ACallbacksFrictionStaysWithItsPoint) {
     btRigidBody& body = world.add(cube(), Pose::translation(Vec3(0, 0, 0.01)));
     body.setCollisionFlags(body.getCollisionFlags() | btCollisionObject::CF_CUSTOM_MATERIAL_CALLBACK);
     world.step(30);
-    // Free, in n steps: a dt^2 n (n + 1) / 2. Bullet's solver in single precision lets it go for a step.
+    // In free motion the body would move by a dt^2 n (n + 1) / 2 in n steps. Bullet's solver in single
+    // precision lets it slip for a step.
     const double x_m = body.getWorldTransform().getOrigin().x();
     if (friction > 0)
       EXPECT_LT(x_m, 12e-6);  // two steps
@@ -160,7 +162,7 @@ TEST_F(Callbacks, ACallbacksFrictionStaysWithItsPoint) {
   }
 }
 
-/// A host's own result, as a near callback of its own may pass.
+/// A result type of a host, as the host's near callback may pass it.
 struct OwnResult : btManifoldResult {
   using btManifoldResult::btManifoldResult;
 };

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// Rays and sweeps meet a part where they meet Bullet's own mesh of the same triangles, and as fast.
+// SPDX-License-Identifier: BSD-3-Clause Rays and sweeps hit a part at the same place as Bullet's mesh shape
+// with the same triangles, and as fast.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -29,20 +29,20 @@ struct Targets {
     for (const auto& t : mesh.triangles)
       triangles.addTriangle(toBt(mesh.vertices[t[0]]), toBt(mesh.vertices[t[1]]), toBt(mesh.vertices[t[2]]));
     bvh = std::make_unique<btBvhTriangleMeshShape>(&triangles, true);
-    bvh->setMargin(0);  // as a part has none
+    bvh->setMargin(0);  // a part has no margin
     ShapeModels models;
     models.mesh = std::make_shared<Mesh>(mesh);
     part = std::make_unique<Shape>(std::move(models));
   }
 };
 
-/// Hit fractions of the same casts at a shape, and how long one took.
+/// Hit fractions of casts at a shape, and the time of one cast.
 struct Hits {
-  std::vector<double> fractions, exact;  ///< the second: with a sphere instead of its facets
+  std::vector<double> fractions, exact;  ///< `exact`: for a sphere instead of its facets
   double cast_us = 0;
 };
 
-/// Share of the way after which a ball touches the sphere; 1: never.
+/// Share of the path after which a ball touches the sphere; 1 if it never does.
 double touches(const Vec3& from, const Vec3& to, double ball_m) {
   const Vec3 way = to - from, r = from - kCenter;
   const double a = way.squaredNorm(), b = r.dot(way);

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// Compounds with parts among their children collide as the children would alone.
+// SPDX-License-Identifier: BSD-3-Clause A compound that contains parts collides as its children would on
+// their own.
 #include <BulletCollision/CollisionDispatch/btCompoundCollisionAlgorithm.h>
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ btVector3 halfSize(const Vec3& size_m) {
   return toBt(Vec3(0.5 * size_m));
 }
 
-/// A compound of one child, or of that compound.
+/// A compound of one child, or a compound of such a compound.
 struct Nested {
   btCompoundShape inner, outer;
   Nested(btCollisionShape& child, bool is_twice) {
@@ -64,8 +64,8 @@ Fall dropped(btCollisionShape& falling, btCollisionShape& floor, double dt_s, So
   return fall;
 }
 
-// It arrives at 1.4 m/s: 1.4 mm a step at 1 kHz, 23 mm at 60 Hz. Contact is found ahead, as without a
-// compound.
+// The body arrives at 1.4 m/s, which is 1.4 mm per step at 1 kHz and 23 mm at 60 Hz. Contact is found ahead
+// of the motion, as without a compound.
 TEST(Compound, StopsAFallingPartAtItsSurface) {
   btBoxShape box(halfSize(Vec3(0.2, 0.2, 0.02)));
   for (const double dt_s : {1e-3, 1.0 / 60})
@@ -114,7 +114,7 @@ TEST(Compound, FollowsChildrenThatAreAddedMovedAndRemoved) {
   const auto second = std::make_unique<btBoxShape>(halfSize(Vec3::Constant(0.02)));
   compound.addChildShape(toBt(Pose::translation(Vec3(0.04, 0, 0.005))), second.get());
   compound.removeChildShape(cube().shape.get());
-  EXPECT_NEAR(height_m(200), 0.005, 1e-4);  // a box of Bullet's own
+  EXPECT_NEAR(height_m(200), 0.005, 1e-4);  // one of Bullet's boxes
   compound.removeChildShape(second.get());
   EXPECT_LT(height_m(100), -0.02);
 }
@@ -162,7 +162,8 @@ TEST(Compound, AsksBulletsCallbackForEachPairOfChildren) {
   EXPECT_GT(fall.deepest_m, 0.5);
 }
 
-// Of Bullet's own shapes: their contact, to the bit, and the functions that were there before.
+// Compounds of Bullet's own shapes keep their contact, with the same bits, and the functions registered
+// before.
 TEST(Compound, WithoutPartsIsLeftToBullet) {
   btBoxShape box(halfSize(Vec3::Constant(0.02)));
   btStaticPlaneShape plane(btVector3(0, 0, 1), 0);

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// The contacts of a flush face stand for its area, and share its load evenly.
+// SPDX-License-Identifier: BSD-3-Clause The contacts of a flush face represent its area and share its load
+// evenly.
 #include "narrowphase/selection/contact_selection.h"
 
 #include <gtest/gtest.h>
@@ -66,7 +66,7 @@ TEST(ContactArea, ThirtyTwoContactsHaveTheMomentsOfTheWholeFace) {
     EXPECT_NEAR(got.area_m2 / want.area_m2, 1, 0.005) << seed;
     EXPECT_LE((got.first - want.first).norm(), 0.005 * want.area_m2 * kSize_m) << seed;
     EXPECT_LE((got.second - want.second).norm(), 0.005 * want.second.norm()) << seed;
-    // What friction against a spin depends on.
+    // The friction torque against a spin depends on the mean distance from the axis.
     EXPECT_NEAR(got.radius / want.radius, 1, 0.03) << seed;
   }
 }
@@ -83,7 +83,7 @@ TEST(ContactArea, MergedPointsKeepTheirMoments) {
   EXPECT_LE((second - want.second).norm(), 1e-5 * want.second.norm());  // its spread is in floats
 }
 
-// Two faces that face each other's way: what is dropped goes to its own.
+// Two faces with opposite normals: the area of a dropped point goes to a contact of the same face.
 TEST(ContactArea, ReductionByCellsKeepsTheMomentsOfEachFace) {
   std::vector<Candidate> points = faceOf(0, 1, Pose());
   const std::vector<Candidate> up = points;
@@ -136,7 +136,7 @@ TEST(EvenPressure, SpreadsTheLoadOfFourCornersByTheAreas) {
   Block block(5);
   search::Random random(1);
   double whole_m2 = 0;
-  for (std::size_t i = 0; i < 13; ++i)  // as much on one side as opposite
+  for (std::size_t i = 0; i < 13; ++i)  // equal load on opposite sides
     block.contacts()[i].area_m2 = block.contacts()[24 - i].area_m2 = random.uniform(0.5e-6, 2e-6);
   for (const RigidContact& c : block.contacts()) whole_m2 += c.area_m2;
   for (const std::size_t corner : {0U, 4U, 20U, 24U}) block.contacts()[corner].p_n = 1e-3;
@@ -159,7 +159,7 @@ TEST(EvenPressure, KeepsForceAndMomentOfAnyLoadAndNothingPulls) {
     const Vec6 before = block.wrench();
     const std::vector<RigidContact> had = block.contacts();
     block.spread();
-    // A ten-thousandth of the load may be left to the solver.
+    // The solver may leave an error of a ten-thousandth of the load.
     EXPECT_LE((block.wrench() - before).norm(), 2e-4 * before.norm()) << seed;
     bool is_changed = false;
     for (std::size_t i = 0; i < had.size(); ++i) {

@@ -26,7 +26,7 @@ struct Cubes : test_island::SmallIsland {
     body.applyCentralForce(toBt(force_N));
     return body;
   }
-  // Of `upper` on what is below it.
+  // Contacts of `upper` with the cube below it.
   void touch(btRigidBody& upper, btRigidBody& lower, double mu) {
     for (const double x : {-kHalf_m, kHalf_m})
       for (const double y : {-kHalf_m, kHalf_m})
@@ -41,7 +41,7 @@ struct Cubes : test_island::SmallIsland {
   }
 };
 
-/// A tower; each contact carries a quarter of what is above it.
+/// A tower. Each contact carries a quarter of the weight above it.
 struct Tower : Cubes {
   static constexpr int kCubes = 20;
   Tower() {
@@ -77,7 +77,7 @@ TEST(ContactNewton, CarriesTheWeightOfATowerWhereSweepsDoNot) {
 
 TEST(ContactNewton, SlidesWithTheForceBeyondFrictionAndSticksBelow) {
   constexpr double mu = 0.3;
-  for (const double pull : {0.5, 0.2}) {  // of the weight, sidewards
+  for (const double pull : {0.5, 0.2}) {  // sideways force, as a share of the weight
     Cubes cubes;
     const double weight_N = kMass_kg * kGravity_m_s2;
     for (int k = 0; k < 20; ++k) {
@@ -94,8 +94,8 @@ TEST(ContactNewton, SlidesWithTheForceBeyondFrictionAndSticksBelow) {
   }
 }
 
-// Normals in all directions, either body first, gaps, a floor that moves, and pairs whose contacts are apart
-// in the list. Velocities are those of very many sweeps.
+// Contacts with normals in all directions, either order of bodies, gaps, a moving floor, and pairs whose
+// contacts are not consecutive. The velocities must equal those of very many sweeps.
 struct Random : Cubes {
   static constexpr int kCubes = 15;
   explicit Random(unsigned seed) {
@@ -133,8 +133,8 @@ TEST(ContactNewton, RandomContactsHaveTheVelocitiesOfManySweeps) {
   }
 }
 
-// Bodies with faces on each other all around, which hold each other by friction: where one slips changes the
-// load of all.
+// Bodies with faces on each other all around, which hold each other by friction. If one contact slips, the
+// load of all contacts changes.
 struct Heap : Cubes {
   explicit Heap(unsigned seed) {
     constexpr int kCubes = 12, kFaces = 16;
@@ -165,7 +165,7 @@ struct Heap : Cubes {
   }
 };
 
-// With terms of slip from the round before, half of them are not solved in as many steps.
+// With slip terms from the previous round, half of the problems are not solved in as many steps.
 TEST(ContactNewton, SettlesTheFrictionOfAHeapInFewSteps) {
   constexpr int kHeaps = 50, kMost = 60;
   int converged = 0, steps = 0;

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// The method of multipliers for rigid contacts, by the laws of contact and where sweeps would take very long.
+// SPDX-License-Identifier: BSD-3-Clause The method of multipliers for rigid contacts, tested by the laws of
+// contact and on problems for which sweeps would take very long.
 #include "solver/rigid/contact_newton.h"
 
 #include <gtest/gtest.h>
@@ -56,8 +56,8 @@ TEST(ContactNewton, NeverAddsEnergy) {
     }
 }
 
-// Contacts that want a little more than they had, as after a check: a hundred times as much impulse follows
-// as the laws are missed by, and the bodies' velocities are those of the impulses.
+// Contacts need a little more impulse than they had, as after a check. The solution must meet the laws of
+// contact, and the bodies' velocities must be those of the impulses.
 TEST(ContactNewton, TheVelocitiesOfTheImpulsesObeyTheLawsAsWell) {
   constexpr double kResidual_m_s = 1e-5;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
@@ -80,7 +80,7 @@ TEST(ContactNewton, TheVelocitiesOfTheImpulsesObeyTheLawsAsWell) {
   }
 }
 
-// A heavy block on a light one: sweeps pass on a share of a thousandth in each.
+// A heavy block on a light one: each sweep transmits only a thousandth of the load.
 TEST(ContactNewton, CarriesAHeavyBodyOnALightOne) {
   constexpr double kRatio = 1e4, kGravity_m_s2 = 9.81;
   SmallIsland made;

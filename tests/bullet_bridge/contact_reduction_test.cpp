@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// From thousands of near points to the few that the solver is given: what must not be lost.
+// SPDX-License-Identifier: BSD-3-Clause Reduction of thousands of near points to the few contacts of the
+// solver: properties that must be preserved.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -70,8 +70,8 @@ TEST(ContactReduction, KeepsNoMoreThanTheLimitAndAscendingKeys) {
                              [](const Candidate& a, const Candidate& b) { return a.key() < b.key(); }));
 }
 
-// What is kept supports the part as all points do: no point is farther from all kept ones than 32 evenly
-// spread points leave room for.
+// The kept points support the part as all points do: no point is farther from its nearest kept point than
+// with 32 evenly spread points.
 TEST(ContactReduction, KeepsTheExtentOfThePatch) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const std::vector<Candidate> all = patch(seed, false), few = bySpread(all);

@@ -1,6 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// The sweeps over rigid contacts, by the laws of contact and on problems whose solution is known. Without
-// restitution.
+// SPDX-License-Identifier: BSD-3-Clause Sweeps over rigid contacts without restitution, tested by the laws of
+// contact and on problems with known solutions.
 #include "solver/rigid/contact_sweeps.h"
 
 #include <gtest/gtest.h>
@@ -39,8 +38,8 @@ TEST(ContactSweeps, ObeySignoriniAndCoulomb) {
   }
 }
 
-// Contacts whose gap is at most a step's travel take energy only: to stand still obeys all of them, and lies
-// on the other side of the solution.
+// Contacts whose gap is at most a step's travel can only dissipate energy, since the state of rest obeys all
+// of them.
 TEST(ContactSweeps, NeverAddEnergy) {
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed)
     for (const double mu : {0.0, 0.4, 2.0}) {
@@ -68,8 +67,8 @@ TEST(ContactSweeps, KeepLinearAndAngularMomentumOfBodiesThatOnlyTouchEachOther) 
   }
 }
 
-// A ball in a groove of two walls at 45 degrees that falls at v along one wall: it keeps the velocity along
-// the groove and nothing else.
+// A ball falls at v along one wall of a groove of two walls at 45 degrees. It keeps only the velocity along
+// the groove.
 TEST(ContactSweeps, ABodyInAGrooveKeepsItsVelocityAlongIt) {
   SmallIsland made;
   made.add(0.1, Vec3::Zero(), Vec3(0.3, 0.7, -1));
@@ -82,7 +81,7 @@ TEST(ContactSweeps, ABodyInAGrooveKeepsItsVelocityAlongIt) {
             std::max(1e-10, 0.3 * kRounding));
 }
 
-// Two blocks hit without restitution: they go on together.
+// Two blocks that hit without restitution continue together.
 TEST(ContactSweeps, AnImpactWithoutRestitutionEndsAtTheCommonVelocity) {
   for (const double ratio : {1e-3, 1.0, 1e3}) {
     SmallIsland made;
@@ -98,7 +97,7 @@ TEST(ContactSweeps, AnImpactWithoutRestitutionEndsAtTheCommonVelocity) {
   }
 }
 
-// The gap is used up and no more: the body ends the step where it touches.
+// The body moves exactly by the gap and ends the step in touch.
 TEST(ContactSweeps, ABodyMayUseUpItsGap) {
   SmallIsland made;
   made.add(0.1, Vec3::Zero(), Vec3(0, 0, -1));

@@ -24,7 +24,7 @@ constexpr bool kIsDouble = sizeof(btScalar) == 8;
 CouplingGains gainsOf(double k_N_per_m, double mass_kg) {
   CouplingGains gains;
   gains.k_N_per_m = k_N_per_m;
-  gains.b_Ns_per_m = 2 * std::sqrt(k_N_per_m * mass_kg);  // critical
+  gains.b_Ns_per_m = 2 * std::sqrt(k_N_per_m * mass_kg);  // critical damping
   gains.k_Nm_per_rad = 4;
   gains.b_Nms_per_rad = 0.02;
   gains.max_force_N = 1e6;
@@ -103,7 +103,7 @@ TEST_P(CouplingWithSolver, IsStableFromAGramToTenKilogramsAtAnyStiffness) {
         const double now_J = 0.5 * k * e.squaredNorm() + 0.5 * 4 * r.squaredNorm() +
                              0.5 * mass_kg * fromBt(part.getLinearVelocity()).squaredNorm() +
                              0.5 * I * fromBt(part.getAngularVelocity()).squaredNorm();
-        // Implicit Euler loses energy in every step of a linear spring; with rotation the spring is linear
+        // For a linear spring implicit Euler loses energy in every step. With rotation the spring is linear
         // only to second order.
         ASSERT_LE(now_J, energy_J * 1.01 + 1e-9) << mass_kg << " kg, " << k << " N/m, step " << i;
         energy_J = std::min(energy_J, now_J * 1.2 + 1e-12);

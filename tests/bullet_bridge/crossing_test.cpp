@@ -1,5 +1,4 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// Edges that lie across edges, between their shell points.
+// SPDX-License-Identifier: BSD-3-Clause Edges that cross edges between their shell points.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -121,7 +120,7 @@ TEST(Rims, ThatFaceEachOtherOnANarrowStripHoldAPeg) {
       world.step();
       most_m = std::max(most_m, (fromBt(body.getWorldTransform().getOrigin()) - start).norm());
     }
-    // Polygons of 96 sides meet side on side, or corner on side 0.3 um later.
+    // Polygons of 96 sides meet with a side on a side, or 0.3 um later with a corner on a side.
     EXPECT_NEAR(most_m, kGap_m, 1e-6) << into_m;
   }
 }

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// Where curved faces are nearest, compared with formulas for balls and cylinders.
+// SPDX-License-Identifier: BSD-3-Clause The nearest places of curved faces, compared with formulas for balls
+// and cylinders.
 #include "narrowphase/refinement/curved_contact.h"
 
 #include <gtest/gtest.h>
@@ -60,9 +60,9 @@ std::optional<FlushPoint> corrected(const SideView& side, const SideView& other,
   return FlushPoint{c, {other.X_WM * closest.q, n_W, &surface, other.X_WM.R, closest.triangle}};
 }
 
-/// Where two faces are nearest, from a formula.
+/// Nearest place of two faces, from a formula.
 struct Truth {
-  Vec3 p_W, n_W;  ///< n_W from the part below to the ball
+  Vec3 p_W, n_W;  ///< n_W points from the part below to the ball
   double gap_m = 0;
 };
 
@@ -72,7 +72,7 @@ struct Found {
   double least_gap_m = 1e300;                     ///< of all points
 };
 
-// Checks all points of both shells within one spacing of where the faces touch.
+// Checks all points of both shells within one spacing of the place where the faces touch.
 Found find(const Built& below, const Pose& X_WBall, const Truth& truth) {
   const SideView sides[2] = {viewOf(ball(), X_WBall, 0), viewOf(below, Pose(), 1)};
   Found found;
@@ -224,7 +224,7 @@ TEST(CurvedContact, ABodyWithoutSurfacesRestsOnOneThatHasThem) {
   world.add(plate, Pose(), true);
   btRigidBody& body = world.add(bare, Pose::translation({0, 0, 7.5e-3}));
   world.step(200);
-  // The plate's points find no face of the body; the body's points find those of the plate.
+  // The plate's points find no face of the body, but the body's points find faces of the plate.
   EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), 7.5e-3, 5e-6);
 }
 

@@ -12,7 +12,7 @@ namespace {
 
 using test::Built;
 
-/// Places of seven boxes that have fallen on one another. 0 threads: the stock dispatcher.
+/// Final poses of seven boxes that fell on one another. With 0 threads the stock dispatcher is used.
 std::vector<btTransform> heap(int threads, test::SolverKind solver) {
   static const Built box = test::steelBox();
   static const Built ground = test::plate();

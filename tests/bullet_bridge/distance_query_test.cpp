@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// Queries answer at the distance that is asked for, also beyond the band of the fields.
+// SPDX-License-Identifier: BSD-3-Clause Queries report points up to the requested distance, also beyond the
+// band of the fields.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -84,7 +84,7 @@ TEST(DistanceQuery, OfABallIsNotThatOfItsPlanesThatLeanAway) {
   }
 }
 
-/// How far the plane with this normal that separates two sets of points best keeps them apart.
+/// Width of the slab with this normal between two sets of points.
 double gapAlong(const Vec3& n, const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
   const auto range = [&](const std::vector<Vec3>& points) {
     double low_m = 1e30, high_m = -1e30;

@@ -1,6 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// Where a step ends whose rounds of checks were used up. The pairs are made up: each says by a formula how
-// deep its bodies would be.
+// SPDX-License-Identifier: BSD-3-Clause Shortened steps: the end of a step whose rounds of checks were used
+// up. The pairs are mocks, which compute by a formula how deep their bodies would be.
 #include "solver/rigid/contact_loop.h"
 
 #include <gtest/gtest.h>
@@ -19,7 +18,7 @@ namespace {
 using test_island::kDt_s;
 using test_island::SmallIsland;
 
-/// A pair with one gap, linear in the way of the step from where the bodies are now.
+/// A pair with one gap, which is linear in the displacement from the present poses.
 class FakeCheck : public StepCheck {
  public:
   using Gap = std::function<double(const Pose (&X_WB)[2])>;
@@ -36,7 +35,7 @@ class FakeCheck : public StepCheck {
     MissedContact m;
     m.point = missed;
     for (int i = 0; i < 2; ++i) m.object[i] = object_[i];
-    m.end_gap_m = m.kept_m = 1;  // a row that holds nothing
+    m.end_gap_m = m.kept_m = 1;  // a row without effect
     out.push_back(m);
   }
   double freeShare(const Pose (&)[2]) override { return 1; }
@@ -48,7 +47,7 @@ class FakeCheck : public StepCheck {
   void endStep() override {}
 
   static constexpr double kSlack_m = 1e-6;
-  btManifoldPoint* missed = nullptr;  ///< never found enough
+  btManifoldPoint* missed = nullptr;  ///< reported as missed in every round
   int rounds = 0;
 
  private:
@@ -92,7 +91,7 @@ TEST(EarlyEnd, ABodyEndsBeforeTheFloorAndKeepsItsVelocity) {
   EXPECT_NEAR(body.getLinearVelocity().z(), -3, 1e-6);
 }
 
-// One body hits the floor, another rests on it with load, a third is elsewhere.
+// One body hits the floor, another one rests on it with load, and a third one touches neither.
 TEST(EarlyEnd, OnlyWhatHangsTogetherEndsEarly) {
   SmallIsland made;
   btRigidBody& low = made.add(1, Vec3(0, 0, 1e-3), Vec3(0, 0, -3));
@@ -110,13 +109,14 @@ TEST(EarlyEnd, OnlyWhatHangsTogetherEndsEarly) {
   EXPECT_EQ(made.island.bodies[2].way_share, 1);
 }
 
-// Two bodies, each with a floor of its own: the second is found when the first has stopped.
+// Two bodies, each with its own floor. The overlap of the second one is found only after the first one has
+// stopped.
 TEST(EarlyEnd, IsLookedAtAgain) {
   SmallIsland made;
   btRigidBody& left = made.add(1, Vec3(0, 0, 1e-3), Vec3(0, 0, -3));
   btRigidBody& right = made.add(1, Vec3(1, 0, 1e-3), Vec3(0, 0, -3));
   made.start();
-  // The right one only fits where the left one has gone before.
+  // The right body has room only after the left one has moved.
   FakeCheck floor(left, made.floor, [](const Pose(&X)[2]) { return heightOf(X[0]); });
   FakeCheck pair(right, left, [](const Pose(&X)[2]) { return heightOf(X[0]) - heightOf(X[1]) + 1e-4; });
   StepCheck* const checks[] = {&floor, &pair};
@@ -127,7 +127,7 @@ TEST(EarlyEnd, IsLookedAtAgain) {
   EXPECT_GE(right_m, left_m - 1e-4 - FakeCheck::kSlack_m);
 }
 
-// What is deep before the step is not held for ever.
+// A body that is deep before the step is not held for ever.
 TEST(EarlyEnd, WhatIsJammedGoesOn) {
   SmallIsland made;
   btRigidBody& body = made.add(1, Vec3(0, 0, -5e-6), Vec3(0.2, 0, -0.01));
@@ -153,7 +153,7 @@ TEST(EarlyEnd, ABodyIsNotStoppedForWhatComesToIt) {
   EXPECT_GT(made.island.bodies[0].way_share, 0);
 }
 
-// The same in a world: a pair that is never content uses up the rounds.
+// The same in a world, where a pair that always reports a missed contact uses up the rounds.
 TEST(EarlyEnd, ASolversStepEndsWherePointsAreNotDeep) {
   static const test::Built box = test::steelBox(), plate = test::plate();
   test::World scene;

@@ -68,7 +68,7 @@ struct Scene {
     then = now;
     measureAtEnd(pair, motion, settings, then);
   }
-  // Points of faces that look at each other near where the bodies are nearest.
+  // Points of opposite faces near the place where the bodies are nearest.
   void addNear(int i, const Built& own, const Built& other) {
     const SideView side = pair.side(i), their = pair.side(1 - i);
     for (std::uint32_t id = 0; id < own.shape->models().shell->size(); ++id) {
@@ -80,12 +80,12 @@ struct Scene {
       if (c.distance_m < 30e-6 && !own.shape->isEdgePoint(id)) now.push_back(c);
     }
   }
-  /// What the solver will take for the gap at the end of the step.
+  /// The gap at the end of the step that the solver will use.
   [[nodiscard]] double end_m(const Candidate& c) const {
     return c.distance_m + kStep_s * c.n_W.dot(motion.velocityAt(c.p_W));
   }
-  // A contact that moves to where the surfaces are nearest, before the step and after it, has the formula's
-  // gap; others have more.
+  // A contact at the nearest place of both surfaces, before and after the step, has the formula's gap; other
+  // contacts have larger gaps.
   void expectGapAtEnd(double gap_m) const {
     int near = 0;
     for (std::size_t k = 0; k < then.size(); ++k) {
@@ -114,21 +114,21 @@ TEST(EndOfStep, AHollowFaceIsNearerThanItsPlane) {
   }
 }
 
-// The same where the bore moves and the ball stands.
+// The same with a moving bore and a ball at rest.
 TEST(EndOfStep, EitherBodyMayBeTheOneThatMoves) {
   const double way_m = 0.15e-3, play_m = kBore_m - kBall_m;
   const Scene scene(bore(), Vec3(play_m, 0, 0), Vec3::Zero(), Vec3(0, -way_m / kStep_s, 0));
   scene.expectGapAtEnd(play_m - std::hypot(play_m, way_m));
 }
 
-// Over a shaft it comes free of the plane.
+// On a shaft the ball leaves the contact plane.
 TEST(EndOfStep, ARoundFaceIsFartherThanItsPlane) {
   const double way_m = 0.5e-3, apart_m = kShaft_m + kBall_m;
   const Scene scene(shaft(), Vec3(apart_m, 0, 0), Vec3(0, way_m / kStep_s, 0));
   scene.expectGapAtEnd(std::hypot(apart_m, way_m) - apart_m);
 }
 
-// A ball that spins where it is has the same gap, whichever of its facets is then there.
+// The gap of a ball that spins in place does not depend on the facet that faces the contact.
 TEST(EndOfStep, ASpinningBallKeepsItsGap) {
   const Scene scene(shaft(), Vec3(kShaft_m + kBall_m, 0, 0), Vec3::Zero(), Vec3::Zero(), Vec3(0, 0, 30));
   scene.expectGapAtEnd(0);
@@ -142,15 +142,15 @@ TEST(EndOfStep, OnAFlatFaceItsPlaneSaysAll) {
     }
 }
 
-// Where contact is met, and not slid along, the end in free motion is no place to look at; and a way within
-// the margin bends off no plane.
+// A contact that is met, rather than slid along, is not measured at the end of free motion. Neither is a
+// displacement within the margin, which cannot leave a plane.
 TEST(EndOfStep, WhatMeetsAFaceOrHardlyMovesKeepsItsPlane) {
   const double play_m = kBore_m - kBall_m;
   Scene(bore(), Vec3(play_m, 0, 0), Vec3(0.1, 0.1, 0)).expectUnchanged();
   Scene(bore(), Vec3(play_m, 0, 0), Vec3(0, 15e-6 / kStep_s, 0)).expectUnchanged();
 }
 
-// So deep at the end that contact will have turned the body: another place counts then.
+// The point is so deep at the end that contact will have turned the body, and another place will count.
 TEST(EndOfStep, WhatWouldEndDeepKeepsItsPlane) {
   const Scene scene(bore(), Vec3(kBore_m - kBall_m, 0, 0), Vec3(0, 0.8e-3 / kStep_s, 0));
   EXPECT_GE(scene.then.size(), 2U);

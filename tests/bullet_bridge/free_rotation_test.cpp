@@ -34,7 +34,7 @@ TEST(FreeRotation, TheTurnOfBulletIsTheOneThatIsAssumed) {
   }
 }
 
-// The velocity after a step, by the momentum.
+// The velocity after a step, from the conserved momentum.
 Vec3 after(const Vec3& w_B, const Vec3& mean, double dt_s) {
   return (turnOfBullet(mean, dt_s).transpose() * kInertia.cwiseProduct(w_B)).cwiseQuotient(kInertia);
 }
@@ -65,8 +65,8 @@ TEST(FreeRotation, AVelocityThatIsNotFiniteIsReturned) {
   EXPECT_TRUE(std::isnan(meanAngularVelocity(kInertia, Vec3(0, std::nan(""), 0), 1e-3).y()));
 }
 
-// No body has these inertias: one is above the sum of the others. What is returned solves the equation, or is
-// the velocity itself.
+// No body has these inertias, since one exceeds the sum of the others. The result must solve the equation or
+// be the velocity itself.
 TEST(FreeRotation, InertiasThatNoBodyHasGiveNoJump) {
   const double dt_s = 1e-2;
   for (const Vec3& J : {Vec3(1, 1e3, 1e-3), Vec3(1e-4, 1, 30), Vec3(1, 1e-6, 1e2)})

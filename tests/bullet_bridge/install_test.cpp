@@ -54,7 +54,7 @@ TEST(Install, ASecondCallReplacesTheSettings) {
   for (int m = 0; m < world.dispatcher.getNumManifolds(); ++m)
     contacts += world.dispatcher.getManifoldByIndexInternal(m)->getNumContacts();
   EXPECT_GE(contacts, 8);
-  EXPECT_LT(contacts, 32);  // checks of steps add some; without the call there are 32 or more
+  EXPECT_LT(contacts, 32);  // checks of steps add some; without the call there are 32 or more contacts
 }
 
 TEST(Install, ABodyPlacedIntoAnotherIsReportedAndOneThatFallsOnItIsNot) {
@@ -121,7 +121,7 @@ TEST(Install, ExaminesEveryPointOfALargeFace) {
 }
 
 TEST(Install, ALimitOnCandidatesIsAppliedAndCounted) {
-  // Also after the test above, whose buffers were larger.
+  // The result must not depend on the larger buffers of the test above.
   btStaticPlaneShape plane(btVector3(0, 0, 1), toBt(0.005));
   for (btCollisionShape* under : std::initializer_list<btCollisionShape*>{&plane, cube().shape.get()}) {
     Settings settings;

@@ -103,8 +103,8 @@ TEST_P(JointsWithSolver, AHingedPartLeansOnItsStopWithItsTorque) {
   const Pose before = test::partPose(body, box);
   world.step(500);
   const Pose after = test::partPose(body, box);
-  // The hinge holds the lower edge where the plate is, and contact of sharp edges rests at 0.1 um: the push
-  // raises the other edge instead, by a few times that.
+  // The hinge holds the lower edge at the plate, but sharp edges rest at a gap of 0.1 um. So the push raises
+  // the other edge, by a few times that gap.
   EXPECT_LE((after.p - before.p).norm(), 1e-7);
   EXPECT_NEAR(after.p.z(), 0.005, 4 * FeatureMotion::kRest_m);
   world.world->removeConstraint(&hinge);
@@ -159,7 +159,7 @@ TEST_P(JointsWithSolver, AJointBreaksAboveItsBreakingImpulse) {
   world.world->removeConstraint(&joint);
 }
 
-// Free, the body would turn away from the axis. The hinge holds it with the torque w x I w.
+// A free body would turn away from the axis. The hinge holds it with the torque w x I w.
 //
 // A step takes the pose through a quaternion and back, which tilts it by some eight roundings of epsilon / 2.
 // The joint takes back the share erp of the tilt in each step, so that tilts add up to 1 / erp of one step's,

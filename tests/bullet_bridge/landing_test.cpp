@@ -22,7 +22,7 @@ using test::World;
 
 constexpr double kDt_s = 1e-3;
 
-/// Cuboid, prism of six sides, tetrahedron.
+/// The bodies: cuboid, six-sided prism, tetrahedron.
 const std::vector<Built>& bodies() {
   static const std::vector<Built> built = [] {
     Mesh tetrahedron;
@@ -48,7 +48,7 @@ void addFloor(World& world, bool is_tiled) {
 
 struct Landing {
   double sideways_m_s = 0;  ///< greatest change of the horizontal velocity
-  double turn_m_s = 0;      ///< of what the angular momentum about the vertical makes, at the body's reach
+  double turn_m_s = 0;  ///< greatest speed, at the body's reach, by its angular momentum about the vertical
 };
 
 Landing land(const Built& part, bool is_tiled, double speed_m_s, double sideways_m_s, unsigned seed) {
@@ -84,8 +84,8 @@ Landing land(const Built& part, bool is_tiled, double speed_m_s, double sideways
   return landing;
 }
 
-/// How many of the landings are not vertical. In none does a body turn by more than contact promises, 5.7
-/// degrees a step.
+/// Number of landings with a horizontal error. No body turns by more than the promised limit of 5.7 degrees
+/// per step.
 int wrong(bool is_tiled) {
   int count = 0;
   for (const double speed_m_s : {0.05, 0.3, 1.0})
@@ -106,15 +106,15 @@ int wrong(bool is_tiled) {
   return count;
 }
 
-// The one that is wrong: points that a first solution lacks are added in so many rounds that no row is taken
-// anew in the last of them.
+// In the one wrong landing, points that the first solution lacks are added in so many rounds that no row is
+// taken again in the last rounds.
 TEST(Landing, OnALevelFloorIsVertical) {
   EXPECT_LE(wrong(false), 1);
 }
 
-// A corner that lands beside a seam at 20 mm/s and more may be stopped by the rim of the next plate: the rim
-// is found together with the floor that the first solution lacks, and stays. Wrong in 14 of 72; in
-// 11 with an earlier solver, which went other ways.
+// A corner that lands beside a seam at 20 mm/s or more may be stopped by the rim of the next plate, since the
+// rim is found together with the floor that the first solution lacks, and its contact remains. 14 of 72
+// landings are wrong.
 TEST(Landing, BesideASeamIsVerticalInMostCases) {
   EXPECT_LE(wrong(true), test::kIsDouble ? 14 : 15);
 }

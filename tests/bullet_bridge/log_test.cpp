@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// Messages reach the host's hook; a host that forgot something is told.
+// SPDX-License-Identifier: BSD-3-Clause Messages reach the host's hook, and a host that forgot a call is
+// warned.
 #include "vps_bullet/log.h"
 
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcherMt.h>
@@ -15,7 +15,7 @@
 namespace vps::bullet {
 namespace {
 
-/// Messages while it lives.
+/// Collects the messages of its lifetime.
 struct Kept {
   std::vector<std::pair<LogLevel, std::string>> messages;
   Kept() {
@@ -80,7 +80,7 @@ TEST(Log, ReceivesWhatAStepFindsWrong) {
 }
 
 TEST(ForgottenInstall, IsSaidOnceByTheShape) {
-  // In a process of its own: here others have called install().
+  // Runs in a separate process, since other tests of this one have called install().
   const auto forget = [] {
     int count = 0;
     setLogHook([&](LogLevel level, const std::string& message) {
@@ -103,7 +103,7 @@ TEST(ForgottenInstall, IsSaidOnceByTheShape) {
 }
 
 TEST(Install, RefusesADispatcherOfAnotherPrecision) {
-  // As its pool of manifolds is in a program that was compiled in single precision.
+  // A pool of manifolds as in a program compiled in single precision.
   btPoolAllocator pool(static_cast<int>(sizeof(btPersistentManifold) / 2), 4);
   btDefaultCollisionConstructionInfo info;
   info.m_persistentManifoldPool = &pool;

@@ -96,8 +96,8 @@ class MissedContact : public testing::TestWithParam<SolverKind> {};
 INSTANTIATE_TEST_SUITE_P(Each, MissedContact, testing::Values(SolverKind::Stock, SolverKind::Constraint),
                          [](const auto& info) { return test::nameOf(info.param); });
 
-// Where an edge leaves the lowest corner, the face on one side of it may fall off. The corner was then taken
-// to be beside the contact.
+// At the lowest corner, the face beside an edge may slope away. An earlier version then took the corner to be
+// beside the contact.
 TEST_P(MissedContact, OfALeaningTetrahedronsCornerWithAFloor) {
   const Mesh tetrahedron = centered(cornerTetrahedron(20e-3));
   std::mt19937 random(1);
@@ -118,13 +118,14 @@ TEST_P(MissedContact, OfAFastBodyThatTouchesAWallWithTheFloor) {
   // Floor and wall are one part, with the wall's face at y = 0 and the floor's at z = 0.
   const Polygon section{{-6e-3, -6e-3}, {30e-3, -6e-3}, {30e-3, 0}, {0, 0}, {0, 30e-3}, {-6e-3, 30e-3}};
   scene.add(search::alongX(search::makePrism(section, {}, -20e-3, 20e-3)), Pose(), true);
-  constexpr double kGap_m = 2.5e-3, kSpeed_m_s = 4;  // within the step, beyond the first stride
+  constexpr double kGap_m = 2.5e-3,
+                   kSpeed_m_s = 4;  // met within the step, after the first stride of the search
   scene.addMoving(makeBox({10e-3, 10e-3, 10e-3}), Pose::translation({0, 5e-3, 5e-3 + kGap_m}),
                   {0, 0, -kSpeed_m_s});
   EXPECT_LE(scene.deepestOf(3), kBound_m);
 }
 
-// A rod is struck at one end, which turns it: its other end falls faster than was predicted.
+// A rod is struck at one end and turns, so that its other end falls faster than predicted.
 TEST(MissedContact, OfARodThatTurnsAboutItsOtherEnd) {
   Measured scene;
   const Mesh support = makeBox({6e-3, 6e-3, 6e-3});
@@ -134,7 +135,8 @@ TEST(MissedContact, OfARodThatTurnsAboutItsOtherEnd) {
   EXPECT_LE(scene.deepestOf(3), kBound_m);
 }
 
-// Two blocks rest near each other; a third one throws one at the other. Nothing was predicted between them.
+// Two blocks rest near each other, and a third block throws one at the other. No contact between them was
+// predicted.
 TEST(MissedContact, OfABlockThatAnotherOneThrows) {
   Measured scene;
   scene.world.world->setGravity({0, 0, 0});
@@ -146,7 +148,7 @@ TEST(MissedContact, OfABlockThatAnotherOneThrows) {
   for (std::size_t i = 0; i < 3; ++i) {
     const double mass_kg = scene.part(i).frame.mass_kg;
     momentum += mass_kg * static_cast<double>(scene.world.bodies[i]->getLinearVelocity().x());
-    if (i == 0) first = mass_kg;  // times 1 m/s
+    if (i == 0) first = mass_kg;  // momentum at 1 m/s
   }
   EXPECT_NEAR(momentum / first, 1, 1e-6);
 }
@@ -154,7 +156,7 @@ TEST(MissedContact, OfABlockThatAnotherOneThrows) {
 // A wall stands on a floor, as a part of its own: its lower rim is in the plane in which a corner slides. The
 // nearest surface to the corner is then the wall's underside, which the corner does not face.
 TEST_P(MissedContact, OfACornerThatSlidesOverAFloorIntoAWall) {
-  // Lying on a face, a corner ahead.
+  // The body lies on a face, with a corner ahead.
   const Mesh tetrahedron = cornerTetrahedron(12e-3);
   for (const double side_m : {0.0, 0.7e-3, 1.3e-3}) {
     Measured scene(GetParam());
@@ -170,7 +172,8 @@ Mesh lyingPrism(const Polygon& section, double length_m) {
                               Pose(rotationFromVector({0, std::numbers::pi / 2, 0}), Vec3::Zero())));
 }
 
-// The edges between sides of a coarse cylinder turn by 15 degrees, and were met at sampled points only.
+// At the edges of a coarse cylinder the faces turn by 15 degrees. An earlier version met these edges at
+// sampled points only.
 TEST_P(MissedContact, OfTheSidesOfTwoCoarseCylinders) {
   Polygon section;
   for (int i = 0; i < 24; ++i) {
@@ -186,7 +189,7 @@ TEST_P(MissedContact, OfTheSidesOfTwoCoarseCylinders) {
   EXPECT_LE(scene.deepestOf(40), kBound_m);
 }
 
-// A roof of 5 degrees was taken for a curved surface, whose edges are left to sampled points.
+// An earlier version took a roof of 5 degrees for a curved surface, whose edges are left to sampled points.
 TEST_P(MissedContact, OfTwoFlatRoofsThatCross) {
   const double rise_m = 10e-3 * std::tan(2.5 * std::numbers::pi / 180);
   const Mesh roof =
@@ -211,9 +214,9 @@ Mesh pocketed(double a_m, double b_m, double deep_m) {
   return mesh;
 }
 
-// Forces that would move a light key by a millimetre in one step, if nothing stopped it. Its edges then met
-// the pocket's where they would have been at the end of that step, and the contacts there, up to 0.7 mm deep,
-// pushed a key aside that was not deep at all.
+// Forces would move a light free key by a millimetre in one step. In an earlier version its edges met the
+// pocket's edges at the end of that motion, and contacts of up to 0.7 mm depth pushed a key aside that did
+// not overlap.
 TEST_P(MissedContact, OfAKeyThatStrongForcesTurnInItsPocket) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> uniform(-1, 1);
@@ -237,8 +240,8 @@ TEST_P(MissedContact, OfAKeyThatStrongForcesTurnInItsPocket) {
   EXPECT_LE(deepest_contact_m, kBound_m);
 }
 
-// Sharp bodies fall into a corner of three parts, fast and turning. All causes meet here: points on a fast
-// turn's bent path, edges across edges, corners at rims.
+// Sharp bodies fall into a corner of three parts, fast and turning. All causes occur together: points on the
+// bent path of a fast turn, edges across edges, corners at rims.
 TEST(MissedContact, OfSharpBodiesThatFallTurning) {
   const Mesh tetrahedron = centered(cornerTetrahedron(13e-3));
   const Mesh angle = centered(search::makePrism(

@@ -72,7 +72,7 @@ struct MultiWorld {
     body.finalizeMultiDof();
     world.addMultiBody(&body);
   }
-  /// Moves the colliders to where base and joints are.
+  /// Moves the colliders to the poses of base and joints.
   static void place(btMultiBody& body) {
     btAlignedObjectArray<btQuaternion> turns;
     btAlignedObjectArray<btVector3> origins;
@@ -99,8 +99,8 @@ TEST_P(FreeLink, StopsAtAPlateAtAnySpeed) {
     multi.step(1);
     lowest_m = std::min<double>(lowest_m, body.getBasePos().z());
   }
-  // Half the cube above the plate. Bullet's solver leaves what it does not resolve of the impact: ten
-  // micrometres are 1e-2 m/s in a step of 1 ms, of up to 50 m/s.
+  // The cube's centre is half its edge above the plate. The tolerance is the residual of Bullet's solver: ten
+  // micrometres are 1e-2 m/s in a step of 1 ms, for impacts of up to 50 m/s.
   EXPECT_GT(lowest_m, 0.010 - 10e-6);
   EXPECT_NEAR(body.getBasePos().z(), 0.010, 10e-6) << "rests there";
 }

@@ -54,8 +54,8 @@ TEST(NativeShapes, ContactFollowsAShapeThatIsResized) {
   EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), 0.007, 1e-6);
 }
 
-// Places of seven cubes after falling on four kinds of shapes for a tenth of a second. 0 threads: the stock
-// dispatcher.
+// Poses of seven cubes after falling on four kinds of shapes for a tenth of a second. With 0 threads the
+// stock dispatcher is used.
 std::vector<btTransform> fallOnNativeShapes(int threads) {
   Ground ground;
   btBoxShape box(at(0.02, 0.02, 0.01));

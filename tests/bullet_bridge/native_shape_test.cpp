@@ -1,6 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// A Shape against every shape type of Bullet: the table "Collides with" of bullet_bridge/README.md, row by
-// row.
+// SPDX-License-Identifier: BSD-3-Clause A Shape against every shape type of Bullet: one test for each row of
+// the table in bullet_bridge/native_shapes.md.
 #include <BulletCollision/CollisionShapes/btBox2dShape.h>
 #include <BulletCollision/CollisionShapes/btConvexPointCloudShape.h>
 #include <BulletCollision/CollisionShapes/btHeightfieldTerrainShape.h>
@@ -81,7 +80,8 @@ const std::vector<Row>& rows() {
        }},
       {"MultiSphereOfMany",
        [](Ground& g) {
-         // A ring of sixteen balls: more than are solved exactly. Error: see native_shape_mesh.cpp.
+         // A ring of sixteen balls, more than primitiveDistance() handles. For the error see
+         // native_shape_mesh.cpp.
          btVector3 centers[16];
          btScalar radii[16];
          for (int i = 0; i < 16; ++i) {

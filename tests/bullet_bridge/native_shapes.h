@@ -25,7 +25,7 @@ inline btVector3 at(double x, double y, double z) {
   return {bullet::toBt(x), bullet::toBt(y), bullet::toBt(z)};
 }
 
-/// A shape with a level top at z = 0 around the origin, and everything that it refers to.
+/// A shape with a level top at z = 0 around the origin, together with the objects that it refers to.
 struct Ground {
   btCollisionShape* shape = nullptr;
   Pose X_WB;

@@ -1,6 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// What a pair of bodies says about a step that is solved: where they would overlap at its end, and up to
-// which share of it they do not. The end poses are given, no solver is involved.
+// SPDX-License-Identifier: BSD-3-Clause The check of a solved step: where two bodies would overlap at its
+// end, and the share of the step during which they do not. The end poses are given; no solver is involved.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,10 +17,10 @@ namespace {
 
 using test::Built;
 
-/// A fixed body and another one, after the narrow phase of a step.
+/// A fixed body and a moving one, after the narrow phase of a step.
 struct CheckedPair {
   test::World world;
-  Pose X_WB[2];  ///< of the fixed and of the other body
+  Pose X_WB[2];  ///< of the fixed and of the moving body
   StepCheck* check = nullptr;
 
   void detect(btRigidBody& fixed, btRigidBody& other) {
@@ -66,7 +65,7 @@ struct BoxAbovePlate : CheckedPair {
     static const Built plate = test::plate();
     return plate;
   }
-  /// @param gap_m  of the lowest corner
+  /// @param gap_m  gap of the lowest corner
   BoxAbovePlate(const Mat3& R, double gap_m) {
     double lowest_m = 1e300;
     for (const Vec3& v : box.mesh.vertices) lowest_m = std::min(lowest_m, (R * v).z());
@@ -97,8 +96,8 @@ TEST(PairCheck, MissesNothingInAStepThatStaysFree) {
   }
 }
 
-// A way is not looked at again where one was clear that ends within a twentieth of the rest gap of it; it is
-// where it ends farther from it.
+// A motion is not checked again if it ends within a twentieth of the rest gap of a clear one. If it ends
+// farther away, it is checked.
 TEST(PairCheck, AClearWayHoldsForWaysThatEndBesideIt) {
   if (!test::kIsDouble) GTEST_SKIP() << "poses are coarser than a nanometre";
   constexpr double kGap_m = 100e-6, kMissed_m = FeatureMotion::kLeastShare * FeatureMotion::kRest_m;
@@ -113,7 +112,7 @@ TEST(PairCheck, AClearWayHoldsForWaysThatEndBesideIt) {
   EXPECT_TRUE(missesAt(with, kMissed_m - 4e-9));
 }
 
-// A box is put from above a plate to below it: the way to the same end leads through the plate.
+// A box is moved from above a plate to below it, so that the path to the same end leads through the plate.
 TEST(PairCheck, AClearWayHoldsFromItsStartOnly) {
   CheckedPair scene;
   btRigidBody& plate = scene.world.add(BoxAbovePlate::sharedPlate(), Pose::translation({0, 0, -5e-3}), true);
@@ -127,7 +126,7 @@ TEST(PairCheck, AClearWayHoldsFromItsStartOnly) {
   EXPECT_FALSE(scene.missedAt(X_end).empty());
 }
 
-// What a later round found clear has not been asked for gaps that were small at the start.
+// A motion that a later round found clear was not checked for gaps that were small at the start.
 TEST(PairCheck, AClearWayOfALaterRoundIsLookedAtForSmallGaps) {
   if (!test::kIsDouble) GTEST_SKIP() << "poses are coarser than a nanometre";
   BoxAbovePlate scene(rotationFromVector({0.4, 0.3, 0}), 15e-9);
@@ -136,7 +135,7 @@ TEST(PairCheck, AClearWayOfALaterRoundIsLookedAtForSmallGaps) {
   EXPECT_FALSE(scene.missedAt(X_end).empty());
 }
 
-// A ball of Bullet's grows between two steps, in which the part above it stays where it is.
+// One of Bullet's balls grows between two steps, while the part above it does not move.
 TEST(PairCheck, AClearWayEndsWhereAShapeChangesItsSize) {
   constexpr double kRadius_m = 50e-3;
   btSphereShape ball(toBt(kRadius_m));
@@ -175,7 +174,7 @@ TEST(PairCheck, ReportsTheExactDepthOfWhatGoesIn) {
   }
 }
 
-// The share that is free ends before the corner meets the face, and not much before.
+// The free share ends shortly before the corner meets the face.
 TEST(PairCheck, TheFreeShareEndsWhereACornerMeetsTheFace) {
   search::Random random(2);
   for (int i = 0; i < 40; ++i) {
@@ -188,8 +187,8 @@ TEST(PairCheck, TheFreeShareEndsWhereACornerMeetsTheFace) {
   }
 }
 
-/// A ball in a bore, which a step takes along the wall to where it overlaps by a given depth. The points of
-/// both are 1.3 mm apart.
+/// A ball in a bore. The step moves it along the wall to a pose with a given overlap. The points of both
+/// parts are 1.3 mm apart.
 struct BallInBore : CheckedPair {
   static constexpr double kBall_m = 4e-3, kBore_m = 5e-3;
   const Built& built = sharedBall();
@@ -220,8 +219,8 @@ struct BallInBore : CheckedPair {
   }
 };
 
-// Along a hollow wall, by more than a facet: planes of the points known before the step say that there is
-// room, and all points may be above what the faces between them touch.
+// The ball moves along a concave wall by more than a facet. Planes of the points known before the step
+// predict room, and all points may be farther away than the faces between them.
 TEST(PairCheck, ReportsWhatGoesInBetweenThePointsOfCurvedFaces) {
   search::Random random(3);
   const double play_m = BallInBore::kBore_m - BallInBore::kBall_m;
@@ -237,8 +236,8 @@ TEST(PairCheck, ReportsWhatGoesInBetweenThePointsOfCurvedFaces) {
   }
 }
 
-// The ball turns to another side from round to round, until no contact has room: that what goes in is missed
-// is said all the same, or the step would end with it.
+// The ball turns to another side in each round, until the manifolds are full. The overlap must still be
+// reported as missed.
 TEST(PairCheck, SaysWhatItMissesAlsoWithoutRoom) {
   const double play_m = BallInBore::kBore_m - BallInBore::kBall_m;
   BallInBore scene(Mat3::Identity(), {play_m - 4e-6, 0, 0}, Vec3::Zero());
@@ -254,7 +253,7 @@ TEST(PairCheck, SaysWhatItMissesAlsoWithoutRoom) {
   EXPECT_TRUE(was_full);
 }
 
-// A ball flies into the wall: the share ends no deeper than 10 um, and not much before.
+// A ball flies into the wall. At the end of the free share it is at most 10 um deep, and not much less.
 TEST(PairCheck, TheFreeShareOfPointsEndsWhereTheyAreDeep) {
   search::Random random(4);
   const double play_m = BallInBore::kBore_m - BallInBore::kBall_m, allowed_m = 10e-6;
@@ -274,7 +273,7 @@ TEST(PairCheck, TheFreeShareOfPointsEndsWhereTheyAreDeep) {
   }
 }
 
-// What is deep before the step may go on by a little, so that it is not held for ever.
+// A body that is deep before the step may move a little, so that it is not held for ever.
 TEST(PairCheck, TheFreeShareOfWhatIsDeepIsNotZero) {
   const double play_m = BallInBore::kBore_m - BallInBore::kBall_m;
   BallInBore scene(Mat3::Identity(), Vec3(play_m + 15e-6, 0, 0), Vec3(50e-3, 0, 0));
@@ -285,7 +284,7 @@ TEST(PairCheck, TheFreeShareOfWhatIsDeepIsNotZero) {
   EXPECT_LT(share * 50e-6, 2e-6);
 }
 
-// Until the narrow phase has looked at the pair again, there is nothing to check.
+// The check is not valid until the narrow phase has visited the pair again.
 TEST(PairCheck, IsSilentAfterTheEndOfItsStep) {
   BoxAbovePlate scene(Mat3::Identity(), 50e-6);
   ASSERT_TRUE(scene.check);

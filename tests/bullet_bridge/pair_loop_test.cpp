@@ -25,8 +25,8 @@ using test::Built;
 using test::SolverKind;
 using test::World;
 
-/// What bullet::Solver may leave of an impact, half of the contact margin. A pair tolerates 1 um; the rest is
-/// what the solver's iterations leave of the velocities in a step of 1 ms.
+/// Tolerance: the overlap that bullet::Solver may leave after an impact, half of the contact margin. A pair
+/// tolerates 1 um; the rest is the error of the solver's velocities in a step of 1 ms.
 constexpr double kBound_m = 10e-6;
 
 enum class Stock { Impulses, Mlcp };
@@ -75,7 +75,7 @@ const Built& stair() {
 /// A body turns by less than this in a step of 1 ms; contacts hold up to 0.1.
 constexpr double kTurn_rad = 0.08;
 
-/// Deepest overlap after any of the steps of a body that is thrown at a fixed one, while it does not turn too
+/// Deepest overlap after any step of a body that is thrown at a fixed body, as long as it does not turn too
 /// fast.
 double deepest_m(World& world, const Built& fixed, const Built& thrown, const Pose& X_WP, const Vec3& v,
                  const Vec3& w) {
@@ -95,7 +95,7 @@ double deepest_m(World& world, const Built& fixed, const Built& thrown, const Po
 
 // Corners and edges that turn at up to 50 rad/s and fly at up to 0.8 m/s meet faces and edges. One body
 // slides over the end of an edge in a step that bends by 32 um. Since the next edge is found there, that body
-// later ends a step 15 to 16 um deep; why is not known.
+// later ends a step 15 to 16 um deep, for an unknown reason.
 TEST_P(PairLoop, FindsTheCornersAndEdgesOfAThrownBody) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> uniform(-1, 1);
@@ -138,7 +138,7 @@ TEST_P(PairLoop, LeavesBodiesAndImpulsesAsTheyWere) {
   const std::vector<btManifoldPoint> before = contactsOf(world);
   const btTransform X_WB = body.getWorldTransform();
   const btVector3 v = body.getLinearVelocity(), w = body.getAngularVelocity();
-  // Without the force of gravity, which the step has used up, the pair alone carries no load.
+  // Without gravity, which the step has used up, the pair alone carries no load.
   world.world->performDiscreteCollisionDetection();
   const std::vector<btManifoldPoint> after = contactsOf(world);
   ASSERT_EQ(after.size(), before.size());
@@ -155,8 +155,8 @@ TEST_P(PairLoop, LeavesBodiesAndImpulsesAsTheyWere) {
   EXPECT_EQ(body.getAngularVelocity(), w);
 }
 
-/// A box that begins 5 um above a plate, in the first step of a world: the least distance for the solver,
-/// less the gap.
+/// A box begins 5 um above a plate. Returns, for the first step of a world, the least distance that the
+/// solver gets, minus the gap.
 double distanceLessGap_m(World& world, const Vec3& angular_factor = Vec3::Ones()) {
   static const Built box = test::steelBox(), ground = test::plate();
   world.add(ground, Pose::translation({0, 0, -5e-3}), true);
@@ -169,8 +169,8 @@ double distanceLessGap_m(World& world, const Vec3& angular_factor = Vec3::Ones()
   return least_m;
 }
 
-// Bullet's solvers are given distances that are less by the rest gap, for which bullet::Solver has a place of
-// its own: also in the first step, and not for bodies that it passes to Bullet's.
+// Bullet's solvers get distances that are reduced by the rest gap, which bullet::Solver reads separately.
+// This also holds in the first step, and for bodies that bullet::Solver passes to Bullet's solver.
 TEST_P(PairLoop, GivesBulletsSolversTheRestGap) {
   constexpr double kRest_m = FeatureMotion::kRest_m;
   StockWorld stock(GetParam());

@@ -45,7 +45,7 @@ TEST(PairView, NoPointOfTheBodiesIsNearerThanItsLeastDistance) {
   const MeshDistance exact(*tubeMesh());
   const PointShell shell = buildPointShell(*tubeMesh(), {1e-3, 0.35});
   Placed body0(shape0), body1(shape1);
-  // Of a Bullet with single precision.
+  // Rounding of Bullet in single precision.
   const double rounding_m = sizeof(btScalar) == 8 ? 1e-12 : 1e-7;
   int apart = 0;
   for (int i = 0; i < 300; ++i) {
@@ -64,7 +64,7 @@ TEST(PairView, NoPointOfTheBodiesIsNearerThanItsLeastDistance) {
   EXPECT_LT(apart, 300);
 }
 
-// Its points alone do not say where a part ends.
+// A part may extend beyond its points.
 TEST(PairView, WithoutMeshABodysBoxIsNotKnown) {
   ShapeModels points;
   points.shell = std::make_shared<const PointShell>(buildPointShell(*tubeMesh(), {1e-3, 0.35}));
@@ -87,7 +87,7 @@ TEST(PairView, ABodyThatSpinsFarFromTheOriginTurnsAboutItsCentre) {
   spinning.setWorldTransform(toBt(X_WB));
   spinning.setAngularVelocity(btVector3(0, 0, 100));
   spinning.setLinearVelocity(btVector3(2, 0, -1));
-  // As a child of a compound shape: its frame is not the body's.
+  // A child of a compound shape, whose frame is not the body's.
   const Pose X_WS = X_WB * Pose::translation({30e-3, 0, 0});
   const btTransform of_child = toBt(X_WS);
   const btCollisionObjectWrapper of_spinning{nullptr, &shape, &spinning, of_child, -1, -1};

@@ -113,8 +113,8 @@ TEST_P(PegInBore, DroppedItSeats) {
     world.step();
     speed_m_s = std::max<double>(speed_m_s, body.getLinearVelocity().length());
   }
-  // The seat gives all contacts of the limit. What else the rim needs must be kept beside them, or each step
-  // is solved twice and searched again.
+  // Contacts of the seat use up the contact limit. Further contacts that the rim needs must be kept in
+  // addition, or each step is solved twice and searched again.
   if (GetParam().solver == SolverKind::Constraint) {
     EXPECT_LE(stats(world.dispatcher).pair_updates - searched, 20u);
   }

@@ -53,7 +53,8 @@ TEST(PenaltyNewton, ABlockOnFourSpringsTakesAnImplicitEulerStep) {
       solve(made, pairs);
       const double pressed_m_s =
           (kMass_kg * v_m_s - kDt_s * k_N_per_m * kGap_m) / (kMass_kg + kDt_s * kDt_s * k_N_per_m);
-      const double wanted_m_s = kGap_m + kDt_s * pressed_m_s < 0 ? pressed_m_s : v_m_s;  // or it lifts off
+      const double wanted_m_s =
+          kGap_m + kDt_s * pressed_m_s < 0 ? pressed_m_s : v_m_s;  // otherwise the mass lifts off
       EXPECT_NEAR(made.solved()[0][5], wanted_m_s, 1e-9) << k_N_per_m << ' ' << v_m_s;
       EXPECT_LE(made.solved()[0].head<5>().norm(), 1e-9);
     }

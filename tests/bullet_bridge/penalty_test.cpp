@@ -193,7 +193,7 @@ TEST(Penalty, AStockSolverTakesTheContactsAsRigidAndIsReported) {
   EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), 0.005, 1e-6);
 }
 
-/// A heap of boxes of 5,900 points each, in which more touch than are solved one by one.
+/// A heap of boxes of 5,900 points each, in which more points touch than are solved one by one.
 class PenaltyHeap : public testing::Test {
  protected:
   static constexpr std::size_t kLimit = 500;

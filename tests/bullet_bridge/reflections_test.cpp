@@ -133,7 +133,7 @@ TEST(Reflections, ALightBodyBetweenHeavyOnesPassesAllEnergyOn) {
   EXPECT_LT(after.v[0][3], -0.99);
 }
 
-// Thousands of impacts, or more than are followed: then the light body is a spacer without mass.
+// Thousands of impacts, or more than the work budget allows; the light body then acts as a massless spacer.
 TEST(Reflections, AnyLightBodyBetweenOthersPassesAllEnergyOn) {
   for (const double ratio : {1e-3, 1e-5, 1e-6, 1e-7, 1e-9}) {
     const Bodies b = row(3, 1, 1, {1, ratio, 1});
@@ -145,7 +145,7 @@ TEST(Reflections, AnyLightBodyBetweenOthersPassesAllEnergyOn) {
   }
 }
 
-// The same rows are chosen again and again: the active set of the last time is the solution, or is not taken.
+// The same rows are chosen repeatedly. The last active set is used only if it is the solution.
 TEST(ImpactProjection, IsTheSameWithAndWithoutEarlierSolutions) {
   const Bodies rows = random(1, true);
   ImpactProjection with_earlier(rows.rows);
@@ -175,7 +175,7 @@ TEST(Reflections, NeverMakeEnergyNorApproachAndKeepMomentum) {
     }
 }
 
-// What a table carries does not bounce when it is hit from the side.
+// A body on a table does not bounce off the table when it is hit from the side.
 TEST(Reflections, AnInelasticContactReactsToAnElasticOne) {
   Bodies b;
   b.add(1, Vec3::Zero(), Vec3(-1, 0, 0));

@@ -59,8 +59,8 @@ TEST_P(RestWithSolver, ABoxOnAPlateStaysWhereItWasPlaced) {
   EXPECT_LE(rest.spin_rad_s, kRest_m_s / 0.01);
 }
 
-// Edges of 15 degrees are no crossings and need not have points of the shell: only the check of the solved
-// step knows them. What it found is kept, or each step would be solved twice and its pairs searched again.
+// Edges of 15 degrees have no crossings and may have no shell points, so only the check of the solved step
+// finds them. Its contacts are kept, or each step would be solved twice and its pairs searched again.
 TEST(Rest, APrismAcrossTwoOthersRestsOnItsEdgesWithoutBeingSearchedAgain) {
   World world(SolverKind::Constraint);
   const Built rail = test::build(makeCylinder(0.005, 0.03, 24), 7850, 0.5e-3, 1e-3);
@@ -91,7 +91,8 @@ TEST_P(RestWithSolver, ABoxOfAMeshThatFacesInFallsOntoAPlateAndRests) {
 }
 
 TEST_P(RestWithSolver, APlateWithCracksThatFacesInSupportsABox) {
-  // Every second facet of the plate is cut at a side where its neighbour is not, and all face in.
+  // Every second facet of the plate is split at a side where its neighbour is not, and all facets face
+  // inward.
   Mesh cracked = makeBox(Vec3(0.06, 0.06, 0.01));
   for (std::size_t i = 0; i < 12; i += 2) {
     const auto [a, b, c] = cracked.triangles[i];
@@ -352,8 +353,8 @@ TEST(Solver, AStackWithAThousandTimesItsMassOnTopNeitherSinksNorMoves) {
   EXPECT_LE(rest.speed_m_s, 1e-3 * 9.81 * 1e-3);  // a thousandth of what gravity adds in a step
 }
 
-// Over twelve bodies that touch are a heap, which another method solves, unless one of them is heavy. With
-// Newton's method for all of them, this wall moves at 0.7 mm/s under a brick of fifty times the mass.
+// A wall of more than twelve bodies, one of them heavy. With an earlier method this wall moved at 0.7 mm/s
+// under a brick of fifty times the mass.
 TEST(Solver, AWallOfBricksRestsUnderALightAndAHeavyBrick) {
   for (const double ratio : {1.0, 50.0, 1000.0}) {
     World world(SolverKind::Constraint);
@@ -429,7 +430,7 @@ TEST(Slide, AnisotropicFrictionIsThatOfBullet) {
         body.setLinearVelocity(toBt(Vec3(0.3 * Vec3::Unit(axis))));
         world.step(20);
         const double lost = 0.5 * kGravity * 0.02 * (axis == 0 ? 0.2 : 1);
-        // A step more or less, and the tilting of Bullet's own box.
+        // The tolerance is one step, and the tilt of Bullet's own box.
         EXPECT_NEAR(body.getLinearVelocity()[axis], 0.3 - lost, 0.1 * lost) << is_part << axis;
       }
 }

@@ -1,6 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// Restitution in the solver: the displacement is that without, the velocity bounces, and nothing else
-// changes.
+// SPDX-License-Identifier: BSD-3-Clause Restitution in the solver changes the velocity only; the displacement
+// is that without restitution.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -75,7 +74,7 @@ TEST(Restitution, ABodyAtRestUnderGravityDoesNotBounce) {
   }
 }
 
-// With gravity: each bounce ends at the height of the drop, whatever the step's phase is.
+// With gravity each bounce returns to the height of the drop, for any phase of the step.
 TEST(Restitution, UnderGravityNoHeightIsLost) {
   for (const double height_m : {20e-3, 21.3e-3}) {
     Fall fall(1);
@@ -101,7 +100,7 @@ TEST(Restitution, UnderGravityNoHeightIsLost) {
   }
 }
 
-// A plate that the host moves: e times the speed of approach, relative to the plate.
+// The host moves the plate: the rebound is e times the speed of approach, relative to the plate.
 TEST(Restitution, APlateThatIsMovedThrowsBack) {
   for (const double plate_m_s : {-0.6, -0.2, 0.5, 2.0})
     for (const double e : {0.3, 1.0}) {
@@ -119,8 +118,8 @@ TEST(Restitution, APlateThatIsMovedThrowsBack) {
     }
 }
 
-// Flush on two walls, of which one has no restitution: the edges rest at a gap, the faces between them a
-// little farther, and the box leaves without a turn.
+// A box hits two walls flush, one of them without restitution. The edges rest at a gap, the faces between
+// them at a slightly larger one, and the box leaves without turning.
 TEST(Restitution, ABoxThatLandsFlushDoesNotTurn) {
   Fall fall(0.4);
   fall.world
@@ -136,7 +135,7 @@ TEST(Restitution, ABoxThatLandsFlushDoesNotTurn) {
   EXPECT_LE(fall.body->getAngularVelocity().length(), 0.1);
 }
 
-// What rests on a plate is not thrown up by its weight where another part hits it.
+// A part at rest on a plate is not thrown up by its weight when another part hits it.
 TEST(Restitution, APartAtRestStaysWhereAnotherBouncesOnIt) {
   Fall fall(1);
   fall.world.world->setGravity(btVector3(0, 0, toBt(-9.81)));
@@ -173,7 +172,7 @@ TEST(Restitution, FrictionAtTheImpactIsThatOfTheWholeImpulse) {
   EXPECT_LE(body.getLinearVelocity().length2(), energy_J);
 }
 
-// A joint is part of the impact: what hangs on the body that is hit moves with it.
+// Joints take part in the impact: a body that hangs on the hit body moves with it.
 TEST(Restitution, BodiesOnAFixedJointBounceAsOne) {
   World world(SolverKind::Constraint);
   world.world->setGravity(btVector3(0, 0, 0));
@@ -193,8 +192,7 @@ TEST(Restitution, BodiesOnAFixedJointBounceAsOne) {
   world.world->removeConstraint(&joint);
 }
 
-// The solver does not find a displacement without overlap, and cuts the step short: the bodies bounce all the
-// same.
+// The solver finds no displacement without overlap and shortens the step. The bodies still bounce.
 TEST(Restitution, AnImpactThroughALightBodyKeepsTheEnergy) {
   constexpr int kSteps = 20;
   // Each step rounds the velocities of the two heavy bodies, which are at most that of the start.

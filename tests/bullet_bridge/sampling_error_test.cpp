@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// Between the points of a curved face gaps are smaller than at these, by no more than the bound.
+// SPDX-License-Identifier: BSD-3-Clause Between the shell points of a curved face gaps are smaller than at
+// the points, by at most the bound.
 #include "narrowphase/refinement/curved_contact.h"
 
 #include <gtest/gtest.h>
@@ -25,8 +25,7 @@ TEST(Curvature, IsThatOfBothPrincipalDirections) {
   EXPECT_EQ(Curvature(Mat3::Zero()).most_per_m, 0);
 }
 
-// Two balls that touch: whatever their rotations, one of the points that could stand for the contact reads no
-// more than the bound.
+// Two touching balls: for any rotation, the gap at one of the points near the contact is at most the bound.
 TEST(SamplingError, BoundsTheReadingOfTheNearestPoint) {
   static const test::Built big = test::build(makeSphere(8e-3, 5), 7850, 0.5e-3, 1e-3),
                            small = test::build(makeSphere(4e-3, 4), 7850, 0.5e-3, 1e-3);
@@ -63,7 +62,7 @@ TEST(SamplingError, BoundsTheReadingOfTheNearestPoint) {
       EXPECT_LE(least_m, 0) << i;
     }
   }
-  // (1 mm)^2 / 2 (1 / 4 mm + 1 / 8 mm), and what facets leave open.
+  // (1 mm)^2 / 2 (1 / 4 mm + 1 / 8 mm), plus the error of the facets.
   EXPECT_NEAR(most_m, 187.5e-6, 25e-6);
 }
 

@@ -31,7 +31,7 @@ std::vector<char> save(World& world) {
   return {bytes, bytes + serializer.getCurrentBufferSize()};
 }
 
-/// A fixed plate, a tube that falls on it, and a box of Bullet's.
+/// A fixed plate, a tube that falls on it, and one of Bullet's boxes.
 void fill(World& world, btBoxShape& box) {
   world.add(plate(), Pose(), true);
   world.add(tube(), Pose(rotationFromVector(Vec3(0.1, 0.05, 0.2)), Vec3(0, 0, 0.012)));
@@ -69,7 +69,7 @@ TEST(SavedWorld, GoesOnWhereItWasSaved) {
   for (int i = 0; i < 3; ++i)
     btRigidBody::upcast(importer.getRigidBodyByIndex(i))->setActivationState(DISABLE_DEACTIVATION);
   second.step(300);
-  // At rest on its face, as in the world that was not saved.
+  // The tube rests on its face, as in the world that was not saved.
   EXPECT_NEAR(tube_body.getWorldTransform().getOrigin().z(), 0.010, 5e-6);
   EXPECT_NEAR(first.bodies[1]->getWorldTransform().getOrigin().z(), 0.010, 5e-6);
   while (second.world->getNumCollisionObjects() > 0)
@@ -127,7 +127,7 @@ TEST_F(LoadedBody, HasItsOwnInertiaThresholdsAndMotion) {
   World world;
   world.world->setGravity(btVector3(0, 0, 0));
   btRigidBody& body = world.add(tube(), Pose());
-  // Not what any shape would give.
+  // Values that no shape would have.
   body.setMassProps(toBt(0.02), toBt(Vec3(1e-5, 2e-5, 3e-5)));
   body.setSleepingThresholds(toBt(1e-3), toBt(0.1));
   body.setLinearVelocity(toBt(Vec3(0.1, 0.2, 0.3)));

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// Bodies that slide over seams and rims, or pass them at a distance: nothing is in the way.
+// SPDX-License-Identifier: BSD-3-Clause Bodies slide over seams and rims, or pass them at a distance, without
+// being stopped.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -51,7 +51,7 @@ TEST(Seam, ABlockSlidesOverALevelSeamAndDownASmallStep) {
         Slide::addPlate(world, 0, step_m);
         const btRigidBody& body = slide.addBlock(world, FeatureMotion::kRest_m, speed_m_s, i == 0);
         world.step(static_cast<int>(30e-3 / speed_m_s / 1e-3));
-        const double fall_m_s = 9.81 * -step_m / speed_m_s;  // what the way down may add
+        const double fall_m_s = 9.81 * -step_m / speed_m_s;  // speed that the descent may add
         EXPECT_NEAR(body.getLinearVelocity().x(), speed_m_s, 1e-4 * speed_m_s + fall_m_s)
             << step_m << ' ' << i;
         EXPECT_LT(std::abs(body.getWorldTransform().getOrigin().z() - 5e-3), 5e-6) << step_m << ' ' << i;

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// Bodies of open meshes: what is drawn is met from both sides, and nothing else is.
+// SPDX-License-Identifier: BSD-3-Clause Bodies of open meshes are met at the drawn surface, from both sides,
+// and nowhere else.
 #include <BulletDynamics/Vehicle/btRaycastVehicle.h>
 #include <LinearMath/btSerializer.h>
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ void addQuad(Mesh& mesh, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3
   mesh.triangles.push_back({first, first + 2, first + 3});
 }
 
-/// A floor with two walls, which are wound against each other.
+/// A floor with two walls that have opposite winding.
 Mesh channel() {
   const double x = 0.1, y = 0.03, z = 0.03;
   Mesh mesh;
@@ -46,7 +46,7 @@ BodySettings settingsOf(const char* name, bool is_fixed, const Pose& X_WP = {}) 
   return settings;
 }
 
-/// The channel, and a ball of Bullet's or a cube of ours.
+/// The channel, and one of Bullet's balls or a cube part.
 struct Fall {
   World world;
   Body channel_body, cube;
@@ -131,7 +131,7 @@ TEST(Sheet, DeclaredASolidItIsClosed) {
 
 TEST(Sheet, ScalesWithItsBorder) {
   for (const bool is_cube : {false, true}) {
-    Fall fall(is_cube, Vec3(0.15, 0.003, 0.02));  // beyond the border of the channel as it was
+    Fall fall(is_cube, Vec3(0.15, 0.003, 0.02));  // beyond the border of the unscaled channel
     fall.channel_body.shape->setLocalScaling(btVector3(2, 2, 2));
     fall.world.world->updateSingleAabb(fall.channel_body.rigid.get());
     fall.world.step(200);
@@ -172,7 +172,7 @@ Mesh waves() {
   return welded(mesh, 1e-9);
 }
 
-// On the same terrain as Bullet's own mesh, beside it, a car with wheels on rays drives the same way.
+// A raycast vehicle drives the same path on the terrain as on Bullet's own mesh of it.
 TEST(Sheet, AVehicleOnRaysDrivesAsOnBulletsMesh) {
   World world;
   const Mesh mesh = waves();

@@ -1,6 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// A few bodies with given contacts, as a solver of the bridge gets them, and the laws that its result must
-// obey.
+// SPDX-License-Identifier: BSD-3-Clause A few bodies with given contacts, as input of a solver, and the laws
+// that the solver's result must obey.
 #pragma once
 
 #include <BulletCollision/CollisionShapes/btBoxShape.h>
@@ -20,12 +19,12 @@
 
 namespace vps::bullet::test_island {
 
-/// Greatest rounding of a number that the engine holds, as a share of it.
+/// Greatest relative rounding error of a number in Bullet's precision.
 constexpr double kRounding = std::numeric_limits<btScalar>::epsilon() / 2;
 constexpr double kDt_s = btScalar(1e-3);  // as the engine holds it
 
-/// A contact as it was given, in the engine's numbers, and nothing of what a solver makes of it: solvers
-/// compute with doubles, and so must solve the rounded problem as well as any other.
+/// A contact as given to the solver, rounded to Bullet's precision. Solvers compute with doubles, so they
+/// must solve the rounded problem accurately.
 struct GivenContact {
   const btRigidBody* body[2];
   Vec3 p_W, n_W;  ///< n from body 1 to body 0
@@ -90,7 +89,7 @@ class SmallIsland {
     for (const IslandBody& b : island.bodies) u.push_back(b.u);
     return u;
   }
-  /// Of body 0 relative to body 1, where they touch.
+  /// Velocity of body 0 relative to body 1 at the contact.
   [[nodiscard]] Vec3 velocityAt(const GivenContact& c, const std::vector<Vec6>& u) const {
     Vec3 v = Vec3::Zero();
     for (int i = 0; i < 2; ++i) {
@@ -100,7 +99,7 @@ class SmallIsland {
     }
     return v;
   }
-  /// The gap at the end of the step must not be negative; of bodies that overlap it must not shrink.
+  /// The gap at the end of the step must not be negative, and must not shrink for bodies that overlap.
   [[nodiscard]] static double leastNormalVelocity(const GivenContact& c) {
     return c.gap_m > 0 ? -c.gap_m / kDt_s : 0;
   }
@@ -136,10 +135,10 @@ class SmallIsland {
       const double excess_m_s = v.dot(c.n_W) - leastNormalVelocity(c);
       EXPECT_GE(solved_c.p_n, 0) << k;
       EXPECT_GE(excess_m_s, -near_m_s) << k;
-      // Where it pushes, in units of the velocity that its impulse gives.
+      // For a contact that pushes, in units of the velocity that its impulse causes.
       EXPECT_LE(std::min(excess_m_s, solved_c.p_n * solved_c.normal.W), near_m_s) << k;
       EXPECT_LE(p_t.norm(), c.mu * solved_c.p_n * (1 + 1e-6) + 1e-15) << k;
-      // btPlaneSpace1() makes the tangents of the engine's numbers, by at most six operations that round.
+      // btPlaneSpace1() computes the tangents in Bullet's precision, with at most six rounding operations.
       EXPECT_NEAR(p_t.dot(c.n_W), 0, std::max(1e-12, 8 * kRounding * p_t.norm())) << k;
       const Vec3 slip = v - v.dot(c.n_W) * c.n_W;
       const Vec3 wanted = -c.mu * solved_c.p_n * slip.normalized();
@@ -172,7 +171,7 @@ class SmallIsland {
 };
 
 /// Three bodies of different masses with two contacts each, the first with the floor, normals in any
-/// direction. To stand still obeys all of them, so that there is a solution.
+/// direction. The state of rest obeys all of them, so a solution exists.
 inline void makeRandom(SmallIsland& made, std::uint64_t seed, double mu) {
   search::Random random(seed);
   for (int k = 0; k < 3; ++k)

@@ -66,13 +66,13 @@ TEST_P(Spin, AShaftThatLeavesItsAxisIsHeld) {
     shaft.world.step();
     farthest_m = std::max(farthest_m, shaft.aside_m());
   }
-  // Corners pass corners: between the room of the narrowest and of the widest. In a step of 18 degrees what
-  // may protrude from a facet is tolerated: a quarter of the margin, 5 um.
+  // Corners pass corners, so the clearance lies between the narrowest and the widest. In a step of 18 degrees
+  // the height of a facet's corners is tolerated: a quarter of the margin, 5 um.
   EXPECT_GT(farthest_m, kBore_m * std::cos(std::numbers::pi / kSides) - kShaft_m);
   EXPECT_LT(farthest_m, kBore_m - kShaft_m + 5e-6);
 }
 
-// Two blocks hit it in its middle, from one side, which its own motion does not say.
+// Two blocks hit the shaft in its middle from one side, which its own motion does not predict.
 TEST(Spin, AShaftThatOthersHitIsHeld) {
   SpinningShaft shaft(SolverKind::Constraint);
   static const Built block = test::build(makeBox({2e-3, 2e-3, 2e-3}), 7850);
@@ -89,7 +89,7 @@ TEST(Spin, AShaftThatOthersHitIsHeld) {
   EXPECT_LT(farthest_m, kBore_m - kShaft_m + 5e-6);
 }
 
-// Bullet's own solver takes islands with anisotropic friction, and asks no pair what its solution lacks.
+// Bullet's own solver solves islands with anisotropic friction, and calls no pair's check.
 TEST(Spin, ABarThatTurnsFastMeetsAWallWithAnisotropicFriction) {
   World world(SolverKind::Constraint);
   world.world->setGravity(btVector3(0, 0, 0));

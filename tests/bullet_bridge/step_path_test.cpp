@@ -26,7 +26,7 @@ struct Scene {
     const btCollisionObject* const objects[2] = {&body, &plate};
     return {objects, start, end, kStep_s};
   }
-  /// How far the body's point goes along z by a row at p.
+  /// Displacement of the body along z, as measured by a row at p.
   [[nodiscard]] double way_m(const Vec3& p) const {
     const Vec3 turn = rotationVector(end[0].R * start[0].R.transpose());
     return (end[0].p - start[0].p + turn.cross(p - start[0].p)).z();
@@ -69,13 +69,14 @@ TEST(StepPath, ABodyThatTurnsAboutACornerDoesNoWorkThere) {
     const Candidate acting = scene.path().acting(at(corner, 0), at(corner, 0));
     const double lever_m = acting.p_W.x() - scene.start[0].p.x();
     EXPECT_NEAR(lever_m, -kRadius_m * std::sin((side + 1) * half_rad), 1e-3 * half_rad * kRadius_m);
-    // The lever of the start would raise the body, that of the end lower it, by a second-order way.
+    // The lever at the start would raise the body, and the lever at the end would lower it, by a second-order
+    // displacement.
     const double bend_m = 0.5 * kRadius_m * 4 * half_rad * half_rad;
     EXPECT_NEAR(scene.way_m(acting.p_W), 0, 0.01 * bend_m);
   }
 }
 
-/// What comes faster than its weight moves it in a step acts where it lands.
+/// The contact of a body that approaches faster than its weight moves it in a step acts where the body lands.
 TEST(StepPath, AnImpactActsWhereItLands) {
   Scene scene;
   scene.body.applyCentralForce(btVector3(0, 0, btScalar(-9.81 * kMass_kg)));
@@ -86,7 +87,8 @@ TEST(StepPath, AnImpactActsWhereItLands) {
   EXPECT_NEAR((acting.p_W - (corner - (scene.end[0].p - scene.start[0].p))).norm(), 0, 1e-12);
 }
 
-/// A corner that lands within the step, after another one carried the weight: the lever of both lies between.
+/// A corner lands within the step after another corner carried the weight. The effective lever lies between
+/// both.
 TEST(StepPath, ACornerThatLandsSlowlyDoesNoWork) {
   Scene scene;
   scene.body.applyCentralForce(btVector3(0, 0, btScalar(-9.81 * kMass_kg)));
@@ -106,12 +108,12 @@ TEST(StepPath, ACornerThatLandsSlowlyDoesNoWork) {
   EXPECT_NEAR(scene.path().acting(at(before, before.z()), at(corner, 0)).p_W.x(), 0.5 * side_m, 1e-12);
 }
 
-/// Both bodies' levers pass through one point, whichever turns.
+/// Both bodies' levers pass through one point, for any rotation of the bodies.
 TEST(StepPath, TheActingPointGoesWithTheBodyThatTurnsMoreEasily) {
   Scene scene;
   scene.start[0].p = Vec3(0, 0, kRadius_m);
   scene.end[0].p = Vec3(0.2e-3, 0, kRadius_m);
-  scene.end[1].p = Vec3(5e-3, 0, 0);  // of what contact does not move
+  scene.end[1].p = Vec3(5e-3, 0, 0);  // a body that contact does not move
   const Candidate acting = scene.path().acting(at(Vec3(0, 0, 1e-3), 1e-3), at(Vec3(0.2e-3, 0, 0), 0));
   EXPECT_NEAR(acting.p_W.x(), 0, 1e-12);
 }

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// A part's points near another's surface: found through bounds, as many and the same as one by one.
+// SPDX-License-Identifier: BSD-3-Clause The search with bounds finds the same points near another part's
+// surface as testing each point.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -59,7 +59,7 @@ TEST(SurfaceCandidates, AreThoseOfEveryPointMeasuredAlone) {
   EXPECT_LT(tested, 60 * 3 * shell.size()) << "the bounds leave points out";
 }
 
-// They take as long to make as the shell has points, and of hundreds of pairs few need them.
+// Representative points are built in O(points), and few of hundreds of pairs need them.
 TEST(MapCandidates, MakeRepresentativePointsOnlyWhereManyAreNear) {
   static const Built plate = test::build(makeBox(Vec3(0.02, 0.02, 0.004)), 7850, 0.25e-3, 0.25e-3);
   const ShapeModels& models = plate.shape->models();

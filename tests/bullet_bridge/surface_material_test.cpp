@@ -50,7 +50,8 @@ const Built& block() {
   return built;
 }
 
-/// How far blocks slide on each plate in 60 ms, from 0.5 m/s; their own factor is 1.
+/// Distance that blocks slide on each plate in 60 ms, starting at 0.5 m/s; the blocks' own friction factor is
+/// 1.
 std::array<double, 2> slid(World& world, const TwoPlates& plates) {
   world.addShape(*plates.shape, 0, Vec3::Zero(), Pose()).setFriction(toBt(0.5));
   for (const int i : {0, 1}) {
@@ -77,7 +78,7 @@ SurfaceMaterial withFriction(double factor) {
 
 class SurfaceMaterials : public testing::TestWithParam<std::tuple<SolverKind, bool>> {};
 
-// Factors of 0.2 and 0.7, and one that is the body's: 0.5.
+// Friction factors of 0.2 and 0.7, and the body's own value of 0.5.
 TEST_P(SurfaceMaterials, EachContactHasTheFrictionOfTheSurfaceThatItTouches) {
   const auto [solver, has_map] = GetParam();
   for (const bool is_second_own : {true, false}) {
@@ -119,8 +120,8 @@ TEST(SurfaceMaterial, APointOfTheContactNamesTheSurface) {
   EXPECT_GT(contacts, 0);
 }
 
-// By the speed after the impact of a fall from 10 mm: Bullet lets what is slower than 0.2 m/s not bounce.
-// Bullet multiplies the bodies' values.
+// Measured by the speed after a fall from 10 mm. In Bullet, impacts slower than 0.2 m/s do not bounce. Bullet
+// multiplies the bodies' values.
 TEST(SurfaceMaterial, EachContactHasTheRestitutionOfTheSurfaceThatItTouches) {
   SurfaceMaterial materials[2];
   materials[0].restitution = 0.3;
@@ -144,7 +145,7 @@ TEST(SurfaceMaterial, EachContactHasTheRestitutionOfTheSurfaceThatItTouches) {
   EXPECT_NEAR(rise_m_s[1], 0.8 * fall_m_s[1], 2 * gravity_m_s);
 }
 
-// A block sinks by its weight over stiffness and area; of both sides the softer acts.
+// A block sinks by its weight divided by stiffness and area; the softer side acts.
 TEST(SurfaceMaterial, APenaltyContactHasTheStiffnessOfTheSofterSide) {
   SurfaceMaterial soft, hard;
   soft.stiffness_N_per_m3 = 1e8;
@@ -169,7 +170,7 @@ btScalar alwaysHalf(const btCollisionObject*, const btCollisionObject*) {
   return toBt(0.5);
 }
 
-// As Bullet's own algorithms, which ask the host's rule for each contact.
+// As in Bullet's own algorithms, the host's rule is called for each contact.
 TEST(SurfaceMaterial, AHostsRuleOfFrictionTakesPrecedence) {
   const auto before = gCalculateCombinedFrictionCallback;
   gCalculateCombinedFrictionCallback = alwaysHalf;
@@ -221,7 +222,7 @@ TEST(SurfaceMaterial, WhatIsNoMaterialIsRefusedInWords) {
   EXPECT_EQ(refused(2.0, 1.0, {}), "");
 }
 
-// As where repair has moved a surface.
+// As after mesh repair has moved a surface.
 TEST(SurfaceMaterial, APointBesideItsSurfaceBelongsToTheNearest) {
   const TwoPlates plates({SurfaceMaterial{}, SurfaceMaterial{}}, false);
   ShapeModels models = plates.shape->models();

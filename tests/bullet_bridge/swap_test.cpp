@@ -44,7 +44,7 @@ TEST(Swap, AShapeByASmallerOneWhileItSlidesOnAnother) {
 }
 
 TEST(Swap, APartByABoxAndBack) {
-  // Also on a plane, whose pairs with a box Bullet treats by an algorithm of its own.
+  // Also on a plane, since Bullet has a special algorithm for a plane and a box.
   btStaticPlaneShape plane(btVector3(0, 0, 1), toBt(0.005));
   btBoxShape box(btVector3(toBt(0.005), toBt(0.005), toBt(0.005)));
   for (const bool is_plane : {false, true}) {
@@ -87,7 +87,7 @@ TEST(Swap, AHullByAnotherWithTheSameBoundingBox) {
   body.setWorldTransform(toBt(Pose(rotationFromVector(Vec3(M_PI / 4, 0, 0)), Vec3(0, 0, 0.009))));
   body.setAngularFactor(0);
   world.step(300);
-  // On an edge, at h / sqrt 2; the wedge, so turned, would stand on a corner at h sqrt 2.
+  // On an edge the height is h / sqrt 2; a wedge in this orientation would stand on a corner, at h sqrt 2.
   EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), 0.005 + 0.005 * std::sqrt(0.5), 1e-5);
 }
 

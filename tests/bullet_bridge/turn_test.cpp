@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// How far bodies turn in a step, what is said of it, and into how many steps a time must be divided.
+// SPDX-License-Identifier: BSD-3-Clause How far bodies turn in a step, the warnings about it, and the number
+// of substeps.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -40,7 +40,7 @@ const Built& disc() {
   return built;
 }
 
-/// A disc that turns about its axis, on a plate or far from all.
+/// A disc that turns about its axis, on a plate or away from everything.
 struct SpinningDisc {
   World world;
   btRigidBody* body = nullptr;
@@ -115,7 +115,7 @@ TEST(Turn, ATimeIsDividedByTheFastestBody) {
   EXPECT_EQ(parts(1e7, true), 1000);  // the most
 }
 
-// The step in which it lands is the first in which it must not turn too far.
+// The limit applies from the step in which the body lands.
 TEST(Turn, AStepIsDividedBeforeABodyLands) {
   for (const auto& [gap_m, expected] : {std::pair(0.9e-3, 11), std::pair(1.1e-3, 2)}) {
     SpinningDisc spinning(1047, true);
@@ -126,7 +126,7 @@ TEST(Turn, AStepIsDividedBeforeABodyLands) {
   }
 }
 
-// The points of the plate beside the box come near to its edges, but not below them: they are no contacts.
+// The plate's points beside the box come near the box's edges but not below them, so they are not contacts.
 TEST(Turn, ABoxThatSpinsFlatIsHeldByItsFaceAlone) {
   static const Built ground = test::build(makeBox(Vec3(60e-3, 60e-3, 6e-3)), 7850, 0.25e-3, 0.5e-3);
   static const Built cube = test::build(makeBox(Vec3::Constant(10e-3)), 7850, 0.25e-3, 0.5e-3);

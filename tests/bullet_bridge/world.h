@@ -113,7 +113,7 @@ class World {
   std::vector<std::unique_ptr<btRigidBody>> bodies;
 };
 
-/// Where the bodies are after so many steps.
+/// Poses of the bodies after this number of steps.
 inline std::vector<btTransform> placesAfter(World& world, int steps) {
   world.step(steps);
   std::vector<btTransform> places;
