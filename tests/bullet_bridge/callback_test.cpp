@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause Bullet's contact callbacks are called for a part as for one of
-// Bullet's boxes; both are compared.
+// SPDX-License-Identifier: BSD-3-Clause
+// Bullet's contact callbacks are called for a part as for one of Bullet's boxes; both are compared.
 #include <gtest/gtest.h>
 
 #include <set>

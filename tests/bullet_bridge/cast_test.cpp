@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause Rays and sweeps hit a part at the same place as Bullet's mesh shape
-// with the same triangles, and as fast.
+// SPDX-License-Identifier: BSD-3-Clause
+// Rays and sweeps hit a part at the same place as Bullet's mesh shape with the same triangles, and as fast.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause A compound that contains parts collides as its children would on
-// their own.
+// SPDX-License-Identifier: BSD-3-Clause
+// A compound that contains parts collides as its children would on their own.
 #include <BulletCollision/CollisionDispatch/btCompoundCollisionAlgorithm.h>
 #include <gtest/gtest.h>
 

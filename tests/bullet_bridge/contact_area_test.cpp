@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause The contacts of a flush face represent its area and share its load
-// evenly.
+// SPDX-License-Identifier: BSD-3-Clause
+// The contacts of a flush face represent its area and share its load evenly.
 #include "narrowphase/selection/contact_selection.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,6 @@
-// SPDX-License-Identifier: BSD-3-Clause Reduction of thousands of near points to the few contacts of the
-// solver: properties that must be preserved.
+// SPDX-License-Identifier: BSD-3-Clause
+// Reduction of thousands of near points to the few contacts of the solver: properties that must be
+// preserved.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,5 +1,6 @@
-// SPDX-License-Identifier: BSD-3-Clause Sweeps over rigid contacts without restitution, tested by the laws of
-// contact and on problems with known solutions.
+// SPDX-License-Identifier: BSD-3-Clause
+// Sweeps over rigid contacts without restitution, tested by the laws of contact and on problems with known
+// solutions.
 #include "solver/rigid/contact_sweeps.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause Edges that cross edges between their shell points.
+// SPDX-License-Identifier: BSD-3-Clause
+// Edges that cross edges between their shell points.
 #include <gtest/gtest.h>
 
 #include <cmath>

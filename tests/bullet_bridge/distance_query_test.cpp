@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause Queries report points up to the requested distance, also beyond the
-// band of the fields.
+// SPDX-License-Identifier: BSD-3-Clause
+// Queries report points up to the requested distance, also beyond the band of the fields.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,5 +1,6 @@
-// SPDX-License-Identifier: BSD-3-Clause Shortened steps: the end of a step whose rounds of checks were used
-// up. The pairs are mocks, which compute by a formula how deep their bodies would be.
+// SPDX-License-Identifier: BSD-3-Clause
+// Shortened steps: the end of a step whose rounds of checks were used up. The pairs are mocks, which compute
+// by a formula how deep their bodies would be.
 #include "solver/rigid/contact_loop.h"
 
 #include <gtest/gtest.h>

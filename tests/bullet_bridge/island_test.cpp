@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause Bodies of a shortened step continue as one body; tested by
-// conservation laws.
+// SPDX-License-Identifier: BSD-3-Clause
+// Bodies of a shortened step continue as one body; tested by conservation laws.
 #include "solver/island/island.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause Messages reach the host's hook, and a host that forgot a call is
-// warned.
+// SPDX-License-Identifier: BSD-3-Clause
+// Messages reach the host's hook, and a host that forgot a call is warned.
 #include "vps_bullet/log.h"
 
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcherMt.h>

@@ -1,5 +1,6 @@
-// SPDX-License-Identifier: BSD-3-Clause A Shape against every shape type of Bullet: one test for each row of
-// the table in bullet_bridge/native_shapes.md.
+// SPDX-License-Identifier: BSD-3-Clause
+// A Shape against every shape type of Bullet: one test for each row of the table in
+// bullet_bridge/native_shapes.md.
 #include <BulletCollision/CollisionShapes/btBox2dShape.h>
 #include <BulletCollision/CollisionShapes/btConvexPointCloudShape.h>
 #include <BulletCollision/CollisionShapes/btHeightfieldTerrainShape.h>

@@ -1,5 +1,6 @@
-// SPDX-License-Identifier: BSD-3-Clause The check of a solved step: where two bodies would overlap at its
-// end, and the share of the step during which they do not. The end poses are given; no solver is involved.
+// SPDX-License-Identifier: BSD-3-Clause
+// The check of a solved step: where two bodies would overlap at its end, and the share of the step during
+// which they do not. The end poses are given; no solver is involved.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause Restitution in the solver changes the velocity only; the displacement
-// is that without restitution.
+// SPDX-License-Identifier: BSD-3-Clause
+// Restitution in the solver changes the velocity only; the displacement is that without restitution.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause Bodies slide over seams and rims, or pass them at a distance, without
-// being stopped.
+// SPDX-License-Identifier: BSD-3-Clause
+// Bodies slide over seams and rims, or pass them at a distance, without being stopped.
 #include <gtest/gtest.h>
 
 #include <cmath>

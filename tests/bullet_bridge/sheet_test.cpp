@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause Bodies of open meshes are met at the drawn surface, from both sides,
-// and nowhere else.
+// SPDX-License-Identifier: BSD-3-Clause
+// Bodies of open meshes are met at the drawn surface, from both sides, and nowhere else.
 #include <BulletDynamics/Vehicle/btRaycastVehicle.h>
 #include <LinearMath/btSerializer.h>
 #include <gtest/gtest.h>

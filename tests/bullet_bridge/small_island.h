@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause A few bodies with given contacts, as input of a solver, and the laws
-// that the solver's result must obey.
+// SPDX-License-Identifier: BSD-3-Clause
+// A few bodies with given contacts, as input of a solver, and the laws that the solver's result must obey.
 #pragma once
 
 #include <BulletCollision/CollisionShapes/btBoxShape.h>

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause The search with bounds finds the same points near another part's
-// surface as testing each point.
+// SPDX-License-Identifier: BSD-3-Clause
+// The search with bounds finds the same points near another part's surface as testing each point.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause How far bodies turn in a step, the warnings about it, and the number
-// of substeps.
+// SPDX-License-Identifier: BSD-3-Clause
+// How far bodies turn in a step, the warnings about it, and the number of substeps.
 #include <gtest/gtest.h>
 
 #include <algorithm>

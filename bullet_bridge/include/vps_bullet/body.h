@@ -1,5 +1,6 @@
-// SPDX-License-Identifier: BSD-3-Clause Makes a body from triangles in one call: models, shape, mass,
-// inertia, material, and a motion state in the part's own frame.
+// SPDX-License-Identifier: BSD-3-Clause
+// Makes a body from triangles in one call: models, shape, mass, inertia, material, and a motion state in the
+// part's own frame.
 #pragma once
 
 #include <BulletDynamics/Dynamics/btRigidBody.h>

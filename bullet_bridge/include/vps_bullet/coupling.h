@@ -1,5 +1,6 @@
-// SPDX-License-Identifier: BSD-3-Clause The virtual coupling: a spring-damper between a device's proxy and a
-// part, solved together with the contacts.
+// SPDX-License-Identifier: BSD-3-Clause
+// The virtual coupling: a spring-damper between a device's proxy and a part, solved together with the
+// contacts.
 #pragma once
 
 #include <BulletDynamics/ConstraintSolver/btTypedConstraint.h>

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause How far bodies may turn in one step, and the number of substeps that
-// keeps them within that limit.
+// SPDX-License-Identifier: BSD-3-Clause
+// How far bodies may turn in one step, and the number of substeps that keeps them within that limit.
 //
 //     for (int k = 0, n = substepsFor(world, dt_s, 100); k < n; ++k) world.stepSimulation(dt_s / n, 0);
 #pragma once

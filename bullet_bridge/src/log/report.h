@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause Messages of the library: how they reach the log hook, and the warning
-// about a forgotten install().
+// SPDX-License-Identifier: BSD-3-Clause
+// Messages of the library: how they reach the log hook, and the warning about a forgotten install().
 #pragma once
 
 #include <string>

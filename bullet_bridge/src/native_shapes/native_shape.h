@@ -1,5 +1,6 @@
-// SPDX-License-Identifier: BSD-3-Clause Bullet's own shapes: exact distance to analytic shapes, the triangles
-// of all shapes, and keys that detect changes.
+// SPDX-License-Identifier: BSD-3-Clause
+// Bullet's own shapes: exact distance to analytic shapes, the triangles of all shapes, and keys that detect
+// changes.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause Adapters that present Bullet's own shapes as a Shape, for pairs with
-// a Shape; and their cache.
+// SPDX-License-Identifier: BSD-3-Clause
+// Adapters that present Bullet's own shapes as a Shape, for pairs with a Shape; and their cache.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause The border of a sheet (an open surface), and the side from which a
-// point meets a sheet.
+// SPDX-License-Identifier: BSD-3-Clause
+// The border of a sheet (an open surface), and the side from which a point meets a sheet.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,6 @@
-// SPDX-License-Identifier: BSD-3-Clause The key that identifies a contact from step to step, and values that
-// a contact point carries for the solver.
+// SPDX-License-Identifier: BSD-3-Clause
+// The key that identifies a contact from step to step, and values that a contact point carries for the
+// solver.
 #pragma once
 
 #include <cstdint>

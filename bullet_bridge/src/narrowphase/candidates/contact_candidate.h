@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause Contact candidates, from the query to the solver: how they are found,
-// reduced and refined.
+// SPDX-License-Identifier: BSD-3-Clause
+// Contact candidates, from the query to the solver: how they are found, reduced and refined.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,6 @@
-// SPDX-License-Identifier: BSD-3-Clause Finds the candidates of a step. A fast body is queried, and its
-// candidates are refined, at several places along its path.
+// SPDX-License-Identifier: BSD-3-Clause
+// Finds the candidates of a step. A fast body is queried, and its candidates are refined, at several places
+// along its path.
 #include <algorithm>
 #include <cmath>
 

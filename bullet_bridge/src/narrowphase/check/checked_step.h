@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause Internals of PairCheck: the solved step, and vertices of curved
-// faces.
+// SPDX-License-Identifier: BSD-3-Clause
+// Internals of PairCheck: the solved step, and vertices of curved faces.
 #pragma once
 
 #include <span>

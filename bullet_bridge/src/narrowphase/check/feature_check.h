@@ -1,5 +1,6 @@
-// SPDX-License-Identifier: BSD-3-Clause Stage 3 of PairCheck: keeps corners, sharp edges and facets of two
-// bodies apart, by their exact motion in a solved step.
+// SPDX-License-Identifier: BSD-3-Clause
+// Stage 3 of PairCheck: keeps corners, sharp edges and facets of two bodies apart, by their exact motion in
+// a solved step.
 #pragma once
 
 #include <cstdint>

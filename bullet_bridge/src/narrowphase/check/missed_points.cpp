@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause Stages 2 and 4 of PairCheck: finds the points that a solved step lets
-// overlap.
+// SPDX-License-Identifier: BSD-3-Clause
+// Stages 2 and 4 of PairCheck: finds the points that a solved step lets overlap.
 #include <algorithm>
 #include <cmath>
 

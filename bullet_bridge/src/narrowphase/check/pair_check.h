@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause Checks whether a solved step lets the bodies of a pair overlap, and
-// finds the contacts that prevent it.
+// SPDX-License-Identifier: BSD-3-Clause
+// Checks whether a solved step lets the bodies of a pair overlap, and finds the contacts that prevent it.
 #pragma once
 
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause Chooses the time within a step at which the row of a contact is
-// taken.
+// SPDX-License-Identifier: BSD-3-Clause
+// Chooses the time within a step at which the row of a contact is taken.
 #pragma once
 
 #include "narrowphase/candidates/contact_candidate.h"

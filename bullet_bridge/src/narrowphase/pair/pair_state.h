@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause State that is kept from step to step: of one pair of bodies, and of
-// all pairs of one installation.
+// SPDX-License-Identifier: BSD-3-Clause
+// State that is kept from step to step: of one pair of bodies, and of all pairs of one installation.
 #pragma once
 
 #include <algorithm>

@@ -1,7 +1,8 @@
-// SPDX-License-Identifier: BSD-3-Clause Gaps at the end of the step. A contact plane is first-order in the
-// motion. On the facets of a curved face, and where one face continues smoothly in another, a point that
-// slides by a facet or more has another gap than its plane predicts. The part would then sink or drop by up
-// to the facets' height in each step, and the next step's impact would take that energy.
+// SPDX-License-Identifier: BSD-3-Clause
+// Gaps at the end of the step. A contact plane is first-order in the motion. On the facets of a curved face,
+// and where one face continues smoothly in another, a point that slides by a facet or more has another gap
+// than its plane predicts. The part would then sink or drop by up to the facets' height in each step, and
+// the next step's impact would take that energy.
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
 
 #include <cmath>

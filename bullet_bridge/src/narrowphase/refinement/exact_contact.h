@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause Exact contact of one shell point with the surfaces of the other body.
+// SPDX-License-Identifier: BSD-3-Clause
+// Exact contact of one shell point with the surfaces of the other body.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause Distances of one body's points from the exact surfaces of another
-// body.
+// SPDX-License-Identifier: BSD-3-Clause
+// Distances of one body's points from the exact surfaces of another body.
 #pragma once
 
 #include <vector>

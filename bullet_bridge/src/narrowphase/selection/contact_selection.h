@@ -1,5 +1,6 @@
-// SPDX-License-Identifier: BSD-3-Clause Selects the contacts of the solver from all near points of a pair: a
-// few rigid contacts (rigid_selection.cpp), or every point that presses (penalty_selection.cpp).
+// SPDX-License-Identifier: BSD-3-Clause
+// Selects the contacts of the solver from all near points of a pair: a few rigid contacts
+// (rigid_selection.cpp), or every point that presses (penalty_selection.cpp).
 #pragma once
 
 #include <vector>

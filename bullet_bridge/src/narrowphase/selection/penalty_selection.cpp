@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause Penalty contact: selects every point that can touch.
+// SPDX-License-Identifier: BSD-3-Clause
+// Penalty contact: selects every point that can touch.
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
 
 #include <algorithm>

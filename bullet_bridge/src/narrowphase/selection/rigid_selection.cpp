@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause Constraint contact: selects a few points, each of which becomes a
-// constraint of the solver.
+// SPDX-License-Identifier: BSD-3-Clause
+// Constraint contact: selects a few points, each of which becomes a constraint of the solver.
 #include <algorithm>
 #include <utility>
 

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause Rows of an impact, and the projection of velocities onto the states
-// that violate no row.
+// SPDX-License-Identifier: BSD-3-Clause
+// Rows of an impact, and the projection of velocities onto the states that violate no row.
 #pragma once
 
 #include <Eigen/Dense>

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause A sparse matrix over the bodies of an island, in blocks of 6x6, and
-// its factorisation.
+// SPDX-License-Identifier: BSD-3-Clause
+// A sparse matrix over the bodies of an island, in blocks of 6x6, and its factorisation.
 #pragma once
 
 #include <Eigen/Dense>

@@ -1,5 +1,6 @@
-// SPDX-License-Identifier: BSD-3-Clause Functions that Newton's method uses for both contact methods:
-// wrenches, sums of stiffness, the line search.
+// SPDX-License-Identifier: BSD-3-Clause
+// Functions that Newton's method uses for both contact methods: wrenches, sums of stiffness, the line
+// search.
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,6 @@
-// SPDX-License-Identifier: BSD-3-Clause Penalty contact: finds the end-of-step velocities at which inertia,
-// couplings and thousands of penalty points balance.
+// SPDX-License-Identifier: BSD-3-Clause
+// Penalty contact: finds the end-of-step velocities at which inertia, couplings and thousands of penalty
+// points balance.
 //
 // They minimise a convex function, the incremental potential of an implicit Euler step,
 //

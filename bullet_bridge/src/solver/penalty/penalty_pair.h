@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause The penalty points of one pair of bodies, and groups of neighbouring
-// points that are solved as one.
+// SPDX-License-Identifier: BSD-3-Clause
+// The penalty points of one pair of bodies, and groups of neighbouring points that are solved as one.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause Penalty forces of one pair of bodies, as functions of their relative
-// twist.
+// SPDX-License-Identifier: BSD-3-Clause
+// Penalty forces of one pair of bodies, as functions of their relative twist.
 #pragma once
 
 #include <array>

@@ -1,6 +1,6 @@
-// SPDX-License-Identifier: BSD-3-Clause The rounds of a step with rigid contact: solve with the known
-// contacts, call the check of each pair (step_check.h), add the contacts that the solution lacks, and solve
-// again.
+// SPDX-License-Identifier: BSD-3-Clause
+// The rounds of a step with rigid contact: solve with the known contacts, call the check of each pair
+// (step_check.h), add the contacts that the solution lacks, and solve again.
 #pragma once
 
 #include <algorithm>

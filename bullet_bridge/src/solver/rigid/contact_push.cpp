@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause The push: moves overlapping bodies apart without leaving a velocity.
+// SPDX-License-Identifier: BSD-3-Clause
+// The push: moves overlapping bodies apart without leaving a velocity.
 #include <BulletDynamics/ConstraintSolver/btContactSolverInfo.h>
 
 #include <algorithm>

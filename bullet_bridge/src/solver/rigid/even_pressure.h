@@ -1,5 +1,6 @@
-// SPDX-License-Identifier: BSD-3-Clause Evens the pressure from which the solver starts. Statics does not
-// determine how the contacts of a flush face share its load.
+// SPDX-License-Identifier: BSD-3-Clause
+// Evens the pressure from which the solver starts. Statics does not determine how the contacts of a flush
+// face share its load.
 #pragma once
 
 #include <array>

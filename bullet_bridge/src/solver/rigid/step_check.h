@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause The solver's interface to the narrow phase: which contacts does a
-// solved step lack?
+// SPDX-License-Identifier: BSD-3-Clause
+// The solver's interface to the narrow phase: which contacts does a solved step lack?
 //
 // Contacts are planes, found for the motion that is predicted before the step. Contact changes that motion: a
 // part that breaks free of a jam turns, an edge that was out of reach meets a wall, and a fast turn bends the
