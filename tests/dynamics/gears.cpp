@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "gears.h"
+#include "scenes.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "support/gear.h"
-#include "turn_counter.h"
 #include "vps_bullet/convert.h"
 
 namespace vps::dynamics {

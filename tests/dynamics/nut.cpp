@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "nut.h"
+#include "scenes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "support/screw.h"
-#include "turn_counter.h"
 
 namespace vps::dynamics {
 

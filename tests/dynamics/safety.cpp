@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "safety.h"
+#include "scenes.h"
 
 #include <algorithm>
 #include <cmath>

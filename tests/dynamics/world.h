@@ -1,20 +1,33 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// An ordinary Bullet world for the scenes of this folder, with the contacts of any engine and the solver of
-// any mode.
+// An ordinary Bullet world for the scenes of this folder, with the contacts of any engine, the solver of any
+// mode, and the processor time of its steps.
 #pragma once
 
 #include <btBulletDynamicsCommon.h>
 
+#include <cmath>
 #include <cstdint>
 #include <memory>
+#include <numbers>
 #include <string>
 #include <vector>
 
 #include "engine.h"
 #include "part.h"
-#include "step_times.h"
 
 namespace vps::dynamics {
+
+/// Processor time of this thread [s]; other programs on the machine affect it only through the caches.
+double threadTime_s();
+
+struct StepTimes {
+  std::vector<double> step_s;
+  double narrow_s = 0, solve_s = 0;  ///< summed over all steps
+
+  [[nodiscard]] double mean_s() const;
+  /// @param share  0 to 1: 0.5 the median, 0.99 the time that one step in a hundred exceeds
+  [[nodiscard]] double percentile_s(double share) const;
+};
 
 /// Input of every scene.
 struct SceneSettings {
@@ -30,6 +43,27 @@ struct Placed {
   [[nodiscard]] Pose pose() const;  ///< of the part's frame, in W
   /// Upper bound of the speed of the part's points.
   [[nodiscard]] double speed_m_s() const;
+};
+
+/// Sums a part's rotation about z over more than a turn. Call update() at least every half turn.
+class TurnCounter {
+ public:
+  explicit TurnCounter(const Placed& placed) : placed_(placed), last_rad_(now()) {}
+  /// @return the rotation since construction [rad], counter-clockwise positive
+  double update() {
+    const double at_rad = now();
+    sum_rad_ += std::remainder(at_rad - last_rad_, 2 * std::numbers::pi);
+    last_rad_ = at_rad;
+    return sum_rad_;
+  }
+
+ private:
+  [[nodiscard]] double now() const {
+    const Mat3 R = placed_.pose().R;
+    return std::atan2(R(1, 0), R(0, 0));
+  }
+  Placed placed_;
+  double last_rad_, sum_rad_ = 0;
 };
 
 /// Gravity 9.81 m/s^2 along -z, double or single precision Bullet, dt = 1 ms. Sleeping is disabled and

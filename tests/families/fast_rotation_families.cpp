@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "dynamics/turn_counter.h"
 #include "dynamics/world.h"
 #include "fast_rotation_families.h"
 #include "search/random.h"

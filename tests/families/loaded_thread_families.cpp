@@ -8,7 +8,6 @@
 #include <cstdio>
 #include <numbers>
 
-#include "dynamics/turn_counter.h"
 #include "dynamics/world.h"
 #include "family.h"
 #include "search/random.h"

@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <vector>
 
-#include "dynamics/nut.h"
+#include "dynamics/scenes.h"
 #include "family.h"
 #include "impact_world.h"
 #include "search/random.h"

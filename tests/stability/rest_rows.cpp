@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "drop.h"
-#include "dynamics/peg.h"
+#include "dynamics/scenes.h"
 #include "rows.h"
 
 namespace vps::stability {

@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "dynamics/heap.h"
+#include "dynamics/scenes.h"
 #include "rival_rows.h"
 #include "support/random_draw.h"
 #include "vps_bullet/body.h"

@@ -5,9 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "dynamics/nut.h"
-#include "dynamics/peg.h"
-#include "dynamics/ring.h"
+#include "dynamics/scenes.h"
 #include "rivals.h"
 
 namespace vps::bench {

@@ -3,12 +3,7 @@
 
 #include <cmath>
 
-#include "dynamics/gears.h"
-#include "dynamics/heap.h"
-#include "dynamics/heavy_block.h"
-#include "dynamics/nut.h"
-#include "dynamics/peg.h"
-#include "dynamics/safety.h"
+#include "dynamics/scenes.h"
 #include "rival_rows.h"
 
 namespace vps::bench {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "dynamics/peg.h"
+#include "dynamics/scenes.h"
 #include "rival_rows.h"
 #include "rivals.h"
 #include "vps_bullet/convert.h"

@@ -4,8 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "dynamics/nut.h"
-#include "dynamics/peg.h"
+#include "dynamics/scenes.h"
 #include "support/gear.h"
 #include "support/lathe.h"
 
