@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "blocks.h"
 #include "vps_bullet/convert.h"
 
 namespace vps::stability {

@@ -1,11 +1,32 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The scene of most rows: a tilted block falls on a plate, topples and comes to rest.
+// Steel blocks and plates with coarse models, and the scene of most rows: a tilted block falls on a plate,
+// topples and comes to rest.
 #pragma once
 
-#include "row.h"
+#include "dynamics/world.h"
+#include "rows.h"
 #include "watch.h"
 
 namespace vps::stability {
+
+using dynamics::makePart;
+using dynamics::PartMesh;
+using dynamics::World;
+
+inline constexpr double kGravity_m_s2 = World::kGravity_m_s2;
+inline constexpr double kVoxel_m = 0.5e-3;
+inline constexpr double kPlate_m = 60e-3;  ///< side of a plate
+inline constexpr double kThick_m = 10e-3;  ///< of a plate
+inline const dynamics::Resolution kCoarse{kVoxel_m, 1e-3};
+inline const Vec3 kBlock_m(20e-3, 15e-3, 10e-3);
+
+inline PartMesh block() {
+  return makePart(makeBox(kBlock_m));
+}
+
+inline PartMesh plate(double side_m = kPlate_m) {
+  return makePart(makeBox(Vec3(side_m, side_m, kThick_m)));
+}
 
 struct Drop {
   double size = 1;         ///< times a steel block of 20 x 15 x 10 mm, on a plate of 60 x 60 x 10 mm

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "blocks.h"
+#include "drop.h"
 #include "rows.h"
 #include "support/lathe.h"
 #include "vps_bullet/convert.h"

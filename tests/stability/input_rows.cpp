@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "blocks.h"
+#include "drop.h"
 #include "rows.h"
 #include "vps_bullet/convert.h"
 #include "vps_bullet/coupling.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "judgement.h"
+#include "rows.h"
 
 #include <cstdio>
 

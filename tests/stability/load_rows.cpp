@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "blocks.h"
 #include "drop.h"
 #include "rows.h"
 #include "vps/feature_motion.h"

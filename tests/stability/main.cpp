@@ -1,14 +1,132 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vps_stability: the table of contact at its extremes. Exits 1 if a required value fails, 2 for an unknown
-// option.
+// vps_stability: runs the rows with both contact methods, searches for their limits, and prints the table of
+// contact at its extremes. Exits 1 if a required value fails, 2 for an unknown option.
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <exception>
 
 #include "rows.h"
-#include "table.h"
+#include "support/table_rows.h"
 
+namespace vps::stability {
 namespace {
+
+struct Options {
+  bool is_short = false;     ///< only the values that must hold, no search for limits
+  bool is_thorough = false;  ///< hours at rest
+  std::vector<Mode> modes = {Mode::Constraint, Mode::Penalty};
+};
+
+/// Result of a row in one mode.
+struct Result {
+  std::string promised;         ///< outcome of the promised values
+  std::string limit;            ///< where it fails, and how
+  bool is_met = true;           ///< all promised values hold
+  bool is_required_met = true;  ///< all required values hold
+  std::string failure;          ///< otherwise the reason
+};
+
+std::string labelOf(const Row& row, double value) {
+  return row.label ? row.label(value) : toText(value);
+}
+
+Judgement runOne(const Row& row, const Run& run) {
+  try {
+    return row.run(run);
+  } catch (const std::exception& error) {
+    Judgement judgement;
+    judgement.require(false, error.what());
+    return judgement;
+  }
+}
+
+/// Narrows the interval between the last value that holds and the first that fails to about a tenth of a
+/// decade.
+std::string narrowed(const Row& row, Run run, double holds, double breaks, std::string how) {
+  // Three bisections of a decade leave a factor of 1.3.
+  for (int i = 0; i < 3 && !row.label && holds > 0 && breaks > 0; ++i) {
+    run.value = std::sqrt(holds * breaks);
+    const Judgement middle = runOne(row, run);
+    if (!middle.holds()) how = middle.text();
+    (middle.holds() ? holds : breaks) = run.value;
+  }
+  return "holds at " + labelOf(row, holds) + ", breaks at " + labelOf(row, breaks) + ": " + how;
+}
+
+/// Continues beyond the promised values until one fails.
+std::string limitBeyond(const Row& row, Run run, std::size_t promised) {
+  for (std::size_t i = promised; i < row.ladder.size(); ++i) {
+    run.value = row.ladder[i];
+    const Judgement judgement = runOne(row, run);
+    if (!judgement.holds()) return narrowed(row, run, row.ladder[i - 1], run.value, judgement.text());
+  }
+  return "none found up to " + labelOf(row, row.ladder.back());
+}
+
+Result runRow(const Row& row, Mode mode, const Options& options) {
+  Result result;
+  const std::size_t must = std::min(row.promised, row.holds[mode == Mode::Penalty ? 1 : 0]);
+  const std::size_t end = options.is_short ? must : row.promised;
+  Run run{mode, 0, options.is_thorough};
+  for (std::size_t i = 0; i < end; ++i) {
+    run.value = row.ladder[i];
+    const Judgement judgement = runOne(row, run);
+    const std::string outcome = labelOf(row, run.value) + ": " + judgement.text();
+    if (judgement.holds()) {
+      if (result.is_met) result.promised = outcome;
+      continue;
+    }
+    if (result.is_met && i > 0 && !row.label) {
+      result.limit = narrowed(row, run, row.ladder[i - 1], run.value, judgement.text());
+      if (options.is_short) result.limit.clear();
+    }
+    result.promised = result.is_met ? outcome : result.promised + "; " + outcome;
+    result.is_met = false;
+    if (i >= must) continue;
+    result.is_required_met = false;
+    result.failure += result.failure.empty() ? outcome : "; " + outcome;
+  }
+  if (!options.is_short && result.is_met && row.ladder.size() > row.promised)
+    result.limit = limitBeyond(row, run, row.promised);
+  return result;
+}
+
+/// Prints Markdown, one line for each row, and adds each to `file`. Returns how many rows miss a required
+/// value.
+int printTable(const std::vector<Row>& rows, const Options& options, test::TableRows& file) {
+  int missed = 0;
+  std::printf("| row | to the extreme | judged by | contact | at the end of the promised values | limit |\n");
+  std::printf("|---|---|---|---|---|---|\n");
+  for (const Row& row : rows) {
+    for (const Mode mode : options.modes) {
+      const Result r = runRow(row, mode, options);
+      const bool is_first = mode == options.modes.front();
+      std::printf("| %s | %s | %s | %s | %s%s%s | %s |\n", is_first ? row.key.c_str() : "",
+                  is_first ? row.extreme.c_str() : "", is_first ? row.judged.c_str() : "",
+                  dynamics::nameOf(mode), r.is_met ? "" : "**breaks** at ", r.promised.c_str(),
+                  r.is_required_met ? "" : " **MISSED**", r.limit.c_str());
+      std::fflush(stdout);
+      file.add("stability " + row.key + ", " + dynamics::nameOf(mode), row.judged, r.promised,
+               r.is_required_met ? test::kMet : test::kFailed);
+      if (!r.is_required_met) ++missed, std::fprintf(stderr, "%s: %s\n", row.key.c_str(), r.failure.c_str());
+    }
+  }
+  return missed;
+}
+
+std::vector<Row> allRows() {
+  std::vector<Row> all;
+  for (const auto& rows : {loadRows(), scaleRows(), impactRows(), shapeRows(), restRows(), inputRows()})
+    all.insert(all.end(), rows.begin(), rows.end());
+#ifdef VPS_STABILITY_HAS_DEVICE
+  const std::vector<Row> rows = deviceRows();
+  all.insert(all.end(), rows.begin(), rows.end());
+#endif
+  return all;
+}
 
 int usage() {
   std::printf(
@@ -19,7 +137,7 @@ int usage() {
       "  --values    these instead of the rows' own\n"
       "  --tsv       also writes the rows to this file\n"
       "rows:");
-  for (const vps::stability::Row& row : vps::stability::allRows()) std::printf(" %s", row.key.c_str());
+  for (const Row& row : allRows()) std::printf(" %s", row.key.c_str());
   std::printf("\n");
   return 2;
 }
@@ -34,6 +152,7 @@ std::vector<double> numbers(const char* text) {
 }
 
 }  // namespace
+}  // namespace vps::stability
 
 int main(int argc, char** argv) {
   using namespace vps::stability;

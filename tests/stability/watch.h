@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "dynamics/world.h"
-#include "judgement.h"
+#include "rows.h"
 
 namespace vps::stability {
 
