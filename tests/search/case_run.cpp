@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "case_run.h"
 
+#include <algorithm>
 #include <deque>
 #include <exception>
 
 #include "dynamics/world.h"
-#include "hand_path.h"
-#include "pass_through.h"
+#include "vps/coupling_law.h"
 #include "vps/errors.h"
 #include "vps_bullet/convert.h"
 #include "vps_bullet/coupling.h"
@@ -23,6 +23,41 @@ dynamics::PartMesh partOf(const CaseBody& body) {
   dynamics::PartMesh part = dynamics::makePart(body.mesh);
   part.mesh = body.given;
   return part;
+}
+
+/// The pose of the hand's proxy over time: from goal to goal, straight and turning evenly.
+class HandPath {
+ public:
+  HandPath(const Hand& hand, const Pose& X_start) : goals_(hand.goals), X_W_(X_start) {}
+  /// Advances by dt_s and returns the state at the end of the step.
+  CouplingState advance(double dt_s);
+
+ private:
+  const std::vector<Hand::Goal>& goals_;
+  std::size_t next_ = 0;
+  Pose X_W_;
+};
+
+CouplingState HandPath::advance(double dt_s) {
+  const Pose before = X_W_;
+  if (next_ < goals_.size()) {
+    const Hand::Goal& goal = goals_[next_];
+    const Vec3 way = goal.X_WP.p - X_W_.p, turn = rotationVector(goal.X_WP.R * X_W_.R.transpose());
+    const double needed_s = std::max(way.norm() / goal.speed_m_s, turn.norm() / goal.spin_rad_s);
+    if (needed_s <= dt_s) {
+      X_W_ = goal.X_WP;
+      ++next_;
+    } else {
+      const double share = dt_s / needed_s;
+      X_W_ = {rotationFromVector(share * turn) * X_W_.R, X_W_.p + share * way};
+    }
+  }
+  CouplingState state;
+  state.X_W = X_W_;
+  state.V_W.v = (X_W_.p - before.p) / dt_s;
+  state.V_W.w = rotationVector(X_W_.R * before.R.transpose()) / dt_s;
+  state.is_coupled = true;
+  return state;
 }
 
 /// The bodies of a case in a Bullet world.
@@ -117,6 +152,28 @@ void simulate(const Case& made, const RunSettings& settings, CaseResult& result)
 }
 
 }  // namespace
+
+bool hasPassedThrough(const OverlapMesh& a, const OverlapMesh& b, const Pose& X_BA_before,
+                      const Pose& X_BA_after, double margin_m) {
+  std::vector<double> crossings;
+  for (const Vec3& p_A : a.mesh().vertices) {
+    const Vec3 from = X_BA_before * p_A, to = X_BA_after * p_A;
+    Box path;
+    path.add(from);
+    path.add(to);
+    if (!overlap(path, b.box()) || (to - from).squaredNorm() < margin_m * margin_m) continue;
+    crossings.clear();
+    b.solid().appendCrossings(from, to, crossings);
+    if (crossings.size() < 2) continue;
+    if (b.solid().signedDistance(from) < 0 || b.solid().signedDistance(to) < 0) continue;
+    std::sort(crossings.begin(), crossings.end());
+    for (std::size_t i = 0; i + 1 < crossings.size(); ++i) {
+      const Vec3 middle = from + 0.5 * (crossings[i] + crossings[i + 1]) * (to - from);
+      if (b.solid().signedDistance(middle) < -margin_m) return true;
+    }
+  }
+  return false;
+}
 
 CaseResult runCase(const Case& made, const RunSettings& settings) {
   CaseResult result;

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Simulates a case and measures the overlap after every step.
+// Simulates a case, measures the overlap after every step, and saves the case as a scene file.
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "case.h"
 #include "dynamics/engine.h"
+#include "vps/mesh_overlap.h"
 
 namespace vps::search {
 
@@ -45,5 +47,19 @@ inline constexpr std::size_t kKept = 16;
 
 /// Same case and settings, same bits. Does not throw for what the engine refuses.
 CaseResult runCase(const Case& made, const RunSettings& settings);
+
+/// True if a vertex of `a`, outside `b` before and after, went through more than margin_m of b's material on
+/// a straight path from one pose to the other.
+/// @param X_BA_before, X_BA_after  poses of a in b
+bool hasPassedThrough(const OverlapMesh& a, const OverlapMesh& b, const Pose& X_BA_before,
+                      const Pose& X_BA_after, double margin_m);
+
+/// Writes scene.toml and an STL file for each body (as the engine got it) into a new folder. The state is
+/// the latest one from which the overlap appears without the hand, too; else the one just before it.
+/// @param command  repeats the run, hand included; it stands at the top of the scene file
+/// @return the scene file. Throws std::runtime_error if a file cannot be written.
+std::filesystem::path saveCase(const std::filesystem::path& folder, const Case& made,
+                               const RunSettings& settings, const CaseResult& result,
+                               const std::string& command);
 
 }  // namespace vps::search

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scene_writer.h"
+#include "case_run.h"
 
 #include <cstdio>
 #include <fstream>

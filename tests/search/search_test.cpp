@@ -5,11 +5,10 @@
 #include <set>
 #include <sstream>
 
+#include "case_run.h"
 #include "families.h"
 #include "faults.h"
-#include "pass_through.h"
 #include "prism.h"
-#include "scene_writer.h"
 #include "support/temporary_folder.h"
 #include "vps/solid.h"
 
