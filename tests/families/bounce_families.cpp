@@ -2,14 +2,13 @@
 // B: a body that bounces loses and gains no height by the step's length or phase.
 //
 // An impact leaves e of the speed, and so e^2 of the height.
-#include "bounce_families.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
 
-#include "impact_world.h"
+#include "families/family.h"
+#include "families/impact_world.h"
 #include "search/random.h"
 
 namespace vps::families {

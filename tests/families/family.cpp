@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "family.h"
+#include "families/family.h"
 
 #include <cmath>
 #include <ctime>

@@ -45,6 +45,12 @@ std::vector<Family> penaltyFallFamilies();   // L: penalty contact of bodies tha
 std::vector<Family> loadedThreadFamilies();  // M: a loaded thread
 std::vector<Family> mechanismFamilies();     // N: mechanisms do not halt
 
+// Parts of the above, in sources of their own.
+std::vector<Family> bounceFamilies();        // B: bounces under gravity
+std::vector<Family> massRatioFamilies();     // B: rows with a body of another mass
+std::vector<Family> fastRotationFamilies();  // D: fast rotation
+std::vector<Family> flatSpinFamilies();      // D: bodies that spin flat on a plate
+
 std::vector<Family> judgeFamilies();  // C, G: the judge sees passages, and its depth is exact
 
 std::vector<Family> allFamilies();

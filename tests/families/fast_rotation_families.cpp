@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "dynamics/world.h"
-#include "fast_rotation_families.h"
+#include "families/family.h"
 #include "search/random.h"
 #include "support/gear.h"
 #include "vps_bullet/convert.h"

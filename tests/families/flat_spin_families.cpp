@@ -4,8 +4,6 @@
 // The plate pushes along the vertical only, and evenly. So the body keeps its height, its place and its spin,
 // whatever it turns in a step. Where Bullet turns a body by less than its speed, which is said, its corners
 // are elsewhere than its velocity tells; then no energy may be made.
-#include "flat_spin_families.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,6 +12,7 @@
 #include <numbers>
 
 #include "dynamics/world.h"
+#include "families/family.h"
 #include "search/random.h"
 #include "vps_bullet/convert.h"
 #include "vps_bullet/turn.h"

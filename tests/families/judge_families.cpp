@@ -6,7 +6,7 @@
 #include <memory>
 #include <numbers>
 
-#include "family.h"
+#include "families/family.h"
 #include "judge/motion_judge.h"
 #include "search/random.h"
 #include "support/fit.h"

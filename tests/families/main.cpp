@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "family.h"
+#include "families/family.h"
 #include "support/table_rows.h"
 
 namespace {

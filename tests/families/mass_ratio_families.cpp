@@ -4,15 +4,14 @@
 // The first body flies at the others, which rest, without gravity and friction. Momentum stays. With e = 1
 // the energy stays too; with a lesser restitution it never rises. A light body between two heavy ones passes
 // the impact on by some pi sqrt(ratio / 2) bounces.
-#include "mass_ratio_families.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
 #include <map>
 
-#include "impact_world.h"
+#include "families/family.h"
+#include "families/impact_world.h"
 #include "search/random.h"
 
 namespace vps::families {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "family.h"
+#include "families/family.h"
 #include "search/random.h"
 #include "vps/friction.h"
 #include "vps_scenes/run/simulate.h"

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "dynamics/world.h"
-#include "family.h"
+#include "families/family.h"
 #include "search/random.h"
 #include "support/gear.h"
 #include "support/screw.h"

@@ -7,8 +7,8 @@
 #include <cstdio>
 #include <map>
 
-#include "family.h"
-#include "impact_world.h"
+#include "families/family.h"
+#include "families/impact_world.h"
 #include "search/random.h"
 #include "vps_bullet/convert.h"
 

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "dynamics/scenes.h"
-#include "family.h"
-#include "impact_world.h"
+#include "families/family.h"
+#include "families/impact_world.h"
 #include "search/random.h"
 #include "vps_bullet/convert.h"
 #include "vps_bullet/shape.h"

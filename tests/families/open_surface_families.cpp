@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "dynamics/world.h"
-#include "family.h"
+#include "families/family.h"
 #include "search/random.h"
 #include "support/lathe.h"
 #include "vps/solid.h"

@@ -10,7 +10,7 @@
 #include <cstdio>
 
 #include "dynamics/world.h"
-#include "family.h"
+#include "families/family.h"
 #include "search/random.h"
 #include "vps_bullet/convert.h"
 

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <string>
 
-#include "family.h"
+#include "families/family.h"
 #include "search/random.h"
 #include "support/gear.h"
 #include "support/lathe.h"

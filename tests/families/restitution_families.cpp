@@ -7,10 +7,8 @@
 #include <optional>
 #include <utility>
 
-#include "bounce_families.h"
-#include "family.h"
-#include "impact_world.h"
-#include "mass_ratio_families.h"
+#include "families/family.h"
+#include "families/impact_world.h"
 #include "search/random.h"
 #include "vps_bullet/convert.h"
 #include "vps_bullet/solver.h"

@@ -14,7 +14,7 @@
 #include <utility>
 
 #include "dynamics/world.h"
-#include "family.h"
+#include "families/family.h"
 #include "search/random.h"
 #include "support/lathe.h"
 #include "vps_bullet/convert.h"

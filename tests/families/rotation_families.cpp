@@ -5,10 +5,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "family.h"
-#include "fast_rotation_families.h"
-#include "flat_spin_families.h"
-#include "impact_world.h"
+#include "families/family.h"
+#include "families/impact_world.h"
 #include "search/random.h"
 #include "vps_bullet/convert.h"
 #include "vps_scenes/run/simulate.h"

@@ -6,7 +6,7 @@
 
 #include "box_union.h"
 #include "dynamics/world.h"
-#include "family.h"
+#include "families/family.h"
 #include "vps/mesh_repair.h"
 #include "vps/solid.h"
 
