@@ -8,7 +8,7 @@
 #include <map>
 
 #include "families/family.h"
-#include "families/impact_world.h"
+#include "families/impacts/impact_world.h"
 #include "search/random.h"
 #include "vps_bullet/convert.h"
 

@@ -9,7 +9,7 @@
 
 #include "dynamics/scenes.h"
 #include "families/family.h"
-#include "families/impact_world.h"
+#include "families/impacts/impact_world.h"
 #include "search/random.h"
 #include "vps_bullet/convert.h"
 #include "vps_bullet/shape.h"

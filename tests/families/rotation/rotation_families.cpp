@@ -6,7 +6,7 @@
 #include <cstdio>
 
 #include "families/family.h"
-#include "families/impact_world.h"
+#include "families/impacts/impact_world.h"
 #include "search/random.h"
 #include "vps_bullet/convert.h"
 #include "vps_scenes/run/simulate.h"
