@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "accuracy.h"
+#include "measure.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,6 @@
 #include <numeric>
 #include <random>
 
-#include "measure.h"
 #include "support/fit.h"
 #include "support/screw.h"
 #include "vps/mesh_distance.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "agreement.h"
+#include "measure.h"
 
 #include <algorithm>
 #include <filesystem>

@@ -3,8 +3,6 @@
 
 #include <memory>
 
-#include "agreement.h"
-
 namespace vps::bench {
 namespace {
 

@@ -7,7 +7,6 @@
 #include <iostream>
 #include <numbers>
 
-#include "accuracy.h"
 #include "measure.h"
 #include "scene_parts.h"
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Timing: both sides in one process, alternating.
+// What is measured: times of both sides in one process, alternating, after their answers were compared; and
+// the errors of a voxmap's distance and normal against the mesh it was built from.
 #pragma once
 
 #include <map>
@@ -56,5 +57,28 @@ Counters measureBuildErrors(const Mesh& mesh, double voxel_m, int node_count);
 /// Wall time to mount a part at another pose each repetition.
 Counters measureMounting(const Mounting& mounting, const RivalField& base, const RivalField& mounted,
                          const Pose& X_BM, int repetition);
+
+/// Walks `steps` steps of a motion with our engine and with OpenVDB reading the same values (the map, saved
+/// as a .vdb file). Throws std::runtime_error that names the first difference: touching points, least
+/// distance or wrench. meshToVolume's own field is not a reference: its error is up to half a voxel near
+/// edges.
+void requireAgreement(const std::string& name, const VoxMap& map, const PointShell& shell,
+                      const SubjectOptions& options, const Motion& motion, int steps);
+
+/// Mean, 99th percentile and greatest value.
+struct Spread {
+  double mean = 0, p99 = 0, most = 0;
+};
+
+struct AccuracyPoint {
+  std::string shape;
+  bool is_sharp = false;
+  double voxel_m = 0;
+  Spread distance_m;                     ///< against the exact distance to the mesh
+  Spread continuous_rad, trilinear_rad;  ///< of the normal, for both ways to read it
+};
+
+/// All shapes at all voxel sizes; samples lie within one voxel of the surface. Takes a minute or so.
+std::vector<AccuracyPoint> accuracyStudy(int samples);
 
 }  // namespace vps::bench

@@ -2,14 +2,25 @@
 // The libraries that we compare with, each used as a careful user would.
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <string>
 
-#include "answer.h"
 #include "vps/mesh.h"
 #include "vps/pointshell.h"
+#include "vps/wrench.h"
 
 namespace vps::bench {
+
+/// Stiffness of every wrench here [N/m^3]; any value would serve.
+inline constexpr double kStiffness_N_per_m3 = 1e12;
+
+/// The answer of either side for a pose, so that they can be compared.
+struct Answer {
+  std::size_t touching = 0;
+  double least_m = 0;  ///< least signed distance of any point; +band or more when all are beyond it
+  Wrench F_Mo_M;       ///< on the shell's part, about M's origin, in M
+};
 
 /// A field of another library: OpenVDB's, made by meshToVolume.
 class RivalField {

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "scene_parts.h"
+#include "support/temporary_folder.h"
 
 namespace vps::bench {
 namespace {
@@ -16,8 +17,8 @@ namespace {
 /// given points: reading sorts them and builds their spheres.
 PointShell shellOfSome(const PointShell& shell, const std::vector<bool>& is_kept) {
   const auto count = std::count(is_kept.begin(), is_kept.end(), true);
-  const std::filesystem::path file =
-      std::filesystem::temp_directory_path() / ("vps_benchmark_" + std::to_string(std::rand()) + ".ply");
+  const test::TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "shell.ply";
   std::ofstream out(file, std::ios::binary);
   out << "ply\nformat binary_little_endian 1.0\nelement vertex " << count << "\n";
   for (const char* name : {"x", "y", "z", "nx", "ny", "nz", "area"})
@@ -32,7 +33,6 @@ PointShell shellOfSome(const PointShell& shell, const std::vector<bool>& is_kept
   out.close();
   PointShell some = loadPly(file.string());
   some.spacing_m = shell.spacing_m;
-  std::filesystem::remove(file);
   return some;
 }
 

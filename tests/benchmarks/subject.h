@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "answer.h"
+#include "rival.h"
 #include "vps/query.h"
 
 namespace vps::bench {

@@ -9,10 +9,22 @@
 
 #include "rows.h"
 
+namespace vps::bench {
 namespace {
 
-using vps::bench::allHapticCases;
-using vps::bench::HapticCase;
+const std::vector<HapticCase>& allHapticCases() {
+  static const std::vector<HapticCase> cases = {
+      {"kinematics", kinematicsRow}, {"statics", staticsRow},
+      {"passivity", passivityRow},   {"ringing", ringingRow},
+      {"stiffest", stiffestWallRow}, {"press", pressRow},
+      {"slide", slideRow},           {"free", freeMotionRow},
+#ifdef VPS_HAS_SCENES
+      {"injected", injectedRow},     {"tick", tickRow},
+      {"points", pointsRow},
+#endif
+  };
+  return cases;
+}
 
 int usage() {
   std::printf("usage: vps_bench_haptics [--rows=a,b] [--short]\nrows:");
@@ -27,9 +39,11 @@ bool isKnown(const std::string& key) {
 }
 
 }  // namespace
+}  // namespace vps::bench
 
 int main(int argc, char** argv) {
-  vps::bench::HapticOptions options;
+  using namespace vps::bench;
+  HapticOptions options;
   std::vector<std::string> wanted;
   for (int i = 1; i < argc; ++i) {
     const std::string arg = argv[i];
@@ -43,7 +57,7 @@ int main(int argc, char** argv) {
     }
   }
   if (!std::all_of(wanted.begin(), wanted.end(), isKnown)) return usage();
-  vps::bench::Table table;
+  Table table;
   for (const HapticCase& c : allHapticCases())
     if (wanted.empty() || std::find(wanted.begin(), wanted.end(), c.key) != wanted.end())
       c.run(options, table);

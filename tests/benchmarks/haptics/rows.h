@@ -17,8 +17,6 @@ struct HapticCase {
   void (*run)(const HapticOptions&, Table&);
 };
 
-const std::vector<HapticCase>& allHapticCases();
-
 // The arm alone.
 void kinematicsRow(const HapticOptions&, Table&);
 void staticsRow(const HapticOptions&, Table&);

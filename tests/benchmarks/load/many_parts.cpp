@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "many_parts.h"
+#include "products.h"
 
 #include <algorithm>
 #include <cmath>

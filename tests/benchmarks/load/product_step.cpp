@@ -5,7 +5,7 @@
 //                 ||--[]------##-----[]---||        shafts along y
 //                 ||  []      ##     []   ||
 //              ===+=======================+===      base, screwed to the walls from below
-#include "product_step.h"
+#include "products.h"
 
 #include <array>
 #include <cmath>

@@ -15,7 +15,6 @@
 #include "rows.h"
 #include "support/child_process.h"
 #include "support/temporary_folder.h"
-#include "usage.h"
 
 namespace vps::bench {
 
@@ -51,7 +50,7 @@ void writeShortScene(const fs::path& file) {
 struct Watched {
   std::string name;
   const test::ChildProcess* process;
-  Usage early, last;
+  test::Usage early, last;
 };
 
 }  // namespace
@@ -98,7 +97,7 @@ bool enduranceRow(double seconds) {
     next_s += kLook_s;
     for (Watched& one : all) {
       has_ended = has_ended || !one.process->isRunning();
-      one.last = usageOf(one.process->id());
+      one.last = test::usageOf(one.process->id());
       if (!is_early_known) one.early = one.last;
     }
     is_early_known = since_s() > 0.1 * seconds;

@@ -13,7 +13,6 @@
 #include "rows.h"
 #include "support/node_processes.h"
 #include "support/temporary_folder.h"
-#include "usage.h"
 #include "vps_device/periodic_thread.h"
 
 namespace vps::bench {
@@ -30,7 +29,7 @@ struct Tally {
 class MemoryOfKills {
  public:
   void look(const test::ChildProcess& process) {
-    if (process.isRunning()) all_MB_.push_back(usageOf(process.id()).memory_MB);
+    if (process.isRunning()) all_MB_.push_back(test::usageOf(process.id()).memory_MB);
   }
   /// Median of the first, or the last, third.
   [[nodiscard]] double early_MB() const { return median({all_MB_.begin(), all_MB_.begin() + third()}); }
@@ -88,7 +87,7 @@ bool killRows(int kills, const std::string& network) {
     ++tally.kills;
     const std::array<const test::ChildProcess*, 3> alive = {&nodes.render, &nodes.device, &nodes.watch};
     for (std::size_t role = 0; role < alive.size(); ++role) memory[role].look(*alive[role]);
-    if (i <= kills / 3) own_early_MB = usageOf(getpid()).memory_MB;
+    if (i <= kills / 3) own_early_MB = test::usageOf(getpid()).memory_MB;
     if (i % 3 == 0) {
       // With priority, and before the dead process is waited for: of the device's states only the newest can
       // be read, so that who looks late sees a later one.
@@ -138,7 +137,7 @@ bool killRows(int kills, const std::string& network) {
   printRow("shared segments during and after", "1 and 0",
            std::to_string(most_segments) + " and " + std::to_string(is_gone ? 0 : nodes.segments()),
            most_segments <= 1 && is_gone);
-  const double own_MB = usageOf(getpid()).memory_MB;
+  const double own_MB = test::usageOf(getpid()).memory_MB;
   std::snprintf(
       words, sizeof words,
       "render %.1f and %.1f MB, device %.1f and %.1f, watch %.1f and %.1f; a watcher that was never killed "

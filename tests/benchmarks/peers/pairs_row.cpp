@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "dynamics/scenes.h"
-#include "rival_rows.h"
+#include "rows.h"
 #include "support/random_draw.h"
 #include "vps_bullet/body.h"
 #include "vps_bullet/convert.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "rival_rows.h"
+#include "rows.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "dynamics/scenes.h"
-#include "rival_rows.h"
 
 namespace vps::bench {
 

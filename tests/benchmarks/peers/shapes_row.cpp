@@ -6,8 +6,8 @@
 #include <cstdio>
 
 #include "dynamics/scenes.h"
-#include "rival_rows.h"
 #include "rivals.h"
+#include "rows.h"
 #include "vps_bullet/convert.h"
 
 namespace vps::bench {

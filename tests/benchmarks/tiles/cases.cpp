@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "cases.h"
+#include "tiles.h"
 
 #include <cmath>
 #include <numbers>

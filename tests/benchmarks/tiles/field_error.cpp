@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "field_error.h"
+#include "tiles.h"
 
 #include <algorithm>
 #include <cmath>

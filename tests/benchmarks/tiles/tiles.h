@@ -1,10 +1,69 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Tiles of a surface, and the exact distances that close them.
+// Pairs of parts in contact, bounds of the error of their fields, and the tiles of their surfaces.
 #pragma once
 
-#include "field_error.h"
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "vps/edge_crossing.h"
+#include "vps/part_model.h"
 
 namespace vps::bench {
+
+/// Two parts of a fit, and what moves the second until they touch.
+struct Fit {
+  std::string name;
+  Mesh mesh[2];
+  std::vector<Pose> X_01;           ///< of part 1 in part 0, before it is moved along `way`
+  Vec3 way = Vec3::Zero();          ///< unit, in part 0
+  double play_m = 0;                ///< it meets within this
+  double fine_m = 0, coarse_m = 0;  ///< voxels
+  double spacing_m = 0;             ///< of the points
+};
+
+/// @param is_short  one pose each and the first two fits only
+std::vector<Fit> allFits(bool is_short);
+
+using Model = std::shared_ptr<const PartModel>;
+
+Model modelOf(const Mesh& mesh, double voxel_m, double spacing_m);
+
+/// The pose of the fit at which the parts touch: no point of either is more than 0.1 um inside the other.
+Pose touching(const Fit& fit, const Pose& X_01, const Model (&model)[2]);
+
+enum class Bound {
+  Everywhere,   ///< half a voxel
+  BesideEdges,  ///< half a voxel within a voxel of a sharp edge, a twentieth elsewhere
+  Block,        ///< stored for each block of 8 x 8 x 8 voxels
+  Cell,         ///< stored for each voxel
+  ShellLeaf,    ///< the greatest true error of sixteen neighbouring points: needs the pose
+};
+inline constexpr std::array<Bound, 5> kBounds = {Bound::Everywhere, Bound::BesideEdges, Bound::Block,
+                                                 Bound::Cell, Bound::ShellLeaf};
+
+/// Bounds of reading minus distance in the field of a part. Stored ones are measured at the places of a fixed
+/// grid within a voxel of the surface, and rounded up.
+class FieldError {
+ public:
+  explicit FieldError(const Model& part);
+
+  [[nodiscard]] bool isBesideEdge(const Vec3& p_M) const;
+  /// Not of Bound::ShellLeaf, which is not known here.
+  [[nodiscard]] double bound_m(Bound bound, const Vec3& p_M);
+
+ private:
+  using Stored = std::unordered_map<std::uint64_t, double>;
+  [[nodiscard]] std::uint64_t keyOf(const Vec3& p_M, double size_m) const;
+  double stored_m(Stored& stored, const Vec3& p_M, double size_m, int places);
+
+  Model part_;
+  EdgeSet edges_;
+  Stored cells_, blocks_;
+};
 
 /// A point of one part in the field of the other.
 struct Reading {
