@@ -4,7 +4,6 @@
 
 #include "rows.h"
 #include "support/sampled_wall.h"
-#include "support/wall_press.h"
 
 namespace vps::bench {
 
