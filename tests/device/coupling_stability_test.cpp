@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "support/sampled_wall.h"
-#include "support/wall_press.h"
 #include "vps_device/gains.h"
 
 namespace vps::device {

@@ -9,8 +9,8 @@
 #include <limits>
 #include <vector>
 
+#include "support/fake_device.h"
 #include "support/no_alloc.h"
-#include "support/plain_device.h"
 #include "vps/mesh.h"
 #include "vps_device/loop.h"
 
@@ -84,7 +84,7 @@ struct Played {
 /// The loop at 1 kHz on a physics of `ticks` periods a step.
 Played play(const std::function<Motion(double)>& motion, int ticks, bool has_local, double from_s,
             double until_s) {
-  vps_test::PlainDevice device;
+  test::PlainDevice device;
   CouplingPort port;
   CubePhysics physics;
   LocalContact local;

@@ -5,12 +5,12 @@
 
 #include <algorithm>
 
-#include "support/fake_clock.h"
+#include "support/fake_device.h"
 
 namespace vps::device {
 namespace {
 
-using vps_test::FakeClock;
+using test::FakeClock;
 
 constexpr std::int64_t kPeriod_ns = 1000;
 

@@ -6,15 +6,14 @@
 #include <cmath>
 #include <vector>
 
-#include "support/fake_clock.h"
+#include "support/fake_device.h"
 #include "support/no_alloc.h"
-#include "support/plain_device.h"
 
 namespace vps::device {
 namespace {
 
-using vps_test::FakeClock;
-using vps_test::PlainDevice;
+using test::FakeClock;
+using test::PlainDevice;
 
 constexpr std::int64_t kPeriod_ns = 1'000'000;
 

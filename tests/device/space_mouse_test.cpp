@@ -12,8 +12,8 @@
 #include <cstring>
 #include <thread>
 
+#include "support/fake_device.h"
 #include "support/no_alloc.h"
-#include "support/poll_device.h"
 #include "support/temporary_folder.h"
 #include "vps/errors.h"
 #include "vps_device/rate_control.h"
