@@ -2,6 +2,7 @@
 // Interprets bytes as faults of a dual arm's hardware, physics and operator, tick by tick. The force must
 // stay within its limit, be zero after a fault, and return after rearm().
 #include "fuzz.h"
+#include "support/device/hostile_arm.h"
 #include "support/hostile_arm.h"
 #include "vps/errors.h"
 

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "program.h"
-#include "support/node_processes.h"
+#include "support/process/node_processes.h"
 
 namespace vps {
 namespace {

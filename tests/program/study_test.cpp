@@ -3,7 +3,7 @@
 #include <thread>
 
 #include "program/program.h"
-#include "support/child_process.h"
+#include "support/process/child_process.h"
 
 namespace vps {
 namespace {

@@ -9,7 +9,7 @@
 #include <optional>
 #include <thread>
 
-#include "support/child_process.h"
+#include "support/process/child_process.h"
 #include "view/camera_motion.h"
 #include "view/picture_worker.h"
 #include "vps_scenes/network/session_pointers.h"

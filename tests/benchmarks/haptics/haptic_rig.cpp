@@ -45,7 +45,7 @@ void HapticRig::lead(const Vec3& p_WG, const Vec3& turn_rad, const Twist& V_WG) 
   hand.b_Ns_per_m = 150 * Mat3::Identity();
   hand.k_Nm_per_rad = 10 * Mat3::Identity();
   hand.b_Nms_per_rad = 0.4 * Mat3::Identity();
-  constexpr int kSubSteps = 4;  // see tests/support/sampled_wall.h
+  constexpr int kSubSteps = 4;  // see tests/support/device/sampled_wall.h
   for (int i = 0; i < kSubSteps; ++i) arm_.step(kStep_s / kSubSteps, loop_.toDevice(hand));
   coupling_->setTarget(port_.haptic.read().proxy);
   world_.step();

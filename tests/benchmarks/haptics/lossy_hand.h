@@ -49,7 +49,7 @@ struct TrueEnergyBalance {
 };
 
 /// Runs the scene's own hand over that connection, its plant in four steps a tick (see
-/// tests/support/sampled_wall.h).
+/// tests/support/device/sampled_wall.h).
 class LossyHand final : public scenes::Hand {
  public:
   LossyHand(const scenes::Scene& scene, const Connection& connection);

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "rows.h"
-#include "support/sampled_wall.h"
+#include "support/device/sampled_wall.h"
 
 namespace vps::bench {
 

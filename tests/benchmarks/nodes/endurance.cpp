@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "rows.h"
-#include "support/child_process.h"
+#include "support/process/child_process.h"
 #include "support/temporary_folder.h"
 
 namespace vps::bench {

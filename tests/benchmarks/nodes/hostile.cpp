@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "rows.h"
-#include "support/node_processes.h"
+#include "support/process/node_processes.h"
 #include "support/temporary_folder.h"
 
 #if __has_include(<dds/dds.h>)

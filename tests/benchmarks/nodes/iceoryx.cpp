@@ -19,7 +19,7 @@
 #include "exchange_times.h"
 #include "messages/messages.h"
 #include "rows.h"
-#include "support/child_process.h"
+#include "support/process/child_process.h"
 #include "support/temporary_folder.h"
 #include "vps_device/periodic_thread.h"
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "rows.h"
-#include "support/node_processes.h"
+#include "support/process/node_processes.h"
 #include "support/temporary_folder.h"
 #include "vps_device/periodic_thread.h"
 

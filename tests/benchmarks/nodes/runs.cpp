@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "rows.h"
-#include "support/node_processes.h"
+#include "support/process/node_processes.h"
 #include "support/temporary_folder.h"
 
 namespace vps::bench {

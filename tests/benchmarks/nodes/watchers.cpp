@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "rows.h"
-#include "support/node_processes.h"
+#include "support/process/node_processes.h"
 #include "support/temporary_folder.h"
 
 namespace vps::bench {

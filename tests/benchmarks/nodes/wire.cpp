@@ -11,7 +11,7 @@
 
 #include "lossy_wire.h"
 #include "rows.h"
-#include "support/node_processes.h"
+#include "support/process/node_processes.h"
 #include "support/temporary_folder.h"
 
 namespace vps::bench {

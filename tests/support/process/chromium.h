@@ -18,7 +18,7 @@
 #include <thread>
 #include <vector>
 
-#include "support/child_process.h"
+#include "support/process/child_process.h"
 
 namespace vps::test {
 

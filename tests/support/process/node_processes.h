@@ -11,7 +11,7 @@
 #include <thread>
 #include <vector>
 
-#include "support/child_process.h"
+#include "support/process/child_process.h"
 #include "vps_scenes/network/nodes.h"
 
 namespace vps::test {
