@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "support/sampled_wall.h"
+#include "support/device/sampled_wall.h"
 #include "vps_device/gains.h"
 
 namespace vps::device {

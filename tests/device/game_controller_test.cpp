@@ -7,7 +7,7 @@
 #include <chrono>
 #include <thread>
 
-#include "support/fake_device.h"
+#include "support/device/fake_device.h"
 #include "support/no_alloc.h"
 #include "support/poll_device.h"
 #include "vps/errors.h"

@@ -9,7 +9,7 @@
 #include <limits>
 #include <vector>
 
-#include "support/fake_device.h"
+#include "support/device/fake_device.h"
 #include "support/no_alloc.h"
 #include "vps/mesh.h"
 #include "vps_device/loop.h"

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "support/fake_device.h"
+#include "support/device/fake_device.h"
 
 namespace vps::device {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "support/fake_device.h"
+#include "support/device/fake_device.h"
 #include "support/no_alloc.h"
 
 namespace vps::device {

@@ -12,7 +12,7 @@
 #include <cstring>
 #include <thread>
 
-#include "support/fake_device.h"
+#include "support/device/fake_device.h"
 #include "support/no_alloc.h"
 #include "support/temporary_folder.h"
 #include "vps/errors.h"

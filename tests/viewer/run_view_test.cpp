@@ -11,6 +11,7 @@
 
 #include "files/base64.h"
 #include "support/chromium.h"
+#include "support/process/chromium.h"
 #include "viewer/small_run.h"
 #include "vps_scenes/run/assemble.h"
 #include "vps_viewer/draw/image.h"

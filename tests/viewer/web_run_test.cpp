@@ -12,6 +12,7 @@
 
 #include "beast/server.h"
 #include "support/chromium.h"
+#include "support/process/chromium.h"
 #include "support/temporary_folder.h"
 #include "vps_device/recording.h"
 #include "vps_scenes/scene/scene.h"

@@ -20,6 +20,7 @@
 
 #include "beast/server.h"
 #include "support/certificate.h"
+#include "support/process/certificate.h"
 #include "support/temporary_folder.h"
 #include "viewer/web_run.h"
 #include "vps/errors.h"

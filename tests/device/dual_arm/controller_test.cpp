@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-#include "support/hostile_arm.h"
+#include "support/device/hostile_arm.h"
 #include "support/no_alloc.h"
 #include "vps_device/random.h"
 

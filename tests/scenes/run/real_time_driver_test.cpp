@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "haptics/haptic_driver.h"
-#include "support/fake_device.h"
+#include "support/device/fake_device.h"
 #include "vps_device/recording.h"
 
 namespace vps::scenes {

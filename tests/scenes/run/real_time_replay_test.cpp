@@ -4,7 +4,7 @@
 
 #include "haptics/haptic_log.h"
 #include "scenes/two_pins.h"
-#include "support/fake_device.h"
+#include "support/device/fake_device.h"
 #include "support/no_alloc.h"
 #include "support/recorded.h"
 #include "support/temporary_folder.h"
