@@ -95,8 +95,8 @@ if [ "$kind" = shared ]; then
   grep -q "soname: \[libvps_plugin$suffix.so.${version%.*}\]" <<<"$(readelf -d "$libs/libvps_plugin$suffix.so")"
   grep -q "NEEDED.*libvps_bullet$suffix.so.${version%.*}" <<<"$(readelf -d "$work/app/app")"
   exported=$(nm -DC --defined-only "$libs/libvps_plugin$suffix.so")
-  grep -q 'vps::v0::buildPointShell(' <<<"$exported" || { echo "a public function is not exported"; exit 1; }
-  if grep 'vps::v0::\(sampleFeatures\|joinCoarse\|readKernels\)(' <<<"$exported"; then
+  grep -q 'vps::buildPointShell(' <<<"$exported" || { echo "a public function is not exported"; exit 1; }
+  if grep 'vps::\(sampleFeatures\|joinCoarse\|readKernels\)(' <<<"$exported"; then
     echo "these are private, and are exported"
     exit 1
   fi
