@@ -41,8 +41,8 @@ GearPairResult runGears(const SceneSettings& settings) {
   World world(settings);
   world.setGravity(Vec3::Zero());
   const double distance_m = kModule_m * (kDriver + kDriven) / 2;
-  // Tooth 0 of the driver points at the other's axis. The other gear has a tooth there too, so it is turned
-  // by half a tooth.
+  // Tooth 0 of the driver points at the axis of the driven gear. The driven gear is turned by half a tooth,
+  // so that a gap between its teeth faces that tooth.
   const Placed driver = world.add(driver_part, Pose(), false, 0);
   const Placed driven = world.add(
       driven_part, Pose(rotationFromVector(Vec3(0, 0, kPi / kDriven)), Vec3(distance_m, 0, 0)), false, 0);
@@ -67,7 +67,8 @@ GearPairResult runGears(const SceneSettings& settings) {
     const double slow_rad_s = kSpeed_rad_s - driver.body->getAngularVelocity().z();
     const double torque_Nm = kSpring_Nm * lag_rad + kDamper_Nms * slow_rad_s;
     driver.body->applyTorque(btVector3(0, 0, btScalar(torque_Nm)));
-    driven.body->applyTorque(btVector3(0, 0, btScalar(kBrake_Nm)));  // it turns in the opposite direction
+    driven.body->applyTorque(
+        btVector3(0, 0, btScalar(kBrake_Nm)));  // the driven gear turns in the opposite direction
     world.step();
     const double error_rad = driven_turn.update() + kRatio * driver_turn.update();
     if (i % 50 == 0)

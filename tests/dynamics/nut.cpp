@@ -23,7 +23,7 @@ test::ThreadShape threadOf(const NutSize& size, int columns) {
   return thread;
 }
 
-/// The nut and its rod in their own world; it first settles on the flanks.
+/// A nut on its rod, in a world of their own.
 struct Thread {
   World world;
   Placed rod, nut;
@@ -31,7 +31,7 @@ struct Thread {
   Thread(const SceneSettings& settings, const NutSize& size, double friction)
       : world(settings),
         rod(world.add(rodPart(size), Pose(), true, friction)),
-        // Raised by whole pitches, where the threads are in phase.
+        // The nut is raised by whole pitches, at which the threads are in phase.
         nut(world.add(nutPart(size), Pose::translation(Vec3(0, 0, size.pitch_m)), false, friction)) {}
 
   [[nodiscard]] double tilt_rad() const {
@@ -92,7 +92,7 @@ NutSpinResult spinNut(const SceneSettings& settings, const NutSize& size, double
 }
 
 NutRunResult runNut(const SceneSettings& settings, const NutSize& size) {
-  constexpr double kLanding_s = 0.05;  // it first falls through the clearance
+  constexpr double kLanding_s = 0.05;  // the nut first falls through the clearance
   Thread thread(settings, size, 0);
   TurnCounter turn(thread.nut);
   NutRunResult result;

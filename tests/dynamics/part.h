@@ -20,7 +20,7 @@ struct PartMesh {
 /// Throws LoadError for a mesh without a volume.
 PartMesh makePart(Mesh mesh, double density_kg_m3 = 7850);
 
-/// The same surface with another mass; the inertia scales in proportion, as with another density.
+/// The part with another mass; its inertia scales in proportion, as with another density.
 PartMesh withMass(PartMesh part, double mass_kg);
 
 /// The mesh in its body's frame, from which an engine makes a shape.
@@ -34,9 +34,9 @@ const PartMesh& keptPart(std::map<std::vector<double>, PartMesh>& parts, std::ve
   return it != parts.end() ? it->second : parts.emplace(std::move(key), make()).first->second;
 }
 
-/// Greatest depth [m] of either part's vertices in the other, by exact distance. Negative if no vertex is
-/// inside: then the least gap of those within the other's bounding box (enlarged by 1 mm), or -1e300 if there
-/// are none.
+/// Greatest depth [m] of either part's vertices in the other, by exact distance. If no vertex is inside, the
+/// result is minus the least gap of the vertices that lie within the other part's bounding box enlarged by 1
+/// mm, or -1e300 if no vertex does.
 double penetration_m(const PartMesh& a, const Pose& X_WA, const PartMesh& b, const Pose& X_WB);
 
 }  // namespace vps::dynamics

@@ -46,7 +46,7 @@ PegDropResult dropPeg(const SceneSettings& settings, const PegDrop& drop) {
   constexpr double kSeated_m = 10e-6;
   World world(settings);
   const Placed bore = world.add(borePart(drop.clearance_m), Pose(), true, drop.friction);
-  // Tilted about another axis than the one along which it is shifted.
+  // The peg is tilted about another axis than the one along which it is shifted.
   const Pose start(rotationFromVector(drop.tilt_rad * Vec3(0.8, 0.6, 0)),
                    Vec3(drop.offset_m * 0.6, drop.offset_m * 0.8, drop.height_m));
   const Placed peg = world.add(pegPart(), start, false, drop.friction);
@@ -63,7 +63,7 @@ PegDropResult dropPeg(const SceneSettings& settings, const PegDrop& drop) {
     const Pose X = peg.pose();
     const double above_m = X.p.z() + kBoreDepth_m;
     if (result.seated_s < 0 && std::abs(above_m) <= kSeated_m) result.seated_s = i * World::kStep_s;
-    // Measuring it in each step of the fall would take longer than the fall.
+    // Measuring the penetration in each step of the fall would take longer than the fall.
     if (i % (i < settle ? 5 : 50) == 0)
       result.deepest_m = std::max(result.deepest_m, penetration_m(bore.part, Pose(), peg.part, X));
     if (i == settle) rest = X;
@@ -131,7 +131,7 @@ HeavyBlockResult loadPeg(const SceneSettings& settings, const HeavyBlock& load) 
                                 penetration_m(peg.part, peg.pose(), block.part, block.pose()));
       result.deepest_m = std::max(result.deepest_m, result.final_m);
     }
-    if (i < steps - steps / 6) continue;  // it has landed by then
+    if (i < steps - steps / 6) continue;  // the block has landed by then
     for (const Placed& p : {peg, block}) result.speed_m_s = std::max(result.speed_m_s, p.speed_m_s());
     result.kinetic_J = std::max(result.kinetic_J, kineticEnergy_J(*peg.body) + kineticEnergy_J(*block.body));
   }

@@ -11,7 +11,8 @@ namespace vps::dynamics {
 
 namespace {
 
-constexpr double kRingHeight_m = 10e-3, kBore_m = 5e-3, kClearance_m = 0.1e-3;  // bore's radius; diametral
+constexpr double kRingHeight_m = 10e-3, kBore_m = 5e-3,
+                 kClearance_m = 0.1e-3;  // radius of the bore; diametral clearance
 constexpr int kSegments = 256;
 
 // 256 x 2 x (2 x 12 + 2 x 8) = 20,480 triangles.

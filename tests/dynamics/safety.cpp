@@ -29,7 +29,7 @@ int responsesOf(World& world, const btRigidBody& body) {
   return count;
 }
 
-// Energy of the points of `side` in the other part.
+// Half of the penalty energy of the points of `side` that lie inside the other part.
 double halfEnergy_J(const Placed& side, const Placed& other) {
   const auto* shape = dynamic_cast<const bullet::Shape*>(side.body->getCollisionShape());
   if (!shape) return 0;
@@ -53,7 +53,8 @@ CreatedInsideResult createInside(const SceneSettings& settings, double depth_m) 
   World world(settings);
   world.setGravity(Vec3::Zero());
   const Placed fixed = world.add(blockPart(), Pose(), true);
-  // Slightly rotated, so that no faces are parallel; its lowest corner is near the middle of the top face.
+  // The block is slightly rotated, so that no faces are parallel; its lowest corner is near the middle of the
+  // fixed block's top face.
   const Mat3 R = rotationFromVector(Vec3(0.05, 0.03, 0.2));
   Vec3 lowest(0, 0, 1e300);
   for (const Vec3& p : blockPart().mesh.vertices)
@@ -85,7 +86,7 @@ ProxyResult leadProxyThrough(const SceneSettings& settings) {
   world.add(plate, Pose::translation(Vec3(0, 0, -2.5e-3)), true);
   const Placed below = world.add(blockPart(), Pose::translation(Vec3(0, 0, -15e-3)));
   const Placed hand = world.add(blockPart(), Pose::translation(Vec3(0, 0, 15e-3)));
-  // As a user would add it: a kinematic body with the part's shape, in the world.
+  // The proxy is added as a user would add it: a kinematic body with the part's shape.
   bullet::BodyFrame massless = blockPart().frame;
   massless.mass_kg = 0;
   btRigidBody* proxy = world.addShape(settings.engine.makeShape(blockPart(), false), massless,
@@ -126,7 +127,7 @@ WallResult shootAtWall(const SceneSettings& settings, double speed_m_s, bool is_
     world.step();
     result.deepest_m =
         std::max(result.deepest_m, penetration_m(fixed.part, fixed.pose(), block.part, block.pose()));
-    // The centre of a part that has not passed through stays on its side.
+    // If the part has not passed through the wall, its centre stays in front of the wall's face.
     result.beyond_m = std::max(result.beyond_m, block.pose().p.x());
   }
   result.speed_m_s = block.body->getLinearVelocity().length();

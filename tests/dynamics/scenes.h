@@ -29,10 +29,10 @@ struct PegDrop {
 struct PegDropResult {
   double height_error_m = 0;  ///< of the lower end above the seat, at the end
   double deepest_m = 0;       ///< greatest penetration during fall and rest
-  double jitter_m_s = 0;      ///< greatest speed of any point in the last second or seconds
+  double jitter_m_s = 0;      ///< greatest speed of any point in the last 2 s (short: 0.4 s)
   double drift_m = 0;         ///< in the same time
   double step_ms = 0;         ///< mean over the steps with contact
-  double seated_s = 0;        ///< when it came within 10 um of its seat; -1: never
+  double seated_s = 0;        ///< time at which the peg came within 10 um of its seat; -1: never
   [[nodiscard]] bool isSeated() const { return seated_s >= 0; }
 };
 
@@ -40,7 +40,7 @@ struct PegDropResult {
 PegDropResult dropPeg(const SceneSettings& settings, const PegDrop& drop = {});
 
 struct LongRestResult {
-  double drift_m = 0;  ///< greatest distance from where it came to rest
+  double drift_m = 0;  ///< greatest distance from the place where the peg came to rest
   double rest_s = 0;   ///< duration of the observation
   double step_ms = 0;
 };
@@ -108,20 +108,19 @@ struct NutRunResult {
   std::uint64_t hash = 0;        ///< of all states of the run
 };
 
-/// Without friction, under gravity, until it has turned once.
+/// Lets a nut without friction turn once under gravity.
 NutRunResult runNut(const SceneSettings& settings, const NutSize& size);
 
-/// Without friction, spun downwards after it has come to lie on its thread.
+/// A nut without friction that is spun downwards after it has settled on its thread.
 struct NutSpinResult {
   double end_rad_s = 0, theory_rad_s = 0;  ///< about the axis, after `steps`
 };
 NutSpinResult spinNut(const SceneSettings& settings, const NutSize& size, double rad_s, int steps);
 
-/// tan(lead angle at the pitch diameter) cos(30 degrees).
+/// The least friction that holds the nut, by theory: tan(lead angle at the pitch diameter) cos(30 degrees).
 double selfLockTheory(const NutSize& size);
 
-/// Rotation [rad] of a nut with this friction in duration_s after it was placed on the rod, without the first
-/// 0.2 s.
+/// Rotation [rad] of a nut with this friction in duration_s, after 0.2 s in which it settles on the rod.
 double turnWithFriction_rad(const SceneSettings& settings, const NutSize& size, double mu, double duration_s);
 
 /// The friction that just holds the nut, by bisection to `resolution`.
@@ -146,9 +145,9 @@ GearPairResult runGears(const SceneSettings& settings);
 
 struct HeapResult {
   int bodies = 0;
-  double points = 0;              ///< of a part's shell; mean
+  double points = 0;              ///< mean number of points of a part's shell
   int asleep = 0;                 ///< bodies at the end
-  double asleep_s = 0;            ///< when the last one fell asleep; -1: never
+  double asleep_s = 0;            ///< time at which the last body fell asleep; -1: never
   int escaped = 0;                ///< bodies outside of the box at the end
   double final_m = 0;             ///< greatest penetration between neighbours at the end
   double step_ms[3] = {0, 0, 0};  ///< median, p99, worst, over all steps
@@ -158,18 +157,19 @@ struct HeapResult {
 /// Twenty seconds (short: ten bodies, eight seconds). Sleeping is enabled, below 5 mm/s and 0.2 rad/s.
 HeapResult dropHeap(const SceneSettings& settings);
 
-/// One of its two parts, of 20 teeth.
+/// One of the two parts of the heap: a gear of 20 teeth.
 PartMesh makeHeapGear();
 /// The engine for this scene: shells of about 5,000 points.
 Engine heapEngine();
 
-// -- Three short scenes for failures that must never happen: an overlap that bursts apart, a proxy that collides, a part that tunnels.
+// -- Three short scenes for failures that must never happen: overlapping parts that fly apart, a proxy that
+// collides, a part that tunnels.
 
 struct CreatedInsideResult {
   double overlap_m = 0;  ///< at the start
   double kinetic_J = 0;  ///< greatest over time
   double speed_m_s = 0;  ///< greatest of any point, also by displacement
-  double left_m = 0;     ///< overlap at the end
+  double left_m = 0;     ///< overlap that is left at the end
   double overlap_J = 0;  ///< energy of the overlap in penalty contact: 1/2 k A d^2, half of it from each side
 };
 /// A 20 x 15 x 10 mm block created `depth_m` deep in a fixed one, without gravity, for one second.

@@ -24,7 +24,7 @@ void timedNearCallback(btBroadphasePair& pair, btCollisionDispatcher& dispatcher
   t_narrow_s += threadTime_s() - start_s;
 }
 
-/// Any solver, with its time measured.
+/// A solver whose processor time is measured.
 template <typename Solver>
 struct Timed : Solver {
   btScalar solveGroup(btCollisionObject** bodies, int body_count, btPersistentManifold** manifolds,

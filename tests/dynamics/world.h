@@ -29,7 +29,7 @@ struct StepTimes {
   [[nodiscard]] double percentile_s(double share) const;
 };
 
-/// Input of every scene.
+/// The input of every scene.
 struct SceneSettings {
   Mode mode = Mode::Constraint;
   bool is_short = false;  ///< a few seconds of work, for tests; otherwise the whole case
@@ -66,8 +66,8 @@ class TurnCounter {
   double last_rad_, sum_rad_ = 0;
 };
 
-/// Gravity 9.81 m/s^2 along -z, double or single precision Bullet, dt = 1 ms. Sleeping is disabled and
-/// Bullet's damping zero unless a scene changes them.
+/// A Bullet world (double or single precision) with gravity 9.81 m/s^2 along -z and steps of 1 ms. Sleeping
+/// is disabled and Bullet's damping zero unless a scene changes them.
 class World {
  public:
   explicit World(const SceneSettings& settings);
@@ -75,7 +75,7 @@ class World {
   World(const World&) = delete;
   World& operator=(const World&) = delete;
 
-  /// @param friction  coefficient between this body and one with the same value
+  /// @param friction coefficient of friction between this body and a body with the same value
   Placed add(const PartMesh& part, const Pose& X_WP, bool is_fixed = false, double friction = 0.15);
   btRigidBody* addShape(ShapeHandle shape, const bullet::BodyFrame& frame, const Pose& X_WB,
                         double friction = 0.15);
