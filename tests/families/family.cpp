@@ -52,8 +52,9 @@ Outcome measure(const Family& family, bool is_short, int member) {
 }
 
 Verdict judge(const Family& family, const Outcome& outcome, bool is_short) {
-  // The same program gives the same bits on one machine. Another processor may round otherwise, which long
-  // runs amplify; so a value counts as worse only from a twentieth above today's on.
+  // A program gives the same bits in each run on one machine. Another processor may round differently, and
+  // long runs amplify the difference, so a value counts as worse only if it is more than a twentieth above
+  // today's value.
   constexpr double kSame = 1.05;
   const std::optional<double>& today =
       is_short && family.expected_failure_short ? family.expected_failure_short : family.expected_failure;

@@ -14,8 +14,8 @@ namespace vps::families {
 struct Family {
   std::string key;      ///< letter of the kind and a short name: "B_cubes"
   std::string measure;  ///< what is measured, with its unit: "greatest energy over that at the start"
-  double bar = 0;       ///< the family holds if no member's value is above
-  int members = 0;      ///< how many there are; member i is the same in every run
+  double bar = 0;       ///< the family holds if no member's value is above this bar
+  int members = 0;      ///< number of members; member i is the same in every run
   int every = 1;        ///< the short form runs members 0, every, 2 every, ...
   /// Measures one member; must not depend on other members. NaN counts as above the bar.
   std::function<double(int member)> measured;
@@ -24,7 +24,7 @@ struct Family {
   /// A family that does not hold today: its greatest value today, over all members. The run then fails if a
   /// value is above it, and also if all values are below the bar, until the expectation is removed here.
   std::optional<double> expected_failure = std::nullopt;
-  /// The same for the members of the short form, where these do not include the worst one; 0: they hold.
+  /// The expected value of the short form, if it does not include the worst member; 0: the short form holds.
   std::optional<double> expected_failure_short = std::nullopt;
 };
 
@@ -55,20 +55,20 @@ std::vector<Family> judgeFamilies();  // C, G: the judge sees passages, and its 
 
 std::vector<Family> allFamilies();
 
-/// How a family did.
+/// The result of a family.
 struct Outcome {
   double worst = -std::numeric_limits<double>::infinity();  ///< greatest value
   int worst_member = -1;
   int run = 0;                     ///< members measured
   int above = 0;                   ///< members above the bar
-  std::vector<int> members_above;  ///< these members, ascending
+  std::vector<int> members_above;  ///< numbers of these members, ascending
   double cpu_s = 0;
 };
 
 enum class Verdict { Holds, ExpectedFailure, Fails, Worse, HoldsUnexpectedly };
 const char* nameOf(Verdict verdict);
 
-/// @param member  only this one; -1: all, or those of the short form
+/// @param member only this member; -1: all members, or those of the short form
 Outcome measure(const Family& family, bool is_short, int member = -1);
 Verdict judge(const Family& family, const Outcome& outcome, bool is_short);
 

@@ -52,7 +52,7 @@ bool read(Options& options, int argc, char** argv) {
   return true;
 }
 
-// Each letter is a kind of situations, whose families may be written later.
+// True for a letter that names a kind of situations; a kind may have no families yet.
 bool isKind(const std::string& wanted) {
   return wanted.size() == 3 && wanted[1] >= 'A' && wanted[1] <= 'N';
 }

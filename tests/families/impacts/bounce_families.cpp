@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// B: a body that bounces loses and gains no height by the step's length or phase.
+// B: the height of a bounce does not depend on the length of the step, nor on the time within the step at
+// which the body hits the plate.
 //
-// An impact leaves e of the speed, and so e^2 of the height.
+// After an impact with restitution e the speed is e times, and so the height e^2 times, that before.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -20,7 +21,7 @@ using search::Random;
 constexpr double kGravity_m_s2 = dynamics::World::kGravity_m_s2;
 const Vec3 kCube_m(20e-3, 20e-3, 10e-3);
 
-/// A cube dropped onto a plate. After k bounces it rises to e^(2k) of its height.
+/// A cube dropped onto a plate. After k bounces the cube rises to e^(2k) of its initial height.
 struct Bounces {
   double e = 1, height_m = 20e-3, dt_s = 1e-3;
 
@@ -33,21 +34,23 @@ struct Bounces {
     height_m = random.uniform(10e-3, 40e-3);
     e = random.chance(0.3) ? 1 : random.uniform(0.3, 1);
   }
-  // At 240 Hz a step is about as long as the way to the plate is deep; Bullet's threshold is 0.2 m/s.
+  // The number of bounces that are faster than Bullet's threshold of restitution, 0.2 m/s, by more than
+  // gravity adds in two steps.
   [[nodiscard]] int count() const {
     const double least_m_s = 0.2 + 2 * kGravity_m_s2 * dt_s;
     int k = 0;
     for (double v_m_s = std::sqrt(2 * kGravity_m_s2 * height_m); k < 5 && v_m_s > least_m_s; v_m_s *= e) ++k;
     return k;
   }
-  /// Height of each peak over e^(2k) of the start, less 1. A body's places in flight lie on a parabola, whose
-  /// peak three of them give.
+  /// Height of each peak over e^(2k) times the height at the start, less 1. The positions of a body in flight
+  /// lie on a parabola, so three of them give its peak.
   [[nodiscard]] std::vector<double> errors() const {
     ImpactWorld scene;
     scene.addFixed(boxPart(Vec3(0.2, 0.2, 0.02)), Pose::translation(Vec3(0, 0, -0.01)), 1, 0);
     const double half_m = 0.5 * kCube_m.z();
     const Placed body = scene.add(boxPart(kCube_m), Pose::translation(Vec3(0, 0, half_m + height_m)), e, 0);
-    // Bullet's first step moves it by g dt^2: the parabola of its places has its peak half a step before.
+    // Bullet's first step moves the body by g dt^2, so the parabola of its positions has its peak half a step
+    // before the start.
     const double top_m = height_m + kGravity_m_s2 * dt_s * dt_s / 8;
     std::array<double, 3> z_m{height_m, height_m, height_m};
     std::vector<double> found;
@@ -63,7 +66,7 @@ struct Bounces {
     found.resize(static_cast<std::size_t>(count()), -1);
     return found;
   }
-  /// Greatest error, to either side.
+  /// The greatest error by magnitude.
   [[nodiscard]] double error() const {
     double worst = 0;
     for (const double one : errors()) worst = std::max(worst, std::abs(one));
@@ -79,7 +82,8 @@ struct Bounces {
   }
 };
 
-/// The mean of the signed errors over 12 heights: no phase of the step gains or loses.
+/// The mean of the signed errors over 12 heights. It is near zero if the time of the impact within the step
+/// does not matter.
 double meanBounceError(int member) {
   double sum = 0;
   int count = 0;

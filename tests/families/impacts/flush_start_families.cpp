@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// I: a block starts exactly flush on a plate, with a velocity along it. It must move as one that starts 0.1
-// um above. And one that starts half a micrometre above a plate without friction goes on as it is, also where
-// a step takes it past many points of the plate.
+// I: a block starts exactly flush on a plate, with a velocity along it. The block must move like a block that
+// starts 0.1 um above the plate. A block that starts half a micrometre above a plate without friction must
+// keep its velocity, even if it passes many points of the plate in one step.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -21,15 +21,15 @@ using dynamics::World;
 
 struct Start {
   Vec3 size_m{20e-3, 20e-3, 10e-3};
-  Vec3 over_m{8e-3, 0, 0};  ///< beyond the plate's edges at +x and +y
+  Vec3 over_m{8e-3, 0, 0};  ///< how far the block is beyond the plate's edges at +x and +y
   Vec3 v_W{-0.5, 0, 0};
   double mu = 0.15;
-  double turn_rad = 0;  ///< of the scene about z, by right angles: flush to the bit
+  double turn_rad = 0;  ///< rotation of the scene about z, by right angles: flush to the bit
 };
 
 constexpr double kPlate_m = 60e-3, kThick_m = 6e-3;
 
-// Member 0 is the case that was found. Every fourth block is on the plate as a whole.
+// Member 0 is the case in which the fault was found. Every fourth block lies on the plate as a whole.
 Start startOf(int member) {
   Start start;
   if (member == 0) return start;
@@ -37,7 +37,7 @@ Start startOf(int member) {
   const Vec3 sizes_m[] = {
       {20e-3, 20e-3, 10e-3}, {10e-3, 10e-3, 10e-3}, {24e-3, 12e-3, 5e-3}, {8e-3, 16e-3, 12e-3}};
   start.size_m = sizes_m[random.index(4)];
-  // Less than half of the block is over, or it would tip.
+  // Less than half of the block is beyond the edge; otherwise the block would tip.
   const double x = random.uniform(0.02, 0.45) * start.size_m.x(),
                y = random.uniform(0.02, 0.3) * start.size_m.y();
   const int kind = member % 4;
@@ -71,7 +71,7 @@ const PartMesh& boxPart(const Vec3& size_m) {
 std::vector<Vec3> pathOf(const Start& start, double gap_m) {
   static const dynamics::Engine engine = dynamics::vpsEngine();
   constexpr int kSteps = 30;
-  // Right angles to the bit, so that flush stays flush.
+  // The matrix of right angles is exact, so that flush faces stay flush.
   Mat3 R = rotationFromVector({0, 0, start.turn_rad});
   for (int i = 0; i < 9; ++i) R.data()[i] = std::round(R.data()[i]);
   World world({dynamics::Mode::Constraint, false, engine});
@@ -102,7 +102,7 @@ struct Slide {
   double v_m_s = 1.3, heading_rad = 0, rate_hz = 1000;
 };
 
-// Members 0 to 2 are cases that were found.
+// In members 0 to 2 the fault was found.
 Slide slideOf(int member) {
   if (member < 3) return {.v_m_s = member == 0 ? 1.3 : member == 1 ? 5 : 10};
   search::Random random(0x51d0 + static_cast<std::uint64_t>(member));
@@ -124,7 +124,7 @@ std::string describeSlide(int member) {
   return text;
 }
 
-// Change of velocity, as a share of it, after 100 mm or 20 steps.
+// Relative change of the velocity after 100 mm or 20 steps.
 double slideError(int member) {
   static const dynamics::Engine engine = dynamics::vpsEngine();
   const Slide slide = slideOf(member);
@@ -143,7 +143,8 @@ double slideError(int member) {
 }  // namespace
 
 std::vector<Family> flushStartFamilies() {
-  // The gap itself; and while it closes, a hundredth of a step's friction is missing, 1 um in 30 steps.
+  // The bar: the gap itself, and 1 um for the friction of a hundredth of a step that is missing while the gap
+  // closes, in 30 steps.
   constexpr double kFlush_m = 2e-6;
   return {{"I_flush", "distance from a start 0.1 um above, 30 steps [m]", kFlush_m, 60, 6, difference_m,
            describe},

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bodies that hit each other: what the families of restitution and rotation measure.
+// A world of bodies that hit each other, with the energy and momentum that the families of restitution and
+// rotation measure.
 #pragma once
 
 #include <initializer_list>
@@ -21,14 +22,15 @@ class ImpactWorld {
   explicit ImpactWorld(dynamics::Mode mode = dynamics::Mode::Constraint);
 
   dynamics::Placed add(const dynamics::PartMesh& part, const Pose& X_WP, double restitution, double friction);
-  /// Restitution of a pair is the product of its bodies'.
+  /// The restitution of a pair is the product of the restitutions of its bodies.
   dynamics::Placed addFixed(const dynamics::PartMesh& part, const Pose& X_WP, double restitution,
                             double friction);
   /// Kinetic energy and height energy of the free bodies [J].
   [[nodiscard]] double energy_J(bool with_height = true) const;
   [[nodiscard]] Momentum momentum() const;
   [[nodiscard]] double mass_kg() const;
-  /// Sum of the bodies' |momentum|, and of |angular momentum| where its arm is at least their size.
+  /// Sum of the magnitudes of the bodies' momenta, and of their angular momenta, whose lever arm is taken as
+  /// at least the body's size.
   [[nodiscard]] std::pair<double, double> momentumScale() const;
   [[nodiscard]] double topSpeed_m_s() const;
 
@@ -39,7 +41,7 @@ class ImpactWorld {
 /// A box of this size, built once.
 const dynamics::PartMesh& boxPart(const Vec3& size_m);
 
-/// The velocity of a body at a point of W.
+/// Sets the velocity of the body's centre and its angular velocity.
 void setVelocity(const dynamics::Placed& body, const Vec3& v_W, const Vec3& w_W = Vec3::Zero());
 Vec3 velocityOf(const dynamics::Placed& body);
 

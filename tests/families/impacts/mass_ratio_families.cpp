@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// B: a row of equal bodies with one that is a million times lighter to a million times heavier.
+// B: a row of equal bodies and one body whose mass is a millionth to a million times that of the others.
 //
-// The first body flies at the others, which rest, without gravity and friction. Momentum stays. With e = 1
-// the energy stays too; with a lesser restitution it never rises. A light body between two heavy ones passes
-// the impact on by some pi sqrt(ratio / 2) bounces.
+// Without gravity and friction, the first body flies at the others, which are at rest. Momentum is conserved.
+// Energy is conserved for e = 1 and never rises for a lesser restitution. A light body between two heavy
+// bodies passes an impact on in some pi sqrt(ratio / 2) bounces.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -22,7 +22,7 @@ using dynamics::Placed;
 using search::Random;
 
 struct MassRow {
-  int count = 3, place = 1;  ///< bodies, and which of them has another mass
+  int count = 3, place = 1;  ///< number of bodies, and the place of the body with another mass
   double ratio = 1e-5, e = 1, gap_m = 0.1e-3, speed_m_s = 1, dt_s = 1e-3;
   Mat3 R = Mat3::Identity();
 
@@ -38,7 +38,7 @@ struct MassRow {
     place = which - (which < 3 ? 0 : which < 7 ? 3 : 7);
     e = kRestitutions[static_cast<std::size_t>(member / 12 % 3)];
     ratio = random.logUniform(1e-6, 1e6);
-    // Every other one is at either end of the range.
+    // Half of the ratios are near either end of the range.
     if (random.chance(0.5)) ratio = ratio < 1 ? random.logUniform(1e-6, 1e-4) : random.logUniform(1e4, 1e6);
     gap_m = random.chance(0.3) ? 0 : random.logUniform(1e-6, 0.3e-3);
     speed_m_s = random.logUniform(0.5, 5);
@@ -47,16 +47,16 @@ struct MassRow {
   }
 
   struct Errors {
-    double energy = 0;    ///< relative; with e < 1 what is gained
+    double energy = 0;    ///< relative change; with e < 1 the gain
     double momentum = 0;  ///< relative
-    double turn = 0;      ///< speed by rotation of the others than the odd one, as a share of the first speed
+    double turn = 0;  ///< speed by rotation of the bodies of equal mass, as a share of the first body's speed
   };
   [[nodiscard]] Errors errors() const {
     static const Vec3 kCube_m(20e-3, 20e-3, 10e-3);
     static const PartMesh part = dynamics::makePart(makeBox(kCube_m));
     ImpactWorld scene;
     scene.world.setGravity(Vec3::Zero());
-    // What a light body gives to the others is slower than Bullet's threshold.
+    // The velocities that a light body gives to the others are below Bullet's threshold of restitution.
     scene.world.bullet().getSolverInfo().m_restitutionVelocityThreshold = 0;
     for (int i = 0; i < count; ++i) {
       const double mass_kg = part.frame.mass_kg * (i == place ? ratio : 1);
@@ -92,7 +92,7 @@ struct MassRow {
   }
 };
 
-// The families measure the same runs.
+// All families measure the same runs, so results are kept.
 const MassRow::Errors& errorsOf(int member) {
   static std::map<int, MassRow::Errors> known;
   const auto it = known.find(member);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// C: restitution in gaps below a step's travel. The depth is that without restitution, after every step and
-// on the way.
+// C: restitution in gaps below a step's travel. The depth must be that of the same run without restitution,
+// after every step and at poses within it.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -37,7 +37,7 @@ const PartMesh& pinPart(double radius_m, double height_m) {
                             [&] { return dynamics::makePart(makeCylinder(radius_m, height_m, 128)); });
 }
 
-/// Greatest depth [um] of a body in a fixed one: after each step, and at poses on the way of the step, which
+/// Greatest depth [um] of a body in a fixed one: after each step, and at poses within the step, whose motion
 /// is a straight line and one rotation.
 double deepest_um(ImpactWorld& scene, const Placed& body, const Placed& fixed, int steps, double dt_s,
                   int places = 4) {
@@ -54,7 +54,7 @@ double deepest_um(ImpactWorld& scene, const Placed& body, const Placed& fixed, i
   return kToUm * deepest_m;
 }
 
-/// A ball, or a pin, flies sideways in a bore.
+/// A ball or a pin that flies sideways in a bore.
 struct Bore {
   bool is_pin = false;
   double inner_m = 15e-3, wall_m = 5e-3, gap_m = 1e-3;
@@ -96,7 +96,7 @@ struct Bore {
     setVelocity(body, speed_m_s * Vec3(std::cos(direction_rad), std::sin(direction_rad), is_pin ? 0.05 : 0),
                 w_rad_s);
     double deepest = deepest_um(scene, body, tube, 60, dt_s);
-    // It is still within the bore.
+    // The body must still be within the bore.
     const Vec3 p = body.pose().p;
     if (std::hypot(p.x(), p.y()) > 2 * gap_m && std::abs(p.z()) < height_m / 2)
       deepest = std::max(deepest, kToUm * std::hypot(p.x(), p.y()));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// C: a nut with restitution on its rod. The threads have a radial clearance of 0.1 mm, which a nut crosses
-// within a step of 1 ms, and then it touches along whole flanks. Its depth is that without restitution.
+// C: a nut with restitution on its rod. The threads have a radial clearance of 0.1 mm. The nut crosses it
+// within a step of 1 ms and then touches along whole flanks. Its depth must be that of the same run without
+// restitution.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -23,7 +24,7 @@ using dynamics::Placed;
 
 constexpr double kToUm = 1e6, kStep_s = 1e-3;
 constexpr NutSize kM20{20e-3, 2.5e-3, 16e-3, 34.6e-3 / 2};
-constexpr int kColumns = 192;  // facets a turn: they leave the M20 rod's crest by 1.3 um
+constexpr int kColumns = 192;  // facets per turn: they deviate by 1.3 um from the crest of an M20 rod
 
 enum class Push { Sideways, Along, Gravity };
 
@@ -33,7 +34,7 @@ struct NutHit {
   Push push = Push::Sideways;
   Vec3 direction = Vec3::UnitX();
 
-  // Member 0 is the case that was found.
+  // Member 0 is the case in which the fault was found.
   explicit NutHit(int member) {
     if (member == 0) return;
     constexpr std::array<double, 4> kRestitutions{0.7, 0, 0.3, 1};
@@ -49,11 +50,12 @@ struct NutHit {
   }
 };
 
-/// The vertices of a part that the other one's field reads within kNear_m, by exact distance.
+/// Greatest depth by exact distance of the vertices of a part, among the vertices whose distance in the other
+/// part's field is within kNear_m.
 double deepestVertex_m(const Placed& of, const Pose& X_WP, const Placed& in, const Pose& X_WI) {
-  constexpr double kNear_m = 20e-6, kReach_m = 1e-3;  // the field reads faces to 0.05 voxel of 0.25 mm
+  constexpr double kNear_m = 20e-6, kReach_m = 1e-3;  // the field's error on faces is 0.05 voxel of 0.25 mm
   const auto& shape = dynamic_cast<const bullet::Shape&>(*in.body->getCollisionShape());
-  // The map's frame, at that pose of the part.
+  // Pose of the frame of the part's map in the frame of the part.
   const Pose X_IM = in.pose().inverse() * bullet::fromBt(in.body->getWorldTransform()) * shape.X_SM();
   const Pose X_IP = X_WI.inverse() * X_WP, X_MI = X_IM.inverse();
   double deepest_m = -1;
@@ -65,7 +67,7 @@ double deepestVertex_m(const Placed& of, const Pose& X_WP, const Placed& in, con
   return deepest_m;
 }
 
-/// Greatest depth [um] after the steps and half of the way in each.
+/// Greatest depth [um] after each step and at its middle.
 double nutDepth_um(const NutHit& hit, double restitution) {
   constexpr int kSteps = 40;
   constexpr double kFriction = 0.15;

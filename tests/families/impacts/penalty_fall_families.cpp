@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // L: equal blocks, one above the other with small gaps, fall together on a plate in penalty contact.
 //
-// A block that stops on a spring of stiffness k compresses it by v sqrt(m/k). In a column of blocks the
-// pressure of an impact is that of the speed, not of the number of blocks (a wave runs up the column), and
-// twice the speed is the most that two impacts at once can give. So no contact may be deeper than 2 v
-// sqrt(m/k), and no energy may appear beyond the m g dt v by which Bullet's integration of a rising body is
-// wrong.
+// A block of mass m that stops on a spring of stiffness k compresses the spring by v sqrt(m/k). In a column
+// of blocks the pressure of an impact depends on the speed and not on the number of blocks, since a wave runs
+// up the column, and two impacts at once correspond to at most twice the speed. So no contact may be deeper
+// than 2 v sqrt(m/k), and the energy may rise by at most m g dt v, the error of Bullet's integration for a
+// rising body.
 #include <cmath>
 #include <cstdio>
 
@@ -32,7 +32,8 @@ struct Fall {
   [[nodiscard]] double speed_m_s() const { return std::sqrt(2 * kGravity_m_s2 * drop_m); }
 };
 
-// Member 0 is the case that was found. Blocks have one of a few sizes, so that models are shared.
+// Member 0 is the case in which the fault was found. Blocks have one of a few sizes, so that they share
+// models.
 Fall fallOf(int member) {
   Fall fall;
   if (member == 0) return fall;
@@ -72,8 +73,8 @@ const PartMesh& boxPart(const Vec3& size_m) {
                             [&] { return dynamics::makePart(makeBox(size_m)); });
 }
 
-// How deep the lowest corner of `upper` is below the top face of `lower`. The blocks are equal and stay above
-// each other, so that no other measure of depth is less than it.
+// Depth of the lowest corner of `upper` below the top face of `lower`. The blocks are equal and stay above
+// each other, so no other measure of depth is less.
 double depth_m(const Placed& upper, const Vec3& upper_m, const Placed* lower, const Vec3& lower_m) {
   const Pose X_lower = lower ? lower->pose() : Pose::translation({0, 0, -0.5 * lower_m.z()});
   const Pose X = X_lower.inverse() * upper.pose();
@@ -83,8 +84,8 @@ double depth_m(const Placed& upper, const Vec3& upper_m, const Placed* lower, co
 }
 
 struct Result {
-  double depth = 0;   ///< greatest, over v sqrt(m/k)
-  double energy = 0;  ///< greatest rise above that at the start, over m g dt v of all blocks
+  double depth = 0;   ///< greatest depth over v sqrt(m/k)
+  double energy = 0;  ///< greatest rise of the energy above that at the start, over m g dt v of all blocks
 };
 
 Result runFall(const Fall& fall) {

@@ -33,7 +33,7 @@ double anyStep_s(Random& random) {
 struct Drop {
   int count = 3;
   double gap_m = 0.1e-3, height_m = 20e-3, restitution = 1, friction = 0.15, dt_s = 1e-3, tilt_rad = 0;
-  bool is_heap = false;  ///< a wall of bricks, which the solver takes for a heap
+  bool is_heap = false;  ///< a wall of bricks, which the solver treats as a heap
 
   // The first members are the cases in which the fault was found.
   explicit Drop(int member, bool heap = false) : is_heap(heap) {
@@ -54,7 +54,7 @@ struct Drop {
     tilt_rad = random.chance(0.5) ? 0 : random.uniform(0, 0.3);
   }
 
-  /// Centre of a cube, from the middle of the lowest face.
+  /// Centre of a cube, relative to the middle of the lowest face.
   [[nodiscard]] Vec3 place(int i) const {
     const double level_m = kCube_m.z() + gap_m;
     if (!is_heap) return {0, 0, 0.5 * kCube_m.z() + i * level_m};
@@ -65,8 +65,8 @@ struct Drop {
   [[nodiscard]] double gained(Mode mode) const {
     ImpactWorld scene(mode);
     scene.addFixed(boxPart(Vec3(0.2, 0.2, 0.02)), Pose::translation(Vec3(0, 0, -0.01)), 1, friction);
-    // They are tilted as one, about the middle of the lowest face, and raised by what its edges are then
-    // lower.
+    // The stack is tilted about the middle of its lowest face, and raised by as much as the edges of this
+    // face are then lower.
     const Mat3 R = rotationFromVector(Vec3(0.6, 0.8, 0) * tilt_rad);
     const Vec3 base(0, 0, height_m + tilt_rad * (is_heap ? 0.05 : 0.015));
     for (int i = 0; i < count; ++i)
@@ -89,8 +89,8 @@ struct Drop {
   }
 };
 
-/// Equal cubes in a row without friction or gravity; the first ones fly at the others, which rest. With e = 1
-/// as many leave at the other end, at the same speed.
+/// Equal cubes in a row without friction or gravity. The first ones fly at the others, which are at rest.
+/// With e = 1 the same number of cubes leaves at the other end, at the same speed.
 struct Row {
   int count = 3, moving = 1;
   double gap_m = 0.1e-3, speed_m_s = 1, dt_s = 1e-3;
@@ -109,7 +109,7 @@ struct Row {
     dt_s = anyStep_s(random);
     if (random.chance(0.5)) R = random.rotation();
   }
-  /// Greatest error of a velocity, relative to the first one's.
+  /// Greatest error of a velocity, relative to the velocity of the first cube.
   [[nodiscard]] double error(Mode mode) const {
     ImpactWorld scene(mode);
     scene.world.setGravity(Vec3::Zero());
@@ -136,8 +136,8 @@ struct Row {
   }
 };
 
-/// A cube flies along its axes into a corner of one to three walls, which it reaches in the same step or in
-/// others. Each wall has its own restitution and reverses the velocity across it.
+/// A cube that flies without rotation into a corner of one to three walls, which it reaches in one step or in
+/// different ones. Each wall has its own restitution and reverses the velocity component along its normal.
 struct Corner {
   int walls = 3;
   double e[3] = {1, 1, 1};
@@ -145,15 +145,16 @@ struct Corner {
   double dt_s = 1e-3;
   Mat3 R = Mat3::Identity();
 
-  /// @param fast_mm  ends of a range of the greatest travel along an axis in a step; else it is less than the
-  /// spacing of points. A fast body, of more than four voxels, is queried at several places on its way.
+  /// @param fast_mm range of the greatest travel along an axis in a step; without it the travel is less than
+  /// the spacing of points. If a body travels by more than four voxels in a step, it is queried at several
+  /// poses.
   explicit Corner(int member, std::optional<std::pair<double, double>> fast_mm = {}) {
     Random random(0xb2 + static_cast<std::uint64_t>(member));
     Random speed(0xb5 + static_cast<std::uint64_t>(member));
     const double travel_m = fast_mm ? 1e-3 * speed.logUniform(fast_mm->first, fast_mm->second) : 0.8e-3;
     walls = 1 + member % 3;
-    dt_s =
-        kSteps_s[static_cast<std::size_t>(random.index(3))];  // no speed is below Bullet's threshold, 0.2 m/s
+    dt_s = kSteps_s[static_cast<std::size_t>(
+        random.index(3))];  // no speed is below Bullet's threshold of restitution, 0.2 m/s
     const bool is_at_once = random.chance(0.5);
     const double share = random.uniform(0, 1.5);
     for (int i = 0; i < 3; ++i) {
@@ -192,8 +193,9 @@ struct Corner {
 Corner fastCorner(int member) {
   return Corner(member, std::pair(0.8, 5.0));
 }
-// A contact that is met on the way acts with its lever of the start, which on a body of the other's point is
-// wrong by the way along the face: here up to half of the cube.
+// A contact that is met within the step acts with the lever arm at the start of the step. For a point of the
+// other body this lever arm is wrong by the distance travelled along the face, here by up to half of the
+// cube.
 Corner fasterCorner(int member) {
   return Corner(member, std::pair(5.0, 10.0));
 }
@@ -225,12 +227,12 @@ struct Swarm {
     }
   }
   [[nodiscard]] int steps() const { return static_cast<int>(0.06 / dt_s); }
-  /// Changes of momentum, each the greatest so far over time, relative to the sum of those of the single
+  /// Changes of momentum, each the greatest over time, relative to the sum of the momenta of the single
   /// bodies.
   struct Changes {
     double linear = 0;
-    double angular = 0;            ///< in steps in which the solver pushed no bodies apart
-    double angular_of_pushes = 0;  ///< in the others: a push moves bodies, and not their velocities with them
+    double angular = 0;            ///< in steps in which the solver separated no bodies by a push
+    double angular_of_pushes = 0;  ///< in the other steps: a push changes positions but not velocities
   };
   [[nodiscard]] Changes changes() const {
     ImpactWorld scene;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// M: a nut is turned up its rod against an axial force F. By the theory of threads it takes the torque
+// M: a nut is turned up its rod against an axial force F. The theory of threads gives the torque
 //
 //     T = F r tan(lead + atan(mu / cos 30)),   tan(lead) = pitch / (2 pi r),
 //
-// with r the mean radius at which the flanks touch, for a pressure that is even over them.
+// where r is the mean radius at which the flanks touch, for a pressure that is even over the flanks.
 #include <cmath>
 #include <cstdio>
 #include <numbers>
@@ -73,7 +73,7 @@ struct Load {
   }
 };
 
-// Member 0 is the case that was found.
+// Member 0 is the case in which the fault was found.
 Load loadOf(int member) {
   Load load;
   if (member == 0) return load;
@@ -92,10 +92,10 @@ std::string describe(int member) {
   return text;
 }
 
-// The torque rises evenly, from a share of the theory's, until the nut has turned by kTurned_rad. At the
-// right torque that takes two or three steps, so that it is measured within a hundredth.
+// The torque rises evenly, from a share of the theoretical torque, until the nut has turned by kTurned_rad.
+// At the right torque this takes two or three steps, so the torque is measured to a hundredth.
 double error(dynamics::Mode mode, double from, int member) {
-  // Points every millimetre, as in scenes that state no spacing.
+  // Points are a millimetre apart, as in scenes that state no spacing.
   static const dynamics::Engine engine = dynamics::vpsEngine({0.25e-3, 1e-3});
   constexpr double kTurned_rad = 0.5e-3, kRise = 0.004, kMost = 1.2;
   constexpr int kSettling = 30;
@@ -103,7 +103,8 @@ double error(dynamics::Mode mode, double from, int member) {
   World world({mode, false, engine});
   world.setGravity(Vec3::Zero());
   world.add(rodOf(load.size), Pose(), true, load.mu);
-  // Below by the axial clearance of the flanks, less 1 um, its upper flanks touch: the force pushes it down.
+  // The nut starts lower by the axial clearance of the flanks, less 1 um, so that its upper flanks touch; the
+  // force pushes the nut down.
   const double axial_m = kClearance_m * std::tan(kPi / 6) - 1e-6;
   const Placed nut = world.add(nutOf(load.size), Pose::translation({0, 0, -axial_m}), false, load.mu);
   dynamics::TurnCounter turn(nut);
@@ -128,7 +129,7 @@ std::vector<Family> loadedThreadFamilies() {
   ours.key = "M_torque";
   ours.measure = "error of the torque by thread theory, our solver";
   ours.bar = 0.02;
-  ours.members = 16;  // seconds each
+  ours.members = 16;  // each takes seconds
   ours.every = 13;
   ours.expected_failure = 0.06;
   ours.expected_failure_short = 0;

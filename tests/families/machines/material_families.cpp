@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A: the fixed parts of a scene are one body, and each contact has the material of the part that it touches.
-// Several plates in any order, each with a block of its own.
+// The scene has several plates in any order, each with its own block.
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -23,7 +23,7 @@ const Vec3 kBlock_m(10e-3, 8e-3, 6e-3);
 /// Plates with their tops at z = 0, and the block of each.
 struct Pairs {
   std::vector<Material> plates, blocks;
-  std::vector<int> place;  // of each plate along y: the order of the parts is any
+  std::vector<int> place;  // place of each plate along y; the parts are in random order
   ContactMethod method = ContactMethod::Constraint;
 };
 
@@ -52,7 +52,7 @@ scenes::ScenePart partOf(const std::string& name, const Mesh& mesh, const Vec3& 
   return part;
 }
 
-/// @param start  of each block on its plate, from the plate's middle
+/// @param start start of each block, relative to the middle of its plate
 scenes::Scene sceneOf(const Pairs& pairs, const Vec3& plate_m, const Vec3& start, const Vec3& velocity_m_s) {
   scenes::Scene scene;
   scene.file = scene.name = "plates";
@@ -71,7 +71,7 @@ scenes::Scene sceneOf(const Pairs& pairs, const Vec3& plate_m, const Vec3& start
   return scene;
 }
 
-// --- Friction, by the way of a block that slides
+// --- Friction, by the distance that a block slides
 
 constexpr double kSpeed_m_s = 0.5, kTime_s = 0.12;
 
@@ -83,7 +83,7 @@ Pairs frictionPairs(int member) {
     pairs.plates[i].friction = random.chance(0.2) ? 0 : random.uniform(0, 1);
     pairs.blocks[i].friction = random.uniform(0.3, 1);
   }
-  if (member == 0) {  // 25.5 mm for the second, which stops, and no brake for the first
+  if (member == 0) {  // the second block stops after 25.5 mm, and nothing brakes the first
     pairs.plates[0].friction = 0;
     pairs.plates[1].friction = pairs.blocks[1].friction = 0.5;
   }
@@ -91,7 +91,8 @@ Pairs frictionPairs(int member) {
   return pairs;
 }
 
-/// v^2 / (2 mu g) where it stops, in steps of dt: each moves it with the velocity of the step's end.
+/// The distance after which a block stops: v^2 / (2 mu g), corrected for steps of dt, each of which moves the
+/// block by the velocity at the end of the step.
 double way_m(double mu, double dt_s) {
   double sum_m = 0;
   for (int k = 1; k <= static_cast<int>(std::lround(kTime_s / dt_s)); ++k)
@@ -127,10 +128,10 @@ Pairs restitutionPairs(int member) {
 
 double restitutionError(int member) {
   const Pairs pairs = restitutionPairs(member);
-  constexpr double kFall_m = 10e-3;  // Bullet lets what is slower than 0.2 m/s not bounce
+  constexpr double kFall_m = 10e-3;  // in Bullet, impacts slower than 0.2 m/s have no restitution
   scenes::Scene scene = sceneOf(pairs, {14e-3, 12e-3, 4e-3}, {0, 0, kFall_m}, Vec3::Zero());
   scene.fidelity.physics_rate_hz =
-      10'000;  // gravity in a step is then a hundredth of a per cent of the speed
+      10'000;  // gravity then adds a hundredth of a per cent of the speed in a step
   std::vector<double> fall_m_s(pairs.plates.size(), 0), rise_m_s = fall_m_s;
   scenes::SimulateOptions options;
   options.trace = [&](double, const std::vector<scenes::BodyState>& bodies, double) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// N: a motor turns gears or a screw against a load. What is driven must move in every step: a step whose
-// solution has not converged shows as one in which it nearly stands still.
+// N: a motor turns gears or a screw against a load. The driven part must move in every step. If the solution
+// of a step has not converged, the driven part nearly stands still in this step.
 #include <cmath>
 #include <cstdio>
 #include <numbers>
@@ -21,7 +21,7 @@ using dynamics::Placed;
 using dynamics::World;
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kSlow = 0.8;  ///< a step below this share of the speed counts
+constexpr double kSlow = 0.8;  ///< steps below this share of the speed are counted
 
 // --- Gears
 
@@ -54,7 +54,7 @@ struct Pair {
   double speed_rad_s = 2 * kPi, brake_Nm = 1, mu = 0;
 };
 
-// Member 0 is the pair that was found.
+// Member 0 is the pair with which the fault was found.
 Pair pairOf(int member) {
   Pair pair;
   if (member == 0) return pair;
@@ -84,8 +84,8 @@ double slowGearSteps(int member) {
   World world({dynamics::Mode::Constraint, false, engine});
   world.setGravity(Vec3::Zero());
   const double distance_m = kModule_m * (pair.driver + pair.driven) / 2;
-  // Tooth 0 of the driver points at the other's axis; an odd number of teeth has a gap opposite to its tooth
-  // 0.
+  // Tooth 0 of the driver points at the axis of the driven gear. A gear with an odd number of teeth has a gap
+  // opposite to its tooth 0.
   const double turn_rad = pair.driven % 2 == 0 ? kPi / pair.driven : 0;
   const Placed driver = world.add(gearPart(pair.driver, 12e-3), Pose(), false, pair.mu);
   const Placed driven =
@@ -108,8 +108,7 @@ double slowGearSteps(int member) {
   return slow;
 }
 
-// --- A screw that a motor turns; its nut slides along it against a load, as a worm drives what meshes with
-// it.
+// --- A screw that a motor turns; the nut slides along the screw against a load
 
 struct Screw {
   double speed_rad_s = 10, load_N = 50, mu = 0.1;
@@ -157,7 +156,7 @@ double slowScrewSteps(int member) {
   auto motor = hingeOf(rod);
   motor->enableAngularMotor(true, btScalar(screw.speed_rad_s), btScalar(100));
   world.addConstraint(std::move(motor));
-  // The nut slides along z, which is x of a slider's frame.
+  // The nut slides along z. A slider constraint moves along the x axis of its frame.
   const Mat3 z_is_x = rotationFromVector({0, -0.5 * kPi, 0});
   auto slider = std::make_unique<btSliderConstraint>(
       *nut.body, bullet::toBt(nut.part.frame.X_PB.inverse() * Pose(z_is_x, Vec3::Zero())), true);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// D: rotation that a step cannot hold, alone and with the step divided as turn.h says.
+// D: rotation that is too fast for one step, with whole steps and with steps divided as vps_bullet/turn.h
+// advises.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -30,12 +31,13 @@ dynamics::SceneSettings settings(const dynamics::Resolution& resolution) {
   return settings;
 }
 
-/// Steps of a millisecond, whole or divided, and whether any of them was too long by what the library says.
+/// Makes steps of a millisecond, whole or divided, and keeps whether the library reported one of them as too
+/// long.
 class Stepper {
  public:
   Stepper(World& world, bool is_divided) : world_(world), is_divided_(is_divided) {}
 
-  /// @param after_each  is called after each part of the step
+  /// @param after_each called after each part of the step
   template <typename AfterEach>
   void step(const AfterEach& after_each) {
     const int parts = is_divided_ ? bullet::substepsFor(world_.bullet(), kStep_s, 10'000) : 1;
@@ -64,14 +66,15 @@ struct Gears {
 };
 
 Gears gearsOf(int member) {
-  // Those of 20 and 30 teeth turned the driven one with 54 and 26 % of its speed.
+  // In the cases in which the fault was found, gears of 20 and 30 teeth, the driven gear turned at 54 and 26
+  // % of its right speed.
   if (member < 2) return {{20, 30}, 1e-3, member == 0 ? 200.0 : 300.0};
   Random random(4000 + static_cast<std::uint64_t>(member));
   Gears gears;
   for (int& teeth : gears.teeth) teeth = 12 + random.index(49);
   gears.module_m = random.uniform(0.5e-3, 1e-3);
   gears.w_rad_s = random.logUniform(50, 600);
-  // Every third one on either side of what contacts hold in a whole step.
+  // Every third member lies on either side of the limit that contact can hold in a whole step.
   if (member % 3 == 2)
     gears.w_rad_s = random.uniform(0.4, 1.2) * bullet::kContactTurn_rad / kStep_s /
                     (1 + static_cast<double>(gears.teeth[0]) / gears.teeth[1]);
@@ -96,13 +99,13 @@ std::unique_ptr<btHingeConstraint> hingeOf(const Placed& gear) {
                                              bullet::toBt(Vec3(X_BP.R.col(2))));
 }
 
-/// Speed of the driven gear, as a share of the right one, less 1; 0 where a step was said to be too long.
+/// Speed of the driven gear over its right speed, less 1; 0 if the library reported a step as too long.
 double gearError(int member, bool is_divided) {
   const Gears gears = gearsOf(member);
   const double ratio = static_cast<double>(gears.teeth[0]) / gears.teeth[1], w_rad_s = gears.w_rad_s;
   World world(settings({0.25e-3, 0.5e-3}));
   world.setGravity(Vec3::Zero());
-  // Tooth 0 of the driver points at the other's axis, and meets a gap there.
+  // Tooth 0 of the driver points at the axis of the driven gear and meets a gap between its teeth.
   const double distance_m = gears.module_m * (gears.teeth[0] + gears.teeth[1]) / 2;
   const Placed driver = world.add(gearPart(gears, 0), Pose(), false, 0);
   const Placed driven = world.add(
@@ -115,7 +118,7 @@ double gearError(int member, bool is_divided) {
   world.addConstraint(hingeOf(driven));
   driver.body->setAngularVelocity({0, 0, bullet::toBt(w_rad_s)});
   driven.body->setAngularVelocity({0, 0, bullet::toBt(-ratio * w_rad_s)});
-  // The driver turns by 3 rad until the flanks carry, and by 6 while the speed is measured.
+  // The driver turns by 3 rad until the flanks carry the load, and then by 6 rad while the speed is measured.
   const int settle = static_cast<int>(std::ceil(3 / (w_rad_s * kStep_s))), steps = 3 * settle;
   const double brake_Nm = driven.part.frame.inertia_kg_m2.maxCoeff() * ratio * w_rad_s / (steps * kStep_s);
   dynamics::TurnCounter turn(driven);
@@ -137,7 +140,7 @@ std::string inWords(const Gears& gears) {
   return words;
 }
 
-// --- A shaft, free or in a bore, without friction and weight
+// --- A shaft without friction and weight, free or in a bore
 
 struct Shaft {
   double radius_m = 0, clearance_m = 0, rpm = 0;
@@ -157,15 +160,15 @@ Shaft shaftOf(int member) {
   return shaft;
 }
 
-/// Greatest of the errors of speed and of the angle turned in 0.2 s, as shares; 0 where a step was said to be
-/// too long.
+/// The greater of the relative errors of speed and of the angle turned in 0.2 s; 0 if the library reported a
+/// step as too long.
 double shaftError(int member, bool is_divided) {
   const Shaft shaft = shaftOf(member);
   World world(settings({0.5e-3, 1e-3}));
-  // Without weight: a polygon that lies in a polygon is slowed by its corners, which is another matter.
+  // There is no weight: a polygon that lies in a polygon would be slowed by its corners.
   world.setGravity(Vec3::Zero());
   if (shaft.is_in_bore) {
-    // The corners of the bore's facets lie on its circle, so its flats are nearer.
+    // The corners of the bore's facets lie on its circle, so the flats between them are nearer to the axis.
     const double bore_m = (shaft.radius_m + shaft.clearance_m / 2) / std::cos(kPi / 96);
     world.add(dynamics::makePart(makeTube(bore_m + 3e-3, bore_m, 6e-3, 96)), Pose(), true, 0);
   }
@@ -204,10 +207,10 @@ std::vector<Family> fastRotationFamilies() {
   };
   return {
       familyOf("D_gears", "error of the driven gear's speed, steps divided", 12, gearError, true, gearsOf),
-      familyOf("D_gears_said", "the same with whole steps, unless it is said that they are too long", 12,
+      familyOf("D_gears_said", "the same with whole steps, unless they are reported as too long", 12,
                gearError, false, gearsOf),
       familyOf("D_shafts", "error of a shaft's speed or angle, steps divided", 12, shaftError, true, shaftOf),
-      familyOf("D_shafts_said", "the same with whole steps, unless it is said that they are too long", 4,
+      familyOf("D_shafts_said", "the same with whole steps, unless they are reported as too long", 4,
                shaftError, false, shaftOf)};
 }
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// D: a body that lies flat on a plate without friction and spins about the vertical, or that lands so.
+// D: a body that lies flat on a plate without friction, or lands flat on it, and spins about the vertical.
 //
-// The plate pushes along the vertical only, and evenly. So the body keeps its height, its place and its spin,
-// whatever it turns in a step. Where Bullet turns a body by less than its speed, which is said, its corners
-// are elsewhere than its velocity tells; then no energy may be made.
+// The plate pushes evenly and along the vertical only. So the body keeps its height, its place and its spin,
+// however far it turns in a step. If Bullet turns a body by less than its angular velocity, which is
+// reported, the corners are not where the velocity would take them; then only the energy is judged, which
+// must not grow.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -28,13 +29,13 @@ using search::Random;
 constexpr double kThick_m = 6e-3, kStep_s = World::kStep_s;
 
 struct FlatSpin {
-  int sides = 0;  ///< of a prism; 0: a box
+  int sides = 0;  ///< sides of a prism; 0: a box
   Vec3 size_m{10e-3, 10e-3, 10e-3};
-  double turn_rad = 0.15, drop_m = 0, heading_rad = 0;  ///< turn in a step of 1 ms
+  double turn_rad = 0.15, drop_m = 0, heading_rad = 0;  ///< rotation in a step of 1 ms
   Vec3 place_m = Vec3::Zero();
   bool is_divided = false;
 
-  /// Members 0 and 1 are the cases that were found. Every third one lands; every other one has its steps
+  /// In members 0 and 1 the fault was found. Every third body lands; for every other body the steps are
   /// divided.
   explicit FlatSpin(int member) {
     if (member == 0) return;
@@ -64,10 +65,11 @@ struct FlatSpin {
 
   /// Greatest errors of all steps.
   struct Errors {
-    double height_m = 0;  ///< of any of its points; before it has landed: above the start
+    double height_m =
+        0;  ///< deviation of the height of any of its points; before it has landed: height above the start
     double sideways = 0;  ///< speed along the plate, as a share of the rim's
-    double spin = 0;      ///< change of the spin, share
-    double energy = 0;    ///< gain beyond that of 1 um of height, as a share of the kinetic energy
+    double spin = 0;      ///< relative change of the spin
+    double energy = 0;    ///< gain beyond the energy of 1 um of height, as a share of the kinetic energy
   };
   [[nodiscard]] Errors errors() const {
     bullet::Settings quiet;
@@ -85,7 +87,7 @@ struct FlatSpin {
     };
     const double kinetic_J = dynamics::kineticEnergy_J(*body.body);
     const double most_J = energy_J() + 1e-6 * World::kGravity_m_s2 / body.body->getInvMass();
-    // It has landed after twice the time of its fall.
+    // The body has landed after twice the time of its fall.
     const double land_s = drop_m > 0 ? 2 * std::sqrt(2 * drop_m / World::kGravity_m_s2) + 2e-3 : 0;
     Errors worst;
     for (int k = 0; k < 60 + static_cast<int>(land_s / kStep_s); ++k) {
@@ -113,7 +115,7 @@ struct FlatSpin {
   }
 };
 
-// The families measure the same runs.
+// All families measure the same runs, so results are kept.
 const FlatSpin::Errors& errorsOf(int member) {
   static std::map<int, FlatSpin::Errors> known;
   const auto it = known.find(member);

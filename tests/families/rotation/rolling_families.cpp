@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// H: finely meshed cylinders and spheres roll on a plate. Nothing brakes a smooth one. One of n sides rolls
-// over its corners, and each corner that lands takes a little: its angular momentum about that corner is
-// kept,
+// H: finely meshed cylinders and spheres roll on a plate. Nothing brakes a smooth body. A body of n sides
+// rolls over its corners and loses a little at each corner that lands, because the angular momentum about
+// this corner is conserved,
 //
 //     (I + m r^2) w_after = (I + m r^2 cos(2 pi / n)) w_before,
 //
-// and between two corners its centre rises and falls. That is a lower bound: what rolls in steps longer than
-// a side, or is taken for smooth, may lose less, and nothing may gain. A 100-gon of 10 mm keeps 0.70 of 0.2
-// m/s after a second, a 1000-gon 0.96.
+// and between two corners its centre rises and falls. This speed is a lower bound: a body that rolls by more
+// than a side in a step, or that is treated as smooth, may lose less, but no body may become faster. A
+// 100-gon of 10 mm keeps 0.70 of 0.2 m/s after a second, a 1000-gon 0.96.
 #include <cmath>
 #include <cstdio>
 #include <numbers>
@@ -34,8 +34,8 @@ struct Roll {
   double radius_m = 10e-3, v_m_s = 0.2, slope_rad = 0, duration_s = 1, rate_hz = 1000;
 };
 
-// Members 0 to 2 are cases that were found. Others begin so fast that they do not stop on a corner, and so
-// slowly that their corners do not lift off (v^2 < g r).
+// In members 0 to 2 the fault was found. The others start fast enough not to stop on a corner, and slowly
+// enough for their corners not to lift off (v^2 < g r).
 Roll rollOf(int member) {
   if (member == 0) return {};
   if (member == 1) return {.rate_hz = 250};
@@ -68,7 +68,7 @@ std::string describe(int member) {
   return text;
 }
 
-// About z, with the middle of a side at -y.
+// The body around z, with the middle of a side at -y.
 Mesh meshOf(const Roll& roll) {
   std::vector<std::array<double, 2>> profile;
   const double r_m = roll.radius_m;
@@ -86,15 +86,15 @@ Mesh meshOf(const Roll& roll) {
                      Pose(rotationFromVector({0, 0, -0.5 * kPi - kPi / roll.sides}), Vec3::Zero()));
 }
 
-/// The way of the centre along the plate.
+/// The distance that the centre of a rolling polygon has moved along the plate.
 class Polygon {
  public:
   /// @param ratio  I / (m r^2)
   Polygon(const Roll& roll, double ratio)
       : roll_(roll), side_rad_(2 * kPi / roll.sides), ratio_(ratio), w_rad_s_(roll.v_m_s / roll.radius_m) {
-    w_rad_s_ *= (ratio_ + std::cos(0.5 * side_rad_)) / (ratio_ + 1);  // its first corner lands at once
+    w_rad_s_ *= (ratio_ + std::cos(0.5 * side_rad_)) / (ratio_ + 1);  // the first corner lands at once
   }
-  /// Later times only.
+  /// May be called with increasing times only.
   double wayAt(double t_s) {
     while (end_s_ < t_s && !is_stopped_) nextCorner();
     if (end_s_ <= t_s) return end_m_;
@@ -102,7 +102,7 @@ class Polygon {
   }
 
  private:
-  // It turns about a corner by one side, downhill: the height of the centre is r cos(angle + slope).
+  // The polygon turns about a corner by one side, downhill: the height of the centre is r cos(angle + slope).
   void nextCorner() {
     constexpr int kParts = 16;
     begin_s_ = end_s_;
@@ -131,13 +131,13 @@ class Polygon {
   bool is_stopped_ = false;
 };
 
-// How far the mean speed over the last fifth is outside of what smooth and polygon theory allow, as a share
-// of the smooth one.
+// How far the mean speed over the last fifth of the run is outside the range between the theories of the
+// polygon and of the smooth body, relative to the speed of the smooth body.
 double error(dynamics::Mode mode, int member) {
   static const PartMesh plate = dynamics::makePart(makeBox({420e-3, 24e-3, 4e-3}));
   static const dynamics::Engine plate_engine = dynamics::vpsEngine({0.5e-3, 1e-3});
   const Roll roll = rollOf(member);
-  // Each member has its own part, whose models go with it; the plate's are kept.
+  // Each member has its own part, whose models are deleted with it; the plate's models are kept.
   const PartMesh part = dynamics::makePart(meshOf(roll));
   dynamics::Engine engine = dynamics::vpsEngine({0.5e-3, 1e-3});
   const auto makeOwn = engine.makeShape;
@@ -148,7 +148,7 @@ double error(dynamics::Mode mode, int member) {
   constexpr double kFriction = 0.3;
   world.setGravity(kGravity_m_s2 * Vec3(std::sin(roll.slope_rad), 0, -std::cos(roll.slope_rad)));
   world.add(plate, Pose::translation({200e-3, 0, -2e-3}), true, kFriction);
-  // The part's -y is down: its axis, z, is then across.
+  // The part's -y points down, so its axis z is horizontal.
   const Mat3 R = rotationFromVector({0.5 * kPi, 0, 0});
   const double height_m = roll.radius_m * std::cos(kPi / roll.sides) + 0.1e-6;
   const dynamics::Placed placed = world.add(part, Pose(R, Vec3(0, 0, height_m)), false, kFriction);

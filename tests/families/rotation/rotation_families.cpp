@@ -16,10 +16,10 @@ namespace {
 
 using search::Random;
 
-/// A box in free space that nothing touches: its angular momentum and its energy stay.
+/// A box in free space that nothing touches: its angular momentum and its energy are conserved.
 struct Spin {
   Vec3 size_m = Vec3(20e-3, 30e-3, 60e-3);
-  Vec3 w_B = Vec3(0.02, 20, 0.01);  // near the middle axis, about which no body turns stably
+  Vec3 w_B = Vec3(0.02, 20, 0.01);  // near the middle principal axis, about which rotation is unstable
   double dt_s = 1e-3, duration_s = 10;
   Mat3 R = Mat3::Identity();
   dynamics::Mode mode = dynamics::Mode::Constraint;
@@ -42,7 +42,7 @@ struct Spin {
     w_B = speed_rad_s * axis.normalized();
     duration_s = 10000 * dt_s;
   }
-  /// Greatest change of energy or angular momentum, relative.
+  /// The greatest relative change of energy or angular momentum.
   [[nodiscard]] double error() const {
     ImpactWorld scene(mode);
     scene.world.setGravity(Vec3::Zero());
@@ -68,7 +68,8 @@ struct Spin {
   }
 };
 
-/// A disc or plate that spins about its own axis turns by w t: no phase error by the step.
+/// A disc or plate that spins about its own axis turns by w t, without a phase error that depends on the
+/// step.
 double angleError(int member) {
   Random random(0xd1 + static_cast<std::uint64_t>(member));
   ImpactWorld scene;
@@ -77,7 +78,7 @@ double angleError(int member) {
   const Mat3 R = random.rotation();
   const dynamics::Placed body = scene.add(boxPart(Vec3(20e-3, 30e-3, 60e-3)), Pose(R, Vec3::Zero()), 0, 0);
   const double dt_s = 1e-3, speed_rad_s = member == 0 ? 20 : random.logUniform(1, 700);
-  // The body's principal axes are those of the box.
+  // The principal axes of the body are the axes of the box.
   const Mat3 R_WB = bullet::fromBt(body.body->getWorldTransform().getBasis());
   const Vec3 w_W = speed_rad_s * Vec3(R_WB.col(axis));
   setVelocity(body, Vec3::Zero(), w_W);
@@ -88,8 +89,8 @@ double angleError(int member) {
   return rotationVector(turned * wanted.transpose()).norm() / (speed_rad_s * steps * dt_s);
 }
 
-/// A part of a scene that is turned at the start and spins: greatest change of its angular momentum,
-/// relative.
+/// The greatest relative change of the angular momentum of a part of a scene that is rotated at the start and
+/// spins.
 double sceneError(int member) {
   Random random(0xd2 + static_cast<std::uint64_t>(member));
   const Vec3 size_m(20e-3, 30e-3, 60e-3);

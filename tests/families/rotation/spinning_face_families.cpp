@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// K: a part spins on a flat face. Coulomb's friction of a pressure p at the radius r has the moment mu p r,
-// so that a pressure that is even over the face brakes with mu m g times the mean radius of the face (of a
-// disc 2/3 R, so that it slows by 4/3 mu g / R), whatever the speed. A pressure at the rim brakes a disc one
-// and a half times as much.
+// K: a part spins on a flat face. Coulomb friction of a pressure p at the radius r has the moment mu p r. So
+// a pressure that is even over the face brakes with mu m g times the mean radius of the face, at any speed.
+// The mean radius of a disc is 2/3 R, so a disc slows down by 4/3 mu g / R. If all pressure is at the rim, a
+// disc is braked one and a half times as much.
 #include <cmath>
 #include <cstdio>
 #include <numbers>
@@ -61,13 +61,13 @@ Mesh meshOf(int part) {
   }
 }
 
-// A standing part: height over width stays below what tips, and the face that touches is at z = 0.
+// A standing part, which is too low to tip; the face that touches is at z = 0.
 const PartMesh& partOf(int part) {
   static std::map<std::vector<double>, PartMesh> parts;
   return dynamics::keptPart(parts, {double(part)}, [&] { return dynamics::makePart(meshOf(part)); });
 }
 
-// Mean distance from the axis over the face at z = 0, by the midpoints of small triangles.
+// Mean distance of the face at z = 0 from the axis, by the midpoints of small triangles.
 double meanRadius_m(const Mesh& mesh) {
   constexpr int kSplit = 24;
   double area_m2 = 0, moment_m3 = 0;
@@ -97,7 +97,7 @@ struct Spin {
   double mu = 0.15, dt_s = 1e-3, heading_rad = 0;
 };
 
-// Members 0 and 1 are the cases that were found.
+// In members 0 and 1 the fault was found.
 Spin spinOf(int member) {
   Spin spin;
   spin.part = member % kParts;
@@ -118,7 +118,7 @@ std::string describe(int member) {
   return text;
 }
 
-// How far the deceleration is from that of an even pressure, as a share of it.
+// Relative difference between the deceleration and that of an even pressure.
 double error(dynamics::Mode mode, int member) {
   constexpr double kGap_m = 0.1e-6, kWhole_s = 0.1, kFrom_s = 0.01, kTo_s = 0.05;
   static const dynamics::Engine engine = dynamics::vpsEngine();
@@ -131,7 +131,7 @@ double error(dynamics::Mode mode, int member) {
   world.add(plate, Pose::translation({0, 0, -2e-3}), true, spin.mu);
   const dynamics::Placed placed =
       world.add(part, Pose(rotationFromVector({0, 0, spin.heading_rad}), Vec3(0, 0, kGap_m)), false, spin.mu);
-  // It would stop after kWhole_s, and even with all pressure at the rim not before kTo_s.
+  // The part would stop after kWhole_s, and not before kTo_s even if all pressure were at the rim.
   placed.body->setAngularVelocity(btVector3(0, 0, btScalar(theory_rad_s2 * kWhole_s)));
   const auto speedAfter = [&](double duration_s) {
     world.step(static_cast<int>(std::lround(duration_s / spin.dt_s)), spin.dt_s);

@@ -57,7 +57,7 @@ void BoxUnion::forEachCell(Visit visit) const {
 
 MassProperties BoxUnion::mass() const {
   MassProperties mass;
-  Mat3 second = Mat3::Zero();  // about the origin
+  Mat3 second = Mat3::Zero();  // second moments about the origin
   Vec3 first = Vec3::Zero();
   forEachCell([&](const Box& cell) {
     if (!isSolid(cell)) return;
@@ -90,7 +90,7 @@ BoxMember boxMember(int i) {
   BoxMember member{kinds[kind], (i / 9) % 2 == 0 ? 0 : random.logUniform(1e-6, 5e-3), {}};
   const double o = member.overlap_m, w = random.uniform(6e-3, 12e-3), h = random.uniform(20e-3, 40e-3),
                l = random.uniform(30e-3, 60e-3);
-  const bool is_flush = random.chance(0.5);  // the ends of an arm are in the planes of the base's
+  const bool is_flush = random.chance(0.5);  // the ends of an arm lie in the planes of the base's faces
   const double in = is_flush ? 0 : random.uniform(0.5e-3, 2e-3);
   const Box base = at({0, 0, 0}, {l, 2 * w, w});
   const auto arm = [&](double x) { return at({x, in, w - o}, {w, 2 * (w - in), h}); };
@@ -129,7 +129,7 @@ BoxMember boxMember(int i) {
       break;
     default: {
       const int count = 2 + random.index(8);
-      // On a grid of 1 mm faces often lie in one plane.
+      // Corners lie on a grid of 1 mm, so that faces often lie in one plane.
       const double grid_m = o > 0 ? 0.5 * (1e-3 + o) : 1e-3;
       for (int k = 0; k < count; ++k) {
         const auto draw = [&](int low, int high) { return grid_m * (low + random.index(high - low + 1)); };
@@ -145,7 +145,7 @@ Mesh shellsOf(const std::vector<Box>& boxes, const std::vector<bool>& faces_in) 
   Mesh mesh;
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     Mesh box = transformed(makeBox(boxes[i].size()), Pose::translation(boxes[i].center()));
-    // The same coordinates where planes are the same.
+    // Faces of one plane get the same coordinates to the bit.
     for (Vec3& v : box.vertices)
       for (int axis = 0; axis < 3; ++axis)
         v[axis] = v[axis] < boxes[i].center()[axis] ? boxes[i].min[axis] : boxes[i].max[axis];

@@ -19,7 +19,7 @@ class BoxUnion {
 
   [[nodiscard]] const std::vector<Box>& boxes() const { return boxes_; }
   [[nodiscard]] MassProperties mass() const;
-  /// Distance to the union, negative inside: then to the nearest point that is not inside.
+  /// Distance to the union. Inside, it is minus the distance to the nearest point that is not inside.
   [[nodiscard]] double distance(const Vec3& p) const;
 
  private:
@@ -30,25 +30,26 @@ class BoxUnion {
   void forEachCell(Visit visit) const;
 
   std::vector<Box> boxes_;
-  std::array<std::vector<double>, 3> planes_;  ///< ascending, with one far beyond each end
+  std::array<std::vector<double>, 3>
+      planes_;  ///< coordinates of the planes, ascending, with one far beyond each end
 };
 
 /// A kind of union, and how far its boxes reach into each other.
 struct BoxMember {
   std::string kind;
-  double overlap_m = 0;  ///< 0: they touch
+  double overlap_m = 0;  ///< 0: the boxes touch
   std::vector<Box> boxes;
 };
 
-/// Member i: U, L, T, cross and comb of 2 to 9 boxes, boxes that share part of a face, an edge or a corner
-/// only, and random ones.
+/// Member i: a U, L, T, cross or comb of 2 to 9 boxes, boxes that share only part of a face, an edge or a
+/// corner, or random boxes.
 BoxMember boxMember(int i);
 
 /// One closed shell for each box, in the boxes' frame.
 Mesh shellsOf(const std::vector<Box>& boxes);
-/// Shells whose number is in `which` face in.
+/// The same shells; shell i faces inwards if faces_in[i] is true.
 Mesh shellsOf(const std::vector<Box>& boxes, const std::vector<bool>& faces_in);
-/// As a mesh's properties after it is moved by X.
+/// The mass properties of a body after it is moved by X.
 MassProperties moved(const MassProperties& mass, const Pose& X);
 /// The greatest relative difference of volume, centre (over the size) and inertia.
 double difference(const MassProperties& a, const MassProperties& b, double size_m);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The judge itself: passages between the poses of two steps are seen, what passes beside is not reported, and
-// depths are exact. No contact acts here, but in G_printed.
+// The judge of a motion itself: it finds passages between the poses of two steps, does not report a body that
+// passes without touching, and gives exact depths. Contact acts only in G_printed.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -25,7 +25,7 @@ std::shared_ptr<const ExactBody> exact(const Mesh& mesh) {
   return std::make_shared<const ExactBody>(std::make_shared<const Solid>(mesh));
 }
 
-/// A sphere of meridians and parallels, as CAD exports have it.
+/// A sphere of meridians and parallels, as in CAD exports.
 Mesh uvSphere(double radius_m, int columns, int rows) {
   Mesh mesh;
   mesh.vertices.push_back({0, 0, radius_m});
@@ -58,12 +58,12 @@ Mesh sheetMesh(double side_m) {
   return mesh;
 }
 
-/// A fixed body at the origin, and one that is moved past or through it within one step.
+/// A fixed body at the origin, and a body that is moved past or through it within one step.
 struct Passage {
   std::string words;
   Mesh fixed, moving;
   Pose X_0, X_1;
-  double formula_m = 0;  ///< depth by formula; 0: none is known
+  double formula_m = 0;  ///< depth by formula; 0: no formula is known
 };
 
 /// The greatest depth at many poses of the step.
@@ -71,7 +71,7 @@ double sampledDepth_m(const Passage& passage, int samples) {
   const std::shared_ptr<const ExactBody> fixed = exact(passage.fixed), moving = exact(passage.moving);
   const Box near = grown(fixed->box(), 0.5 * moving->box().size().norm());
   const scenes::BodyMotion motion(passage.X_0, passage.X_1, Vec3::Zero());
-  // Only where the middle is near the fixed body.
+  // Only the part of the step in which the moving body's centre is near the fixed body is sampled.
   double from = 1, to = 0;
   for (int i = 0; i <= 200000; ++i) {
     const double share = i / 200000.0;
@@ -97,7 +97,7 @@ MotionJudge judged(const Passage& passage) {
   return judge;
 }
 
-/// A motion whose middle is at p_W, with R there, at a share of the step.
+/// Sets a motion that passes through the position p_W with the rotation R at a share of the step.
 void move(Passage& passage, Random& random, const Vec3& p_W, const Mat3& R, const Vec3& v_W,
           const Vec3& w_W) {
   const double share = random.uniform(0.05, 0.95);
@@ -150,7 +150,7 @@ Passage passageThrough(int member) {
   }
   const double speed_m_s = random.logUniform(std::max(5.0, 6 * reach_m / kStep_s), 5000);
   move(passage, random, beside_m, random.rotation(), speed_m_s * toward, spin);
-  // Far enough before and after, whatever share of the step that is.
+  // The motion starts and ends far away, for any share of the step.
   const Vec3 extra = 20 * reach_m * toward;
   passage.X_0.p -= extra;
   passage.X_1.p += extra;
@@ -158,7 +158,7 @@ Passage passageThrough(int member) {
   return passage;
 }
 
-/// Ten micrometres beside: the least gap is known by the vertices.
+/// A body that passes ten micrometres beside the fixed one; the vertices give the least gap.
 Passage passageBeside(int member) {
   Random random(3000 + static_cast<std::uint64_t>(member));
   Passage passage;
@@ -197,7 +197,7 @@ Passage passageBeside(int member) {
     default:
       passage.words = "box that turns over a plate";
       passage.fixed = makeBox({20 * r_m, 20 * r_m, 2 * r_m});
-      passage.moving = makeBox(Vec3(1, 1, 1) * (2 * r_m / std::sqrt(3.0)));  // its corners on a sphere
+      passage.moving = makeBox(Vec3(1, 1, 1) * (2 * r_m / std::sqrt(3.0)));  // the corners lie on a sphere
       spin = random.direction() * random.uniform(0, 300);
       p_W = {0, 0, 2 * r_m + gap_m};
       break;
@@ -207,7 +207,7 @@ Passage passageBeside(int member) {
   return passage;
 }
 
-/// Share of the depth that the judge did not find.
+/// The share of the depth that the judge did not find.
 double missedShare(const Passage& passage) {
   const double found_m = judged(passage).deepest().depth_m;
   const double sampled_m = sampledDepth_m(passage, 300);
@@ -215,12 +215,12 @@ double missedShare(const Passage& passage) {
       {0.0, 1 - found_m / sampled_m, passage.formula_m > 0 ? 1 - found_m / passage.formula_m : 0});
 }
 
-/// What is reported although nothing touches [um].
+/// The depth that is reported although nothing touches [um].
 double falseDepth_um(const Passage& passage) {
   return judged(passage).deepest().depth_m / kUm;
 }
 
-/// By how much the bound that is reported exceeds the tolerance, where nothing touches [um].
+/// By how much the reported bound exceeds the tolerance although nothing touches [um].
 double boundExcess_um(const Passage& passage) {
   return (judged(passage).bound_m() - MotionJudge::toleranceOf(0)) / kUm;
 }
@@ -238,7 +238,7 @@ double lowest_m(const Mesh& mesh, const Mat3& R) {
   return lowest;
 }
 
-/// Depth of the deepest vertex in a ball of exact surface, by all triangles.
+/// Depth of a point inside a mesh: the distance of its nearest triangle.
 double inMesh_m(const Mesh& mesh, const Vec3& p) {
   double nearest_m = 1e300;
   for (const auto& t : mesh.triangles)
@@ -257,11 +257,11 @@ Placed placedSphere(int member) {
   const Mesh sphere = uvSphere(r_m, columns, std::max(3, columns / 2));
   placed.depth_m = depth_m;
   const Mat3 R = random.rotation();
-  if (member % 2 == 0) {  // on a plate: its lowest vertex
+  if (member % 2 == 0) {  // on a plate: the depth of the lowest vertex
     placed.fixed = makeBox({8 * r_m, 8 * r_m, 2 * r_m});
     placed.moving = sphere;
     placed.X_WP = Pose(R, Vec3(0.3 * r_m, 0.2 * r_m, r_m - lowest_m(sphere, R) - depth_m));
-  } else {  // the corner of a cube in it, by all triangles
+  } else {  // the corner of a cube in the sphere, by all triangles
     placed.fixed = sphere;
     placed.moving = makeBox(Vec3::Constant(4 * r_m));
     const Vec3 out = random.direction();
@@ -280,7 +280,7 @@ double depthError_um(const Placed& placed) {
   return std::abs(std::max(0.0, found.depth_m) - placed.depth_m) / kUm;
 }
 
-/// A sphere dropped on a plate; member 0 is drawn as a bearing ball of a CAD program is.
+/// A sphere dropped on a plate; member 0 is meshed like a bearing ball of a CAD program.
 scenes::Scene dropScene(int member) {
   Random random(7000 + static_cast<std::uint64_t>(member));
   const double r_m = member == 0 ? 2 * kMm : random.logUniform(0.5, 3) * kMm;
@@ -302,8 +302,8 @@ scenes::Scene dropScene(int member) {
   return scene;
 }
 
-/// What simulate() prints, beside the lowest vertex at the ends of all steps. More than that may be found
-/// between the ends.
+/// Difference between the depth that simulate() prints and the depth of the lowest vertex at the ends of all
+/// steps. The printed depth may be greater, since it is also found between the ends.
 double printedError_um(int member) {
   scenes::Scene scene = dropScene(member);
   const Mesh mesh = scene.parts[1].part.mesh;
@@ -323,12 +323,12 @@ std::vector<Family> judgeFamilies() {
   out.push_back({"C_judge_passages", "share of a passage's depth that the judge does not see", 0.05, 120, 4,
                  [](int member) { return missedShare(passageThrough(member)); },
                  [](int member) { return passageThrough(member).words; }});
-  out.push_back({"C_judge_beside", "depth reported where a body passes 10 um beside [um]", 0.01, 100, 4,
+  out.push_back({"C_judge_beside", "depth reported where a body passes at a gap of 10 um [um]", 0.01, 100, 4,
                  [](int member) { return falseDepth_um(passageBeside(member)); },
                  [](int member) { return passageBeside(member).words; }});
-  // Along a bore no direction separates the hulls.
-  out.push_back({"C_judge_bound", "excess of the bound where a body passes 10 um beside [um]", 0.01, 100, 4,
-                 [](int member) { return boundExcess_um(passageBeside(member)); },
+  // For a body in a bore no direction separates the convex hulls.
+  out.push_back({"C_judge_bound", "excess of the bound where a body passes at a gap of 10 um [um]", 0.01, 100,
+                 4, [](int member) { return boundExcess_um(passageBeside(member)); },
                  [](int member) { return passageBeside(member).words; }});
   out.push_back({"G_depth", "error of the judge's depth of sphere meshes [um]", 0.11, 100, 4,
                  [](int member) { return depthError_um(placedSphere(member)); }});

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// J: a sphere or a cube falls on an open surface, whose mesh has no inside. It must come to rest on what is
-// drawn: the surface is neither closed over nor passed. Judged by the exact distance of the sphere's centre,
-// or of the cube's corners, from the drawn triangles; the same fall on btBvhTriangleMeshShape, in the same
-// world, tells what Bullet's own mesh does.
+// J: a sphere or a cube falls on an open surface, whose mesh has no inside. The body must come to rest on the
+// drawn triangles: contact must neither close the surface with a lid nor let the body through. The exact
+// distance of the sphere's centre, or of the cube's corners, from the drawn triangles is the measure. The
+// same fall on btBvhTriangleMeshShape, in the same world, shows how Bullet's own mesh behaves.
 #include <cmath>
 #include <cstdio>
 #include <numbers>
@@ -30,12 +30,12 @@ struct Fall {
   double size_m = 0.2;      ///< the surface's greatest extent
   double radius_m = 10e-3;  ///< of the sphere; half the side of the cube
   bool is_cube = false;
-  double drop_m = 30e-3;  ///< of its lowest point, above the surface
-  int cells = 40;         ///< how finely the surface is meshed
+  double drop_m = 30e-3;  ///< height of its lowest point above the surface
+  int cells = 40;         ///< cells of the surface's mesh along each side
   double turn_rad = 0;
 };
 
-// Members 0 and 1 are the cases that were found.
+// In members 0 and 1 the fault was found.
 Fall fallOf(int member) {
   Fall fall;
   if (member < 2) {
@@ -129,7 +129,7 @@ Mesh meshOf(const Fall& f) {
     case Sheet::Moebius:
       break;
   }
-  // Half a turn over the far half of its length.
+  // A twist by half a turn over the far half of the length.
   return welded(grid(4 * f.cells, 4,
                      [&](double u, double v) {
                        const double along_rad = 2 * kPi * u, across_m = 0.3 * s * (v - 0.5);
@@ -141,7 +141,7 @@ Mesh meshOf(const Fall& f) {
                 1e-9);
 }
 
-/// How far the body is from touching: 0 at rest, negative inside.
+/// Distance of the body from the surface: 0 at rest, negative if they overlap.
 double gap_m(const Solid& drawn, const Fall& fall, const Pose& X) {
   if (!fall.is_cube) return std::abs(drawn.closest(X.p).distance_m) - fall.radius_m;
   double least_m = 1e300;  // the surface is level below the cube
@@ -161,7 +161,7 @@ Errors run(const Fall& fall) {
   btTriangleMesh triangles;  // outlives the world, whose shape refers to it
   World world({dynamics::Mode::Constraint, false, dynamics::vpsEngine({voxel_m, 2 * voxel_m})});
   world.add({mesh, {}, drawn}, Pose(), true);
-  // Bullet's own mesh, far to the side.
+  // The same fall on Bullet's own mesh, far to the side.
   const Vec3 aside(0, 10 * fall.size_m, 0);
   for (const auto& t : mesh.triangles)
     triangles.addTriangle(bullet::toBt(mesh.vertices[t[0]]), bullet::toBt(mesh.vertices[t[1]]),

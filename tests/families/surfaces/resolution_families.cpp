@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// F: the same relative answers from 20 um to 20 m, with the resolution that a scene gets which states none.
+// F: the same relative answers for parts from 20 um to 20 m, with the resolution that is chosen for a scene
+// that states none.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -31,8 +32,7 @@ struct Made {
   double thin = 1;       ///< height of the block over its width
 };
 
-// Some are those that were reported: cubes of 500 and 800 mm, a panel of 2 m, a gear with a bore of
-// 0.1 mm.
+// Some members are reported cases: cubes of 500 and 800 mm, a panel of 2 m, a gear with a bore of 0.1 mm.
 Made memberOf(int member) {
   search::Random random(0xF000 + static_cast<std::uint64_t>(member));
   Made made;
@@ -70,22 +70,23 @@ Pose at(double x_m, double y_m, double z_m) {
   return Pose::translation(Vec3(x_m, y_m, z_m));
 }
 
-// The velocity with which a body slides half its size; with steps of `kStep_s`, see slideOf().
+// The velocity at which a body slides by half its size. slideOf() allows for steps of `kStep_s`.
 double slideSpeed(double size_m) {
   return std::sqrt(2 * kFriction * kGravity_m_s2 * 0.5 * size_m);
 }
 
-// Where friction stops it, when each step takes mu g dt from the velocity and moves by the new one.
+// The distance after which friction stops a body, if each step subtracts mu g dt from the velocity and moves
+// the body by the new velocity.
 double slideOf(double speed_m_s) {
   double way_m = 0;
   for (double v = speed_m_s; (v -= kFriction * kGravity_m_s2 * kStep_s) > 0;) way_m += v * kStep_s;
   return way_m;
 }
 
-constexpr int kSides = 96;  // of round parts: flats inside the circle by 5.4e-4 of the radius
+constexpr int kSides = 96;  // sides of round parts: the flats are inside the circle by 5.4e-4 of the radius
 
-// Pin and hole have their corners at the same angles, but they may turn: the corners of the pin then still
-// fit between the flats of the hole.
+// Pin and hole have their corners at the same angles, but the pin may turn. The corners of the pin must then
+// still fit between the flats of the hole.
 double holeRadius(const Made& made) {
   return 0.5 * made.size_m * (1 + made.clearance) / std::cos(std::numbers::pi / kSides);
 }
@@ -139,14 +140,14 @@ scenes::Scene sceneOf(const Made& made) {
              Vec3(apart_m, 0, 0.5 * gear.width_m)),
         false);
   }
-  // As loadScene() leaves a scene without [fidelity].
+  // The same settings as loadScene() gives a scene without [fidelity].
   scene.chooses_voxel = scene.chooses_spacing = true;
   scenes::resolveFidelity(scene);
   return scene;
 }
 
 struct Measured {
-  double depth = 0, misplaced = 0;  ///< over the size
+  double depth = 0, misplaced = 0;  ///< relative to the size
   bool begins_apart = true;
 };
 
@@ -154,7 +155,7 @@ Measured runOf(const Made& made) {
   scenes::Scene scene = sceneOf(made);
   const double d = made.size_m;
   const double unit_s = std::sqrt(d / kGravity_m_s2);
-  const double times[] = {4, 8, 8, 0.5};  // a fall of 2 d takes 2 of them, a slide of d / 2 2.6
+  const double times[] = {4, 8, 8, 0.5};  // a fall by 2 d takes 2 units, a slide by d / 2 takes 2.6
   const double seconds = std::max(50 * kStep_s, times[made.kind] * unit_s);
   scenes::SimulateOptions options;
   options.judge_every = std::max(1, static_cast<int>(seconds / kStep_s / 25));
@@ -175,7 +176,7 @@ Measured runOf(const Made& made) {
   return measured;
 }
 
-// Two families measure the same runs.
+// Two families measure the same runs, so results are kept.
 const Measured& run(int member) {
   static std::map<int, Measured> done;
   const auto found = done.find(member);
@@ -194,8 +195,8 @@ double bytesShare(int member) {
 
 std::vector<Family> resolutionFamilies() {
   std::vector<Family> families;
-  // A voxmap takes what that of the cube takes, and its points (two voxels apart, for parts that are thin) as
-  // much again.
+  // The bar allows the memory of the cube's voxmap, and the same again for the points, which are two voxels
+  // apart in thin parts.
   families.push_back({.key = "F_cost",
                       .measure = "estimated memory of the models, over that of maps of cubes of 150 mm",
                       .bar = 2,
@@ -212,7 +213,8 @@ std::vector<Family> resolutionFamilies() {
        .every = 13,
        .measured = [](int member) { return run(member).begins_apart ? run(member).depth : 1.0; },
        .describe = describe});
-  // Parts rest 0.1 um apart or less, in lengths in which they are 1 mm across or more; the rest is rounding.
+  // Parts rest at a gap of at most 0.1 um if lengths are scaled so that they are 1 mm across or more; the
+  // rest of the bar is rounding.
   families.push_back({.key = "F_place",
                       .measure = "distance from where the part comes to rest, over its size",
                       .bar = 5.1e-4,

@@ -62,7 +62,7 @@ Mesh meshOf(const RoundBody& b) {
       appendArc(profile, 0, 0.5 * r, 0.6 * r, 0, 0.5 * kPi, half);
       break;
     case Shape::Lens: {
-      // Two caps of 60 degrees, of spheres of twice the radius; the rim is sharp.
+      // Two caps of 60 degrees of spheres of twice the radius, which meet at a sharp rim.
       const double R = 1.1547 * r, rise = 0.5 * R;
       appendArc(profile, 0, rise, R, -0.5 * kPi, -kPi / 6, half);
       profile.pop_back();
@@ -77,7 +77,7 @@ Mesh meshOf(const RoundBody& b) {
   return test::lathe(profile, b.facets);
 }
 
-// Member 0 is the case that was found.
+// Member 0 is the case in which the fault was found.
 RoundBody bodyOf(int member) {
   RoundBody body;
   constexpr double kDegree = kPi / 180;
@@ -106,9 +106,9 @@ std::string describe(int member) {
   return text;
 }
 
-/// What the body falls on, and the exact depth of the body in it. A convex hull is deepest in a half-space at
-/// a vertex, so that in faces the vertices' depth is exact; at edges and in another body the meshes are
-/// compared.
+/// The fixed body on which the round body falls, and the exact depth of the round body in it. A convex body
+/// is deepest in a half-space at a vertex, so for faces the depth of the vertices is exact. For edges and for
+/// another round body the overlap of the meshes is measured.
 class Scene {
  public:
   Scene(World& world, const RoundBody& body, const PartMesh& part) : part_(part) {
@@ -127,7 +127,7 @@ class Scene {
           search::alongX(search::makePrism({{-2 * r, -2 * r}, {2 * r, -2 * r}, {0, 0}}, {}, -4 * r, 4 * r)),
           Pose());
     if (body.on == On::Another) addMesh(world, part.mesh, Pose(body.R.transpose(), Vec3::Zero()));
-    // The body above, by its own height.
+    // Height of the falling body's lowest point; above another body, this body's extent is added.
     double above_m = 0.25 * r;
     if (body.on == On::Another)
       above_m -= lowest_m(part.mesh, rotationFromVector({kPi, 0, 0}) * body.R.transpose());
@@ -174,8 +174,8 @@ struct Depths {
   double impact_m = 0, rest_m = 0;
 };
 
-// Falls by a quarter of its radius. What has come to rest in a face or a groove is measured again later; from
-// an edge or another body it rolls.
+// The body falls by a quarter of its radius. After it has come to rest on a face or in a groove, its depth is
+// measured again; from an edge or another round body it rolls off.
 Depths measure(const RoundBody& body) {
   const PartMesh part = dynamics::makePart(meshOf(body));
   const double voxel_m = std::clamp(body.radius_m / 8, 0.03e-3, 0.5e-3);

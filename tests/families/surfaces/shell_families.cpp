@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Meshes of several shells: the solid is their union, whichever way each of them faces.
+// E: meshes of several shells. The solid is their union, whether a shell faces outwards or inwards.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -16,14 +16,14 @@ namespace {
 constexpr int kBoxMembers = 90, kNestedMembers = 54, kRoundMembers = 60, kRestMembers = 54,
               kCrossingMembers = 120, kCopyMembers = 72, kLevelMembers = 60;
 
-/// The pose in which member i's mesh is: of every fifth without a rotation.
+/// The pose of member i's mesh; every fifth has no rotation.
 Pose poseOf(int i) {
   search::Random random(9000 + static_cast<std::uint64_t>(i));
   const Mat3 R = i % 5 == 0 ? Mat3(Mat3::Identity()) : random.rotation();
   return {R, random.inBox(Vec3::Constant(0.05))};
 }
 
-/// Which shells face in: of a third of the members none, some, all.
+/// Which shells face inwards: none, some or all, for a third of the members each.
 std::vector<bool> facesIn(int i, std::size_t count) {
   search::Random random(9500 + static_cast<std::uint64_t>(i));
   std::vector<bool> faces_in;
@@ -87,7 +87,7 @@ MassProperties plus(const MassProperties& a, const MassProperties& b, double sig
   return sum;
 }
 
-/// Two boxes, apart or one in the other.
+/// Two boxes that are apart, or one inside the other.
 Nested nestedMember(int i) {
   search::Random random(8000 + static_cast<std::uint64_t>(i));
   const Vec3 half(random.uniform(8e-3, 30e-3), random.uniform(8e-3, 30e-3), random.uniform(8e-3, 30e-3));
@@ -99,7 +99,7 @@ Nested nestedMember(int i) {
   const MassProperties of_outer = BoxUnion({outer}).mass(), of_inner = BoxUnion({inner}).mass(),
                        of_other = BoxUnion({other}).mass();
   switch (i % 6) {
-    case 0:  // the two cubes
+    case 0:  // the two cubes of the reported case
       return {"two equal boxes, one inverted", shellsOf({outer, other}, {false, true}),
               plus(of_outer, of_other, 1)};
     case 1:
@@ -130,7 +130,7 @@ double massOfNested(int i) {
 /// Two or three shells that cross.
 struct Crossing {
   std::string kind;
-  std::vector<Box> boxes;  ///< none: tetrahedra
+  std::vector<Box> boxes;  ///< empty: tetrahedra
 };
 
 Crossing crossingMember(int i) {
@@ -140,12 +140,12 @@ Crossing crossingMember(int i) {
   };
   const auto round = [&](int low, int high) { return low + random.index(high - low + 1); };
   switch (i % 6) {
-    case 0: {  // member 0 is the case that was found
+    case 0: {  // member 0 is the case in which the fault was found
       const double o = i == 0 ? 2 : random.uniform(0.5, 19);
       return {"cubes of 20 mm, one moved along its diagonal",
               {mm(0, 0, 0, 20, 20, 20), mm(o, o, o, 20 + o, 20 + o, 20 + o)}};
     }
-    case 1: {  // round numbers: faces lie in planes of points that are spread evenly
+    case 1: {  // round numbers: faces lie in planes that contain evenly spaced points
       const double l = i == 1 ? 20 : round(6, 25), w = i == 1 ? 5 : round(2, 5), h = i == 1 ? 5 : round(1, 5);
       return {"bars that cross as a plus, faces in one plane",
               {mm(-l, -w, -5, l, w, 5), mm(-w, -l, -h, w, l, h)}};
@@ -173,7 +173,7 @@ Crossing crossingMember(int i) {
   }
 }
 
-/// A box within another one would be a void if it faced the other way.
+/// True if a box lies within another one. It would be a void if it faced inwards.
 bool isNested(const std::vector<Box>& boxes) {
   for (const Box& inner : boxes)
     for (const Box& outer : boxes)
@@ -197,7 +197,8 @@ Mesh tetrahedron(double half_m, bool is_mirrored, bool faces_in) {
   return mesh;
 }
 
-/// Error of volume, centre and inertia; of tetrahedra, whose union is 4 h^3, of volume and centre.
+/// Error of volume, centre and inertia. For tetrahedra, whose union has the volume 4 h^3, only of volume and
+/// centre.
 double massOfCrossing(int i) {
   const Crossing member = crossingMember(i);
   search::Random random(8900 + static_cast<std::uint64_t>(i));
@@ -220,7 +221,7 @@ double massOfCrossing(int i) {
 
 // ---- a solid given twice
 
-/// A box whose faces have a grid of n facets' sides.
+/// A box whose faces are divided into a grid of n cells along each axis.
 Mesh gridBox(const Box& box, const std::array<int, 3>& n) {
   Mesh mesh;
   for (int axis = 0; axis < 3; ++axis)
@@ -255,7 +256,7 @@ struct Copies {
   std::vector<bool> faces_in;
 };
 
-/// Members 0 to 3 are cases that were found.
+/// In members 0 to 3 the fault was found.
 Copies copiesMember(int i) {
   search::Random random(9200 + static_cast<std::uint64_t>(i));
   const auto half = [&] { return random.uniform(3e-3, 20e-3); };
@@ -302,7 +303,7 @@ double massOfCopies(int i) {
 
 // ---- three to six shells, each within the one before
 
-/// Which shells face in, the outermost first. That one faces out after the repair.
+/// Which shells face inwards, the outermost first. The outermost shell faces outwards after the repair.
 std::vector<bool> levelFacesIn(int i) {
   search::Random random(9300 + static_cast<std::uint64_t>(i));
   if (i == 0) return {false, true, true};  // the case that was found
@@ -317,9 +318,9 @@ std::string describeLevels(int i) {
   return text;
 }
 
-/// Error of mass properties, or the number of gaps between shells that are on the wrong side. Shells that
-/// face as the outermost add one to the winding number within them, others take one away; solid is where it
-/// is above 0.
+/// Error of the mass properties, or the number of gaps between shells whose side is wrong. A shell that faces
+/// like the outermost one adds one to the winding number inside itself, another shell subtracts one; space is
+/// solid where the winding number is above 0.
 double massOfLevels(int i) {
   const std::vector<bool> faces_in = levelFacesIn(i);
   search::Random random(9350 + static_cast<std::uint64_t>(i));
@@ -351,8 +352,8 @@ double massOfLevels(int i) {
 
 // ---- round shells
 
-/// A prism over a regular polygon, in a round number of ways half sunk into a box, stacked on it, or beside
-/// it. Its volume within the box has a formula.
+/// A round shell and a box: a cylinder stands on the box, a sphere is half sunk into it, or a peg is in its
+/// bore. The volume of the union has a formula.
 struct Round {
   std::string kind;
   Mesh mesh;
@@ -377,13 +378,13 @@ Round roundMember(int i) {
   switch (i % 3) {
     case 0:
       return {"cylinder on a box", onTop(makeCylinder(r, h, segments), h), box_m3 + prism_m2 * (h - sunk_m)};
-    case 1: {  // half of the sphere's mesh is above its equator, which is one of its planes of symmetry
+    case 1: {  // half of the sphere's mesh is above its equator, which is a plane of symmetry
       Mesh mesh = transformed(makeSphere(r, 2 + i % 2), Pose(Mat3::Identity(), Vec3(0, 0, h)));
       const double sphere_m3 = massProperties(mesh).volume_m3;
       append(mesh, transformed(makeBox(Vec3(4 * r, 4 * r, 2 * r + 2 * h)), Pose::translation({0, 0, -r})));
       return {"sphere half sunk into a box", mesh, 16 * r * r * (2 * r + 2 * h) + 0.5 * sphere_m3};
     }
-    default: {  // a peg in its bore, of the same facets, and through it
+    default: {  // a peg that passes through its bore, with the same facets
       Mesh mesh = makeTube(2 * r, r, h, segments);
       append(mesh, makeCylinder(r, h + sunk_m, segments));
       return {"peg in its bore", mesh, 4 * prism_m2 * h + prism_m2 * sunk_m};
@@ -401,9 +402,9 @@ double massOfRound(int i) {
 
 // ---- a ball that rests on them
 
-/// A floor of shells whose tops are flush, with a wall on one side or on both, in the frame in which gravity
-/// points along -z: a U, or an L. Member 0 is the case that was found: three boxes, one of them a floor that
-/// the walls stand on.
+/// A floor of shells whose tops are flush, with a wall on one side (an L) or on both sides (a U); gravity
+/// points along -z. Member 0 is the case in which the fault was found: three boxes, of which one is the floor
+/// below the two walls.
 std::vector<Box> channelMember(int i) {
   search::Random random(9900 + static_cast<std::uint64_t>(i));
   const double o = i % 2 == 0 ? 0 : random.logUniform(1e-6, 5e-3);
@@ -420,7 +421,7 @@ std::vector<Box> channelMember(int i) {
   return std::to_string(channelMember(i).size()) + " boxes" + (i % 5 == 0 ? "" : ", rotated");
 }
 
-/// The ball comes down onto the floor, where it stays: it touches nothing else.
+/// The ball falls on the floor and comes to rest there, touching nothing else.
 double ballRests(int i) {
   using namespace dynamics;
   const std::vector<Box> boxes = channelMember(i);
@@ -431,7 +432,7 @@ double ballRests(int i) {
   World world(settings);
   const Pose X = poseOf(i);
   const PartMesh floor = makePart(transformed(shellsOf(boxes, facesIn(i, boxes.size())), X));
-  // Coarse enough that its corners are features of their own: how finely meshed balls rest is kind G.
+  // The mesh is coarse enough for its corners to be features; kind G has finely meshed balls.
   const PartMesh ball = makePart(makeSphere(10e-3, 2));
   world.setGravity(X.R * Vec3(0, 0, -World::kGravity_m_s2));
   world.add(floor, Pose(), true);
