@@ -14,8 +14,8 @@
 #include <string>
 #include <vector>
 
-/// Reads the bytes and checks the properties that the reader promises of its result; aborts if one does not
-/// hold. Returns 0.
+/// Reads the bytes and checks the properties that the reader promises for its result; aborts if a property
+/// does not hold. Returns 0.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 
 namespace vps::fuzz {
@@ -30,7 +30,7 @@ inline void require(bool claim, const char* message) {
   std::abort();
 }
 
-/// A file that holds the bytes until the next call; the same name all along.
+/// The name of a file that holds the bytes until the next call; the name is always the same.
 inline std::string fileOf(const std::uint8_t* data, std::size_t size) {
   static const std::string file =
       (std::filesystem::temp_directory_path() / ("vps_fuzz_" + std::to_string(getpid()))).string();

@@ -43,7 +43,7 @@ vps::Mesh meshOf(const std::uint8_t* data, std::size_t size) {
 }  // namespace
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  // Meshes this small are finished before a second thread has started.
+  // Such small meshes are finished before a second thread has started.
   static const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
   const vps::Mesh mesh = meshOf(data, size);
   try {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vps_peer_scenes FOLDER [SCENE...]: the table of the peer's scenes. Exits 1 if one is not as it should be.
+// vps_peer_scenes FOLDER [SCENE...]: the table of the peer's scenes. The exit status is 1 if a scene fails
+// its check.
 #include <algorithm>
 #include <cstdio>
 #include <exception>

@@ -16,10 +16,10 @@ namespace vps::peers {
 
 namespace {
 
-/// A body that moves: its mass, and what it did.
+/// A body that moves: its mass, and its states over time.
 struct Body {
   bullet::BodyFrame frame;
-  std::vector<Pose> X_WB;  ///< body frame, after each step
+  std::vector<Pose> X_WB;  ///< pose of the body frame after each step
   std::vector<Twist> V_W;  ///< of the centre of mass
 };
 
@@ -27,7 +27,7 @@ struct Run {
   double dt_s = 0;
   Vec3 gravity_W = Vec3::Zero();
   std::vector<Body> bodies;
-  std::vector<double> energy_J;  ///< kinetic and potential, after each step
+  std::vector<double> energy_J;  ///< kinetic and potential energy after each step
 
   [[nodiscard]] double kineticEnergy_J(std::size_t step) const {
     double sum_J = 0;
@@ -56,7 +56,7 @@ struct Outcome {
   std::string found;
 };
 
-/// The largest link is 40 mm long, so the centres of two that hang in each other are nearer than that.
+/// The largest link is 40 mm long, so the centres of two links that hang in each other are nearer than 40 mm.
 Outcome chainHangs(const Run& run) {
   constexpr double kLink_m = 40e-3;
   double farthest_m = 0;
@@ -65,8 +65,8 @@ Outcome chainHangs(const Run& run) {
   return {farthest_m < kLink_m, text("centres of neighbours %.2f mm apart at most", 1e3 * farthest_m)};
 }
 
-/// The stones are drawn half a millimetre apart, so the arch first settles, by 27 mm at its top. Then it
-/// stands.
+/// The stones are drawn half a millimetre apart, so the arch first settles by 27 mm at its top and then
+/// stands still.
 Outcome archStands(const Run& run) {
   double moved_m = 0;
   for (const Body& body : run.bodies)
@@ -84,12 +84,13 @@ double turned_rad(const Body& body, std::size_t from, std::size_t to, const Vec3
   return sum_rad;
 }
 
-/// Without friction a screw turns faster by g / r / (1 + I / (m r^2)) with r = lead / (2 pi), about its axis.
-/// The lead is the measured one.
+/// Without friction the angular acceleration of a screw about its axis is g / r / (1 + I / (m r^2)) with r =
+/// lead / (2 pi). The lead is the measured lead.
 Outcome screwTurns(const Run& run) {
   const Body& screw = run.bodies.front();
   const Vec3 down = run.gravity_W.normalized();
-  const std::size_t to = screw.X_WB.size() - 1, from = to / 10;  // it first falls through its clearance
+  const std::size_t to = screw.X_WB.size() - 1,
+                    from = to / 10;  // the screw first falls through its clearance
   const double advance_m = down.dot(screw.X_WB[to].p - screw.X_WB[from].p);
   const double turn_rad = std::abs(turned_rad(screw, from, to, down));
   const double spin_rad_s = std::abs(down.dot(screw.V_W[to].w - screw.V_W[from].w));
@@ -105,8 +106,8 @@ Outcome screwTurns(const Run& run) {
                1e3 * advance_m, turn_rad / (2 * std::numbers::pi), 1e3 * 2 * std::numbers::pi * radius_m)};
 }
 
-/// Walls stand 20 um beside three faces of the tetrahedron, all of them vertical. Without friction nothing
-/// pushes it aside, neither on its way down nor on the floor.
+/// Three vertical walls are 20 um from three faces of the tetrahedron. Without friction nothing pushes the
+/// tetrahedron aside, neither while it falls nor on the floor.
 Outcome tetrahedronDrops(const Run& run) {
   const Body& body = run.bodies.front();
   const Vec3 moved = body.X_WB.back().p - body.X_WB.front().p;
@@ -142,8 +143,8 @@ const Peer& peerOf(const std::string& scene) {
   throw std::invalid_argument(scene + " is none of the peer's scenes");
 }
 
-// The tetrahedron of `vertex-face` stands in balance on its corner, to the last bit; what happens then says
-// nothing. A millionth of a radian is 10 nm at its upper face.
+// The tetrahedron of `vertex-face` is exactly balanced on its corner, so that its further motion would depend
+// on rounding. It is tilted by a millionth of a radian, which is 10 nm at its upper face.
 constexpr double kOffBalance_rad = 1e-6;
 
 Run prepare(const scenes::Scene& scene) {

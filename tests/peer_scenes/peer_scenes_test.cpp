@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The peer's scenes as tests, but for the arch, whose second takes minutes: vps_peer_scenes runs that one,
-// too.
+// The peer's scenes as tests, except the arch, of which a simulated second takes minutes. vps_peer_scenes
+// runs the arch too.
 #include "peer_scenes.h"
 
 #include <gtest/gtest.h>

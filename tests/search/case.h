@@ -16,19 +16,19 @@ namespace vps::search {
 struct CaseBody {
   std::string name;
   Mesh mesh;   ///< closed: the truth that overlap is measured with
-  Mesh given;  ///< what the engine gets: the same, or the same with faults
-  Pose X_WP;   ///< of the part's frame, at the start
+  Mesh given;  ///< the mesh that the engine gets: `mesh`, or `mesh` with faults
+  Pose X_WP;   ///< pose of the part's frame at the start
   bool is_fixed = false;
   double friction = 0.15;
-  Twist V_WP_W;  ///< at the start; linear velocity of the centre of mass
-  std::shared_ptr<const OverlapMesh> exact = nullptr;  ///< made of `mesh` by finishCase()
+  Twist V_WP_W;  ///< velocity at the start; the linear velocity is that of the centre of mass
+  std::shared_ptr<const OverlapMesh> exact = nullptr;  ///< built from `mesh` by makeCase()
 };
 
-/// A hand holds one body at the origin of its frame and moves towards one pose after the other.
+/// A hand that holds one body at the origin of its frame and moves from goal to goal.
 struct Hand {
   struct Goal {
     Pose X_WP;
-    double speed_m_s, spin_rad_s;  ///< the slower of both is kept
+    double speed_m_s, spin_rad_s;  ///< the hand is as slow as the slower of both requires
   };
   std::size_t body = 0;
   std::vector<Goal> goals;
@@ -43,7 +43,7 @@ struct Case {
   double seconds = 1;
 };
 
-/// Deepest overlap of any two bodies at these poses, of which one can move.
+/// The deepest overlap of any two bodies at these poses, of which at least one can move.
 struct CaseOverlap {
   Overlap overlap;
   std::size_t a = 0, b = 0;

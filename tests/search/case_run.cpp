@@ -15,11 +15,11 @@ namespace vps::search {
 
 namespace {
 
-/// Voxels and points as fine as the parts of a few millimetres need.
+/// Fine enough for parts of a few millimetres.
 constexpr dynamics::Resolution kResolution{0.25e-3, 0.5e-3};
 
 dynamics::PartMesh partOf(const CaseBody& body) {
-  // Mass and inertia are those of the true solid: a user of Bullet states them.
+  // Mass and inertia come from the true solid, since a user of Bullet states them.
   dynamics::PartMesh part = dynamics::makePart(body.mesh);
   part.mesh = body.given;
   return part;
@@ -145,7 +145,8 @@ void simulate(const Case& made, const RunSettings& settings, CaseResult& result)
       result.before_s = i * settings.step_s;
     }
     before = after;
-    // What has lost its side stays lost: the rest of the run would tell nothing more.
+    // A body that has passed through another one stays on the wrong side, so the rest of the run gives no
+    // more information.
     if (result.has_tunnelled) return;
     if (settings.stops_at_bound && !result.before.empty()) return;
   }

@@ -16,7 +16,7 @@ namespace vps::search {
 struct RunSettings {
   dynamics::Mode mode = dynamics::Mode::Constraint;
   double step_s = 1e-3;
-  double bound_m = 10e-6;       ///< deepest overlap that is right
+  double bound_m = 10e-6;       ///< greatest overlap that is allowed
   bool stops_at_bound = false;  ///< ends the run some steps after the bound is exceeded
 };
 
@@ -30,22 +30,25 @@ struct CaseResult {
   double simulated_s = 0;
   CaseOverlap deepest;
   double deepest_at_s = 0;
-  bool has_tunnelled = false;  ///< see kLost_m; or a vertex went through another body within a step
-  std::string refusal;         ///< the engine's reason for refusing the meshes, or what went wrong
-  std::uint64_t hash = 0;      ///< of all states
+  bool has_tunnelled =
+      false;  ///< an overlap is deeper than kLost_m, or a vertex went through another body within a step
+  std::string refusal;     ///< the engine's reason for refusing the meshes, or what went wrong
+  std::uint64_t hash = 0;  ///< of all states
   /// State before the first step after which the bound is exceeded, and up to kKept - 1 states before it, the
-  /// latest last. Empty if none was.
+  /// latest last. Empty if no step exceeds the bound.
   std::vector<std::vector<BodyMotion>> before;
-  double before_s = 0;  ///< time of the latest of them
+  double before_s = 0;  ///< time of the latest of these states
 };
 
-/// A body that is so deep in another one has lost its side: parts are at least 2 mm thick.
+/// A body that is deeper than this in another one counts as on its wrong side: parts are at least 2 mm thick.
 inline constexpr double kLost_m = 1e-3;
-/// A corner moves along an arc; its chord leaves the arc by up to 0.2 mm at 30 rad/s, 20 mm and 10 ms.
+/// Margin of hasPassedThrough(): a corner moves along an arc, which deviates from its chord by up to 0.2 mm
+/// at 30 rad/s, 20 mm and 10 ms.
 inline constexpr double kPassed_m = 0.2e-3;
 inline constexpr std::size_t kKept = 16;
 
-/// Same case and settings, same bits. Does not throw for what the engine refuses.
+/// Simulates a case; the same case and settings give the same bits. A refusal by the engine is returned, not
+/// thrown.
 CaseResult runCase(const Case& made, const RunSettings& settings);
 
 /// True if a vertex of `a`, outside `b` before and after, went through more than margin_m of b's material on
@@ -54,9 +57,10 @@ CaseResult runCase(const Case& made, const RunSettings& settings);
 bool hasPassedThrough(const OverlapMesh& a, const OverlapMesh& b, const Pose& X_BA_before,
                       const Pose& X_BA_after, double margin_m);
 
-/// Writes scene.toml and an STL file for each body (as the engine got it) into a new folder. The state is
-/// the latest one from which the overlap appears without the hand, too; else the one just before it.
-/// @param command  repeats the run, hand included; it stands at the top of the scene file
+/// Writes scene.toml and an STL file for each body (as the engine got it) into a new folder. The scene starts
+/// from the latest state from which the overlap appears without the hand, or, if there is none, from the
+/// state just before the overlap.
+/// @param command command that repeats the run with the hand; a comment at the top of the scene file
 /// @return the scene file. Throws std::runtime_error if a file cannot be written.
 std::filesystem::path saveCase(const std::filesystem::path& folder, const Case& made,
                                const RunSettings& settings, const CaseResult& result,

@@ -17,7 +17,7 @@ struct Family {
 };
 
 std::span<const Family> families();
-/// Null if there is none of that name.
+/// Null if no family has this name.
 const Family* findFamily(const std::string& name);
 
 /// Draws until no bodies overlap at the start.

@@ -33,7 +33,7 @@ std::vector<CaseBody> makeTray(double half_m, double height_m, double friction) 
   };
 }
 
-/// With its centre of mass at the origin.
+/// The mesh, moved so that its centre of mass is at the origin.
 Mesh centred(Mesh mesh) {
   const Vec3 com = massProperties(mesh).com;
   for (Vec3& p : mesh.vertices) p -= com;
@@ -45,13 +45,13 @@ Mesh drawTetrahedron(Random& random, double size_m) {
     const Vec3 half = Vec3::Constant(size_m / 2);
     const Mesh mesh =
         makeTetrahedron(random.inBox(half), random.inBox(half), random.inBox(half), random.inBox(half));
-    // A sliver has no volume to speak of.
+    // Draws again if the tetrahedron is a sliver.
     if (massProperties(mesh).volume_m3 > 0.02 * size_m * size_m * size_m) return centred(mesh);
   }
 }
 
-/// A convex polygon of three to six sides, whose two ends are turned and moved against each other a little,
-/// so that no faces are parallel, or not.
+/// A prism over a convex polygon of three to six sides. In half of the cases it is slanted and tapered, so
+/// that few faces are parallel.
 Mesh drawPrism(Random& random, double size_m) {
   const int sides = 3 + random.index(4);
   Polygon polygon;
@@ -61,7 +61,7 @@ Mesh drawPrism(Random& random, double size_m) {
   }
   const double half_m = size_m * random.logUniform(0.1, 0.8);
   Mesh mesh = makePrism(polygon, {}, -half_m, half_m);
-  if (random.chance(0.5)) {  // slanted and tapered: its sides stay plane
+  if (random.chance(0.5)) {  // slanted and tapered; the sides stay plane
     const Vec3 slant(random.uniform(-0.4, 0.4), random.uniform(-0.4, 0.4), 1);
     const double taper = random.uniform(0, 0.4);
     for (Vec3& p : mesh.vertices) {
@@ -72,7 +72,7 @@ Mesh drawPrism(Random& random, double size_m) {
   return centred(mesh);
 }
 
-/// A pipe of seven to forty sides: sharp rims, whose corners are hills on the outside and valleys in the
+/// A pipe of seven to forty sides with sharp rims, whose corners are convex on the outside and concave in the
 /// bore.
 Mesh drawRing(Random& random, double size_m) {
   const int sides = 7 + random.index(34);
@@ -115,8 +115,8 @@ struct Range {
 /// Bodies that fall into a tray.
 struct Fall {
   Range size_m;         ///< of the greatest body
-  Range room;           ///< half the tray's width, in sizes
-  int fewest, choices;  ///< bodies: the fewest, and how many counts there are
+  Range room;           ///< half the tray's width, in units of size_m
+  int fewest, choices;  ///< least number of bodies, and how many numbers are possible
   Range seconds;
 };
 
@@ -154,7 +154,7 @@ Case drawStairs(Random& random) {
   const double friction = drawFriction(random);
   const double rise_m = random.uniform(3e-3, 10e-3), tread_m = random.uniform(5e-3, 15e-3);
   const int steps = 3 + random.index(4);
-  // In the (x, z) plane, down towards +x.
+  // The profile of the stairs in the (x, z) plane, which go down towards +x.
   const double length_m = steps * tread_m + 20e-3;
   Polygon profile{{0, -5e-3}, {length_m, -5e-3}, {length_m, 0}};
   for (int i = 0; i <= steps; ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A hand brings one part into another. All sizes are random, of the size of a hand tool's parts.
+// A hand brings one part into another. All sizes are random, in the range of the parts of a hand tool.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -11,7 +11,7 @@ namespace vps::search {
 
 namespace {
 
-/// Between the sides of a fit: from a tight one to a loose one.
+/// The clearance between the sides of a fit, from tight to loose.
 double drawClearance(Random& random) {
   return random.logUniform(20e-6, 500e-6);
 }
@@ -25,8 +25,8 @@ CaseBody fixedBody(const char* name, Mesh mesh, double friction) {
   return body;
 }
 
-/// Goals of a hand that pushes a part in along `axis` and pulls it out again, with an aim that is perfect in
-/// some of the cases.
+/// Goals of a hand that pushes a part in along `axis` and pulls it out again. Its aim is exact in some of the
+/// cases.
 /// @param travel_m  positions along the axis between which the part is free to move in its fit
 Hand drawHand(Random& random, std::size_t body, const Pose& X_WP, const Vec3& axis, double low_m,
               double high_m) {
@@ -44,14 +44,14 @@ Hand drawHand(Random& random, std::size_t body, const Pose& X_WP, const Vec3& ax
   return hand;
 }
 
-/// A part with a profile and the slot for it, both along x.
-/// @param stem  index of the profile's corner at the right of the top of its stem; the next one is the left
+/// A part with a profile, and the slot for it, both along x.
+/// @param stem index of the profile's corner at the top right of its stem; the next corner is at the top left
 Case slideInSlot(Random& random, const Polygon& profile, std::size_t stem) {
   const double clearance_m = drawClearance(random), friction = drawFriction(random);
   const Polygon slot = enlarged(profile, clearance_m / 2);
   const std::size_t n = slot.size();
   const double width_m = 1.5 * profile[1].x() + random.uniform(3e-3, 8e-3);
-  // The stem stands out of the rail.
+  // The stem protrudes from the rail.
   const double top_m = profile[stem].y() - random.uniform(1e-3, 3e-3), floor_m = -random.uniform(3e-3, 8e-3);
   Polygon rail{{-width_m, floor_m}, {width_m, floor_m}, {width_m, top_m}, {slot[stem].x(), top_m}};
   for (std::size_t k = 1; k + 1 < n; ++k) rail.push_back(slot[(stem + n - k) % n]);
@@ -76,7 +76,7 @@ Case slideInSlot(Random& random, const Polygon& profile, std::size_t stem) {
   return made;
 }
 
-/// A prism over a plate with a hole of its shape, along z.
+/// A prism above a plate with a hole of the prism's shape, along z.
 Case insertInHole(Random& random, const Polygon& profile, bool has_floor) {
   const double clearance_m = drawClearance(random), friction = drawFriction(random);
   double reach_m = 0;
@@ -107,7 +107,7 @@ Case insertInHole(Random& random, const Polygon& profile, bool has_floor) {
   return made;
 }
 
-/// Teeth along y from a back; the first one begins at x = 0.
+/// Teeth that point along y from a common back; the first tooth begins at x = 0.
 Polygon comb(int teeth, double tooth_m, double gap_m, double length_m, double back_m) {
   Polygon polygon{{0, -back_m}, {teeth * tooth_m + (teeth - 1) * gap_m, -back_m}};
   for (int i = teeth - 1; i >= 0; --i) {
@@ -120,7 +120,7 @@ Polygon comb(int teeth, double tooth_m, double gap_m, double length_m, double ba
   return polygon;
 }
 
-/// Corners at random radii around the origin.
+/// A polygon with corners at random radii around the origin.
 Polygon star(Random& random, int corners) {
   Polygon polygon;
   for (int i = 0; i < corners; ++i) {
@@ -169,7 +169,7 @@ Case drawComb(Random& random) {
   const Polygon polygon = comb(teeth, tooth_m, gap_m, length_m, random.uniform(3e-3, 6e-3));
   Case made;
   made.bodies.push_back(fixedBody("comb", makePrism(polygon, {}, 0, height_m), friction));
-  // Turned by half a turn about z, so that its teeth look the other way, into the gaps of the first.
+  // The other comb is rotated by half a turn about z, so that its teeth point into the gaps of the first one.
   CaseBody other = made.bodies.front();
   other.name = "other";
   other.is_fixed = false;
@@ -191,7 +191,7 @@ Case drawPuzzle(Random& random) {
   const double thick_m = random.uniform(3e-3, 8e-3), friction = drawFriction(random);
   Case made = insertInHole(random, whole, true);
   const double plate_m = -made.bodies.front().mesh.vertices.front().z();
-  // Cut from one corner through the origin to the opposite corner, with some air.
+  // The star is cut from one corner through the origin to the opposite corner, with a clearance.
   const auto half = static_cast<std::ptrdiff_t>(corners / 2);
   Polygon first(whole.begin(), whole.begin() + half + 1), second(whole.begin() + half, whole.end());
   second.push_back(whole.front());

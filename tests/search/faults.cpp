@@ -18,7 +18,7 @@ Mesh withoutSharedVertices(const Mesh& mesh) {
   return soup;
 }
 
-/// Moves some corners of some facets, which opens cracks beside them.
+/// Moves some corners of some facets, which opens cracks along the sides of these facets.
 void crack(Mesh& soup, Random& random) {
   for (Vec3& p : soup.vertices)
     if (random.chance(0.2)) p += random.direction() * random.uniform(0, kCrack_m);
@@ -60,7 +60,7 @@ void addFault(Mesh& soup, int kind, Random& random) {
       soup.triangles.push_back(soup.triangles.front());
       return;
     default:
-      return;  // not sharing vertices is the fault
+      return;  // the facets of the soup share no vertices, which is the fault
   }
 }
 

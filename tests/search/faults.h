@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Faults that CAD exports have, put into a closed mesh.
+// Puts faults of CAD exports into a closed mesh.
 #pragma once
 
 #include "random.h"
@@ -10,8 +10,8 @@ namespace vps::search {
 /// Vertices along a crack are moved by this at most, so that the surface stays where it was.
 inline constexpr double kCrack_m = 0.5e-6;
 
-/// The same solid with one to three kinds of fault: facets that do not share their vertices, cracks,
-/// T-junctions, turned facets, the whole mesh turned, repeated facets.
+/// The same solid with unshared vertices and one to three further faults: cracks, T-junctions, turned facets,
+/// the whole mesh turned, repeated facets.
 Mesh withFaults(const Mesh& mesh, Random& random);
 
 }  // namespace vps::search

@@ -21,7 +21,7 @@ namespace {
 /// A row is a family, a time step, and closed or faulty meshes.
 struct SearchOptions {
   std::uint64_t seed = 0;             ///< of the first case of each row; the others count up
-  double minutes = 0;                 ///< of the clock, for all rows; 0: no limit
+  double minutes = 0;                 ///< wall time for all rows; 0: no limit
   double seconds_simulated = 0;       ///< of each row; 0: no limit
   long runs = 0;                      ///< of each row; 0: no limit
   std::vector<std::string> families;  ///< empty: all
@@ -29,7 +29,7 @@ struct SearchOptions {
   bool has_closed = true, has_faulty = true;
   dynamics::Mode mode = dynamics::Mode::Constraint;
   std::string save_folder = "out/search";  ///< for cases that exceed the bound
-  std::string rows_file;  ///< the rows go to this file as well (support/table_rows.h); empty: to none
+  std::string rows_file;                   ///< file for the rows (support/table_rows.h); empty: none
   bool is_verbose = false;
 };
 
@@ -78,7 +78,7 @@ bool hasBound(const SearchOptions& options, const Row& row) {
   return options.mode == dynamics::Mode::Constraint && row.step_s <= 1.001e-3;
 }
 
-/// What makes a run a failure: see printTable().
+/// See printTable() for what counts as a failure.
 bool isFailure(const SearchOptions& options, const Row& row, const RunSettings& settings,
                const CaseResult& result) {
   if (!result.refusal.empty() || result.has_tunnelled) return true;
@@ -152,10 +152,10 @@ bool write(const SearchOptions& options, const std::vector<Row>& rows) {
   return true;
 }
 
-/// Rows take turns, a case each, so that a limit of time is shared. Prints each case that exceeds the bound
-/// with the command that repeats it, then the table.
-/// @return true if no case exceeded its bound: 10 um with steps of 1 ms and constraint contact; with others
-/// no tunnelling. A case that the engine refuses counts as a failure.
+/// Runs one case of each row in turn, so that the rows share a limit of time. Prints each case that exceeds
+/// the bound with the command that repeats it, then the table.
+/// @return true if no case exceeded its bound: 10 um with steps of 1 ms and constraint contact; other
+/// settings only must not tunnel. A case that the engine refuses counts as a failure.
 bool printTable(const SearchOptions& options) {
   using Clock = std::chrono::steady_clock;
   std::vector<Row> rows = rowsOf(options);
@@ -183,7 +183,7 @@ int usage() {
   std::printf(
       "usage: vps_search [--minutes M | --seconds-simulated S | --runs N] [--family a,b] [--step-ms 1,4,10]\n"
       "                  [--meshes closed,faulty] [--mode constraint|penalty] [--seed N] [--save FOLDER]\n"
-      "  --minutes            of the clock, for all rows together (default 1)\n"
+      "  --minutes            wall time for all rows together (default 1)\n"
       "  --seconds-simulated  for each row\n"
       "  --runs               cases of each row\n"
       "  --seed               of the first case; the others count up from it (default: from the date)\n"

@@ -55,7 +55,7 @@ bool isFree(const Region& region, std::uint32_t from, std::uint32_t to) {
   return true;
 }
 
-/// One loop around the region: holes are joined to the outline by the shortest bridges that cross nothing.
+/// One loop around the region. The shortest bridges that cross no side join the holes to the outline.
 Loop bridged(const Region& region) {
   Loop outline = region.loops.front();
   for (std::size_t h = 1; h < region.loops.size(); ++h) {

@@ -15,23 +15,23 @@ using Vec2 = Eigen::Vector2d;
 using Polygon = std::vector<Vec2>;
 
 Polygon rectangle(const Vec2& low, const Vec2& high);
-/// Regular, around the origin; `inner_m` is the radius of the circle within.
+/// A regular polygon around the origin; `inner_m` is the radius of its inscribed circle.
 Polygon regularPolygon(int sides, double inner_m);
-/// Every side moved outwards by the distance, so that a solid and a hole of the enlarged polygon have that
-/// much air between parallel sides. Sides must stay.
+/// The polygon with every side moved outwards by the distance, which is the clearance between a solid and a
+/// hole of the enlarged polygon. No side may vanish.
 Polygon enlarged(const Polygon& polygon, double by_m);
 
-/// A polygon whose sides cross or touch, or come too near for rounding.
+/// Thrown for a polygon whose sides cross or touch, or are too near to each other for rounding.
 struct NotSimple : std::invalid_argument {
   NotSimple() : std::invalid_argument("the polygon is not simple") {}
 };
 
-/// The polygon without its holes, from z = low to z = high. Throws NotSimple.
+/// The prism over the outline without the holes, from z = low_m to z = high_m. Throws NotSimple.
 Mesh makePrism(const Polygon& outline, const std::vector<Polygon>& holes, double low_m, double high_m);
-/// The prism with its polygon in the (y, z) plane, along x.
+/// The prism rotated so that its polygon is in the (y, z) plane and its axis along x.
 Mesh alongX(const Mesh& prism);
 
-/// Four random corners. Closed, outward.
+/// The tetrahedron of four corners in any order: closed, facing outwards.
 Mesh makeTetrahedron(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
 }  // namespace vps::search

@@ -10,7 +10,7 @@
 
 namespace vps::search {
 
-/// Source: Steele, Lea and Flood 2014 (SplitMix64).
+/// The generator SplitMix64 [Steele, Lea and Flood 2014].
 class Random {
  public:
   explicit Random(std::uint64_t seed) : state_(seed) {}
@@ -24,7 +24,7 @@ class Random {
   double uniform(double low, double high) {
     return low + (high - low) * 0x1p-53 * static_cast<double>(bits() >> 11);
   }
-  /// Every decade is equally likely. Both limits are positive.
+  /// Every decade is equally likely. Both limits must be positive.
   double logUniform(double low, double high) { return low * std::exp(uniform(0, std::log(high / low))); }
   /// 0 to count - 1.
   int index(int count) { return static_cast<int>(bits() % static_cast<std::uint64_t>(count)); }

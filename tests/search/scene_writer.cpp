@@ -49,7 +49,7 @@ void write(const std::filesystem::path& file, const std::string& text) {
   if (!out.flush()) throw std::runtime_error(file.string() + ": cannot be written");
 }
 
-/// The same bodies, starting from another state, without a hand.
+/// The case started from another state, without the hand.
 Case startedAt(const Case& made, const std::vector<BodyMotion>& state, double seconds) {
   Case started = made;
   started.hand.reset();

@@ -53,7 +53,7 @@ TEST(PassThrough, AFastPlateIsFoundAndASlowOneNot) {
   EXPECT_TRUE(hasPassedThrough(block, wall, at(-0.02), at(0.02), 1e-4));
   EXPECT_FALSE(hasPassedThrough(block, wall, at(-0.02), at(-0.0061), 1e-4));
   EXPECT_FALSE(hasPassedThrough(block, wall, at(0.02), at(0.04), 1e-4));
-  // Its front corners are inside the wall: that is an overlap, which its depth tells.
+  // The front corners of the block are inside the wall, which is an overlap and not a passage.
   EXPECT_FALSE(hasPassedThrough(block, wall, at(-0.02), at(-0.005), 1e-4));
 }
 
@@ -127,13 +127,13 @@ INSTANTIATE_TEST_SUITE_P(Each, FamilyTest,
                                          "puzzle", "chain", "tetrahedra", "stairs", "prisms", "rings"),
                          [](const auto& info) { return std::string(info.param); });
 
-// The push that restores the gaps of a jammed part took from the gap of a cracked edge, step by step, until
-// the edge was through: 43 um.
+// In an earlier version, the push that restores the gaps of a jammed part reduced the gap of a cracked edge
+// step by step, until the edge was 43 um deep.
 TEST(Search, TheGapOfASharpEdgeIsNotTakenByAPush) {
   EXPECT_LE(runCase(makeCase(*findFamily("puzzle"), 9011, true), {}).deepest.overlap.depth_m, 10e-6);
 }
 
-// A body that is thrown through a floor which the engine does not see: the search must notice.
+// The search must notice a body that passes through a floor which the engine does not know.
 TEST(Search, FindsABodyThatGoesThroughAnother) {
   Case made;
   made.bodies.push_back({"floor", makeBox(Vec3(0.1, 0.1, 0.005)), {}, Pose(), true, 0.15, {}});
@@ -156,7 +156,7 @@ TEST(Search, FindsABodyThatGoesThroughAnother) {
   text << std::ifstream(file).rdbuf();
   EXPECT_NE(text.str().find("how it was made"), std::string::npos);
   EXPECT_NE(text.str().find("velocity_m_s = ["), std::string::npos);
-  // It falls by itself.
+  // The body falls without the hand.
   EXPECT_EQ(text.str().find("only with the hand"), std::string::npos);
   EXPECT_TRUE(std::filesystem::exists(folder.path() / "case" / "block.stl"));
 }

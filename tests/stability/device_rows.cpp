@@ -17,7 +17,8 @@ namespace vps::stability {
 
 namespace {
 
-// A hand shakes the handle by 10 mm, a sine with this jerk, and hits a block against a plate in each period.
+// A hand shakes the handle by 10 mm along a sine with this jerk, and the held block hits a plate in each
+// period.
 Judgement shake(const Run& run) {
   constexpr double amplitude_m = 10e-3, dt_s = 1e-3;
   const double turn_rad_s = std::cbrt(run.value / amplitude_m);
@@ -65,8 +66,8 @@ Judgement shake(const Run& run) {
                     std::string("safety: ") + toText(loop.safety().fault));
   const device::DeviceLimits limits = device.limits();
   judgement.atMost("force on the hand", greatest_N, limits.peak_force_N, "N");
-  // Constraint contact: a micrometre. Penalty contact yields to the greatest force, and to the arrival of one
-  // step on a corner.
+  // Allowed overlap: a micrometre in constraint contact. Penalty contact yields to the greatest force, and to
+  // an impact on a corner within one step.
   const double step_m = watched.fastest_m_s * dt_s;
   judgement.atMost("overlap", watched.deepest_m,
                    1e-6 + step_m * step_m / 10e-3 +

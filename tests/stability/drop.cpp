@@ -87,8 +87,8 @@ Judgement judgeDrop(Mode mode, const Drop& what) {
   judgeRun(judgement, dropped.watched, dropped.weight_N, allowedDepth_m(mode, what, dropped), what.dt_s);
   judgeRest(judgement, dropped.watched, what.dt_s);
   // The block lies on one of its faces: its height is half a side. A hundredth of the least side
-  // distinguishes that from other positions; the bridge ignores motion below a micrometre, so a tenth of that
-  // is the least tolerance.
+  // distinguishes this position from others. The bridge ignores motion below a micrometre, so the least
+  // tolerance is a tenth of a micrometre.
   double off_m = 1e300;
   for (const double side_m : kBlock_m)
     off_m = std::min(off_m, std::abs(dropped.end_m - what.size * side_m / 2));

@@ -15,7 +15,8 @@ namespace {
 
 enum class First { Face, Edge, Corner };
 
-// Rotation with a corner, or an edge along z, in front; slightly more, so that the block topples.
+// Rotation with a corner, or an edge along z, in front. The block is rotated slightly further, so that it
+// topples.
 Mat3 turned(First first) {
   const Vec3 corner = first == First::Corner ? kBlock_m : Vec3(kBlock_m.x(), kBlock_m.y(), 0);
   if (first == First::Face) return Mat3::Identity();
@@ -39,11 +40,12 @@ Judgement shoot(const Run& run, First first, double wall_m, double speed_m_s) {
   const Watched watched = watch(world, {wall, block}, watching);
   Judgement judgement;
   judgement.require(watched.is_finite, "a pose or velocity is not a number");
-  // Its centre is never nearer to the wall than half of its least side; a tenth of that is tolerated.
+  // The centre of the block is never nearer to the wall than half of its least side, with a tolerance of a
+  // tenth.
   judgement.atMost("centre past the wall's face by", farthest_m, -0.9 * kBlock_m.minCoeff() / 2, "m");
   judgement.atMost("energy gained", watched.gained_J, 1e-9 * watched.start_J, "J");
-  // At the end it has left, or touches: with an overlap of a micrometre, or of what penalty contact needs to
-  // stop it in one step.
+  // At the end the block has left the wall or touches it. The allowed overlap is a micrometre, or the depth
+  // at which penalty contact stops the block in one step.
   const double pressed_m = block.part.frame.mass_kg * speed_m_s / (watching.dt_s * 1e12 * 150e-6);
   judgement.atMost("overlap at the end", watched.final_m, 1e-6 + (run.mode == Mode::Penalty ? pressed_m : 0),
                    "m");
@@ -66,7 +68,7 @@ Judgement shootThinWallByCorner(const Run& run) {
   return shoot(run, First::Corner, run.value * kVoxel_m, 5);
 }
 
-// A shaft in a bore 0.1 mm wider, without friction or gravity: it must keep its spin and stay centred.
+// A shaft in a bore that is 0.1 mm wider, without friction or gravity, must keep its spin and stay centred.
 Judgement spin(const Run& run, double dt_s) {
   World world({run.mode, true, dynamics::vpsEngine(kCoarse)});
   world.setGravity(Vec3::Zero());
@@ -95,7 +97,7 @@ Judgement spin(const Run& run, double dt_s) {
   judgement.atMost("spin lost", std::abs(inner.body->getAngularVelocity().length() - spin_rad_s),
                    1e-2 * spin_rad_s, "rad/s");
   judgement.atMost("energy gained", watched.gained_J, 1e-9 * watched.start_J, "J");
-  // 128 facets are up to 1.5 um inside their circle, and rotate past each other.
+  // The corners of 128 facets pass each other; the facets are up to 1.5 um inside their circle.
   judgement.atMost("overlap", watched.deepest_m, 5e-6, "m");
   return judgement;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Rows in which each quantity is not a number, infinite, or denormal: the call throws an error with a
-// message, or the body does not affect others. Never a crash.
+// message, or the body does not affect others. The program never crashes.
 #include <cmath>
 #include <limits>
 
@@ -17,7 +17,7 @@ namespace {
 // The scene that receives a bad value.
 struct Scene {
   World& world;
-  Placed bad;  ///< on the plate, far from others
+  Placed bad;  ///< the body with the bad value, on the plate, far from others
   double& dt_s;
 };
 
@@ -149,7 +149,7 @@ void judgeValue(Judgement& judgement, Mode mode, const Quantity& quantity, doubl
   world.add(makePart(makeBox(Vec3(120e-3, 60e-3, 10e-3))), Pose::translation(Vec3(0, 0, -5e-3)), true);
   const Placed neighbour = world.add(part, Pose::translation(Vec3(40e-3, 0, 5e-3)));
   double dt_s = 1e-3;
-  // Its own mesh, since engines share shapes of equal meshes.
+  // The body gets its own mesh, since engines share the shapes of equal meshes.
   Scene scene{world, world.add(block(), Pose::translation(Vec3(-40e-3, 0, 5e-3))), dt_s};
   world.step(5);
   const Pose before = neighbour.pose();
@@ -163,7 +163,7 @@ void judgeValue(Judgement& judgement, Mode mode, const Quantity& quantity, doubl
   world.step(50);
   const Pose after = neighbour.pose();
   judgement.require(after.isFinite(), told + ": its neighbour is not a number any more");
-  // The neighbour rests in contact: a micrometre is allowed, as for any rest.
+  // The neighbour rests in contact, for which a micrometre is allowed.
   if (after.isFinite()) judgement.atMost("neighbour moved", (after.p - before.p).norm(), 1e-6, "m");
 }
 

@@ -22,7 +22,8 @@ double sunk_m(Mode mode, double weight_N, double area_m2, double k_N_per_m3 = 1e
   return 1e-6 + (mode == Mode::Penalty ? 2 * weight_N / (k_N_per_m3 * area_m2) : 0);
 }
 
-// A light block on a plate and a heavy one on it, off centre, with a common face of 19 x 14.5 mm.
+// A light block on a plate, and a heavy block on the light one, off centre, with a common face of 19 x 14.5
+// mm.
 Judgement stack(Mode mode, double light_kg, double heavy_kg) {
   World world = makeWorld(mode);
   const Placed floor = world.add(plate(), Pose::translation(Vec3(0, 0, -5e-3)), true);
@@ -41,7 +42,8 @@ Judgement stack(Mode mode, double light_kg, double heavy_kg) {
   return judgement;
 }
 
-// Symmetric about the mass of steel, 23.6 g: for a ratio of a million 23.6 mg under 23.6 kg.
+// The geometric mean of both masses is that of a steel block, 23.6 g. For a ratio of a million, 23.6 mg are
+// under 23.6 kg.
 Judgement stackOfRatio(const Run& run) {
   return stack(run.mode, 23.6e-3 / std::sqrt(run.value), 23.6e-3 * std::sqrt(run.value));
 }
@@ -51,7 +53,7 @@ Judgement stackOfMass(const Run& run) {
   return stack(run.mode, 23.6e-3, 23.6e-3 * run.value);
 }
 
-// Two free blocks, off centre, at 1 m/s; nothing else acts.
+// Two free blocks collide off centre at 1 m/s; nothing else acts.
 Judgement collide(const Run& run) {
   World world = makeWorld(run.mode);
   world.setGravity(Vec3::Zero());
@@ -76,7 +78,7 @@ Judgement collide(const Run& run) {
   return judgement;
 }
 
-// A block is placed on penalty contact that yields by sunk_wanted_m at rest, and by twice that at first.
+// A block is placed on penalty contact that yields by sunk_wanted_m at rest, and at first by twice as much.
 Judgement restOnCompliantContact(Mode mode, double k_N_per_m, double sunk_wanted_m) {
   bullet::Settings settings;
   settings.stiffness_N_per_m3 = k_N_per_m / (kBlock_m.x() * kBlock_m.y());
@@ -96,7 +98,7 @@ Judgement restOnCompliantContact(Mode mode, double k_N_per_m, double sunk_wanted
   // surface press too, with half the depth on average.
   const double border_m = 2 * (kBlock_m.x() + kBlock_m.y()), face_m2 = kBlock_m.x() * kBlock_m.y();
   const double off = border_m * (0.25e-3 + sunk_wanted_m / 2) / face_m2;
-  // With constraints it rests on the gap of sharp edges.
+  // In constraint contact the block rests at the gap of sharp edges.
   const double wanted_m = mode == Mode::Penalty ? sunk_wanted_m : -FeatureMotion::kRest_m;
   judgement.atMost("error of weight / k", std::abs(sunk_m - wanted_m),
                    (mode == Mode::Penalty ? off * sunk_wanted_m : 0) + 1e-9, "m");
@@ -104,12 +106,12 @@ Judgement restOnCompliantContact(Mode mode, double k_N_per_m, double sunk_wanted
   return judgement;
 }
 
-// With the mass that sinks by a tenth of a millimetre.
+// The block has the mass that sinks by a tenth of a millimetre.
 Judgement restOnStiffness(const Run& run) {
   return restOnCompliantContact(run.mode, run.value, 0.1e-3);
 }
 
-// On 10 kN/m, with the mass that sinks to this depth. The map's band is 2 mm.
+// The contact has 10 kN/m and the block the mass that sinks to this depth. The map's band is 2 mm.
 Judgement restInDepth(const Run& run) {
   return restOnCompliantContact(run.mode, 1e4, run.value * 2e-3);
 }
@@ -121,7 +123,7 @@ Judgement pressByCoupling(Mode mode, double k_N_per_m, double deep_m) {
   const Placed part = world.add(block(), Pose::translation(Vec3(0, 0, 6e-3)));
   CouplingGains gains;
   gains.k_N_per_m = k_N_per_m;
-  gains.k_Nm_per_rad = k_N_per_m * 1e-4;  // the same spring at a lever of a centimetre
+  gains.k_Nm_per_rad = k_N_per_m * 1e-4;  // the same spring at a lever arm of a centimetre
   gains.b_Ns_per_m = gains.b_Nms_per_rad = 0;
   gains.max_force_N = gains.max_torque_Nm = 1e12;
   auto coupling =
@@ -131,7 +133,7 @@ Judgement pressByCoupling(Mode mode, double k_N_per_m, double deep_m) {
   target.is_coupled = true;
   coupling->setTarget(target);
   world.addConstraint(std::move(coupling));
-  // In penalty contact it comes to rest at the rate w^2 dt / 2 of the implicit steps.
+  // In penalty contact the block comes to rest at the rate w^2 dt / 2 of the implicit steps.
   const double w2 = k_N_per_m / part.part.frame.mass_kg;
   const int steps = std::clamp(static_cast<int>(40 / (w2 * 1e-6)), 500, 20'000);
   const Watched watched = watch(world, {floor, part}, {.steps = steps});
@@ -166,7 +168,8 @@ Judgement slideDown(const Run& run) {
   Judgement judgement;
   const double weight_N = part.part.frame.mass_kg * kGravity_m_s2;
   judgeRun(judgement, watched, weight_N, sunk_m(run.mode, weight_N, kBlock_m.x() * kBlock_m.y()), 1e-3);
-  // Half of a step's acceleration is gained before contact; a bristle first bends by micrometres.
+  // The speed gained by half a step before contact; and the bristle of the friction model first bends by
+  // micrometres.
   judgement.atMost("speed error", std::abs(part.body->getLinearVelocity().x() - net_m_s2 * 0.2),
                    1e-3 * net_m_s2 * 0.2 + 1e-5, "m/s");
   if (net_m_s2 == 0) judgement.atMost("slipped", std::abs(part.pose().p.x()), 5e-6, "m");
@@ -180,9 +183,9 @@ Judgement dropWithFriction(const Run& run) {
   return judgeDrop(run.mode, what);
 }
 
-// Without friction no horizontal force acts: at the end the block rests except for an error of the angular
-// momentum in steps that rotate it by w dt, a share w dt of its speed. (The same in both modes: Bullet's
-// integration.)
+// Without friction no horizontal force acts: at the end the block rests except for the error of Bullet's
+// integration in both modes: a step that rotates the block by w dt changes its angular momentum by a share w
+// dt.
 Judgement dropWithoutFriction(const Run& run) {
   Drop what;
   what.friction = run.value;
@@ -238,14 +241,14 @@ Judgement lidOnPins(const Run& run) {
 std::vector<Row> loadRows() {
   return {
       {"mass_ratio",
-       "mass of a block over that of the one it stands on, 23.6 g in the geometric mean",
+       "mass of a block over that of the block below it, 23.6 g in the geometric mean",
        "rest, height",
        {1, 1e3, 1e6, 1e8, 1e10, 1e12},
        3,
        stackOfRatio,
        {99, 99}},
       {"load",
-       "mass of a block over that of the one it stands on, of 23.6 g",
+       "mass of a block over that of the block below it, of 23.6 g",
        "rest, height",
        {1, 1e3, 1e4, 1e5, 1e6},
        5,

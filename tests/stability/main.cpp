@@ -15,18 +15,18 @@ namespace vps::stability {
 namespace {
 
 struct Options {
-  bool is_short = false;     ///< only the values that must hold, no search for limits
-  bool is_thorough = false;  ///< hours at rest
+  bool is_short = false;     ///< runs only the values that must hold, without the search for limits
+  bool is_thorough = false;  ///< rests for hours
   std::vector<Mode> modes = {Mode::Constraint, Mode::Penalty};
 };
 
 /// Result of a row in one mode.
 struct Result {
   std::string promised;         ///< outcome of the promised values
-  std::string limit;            ///< where it fails, and how
+  std::string limit;            ///< the value at which the row fails, and how
   bool is_met = true;           ///< all promised values hold
   bool is_required_met = true;  ///< all required values hold
-  std::string failure;          ///< otherwise the reason
+  std::string failure;          ///< reason if is_required_met is false
 };
 
 std::string labelOf(const Row& row, double value) {
@@ -132,9 +132,9 @@ int usage() {
   std::printf(
       "usage: vps_stability [--short] [--thorough] [--rows=a,b] [--mode=constraint|penalty|stock] "
       "[--values=x,y] [--tsv=FILE]\n"
-      "  --short     what must hold, without the search for limits\n"
+      "  --short     the values that must hold, without the search for limits\n"
       "  --thorough  hours at rest instead of seconds\n"
-      "  --values    these instead of the rows' own\n"
+      "  --values    values that replace those of the rows\n"
       "  --tsv       also writes the rows to this file\n"
       "rows:");
   for (const Row& row : allRows()) std::printf(" %s", row.key.c_str());

@@ -11,7 +11,7 @@ namespace vps::stability {
 
 namespace {
 
-// A seated peg at rest: seconds, or as many thousands of seconds in the thorough form.
+// A seated peg at rest for some seconds, or for as many thousands of seconds in the thorough form.
 Judgement restLong(const Run& run) {
   dynamics::World world({run.mode, true, dynamics::vpsEngine()});
   world.add(dynamics::borePart(50e-6), Pose(), true);
@@ -79,8 +79,8 @@ Judgement compareCopy(const Run& run) {
   judgement.require(other.watched.is_finite, "a pose is not a number");
   // The block hits the plate after 14 ms. Constraint contact is at the exact surface, within the micrometre
   // allowed for rest. In penalty contact the points of a copy lie elsewhere, and a corner has about a quarter
-  // of a point's area: it yields by d = v sqrt(m / (k A)), 43 um at 0.14 m/s, with a tolerance of half of
-  // that.
+  // of a point's area: it yields by d = v sqrt(m / (k A)), 43 um at 0.14 m/s. The tolerance is half of this
+  // depth.
   judgement.atMost("distance after 50 ms", early_m, run.mode == Mode::Penalty ? 20e-6 : 1e-6, "m");
   // Then the block topples, and the difference grows by at most a hundred times until it lies on the plate.
   judgement.atMost("distance after 0.3 s", ever_m, run.mode == Mode::Penalty ? 2e-3 : 0.1e-3, "m");

@@ -19,11 +19,11 @@ class Judgement {
  public:
   void atMost(const std::string& what, double value, double bound, const char* unit);
   void require(bool is_so, const std::string& otherwise);
-  /// Reported with the result, not judged.
+  /// Adds a text that is reported with the result and not judged.
   void note(const std::string& text);
 
   [[nodiscard]] bool holds() const { return broken_.empty(); }
-  /// All violated criteria; or the criterion nearest to its bound, and the notes.
+  /// All violated criteria, or the criterion nearest to its bound; then the notes.
   [[nodiscard]] std::string text() const;
 
  private:
@@ -31,13 +31,13 @@ class Judgement {
   double share_ = -1;  ///< value over bound of the nearest criterion
 };
 
-/// "3.2e-06": three digits, in the shortest form.
+/// The value with three digits, in the shortest form: "3.2e-06".
 std::string toText(double value);
 
 struct Run {
   Mode mode = Mode::Constraint;
-  double value = 0;          ///< of the row's quantity
-  bool is_thorough = false;  ///< hours instead of seconds
+  double value = 0;          ///< value of the row's quantity
+  bool is_thorough = false;  ///< rests for hours instead of seconds
 };
 
 struct Row {

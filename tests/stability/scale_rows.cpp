@@ -17,11 +17,12 @@ Judgement dropAtStep(const Run& run) {
   return judgeDrop(run.mode, what);
 }
 
-// Alternates between 20 ms and 0.2 ms, then takes values between them, by a fixed rule.
+// The steps alternate between the longest and the shortest value, then take values between them, by a fixed
+// rule.
 Judgement dropAtChangingStep(const Run& run) {
   Drop what;
   const double ratio = run.value;
-  what.dt_s = 1e-3 * std::sqrt(ratio);  // the longest, which sets all bounds
+  what.dt_s = 1e-3 * std::sqrt(ratio);  // the longest step, which sets all bounds
   what.step_s = [ratio](int i) {
     const double share = i % 7 == 0 ? 1 : i % 2 == 0 ? 0 : (i % 5) / 5.0;
     return 1e-3 * std::pow(ratio, share - 0.5);
@@ -36,8 +37,8 @@ Judgement dropAwayFromOrigin(const Run& run) {
   return judgeDrop(run.mode, what);
 }
 
-// A cube of 1 mm falls by a millimetre on a plate of this side, each modelled according to its size. It lands
-// flat: the spacing of the plate's points is greater than the cube.
+// A cube of 1 mm falls by a millimetre on a plate of this side, each modelled according to its size. The cube
+// lands flat, since the spacing of the plate's points is greater than the cube.
 Judgement dropOnLarge(const Run& run) {
   constexpr double cube_m = 1e-3;
   const double plate_m = run.value, thick_m = plate_m / 6;

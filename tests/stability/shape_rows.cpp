@@ -46,7 +46,7 @@ Judgement fallOn(const Run& run, const Mesh& sharp) {
   const Watched watched = watch(world, {floor, part}, {.steps = 1000, .measure_every = 2});
   Judgement judgement;
   const double turned_m = watched.fastest_m_s * watched.fastest_m_s * 1e-6 / 10e-3;
-  // It may then fall from its height of 10 mm.
+  // After it topples, the part may fall from its height of 10 mm.
   judgeRun(judgement, watched, weight_N, turned_m + pierced_m(run.mode, weight_N * 11e-3), 1e-3);
   return judgement;
 }
@@ -58,7 +58,7 @@ Judgement fallOnTip(const Run& run) {
   return fallOn(run, cone(run.value * M_PI / 180));
 }
 
-// A knife falls across another one with its edge up: two edges cross between their points.
+// A knife falls across another knife whose edge is up; the edges cross between their sample points.
 Judgement crossKnives(const Run& run) {
   World world({run.mode, true, dynamics::vpsEngine(kCoarse)});
   const PartMesh knife = makePart(wedge(run.value * M_PI / 180));
@@ -75,8 +75,8 @@ Judgement crossKnives(const Run& run) {
   judgement.require(watched.is_finite, "a pose or velocity is not a number");
   judgement.atMost("energy gained", watched.gained_J, weight_N * (0.5e-3 + watched.fastest_m_s * 0.5e-3),
                    "J");
-  // Edges are sampled every half spacing: a point is at most a quarter spacing from the crossing, and the
-  // other's flank is that far away from it.
+  // Edges are sampled every half spacing: a point is at most a quarter of a spacing from the crossing, and so
+  // is the flank of the other knife.
   judgement.atMost("one edge below the other", -lowest_m, 0.5e-3 + pierced_m(run.mode, weight_N * 0.5e-3),
                    "m");
   return judgement;
@@ -93,8 +93,8 @@ Judgement tower(const Run& run) {
   const double weight_N = run.value * parts[1].part.frame.mass_kg * kGravity_m_s2;
   const double sunk_m = 1e-6 + (run.mode == Mode::Penalty ? 2 * weight_N / (1e12 * 300e-6) : 0);
   Judgement judgement;
-  // The blocks begin without a gap; the push lifts each by that at which sharp edges rest, the i-th by i of
-  // them.
+  // The blocks start without gaps. The push lifts each block by the gap at which sharp edges rest, so the
+  // i-th block by i gaps.
   const double lifted_m = run.mode == Mode::Penalty ? 0 : run.value * FeatureMotion::kRest_m;
   judgeRun(judgement, watched, weight_N, sunk_m + lifted_m, 1e-3);
   judgeRest(judgement, watched, 1e-3);
@@ -103,12 +103,12 @@ Judgement tower(const Run& run) {
   return judgement;
 }
 
-// Each point of bodies that start inside each other separates at 0.05 m/s (settings.h). Where the points of a
-// rotated part do so in different directions, its far end moves faster by its length over its width, at most
-// 3 here.
+// Each point of bodies that start inside each other separates at 0.05 m/s (settings.h). If the points of a
+// rotated part separate in different directions, its far end moves faster by the ratio of length to width, at
+// most 3 here.
 constexpr double kLeaving_m_s = 0.05, kLeavingAtMost_m_s = 3 * kLeaving_m_s;
 
-// A block created at this depth in another, without gravity: it separates slowly or stays.
+// A block that is created at this depth in another one, without gravity, must separate slowly or stay.
 Judgement createInside(const Run& run, const Vec3& size_m, const Pose& X_WB) {
   World world({run.mode, true, dynamics::vpsEngine(kCoarse)});
   world.setGravity(Vec3::Zero());
@@ -128,7 +128,7 @@ Judgement startDeep(const Run& run) {
   return createInside(run, kBlock_m, Pose(R, Vec3(2e-3, 1e-3, 10e-3 - 1e-3 * run.value)));
 }
 
-// A cube of 2 mm completely inside; at 0 in the centre, where no direction is shorter.
+// A cube of 2 mm starts completely inside; at 0 it is in the centre, where no direction is shorter.
 Judgement startWithin(const Run& run) {
   return createInside(run, Vec3::Constant(2e-3), Pose::translation(Vec3(0, 0, 5e-3 - 1e-3 * run.value)));
 }
@@ -140,8 +140,8 @@ PartMesh bored(double radius_m, double length_m) {
       {{radius_m, -length_m}, {radius_m + 7e-3, -length_m}, {radius_m + 7e-3, 0}, {radius_m, 0}}, 128));
 }
 
-// A peg 10 mm deep in a bore with this diametral clearance [um]. Negative: an interference fit, which has no
-// position at rest and must not burst.
+// A peg is 10 mm deep in a bore with this diametral clearance [um]. A negative value is an interference fit,
+// which has no position at rest and must not fly apart.
 Judgement fit(const Run& run) {
   World world({run.mode, true, dynamics::vpsEngine(kCoarse)});
   const Placed bore = world.add(bored(kPeg_m + 0.5e-6 * run.value, 20e-3), Pose(), true, 0.15);
@@ -150,7 +150,7 @@ Judgement fit(const Run& run) {
   const Watched watched = watch(world, {bore, part}, {.steps = 300, .measure_every = 20});
   Judgement judgement;
   judgement.require(watched.is_finite, "a pose or velocity is not a number");
-  // Never faster than in free fall; separating from an overlap may also lift it.
+  // The peg must never be faster than in free fall; separation from an overlap may also lift the peg.
   const double mass_kg = part.part.frame.mass_kg, duration_s = 0.3;
   judgement.atMost("speed", watched.fastest_m_s, kGravity_m_s2 * duration_s + kLeavingAtMost_m_s, "m/s");
   judgement.atMost(
@@ -161,8 +161,8 @@ Judgement fit(const Run& run) {
   return judgement;
 }
 
-// A rod slides down a bore of its own length without friction, pressed to the wall by a tenth of its weight;
-// value: length over diameter.
+// A rod slides down a bore of its own length without friction, pressed to the wall by a tenth of its weight.
+// The row's value is length over diameter.
 Judgement slideInBore(const Run& run) {
   const double length_m = run.value * 2 * kPeg_m;
   World world({run.mode, true, dynamics::vpsEngine(kCoarse)});

@@ -39,6 +39,7 @@ int main() {
   vps::bullet::uninstall(dispatcher);
 
   std::printf("the block rests at %.4f mm (10 mm by geometry)\n", height_m * 1e3);
-  return std::abs(height_m - 0.01) < 5e-6 ? 0
-                                          : 1;  // half a percent of a voxel: a flat face has no field error
+  return std::abs(height_m - 0.01) < 5e-6
+             ? 0
+             : 1;  // half a per cent of a voxel, since a flat face has no field error
 }

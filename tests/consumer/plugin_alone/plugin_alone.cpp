@@ -16,8 +16,8 @@ int main() {
   const vps::VoxMap map = vps::buildVoxMap(vps::makeSphere(kRadius_m, 5), settings);
   const double depth_m = -map.distance(vps::Vec3(kRadius_m - 1e-3, 0, 0));
   std::printf("vps %s: the point is %.4f mm deep (1 mm by geometry)\n", VPS_VERSION_STRING, depth_m * 1e3);
-  // Chords of a ball of 20480 triangles are r (1 - cos(edge / 2r)) = 1.3 um inside of it; the field adds its
-  // own error.
+  // The facets of a ball of 20480 triangles are up to r (1 - cos(edge / 2r)) = 1.3 um inside the ball; the
+  // field adds its own error.
   if (std::abs(depth_m - 1e-3) > 2e-6 + map.sampleError_m() / 20) return 1;
 
   settings.voxel_m = 0;
