@@ -21,9 +21,10 @@ struct Shape {
   std::string name;
   bool is_sharp = false;
   Mesh mesh;
-  std::function<bool(const Vec3&)> isCounted;  ///< where samples are taken
-  /// The normal of the smooth surface that the facets approximate: theirs differ from it by up to 0.4
-  /// degrees, more than the field's error. Empty: the direction to the nearest point of the mesh.
+  std::function<bool(const Vec3&)> isCounted;  ///< true for points at which samples are taken
+  /// The normal of the smooth surface that the facets approximate. The normals of the facets differ from it
+  /// by up to 0.4 degrees, which is more than the field's error. Empty: the direction to the nearest point of
+  /// the mesh.
   std::function<Vec3(const Vec3&)> trueNormal;
 };
 
@@ -42,7 +43,8 @@ Mesh makeWedge(double length_m, double width_m) {
   return wedge;
 }
 
-/// A rotation, so that no face lies on the grid: a face on a plane of nodes would be more exact than usual.
+/// A pose in which no face is aligned with the grid: a face on a plane of nodes would be more exact than
+/// usual.
 Pose askew() {
   return {rotationFromVector({0.3, 0.5, 0.2}), {0.31 * kMm, 0.17 * kMm, 0.23 * kMm}};
 }
@@ -53,7 +55,7 @@ std::function<Vec3(const Vec3&)> inFrame(NormalOf normalOf) {
   return [=, X_AM = askew()](const Vec3& p) { return Vec3(X_AM.R * normalOf(X_AM.inverse() * p)); };
 }
 
-/// Facets of the smooth ones are 8 to 43 um along their edges, but for the straight ones of the cylinder.
+/// The facets of the smooth shapes have edges of 8 to 43 um, except the straight edges of the cylinder.
 std::vector<Shape> smoothShapes() {
   static constexpr double kRing_m = 8 * kMm;
   const auto isOnWall = [](const Vec3& p) {  // 3 mm from the rims
@@ -91,7 +93,7 @@ Spread spreadOf(const std::vector<double>& values) {
   return {sum / static_cast<double>(values.size()), quantile(values, 0.99), quantile(values, 1)};
 }
 
-/// Random points up to a voxel off the surface, even over it.
+/// Random points up to a voxel from the surface, uniformly distributed over it.
 class NearSurface {
  public:
   explicit NearSurface(const Mesh& mesh) : mesh_(mesh) {
@@ -127,7 +129,7 @@ AccuracyPoint measured(const Shape& shape, const MeshDistance& exact, double vox
     if (!shape.isCounted(p)) continue;
     const double true_m = exact.signedDistance(p);
     distance_m.push_back(std::abs(map.distance(p) - true_m));
-    // Nearer than that the direction to the nearest point is lost in rounding.
+    // At smaller distances the direction to the nearest point is lost in rounding.
     if (std::abs(true_m) < 1e-3 * voxel_m) continue;
     const Vec3 n = shape.trueNormal ? shape.trueNormal(p) : Vec3((p - exact.closest(p).q) / true_m);
     const auto angle = [&](Gradient gradient) {

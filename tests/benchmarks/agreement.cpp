@@ -12,7 +12,7 @@
 namespace vps::bench {
 namespace {
 
-/// The map as OpenVDB reads it; kept for the next case on the same map, since writing takes seconds.
+/// The map as OpenVDB reads it. It is kept for the next case on the same map, since writing takes seconds.
 const RivalField& sameField(const VoxMap& map) {
   static std::unique_ptr<RivalField> kept;
   static VoxMap kept_map;
@@ -59,17 +59,19 @@ void requireAgreement(const std::string& name, const VoxMap& map, const PointShe
                       const SubjectOptions& options, const Motion& motion, int steps) {
   const auto rival = openVdbQuery(sameField(map), shell, true);
   Subject subject(map, shell, options);
-  // Nodes of 16 bits over the band are off by half of band / 32767 (6e-5 voxel); positions and weights in
-  // single precision by a few 2^-24 of up to 1000 voxels (1e-4 voxel).
+  // Nodes of 16 bits over the band have an error of half of band / 32767 (6e-5 voxel). Positions and weights
+  // in single precision have an error of a few 2^-24 of up to 1000 voxels (1e-4 voxel).
   const double tol_m = 3e-4 * map.voxel_m();
   const double area_m2 =
       std::accumulate(shell.area_m2.begin(), shell.area_m2.end(), 0.0) / static_cast<double>(shell.size());
   for (int step = 0; step < steps; ++step) {
-    // Points on vertices may lie on faces of cells to the last bit, where the rival's gradient jumps.
+    // Without this offset, points on vertices may lie exactly on faces of cells, at which the rival's
+    // gradient jumps.
     const Pose X_MP = Pose::translation(map.voxel_m() * Vec3(3.7e-3, 2.1e-3, 4.3e-3)) * motion(step);
     const Answer ours = subject.step(X_MP), theirs = rival->step(X_MP);
     const std::size_t surely = rival->countBelow(X_MP, -tol_m), perhaps = rival->countBelow(X_MP, tol_m);
-    // Each touching point may be off by the tolerance, and its normal by 1e-3 where cells meet.
+    // Each touching point may have an error of the tolerance, and its normal an error of 1e-3 where cells
+    // meet.
     Tolerance tol{tol_m, 0, 0};
     tol.force_N = kStiffness_N_per_m3 * area_m2 * static_cast<double>(perhaps) * 2 *
                   (tol_m + 1e-3 * std::max(0.0, -theirs.least_m));

@@ -9,7 +9,7 @@ namespace {
 constexpr double kMm = 1e-3;
 constexpr int kCheckedSteps = 12;
 
-/// A row that walks a motion. `patch` > 0: with that many neighbouring points of the shell alone.
+/// A row that steps through a motion. `patch` > 0: only with so many neighbouring points of the shell.
 struct StepRow {
   Pair pair = Pair::RingOnItself;
   SceneSize size;
@@ -19,7 +19,7 @@ struct StepRow {
   std::size_t patch = 0;
 };
 
-/// Models and the case made of them. Scenes are shared and only one is kept, so a row builds its own each
+/// Models, and the case that refers to them. Only the last scene is kept, so a row builds its scene each
 /// time.
 struct Prepared {
   std::shared_ptr<const Scene> scene;
@@ -60,7 +60,7 @@ Case stepCase(const std::string& name, const std::string& words, Bar bar, double
   return c;
 }
 
-/// The list of rows as it grows; each step row once for every instruction path of the machine.
+/// Builds the list of rows, with each step row once for every instruction path of the machine.
 class Rows {
  public:
   explicit Rows(const SceneSize& size) : size_(size) {}
@@ -70,12 +70,12 @@ class Rows {
     StepRow row{pair, size_, motion, {.is_exhaustive = true}, true, patch};
     add(name, words, bar_ratio, row);
   }
-  /// bar_ratio 0: no bar.
+  /// bar_ratio is the bar of the row; 0: no bar.
   void culled(const std::string& name, const std::string& words, double bar_ratio, Pair pair,
               const Motion& motion) {
     add(name, words, bar_ratio, {pair, size_, motion, {}, true, 0});
   }
-  /// 5.4 times the points: a million where the others have the paper's load. Our time only.
+  /// 5.4 times the points: a million where the other rows have the paper's load. Only our time is measured.
   void million(const std::string& name, const std::string& words, Pair pair, const Motion& motion) {
     SceneSize size = size_;
     size.points = size_.points * 1'000'000 / SceneSize{}.points;
@@ -179,7 +179,7 @@ std::vector<Case> tableCases(const SceneSize& size) {
   rows.culled("free/0.1mm", "free motion, 0.1 mm a step", 0, Pair::PlanetInRing, freeMotion(0.1 * kMm));
   rows.culled("peg/0.1mm", "peg in hole, 0.1 mm a step", 150, Pair::PegInPlate, pegMotion(0.1 * kMm));
   rows.culled("peg/0.01mm", "peg in hole, 0.01 mm a step", 0, Pair::PegInPlate, pegMotion(0.01 * kMm));
-  // A nut has much surface: at 256^3 its map is as large as the other parts' at 512^3.
+  // A nut has much surface: its map at 256^3 is as large as the maps of the other parts at 512^3.
   SceneSize half = size;
   half.voxels /= 2;
   rows.setSize(half);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The rows of the table.
+// The rows of the speed table.
 #pragma once
 
 #include <functional>
@@ -21,10 +21,10 @@ enum class Bar {
 
 struct Case {
   std::string name;  ///< for --benchmark_filter: peg/0.1mm/185030
-  std::string row;   ///< for the table, in words
+  std::string row;   ///< text for the table
   Bar bar = Bar::None;
   double bar_value = 0;
-  std::function<void()> check;  ///< throws where answers differ; may be empty
+  std::function<void()> check;  ///< throws if answers differ; may be empty
   std::function<Counters(int repetition)> measure;
 };
 

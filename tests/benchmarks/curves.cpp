@@ -38,14 +38,15 @@ void writeLine(std::ostream& out, double x, const Scene& scene, const Motion& mo
 
 constexpr const char* kColumns = " median_us p99_us openvdb_us touching build_cpu_s\n";
 
-/// The same surface in four times the triangles.
+/// The same surface with four times the triangles.
 Mesh subdivided(const Mesh& mesh) {
   Mesh fine;
   for (const auto& [a, b, c] : mesh.triangles) {
     const auto first = static_cast<std::uint32_t>(fine.vertices.size());
     const Vec3 p[3] = {mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]};
     for (int k = 0; k < 3; ++k) fine.vertices.push_back(p[k]);
-    // Sums in a fixed order: both triangles of an edge get the same middle, to the bit.
+    // The order of the sum does not depend on the triangle, so both triangles of an edge get the same middle,
+    // to the bit.
     for (int k = 0; k < 3; ++k) fine.vertices.emplace_back(0.5 * (p[k] + p[(k + 1) % 3]));
     for (const auto& [i, j, k] : {std::array<std::uint32_t, 3>{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}})
       fine.triangles.push_back({first + i, first + j, first + k});
@@ -53,8 +54,8 @@ Mesh subdivided(const Mesh& mesh) {
   return welded(fine);
 }
 
-/// Peg in a bore of 24 flats, the plate's flats cut ever finer: the surface, and so the contact, stays the
-/// same.
+/// A peg in a bore of 24 flats. The flats of the plate are subdivided further and further, so that the
+/// surface and the contact stay the same.
 void timeAgainstTriangles(const std::filesystem::path& dir) {
   std::ofstream out(dir / "triangles.dat");
   out << "# triangles" << kColumns;
@@ -77,7 +78,7 @@ void timeAgainstTriangles(const std::filesystem::path& dir) {
   }
 }
 
-/// `x` says what is on the horizontal axis of a size.
+/// `x` gives the value of a size on the horizontal axis.
 template <typename X>
 void timeAgainst(const std::filesystem::path& file, Pair pair, const Motion& motion,
                  const std::vector<SceneSize>& sizes, const char* name, X x) {

@@ -90,14 +90,14 @@ void writeRow(const Case& c, const Values& median, const Values& p10, const Valu
       << (median.count("touching") > 0 ? formatted("%.0f", valueOf(median, "touching")) : "") << " |\n";
 }
 
-/// Prints to the console and keeps the values of the table.
+/// A reporter that prints to the console and keeps the values of the table.
 class TableReporter : public benchmark::ConsoleReporter {
  public:
   TableReporter() : benchmark::ConsoleReporter(OO_Tabular) {}
   void ReportRuns(const std::vector<Run>& runs) override;
 
-  /// One line a case that was run, in the order of `cases`: bar, median ratio and its spread (p10 to p90 of
-  /// the repetitions), times.
+  /// Writes one line for each case that was run, in the order of `cases`: bar, median ratio and its spread
+  /// (p10 to p90 of the repetitions), times.
   void writeMarkdown(const std::vector<Case>& cases, std::ostream& out) const;
 
  private:
@@ -155,7 +155,8 @@ Arguments takeArguments(int& argc, char** argv) {
   return arguments;
 }
 
-/// Every row on small models: answers agree, and the clock gives numbers. 0 or 1.
+/// Checks every row on small models: the answers must agree and the clock must give numbers. Returns the exit
+/// status, 0 or 1.
 int checkAll() {
   int failures = 0;
   for (const Case& c : tableCases({.points = 3000, .voxels = 64, .coarser = 6})) {

@@ -58,7 +58,7 @@ void timeStep(Side& side, const Motion& motion, int step, Times& times) {
   times.add(wallSeconds() - before_s, answer);
 }
 
-/// The number of steps that fit in the time, estimated from one of them.
+/// The number of steps that fit into the time limit, estimated from one step.
 template <typename Side>
 int affordable(Side& side, const Motion& motion, int first, int wanted, double time_limit_s) {
   Times times;
@@ -66,8 +66,8 @@ int affordable(Side& side, const Motion& motion, int first, int wanted, double t
   return std::clamp(static_cast<int>(1e6 * time_limit_s / times.median()), std::min(wanted, 12), wanted);
 }
 
-/// Both sides walk the same steps in `kTurns` turns. The data of one side in the caches slows the other's
-/// first step: one step is taken before the clock starts.
+/// Both sides make the same steps in `kTurns` turns. The caches then hold the data of the other side, which
+/// slows the first step of a turn, so one step is made before the clock starts.
 class Stretch {
  public:
   Stretch(const StepCase& steps, int repetition) : case_(steps), first_(repetition * steps.steps) {}
@@ -166,7 +166,7 @@ Counters measureBuildErrors(const Mesh& mesh, double voxel_m, int node_count) {
     const auto judge = [&](const std::string& side, double read_voxels) {
       double& worst = c[side + "_error_voxels"];
       worst = std::max(worst, std::abs(std::abs(read_voxels) - std::abs(true_voxels)));
-      // Within 1e-3 voxel of the surface either sign is right within the stated error.
+      // Within 1e-3 voxel of the surface both signs agree with the stated error.
       if (std::abs(true_voxels) > 1e-3) c[side + "_wrong_signs"] += (read_voxels < 0) != (true_voxels < 0);
     };
     judge("ours", map.distance(p) / voxel_m);

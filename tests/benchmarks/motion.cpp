@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kGear_m = 1e-3;  // module
 
-/// Moves to and fro between 0 and 1 as x grows; one direction takes 1.
+/// A triangle wave between 0 and 1 with the period 2.
 double toAndFro(double x) {
   const double within = x - 2 * std::floor(x / 2);
   return within < 1 ? within : 2 - within;
@@ -27,7 +27,8 @@ double ringPlanetDistance() {
 }  // namespace
 
 Motion pegMotion(double step_m) {
-  // 2 % more than the clearance: an arc of 2 acos(1 / 1.02) = 23 degrees touches, by 0.2 um at most.
+  // 2 % more than the clearance: an arc of 2 acos(1 / 1.02) = 23 degrees touches, with at most 0.2 um of
+  // overlap.
   constexpr double kPressed_m = 1.02 * kPegClearance_m;
   constexpr double kShallow_m = 6e-3, kDeep_m = 18e-3;
   const double above_m = plateShape(1).height_m / 2 + pegShape(1).length_m / 2;
@@ -40,12 +41,12 @@ Motion pegMotion(double step_m) {
 }
 
 Motion gearMotion(double step_m) {
-  // Across the flank. The field reads a little too near in the ring's hollow flanks: some 15 points of
-  // 185,030 touch at 0.4 um of air, 130 at none.
+  // Overlap across the flank; negative is a gap. The field gives slightly too small distances at the ring's
+  // concave flanks: some 15 of 185,030 points touch at a gap of 0.4 um, and 130 without a gap.
   constexpr double kBite_m = -0.4e-6;
   const test::GearShape ring = ringShape(1), planet = planetShape(1);
   const double cos_pressure = std::cos(20 * std::numbers::pi / 180);
-  // The gap across a flank is that of one wheel's backlash; it closes by the turn over the base radius.
+  // The gap across a flank is the backlash of one wheel; a rotation closes it by rotation times base radius.
   const double closed_rad =
       (kBacklash_m * cos_pressure + kBite_m) / (test::pitchRadius(planet) * cos_pressure);
   const double tip_m = test::pitchRadius(planet) + kGear_m;
@@ -59,7 +60,8 @@ Motion gearMotion(double step_m) {
 
 Motion screwMotion(double step_m) {
   // Flanks stand at 30 degrees to the radius: pushing the rod along by c / sqrt(3) closes a radial clearance
-  // c on one side of the thread; 2 um aside then lets half of the way round touch, by up to 1 um.
+  // c on one side of the thread; a sideways shift of 2 um then makes half of the circumference touch, with up
+  // to 1 um of overlap.
   const double pushed_m = kThreadClearance_m / std::sqrt(3.0);
   constexpr double kAside_m = 2e-6;
   const test::ThreadShape thread = rodThread(1);
@@ -77,7 +79,7 @@ Motion hoverMotion(double step_m) {
   return [=](int step) {
     const double turn_rad = step * step_m / tip_m;
     const double gap_m = 0.5e-3 + 3.5e-3 * toAndFro(step * step_m / 20e-3);
-    // The tilt uses only a part of the gap: 0.4 mm at the rim at most.
+    // The tilt uses only a part of the gap, at most 0.4 mm at the rim.
     const double tilt_rad = 0.02 * std::sin(3 * turn_rad) + 1e-3;
     return Pose(Mat3(rotationFromVector({tilt_rad, 0, 0}) * turned(turn_rad)),
                 {ringPlanetDistance() + 17e-3, 0, touching_m + gap_m + 0.4e-3});

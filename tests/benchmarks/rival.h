@@ -12,14 +12,15 @@
 
 namespace vps::bench {
 
-/// Stiffness of every wrench here [N/m^3]; any value would serve.
+/// Stiffness of every wrench in these benchmarks [N/m^3]; the value is arbitrary.
 inline constexpr double kStiffness_N_per_m3 = 1e12;
 
 /// The answer of either side for a pose, so that they can be compared.
 struct Answer {
   std::size_t touching = 0;
-  double least_m = 0;  ///< least signed distance of any point; +band or more when all are beyond it
-  Wrench F_Mo_M;       ///< on the shell's part, about M's origin, in M
+  double least_m =
+      0;          ///< least signed distance of any point; +band or more if all points are beyond the band
+  Wrench F_Mo_M;  ///< wrench on the shell's part, about M's origin, in M
 };
 
 /// A field of another library: OpenVDB's, made by meshToVolume.
@@ -32,7 +33,7 @@ class RivalField {
 };
 
 /// Reads all points of a shell in a field, one after the other: transform, trilinear distance, and for
-/// touching points its gradient, force and torque. No hierarchy, no temporal coherence.
+/// touching points gradient, force and torque. It uses no hierarchy and no temporal coherence.
 class RivalQuery {
  public:
   virtual ~RivalQuery() = default;
@@ -49,15 +50,15 @@ struct RivalFieldSettings {
 };
 
 std::unique_ptr<RivalField> buildOpenVdb(const Mesh& mesh, const RivalFieldSettings& settings);
-/// The level set in a file, as saveVdb() writes it: the same values that a voxmap holds.
+/// Reads a level set that saveVdb() wrote, with the same values as the voxmap.
 std::unique_ptr<RivalField> readOpenVdb(const std::string& file);
-/// Ways to read the field: an accessor with tools::BoxSampler for each point (`shared` reads the eight values
-/// once for distance and gradient; the other reads them again for the gradient of touching points).
+/// A query with an accessor and tools::BoxSampler for each point. With `shared` it reads the eight values
+/// once for distance and gradient; otherwise it reads them again for the gradient of touching points.
 std::unique_ptr<RivalQuery> openVdbQuery(const RivalField& field, const PointShell& shell, bool shared);
-/// The same field as NanoVDB, with its cached trilinear sampler; null where NanoVDB is not installed.
+/// A query of the same field as NanoVDB, with its cached trilinear sampler; null if NanoVDB is not installed.
 std::unique_ptr<RivalQuery> nanoVdbQuery(const RivalField& field, const PointShell& shell);
-/// Union with a second field at a pose with OpenVDB's tools: resample, then csgUnion. Both fields are
-/// unchanged. Returns the number of active voxels, so that nothing is optimised away.
+/// Union with a second field at a pose with OpenVDB's tools: resample, then csgUnion. The fields are not
+/// changed. Returns the number of active voxels, so that nothing is optimised away.
 std::size_t mergeOpenVdb(const RivalField& base, const RivalField& mounted, const Pose& X_BM);
 
 }  // namespace vps::bench

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// OpenVDB as the rival, with NanoVDB where it is installed. Only this file includes their headers, which are
-// slow to compile.
+// OpenVDB as the rival, and NanoVDB if it is installed. Only this file includes their headers, which are slow
+// to compile.
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/Composite.h>
 #include <openvdb/tools/GridTransformer.h>
@@ -75,15 +75,15 @@ const OpenVdbField& asOpenVdb(const RivalField& field) {
   return dynamic_cast<const OpenVdbField&>(field);
 }
 
-/// Shared by all ways of reading: the transform into voxels, and the sums over touching points.
+/// The part that all ways of reading share: the transform into voxels, and the sums over touching points.
 class PointLoop : public RivalQuery {
  public:
   PointLoop(const PointShell& shell, double voxel_m, double far_m)
       : shell_(shell), voxel_m_(voxel_m), far_m_(far_m) {}
 
  protected:
-  /// Visits every point: distanceAt(x) [m] for x in voxels, then gradientAt(x) for those that touch, of any
-  /// length.
+  /// Visits every point: calls distanceAt(x) [m] for x in voxels, and gradientAt(x), a vector of any length,
+  /// for points that touch.
   template <typename DistanceAt, typename GradientAt>
   Answer visit(const Pose& X_MP, DistanceAt distanceAt, GradientAt gradientAt) const {
     const Mat3 R = X_MP.R / voxel_m_;
@@ -243,7 +243,7 @@ std::size_t mergeOpenVdb(const RivalField& base, const RivalField& mounted, cons
   const auto placed = FloatGrid::create(part.background());
   placed->setGridClass(openvdb::GRID_LEVEL_SET);
   placed->setTransform(asOpenVdb(base).grid().transform().copy());
-  // Both grids have one voxel size, so a pose in voxels has the same rotation. OpenVDB's vectors are rows.
+  // Both grids have the same voxel size, so the rotation is the same in voxels. OpenVDB uses row vectors.
   openvdb::Mat4d matrix = openvdb::Mat4d::identity();
   for (int row = 0; row < 3; ++row) {
     for (int col = 0; col < 3; ++col) matrix(row, col) = X_BM.R(col, row);

@@ -13,8 +13,8 @@
 namespace vps::bench {
 namespace {
 
-/// A shell of some of another's points. It is written to a file and read back, the public way to a shell of
-/// given points: reading sorts them and builds their spheres.
+/// A shell of some points of another shell. It is written to a file and read back, which is the public way to
+/// make a shell of given points: reading sorts the points and builds their spheres.
 PointShell shellOfSome(const PointShell& shell, const std::vector<bool>& is_kept) {
   const auto count = std::count(is_kept.begin(), is_kept.end(), true);
   const test::TemporaryFolder folder;
@@ -72,8 +72,8 @@ double voxelFor(const Mesh& mesh, int voxels) {
 
 PointShell shellOfSize(const Mesh& mesh, std::size_t points) {
   const auto wanted = static_cast<double>(points);
-  double spacing_m = std::sqrt(1.25 * area(mesh) / wanted);  // face points for each square of spacing
-  PointShell shell;                                          // the smallest so far that has enough
+  double spacing_m = std::sqrt(1.25 * area(mesh) / wanted);  // face points per square of the spacing
+  PointShell shell;  // the smallest shell so far that has enough points
   for (int attempt = 0; attempt < 8; ++attempt) {
     PointShell tried = buildPointShell(mesh, {spacing_m, 0.35});
     const auto count = static_cast<double>(tried.size());
@@ -98,7 +98,7 @@ std::shared_ptr<const Scene> sceneOf(Pair pair, const SceneSize& size) {
   static Kept kept;
   if (kept.scene && kept.pair == pair && kept.size == size) return kept.scene;
   const bool has_parts = kept.scene && kept.pair == pair && kept.size.coarser == size.coarser;
-  if (!has_parts) kept.scene.reset();  // before the next is built: both may be large
+  if (!has_parts) kept.scene.reset();  // released before the next scene is built, since both may be large
   auto scene = std::make_shared<Scene>();
   if (has_parts)
     *scene = *kept.scene;

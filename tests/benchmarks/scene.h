@@ -14,11 +14,11 @@ namespace vps::bench {
 
 enum class Pair { PegInPlate, PlanetInRing, RodInNut, RingOnItself };
 
-/// The size of the models. The defaults are those of the table; tests of the program use less.
+/// The size of the models. The defaults are the sizes of the table; tests of the program use smaller ones.
 struct SceneSize {
   std::size_t points = 185'030;  ///< the paper's load; the shell has exactly as many
-  int voxels = 512;              ///< along the longest side of the map's part
-  int coarser = 1;               ///< divides the meshes' steps; 1 gives about 200,000 triangles
+  int voxels = 512;              ///< number of voxels along the longest side of the map's part
+  int coarser = 1;               ///< divisor of the meshes' steps; 1 gives about 200,000 triangles
   bool operator==(const SceneSize&) const = default;
 };
 
@@ -27,35 +27,36 @@ struct Scene {
   VoxMapSettings settings;
   VoxMap map;
   PointShell shell;
-  std::shared_ptr<const RivalField> field;  ///< of meshToVolume with default settings
+  std::shared_ptr<const RivalField> field;  ///< field of meshToVolume with default settings
 };
 
 inline constexpr double kBandVoxels = 4;
 
-/// The two parts alone, map first.
+/// The meshes of the two parts, the part with the map first.
 std::pair<Mesh, Mesh> meshesOf(Pair pair, int coarser);
-/// Size of a voxel [m] of which `voxels` span the longest side.
+/// Size [m] of a voxel if `voxels` voxels span the longest side.
 double voxelFor(const Mesh& mesh, int voxels);
 /// A shell of exactly `points` points: the spacing is searched for, and the surplus points at the end of the
 /// progressive order are removed.
 PointShell shellOfSize(const Mesh& mesh, std::size_t points);
-/// The points first to first + count of a shell, as a shell.
+/// A shell of the points from first to first + count of a shell.
 PointShell patchOf(const PointShell& shell, std::size_t first, std::size_t count);
-/// Takes seconds. Deterministic. The last scene is kept, and the next one reuses its map or shell if they are
-/// the same.
+/// Builds a scene, deterministically; this takes seconds. The last scene is kept, and the next one reuses its
+/// map or shell if they are the same.
 std::shared_ptr<const Scene> sceneOf(Pair pair, const SceneSize& size);
 
 /// Pose of the shell's part in the map's part at a step; deterministic, never the same twice in a run.
 using Motion = std::function<Pose(int step)>;
 
-/// A peg that slides in and out of a bore, turning a little, pressed to one side. step_m: travel of its
-/// points each step.
+/// A peg that slides in and out of a bore, rotates a little and is pressed to one side. step_m: travel of its
+/// points in each step.
 Motion pegMotion(double step_m);
-/// A planet wheel that rolls in its ring, one flank touching.
+/// A planet wheel that rolls in its ring with one flank in contact.
 Motion gearMotion(double step_m);
-/// A rod that turns in its nut by its thread, to and fro by one turn, one side of its flanks touching.
+/// A rod that turns in its nut along the thread, by one turn forth and back, with one side of its flanks in
+/// contact.
 Motion screwMotion(double step_m);
-/// A planet wheel over the ring's face at 0.5 to 4 mm, turning and tilting.
+/// A planet wheel that turns and tilts at 0.5 to 4 mm above the ring's face.
 Motion hoverMotion(double step_m);
 /// A planet wheel that tumbles far from the ring.
 Motion freeMotion(double step_m);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Sizes of the timed parts, which their motions use too.
+// Sizes of the timed parts, for their meshes and their motions.
 #pragma once
 
 #include "support/fit.h"
@@ -8,15 +8,15 @@
 
 namespace vps::bench {
 
-/// Radial, of the peg in its bore.
+/// Radial clearance of the peg in its bore.
 inline constexpr double kPegClearance_m = 10e-6;
-/// Of each wheel, along the pitch circle.
+/// Backlash of each wheel along the pitch circle.
 inline constexpr double kBacklash_m = 20e-6;
-/// Radial, of the rod in its nut.
+/// Radial clearance of the rod in its nut.
 inline constexpr double kThreadClearance_m = 50e-6;
 inline constexpr double kNutCorner_m = 12e-3;
 
-/// Steps of a mesh, fewer for tests; still a multiple of what the shape needs.
+/// Number of steps of a mesh, divided by `coarser` and still a multiple of `multiple`.
 inline int coarsened(int steps, int coarser, int multiple) {
   const int fewer = steps / coarser / multiple * multiple;
   return fewer > multiple ? fewer : multiple;

@@ -12,16 +12,16 @@
 namespace vps::bench {
 
 struct SubjectOptions {
-  bool is_exhaustive = false;  ///< read every point
-  bool is_coherent = true;     ///< use temporal coherence; ignored when exhaustive
+  bool is_exhaustive = false;  ///< reads every point
+  bool is_coherent = true;     ///< uses temporal coherence; ignored if is_exhaustive
   std::string path = "best";   ///< one of instructionPaths()
 };
 
 /// The instruction sets that this build can use on this machine; "best" first.
 std::vector<std::string> instructionPaths();
 
-/// A shell against a map, step by step. Answers are those of one-sided contact with the trilinear gradient,
-/// like the rivals'.
+/// A shell against a map, step by step. Answers are for one-sided contact with the trilinear gradient, like
+/// those of the rivals.
 class Subject {
  public:
   /// Map and shell must outlive it.
@@ -34,7 +34,8 @@ class Subject {
   std::unique_ptr<State> state_;
 };
 
-/// Times mounting a second part on a base part at a pose; everything else is done before.
+/// Mounts a second part on a base part at a pose; the constructor does everything else, so that mount() can
+/// be timed.
 class Mounting {
  public:
   Mounting(const Mesh& base, const Mesh& mounted, const VoxMapSettings& settings);

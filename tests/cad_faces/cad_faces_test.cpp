@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Solids with curved faces, written as STEP and imported again: their triangles lie on their faces, and their
-// volumes are those of formulas.
+// Solids with curved faces, written as STEP and imported again: the triangles lie on the faces, and the
+// volumes agree with formulas.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -29,7 +29,7 @@ constexpr double kPi = std::numbers::pi;
 struct Solid {
   TopoDS_Shape shape;
   double volume_mm3 = 0;
-  /// Distance from the nearest of the surfaces that bound it.
+  /// Distance from the nearest surface that bounds the solid.
   std::function<double(const Vec3&)> distance_mm;
 };
 
@@ -45,7 +45,8 @@ Solid crossDrilled(double R, double r) {
   out.shape = BRepAlgoAPI_Cut(BRepPrimAPI_MakeCylinder(R, length).Shape(),
                               BRepPrimAPI_MakeCylinder(along_x, r, 4 * R).Shape())
                   .Shape();
-  // What both cylinders share: slices across y are rectangles. By y = r sin(t), which is smooth at the ends.
+  // Volume of the intersection of both cylinders, whose slices across y are rectangles. The substitution y =
+  // r sin(t) makes the integrand smooth at the ends.
   constexpr int kSlices = 2000;
   double common = 0;
   for (int i = 0; i < kSlices; ++i) {
@@ -69,7 +70,7 @@ Solid ballRace(double R, double groove) {
                                 .Shape();
   const gp_Ax2 middle(gp_Pnt(0, 0, width / 2), gp_Dir(0, 0, 1));
   out.shape = BRepAlgoAPI_Cut(ring, BRepPrimAPI_MakeTorus(middle, R, groove).Shape()).Shape();
-  // Half a disc on its way round: Pappus.
+  // The volume of half a disc that is swept around the axis, by Pappus's theorem.
   const double half_disc = kPi * groove * groove / 2, center = R - 4 * groove / (3 * kPi);
   out.volume_mm3 = kPi * (R * R - bore * bore) * width - 2 * kPi * center * half_disc;
   out.distance_mm = [=](const Vec3& p) {
@@ -80,7 +81,8 @@ Solid ballRace(double R, double groove) {
   return out;
 }
 
-/// A ball with a hole through its middle: its volume is that of a ball as wide as the hole is long.
+/// A ball with a hole through its middle. Its volume is that of a ball whose diameter is the length of the
+/// hole.
 Solid drilledBall(double R, double r) {
   Solid out;
   const gp_Ax2 along_z(gp_Pnt(0, 0, -2 * R), gp_Dir(0, 0, 1));
@@ -100,7 +102,7 @@ class CadFaces : public testing::Test {
   void SetUp() override { Message::DefaultMessenger()->ChangePrinters().Clear(); }
   void TearDown() override { std::filesystem::remove(file_); }
 
-  /// Imports the solid as it stands somewhere.
+  /// Imports the solid at another pose and compares it with the formulas.
   void expectAsDrawn(const Solid& solid, double turn_rad, double deflection_mm) {
     gp_Trsf turn, shift;
     turn.SetRotation(gp_Ax1(gp_Pnt(0, 0, 0), gp_Dir(1, 2, 3)), turn_rad);
@@ -123,7 +125,7 @@ class CadFaces : public testing::Test {
       const gp_Pnt p = gp_Pnt(1e3 * center_W.x(), 1e3 * center_W.y(), 1e3 * center_W.z()).Transformed(back);
       worst_mm = std::max(worst_mm, solid.distance_mm({p.X(), p.Y(), p.Z()}));
     }
-    // Open CASCADE keeps the deflection at some points; importing accepts three times as much.
+    // Open CASCADE checks the deflection only at some points; the import accepts three times the deflection.
     EXPECT_LE(worst_mm, 3 * deflection_mm + 1e-6);
     EXPECT_LE(worst_mm, 1e3 * *part.deflection_m + 1e-6);
     const double slack_m3 = 3e-3 * deflection_mm * area(part.mesh);
@@ -135,7 +137,7 @@ class CadFaces : public testing::Test {
       ("vps_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) + ".step");
 };
 
-// With triangles as Open CASCADE makes them without points inside faces, all of these shafts are wrong.
+// If Open CASCADE makes triangles without points inside faces, all of these shafts are wrong.
 TEST_F(CadFaces, CrossDrilledShafts) {
   for (const double R : {2.0, 10.0})
     for (const double share : {0.1, 0.5, 0.95})

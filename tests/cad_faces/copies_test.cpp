@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Shapes that are rigid copies of each other are triangulated once, and different ones in copies of the
-// process.
+// Shapes that are rigid copies of each other are triangulated once. Different shapes are triangulated in
+// parallel, in copies of the process.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -31,7 +31,8 @@
 namespace vps::scenes {
 namespace {
 
-/// A plate with a hole beside its middle, in millimetres: no motion but none takes it to itself.
+/// A plate with a hole that is not in its middle, in millimetres, so that only the identity maps it to
+/// itself.
 TopoDS_Shape plate(double hole_radius) {
   return BRepAlgoAPI_Cut(
              BRepPrimAPI_MakeBox(30, 20, 4).Shape(),
@@ -46,7 +47,7 @@ gp_Trsf someMotion(int i) {
   return shift * turn;
 }
 
-/// A copy of all its geometry, as in a file without instances.
+/// A moved copy of the shape with its own geometry, as in a file without instances.
 TopoDS_Shape copied(const TopoDS_Shape& shape, const gp_Trsf& motion) {
   return BRepBuilderAPI_Transform(shape, motion, true).Shape();
 }
@@ -63,7 +64,8 @@ ImportSettings tenMicrometres() {
   return settings;
 }
 
-/// The greatest distance of the corners of one mesh from those of another, which has them in the same order.
+/// The greatest distance between corresponding vertices of two meshes, which have their vertices in the same
+/// order.
 double farthest_m(const ImportedPart& a, const ImportedPart& b) {
   double farthest_m = 0;
   for (std::size_t i = 0; i < a.mesh.vertices.size(); ++i) {
@@ -104,7 +106,7 @@ TEST_F(Copies, HaveTheSameTrianglesAndEachItsPlace) {
   for (std::size_t i = 1; i < 5; ++i) {
     EXPECT_EQ(cad.parts[i].mesh.vertices, cad.parts[0].mesh.vertices);
     EXPECT_EQ(cad.parts[i].mesh.triangles, cad.parts[0].mesh.triangles);
-    // A corner of the plate, which someMotion() takes there; the file has 15 digits.
+    // The position to which someMotion() moves a corner of the plate; the file has 15 digits.
     const gp_Pnt corner = gp_Pnt(30, 20, 4).Transformed(someMotion(int(i)));
     const gp_Pnt first = gp_Pnt(30, 20, 4).Transformed(someMotion(0));
     const Vec3 wanted_m = 1e-3 * Vec3(corner.X(), corner.Y(), corner.Z()),
@@ -173,7 +175,7 @@ TEST(ForkedWorkers, AreOtherProcesses) {
 TEST(ForkedWorkers, ThatEndEarlyLoseNothing) {
   const pid_t here = ::getpid();
   const auto make = [&](std::size_t i) {
-    if (i % 7 == 3 && ::getpid() != here) ::_exit(3);  // as by a crash
+    if (i % 7 == 3 && ::getpid() != here) ::_exit(3);  // simulates a crash
     return std::to_string(i);
   };
   const std::vector<std::string> results = import::madeInCopies(upTo(30), make, {}, kCopies);

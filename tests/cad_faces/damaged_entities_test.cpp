@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// STEP files with one damaged or unknown entity: read exactly if no geometry is lost, else refused.
+// STEP files with one damaged or unknown entity are read exactly if no geometry is lost, and refused
+// otherwise.
 #include <algorithm>
 #include <fstream>
 #include <iterator>
@@ -82,13 +83,13 @@ std::string withLines(const std::string& text, const std::string& lines) {
   return replaced(text, "ENDSEC;\nEND-ISO", lines + "\nENDSEC;\nEND-ISO");
 }
 
-/// An instance of one type: where each parameter is in the text.
+/// An instance of one type, with the places of its parameters in the text.
 struct Instance {
   std::string type;
   std::vector<std::pair<std::size_t, std::size_t>> parameters;  ///< from, length
 };
 
-/// The instances of a DATA section that have one type; of (A() B()) the types are found one by one.
+/// The instances in a DATA section, each with its type; in (A() B()) each type is an instance of its own.
 std::vector<Instance> instancesOf(const std::string& text) {
   std::vector<Instance> found;
   const auto isWord = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
@@ -117,7 +118,7 @@ std::vector<Instance> instancesOf(const std::string& text) {
 TEST_F(DamagedEntities, WhatIsNoGeometryIsReadWithARemark) {
   const std::string sound = written(true);
   const std::vector<Truth> truth = truthOf(sound);
-  // Lines that are added; true: a remark is due.
+  // Lines that are added, and whether a remark is expected.
   const std::vector<std::pair<std::string, bool>> lines = {
       {"DRAUGHTING_PRE_DEFINED_COLOUR('red');", false},
       {"DRAUGHTING_PRE_DEFINED_COLOUR(3);", true},
@@ -139,7 +140,7 @@ TEST_F(DamagedEntities, WhatIsNoGeometryIsReadWithARemark) {
       {"PROPERTY_DEFINITION_REPRESENTATION(#99999,#99998);", true},
       {"CALENDAR_DATE(2020,1.5,'x');", true},
       {"PERSON(1,2,3,$,$,$);", true},
-      {"ADVANCED_FACE('',(#99999),#99998,.F.);", true},  // of no shape
+      {"ADVANCED_FACE('',(#99999),#99998,.F.);", true},  // it belongs to no shape
       {"CARTESIAN_POINT('',('here'));", true},
       {"SOMETHING_THAT_NOBODY_KNOWS('a',#99999,3.);", true},
       {"(SOMETHING_ELSE('a')THAT_NOBODY_KNOWS(3.));", false},
@@ -156,7 +157,7 @@ TEST_F(DamagedEntities, WhatIsNoGeometryIsReadWithARemark) {
   }
 }
 
-/// With another item in the first representation of a solid.
+/// The text with another item in the first representation of a solid.
 std::string withItem(const std::string& text, const std::string& lines) {
   const std::size_t at = text.find(')', text.find("ADVANCED_BREP_SHAPE_REPRESENTATION("));
   return withLines(std::string(text).insert(at, ",#900100"), "#900100=" + lines);
@@ -179,7 +180,8 @@ TEST_F(DamagedEntities, AnItemOfAnUnknownKindIsReadOnlyIfItIsNoShape) {
     EXPECT_NE(error.find(std::string(kind) + " is of a kind that is not read"), std::string::npos) << error;
   }
   EXPECT_FALSE(read(withItem(sound, "CARTESIAN_POINT('',#99999);"), error));
-  EXPECT_FALSE(read(replaced(withItem(sound, "X();"), "#900100=X();", ""), error));  // it is not in the file
+  EXPECT_FALSE(
+      read(replaced(withItem(sound, "X();"), "#900100=X();", ""), error));  // the entity is not in the file
 }
 
 TEST_F(DamagedEntities, ASolidOfAPrimitiveKindIsLeftOutWithAWarning) {
@@ -268,7 +270,7 @@ TEST_F(DamagedEntities, DamageBesideTheShapeIsARemark) {
   }
 }
 
-// The numbers of entities: whatever the header says, however great they are, and with comments behind them.
+// Numbers of entities are read for any header, up to any size, and with comments after them.
 TEST_F(DamagedEntities, NumbersOfEntitiesAreReadAsTheyAre) {
   const std::string sound = written(false);
   const std::vector<Truth> truth = truthOf(sound);
@@ -296,7 +298,7 @@ TEST_F(DamagedEntities, NumbersOfEntitiesAreReadAsTheyAre) {
     ASSERT_TRUE(cad) << error;
     expectSame(*cad, truth, true, text.substr(0, 2000));
     EXPECT_TRUE(cad->warnings.empty());
-    // Without one point.
+    // The text without one point.
     const std::size_t at = text.find(" CARTESIAN_POINT("), from = text.rfind('\n', text.rfind('#', at)) + 1;
     EXPECT_FALSE(read(std::string(text).erase(from, text.find(';', at) + 1 - from), error));
     EXPECT_NE(error.find("of its geometry cannot be read"), std::string::npos) << error;
@@ -347,7 +349,7 @@ TEST_F(DamagedEntities, AnAngleUnitThatIsDamagedIsReadUnlessTheShapeDependsOnIt)
   }
   EXPECT_FALSE(read(inDegrees(with_cone, "#900102", "#99999"), error));
   EXPECT_NE(error.find("conversion_factor"), std::string::npos) << error;
-  // Of a box nothing depends on angles, unless a surface is trimmed by parameters.
+  // A box does not depend on angles, unless a surface is trimmed by parameters.
   const std::string box = inDegrees(written(false, false), "#900102", "#99999");
   const auto cad = read(box, error);
   ASSERT_TRUE(cad) << error;
@@ -362,7 +364,7 @@ TEST_F(DamagedEntities, AnAngleUnitThatIsDamagedIsReadUnlessTheShapeDependsOnIt)
 
 TEST_F(DamagedEntities, LostGeometryIsRefused) {
   const std::string sound = written(true);
-  // Types with the numbers of the parameters that are geometry.
+  // Types, each with the indices of the parameters that are geometry.
   const std::vector<std::pair<std::string, std::vector<std::size_t>>> places = {
       {"ADVANCED_FACE", {1, 2, 3}},
       {"FACE_BOUND", {1, 2}},
@@ -398,7 +400,7 @@ TEST_F(DamagedEntities, LostGeometryIsRefused) {
       for (const std::string& damage :
            {std::string("#99999"), std::string("'text'"), std::string("#900100")}) {
         const auto [from, length] = first_of.at(type).parameters.at(k);
-        // Of a list, the last entry.
+        // In a list, the last entry is damaged.
         const bool is_list = sound[from] == '(';
         const std::size_t at = is_list ? sound.find_last_of("(,", from + length - 2) + 1 : from;
         const std::size_t end = from + length - (is_list ? 1 : 0);
@@ -407,7 +409,7 @@ TEST_F(DamagedEntities, LostGeometryIsRefused) {
         EXPECT_FALSE(read(text, error)) << type << ", parameter " << k + 1 << " is " << damage;
       }
   }
-  // Entities that are missing altogether, or of which nobody knows the kind.
+  // Entities that are missing, or whose type is unknown.
   for (const char* type : {"VERTEX_POINT", "ADVANCED_FACE", "CLOSED_SHELL", "MANIFOLD_SOLID_BREP", "CIRCLE",
                            "EDGE_CURVE", "PLANE", "ADVANCED_BREP_SHAPE_REPRESENTATION"}) {
     std::string text = sound;
@@ -419,7 +421,8 @@ TEST_F(DamagedEntities, LostGeometryIsRefused) {
   }
 }
 
-// One entity of each type, and each of the assembly, whatever Open CASCADE would take for it.
+// One entity of each type, and each entity of the assembly. Open CASCADE must not use another entity in its
+// place.
 TEST_F(DamagedEntities, AMissingEntityIsNotReplacedByAnother) {
   const std::string sound = written(false);
   const std::vector<Truth> truth = truthOf(sound);
@@ -436,7 +439,7 @@ TEST_F(DamagedEntities, AMissingEntityIsNotReplacedByAnother) {
     const std::string what = sound.substr(at + 1, end - at);
     const auto cad = read(std::string(sound).erase(at, end + 1 - at), error);
     ++(cad ? read_whole : refused);
-    if (cad && cad->parts.size() < truth.size())  // the shape is of no product
+    if (cad && cad->parts.size() < truth.size())  // the shape belongs to no product
       EXPECT_NE(cad->warnings.at(0).find("belongs to no product that is placed"), std::string::npos) << what;
     else if (cad)
       expectSame(*cad, truth, false, what);
@@ -445,7 +448,7 @@ TEST_F(DamagedEntities, AMissingEntityIsNotReplacedByAnother) {
   EXPECT_GT(read_whole, 3);
 }
 
-// Wherever the damage is: what is read is as the sound file has it.
+// Wherever the damage is, the parts that are read must be those of the sound file.
 TEST_F(DamagedEntities, NoDamageGivesAnotherVolumeOrPlace) {
   const std::string sound = written(false);
   const std::vector<Truth> truth = truthOf(sound);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reads CAD files that a test has damaged, and compares them with the sound one.
+// Reads CAD files that a test has damaged, and compares them with the sound file.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -16,8 +16,8 @@
 
 namespace vps::scenes {
 
-/// What is compared of a part. Volumes of round parts are those of their triangles, so that they are compared
-/// with those of the sound file; the box's is known by its edges.
+/// The data of a part that are compared. The volume of a round part depends on its triangles and is compared
+/// with that of the sound file; the volume of the box is known from its edges.
 struct Truth {
   std::string name;
   double volume_m3 = 0;
@@ -28,7 +28,7 @@ class DamagedFile : public testing::Test {
  protected:
   void SetUp() override { Message::DefaultMessenger()->ChangePrinters().Clear(); }
 
-  /// The parts, or the error's text.
+  /// Returns the parts; if the file is refused, the text of the error is in `error`.
   std::optional<ImportedCad> read(const std::string& text, std::string& error,
                                   const char* name = "rig.step") {
     const std::string file = (folder_.path() / name).string();
@@ -52,7 +52,7 @@ class DamagedFile : public testing::Test {
     return facts;
   }
 
-  /// Names may be others where the damage is to a name.
+  /// With same_names false, names may differ, since a name is damaged.
   static void expectSame(const ImportedCad& cad, const std::vector<Truth>& truth, bool same_names,
                          const std::string& what) {
     const std::vector<Truth> found = factsOf(cad);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// IGES files with damaged entities: read exactly if no geometry is lost, else refused, or the fault is told.
+// IGES files with damaged entities are read exactly if no geometry is lost; otherwise they are refused, or
+// the fault is reported.
 #include <algorithm>
 #include <map>
 #include <sstream>
@@ -22,7 +23,7 @@ namespace {
 
 using DamagedIges = DamagedFile;
 
-/// The lines of an IGES file with a box of 10 x 20 x 30 mm, in that unit.
+/// The lines of an IGES file with a box of 10 x 20 x 30 mm, in the given unit.
 std::vector<std::string> igesLines(const char* unit) {
   IGESControl_Controller::Init();
   IGESControl_Writer writer(unit, 1);
@@ -41,7 +42,8 @@ std::string joined(const std::vector<std::string>& lines, const char* end) {
   return text;
 }
 
-// Line fonts, levels, views, labels and colours that lead nowhere, of the solid, a face and a point.
+// References of the solid, a face and a point to line fonts, levels, views, labels and colours that do not
+// exist.
 TEST_F(DamagedIges, AFileIsReadInItsUnitWhateverItsStyles) {
   std::string error;
   for (const char* unit : {"MM", "CM", "M", "IN", "FT", "UM"}) {
@@ -53,7 +55,8 @@ TEST_F(DamagedIges, AFileIsReadInItsUnitWhateverItsStyles) {
       expectSame(*cad, truth, true, unit);
     }
     for (const char* type : {"186", "510", "116"})
-      for (const int field : {3, 4, 5, 7, 12}) {  // of eight columns; from 10 on in the second line
+      for (const int field :
+           {3, 4, 5, 7, 12}) {  // fields have eight columns; fields from 10 on are in the second line
         std::vector<std::string> lines = sound;
         auto line = std::ranges::find_if(lines, [&](const std::string& each) {
           return each.size() > 72 && each[72] == 'D' && each.substr(5, 3) == type;
@@ -69,7 +72,7 @@ TEST_F(DamagedIges, AFileIsReadInItsUnitWhateverItsStyles) {
   }
 }
 
-// A colour that IGES has no number for is an entity, in which a text stands in place of its red.
+// A colour without a number in IGES is an entity; here a text replaces its red value.
 TEST_F(DamagedIges, AColourThatIsDamagedIsNoGeometry) {
   IGESControl_Controller::Init();
   Handle(TDocStd_Document) document;
@@ -96,8 +99,8 @@ TEST_F(DamagedIges, AColourThatIsDamagedIsNoGeometry) {
   EXPECT_NEAR(massProperties(cad->parts.at(0).mesh).volume_m3, 6e-6, 1e-14);
 }
 
-// The parameters of one entity of each type of an IGES box, one after the other. Open CASCADE makes a face
-// less of a list of vertices with a text in it, and says nothing: then the open edges are told of.
+// Damages the parameters of one entity of each type of an IGES box, one after the other. If a text is in a
+// list of vertices, Open CASCADE drops a face without a message; the import then reports the open edges.
 TEST_F(DamagedIges, AFileIsReadWholeOrRefusedOrItsFaultIsTold) {
   std::vector<std::string> lines = igesLines("MM");
   constexpr std::size_t kData = 64, kSection = 72;  // columns

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Parts whose faces have colours of their own: a box with six, written by Open CASCADE as STEP and as glTF.
+// Parts whose faces have different colours: a box with six colours, written by Open CASCADE as STEP and as
+// glTF.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -30,7 +31,8 @@
 namespace vps::scenes {
 namespace {
 
-// Of the faces to -x, x, -y, y, -z, z: the order in which Open CASCADE's box has them.
+// Colours of the faces that point to -x, x, -y, y, -z, z, which is the order of the faces in Open CASCADE's
+// box.
 constexpr std::array<Color, 6> kColors = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {0, 1, 1}, {1, 0, 1}}};
 
 std::size_t faceOf(const Vec3& n) {
@@ -55,7 +57,7 @@ class ColoredBox : public testing::Test {
 
   static Quantity_Color inOcct(const Color& c) { return {c[0], c[1], c[2], Quantity_TOC_RGB}; }
 
-  /// A box whose faces have the colours, or only the first `count` of them.
+  /// A box of which the first `count` faces have colours.
   TDF_Label box(std::size_t count = 6) {
     const TopoDS_Shape shape = BRepPrimAPI_MakeBox(gp_Pnt(-5, -10, -15), 10, 20, 30).Shape();
     BRepMesh_IncrementalMesh(shape, 0.1);
@@ -110,8 +112,8 @@ void expectSixColors(const ImportedPart& part) {
   }
 }
 
-/// In a picture of each side, its middle has that side's colour: bright where the colour is 1, at most what
-/// is mirrored of the sky where it is 0.
+/// In a picture of each side, the middle has the colour of this side: a channel is bright if it is 1, and at
+/// most as bright as the reflection of the sky if it is 0.
 void expectSixColorsInPictures(const Scene& scene) {
   viewer::Renderer renderer(viewer::drawnMeshes(scene));
   Snapshot shot;

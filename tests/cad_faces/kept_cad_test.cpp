@@ -58,7 +58,7 @@ TEST_F(KeptCad, ComesBackToTheBit) {
   EXPECT_EQ(second.format, "STEP");
   EXPECT_TRUE(first.states_unit && second.states_unit);
   EXPECT_EQ(second.warnings, first.warnings);
-  EXPECT_EQ(import::keptBytes(second), import::keptBytes(first));  // all that transfer() has
+  EXPECT_EQ(import::keptBytes(second), import::keptBytes(first));  // all data that transfer() returns
   EXPECT_EQ(second.parts[0].mesh.vertices, first.parts[0].mesh.vertices);
   EXPECT_EQ(second.parts[0].mesh.triangles, first.parts[0].mesh.triangles);
   EXPECT_EQ(second.parts[0].deflection_m, first.parts[0].deflection_m);
@@ -98,7 +98,7 @@ TEST_F(KeptCad, ThatIsDamagedOrForeignIsReadAgainAndReplaced) {
   EXPECT_EQ(import::keptBytes(importCad(step(), settings_)), import::keptBytes(first));
   ASSERT_EQ(warnings_.size(), 1U);
   EXPECT_NE(warnings_[0].find("made again"), std::string::npos) << warnings_[0];
-  // Whole, but no parts.
+  // The entry is complete, but does not contain parts.
   cache_.keep(madeFrom(), "something else");
   EXPECT_EQ(import::keptBytes(importCad(step(), settings_)), import::keptBytes(first));
   EXPECT_EQ(cache_.find(madeFrom()), import::keptBytes(first));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// STEP and IGES files whose unit of length is missing or none, and whose numbers are written in another way.
+// STEP and IGES files whose length unit is missing or invalid, and files with other notations of numbers.
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -20,7 +20,7 @@ namespace {
 
 class LengthUnits : public DamagedFile {
  protected:
-  /// A box of 10 x 20 x 30 in that unit; each entity is one line.
+  /// A box of 10 x 20 x 30 in the given unit; each entity is one line.
   std::string step(const char* unit = "MM") {
     const std::string file = (folder_.path() / "sound.step").string();
     STEPControl_Writer writer;
@@ -47,7 +47,7 @@ class LengthUnits : public DamagedFile {
   }
 };
 
-/// From `from` up to before `end`.
+/// Replaces the text from `from` up to, but without, `end`.
 std::string replacedFrom(std::string text, const std::string& from, const std::string& end,
                          const std::string& by) {
   const std::size_t at = text.find(from);
@@ -71,7 +71,7 @@ TEST_F(LengthUnits, AStepFileWithoutOneIsInMillimetresOrInThatOfTheSettings) {
   const std::string sound = step();
   EXPECT_TRUE(readIn(sound, 25.4e-3).states_unit);
   EXPECT_NEAR(volumeOf(readIn(sound, 25.4e-3)), 6e-6, 1e-14);
-  // Without all units, and without that of length.
+  // The file without any units, and the file without the length unit.
   const std::size_t at = sound.find("GLOBAL_UNIT_ASSIGNED_CONTEXT((") + 30, comma = sound.find(',', at) + 1;
   for (const std::string& text : {withoutUnit(sound), std::string(sound).erase(at, comma - at)}) {
     const ImportedCad assumed = readIn(text, std::nullopt);

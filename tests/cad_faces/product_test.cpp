@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Products as STEP files: trees, names, several solids in one product, and what is wrong with them.
+// Products as STEP files: trees, names, several solids in one product, and faults.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -89,7 +89,7 @@ TEST_F(Product, OfTwelveSolidsIsOneGroupBesideItsSocket) {
   TopoDS_Compound solids;
   const BRep_Builder builder;
   builder.MakeCompound(solids);
-  for (int i = 0; i < 12; ++i) builder.Add(solids, box(2, 2 * i));  // each touches the next
+  for (int i = 0; i < 12; ++i) builder.Add(solids, box(2, 2 * i));  // each solid touches the next
   const TDF_Label plug = part(solids, "plug"), socket = part(box(30), "socket"), all = assembly("product");
   place(all, socket, gp_Vec(0, 0, 0));
   place(all, plug, gp_Vec(0, 0, 40));
@@ -143,7 +143,7 @@ TEST_F(Product, AnEmptyAssemblyBesidePartsIsNothing) {
   EXPECT_EQ(namesOf(written()), Names{"block"});
 }
 
-// A ball needs four times as many triangles for a quarter of the deflection, a box none.
+// A ball needs four times as many triangles for a quarter of the deflection, a box needs no more.
 TEST_F(Product, DeflectionFollowsThePart) {
   const TDF_Label all = assembly("product");
   place(all, part(BRepPrimAPI_MakeCylinder(200, 5).Shape(), "disc"), gp_Vec(0, 0, 0));

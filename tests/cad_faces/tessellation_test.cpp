@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Families of solids whose triangles are right, and each again with a fault of which the answer is known.
+// Families of solids whose triangles are correct, and the same solids with a fault whose effect is known.
 #include "occt/tessellation.h"
 
 #include <gtest/gtest.h>
@@ -87,15 +87,16 @@ TEST(Tessellation, ATriangleAcrossAHoleOfAFlatFaceIsSeen) {
   const Tessellation found = compared(shape, settings(), 1000);
   EXPECT_FALSE(found.isTrusted());
   EXPECT_EQ(found.uncovered, 1);
-  EXPECT_EQ(found.off, 0);  // all of it lies on the face
+  EXPECT_EQ(found.off, 0);  // all triangles lie on the face
   EXPECT_GT(found.open_edges, 0U);
-  // As wide as the hole: the root of its area.
+  // The deviation is the width of the hole, the square root of its area.
   EXPECT_NEAR(found.deviation_m, 1e-3 * std::sqrt(std::numbers::pi * 4), 0.2e-3);
   EXPECT_NE(inWords(found, settings()).find("span a hole"), std::string::npos);
 }
 
 TEST(Tessellation, AHoleIsSeenFromTheAreaThatChordsOfItsRimCanHave) {
-  // Its rim is 2 pi r long, and 100 x 20 mm around; chords may take three deflections of both.
+  // The rim of the hole is 2 pi r long and the outline of the plate 240 mm; chords may deviate by three
+  // deflections from both.
   for (const double radius_mm : {0.5, 2.0}) {
     const TopoDS_Shape shape = plate(1, radius_mm);
     mesh(shape);
@@ -120,14 +121,14 @@ TEST(Tessellation, ATriangleThatIsMissingOpensASolid) {
 TEST(Tessellation, TrianglesOutsideOfTheirFacesBoundsAreSeen) {
   const TopoDS_Shape shape = plate(0, 1);
   mesh(shape);
-  // The same area, moved along the face.
+  // Triangles with the same area, moved along the face.
   setTriangles(faceAt(shape, 5), {{1, 0, 5}, {101, 0, 5}, {101, 20, 5}, {1, 20, 5}}, {{1, 2, 3}, {1, 3, 4}});
   const Tessellation found = compared(shape, settings(), 1000);
   EXPECT_EQ(found.outside, 1);
   EXPECT_FALSE(found.isTrusted());
 }
 
-/// Faces without a solid, as IGES has them.
+/// Faces without a solid, as in IGES.
 TEST(Tessellation, LooseFacesThatCloseHaveTheirVolumeChecked) {
   BRepBuilderAPI_Sewing sewing(1e-3);
   for (TopExp_Explorer it(plate(2, 3), TopAbs_FACE); it.More(); it.Next()) sewing.Add(it.Current());
@@ -137,7 +138,7 @@ TEST(Tessellation, LooseFacesThatCloseHaveTheirVolumeChecked) {
   mesh(shell);
   const Tessellation right = compared(shell, settings(), 1000);
   EXPECT_TRUE(right.isTrusted()) << inWords(right, settings());
-  // A face turned inside out: each triangle is where it should be, and the volume is not.
+  // A face is turned inside out: each triangle is in its right place, but the volume is wrong.
   const TopoDS_Face top = faceAt(shell, 5);
   TopLoc_Location location;
   const Handle(Poly_Triangulation) own = BRep_Tool::Triangulation(top, location);

@@ -10,7 +10,7 @@ namespace {
 
 using test::ChildProcess;
 
-/// Two pins that are set down on a plate, which nothing guides.
+/// Two pins that are set down on a plate without a guide.
 class AskProgram : public Program {
  protected:
   void SetUp() override {
@@ -46,7 +46,7 @@ class AskProgram : public Program {
   }
   void startDevice() { device_ = start({"device", "--stay"}, "device.txt"); }
   Ran ask(const std::string& what) const { return run("ask " + what + " --session " + session_); }
-  /// Until `vps ask who` says these words.
+  /// Waits until `vps ask who` prints these words.
   bool whoSays(const std::string& words, double limit_s = 60) {
     return test::NodeProcesses::waitFor(
         [&] {
@@ -60,7 +60,7 @@ class AskProgram : public Program {
   }
 
   std::string session_ = "ask-" + std::to_string(getpid()), who_;
-  /// Apart from the test's folder, in which a refused request leaves nothing unfinished.
+  /// A folder of its own, since a refused request must leave nothing unfinished in the test's folder.
   fs::path out_ = fs::temp_directory_path() / session_;
   ChildProcess render_, device_, watch_;
 };
@@ -101,7 +101,7 @@ TEST_F(AskProgram, PartsAreTakenAndReleasedOnRequest) {
 }
 
 TEST_F(AskProgram, AnotherSceneIsSentOnceRunsAndIsRecorded) {
-  fs::remove(fs::current_path() / "run_2.mcap");  // of a run that was stopped
+  fs::remove(fs::current_path() / "run_2.mcap");  // the recording of a run that was stopped
   startRender({"--stay"});
   startDevice();
   ASSERT_TRUE(whoSays("step 1 of 2")) << texts();
@@ -113,14 +113,14 @@ TEST_F(AskProgram, AnotherSceneIsSentOnceRunsAndIsRecorded) {
   const std::string hash = who_.substr(who_.find("(scene ") + 7, 32);
   EXPECT_TRUE(fs::exists(folder_ / "cache/scenes" / (hash + ".scene")));
   expectRefused("ask load 00000000000000000000000000000000 --session " + session_, "is not known here");
-  ASSERT_TRUE(whoSays("no run")) << texts();  // it has ended, and waits
+  ASSERT_TRUE(whoSays("no run")) << texts();  // the run has ended, and render waits
   EXPECT_EQ(ask("stop-recording").status, 0);
   EXPECT_EQ(ask("load " + hash).status, 0);
   EXPECT_TRUE(whoSays("step 1 of 2")) << texts();
   EXPECT_EQ(who_.find("recorded in"), std::string::npos) << who_;
   render_.interrupt();
   render_.wait();
-  // The recording stands in the folder in which vps render was started.
+  // The recording is in the folder in which vps render was started.
   const fs::path file = fs::current_path() / "run_2.mcap";
   const Ran replayed = run("replay '" + file.string() + "' --out replayed");
   EXPECT_NE((replayed.out + replayed.err).find("the same bits"), std::string::npos)

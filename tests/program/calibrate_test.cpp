@@ -11,7 +11,7 @@ namespace vps {
 namespace {
 
 TEST_F(Program, ADevicesPlaceIsFoundFromTouchedPoints) {
-  // Shifted by (1, 2, 3) m and turned by a quarter about z: x goes to y.
+  // The device is shifted by (1, 2, 3) m and rotated by a quarter turn about z, so that x becomes y.
   write("touched.csv",
         "x, y, z, room x, room y, room z\n0, 0, 0, 1, 2, 3\n0.1, 0, 0, 1, 2.1, 3\n0, 0.2, 0, 0.8, 2, 3\n"
         "0, 0, 0.1, 1, 2, 3.1  # up\n");
@@ -34,7 +34,8 @@ TEST_F(Program, ADevicesPlaceIsReadByDisplayFilesAndScenes) {
   write("wall.toml", wall + slurp(folder_ / "placement.toml"));
   const Ran shown = run("snapshot scene.toml -o wall.png --display wall.toml");
   EXPECT_EQ(shown.status, 0) << shown.err;
-  // For the scene's own file: a quarter of a room's metre is one of the scene's, in whatever unit it has.
+  // The placement for the scene file: a metre of the room is a quarter of a metre of the scene, whatever unit
+  // the scene file has.
   ASSERT_EQ(run("calibrate --points touched.csv --display bare.toml -o device.toml").status, 0);
   const std::string device = slurp(folder_ / "device.toml");
   EXPECT_NE(device.find("scale = 0.25"), std::string::npos) << device;
@@ -46,7 +47,7 @@ TEST_F(Program, ADevicesPlaceIsReadByDisplayFilesAndScenes) {
   expectRefused("explain crooked.toml", "placement");
 }
 
-/// The scene stands at (1, 0.2, 0.9) m in the room, turned a quarter, five times as large.
+/// The scene is at (1, 0.2, 0.9) m in the room, rotated by a quarter turn and five times as large.
 const std::string kRoom =
     "# Our wall. Größe: 1.6 m\n[scene] # stands on the table\npose = {position = [1, 0.2, 0.9], rpy_deg = "
     "[0, "
@@ -54,10 +55,10 @@ const std::string kRoom =
     "lower_right = [0.8, 0, 0]\nupper_left = [-0.8, 0, 1.2]\n";
 const std::string kHead = "[[viewer]]\nhead = {position = [0, -1, 0.5], rpy_deg = [90, 0, 0]}  # Anna";
 const std::string kTouched =
-    "0,0,0,1,2,3\n0.1,0,0,1,2.1,3\n0,0.2,0,0.8,2,3\n0,0,0.1,1,2,3.1\n";  // as the first test's
+    "0,0,0,1,2,3\n0.1,0,0,1,2.1,3\n0,0.2,0,0.8,2,3\n0,0,0.1,1,2,3.1\n";  // as in the first test
 
 TEST_F(Program, ACalibrationIsWrittenIntoDisplayFileAndSceneSoThatTheHandIsWhereItsPartIsDrawn) {
-  // Twelve points of the workspace, touched with 0.2 mm of error along each axis (standard deviation).
+  // Twelve points of the workspace, touched with an error of 0.2 mm along each axis (standard deviation).
   const Pose X_SD(rotationFromVector(Vec3(0.05, -0.1, 1.2)), Vec3(0.8, 0.3, 0.7));
   std::mt19937 random(7);
   std::normal_distribution<double> draw;
@@ -89,7 +90,8 @@ TEST_F(Program, ACalibrationIsWrittenIntoDisplayFileAndSceneSoThatTheHandIsWhere
   for (const Vec3& p_D : places_D) {
     const Vec3 p_W = *scene.device.placement * Vec3(scene.device.scale * p_D);
     const Vec3 drawn_S = display.X_SW * Vec3(display.scale * p_W);
-    // The least squares reduce the errors of the points, so that no place is off by more than the greatest.
+    // Least squares reduce the errors of the points, so that no position is off by more than the greatest of
+    // them.
     EXPECT_LT((drawn_S - X_SD * p_D).norm(), greatest_m);
     EXPECT_LT((*display.X_SD * p_D - drawn_S).norm(), 1e-8) << "9 digits are written";
   }
@@ -101,7 +103,7 @@ TEST_F(Program, ACalibrationLeavesAllElseOfAFileAsItIs) {
   ASSERT_NE(printed.find(key), std::string::npos) << printed;
   const std::size_t at = printed.find(key) + key.size();
   const std::string found = printed.substr(at, printed.find('\n', at) - at);
-  // Before and after, with '@' for what was found.
+  // Texts before and after; '@' stands for the placement that was found.
   const std::array<std::array<std::string, 2>, 6> texts = {{
       {kRoom + kHead, kRoom + kHead + "\n\n[device]\nplacement = @\n"},
       {kRoom + "[device]  # the arm\n# to be measured\n" + kHead,

@@ -12,7 +12,7 @@ using nlohmann::json;
 
 class Check : public Program {
  protected:
-  /// A plate, and a pin of 8 mm in height whose foot is this far above its top.
+  /// A plate, and a pin of 8 mm in height whose foot is gap_mm above the top of the plate.
   std::string scene(double gap_mm, const std::string& more = "") const {
     return "unit = 'mm'\n[[part]]\nfile = 'plate.stl'\nfixed = true\n[[part]]\nfile = 'pin.stl'\n" + more +
            "pose = {position = [0, 0, " + std::to_string(9 + gap_mm) + "]}\n";
@@ -25,7 +25,8 @@ TEST_F(Check, AGapAContactAndAClashHaveTheirExitStatusAndNumbers) {
     int status;
     const char* state;
   };
-  // 20 um up, the pin is free; 1.2 mm up, it is not where it is drawn any more.
+  // With an overlap of 20 um, the pin is free at a place that is 20 um higher; 1.2 mm would be too far from
+  // the drawn place.
   for (const Case& c :
        {Case{0.02, 0, "apart"}, Case{0, 0, "contact"}, Case{-0.02, 0, "clash"}, Case{-1.2, 1, "clash"}}) {
     write("drawn.toml", scene(c.gap_mm));
@@ -49,7 +50,7 @@ TEST_F(Check, AGapAContactAndAClashHaveTheirExitStatusAndNumbers) {
 TEST_F(Check, AStepsTargetIsWhereThePartIsChecked) {
   write("drawn.toml", scene(5) + "[[step]]\npart = 'pin'\ntarget = {position = [0, 0, 8.95]}\n");
   const Ran ran = run("check drawn.toml --no-play");
-  // It is free where it is as much higher.
+  // The pin is free at a place that is higher by the overlap.
   EXPECT_EQ(ran.status, 0) << ran.out << ran.err;
   EXPECT_NE(ran.out.find("can be assembled: free if 'pin' moves by 0.0500 mm along +z"), std::string::npos)
       << ran.out;
@@ -125,7 +126,7 @@ TEST_F(Check, WritesCsvAndAPageAndRepeatsByteForByte) {
       slurp(folder_ / "a.csv").starts_with("what,a,b,quantity,value,error\npair,plate,pin,clearance_m,"));
   EXPECT_NE(slurp(folder_ / "a.html").find("No parts overlap as drawn"), std::string::npos);
   EXPECT_NE(slurp(folder_ / "a.html").find("Clearance on the surfaces"), std::string::npos);
-  // Sideways and up the pin is free, down it has the gap.
+  // The pin is free sideways and upwards, and has the gap downwards.
   const json& pin = a["parts"][1];
   EXPECT_TRUE(pin["play_m"][4].is_null());
   EXPECT_NEAR(pin["play_m"][5], 20e-6, 1e-6);
@@ -141,7 +142,7 @@ TEST_F(Check, ACadFileNeedsItsUnitAndASceneDoesNotTakeOne) {
   expectRefused("check plate.stl --units um --json plate.stl", "plate.stl");
 }
 
-// The pin stands on a sheet of two facets, of which nobody knows which side is inside.
+// The pin stands on a sheet of two facets, which has no inside.
 TEST_F(Check, ASheetInAPartIsNotShownAndSaysWhy) {
   write("sheet.obj", "v -5 -5 0\nv 5 -5 0\nv 5 5 0\nv -5 5 0\nf 1 2 3\nf 1 3 4\n");
   write("drawn.toml", "unit = 'mm'\n[[part]]\nfile = 'sheet.obj'\n[[part]]\nfile = 'pin.stl'\n");
@@ -153,7 +154,7 @@ TEST_F(Check, ASheetInAPartIsNotShownAndSaysWhy) {
 
 TEST_F(Check, PartsOfTheWrongUnitAreNamed) {
   write("speck.stl", stlBox(Vec3(1e-3, 1e-3, 1e-3)));
-  const Ran ran = run("check speck.stl --units um");  // the import warns of it as well
+  const Ran ran = run("check speck.stl --units um");  // the import warns about the size as well
   EXPECT_EQ(ran.status, 2);
   EXPECT_NE(ran.err.find("part 'speck': is 1e-09 m large; a check measures parts of 10 um to 1 km"),
             std::string::npos)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vps export, and vps query on what it wrote.
+// vps export, and vps query of the exported files.
 #include <nlohmann/json.hpp>
 
 #include "program.h"
@@ -14,7 +14,7 @@ class Export : public Program {
   json read(const std::string& name) const { return json::parse(slurp(folder_ / name)); }
 };
 
-// One pose 10 um inside and one 10 um outside: see QueryWritesTheDocumentedKeys.
+// One pose is 10 um inside and one 10 um outside: see QueryWritesTheDocumentedKeys.
 constexpr const char* kPoses = "0,0,0.00901,0,0,0,1\n0,0,0.00899,0,0,0,1\n";
 
 TEST_F(Export, TheExportedModelsGiveTheSameAnswerAsTheMeshes) {
@@ -32,12 +32,12 @@ TEST_F(Export, TheExportedModelsGiveTheSameAnswerAsTheMeshes) {
   const Ran both = run("query plate.vdb pin.ply" + options + "models.json");
   ASSERT_EQ(both.status, 0) << both.err;
   EXPECT_NE(both.out.find("one-sided query"), std::string::npos) << both.out;
-  // Both formats store every value to the bit, so that the answers are equal to the bit.
+  // Both formats store every value exactly, so the answers are equal to the bit.
   const json mesh = read("mesh.json"), models = read("models.json");
   EXPECT_EQ(mesh["poses"], models["poses"]);
   EXPECT_EQ(mesh["voxel_m"], models["voxel_m"]);
 
-  // One file and one mesh.
+  // A query of one exported file and one mesh.
   ASSERT_EQ(run("query plate.vdb pin.stl --units mm --spacing 1mm" + options + "map.json").status, 0);
   ASSERT_EQ(run("query plate.stl pin.ply --units mm --voxel 0.5mm" + options + "shell.json").status, 0);
   EXPECT_EQ(read("map.json")["poses"], mesh["poses"]);
@@ -55,7 +55,8 @@ TEST_F(Export, SeveralFilesAreWrittenAtOnceAndThePartOfASceneIsChosenByName) {
   EXPECT_GT(files[1]["points"], 250);
   EXPECT_LT(files[1]["points"], 2000);
   for (const char* file : {"a.vdb", "a.ply", "a.stl"}) EXPECT_GT(fs::file_size(folder_ / file), 100u) << file;
-  // In the part's own frame: the scene places the pin 9.1 mm up, the file has it at the origin.
+  // The file is in the part's own frame: the scene places the pin 9.1 mm higher, in the file it is at the
+  // origin.
   const Ran imported = run("import a.stl -o again --units m");
   EXPECT_NE(imported.out.find("4.00 x 4.00 x 8.00"), std::string::npos) << imported.out;
 }
@@ -69,7 +70,7 @@ TEST_F(Export, WhatCannotBeExportedIsRefusedAndLeavesNoFile) {
   expectRefused("export scene.toml -o a.vdb", "has several parts; choose one with --part: plate, pin");
   expectRefused("export scene.toml --part screw -o a.vdb",
                 "part 'screw': is not in the scene; its parts are: plate, pin");
-  // The first file could be written, the second not: neither appears.
+  // The first file can be written and the second cannot, so neither must appear.
   expectRefused("export plate.stl --units mm -o good.stl -o /dev/null/a.vdb", "/dev/null/a.vdb");
   EXPECT_FALSE(fs::exists(folder_ / "good.stl"));
   ASSERT_EQ(run("export plate.stl --units mm --voxel 1mm -o plate.vdb").status, 0);

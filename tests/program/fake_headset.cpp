@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A runtime of OpenXR for tests, which the loader finds by XR_RUNTIME_JSON: a headset whose pictures are
-// files, whose wearer is a file, and which writes down each call that the specification does not allow then.
+// An OpenXR runtime for tests, which the loader finds by XR_RUNTIME_JSON. It writes the pictures of its
+// headset to files, reads the wearer's hand from a file, and lists each call that the specification does not
+// allow at its time.
 //
 // In the folder that VPS_FAKE_HEADSET names:
 //   left.ppm, right.ppm   the newest pictures
-//   frames.txt            how many pairs there were
-//   errors.txt            what was called wrongly, one line each
-//   trembles.txt          amplitudes, one line each
+//   frames.txt            number of pairs of pictures
+//   errors.txt            calls that were not allowed, one line each
+//   trembles.txt          amplitudes of vibrations, one line each
 //   hand.txt              read: "x y z taking" of the right controller, in the room [m]; it points along -z
-//   leave.txt             read: once it is there, the session is ended by its wearer
+//   leave.txt             read: the wearer ends the session as soon as this file exists
 #include <epoxy/gl.h>
 #include <epoxy/glx.h>
 #define XR_USE_PLATFORM_XLIB
@@ -49,7 +50,7 @@ struct Swapchain {
   bool is_acquired = false, is_waited = false, was_released = false;
 };
 
-// One of each, which is all that one program needs.
+// The state of the one session that a program has.
 bool asked_requirements = false, is_begun = false, frame_waited = false, frame_begun = false,
      is_attached = false, was_synced = false, is_leaving = false;
 long frame_count = 0;
@@ -59,7 +60,7 @@ XrPath nextPath(const std::string& text) {
   return paths.try_emplace(text, paths.size() + 1).first->second;
 }
 std::map<XrAction, XrActionType> actions;
-std::map<XrSpace, int> spaces;  // -1: the room, else the hand
+std::map<XrSpace, int> spaces;  // -1: the room, otherwise the hand
 int handOf(XrPath path) {
   return path == nextPath("/user/hand/left") ? 0 : 1;
 }
@@ -197,7 +198,7 @@ XrResult createActionSpace(XrSession, const XrActionSpaceCreateInfo* info, XrSpa
 XrResult destroySpace(XrSpace) {
   return XR_SUCCESS;
 }
-/// "x y z taking"; false: there is no controller.
+/// Reads "x y z taking" from hand.txt. Returns false if there is no controller.
 bool readHand(double (&p)[3], int& is_taking) {
   std::ifstream file(folder() / "hand.txt");
   return static_cast<bool>(file >> p[0] >> p[1] >> p[2] >> is_taking);
@@ -234,7 +235,7 @@ Swapchain& of(XrSwapchain chain) {
   return *reinterpret_cast<Swapchain*>(chain);
 }
 XrResult destroySwapchain(XrSwapchain chain) {
-  // Its images are textures of the session's context.
+  // The images of a swapchain are textures of the session's context.
   if (glXGetCurrentContext() == nullptr)
     return wrong("a swapchain destroyed without a context", XR_ERROR_RUNTIME_FAILURE);
   delete &of(chain);
@@ -271,7 +272,7 @@ XrResult waitFrame(XrSession, const XrFrameWaitInfo*, XrFrameState* state) {
   std::this_thread::sleep_for(std::chrono::milliseconds(20));
   frame_waited = true;
   state->predictedDisplayTime = 1'000'000'000 + 20'000'000 * frame_count;
-  state->predictedDisplayPeriod = 10'000'000'000;  // so slow a headset that pictures are drawn in full
+  state->predictedDisplayPeriod = 10'000'000'000;  // the headset is so slow that pictures are drawn in full
   state->shouldRender = XR_TRUE;
   return XR_SUCCESS;
 }
@@ -304,7 +305,7 @@ void savePicture(const XrSwapchainSubImage& place, const char* name) {
   {
     std::ofstream file(folder() / "unfinished.ppm", std::ios::binary);
     file << "P6 " << rect.extent.width << " " << rect.extent.height << " 255\n";
-    for (int y = rect.extent.height - 1; y >= 0; --y)  // OpenGL's rows begin at the bottom
+    for (int y = rect.extent.height - 1; y >= 0; --y)  // the first row of OpenGL is at the bottom
       file.write(reinterpret_cast<const char*>(rows.data()) +
                      3 * (static_cast<std::size_t>(rect.offset.y + y) * chain.width + rect.offset.x),
                  3 * rect.extent.width);
@@ -433,8 +434,8 @@ XrResult procAddr(XrInstance, const char* name, PFN_xrVoidFunction* found) {
   return *found == nullptr ? XR_ERROR_FUNCTION_UNSUPPORTED : XR_SUCCESS;
 }
 
-// Of the loader's interface (OpenXR loader specification, "Runtime interface negotiation"), whose header
-// Debian does not package.
+// Types of the loader's interface (OpenXR loader specification, "Runtime interface negotiation"), whose
+// header Debian does not package.
 struct LoaderInfo {
   std::uint32_t struct_type, struct_version;
   std::size_t struct_size;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The window of `vps view --headset` with a headset of this folder (fake_headset.cpp), through the loader of
-// OpenXR.
+// The window of `vps view --headset` with the headset of fake_headset.cpp, through the loader of OpenXR.
 #include <cmath>
 #include <fstream>
 #include <vector>
@@ -22,7 +21,7 @@ class Headset : public Window {
     if (IsSkipped()) return;
     write("runtime.json", R"({"file_format_version": "1.0.0", "runtime": {"library_path": ")" VPS_FAKE_RUNTIME
                           R"(", "name": "test headset"}})");
-    // The window inherits it.
+    // The window inherits this environment.
     display_ += "XR_RUNTIME_JSON='" + (folder_ / "runtime.json").string() + "' VPS_FAKE_HEADSET='" +
                 folder_.string() + "' ";
   }
@@ -30,7 +29,7 @@ class Headset : public Window {
     const std::string text = slurp(folder_ / "frames.txt");
     return text.empty() ? 0 : std::stoi(text);
   }
-  /// After `count` more pairs of pictures.
+  /// Waits for `count` more pairs of pictures.
   bool drew(int count) {
     const int first = frames();
     return soon([&] { return frames() >= first + count; });
@@ -95,14 +94,14 @@ TEST_F(Headset, ItsControllerTakesThePartInHandAndBringsItHome) {
   open("aside.toml --hand mouse --silent --headset --record taken.mcap");
   ASSERT_TRUE(soon([&] { return !outputOf("ls '" + folder_.string() + "' | grep unfinished").empty(); }));
   ASSERT_TRUE(drew(3));
-  // The table is made for what the tour shows first.
+  // The table is placed for the part that the tour shows first.
   const scenes::Scene scene = scenes::loadScene((folder_ / "aside.toml").string());
   const viewer::RenderScene drawn = viewer::drawnMeshes(scene);
   const viewer::TableRoom room =
       viewer::onTable(viewer::snapshotBounds(drawn, viewer::sceneTour(scene).at(0)));
   const scenes::SceneStep& step = scene.steps[0];
   const Vec3 middle_P = bounds(scene.parts[step.part].part.mesh).center();
-  const Vec3 from_R = room.toRoom(step.X_WP_start * middle_P) + Vec3(0, 0, 0.2);  // it points away
+  const Vec3 from_R = room.toRoom(step.X_WP_start * middle_P) + Vec3(0, 0, 0.2);  // the hand points away
   const Vec3 way_R = room.toRoom(step.X_WP_target * middle_P) - room.toRoom(step.X_WP_start * middle_P);
   std::this_thread::sleep_for(2s);  // the run shows the part in hand
   putHand(from_R, false);
@@ -121,7 +120,7 @@ TEST_F(Headset, ItsControllerTakesThePartInHandAndBringsItHome) {
   EXPECT_EQ(slurp(folder_ / "errors.txt"), "");
 
   const device::RecordedRun run = device::loadRecording((folder_ / "taken.mcap").string());
-  const scenes::Scene recorded = scenes::recordedScene(run);  // the timeline refers to it
+  const scenes::Scene recorded = scenes::recordedScene(run);  // the timeline refers to this scene
   const viewer::Timeline line = viewer::recordedTimeline(recorded, run);
   std::vector<Vec3> places_W;
   for (double t = 0; t < line.end_s; t += 0.02) {
@@ -129,7 +128,7 @@ TEST_F(Headset, ItsControllerTakesThePartInHandAndBringsItHome) {
     if (const scenes::BodySnapshot* body = viewer::partInHand(shot)) places_W.push_back(body->X_WP.p);
   }
   ASSERT_FALSE(places_W.empty());
-  // The step's tolerance, at its end; and at its beginning what the spring of a hand gives.
+  // The tolerance at the end is that of the step, at the beginning the deflection of the hand's spring.
   EXPECT_LT((places_W.front() - step.X_WP_start.p).norm(), 1e-3);
   EXPECT_LT((places_W.back() - step.X_WP_target.p).norm(), 0.5e-3);
 }

@@ -17,7 +17,7 @@ TEST_F(Program, AFilmHasAPictureForEachInstantAndIsOneFile) {
   ASSERT_EQ(run("assemble " + scene + " --out a --no-pictures --record run.mcap").status, 0);
   const std::string options = "video run.mcap -o run.mp4 --width 64 --height 48 --rate 2 --camera orbit";
   const Ran ran = run(options);
-  // The run takes some seconds: a picture at 0, 0.5, 1, ... s.
+  // The run takes some seconds; there is a picture at 0, 0.5, 1, ... s.
   std::size_t pictures = 0;
   for (const auto& entry : fs::directory_iterator(folder_ / "run_frames"))
     pictures += entry.path().extension() == ".png";
@@ -29,7 +29,7 @@ TEST_F(Program, AFilmHasAPictureForEachInstantAndIsOneFile) {
   if (has_ffmpeg) {
     EXPECT_EQ(slurp(folder_ / "run.mp4").substr(4, 4), "ftyp");
   }
-  // Without ffmpeg the pictures are there, and the message says what is missing.
+  // Without ffmpeg the pictures are written, and the message says that ffmpeg is missing.
   const Ran alone = run(options + " --frames alone; true");
   EXPECT_EQ(slurp(folder_ / "alone/000001.png"), slurp(folder_ / "run_frames/000001.png")) << alone.err;
 }
@@ -42,7 +42,7 @@ TEST_F(Program, AFilmHasTheSoundOfTheRunThatWasRecorded) {
   EXPECT_EQ(film.status, has("ffmpeg") ? 0 : 2) << film.err;
   EXPECT_NE(film.out.find("sound: at most"), std::string::npos) << film.out;
   EXPECT_TRUE(slurp(folder_ / "run_frames/sound.wav") == slurp(folder_ / "run.wav"))
-      << "the same bytes as those that were heard in the run itself";
+      << "the film has the same sound as the run itself, to the bit";
   if (has("ffprobe")) {
     std::system(("ffprobe -v error -show_entries stream=codec_type -of csv=p=0 '" +
                  (folder_ / "run.mp4").string() + "' > '" + (folder_ / "streams.txt").string() + "'")
@@ -67,7 +67,7 @@ TEST_F(Program, AFilmThatFollowsThePartBeginsWithItInTheMiddle) {
         bottom = std::max(bottom, y);
       }
   ASSERT_LT(top, bottom);
-  // As seen from above, by a thirtieth of the picture at most.
+  // The camera looks from above, which moves the middle of the part by at most a thirtieth of the picture.
   EXPECT_NEAR(0.5 * (top + bottom), 120, 8);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The three nodes as processes: one run, and what a kill of each does. tests/benchmarks/nodes does the same a
-// hundred times.
+// The three nodes as processes: one run, and the consequences of killing each node. tests/benchmarks/nodes
+// kills each node a hundred times.
 #include <nlohmann/json.hpp>
 
 #include "program.h"
@@ -15,8 +15,8 @@ class NodesProgram : public Program {
  protected:
   void SetUp() override {
     Program::SetUp();
-    // A pin that is set down on a plate, with the default device and operator. Nothing guides it: the
-    // tolerance is six deviations of the aim, and the hand may aim twice.
+    // A pin that is set down on a plate, with the default device and operator. The pin is not guided: the
+    // tolerance is six standard deviations of the aim, and the hand may aim twice.
     write("pin_down.toml",
           std::string(kScene) +
               "[[step]]\npart = 'pin'\nstart = {position = [0, 0, 12]}\ntarget = {position = [0, 0, 9]}\n"
@@ -48,8 +48,8 @@ TEST_F(NodesProgram, ThreeProcessesRunASceneAndAllSayTheVerdict) {
   EXPECT_EQ(nodes_->segments(), 0u);
 }
 
-// The bound of 20 ms is measured by the benchmark, on a machine that is idle. Here the device has to become
-// safe at all: that a busy machine's scheduler keeps it from running for longer is no failure.
+// The benchmark measures the bound of 20 ms on an idle machine. This test only requires that the device
+// becomes safe, since the scheduler of a busy machine may keep the device from running for longer.
 TEST_F(NodesProgram, ADeviceIsSafeWhenRenderIsKilledAndJoinsTheNextOne) {
   nodes_->startDevice();
   nodes_->startRender();
@@ -78,8 +78,8 @@ TEST_F(NodesProgram, PhysicsWaitsForAKilledDeviceAndTheNextOneFinishesTheStep) {
   EXPECT_NE(slurp(folder_ / "render.txt").find("the device is back"), std::string::npos) << texts();
 }
 
-// The simulated motors had no command for longer than their watchdog allows, and the hand did nothing more in
-// that step.
+// In an earlier version the simulated motors had no command for longer than their watchdog allows, and the
+// hand did nothing more in this step.
 TEST_F(NodesProgram, ASimulatedDeviceThatWasHeldUpGoesOn) {
   nodes_->startDevice();
   nodes_->startRender();
@@ -116,7 +116,7 @@ TEST_F(NodesProgram, BadSessionNamesAreRefused) {
     expectRefused(std::string(command) + " --session a/b", "letters, digits");
 }
 
-/// The same over UDP on this machine, with certificates.
+/// The nodes over UDP on this machine, with certificates.
 class NodesOverUdp : public NodesProgram {
  protected:
   void SetUp() override {
@@ -132,7 +132,8 @@ class NodesOverUdp : public NodesProgram {
     }
     nodes_.emplace(VPS_PROGRAM, (folder_ / "pin_down.toml").string(), session_, folder_, "lo");
   }
-  /// A process beside the nodes. `security`: folder below this test's; empty: none.
+  /// Starts another process in the session. `security`: folder of certificates below the test's folder;
+  /// empty: none.
   test::ChildProcess start(const std::string& command, const std::string& security,
                            const std::string& output) {
     std::vector<std::string> words = {VPS_PROGRAM, command, "--session", session_, "--network", "lo"};
@@ -148,7 +149,8 @@ TEST_F(NodesOverUdp, WithoutCertificatesNobodyReadsOrMovesAnything) {
   nodes_->security = (folder_ / "keys/render").string();
   nodes_->startRender();
   {
-    // Without any, of another authority, and a watcher that poses as a device.
+    // A device without a certificate, a device with a certificate of another authority, and a watcher that
+    // poses as a device.
     const test::ChildProcess bare = start("device", "", "bare.txt"),
                              foreign = start("device", "foreign_keys/device", "foreign.txt"),
                              posing = start("device", "keys/watch", "posing.txt"),
@@ -161,7 +163,7 @@ TEST_F(NodesOverUdp, WithoutCertificatesNobodyReadsOrMovesAnything) {
     for (const char* file : {"bare.txt", "foreign.txt", "spy.txt", "foreign_spy.txt"})
       EXPECT_TRUE(says(file, "waiting for")) << file << ": " << slurp(folder_ / file);
     EXPECT_TRUE(says("posing.txt", "Not Allowed By Security")) << slurp(folder_ / "posing.txt");
-    std::this_thread::sleep_for(std::chrono::seconds(2));  // another two tries of each to join
+    std::this_thread::sleep_for(std::chrono::seconds(2));  // time for two more attempts of each to join
   }
   for (const char* file : {"bare.txt", "foreign.txt", "posing.txt"})
     EXPECT_EQ(slurp(folder_ / file).find("joins"), std::string::npos) << slurp(folder_ / file);
@@ -176,7 +178,8 @@ TEST_F(NodesOverUdp, WithoutCertificatesNobodyReadsOrMovesAnything) {
   EXPECT_EQ(nodes_->watch.wait(), 0) << texts();
 }
 
-// The topics of ROS 2 are in clear, so a session with certificates does not get them by the way.
+// The topics of ROS 2 are not encrypted, so a session with certificates publishes them only if an option asks
+// for them.
 TEST_F(NodesOverUdp, RosTopicsOfASecuredSessionNeedAnOptionOfTheirOwn) {
   const std::string watch = "watch --network lo --session x --security keys/watch --ros 77";
   expectRefused(watch, "add --ros-in-clear");

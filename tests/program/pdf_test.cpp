@@ -21,7 +21,7 @@ TEST_F(Program, ThePageOfACheckIsPrintedAsPdf) {
 }
 
 TEST_F(Program, WithoutChromiumPdfIsRefusedBeforeTheWork) {
-  // Nothing is found by this PATH.
+  // No program is found in this PATH.
   const std::string command =
       "cd '" + folder_.string() + "' && PATH=/nowhere '" VPS_PROGRAM "' check scene.toml --pdf check.pdf";
   EXPECT_NE(std::system((command + " >out.txt 2>err.txt").c_str()), 0);

@@ -22,7 +22,7 @@ using nlohmann::json;
 
 class Plan : public Program {
  protected:
-  /// A plate, and a pin that stands on it.
+  /// A plate, and a pin that stands on the plate.
   static std::string scene() {
     return "name = 'pin \"1\"'\nunit = 'mm'\n[[part]]\nfile = 'plate.stl'\n[[part]]\nfile = 'pin.stl'\n"
            "friction = 0.3\npose = {position = [0, 0, 9]}\n[[step]]\npart = 'pin'\ntimeout_s = 7\n"
@@ -45,7 +45,7 @@ TEST_F(Plan, WritesASceneThatCanBeVerifiedAndKeepsItsSettings) {
        {"seed = 5", "timeout_s = 7", "friction = 0.3", "fixed = true", "name = \"pin \\\"1\\\"\""})
     EXPECT_NE(text.find(kept), std::string::npos) << kept << "\n" << text;
   EXPECT_EQ(run("plan --verify planned/scene.toml").status, 0);
-  // The same once more, from what was written.
+  // The plan is made again from the scene that was written.
   EXPECT_EQ(run("plan planned/scene.toml -o again").status, 0);
 }
 
@@ -53,7 +53,7 @@ TEST_F(Plan, AnEditThatBreaksAWayIsNamed) {
   write("drawn.toml", scene() +
                           "[[part]]\nfile = 'plate.stl'\nname = 'roof'\nfixed = true\n"
                           "pose = {position = [0, 0, 30]}\n");
-  const Ran ran = run("plan --verify drawn.toml");  // from above, through the roof
+  const Ran ran = run("plan --verify drawn.toml");  // the pin goes in from above, through the roof
   EXPECT_EQ(ran.status, 1) << ran.out << ran.err;
   EXPECT_NE(ran.out.find("leads through 'roof'"), std::string::npos) << ran.out;
 }
@@ -68,8 +68,8 @@ TEST_F(Plan, RefusesABaseThatIsNoPartAndAFolderWithAScene) {
   EXPECT_EQ(run("plan drawn.toml -o planned --force").status, 0);
 }
 
-/// An OBJ file of boxes in millimetres: name, least and greatest corner. Boxes of one name that follow one
-/// another are one part.
+/// An OBJ file of boxes in millimetres: name, least and greatest corner. Consecutive boxes with the same name
+/// are one part.
 struct NamedBox {
   std::string name;
   std::array<double, 3> min, max;
@@ -139,7 +139,7 @@ TEST_F(Plan, NothingToAssembleIsSaid) {
   EXPECT_NE(ran.out.find("No part can be taken off"), std::string::npos) << ran.out << ran.err;
 }
 
-// As `vps import` takes them.
+// The files as `vps import` accepts them.
 TEST_F(Plan, SeveralCadFilesAreOneAssemblyForPlanAssembleAndCheck) {
   write("plate.obj", objOf({kPlate}));
   write("block.obj", objOf({{"block", {20, 20, 10}, {40, 40, 30}}}));
@@ -173,14 +173,15 @@ TEST_F(Plan, PartsFarFromTheirOriginKeepTheirGap) {
   for (const json& pair : found["pairs"])
     if ((pair["a"] == "post" && pair["b"] == "block") || (pair["a"] == "block" && pair["b"] == "post")) {
       is_found = true;
-      // Floats about the middle of parts of 60 mm.
+      // The tolerance is the rounding of floats in parts of 60 mm.
       EXPECT_NEAR(pair["clearance_m"].get<double>(), 40e-6, 2 * 0.06 * 0x1p-24);
     }
   EXPECT_TRUE(is_found) << found["pairs"].dump(1);
 }
 
-// Stopped at times all over a plan's duration (multiples of the golden ratio, which spread evenly) until one
-// is after the first part was taken off and before the end. On a loaded machine this takes more tries.
+// Planning is stopped at times that are spread evenly over its duration (multiples of the golden ratio),
+// until one stop is after the first part was removed and before the end. On a loaded machine this takes more
+// tries.
 TEST_F(Plan, WhatItFoundWhenItWasStoppedIsKeptAndResumed) {
   std::vector<NamedBox> boxes = {kPlate};
   for (int i = 0; i < 120; ++i) {
@@ -194,7 +195,7 @@ TEST_F(Plan, WhatItFoundWhenItWasStoppedIsKeptAndResumed) {
   };
   const Clock::time_point begun = Clock::now();
   ASSERT_EQ(run("plan many.obj --units mm -o whole").status, 0);
-  double whole_s = secondsSince(begun);  // as long as it takes now
+  double whole_s = secondsSince(begun);  // the duration of the whole plan at the present load
   constexpr int kMostTries = 300;
   constexpr double kGoldenRatio = 0.6180339887498949;
   const fs::path unfinished = folder_ / "planned/unfinished_plan.json";
@@ -207,7 +208,7 @@ TEST_F(Plan, WhatItFoundWhenItWasStoppedIsKeptAndResumed) {
                                 "' plan many.obj --units mm -o planned >out.txt 2>&1 </dev/null";
     const Clock::time_point from = Clock::now();
     const bool is_finished = std::system(command.c_str()) == 0;
-    // Where no try is late any more, the machine has become slower.
+    // If all tries stop too early, the machine has become slower.
     whole_s = is_finished ? secondsSince(from) : 1.05 * whole_s;
     is_stopped =
         !is_finished && fs::exists(unfinished) && !json::parse(slurp(unfinished))["taken_off"].empty();
@@ -241,8 +242,8 @@ TEST_F(Plan, TheTableOfAFolderHasARowForEachAssembly) {
   EXPECT_NE(table.find("| c.step |"), std::string::npos) << table;
 }
 
-// A tongue in its groove: walls keep both from parting, so that they are joined before they go into the
-// pocket.
+// A tongue in its groove. The walls of the pocket keep them together, so they are joined before they go into
+// the pocket.
 TEST_F(Plan, SubassembliesOfACadFileAreAssembledBeforeTheProductThatMountsThem) {
   write("product.obj", objOf({{"pocket", {-25, -15, -5}, {25, 15, 0}},
                               {"pocket", {-25, -15, -5}, {-20.1, 15, 20}},
@@ -263,14 +264,14 @@ TEST_F(Plan, SubassembliesOfACadFileAreAssembledBeforeTheProductThatMountsThem) 
   EXPECT_EQ(first["steps"].size(), 1U);
   EXPECT_EQ(product["steps"][0]["part"], "subassembly_1");
   EXPECT_EQ(json::parse(slurp(folder_ / "whole.json"))["steps"], product["steps"]);
-  // The status is good only if both are.
+  // The status is 0 only if both verdicts are good.
   const bool fits = first["verdict"] == "fits" && product["verdict"] == "fits";
   EXPECT_EQ(ran.status == 0, fits) << ran.out << ran.err;
   EXPECT_LT(ran.out.find("\nsubassembly_1\n"), ran.out.find("\nproduct\n")) << ran.out;
   EXPECT_NE(ran.out.rfind("run/subassembly_1/report.html"), std::string::npos) << ran.out;
 }
 
-// Two links of a chain leave a plate as one, and then not each other. The product is run all the same.
+// Two links of a chain leave a plate together and cannot be separated. The product is run nevertheless.
 TEST_F(Plan, ASubassemblyThatCannotBeTakenApartDoesNotKeepTheProductFromBeingRun) {
   write("product.obj", objOf({{"plate", {-10, -10, -40}, {70, 50, -30}},
                               {"flat", {0, 0, -2}, {40, 4, 2}},
@@ -291,7 +292,7 @@ TEST_F(Plan, ASubassemblyThatCannotBeTakenApartDoesNotKeepTheProductFromBeingRun
   EXPECT_EQ(product["steps"][0]["part"], "subassembly_1");
 }
 
-// Names of files are cut and kept apart; those of parts stay as they are, as far as they are text.
+// File names are shortened and made unique. Part names stay unchanged if they are text.
 TEST_F(Plan, AnyNamesOfPartsMakeASceneThatIsReadAgain) {
   const std::string longest(300, 'x');
   write("product.obj", objOf({kPlate,
@@ -323,7 +324,7 @@ TEST_F(Plan, AnyNamesOfPartsMakeASceneThatIsReadAgain) {
   EXPECT_EQ(meshes, 8U);
 }
 
-// What a designer does: each fault is in the words of the answer.
+// Faults of drawings as designers make them: the answer names each fault.
 TEST_F(Plan, FaultsOfTheDrawingAreNamed) {
   const auto wordsOf = [&](const std::vector<NamedBox>& boxes, int status) {
     write("product.obj", objOf(boxes));
@@ -368,7 +369,7 @@ TEST_F(Plan, FaultsOfTheDrawingAreNamed) {
   const std::string through = wordsOf(row(2), 0);
   EXPECT_NE(through.find("6 parts hang together by overlaps of up to 2.000 mm"), std::string::npos)
       << through;
-  // As panels of a box are that are to be glued.
+  // Like panels of a box that are to be glued.
   const std::string glued = wordsOf(row(0.19), 0);
   EXPECT_EQ(glued.find("hang together"), std::string::npos) << glued;
   EXPECT_EQ(glued.find("each in a frame of its own"), std::string::npos) << glued;

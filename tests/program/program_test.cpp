@@ -56,7 +56,7 @@ TEST_F(Program, TradePrintsAFidelityToPasteOrReportsThatNoneQualifies) {
   const Ran picked = run("trade scene.toml --tolerance 20um");
   EXPECT_EQ(picked.status, 0) << picked.err;
   EXPECT_NE(picked.out.find("[fidelity]\nvoxel = \""), std::string::npos) << picked.out;
-  // A scene file accepts what was printed.
+  // A scene file accepts the printed lines.
   write("picked.toml", std::string(kScene) + picked.out);
   EXPECT_EQ(run("simulate picked.toml --seconds 0.01").status, 0);
 
@@ -120,7 +120,7 @@ TEST_F(Program, LinksAndPipesAreNotReplacedByFiles) {
   for (const char* link : {"link.json", "dangling.json"}) EXPECT_TRUE(fs::is_symlink(folder_ / link)) << link;
   for (const char* file : {"old.json", "new.json"}) EXPECT_TRUE(json::accept(slurp(folder_ / file))) << file;
 
-  // Opened for reading first, so that the program finds a reader; a pipe's buffer holds all that it writes.
+  // The pipe is opened for reading first, so that the program finds a reader. Its buffer holds all output.
   const fs::path pipe = folder_ / "pipe";
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
   const int reader = open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
@@ -134,7 +134,8 @@ TEST_F(Program, LinksAndPipesAreNotReplacedByFiles) {
 }
 
 TEST_F(Program, MeshesThatMakeTheAnswerUncertainGiveWarnings) {
-  // One triangle of twelve left out: the count at byte 80, then 50 bytes each.
+  // One of twelve triangles is left out. The number of triangles is at byte 80, followed by 50 bytes for each
+  // triangle.
   std::string open_box = stlBox(Vec3(4, 4, 8));
   open_box[80] = 11;
   open_box.resize(84 + 11 * 50);
@@ -159,7 +160,7 @@ TEST_F(Program, MeshesThatMakeTheAnswerUncertainGiveWarnings) {
 }
 
 TEST_F(Program, ADepthBeyondTheBandIsReportedAsABound) {
-  // The plate is 10 mm thick: in its middle the pin is 5 mm deep, and the band is 4 voxels wide.
+  // The plate is 10 mm thick. In its middle the pin is 5 mm deep, and the band is 4 voxels wide.
   const std::string call = "query plate.stl pin.stl --units mm --spacing 1mm --json a.json --voxel ";
   const Ran deep = run(call + "0.25mm");
   EXPECT_NE(deep.out.find("< -1000.00"), std::string::npos) << deep.out;
@@ -167,7 +168,7 @@ TEST_F(Program, ADepthBeyondTheBandIsReportedAsABound) {
   const Ran shallow = run(call + "0.25mm --pose 0,0,0.0085,0,0,0,1");
   const json pose = json::parse(slurp(folder_ / "a.json"))["poses"][0];
   EXPECT_EQ(shallow.out.find("< -"), std::string::npos) << shallow.out;
-  // Half the step in which the map stores distances: the 1 mm band / 32767.
+  // The tolerance is half the step in which the map stores distances, 1 mm / 32767.
   EXPECT_NEAR(pose["min_distance_m"], -500e-6, 0.51e-3 / 32767);
   EXPECT_EQ(pose["is_depth_saturated"], false);
 }
@@ -242,7 +243,8 @@ TEST_F(Program, QuerySaysWhichVoxelsItChoseAndThoseOfB) {
 }
 
 TEST_F(Program, QueryWritesTheDocumentedKeys) {
-  // The pin's foot is at -4 mm, the plate's top at 5 mm: 9.01 mm leave 10 um, 8.99 mm press 10 um.
+  // The pin's foot is at -4 mm and the plate's top at 5 mm, so at 9.01 mm there is a gap of 10 um, and at
+  // 8.99 mm an overlap of 10 um.
   write("poses.txt", "0,0,0.00901,0,0,0,1\n0,0,0.00899,0,0,0,1\n0,0,1,0,0,0,1\n");
   const std::string call =
       "query plate.stl pin.stl --units mm --voxel 0.5mm --spacing 1mm --poses poses.txt --json ";
@@ -259,7 +261,7 @@ TEST_F(Program, QueryWritesTheDocumentedKeys) {
     for (const char* key : {"min_distance_m", "max_depth_m", "contact_count", "points_total", "points_tested",
                             "force_N", "torque_Nm"})
       EXPECT_TRUE(pose.contains(key)) << key;
-  // Flat faces: the field is exact there but for its storage, int16 over a band of 4 voxels of 0.5 mm (61
+  // At flat faces the field is exact except for its storage as int16 over a band of 4 voxels of 0.5 mm (61
   // nm).
   constexpr double kTol_m = 0.1e-6;
   EXPECT_NEAR(answer["poses"][0]["min_distance_m"], 10e-6, kTol_m);
@@ -288,7 +290,7 @@ TEST_F(Program, ImportWritesASceneThatLoads) {
   const json answer = json::parse(slurp(folder_ / "import.json"));
   ASSERT_EQ(answer["parts"].size(), 1u);
   EXPECT_EQ(answer["parts"][0]["closed"], true);
-  // The written mesh is imported again: 20 mm survive the conversion to float metres and back.
+  // The written mesh is imported again; 20 mm must survive the conversion to metres as float and back.
   const Ran again =
       run("import imported/" + answer["parts"][0]["file"].get<std::string>() + " -o again --units m");
   ASSERT_EQ(again.status, 0) << again.err;
@@ -315,13 +317,13 @@ TEST_F(Program, ImportKeepsTheColorsOfFaces) {
     const auto& t = tip.mesh.triangles[i];
     const Vec3& a = tip.mesh.vertices[t[0]];
     const Vec3 n = (tip.mesh.vertices[t[1]] - a).cross(tip.mesh.vertices[t[2]] - a).normalized();
-    const float grey = 0.21404f;  // of 0.5, IEC 61966-2-1
+    const float grey = 0.21404f;  // linear value of 0.5, IEC 61966-2-1
     const scenes::Color truth = n.z() < -0.9   ? scenes::Color{1, 0, 0}
                                 : n.y() < -0.9 ? scenes::Color{0, 0, 1}
                                                : scenes::Color{grey, grey, grey};
     for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(tip.face_colors.at(i)[k], truth[k], 1e-4) << i;
   }
-  // A colour that the scene gives is for all of the part.
+  // A colour in the scene file applies to the whole part.
   const std::string text = slurp(folder_ / "imported/scene.toml");
   const std::size_t at = text.find("pose = ");
   ASSERT_NE(at, std::string::npos);
@@ -347,7 +349,7 @@ TEST_F(Program, SimulateWritesTheDocumentedKeys) {
   }
   const std::string trace = slurp(folder_ / "a.csv");
   EXPECT_EQ(std::count(trace.begin(), trace.end(), '\n'), 1 + answer["steps"].get<int>());
-  // Free fall from 0.1 mm: after 10 ms it has fallen g t^2 / 2 = 0.49 mm, so it has landed.
+  // In free fall from 0.1 mm the pin would fall g t^2 / 2 = 0.49 mm in 10 ms, so it has landed.
 }
 
 TEST_F(Program, SimulateJudgesOverlapByExactDistanceAndItsExitStatusTells) {
@@ -365,7 +367,8 @@ TEST_F(Program, SimulateJudgesOverlapByExactDistanceAndItsExitStatusTells) {
   EXPECT_TRUE(judged["is_within_limit"]);
   EXPECT_LE(judged["max_depth_m"].get<double>(), judged["limit_m"].get<double>());
 
-  // It falls on something soft: 1e8 N/m^3 on 16 mm^2 carry the weight of 10 mN at 6 um, and the fall at more.
+  // The pin falls on a soft plate: 1e8 N/m^3 on 16 mm^2 carry its weight of 10 mN at a depth of 6 um; the
+  // impact is deeper.
   write("soft.toml", scene("contact = \"penalty\"\n") + "pose = {position = [0, 0, 9.5]}\n");
   const Ran soft = run("simulate soft.toml --seconds 0.05 --judge-every 1 --json soft.json");
   EXPECT_EQ(soft.status, 1) << soft.out << soft.err;
@@ -380,7 +383,7 @@ TEST_F(Program, SimulateJudgesOverlapByExactDistanceAndItsExitStatusTells) {
   ASSERT_EQ(starts.size(), 1U);
   EXPECT_NEAR(starts[0]["depth_m"].get<double>(), 0.5e-3, 1e-6);
 
-  // Apart by 0.05 m/s: 0.5 mm take 10 ms.
+  // The parts separate at 0.05 m/s, so 0.5 mm take 10 ms.
   const Ran stuck = run("simulate inside.toml --seconds 0.004 --judge-every 1 --json stuck.json");
   EXPECT_EQ(stuck.status, 1) << stuck.out << stuck.err;
   EXPECT_NE(stuck.err.find("they did not come apart"), std::string::npos) << stuck.err;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Invalid input and use: status 2, one line that says what is wrong and what would help, and no file is
-// changed.
+// Invalid input and use: the exit status is 2, one line says what is wrong and what would help, and no file
+// is changed.
 #include "program.h"
 
 namespace vps {
@@ -86,7 +86,8 @@ TEST_F(Program, RenamedOptionsAreRefused) {
 }
 
 TEST_F(Program, APlaceThatCannotBeWrittenIsReportedBeforeTheWork) {
-  // /dev/null is not a folder, not even for root. The input is missing too, but the place is reported first.
+  // /dev/null is not a folder, not even for root. The input is missing too, but the output folder is reported
+  // first.
   expectRefused("assemble gone.toml --out /dev/null/out", "/dev/null/out");
   expectRefused("assemble gone.toml --json /dev/null/a.json", "/dev/null/a.json");
   expectRefused("simulate gone.toml --trace /dev/null/a.csv", "/dev/null/a.csv");

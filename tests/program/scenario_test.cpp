@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The sample scenes from end to end, checked by the data that the runs write.
+// The sample scenes from end to end, checked by the data that their runs write.
 #include "program.h"
 
 #include <nlohmann/json.hpp>
@@ -15,7 +15,7 @@ class Scenario : public Program {
  protected:
   json read(const std::string& name) const { return json::parse(slurp(folder_ / name)); }
 
-  /// The peg in hole with other lines for its step; meshes by absolute path.
+  /// Writes the peg-in-hole scene with other lines for its step, and with absolute paths of its meshes.
   void writePegScene(const std::string& peg, const std::string& step) const {
     const std::string folder = kScenes + "peg_in_hole/";
     write("scene.toml", "unit = 'mm'\n[[part]]\nfile = '" + folder +
@@ -45,7 +45,7 @@ TEST_F(Scenario, BearingBlockGoesTogetherByContact) {
     EXPECT_LE(step["penetration_limit_m"].get<double>(), 10e-6) << part;
     EXPECT_LE(step["rest_drift_m"].get<double>(), 5e-6) << part;
     EXPECT_GE(step["rest_s"].get<double>(), 2 - 1e-9) << part;
-    // By contact: the part touched others on the way, and the hand felt a force at the end.
+    // The step was made by contact: the part touched others on its way, and the hand felt a force at the end.
     EXPECT_GE(step["impacts"].get<int>() + step["slides"].get<int>(), 1) << part;
     EXPECT_GT(step["peak_force_N"].get<double>(), 1) << part;
     EXPECT_LE(step["peak_force_N"].get<double>(), 30) << part;  // the device's peak, Table 1
@@ -69,13 +69,14 @@ TEST_F(Scenario, ARealTimeRunReportsItsTimingAndExitsWithItsVerdict) {
   EXPECT_EQ(ran.status, is_good ? 0 : 1) << ran.out << ran.err;
   const json& haptic = data["wall"]["haptic"];
   const long ticks = data["haptic"]["ticks"].get<long>();
-  // Both threads run by one clock, so they have equally many periods, up to the rest of one at the end.
+  // Both threads use one clock, so they have the same number of periods, except for a part of a period at the
+  // end.
   const long periods = ticks + haptic["missed"].get<long>(),
              steps =
                  data["physics"]["ticks"].get<long>() + data["wall"]["physics"]["missed_periods"].get<long>();
   EXPECT_GT(ticks, 1000);
-  // The haptic loop goes on while the step is judged and the next field cooked, which takes more than a
-  // second: its periods cover 99 % of the run here, and 76 % if it stopped meanwhile.
+  // The haptic loop continues while the step is judged and the next field is built, which takes more than a
+  // second. Its periods cover 99 % of this run; they would cover 76 % if it stopped meanwhile.
   EXPECT_GT(static_cast<double>(periods) / data["haptic"]["rate_hz"].get<double>(),
             0.9 * data["wall"]["run_s"].get<double>());
   EXPECT_EQ(data["wall"]["missed_while_cooking"].size(), data["steps"].size());
@@ -101,7 +102,7 @@ TEST_F(Scenario, SlowPhysicsWithLocalContactCompletesThePegToo) {
   writePegScene("pose = {position = [0, 0, -15]}\n",
                 "clearance = 0.05\n[fidelity]\nphysics_rate_hz = 100\nhaptic_rate_hz = 1000\n");
   const Ran ran = run("assemble scene.toml --out out --no-pictures --local-contact");
-  ASSERT_EQ(ran.status, 0) << ran.out << ran.err;  // lockstep, so every machine gives this
+  ASSERT_EQ(ran.status, 0) << ran.out << ran.err;  // in lockstep, so every machine gives this result
   const json data = read("out/assemble.json");
   EXPECT_TRUE(data["completed"].get<bool>()) << ran.out;
   EXPECT_LE(data["steps"][0]["max_penetration_m"].get<double>(), 10e-6);
@@ -111,7 +112,7 @@ TEST_F(Scenario, SlowPhysicsWithLocalContactCompletesThePegToo) {
   EXPECT_GT(data["local_contact"]["greatest_jump_m"].get<double>(), 0) << "local contact had no effect";
 }
 
-// What is not modelled is out of reach of every moving part, so no bit of the run changes.
+// Surfaces that are not modelled are out of reach of every moving part, so no bit of the run changes.
 TEST_F(Scenario, ModellingOnlyWhatTheSceneRequiresGivesTheSameRunForLessMemory) {
   const std::string scene = "assemble " + kScenes + "peg_in_hole/scene.toml --no-pictures --out ";
   ASSERT_EQ(run(scene + "spared").status, 0);
@@ -120,7 +121,7 @@ TEST_F(Scenario, ModellingOnlyWhatTheSceneRequiresGivesTheSameRunForLessMemory) 
   EXPECT_EQ(slurp(folder_ / "spared/steps.csv"), slurp(folder_ / "all/steps.csv"));
   const json spared = read("spared/assemble.json"), all = read("all/assemble.json");
   EXPECT_EQ(spared["widened"].get<int>(), 0);
-  // Measured 2.8 of 8.0 MB, and 2780 of 12843 points.
+  // Measured: 2.8 of 8.0 MB, and 2780 of 12843 points.
   EXPECT_LT(spared["modelled"]["bytes"].get<double>(), 0.5 * all["modelled"]["bytes"].get<double>());
   EXPECT_LT(spared["modelled"]["field_points"].get<double>(),
             0.4 * all["modelled"]["field_points"].get<double>());
@@ -135,16 +136,17 @@ TEST_F(Scenario, ExplainPrintsWhatIsModelledOfTheBearingBlockAndWhatThatSaves) {
   const json data = read("explain.json");
   EXPECT_EQ(data["parts"].size(), 10u);
   EXPECT_EQ(data["steps"].size(), 9u);
-  // Measured 53 of 91 MB, and 1595 of 63973 points.
+  // Measured: 53 of 91 MB, and 1595 of 63973 points.
   EXPECT_LT(data["modelled"]["bytes"].get<double>(), 0.65 * data["everything"]["bytes"].get<double>());
   EXPECT_LT(data["modelled"]["field_points"].get<double>(),
             0.1 * data["everything"]["field_points"].get<double>());
-  // Measured 1.6 of 3.5 s, on a machine that may be busy in only one of them: not compared.
+  // Measured: 1.6 of 3.5 s. The times are not compared, since the machine may be busy in only one of the
+  // runs.
   EXPECT_GT(data["wall"]["cook_s"].get<double>(), 0);
   EXPECT_GT(data["wall"]["everything"]["cook_s"].get<double>(), 0);
 }
 
-// A line each would bury what is modelled.
+// One line for each of many plates would hide the parts that are modelled.
 TEST_F(Scenario, ExplainPutsManyPartsThatNothingComesNearIntoOneRow) {
   const auto withPlates = [this](int count) {
     std::string scene = "unit = \"mm\"\n";
@@ -159,10 +161,10 @@ TEST_F(Scenario, ExplainPutsManyPartsThatNothingComesNearIntoOneRow) {
     EXPECT_EQ(ran.status, 0) << ran.err;
     return ran.out;
   };
-  // Plate 0 is near the pin, the others are alike: twelve have rows of their own.
+  // Plate 0 is near the pin and the others are equal; twelve others still have rows of their own.
   EXPECT_EQ(withPlates(13).find("others"), std::string::npos);
   const std::string out = withPlates(14);
-  // In the table of parts with the triangles of all thirteen, and in that of the steps.
+  // The row is in the table of parts, with the triangles of all thirteen plates, and in the table of steps.
   const std::size_t row = out.find("plate 1 and 12 others  neither");
   ASSERT_NE(row, std::string::npos) << out;
   EXPECT_NE(out.substr(row, out.find('\n', row) - row).find(" 156 "), std::string::npos) << out;
@@ -171,7 +173,7 @@ TEST_F(Scenario, ExplainPutsManyPartsThatNothingComesNearIntoOneRow) {
   EXPECT_EQ(read("plates.json")["parts"].size(), 15u);
 }
 
-// Measured 52 MB estimated and 61 built, with everything modelled 122 and 120; 4836 and 4982 points.
+// Measured: 52 MB estimated and 61 MB built; with everything modelled 122 and 120 MB; 4836 and 4982 points.
 TEST_F(Scenario, ExplainEstimatesWhatItMeasures) {
   const std::string call = "explain " + kScenes + "bearing_block/scene.toml --json ";
   const Ran ran = run(call + "estimated.json");
@@ -235,7 +237,7 @@ TEST_F(Scenario, ATargetBelowTheBottomIsNotReachedAndTheReasonIsGiven) {
 }
 
 TEST_F(Scenario, APartThatDriftsAfterReleaseIsNotShown) {
-  // Released at half depth with nothing below it, the peg falls.
+  // The peg is released at half depth with nothing below it, so it falls.
   writePegScene("", "start = {position = [0, 0, -5]}\ntarget = {position = [0, 0, -8]}\n");
   const Ran ran = run("assemble scene.toml --out out");
   EXPECT_EQ(ran.status, 3) << ran.out << ran.err;
@@ -243,14 +245,15 @@ TEST_F(Scenario, APartThatDriftsAfterReleaseIsNotShown) {
   const std::string reason = step["reason"], moved = "; then it moved by ";
   const std::size_t at = reason.find(moved);
   ASSERT_NE(at, std::string::npos) << reason;
-  // In the words it is in mm, with two decimals.
+  // The text has the value in mm, with two decimals.
   EXPECT_NEAR(std::stod(reason.substr(at + moved.size())), 1e3 * step["rest_drift_m"].get<double>(), 0.006);
-  // It comes to rest on the hole's bottom, 7 mm below its target. While the hand opens it sinks a little
-  // (measured 1 mm, and how much depends on where it leans); the drift is measured from then on.
+  // The peg comes to rest on the bottom of the hole, 7 mm below its target. While the hand opens, the peg
+  // sinks by about 1 mm, depending on where it leans; the drift is measured from then on.
   constexpr double kFall_m = 7e-3;
   EXPECT_NEAR(step["final_error_m"].get<double>(), kFall_m, 10e-6);
   EXPECT_GT(step["rest_drift_m"].get<double>(), kFall_m / 2);
-  EXPECT_LT(step["rest_drift_m"].get<double>(), kFall_m + 0.5e-3);  // released five errors of sight too high
+  EXPECT_LT(step["rest_drift_m"].get<double>(),
+            kFall_m + 0.5e-3);  // the peg is released too high by five errors of sight
   EXPECT_NE(ran.out.find(": nothing holds it there"), std::string::npos) << ran.out;
 }
 
@@ -267,7 +270,7 @@ TEST_F(Scenario, APartThatStartsDeepInsideIsRefusedToo) {
   write("scene.toml",
         "unit = 'mm'\n[[part]]\nfile = 'plate.stl'\nfixed = true\n[[part]]\nfile = 'pin.stl'\n"
         "[[step]]\npart = 'pin'\nstart = {position = [0, 0, 0]}\ntarget = {position = [0, 0, 30]}\n");
-  // The cube of 6 mm is in the middle of one of 30 mm: its faces are 12 mm below the other's faces.
+  // A cube of 6 mm is in the middle of a cube of 30 mm, so its faces are 12 mm below the other faces.
   expectRefused("assemble scene.toml --out out", "part 'pin': starts 12000 um inside 'plate'");
 }
 
@@ -276,7 +279,7 @@ TEST_F(Scenario, APartThatStartsInsideAnotherIsRefusedByName) {
   expectRefused("assemble scene.toml --out out", "part 'peg': starts");
 }
 
-// The second step's way leads through the plate, and its time would last for hours.
+// The path of the second step leads through the plate, and its time limit would last for hours.
 TEST_F(Scenario, AStoppedRunKeepsTheStepsThatWereDoneAndSaysWhere) {
   write("steps.toml",
         "unit = 'mm'\n[[part]]\nfile = 'plate.stl'\nfixed = true\n"

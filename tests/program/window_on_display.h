@@ -37,7 +37,7 @@ inline bool has(const char* program) {
 
 class Window : public Program {
  protected:
-  // The part of a window of 1280 x 720 that the panels leave.
+  // The part of a window of 1280 x 720 that the panels do not cover.
   static constexpr viewer::PictureSize kPicture = {950, 656};
 
   void SetUp() override {
@@ -45,10 +45,9 @@ class Window : public Program {
     if (!viewer::missingForWindow().empty()) GTEST_SKIP() << viewer::missingForWindow();
     if (!has("Xvfb") || !has("xdotool")) GTEST_SKIP() << "needs Xvfb and xdotool (Debian: xvfb, xdotool)";
     const std::string number = (folder_ / "display.txt").string();
-    // Without -noreset the server starts anew when its last client leaves, as xdotool does, and refuses a
-    // window that opens at that moment.
-    // A number of this process alone: of two servers that share one, the first to end takes the other's
-    // socket.
+    // Without -noreset the server restarts when its last client leaves, for example xdotool, and refuses a
+    // window that opens at this moment. The display number is unique to this process: if two servers share a
+    // number, the first to end removes the socket of the other.
     xvfb_ = std::stoi(outputOf("Xvfb :" + std::to_string(1000 + getpid() % 30000) +
                                " -noreset -displayfd 3 -screen 0 1400x900x24 3>'" + number +
                                "' >/dev/null 2>&1 & echo $!"));
@@ -65,7 +64,7 @@ class Window : public Program {
     Program::TearDown();
   }
 
-  /// Waits for a minute at most.
+  /// Waits for at most a minute until the condition holds.
   template <class Condition>
   static bool soon(Condition is_true) {
     for (int i = 0; i < 600; ++i) {
@@ -85,8 +84,8 @@ class Window : public Program {
       return !window_.empty() || fs::exists(folder_ / "status.txt");
     }));
     ASSERT_FALSE(window_.empty()) << slurp(folder_ / "err.txt");
-    // A window has its name before it is on the screen, where it gets no key yet, and the first frame sets
-    // the camera.
+    // A window has its name before it is on the screen. Until then it gets no keys; its first frame sets the
+    // camera.
     ASSERT_TRUE(soon([&] {
       xdotool("windowfocus " + window_);
       return outputOf(display_ + "xdotool getwindowfocus 2>/dev/null") == window_;
@@ -96,14 +95,14 @@ class Window : public Program {
   void xdotool(const std::string& arguments) const {
     std::system((display_ + "xdotool " + arguments + " >/dev/null 2>&1").c_str());
   }
-  /// The window's content, by its own key.
+  /// The content of the window, which the window saves on a key.
   Image picture() {
     const fs::path file = folder_ / ("view_" + std::to_string(++pictures_) + ".png");
     for (int i = 0; i < 20 && !fs::exists(file); ++i) {
       xdotool("key p");
       for (int k = 0; k < 50 && !fs::exists(file); ++k) std::this_thread::sleep_for(100ms);
     }
-    // A key that was sent twice saves twice.
+    // If a key was sent twice, the window saves two pictures.
     while (fs::exists(folder_ / ("view_" + std::to_string(pictures_ + 1) + ".png"))) ++pictures_;
     return fs::exists(file) ? viewer::loadPng(file.string()) : Image();
   }
@@ -115,19 +114,20 @@ class Window : public Program {
       Image crop(wanted.width, wanted.height);
       for (int y = 0; y < crop.height; ++y)
         std::copy_n(now.at(0, y), 3 * static_cast<std::size_t>(crop.width), crop.at(0, y));
-      return viewer::compare(crop, wanted, 2).share_beyond == 0;  // 2: as for other pictures, image.h
+      return viewer::compare(crop, wanted, 2).share_beyond ==
+             0;  // tolerance 2, as for other pictures (image.h)
     });
   }
-  /// Returns once all keys so far have been obeyed and a frame with what they change is drawn.
+  /// Returns when the window has handled all keys so far and has drawn a frame with their effect.
   void settle() { ASSERT_GT(picture().width, 0) << slurp(folder_ / "err.txt"); }
-  /// The exit status.
+  /// Closes the window by a key and returns the exit status.
   int close(const std::string& key = "q") {
     xdotool("key " + key);
     if (!soon([&] { return !slurp(folder_ / "status.txt").empty(); })) return -1;
     view_ = 0;
     return std::stoi(slurp(folder_ / "status.txt"));
   }
-  /// What the finished assembly looks like from a standard view, or on a screen of a display file.
+  /// The expected picture of the finished assembly from a standard view, or on a screen of a display file.
   Image expected(std::size_t view, viewer::StereoMode mode = viewer::StereoMode::Mono,
                  const std::string& display_file = "", int screen_row = 0) const {
     const scenes::Scene scene = scenes::loadScene((folder_ / "scene.toml").string());
@@ -164,10 +164,10 @@ class Window : public Program {
       std::copy_n(whole.at(0, y), 3 * static_cast<std::size_t>(crop.width), crop.at(0, y));
     return crop;
   }
-  /// The same once it is drawn in full, and rests.
+  /// The same picture after it is drawn in full and no longer changes.
   Image restingPicture() {
     Image last = scenePicture();
-    int same = 0;  // a picture in full may take longer than the time between two looks
+    int same = 0;  // drawing a picture in full may take longer than the interval between two comparisons
     soon([&] {
       std::this_thread::sleep_for(1s);
       Image now = scenePicture();

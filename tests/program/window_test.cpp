@@ -68,7 +68,8 @@ TEST_F(Window, ARunThatIsWatchedIsRecordedWithTheSameBits) {
 TEST_F(Window, APegThatIsDraggedIntoItsHoleByTheMouseIsMountedRecordedAndReplayed) {
   const std::string scene = VPS_SOURCE_DIR "/scenes/peg_in_hole/scene.toml";
   open(scene + " --hand mouse --record dragged.mcap");
-  // Where the peg's middle is, and where it is once mounted: the camera is that of the tour's first picture.
+  // Positions of the peg's middle at the start and after mounting; the camera is that of the tour's first
+  // picture.
   const scenes::Scene loaded = scenes::loadScene(scene);
   const viewer::RenderScene drawn = viewer::drawnMeshes(loaded);
   const scenes::SceneStep& step = loaded.steps[0];
@@ -84,25 +85,27 @@ TEST_F(Window, APegThatIsDraggedIntoItsHoleByTheMouseIsMountedRecordedAndReplaye
   const Vec3 middle_P = bounds(loaded.parts[step.part].part.mesh).center();
   const auto from = camera.project(step.X_WP_start * middle_P, kPicture.width, kPicture.height);
   const auto to = camera.project(step.X_WP_target * middle_P, kPicture.width, kPicture.height);
-  // Once the peg is in the mouth it is pushed aside too, by half a millimetre, so that the wall guides it.
+  // After the peg has entered the mouth, it is also pushed sideways by half a millimetre, so that the wall
+  // guides it.
   const auto at = [&](double share) {
     constexpr int kAside_px = 4;
     return std::to_string(std::lround(from[0]) + (share > 0.7 ? kAside_px : 0)) + " " +
            std::to_string(std::lround(from[1] + share * (to[1] - from[1])));
   };
-  // On a busy machine the window may still show what was before the run, where there is nothing to grab: then
-  // again.
+  // On a busy machine the window may still show the scene before the run, in which nothing can be grabbed;
+  // the test then tries again.
   bool is_done = false;
   for (int attempt = 0; attempt < 4 && !is_done; ++attempt) {
     xdotool("key 2");  // from the front, where down on the screen is down in the scene
     settle();
     std::this_thread::sleep_for(2s);  // the first snapshot of the run is shown
     xdotool("key f");
-    ASSERT_GT(picture().width, 0);  // so the keys before have been obeyed
+    ASSERT_GT(picture().width, 0);  // so the window has handled the keys before
     xdotool("mousemove " + at(0) + " mousedown 1");
     std::this_thread::sleep_for(500ms);
     for (int i = 1; i <= 50; ++i) {
-      xdotool("mousemove " + at(1.04 * i / 50));  // a millimetre into the bottom, which stops the peg
+      xdotool("mousemove " +
+              at(1.04 * i / 50));  // the last position is a millimetre below the bottom, which stops the peg
       std::this_thread::sleep_for(30ms);
     }
     for (int i = 0; i < 150 && !is_done; ++i) {
@@ -132,14 +135,14 @@ TEST_F(Window, AStepThatIsTakenBackAndDoneAgainGivesTheSameBits) {
     return soon([&] { return fs::exists(folder_ / name); });
   };
   ASSERT_TRUE(isRecorded("run.mcap")) << slurp(folder_ / "err.txt");
-  restingPicture();  // the window has taken the result as well
+  restingPicture();  // so the window has also received the result
   xdotool("key z");
   ASSERT_TRUE(isRecorded("run_2.mcap")) << "only the second step";
   restingPicture();
   xdotool("key z");
   ASSERT_TRUE(isRecorded("run_3.mcap"));
   EXPECT_EQ(slurp(folder_ / "run_2.mcap"), slurp(folder_ / "run_3.mcap"));
-  // The second step is taken back, and put in place again where it was without a run.
+  // The second step is undone, and then redone without a run.
   xdotool("key 2");
   const Image done = restingPicture();
   xdotool("key z");
@@ -163,7 +166,7 @@ TEST_F(Window, APartIsTakenFreelyMovedPutDownAndBroughtBack) {
   settle();
   xdotool("key f");
   const Image before = restingPicture();
-  // Where the pin is drawn.
+  // The place where the pin is drawn.
   const scenes::Scene loaded = scenes::loadScene((folder_ / "free.toml").string());
   const viewer::RenderScene drawn = viewer::drawnMeshes(loaded);
   scenes::Snapshot lying;
@@ -179,7 +182,7 @@ TEST_F(Window, APartIsTakenFreelyMovedPutDownAndBroughtBack) {
   xdotool("key Return");
   EXPECT_TRUE(soon([&] { return viewer::compare(scenePicture(), before, 20).share_beyond > 1e-4; }))
       << "the pin in hand is blue";
-  // A clutch that has not closed yet leaves the pin where it is: then again.
+  // If the clutch has not closed yet, the pin does not move; the test then tries again.
   const double moved_share = 5e-3;
   double share = 0;
   for (int attempt = 0; attempt < 3 && share <= moved_share; ++attempt) {
@@ -208,7 +211,8 @@ TEST_F(Window, APartIsTakenFreelyMovedPutDownAndBroughtBack) {
   EXPECT_EQ(close(), 0);
 }
 
-// Remote assistance: what others point at is marked in the window, and others see where it points.
+// Remote assistance: the window marks the points at which others point, and others see where the window
+// points.
 TEST_F(Window, FollowsASessionShowsWhereOthersPointAndPointsItself) {
   write("scene.toml",
         std::string(kScene) +
@@ -225,7 +229,7 @@ TEST_F(Window, FollowsASessionShowsWhereOthersPointAndPointsItself) {
       "render.txt");
   open("--session " + session + " --silent");  // waits for the session, and for its device
   restingPicture();
-  // The middle of the plate's upper side, from the camera that the window begins with.
+  // The middle of the plate's upper side, in the first view of the window.
   const scenes::Scene scene = scenes::loadScene((folder_ / "scene.toml").string());
   const viewer::RenderScene drawn = viewer::drawnMeshes(scene);
   const viewer::Camera camera = viewer::cameraFor(
@@ -258,22 +262,22 @@ TEST_F(Window, FollowsASessionShowsWhereOthersPointAndPointsItself) {
   std::optional<Vec3> seen_W;
   for (int attempt = 0; attempt < 10 && !seen_W; ++attempt) {
     xdotool("key m");
-    ASSERT_GT(picture().width, 0);  // so the key has been obeyed, and a second one would take the mark away
+    ASSERT_GT(picture().width, 0);  // so the window has handled the key; a second key would remove the mark
     for (int i = 0; i < 50 && !seen_W; ++i) {
       for (const scenes::SessionPointer& pointer : pointers.take()) seen_W = pointer.p_W;
       std::this_thread::sleep_for(100ms);
     }
   }
   EXPECT_TRUE(seen_W) << "the mark of the window";
-  // A pixel is about a tenth of a millimetre here; a whole millimetre is still the place that was clicked.
+  // A pixel is about a tenth of a millimetre, so a point within a millimetre counts as the clicked point.
   EXPECT_LT((seen_W.value_or(Vec3::Constant(1)) - p_W).norm(), 1e-3);
   EXPECT_TRUE(isMarked(kOwn));
-  const Image before = restingPicture();  // with the mark, which stays
+  const Image before = restingPicture();  // with the mark, which remains
   test::ChildProcess device = start({"device"}, "device.txt");
   EXPECT_TRUE(soon([&] { return viewer::compare(scenePicture(), before, 20).share_beyond > 1e-4; }))
       << "the window shows the run";
   EXPECT_EQ(render.wait(), 0) << slurp(folder_ / "render.txt");
-  EXPECT_GT(picture().width, 0);  // so it has read the verdict
+  EXPECT_GT(picture().width, 0);  // so the window has read the verdict
   EXPECT_EQ(close(), 0) << slurp(folder_ / "err.txt");
 }
 
@@ -293,7 +297,7 @@ TEST_F(Window, ThePlannedPathIsShownAndHidden) {
   open("scene.toml");
   xdotool("key Down");
   xdotool("key 2");
-  settle();  // what is fitted is the step
+  settle();  // the view is fitted to the step
   xdotool("key f");
   const Image without = restingPicture();
   xdotool("key w");
@@ -383,7 +387,7 @@ TEST_F(Window, ShowsAllPicturesOfADisplayFileAndOneAloneByAKey) {
          places[i], 0});
   viewer::Renderer renderer(drawn);
   const Image all = viewer::drawInFull(renderer, wanted);
-  // Their names cover a little of each.
+  // The names of the views cover a little of each picture.
   EXPECT_TRUE(soon([&] { return viewer::compare(scenePicture(), all, 2).share_beyond < 0.02; }));
   EXPECT_GT(viewer::compare(scenePicture(), all, 2).share_beyond, 0.0005) << "the names";
 
@@ -392,7 +396,7 @@ TEST_F(Window, ShowsAllPicturesOfADisplayFileAndOneAloneByAKey) {
   for (int i = 0; i < 4; ++i) xdotool("key o");
   EXPECT_TRUE(soon([&] { return viewer::compare(scenePicture(), all, 2).share_beyond < 0.02; }));
 
-  xdotool("key F11");  // without panels
+  xdotool("key F11");  // hides the panels
   EXPECT_TRUE(soon([&] { return picture().width == 1400; }));
   EXPECT_EQ(picture().height, 900);
   xdotool("key F11");
@@ -418,7 +422,7 @@ TEST_F(Window, ADriverWithoutABufferForEachEyeIsSaid) {
 
 TEST_F(Window, InterleavedRowsStayWithTheScreensRowsWhereverTheWindowIs) {
   open("scene.toml --stereo interleaved");
-  const auto eyeOf = [&](int row) {  // the same picture with the rows of both eyes exchanged, or not
+  const auto eyeOf = [&](int row) {  // the picture with or without exchanged rows of both eyes
     return expected(0, viewer::StereoMode::Interleaved, "", row);
   };
   xdotool("windowmove " + window_ + " 20 41");
@@ -437,7 +441,7 @@ TEST_F(Window, ARunGoesOnWithoutPicturesWhereTheDriverIsTooOldForThem) {
   ASSERT_GT(whole.width, 0);
   if (const char* kept = std::getenv("VPS_KEEP_PICTURES"))
     viewer::savePng(whole, std::string(kept) + "/no_gl.png");
-  int ink = 0;  // of the message in the middle of where the picture would be
+  int ink = 0;  // pixels of the message in the middle of the picture's place
   for (int y = 250; y < 400; ++y)
     for (int x = 100; x < 850; ++x) ink += whole.at(x, y)[0] < 100;
   EXPECT_GT(ink, 300);
@@ -469,7 +473,7 @@ TEST_F(Program, AWindowWithoutADisplayIsRefusedInWords) {
 TEST_F(Program, AWatcherWhoseDisplayIsGonePrintsInstead) {
   if (!viewer::missingForWindow().empty()) GTEST_SKIP() << viewer::missingForWindow();
   unsetenv("WAYLAND_DISPLAY");
-  setenv("DISPLAY", ":4711", 1);  // which nobody serves
+  setenv("DISPLAY", ":4711", 1);  // a display that does not exist
   test::ChildProcess watch({VPS_PROGRAM, "watch", "--session", "nobody-" + std::to_string(getpid())},
                            (folder_ / "watch.txt").string());
   unsetenv("DISPLAY");

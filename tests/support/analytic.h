@@ -20,14 +20,14 @@ inline double sphereDistance(const Vec3& p, double radius_m) {
   return p.norm() - radius_m;
 }
 
-/// Of a box of half sizes `half` around the origin.
+/// Signed distance of a box of half sizes `half` around the origin.
 inline double boxDistance(const Vec3& p, const Vec3& half) {
   const Vec3 past = p.cwiseAbs() - half;
   return past.cwiseMax(0.0).norm() + std::min(past.maxCoeff(), 0.0);
 }
 
-/// Of a profile of revolution around z that is a box in the (r, z) plane: r_low <= r <= r_high, |z| <=
-/// half_z.
+/// Signed distance of a solid of revolution around z whose profile is the rectangle r_low <= r <= r_high, |z|
+/// <= half_z.
 inline double ringDistance(const Vec3& p, double r_low, double r_high, double half_z) {
   const double r = std::hypot(p.x(), p.y());
   const double past_r = std::max(r - r_high, r_low - r), past_z = std::abs(p.z()) - half_z;
@@ -40,20 +40,20 @@ inline double cylinderDistance(const Vec3& p, double radius_m, double height_m) 
   return ringDistance(p, -radius_m, radius_m, height_m / 2);
 }
 
-/// How far the flats of a circle in `segments` pieces lie inside it.
+/// Distance of the flats of a polygon of `segments` sides from its circumscribed circle.
 inline double sagitta(double radius_m, int segments) {
   return radius_m * (1 - std::cos(std::numbers::pi / segments));
 }
 
-/// Even random points in a box around the origin; the same ones every time.
+/// Uniformly distributed random points in a box around the origin; the sequence depends only on the seed.
 class RandomPoints {
  public:
   explicit RandomPoints(unsigned seed) : generator_(seed) {}
   Vec3 inBox(const Vec3& half) { return {half.x() * unit(), half.y() * unit(), half.z() * unit()}; }
-  /// -1 to 1.
+  /// A number from -1 to 1.
   double unit() { return std::uniform_real_distribution<double>(-1, 1)(generator_); }
   Pose pose(double reach_m) {
-    const Quat q{unit(), unit(), unit(), unit()};  // braces: drawn in this order
+    const Quat q{unit(), unit(), unit(), unit()};  // within braces, arguments are evaluated in this order
     return {q, inBox(Vec3::Constant(reach_m))};
   }
 

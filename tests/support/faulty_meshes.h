@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Meshes with one kind of fault each, made from closed ones, so that the truth is known.
+// Meshes with one kind of fault each, made from closed meshes, so that the true solid is known.
 #pragma once
 
 #include <algorithm>
@@ -23,11 +23,11 @@ struct FaultyMesh {
   Mesh mesh;
   /// Signed distance of the true solid, negative inside.
   std::function<double(const Vec3&)> truth;
-  /// How far the mesh's surface is from the true one, away from holes [m].
+  /// Greatest distance between the mesh and the true surface, away from holes [m].
   double error_m = 0;
-  /// True near missing facets, where neither sign nor distance is claimed. May be empty.
+  /// True for points near missing facets, at which tests compare neither sign nor distance. May be empty.
   std::function<bool(const Vec3&)> isByHole;
-  /// Inside, the truth has the sign only.
+  /// If true, `truth` gives only the sign inside the solid.
   bool is_union = false;
 };
 
@@ -35,11 +35,11 @@ namespace faulty {
 
 using Truth = std::function<double(const Vec3&)>;
 
-/// Of a closed mesh without faults.
+/// The signed distance of a closed mesh without faults.
 inline Truth distanceTo(const Mesh& closed) {
   return [exact = std::make_shared<MeshDistance>(closed)](const Vec3& p) { return exact->signedDistance(p); };
 }
-/// Of the union. Inside, only its sign is right.
+/// The signed distance of the union. Inside, only its sign is right.
 inline Truth either(Truth a, Truth b) {
   return [a = std::move(a), b = std::move(b)](const Vec3& p) { return std::min(a(p), b(p)); };
 }
@@ -79,8 +79,8 @@ inline Mesh bracket() {
   return transformed(mesh, pose());
 }
 
-/// A prism of 16 mm over a triangle whose sharpest edge has 25 degrees. There a point outside may lie behind
-/// the plane of one of the two faces that meet.
+/// A prism of 16 mm over a triangle whose sharpest edge has 25 degrees. Near this edge, a point outside may
+/// lie behind the plane of one of its two faces.
 inline Mesh wedge() {
   Mesh mesh;
   for (const double z : {-0.008, 0.008})
@@ -97,7 +97,7 @@ inline Mesh turned(Mesh mesh) {
   for (auto& t : mesh.triangles) turn(t);
   return mesh;
 }
-/// Every facet with corners of its own, moved by up to jitter_m along each axis.
+/// The mesh with separate corners for each facet, moved by up to jitter_m along each axis.
 inline Mesh unwelded(const Mesh& mesh, double jitter_m) {
   RandomPoints random(11);
   Mesh soup;
@@ -122,7 +122,7 @@ inline Mesh withTJunctions(Mesh mesh, const std::vector<std::size_t>& facets, do
   }
   return mesh;
 }
-/// Fills every T-junction of the above with the triangle that has no area.
+/// Fills every T-junction of withTJunctions() with a triangle of zero area.
 inline Mesh withCollinearFacets(Mesh mesh, const std::vector<std::size_t>& facets) {
   for (const std::size_t i : facets) {
     const auto [a, b, c] = mesh.triangles[i];
@@ -144,7 +144,7 @@ inline Mesh joined(Mesh a, const Mesh& b) {
   return a;
 }
 
-/// Takes facets away. A hole's neighbourhood is a ball around each.
+/// Removes facets. The neighbourhood of a hole is a ball around each removed facet.
 inline FaultyMesh punched(const std::string& fault, const Mesh& closed,
                           const std::vector<std::size_t>& facets) {
   FaultyMesh made{fault, closed, distanceTo(closed), 0, {}, false};
@@ -162,8 +162,8 @@ inline FaultyMesh punched(const std::string& fault, const Mesh& closed,
   made.mesh.triangles.clear();
   for (std::size_t i = 0; i < is_gone.size(); ++i)
     if (is_gone[i] == 0) made.mesh.triangles.push_back(closed.triangles[i]);
-  // Within the ball of a hole the sign is not claimed. Farther away, the nearest point of the true surface
-  // may still be in the hole: then the distance is not claimed either.
+  // Within the ball of a hole the sign is not compared. Farther away, the nearest point of the true surface
+  // may still be in the hole; then the distance is not compared either.
   made.isByHole = [balls, exact = std::make_shared<MeshDistance>(closed)](const Vec3& p) {
     const Vec3 q = exact->closest(p).q;
     return std::any_of(balls.begin(), balls.end(), [&](const auto& ball) {
@@ -228,8 +228,8 @@ inline Mesh pinched() {
   }
   return transformed(mesh, pose());
 }
-/// Of a closed mesh that faces out but is pinched: distance to all facets, side by all facets' winding
-/// number.
+/// The signed distance of a closed, pinched mesh that faces outwards: the distance to all facets, with the
+/// sign by the winding number of all facets.
 inline Truth exhaustive(const Mesh& mesh) {
   return [mesh, winding = std::make_shared<WindingNumber>(mesh)](const Vec3& p) {
     double least2 = 1e300;
@@ -243,7 +243,7 @@ inline Truth exhaustive(const Mesh& mesh) {
 
 }  // namespace faulty
 
-/// One of each kind.
+/// One mesh for each kind of fault.
 inline std::vector<FaultyMesh> faultyMeshes() {
   using namespace faulty;
   std::vector<FaultyMesh> all;
@@ -254,7 +254,7 @@ inline std::vector<FaultyMesh> faultyMeshes() {
     all.push_back({fault, std::move(mesh), std::move(truth), error_m, {}, true});
   };
   const Mesh ring = tube(), u = bracket(), sphere = ball();
-  // A corner moved by j along each axis moves a facet by sqrt(3) j at most.
+  // If a corner moves by j along each axis, the facet moves by sqrt(3) j at most.
   constexpr double kJitter = 1.7320509;
 
   add("closed tube", ring, ring);
@@ -275,7 +275,7 @@ inline std::vector<FaultyMesh> faultyMeshes() {
   add("T-junctions of a wedge, 1 um apart", withTJunctions(wedge(), every(2, wedge()), 1e-6), wedge(), 1e-6);
   add("T-junctions open by 2 um", withTJunctions(u, every(2, u), 2e-6), u, 2e-6);
   add("facets without area", withCollinearFacets(ring, every(5, ring)), ring, 1e-12);
-  // Slivers: facets cut by a corner a micrometre beside their first side, on both sides of it.
+  // Slivers: facets that are cut at a corner a micrometre away from their first side, on either side of it.
   Mesh sliced = u;
   for (const std::size_t i : every(3, u)) {
     const auto [a, b, c] = sliced.triangles[i];
@@ -286,8 +286,9 @@ inline std::vector<FaultyMesh> faultyMeshes() {
     sliced.triangles.push_back({b, c, v});
     sliced.triangles.push_back({c, a, v});
   }
-  // The weights of a point in a facet of length L and height H are known to 1e-16 (L / H)^2, so the point to
-  // 4e-10 m along the facet: (4e-10)^2 / 2d = 8e-12 m of a distance d of 1e-8 m.
+  // The barycentric weights of a point in a facet of length L and height H have an error of 1e-16 (L / H)^2,
+  // which moves the point by 4e-10 m along the facet. At a distance d of 1e-8 m this is an error of (4e-10)^2
+  // / 2d = 8e-12 m.
   add("slivers", sliced, u, 1e-11);
   Mesh twice = ring;
   for (const std::size_t i : every(3, ring)) twice.triangles.push_back(ring.triangles[i]);
@@ -322,7 +323,7 @@ inline std::vector<FaultyMesh> faultyMeshes() {
   addTruth("a cavity", joined(sphere, turned(small)), without(distanceTo(sphere), distanceTo(small)));
   addTruth("a cavity, all flipped", turned(joined(sphere, turned(small))),
            without(distanceTo(sphere), distanceTo(small)));
-  // Two blocks that have one edge in common.
+  // Two blocks that share one edge.
   const Mesh left = block({0.006, 0.006, 0.01}, {-0.003, -0.003, 0}),
              right = block({0.006, 0.006, 0.01}, {0.003, 0.003, 0});
   addTruth("an edge with four facets", welded(joined(left, right), 1e-9),
@@ -338,7 +339,7 @@ inline std::vector<FaultyMesh> faultyMeshes() {
   with_sheet.vertices.insert(with_sheet.vertices.end(),
                              {o, o + Vec3(0.006, 0, 0.001), o + Vec3(0, 0.006, 0)});
   with_sheet.triangles.push_back({first, first + 1, first + 2});
-  all.push_back({"a sheet beside a solid", with_sheet, distanceTo(u), 0,
+  all.push_back({"a sheet next to a solid", with_sheet, distanceTo(u), 0,
                  [o, truth = distanceTo(u)](const Vec3& p) {
                    return (p - o).norm() < truth(p) + 0.007;  // the sheet may be nearer
                  },

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A solid as features and for exact overlap.
+// A solid in two forms: as a set of features, and for exact overlap.
 #pragma once
 
 #include <memory>

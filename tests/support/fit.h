@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A round peg and a square plate with a bore for it, and a ring with no edge at all.
+// A round peg, a square plate with a bore for the peg, and a torus, which has no sharp edge.
 #pragma once
 
 #include <cmath>
@@ -17,7 +17,8 @@ struct PegShape {
   int rows = 60;
 };
 
-/// A chamfered peg around z, centred. Closed, outward; vertices lie on the true circles.
+/// A centred, chamfered peg around z. The mesh is closed and faces outwards; vertices lie on the true
+/// circles.
 inline Mesh makePeg(const PegShape& peg) {
   const Vec3 up(0, 0, peg.length_m / 2);
   return sweptSections(peg.columns, [&](int i) {
@@ -46,8 +47,8 @@ struct PlateShape {
   int side_rows = 16;
 };
 
-/// A square plate around z, centred, with a round bore. Closed, outward; columns x 2 (bore_rows + side_rows +
-/// 2 face_steps) triangles.
+/// A centred square plate around z with a round bore. The mesh is closed, faces outwards, and has columns x 2
+/// (bore_rows + side_rows + 2 face_steps) triangles.
 inline Mesh makeBoredPlate(const PlateShape& plate) {
   const Vec3 up(0, 0, plate.height_m / 2);
   return sweptSections(plate.columns, [&](int i) {
@@ -63,7 +64,8 @@ inline Mesh makeBoredPlate(const PlateShape& plate) {
   });
 }
 
-/// A torus around z. Closed, outward; 2 x columns x rows triangles, vertices on the true torus.
+/// A torus around z. The mesh is closed, faces outwards, and has 2 x columns x rows triangles; vertices lie
+/// on the true torus.
 inline Mesh makeTorus(double ring_m, double tube_m, int columns, int rows) {
   return sweptSections(columns, [&](int i) {
     const double angle_rad = kTurn_rad * (i % columns) / columns;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Involute gears, outer and inner, that mesh with each other.
 //
-// An inner gear is the plate that is left when an outer gear's outline is cut out of it, so one outline
-// serves both; only which circle is the tip and which the root changes.
+// An inner gear is a plate from which the outline of an outer gear is cut. So one outline serves both; only
+// the tip and root circles are exchanged.
 #pragma once
 
 #include <cmath>
@@ -17,11 +17,11 @@ struct GearShape {
   double module_m = 1e-3;  ///< pitch diameter for each tooth
   int teeth = 30;
   double width_m = 10e-3;
-  double backlash_m = 0;         ///< taken from the tooth's thickness along the pitch circle
-  double other_radius_m = 5e-3;  ///< bore of an outer gear, outside of an inner one
-  int points_per_tooth = 48;     ///< of the outline; a multiple of 8
+  double backlash_m = 0;         ///< subtracted from the tooth's thickness along the pitch circle
+  double other_radius_m = 5e-3;  ///< bore of an outer gear, outer radius of an inner gear
+  int points_per_tooth = 48;     ///< points of the outline per tooth; a multiple of 8
   int axial_steps = 16;
-  int radial_steps = 8;  ///< from the teeth to the other circle, on the two faces
+  int radial_steps = 8;  ///< steps from the teeth to the other circle, on the two faces
 };
 
 inline double pitchRadius(const GearShape& gear) {
@@ -33,12 +33,13 @@ struct OutlinePoint {
   double r_m = 0, angle_rad = 0;
 };
 
-/// The outline of an outer gear, counter-clockwise, tooth 0 centred on angle 0: three eighths of a tooth's
-/// points on each flank (even in radius), one each on tip and root. The angle grows from point to point, so
-/// that rays from the axis cut the outline once.
+/// The outline of an outer gear, counter-clockwise, tooth 0 centred on angle 0: each flank has three eighths
+/// of a tooth's points (evenly spaced in radius), tip and root have one eighth each. The angle grows from
+/// point to point, so that rays from the axis cut the outline once.
 inline std::vector<OutlinePoint> gearOutline(const GearShape& gear, double root_m, double tip_m) {
   constexpr double kPressure_rad = 20 * std::numbers::pi / 180;
-  /// Below the base circle there is no involute; a flank nearly radial, that still turns.
+  /// Below the base circle there is no involute. There the flank is nearly radial, with an angle that still
+  /// grows.
   constexpr double kBelowBase_rad_per_m = 0.05;
   const double pitch_m = pitchRadius(gear), base_m = pitch_m * std::cos(kPressure_rad);
   const auto involute = [](double angle_rad) { return std::tan(angle_rad) - angle_rad; };
@@ -54,7 +55,7 @@ inline std::vector<OutlinePoint> gearOutline(const GearShape& gear, double root_
   std::vector<OutlinePoint> outline;
   for (int tooth = 0; tooth < gear.teeth; ++tooth) {
     const double at_rad = kTurn_rad * tooth / gear.teeth;
-    for (int k = 0; k < flank; ++k) {  // up: the tooth grows thinner, the angle grows
+    for (int k = 0; k < flank; ++k) {  // rising flank: the tooth becomes thinner and the angle grows
       const double r_m = root_m + (tip_m - root_m) * k / flank;
       outline.push_back({r_m, at_rad - halfTooth(r_m)});
     }
@@ -70,7 +71,7 @@ inline std::vector<OutlinePoint> gearOutline(const GearShape& gear, double root_
   return outline;
 }
 
-/// One section between an inner and an outer point of a ring.
+/// The section of a ring between an inner and an outer point.
 inline std::vector<Vec3> ringSection(const Vec3& inner, const Vec3& outer, double half_width_m,
                                      int axial_steps, int radial_steps) {
   const Vec3 up(0, 0, half_width_m);
@@ -82,8 +83,8 @@ inline std::vector<Vec3> ringSection(const Vec3& inner, const Vec3& outer, doubl
   return loop;
 }
 
-/// A spur gear around z, centred at the origin, with a bore of other_radius_m. Closed, outward; teeth x
-/// points_per_tooth x 4 (axial_steps + radial_steps) triangles.
+/// A spur gear around z, centred at the origin, with a bore of other_radius_m. The mesh is closed, faces
+/// outwards, and has teeth x points_per_tooth x 4 (axial_steps + radial_steps) triangles.
 inline Mesh makeSpurGear(const GearShape& gear) {
   const double pitch_m = pitchRadius(gear);
   const auto outline = gearOutline(gear, pitch_m - 1.25 * gear.module_m, pitch_m + gear.module_m);
@@ -95,11 +96,12 @@ inline Mesh makeSpurGear(const GearShape& gear) {
   });
 }
 
-/// A ring with teeth inside; its tooth space 0 is centred on angle 0. Size as makeSpurGear().
+/// A ring with teeth inside; its tooth space 0 is centred on angle 0. It has as many triangles as a gear of
+/// makeSpurGear().
 inline Mesh makeRingGear(const GearShape& gear) {
   const double pitch_m = pitchRadius(gear);
   GearShape space = gear;
-  space.backlash_m = -gear.backlash_m;  // what a tooth loses its space gains
+  space.backlash_m = -gear.backlash_m;  // a tooth space becomes wider by as much as a tooth becomes thinner
   const auto outline = gearOutline(space, pitch_m - gear.module_m, pitch_m + 1.25 * gear.module_m);
   const int columns = static_cast<int>(outline.size());
   return sweptSections(columns, [&](int i) {

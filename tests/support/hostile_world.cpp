@@ -73,7 +73,7 @@ HostileWorld::Owned HostileWorld::make(int kind) {
     case 4:
       owned.shape = std::make_unique<btSphereShape>(toBt(h));
       break;
-    case 5:  // these two have one bounding box
+    case 5:  // this hull and the next one have the same bounding box
       hull({vec(h, h, h), vec(-h, h, -h), vec(-h, -h, h), vec(h, -h, -h)});
       break;
     case 6:
@@ -150,8 +150,8 @@ void HostileWorld::remove(Slot& slot) {
   slot.is_in_world = false;
 }
 
-// Bullet's own algorithms do not survive a swap, so where neither the old nor the new shape is a Shape the
-// body is removed and added again, which is Bullet's rule. So it is where a body has two swaps between steps.
+// Bullet's own algorithms do not support a swap of shapes. So if neither the old nor the new shape is a
+// Shape, or if a body has two swaps between steps, the body is removed and added again, as Bullet requires.
 void HostileWorld::swap(Slot& slot, int kind, bool deletes_first) {
   if (!slot.body) return;
   Owned next = make(kind);
@@ -162,7 +162,7 @@ void HostileWorld::swap(Slot& slot, int kind, bool deletes_first) {
   if (deletes_first) {
     const bool is_same = kind < kVpsKinds && slot.owned.isVps();
     slot.owned = Owned();
-    if (is_same) next = make(kind);  // often at the address of the one that was deleted
+    if (is_same) next = make(kind);  // often at the address of the deleted shape
   }
   slot.body->setCollisionShape(next.shape.get());
   if (!deletes_first) retired_.push_back(std::move(slot.owned));
@@ -296,7 +296,7 @@ void HostileWorld::finish() {
   slots_[1].body->setWorldTransform(toBt(Pose::translation(Vec3(0, 0, 0.0062))));
   for (int i = 0; i < 40; ++i) world_.stepSimulation(toBt(1e-3), 0);
   const double z_m = slots_[1].body->getWorldTransform().getOrigin().z();
-  // Half of both heights; sharp features rest at a gap of 0.1 um.
+  // The expected height is half of both heights; sharp features rest at a gap of 0.1 um.
   require_(std::abs(z_m - 0.006) < 5e-6, "a part still rests on a plate");
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A Bullet world whose bodies and shapes are swapped, scaled, deleted and added again in a sequence given by
-// bytes; and the properties that must hold throughout. Used by a test with fixed seeds and by a fuzz program.
+// bytes, and a check of the properties that must always hold. A test with fixed seeds and a fuzz program use
+// it.
 #pragma once
 
 #include <BulletCollision/CollisionShapes/btConvexPointCloudShape.h>
@@ -21,20 +22,20 @@
 
 namespace vps_test {
 
-/// Claims are checked by the caller: a test reports them, a fuzz program aborts.
+/// Called with each claim. A test reports a claim that does not hold, a fuzz program aborts.
 using Require = void (*)(bool claim, const char* promise);
 
-/// Each operation is a pair of bytes: what, and to which body or with which number.
+/// Each operation is a pair of bytes: the kind of operation, and the body or number to which it applies.
 class HostileWorld {
  public:
-  /// @param parallel  bullet::Dispatcher with two threads
+  /// @param parallel uses bullet::Dispatcher with two threads
   explicit HostileWorld(Require require, bool parallel = false);
   ~HostileWorld();
   HostileWorld(const HostileWorld&) = delete;
   HostileWorld& operator=(const HostileWorld&) = delete;
 
   void run(const std::uint8_t* data, std::size_t size);
-  /// After all: a part still falls on a plate and rests there.
+  /// Requires that, after all operations, a part still falls on a plate and rests there.
   void finish();
   static constexpr int kOperations = 22;
 
@@ -51,7 +52,7 @@ class HostileWorld {
     std::unique_ptr<btRigidBody> body;
     Owned owned;
     bool is_in_world = false;
-    bool was_swapped = false;  ///< since the last step
+    bool was_swapped = false;  ///< its shape was swapped since the last step
   };
   static constexpr int kKinds = 14, kVpsKinds = 3;
 
@@ -70,7 +71,7 @@ class HostileWorld {
   vps::bullet::Solver solver_;
   btDiscreteDynamicsWorld world_;
   std::vector<Slot> slots_;
-  std::vector<Owned> retired_;  // shapes that no body uses any more, kept
+  std::vector<Owned> retired_;  // shapes that no body uses any more; they are kept alive
   vps::bullet::Settings settings_;
 };
 

@@ -12,8 +12,9 @@
 namespace vps::test {
 
 /// Sweeps a closed profile of (r, z) points [m] around z. The profile runs counter-clockwise in the (r, z)
-/// plane around the solid and closes by itself; edges on the axis give no surface. Vertices lie on the true
-/// circles, so flats are inside them by r (1 - cos(pi / segments)). Closed and outward; vertices are shared.
+/// plane around the solid and closes by itself; edges on the axis make no surface. Vertices lie on the true
+/// circles, so flats are inside them by r (1 - cos(pi / segments)). The mesh is closed, faces outwards, and
+/// shares its vertices.
 inline Mesh lathe(const std::vector<std::array<double, 2>>& profile, int segments) {
   Mesh mesh;
   std::vector<std::uint32_t> first;  // vertex index of each profile point; one vertex if on the axis

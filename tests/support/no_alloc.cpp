@@ -36,8 +36,8 @@ void noteHeapCall() noexcept {
 }  // namespace
 
 #if VPS_MALLOC_IS_OURS
-// glibc's own entry points, so that overriding the public names needs no dlsym (which allocates itself).
-// operator new and delete come through here too.
+// These are glibc's own entry points; with them, overriding the public names needs no dlsym, which allocates
+// itself. operator new and delete call these functions too.
 extern "C" {
 void* __libc_malloc(std::size_t size);
 void* __libc_calloc(std::size_t count, std::size_t size);

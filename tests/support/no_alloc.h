@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Proves that a stretch of code neither allocates nor frees: malloc's family is overridden in the test
-// programs.
+// Checks that a section of code neither allocates nor frees memory: the test programs override malloc and
+// related functions.
 #pragma once
 
 #include <cstddef>
 
 namespace vps_test {
 
-/// While it lives, every allocation and release of this thread (new, malloc and their kin) is counted; its
-/// destructor adds a test failure when there was one. VPS_NO_ALLOC_ABORT=1 in the environment aborts at the
-/// first instead, so that a debugger shows who it was. Scopes nest. Under AddressSanitizer and
-/// ThreadSanitizer, which own malloc, only operator new and delete are seen.
+/// Counts every allocation and release of this thread (new, malloc and related functions) while the scope
+/// exists; its destructor adds a test failure if there was one. With VPS_NO_ALLOC_ABORT=1 in the environment
+/// the program aborts at the first of them instead, so that a debugger shows the caller. Scopes may be
+/// nested. Under AddressSanitizer and ThreadSanitizer, which replace malloc, only operator new and delete are
+/// counted.
 class NoAllocScope {
  public:
   NoAllocScope() noexcept;

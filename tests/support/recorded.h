@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A run that was recorded, and what a run done again has in common with it.
+// A recorded run, and the comparison of two runs to the bit.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A threaded rod and its nut, with real helical flanks.
 //
-// Rows of vertices run along the helix, so that crests and roots are clean edges; at the two end faces rows
-// are clamped to the face, where they fall together and are merged.
+// Rows of vertices run along the helix, so that crests and roots are clean edges. At the two end faces, the
+// rows are clamped to the face, where coinciding vertices are merged.
 #pragma once
 
 #include <algorithm>
@@ -18,12 +18,12 @@ struct ThreadShape {
   double major_m = 6e-3;  ///< outer radius of the rod's crests (M12)
   double pitch_m = 1.75e-3;
   double length_m = 20e-3;
-  double clearance_m = 0;   ///< radial, given to every point of the flanks, crests and roots
-  double chamfer_m = 0;     ///< at 45 degrees, of both ends: into the rod's crests, and into the nut's
-  int columns = 192;        ///< around; a multiple of 6
+  double clearance_m = 0;   ///< radial offset of every point of the flanks, crests and roots
+  double chamfer_m = 0;     ///< chamfer of 45 degrees at both ends, into the crests of rod and nut
+  int columns = 192;        ///< columns around the axis; a multiple of 6
   int rows_per_pitch = 32;  ///< a multiple of 16, so that crest and root begin on a row
-  int face_steps = 12;      ///< across the end faces
-  int side_steps = 24;      ///< along the nut's outside
+  int face_steps = 12;      ///< steps across the end faces
+  int side_steps = 24;      ///< steps along the nut's outside
 };
 
 /// Radius of the rod at `turns` pitches along the thread: ISO metric basic profile, 60 degrees, crest P/8,
@@ -35,7 +35,7 @@ inline double threadRadius(const ThreadShape& thread, double turns) {
   return thread.major_m - along * kFlank * thread.pitch_m * std::sqrt(3.0);
 }
 
-/// Chamfered at the ends: a rod beyond its crests, a nut within its roots.
+/// The radius with the chamfer at the ends: it limits a rod's radius from above and a nut's from below.
 inline double chamferedRadius(const ThreadShape& thread, bool is_nut, double radius_m, double z_m) {
   if (thread.chamfer_m <= 0) return radius_m;
   const double cut_m = thread.chamfer_m - (thread.length_m / 2 - std::abs(z_m));
@@ -51,7 +51,8 @@ inline std::vector<Vec3> threadColumn(const ThreadShape& thread, int i, bool is_
   const int half_rows = static_cast<int>(std::ceil(half_m / row_m));
   std::vector<Vec3> column;
   for (int j = -half_rows - thread.rows_per_pitch; j <= half_rows; ++j) {
-    // A row climbs one pitch a turn, so the last column is the first one a pitch higher, to the bit.
+    // A row rises by one pitch per turn, so the last column is the first column raised by a pitch, to the
+    // bit.
     const double row = j + static_cast<double>(thread.rows_per_pitch) * i / thread.columns;
     const double z_m = std::clamp(row * row_m, -half_m, half_m);
     const double phase = static_cast<double>(i % thread.columns) / thread.columns;
@@ -63,8 +64,8 @@ inline std::vector<Vec3> threadColumn(const ThreadShape& thread, int i, bool is_
   return column;
 }
 
-/// A rod with a right-hand thread over all its length, around z, centred. Closed, outward; about
-/// 2 x columns x rows_per_pitch x length / pitch triangles on the thread.
+/// A centred rod around z with a right-hand thread over its whole length. The mesh is closed, faces outwards,
+/// and has about 2 x columns x rows_per_pitch x length / pitch triangles on the thread.
 inline Mesh makeThreadedRod(const ThreadShape& thread) {
   const Vec3 end(0, 0, thread.length_m / 2);
   return sweptSections(thread.columns, [&](int i) {
@@ -78,14 +79,15 @@ inline Mesh makeThreadedRod(const ThreadShape& thread) {
   });
 }
 
-/// In a mirror a right-hand thread is a left-hand one.
+/// The mirrored mesh: a right-hand thread becomes a left-hand one.
 inline Mesh mirrored(Mesh mesh) {
   for (Vec3& v : mesh.vertices) v.x() = -v.x();
   for (auto& t : mesh.triangles) std::swap(t[0], t[1]);
   return mesh;
 }
 
-/// A hexagonal nut with the same thread inside, its corners at corner_m. Closed, outward.
+/// A hexagonal nut with the same thread inside and its corners at the radius corner_m. The mesh is closed and
+/// faces outwards.
 inline Mesh makeNut(const ThreadShape& thread, double corner_m) {
   return sweptSections(thread.columns, [&](int i) {
     std::vector<Vec3> column = threadColumn(thread, i, true);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A box as the bytes of a binary STL file, for tests that read files.
+// Meshes as the bytes of a binary STL file, for tests that read files.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace vps {
 
-/// Binary STL of a mesh, in the numbers given.
+/// Binary STL of a mesh, with its coordinates unchanged.
 inline std::string stlOf(const Mesh& mesh) {
   std::string out(80, ' ');
   const auto put = [&](const auto& value) {

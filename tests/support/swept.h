@@ -18,11 +18,11 @@ inline Vec3 polar(double r_m, double angle_rad, double z_m) {
   return {r_m * std::cos(angle_rad), r_m * std::sin(angle_rad), z_m};
 }
 
-/// Joins sections 0 to `columns` into a closed surface. `section(i)` is a closed loop of points [m], as many
-/// for every i, counter-clockwise in the (r, z) plane around the solid; section(columns) ends where
-/// section(0) began, perhaps some rows further along (a thread). Points that coincide to the bit become one
-/// vertex, and triangles that this collapses are dropped: on the axis, and where a thread runs out into an
-/// end face.
+/// Joins sections 0 to `columns` into a closed surface. `section(i)` is a closed loop of points [m],
+/// counter-clockwise in the (r, z) plane around the solid, with the same number of points for every i.
+/// section(columns) ends where section(0) begins, perhaps some rows further along (a thread). Points that
+/// coincide to the bit become one vertex, and triangles that collapse are removed, which happens on the axis
+/// and where a thread ends at an end face.
 template <typename Section>
 Mesh sweptSections(int columns, Section section) {
   Mesh mesh;
@@ -42,12 +42,12 @@ Mesh sweptSections(int columns, Section section) {
   return welded(mesh);
 }
 
-/// Appends points from a (included) to b (left out) in `steps` equal steps.
+/// Appends points from a (included) to b (excluded) in `steps` equal steps.
 inline void appendLine(std::vector<Vec3>& loop, const Vec3& a, const Vec3& b, int steps) {
   for (int k = 0; k < steps; ++k) loop.push_back(a + (b - a) * (static_cast<double>(k) / steps));
 }
 
-/// Radius at an angle of a regular polygon with its corners at multiples of a turn / sides.
+/// Radius, at an angle, of a regular polygon that has corners at multiples of a turn / sides.
 inline double polygonRadius(double corner_m, int sides, double angle_rad) {
   const double half_rad = std::numbers::pi / sides;
   const double from_middle_rad = std::remainder(angle_rad - half_rad, 2 * half_rad);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The rows of a table for other programs: tests/core_table.sh joins those of all programs into one.
+// Writes the rows of a table to a file. tests/core_table.sh joins the rows of all programs into one table.
 #pragma once
 
 #include <algorithm>
@@ -12,11 +12,11 @@ namespace vps::test {
 /// Verdict of a row. tests/core_table.sh counts every other word as a failure.
 inline constexpr const char* kMet = "met";
 inline constexpr const char* kFailed = "FAILED";
-inline constexpr const char* kExpected = "expected";  ///< fails as it is known to
+inline constexpr const char* kExpected = "expected";  ///< fails, as expected
 inline constexpr const char* kReported = "-";         ///< not judged
 
 /// Writes one line for each row: row, bound, value, verdict, processor time [s], separated by tabs. Each line
-/// is in the file as soon as it is added, so that a program that crashes leaves those before.
+/// is written to the file at once, so that the rows before a crash are kept.
 class TableRows {
  public:
   TableRows() = default;
@@ -26,12 +26,12 @@ class TableRows {
     if (file_) std::fclose(file_);
   }
 
-  /// @return false if the file cannot be written. Without a call, rows go nowhere.
+  /// @return false if the file cannot be written. Without a call, rows are not written.
   [[nodiscard]] bool open(const std::string& path) {
     file_ = std::fopen(path.c_str(), "w");
     return file_ != nullptr;
   }
-  /// The processor time of the row is that since the row before, or since the program began.
+  /// The processor time of the row is the time since the row before, or since the program began.
   void add(const std::string& row, const std::string& bound, const std::string& value, const char* verdict) {
     const std::clock_t now = std::clock();
     add(row, bound, value, verdict, static_cast<double>(now - last_) / CLOCKS_PER_SEC);

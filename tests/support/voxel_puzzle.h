@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Assemblies of cubes, which an exhaustive search takes apart: ground truth for planning.
+// Assemblies of cubes that an exhaustive search takes apart, as ground truth for planning.
 #pragma once
 
 #include <algorithm>
@@ -26,21 +26,21 @@ inline std::array<Cell, 6> unitSteps() {
   return {{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}};
 }
 
-/// Parts without a cell in common. Translations by whole cells say all that can be done without turning: the
-/// free places of cubes in a grid are a union of closed cubes of that grid, its faces and edges, in which
-/// every way can be pushed onto the edges.
+/// Parts that share no cell. Translations by whole cells cover all motions without rotation: the free
+/// positions of cubes in a grid are a union of closed cubes, faces and edges of this grid, and every path in
+/// this union can be moved onto the edges.
 class VoxelPuzzle {
  public:
   explicit VoxelPuzzle(std::vector<std::set<Cell>> parts) : parts_(std::move(parts)) {}
 
   [[nodiscard]] const std::vector<std::set<Cell>>& parts() const { return parts_; }
 
-  /// The part's surface, each face moved inwards, so that there is play.
+  /// The part's surface, with each face moved inwards, so that the parts have clearance.
   [[nodiscard]] Mesh mesh(std::size_t part, double cell_m, double inwards_m) const;
 
-  /// Whether it can be taken apart by two hands: some of the parts that are together, moved as one along any
-  /// way, leave the others, and so on with both. What leaves may leave first: parts that are away stop
-  /// nothing.
+  /// Whether two hands can take the assembly apart: some parts, moved together along any path, leave the
+  /// others, and both groups come apart in the same way. It does not matter in which order groups leave,
+  /// since parts that are away do not obstruct others.
   [[nodiscard]] bool comesApart() const {
     std::vector<std::size_t> all(parts_.size());
     std::iota(all.begin(), all.end(), std::size_t{0});
@@ -50,7 +50,7 @@ class VoxelPuzzle {
  private:
   [[nodiscard]] bool comesApart(const std::vector<std::size_t>& members) const {
     if (members.size() == 1) return true;
-    // The first one stays: which of two halves moves is the same.
+    // The first part stays, since it does not matter which of two groups moves.
     for (std::uint32_t subset = 1; subset < 1U << (members.size() - 1); ++subset) {
       std::vector<std::size_t> moved, held{members.front()};
       for (std::size_t i = 1; i < members.size(); ++i)
@@ -66,7 +66,7 @@ class VoxelPuzzle {
     return cells;
   }
 
-  /// Breadth first over all places.
+  /// Breadth-first search over all positions.
   [[nodiscard]] bool leave(const std::vector<std::size_t>& members,
                            const std::vector<std::size_t>& others) const {
     const std::set<Cell> moving = cellsOf(members), held = cellsOf(others);
@@ -88,13 +88,14 @@ class VoxelPuzzle {
     return false;
   }
 
-  static constexpr int kFar = 8;  ///< cells: more than any puzzle has
+  static constexpr int kFar = 8;  ///< a distance in cells that is greater than any puzzle
   std::vector<std::set<Cell>> parts_;
 };
 
 inline Mesh VoxelPuzzle::mesh(std::size_t part, double cell_m, double inwards_m) const {
   const std::set<Cell>& own = parts_[part];
-  // Each cell in three along each axis, the outer ones as wide as the faces move; what is left of them.
+  // Each cell is divided into three along each axis, of which the outer ones are as wide as the faces move;
+  // `fine` are the cells that remain.
   std::set<Cell> fine;
   for (const Cell& cell : own)
     for (int i = 0; i < 27; ++i) {
@@ -142,7 +143,8 @@ inline Mesh VoxelPuzzle::mesh(std::size_t part, double cell_m, double inwards_m)
   return mesh;
 }
 
-/// A cube of so many cells, divided by growing parts from random cells. They interlock as it happens.
+/// A cube of `size` cells along each axis, divided by parts that grow from random cells. Parts may or may not
+/// interlock.
 inline VoxelPuzzle randomCube(int size, std::size_t parts, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::vector<std::set<Cell>> grown(parts);
@@ -170,9 +172,9 @@ inline VoxelPuzzle randomCube(int size, std::size_t parts, std::uint64_t seed) {
   return VoxelPuzzle(std::move(grown));
 }
 
-/// A chain in which each link slides in the jaw of the next, across the joint before, and is kept there by
-/// arms of the link after that one. So all links but the last can only leave the last one together, and so
-/// on.
+/// A chain in which each link slides in the jaw of the next link, in a direction across that of the joint
+/// before, and is blocked by arms of the link after the next. So all links but the last can leave the last
+/// one only together, then all but the last two, and so on.
 ///
 ///      from the side, along the slot        from above
 ///              jaw of the next                arms of the link after it
@@ -186,7 +188,7 @@ inline VoxelPuzzle lockedChain(int links) {
   std::vector<std::set<Cell>> parts;
   for (int i = 0; i < links; ++i) {
     std::set<Cell> cells;
-    // At joint j the head's wings lie along one axis, the slot along the other.
+    // At joint j the wings of the head are along one axis and the slot along the other.
     const auto put = [&cells](int joint, int x, int along_wings) {
       cells.insert(joint % 2 == 0 ? Cell{x, 0, along_wings} : Cell{x, along_wings, 0});
     };
@@ -211,8 +213,8 @@ inline VoxelPuzzle lockedChain(int links) {
 }
 
 /// A six-piece burr: two bars of 2 x 2 x 6 along each axis cross in the middle. Each cell that several bars
-/// share is given to one of them at random, or is left empty with a probability; the first bar is whole. Many
-/// have bars in several pieces: see isConnected().
+/// share is given to one of them at random, or is left empty with a probability; the first bar is whole. In
+/// many burrs a bar is in several pieces: see isConnected().
 inline VoxelPuzzle randomBurr(std::uint64_t seed, double empty) {
   std::mt19937_64 random(seed);
   std::vector<std::set<Cell>> bars;
@@ -245,15 +247,15 @@ inline VoxelPuzzle randomBurr(std::uint64_t seed, double empty) {
   return VoxelPuzzle(std::move(bars));
 }
 
-/// Square pieces that lock in their plane by tabs with wide heads, the side at random, in a tray, which comes
-/// last. Pieces only leave upwards, to z.
+/// Square pieces in a tray. Tabs with wide heads, each on a random side, lock the pieces in their plane. The
+/// tray is the last part. Pieces can leave only upwards, along z.
 inline VoxelPuzzle jigsaw(int columns, int rows, std::uint64_t seed) {
   constexpr int kPiece = 8;
   std::mt19937_64 random(seed);
   std::map<Cell, int> owner;
   for (int x = 0; x < kPiece * columns; ++x)
     for (int y = 0; y < kPiece * rows; ++y) owner[{x, y, 0}] = x / kPiece + columns * (y / kPiece);
-  // A tab across the border at x or y = edge: a neck of one cell and a head of three.
+  // A tab across the border at x or y = edge, with a neck of one cell and a head of three.
   const auto addTab = [&](std::size_t axis, int edge, int middle) {
     const int side = random() % 2 == 0 ? 1 : -1, first = side > 0 ? edge : edge - 1;
     Cell from{};
@@ -283,7 +285,7 @@ inline VoxelPuzzle jigsaw(int columns, int rows, std::uint64_t seed) {
   return VoxelPuzzle(std::move(parts));
 }
 
-/// Whether every part is in one piece.
+/// Whether every part is connected.
 inline bool isConnected(const VoxelPuzzle& puzzle) {
   return std::ranges::all_of(puzzle.parts(), [](const std::set<Cell>& part) {
     std::set<Cell> seen{*part.begin()};

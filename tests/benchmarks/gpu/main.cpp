@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whether a GPU would make voxmaps sooner (Tripicchio et al., section 4.1): the faces of a ring gear of some
-// 200,000 triangles are written into the nodes of their bricks by OpenGL compute, in double precision, beside
-// buildVoxMap() on one core and on all. The part that is left out, edges, vertices and bricks of 16 bits,
-// would make the GPU's side longer.
+// Whether a GPU would build voxmaps faster (Tripicchio et al., section 4.1). OpenGL compute writes the faces
+// of a ring gear of some 200,000 triangles into the nodes of their bricks, in double precision; the time is
+// compared with buildVoxMap() on one core and on all cores. The GPU's side leaves out edges, vertices and
+// 16-bit bricks, which would take more time.
 //
 //   vps_bench_gpu           maps of 256^3 and 512^3
 //   vps_bench_gpu --check   a small gear, and tests only that nodes have the bits that the processor computes
@@ -50,12 +50,12 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-/// What both sides read: in voxels, the plane of each face and of its three sides, and for each brick within
-/// the band of a face the faces that may reach it.
+/// The input of both sides, in voxels: the plane of each face and of its three sides, and for each brick
+/// within the band of a face the faces that may reach the brick.
 struct Faces {
   using Plane = std::array<double, 4>;  // normal and offset
   std::vector<std::array<Plane, 4>> planes;
-  std::vector<std::array<std::int32_t, 4>> bricks;  // first node; the fourth is not used
+  std::vector<std::array<std::int32_t, 4>> bricks;  // first node of each brick; the fourth number is not used
   std::vector<std::uint32_t> first, list;           // of brick i: list[first[i]] to list[first[i + 1]]
 
   Faces(const Mesh& mesh, double voxel_m) {
@@ -90,7 +90,7 @@ struct Faces {
   }
 };
 
-/// The signed distance to the nearest face whose prism holds the node; of two equal ones the first.
+/// The signed distance to the nearest face whose prism contains the node; of two equal distances, the first.
 float nodeOf(const Faces& faces, std::size_t brick, int x, int y, int z) {
   const double px = faces.bricks[brick][0] + x, py = faces.bricks[brick][1] + y,
                pz = faces.bricks[brick][2] + z;
@@ -108,7 +108,7 @@ float nodeOf(const Faces& faces, std::size_t brick, int x, int y, int z) {
 }
 
 // A work group for each brick, an invocation for each of its 9 x 9 rows. `precise` forbids fused operations,
-// which round otherwise than the processor.
+// whose rounding differs from that of the processor.
 constexpr const char* kShader = R"(#version 450
 layout(local_size_x = 81) in;
 layout(std430, binding = 0) readonly buffer Planes { dvec4 planes[]; };
@@ -219,7 +219,7 @@ std::size_t differingNodes(const Faces& faces, const std::vector<float>& nodes) 
   return sum;
 }
 
-/// How nodes compare with the voxmap's, whose surface has edges and vertices as well.
+/// Comparison of the nodes with those of the voxmap, whose surface also has edges and vertices.
 struct Agreement {
   std::size_t equal = 0, farther = 0, nearer = 0;
 };
@@ -275,7 +275,7 @@ bool row(GLuint program, int voxels, int coarser, bool is_timed) {
   std::printf(
       "%d^3: %zu triangles, %zu bricks; %zu of %zu nodes in reach of a face have other bits than the "
       "processor's\n"
-      "  beside the voxmap: %zu equal, %zu farther, where an edge or vertex is nearer, %zu nearer\n",
+      "  compared with the voxmap: %zu equal, %zu farther, where an edge or vertex is nearer, %zu nearer\n",
       voxels, mesh.triangles.size(), faces.bricks.size(), differing, within, with_map.equal, with_map.farther,
       with_map.nearer);
   if (is_timed)

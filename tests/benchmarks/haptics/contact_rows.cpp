@@ -54,7 +54,7 @@ const PartMesh& block() {
 }
 
 struct Press {
-  double worst = 0;  ///< of |force - K depth| / force, over forces of 2 N and more
+  double worst = 0;  ///< greatest |force - K depth| / force, for forces of 2 N and more
   double most_N = 0;
 };
 
@@ -105,7 +105,7 @@ void pressRow(const HapticOptions& options, Table& table) {
 namespace {
 
 constexpr double kProbe_m = 5e-3;   // radius of the ball in hand
-constexpr double kRound_m = 20e-3;  // of cylinder and sphere
+constexpr double kRound_m = 20e-3;  // radius of cylinder and sphere
 const PartMesh& probe() {
   static const PartMesh part = dynamics::makePart(makeSphere(kProbe_m, 5));
   return part;
@@ -119,8 +119,8 @@ struct Surface {
 
 std::vector<Surface> surfaces() {
   static const PartMesh flat = dynamics::makePart(makeBox(Vec3(60e-3, 60e-3, 10e-3)));
-  // Along y, so that the slide goes around it. Flats are 20 mm (1 - cos(pi / 512)) = 0.4 um inside the
-  // circle.
+  // The cylinder is along y, so that the ball slides around it. Its flats are 20 mm (1 - cos(pi / 512)) = 0.4
+  // um inside the circle.
   static const PartMesh cylinder = dynamics::makePart(transformed(
       makeCylinder(kRound_m, 60e-3, 512), Pose(rotationFromVector(Vec3(M_PI / 2, 0, 0)), Vec3::Zero())));
   static const PartMesh sphere = dynamics::makePart(makeSphere(kRound_m, 6));
@@ -133,8 +133,8 @@ struct Slide {
   double force_N = 0;
 };
 
-// The hand moves the ball along x, 3 mm too deep, at 20 mm/s: around round surfaces by 0.4 rad to each side.
-// The surface is rotated by 0.1 rad about z and shifted against the grid.
+// The hand moves the ball along x, 3 mm too deep, at 20 mm/s: on round surfaces by 0.4 rad to each side. The
+// surface is rotated by 0.1 rad about z and is not aligned with the grid.
 Slide slideOver(const RigSettings& settings, const Surface& surface, double length_m) {
   HapticRig rig(settings);
   const double drop_m = surface.is_round ? kRound_m : 5e-3;
@@ -191,7 +191,7 @@ void slideRow(const HapticOptions& options, Table& table) {
 
 namespace {
 
-// Moves a part of 63 g by 0.2 m in a second, as a person reaches, and rotates it by 0.5 rad.
+// Moves a part of 63 g by 0.2 m in a second, like a person, and rotates it by 0.5 rad.
 double freeMotion_N(const RigSettings& settings, double& speed_m_s) {
   HapticRig rig(settings);
   rig.take(rig.world().add(block(), Pose{}));
@@ -205,8 +205,8 @@ double freeMotion_N(const RigSettings& settings, double& speed_m_s) {
     rig.lead(device::minimumJerk(s) * way_m, device::minimumJerk(s) * turn_rad,
              {device::minimumJerkRate(s) / duration_s * turn_rad,
               device::minimumJerkRate(s) / duration_s * way_m});
-    // The part's weight and inertia are what the hand should feel: device on hand, m (g - a) of the last
-    // step.
+    // The hand should feel only the part's weight and inertia: the force of the device on the hand is m (g -
+    // a) of the last step.
     if (i > 300) worst_N = std::max(worst_N, (rig.felt().f - (weight_N - mass_kg * a)).norm());
     const Vec3 v = rig.part().V_W.v;
     a = (v - v_before) / HapticRig::kStep_s;

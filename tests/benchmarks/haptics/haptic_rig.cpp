@@ -12,7 +12,7 @@ device::LoopSettings settingsFor(const device::SimulatedDualArm& arm) {
   settings.period_s = HapticRig::kStep_s;
   settings.gains =
       device::deriveGains(arm.limits(), {1 / HapticRig::kStep_s, 1 / HapticRig::kStep_s, 0, 1, 1});
-  settings.extrapolates_part = true;  // as scenes do
+  settings.extrapolates_part = true;  // as in scenes
   return settings;
 }
 
@@ -39,7 +39,7 @@ void HapticRig::lead(const Vec3& p_WG, const Vec3& turn_rad, const Twist& V_WG) 
   device::HandForce hand;
   hand.X_eq = Pose(Mat3(rotationFromVector(turn_rad) * R_WG_taken_), p_WG);
   hand.V_eq = V_WG;
-  hand.mass_kg = 1.5;  // as the virtual operator's, vps_device/operator.h
+  hand.mass_kg = 1.5;  // as the virtual operator of vps_device/operator.h
   hand.inertia_kgm2 = 0.004;
   hand.k_N_per_m = 4000 * Mat3::Identity();
   hand.b_Ns_per_m = 150 * Mat3::Identity();

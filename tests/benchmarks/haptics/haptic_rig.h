@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The simulated arm, the haptic loop and a Bullet world with VPS contact, in lockstep: a hand moves a part.
+// The simulated arm, the haptic loop and a Bullet world with VPS contact, in lockstep, with a hand that moves
+// a part.
 #pragma once
 
 #include "dynamics/world.h"
@@ -16,7 +17,7 @@ struct RigSettings {
   bool has_gravity = false;
 };
 
-/// The real arm: encoders, structure, delay.
+/// The settings of the real arm, with encoders, structure and delay.
 inline device::SimulatedDualArmSettings realDualArm() {
   return {};
 }
@@ -29,8 +30,8 @@ class HapticRig {
   dynamics::World& world() { return world_; }
   /// Grasps a part at its present pose, at rest.
   void take(const dynamics::Placed& held);
-  /// One millisecond: the hand pulls the grasp frame, with the stiffness of a firm grip, to a position and a
-  /// rotation relative to the grasp.
+  /// Advances by one millisecond, in which the hand pulls the grasp frame, with the stiffness of a firm grip,
+  /// to a position and a rotation relative to the grasp.
   void lead(const Vec3& p_WG, const Vec3& turn_rad, const Twist& V_WG);
 
   [[nodiscard]] const device::SimulatedDualArm& arm() const { return arm_; }
@@ -39,7 +40,7 @@ class HapticRig {
   /// The hand's true grasp frame, and the part's.
   [[nodiscard]] Pose trueGrasp() const { return loop_.toGrasp(arm_.truePose()); }
   [[nodiscard]] const CouplingState& part() const { return part_; }
-  /// On the hand, by the motors, less the handle's weight: in W, which is D here.
+  /// The wrench of the motors on the hand, without the handle's weight, in W, which is D here.
   [[nodiscard]] const Wrench& felt() const { return arm_.appliedWrench(); }
 
   static constexpr double kStep_s = dynamics::World::kStep_s;
@@ -49,7 +50,7 @@ class HapticRig {
   device::SimulatedDualArm arm_;
   device::CouplingPort port_;
   device::HapticLoop loop_;
-  bullet::CouplingConstraint* coupling_ = nullptr;  // the world's
+  bullet::CouplingConstraint* coupling_ = nullptr;  // owned by world_
   CouplingState part_;
   Mat3 R_WG_taken_ = Mat3::Identity();
 };

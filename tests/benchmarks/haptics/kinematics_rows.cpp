@@ -11,7 +11,7 @@ namespace vps::bench {
 namespace {
 
 constexpr double kTilt_rad =
-    0.785;  // of the handle, about any axis; the workspace's corners are reachable so
+    0.785;  // rotation of the handle about any axis, at which the corners of the workspace are reachable
 
 Pose anyPose(device::Random& random, const device::DualArmParameters& p) {
   const Vec3 place(random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5);
@@ -23,7 +23,8 @@ int poses(const HapticOptions& options) {
   return options.is_short ? 2000 : 200000;
 }
 
-// Poses over the whole workspace; at(pose, random) returns whether the device reaches one.
+// Calls `at` with poses over the whole workspace; at(pose, random) returns whether the device reaches the
+// pose.
 template <typename At>
 int countRefused(const HapticOptions& options, unsigned seed, const device::DualArmParameters& p, At&& at) {
   device::Random random(seed);

@@ -58,7 +58,7 @@ void LossyHand::begin() {
 
 void LossyHand::goBack(std::size_t next) {
   hand_->goBack(next);
-  is_holding_ = false;  // the springs' energy is dropped
+  is_holding_ = false;  // the energy of the springs is dropped
 }
 
 double LossyHand::stored_J(const device::HeldPart& part, const device::HapticLoop& loop) const {
@@ -67,7 +67,7 @@ double LossyHand::stored_J(const device::HeldPart& part, const device::HapticLoo
              w_B = X_WB.R.transpose() * part.V_WP.w;
   const Pose X_WG = part.X_WP * held_.X_PG, X_hand = loop.toGrasp(poseAtMotors());
   const CouplingGains& gains = loop.settings().gains;
-  // Beyond its limit a spring's force is constant.
+  // The force of a spring is constant beyond its limit.
   const auto spring = [](double k, double stretch, double most) {
     const double elastic = std::min(stretch, most / k);
     return 0.5 * k * elastic * elastic + most * (stretch - elastic);
@@ -108,7 +108,7 @@ Wrench LossyHand::actingWrench() const {
 
 void LossyHand::step(const device::HeldPart& part, const device::HapticLoop& loop, double dt_s) {
   const device::WorkspaceMap& map = loop.settings().map;
-  if (is_holding_ && tick_++ % ticks_per_step_ == 0) {  // the part's state is of this instant
+  if (is_holding_ && tick_++ % ticks_per_step_ == 0) {  // the part's state is that of this instant
     const double now_J = work_J_ - dissipated_J_ * map.scale / map.force_scale + stored_J(part, loop);
     if (is_new_) start_J_ = now_J - energy_.balance_J;
     is_new_ = false;

@@ -14,15 +14,16 @@
 namespace vps::bench {
 
 struct Connection {
-  int delay_ticks = 0;  ///< of wrenches, on top of the arm's own
-  double lost = 0;      ///< share of samples and wrenches that are lost; the last one before is used
+  int delay_ticks = 0;  ///< delay of wrenches, in addition to the arm's own delay
+  double lost = 0;      ///< share of samples and wrenches that are lost; the last one that arrived is used
   std::uint64_t seed = 1;
 };
 
-/// The device at the far end of the connection. Its limits include the delay, so that gains allow for it.
+/// The device at the far end of the connection. The limits of the device include the delay, so that the gains
+/// allow for it.
 class LossyDevice final : public device::Device {
  public:
-  /// inner outlives it.
+  /// `inner` must outlive this object.
   LossyDevice(device::Device& inner, const Connection& connection)
       : inner_(&inner), connection_(connection), random_(connection.seed) {}
   device::DeviceSample read() noexcept override;
@@ -41,15 +42,15 @@ class LossyDevice final : public device::Device {
   Wrench held_;
 };
 
-/// The energy balance of PassivityObserver, from true poses and the forces that actually act. Device
-/// dissipation is the arm's stated least damping alone: its dry friction is left as a margin.
+/// The energy balance of PassivityObserver, from true poses and the forces that actually act. The only
+/// dissipation of the device that counts is the arm's stated least damping; its dry friction is a margin.
 struct TrueEnergyBalance {
   double balance_J = 0, least_J = 0, injected_J = 0;
   void update(double now_J);
 };
 
-/// Runs the scene's own hand over that connection, its plant in four steps a tick (see
-/// tests/support/device/sampled_wall.h).
+/// Runs the scene's own hand over this connection. The simulated arm takes four steps per tick (see
+/// pressOnWall() in tests/support/device/sampled_wall.h).
 class LossyHand final : public scenes::Hand {
  public:
   LossyHand(const scenes::Scene& scene, const Connection& connection);
@@ -78,7 +79,7 @@ class LossyHand final : public scenes::Hand {
   LossyDevice device_;
   device::DeviceLimits limits_;
   TrueEnergyBalance energy_;
-  /// The part that is held, and the next one.
+  /// The part that is held, or the next one.
   struct Held {
     Pose X_PG;
     bullet::BodyFrame body;

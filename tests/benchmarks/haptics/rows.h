@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The rows of the table, one function each.
+// The rows of the table; each is one function.
 #pragma once
 
 #include <vector>
@@ -9,7 +9,7 @@
 namespace vps::bench {
 
 struct HapticOptions {
-  bool is_short = false;  ///< a few seconds of work for each row, with the same bounds
+  bool is_short = false;  ///< each row takes a few seconds, with the same bounds
 };
 
 struct HapticCase {
@@ -17,20 +17,20 @@ struct HapticCase {
   void (*run)(const HapticOptions&, Table&);
 };
 
-// The arm alone.
+// Rows of the arm alone.
 void kinematicsRow(const HapticOptions&, Table&);
 void staticsRow(const HapticOptions&, Table&);
-// A sampled wall of one direction.
+// Rows of a sampled wall in one direction.
 void passivityRow(const HapticOptions&, Table&);
 void ringingRow(const HapticOptions&, Table&);
 void stiffestWallRow(const HapticOptions&, Table&);
-// The arm, the haptic loop, and Bullet with VPS contact.
+// Rows of the arm with the haptic loop and Bullet with VPS contact.
 void pressRow(const HapticOptions&, Table&);
 void slideRow(const HapticOptions&, Table&);
 void freeMotionRow(const HapticOptions&, Table&);
-// Shipped scenes with their operator. Needs vps::scenes.
+// The row of shipped scenes with their operator, which needs vps::scenes.
 void injectedRow(const HapticOptions&, Table&);
-// In real time.
+// Rows in real time.
 void tickRow(const HapticOptions&, Table&);
 void pointsRow(const HapticOptions&, Table&);
 

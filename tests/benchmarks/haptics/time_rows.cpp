@@ -71,7 +71,7 @@ void pointsRow(const HapticOptions& options, Table& table) {
   scene.fidelity.spacing_m = spacingFor(held.part.mesh, kPaperPoints);
   const std::size_t points = pointsAt(scene.fidelity.spacing_m, held.part.mesh);
   scene.fidelity.physics_rate_hz = scene.fidelity.haptic_rate_hz = kPaperRate_hz;
-  scene.fidelity.sides = Sides::One;  // the points of the part in hand, as the paper's
+  scene.fidelity.sides = Sides::One;  // only the points of the part in hand, as in the paper
   const scenes::AssembleResult result = scenes::assemble(scene);
   table.add({"physics step, query of 185,030 points",
              text("%.0f Hz", kPaperRate_hz),

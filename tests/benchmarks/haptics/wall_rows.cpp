@@ -77,7 +77,7 @@ void stiffestWallRow(const HapticOptions& options, Table& table) {
         std::min(2 * limits.damping_Ns_per_m * rate_hz, 2 * limits.coulomb_N / limits.resolution_m);
     table.add(
         {text("stiffest wall without limit cycle, %.0f kHz", rate_hz / 1000),
-         "dual arm as it is",
+         "dual arm, unchanged",
          {reported("ours", stiffest(device), 1e-3, "kN/m"),
           reported("min(2b/T, 2 f_c/D)", theory, 1e-3, "kN/m"),
           reported("2b/T", 2 * limits.damping_Ns_per_m * rate_hz, 1e-3, "kN/m"),

@@ -2,7 +2,7 @@
 // vps_bench_load product FOLDER      a product of 67 solids and 1720 faces: import, explain, check, assemble
 // vps_bench_load parts N T S FOLDER  a scene of N parts with T triangles each, of S shapes (0: all differ)
 // vps_bench_load curve FOLDER        parts.dat for plots/load.gp: 10 to 10,000 parts
-// vps_bench_load write ...           as the others, but only writes product.step or the scene
+// vps_bench_load write ...           as above, but only writes product.step or the scene
 // The program is measured from outside: processor time, wall time, peak memory.
 #include <fcntl.h>
 #include <signal.h>
@@ -38,9 +38,9 @@ namespace {
 
 struct ProgramRun {
   int status = -1;        ///< exit status; -1: a signal ended it
-  bool is_ended = false;  ///< false: it was killed at the limit
+  bool is_ended = false;  ///< false: the program was killed at the limit
   double wall_s = 0, cpu_s = 0;
-  double peak_bytes = 0;  ///< resident
+  double peak_bytes = 0;  ///< resident memory
 };
 
 double seconds(const timeval& time) {
@@ -48,7 +48,7 @@ double seconds(const timeval& time) {
 }
 
 /// Runs a program and measures it from outside.
-/// @param output  gets what it prints
+/// @param output file for its output
 ProgramRun runProgram(const std::vector<std::string>& words, const std::filesystem::path& output,
                       double limit_s) {
   std::vector<std::string> copies = words;
@@ -113,7 +113,7 @@ void printHead() {
       "|\n|---|---|---|---|---|---|---|---|\n");
 }
 
-/// Runs the program in the folder, and leaves what it prints there.
+/// Runs the program `vps` and writes its output to files in the folder.
 class Measured {
  public:
   explicit Measured(fs::path folder) : folder_(std::move(folder)) {}
@@ -137,7 +137,7 @@ void productRows(const fs::path& folder) {
   printRow("explain", run("explain", {"explain", scene}, 300), 5);
   printRow("check", run("check", {"check", step}, 600), 60);
   const auto load = [&](const std::string& name) {
-    // Ten physics steps: nearly all of it is building the models.
+    // Ten physics steps, so that nearly all of the time is for building the models.
     return run(
         name, {"simulate", scene, "--seconds", "0.01", "--cache", cache, "--json", folder / (name + ".json")},
         300);

@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 using Profile = std::vector<std::array<double, 2>>;
 
-/// Points on the way from one point of a profile to the next, so that its triangles are no slivers.
+/// The profile with additional points between its points, so that the triangles are no slivers.
 Profile divided(const Profile& profile, int pieces) {
   Profile out;
   for (std::size_t i = 0; i < profile.size(); ++i) {
@@ -28,10 +28,10 @@ Profile divided(const Profile& profile, int pieces) {
   return out;
 }
 
-/// Turned, with about so many triangles.
+/// A turned part with about this number of triangles.
 Mesh turned(const Profile& profile, std::size_t triangles) {
-  // A profile of e edges in p pieces, each round s times, has about 2 e p s triangles; s = 8 p has pieces
-  // that are about as long as wide.
+  // A profile of e edges with p pieces each, swept in s segments, has about 2 e p s triangles; with s = 8 p
+  // the pieces are about as long as wide.
   const double edges = static_cast<double>(profile.size());
   const int pieces =
       std::max(1, static_cast<int>(std::lround(std::sqrt(static_cast<double>(triangles) / (16 * edges)))));
@@ -57,7 +57,7 @@ void writeStl(const fs::path& file, const Mesh& mesh) {
 
 constexpr double kRadius_m = 4e-3, kClearance_m = 0.1e-3, kPitch_m = 20e-3;
 
-/// With a floor, on which the pin stands.
+/// A bush with a floor, on which the pin stands.
 Mesh bush(std::size_t triangles) {
   const double bore_m = kRadius_m + kClearance_m;
   return turned(
@@ -70,7 +70,7 @@ Mesh pin(std::size_t triangles) {
                 triangles);
 }
 
-/// A stepped shaft; its height tells one from another.
+/// A stepped shaft; each number gives another height.
 Mesh bystander(std::size_t number, std::size_t triangles) {
   const double height_m = 20e-3 + 1e-6 * static_cast<double>(number % 10000);
   return turned({{0, 0}, {8e-3, 0}, {8e-3, 6e-3}, {5e-3, 8e-3}, {5e-3, height_m}, {0, height_m}}, triangles);

@@ -39,7 +39,7 @@ namespace vps::bench {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-/// All in millimetres.
+/// All lengths are in millimetres.
 constexpr double kShaftX = 40, kShaftZ = 80, kWallIn = 42, kWallOut = 58;
 constexpr double kScrewCircle = 25, kThread = 3, kThreadHole = 3.05, kPassage = 3.3, kWasher = 1.2;
 
@@ -51,7 +51,7 @@ gp_Trsf shifted(double x, double y, double z) {
   return t;
 }
 
-/// Turns z into the direction, at a place.
+/// A transform that rotates z into the direction and moves to a place.
 gp_Trsf along(const gp_Dir& direction, const gp_Pnt& at) {
   gp_Trsf t;
   t.SetTransformation(gp_Ax3(at, direction), gp_Ax3(gp_Pnt(0, 0, 0), gp_Dir(0, 0, 1)));
@@ -86,15 +86,15 @@ TopoDS_Shape without(const TopoDS_Shape& from, const std::vector<TopoDS_Shape>& 
 }
 
 TopoDS_Shape placed(const TopoDS_Shape& shape, const gp_Trsf& t) {
-  return BRepBuilderAPI_Transform(shape, t, true).Shape();  // a copy, not another place of the same
+  return BRepBuilderAPI_Transform(shape, t, true).Shape();  // a copy with its own geometry, not an instance
 }
 
-/// What a drill and a countersink take away, through z = 0 to `depth`.
+/// The material that a drill and a countersink remove, from z = 0 to `depth`.
 TopoDS_Shape hole(double r, double depth, double chamfer) {
   return turned({{0, -1}, {r + chamfer + 1, -1}, {r, chamfer}, {r, depth}, {0, depth}});
 }
 
-/// A socket head cap screw; z = 0 is where its head rests, its shank points to -z.
+/// A socket head cap screw. Its head rests on z = 0, and its shank points to -z.
 TopoDS_Shape screw(double length) {
   const TopoDS_Shape body = turned({{0, -length},
                                     {kThread - 0.6, -length},
@@ -138,7 +138,7 @@ TopoDS_Shape bearingRing(double inner, double outer) {
   return without(ring, {BRepPrimAPI_MakeTorus(14, 2.7).Shape()});
 }
 
-/// Around z; its larger journal, which stops the gear, is at negative z.
+/// A shaft around z. Its larger journal, which stops the gear, is at negative z.
 TopoDS_Shape shaft() {
   return turned({{0, -72},
                  {7.5, -72},
@@ -158,7 +158,7 @@ TopoDS_Shape shaft() {
                  {0, 72}});
 }
 
-/// 40 teeth of module 2 with straight flanks.
+/// A gear with 40 teeth of module 2 with straight flanks.
 TopoDS_Shape gear(double turn_rad) {
   constexpr int kTeeth = 40;
   constexpr double kTip = 41.9, kRoot = 37.3, kPitch = 40, kBacklash = 0.15;
@@ -172,7 +172,7 @@ TopoDS_Shape gear(double turn_rad) {
   return without(prism(outline, -10, 20), {placed(hole(10.01, 30, 0.5), shifted(0, 0, -10))});
 }
 
-/// Rests with z = 0 on a wall; its collar points to -z.
+/// A cover that rests with z = 0 on a wall; its collar points to -z.
 TopoDS_Shape cover() {
   std::vector<TopoDS_Shape> holes;
   for (int i = 0; i < 4; ++i) {
@@ -226,7 +226,7 @@ TopoDS_Shape base() {
   return without(BRepPrimAPI_MakeBox(gp_Pnt(-120, -80, 0), gp_Pnt(120, 80, 20)).Shape(), tools);
 }
 
-/// Puts solids where they belong.
+/// Places the solids of the product.
 class Product {
  public:
   explicit Product(bool is_shared) : is_shared_(is_shared) { builder_.MakeCompound(all_); }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Two nodes whose clocks differ, over UDP on loopback. The other node is a process in a time namespace, whose
-// monotonic clock is 3 s ahead; its drift is made here, since no kernel has one.
+// monotonic clock is 3 s ahead; its drift is simulated, since a kernel does not provide one.
 #include <dlfcn.h>
 #include <sched.h>
 #include <signal.h>
@@ -29,7 +29,7 @@ constexpr double kDrift = 100e-6;
 constexpr double kBar_s = 50e-6;
 constexpr std::int64_t kAhead_ns = 3'000'000'000;
 
-std::int64_t drift_from_ns = 0;  ///< of this process's clock; 0: it has no drift
+std::int64_t drift_from_ns = 0;  ///< time of this process's clock from which it drifts; 0: no drift
 
 int systemTime(clockid_t clock, timespec* time) noexcept {
   using Call = int (*)(clockid_t, timespec*);
@@ -45,9 +45,9 @@ std::int64_t systemNow_ns() {
   return toNs(time);
 }
 
-/// What the other node says of its clock.
+/// The state of the other node's clock, which that node writes.
 struct Other {
-  std::atomic<std::int64_t> drift_from_ns{0};  ///< by its clock
+  std::atomic<std::int64_t> drift_from_ns{0};  ///< by the other clock
   std::atomic<bool> is_refused{false};
 };
 
@@ -59,11 +59,11 @@ struct Other {
   for (;;) pause();
 }
 
-/// Starts it, by a process that takes the children into a time namespace. Returns that process.
+/// Starts the other node by a process that creates a time namespace for its children. Returns that process.
 pid_t startOther(const std::string& session, Other& other) {
   const pid_t first = fork();
   if (first != 0) return first;
-  setpgid(0, 0);  // its child is of that group, too
+  setpgid(0, 0);  // its child belongs to the same group
   bool is_made = unshare(CLONE_NEWTIME) == 0;
   if (is_made) {
     std::ofstream offsets("/proc/self/timens_offsets");
@@ -84,7 +84,7 @@ bool clockRow(double seconds) {
   auto* other = static_cast<Other*>(
       mmap(nullptr, sizeof(Other), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0));
   new (other) Other;
-  // Before this process has threads of DDS. Its own process group ends with it.
+  // The other node is started before this process has threads of DDS. Its process group is killed at the end.
   const pid_t group = startOther(session, *other);
   setpgid(group, group);
   std::unique_ptr<scenes::Link> render;
@@ -99,14 +99,14 @@ bool clockRow(double seconds) {
   double worst_s = 0, worst_bound_s = 0, drift = 0;
   int count = 0, outside = 0;
   const std::int64_t begun_ns = systemNow_ns();
-  constexpr double kSettle_s = 5;  // the estimate of the drift needs some of the exchanges' history
+  constexpr double kSettle_s = 5;  // the estimate of the drift needs a history of exchanges
   for (double now_s = 0; now_s < seconds && !other->is_refused;) {
     usleep(20'000);
     now_s = 1e-9 * static_cast<double>(systemNow_ns() - begun_ns);
     const std::int64_t before_ns = systemNow_ns();
     const auto timing = render->timing(scenes::NodeRole::Device);
     if (!timing || now_s < kSettle_s) continue;
-    // Truth: what the other clock shows at the time by this one.
+    // The true value that the other clock shows at a time of this clock.
     const double since_s = 1e-9 * static_cast<double>(before_ns + kAhead_ns - other->drift_from_ns);
     const double error_s = std::abs(timing->clock_offset_s - (1e-9 * kAhead_ns + kDrift * since_s));
     worst_s = std::max(worst_s, error_s);
@@ -135,7 +135,7 @@ bool clockRow(double seconds) {
 
 }  // namespace vps::bench
 
-/// All of this program reads the clock here, and the libraries that it loads.
+/// This program and the libraries that it loads read the clock by this function.
 extern "C" int clock_gettime(clockid_t clock, timespec* time) noexcept {
   using namespace vps::bench;
   const int result = systemTime(clock, time);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Sessions for an hour: one run that does not end, and short ones that follow each other. What the processes
-// use at the end is compared with what they used after a tenth of the time.
+// Sessions for an hour: one run that does not end, and short runs that follow each other. The resources that
+// the processes use at the end are compared with those after a tenth of the time.
 #include <unistd.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kLook_s = 20;
-constexpr double kGrowthBar_MB = 1;  // assumed: what an allocator keeps, more or less
+constexpr double kGrowthBar_MB = 1;  // assumed: about the memory that an allocator keeps
 
 long segmentsOf(const std::string& session) {
   long count = 0;
@@ -32,14 +32,14 @@ long segmentsOf(const std::string& session) {
   return count;
 }
 
-/// A peg that hangs above its hole, for a hand that a page moves, and so long that no run ends.
+/// A peg above its hole, for a hand that a page moves, with a time limit so long that the run does not end.
 void writeLongScene(const fs::path& file) {
   std::ofstream(file) << "unit = 'mm'\n[[part]]\nfile = '" VPS_SCENE_FOLDER
                          "/peg_in_hole/hole.stl'\nfixed = true\n[[part]]\nfile = '" VPS_SCENE_FOLDER
                          "/peg_in_hole/peg.stl'\npose = {position = [0, 0, -15]}\n[[step]]\npart = 'peg'\n"
                          "start = {position = [0, 0, 40]}\ntimeout_s = 1e6\n";
 }
-/// The peg is set down 25 mm higher, on nothing: a step of a second without contact.
+/// The peg's target is 25 mm higher, without contact, so the step takes a second.
 void writeShortScene(const fs::path& file) {
   std::ofstream(file) << "unit = 'mm'\n[[part]]\nfile = '" VPS_SCENE_FOLDER
                          "/peg_in_hole/hole.stl'\nfixed = true\n[[part]]\nfile = '" VPS_SCENE_FOLDER
@@ -110,7 +110,7 @@ bool enduranceRow(double seconds) {
     std::fprintf(stderr, "\n");
   }
   for (test::ChildProcess* process : {&long_render, &page, &watch, &device, &other_page, &short_render})
-    while (process->isRunning()) {  // again, for one that had just begun
+    while (process->isRunning()) {  // repeated, for a process that had just begun
       process->interrupt();
       std::this_thread::sleep_for(std::chrono::milliseconds(100));
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A peer that sends what it should not, beside a run over UDP whose nodes use no certificates.
+// A peer that sends invalid messages during a run over UDP whose nodes use no certificates.
 #include <unistd.h>
 
 #include <algorithm>
@@ -32,7 +32,7 @@ namespace {
 
 using scenes::Delivery;
 
-/// One topic of a session: what it hears there it can send again.
+/// An intruder on one topic of a session, which can send a message that it heard again.
 class Intruder {
  public:
   Intruder(const scenes::DdsParticipant& participant, const std::string& name, Delivery delivery)
@@ -44,7 +44,8 @@ class Intruder {
     for (char& byte : bytes) byte = static_cast<char>(random());
     out_.write(bytes);
   }
-  /// The last message, as it was (`what` 0), of a foreign version (1), with one byte changed (2), or cut (3).
+  /// Sends the last message unchanged (`what` 0), with a foreign version (1), with one byte changed (2), or
+  /// cut (3).
   void sendChanged(int what, std::mt19937& random) {
     std::string bytes;
     {
@@ -74,7 +75,7 @@ std::string slurp(const std::filesystem::path& file) {
   text << std::ifstream(file).rdbuf();
   return text.str();
 }
-/// The line with these words, and how many there are.
+/// A line that contains these words, and the number of such lines.
 std::string lineWith(const std::string& text, const std::string& words, int& count) {
   std::string found;
   std::istringstream in(text);
@@ -122,7 +123,8 @@ bool hostileRow(const std::string& scene) {
   const auto since_s = [&] {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
   };
-  // First as much as the nodes themselves send, for a while as fast as it can, then again with pauses.
+  // The peer first sends as much as the nodes themselves, for a while as fast as it can, and then again with
+  // pauses.
   while (nodes.render.isRunning() && since_s() < 120) {
     for (const std::unique_ptr<Intruder>& topic : topics) {
       topic->sendGarbage(random);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A state of the proxy to another process and the answer back through iceoryx, in the bytes and at the rate
-// of latency.cpp, where both ends look for the next message without a pause as well. Its daemon, iox-roudi,
-// holds the memory and must be installed (Debian: iceoryx).
+// A state of the proxy is sent to another process through iceoryx, and the answer back, with the bytes and
+// the rate of latency.cpp. As there, both ends look for the next message without a pause. The daemon of
+// iceoryx, iox-roudi, holds the memory and must be installed (Debian: iceoryx).
 #include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -50,7 +50,7 @@ class End {
     std::memcpy((*sample)->bytes.data(), bytes.data(), bytes.size());
     sample->publish();
   }
-  /// False: nothing has come.
+  /// Returns false if no message has arrived.
   template <typename Message>
   bool take(MessageReader& reader, Message& message) {
     auto sample = in_.take();
@@ -80,24 +80,24 @@ class End {
     if (!end.take(reader, haptic)) continue;
     physics.state.step = haptic.state.tick;
     end.send(writer.write(physics));
-    // A thread with priority that never sleeps is held back by the system.
+    // The system throttles a thread with real-time priority that never sleeps.
     device::monotonicClock().sleepUntil(now_ns() + kPeriod_ns / 2);
   }
 }
 
-/// By the name of the program; empty: it is not installed.
+/// The path of a program; empty: it is not installed.
 std::string pathOf(const std::string& program) {
   for (const char* folder : {"/usr/bin/", "/usr/local/bin/"})
     if (std::filesystem::exists(folder + program)) return folder + program;
   return "";
 }
 
-/// In a process of its own, since the daemon ends those that it knows when it ends.
+/// Measures in a process of its own, since the daemon ends all its clients when it ends.
 [[noreturn]] void measure(const char* what, double seconds) {
   const pid_t other = fork();
   if (other == 0) echo();
   End end("vps-bench-device", "haptic", "physics");
-  usleep(500'000);  // until both have found each other
+  usleep(500'000);  // so that both ends find each other
   device::requestRealTime(80, false);
   MessageWriter writer(2);
   MessageReader reader;
@@ -137,7 +137,7 @@ bool iceoryxRow(double seconds) {
   }
   const test::TemporaryFolder folder;
   test::ChildProcess daemon({daemon_path}, folder.path() / "roudi.txt");
-  usleep(1'000'000);  // until it has made its memory
+  usleep(1'000'000);  // so that the daemon creates its memory
   const pid_t measuring = fork();
   if (measuring == 0) measure(what, seconds);
   int status = 0;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// kill -9 of each node in turn: when the device is safe, whether the session goes on, and what stays behind.
+// kill -9 of each node in turn: how soon the device is safe, whether the session continues, and what is left
+// behind.
 #include <unistd.h>
 
 #include <algorithm>
@@ -25,17 +26,17 @@ struct Tally {
   int kills = 0, resumed = 0;
 };
 
-/// Memory of a role's processes, one after the other, each looked at before a kill.
+/// Memory of the processes of a role, one after the other, each measured before its kill.
 class MemoryOfKills {
  public:
   void look(const test::ChildProcess& process) {
     if (process.isRunning()) all_MB_.push_back(test::usageOf(process.id()).memory_MB);
   }
-  /// Median of the first, or the last, third.
+  /// Median of the first third; late_MB() is that of the last third.
   [[nodiscard]] double early_MB() const { return median({all_MB_.begin(), all_MB_.begin() + third()}); }
   [[nodiscard]] double late_MB() const { return median({all_MB_.end() - third(), all_MB_.end()}); }
   [[nodiscard]] bool isSteady() const {
-    // assumed: what an allocator keeps, more or less, and where in its run a process is
+    // assumed: about the memory that an allocator keeps, and the effect of the moment in the run
     return !all_MB_.empty() && late_MB() - early_MB() <= std::max(1.0, 0.05 * early_MB());
   }
 
@@ -67,13 +68,13 @@ bool killRows(int kills, const std::string& network) {
   std::size_t most_segments = 0;
   std::array<MemoryOfKills, 3> memory;
   double own_early_MB =
-      0;  // of this process, which joins each session as a watcher and lives through all kills
+      0;  // memory of this process, which joins each session as a watcher and is never killed
   nodes.startDevice();
   nodes.startWatch();
   nodes.startRender();
   for (int i = 0; i < kills; ++i) {
     Tally& tally = tallies[static_cast<std::size_t>(i % 3)];
-    // Every few kills a run may have come to its end: the next one is begun.
+    // Every few kills the run may have ended; then the next run is started.
     if (!nodes.join(network.empty() ? 1 : 4) || !nodes.waitForHold(5)) {
       nodes.render.wait();
       nodes.startRender();
@@ -89,8 +90,8 @@ bool killRows(int kills, const std::string& network) {
     for (std::size_t role = 0; role < alive.size(); ++role) memory[role].look(*alive[role]);
     if (i <= kills / 3) own_early_MB = test::usageOf(getpid()).memory_MB;
     if (i % 3 == 0) {
-      // With priority, and before the dead process is waited for: of the device's states only the newest can
-      // be read, so that who looks late sees a later one.
+      // The thread has real-time priority and reads before it waits for the dead process: only the newest
+      // state of the device can be read, so a late reader would see a later state.
       device::requestRealTime(60, false);
       const std::int64_t killed_ns = nodes.render.sendKill();
       const std::optional<double> safe = nodes.safeAfter_s(killed_ns);

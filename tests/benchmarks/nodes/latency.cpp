@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How long a state takes from the device's node to the render node and its answer back. The render node's
-// side answers at once, so that the link alone is measured. Beside it what the calls take that no link can do
-// without: writing and reading in one process, or the same bytes over UDP without DDS.
+// The time of a state from the device's node to the render node and of the answer back. The render node's
+// side answers at once, so that only the link is measured. For comparison, the time of the calls that any
+// link needs is measured: writing and reading in one process, or the same bytes over UDP without DDS.
 #include <arpa/inet.h>
 #include <signal.h>
 #include <sys/socket.h>
@@ -36,7 +36,7 @@ constexpr const char* kSession = "bench-latency";
 
 /// One end of the link with what it needs to write and read.
 struct End {
-  /// @param form  as the nodes write states on the link that is measured
+  /// @param form form in which the nodes write states on this link
   End(std::unique_ptr<Link> joined, std::uint64_t sender, WireForm form)
       : link(std::move(joined)), writer(sender, form) {}
 
@@ -65,17 +65,17 @@ struct End {
   std::vector<char> buffer = std::vector<char>(kLongestMessage);
 };
 
-/// In which the nodes write states there: over UDP the compact one.
+/// The form in which the nodes write states on a network: over UDP the compact form.
 WireForm formOf(const std::string& network) {
   return network.empty() ? WireForm::Exact : WireForm::Compact;
 }
 
-/// Over UDP until something comes, as the calls of bare UDP do; in shared memory not at all.
+/// Waits for a message over UDP, as the calls of bare UDP do; does not wait in shared memory.
 void pauseFor(const End& end) {
   if (end.link->form() == WireForm::Compact) end.link->waitForMessage(kPeriod_ns);
 }
 
-/// The render node's side, until it is killed.
+/// Runs the render node's side until it is killed.
 [[noreturn]] void echo(End& end) {
   device::requestRealTime(70, false);
   for (;;) {
@@ -84,7 +84,7 @@ void pauseFor(const End& end) {
       continue;
     }
     end.sendPhysics(end.haptic.state.tick);
-    // A thread with priority that never sleeps is held back by the system.
+    // The system throttles a thread with real-time priority that never sleeps.
     device::monotonicClock().sleepUntil(now_ns() + kPeriod_ns / 2);
   }
 }
@@ -110,7 +110,7 @@ struct Ends {
   std::optional<End> device;
 };
 
-/// The same calls in one process, through shared memory.
+/// Times of the same calls in one process, through shared memory.
 Times bareTimes(double seconds, WireForm form) {
   device::requestRealTime(80, false);
   End render(makeSession("bench-bare", "no scene"), 1, form);
@@ -143,7 +143,7 @@ class UdpSocket {
   void send(UdpSocket& to, std::string_view bytes) {
     sendto(file_, bytes.data(), bytes.size(), 0, to.generic(), sizeof address_);
   }
-  /// Waits.
+  /// Waits for a message and returns it.
   std::string_view receive() {
     const ssize_t size = recv(file_, buffer_.data(), buffer_.size(), 0);
     return {buffer_.data(), static_cast<std::size_t>(std::max<ssize_t>(0, size))};
@@ -156,7 +156,8 @@ class UdpSocket {
   std::vector<char> buffer_ = std::vector<char>(kLongestMessage);
 };
 
-/// The same bytes between two processes by the system's calls for UDP alone, each of which waits in its call.
+/// Times of the same bytes between two processes with the system's calls for UDP alone, in which each process
+/// waits.
 Times bareUdpTimes(double seconds) {
   UdpSocket device, render;
   const pid_t other = fork();
@@ -193,7 +194,7 @@ bool latencyRow(const std::string& network, double seconds, double p50_bar_us, d
   const Times bare = network.empty() ? bareTimes(seconds, formOf(network)) : bareUdpTimes(seconds);
   MessageWriter sizes(1, formOf(network));
   HapticMessage usual;
-  std::size_t bytes = 0;  // the first ones are whole
+  std::size_t bytes = 0;  // the first states are whole
   for (usual.state.tick = 1; usual.state.tick < 20; ++usual.state.tick) bytes = sizes.write(usual).size();
   Ends ends(network);
   End& device = *ends.device;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the link between device and render carries, compared in simulated time, along one direction: states of
-// proxy and part, between which each end evaluates the coupling (ours); wave variables [Niemeyer and Slotine
-// 1991]; and force and velocity with passivity observers and controllers at both ends [Ryu, Artigas, Preusche
-// 2010].
+// Compares, in simulated time and along one direction, three kinds of data that the link between device and
+// render can carry: states of proxy and part, from which each end evaluates the coupling (ours); wave
+// variables [Niemeyer and Slotine 1991]; and force and velocity with passivity observers and controllers at
+// both ends [Ryu, Artigas, Preusche 2010].
 //
 // A hand (spring and damper) moves the device along a path: freely, into a wall, where it stays, and back.
-// The same device, part, wall, delays and losses for all, and the same random numbers.
+// Device, part, wall, delays, losses and random numbers are the same for all kinds.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -35,7 +35,7 @@ struct Net {
   double delay_s = 0, jitter_s = 0, loss = 0;
 };
 
-/// One way of a network: what is sent arrives late, in another order, or not.
+/// One direction of a network: packets arrive late, in another order, or not at all.
 template <typename Packet>
 class Wire {
  public:
@@ -46,7 +46,7 @@ class Wire {
     const double late_s = net_.delay_s + net_.jitter_s * share(random_);
     if (!is_lost) under_way_.push_back({now_s + late_s, packet});
   }
-  /// All that has arrived, in the order of arrival.
+  /// All packets that have arrived, in the order of arrival.
   std::vector<Packet> receive(double now_s) {
     std::vector<std::pair<double, Packet>> all;
     std::erase_if(under_way_, [&](const auto& one) {
@@ -69,7 +69,7 @@ class Wire {
 /// The part and its wall, with an implicit step.
 struct Part {
   double x_m = 0, v_m_per_s = 0;
-  /// Pulled by a spring and damper to a place that moves, and by a force that is held for the step.
+  /// One step, in which a spring and damper pull the part to a moving position, and a constant force acts.
   void step(double k, double b, double to_m, double to_m_per_s, double held_N = 0) {
     const bool touches = x_m + kTick_s * v_m_per_s > kWall_m;
     const double k_wall = touches ? kWall_N_per_m : 0, b_wall = touches ? kWall_Ns_per_m : 0;
@@ -81,7 +81,7 @@ struct Part {
   void push(double force_N) { step(0, 0, 0, 0, force_N); }
 };
 
-/// What both ends do in a tick. The force on the hand [N].
+/// Runs both ends for a tick. Returns the force on the hand [N].
 class LinkModel {
  public:
   virtual ~LinkModel() = default;
@@ -101,7 +101,7 @@ CouplingGains gainsAt(double round_trip_s) {
 struct State {
   double sent_s = 0, x_m = 0, v_m_per_s = 0;
 };
-/// Newest counts.
+/// Takes the newest state that has arrived.
 void takeNewest(Wire<State>& wire, double now_s, State& state) {
   for (const State& one : wire.receive(now_s))
     if (one.sent_s >= state.sent_s) state = one;
@@ -126,9 +126,9 @@ class StateLink final : public LinkModel {
   CouplingGains gains_;
 };
 
-/// Waves as their sum and energy so far, so that what is lost is made up for, as far as the energy that was
-/// sent allows [Niemeyer and Slotine 1998]. Each is used as late as the latest one may come, so that jitter
-/// does not tear them.
+/// Sends the sum and the energy of all waves so far, so that later packets make up for lost ones, as far as
+/// the energy that was sent allows [Niemeyer and Slotine 1998]. Each packet is used as late as the latest one
+/// may arrive, so that jitter does not distort the waves.
 class WaveWay {
  public:
   WaveWay(const Net& net, unsigned seed) : wire_(net, seed), late_s_(net.delay_s + net.jitter_s) {}
@@ -162,7 +162,8 @@ class WaveWay {
   Sums sent_, due_, used_;
 };
 
-/// The stiffest coupling of one machine between the link's end and the part; the link itself is passive.
+/// The stiffest coupling that is possible on one machine acts between the end of the link and the part; the
+/// link itself is passive.
 class WaveLink final : public LinkModel {
  public:
   WaveLink(const Net& net, double impedance_Ns_per_m)
@@ -170,7 +171,7 @@ class WaveLink final : public LinkModel {
   double tick(double now_s, double, double v_m_per_s) override {
     const double root = std::sqrt(2 * b_);
     const double in_v = back_.receive(now_s);
-    const double force_N = b_ * v_m_per_s - root * in_v;  // of the link against the device
+    const double force_N = b_ * v_m_per_s - root * in_v;  // force of the link against the device
     there_.send(now_s, root * v_m_per_s - in_v);
     const double in_u = there_.receive(now_s);
     const double k = gains_.k_N_per_m, b = gains_.b_Ns_per_m, free_m_per_s = root * in_u / b_;
@@ -190,8 +191,8 @@ class WaveLink final : public LinkModel {
   CouplingGains gains_;
 };
 
-/// Velocity there, force back, with the energies that went in at each end; what comes out beyond what went in
-/// at the other end is dissipated.
+/// Sends velocity to the part and force back, each with the energy that went in at its end. Each end
+/// dissipates energy that would come out in excess of the energy that went in at the other end.
 class PassivityLink final : public LinkModel {
  public:
   explicit PassivityLink(const Net& net) : there_(net, 1), back_(net, 2), gains_(gainsAt(0)) {}
@@ -201,7 +202,7 @@ class PassivityLink final : public LinkModel {
     for (const Port& one : there_.receive(now_s))
       if (one.sent_s >= arrived.sent_s) arrived = one;
     last_there_ = arrived;
-    // At the part: the velocity that came, less what would give more energy than went in.
+    // At the part: the velocity that arrived, reduced if it would give more energy than went in.
     double end_m_per_s = arrived.value;
     const double k = gains_.k_N_per_m, b = gains_.b_Ns_per_m;
     const double f_N = k * (end_m_ - part.x_m) + b * (end_m_per_s - part.v_m_per_s);
@@ -220,17 +221,18 @@ class PassivityLink final : public LinkModel {
     back_.send(now_s, {now_s, f_N, part_in_J_});
     for (const Port& one : back_.receive(now_s))
       if (one.sent_s >= last_back_.sent_s) last_back_ = one;
-    // At the device: the force that came, and damping for what comes out beyond what went in there.
-    double force_N = last_back_.value;  // against the device's motion
+    // At the device: the force that arrived, and damping of energy in excess of the energy that went in at
+    // the part.
+    double force_N = last_back_.value;  // force against the device's motion
     const double out_W = -force_N * v_m_per_s;
     if (out_W > 0)
       device_out_J_ += kTick_s * out_W;
     else
       device_in_J_ -= kTick_s * out_W;
     const double beyond_J = device_out_J_ - last_back_.energy_J;
-    constexpr double kStill_m_per_s = 1e-4;  // below it a damper is no help
+    constexpr double kStill_m_per_s = 1e-4;  // below this speed a damper has no effect
     if (beyond_J > 0 && std::abs(v_m_per_s) > kStill_m_per_s) {
-      // A damper that reverses the device's motion within a tick would make energy itself.
+      // A damper that reverses the device's motion within a tick would itself generate energy.
       const double damping =
           std::min(beyond_J / (kTick_s * v_m_per_s * v_m_per_s), kDeviceMass_kg / (2 * kTick_s));
       force_N += damping * v_m_per_s;
@@ -250,15 +252,16 @@ class PassivityLink final : public LinkModel {
 };
 
 struct Outcome {
-  double injected_J = 0;       ///< that the handle gave beyond what it had got, at most
-  double stiffness = 0;        ///< felt in the wall [N/m]
-  double drag_N = 0;           ///< in free motion at 0.1 m/s
-  double greatest_step_N = 0;  ///< from tick to tick, also after an outage of 0.1 s
+  double injected_J = 0;  ///< greatest energy that the handle gave in excess of the energy it had received
+  double stiffness = 0;   ///< stiffness that the hand feels in the wall [N/m]
+  double drag_N = 0;      ///< resistance in free motion at 0.1 m/s
+  double greatest_step_N = 0;  ///< greatest change of force from tick to tick, also after an outage of 0.1 s
   double shaking_m_per_s = 0;  ///< rms of the handle's velocity while the hand holds still in the wall
-  double drift_m = 0;          ///< between handle and part after it all
+  double drift_m = 0;          ///< offset between handle and part at the end
 };
 
-/// Where the hand wants the handle: 0.1 m/s to 20 mm beyond the wall, two seconds there, and back.
+/// The position to which the hand leads the handle: at 0.1 m/s to 20 mm beyond the wall, two seconds there,
+/// and back.
 double wish_m(double now_s) {
   constexpr double kSpeed = 0.1, kDeepest_m = kWall_m + 0.02, kStay_s = 2;
   const double there_s = kDeepest_m / kSpeed;
@@ -281,7 +284,7 @@ Outcome measure(LinkModel& link) {
       v = (kDeviceMass_kg * v + dt_s * (force_N + pull_N)) /
           (kDeviceMass_kg + dt_s * kDeviceDamping_Ns_per_m);
       x_m += dt_s * v;
-      energy_J -= dt_s * force_N * v;  // that the link has got from the handle
+      energy_J -= dt_s * force_N * v;  // energy that the link received from the handle
     }
     outcome.injected_J = std::max(outcome.injected_J, -energy_J);
     outcome.greatest_step_N = std::max(outcome.greatest_step_N, std::abs(force_N - last_N));

@@ -30,7 +30,7 @@ void system(const std::string& command) {
   require(std::system((command + " >/dev/null 2>&1").c_str()) == 0, command);
 }
 
-/// A namespace, its interface, and the other end of the pair, which this process reads.
+/// Makes a namespace with its interface, and the other end of the pair, which this process reads.
 void makeEnd(const std::string& side, const std::string& address) {
   const std::string space = "vpsbench-" + side, outer = "vpsw-" + side;
   std::system(
@@ -54,7 +54,8 @@ int openEnd(const std::string& side) {
   return end;
 }
 
-/// A kernel leaves the sum of a UDP packet to the interface, which here is none; 0 says that there is no sum.
+/// The kernel leaves the checksum of a UDP packet to the interface, but there is no hardware here; the
+/// checksum 0 means that there is none.
 void clearUdpSum(std::vector<char>& frame) {
   constexpr std::size_t kIp = 14;
   constexpr unsigned char kUdp = 17;
@@ -86,7 +87,7 @@ LossyWire::~LossyWire() {
   is_ending_ = true;
   thread_.join();
   for (const int end : ends_) close(end);
-  std::system("ip netns del vpsbench-a; ip netns del vpsbench-b");  // and their interfaces
+  std::system("ip netns del vpsbench-a; ip netns del vpsbench-b");  // their interfaces are deleted too
 }
 
 void LossyWire::carry() {
@@ -96,7 +97,7 @@ void LossyWire::carry() {
   std::priority_queue<Packet> waiting;
   std::vector<char> buffer(70'000);
   std::int64_t second_ns = device::monotonicClock().now_ns();
-  std::uint64_t before = 0;  // bytes until this second
+  std::uint64_t before = 0;  // bytes before this second
   while (!is_ending_) {
     const std::int64_t now_ns = device::monotonicClock().now_ns();
     if (now_ns - second_ns >= 1'000'000'000) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Two network namespaces that are joined by a wire which loses, delays, swaps and doubles packets. For
+// Two network namespaces that are joined by a wire which loses, delays, reorders and duplicates packets, for
 // machines whose kernel has no netem.
 #pragma once
 
@@ -15,12 +15,12 @@ namespace vps::bench {
 struct WireFaults {
   double loss = 0;      ///< share of packets, each way
   double delay_s = 0;   ///< one way
-  double jitter_s = 0;  ///< added, evenly drawn: packets overtake each other
-  double doubled = 0;   ///< share of packets that come twice
+  double jitter_s = 0;  ///< added to the delay, uniformly distributed, so that packets overtake each other
+  double doubled = 0;   ///< share of packets that arrive twice
 };
 
-/// Namespaces "vpsbench-a" and "vpsbench-b" with an interface "wire" each. Throws std::runtime_error where
-/// the system does not allow that.
+/// Namespaces "vpsbench-a" and "vpsbench-b" with an interface "wire" each. Throws std::runtime_error if the
+/// system does not allow it.
 class LossyWire {
  public:
   explicit LossyWire(const WireFaults& faults);

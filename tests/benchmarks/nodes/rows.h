@@ -9,27 +9,29 @@ namespace vps::bench {
 /// One line of the table: case, bar, and what was measured.
 void printRow(const std::string& what, const std::string& bar, const std::string& measured, bool is_reached);
 
-/// Device to render and back at 1600 Hz between two processes, against the same calls within one.
+/// Times from device to render and back at 1600 Hz between two processes, compared with the same calls in one
+/// process.
 bool latencyRows(double seconds);
-/// The same bytes through iceoryx, for comparison with our shared memory.
+/// Times of the same bytes through iceoryx, for comparison with our shared memory.
 bool iceoryxRow(double seconds);
-/// A scene in three processes and in one, by the clock.
+/// A scene in real time, in three processes and in one.
 bool runRows(const std::string& scene);
-/// The same with device and render in two network namespaces, joined by a wire without and with faults.
+/// A scene in real time, with device and render in two network namespaces that are joined by a wire without
+/// and with faults.
 bool wireRows(const std::string& scene);
-/// What the link carries, against wave variables and passivity controllers, in simulated time.
+/// Compares the states on our link with wave variables and passivity controllers, in simulated time.
 bool linkRows();
-/// kill -9 of each node in turn.
+/// Kills each node in turn with SIGKILL.
 /// @param network  interface; empty: shared memory
 bool killRows(int kills, const std::string& network);
 
-/// How well a node knows the clock of another one, which is 3 s ahead and gains 100 ppm.
+/// The error with which a node knows the clock of another node, which is 3 s ahead and gains 100 ppm.
 bool clockRow(double seconds);
-/// A scene by the clock without watchers and with ten of them.
+/// A scene in real time, without watchers and with ten watchers.
 bool watcherRows(const std::string& scene);
-/// Garbage, foreign versions, replayed messages, a flood and a second device beside a run over UDP.
+/// Garbage, foreign versions, replayed messages, a flood and a second device during a run over UDP.
 bool hostileRow(const std::string& scene);
-/// Sessions for so long: one run that does not end, and short ones one after the other.
+/// Sessions for this time: one run that does not end, and short runs one after the other.
 bool enduranceRow(double seconds);
 
 }  // namespace vps::bench

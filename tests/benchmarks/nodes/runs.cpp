@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A scene by the clock in three processes, and in one.
+// A scene in real time, in three processes and in one.
 #include <unistd.h>
 
 #include <algorithm>
@@ -17,9 +17,9 @@ namespace {
 
 using nlohmann::json;
 
-// Two runs by the clock are never the same to the bit, so "as in one process" needs a width. assumed: as far
-// as two runs of one program were seen apart, a factor of two; depths to the error of a part's mesh, and
-// misses to one in 1000, which a scheduler causes.
+// Two runs in real time are never equal to the bit, so "as in one process" needs a tolerance. assumed: the
+// greatest difference that was seen between two runs of one program, a factor of two; for depths the error of
+// a part's mesh; and one missed period in 1000, which a scheduler causes.
 constexpr double kFactor = 2, kDepth_m = 2e-6, kMissedShare = 1e-3;
 
 double deepest_m(const json& run) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What ten watchers cost the haptic loop: nine in terminals, and one that serves the page.
+// The cost of ten watchers to the haptic loop: nine in terminals, and one that serves the page.
 #include <unistd.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ namespace {
 
 struct Missed {
   long missed = 0, ticks = 0;
-  double p999_us = 0;  ///< of the loop's computing, the greatest
+  double p999_us = 0;  ///< greatest p99.9 of the loop's computing time
   bool is_whole = true;
 };
 

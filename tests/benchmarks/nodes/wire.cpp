@@ -28,7 +28,7 @@ std::vector<std::string> inSpace(const std::string& side, std::vector<std::strin
   return words;
 }
 
-/// The line of render's output that has these words.
+/// The line of render's output that contains these words.
 std::string lineWith(const std::filesystem::path& file, const std::string& words) {
   std::ifstream in(file);
   for (std::string line; std::getline(in, line);)
@@ -36,7 +36,7 @@ std::string lineWith(const std::filesystem::path& file, const std::string& words
   return "";
 }
 
-/// A peg and its hole at 1600 Hz, as the paper's system.
+/// A peg and its hole at 1600 Hz, as in the paper's system.
 void writeFastScene(const std::filesystem::path& file) {
   std::ofstream(file) << "unit = 'mm'\n[[part]]\nfile = '" VPS_SCENE_FOLDER
                          "/peg_in_hole/hole.stl'\nfixed = true\n[[part]]\nfile = '" VPS_SCENE_FOLDER
@@ -45,9 +45,9 @@ void writeFastScene(const std::filesystem::path& file) {
 }
 
 struct Bandwidth {
-  double median_Mbit = 0;  ///< of the seconds in which states go both ways
-  double most_Mbit = 0;    ///< of the busiest second after those in which the nodes find each other
-  double start_Mbit = 0;   ///< of the busiest second of all, with discovery and the scene's transfer
+  double median_Mbit = 0;  ///< median of the seconds in which states go both ways
+  double most_Mbit = 0;    ///< the busiest second after the nodes have found each other
+  double start_Mbit = 0;   ///< the busiest second of all, with discovery and the transfer of the scene
 };
 
 Bandwidth bandwidthOf(const std::vector<std::uint64_t>& per_second) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What single pairs cost: queries of Bullet's own shapes, and the step in which many pairs are new.
+// The cost of single pairs: queries of Bullet's own shapes, and a step in which many pairs are new.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -28,9 +28,9 @@ struct FoundPoints : btCollisionWorld::ContactResultCallback {
   }
 };
 
-/// Median of contactPairTest of a part and one of Bullet's shapes; the first, which reads the shape, is left
-/// out.
-/// @param reach_m  the distance that is asked for; 0: contact only
+/// Median of contactPairTest of a part and one of Bullet's shapes; the first query, which reads the shape, is
+/// excluded.
+/// @param reach_m range of the query; 0: contact only
 Row queryOf(const char* name, const Mesh& mesh, btCollisionShape& native, const Vec3& p_WN, double reach_m,
             double bound_s) {
   btDefaultCollisionConfiguration config;
@@ -89,7 +89,7 @@ void pairQueryRow(const Options&, Table& table) {
   table.add(queryOf(hull_name, plate, hull, {0.01, 0.004, 0.035}, 10e-3, 1e-3));  // 5 mm apart
 }
 
-// Twenty gears of 23,000 points are put into a bin; all their pairs are new in the first step.
+// Twenty gears of 23,000 points in a bin; all their pairs are new in the first step.
 void firstStepRow(const Options&, Table& table) {
   const dynamics::PartMesh part = dynamics::makeHeapGear();
   dynamics::World world({dynamics::Mode::Constraint, true, dynamics::vpsEngine({0.2e-3, 0.36e-3})});

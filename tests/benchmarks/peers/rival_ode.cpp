@@ -52,7 +52,8 @@ PairQuery odeQuery(const Mesh& a, const Mesh& b) {
   return {"ODE", [mesh_a, mesh_b](const Pose& X_AB) {
             constexpr int kMaxContacts = 0xffff;  // limit of dCollide's flags
             static std::vector<dContactGeom> contacts(kMaxContacts);
-            // In the order of ODE's own loop: a trimesh keeps its last pose for its normals.
+            // The calls have the order of ODE's own loop, since a trimesh keeps its last pose for its
+            // normals.
             mesh_a->moveTo(Pose());
             mesh_b->moveTo(X_AB);
             PairQuery::Answer answer;

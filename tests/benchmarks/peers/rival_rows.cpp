@@ -69,7 +69,7 @@ void ringRow(const Options& options, Table& table) {
   }
 }
 
-// The bore decomposed into convex hulls.
+// The peg in its bore, which is decomposed into convex hulls.
 void hullRow(const Options& options, Table& table) {
   constexpr double kConcavity_m = 50e-6;  // the clearance of the fit
   const std::optional<dynamics::Engine> hulls = hacdEngine(kConcavity_m);
@@ -95,7 +95,8 @@ void hullRow(const Options& options, Table& table) {
 void queryRow(const Options& options, Table& table) {
   const dynamics::PartMesh &nut = dynamics::nutPart(dynamics::kM16, 96),
                            &rod = dynamics::rodPart(dynamics::kM16, 96);
-  // On the thread, 20 um deep in the lower flanks, each pose turned slightly further along the helix.
+  // Poses of the nut on the thread, 20 um deep in the lower flanks, each rotated slightly further along the
+  // helix.
   std::vector<Pose> poses;
   const double axial_gap_m = 0.1e-3 * std::tan(M_PI / 6);
   for (int i = 0; i < (options.is_short ? 3 : 15); ++i) {

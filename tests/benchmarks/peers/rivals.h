@@ -29,13 +29,13 @@ std::optional<dynamics::Engine> hacdEngine(double concavity_m);
 struct PairQuery {
   struct Answer {
     int contacts = 0;
-    double deepest_m = 0;  ///< 0 when nothing touches
+    double deepest_m = 0;  ///< 0 if nothing touches
   };
   std::string name;
-  std::function<Answer(const Pose& X_AB)> query;  ///< empty: not built
+  std::function<Answer(const Pose& X_AB)> query;  ///< empty: the rival is not built
 };
 
-/// Through Bullet's dispatcher, as a step would.
+/// A query through Bullet's dispatcher, as in a step.
 PairQuery bulletQuery(const dynamics::Engine& engine, const dynamics::PartMesh& a,
                       const dynamics::PartMesh& b);
 PairQuery fclQuery(const Mesh& a, const Mesh& b);

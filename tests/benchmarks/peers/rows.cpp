@@ -17,9 +17,9 @@ SceneSettings settingsFor(const Options& options, Mode mode, const dynamics::Eng
   return {mode, options.is_short, engine};
 }
 
-// A peg that is engaged by less than mu times its diameter can wedge, as real ones do (Whitney 1982: the line
-// between the two contacts is within both friction cones). So the friction is lower for a greater tilt: at 1
-// degree and mu 0.15, or 2 degrees and 0.1, the peg stays tilted in the mouth, at rest.
+// A peg that is engaged by less than mu times its diameter can wedge, like a real peg (Whitney 1982: the line
+// between the two contacts is within both friction cones). At 1 degree and mu 0.15, or at 2 degrees and mu
+// 0.1, the peg stays tilted in the mouth, at rest. So the friction is lower for a greater tilt.
 void pegRow(const Options& options, Table& table) {
   const dynamics::Engine engine = dynamics::vpsEngine();
   constexpr double kDegree_rad = M_PI / 180;
@@ -80,15 +80,15 @@ void ladderRow(const Options& options, Table& table) {
   }
 }
 
-// Points every 0.3 mm, as in the other rows of nuts, and every 1 mm, as scenes have them that state no
-// spacing.
+// Points are 0.3 mm apart, as in the other rows of nuts, or 1 mm, as in scenes that state no spacing.
 void nutRow(const Options& options, Table& table) {
   for (const auto& [name, size] :
        {std::pair{"nut M10x1.5", dynamics::kM10}, std::pair{"nut M16x2", dynamics::kM16}})
     for (const Mode mode : options.modes)
       for (const double spacing_m : {0.3e-3, 1e-3}) {
         const dynamics::Engine engine = dynamics::vpsEngine({0.2e-3, spacing_m});
-        if (mode == Mode::Penalty && spacing_m > 0.3e-3) continue;  // its points share the area
+        if (mode == Mode::Penalty && spacing_m > 0.3e-3)
+          continue;  // the points of penalty contact share the area
         const SceneSettings settings = settingsFor(options, mode, engine);
         const auto r = dynamics::runNut(settings, size);
         const auto again = dynamics::runNut(settings, size);

@@ -23,7 +23,7 @@ struct Case {
 const std::vector<Case>& allCases();
 
 // Rows that compare with other engines in the same run.
-/// The ring over the peg: VPS and GImpact with its best margin.
+/// The ring over the peg, by VPS and by GImpact with its best margin.
 void ringRow(const Options& options, Table& table);
 
 /// The peg and its bore decomposed into convex hulls by HACD, with the stock solver. The decomposition takes
@@ -31,8 +31,7 @@ void ringRow(const Options& options, Table& table);
 void hullRow(const Options& options, Table& table);
 
 /// The peg in its bore by each kind of shape that Bullet has for it: time to build, memory, step, depth,
-/// rays. btSdfCollisionShape is not there: it reads a file that another program writes, which is not
-/// packaged.
+/// rays. btSdfCollisionShape is left out, since it reads a file of a program that is not packaged.
 void shapesRow(const Options& options, Table& table);
 
 /// Queries of a part against a mesh of 81,920 triangles and against a hull of 200 points.
@@ -40,7 +39,7 @@ void pairQueryRow(const Options& options, Table& table);
 /// The first step of twenty gears, in which all pairs are new.
 void firstStepRow(const Options& options, Table& table);
 
-/// M16 nut on a bolt at poses in contact: milliseconds for a query, by VPS and others.
+/// An M16 nut on a bolt at poses in contact: milliseconds for a query, by VPS and by others.
 void queryRow(const Options& options, Table& table);
 
 }  // namespace vps::bench

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a user of Bullet can choose from, side by side: a convex part drops into a fixed one that is not.
+// Compares the shapes from which a user of Bullet can choose: a convex part drops into a fixed part that is
+// not convex.
 #include <unistd.h>
 
 #include <algorithm>
@@ -63,7 +64,7 @@ Row rowOf(const Options& options, const char* name, const dynamics::Engine& engi
 
 void shapesRow(const Options& options, Table& table) {
   using dynamics::Mode;
-  // The meshes are made once and are not part of a shape's memory.
+  // The meshes are made once, before the memory of a shape is measured.
   dynamics::borePart(kClearance_m);
   dynamics::pegPart();
   table.addRival(rowOf(options, "VPS", dynamics::vpsEngine(), Mode::Constraint));

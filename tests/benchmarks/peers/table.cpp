@@ -73,7 +73,7 @@ void Table::addRival(Row row) {
   last_ = std::clock();
 }
 
-// Figures without a name before their number, as claims, are told apart by their bound.
+// Figures without a name, such as claims, are distinguished by their bound.
 void Table::write(const Entry& entry, bool is_case_met) {
   double cpu_s = entry.cpu_s;
   for (const Figure& f : entry.row.figures) {

@@ -13,7 +13,7 @@ struct Figure {
   std::string text;   ///< measured value with its unit
   std::string bound;  ///< its bound; empty: reported, not judged
   bool is_met = true;
-  std::string name = {};  ///< what was measured; empty: said by the bound
+  std::string name = {};  ///< the measured quantity; empty: the bound says it
 };
 
 struct Row {
@@ -33,16 +33,16 @@ Figure holds(const std::string& claim, bool is_met);
 /// A figure without a bound.
 Figure reported(const std::string& what, double value, double scale, const std::string& unit);
 
-/// Formats as printf.
+/// Formats a text like printf.
 std::string text(const char* format, ...) __attribute__((format(printf, 1, 2)));
 
 class Table {
  public:
   /// Prints the row at once, so that a long run shows its progress.
   void add(Row row);
-  /// A row of another engine: reported, not judged.
+  /// Adds a row of another engine, which is reported and not judged.
   void addRival(Row row);
-  /// One line for each row. A case is met if one mode meets all its bounds.
+  /// Prints one line for each row. A case is met if one mode meets all its bounds.
   /// @return the number of cases that are not met
   int print();
   /// print() writes the figures of judged rows to this file as well.

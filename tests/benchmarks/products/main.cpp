@@ -35,13 +35,13 @@
 namespace vps::bench {
 namespace {
 
-// All in millimetres.
+// All lengths are in millimetres.
 using Point = std::array<double, 2>;
 using Solids = std::vector<TopoDS_Shape>;
 
 struct Product {
   const char* name;
-  const char* verdict;  ///< as `vps assemble --json` has it
+  const char* verdict;  ///< as in `vps assemble --json`
   int fits;             ///< steps
   std::function<Solids()> make;
 };
@@ -52,14 +52,14 @@ TopoDS_Shape at(const TopoDS_Shape& shape, double x, double y, double z) {
   return BRepBuilderAPI_Transform(shape, t, true).Shape();
 }
 
-/// Turned from z to x.
+/// The shape rotated so that its z axis becomes x.
 TopoDS_Shape lying(const TopoDS_Shape& shape) {
   gp_Trsf t;
   t.SetRotation(gp_Ax1(gp_Pnt(0, 0, 0), gp_Dir(0, 1, 0)), std::numbers::pi / 2);
   return BRepBuilderAPI_Transform(shape, t, true).Shape();
 }
 
-/// Its middle in x and y at the origin, from z = 0 up.
+/// A box that is centred in x and y and extends upwards from z = 0.
 TopoDS_Shape box(double x, double y, double z) {
   return BRepPrimAPI_MakeBox(gp_Pnt(-x / 2, -y / 2, 0), x, y, z).Shape();
 }
@@ -73,7 +73,7 @@ TopoDS_Shape turned(const std::vector<Point>& profile) {
       .Shape();
 }
 
-/// An outline in x and z, from y = -depth / 2 to depth / 2.
+/// A prism over an outline in x and z, from y = -depth / 2 to depth / 2.
 TopoDS_Shape prism(const std::vector<Point>& outline, double depth) {
   BRepBuilderAPI_MakePolygon polygon;
   for (const auto& [x, z] : outline) polygon.Add(gp_Pnt(x, -depth / 2, z));
@@ -88,19 +88,20 @@ TopoDS_Shape joined(const TopoDS_Shape& a, const TopoDS_Shape& b) {
   return BRepAlgoAPI_Fuse(a, b).Shape();
 }
 
-/// From z = 0 up, with chamfers.
+/// A chamfered pin that extends upwards from z = 0.
 TopoDS_Shape pin(double d, double length, double chamfer = 0.5) {
   const double r = d / 2;
   return turned(
       {{0, 0}, {r - chamfer, 0}, {r, chamfer}, {r, length - chamfer}, {r - chamfer, length}, {0, length}});
 }
 
-/// What a drill takes away from z = 0 up; through what is thicker than `depth` it makes a blind hole.
+/// The material that a drill removes upwards from z = 0; in a part that is thicker than `depth` it makes a
+/// blind hole.
 TopoDS_Shape hole(double d, double depth) {
   return turned({{0, 0}, {d / 2, 0}, {d / 2, depth}, {0, depth}});
 }
 
-TopoDS_Shape screw(double d, double length) {  // head above z = 0
+TopoDS_Shape screw(double d, double length) {  // the head is above z = 0
   const double r = d / 2;
   return turned(
       {{0, -length}, {r - 0.5, -length}, {r, -length + 0.5}, {r, 0}, {1.7 * r, 0}, {1.7 * r, d}, {0, d}});
@@ -132,7 +133,7 @@ Solids boxWithLid(double height_inside) {
   return {open, at(box(30, 30, height_inside), 0, 0, 5), lid};
 }
 
-/// A dovetail rail that lies along y, with a slide on it; stops at none, one or both ends.
+/// A dovetail rail along y with a slide, and with stops at none, one or both ends.
 Solids dovetail(int stops) {
   const double c = 0.1;
   TopoDS_Shape rail = joined(box(50, 70.2, 10), prism({{-8, 10}, {8, 10}, {13, 18}, {-13, 18}}, 70.2));
@@ -195,12 +196,12 @@ Solids keyedHub() {
 }
 
 /// A slot that goes in from above and then sideways; the block's head is wider than the slot's mouth.
-/// @param gap  of the mouth; there is 0.2 mm farther in
+/// @param gap clearance of the mouth; farther in it is 0.2 mm
 Solids elbowSlot(double gap) {
   TopoDS_Shape base = box(100, 60, 40);
-  base = cut(base, at(box(24 + gap, 24 + gap, 40), -25, 0, 12));  // comes in here, from above
-  base = cut(base, at(box(70, 24.2, 16.2), 0, 0, 12));            // goes along here
-  base = cut(base, at(box(70, 12.2, 40), 0, 0, 12));              // the neck's way
+  base = cut(base, at(box(24 + gap, 24 + gap, 40), -25, 0, 12));  // the block comes in here from above
+  base = cut(base, at(box(70, 24.2, 16.2), 0, 0, 12));            // the block moves along here
+  base = cut(base, at(box(70, 12.2, 40), 0, 0, 12));              // the path of the neck
   const TopoDS_Shape tee = joined(at(box(24, 24, 16), 20, 0, 12), at(box(12, 12, 40), 20, 0, 20));
   return {base, tee};
 }

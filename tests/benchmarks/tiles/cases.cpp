@@ -18,7 +18,7 @@ Pose turned(double angle_rad, const Vec3& p) {
   return {rotationFromVector(Vec3(0, 0, angle_rad)), p};
 }
 
-// In phase with the rod at every angle; gravity brings the lower flanks together.
+// The nut is in phase with the rod at every angle; gravity brings the lower flanks together.
 Fit threadFit() {
   const dynamics::NutSize size = dynamics::kM10;
   Fit fit{"M10 nut on its rod",
@@ -50,7 +50,7 @@ Fit pegFit() {
   return fit;
 }
 
-// As in the bearing block: 12 mm, 24 um; facets with 1 um of sagitta.
+// A fit as in the bearing block: 12 mm with 24 um of clearance, and facets with a sagitta of 1 um.
 Fit bearingFit() {
   constexpr int kSegments = 172;
   const Mesh bushing = test::lathe(
@@ -85,7 +85,8 @@ Fit gearFit() {
   Fit fit{"gears 20:30", {gear(20, 12e-3), gear(30, 10e-3)}, {}, Vec3::UnitY(), 0.3e-3, 0.25e-3, 1e-3,
           0.5e-3};
   for (int k = 0; k < kPoses; ++k) {
-    // Both turn by the same arc, so that the meshing goes through a pitch; seen from the first gear.
+    // Both gears turn by the same arc length, so that the meshing goes through a pitch; poses are relative to
+    // the first gear.
     const double driver_rad = 2 * std::numbers::pi / 20 * k / kPoses;
     const Pose driver = turned(driver_rad, Vec3::Zero());
     const Pose driven = turned(std::numbers::pi / 30 - driver_rad * 20 / 30, Vec3(50e-3, 0, 0));
@@ -94,7 +95,7 @@ Fit gearFit() {
   return fit;
 }
 
-// A ball of 10 mm in a bowl of its radius and 20 um.
+// A ball of 10 mm in a bowl whose radius is 20 um greater.
 Fit socketFit() {
   constexpr double kBall_m = 10e-3, kBowl_m = 10.02e-3;
   std::vector<std::array<double, 2>> profile{{0, -14e-3}, {14e-3, -14e-3}, {14e-3, 0}, {kBowl_m, 0}};

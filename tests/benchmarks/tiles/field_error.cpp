@@ -10,9 +10,10 @@ namespace vps::bench {
 
 namespace {
 
-constexpr double kEdge = 0.5, kFace = 0.05;            // in voxels
-constexpr double kEdge_rad = 0.35;                     // 20 degrees
-constexpr double kSafetyShare = 0.1, kSafety = 0.002;  // for what lies between the places; in voxels
+constexpr double kEdge = 0.5, kFace = 0.05;  // in voxels
+constexpr double kEdge_rad = 0.35;           // 20 degrees
+constexpr double kSafetyShare = 0.1,
+                 kSafety = 0.002;  // margins for points between the measured places; kSafety is in voxels
 
 EdgeSet edgesOf(const Mesh& mesh) {
   std::vector<EdgeSegment> segments;

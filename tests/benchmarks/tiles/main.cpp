@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vps_bench_tiles: how many exact distances it takes to know the deepest point of every tile of two surfaces
-// in contact, by the bound of the field's error. Exits 2 for an unknown option, 1 if --check finds a tile
-// closed by another point than its deepest.
+// vps_bench_tiles: the number of exact distances that are needed to find the deepest point of every tile of
+// two surfaces in contact, by the bound of the field's error. Exits 2 for an unknown option, 1 if --check
+// finds a tile closed by another point than its deepest.
 #include <cstdio>
 #include <cstring>
 #include <map>
@@ -13,7 +13,7 @@ namespace vps::bench {
 
 namespace {
 
-constexpr double kMargin_m = 20e-6, kTolerance_m = 1e-6;  // of contacts; of overlap
+constexpr double kMargin_m = 20e-6, kTolerance_m = 1e-6;  // margin of contacts; tolerance of overlap
 
 struct Tile {
   std::string name;
@@ -58,7 +58,7 @@ class Measurement {
     }
   }
 
-  /// Per pose, of both surfaces.
+  /// The count per pose, for both surfaces.
   [[nodiscard]] Count count(double tile_m, Bound bound, double reach_m) const {
     Count sum;
     for (const std::vector<Reading>& surface : readings_)
@@ -88,8 +88,8 @@ class Measurement {
   std::vector<std::vector<Reading>> readings_;  // by pose and surface
 };
 
-// True if the tiles that are closed by bounds have at least as many measured points as those whose error is
-// known: a tile that is closed by fewer was closed too early.
+// True if tiles that are closed by bounds have at least as many measured points as tiles whose error is
+// known: a tile with fewer was closed too early.
 bool check() {
   bool is_right = true;
   for (const Fit& fit : allFits(true)) {

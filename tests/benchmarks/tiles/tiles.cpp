@@ -47,7 +47,7 @@ Count closeTile(std::span<const Placed> tile, double reach_m) {
   return count;
 }
 
-// The greatest error of the points of a leaf for each of them.
+// Sets the bound of each point to the greatest error of the points in its leaf.
 void boundByLeaf(const PointShell& shell, std::vector<Reading>& readings,
                  const std::vector<std::uint32_t>& ids) {
   std::size_t i = 0;

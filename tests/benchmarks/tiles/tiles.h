@@ -14,18 +14,18 @@
 
 namespace vps::bench {
 
-/// Two parts of a fit, and what moves the second until they touch.
+/// Two parts of a fit, and the direction in which the second moves until they touch.
 struct Fit {
   std::string name;
   Mesh mesh[2];
   std::vector<Pose> X_01;           ///< of part 1 in part 0, before it is moved along `way`
-  Vec3 way = Vec3::Zero();          ///< unit, in part 0
-  double play_m = 0;                ///< it meets within this
-  double fine_m = 0, coarse_m = 0;  ///< voxels
-  double spacing_m = 0;             ///< of the points
+  Vec3 way = Vec3::Zero();          ///< unit vector in part 0
+  double play_m = 0;                ///< the parts touch within this distance
+  double fine_m = 0, coarse_m = 0;  ///< voxel sizes
+  double spacing_m = 0;             ///< spacing of the points
 };
 
-/// @param is_short  one pose each and the first two fits only
+/// @param is_short one pose of each fit, and only the first two fits
 std::vector<Fit> allFits(bool is_short);
 
 using Model = std::shared_ptr<const PartModel>;
@@ -40,19 +40,19 @@ enum class Bound {
   BesideEdges,  ///< half a voxel within a voxel of a sharp edge, a twentieth elsewhere
   Block,        ///< stored for each block of 8 x 8 x 8 voxels
   Cell,         ///< stored for each voxel
-  ShellLeaf,    ///< the greatest true error of sixteen neighbouring points: needs the pose
+  ShellLeaf,    ///< the greatest true error of sixteen neighbouring points, which depends on the pose
 };
 inline constexpr std::array<Bound, 5> kBounds = {Bound::Everywhere, Bound::BesideEdges, Bound::Block,
                                                  Bound::Cell, Bound::ShellLeaf};
 
-/// Bounds of reading minus distance in the field of a part. Stored ones are measured at the places of a fixed
-/// grid within a voxel of the surface, and rounded up.
+/// Bounds of reading minus distance in the field of a part. Stored bounds are measured at the points of a
+/// fixed grid within a voxel of the surface, and rounded up.
 class FieldError {
  public:
   explicit FieldError(const Model& part);
 
   [[nodiscard]] bool isBesideEdge(const Vec3& p_M) const;
-  /// Not of Bound::ShellLeaf, which is not known here.
+  /// Not for Bound::ShellLeaf, which depends on the pose.
   [[nodiscard]] double bound_m(Bound bound, const Vec3& p_M);
 
  private:
@@ -68,8 +68,8 @@ class FieldError {
 /// A point of one part in the field of the other.
 struct Reading {
   Vec3 p, inward;                                   ///< in its own part
-  double reading_m = 0, distance_m = 0;             ///< of the field, and exactly
-  std::array<double, kBounds.size()> bound_m = {};  ///< of their difference, by Bound
+  double reading_m = 0, distance_m = 0;             ///< distance by the field, and exact distance
+  std::array<double, kBounds.size()> bound_m = {};  ///< bounds of their difference, indexed by Bound
   bool is_beside_edge = false;
   [[nodiscard]] double least_m(Bound bound) const {
     return reading_m - bound_m[static_cast<std::size_t>(bound)];
@@ -78,17 +78,17 @@ struct Reading {
 
 struct Count {
   double tiles = 0, exact = 0, beside_edges = 0, broken = 0;
-  double most = 0;  ///< exact distances in a tile
+  double most = 0;  ///< greatest number of exact distances in a tile
   void add(const Count& other);
 };
 
-/// The points of a part in the field of another, nearer than near_m.
+/// Reads the points of a part that are nearer than near_m in the field of another part.
 std::vector<Reading> readPoints(const PartModel& points_of, const PartModel& in, FieldError& error,
                                 const Pose& X_MP, double near_m);
 
-/// How many exact distances close all tiles: in each tile points are measured in the order of their lower
-/// bounds, until the least distance is no greater than the bounds that are left, or these are above reach_m.
-/// `broken` counts distances below their bounds.
+/// Counts the exact distances that close all tiles. In each tile points are measured in the order of their
+/// lower bounds, until the least distance is at most the least remaining bound, or the remaining bounds are
+/// above reach_m. `broken` counts distances below their bounds.
 /// @param tile_m  points are in one tile if they are in one cell of this size and their normals in one of 24
 ///                directions
 Count closeTiles(const std::vector<Reading>& readings, double tile_m, Bound bound, double reach_m);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What pictures and a window cost, as one table. Processor time is that of all threads of this process, which
-// other programs on the machine change little; the load average is printed, so that a busy machine is seen.
+// The cost of pictures and of a window, as one table. Times are processor times of all threads of this
+// process, on which other programs have little effect; the load average is printed to show whether the
+// machine is busy.
 //
 //   vps_bench_view           everything, about a minute
 //   vps_bench_view --check   small, and tests only that pictures show what they should
@@ -35,7 +36,7 @@ using namespace vps::viewer;
 double cpuSeconds() {
   timespec time{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-  // Files of CAD are read by a process of their own.
+  // CAD files are read by a process of their own.
   rusage children{};
   getrusage(RUSAGE_CHILDREN, &children);
   const auto seconds = [](const timeval& t) {
@@ -73,7 +74,7 @@ void time(Row& row, Work work) {
   row.wall_s.push_back(wallSeconds() - wall_s);
 }
 
-/// Four balls and their plate: curved, in front of each other, with shadows.
+/// Four balls on a plate: curved surfaces that occlude each other and cast shadows.
 struct Balls {
   Mesh ball, plate = makeBox({0.5, 0.5, 0.02});
   RenderScene drawn;
@@ -95,13 +96,13 @@ DrawOptions sized(bool is_draft) {
   DrawOptions options;
   options.width = 1280;
   options.height = 720;
-  options.supersampling = 1;  // besides the 4 samples
+  options.supersampling = 1;  // in addition to 4 samples per pixel
   options.show_legend = false;
   options.is_draft = is_draft;
   return options;
 }
 
-/// False where the picture does not show the scene.
+/// Returns false if the picture does not show the scene.
 bool timePictures(int subdivisions, int repeats) {
   const Balls balls(subdivisions);
   Renderer renderer(balls.drawn);
@@ -113,9 +114,10 @@ bool timePictures(int subdivisions, int repeats) {
     std::snprintf(what, sizeof what, "%s of %zu triangles, 1280 x 720, 4 samples",
                   is_draft ? "draft" : "picture", balls.triangles());
     Row row{what, is_draft ? "" : "bar 0.25", {}, {}};
-    static_cast<void>(renderer.render(balls.shot, camera, sized(is_draft)));  // shaders are compiled
+    static_cast<void>(
+        renderer.render(balls.shot, camera, sized(is_draft)));  // the first picture compiles the shaders
     for (int i = 0; i < repeats; ++i) {
-      camera.eye_W.x() += 1e-3;  // as a view that turns
+      camera.eye_W.x() += 1e-3;  // like a view that turns
       Image image;
       time(row, [&] { image = renderer.render(balls.shot, camera, sized(is_draft)); });
       // The plate alone covers more than a twentieth of the picture.
@@ -130,7 +132,7 @@ bool timePictures(int subdivisions, int repeats) {
   return shows;
 }
 
-/// @param cache  of its parts; null: the CAD file is read each time
+/// @param cache cache of the parts; null: the CAD file is read each time
 void timeFirstPicture(const char* what, const ByteCache* cache, int repeats) {
   Row row{what, "bar 1", {}, {}};
   for (int i = 0; i < repeats; ++i)
@@ -145,7 +147,7 @@ void timeFirstPicture(const char* what, const ByteCache* cache, int repeats) {
   print(row);
 }
 
-/// A handle that rests, in a person's hand.
+/// A device whose handle is at rest in a person's hand.
 class Resting final : public device::Device {
  public:
   device::DeviceSample read() noexcept override {
@@ -161,8 +163,8 @@ class Resting final : public device::Device {
   long reads_ = 0;
 };
 
-/// What the haptic loop misses in some seconds by the clock, with pictures drawn as a window does, or
-/// without.
+/// Counts the periods that the haptic loop misses in some seconds of real time, with pictures drawn as in a
+/// window, or without.
 void countMissed(bool is_watched, double seconds) {
   const scenes::Scene scene = scenes::loadScene(VPS_SCENE_FOLDER "/peg_in_hole/scene.toml");
   const RenderScene drawn = drawnMeshes(scene);
@@ -187,7 +189,8 @@ void countMissed(bool is_watched, double seconds) {
       if (worker) {
         wanted.snapshot = std::move(*shot);
         wanted.camera = cameraFor(standardViews()[0], snapshotBounds(drawn, wanted.snapshot), {1280, 720});
-        wanted.camera.eye_W.x() += 1e-4 * static_cast<double>(worker->count() % 2);  // each one is drawn
+        wanted.camera.eye_W.x() +=
+            1e-4 * static_cast<double>(worker->count() % 2);  // so that each picture is drawn
         worker->request(wanted);
         static_cast<void>(worker->take());
       }
@@ -206,7 +209,7 @@ void countMissed(bool is_watched, double seconds) {
 }  // namespace
 
 int main(int count, char** arguments) {
-  std::setvbuf(stdout, nullptr, _IOLBF, 0);  // rows appear as they are measured
+  std::setvbuf(stdout, nullptr, _IOLBF, 0);  // line-buffered, so that rows appear at once
   const bool is_check = count > 1 && std::strcmp(arguments[1], "--check") == 0;
   std::printf("load average %.1f on %u processors\n", loadAverage(), std::thread::hardware_concurrency());
   std::printf("%-58s %8s %8s %8s\n", "", "cpu [s]", "most", "wall [s]");
@@ -216,7 +219,7 @@ int main(int count, char** arguments) {
       std::filesystem::temp_directory_path() / ("vps_bench_view_" + std::to_string(getpid()));
   const ByteCache cache(folder);
   timeFirstPicture("first picture of the demo: scene, renderer, draft", nullptr, is_check ? 1 : 3);
-  // The first of these reads the CAD file again, and its row's greatest value is of that.
+  // The first of these pictures reads the CAD file again, which is the greatest value of its row.
   timeFirstPicture("the same with its parts from the cache", &cache, is_check ? 2 : 4);
   std::filesystem::remove_all(folder);
   if (!is_check)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A dual arm whose hardware gives wrong readings, stops answering and fails, in a sequence given by bytes;
-// and the properties that must hold throughout. Used by a test with a fixed seed and by a fuzz program.
+// A dual arm whose hardware gives wrong readings, stops answering and fails, in a sequence given by bytes,
+// and a check of the properties that must always hold. A test with a fixed seed and a fuzz program use it.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace vps_test {
 
 using Require = void (*)(bool claim, const char* promise);
 
-/// About the identity. @param k, b  of translation [N/m, N s/m]
+/// A firm hand around the identity pose. @param k, b of translation [N/m, N s/m]
 inline vps::device::HandForce firmHand(double k, double b) {
   vps::device::HandForce hand;
   hand.k_N_per_m = k * vps::Mat3::Identity();
@@ -30,7 +30,7 @@ inline vps::device::HandForce firmHand(double k, double b) {
   return hand;
 }
 
-/// The plant, with a fault between it and the controller.
+/// The simulated arm, with a fault between it and the controller.
 class HostileArm final : public vps::device::DualArmHardware {
  public:
   enum Trouble {
@@ -99,8 +99,9 @@ struct HostileRun {
   double strongest_N = 0;
 };
 
-/// Plays the bytes: the first two choose gains and the hand, then two for each tick. After them the hardware
-/// is honest again, the handle is held still, and re-arming must bring it back.
+/// Runs the sequence: the first two bytes choose gains and the hand, and each tick takes two more. After the
+/// last one the hardware works correctly again, the handle is held still, and re-arming must bring the arm
+/// back.
 inline HostileRun runHostile(const std::uint8_t* data, std::size_t size, Require require) {
   using namespace vps;
   HostileRun run;
@@ -132,7 +133,7 @@ inline HostileRun runHostile(const std::uint8_t* data, std::size_t size, Require
   hand.F.f = 0.1 * (data[1] - 128.0) * Vec3::Unit(data[1] % 3);
 
   std::uint64_t faults_told = 0;
-  int silent_ticks = 0;  // of physics
+  int silent_ticks = 0;  // ticks without a new state from physics
   const auto check = [&] {
     const Wrench& F = loop.last().F_hand_D;
     require(F.isFinite(), "the wrench is finite");
@@ -153,7 +154,8 @@ inline HostileRun runHostile(const std::uint8_t* data, std::size_t size, Require
       return;
     felt.f.z() -= 9.81 * p.handle_kg;
     run.strongest_N = std::max(run.strongest_N, felt.f.norm());
-    // The pose is known to 0.1 mm and 2 mrad, of levers of 0.1 m and more; at speed it is a tick old.
+    // The pose has an error of 0.1 mm and 2 mrad, with lever arms of 0.1 m and more; in motion it is a tick
+    // old.
     require(felt.f.norm() <= 1.02 * p.force_peak_N + 0.2, "what the hand feels keeps within the limit");
   };
   const auto tick = [&](bool is_asked, bool is_physics_alive = true, double dt_s = 1e-3) {
@@ -184,10 +186,10 @@ inline HostileRun runHostile(const std::uint8_t* data, std::size_t size, Require
     static constexpr double kOdd_s[] = {std::numeric_limits<double>::quiet_NaN(), -1, 0, 1e300};
     const double dt_s = code == 22 ? kOdd_s[detail % 4] : 1e-3;
     for (int t = 0; t < times; ++t)
-      tick(code != 20, code != 21, dt_s);  // 20: nobody asks; 21: physics stalls
+      tick(code != 20, code != 21, dt_s);  // 20: the loop is not called; 21: physics stalls
   }
 
-  // All is well again.
+  // The hardware works correctly again.
   hardware.set(HostileArm::kNone, 0);
   part = {Pose{}, Twist{}, plant.time_s(), true};
   hand.F = {};
@@ -196,7 +198,7 @@ inline HostileRun runHostile(const std::uint8_t* data, std::size_t size, Require
   loop.release();
   for (int i = 0; i < 5; ++i) tick(true);
   run.has_recovered = loop.safety().fault == device::SafetyFault::None && !controller.hasFault();
-  // An encoder that has drifted needs a calibration; else nothing may stay broken.
+  // An encoder that has drifted needs a calibration; all other faults must be gone.
   Pose X_read = loop.last().X_WG;
   const bool is_true = (X_read.p - plant.pose().p).norm() < 1e-3 || !hardware.hasLied();
   if (is_usable && is_true) require(run.has_recovered, "re-arming brings it back");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A sampled wall of one direction: what energy it can make, by formula and as our own loop renders it, and
-// the device of one mass on which it begins to ring.
+// A sampled wall in one direction: the energy that it can generate, by formula and as measured with our own
+// loop, and the stiffness at which it rings on a device of one mass.
 //
 //   wall:   F = -K x - B (x - x_before) / T, computed once a period T, acts t_d later, held for a period
 //   device: mass m, damping b, pushed by a constant force
@@ -22,24 +22,24 @@ struct SampledWall {
   double K_N_per_m = 1000, B_Ns_per_m = 0, period_s = 1e-3, delay_s = 0;
 };
 
-/// K (T/2 + t_d) + |B| [N s/m]: a device with less damping makes the wall active
-/// (device/README.md, "Stability of the coupling").
+/// K (T/2 + t_d) + |B| [N s/m]: on a device with less damping the wall is active (device/README.md,
+/// "Stability of the coupling").
 inline double passiveDampingFormula(const SampledWall& w) {
   return w.K_N_per_m * (w.period_s / 2 + w.delay_s) + std::abs(w.B_Ns_per_m);
 }
 
-/// K = (b + B) / (T/2 + t_d): the stiffness that rings on a device of damping b.
+/// K = (b + B) / (T/2 + t_d): the stiffness at which the wall rings on a device of damping b.
 inline double ringingFormula(const SampledWall& w, double damping_Ns_per_m) {
   return (damping_Ns_per_m + w.B_Ns_per_m) / (w.period_s / 2 + w.delay_s);
 }
 
-/// The least device damping [N s/m] that takes up all energy the wall can make of a motion whose samples are
-/// a sine of `angle_rad` = w T a period, 0 < angle_rad <= pi. Exact.
+/// The least device damping [N s/m] that dissipates all energy which the wall can generate in a motion whose
+/// samples are a sine with `angle_rad` = w T per period, 0 < angle_rad <= pi. Exact.
 ///   whole ticks of delay d:  b = T/2 G,  G = Re{(1 - e^-jwT) H e^-jwTd} / (1 - cos wT),
 ///   H = K + B (1 - e^-jwT) / T                                             [Colgate and Schenkel 1997]
-/// since with one force held from sample to sample the straight path between them dissipates least. Where the
-/// force changes a share phi into the period, a hand that is quicker under the lesser force wins
-/// phi (1 - phi) T |H|^2 / (4 b) more for each unit step, which makes b the root of a quadratic.
+/// since the straight path between two samples dissipates least while one force is held. If the force changes
+/// at a share phi of the period, a hand that moves faster under the lesser force gains phi (1 - phi) T |H|^2
+/// / (4 b) more for each unit step, so that b is the root of a quadratic equation.
 inline double passiveDampingAt(const SampledWall& w, double angle_rad) {
   using Complex = std::complex<double>;
   const double ticks = w.delay_s / w.period_s, whole = std::floor(ticks + 1e-9);
@@ -52,26 +52,26 @@ inline double passiveDampingAt(const SampledWall& w, double angle_rad) {
   return w.period_s / 2 * (G / 2 + std::sqrt(G * G / 4 + phi * (1 - phi) * std::norm(H)));
 }
 
-/// A frequency [rad a sample] of kSineSamples, whole periods of which fit: index 1 to kSineSamples / 2.
+/// A frequency [rad per sample] of which whole periods fit into kSineSamples: index 1 to kSineSamples / 2.
 inline constexpr int kSineSamples = 400;
 inline double sineAngle_rad(int index) {
   return 2 * std::numbers::pi * index / kSineSamples;
 }
 
-/// The same over all frequencies. In steps of pi/200: the greatest of sines of up to six times the angle is
-/// missed by (6 pi/400)^2 / 2 = 0.1%.
+/// The greatest passiveDampingAt() over all frequencies, searched in steps of pi/200. The terms are sines of
+/// up to six times the angle, so the search misses their maximum by at most (6 pi/400)^2 / 2 = 0.1%.
 inline double passiveDamping(const SampledWall& w) {
   double most = 0;
   for (int i = 1; i <= kSineSamples / 2; ++i) most = std::max(most, passiveDampingAt(w, sineAngle_rad(i)));
   return most;
 }
 
-/// A part that stands still at the scene's origin, on a port.
+/// The coupling state of a part at rest at the scene's origin.
 inline CouplingState stillPart() {
   return {Pose{}, Twist{}, 0, true};
 }
 
-/// The loop with this wall's gains and without limits: what is tested is the law as sampled.
+/// Settings of a loop with this wall's gains and without limits, so that only the sampled law acts.
 inline device::LoopSettings wallLoop(const SampledWall& w) {
   device::LoopSettings settings;
   settings.period_s = w.period_s;
@@ -84,7 +84,7 @@ inline device::LoopSettings wallLoop(const SampledWall& w) {
   return settings;
 }
 
-/// A handle on a rail along x: says where it is led or where mass, damping and force bring it, and keeps the
+/// A handle on a rail along x. Its position is set directly or moved by mass, damping and force; it keeps the
 /// wrenches that were written.
 class RailDevice final : public device::Device {
  public:
@@ -106,10 +106,10 @@ class RailDevice final : public device::Device {
   [[nodiscard]] device::DeviceLimits limits() const noexcept override { return {}; }
   [[nodiscard]] std::string_view name() const noexcept override { return "rail"; }
 
-  /// Force of the wall `ticks` (whole, below 16) before the last one.
+  /// The force that was written `ticks` ticks (below 16) before the last one.
   [[nodiscard]] double force_N(int ticks) const { return written_N_[static_cast<std::size_t>(ticks)]; }
 
-  /// One period of m x'' = push - b x' + F, F held: exact.
+  /// Advances m x'' = push - b x' + F by one period, exactly, with F constant.
   void move(double mass_kg, double damping_Ns_per_m, double force_N) {
     const double decay = std::exp(-damping_Ns_per_m * period_s_ / mass_kg);
     const double v_end_m_s = force_N / damping_Ns_per_m;
@@ -124,14 +124,15 @@ class RailDevice final : public device::Device {
   std::array<double, 16> written_N_{};
 };
 
-/// The same as passiveDampingAt(), for whole ticks of delay, measured: a hand leads the handle along a sine
-/// while our loop renders the wall; the wall's work on it over what a damper of 1 N s/m would take.
+/// Measures passiveDampingAt() for whole ticks of delay: a hand leads the handle along a sine while our loop
+/// renders the wall. The result is the work of the wall on the handle over the work that a damper of 1 N s/m
+/// would dissipate.
 inline double measuredPassiveDamping(const SampledWall& w, int index) {
   RailDevice device(w.period_s);
   device::CouplingPort port;
   port.physics.write({stillPart(), 0, {}, {}});
   device::HapticLoop loop(device, port, wallLoop(w));
-  loop.grasp(Pose{});  // at x = 0, where the part is
+  loop.grasp(Pose{});  // at x = 0, the position of the part
   const int delay = static_cast<int>(std::lround(w.delay_s / w.period_s));
   const double reach_m = 1e-3;
   const auto led_m = [&](int k) { return reach_m * std::sin(sineAngle_rad(index) * k + 0.3); };
@@ -147,8 +148,8 @@ inline double measuredPassiveDamping(const SampledWall& w, int index) {
   return work_J / damper_J;
 }
 
-/// Does a handle, pushed on the wall by a steady force and moved off its rest a little, swing more and more?
-/// Our loop renders the wall; whole ticks of delay.
+/// Whether the oscillation of a handle grows that is pushed against the wall by a constant force and
+/// displaced a little from rest. Our loop renders the wall, with whole ticks of delay.
 inline bool rings(const SampledWall& w, double mass_kg, double damping_Ns_per_m) {
   RailDevice device(w.period_s);
   device::CouplingPort port;
@@ -157,7 +158,8 @@ inline bool rings(const SampledWall& w, double mass_kg, double damping_Ns_per_m)
   loop.grasp(Pose{});
   const double push_N = 5, rest_m = push_N / w.K_N_per_m;
   device.x_m = 0.9 * rest_m;
-  // Near the edge the swing grows or fades by 2 pi (share off the edge) zeta a turn: twice thirty turns tell.
+  // Near the limit of stability the amplitude changes by 2 pi (relative distance from the limit) zeta per
+  // period, so two intervals of thirty periods show the trend.
   const double turn_s = 2 * std::numbers::pi * std::sqrt(mass_kg / w.K_N_per_m);
   const int delay = static_cast<int>(std::lround(w.delay_s / w.period_s));
   const int ticks = static_cast<int>(30 * turn_s / w.period_s);
@@ -172,7 +174,7 @@ inline bool rings(const SampledWall& w, double mass_kg, double damping_Ns_per_m)
   return swing_m[2] > swing_m[1];
 }
 
-/// The stiffness [N/m] at which it begins, by bisection to 0.2%, between a quarter and four times the
+/// The stiffness [N/m] at which ringing begins, by bisection to 0.2% between a quarter and four times the
 /// formula.
 inline double measuredRinging(SampledWall w, double mass_kg, double damping_Ns_per_m) {
   double low = ringingFormula(w, damping_Ns_per_m) / 4, high = 16 * low;
@@ -183,7 +185,7 @@ inline double measuredRinging(SampledWall w, double mass_kg, double damping_Ns_p
   return std::sqrt(low * high);
 }
 
-// -- The dual arm on a wall that our loop renders, pushed by a hand: whether it comes to rest, and up to
+// -- The dual arm, pushed by a hand against a wall that our loop renders: whether it comes to rest, and up to
 // which stiffness.
 
 struct WallPress {
@@ -193,15 +195,15 @@ struct WallPress {
   double settle_s = 1.5, watch_s = 0.5;
 };
 
-/// How far the true handle moves to and fro [m] along the push.
+/// Peak-to-peak motion of the true handle [m] along the push.
 struct Unrest {
   double early_m = 0;  ///< in the watch_s after a third of settle_s
   double late_m = 0;   ///< in the watch_s after settle_s
 };
 
-/// The part in hand stands still, as one that a rigid wall stops; our loop renders the coupling to it. The
-/// plant takes eight steps a period: its integrator moves with the speed of a step's end, which would shorten
-/// the hold of a force by half a step.
+/// The part in hand is at rest, like a part that a rigid wall stops; our loop renders the coupling to this
+/// part. The simulated arm takes eight steps per period, because its integrator moves with the velocity at
+/// the end of a step, which shortens the effective time for which a force is held by half a step.
 inline Unrest pressOnWall(const device::SimulatedDualArmSettings& device, const CouplingGains& gains,
                           const WallPress& press = {}) {
   device::SimulatedDualArm arm(device);
@@ -217,7 +219,7 @@ inline Unrest pressOnWall(const device::SimulatedDualArmSettings& device, const 
   hand.mass_kg = press.hand_kg;
   hand.inertia_kgm2 = 1e-4;
   hand.F.f = press.push_N * press.along_D;
-  // The other fingers hold the turns: the wall is one of translation.
+  // The other fingers hold the rotation, since the wall acts on translation only.
   hand.k_Nm_per_rad = Mat3::Identity();
   hand.b_Nms_per_rad = 0.02 * Mat3::Identity();
   hand.X_eq = arm.truePose();
@@ -237,10 +239,11 @@ inline Unrest pressOnWall(const device::SimulatedDualArmSettings& device, const 
   return {high_m[0] - low_m[0], high_m[1] - low_m[1]};
 }
 
-/// The stiffest coupling [N/m] below the first with a limit cycle, to 2%. A cycle is motion of more than half
-/// the encoders' greatest error, about one step of theirs in the middle of the workspace; the encoders'
-/// jitter causes less. There must be no cycle at `from_N_per_m`. Whether there is one is not monotonic in the
-/// stiffness, so the search goes upwards from there in steps of 10%, and bisects only the last step.
+/// The greatest stiffness of the coupling [N/m] below the first one with a limit cycle, to 2%. A limit cycle
+/// is a motion of more than half the encoders' greatest error, which is about one encoder step in the middle
+/// of the workspace; the jitter of the encoders causes less. There must be no limit cycle at `from_N_per_m`.
+/// Limit cycles are not monotonic in the stiffness, so the search goes upwards from `from_N_per_m` in steps
+/// of 10%, and bisects only the last step.
 inline double stiffestWall(const device::SimulatedDualArmSettings& device, CouplingGains gains,
                            double from_N_per_m, const WallPress& press = {}) {
   const double still_m = device.arms.resolution_m / 2;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A certificate of a server on this machine, made for a test.
+// Makes a certificate of a server on this machine for a test.
 #pragma once
 
 #include <openssl/ec.h>
@@ -14,8 +14,8 @@
 
 namespace vps::test {
 
-/// Writes NAME.pem and NAME.key into a folder: signed by itself, for localhost and 127.0.0.1, valid between
-/// two times from now [s]. `rsa_bits` 0: by an elliptic curve.
+/// Writes NAME.pem and NAME.key into a folder: self-signed, for localhost and 127.0.0.1, valid between two
+/// times relative to now [s]. If `rsa_bits` is 0, the key is on an elliptic curve.
 inline void writeCertificate(const std::string& folder, const std::string& name, long from_s = -3600,
                              long to_s = 3600, unsigned rsa_bits = 0) {
   const std::unique_ptr<EVP_PKEY, decltype(&EVP_PKEY_free)> key(

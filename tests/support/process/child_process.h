@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A program that runs beside a test.
+// A program that runs in parallel with a test.
 #pragma once
 
 #include <fcntl.h>
@@ -22,7 +22,7 @@ extern char** environ;
 
 namespace vps::test {
 
-/// What a process uses.
+/// Resources that a process uses.
 struct Usage {
   double memory_MB = 0;
   long files = 0, threads = 0;
@@ -45,11 +45,11 @@ inline Usage usageOf(pid_t id) {
   return usage;
 }
 
-/// A program that runs until it ends by itself or is killed.
+/// A process that runs until it ends by itself or is killed.
 class ChildProcess {
  public:
   ChildProcess() = default;
-  /// @param output  file that gets what it prints
+  /// @param output file to which its output is appended
   ChildProcess(std::vector<std::string> words, const std::string& output) {
     std::vector<char*> argv;
     for (std::string& word : words) argv.push_back(word.data());
@@ -68,26 +68,26 @@ class ChildProcess {
   }
   ~ChildProcess() { killNow(); }
 
-  /// Of the process; 0: none.
+  /// The id of the process; 0: there is no process.
   [[nodiscard]] pid_t id() const { return id_; }
-  /// Asks it to end, as Ctrl-C does.
+  /// Asks the process to end, as Ctrl-C does.
   void interrupt() const {
     if (id_ > 0) kill(id_, SIGINT);
   }
-  /// Without waiting for it.
+  /// Does not wait for the process.
   [[nodiscard]] bool isRunning() const {
     siginfo_t info{};
     const bool is_known =
         id_ > 0 && waitid(P_PID, static_cast<id_t>(id_), &info, WEXITED | WNOHANG | WNOWAIT) == 0;
     return is_known && info.si_pid == 0;
   }
-  /// The process does nothing for that time, as when a busy machine does not schedule it.
+  /// Stops the process for this time, as if a busy machine did not schedule it.
   void holdUp(std::chrono::milliseconds time) const {
     if (id_ > 0) kill(id_, SIGSTOP);
     std::this_thread::sleep_for(time);
     if (id_ > 0) kill(id_, SIGCONT);
   }
-  /// Does not wait for its end. Returns the time of the kill by the monotonic clock.
+  /// Kills the process without waiting for its end. Returns the time of the kill by the monotonic clock [ns].
   [[nodiscard]] std::int64_t sendKill() const {
     const std::int64_t now_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(
                                     std::chrono::steady_clock::now().time_since_epoch())
@@ -95,13 +95,13 @@ class ChildProcess {
     if (id_ > 0) kill(id_, SIGKILL);
     return now_ns;
   }
-  /// Waits for its end, in which the system takes its memory back.
+  /// Kills the process and waits for its end, after which the system has freed its memory.
   void killNow() {
     if (id_ <= 0) return;
     kill(id_, SIGKILL);
     waitpid(std::exchange(id_, 0), nullptr, 0);
   }
-  /// Its exit status; -1: a signal ended it.
+  /// Waits for the end of the process. Returns its exit status; -1: a signal ended it.
   int wait() {
     int status = -1;
     if (id_ > 0) waitpid(std::exchange(id_, 0), &status, 0);

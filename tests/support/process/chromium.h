@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A web browser without a display that a test drives, by the protocol of Chromium's developer tools.
+// A web browser without a display, which a test controls by the protocol of Chromium's developer tools.
 #pragma once
 
 #include <boost/asio/connect.hpp>
@@ -22,7 +22,7 @@
 
 namespace vps::test {
 
-/// One page of a browser of its own.
+/// One page in a browser of its own.
 class Chromium {
  public:
   static constexpr const char* kProgram = "/usr/bin/chromium";
@@ -49,13 +49,13 @@ class Chromium {
     call("Page.navigate", {{"url", address}});
   }
 
-  /// The value of an expression in the page; null also where it throws.
+  /// The value of an expression in the page; null if the expression throws.
   nlohmann::json evaluate(const std::string& expression) {
     const nlohmann::json reply = call(
         "Runtime.evaluate", {{"expression", expression}, {"returnByValue", true}, {"awaitPromise", true}});
     return reply.contains("result") ? reply["result"].value("value", nlohmann::json()) : nlohmann::json();
   }
-  /// Until the expression is true.
+  /// Waits until the expression is true. Returns false at the limit.
   bool waitFor(const std::string& expression, double limit_s = 60) {
     const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(limit_s);
     while (evaluate("Boolean(" + expression + ")") != true) {
@@ -64,7 +64,7 @@ class Chromium {
     }
     return true;
   }
-  /// "mousePressed", "mouseMoved" or "mouseReleased", with the left button.
+  /// Sends "mousePressed", "mouseMoved" or "mouseReleased", with the left button.
   void mouse(const std::string& what, double x, double y) {
     call("Input.dispatchMouseEvent", {{"type", what},
                                       {"x", x},
@@ -73,18 +73,18 @@ class Chromium {
                                       {"buttons", what == "mouseReleased" ? 0 : 1},
                                       {"clickCount", 1}});
   }
-  /// "touchStart", "touchMove" or "touchEnd", of one finger.
+  /// Sends "touchStart", "touchMove" or "touchEnd", of one finger.
   void touch(const std::string& what, double x, double y) {
     nlohmann::json points = nlohmann::json::array();
     if (what != "touchEnd") points.push_back({{"x", x}, {"y", y}});
     call("Input.dispatchTouchEvent", {{"type", what}, {"touchPoints", points}});
   }
-  /// A picture of the page as PNG.
+  /// Writes a picture of the page as PNG.
   void screenshot(const std::string& file) {
     const std::string text = call("Page.captureScreenshot")["data"];
     std::ofstream(file, std::ios::binary) << decoded(text);
   }
-  /// What the page printed on its console and the errors of the browser about it.
+  /// The lines that the page printed on its console, and errors of the browser about the page.
   [[nodiscard]] const std::vector<std::string>& console() const { return console_; }
 
  private:

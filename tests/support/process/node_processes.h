@@ -35,13 +35,14 @@ class NodeProcesses {
   void startDevice() { device = start({program_, "device", "--stay"}, "device.txt"); }
   void startWatch() { watch = start({program_, "watch", "--terminal"}, "watch.txt"); }
 
-  /// Joins the session as one more watcher; waits for it.
+  /// Joins the session as one more watcher, and waits until the session can be joined. Returns false at the
+  /// limit.
   bool join(double limit_s = 30) {
     watcher.reset();
     return waitFor([this] { return (watcher = scenes::SessionWatcher::join(session_, network_)) != nullptr; },
                    limit_s);
   }
-  /// Until the hand holds a part, and force can flow.
+  /// Waits until the hand holds a part and force can flow.
   bool waitForHold(double limit_s = 30) {
     return waitFor(
         [this] {
@@ -50,7 +51,7 @@ class NodeProcesses {
         },
         limit_s);
   }
-  /// Until physics has gone on by this much simulated time.
+  /// Waits until physics has advanced by this simulated time [s].
   bool waitForPhysics(double seconds, double limit_s = 30) {
     std::optional<double> begun_s;
     return waitFor(
@@ -62,8 +63,8 @@ class NodeProcesses {
         },
         limit_s);
   }
-  /// When the device gave its first wrench of zero with a fault, after a kill at that time. Empty: it has
-  /// not.
+  /// Time from a kill to the first wrench of zero that the device gave with a fault [s]; empty if it gave
+  /// none.
   std::optional<double> safeAfter_s(std::int64_t killed_ns, double limit_s = 1) {
     std::optional<double> safe_s;
     waitFor(
@@ -76,7 +77,7 @@ class NodeProcesses {
         limit_s);
     return safe_s;
   }
-  /// Shared memory of this session that has a name now.
+  /// Number of named shared memory segments of this session.
   [[nodiscard]] std::size_t segments() const {
     std::size_t count = 0;
     for (const auto& entry : std::filesystem::directory_iterator("/dev/shm"))
@@ -95,7 +96,7 @@ class NodeProcesses {
 
   ChildProcess render, device, watch;
   std::unique_ptr<scenes::SessionWatcher> watcher;
-  /// Folder of certificates of the processes that are started from now on; empty: none.
+  /// Folder of the certificates for processes that are started from now on; empty: none.
   std::string security;
 
  private:
