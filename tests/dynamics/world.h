@@ -75,7 +75,7 @@ class World {
   World(const World&) = delete;
   World& operator=(const World&) = delete;
 
-  /// @param friction coefficient of friction between this body and a body with the same value
+  /// @param friction  coefficient of friction between this body and a body with the same value
   Placed add(const PartMesh& part, const Pose& X_WP, bool is_fixed = false, double friction = 0.15);
   btRigidBody* addShape(ShapeHandle shape, const bullet::BodyFrame& frame, const Pose& X_WB,
                         double friction = 0.15);

@@ -30,7 +30,7 @@ struct PeerResult {
 /// Names of the scenes; each is a folder with a scene.toml.
 std::vector<std::string> peerScenes();
 
-/// @param folder the folder of the scenes
+/// @param folder  the folder of the scenes
 /// @param seconds  simulated time; 0: as long as the check needs
 /// Throws LoadError as loadScene() and simulate().
 PeerResult runPeer(const std::filesystem::path& folder, const std::string& scene, double seconds = 0);

@@ -60,7 +60,7 @@ bool hasPassedThrough(const OverlapMesh& a, const OverlapMesh& b, const Pose& X_
 /// Writes scene.toml and an STL file for each body (as the engine got it) into a new folder. The scene starts
 /// from the latest state from which the overlap appears without the hand, or, if there is none, from the
 /// state just before the overlap.
-/// @param command command that repeats the run with the hand; a comment at the top of the scene file
+/// @param command  command that repeats the run with the hand; a comment at the top of the scene file
 /// @return the scene file. Throws std::runtime_error if a file cannot be written.
 std::filesystem::path saveCase(const std::filesystem::path& folder, const Case& made,
                                const RunSettings& settings, const CaseResult& result,

@@ -45,7 +45,8 @@ Hand drawHand(Random& random, std::size_t body, const Pose& X_WP, const Vec3& ax
 }
 
 /// A part with a profile, and the slot for it, both along x.
-/// @param stem index of the profile's corner at the top right of its stem; the next corner is at the top left
+/// @param stem  index of the profile's corner at the top right of its stem; the next corner is at the top
+/// left
 Case slideInSlot(Random& random, const Polygon& profile, std::size_t stem) {
   const double clearance_m = drawClearance(random), friction = drawFriction(random);
   const Polygon slot = enlarged(profile, clearance_m / 2);

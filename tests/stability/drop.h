@@ -15,8 +15,8 @@ using dynamics::World;
 
 inline constexpr double kGravity_m_s2 = World::kGravity_m_s2;
 inline constexpr double kVoxel_m = 0.5e-3;
-inline constexpr double kPlate_m = 60e-3;  ///< side thickness of a plate
-inline constexpr double kThick_m = 10e-3;  ///< of a plate
+inline constexpr double kPlate_m = 60e-3;  ///< side of a plate
+inline constexpr double kThick_m = 10e-3;  ///< thickness of a plate
 inline const dynamics::Resolution kCoarse{kVoxel_m, 1e-3};
 inline const Vec3 kBlock_m(20e-3, 15e-3, 10e-3);
 

@@ -28,7 +28,7 @@ using Require = void (*)(bool claim, const char* promise);
 /// Each operation is a pair of bytes: the kind of operation, and the body or number to which it applies.
 class HostileWorld {
  public:
-  /// @param parallel uses bullet::Dispatcher with two threads
+  /// @param parallel  uses bullet::Dispatcher with two threads
   explicit HostileWorld(Require require, bool parallel = false);
   ~HostileWorld();
   HostileWorld(const HostileWorld&) = delete;

@@ -48,7 +48,7 @@ double seconds(const timeval& time) {
 }
 
 /// Runs a program and measures it from outside.
-/// @param output file for its output
+/// @param output  file for its output
 ProgramRun runProgram(const std::vector<std::string>& words, const std::filesystem::path& output,
                       double limit_s) {
   std::vector<std::string> copies = words;

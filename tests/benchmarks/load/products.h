@@ -23,8 +23,8 @@ struct ProductSize {
   int solids = 0, faces = 0;
 };
 
-/// @param is_shared equal solids refer to one product of the file; otherwise each has faces of its own, as in
-/// the files of many exporters
+/// @param is_shared  equal solids refer to one product of the file; otherwise each has faces of its own, as
+/// in the files of many exporters
 ///                   the files of many exporters
 ProductSize writeProduct(const std::string& file, bool is_shared);
 

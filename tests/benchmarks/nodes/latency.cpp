@@ -36,7 +36,7 @@ constexpr const char* kSession = "bench-latency";
 
 /// One end of the link with what it needs to write and read.
 struct End {
-  /// @param form form in which the nodes write states on this link
+  /// @param form  form in which the nodes write states on this link
   End(std::unique_ptr<Link> joined, std::uint64_t sender, WireForm form)
       : link(std::move(joined)), writer(sender, form) {}
 

@@ -30,7 +30,7 @@ struct FoundPoints : btCollisionWorld::ContactResultCallback {
 
 /// Median of contactPairTest of a part and one of Bullet's shapes; the first query, which reads the shape, is
 /// excluded.
-/// @param reach_m range of the query; 0: contact only
+/// @param reach_m  range of the query; 0: contact only
 Row queryOf(const char* name, const Mesh& mesh, btCollisionShape& native, const Vec3& p_WN, double reach_m,
             double bound_s) {
   btDefaultCollisionConfiguration config;

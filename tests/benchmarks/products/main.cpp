@@ -196,7 +196,7 @@ Solids keyedHub() {
 }
 
 /// A slot that goes in from above and then sideways; the block's head is wider than the slot's mouth.
-/// @param gap clearance of the mouth; farther in it is 0.2 mm
+/// @param gap  clearance of the mouth; farther in it is 0.2 mm
 Solids elbowSlot(double gap) {
   TopoDS_Shape base = box(100, 60, 40);
   base = cut(base, at(box(24 + gap, 24 + gap, 40), -25, 0, 12));  // the block comes in here from above

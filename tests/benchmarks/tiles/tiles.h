@@ -25,7 +25,7 @@ struct Fit {
   double spacing_m = 0;             ///< spacing of the points
 };
 
-/// @param is_short one pose of each fit, and only the first two fits
+/// @param is_short  one pose of each fit, and only the first two fits
 std::vector<Fit> allFits(bool is_short);
 
 using Model = std::shared_ptr<const PartModel>;

@@ -132,7 +132,7 @@ bool timePictures(int subdivisions, int repeats) {
   return shows;
 }
 
-/// @param cache cache of the parts; null: the CAD file is read each time
+/// @param cache  cache of the parts; null: the CAD file is read each time
 void timeFirstPicture(const char* what, const ByteCache* cache, int repeats) {
   Row row{what, "bar 1", {}, {}};
   for (int i = 0; i < repeats; ++i)

@@ -145,7 +145,7 @@ struct Corner {
   double dt_s = 1e-3;
   Mat3 R = Mat3::Identity();
 
-  /// @param fast_mm range of the greatest travel along an axis in a step; without it the travel is less than
+  /// @param fast_mm  range of the greatest travel along an axis in a step; without it the travel is less than
   /// the spacing of points. If a body travels by more than four voxels in a step, it is queried at several
   /// poses.
   explicit Corner(int member, std::optional<std::pair<double, double>> fast_mm = {}) {

@@ -52,7 +52,7 @@ scenes::ScenePart partOf(const std::string& name, const Mesh& mesh, const Vec3& 
   return part;
 }
 
-/// @param start start of each block, relative to the middle of its plate
+/// @param start  start of each block, relative to the middle of its plate
 scenes::Scene sceneOf(const Pairs& pairs, const Vec3& plate_m, const Vec3& start, const Vec3& velocity_m_s) {
   scenes::Scene scene;
   scene.file = scene.name = "plates";

@@ -37,7 +37,7 @@ class Stepper {
  public:
   Stepper(World& world, bool is_divided) : world_(world), is_divided_(is_divided) {}
 
-  /// @param after_each called after each part of the step
+  /// @param after_each  called after each part of the step
   template <typename AfterEach>
   void step(const AfterEach& after_each) {
     const int parts = is_divided_ ? bullet::substepsFor(world_.bullet(), kStep_s, 10'000) : 1;

@@ -18,7 +18,7 @@ namespace vps_test {
 
 using Require = void (*)(bool claim, const char* promise);
 
-/// A firm hand around the identity pose. @param k, b of translation [N/m, N s/m]
+/// A firm hand around the identity pose. @param k, b  stiffness and damping of translation [N/m, N s/m]
 inline vps::device::HandForce firmHand(double k, double b) {
   vps::device::HandForce hand;
   hand.k_N_per_m = k * vps::Mat3::Identity();

@@ -49,7 +49,7 @@ inline Usage usageOf(pid_t id) {
 class ChildProcess {
  public:
   ChildProcess() = default;
-  /// @param output file to which its output is appended
+  /// @param output  file to which its output is appended
   ChildProcess(std::vector<std::string> words, const std::string& output) {
     std::vector<char*> argv;
     for (std::string& word : words) argv.push_back(word.data());
