@@ -20,7 +20,7 @@ usage() {
 # Verdicts with which a table is good. "-": reported, not judged.
 good='met|expected|-|skipped|by another mode'
 
-# Prints the rows of a file in columns, and how many there are of each verdict.
+# Prints the rows of a file in columns, and the number of rows of each verdict.
 print_table() {
   awk -F'\t' '
     function cut(s, n) { return length(s) > n ? substr(s, 1, n - 2) ".." : s }
@@ -32,7 +32,7 @@ print_table() {
           print "" }' "$1"
 }
 
-# Two tables side by side. A row has moved if its verdict or its value changed; a time, whose unit is ms, us or s, if it
+# Compares two tables. A row has moved if its verdict or its value changed; a time, whose unit is ms, us or s, if it
 # changed by more than half.
 compare() {
   awk -F'\t' -v good="^($good)\$" '
@@ -97,7 +97,7 @@ rows_of_demo() {  # FOLDER
       printf "demo %s: %s\t\t%.0f us\t-\t0.0\n", of, w[2], v }' "$1/assemble.json"
 }
 
-# One job: a program with its limit of time. Its rows are in $out/NAME.rows, what it printed in $out/NAME.log.
+# One job: a program with its time limit. Writes its rows to $out/NAME.rows and its output to $out/NAME.log.
 job() {  # NAME LIMIT_S KIND PROGRAM ARGUMENTS...
   local name=$1 limit_s=$2 kind=$3 program=$4 status cpu
   shift 4
@@ -121,7 +121,7 @@ job() {  # NAME LIMIT_S KIND PROGRAM ARGUMENTS...
   elif [ $status -eq 1 ] && ! awk -F'\t' -v good="^($good)\$" '$4 !~ good { bad = 1 } END { exit !bad }' "$rows"; then
     verdict=FAILED
   fi
-  # A program that ends well has said all in its rows.
+  # If the program ends well, its rows are complete.
   [ "$verdict" = met ] || printf '%s: program\tends well\t%s\t%s\t%s\n' "$name" "$value" "$verdict" "$cpu" >>"$rows"
 }
 
@@ -164,7 +164,7 @@ short=--short every=16 runs=2 seeds=1
 if $is_long; then short="" every=8 runs=20 seeds=8; fi
 if [ -z "$limit" ]; then $is_long && limit=14400 || limit=1500; fi  # of one program [s]
 
-# The longest first. The edge table is split, so that its parts run beside other programs.
+# The longest jobs come first. The edge table is split, so that its parts run in parallel with other programs.
 for part in 0 1; do
   add "hand_edge_$part" $limit rows "$bin/hand/vps_hand" edge --every $((2 * every)) --from $((part * every)) --tsv "$out/hand_edge_$part.rows"
 done

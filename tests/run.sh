@@ -16,7 +16,7 @@ if [[ $preset == fuzz ]]; then
   for reader in ply vdb mesh mcap recording scene device messages bullet; do echo "== $reader"; build/fuzz/tests/fuzz/fuzz_$reader "${2:-60}"; done
   exit
 fi
-# The same settings as those of scenes/demo.sh, so that both share one build; CI adds VPS_WERROR=ON.
+# The settings are those of scenes/demo.sh, so that both share one build; CI adds VPS_WERROR=ON.
 cmake --preset "$preset" -DVPS_TESTS=ON ${VPS_WERROR:+-DVPS_WERROR="$VPS_WERROR"} >/dev/null
 selection=(--output-junit tests.xml)  # which tests were skipped, and why: see .ci/check_skips
 if [ ${#programs[@]} -gt 0 ]; then

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# How long physics steps and queries take, row by row, with the load average before each: wall times need a machine that
+# Times of physics steps and queries, row by row, with the load average before each row: wall times need a machine that
 # does nothing else. usage: tests/benchmarks/real_time.sh BUILD [ROW...]   (some ten minutes for all rows)
 set -euo pipefail
 build=$(realpath "${1:?usage: tests/benchmarks/real_time.sh BUILD [ROW...]}")
@@ -15,7 +15,7 @@ trap 'rm -rf "$scratch"' EXIT
 # The lines of a table, without its repetition at the end. A missed bound is part of the result.
 row() { { "$@" || true; } 2>&1 | sed '/^$/q'; }
 
-# Verdict of a run by the clock, how far it fell behind, and its percentiles.
+# The verdict of a run in real time, its missed periods, and its percentiles.
 block() {
   "$build/vps" assemble "$here/scenes/bearing_block/scene.toml" --no-pictures --real-time "$@" --out "$scratch/out" \
     --json "$scratch/run.json" >"$scratch/log" 2>&1 || true

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
 # precision.sh CXX double|single BUILD_DIR WORK_DIR BULLET_INCLUDE EIGEN_INCLUDE [SANITIZE]
-# A program that mixes Bullet's precisions: every public header is a compile error in the other one, and where only the
-# libraries are mixed, install() throws with words.
+# A program that mixes Bullet's precisions: every public header is a compile error in the other precision, and if only the
+# libraries are mixed, install() throws an error with a message.
 set -euo pipefail
 cxx=$1 ours=$2 build=$3 work=$4 bullet=$5 eigen=$6 sanitize=${7:-}
 root=$(cd "$(dirname "$0")/../.." && pwd)

@@ -20,7 +20,7 @@ if [ "$kind" = shared ]; then
 fi
 "$cmake" --install "$build" --prefix "$work/prefix" >/dev/null
 prefix=$work/prefix
-suffix=""  # of the package's names
+suffix=""  # suffix of the package's names
 grep -q '^VPS_BULLET_DOUBLE:BOOL=OFF' "$build/CMakeCache.txt" && suffix=-float32
 include=$prefix/include${suffix:+/vps$suffix}
 libs=$(dirname "$(find "$prefix" -name 'libvps_plugin*' -print -quit)")
@@ -35,7 +35,7 @@ configure() {  # configure FOLDER NAME [OPTION...]: FOLDER as a project of its o
   "$cmake" -G Ninja -S "$source/$folder" -B "$work/$name" -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH="$prefix" \
     -DCMAKE_CXX_FLAGS="$flags" "$@" 2>&1
 }
-refused() {  # refused WORDS CONFIGURE-ARGUMENT...: must fail, and say these words
+refused() {  # refused WORDS CONFIGURE-ARGUMENT...: must fail, with these words in the output
   local words=$1 said
   shift
   if said=$(configure "$@"); then

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
 # side_by_side.sh DOUBLE_BUILD SINGLE_BUILD WORK_DIR [CMAKE]
-# The packages for Bullet's two precisions in one prefix: no file of one replaces one of the other, and a program gets
-# the one that it asks for.
+# Installs the packages for Bullet's two precisions in one prefix: no file of one package replaces a file of the other, and a
+# program gets the package that it requests.
 set -euo pipefail
 double=$(realpath "$1") single=$(realpath "$2") work=$(realpath -m "$3") cmake=${4:-cmake}
 source=$(cd "$(dirname "$0")" && pwd)
@@ -23,7 +23,7 @@ build() {  # build NAME [OPTION...]
   "$cmake" --build "$work/$name" >/dev/null
   "$work/$name/app"
 }
-# Not `ldd | grep -q`: grep ends at its first match, and a writer that is not done then dies, which pipefail counts.
+# `ldd | grep -q` would not work: grep ends at its first match, ldd then fails at its next write, and pipefail reports it.
 of_double() { grep -q "BulletDynamics-float64" <<<"$(ldd "$1")"; }
 build double -DVPS_BULLET_DOUBLE=ON
 of_double "$work/double/app" || { echo "not the package in double precision"; exit 1; }

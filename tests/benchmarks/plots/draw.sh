@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# draw.sh DATA OUT: pictures of what vps_curves, or vps_bench_load, wrote to DATA. Each stays well under 60 kB.
+# draw.sh DATA OUT: draws the data that vps_curves or vps_bench_load wrote to DATA. Each picture stays well under 60 kB.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 if [ -e "$1/parts.dat" ]; then

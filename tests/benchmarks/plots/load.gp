@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# gnuplot -e "data='FOLDER'; out='load.png'; plots='.../plots'" load.gp: what vps_bench_load curve wrote
+# gnuplot -e "data='FOLDER'; out='load.png'; plots='.../plots'" load.gp: the data of vps_bench_load curve
 load plots."/style.gp"
 set terminal pngcairo size 1080,360 font "DejaVu Sans,9.5" background "white"
 set output out

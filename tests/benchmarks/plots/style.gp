@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# What both pictures share. Colours keep apart for most kinds of colour blindness (Okabe and Ito 2008).
+# The style of all pictures. The colours can be distinguished with most kinds of colour blindness (Okabe and Ito 2008).
 set encoding utf8
 set logscale xy
 set format x "10^{%T}"

@@ -105,11 +105,11 @@ bool check() {
 void printAll(bool is_short) {
   std::printf(
       "Exact distances per pose, of both surfaces, that close all tiles with a point nearer than 20 um; "
-      "those that\n"
-      "may overlap by 1 um (most in a tile, share beside edges, points whose bound is broken).\n\n"
-      "| fit | voxel/mm | tile, mm | tiles | 0.5 voxel everywhere | beside edges | per 8^3 voxels | per "
-      "voxel | per "
-      "leaf of points |\n|---|---|---|---|---|---|---|---|---|\n");
+      "distances\nthat close the tiles which may overlap by 1 um (most in a tile, share near edges, points "
+      "whose bound is broken).\n\n"
+      "| fit | voxel/mm | tile, mm | tiles | 0.5 voxel everywhere | near edges | per 8^3 voxels | per voxel "
+      "| "
+      "per leaf of points |\n|---|---|---|---|---|---|---|---|---|\n");
   for (const Fit& fit : allFits(is_short))
     for (const double voxel_m : {fit.fine_m, fit.coarse_m}) Measurement(fit, voxel_m).print();
 }
