@@ -156,13 +156,13 @@ void judgeValue(Judgement& judgement, Mode mode, const Quantity& quantity, doubl
   try {
     quantity.give(scene, value);
   } catch (const std::exception& error) {
-    judgement.require(isInWords(error.what()), told + ": refused without words");
+    judgement.require(isInWords(error.what()), told + ": refused without a message");
     judgement.note(told + " is refused");
     return;
   }
   world.step(50);
   const Pose after = neighbour.pose();
-  judgement.require(after.isFinite(), told + ": its neighbour is not a number any more");
+  judgement.require(after.isFinite(), told + ": the pose of its neighbour is not a number any more");
   // The neighbour rests in contact, for which a micrometre is allowed.
   if (after.isFinite()) judgement.atMost("neighbour moved", (after.p - before.p).norm(), 1e-6, "m");
 }

@@ -255,7 +255,7 @@ std::vector<Row> loadRows() {
        stackOfMass,
        {99, 3}},
       {"collision",
-       "mass of a block over that of the one it strikes at 1 m/s",
+       "mass of a block over that of the block it strikes at 1 m/s",
        "momentum, overlap at the end",
        {1, 1e3, 1e6, 1e8, 1e10, 1e12},
        3,

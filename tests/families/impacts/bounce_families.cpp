@@ -100,9 +100,9 @@ double meanBounceError(int member) {
 
 std::vector<Family> bounceFamilies() {
   return {
-      {"B_heights", "error of a height after 1 to 5 bounces, of e^(2k) h", 0.002, 60, 4,
+      {"B_heights", "error of a height after 1 to 5 bounces, relative to e^(2k) h", 0.002, 60, 4,
        [](int i) { return Bounces(i).error(); }, [](int i) { return Bounces(i).words(); }},
-      {"B_mean_heights", "mean error of heights, of e^(2k) h", 5e-4, 9, 4, meanBounceError},
+      {"B_mean_heights", "mean error of heights, relative to e^(2k) h", 5e-4, 9, 4, meanBounceError},
   };
 }
 

@@ -148,8 +148,8 @@ std::vector<Family> flushStartFamilies() {
   constexpr double kFlush_m = 2e-6;
   return {{"I_flush", "distance from a start 0.1 um above, 30 steps [m]", kFlush_m, 60, 6, difference_m,
            describe},
-          {"I_slides", "change of velocity of what slides without friction, share", 1e-3, 60, 6, slideError,
-           describeSlide}};
+          {"I_slides", "relative change of velocity of a block that slides without friction", 1e-3, 60, 6,
+           slideError, describeSlide}};
 }
 
 }  // namespace vps::families

@@ -107,8 +107,8 @@ std::vector<Family> massRatioFamilies() {
            [](int i) { return errorsOf(i).energy; }, words},
           {"B_mass_ratio_momentum", "change of momentum, relative", 1e-9, 216, 17,
            [](int i) { return errorsOf(i).momentum; }, words},
-          {"B_mass_ratio_turns", "speed by rotation of the equal bodies, of the first one's", 0.01, 216, 2,
-           [](int i) { return errorsOf(i).turn; }, words}};
+          {"B_mass_ratio_turns", "speed by rotation of the equal bodies, over the first body's speed", 0.01,
+           216, 2, [](int i) { return errorsOf(i).turn; }, words}};
 }
 
 }  // namespace vps::families

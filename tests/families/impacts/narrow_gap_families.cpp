@@ -125,7 +125,7 @@ double pinDepth_um(int member) {
 }  // namespace
 
 std::vector<Family> narrowGapFamilies() {
-  const std::string depth = "depth, also on the way [um]";
+  const std::string depth = "depth after and within steps [um]";
   return {
       {"C_balls", depth, 10, 80, 13, ballDepth_um, [](int i) { return Bore(i, false).words(); }},
       {"C_pins", depth, 10, 50, 10, pinDepth_um, [](int i) { return Bore(i, true).words(); }},

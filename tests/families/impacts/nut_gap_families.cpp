@@ -111,7 +111,7 @@ std::string words(int member) {
 }  // namespace
 
 std::vector<Family> nutGapFamilies() {
-  return {{"C_nuts", "depth of a nut in its rod, also on the way [um]", 10, 24, 5, depth_um, words}};
+  return {{"C_nuts", "depth of a nut in its rod, after and within steps [um]", 10, 24, 5, depth_um, words}};
 }
 
 }  // namespace vps::families

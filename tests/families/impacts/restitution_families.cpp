@@ -281,7 +281,7 @@ auto wordsOf() {
 
 std::vector<Family> restitutionFamilies() {
   const std::string gained = "energy gained over that at the start [m g dt v]";
-  const std::string error = "greatest error of a velocity, of the first one's";
+  const std::string error = "greatest error of a velocity, over the first cube's velocity";
   std::vector<Family> all{
       {"B_cubes", gained, 1, 100, 5, [](int i) { return Drop(i).gained(Mode::Constraint); }, wordsOf<Drop>()},
       {"B_heaps", gained, 1, 50, 10, [](int i) { return Drop(i, true).gained(Mode::Constraint); },

@@ -194,13 +194,13 @@ std::string inWords(const Pairs& pairs, double Material::*value) {
 }  // namespace
 
 std::vector<Family> materialFamilies() {
-  Family friction{"A_friction", "greatest error of a block's way on its plate, as a share", 0.01, 60, 6,
+  Family friction{"A_friction", "greatest relative error of the distance that a block slides", 0.01, 60, 6,
                   frictionError};
   friction.describe = [](int i) { return inWords(frictionPairs(i), &Material::friction); };
   Family restitution{"A_restitution", "greatest error of speed after impact over speed before", 0.01, 60, 6,
                      restitutionError};
   restitution.describe = [](int i) { return inWords(restitutionPairs(i), &Material::restitution); };
-  Family stiffness{"A_stiffness", "greatest error of a block's depth in its plate, as a share", 0.1, 60, 6,
+  Family stiffness{"A_stiffness", "greatest relative error of a block's depth in its plate", 0.1, 60, 6,
                    stiffnessError};
   stiffness.describe = [](int i) { return inWords(stiffnessPairs(i), &Material::stiffness_N_per_m3); };
   return {friction, restitution, stiffness};

@@ -131,11 +131,11 @@ Family familyOf(const char* key, const char* measure, double bar, double FlatSpi
 }  // namespace
 
 std::vector<Family> flatSpinFamilies() {
-  return {familyOf("D_flat_spin_height", "change of height of any point of what spins on a plate [m]", 1e-6,
-                   &FlatSpin::Errors::height_m),
-          familyOf("D_flat_spin_sideways", "its speed along the plate, of the rim's", 1e-3,
+  return {familyOf("D_flat_spin_height", "change of height of any point of a body that spins on a plate [m]",
+                   1e-6, &FlatSpin::Errors::height_m),
+          familyOf("D_flat_spin_sideways", "its speed along the plate over the speed of its rim", 1e-3,
                    &FlatSpin::Errors::sideways),
-          familyOf("D_flat_spin_speed", "change of its spin, share", 1e-6, &FlatSpin::Errors::spin),
+          familyOf("D_flat_spin_speed", "relative change of its spin", 1e-6, &FlatSpin::Errors::spin),
           familyOf("D_flat_spin_energy", "energy gained beyond 1 um of height, share", 1e-9,
                    &FlatSpin::Errors::energy)};
 }

@@ -177,7 +177,7 @@ double error(dynamics::Mode mode, int member) {
 std::vector<Family> rollingFamilies() {
   Family constraint;
   constraint.key = "H_constraint";
-  constraint.measure = "speed outside of polygon and smooth theory, share";
+  constraint.measure = "relative distance of the speed from the range between polygon and smooth theory";
   constraint.bar = 0.01;
   constraint.members = 54;
   constraint.expected_failure = 0.0737;

@@ -80,7 +80,7 @@ class HostileArm final : public vps::device::DualArmHardware {
   void drive(const vps::device::JointVector& efforts) noexcept override {
     require_(efforts.allFinite(), "motor efforts are finite");
     const vps::device::JointVector peak = vps::device::motorLimits(plant_.settings().arms, 1);
-    require_((efforts.cwiseAbs() - peak).maxCoeff() <= 0, "no motor is asked for more than its peak");
+    require_((efforts.cwiseAbs() - peak).maxCoeff() <= 0, "no motor command exceeds the motor's peak");
     plant_.drive(efforts);
   }
 
@@ -137,8 +137,8 @@ inline HostileRun runHostile(const std::uint8_t* data, std::size_t size, Require
   const auto check = [&] {
     const Wrench& F = loop.last().F_hand_D;
     require(F.isFinite(), "the wrench is finite");
-    require(F.f.norm() <= p.force_peak_N * (1 + 1e-12), "the force keeps within its limit");
-    require(F.tau.norm() <= p.torque_peak_Nm * (1 + 1e-12), "the torque keeps within its limit");
+    require(F.f.norm() <= p.force_peak_N * (1 + 1e-12), "the force stays within its limit");
+    require(F.tau.norm() <= p.torque_peak_Nm * (1 + 1e-12), "the torque stays within its limit");
     const bool is_faulted = loop.safety().fault != device::SafetyFault::None;
     run.has_faulted = run.has_faulted || is_faulted;
     if (is_faulted) require(F.f.isZero() && F.tau.isZero(), "no wrench while a fault is latched");
@@ -146,9 +146,9 @@ inline HostileRun runHostile(const std::uint8_t* data, std::size_t size, Require
     device::DeviceEvent event;
     while (events.pop(event))
       if (device::severityOf(event.kind) == device::Severity::Fault) ++faults_told;
-    require(faults_told >= loop.safety().faults, "every fault is told");
+    require(faults_told >= loop.safety().faults, "every fault is reported");
     if (controller.hasFault() && controller.fault() != device::DeviceEventKind::PeerLost)
-      require(controller.efforts().isZero(), "motors are let go after a fault");
+      require(controller.efforts().isZero(), "motors are released after a fault");
     Wrench felt;
     if (hardware.hasLied() || device::handleWrench(p, plant.pose(), controller.efforts(), felt) != Status::Ok)
       return;
@@ -156,7 +156,7 @@ inline HostileRun runHostile(const std::uint8_t* data, std::size_t size, Require
     run.strongest_N = std::max(run.strongest_N, felt.f.norm());
     // The pose has an error of 0.1 mm and 2 mrad, with lever arms of 0.1 m and more; in motion it is a tick
     // old.
-    require(felt.f.norm() <= 1.02 * p.force_peak_N + 0.2, "what the hand feels keeps within the limit");
+    require(felt.f.norm() <= 1.02 * p.force_peak_N + 0.2, "the force on the hand stays within the limit");
   };
   const auto tick = [&](bool is_asked, bool is_physics_alive = true, double dt_s = 1e-3) {
     if (is_asked) {
@@ -201,7 +201,7 @@ inline HostileRun runHostile(const std::uint8_t* data, std::size_t size, Require
   // An encoder that has drifted needs a calibration; all other faults must be gone.
   Pose X_read = loop.last().X_WG;
   const bool is_true = (X_read.p - plant.pose().p).norm() < 1e-3 || !hardware.hasLied();
-  if (is_usable && is_true) require(run.has_recovered, "re-arming brings it back");
+  if (is_usable && is_true) require(run.has_recovered, "re-arming brings the arm back");
   if (!is_usable) require(!run.has_recovered, "gains out of range never give force");
   return run;
 }
