@@ -6,9 +6,11 @@
 #include <string>
 
 #include "case.h"
-#include "random.h"
+#include "support/random_draw.h"
 
 namespace vps::search {
+
+using test::Random;
 
 struct Family {
   const char* name;

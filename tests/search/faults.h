@@ -2,10 +2,12 @@
 // Puts faults of CAD exports into a closed mesh.
 #pragma once
 
-#include "random.h"
+#include "support/random_draw.h"
 #include "vps/mesh.h"
 
 namespace vps::search {
+
+using test::Random;
 
 /// Vertices along a crack are moved by this at most, so that the surface stays where it was.
 inline constexpr double kCrack_m = 0.5e-6;

@@ -10,13 +10,13 @@
 
 #include "families/family.h"
 #include "families/impacts/impact_world.h"
-#include "search/random.h"
+#include "support/random_draw.h"
 
 namespace vps::families {
 namespace {
 
 using dynamics::Placed;
-using search::Random;
+using test::Random;
 
 constexpr double kGravity_m_s2 = dynamics::World::kGravity_m_s2;
 const Vec3 kCube_m(20e-3, 20e-3, 10e-3);

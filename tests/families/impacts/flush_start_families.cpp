@@ -9,7 +9,7 @@
 
 #include "dynamics/world.h"
 #include "families/family.h"
-#include "search/random.h"
+#include "support/random_draw.h"
 #include "vps_bullet/convert.h"
 
 namespace vps::families {
@@ -33,7 +33,7 @@ constexpr double kPlate_m = 60e-3, kThick_m = 6e-3;
 Start startOf(int member) {
   Start start;
   if (member == 0) return start;
-  search::Random random(static_cast<std::uint64_t>(member));
+  test::Random random(static_cast<std::uint64_t>(member));
   const Vec3 sizes_m[] = {
       {20e-3, 20e-3, 10e-3}, {10e-3, 10e-3, 10e-3}, {24e-3, 12e-3, 5e-3}, {8e-3, 16e-3, 12e-3}};
   start.size_m = sizes_m[random.index(4)];
@@ -105,7 +105,7 @@ struct Slide {
 // In members 0 to 2 the fault was found.
 Slide slideOf(int member) {
   if (member < 3) return {.v_m_s = member == 0 ? 1.3 : member == 1 ? 5 : 10};
-  search::Random random(0x51d0 + static_cast<std::uint64_t>(member));
+  test::Random random(0x51d0 + static_cast<std::uint64_t>(member));
   Slide slide;
   slide.size_m = Vec3(random.uniform(6e-3, 30e-3), random.uniform(6e-3, 30e-3), random.uniform(4e-3, 12e-3));
   constexpr double kRates_hz[] = {250, 1000, 4000};

@@ -12,14 +12,14 @@
 
 #include "families/family.h"
 #include "families/impacts/impact_world.h"
-#include "search/random.h"
+#include "support/random_draw.h"
 
 namespace vps::families {
 namespace {
 
 using dynamics::PartMesh;
 using dynamics::Placed;
-using search::Random;
+using test::Random;
 
 struct MassRow {
   int count = 3, place = 1;  ///< number of bodies, and the place of the body with another mass

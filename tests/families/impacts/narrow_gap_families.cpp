@@ -9,7 +9,7 @@
 
 #include "families/family.h"
 #include "families/impacts/impact_world.h"
-#include "search/random.h"
+#include "support/random_draw.h"
 #include "vps_bullet/convert.h"
 
 namespace vps::families {
@@ -17,7 +17,7 @@ namespace {
 
 using dynamics::PartMesh;
 using dynamics::Placed;
-using search::Random;
+using test::Random;
 
 constexpr std::array<double, 4> kSteps_s{0.25e-3, 0.5e-3, 1e-3, 2e-3};
 constexpr double kToUm = 1e6;

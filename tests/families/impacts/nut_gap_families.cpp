@@ -11,7 +11,7 @@
 #include "dynamics/scenes.h"
 #include "families/family.h"
 #include "families/impacts/impact_world.h"
-#include "search/random.h"
+#include "support/random_draw.h"
 #include "vps_bullet/convert.h"
 #include "vps_bullet/shape.h"
 
@@ -38,7 +38,7 @@ struct NutHit {
   explicit NutHit(int member) {
     if (member == 0) return;
     constexpr std::array<double, 4> kRestitutions{0.7, 0, 0.3, 1};
-    search::Random random(0xc5 + 2 * static_cast<std::uint64_t>(member));
+    test::Random random(0xc5 + 2 * static_cast<std::uint64_t>(member));
     const auto i = static_cast<std::size_t>(member);
     if (member % 2 == 1) size = dynamics::kM10;
     restitution = kRestitutions[i / 2 % 4];

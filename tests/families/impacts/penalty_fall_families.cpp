@@ -11,7 +11,7 @@
 
 #include "dynamics/world.h"
 #include "families/family.h"
-#include "search/random.h"
+#include "support/random_draw.h"
 #include "vps_bullet/convert.h"
 
 namespace vps::families {
@@ -37,7 +37,7 @@ struct Fall {
 Fall fallOf(int member) {
   Fall fall;
   if (member == 0) return fall;
-  search::Random random(static_cast<std::uint64_t>(member));
+  test::Random random(static_cast<std::uint64_t>(member));
   const Vec3 sizes_m[] = {{20e-3, 20e-3, 10e-3}, {10e-3, 10e-3, 10e-3}, {16e-3, 12e-3, 6e-3}};
   fall.blocks = 2 + random.index(4);
   fall.size_m = sizes_m[random.index(3)];

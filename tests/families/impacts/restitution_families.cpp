@@ -9,7 +9,7 @@
 
 #include "families/family.h"
 #include "families/impacts/impact_world.h"
-#include "search/random.h"
+#include "support/random_draw.h"
 #include "vps_bullet/convert.h"
 #include "vps_bullet/solver.h"
 
@@ -19,7 +19,7 @@ namespace {
 using dynamics::Mode;
 using dynamics::PartMesh;
 using dynamics::Placed;
-using search::Random;
+using test::Random;
 
 constexpr double kGravity_m_s2 = dynamics::World::kGravity_m_s2;
 constexpr std::array<double, 5> kSteps_s{0.25e-3, 0.5e-3, 1e-3, 2e-3, 4e-3};

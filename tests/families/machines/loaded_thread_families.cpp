@@ -10,7 +10,7 @@
 
 #include "dynamics/world.h"
 #include "families/family.h"
-#include "search/random.h"
+#include "support/random_draw.h"
 #include "support/screw.h"
 #include "vps_bullet/convert.h"
 
@@ -77,7 +77,7 @@ struct Load {
 Load loadOf(int member) {
   Load load;
   if (member == 0) return load;
-  search::Random random(static_cast<std::uint64_t>(member));
+  test::Random random(static_cast<std::uint64_t>(member));
   load.size = member % 4 == 3;
   load.force_N = random.logUniform(10, 500);
   load.mu = random.uniform(0.05, 0.35);

@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "families/family.h"
-#include "search/random.h"
+#include "support/random_draw.h"
 #include "vps/friction.h"
 #include "vps_scenes/run/simulate.h"
 
@@ -14,7 +14,7 @@ namespace vps::families {
 
 namespace {
 
-using search::Random;
+using test::Random;
 
 constexpr double kGravity_m_s2 = 9.81;
 constexpr double kPitch_m = 16e-3;  // from plate to plate

@@ -7,8 +7,8 @@
 
 #include "dynamics/world.h"
 #include "families/family.h"
-#include "search/random.h"
 #include "support/gear.h"
+#include "support/random_draw.h"
 #include "support/screw.h"
 #include "vps_bullet/convert.h"
 
@@ -58,7 +58,7 @@ struct Pair {
 Pair pairOf(int member) {
   Pair pair;
   if (member == 0) return pair;
-  search::Random random(static_cast<std::uint64_t>(member));
+  test::Random random(static_cast<std::uint64_t>(member));
   constexpr int kTeeth[][2] = {{17, 41}, {20, 30}, {23, 23}};
   const auto& teeth = kTeeth[member % 3];
   pair.driver = teeth[0];
@@ -117,7 +117,7 @@ struct Screw {
 Screw screwOf(int member) {
   Screw screw;
   if (member == 0) return screw;
-  search::Random random(static_cast<std::uint64_t>(member));
+  test::Random random(static_cast<std::uint64_t>(member));
   screw.speed_rad_s = (random.chance(0.5) ? 1 : -1) * random.logUniform(1, 40);
   screw.load_N = random.logUniform(1, 200);
   screw.mu = random.chance(0.3) ? 0 : random.uniform(0.02, 0.2);

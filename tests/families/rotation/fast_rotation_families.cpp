@@ -7,8 +7,8 @@
 
 #include "dynamics/world.h"
 #include "families/family.h"
-#include "search/random.h"
 #include "support/gear.h"
+#include "support/random_draw.h"
 #include "vps_bullet/convert.h"
 #include "vps_bullet/turn.h"
 
@@ -19,7 +19,7 @@ namespace {
 using dynamics::PartMesh;
 using dynamics::Placed;
 using dynamics::World;
-using search::Random;
+using test::Random;
 
 constexpr double kPi = std::numbers::pi, kStep_s = World::kStep_s;
 

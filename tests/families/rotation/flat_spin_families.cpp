@@ -14,7 +14,7 @@
 
 #include "dynamics/world.h"
 #include "families/family.h"
-#include "search/random.h"
+#include "support/random_draw.h"
 #include "vps_bullet/convert.h"
 #include "vps_bullet/turn.h"
 
@@ -24,7 +24,7 @@ namespace {
 using dynamics::PartMesh;
 using dynamics::Placed;
 using dynamics::World;
-using search::Random;
+using test::Random;
 
 constexpr double kThick_m = 6e-3, kStep_s = World::kStep_s;
 

@@ -15,8 +15,8 @@
 
 #include "dynamics/world.h"
 #include "families/family.h"
-#include "search/random.h"
 #include "support/lathe.h"
+#include "support/random_draw.h"
 #include "vps_bullet/convert.h"
 
 namespace vps::families {
@@ -40,7 +40,7 @@ Roll rollOf(int member) {
   if (member == 0) return {};
   if (member == 1) return {.rate_hz = 250};
   if (member == 2) return {.sides = 768, .radius_m = 20e-3, .v_m_s = 20e-3, .duration_s = 8};
-  search::Random random(static_cast<std::uint64_t>(member));
+  test::Random random(static_cast<std::uint64_t>(member));
   Roll roll;
   roll.is_sphere = member % 3 == 2;
   roll.sides = 2 * static_cast<int>(random.logUniform(roll.is_sphere ? 30 : 12, roll.is_sphere ? 100 : 600));

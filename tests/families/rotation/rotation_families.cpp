@@ -7,14 +7,14 @@
 
 #include "families/family.h"
 #include "families/impacts/impact_world.h"
-#include "search/random.h"
+#include "support/random_draw.h"
 #include "vps_bullet/convert.h"
 #include "vps_scenes/run/simulate.h"
 
 namespace vps::families {
 namespace {
 
-using search::Random;
+using test::Random;
 
 /// A box in free space that nothing touches: its angular momentum and its energy are conserved.
 struct Spin {

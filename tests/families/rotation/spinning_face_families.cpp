@@ -10,8 +10,8 @@
 #include "dynamics/world.h"
 #include "families/family.h"
 #include "search/prism.h"
-#include "search/random.h"
 #include "support/lathe.h"
+#include "support/random_draw.h"
 
 namespace vps::families {
 
@@ -102,7 +102,7 @@ Spin spinOf(int member) {
   Spin spin;
   spin.part = member % kParts;
   if (member < 2) return spin;
-  search::Random random(static_cast<std::uint64_t>(member));
+  test::Random random(static_cast<std::uint64_t>(member));
   spin.mu = random.uniform(0.05, 0.5);
   spin.dt_s = random.chance(0.75) ? 1e-3 : 0.25e-3;
   spin.heading_rad = random.uniform(0, 2 * std::numbers::pi);

@@ -85,7 +85,7 @@ double BoxUnion::distance(const Vec3& p) const {
 BoxMember boxMember(int i) {
   static const char* const kinds[] = {"U",    "L",      "T",     "cross", "comb", "part of a face",
                                       "edge", "corner", "random"};
-  search::Random random(7000 + static_cast<std::uint64_t>(i));
+  test::Random random(7000 + static_cast<std::uint64_t>(i));
   const int kind = i % 9;
   BoxMember member{kinds[kind], (i / 9) % 2 == 0 ? 0 : random.logUniform(1e-6, 5e-3), {}};
   const double o = member.overlap_m, w = random.uniform(6e-3, 12e-3), h = random.uniform(20e-3, 40e-3),

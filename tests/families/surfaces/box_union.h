@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "search/random.h"
+#include "support/random_draw.h"
 #include "vps/box.h"
 #include "vps/mesh.h"
 

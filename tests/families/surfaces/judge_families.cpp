@@ -8,8 +8,8 @@
 
 #include "families/family.h"
 #include "judge/motion_judge.h"
-#include "search/random.h"
 #include "support/fit.h"
+#include "support/random_draw.h"
 #include "vps_scenes/run/simulate.h"
 
 namespace vps::families {
@@ -17,7 +17,7 @@ namespace {
 
 using scenes::ExactBody;
 using scenes::MotionJudge;
-using search::Random;
+using test::Random;
 
 constexpr double kMm = 1e-3, kUm = 1e-6, kStep_s = 1e-3;
 

@@ -9,8 +9,8 @@
 
 #include "dynamics/world.h"
 #include "families/family.h"
-#include "search/random.h"
 #include "support/lathe.h"
+#include "support/random_draw.h"
 #include "vps/solid.h"
 #include "vps_bullet/convert.h"
 
@@ -42,7 +42,7 @@ Fall fallOf(int member) {
     fall.is_cube = member == 1;
     return fall;
   }
-  search::Random random(static_cast<std::uint64_t>(member));
+  test::Random random(static_cast<std::uint64_t>(member));
   fall.sheet = static_cast<Sheet>(member % kSheets);
   fall.size_m = fall.sheet == Sheet::Terrain ? random.logUniform(0.5, 60) : random.logUniform(0.05, 1);
   fall.radius_m = (fall.sheet == Sheet::Terrain ? 0.02 : 0.05) * fall.size_m;

@@ -9,9 +9,9 @@
 #include <string>
 
 #include "families/family.h"
-#include "search/random.h"
 #include "support/gear.h"
 #include "support/lathe.h"
+#include "support/random_draw.h"
 #include "vps/voxmap.h"
 #include "vps_scenes/planning/fidelity_choice.h"
 #include "vps_scenes/planning/resolution.h"
@@ -34,7 +34,7 @@ struct Made {
 
 // Some members are reported cases: cubes of 500 and 800 mm, a panel of 2 m, a gear with a bore of 0.1 mm.
 Made memberOf(int member) {
-  search::Random random(0xF000 + static_cast<std::uint64_t>(member));
+  test::Random random(0xF000 + static_cast<std::uint64_t>(member));
   Made made;
   made.kind = static_cast<Kind>(member % kKinds);
   made.size_m = random.logUniform(20e-6, 20);

@@ -8,8 +8,8 @@
 #include "dynamics/world.h"
 #include "families/family.h"
 #include "search/prism.h"
-#include "search/random.h"
 #include "support/lathe.h"
+#include "support/random_draw.h"
 #include "vps/mesh_overlap.h"
 #include "vps_bullet/convert.h"
 
@@ -85,7 +85,7 @@ RoundBody bodyOf(int member) {
     body.R = rotationFromVector({0, 13 * kDegree, 0}) * rotationFromVector({20 * kDegree, 0, 0});
     return body;
   }
-  search::Random random(static_cast<std::uint64_t>(member));
+  test::Random random(static_cast<std::uint64_t>(member));
   const On supports[] = {On::Plane, On::Groove, On::Plane, On::Another, On::Plane, On::Edge};
   body.on = supports[member % 6];
   body.shape = static_cast<Shape>(member / 6 % 5);

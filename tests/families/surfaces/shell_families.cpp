@@ -18,14 +18,14 @@ constexpr int kBoxMembers = 90, kNestedMembers = 54, kRoundMembers = 60, kRestMe
 
 /// The pose of member i's mesh; every fifth has no rotation.
 Pose poseOf(int i) {
-  search::Random random(9000 + static_cast<std::uint64_t>(i));
+  test::Random random(9000 + static_cast<std::uint64_t>(i));
   const Mat3 R = i % 5 == 0 ? Mat3(Mat3::Identity()) : random.rotation();
   return {R, random.inBox(Vec3::Constant(0.05))};
 }
 
 /// Which shells face inwards: none, some or all, for a third of the members each.
 std::vector<bool> facesIn(int i, std::size_t count) {
-  search::Random random(9500 + static_cast<std::uint64_t>(i));
+  test::Random random(9500 + static_cast<std::uint64_t>(i));
   std::vector<bool> faces_in;
   for (std::size_t k = 0; k < count; ++k)
     faces_in.push_back(i % 3 == 2 || (i % 3 == 1 && random.chance(0.5)));
@@ -58,7 +58,7 @@ double distanceToBoxes(int i) {
   const Solid solid(boxMesh(i));
   const Pose X = poseOf(i);
   const Box box = bounds(shellsOf(boxes.boxes()));
-  search::Random random(9700 + static_cast<std::uint64_t>(i));
+  test::Random random(9700 + static_cast<std::uint64_t>(i));
   double worst_m = 0;
   for (int k = 0; k < 300; ++k) {
     const Vec3 p = box.center() + 1.2 * random.inBox(0.5 * box.size());
@@ -89,7 +89,7 @@ MassProperties plus(const MassProperties& a, const MassProperties& b, double sig
 
 /// Two boxes that are apart, or one inside the other.
 Nested nestedMember(int i) {
-  search::Random random(8000 + static_cast<std::uint64_t>(i));
+  test::Random random(8000 + static_cast<std::uint64_t>(i));
   const Vec3 half(random.uniform(8e-3, 30e-3), random.uniform(8e-3, 30e-3), random.uniform(8e-3, 30e-3));
   const Box outer{-half, half};
   const Vec3 inner_half = half * random.uniform(0.2, 0.7), at = random.inBox(0.25 * half);
@@ -134,7 +134,7 @@ struct Crossing {
 };
 
 Crossing crossingMember(int i) {
-  search::Random random(8800 + static_cast<std::uint64_t>(i));
+  test::Random random(8800 + static_cast<std::uint64_t>(i));
   const auto mm = [](double a, double b, double c, double d, double e, double f) {
     return Box{1e-3 * Vec3(a, b, c), 1e-3 * Vec3(d, e, f)};
   };
@@ -201,7 +201,7 @@ Mesh tetrahedron(double half_m, bool is_mirrored, bool faces_in) {
 /// centre.
 double massOfCrossing(int i) {
   const Crossing member = crossingMember(i);
-  search::Random random(8900 + static_cast<std::uint64_t>(i));
+  test::Random random(8900 + static_cast<std::uint64_t>(i));
   const Pose X = i % 4 == 0 ? Pose(random.rotation(), random.inBox(Vec3::Constant(0.05))) : Pose();
   if (member.boxes.empty()) {
     const std::vector<bool> faces_in = crossingFacesIn(i, 2);
@@ -258,7 +258,7 @@ struct Copies {
 
 /// In members 0 to 3 the fault was found.
 Copies copiesMember(int i) {
-  search::Random random(9200 + static_cast<std::uint64_t>(i));
+  test::Random random(9200 + static_cast<std::uint64_t>(i));
   const auto half = [&] { return random.uniform(3e-3, 20e-3); };
   const Vec3 size(half(), half(), half());
   Copies member{{-size, size}, {{1, 1, 1}}, {i % 4 == 3}};
@@ -305,7 +305,7 @@ double massOfCopies(int i) {
 
 /// Which shells face inwards, the outermost first. The outermost shell faces outwards after the repair.
 std::vector<bool> levelFacesIn(int i) {
-  search::Random random(9300 + static_cast<std::uint64_t>(i));
+  test::Random random(9300 + static_cast<std::uint64_t>(i));
   if (i == 0) return {false, true, true};  // the case that was found
   std::vector<bool> faces_in;
   for (int k = 0, n = 3 + random.index(4); k < n; ++k) faces_in.push_back(random.chance(0.5));
@@ -323,7 +323,7 @@ std::string describeLevels(int i) {
 /// solid where the winding number is above 0.
 double massOfLevels(int i) {
   const std::vector<bool> faces_in = levelFacesIn(i);
-  search::Random random(9350 + static_cast<std::uint64_t>(i));
+  test::Random random(9350 + static_cast<std::uint64_t>(i));
   const Vec3 half(random.uniform(20e-3, 40e-3), random.uniform(20e-3, 40e-3), random.uniform(20e-3, 40e-3));
   std::vector<Box> boxes;
   for (std::size_t k = 0; k < faces_in.size(); ++k)
@@ -361,7 +361,7 @@ struct Round {
 };
 
 Round roundMember(int i) {
-  search::Random random(8500 + static_cast<std::uint64_t>(i));
+  test::Random random(8500 + static_cast<std::uint64_t>(i));
   const double r = random.uniform(4e-3, 12e-3), h = random.uniform(5e-3, 20e-3);
   const Vec3 size(4 * r, 4 * r, 2 * h);
   const Mesh box = makeBox(size);
@@ -406,7 +406,7 @@ double massOfRound(int i) {
 /// points along -z. Member 0 is the case in which the fault was found: three boxes, of which one is the floor
 /// below the two walls.
 std::vector<Box> channelMember(int i) {
-  search::Random random(9900 + static_cast<std::uint64_t>(i));
+  test::Random random(9900 + static_cast<std::uint64_t>(i));
   const double o = i % 2 == 0 ? 0 : random.logUniform(1e-6, 5e-3);
   constexpr double kSide_m = 30e-3, kThick_m = 10e-3;
   const double seam_m = i % 3 == 0 ? kSide_m : random.uniform(-2e-3, 2e-3);
@@ -425,7 +425,7 @@ std::vector<Box> channelMember(int i) {
 double ballRests(int i) {
   using namespace dynamics;
   const std::vector<Box> boxes = channelMember(i);
-  search::Random random(9950 + static_cast<std::uint64_t>(i));
+  test::Random random(9950 + static_cast<std::uint64_t>(i));
   const BoxUnion truth(boxes);
   SceneSettings settings;
   settings.engine = vpsEngine({1e-3, 2e-3});
