@@ -14,7 +14,9 @@
 #include <limits>
 
 #include "search/random.h"
+#include "solver/contact_sweeps.h"
 #include "solver/rigid/contact_sweeps.h"
+#include "support/random_draw.h"
 #include "vps_bullet/convert.h"
 
 namespace vps::bullet::test_island {
@@ -173,7 +175,7 @@ class SmallIsland {
 /// Three bodies of different masses with two contacts each, the first with the floor, normals in any
 /// direction. The state of rest obeys all of them, so a solution exists.
 inline void makeRandom(SmallIsland& made, std::uint64_t seed, double mu) {
-  search::Random random(seed);
+  test::Random random(seed);
   for (int k = 0; k < 3; ++k)
     made.add(random.logUniform(0.005, 0.5), random.inBox(Vec3::Constant(0.02)),
              random.inBox(Vec3::Constant(1)), random.inBox(Vec3::Constant(50)), random.rotation());

@@ -56,7 +56,7 @@ std::string caseName(const EdgeCase& edge) {
 scenes::Scene edgeScene(const EdgeCase& edge) {
   Mesh hole = holeMesh(edge.fit), peg = pegMesh(edge.fit);
   if (edge.is_faulty) {
-    search::Random random(edge.seed);
+    test::Random random(edge.seed);
     hole = search::withFaults(hole, random);
     peg = search::withFaults(peg, random);
   }

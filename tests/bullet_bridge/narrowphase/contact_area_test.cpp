@@ -9,9 +9,10 @@
 #include <numbers>
 
 #include "bullet_bridge/small_island.h"
-#include "search/random.h"
 #include "solver/contact_key.h"
+#include "solver/even_pressure.h"
 #include "solver/rigid/even_pressure.h"
+#include "support/random_draw.h"
 
 namespace vps::bullet {
 namespace {
@@ -20,7 +21,7 @@ constexpr double kSize_m = 10e-3, kMargin_m = 20e-6;
 
 // Points of a face, anywhere in space, each with its share of the area: a disc, a ring or a rectangle.
 std::vector<Candidate> faceOf(int kind, std::uint64_t seed, const Pose& X_WF) {
-  search::Random random(seed);
+  test::Random random(seed);
   constexpr std::uint32_t kPoints = 1000;
   std::vector<Candidate> points;
   while (points.size() < kPoints) {
@@ -54,7 +55,7 @@ Sums sumsOf(const std::vector<Candidate>& points, const Pose& X_WF) {
 
 TEST(ContactArea, ThirtyTwoContactsHaveTheMomentsOfTheWholeFace) {
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {
-    search::Random random(seed);
+    test::Random random(seed);
     const Pose X_WF(random.rotation(), random.inBox(Vec3::Constant(0.1)));
     const std::vector<Candidate> all = faceOf(static_cast<int>(seed % 3), seed, X_WF);
     std::vector<Candidate> chosen = all;
@@ -134,7 +135,7 @@ struct Block : test_island::SmallIsland {
 
 TEST(EvenPressure, SpreadsTheLoadOfFourCornersByTheAreas) {
   Block block(5);
-  search::Random random(1);
+  test::Random random(1);
   double whole_m2 = 0;
   for (std::size_t i = 0; i < 13; ++i)  // equal load on opposite sides
     block.contacts()[i].area_m2 = block.contacts()[24 - i].area_m2 = random.uniform(0.5e-6, 2e-6);
@@ -149,7 +150,7 @@ TEST(EvenPressure, SpreadsTheLoadOfFourCornersByTheAreas) {
 TEST(EvenPressure, KeepsForceAndMomentOfAnyLoadAndNothingPulls) {
   int spread = 0;
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
-    search::Random random(seed);
+    test::Random random(seed);
     Block block(4);
     for (RigidContact& c : block.contacts()) {
       c.area_m2 = random.uniform(0.2e-6, 2e-6);

@@ -7,7 +7,9 @@
 #include <vector>
 
 #include "narrowphase/candidates/contact_candidate.h"
+#include "narrowphase/contact_candidate.h"
 #include "search/random.h"
+#include "support/random_draw.h"
 
 namespace vps::bullet {
 namespace {
@@ -17,7 +19,7 @@ constexpr std::size_t kLimit = 32;
 
 // Points of a square patch that lie up to 10 um above a plane; every tenth one faces down.
 std::vector<Candidate> patch(std::uint64_t seed, bool has_two_sides) {
-  search::Random random(seed);
+  test::Random random(seed);
   std::vector<Candidate> candidates(3000);
   for (std::uint32_t i = 0; i < candidates.size(); ++i) {
     Candidate& c = candidates[i];

@@ -10,7 +10,10 @@
 #include "bullet_bridge/world.h"
 #include "search/random.h"
 #include "solver/contact_stores.h"
+#include "solver/penalty_contacts.h"
 #include "solver/rigid/step_check.h"
+#include "solver/step_check.h"
+#include "support/random_draw.h"
 #include "vps/feature_motion.h"
 
 namespace vps::bullet {
@@ -154,7 +157,7 @@ TEST(PairCheck, AClearWayEndsWhereAShapeChangesItsSize) {
 
 // A corner, an edge or a face goes into the plate: the deepest contact that is reported has the exact depth.
 TEST(PairCheck, ReportsTheExactDepthOfWhatGoesIn) {
-  search::Random random(1);
+  test::Random random(1);
   for (int i = 0; i < 40; ++i) {
     const Mat3 R = i < 4    ? Mat3(Mat3::Identity())
                    : i < 12 ? rotationFromVector({0.4, 0, 0})
@@ -177,7 +180,7 @@ TEST(PairCheck, ReportsTheExactDepthOfWhatGoesIn) {
 
 // The free share ends shortly before the corner meets the face.
 TEST(PairCheck, TheFreeShareEndsWhereACornerMeetsTheFace) {
-  search::Random random(2);
+  test::Random random(2);
   for (int i = 0; i < 40; ++i) {
     const double gap_m = random.uniform(20e-6, 100e-6), way_m = random.uniform(150e-6, 400e-6);
     BoxAbovePlate scene(random.rotation(), gap_m);
@@ -223,7 +226,7 @@ struct BallInBore : CheckedPair {
 // The ball moves along a concave wall by more than a facet. Planes of the points known before the step
 // predict room, and all points may be farther away than the faces between them.
 TEST(PairCheck, ReportsWhatGoesInBetweenThePointsOfCurvedFaces) {
-  search::Random random(3);
+  test::Random random(3);
   const double play_m = BallInBore::kBore_m - BallInBore::kBall_m;
   for (int i = 0; i < 40; ++i) {
     const double angle_rad = random.uniform(0, 6), turn_rad = random.uniform(0.15, 0.3);
@@ -243,7 +246,7 @@ TEST(PairCheck, SaysWhatItMissesAlsoWithoutRoom) {
   const double play_m = BallInBore::kBore_m - BallInBore::kBall_m;
   BallInBore scene(Mat3::Identity(), {play_m - 4e-6, 0, 0}, Vec3::Zero());
   ASSERT_TRUE(scene.check);
-  search::Random random(5);
+  test::Random random(5);
   bool was_full = false;
   for (int i = 0; i < 60; ++i) {
     const std::vector<MissedContact> missed =
@@ -256,7 +259,7 @@ TEST(PairCheck, SaysWhatItMissesAlsoWithoutRoom) {
 
 // A ball flies into the wall. At the end of the free share it is at most 10 um deep, and not much less.
 TEST(PairCheck, TheFreeShareOfPointsEndsWhereTheyAreDeep) {
-  search::Random random(4);
+  test::Random random(4);
   const double play_m = BallInBore::kBore_m - BallInBore::kBall_m, allowed_m = 10e-6;
   for (int i = 0; i < 40; ++i) {
     const double angle_rad = random.uniform(0, 6), gap_m = random.uniform(5e-6, 0.3e-3),

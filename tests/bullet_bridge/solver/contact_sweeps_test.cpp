@@ -53,7 +53,7 @@ TEST(ContactSweeps, NeverAddEnergy) {
 
 TEST(ContactSweeps, KeepLinearAndAngularMomentumOfBodiesThatOnlyTouchEachOther) {
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
-    search::Random random(seed);
+    test::Random random(seed);
     SmallIsland made;
     for (int k = 0; k < 2; ++k)
       made.add(random.logUniform(0.001, 10), random.inBox(Vec3::Constant(0.02)),

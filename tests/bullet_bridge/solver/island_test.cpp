@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "search/random.h"
+#include "support/random_draw.h"
 
 namespace vps::bullet {
 namespace {
@@ -23,7 +23,7 @@ struct Sums {
   }
 };
 
-std::vector<BodyEnd> anyBodies(search::Random& random) {
+std::vector<BodyEnd> anyBodies(test::Random& random) {
   std::vector<BodyEnd> ends(static_cast<std::size_t>(2 + random.index(4)));
   for (BodyEnd& end : ends) {
     const double mass_kg = random.logUniform(0.01, 1);
@@ -39,7 +39,7 @@ std::vector<BodyEnd> anyBodies(search::Random& random) {
 
 TEST(CommonTurn, BodiesThatStopRelativeToEachOtherKeepTheMomentaAndLoseEnergy) {
   for (std::uint64_t seed = 0; seed < 100; ++seed) {
-    search::Random random(seed);
+    test::Random random(seed);
     std::vector<BodyEnd> ends = anyBodies(random);
     const Sums before(ends);
     std::vector<Vec6> momenta;
@@ -60,7 +60,7 @@ TEST(CommonTurn, BodiesThatStopRelativeToEachOtherKeepTheMomentaAndLoseEnergy) {
 }
 
 TEST(CommonTurn, OfABodyThatIsRigidIsItsOwn) {
-  search::Random random(1);
+  test::Random random(1);
   std::vector<BodyEnd> ends = anyBodies(random);
   const Vec3 w(3, -5, 7);
   std::vector<Vec6> momenta;

@@ -64,7 +64,7 @@ struct RandomPoints {
   SmallIsland made;
   std::vector<PenaltyPair> pairs{3};
   explicit RandomPoints(std::uint64_t seed, double mu) {
-    search::Random random(seed);
+    test::Random random(seed);
     for (int k = 0; k < 3; ++k)
       made.add(random.logUniform(0.005, 0.5), random.inBox(Vec3::Constant(0.02)),
                random.inBox(Vec3::Constant(1)), random.inBox(Vec3::Constant(50)), random.rotation());
