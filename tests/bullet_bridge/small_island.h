@@ -13,8 +13,6 @@
 #include <deque>
 #include <limits>
 
-#include "search/random.h"
-#include "solver/contact_sweeps.h"
 #include "solver/rigid/contact_sweeps.h"
 #include "support/random_draw.h"
 #include "vps_bullet/convert.h"

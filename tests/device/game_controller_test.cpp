@@ -9,7 +9,6 @@
 
 #include "support/device/fake_device.h"
 #include "support/no_alloc.h"
-#include "support/poll_device.h"
 #include "vps/errors.h"
 #include "vps_device/rate_control.h"
 

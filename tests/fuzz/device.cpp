@@ -3,7 +3,6 @@
 // stay within its limit, be zero after a fault, and return after rearm().
 #include "fuzz.h"
 #include "support/device/hostile_arm.h"
-#include "support/hostile_arm.h"
 #include "vps/errors.h"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -15,7 +15,6 @@
 #include <thread>
 
 #include "support/analytic.h"
-#include "support/same_map.h"
 #include "vps/errors.h"
 #include "vps/query.h"
 #include "vps/vdb.h"

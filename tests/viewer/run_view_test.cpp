@@ -10,7 +10,6 @@
 #include <string>
 
 #include "files/base64.h"
-#include "support/chromium.h"
 #include "support/process/chromium.h"
 #include "viewer/small_run.h"
 #include "vps_scenes/run/assemble.h"

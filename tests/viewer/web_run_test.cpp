@@ -11,7 +11,6 @@
 #include <thread>
 
 #include "beast/server.h"
-#include "support/chromium.h"
 #include "support/process/chromium.h"
 #include "support/temporary_folder.h"
 #include "vps_device/recording.h"

@@ -22,7 +22,6 @@
 #include <thread>
 
 #include "run/presentation.h"
-#include "support/chromium.h"
 #include "support/process/chromium.h"
 #include "viewer/web_run.h"
 #include "vps/errors.h"

@@ -19,7 +19,6 @@
 #include <thread>
 
 #include "beast/server.h"
-#include "support/certificate.h"
 #include "support/process/certificate.h"
 #include "support/temporary_folder.h"
 #include "viewer/web_run.h"

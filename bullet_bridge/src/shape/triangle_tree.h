@@ -3,8 +3,8 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
+#include "vps/bounding_volume_hierarchy.h"
 #include "vps/mesh.h"
 #include "vps_bullet/shape.h"
 
@@ -12,8 +12,7 @@ class btTriangleCallback;
 
 namespace vps::bullet {
 
-/// Box tree in the shape's frame, split at the median of the longest axis, with up to four triangles per
-/// leaf.
+/// In the shape's frame.
 class Shape::TriangleTree {
  public:
   TriangleTree(const Mesh& mesh, const Pose& X_SM);
@@ -26,22 +25,14 @@ class Shape::TriangleTree {
   bool visitCast(const Box& box, btTriangleCallback& callback) const;
 
  private:
-  struct Node {
-    Box box;
-    std::uint32_t first = 0, count = 0;  // count 0: inner node
-    std::uint32_t skip = 0;              // next node in depth-first order if this node is skipped
-  };
   struct Path;
 
   [[nodiscard]] Box boxOf(std::uint32_t triangle) const;
-  void build(std::size_t begin, std::size_t end);
   void report(std::uint32_t triangle, btTriangleCallback& callback) const;
   void visitPath(const Path& path, const btScalar& share, btTriangleCallback& callback) const;
 
-  std::vector<Vec3> vertices_;  // in S
-  std::vector<std::array<std::uint32_t, 3>> triangles_;
-  std::vector<std::uint32_t> order_;
-  std::vector<Node> nodes_;
+  Mesh mesh_;  // in S
+  BoxTree tree_;
 };
 
 }  // namespace vps::bullet

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "table.h"
+#include "output/table.h"
 
 namespace vps::bench {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "dynamics/world.h"
-#include "table.h"
+#include "output/table.h"
 
 namespace vps::bench {
 

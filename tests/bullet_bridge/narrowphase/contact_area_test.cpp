@@ -10,7 +10,6 @@
 
 #include "bullet_bridge/small_island.h"
 #include "solver/contact_key.h"
-#include "solver/even_pressure.h"
 #include "solver/rigid/even_pressure.h"
 #include "support/random_draw.h"
 

@@ -7,8 +7,6 @@
 #include <vector>
 
 #include "narrowphase/candidates/contact_candidate.h"
-#include "narrowphase/contact_candidate.h"
-#include "search/random.h"
 #include "support/random_draw.h"
 
 namespace vps::bullet {

@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "bullet_bridge/world.h"
-#include "search/random.h"
 #include "support/lathe.h"
+#include "support/random_draw.h"
 
 namespace vps::bullet {
 namespace {

@@ -8,11 +8,8 @@
 #include <vector>
 
 #include "bullet_bridge/world.h"
-#include "search/random.h"
 #include "solver/contact_stores.h"
-#include "solver/penalty_contacts.h"
 #include "solver/rigid/step_check.h"
-#include "solver/step_check.h"
 #include "support/random_draw.h"
 #include "vps/feature_motion.h"
 

@@ -7,7 +7,6 @@
 #include <random>
 
 #include "bullet_bridge/native_shapes.h"
-#include "native_shapes/native_shape.h"
 #include "support/random_draw.h"
 
 namespace vps::bullet {

@@ -10,7 +10,6 @@
 #include <limits>
 
 #include "support/analytic.h"
-#include "support/same_map.h"
 #include "vps/errors.h"
 #include "vps/mesh_distance.h"
 #include "vps/solid.h"

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "messages/messages.h"
-#include "support/fake_clock.h"
+#include "support/device/fake_device.h"
 
 namespace vps::scenes {
 namespace {

@@ -6,7 +6,6 @@
 
 #include "narrowphase/refinement/curved_contact.h"
 #include "narrowphase/refinement/surface_view.h"
-#include "narrowphase/selection/contact_selection.h"
 #include "native_shapes/native_shape.h"
 #include "native_shapes/native_shape_adapter.h"
 #include "vps/contact_tolerances.h"

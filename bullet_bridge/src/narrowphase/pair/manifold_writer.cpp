@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "narrowphase/pair/manifold_writer.h"
 #include "vps/contact_tolerances.h"
 #include "vps_bullet/convert.h"
 

@@ -7,7 +7,6 @@
 #include <stdexcept>
 
 #include "log/report.h"
-#include "narrowphase/pair/pair_algorithm.h"
 #include "narrowphase/pair/pair_state.h"
 #include "native_shapes/native_shape_adapter.h"
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "narrowphase/selection/contact_selection.h"
 #include "native_shapes/native_shape.h"
 #include "vps/contact_tolerances.h"
 

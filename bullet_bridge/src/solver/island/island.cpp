@@ -9,7 +9,6 @@
 #include <cmath>
 #include <limits>
 
-#include "solver/island/island.h"
 #include "vps_bullet/convert.h"
 
 namespace vps::bullet {
