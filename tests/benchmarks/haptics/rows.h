@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "output/table.h"
+#include "table.h"
 
 namespace vps::bench {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "dynamics/world.h"
-#include "output/table.h"
+#include "table.h"
 
 namespace vps::bench {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "output/table.h"
+#include "table.h"
 
 #include <algorithm>
 #include <cmath>
