@@ -108,7 +108,8 @@ TEST(BoxTree, FindsTheOverlapsThatATestOfAllBoxesFinds) {
     EXPECT_EQ(found, expected);
     tree.forEach([&](const Box& node) { return overlap(node, box); },
                  [&](std::uint32_t k) {
-                   if (overlap(boxes[k], box)) EXPECT_TRUE(wanted.insert(k).second);
+                   if (!overlap(boxes[k], box)) return;
+                   EXPECT_TRUE(wanted.insert(k).second);
                  });
     EXPECT_EQ(wanted, expected);
     found_count += found.size();
