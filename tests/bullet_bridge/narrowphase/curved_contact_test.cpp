@@ -245,7 +245,7 @@ TEST(CurvedContact, AConformingPegIsUnchanged) {
 }
 
 TEST(Curvature, IsThatOfBothPrincipalDirections) {
-  search::Random random(1);
+  test::Random random(1);
   for (int i = 0; i < 50; ++i) {
     const Mat3 R = random.rotation();
     const double a = random.uniform(-500, 500), b = random.uniform(-500, 500);
@@ -260,7 +260,7 @@ TEST(Curvature, IsThatOfBothPrincipalDirections) {
 TEST(SamplingError, BoundsTheReadingOfTheNearestPoint) {
   static const test::Built big = test::build(makeSphere(8e-3, 5), 7850, 0.5e-3, 1e-3),
                            small = test::build(makeSphere(4e-3, 4), 7850, 0.5e-3, 1e-3);
-  search::Random random(2);
+  test::Random random(2);
   double most_m = 0;
   for (int i = 0; i < 100; ++i) {
     test::World world;
