@@ -130,7 +130,9 @@ class Groups {
         parts, [](const std::string& part) { return part == "src" || part == "include" || part == "cli"; });
     const auto depth = static_cast<std::size_t>(root_at - parts.begin());
     if (depth > 1 || depth + 1 >= parts.size()) return std::nullopt;
-    Place place{.file = file, .is_public = parts[depth] == "include"};
+    Place place;
+    place.file = file;
+    place.is_public = parts[depth] == "include";
     if (depth == 1 || parts[0] == "cli") place.wing = parts[0] + "/";
     // A public header's first folder is the namespace, and its second the wing.
     const std::size_t above = depth + (place.is_public ? 2 + depth : 1);
