@@ -67,7 +67,8 @@ std::vector<Rule> rules() {
 
 /// Groups of public headers that have neither a source of their own name nor a sub-folder.
 const std::map<std::string, std::string>& groupOfHeader() {
-  static const std::map<std::string, std::string> groups = {{"vps_device/coupling_port.h", "loop"},
+  static const std::map<std::string, std::string> groups = {{"vps/box.h", "core"},
+                                                            {"vps_device/coupling_port.h", "loop"},
                                                             {"vps_device/detail/entry_ring.h", "recording"}};
   return groups;
 }
