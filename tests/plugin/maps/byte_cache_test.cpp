@@ -66,7 +66,7 @@ TEST_F(ByteCacheTest, AFileOfSomethingElseIsNotUsed) {
   fs::copy_file(cache_.fileOf("two"), cache_.fileOf("one"), fs::copy_options::overwrite_existing);
   EXPECT_FALSE(cache_.find("one"));
   ASSERT_EQ(warnings_.size(), 1U);
-  EXPECT_NE(warnings_[0].find("something else"), std::string::npos) << warnings_[0];
+  EXPECT_NE(warnings_[0].find("other data"), std::string::npos) << warnings_[0];
 }
 
 TEST_F(ByteCacheTest, TheLimitRemovesWhatWasNotUsedForLongest) {
