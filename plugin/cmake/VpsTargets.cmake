@@ -102,26 +102,24 @@ function(vps_join_wings name)
     target_compile_features(vps_${name} PUBLIC cxx_std_20)
     set_target_properties(vps_${name} PROPERTIES OUTPUT_NAME vps_${name}${VPS_PACKAGE_SUFFIX}
       VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+    set(targets "")  # they are in it, and are not installed
   else()
     add_library(vps_${name} INTERFACE)
     target_link_libraries(vps_${name} INTERFACE ${targets})
   endif()
   add_library(vps::${name} ALIAS vps_${name})
-  set_target_properties(vps_${name} PROPERTIES EXPORT_NAME ${name})
+  list(TRANSFORM wings REPLACE "(.+)" "${CMAKE_CURRENT_SOURCE_DIR}/\\1/src" OUTPUT_VARIABLE private)
+  set_target_properties(vps_${name} PROPERTIES EXPORT_NAME ${name} VPS_PRIVATE_HEADERS "${private}")
   list(TRANSFORM wings APPEND /include OUTPUT_VARIABLE headers)
-  if(BUILD_SHARED_LIBS)
-    set(targets "")
-  endif()
   vps_install_library(${name} "${ARG_PUBLIC}" TARGETS ${targets} HEADER_FOLDERS ${headers}
     PACKAGES ${ARG_PACKAGES} PRIVATE_PACKAGES ${ARG_PRIVATE_PACKAGES})
 endfunction()
 
-# Lets a program of ours, a test or a measurement, include the private headers of the wings of a library.
-function(vps_see_private_headers target library)
-  get_property(wings GLOBAL PROPERTY VPS_WINGS_OF_${library})
-  foreach(wing IN LISTS wings)
-    target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/${library}/${wing}/src)
-  endforeach()
+# Lets a program of ours, a test or a measurement, include the private headers of vps::NAME: of a library that is made of
+# wings, or of a wing and those below it.
+function(vps_see_private_headers target name)
+  get_target_property(folders vps_${name} VPS_PRIVATE_HEADERS)
+  target_include_directories(${target} PRIVATE ${folders})
 endfunction()
 
 # The macro that marks what a library exports, VPS_API in vps/export.h for plugin and VPS_<NAME>_API in

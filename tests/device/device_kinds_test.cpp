@@ -21,6 +21,7 @@ TEST(DeviceKinds, NamesAreUniqueAndEachIsFoundByItsName) {
     EXPECT_FALSE(kind.description.empty()) << kind.name;
     EXPECT_NE(deviceKindNames().find(kind.name), std::string::npos) << kind.name;
   }
+  EXPECT_EQ(names.size(), 5u);
   EXPECT_EQ(findDeviceKind("spoon"), nullptr);
 }
 

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <stdexcept>
+#include <string>
 
 #include "hand_scenes.h"
 #include "vps_scenes/run/assemble.h"
@@ -19,8 +21,9 @@ scenes::StepResult stepOf(scenes::Scene scene) {
 
 scenes::StepResult stepOf(std::string_view name, std::uint64_t seed) {
   const auto& all = pegScenes();
-  return stepOf(
-      std::find_if(all.begin(), all.end(), [&](const PegScene& s) { return s.name == name; })->make(seed));
+  const auto found = std::find_if(all.begin(), all.end(), [&](const PegScene& s) { return s.name == name; });
+  if (found == all.end()) throw std::invalid_argument("no peg scene is named '" + std::string(name) + "'");
+  return stepOf(found->make(seed));
 }
 
 bool uses(const scenes::StepResult& step, std::string_view strategy) {
