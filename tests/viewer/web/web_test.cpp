@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "run/blow_sounds.h"
-#include "viewer/web_run.h"
+#include "viewer/web/web_run.h"
 #include "vps_device/detail/bytes.h"
 #include "web/access.h"
 #include "web/browser_message.h"

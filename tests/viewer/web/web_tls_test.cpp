@@ -21,7 +21,7 @@
 #include "beast/server.h"
 #include "support/process/certificate.h"
 #include "support/temporary_folder.h"
-#include "viewer/web_run.h"
+#include "viewer/web/web_run.h"
 #include "vps/errors.h"
 #include "vps/write_file.h"
 

@@ -23,7 +23,7 @@
 
 #include "run/presentation.h"
 #include "support/process/chromium.h"
-#include "viewer/web_run.h"
+#include "viewer/web/web_run.h"
 #include "vps/errors.h"
 #include "vps_viewer/draw/image.h"
 
