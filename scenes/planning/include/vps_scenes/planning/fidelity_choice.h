@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Chooses a fidelity for a scene by building models and counting, never by the clock.
+// Chooses a fidelity for a scene by building models and counting points and bytes; no time is measured.
 #pragma once
 
 #include <string>
@@ -10,48 +10,51 @@
 
 namespace vps::scenes {
 
-/// Cost model of a physics step [us]: a constant, and a term for each point that may be near contact in it
-/// (those of the part in hand, and as many of the others as it can cover). Fitted once to the 99th percentile
-/// of processor time in `vps trade scenes/peg_in_hole/scene.toml` on a shared 2-core Xeon; on another machine
-/// `vps trade` measures what a rate needs. A count, so that a choice is the same everywhere.
+/// Cost model of a physics step [us]: a constant, and a term for each point that may be near contact in the
+/// step (the points of the moved part, and as many points of the other parts as the moved part can cover).
+/// Fitted once to the 99th percentile of processor time in `vps trade scenes/peg_in_hole/scene.toml` on a
+/// shared 2-core Xeon; for another machine, `vps trade` measures the setting that a rate needs. The model
+/// counts points, so that the choice is the same on every machine.
 inline constexpr double kStepBase_us = 400, kStepPoint_us = 0.055;
 
 struct FidelityChoice {
   Fidelity fidelity;
   bool is_met = false;
   std::string failure_reason;  ///< which bound cannot be kept, and the remedy; empty when all are kept
-  double error_m = 0;          ///< as FidelityWish::tolerance_m, measured
-  std::size_t points = 0, points_near = 0, bytes = 0;  ///< as built; bytes with the cooked field
-  double step_us = 0;                                  ///< by the cost model
+  double error_m = 0;          ///< measured error of depth, as defined in FidelityWish::tolerance_m
+  std::size_t points = 0, points_near = 0,
+              bytes = 0;  ///< of the built models; bytes include the cooked field
+  double step_us = 0;     ///< step time by the cost model
 };
 
 struct ChoiceOptions {
   Progress progress;
-  /// Memory that models may take while they are built; 0: half of this machine's. It never changes a choice:
-  /// where more would be needed there is none.
+  /// Memory that models may take while they are built; 0: half of this machine's memory. The limit never
+  /// changes a choice: a scene that needs more memory gets no choice.
   double machine_bytes = 0;
 };
 
 /// Finds the coarsest voxel that keeps the tolerance (measured against the exact surfaces at seeded points),
-/// with points at twice its size. For the rate and the memory it then takes fewer points (up to four times
-/// the spacing, a sixteenth of the points); then, where there is no tolerance, one side for the rate and
-/// larger voxels for the memory. Starts from the scene's own fidelity. If the wish is met, the scene's parts
-/// keep the models of the choice. Deterministic: the same scene gives the same choice on every machine. Takes
-/// seconds for a scene of ten parts. Throws LoadError for a part that cannot be modelled.
+/// with a point spacing of twice the voxel. To keep the rate and the memory limit, it then takes fewer points
+/// (up to four times the spacing, a sixteenth of the points). If the wish states no tolerance, it also uses
+/// points on one side only to keep the rate, and larger voxels to keep the memory limit. The search starts
+/// from the scene's own fidelity. If the wish is met, the scene's parts keep the models of the choice.
+/// Deterministic: the same scene gives the same choice on every machine. Takes seconds for a scene of ten
+/// parts. Throws LoadError for a part that cannot be modelled.
 VPS_SCENES_API FidelityChoice chooseFidelity(Scene& scene, FidelityWish wish,
                                              const ChoiceOptions& options = {});
 
-/// Chooses the fidelity of a scene whose file says `auto`, and notes the choice in it; otherwise voxel and
-/// spacing where the file leaves them open (chooseResolution()). Every scene passes here once, between
-/// loadScene() and its use. Throws LoadError with file and line if the wish cannot be met, and as
-/// chooseFidelity().
+/// Chooses the fidelity of a scene whose file says `auto`, and notes the choice in the scene; otherwise
+/// chooses the voxel and the spacing that the file leaves open (chooseResolution()). Call it for every scene
+/// between loadScene() and its use. Throws LoadError with file and line if the wish cannot be met, and in the
+/// cases of chooseFidelity().
 VPS_SCENES_API void resolveFidelity(Scene& scene, const ChoiceOptions& options = {});
 
 /// The fidelity as lines of a scene file.
 VPS_SCENES_API std::string toToml(const Fidelity& fidelity);
 
-/// "voxel 0.18 mm, spacing 0.35 mm, both sides: 12345 points, 8.1 MB, a step of 900 us by the cost model,
-/// ..."
+/// The choice in words: "voxel 0.18 mm, spacing 0.35 mm, both sides: 12345 points, 8.1 MB, a step of 900 us
+/// by the cost model, ...".
 VPS_SCENES_API std::string describe(const FidelityChoice& choice);
 
 }  // namespace vps::scenes

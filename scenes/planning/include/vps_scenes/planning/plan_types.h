@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a plan is made from and what it finds: steps and their ways, order, contacts, overlaps, faults of
-// ways.
+// Input and result types of a plan: steps and their paths, order, contacts, overlaps, faults of paths.
 #pragma once
 
 #include <cstddef>
@@ -14,60 +13,63 @@
 
 namespace vps::scenes {
 
-/// What a plan had found by the time it was stopped. A later plan of the same parts need not find it again.
+/// Intermediate results of a plan that was stopped. A later plan of the same parts reuses them.
 struct PlanFindings {
-  std::vector<std::uint64_t> motions;  ///< straight motions of pairs, each with its answer
-  std::vector<std::string> taken_off;  ///< parts and sets of parts, in this order
+  std::vector<std::uint64_t> motions;  ///< straight motions of pairs, each with its result
+  std::vector<std::string> taken_off;  ///< parts and sets of parts, in the order of removal
 };
 
 struct PlanSettings {
-  /// Parts that stand still, by name; empty: one is proposed, the part that holds most among the largest.
+  /// Names of the parts that stand still; empty: one is proposed, out of the largest parts the one with most
+  /// neighbours.
   std::vector<std::string> fixed;
   Vec3 up_W = Vec3::UnitZ();  ///< unit, against gravity
-  /// The parts start beside each other around those that stand still, and are lifted over them. False: each
-  /// starts on its last leg, just outside.
+  /// True: the parts start next to each other around the fixed parts, and are lifted over them. False: each
+  /// part starts on its last leg, just outside the assembly.
   bool has_bench = false;
-  const PlanFindings* known = nullptr;  ///< of an earlier plan of the same parts; null: none
-  PlanFindings* found = nullptr;  ///< where to put what was found, also if `progress` throws; null: nowhere
+  const PlanFindings* known = nullptr;  ///< findings of an earlier plan of the same parts; null: none
+  PlanFindings* found =
+      nullptr;  ///< receives the findings, also if `progress` throws; null: they are dropped
 };
 
 enum class WayKind {
-  Straight,  ///< in one direction
+  Straight,  ///< one straight motion
   Screw,     ///< turned out of a thread, then straight
   Legs,      ///< several straight or turning legs
 };
 VPS_SCENES_API const char* toText(WayKind kind);
 
-/// A part, or a subassembly that moves as one, and how it comes to its place.
+/// A part, or a subassembly that moves as one, and its path to its target.
 struct PlannedStep {
-  std::string name;                ///< of the part, or of the subassembly
+  std::string name;                ///< name of the part, or of the subassembly
   std::vector<std::string> parts;  ///< the part alone, or all parts of the subassembly
   WayKind kind = WayKind::Straight;
-  /// Where it is before, as motions of the world applied to its pose at home: first the start, outside of the
-  /// boxes of all that is in place, then the way points.
+  /// Poses before the target, as world motions applied to the target pose: first the start, outside of the
+  /// boxes of all parts in place, then the way points.
   std::vector<Pose> before_W;
-  Vec3 insertion_W = Vec3::Zero();  ///< unit; of the last leg on the way home
-  double lead_m = 0;                ///< of a screw: its way in one turn; negative: left-hand
-  /// Of a straight way that is stopped if facets may be no deeper in each other than they are drawn: how much
-  /// more they may be, for the distance of meshes from the faces and 5 um. No way without it was found. 0:
-  /// the way needs none.
+  Vec3 insertion_W = Vec3::Zero();  ///< unit direction of the last leg towards the target
+  double lead_m = 0;                ///< lead of a screw: its travel in one turn; negative: left-hand
+  /// For a straight path that is stopped if facets may overlap no deeper than drawn: the additional depth
+  /// that facets may have, from the deviation of meshes from the faces and 5 um. It is non-zero only if no
+  /// path without it was found.
   double allowance_m = 0;
-  bool is_carried = false;           ///< something in place keeps it from falling once it is home
-  std::vector<std::string> falling;  ///< parts in place already that nothing carries until it is there
-  bool is_on_bench = false;          ///< it starts there, see PlanSettings
-  /// Least clearance on the whole way to parts in place that it does not touch or fit at home, to a
-  /// micrometre; empty: none of them is nearer than kNearWay_m.
+  bool is_carried = false;           ///< a part in place keeps it from falling once it is at its target
+  std::vector<std::string> falling;  ///< parts in place that nothing else carries until this step is done
+  bool is_on_bench = false;          ///< it starts on the bench, see PlanSettings
+  /// Least clearance on the whole path to parts in place that it does not touch or fit at its target, to a
+  /// micrometre; empty: no such part is nearer than kNearWay_m.
   std::optional<double> clearance_m;
-  std::string nearest;  ///< the part of that clearance
-  /// Diametral clearance of its tightest fit with parts in place; empty: it has none.
+  std::string nearest;  ///< the part nearest to the path, at clearance_m
+  /// Diametral clearance of the step's tightest fit with parts in place; empty: it has no such fit.
   std::optional<double> fit_clearance_m;
 };
+/// Clearances above this distance are not reported.
 inline constexpr double kNearWay_m = 5e-3;
 
-/// Why one step comes before another.
+/// Reason why one step comes before another.
 enum class OrderReason {
-  Way,      ///< once `after` is in place, `before` has no way
-  Carries,  ///< `after` stands on `before`
+  Way,      ///< once `after` is in place, `before` has no path
+  Carries,  ///< `before` carries `after`
 };
 VPS_SCENES_API const char* toText(OrderReason reason);
 struct PlannedOrder {
@@ -75,18 +77,18 @@ struct PlannedOrder {
   OrderReason reason = OrderReason::Way;
 };
 
-/// A part that was not taken off, and what stops it in the directions that were tried.
+/// A part that was not taken off, and the parts that stop it in the directions that were tried.
 struct BlockedPart {
   std::string name;
   std::vector<std::string> by;
-  bool is_searched = true;  ///< false: the search for ways of several legs ended at its limit of work
+  bool is_searched = true;  ///< false: the search for paths of several legs ended at its work limit
 };
 
-/// The assembly, or a subassembly, which is put together by itself before.
+/// The assembly, or a subassembly, which is assembled separately beforehand.
 struct PlannedAssembly {
   std::string name;
-  std::vector<std::string> fixed;  ///< where it begins; the parts that are blocked as well
-  std::string fixed_reason;        ///< why it begins there, in words
+  std::vector<std::string> fixed;  ///< parts with which the assembly begins, including the blocked ones
+  std::string fixed_reason;        ///< why the assembly begins with the first of `fixed`, in words
   std::vector<PlannedStep> steps;  ///< in the order of assembly
   std::vector<PlannedOrder> order;
   std::vector<BlockedPart> blocked;
@@ -98,64 +100,66 @@ struct PlannedContact {
   PairState state = PairState::Apart;
   double clearance_m = 0;         ///< least distance of the surfaces
   std::vector<std::string> fits;  ///< "shaft H7/g6", "thread M8", ...
-  std::vector<Vec3> blocked_W;    ///< unit directions, of the likely ones, in which b stops a
-  std::vector<Vec3> free_W;       ///< and those in which it does not; b leaves a in their opposites
+  std::vector<Vec3> blocked_W;    ///< unit directions, out of the likely ones, in which b stops a
+  std::vector<Vec3>
+      free_W;  ///< likely directions in which b does not stop a; b leaves a in the opposite directions
 };
 
-/// Parts of equal geometry, of which each can take another's place.
+/// Parts of equal geometry, which are interchangeable.
 struct EqualParts {
   std::vector<std::string> names;
 };
 
-/// Two parts of equal geometry in one place.
+/// Two parts of equal geometry at the same pose.
 struct DrawnTwice {
   std::string first, second;
 };
 
-/// What an overlap of two parts as drawn is taken for.
+/// Classification of an overlap of two parts as drawn.
 enum class OverlapKind {
   Thread,      ///< a screw and its nut or hole, drawn as plain cylinders
   PressFit,    ///< a shaft that is a little larger than its bore
   Twice,       ///< one part drawn twice
   Flexible,    ///< a spring, belt or seal that is drawn undeformed
   LineToLine,  ///< no overlap: a shaft that is drawn exactly as wide as its hole
-  NoVolume,    ///< no overlap: a part that is no body
+  NoVolume,    ///< no overlap: a part without a closed volume
   Clash,       ///< nothing explains it
 };
 VPS_SCENES_API const char* toText(OverlapKind kind);
 
-/// A cylinder of a part that is made thinner or wider, in the part's frame.
+/// A cylinder of a part that is made thinner or wider, in the part's frame P.
 struct Resized {
   Vec3 axis = Vec3::UnitZ(), p = Vec3::Zero();
-  double from_m = 0, to_m = 0;  ///< along the axis from p
+  double from_m = 0, to_m = 0;  ///< extent along the axis, measured from p
   double from_radius_m = 0, to_radius_m = 0;
 };
 
-/// An overlap, a fit without clearance or a part without volume, and what is done about it.
+/// An overlap, a fit without clearance or a part without volume, and the change made to the planned scenes.
 struct OverlapChoice {
   std::string a, b;  ///< b is empty for a part without volume
   OverlapKind kind = OverlapKind::Clash;
-  std::string words;               ///< all of it, for a person
-  std::string left_out;            ///< a part that is scenery in the planned scenes; empty: none
-  std::string changed;             ///< a part that is changed there; empty: none
-  double press_fit_m = 0;          ///< that it is given
-  std::optional<Resized> resized;  ///< how its mesh is changed
+  std::string words;               ///< the choice in words, for a person
+  std::string left_out;            ///< a part that becomes scenery in the planned scenes; empty: none
+  std::string changed;             ///< a part whose mesh or fit is changed in the planned scenes; empty: none
+  double press_fit_m = 0;          ///< press fit that the changed part gets
+  std::optional<Resized> resized;  ///< how the mesh of the changed part is resized
 };
 
 struct PlanResult {
   std::string assembly;
   std::vector<Fastener> fasteners;
-  std::vector<OverlapChoice>
-      choices;  ///< parts without volume, one for each overlap that is not allowed, shafts drawn line to line
-  std::vector<PlannedAssembly> assemblies;  ///< the whole first, then its subassemblies
-  std::vector<PlannedContact> contacts;     ///< the graph of contacts and of what blocks what
-  std::vector<EqualParts> equal;            ///< two or more of each
-  /// Overlaps as drawn. On their ways these parts may overlap as deep as they are drawn.
+  /// Parts without volume, overlaps that are not allowed, and shafts drawn line to line; one choice each.
+  std::vector<OverlapChoice> choices;
+  std::vector<PlannedAssembly> assemblies;  ///< the whole assembly first, then its subassemblies
+  std::vector<PlannedContact>
+      contacts;                   ///< the contact graph, with the directions in which parts block each other
+  std::vector<EqualParts> equal;  ///< sets of at least two equal parts
+  /// Overlaps as drawn. On their paths, these parts may overlap as deep as they are drawn.
   std::vector<CheckedPair> overlaps;
-  std::vector<DrawnTwice> twice;       ///< among the overlaps too
-  std::vector<CheckedPair> uncertain;  ///< pairs of which it cannot be told whether they overlap
-  /// Straight motions of a part past another one that were too long to follow to their end; they count as
-  /// stopped.
+  std::vector<DrawnTwice> twice;       ///< also listed in overlaps
+  std::vector<CheckedPair> uncertain;  ///< pairs for which the measurement cannot decide whether they overlap
+  /// Number of straight motions of a part past another that were too long to follow to their end; they count
+  /// as stopped.
   std::size_t cut_motions = 0;
   double check_wall_s = 0, plan_wall_s = 0;
   [[nodiscard]] std::size_t steps() const;
@@ -163,21 +167,21 @@ struct PlanResult {
 };
 
 enum class WayFaultKind {
-  Through,    ///< its way leads through a part in place
-  Order,      ///< the same, and that part would pass if it were mounted later
-  Support,    ///< nothing in place carries it when it is let go
-  Clearance,  ///< it passes a part nearer than was planned
+  Through,    ///< the path overlaps a part in place
+  Order,      ///< the path overlaps a part in place, and would be free if that part were mounted later
+  Support,    ///< no part in place carries it when it is let go
+  Clearance,  ///< the path passes a part nearer than was planned
 };
 VPS_SCENES_API const char* toText(WayFaultKind kind);
 
-/// What is wrong with a step as its scene states it.
+/// A fault of a step as its scene states it.
 struct WayFault {
   WayFaultKind kind = WayFaultKind::Through;
   std::string part, against;
-  double depth_m = 0;    ///< of the meshes
-  double allowed_m = 0;  ///< what they overlap at the target, and 10 um
+  double depth_m = 0;    ///< greatest overlap of the meshes on the path
+  double allowed_m = 0;  ///< overlap of the meshes at the target, plus 10 um
   Vec3 at_W = Vec3::Zero();
-  double clearance_m = 0, planned_m = 0;  ///< of a lost clearance
+  double clearance_m = 0, planned_m = 0;  ///< for a Clearance fault
 };
 
 }  // namespace vps::scenes

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Many runs of one procedure with parts that are off within their tolerances: yield and what costs it.
+// Many runs of one procedure with parts that deviate within their tolerances: the yield, and the tolerances
+// that reduce it.
 #pragma once
 
 #include <atomic>
@@ -10,7 +11,7 @@
 #include <vector>
 
 #include "vps_scenes/export.h"
-#include "vps_scenes/fits/verdict.h"
+#include "vps_scenes/fits/check_types.h"
 #include "vps_scenes/scene/model_options.h"
 #include "vps_scenes/scene/scene.h"
 
@@ -18,14 +19,15 @@ namespace vps::scenes {
 
 enum class StudyQuantity { Size, X, Y, Z, AboutX, AboutY, AboutZ, Friction };
 
-/// One number that differs from run to run.
+/// One quantity that varies from run to run.
 struct StudyVariable {
   std::string name;  ///< "peg size"
   std::size_t part = 0;
   StudyQuantity quantity = StudyQuantity::Size;
-  bool is_hole = false;  ///< of a size: a greater one has less material
+  bool is_hole = false;  ///< for a size: a larger value means less material
   Distribution distribution = Distribution::Normal;
-  /// Limits of the deviation from what is drawn [m, rad, or 1]; a normal one passes each once in 740 runs.
+  /// Limits of the deviation from the drawn value [m, rad, or 1]; a normal deviation passes each limit once
+  /// in 740 runs.
   double lower = 0, upper = 0;
 
   [[nodiscard]] double middle() const { return 0.5 * (lower + upper); }
@@ -33,72 +35,75 @@ struct StudyVariable {
 
 struct StudySettings {
   std::uint64_t seed = 1;
-  /// False: a run is judged by exact distances alone, without the hand: it fits if no overlap and no fit
-  /// rules it out.
+  /// False: exact distances alone judge a run, without the virtual hand; the run fits if no overlap and no
+  /// fit rules it out.
   bool has_contact = true;
-  unsigned threads = 0;  ///< runs at the same time, each on one core; 0: one for each core
+  unsigned threads = 0;  ///< runs at the same time, each on one core; 0: as many as there are cores
 };
 
-/// One run. It depends on scene, seed and its number alone.
+/// One run. It depends only on the scene, the seed and the run number.
 struct StudyRun {
   std::size_t run = 0;
   Verdict verdict = Verdict::NotShown;
   std::string part, reason;  ///< of the first step that does not fit; empty: all fit
   double simulated_s = 0;
-  std::vector<double> values;  ///< of each variable
+  std::vector<double> values;  ///< deviation of each variable
 };
 
-/// What one variable does to the yield.
+/// Effect of one variable on the yield.
 struct StudyEffect {
   StudyVariable variable;
-  std::size_t index = 0;  ///< of StudyRun::values
-  /// The yield with half of this tolerance, estimated from the same runs by weighting each with the ratio of
-  /// the two densities.
+  std::size_t index = 0;  ///< index into StudyRun::values
+  /// Yield if this tolerance is halved, estimated from the same runs, each weighted by the ratio of the two
+  /// densities.
   double yield_if_halved = 0;
-  double gain = 0;        ///< yield_if_halved less yield
-  double gain_error = 0;  ///< half of its interval of 95 %
+  double gain = 0;        ///< yield_if_halved minus yield
+  double gain_error = 0;  ///< half width of the 95 % interval of the gain
 };
 
 struct StudyResult {
   std::string scene;
   StudySettings settings;
   std::size_t good = 0, blocked = 0;
-  double yield = 0, yield_low = 0, yield_high = 0;  ///< with Wilson's interval of 95 %
-  std::vector<StudyEffect> effects;                 ///< the greatest gain first
-  std::vector<StudyRun> runs;                       ///< in order of their numbers
+  double yield = 0, yield_low = 0, yield_high = 0;  ///< with Wilson's 95 % interval
+  std::vector<StudyEffect> effects;                 ///< sorted by gain, the greatest first
+  std::vector<StudyRun> runs;                       ///< in order of run numbers
 };
 
 struct StudyOptions : ModelOptions {
-  const std::atomic<bool>* stop = nullptr;  ///< set it to end early; runs that were begun are dropped
+  const std::atomic<bool>* stop = nullptr;  ///< the caller sets it to end early; unfinished runs are dropped
   /// Called with each run as it ends, by one thread at a time.
   std::function<void(const StudyRun&)> on_run;
 };
 
-/// What the tolerances of the scene's parts ask for, with sizes relative to the drawn ones. Throws LoadError
-/// for a scene without a tolerance, and for a class of ISO 286 that is not known or of a part without a fit.
+/// Variables for all tolerances of the scene's parts, with sizes relative to the drawn ones. Throws LoadError
+/// for a scene without a tolerance, for an unknown class of ISO 286, and for a class on a part without a fit.
 VPS_SCENES_API std::vector<StudyVariable> studyVariables(const Scene& scene);
 
-/// The deviations of one run. A counter-based generator makes each from the seed, the run's number and the
-/// variable's name, so that no other run and no other variable changes it.
+/// The deviations of one run. A counter-based generator computes each deviation from the seed, the run number
+/// and the variable's name, so that it does not depend on other runs and variables.
 VPS_SCENES_API std::vector<double> sampleStudy(const std::vector<StudyVariable>& variables,
                                                std::uint64_t seed, std::size_t run);
 
-/// The scene of that run: sizes by offset faces, places displaced, friction, and a seed for the hand.
+/// The scene of the given run: sizes by offset faces, displaced placements, friction, and a seed for the
+/// virtual hand.
 VPS_SCENES_API Scene sampledScene(const Scene& scene, const std::vector<StudyVariable>& variables,
                                   std::uint64_t seed, std::size_t run);
 
-/// Makes the runs of the given numbers, and returns those that ended, in order of their numbers. Throws as
+/// Makes the runs with the given numbers, and returns the finished ones in order of their numbers. Throws as
 /// assemble().
 VPS_SCENES_API std::vector<StudyRun> runStudy(const Scene& scene, const std::vector<StudyVariable>& variables,
                                               const StudySettings& settings,
                                               const std::vector<std::size_t>& numbers,
                                               const StudyOptions& options = {});
 
-/// Sums up. Runs may come in any order; of two with one number the first counts.
+/// Computes yield and effects of the runs, which may come in any order. If two runs have the same number, the
+/// first counts.
 VPS_SCENES_API StudyResult sumUpStudy(const std::string& scene, const std::vector<StudyVariable>& variables,
                                       const StudySettings& settings, std::vector<StudyRun> runs);
 
-/// Equal only for studies whose runs of one number are the same: of scene, tolerances, seed and judgement.
+/// Identifies a study: equal fingerprints mean that runs of the same number are equal. Made of scene,
+/// tolerances, seed and `has_contact`.
 VPS_SCENES_API std::string studyFingerprint(const Scene& scene, const std::vector<StudyVariable>& variables,
                                             const StudySettings& settings);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Measures speed against accuracy on a scene.
+// Measures speed against accuracy for a scene.
 #pragma once
 
 #include <atomic>
@@ -13,9 +13,9 @@
 
 namespace vps::scenes {
 
-/// The setting that a row changes against the scene's own fidelity.
+/// The setting that a row changes, relative to the scene's own fidelity.
 enum class TradeKnob {
-  Own,  ///< nothing
+  Own,  ///< the scene's own fidelity
   Voxel,
   Spacing,
   Sides,
@@ -25,8 +25,8 @@ enum class TradeKnob {
   HapticRate,
   PhysicsRate,
   SolverIterations,
-  Together,   ///< several
-  Reference,  ///< all of them, far finer: the other runs are compared with it
+  Together,   ///< several settings
+  Reference,  ///< all settings, far finer; the other runs are compared with this one
 };
 VPS_SCENES_API const char* toText(TradeKnob knob);
 
@@ -42,19 +42,19 @@ struct ProbeErrors {
   double distance_m = 0;     ///< worst error of the least distance (negative: depth), over all poses
   double penetration_m = 0;  ///< worst error of the depth, over the poses that penetrate
   double force = 0;          ///< median of |F - F_exact| / |F_exact|, over the poses that penetrate
-  double torque = 0;         ///< the same for the torque about the part's origin
+  double torque = 0;         ///< as `force`, for the torque about the part's origin
 };
 
 /// Result of a run of the procedure.
 struct TradeRun {
   bool completed = false;
-  double deepest_m = 0;      ///< by exact distance, over the steps
+  double deepest_m = 0;      ///< greatest depth by exact distance, over the steps
   double final_error_m = 0;  ///< worst distance of a part's origin from its designed target
-  double peak_force_N = 0;   ///< on the hand
+  double peak_force_N = 0;   ///< peak force on the virtual hand
   double to_hand_J = 0, injected_J = 0;
-  Vec3 p_W_end = Vec3::Zero();  ///< of the last part's origin, at rest
+  Vec3 p_W_end = Vec3::Zero();  ///< position of the last part's origin at rest
   std::size_t contacts_left_out = 0;
-  std::size_t bytes = 0;  ///< with the cooked field
+  std::size_t bytes = 0;  ///< memory of the models, with the cooked field
   double build_wall_s = 0, wall_s = 0;
   TickTimes physics, haptic;
 };
@@ -69,18 +69,18 @@ struct TradeRow {
   std::size_t points = 0, bytes = 0;
   bool has_probe = false, has_run = false, has_reference = false;
   ProbeErrors probe;
-  double points_read = 0;       ///< mean of a query, both sides
-  TickTimes query, all_points;  ///< wrench query of a pose, both sides: with the tree, and without
-  double models_wall_s = 0;     ///< time to build the models that no earlier row had
+  double points_read = 0;       ///< mean number of points tested by a query, both sides
+  TickTimes query, all_points;  ///< wrench query of a pose, both sides: with the tree, and over all points
+  double models_wall_s = 0;     ///< time to build the models that no earlier row had built
   TradeRun run;
   RunErrors off;
-  bool is_on_front =
-      false;  ///< no other row is as fast, as small and as accurate, and better in one of these
+  /// True if no other row is as fast, as small and as accurate, and better in one of these.
+  bool is_on_front = false;
 };
 
 struct TradeOptions : ModelOptions {
-  double seconds = 45;       ///< limit of wall-clock time; the last run is cut there
-  bool is_thorough = false;  ///< all steps and all settings, without a limit of time
+  double seconds = 45;       ///< limit of wall-clock time; the last run is cut at this limit
+  bool is_thorough = false;  ///< all steps and all settings, without a time limit
   const std::atomic<bool>* stop = nullptr;
 };
 
@@ -90,25 +90,26 @@ struct TradeResult {
   std::size_t poses = 0, poses_inside = 0;
   double reference_spacing_m = 0;  ///< of the samples over which the exact wrench is summed
   std::vector<TradeRow> rows;
-  std::vector<std::string> left_out;  ///< settings that were not measured, and why, one line each
-  std::vector<std::string> fixed;     ///< choices that a scene cannot make, and why, one line each
+  std::vector<std::string> left_out;  ///< settings that were not measured, and why; one line each
+  std::vector<std::string> fixed;     ///< choices that a scene cannot make, and why; one line each
 };
 
-/// Error of depth with a row's setting [m]: the worst error of the models at the probe's poses, or the
-/// deepest penetration in its run, whichever is more.
+/// Error of depth with a row's setting [m]: the larger of the worst model error at the probe's poses and the
+/// deepest penetration in its run.
 VPS_SCENES_API double errorOf(const TradeRow& row);
-/// The physics rate that the row's 99th percentile of processor time for a step allows [Hz]; 0 without a run.
+/// Physics rate [Hz] that the row's 99th percentile of processor time per step allows; 0 without a run.
 VPS_SCENES_API double rateOf(const TradeRow& row);
 
-/// Runs the scene at a set of fidelities: first its own, then one knob at a time, then several together. A
-/// scene of many steps is represented by its first one, unless is_thorough. The clock decides which rows
-/// there are, but not their contents apart from times. Throws as assemble().
+/// Runs the scene at a set of fidelities: first its own, then with one setting changed at a time, then with
+/// several changed together. A scene of many steps is represented by its first step, unless is_thorough.
+/// Elapsed time decides which rows are measured, but affects no content of a row apart from times. Throws as
+/// assemble().
 VPS_SCENES_API TradeResult trade(const Scene& scene, const TradeOptions& options = {});
 
 /// Recommendations, one a line: "for 1000 Hz on this machine choose ...", or that no setting suffices.
 /// Considers the rows that completed the run with a force error of at most one half.
 VPS_SCENES_API std::vector<std::string> tradeAnswers(const TradeResult& result);
-/// The effect of each knob against the scene's own setting, a line for each row.
+/// The effect of each changed setting relative to the scene's own fidelity, a line for each row.
 VPS_SCENES_API std::vector<std::string> tradeKnobs(const TradeResult& result);
 
 }  // namespace vps::scenes

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The numbers of a trade as JSON and CSV show them, as result_fields.h does for a run.
+// Field tables of a trade study, for JSON and CSV.
 #pragma once
 
 #include "vps_scenes/planning/fidelity_choice.h"
@@ -17,26 +17,27 @@ inline constexpr auto kProbeFields = std::make_tuple(
     field("force_error", path(&TradeRow::probe, &ProbeErrors::force), "median relative error of the force"),
     field("torque_error", path(&TradeRow::probe, &ProbeErrors::torque),
           "median relative error of the torque"),
-    field("points_read", &TradeRow::points_read, "points that a query tests, mean"));
+    field("points_read", &TradeRow::points_read, "mean number of points that a query tests"));
 
 inline constexpr auto kTradeRunFields = std::make_tuple(
-    field("completed", &TradeRun::completed, "all steps that were run were completed"),
+    field("completed", &TradeRun::completed, "the run completed all of its steps"),
     field("max_penetration_m", &TradeRun::deepest_m, "deepest penetration, by exact distance"),
     field("final_error_m", &TradeRun::final_error_m, "worst distance of a part's origin from its target"),
-    field("peak_force_N", &TradeRun::peak_force_N, "greatest force on the hand"),
-    field("to_hand_J", &TradeRun::to_hand_J, "work done on the hand"),
+    field("peak_force_N", &TradeRun::peak_force_N, "greatest force on the virtual hand"),
+    field("to_hand_J", &TradeRun::to_hand_J, "work done on the virtual hand"),
     field("injected_J", &TradeRun::injected_J, "as `energy.injected_J` of `assemble`"),
-    field("contacts_left_out", &TradeRun::contacts_left_out, "near points that found no room in a query"),
-    field("bytes", &TradeRun::bytes, "memory of all models, with the fixed field"));
+    field("contacts_left_out", &TradeRun::contacts_left_out,
+          "near points left out because a query's list was full"),
+    field("bytes", &TradeRun::bytes, "memory of all models, with the cooked field"));
 
-inline constexpr auto kReferenceFields =
-    std::make_tuple(field("final_m", &RunErrors::final_m, "distance between the last parts' final positions"),
-                    field("peak_force_N", &RunErrors::peak_force_N, "difference of the peak forces"),
-                    field("to_hand_J", &RunErrors::to_hand_J, "difference of the work on the hand"));
+inline constexpr auto kReferenceFields = std::make_tuple(
+    field("final_m", &RunErrors::final_m, "distance between the last parts' final positions"),
+    field("peak_force_N", &RunErrors::peak_force_N, "difference of the peak forces on the virtual hand"),
+    field("to_hand_J", &RunErrors::to_hand_J, "difference of the work done on the virtual hand"));
 
 inline constexpr auto kTradeRowFields = std::make_tuple(
-    field("name", path(&TradeRow::setting, &TradeSetting::name), "the setting in words"),
-    field("knob", path(&TradeRow::setting, &TradeSetting::knob), "what it changes"),
+    field("name", path(&TradeRow::setting, &TradeSetting::name), "name of the row's setting"),
+    field("knob", path(&TradeRow::setting, &TradeSetting::knob), "the setting that the row changes"),
     group("fidelity", path(&TradeRow::setting, &TradeSetting::fidelity), kFidelityFields,
           "as `[fidelity]` of a scene file, in SI"),
     field("points", &TradeRow::points, "points of all pointshells"),
@@ -47,12 +48,12 @@ inline constexpr auto kTradeRowFields = std::make_tuple(
           std::make_tuple(group("off_reference", &TradeRow::off, kReferenceFields))));
 
 inline constexpr auto kTradeRowWallFields = std::make_tuple(
-    field("models_s", &TradeRow::models_wall_s, "time to build the models that no earlier row had"),
+    field("models_s", &TradeRow::models_wall_s, "time to build the models that no earlier row had built"),
     field("on_front", &TradeRow::is_on_front, "no other row is as fast, as small and as accurate"),
     group("", when(&TradeRow::has_probe),
-          std::make_tuple(
-              group("query_us", &TradeRow::query, kProcessorTimes, "wrench query of a pose"),
-              group("all_points_us", &TradeRow::all_points, kProcessorTimes, "the same without the tree"))),
+          std::make_tuple(group("query_us", &TradeRow::query, kProcessorTimes, "wrench query of a pose"),
+                          group("all_points_us", &TradeRow::all_points, kProcessorTimes,
+                                "wrench query of a pose over all points, without the tree"))),
     group(
         "", when(&TradeRow::has_run),
         std::make_tuple(
@@ -66,11 +67,12 @@ inline constexpr auto kChoiceFields = std::make_tuple(
     field("is_met", &FidelityChoice::is_met, "a fidelity keeps all bounds"),
     field("failure_reason", &FidelityChoice::failure_reason, "which bound cannot be kept, and the remedy"),
     group("fidelity", &FidelityChoice::fidelity, kFidelityFields, "as `[fidelity]` of a scene file, in SI"),
-    field("error_m", &FidelityChoice::error_m, "error of depth at 95 of 100 points, measured"),
+    field("error_m", &FidelityChoice::error_m, "measured error of depth that 95 of 100 points do not exceed"),
     field("points", &FidelityChoice::points, "points of all pointshells"),
     field("points_near", &FidelityChoice::points_near, "points that may be near contact in a step"),
-    field("bytes", &FidelityChoice::bytes, "memory of all models, with the fixed field"),
-    field("step_by_model_us", &FidelityChoice::step_us, "time of a step by the cost model, without a clock"));
+    field("bytes", &FidelityChoice::bytes, "memory of all models, with the cooked field"),
+    field("step_by_model_us", &FidelityChoice::step_us,
+          "step time estimated by the cost model; no time is measured"));
 static_assert(coversAllMembers<FidelityChoice>(kChoiceFields));
 
 }  // namespace vps::scenes
