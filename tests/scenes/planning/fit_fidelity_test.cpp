@@ -45,7 +45,7 @@ TEST(FitFidelity, AsFineAsTheMemoryAllows) {
   Scene scene = blockOnPlate(50e-3);
   ASSERT_GT(bytesOf(scene), kMost_bytes);
   const std::string words = fitFidelity(scene, kMost_bytes);
-  EXPECT_NE(words.find("the models would take some"), std::string::npos) << words;
+  EXPECT_NE(words.find("the models would take about"), std::string::npos) << words;
   EXPECT_EQ(words.find("may be missed"), std::string::npos) << words;
   EXPECT_LE(bytesOf(scene), kMost_bytes);
   scene.fidelity.voxel_m /= std::numbers::sqrt2;

@@ -92,7 +92,7 @@ TEST(Resolution, TheModelsOfManyLargePartsTakeNoMoreThanThoseOfAPlannedScene) {
   EXPECT_LE(static_cast<double>(estimate(scene, ModelPurpose::Simulate, {}).cost.most.bytes),
             kMostModels_bytes);
   EXPECT_EQ(voxelOf(scene, scene.parts.size() - 1), Fidelity().voxel_m);
-  EXPECT_NE(scene.resolution_choice.find("all models would take some"), std::string::npos)
+  EXPECT_NE(scene.resolution_choice.find("all models would take about"), std::string::npos)
       << scene.resolution_choice;
 }
 

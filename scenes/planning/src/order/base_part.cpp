@@ -34,7 +34,7 @@ BasePart proposedBase(const PairMotions& motions, const std::vector<std::size_t>
   }
   const auto held = holds(members[best]);
   std::string reason = volume_m3[best] == largest_m3 ? "the largest part" : "one of the largest parts";
-  if (held > 0) reason += ", which meets " + std::to_string(held) + (held == 1 ? " other" : " others");
+  if (held > 0) reason += ", which touches " + std::to_string(held) + (held == 1 ? " other" : " others");
   return {members[best], std::move(reason)};
 }
 

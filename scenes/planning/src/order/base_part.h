@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The part on which an assembly is built.
+// The base part of an assembly, and how it is chosen.
 #pragma once
 
 #include <string>
@@ -11,11 +11,12 @@ namespace vps::scenes {
 
 struct BasePart {
   std::size_t part = 0;
-  std::string reason;  ///< in words
+  std::string reason;  ///< why it was chosen, in words
 };
 
-/// Of the parts with at least half the volume of the largest, the one that is in contact or has fits with
-/// most others; then the largest; then the first. The volume of an open mesh is that of its box.
+/// Proposes a base among the parts with at least half the volume of the largest part: the part with most
+/// neighbours that it touches or fits; of equals the largest, then the first. The volume of an open mesh is
+/// that of its box.
 BasePart proposedBase(const PairMotions& motions, const std::vector<std::size_t>& members);
 
 }  // namespace vps::scenes

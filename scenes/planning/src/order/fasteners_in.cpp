@@ -12,9 +12,11 @@ namespace vps::scenes {
 
 namespace {
 
-/// The words of a key, if the part is a bar with flat sides and not much shorter than wide; empty if not.
+/// Description of a key, if the part is a bar with flat sides that is clearly longer than wide; otherwise
+/// empty.
 std::string keyWords(const PartSurface& part) {
-  constexpr double kFilled = 0.8;  // of its box: round ends take a fifth of one that is as long as wide
+  constexpr double kFilled =
+      0.8;  // share of its box: round ends take a fifth of a box that is as long as wide
   constexpr double kLeastLength = 1.2, kMostFlatness = 4;  // assumed: DIN 6885 has widths up to 1.8 heights
   std::array<double, 3> size_m = {part.box().size().x(), part.box().size().y(), part.box().size().z()};
   const double volume_m3 = std::abs(massProperties(part.mesh()).volume_m3);
@@ -32,7 +34,7 @@ std::string keyWords(const PartSurface& part) {
 std::vector<Fastener> fastenersIn(const std::vector<PlacedSurface>& parts, const CheckResult& checked,
                                   const std::vector<std::optional<FastenerShape>>& shapes) {
   std::set<std::string> in_bore;
-  std::map<std::string, std::set<std::string>> keyed;  // as the inner part, in which others
+  std::map<std::string, std::set<std::string>> keyed;  // by inner part: the parts that hold it by a key fit
   for (const CheckedFit& fit : checked.fits) {
     if (fit.kind == FitKind::Shaft) in_bore.insert(fit.shaft);
     if (fit.kind == FitKind::Key) keyed[fit.shaft].insert(fit.bore);

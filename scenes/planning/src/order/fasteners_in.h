@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The fasteners of an assembly, with what its fits tell.
+// The fasteners of an assembly, recognised by shape and fits.
 #pragma once
 
 #include <optional>
@@ -9,7 +9,7 @@
 
 namespace vps::scenes {
 
-/// Those that their shapes tell, pins only where they fit a bore, and keys: bars with key fits to two parts.
+/// Fasteners recognised by shape (pins only if they fit a bore), and keys: bars with key fits to two parts.
 /// @param shapes of the parts, see fastenerShapes()
 std::vector<Fastener> fastenersIn(const std::vector<PlacedSurface>& parts, const CheckResult& checked,
                                   const std::vector<std::optional<FastenerShape>>& shapes);

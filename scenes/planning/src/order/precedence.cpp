@@ -5,13 +5,13 @@
 #include <map>
 #include <set>
 
-#include "surface/on_cores.h"
+#include "surface/placed_surface.h"
 
 namespace vps::scenes {
 
 std::vector<PlannedOrder> precedence(const PairMotions& motions, const Disassembly& apart,
                                      const std::vector<std::string>& names) {
-  // By removal: what left before it is mounted after it.
+  // Orders by index of removal: a part that was removed earlier is mounted later.
   std::vector<std::vector<PlannedOrder>> found(apart.removals.size());
   const auto isAny = [](const Removal& a, const Removal& b, auto is) {
     return std::ranges::any_of(a.parts, [&](std::size_t i) {
@@ -47,7 +47,7 @@ std::vector<PlannedOrder> reducedOrder(const std::vector<PlannedOrder>& order) {
   for (const PlannedOrder& one : order) after[one.before].insert(one.after);
   std::vector<PlannedOrder> out;
   for (const PlannedOrder& one : order) {
-    // Whether another step that comes after the first leads to the second.
+    // Search for a chain of other steps from the first step to the second.
     std::vector<std::string> waiting;
     std::set<std::string> seen;
     for (const std::string& next : after[one.before])

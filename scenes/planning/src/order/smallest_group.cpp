@@ -4,14 +4,14 @@
 #include <set>
 
 #include "order/take_apart.h"
-#include "surface/on_cores.h"
+#include "surface/placed_surface.h"
 
 namespace vps::scenes {
 
 namespace {
 
-/// All that a part pushes along in a direction, itself among them; empty if a fixed part is among them, or if
-/// they are at least `most`.
+/// All parts that a part pushes along in a direction, including itself; empty if they include a fixed part,
+/// or if there are at least `most` of them.
 std::vector<std::size_t> pushedBy(const PairMotions& motions, const std::vector<std::size_t>& remaining,
                                   const std::vector<std::size_t>& fixed, std::size_t part,
                                   std::size_t direction, std::size_t most) {
@@ -67,7 +67,7 @@ std::vector<std::vector<std::size_t>> connectedGroups(const PairMotions& motions
   std::vector<std::vector<std::size_t>> groups, larger;
   for (const std::size_t part : movable) larger.push_back({part});
   while (!larger.empty() && groups.size() < kMostGroups) {
-    std::set<std::vector<std::size_t>> found;  // each by its members in order
+    std::set<std::vector<std::size_t>> found;  // each set sorted by part
     for (const std::vector<std::size_t>& group : larger)
       for (const std::size_t part : movable) {
         if (found.size() + groups.size() >= kMostGroups) break;

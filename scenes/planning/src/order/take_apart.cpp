@@ -8,7 +8,7 @@
 #include <set>
 #include <tuple>
 
-#include "surface/on_cores.h"
+#include "surface/placed_surface.h"
 
 namespace vps::scenes {
 
@@ -31,7 +31,7 @@ class TakingApart {
     screws_.resize(motions.parts().size());
     legs_.resize(motions.parts().size());
     if (!progress) return;
-    // The progress of each piece of work only says that it goes on, and lets the caller end it.
+    // The progress of a single search has no known end: it only reports activity, and lets the caller cancel.
     const auto count = static_cast<double>(remaining_.size() - fixed_.size());
     progress_ = [this, count, &progress](std::string_view, double) {
       progress("taking apart", 1 - static_cast<double>(remaining_.size() - fixed_.size()) / count);
@@ -65,7 +65,8 @@ class TakingApart {
     return byLegs();
   }
 
-  /// Limits of work that do not depend on the machine: some five seconds for each part, a minute in all.
+  /// Searches paths of several legs. The work limits do not depend on the machine: about five seconds per
+  /// part, a minute in all.
   Removal byLegs() {
     const std::size_t parts = remaining_.size() - fixed_.size();
     const std::uint64_t share = shareOfWork(parts);
@@ -77,7 +78,7 @@ class TakingApart {
     return found.parts.empty() ? groupByLegs() : found;
   }
 
-  /// The first of the smallest sets that has a way.
+  /// The first of the smallest sets that has a path.
   Removal groupByLegs() {
     const std::vector<std::vector<std::size_t>> groups = connectedGroups(motions_, remaining_, fixed_);
     const std::uint64_t share = shareOfWork(groups.size());
@@ -110,7 +111,7 @@ class TakingApart {
     return alone([&](std::size_t part) { return straightWay(part); });
   }
 
-  /// The best of all parts that have a way by themselves.
+  /// The removal with the best score, of all parts that have a path when they move alone.
   template <class WayOf>
   Removal alone(WayOf wayOf) {
     const std::vector<std::size_t> parts = without(remaining_, fixed_);
@@ -129,9 +130,9 @@ class TakingApart {
     return best;
   }
 
-  /// The best direction in which a part leaves all that remain; the likely ones first. A direction in which
-  /// it only leaves because facets may be in each other, as through a hole that is a little too small, is the
-  /// last resort.
+  /// The best direction in which a part passes all remaining parts; likely directions are tried first. A
+  /// direction that needs an allowance for overlapping facets, such as a hole that is a little too small, is
+  /// used only if no other is free.
   std::optional<Way> straightWay(std::size_t part) {
     std::optional<Way> last_resort;
     for (std::vector<std::size_t> directions : {motions_.axesOf(part), motions_.around()}) {
@@ -147,7 +148,7 @@ class TakingApart {
     return last_resort;
   }
 
-  /// The greatest that it needs to pass one of those that remain.
+  /// Greatest allowance that the part needs to pass one of the remaining parts.
   [[nodiscard]] double allowanceOf(std::size_t part, std::size_t direction) const {
     double most_m = 0;
     for (const std::size_t held : remaining_)
@@ -159,8 +160,8 @@ class TakingApart {
     return {slopeOfPart(part, motions_.directions()[d]), last_ == d ? 0 : 1};
   }
 
-  /// As slopeOf(), but a part that has a round fit, also with a part that has left already, goes along it
-  /// rather than across: a nut along its bolt.
+  /// As slopeOf(), but a part that has a round fit, even with a part that has already left, prefers
+  /// directions along this fit to directions across it: a nut leaves along its bolt.
   [[nodiscard]] int slopeOfPart(std::size_t part, const Vec3& direction_W) const {
     constexpr int kUp = 0, kAlongFit = 1, kMore = 2;
     const int slope = slopeOf(motions_, direction_W);
@@ -171,7 +172,8 @@ class TakingApart {
     return is_along ? kAlongFit : slope + kMore;
   }
 
-  /// What stopped it before is asked first. What was free stays free, since parts only go.
+  /// Tests the part that stopped the motion last time first. A direction that was free stays free, since
+  /// parts only leave.
   bool leaves(std::size_t part, std::size_t direction) {
     const auto [known, is_new] = stopped_by_[part].try_emplace(direction, part);
     std::size_t& by = known->second;
@@ -185,7 +187,7 @@ class TakingApart {
     return true;
   }
 
-  /// Searched again only when a part has gone that could have been in the way.
+  /// Searches again only if a part has left since that could have blocked the screw.
   std::optional<Way> screwOf(std::size_t part) {
     Screw& known = screws_[part];
     if (known.is_known && (known.way || known.among == remaining_.size())) return known.way;
@@ -197,7 +199,7 @@ class TakingApart {
     const auto isIn = [](const std::vector<std::size_t>& parts, std::size_t part) {
       return std::ranges::binary_search(parts, part);
     };
-    const auto isCarried = [&](std::size_t part) {  // by what stays
+    const auto isCarried = [&](std::size_t part) {  // by a part that stays
       return std::ranges::any_of(motions_.carriersOf(part), [&](std::size_t carrier) {
         return isIn(remaining_, carrier) && !isIn(removal.parts, carrier);
       });
@@ -226,7 +228,8 @@ class TakingApart {
             removal.parts.front()};
   }
 
-  /// Clearance of its tightest fit with a part that remains, to a micrometre; infinite without one.
+  /// Clearance of the part's tightest fit with a remaining part, rounded to a micrometre; infinite without
+  /// such a fit.
   [[nodiscard]] double loosenessOf(std::size_t part) const {
     double least_m = std::numeric_limits<double>::infinity();
     const std::vector<CheckedFit>& fits = motions_.fitsOf(part);
@@ -238,7 +241,8 @@ class TakingApart {
 
   [[nodiscard]] Disassembly::Blocked blockedOf(std::size_t part) const {
     Disassembly::Blocked blocked{part, {}, !legs_[part].isSpent()};
-    // Those that it meets are named; where it meets none, as a link in a chain, all that stop it.
+    // Blocking parts that touch this part are reported; if there are none, as for a link in a chain, all
+    // blocking parts.
     for (const bool has_to_meet : {true, false}) {
       for (const std::size_t held : remaining_) {
         if (held == part || (has_to_meet && !motions_.areNear(held, part))) continue;
@@ -253,15 +257,15 @@ class TakingApart {
 
   struct Screw {
     bool is_known = false;
-    std::size_t among = 0;  ///< so many parts remained
+    std::size_t among = 0;  ///< number of remaining parts when the search was made
     std::optional<Way> way;
   };
   const PairMotions& motions_;
   std::vector<std::size_t> remaining_, fixed_;
-  /// By part and direction: what stopped it last; itself if nothing did.
+  /// By part and direction: the part that stopped the motion last; the part itself if nothing stopped it.
   std::vector<std::map<std::size_t, std::size_t>> stopped_by_;
   std::vector<Screw> screws_;
-  std::vector<SearchWork> legs_;  ///< of the last search for legs, by part
+  std::vector<SearchWork> legs_;  ///< by part, of its last search for legs
   std::uint64_t work_of_legs_ = 0;
   const std::function<void(const Removal&)>& on_removal_;
   Progress progress_;

@@ -9,12 +9,12 @@
 
 namespace vps::scenes {
 
-/// One part, or several that leave as one.
+/// One part that leaves, or several that leave as one.
 struct Removal {
   std::vector<std::size_t> parts;  ///< ascending
   Way way;
   bool is_carried = false;
-  std::vector<std::size_t> falling;  ///< what stays and loses the last part that carried it
+  std::vector<std::size_t> falling;  ///< parts that stay and lose the last part that carried them
 };
 
 struct Disassembly {
@@ -23,29 +23,29 @@ struct Disassembly {
   struct Blocked {
     std::size_t part;
     std::vector<std::size_t> by;
-    bool is_searched = true;  ///< false: the search of legs ended at its limit of work
+    bool is_searched = true;  ///< false: the search for legs ended at its work limit
   };
   std::vector<Blocked> blocked;
 };
 
-/// Takes parts off the fixed ones, one after the other, by rules in this order: what makes nothing fall;
-/// what needs no allowance for meshes; straight before screws; upwards, along round fits, sideways, down; in
-/// the direction of the one before; the loosest fit, so that pins are in place before what they locate; the
-/// highest; the first. Where no part leaves alone, the smallest set that leaves straight as one does; where
-/// none does, ways of several legs are searched, of parts alone and then of sets, with limits of work for
-/// each and for all. What is left in the end is blocked. On all cores.
-/// @param on_removal  hears of each as it is found
+/// Takes parts off the fixed ones, one after the other. Rules of preference, in this order: no part falls; no
+/// allowance for meshes; straight before screws; upwards, along round fits, sideways, down; the direction of
+/// the previous removal; the loosest fit (so that pins are in place before the parts that they locate); the
+/// highest part; the first part. If no part leaves alone, the smallest set that leaves straight moves as one.
+/// If no set does, paths of several legs are searched, of single parts and then of sets, with work limits for
+/// each search and for all. The parts that remain in the end are blocked. Runs on all cores.
+/// @param on_removal  called with each removal when it is found
 Disassembly takeApart(const PairMotions& motions, const std::vector<std::size_t>& members,
                       const std::vector<std::size_t>& fixed, const Progress& progress,
                       const std::function<void(const Removal&)>& on_removal = {});
 
-/// The smallest set of parts without a fixed one that leaves straight, with its direction: for each part and
-/// direction all that it would push along, of which it needs the least. Empty if there is none.
+/// The smallest set of parts without a fixed one that leaves straight, with its direction. Each part and
+/// direction gives the set of all parts that it would push along. Empty if no set leaves.
 Removal smallestGroup(const PairMotions& motions, const std::vector<std::size_t>& remaining,
                       const std::vector<std::size_t>& fixed, const Progress& progress);
 
-/// Sets of parts without a fixed one, each connected by pairs that are near each other: the smaller first,
-/// and all of those of two or more parts, but 256 at most.
+/// Sets of parts without a fixed one, each connected by pairs that are near each other: all sets of two or
+/// more parts, smaller ones first, at most 256.
 std::vector<std::vector<std::size_t>> connectedGroups(const PairMotions& motions,
                                                       const std::vector<std::size_t>& remaining,
                                                       const std::vector<std::size_t>& fixed);

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "fits/iso_262.h"
+#include "fits/iso_sizes.h"
 #include "overlaps/wire_like.h"
 
 namespace vps::scenes {
@@ -38,7 +38,7 @@ std::string millimetres(double m) {
   return text;
 }
 
-/// Whether all corners of one part lie on the surface of the other.
+/// Whether all vertices of one part lie on the surface of the other.
 bool liesOn(const PlacedSurface& a, const PlacedSurface& b) {
   constexpr double kSame_m = 1e-6;
   const Pose X_BA = b.X_WP.inverse() * a.X_WP;
@@ -47,7 +47,7 @@ bool liesOn(const PlacedSurface& a, const PlacedSurface& b) {
   });
 }
 
-/// Equal parts in one place, perhaps with other triangles.
+/// Whether two parts are equal and at the same pose, possibly with different triangulations.
 bool isDrawnTwice(const PlacedSurface& a, const PlacedSurface& b) {
   constexpr double kSame_m = 1e-6, kSameVolume = 1e-4;
   if ((a.box_W.min - b.box_W.min).norm() > kSame_m || (a.box_W.max - b.box_W.max).norm() > kSame_m)
@@ -57,7 +57,7 @@ bool isDrawnTwice(const PlacedSurface& a, const PlacedSurface& b) {
   return std::abs(of_a_m3 - of_b_m3) <= kSameVolume * std::abs(of_a_m3) && liesOn(a, b) && liesOn(b, a);
 }
 
-/// A spring, belt or seal: a curved wire with much room within its box.
+/// Whether the part is a spring, belt or seal: a curved wire that fills little of its box.
 bool isSlender(const PartSurface& part) {
   constexpr double kMostThick = 0.1, kMostFilled = 0.35, kMostFlat = 0.6;  // assumed
   if (!part.noInside().empty()) return false;
@@ -83,7 +83,7 @@ bool isSlender(const PartSurface& part) {
   return curved_m2 > (1 - kMostFlat) * all_m2 && isWireLike(part.mesh());
 }
 
-/// Two parts that overlap, with what can explain it.
+/// Classifies one overlapping pair.
 class Explained {
  public:
   Explained(const CheckedPair& pair, const std::vector<PlacedSurface>& parts, const CheckResult& checked,
@@ -95,7 +95,7 @@ class Explained {
       if (!is_of_pair || fit.kind != FitKind::Shaft || fit.diametral_clearance_m >= -fit.error_m) continue;
       if (!fit_ || fit.diametral_clearance_m < fit_->diametral_clearance_m) fit_ = fit;
     }
-    // An overlap that is deeper than the fit's is of other faces.
+    // An overlap deeper than the fit's interference belongs to other faces.
     constexpr double kSlack = 1.1;
     if (fit_ && pair.interference_depth_m - pair.error_m > kSlack * 0.5 * interference_m() + 1e-6)
       fit_.reset();
@@ -110,8 +110,8 @@ class Explained {
       out.kind = OverlapKind::Twice;
       out.left_out = isFixed(b) && !isFixed(a) ? pair_.a : pair_.b;
       out.words = "'" + pair_.a + "' and '" + pair_.b +
-                  "' are equal and in one place: is a part drawn twice? '" + out.left_out +
-                  "' is left out as scenery";
+                  "' are equal and at the same pose, probably one part drawn twice; '" + out.left_out +
+                  "' becomes scenery";
       return out;
     }
     if (fit_ && isThread()) return thread(std::move(out));
@@ -120,7 +120,7 @@ class Explained {
       out.changed = fit_->shaft;
       out.press_fit_m = std::ceil((interference_m() + fit_->error_m) * 1e6) * 1e-6;
       out.words = "'" + fit_->shaft + "' is " + millimetres(interference_m()) + " larger than its bore in '" +
-                  fit_->bore + "': taken for a press fit, and declared as press_fit";
+                  fit_->bore + "': assumed to be a press fit, and declared as press_fit";
       return out;
     }
     for (const auto& [flexible, other] : {std::pair(a, b), std::pair(b, a)})
@@ -130,12 +130,13 @@ class Explained {
         out.left_out = parts_[flexible].name;
         out.words = "'" + out.left_out + "' overlaps '" + parts_[other].name + "' by " +
                     millimetres(pair_.interference_depth_m) +
-                    " and is slender and curved: taken for a spring, belt or seal that is drawn undeformed, "
-                    "and left out as scenery";
+                    " and is slender and curved: assumed to be a spring, belt or seal drawn undeformed; it "
+                    "becomes scenery";
         return out;
       }
     out.words = "'" + pair_.a + "' and '" + pair_.b + "' overlap by " +
-                millimetres(pair_.interference_depth_m) + " as drawn; on their ways they may overlap as much";
+                millimetres(pair_.interference_depth_m) +
+                " as drawn; on their paths they may overlap by as much";
     return out;
   }
 
@@ -156,9 +157,10 @@ class Explained {
     return shapeOf(name) && shapeOf(name)->kind == FastenerKind::Nut;
   }
 
-  /// The major diameter of a thread in the minor one of its mate, of a standard size or in that proportion.
+  /// Whether the shaft has the major diameter of a thread and the hole its minor diameter: a standard size,
+  /// or a usual ratio.
   [[nodiscard]] bool isThread() const {
-    constexpr double kLeast = 0.05, kMost = 0.25;  // of the diameter: M64x4 to M1
+    constexpr double kLeast = 0.05, kMost = 0.25;  // share of the diameter, from M64x4 to M1
     if (!isScrew(fit_->shaft) && !isNut(fit_->bore)) return false;
     const std::string size = metricSize(fit_->shaft_m);
     if (!size.empty() && metricHole(fit_->bore_m).starts_with(size)) return true;
@@ -166,14 +168,14 @@ class Explained {
     return share > kLeast && share < kMost;
   }
 
-  /// assumed: no tighter than H7/u6 of ISO 286, which has some 0.1 % of the diameter and 40 um
+  /// Assumed: no tighter than H7/u6 of ISO 286, which has about 0.1 % of the diameter plus 40 um.
   [[nodiscard]] bool isPressFit() const { return interference_m() < 1e-3 * fit_->shaft_m + 40e-6; }
 
   [[nodiscard]] OverlapChoice thread(OverlapChoice out) const {
     out.kind = OverlapKind::Thread;
     out.words = "'" + fit_->shaft + "' (" + millimetres(fit_->shaft_m) + ") is in a smaller hole of '" +
                 fit_->bore + "' (" + millimetres(fit_->bore_m) +
-                "): taken for a thread that is drawn as cylinders";
+                "): assumed to be a thread drawn as cylinders";
     const bool is_hole = isNut(fit_->bore);
     const std::string& name = is_hole ? fit_->bore : fit_->shaft;
     const auto& shape = shapeOf(name);
@@ -186,8 +188,9 @@ class Explained {
                 shape->to_m,
                 shape->radius_m,
                 is_hole ? 0.5 * fit_->shaft_m + kPassingRoom_m : 0.5 * fit_->bore_m - kPassingRoom_m};
-    out.words += "; it follows its axis, and " + std::string(is_hole ? "the hole of '" : "the shank of '") +
-                 name + "' is made " + millimetres(2 * out.resized->to_radius_m) + " wide for that";
+    out.words += "; the screw motion follows the thread's axis, and " +
+                 std::string(is_hole ? "the hole of '" : "the shank of '") + name + "' is made " +
+                 millimetres(2 * out.resized->to_radius_m) + " wide to let it pass";
     return out;
   }
 
@@ -216,7 +219,7 @@ std::vector<OverlapChoice> overlapChoices(const std::vector<PlacedSurface>& part
 std::vector<OverlapChoice> noVolumeChoices(const std::vector<PlacedSurface>& parts,
                                            const std::vector<std::size_t>& fixed) {
   const auto isBody = [](const PlacedSurface& part) {
-    constexpr double kThinnest_m = 1e-6;  // as far as import follows curved faces
+    constexpr double kThinnest_m = 1e-6;  // the accuracy with which import tessellates curved faces
     const Mesh& mesh = part.surface->mesh();
     return part.surface->solid().report().sheet_facets < mesh.triangles.size() &&
            2 * std::abs(massProperties(mesh).volume_m3) > kThinnest_m * area(mesh);
@@ -228,8 +231,8 @@ std::vector<OverlapChoice> noVolumeChoices(const std::vector<PlacedSurface>& par
     OverlapChoice choice;
     choice.a = choice.left_out = parts[i].name;
     choice.kind = OverlapKind::NoVolume;
-    choice.words = "'" + parts[i].name +
-                   "' has no volume, so that it is no body that a hand could carry: left out as scenery";
+    choice.words =
+        "'" + parts[i].name + "' has no volume, so that a hand cannot carry it: it becomes scenery";
     out.push_back(std::move(choice));
   }
   return out;

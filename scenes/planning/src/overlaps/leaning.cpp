@@ -10,7 +10,7 @@
 
 #include <Eigen/Core>
 
-#include "fits/fit_tolerance.h"
+#include "fits/fits.h"
 
 namespace vps::scenes {
 
@@ -18,17 +18,18 @@ namespace {
 
 using Wrench6 = Eigen::Matrix<double, 6, 1>;
 
-/// A point at which a part is pushed, and the unit vector of the push; in the world.
+/// A contact point of a part, and the unit direction of the contact force on it; in the world.
 struct Support {
   Vec3 p_W, n_W;
 };
 
-/// Where the surface of one part lies on another one, at the corners of its triangles and along their edges.
-/// @param side  of the push: 1 on the part whose surface it is, -1 on the other one
+/// Appends the points at which the surface of one part lies on another part, out of the vertices and edges of
+/// its triangles.
+/// @param side  sign of the force direction: 1 if `of` is the supported part, -1 if `other` is
 void addSupports(const PlacedSurface& of, const PlacedSurface& other, double within_m, double side,
                  std::vector<Support>& out) {
   constexpr int kAlongEdge = 8;
-  constexpr double kClear = 0.95;  // length of a gradient at a face; at an edge it is shorter
+  constexpr double kClear = 0.95;  // gradients are unit vectors at a face, shorter at an edge
   const Box near_W = grown(other.box_W, within_m);
   const Solid& solid = other.surface->solid();
   const Pose X_OW = other.X_WP.inverse();
@@ -36,7 +37,7 @@ void addSupports(const PlacedSurface& of, const PlacedSurface& other, double wit
   const auto add = [&](const Vec3& p_W) {
     if (!isWithin(p_W, near_W)) return;
     const Vec3 p = X_OW * p_W;
-    if (std::abs(solid.signedDistance(p, h_m)) > within_m) return;  // no sign is sought where it is farther
+    if (std::abs(solid.signedDistance(p, h_m)) > within_m) return;  // the search ends at h_m, without a sign
     Vec3 n;
     for (int k = 0; k < 3; ++k)
       n[k] = (solid.signedDistance(p + h_m * Vec3::Unit(k)) - solid.signedDistance(p - h_m * Vec3::Unit(k))) /
@@ -56,10 +57,11 @@ void addSupports(const PlacedSurface& of, const PlacedSurface& other, double wit
   }
 }
 
-/// Whether pushes at the points can carry a weight at the centre: non-negative least squares by coordinates.
+/// Whether contact forces at the points can balance a weight at the centre, by non-negative least squares
+/// (coordinate descent).
 bool canCarry(const std::vector<Support>& supports, const Vec3& center_W, const Vec3& up_W, double size_m) {
   constexpr int kSweeps = 300;
-  constexpr double kBalanced = 0.03;  // of the weight, at a lever of the part's size
+  constexpr double kBalanced = 0.03;  // residual, as a share of the weight, at a lever of the part's size
   std::vector<Wrench6> pushes;
   for (const Support& at : supports) {
     Wrench6 push;
@@ -102,7 +104,7 @@ bool tipsOver(const PairMotions& motions, std::size_t part, const std::vector<st
     addSupports(placed, other, within_m, 1, supports);
     addSupports(other, placed, within_m, -1, supports);
   }
-  // Where nothing is found, or too much to tell, what carries it when it sinks is believed.
+  // Without support points, or with too many to test, the part counts as carried.
   if (supports.empty() || supports.size() > kMostSupports) return false;
   const Vec3 center_W = placed.X_WP * placed.surface->solid().mass().com;
   return !canCarry(supports, center_W, up_W, placed.box_W.size().norm());
@@ -133,7 +135,9 @@ bool sinksFromItsPlace(const PairMotions& motions, std::size_t part, const std::
 }
 
 bool leansInHole(const PairMotions& motions, std::size_t part, const std::vector<std::size_t>& held) {
-  constexpr double kLevel = 0.5, kParallel = 0.999;  // of the axes: less than 30 degrees up, and the same one
+  constexpr double kLevel = 0.5,
+                   kParallel =
+                       0.999;  // absolute cosines: axes less than 30 degrees from level, and equal axes
   const PlacedSurface& placed = motions.parts()[part];
   const Vec3& up_W = motions.directions()[motions.up()];
   const auto isHeld = [&](const std::string& name) {

@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "fits/round_faces.h"
+#include "fits/faces.h"
 #include "overlaps/drawn_overlaps.h"
 #include "text/name_words.h"
 
@@ -15,14 +15,16 @@ namespace vps::scenes {
 
 namespace {
 
-constexpr double kRounding = 2e-6;  // sizes of one face in files of six digits differ by so much of the size
+constexpr double kRounding =
+    2e-6;  // relative to the size: rounding of one face's size in files with six digits
 
 bool isLineToLine(const CheckedFit& fit) {
   return fit.kind == FitKind::Shaft &&
          std::abs(fit.diametral_clearance_m) <= fit.error_m + kRounding * fit.shaft_m;
 }
 
-/// True if the pair has a choice, or may overlap, or a part of it is left out or resized there.
+/// True if the pair has a choice, or may overlap, or one of its parts is left out or resized by another
+/// choice.
 bool isSettled(const CheckedFit& fit, const CheckResult& checked, const std::vector<OverlapChoice>& others) {
   const auto isOfPair = [&](const std::string& a, const std::string& b) {
     return (fit.shaft == a && fit.bore == b) || (fit.shaft == b && fit.bore == a);
@@ -38,7 +40,7 @@ bool isSettled(const CheckedFit& fit, const CheckResult& checked, const std::vec
          });
 }
 
-/// The cylinder of the fit's shaft from end to end, grooves included; in the part's frame.
+/// The cylinder of the fit's shaft from end to end, including grooves; in the part's frame.
 std::optional<Resized> thinner(const PlacedSurface& shaft, const CheckedFit& fit) {
   const Vec3 axis_P = shaft.X_WP.R.transpose() * fit.axis_W, at_P = shaft.X_WP.inverse() * fit.at_W;
   const double radius_m = 0.5 * fit.shaft_m, same_m = 1e-5 * fit.shaft_m + fit.error_m;
@@ -59,8 +61,9 @@ std::optional<Resized> thinner(const PlacedSurface& shaft, const CheckedFit& fit
 }
 
 std::string wordsOf(const OverlapChoice& choice, const std::vector<std::string>& bores) {
-  char sizes[80];
-  std::snprintf(sizes, sizeof sizes, "(%.3f mm): taken for a sliding fit, and made %.3f mm wide",
+  char sizes[120];
+  std::snprintf(sizes, sizeof sizes,
+                "(%.3f mm): assumed to be a sliding fit; its diameter is reduced to %.3f mm",
                 2e3 * choice.resized->from_radius_m, 2e3 * choice.resized->to_radius_m);
   return "'" + choice.a + "' is drawn exactly as wide as its " + (bores.size() == 1 ? "hole" : "holes") +
          " in " + listed(bores, bores.size()) + " " + sizes + " so that it can pass";

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fits/fit_tolerance.h"
+#include "fits/fits.h"
 
 namespace vps::scenes {
 
@@ -14,8 +14,8 @@ Motion along(const Vec3& d_W) {
   return {d_W, Vec3::Zero(), false};
 }
 
-/// How far a part goes to each side of an axis, from a place aside of its own; the lesser, and no more than
-/// what sight can tell.
+/// Distance by which a part, displaced by `aside_m`, can move in both directions along an axis: the smaller
+/// one, at most kSightTolerance_m.
 double toBothSides_m(const PairMotions& motions, std::size_t part, const std::vector<std::size_t>& held,
                      const Vec3& aside_m, const Vec3& axis_W) {
   const PlacedSurface placed = displaced(motions.parts()[part], Pose::translation(aside_m));
@@ -24,7 +24,8 @@ double toBothSides_m(const PairMotions& motions, std::size_t part, const std::ve
   return std::min(there_m, search.reach(along(-axis_W), there_m).s);
 }
 
-/// The place along `play_m` that leaves most to all four sides: where walls lean, the room across narrows.
+/// The place along `play_m` with most room in all four directions; between leaning walls the room across
+/// narrows.
 Vec3 roomiest_m(const PairMotions& motions, std::size_t part, const std::vector<std::size_t>& held,
                 const Vec3& play_m, const Vec3& across_W) {
   constexpr int kPlaces = 16;
@@ -45,8 +46,8 @@ Vec3 roomiest_m(const PairMotions& motions, std::size_t part, const std::vector<
 Vec3 toMostRoom_m(const PairMotions& motions, std::size_t part, const std::vector<std::size_t>& held,
                   const Vec3& out_W) {
   constexpr double kAcross = 1e-6;
-  constexpr double kRests_m = 10e-6;      // drawn against that side: as near as counts as contact
-  constexpr double kLeastPlay_m = 40e-6;  // assumed: less is no help to a hand that sees to 0.1 mm
+  constexpr double kRests_m = 10e-6;      // within this distance, the part counts as touching the side
+  constexpr double kLeastPlay_m = 40e-6;  // assumed: less does not help a hand that sees to 0.1 mm
   const PlacedSurface& home = motions.parts()[part];
   const MotionSearch search = motions.search(home, part, held);
   for (const std::size_t axis : motions.axesOf(part)) {

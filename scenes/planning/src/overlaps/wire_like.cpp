@@ -20,7 +20,7 @@ namespace {
 using Cell = std::array<std::int32_t, 3>;
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
-/// The cells of a grid that the surface meets, in ascending order, and which of them touch.
+/// The grid cells that the surface intersects, in ascending order, with their neighbourhoods.
 class SurfaceCells {
  public:
   SurfaceCells(const Mesh& mesh, double cell_m) {
@@ -29,9 +29,9 @@ class SurfaceCells {
       const Vec3 &a = mesh.vertices[triangle[0]], &b = mesh.vertices[triangle[1]],
                  &c = mesh.vertices[triangle[2]];
       const double longest_m = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
-      // Points at three quarters of a cell leave no gap between the cells.
+      // Points every three quarters of a cell leave no gap between the cells.
       const int rows = std::max(1, static_cast<int>(std::ceil(longest_m / (0.75 * cell_m))));
-      // Across a sliver one row of points is enough for many.
+      // A sliver needs few rows of points across its width.
       const double across_m = (b - a).cross(c - a).norm() / std::max(longest_m, 1e-300);
       appendPoints(longestFirst(a, b, c), rows,
                    std::max(1, static_cast<int>(std::ceil(across_m / (0.75 * cell_m)))), origin, cell_m);
@@ -42,7 +42,7 @@ class SurfaceCells {
   [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(cells_.size()); }
   [[nodiscard]] const Cell& operator[](std::uint32_t i) const { return cells_[i]; }
 
-  /// Calls visit(cell, distance in cells) for the 26 neighbours that the surface meets.
+  /// Calls visit(cell, distance in cells) for those of the 26 neighbours that the surface intersects.
   template <class Visit>
   void forNeighbours(std::uint32_t i, const Visit& visit) const {
     for (int k = 0; k < 27; ++k) {
@@ -56,7 +56,7 @@ class SurfaceCells {
   }
 
  private:
-  /// The longest side first.
+  /// The triangle's corners, starting with the longest side.
   static std::array<Vec3, 3> longestFirst(const Vec3& a, const Vec3& b, const Vec3& c) {
     const double ab = (b - a).norm(), bc = (c - b).norm(), ca = (a - c).norm();
     if (ab >= bc && ab >= ca) return {a, b, c};
@@ -75,7 +75,7 @@ class SurfaceCells {
         if (cells_.empty() || cells_.back() != cell) cells_.push_back(cell);
       }
     }
-    constexpr std::size_t kMost = 4'000'000;  // before equal ones are dropped
+    constexpr std::size_t kMost = 4'000'000;  // number of cells at which duplicates are dropped
     if (cells_.size() > kMost + 2 * kept_) {
       sortCells();
       kept_ = cells_.size();
@@ -94,7 +94,7 @@ class SurfaceCells {
   std::size_t kept_ = 0;
 };
 
-/// Distances from one cell along the surface, in cells; infinite for what does not hang together with it.
+/// Distances from one cell along the surface, in cells; infinite for cells that are not connected to it.
 std::vector<double> distancesFrom(const SurfaceCells& cells, std::uint32_t start) {
   std::vector<double> distance(cells.size(), std::numeric_limits<double>::infinity());
   using Entry = std::pair<double, std::uint32_t>;

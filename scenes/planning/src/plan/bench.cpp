@@ -10,7 +10,7 @@ namespace vps::scenes {
 
 namespace {
 
-/// Boxes are those of the bench's frame, whose z is up.
+/// Bounding box in the bench's frame B, whose z axis points up.
 Box boxOf(const PlacedSurface& part, const Pose& X_BW) {
   Box box;
   const Pose X_BP = X_BW * part.X_WP;
@@ -28,26 +28,26 @@ Box shifted(const Box& box, const Vec3& by) {
   return {box.min + by, box.max + by};
 }
 
-/// The box that a box sweeps.
+/// Bounding box of a box that moves by a displacement.
 Box swept(const Box& box, const Vec3& by) {
   Box out = box;
   add(out, shifted(box, by));
   return out;
 }
 
-/// Rectangles around a rectangle, without overlap: four strips like the sails of a windmill, and then the
-/// same around all that lies there.
+/// Places rectangles around a rectangle without overlap: four strips like the sails of a windmill, then the
+/// next ring of four strips around everything placed so far.
 ///
 ///     left | top  ----
-///          +------+
-///     left | here | right
-///     ---- +------+ right
-///           bottom --->
+///          +-------+
+///     left | inner | right
+///     ---- +-------+ right
+///            bottom --->
 class Rings {
  public:
   Rings(const Box& inner, double gap_m) : gap_m_(gap_m) { begin(grown(inner, gap_m)); }
 
-  /// The least corner (x, y) of the next rectangle.
+  /// Returns the lower left corner (x, y) of the next rectangle.
   std::array<double, 2> next(double width_m, double depth_m) {
     const bool is_flat = side_ % 2 == 0;
     const double along_m = is_flat ? width_m : depth_m;
@@ -86,7 +86,7 @@ class Rings {
   double gap_m_;
   Box rect_, all_;
   int side_ = 0;
-  double used_m_ = 0;  ///< of the strip
+  double used_m_ = 0;  ///< used length of the current strip
 };
 
 class Bench {
@@ -109,7 +109,7 @@ class Bench {
       tallest_m_ = std::max(tallest_m_, start.size().z());
     }
     add(reached_, home_);
-    constexpr double kGap = 0.05;  // of the assembly
+    constexpr double kGap = 0.05;  // gap between parts, relative to the size of the assembly
     gap_m_ = kGap * home_.size().maxCoeff();
     level_m_ = reached_.min.z();
     clear_m_ = std::max(reached_.max.z(), level_m_ + tallest_m_) + gap_m_;
@@ -147,8 +147,8 @@ class Bench {
     add(home_, box);
   }
 
-  /// By how much a part at its start moves aside before it can be lifted past all that is in place; none if
-  /// nothing helps.
+  /// Sideways displacement of a part at its start after which it can be lifted past all parts in place; empty
+  /// if no displacement is free.
   [[nodiscard]] std::optional<Vec3> wayUp(const Box& start, const std::vector<Box>& in_place) const {
     const auto isFree = [&](const Box& box, const Vec3& by) {
       const Box way = swept(box, by);
@@ -166,7 +166,7 @@ class Bench {
     return std::nullopt;
   }
 
-  /// Lift, across, down, aside: then the way that it had.
+  /// Prepends to the step's path: lift, move across, lower, move aside.
   void begin(PlannedStep& step, const Box& start, const Vec3& aside, const Vec3& corner) const {
     const Vec3 lie = corner - start.min;
     const Vec3 lifted(lie.x(), lie.y(), clear_m_ - start.min.z()), over(aside.x(), aside.y(), lifted.z());

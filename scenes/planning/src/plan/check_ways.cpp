@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is wrong with the steps of a scene. What is deeper than allowed is decided by measured depths at
-// poses, as an independent judge of a plan; a search along the way only finds the poses, so that a thin wall
-// between two of them is found as well, up to the limits of the search (follow()).
+// Finds faults in the steps of a scene. Measured depths at poses decide whether a part is deeper than
+// allowed, so that the check does not depend on the planner. A motion search along the path only adds poses,
+// so that a thin wall between two regular poses is also found, up to the search limits of follow().
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "check/check_placed.h"
-#include "surface/on_cores.h"
 #include "surface/placed_surface.h"
 #include "ways/pair_motions.h"
 #include "ways/way_clearance.h"
@@ -34,9 +33,9 @@ namespace {
 
 constexpr int kPosesOfLeg = 24;
 constexpr double kTouch_m = 10e-6;  // as StepResult::penetration_limit_m without a clearance
-constexpr double kFall_m = 1e-3;    // what sinks by less is carried, as in planning
+constexpr double kFall_m = 1e-3;    // a part that sinks by less counts as carried, as in planning
 
-/// A piece of a way that one motion describes: from a pose on.
+/// A piece of a path with one motion that starts at a pose.
 struct WayPiece {
   Pose X_WP;
   Motion motion_W;
@@ -56,7 +55,7 @@ class WayCheck {
     held_ = std::make_shared<const StandingParts>(std::move(standing));
   }
 
-  /// Where the way is deepest in a part, beyond what is drawn; no part if it is free.
+  /// The fault with the greatest depth beyond the allowed depth on the path; no part if the path is free.
   [[nodiscard]] WayFault deepest() const {
     WayFault worst;
     for (const Pose& X_WP : poses_W()) consider(X_WP, worst);
@@ -64,7 +63,7 @@ class WayCheck {
     return worst;
   }
 
-  /// Whether it falls from its target.
+  /// Whether the part falls from its target.
   [[nodiscard]] bool falls(const Vec3& down_W) const {
     const PlacedSurface placed = placedAt(step_.X_WP_target);
     SearchWork work{kMostWork};
@@ -74,7 +73,7 @@ class WayCheck {
   }
 
  private:
-  static constexpr std::uint64_t kMostWork = 2'000'000;  // some seconds for a leg
+  static constexpr std::uint64_t kMostWork = 2'000'000;  // a few seconds per leg
 
   [[nodiscard]] Overlap depthAt(const PlacedSurface& held, const Pose& X_WP) const {
     return deepestOverlap(part_.surface->overlap(), X_WP, held.surface->overlap(), held.X_WP);
@@ -96,12 +95,12 @@ class WayCheck {
     }
   }
 
-  /// Goes on until something stops the part, and measures there and at eight poses up to 1.3 mm beyond; the
-  /// same again from there. It ends early once a fault is found, and unfinished at the limit of work or of
-  /// stops: what follows is then known at the 24 poses of the leg alone.
+  /// Searches along a piece until the part is stopped, measures there and at eight poses up to 1.3 mm beyond,
+  /// and continues from the last of these. The search ends early once a fault is found, and incomplete at the
+  /// limit of work or of stops; the rest of the leg is then checked only at its 24 regular poses.
   void follow(WayPiece piece, WayFault& worst) const {
     constexpr int kStopsWithFault = 16, kBeyond = 8;
-    constexpr int kMostStops = 1024;  // 1.3 m of a way that is stopped all along
+    constexpr int kMostStops = 1024;  // 1.3 m of a path on which the part is stopped everywhere
     SearchWork work{kMostWork};
     for (int stop = 0; piece.most > 0; ++stop) {
       if (stop >= (worst.part.empty() ? kMostStops : kStopsWithFault) || work.isSpent()) return;
@@ -115,7 +114,8 @@ class WayCheck {
         s = std::min(piece.most, reach.s + (1 << k) * kTouch_m / speed);
         consider(piece.motion_W.at(s) * piece.X_WP, worst);
       }
-      // A turn about its axis and a straight motion stay what they are from there on.
+      // A straight motion and a turn about a fixed axis stay the same motion from the new pose on; the centre
+      // advances.
       piece.X_WP = piece.motion_W.at(s) * piece.X_WP;
       if (piece.motion_W.is_turn)
         piece.motion_W.center += piece.motion_W.forward_m * s * piece.motion_W.direction;
@@ -123,7 +123,7 @@ class WayCheck {
     }
   }
 
-  /// Of the fastest corner of the part's box.
+  /// Upper bound of the speed of the box's corners.
   [[nodiscard]] double speedOf(const WayPiece& piece) const {
     const Vec3 middle_W = piece.X_WP * part_.surface->box().center();
     return piece.motion_W.velocity(middle_W).norm() + 0.5 * part_.surface->box().size().norm();
@@ -141,7 +141,7 @@ class WayCheck {
     std::vector<Pose> poses;
     for (std::size_t leg = 0; leg + 1 < stops.size(); ++leg) {
       const bool is_turned = step_.motion == StepMotion::Screw && leg + 2 == stops.size();
-      if (is_turned) poses.push_back(stops[leg]);  // from where the hand begins to turn it
+      if (is_turned) poses.push_back(stops[leg]);  // the pose at which the hand begins to turn the screw
       for (int i = 0; i < kPosesOfLeg; ++i) {
         const double share = static_cast<double>(i) / kPosesOfLeg;
         poses.push_back(is_turned ? screwed(1 - share, stops[leg])
@@ -169,16 +169,16 @@ class WayCheck {
     return pieces;
   }
 
-  /// In how many pieces the part's centre stays within 2 um of its straight line where each is a screw
-  /// motion.
+  /// Number of screw motions that approximate the leg so that the part's centre stays within 2 um of its
+  /// straight line.
   [[nodiscard]] int piecesOf(const Pose& from, const Pose& to) const {
     constexpr double kOff_m = 2e-6;
     constexpr int kMost = 64;
     const double turn_rad = rotationVector(to.R * from.R.transpose()).norm();
     const double way_m = (to * center_P_ - from * center_P_).norm();
     if (turn_rad < kStill || way_m < kOff_m) return 1;
-    // An arc of radius r and angle t over a chord c = r t rises r t^2 / 8 = c t / 8 above it; n pieces have c
-    // / n and t / n.
+    // An arc of radius r and angle t over a chord c = r t rises by r t^2 / 8 = c t / 8; with n pieces, c and
+    // t become c / n and t / n.
     return std::clamp(static_cast<int>(std::ceil(std::sqrt(way_m * turn_rad / (8 * kOff_m)))), 1, kMost);
   }
 
@@ -196,7 +196,8 @@ class WayCheck {
     pieces.push_back({from, {n, center, true, n.dot(way) / turn_rad}, turn_rad});
   }
 
-  /// As the hand moves it: its centre on a straight line.
+  /// Pose of the leg at a share of its length; the part's centre moves on a straight line, as the hand moves
+  /// it.
   [[nodiscard]] Pose between(const Pose& from, const Pose& to, double share) const {
     const Pose X_PG = Pose::translation(center_P_);
     return interpolate(from * X_PG, to * X_PG, share) * X_PG.inverse();
@@ -210,7 +211,7 @@ class WayCheck {
     return 2 * std::numbers::pi * out_W.norm() / step_.pitch_m;
   }
 
-  /// A share of the way out from the target, along the thread.
+  /// Pose on the thread at a share of the way from the target out to `from`.
   [[nodiscard]] Pose screwed(double share, const Pose& from) const {
     const Vec3 out_W = share * (from * center_P_ - step_.X_WP_target * center_P_);
     if (out_W.norm() < kStill || step_.pitch_m == 0) return step_.X_WP_target;
@@ -234,7 +235,7 @@ std::vector<std::size_t> inPlaceBefore(const Scene& scene, std::size_t step) {
   return held;
 }
 
-/// Whether the part that is in the way would pass if this step came first.
+/// Whether the blocking part would pass if this step came before its own.
 bool wouldPassLater(const Scene& scene, const std::vector<PlacedSurface>& placed, std::size_t step,
                     const std::string& against) {
   for (std::size_t i = 0; i < step; ++i)
@@ -258,7 +259,7 @@ WayFault faultOf(const Scene& scene, const std::vector<PlacedSurface>& placed, s
   return fault;
 }
 
-/// The ways of a scene as those of a plan.
+/// Converts the paths of a scene to a planned assembly.
 PlannedAssembly asPlanned(const Scene& scene) {
   PlannedAssembly out{scene.name, {}, {}, {}, {}, {}};
   for (const ScenePart& part : scene.parts)
@@ -283,7 +284,7 @@ PlannedAssembly asPlanned(const Scene& scene) {
 void addLostClearances(const Scene& scene, const std::vector<PlacedSurface>& placed,
                        const std::map<std::string, double>& planned_m, const Progress& progress,
                        std::vector<WayFault>& of_step) {
-  constexpr double kSame_m = 2e-6, kSameShare = 2e-3;  // each is measured to within half of that
+  constexpr double kSame_m = 2e-6, kSameShare = 2e-3;  // each clearance is measured to within half of that
   CheckSettings settings;
   settings.has_play = false;
   const CheckResult checked = checkPlaced(scene.name, placed, settings, progress);
@@ -309,7 +310,7 @@ std::vector<WayFault> checkWays(const Scene& scene, const Progress& progress,
   const std::vector<DrawnPart> drawn = drawnParts(scene);
   const std::vector<PlacedSurface> placed = placedSurfaces(drawn, progress);
   std::vector<WayFault> of_step(scene.steps.size());
-  forEachOnCores(scene.steps.size(), progress, "checking the ways",
+  forEachOnCores(scene.steps.size(), progress, "checking the paths",
                  [&](std::size_t i) { of_step[i] = faultOf(scene, placed, i); });
   if (!planned_clearance_m.empty()) addLostClearances(scene, placed, planned_clearance_m, progress, of_step);
   std::erase_if(of_step, [](const WayFault& fault) { return fault.part.empty(); });

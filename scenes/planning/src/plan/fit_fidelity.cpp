@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Voxels of a scene with steps, by the sizes of its parts and fits and the memory that they take.
+// Chooses voxels for a scene with steps, from the sizes of its parts and fits and the memory of the models.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -18,14 +18,14 @@ namespace vps::scenes {
 
 namespace {
 
-constexpr double kStep = 1.4142135623730951;  // ratio of voxel sizes: half of the memory
-constexpr double kFineShare = 0.2;            // of the memory, for voxels finer than the preset's
+constexpr double kStep = 1.4142135623730951;  // ratio of successive voxel sizes; each step halves the memory
+constexpr double kFineShare = 0.2;            // share of the memory limit for voxels finer than the preset's
 
 double modelBytes(const Scene& scene) {
   return static_cast<double>(estimate(scene, ModelPurpose::Assemble, {}).cost.most.bytes);
 }
 
-/// A scene file that leaves the voxel open may state the spacing.
+/// True if the scene file leaves the voxel open but states the spacing, which is then kept.
 bool keepsSpacing(const Scene& scene) {
   return scene.chooses_voxel && !scene.chooses_spacing;
 }
@@ -35,9 +35,9 @@ void setVoxel(Scene& scene, double voxel_m) {
   if (!keepsSpacing(scene)) scene.fidelity.spacing_m = usualSpacing_m(scene);
 }
 
-/// Coarser voxels, in steps up to the limit, until the models fit; the memory goes with the square of the
-/// voxel.
-/// @return the memory
+/// Enlarges the voxels in steps, up to a limit, until the models fit into the memory; the memory is inversely
+/// proportional to the square of the voxel.
+/// @return memory of the models [bytes]
 double coarsen(Scene& scene, double most_bytes, double coarsest_m) {
   double bytes = modelBytes(scene);
   while (bytes > most_bytes && scene.fidelity.voxel_m < coarsest_m) {
@@ -48,7 +48,7 @@ double coarsen(Scene& scene, double most_bytes, double coarsest_m) {
   return bytes;
 }
 
-/// The largest voxel that can help: the largest part is kVoxelsAcross of them.
+/// Upper limit of the voxel: the largest part is kVoxelsAcross voxels across.
 double coarsest_m(const Scene& scene) {
   double size_m = 0;
   for (const ScenePart& part : scene.parts)
@@ -59,8 +59,9 @@ double coarsest_m(const Scene& scene) {
 /// The least size that has to be resolved.
 struct LeastSize {
   double size_m = std::numeric_limits<double>::infinity();
-  std::string name;   ///< of the part, quoted
-  std::string words;  ///< of a fit: "the gap in 'gear' of 100 um"; empty: the part's size across
+  std::string name;  ///< name of the part
+  std::string
+      words;  ///< name of a fit: "the gap in 'gear' of 100 um"; empty: the least size is that of a part
 };
 
 LeastSize leastSize(const Scene& scene) {
@@ -108,15 +109,15 @@ std::string fitFidelity(Scene& scene, double most_bytes) {
   std::string words = "voxels of " + lengthInWords(voxel_m);
   if (voxel_m > usual.voxel_m)
     words +=
-        ": with " + lengthInWords(usual.voxel_m) + " the models would take some " + megabytes(usual_bytes);
+        ": with " + lengthInWords(usual.voxel_m) + " the models would take about " + megabytes(usual_bytes);
   const std::string size = lengthInWords(least.size_m);
   if (is_missed)
     words += "; " + (least.words.empty() ? "'" + least.name + "', " + size + " across," : least.words) +
-             " is less than eight of them, so that its contacts may be missed, and smaller ones would "
-             "take much memory: plan it in a scene of its own, or set [fidelity]";
+             " is less than eight voxels, so that its contacts may be missed; smaller voxels would take too "
+             "much memory: plan this part in a scene of its own, or set [fidelity]";
   else if (voxel_m < usual.voxel_m)
-    words += ", since " +
-             (least.words.empty() ? "'" + least.name + "' is " + size + " across" : least.words + " is met");
+    words += ", since " + (least.words.empty() ? "'" + least.name + "' is " + size + " across"
+                                               : least.words + " has to be resolved");
   return words;
 }
 

@@ -10,7 +10,7 @@
 #include <set>
 
 #include "check/check_placed.h"
-#include "core/wall_clock.h"
+#include "core/machine.h"
 #include "order/base_part.h"
 #include "order/fasteners_in.h"
 #include "order/precedence.h"
@@ -19,7 +19,7 @@
 #include "overlaps/line_to_line.h"
 #include "overlaps/room_beside.h"
 #include "plan/bench.h"
-#include "surface/on_cores.h"
+#include "surface/placed_surface.h"
 #include "vps/errors.h"
 #include "ways/way_clearance.h"
 
@@ -54,7 +54,7 @@ std::size_t PlanResult::blocked() const {
 
 namespace {
 
-/// How far a box goes along d until it has left another one; 0 if it never meets it.
+/// Distance along d until a moving box has left another box; 0 if it never meets that box.
 double leavingDistance(const Box& moving, const Box& held, const Vec3& d) {
   constexpr double kAcross = 1e-9;  // rounding of a direction along an axis
   double apart_m = std::numeric_limits<double>::infinity();
@@ -69,9 +69,9 @@ double leavingDistance(const Box& moving, const Box& held, const Vec3& d) {
   return apart_m;
 }
 
-/// How far parts go on their last leg until they have left the boxes of all that stay, and half as far as
-/// they are long. Of a screw from home on: it starts as it stands at home, and a hand turns it onto its
-/// thread, so that it has to be outside of it.
+/// Distance that parts move on their last leg until they have left the boxes of all held parts, plus half of
+/// their own length. For a screw, measured from its target without turning: a hand starts it outside its mate
+/// and turns it onto its thread.
 double leavingDistance(const PairMotions& motions, const Removal& removal,
                        const std::vector<std::size_t>& held) {
   const Vec3& d = removal.way.legs.back().motion.direction;
@@ -93,7 +93,7 @@ class Planner {
     for (const PlacedSurface& part : motions.parts()) names_.insert(part.name);
   }
 
-  /// Plans the members, and the subassemblies that they need, after it.
+  /// Plans the members, then the subassemblies that the plan needs.
   void plan(const std::string& name, const std::vector<std::size_t>& members, std::vector<std::size_t> fixed,
             std::string reason, std::vector<PlannedAssembly>& out) {
     if (fixed.empty()) {
@@ -155,7 +155,7 @@ class Planner {
     const Vec3& out_W = way.legs.back().motion.direction;
     const double out_m = leavingDistance(motions_, removal, held);
     step.insertion_W = way.kind == WayKind::Legs ? insertionOf(way) : Vec3(-out_W);
-    if (way.kind == WayKind::Screw) {  // a hand turns a screw by itself
+    if (way.kind == WayKind::Screw) {  // the virtual hand turns a screw without way points
       step.before_W = {Pose::translation(out_m * out_W)};
       return step;
     }
@@ -180,8 +180,8 @@ class Planner {
     return way.legs.front().motion.is_turn ? Vec3(Vec3::Zero()) : Vec3(-way.legs.front().motion.direction);
   }
 
-  /// Poses between, at most an eighth of a turn apart, and so that the part's centre, which a hand moves on a
-  /// straight line from one to the next, stays within 2 um of its circle.
+  /// Adds poses along a turn, at most an eighth of a turn apart. The hand moves the part's centre on a
+  /// straight line between poses; the poses are close enough to keep it within 2 um of its circle.
   static void appendTurn(const Leg& leg, const Pose& from_W, const Vec3& center_W, std::vector<Pose>& out) {
     if (!leg.motion.is_turn) return;
     constexpr double kMost_rad = 0.79, kLeast_rad = 0.05, kOff_m = 2e-6;
@@ -197,7 +197,7 @@ class Planner {
   std::set<std::string> names_;
 };
 
-/// Keeps the motions that were found, whichever way planning ends.
+/// Saves the motions found so far, also if planning ends by an exception.
 class Keeping {
  public:
   Keeping(PairMotions& motions, const PlanSettings& settings) : motions_(motions), found_(settings.found) {
@@ -220,7 +220,7 @@ std::string wordsOf(const CheckedFit& fit) {
   return toText(fit.kind) + (standard.empty() ? "" : " " + standard);
 }
 
-/// What `check` found near each other, with what stops what in the likely directions.
+/// Pairs that `check` found near each other, with the likely directions in which one blocks the other.
 std::vector<PlannedContact> contactsOf(const PairMotions& motions, const CheckResult& checked,
                                        const Progress& progress) {
   std::map<std::string, std::size_t> index;
@@ -241,7 +241,7 @@ std::vector<PlannedContact> contactsOf(const PairMotions& motions, const CheckRe
   for (const CheckedFit& fit : checked.fits) pairOf(fit.shaft, fit.bore).fits.push_back(wordsOf(fit));
   std::vector<PlannedContact> out;
   for (auto& [key, contact] : by_pair) out.push_back(std::move(contact));
-  forEachOnCores(out.size(), progress, "who stops whom", [&](std::size_t i) {
+  forEachOnCores(out.size(), progress, "finding blocked directions", [&](std::size_t i) {
     const std::size_t a = index.at(out[i].a), b = index.at(out[i].b);
     for (const std::size_t d : motions.axesOf(a))
       (motions.stops(b, a, d) ? out[i].blocked_W : out[i].free_W).push_back(motions.directions()[d]);
@@ -267,7 +267,7 @@ std::vector<std::size_t> indicesOf(const std::vector<std::string>& names,
   for (const std::string& name : names) {
     const auto found = std::ranges::find(parts, name, &DrawnPart::name);
     if (found == parts.end())
-      throw LoadError("", "", "'" + name + "' is to be fixed, but is not the name of a part");
+      throw LoadError("", "", "'" + name + "' should be fixed, but no part has this name");
     out.push_back(static_cast<std::size_t>(found - parts.begin()));
   }
   std::ranges::sort(out);
@@ -309,7 +309,7 @@ PlanResult planAssembly(const std::string& name, const std::vector<DrawnPart>& p
   std::erase_if(members, [&](std::size_t part) {
     return std::ranges::binary_search(left_out, part) && !std::ranges::binary_search(fixed, part);
   });
-  Planner(motions, progress, settings.found).plan(name, members, fixed, "as asked for", result.assemblies);
+  Planner(motions, progress, settings.found).plan(name, members, fixed, "as requested", result.assemblies);
   const Placing placing{placed, checked, settings.up_W};
   for (PlannedAssembly& assembly : result.assemblies) {
     if (settings.has_bench) layOnBench(placing, assembly);

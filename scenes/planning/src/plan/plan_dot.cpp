@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The graph of precedence in the DOT language of Graphviz.
+// The precedence graph in the DOT language of Graphviz.
 #include <algorithm>
 #include <cstddef>
 #include <string>

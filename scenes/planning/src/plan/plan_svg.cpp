@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The graph of precedence as a picture: each step right of all that come before it.
+// The precedence graph as a picture: each step is placed right of all steps that come before it.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -13,7 +13,8 @@ namespace vps::scenes {
 namespace {
 
 constexpr double kHeight = 26, kRow = 40, kBetween = 70, kMargin = 24, kTitle = 34;
-constexpr double kLetter = 7.6;  // of a sans-serif face of 13 px: assumed, wide enough for most names
+constexpr double kLetter =
+    7.6;  // assumed width of a letter in a sans-serif font of 13 px, enough for most names
 
 std::string xmlText(const std::string& text) {
   std::string out;
@@ -32,7 +33,7 @@ std::string xmlText(const std::string& text) {
   return out;
 }
 
-/// Characters of UTF-8 text.
+/// Number of characters in UTF-8 text.
 std::size_t lettersOf(const std::string& text) {
   return static_cast<std::size_t>(
       std::ranges::count_if(text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
@@ -50,7 +51,7 @@ struct Edge {
   std::string style;
 };
 
-/// The nodes of an assembly in columns.
+/// Places the nodes of an assembly in columns.
 class Drawing {
  public:
   explicit Drawing(const PlannedAssembly& assembly) {
@@ -104,10 +105,10 @@ class Drawing {
   }
 
  private:
-  /// Columns by the longest chain before a node; in a column, by the middle of what comes before, so that
-  /// lines cross less, and in the order of the steps.
+  /// The column is the length of the longest chain before a node. Within a column, nodes are sorted by the
+  /// mean row of their predecessors, so that lines cross less, and then by step.
   void place() {
-    // A step comes after all that precede it, so that one pass in that order is enough.
+    // Steps are sorted after their predecessors, so one pass is enough.
     for (std::size_t to = 0; to < nodes_.size(); ++to)
       for (const Edge& edge : edges_)
         if (edge.to == to) nodes_[to].column = std::max(nodes_[to].column, nodes_[edge.from].column + 1);
@@ -166,10 +167,10 @@ std::string planSvg(const PlanResult& plan) {
   const double legend = height + 0.5 * kRow;
   char text[240];
   std::snprintf(text, sizeof text, "<text class='note' x='%.0f' y='%.0f'>", kMargin, legend);
-  body +=
-      text + std::string(
-                 "line: later it has no way; dashed: the later one stands on it; grey: free; bold: begins "
-                 "there; red: cannot be taken off</text>\n");
+  body += text + std::string(
+                     "line: the later step has no path if it comes first; dashed: the earlier part carries "
+                     "the later one; "
+                     "grey: free; bold: base; red: blocked</text>\n");
   height += kRow;
   width = std::max(width, 720.0);
   std::snprintf(

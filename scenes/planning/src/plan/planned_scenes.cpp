@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A plan as scenes that can be run.
+// Converts a plan into scenes that can be run.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -13,10 +13,10 @@ namespace vps::scenes {
 
 namespace {
 
-/// Moves the corners of a cylinder, and of chamfers at its ends, that are farther out (in a hole: farther in)
-/// than it is to be.
+/// Moves the vertices of a cylinder, and of chamfers at its ends, to the new radius if they lie outside it
+/// (for a hole: inside it).
 void resize(Mesh& mesh, const Resized& to) {
-  constexpr double kOn = 1e-3;  // of the radius
+  constexpr double kOn = 1e-3;  // relative to the radius
   const bool is_wider = to.to_radius_m > to.from_radius_m;
   const double reach_m = is_wider ? 0.1 * to.from_radius_m : to.from_radius_m;
   for (Vec3& x : mesh.vertices) {
@@ -61,7 +61,7 @@ class SceneMaker {
       out.steps.push_back(stepOf(step, out.parts.size() - 1, out.parts.back().X_WP));
       if (isDrawnThrough(step, in_place)) {
         out.steps.back().timeout_s = kProven_s;
-        out.steps.back().is_held = true;  // nor need it fall for long
+        out.steps.back().is_held = true;  // a blocked part is not released
       }
       in_place.insert(step.parts.begin(), step.parts.end());
     }
@@ -77,10 +77,10 @@ class SceneMaker {
 
  private:
   using Pair = std::pair<std::string, std::string>;
-  /// assumed: parts that are drawn this deep in each other are blocked whatever the hand does, and a person
-  /// looks at the drawing, not at where the hand got stuck
+  /// Assumed: parts that are drawn this deep in each other are blocked whatever the hand does, and the user
+  /// needs to correct the drawing.
   static constexpr double kDrawnThrough_m = 1e-3;
-  static constexpr double kProven_s = 0.5;  ///< the hand's time for a step that is proven to be blocked
+  static constexpr double kProven_s = 0.5;  ///< time limit of a step that is proven to be blocked
 
   [[nodiscard]] double depthOf(const Pair& pair) const {
     double depth_m = 0;
@@ -99,7 +99,7 @@ class SceneMaker {
     });
   }
 
-  /// Where it belongs.
+  /// The part at its target.
   [[nodiscard]] ScenePart partNamed(const std::string& name) const {
     const std::size_t i = index_.at(name);
     ScenePart part = scene_.parts[i];
@@ -115,7 +115,7 @@ class SceneMaker {
     return part;
   }
 
-  /// The parts of a subassembly as one, in the frame of the first.
+  /// The parts of a subassembly as one part, in the frame of the first.
   [[nodiscard]] ScenePart united(const PlannedStep& step) const {
     std::vector<ScenePart> parts;
     for (const std::string& name : step.parts) parts.push_back(partNamed(name));
@@ -141,12 +141,12 @@ class SceneMaker {
     return step;
   }
 
-  /// The usual time, the hand's time on the way, with the device recentred every 0.2 m, as much again, and
-  /// two rounds of all searches on the last leg, or on the last two. On the last leg it goes at a third of
-  /// its speed, as it may meet an edge at any time.
+  /// Time limit of a step: the default limit, twice the hand's time for the path (with the device recentred
+  /// every 0.2 m), and two rounds of searches on each of the last legs. The hand moves at a third of its
+  /// speed on the last leg, since it may meet an edge there.
   [[nodiscard]] double timeFor(const SceneStep& step) const {
     constexpr double kBetween_m = 0.2, kRecentre_s = 2, kLastLeg = 3;
-    // Measured: a slide is on its dovetail after 52 s, in the second round.
+    // Measured: a slide reaches its dovetail after 52 s, in the second round of searches.
     constexpr double kSearches_s = 40;
     double way_m = 0;
     Vec3 from = step.X_WP_start.p;
@@ -169,7 +169,7 @@ class SceneMaker {
   std::map<std::string, std::string> fasteners_;
   std::map<std::string, std::vector<const OverlapChoice*>> changes_;  ///< by part
   std::set<std::string> left_out_;
-  std::set<Pair> clashes_;  ///< drawn through each other
+  std::set<Pair> clashes_;  ///< pairs whose drawn overlap exceeds kDrawnThrough_m
 };
 
 }  // namespace

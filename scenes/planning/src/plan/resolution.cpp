@@ -20,17 +20,17 @@ namespace vps::scenes {
 
 namespace {
 
-/// What the models of one part may take: as much as those of a cube of kLargestUsual_m.
+/// Memory limit of the models of one part: that of a cube of kLargestUsual_m.
 double mostBytes() {
   static const double bytes =
       expectedMapBytes(makeBox(Vec3::Constant(kLargestUsual_m)), voxMapSettings(Fidelity()));
   return bytes;
 }
 
-/// A voxel, and what it leaves unresolved.
+/// A voxel size, and what it does not resolve.
 struct Choice {
   double voxel_m = 0;
-  std::string missed;  ///< what is less than kVoxelsAcross voxels, and why; empty: nothing is
+  std::string missed;  ///< the size below kVoxelsAcross voxels, in words; empty: all sizes are resolved
 };
 
 Choice choose(const MeetingSize& size, double fitting_m) {
@@ -47,7 +47,8 @@ double fitting_m(const ScenePart& part, double wanted_m) {
   return fittingVoxel_m(part.part.mesh, settings, mostBytes());
 }
 
-/// "voxels of 1.5 mm for 'a', 'b', 'c' and 4 others": one clause for each voxel, and whether it serves.
+/// Composes "voxels of 1.5 mm for 'a', 'b', 'c' and 4 others": one clause per voxel size, with a warning if
+/// it is too coarse.
 class ChoiceWords {
  public:
   void add(const std::string& of, const Choice& choice) {
@@ -67,16 +68,16 @@ class ChoiceWords {
       words += "voxels of " + group.voxel + " for " + listOf(group.names);
       if (!group.missed.empty())
         words +=
-            " (" + group.missed + " is less than eight of them, so that its contacts may be missed" +
-            (group.names.size() > 1 ? ", and so of the others" : "") +
-            "; smaller ones would take more memory than is chosen by itself: [fidelity] voxel sets them)";
+            " (" + group.missed + " is less than eight voxels, so that its contacts may be missed" +
+            (group.names.size() > 1 ? ", also on the other parts" : "") +
+            "; smaller voxels would exceed the memory limit of the automatic choice: set [fidelity] voxel)";
     }
     return words;
   }
 
  private:
   struct Group {
-    std::string voxel, missed;  ///< of the first of its parts
+    std::string voxel, missed;  ///< missed: of the group's first part
     std::vector<std::string> names;
   };
 
@@ -92,7 +93,7 @@ class ChoiceWords {
   std::vector<Group> groups_;
 };
 
-/// Chooses for the parts of a scene without steps.
+/// Chooses voxels for the parts of a scene without steps.
 class FreeParts {
  public:
   explicit FreeParts(Scene& scene)
@@ -111,7 +112,7 @@ class FreeParts {
   }
 
  private:
-  /// A choice, and whether memory made it coarser.
+  /// A choice, and whether the memory limit made it coarser.
   struct Capped {
     Choice choice;
     bool is_capped = false;
@@ -155,19 +156,20 @@ class FreeParts {
     return static_cast<double>(estimate(scene_, ModelPurpose::Simulate, {}).cost.most.bytes);
   }
 
-  /// Coarser voxels, by one factor, for all whose voxels memory chose, until all models together take no more
-  /// than those of a planned scene may: many large parts.
-  /// @return why, in words; empty: nothing was changed
+  /// Enlarges all voxels that the memory limit chose by one common factor, until all models together take no
+  /// more than kMostModels_bytes. Needed for scenes with many large parts.
+  /// @return the reason in words; empty: nothing was changed
   std::string coarsenForSum() {
     const bool is_any = fixed_.is_capped || std::ranges::any_of(own_, &Capped::is_capped);
     double bytes = is_any ? modelBytes() : 0;
     if (bytes <= kMostModels_bytes) return "";
     std::array<char, 160> words{};
     std::snprintf(words.data(), words.size(),
-                  "; larger ones than for each large part alone, since all models would take some %.0f MB",
+                  "; larger ones than each large part alone needs, since all models would take about %.0f MB",
                   1e-6 * bytes);
-    constexpr int kMostTries = 20;     // each one leaves about the capped parts' share of the excess
-    constexpr double kSurplus = 1.02;  // the estimate goes with the square of the voxel, up to bricks
+    constexpr int kMostTries = 20;  // each try removes about the capped parts' share of the excess
+    constexpr double kSurplus =
+        1.02;  // the estimate is only about proportional to 1 / voxel^2, because of bricks
     for (int i = 0; i < kMostTries && bytes > kMostModels_bytes; ++i) {
       coarsen(std::sqrt(kSurplus * bytes / kMostModels_bytes));
       bytes = modelBytes();
@@ -195,7 +197,7 @@ class FreeParts {
   std::vector<MeetingSize> sizes_;
   MeetingSize least_fixed_;
   Capped fixed_;
-  std::vector<Capped> own_;  ///< by part; of those that move
+  std::vector<Capped> own_;  ///< by part; only for movable parts
 };
 
 }  // namespace

@@ -11,7 +11,8 @@ namespace vps::scenes {
 
 namespace {
 
-constexpr double kRounding_m = 1e-9;  // assumed: of a fit's sizes, which come from doubles of metres
+constexpr double kRounding_m =
+    1e-9;  // assumed rounding of a fit's sizes, which are computed from doubles of metres
 
 bool isMoved(const Scene& scene, const std::string& name) {
   return std::ranges::any_of(scene.steps,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whether parts of given sizes and places can be together at all, by geometry alone.
+// Tests by geometry alone whether parts of given sizes and placements fit together.
 #pragma once
 
 #include <string>
@@ -10,27 +10,27 @@
 
 namespace vps::scenes {
 
-/// Why a part that a step moves cannot be where it belongs, by exact distance; empty: nothing is in its way.
+/// Reason why a moved part cannot be at its target, by exact distance; empty: nothing blocks it.
 struct DrawnMisfit {
   std::string part, other, reason;
   [[nodiscard]] bool isFound() const { return !reason.empty(); }
 };
 
-/// Looks for misfits in variants of one scene, of which it has prepared the parts.
+/// Finds misfits in variants of one scene. The parts of that scene are prepared once.
 class DrawnFit {
  public:
   explicit DrawnFit(const Scene& scene);
 
   /// A misfit is an overlap beyond its error, or a shaft that is larger than its bore, measured on the
-  /// cylinders that the meshes stand for. What the scene allows or declares is none.
+  /// cylinders that the meshes approximate. Overlaps that the scene allows or declares are not misfits.
   [[nodiscard]] DrawnMisfit findMisfit(const Scene& variant) const;
 
-  /// The variant, with the parts that are as they were taken as prepared.
+  /// Checks the variant; parts that equal those of the prepared scene are not prepared again.
   [[nodiscard]] CheckResult check(const Scene& variant, const CheckSettings& settings) const;
 
  private:
   std::vector<DrawnPart> parts_;
-  std::vector<PlacedSurface> placed_;  // points to the parts
+  std::vector<PlacedSurface> placed_;  // refers to parts_
 };
 
 }  // namespace vps::scenes

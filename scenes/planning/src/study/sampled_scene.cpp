@@ -9,7 +9,8 @@ namespace vps::scenes {
 
 namespace {
 
-constexpr double kSigmas = 3;  // from the middle to a limit: 99.73 % of a normal distribution lie within
+constexpr double kSigmas =
+    3;  // from the middle to a limit: 99.73 % of a normal distribution lie within three
 
 void add(const StudyVariable& variable, double value, PartDeviation& to) {
   switch (variable.quantity) {
@@ -54,7 +55,7 @@ Scene sampledScene(const Scene& scene, const std::vector<StudyVariable>& variabl
   for (std::size_t i = 0; i < variables.size(); ++i)
     add(variables[i], values[i], deviations[variables[i].part]);
   Scene sampled = withDeviations(scene, deviations);
-  // 32 bits: a scene file and a recording hold seeds as signed numbers.
+  // Scene files and recordings store seeds as signed numbers, so the seed has 32 bits.
   sampled.hand.seed = CountedDraw(seed, run, "hand").bits(0) >> 32;
   return sampled;
 }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the tolerances of a scene's parts vary.
+// Derives the variables of a study from the tolerances of a scene's parts.
 #include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <optional>
 
-#include "fits/iso_286.h"
+#include "fits/iso_sizes.h"
 #include "vps/errors.h"
 #include "vps_scenes/fits/check.h"
 #include "vps_scenes/planning/study.h"
@@ -18,7 +18,7 @@ bool isHoleClass(const std::string& zone) {
   return std::isupper(static_cast<unsigned char>(zone.front())) != 0;
 }
 
-/// The drawn diameter or width of a part's tightest fit on that side.
+/// Drawn diameter or width of the part's tightest fit as a hole or as a shaft.
 std::optional<double> drawnSize_m(const CheckResult& checked, const std::string& part, bool is_hole) {
   std::optional<double> size_m;
   double tightest_m = 0;
@@ -31,7 +31,7 @@ std::optional<double> drawnSize_m(const CheckResult& checked, const std::string&
   return size_m;
 }
 
-/// Makes the variables of one part after the other.
+/// Collects the variables, one part after the other.
 class Variables {
  public:
   explicit Variables(const Scene& scene) : scene_(scene) {
@@ -71,14 +71,14 @@ class Variables {
     if (tolerance.lower_m > tolerance.upper_m) refuse("has a size_lower above its size_upper; exchange them");
     if (tolerance.lower_m == tolerance.upper_m) {
       if (tolerance.lower_m != 0)
-        refuse("has a size_lower that is its size_upper; draw the part of that size");
+        refuse("has a size_lower that equals its size_upper; draw the part with that size");
       return;
     }
     add(index, "size", StudyQuantity::Size, tolerance.lower_m, tolerance.upper_m).is_hole =
         tolerance.size_of == SizeOf::Hole;
   }
 
-  /// Deviations from the drawn size.
+  /// Limits of the deviation from the drawn size.
   Zone zoneOf(const PartTolerance& tolerance, const std::string& name, bool is_hole) {
     constexpr double kNominalStep_m = 0.5e-3;
     if (!checked_) {

@@ -11,7 +11,7 @@ namespace vps::scenes {
 
 namespace {
 
-/// Every pose of the step's part, from start to target.
+/// Applies a change to every pose of the step's part, from start to target.
 template <class Change>
 void changePath(SceneStep& step, Change change) {
   change(step.X_WP_start);
@@ -19,14 +19,14 @@ void changePath(SceneStep& step, Change change) {
   change(step.X_WP_target);
 }
 
-/// A part that is in place, as drawn and as it is.
+/// A part in place, as drawn and with its deviation.
 struct Placed {
   Pose X_WP_drawn, X_WP;
   double growth_m = 0, turn_rad = 0;
 };
 
-/// How much higher than drawn the highest of these parts is near a point, against the axis. A tilt lifts a
-/// part of this radius at one edge.
+/// Rise of the highest of these parts near a point, against the axis, compared with the drawing. A tilt lifts
+/// a part of this radius at one edge.
 double seatRise(const std::vector<Placed>& in_place, const Vec3& p_W, const Vec3& axis_W, double radius_m) {
   if (in_place.empty() || axis_W.isZero()) return 0;
   double rise_m = -std::numeric_limits<double>::infinity();

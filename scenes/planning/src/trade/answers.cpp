@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The conclusions of a trade in words.
+// Words the conclusions of a trade study.
 #include <algorithm>
 #include <cstdio>
 
@@ -19,7 +19,7 @@ std::string micrometres(double m) {
   return number("%.3g um", 1e6 * m);
 }
 
-constexpr double kForceLimit = 0.5;  // assumed: a force with a larger error is of no use to the operator
+constexpr double kForceLimit = 0.5;  // assumed: a force with a larger error is useless to the operator
 
 bool isUsable(const TradeRow& row) {
   return row.has_run && row.has_probe && row.run.completed && row.probe.force <= kForceLimit;
@@ -48,7 +48,7 @@ std::string forRate(const TradeResult& result, double rate_hz) {
                            (errorOf(row) == errorOf(*best) && row.probe.force < best->probe.force);
     if (is_better) best = &row;
   }
-  const std::string head = "for " + number("%.0f Hz", rate_hz) + " of physics on this machine ";
+  const std::string head = "for " + number("%.0f Hz", rate_hz) + " of physics rate on this machine ";
   if (fastest == nullptr)
     return head + "there is no answer, since no setting that completed the run had a force error within 50 %";
   if (best == nullptr)
@@ -66,7 +66,7 @@ std::string forError(const TradeResult& result, double error_m) {
     if (most_accurate == nullptr || errorOf(row) < errorOf(*most_accurate)) most_accurate = &row;
     if (errorOf(row) <= error_m && (best == nullptr || rateOf(row) > rateOf(*best))) best = &row;
   }
-  const std::string head = "for " + micrometres(error_m) + " of depth ";
+  const std::string head = "for " + micrometres(error_m) + " of depth error ";
   if (most_accurate == nullptr)
     return head + "there is no answer, since no setting that completed the run had a force error within 50 %";
   if (best == nullptr)
@@ -76,7 +76,7 @@ std::string forError(const TradeResult& result, double error_m) {
          errorWords(*best);
 }
 
-/// The effect of a knob against the scene's own setting, from the rows that change nothing else.
+/// The effect of one changed setting relative to the scene's own, from rows that change only this setting.
 std::string knobLine(const TradeRow& own, const TradeRow& row) {
   const auto change = [](double value, double from) {
     return from > 0 ? number("%+.0f %%", 100 * (value / from - 1)) : std::string("-");
@@ -90,7 +90,7 @@ std::string knobLine(const TradeRow& own, const TradeRow& row) {
   if (row.has_run && own.has_run) {
     words += "step (p99) " + change(row.run.physics.cpu_p99_us, own.run.physics.cpu_p99_us) + ", deepest " +
              micrometres(own.run.deepest_m) + " -> " + micrometres(row.run.deepest_m);
-    if (!row.run.completed) words += "; the procedure failed";
+    if (!row.run.completed) words += "; the procedure was not completed";
   } else {
     words += "not run";
   }

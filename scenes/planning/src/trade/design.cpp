@@ -7,7 +7,7 @@ namespace vps::scenes {
 
 namespace {
 
-/// The scene's own setting with one change.
+/// The scene's own fidelity with one change.
 template <typename Change>
 TradeSetting changed(const Scene& scene, const std::string& name, TradeKnob knob, const Change& change) {
   TradeSetting setting{name, knob, scene.fidelity};
@@ -148,7 +148,7 @@ TradeSetting tradeSuggestion(const Scene& scene, const std::vector<TradeRow>& ro
        [&](const TradeSetting& t) { best.fidelity.contact_limit = t.fidelity.contact_limit; });
   take(TradeKnob::SolverIterations,
        [&](const TradeSetting& t) { best.fidelity.solver_iterations = t.fidelity.solver_iterations; });
-  if (changes < 2) best.name.clear();  // a single knob was measured already
+  if (changes < 2) best.name.clear();  // a single changed setting was measured already
   return best;
 }
 

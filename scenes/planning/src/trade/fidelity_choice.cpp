@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The search for a fidelity that keeps given bounds, and its words.
+// Search for a fidelity that keeps given bounds, and its description in words.
 #include "vps_scenes/planning/fidelity_choice.h"
 
 #include <algorithm>
@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <vector>
 
-#include "core/machine_memory.h"
+#include "core/machine.h"
 #include "models/scene_models.h"
 #include "scene/usual_spacing.h"
 #include "trade/seeded_draw.h"
@@ -24,14 +24,14 @@ namespace {
 
 constexpr double kCoarsest_m = 2e-3, kFinest_m = 15e-6;
 constexpr double kStep = 0.70710678118654752;  ///< ratio of successive voxel sizes
-constexpr std::size_t kSamples = 2000;         ///< of each part
-constexpr double kShare = 0.95;
-constexpr double kMargin =
-    0.8;  ///< share of the tolerance, so that points other than the samples keep it too
+constexpr std::size_t kSamples = 2000;         ///< number of sample points per part
+constexpr double kShare = 0.95;                ///< share of the sample points that keep the error
+/// Share of the tolerance that the samples keep, so that other points keep the tolerance too.
+constexpr double kMargin = 0.8;
 constexpr double kMaxSpacing = 8;      ///< greatest spacing, in voxels
 constexpr double kMachineShare = 0.5;  ///< assumed: the other half is for points and for other programs
-constexpr double kExpectedOverKept =
-    2.5;  ///< greatest ratio of expectedMapBytes() to a map's memory; tests check it
+/// Greatest ratio of expectedMapBytes() to a map's memory; tests check it.
+constexpr double kExpectedOverKept = 2.5;
 
 /// Points on and near a part's surface, with their exact distances.
 struct Check {
@@ -54,7 +54,7 @@ Check makeCheck(const Mesh& mesh, double reach_m) {
   return check;
 }
 
-/// Error of the field that kShare of the points do not exceed [m].
+/// Error of the field [m] that a share of kShare of the points does not exceed.
 double errorOf(const VoxMap& map, const Check& check) {
   std::vector<double> errors;
   for (std::size_t i = 0; i < check.points.size(); ++i)
@@ -64,7 +64,7 @@ double errorOf(const VoxMap& map, const Check& check) {
   return errors[static_cast<std::size_t>(kShare * static_cast<double>(errors.size() - 1))];
 }
 
-/// Builds a scene's models at one setting after another.
+/// Builds a scene's models at one fidelity after another.
 class Chooser {
  public:
   Chooser(Scene& scene, const FidelityWish& wish, const ChoiceOptions& options)
@@ -89,7 +89,7 @@ class Chooser {
   }
   [[nodiscard]] bool isAffordable() const { return isQuickEnough() && isSmallEnough(); }
 
-  /// Estimates the memory of maps before they are built; sets failure_reason where it is too much.
+  /// Estimates the memory of maps before they are built; sets failure_reason if it is too much.
   bool hasRoomForMaps(double voxel_m);
   bool findVoxel();
   [[nodiscard]] double worstError(double voxel_m, double enough_m);
@@ -104,7 +104,7 @@ class Chooser {
   FidelityChoice choice_;
 };
 
-/// The worst error of all parts; the first part that exceeds `enough_m` ends the search.
+/// The worst error of all parts; stops at the first part that exceeds `enough_m`.
 double Chooser::worstError(double voxel_m, double enough_m) {
   double worst_m = 0;
   VoxMapSettings settings;
@@ -122,20 +122,21 @@ bool Chooser::hasRoomForMaps(double voxel_m) {
   for (const ScenePart& part : scene_.parts) bytes += expectedMapBytes(part.part.mesh, settings);
   const double machine_bytes =
       options_.machine_bytes > 0 ? options_.machine_bytes : kMachineShare * machineMemoryBytes();
-  // The estimate is up to kExpectedOverKept times the memory of the map, so a wish is refused only where no
-  // map can meet it. Without a tolerance, larger voxels may meet it.
+  // The estimate is up to kExpectedOverKept times the memory of the map, so a wish is refused only if no map
+  // can meet it. Without a tolerance, larger voxels may meet the wish.
   const bool fits_wish =
       !wish_.memory_bytes || !wish_.tolerance_m || bytes <= kExpectedOverKept * *wish_.memory_bytes;
-  const bool fits_machine = machine_bytes == 0 || 2 * bytes <= machine_bytes;  // in the parts, and cooked
+  const bool fits_machine =
+      machine_bytes == 0 || 2 * bytes <= machine_bytes;  // counted twice: in the parts, and cooked
   if (fits_wish && fits_machine) return true;
   char words[250];
   std::snprintf(
       words, sizeof words,
-      "the maps for the next voxel size, %.3g um, would need about %.3g MB, and %s %.3g MB are %s; allow "
-      "more tolerance, or %s",
-      1e6 * voxel_m, 1e-6 * bytes, fits_wish ? "twice that must fit:" : "only",
+      "the maps for the next voxel size, %.3g um, would need about %.3g MB%s, but only %.3g MB%s; allow a "
+      "larger tolerance, or %s",
+      1e6 * voxel_m, 1e-6 * bytes, fits_wish ? " twice" : "",
       1e-6 * (fits_wish ? machine_bytes : *wish_.memory_bytes),
-      fits_wish ? "half of this machine's memory" : "allowed",
+      fits_wish ? ", half of this machine's memory, may be used" : " are allowed",
       fits_wish ? "use a machine with more memory" : "more memory");
   choice_.failure_reason = words;
   return false;
@@ -145,7 +146,7 @@ bool Chooser::findVoxel() {
   for (const ScenePart& part : scene_.parts)
     checks_.push_back(makeCheck(part.part.mesh, std::min(*wish_.tolerance_m, 50e-6)));
   for (double voxel_m = kCoarsest_m; voxel_m >= kFinest_m; voxel_m *= kStep) {
-    if (options_.progress) options_.progress("looking for a voxel size", 0.5);
+    if (options_.progress) options_.progress("searching for a voxel size", 0.5);
     if (!hasRoomForMaps(voxel_m)) return false;
     choice_.error_m = worstError(voxel_m, kMargin * *wish_.tolerance_m);
     if (choice_.error_m > kMargin * *wish_.tolerance_m) continue;
@@ -154,7 +155,8 @@ bool Chooser::findVoxel() {
     choice_.fidelity.spacing_m = usualSpacing_m(scene_);
     return true;
   }
-  choice_.failure_reason = "no voxel size down to 15 um keeps the tolerance of depth; allow more";
+  choice_.failure_reason =
+      "no voxel size down to 15 um keeps the tolerance of depth; allow a larger tolerance";
   return false;
 }
 
@@ -174,7 +176,7 @@ void Chooser::count() {
   std::size_t most = 0;
   for (const ScenePart& part : scene_.parts)
     if (!part.is_fixed) most = std::max(most, part.model->shell->size());
-  // The other parts can touch it with no more surface than its own.
+  // The part of a map that other parts can touch has no more surface than the moved part itself.
   choice_.points_near = choice_.fidelity.sides == Sides::Both ? 2 * most : most;
   choice_.step_us = kStepBase_us + kStepPoint_us * static_cast<double>(choice_.points_near);
 }
@@ -185,7 +187,7 @@ bool Chooser::coarsen() {
     f.spacing_m /= kStep;
     return true;
   }
-  // The points of one side miss the sharp edges of the other, so they keep no tolerance.
+  // The points of one side miss the sharp edges of the other side, so that no tolerance is guaranteed.
   if (!isQuickEnough() && f.sides == Sides::Both && !wish_.tolerance_m) {
     f.sides = Sides::One;
     return true;
@@ -202,17 +204,17 @@ void Chooser::finish() {
   if (choice_.is_met) return;
   char words[200];
   if (!isQuickEnough())
-    std::snprintf(
-        words, sizeof words,
-        "a step takes %.0f us by the cost model with the fewest points, and %.0f Hz leave %.0f us; allow "
-        "a lower rate, or more tolerance",
-        choice_.step_us, *wish_.budget_hz, 1e6 / *wish_.budget_hz);
+    std::snprintf(words, sizeof words,
+                  "a step takes %.0f us by the cost model with the fewest points, but at %.0f Hz it may take "
+                  "only %.0f us; "
+                  "allow a lower rate, or a larger tolerance",
+                  choice_.step_us, *wish_.budget_hz, 1e6 / *wish_.budget_hz);
   else
     std::snprintf(
         words, sizeof words,
-        "the models take %.3g MB with the fewest points, and %.3g MB are allowed; allow more memory%s",
+        "the models take %.3g MB with the fewest points, but only %.3g MB are allowed; allow more memory%s",
         1e-6 * static_cast<double>(choice_.bytes), 1e-6 * *wish_.memory_bytes,
-        wish_.tolerance_m ? ", or more tolerance" : "");
+        wish_.tolerance_m ? ", or a larger tolerance" : "");
   choice_.failure_reason = words;
 }
 
@@ -236,7 +238,7 @@ requires std::is_enum_v<Enum> std::string tomlValue(Enum value, const FieldTrait
 }  // namespace
 
 FidelityChoice chooseFidelity(Scene& scene, FidelityWish wish, const ChoiceOptions& options) {
-  scene.fidelity_wish.reset();  // buildModels() refuses a scene that still has one
+  scene.fidelity_wish.reset();  // buildModels() refuses a scene that still has a wish
   return Chooser(scene, wish, options).run();
 }
 
@@ -269,7 +271,7 @@ std::string describe(const FidelityChoice& choice) {
       1e-6 * static_cast<double>(choice.bytes), choice.step_us);
   std::string words = text;
   if (choice.error_m > 0) {
-    std::snprintf(text, sizeof text, ", depth read to %.2g um", 1e6 * choice.error_m);
+    std::snprintf(text, sizeof text, ", depth error %.2g um", 1e6 * choice.error_m);
     words += text;
   }
   return words;

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: BSD-3-Clause
+// The Pareto front of the rows of a trade study.
 // The Pareto front of a trade's rows.
 #pragma once
 
@@ -8,8 +8,8 @@
 
 namespace vps::scenes {
 
-/// Marks the completed rows that no other completed row dominates in time of a step (99th percentile of
-/// processor time), error and memory. The reference is a row like any other.
+/// Marks the completed rows that no other completed row dominates in step time (99th percentile of processor
+/// time), error and memory. The reference is treated as any other row.
 void markFront(std::vector<TradeRow>& rows);
 
 }  // namespace vps::scenes

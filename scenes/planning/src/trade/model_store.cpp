@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "trade/model_store.h"
 
-#include "core/wall_clock.h"
+#include "core/machine.h"
 #include "models/scene_models.h"
 
 namespace vps::scenes {

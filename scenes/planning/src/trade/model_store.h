@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Models that the rows of a trade share.
+// Models that the rows of a trade study share.
 #pragma once
 
 #include <map>
@@ -12,16 +12,16 @@
 
 namespace vps::scenes {
 
-/// Keeps the maps of one scene's parts by voxel size, and their shells by spacing.
+/// Stores the maps of one scene's parts by voxel size, and their shells by spacing.
 class ModelStore {
  public:
-  /// Gives the scene's parts their models, building those that are missing. Returns the time of building [s].
+  /// Sets the models of the scene's parts; builds those that are not stored. Returns the build time [s].
   /// Throws as buildModels().
   double fill(Scene& scene, const ModelOptions& options);
 
  private:
   using Key = std::pair<std::size_t, double>;
-  std::vector<std::shared_ptr<const PartModel>> models_;  ///< of the last row, by part
+  std::vector<std::shared_ptr<const PartModel>> models_;  ///< models of the last row, by part
   std::map<Key, std::shared_ptr<const VoxMap>> maps_;
   std::map<Key, std::shared_ptr<const PointShell>> shells_;
 };

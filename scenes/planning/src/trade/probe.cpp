@@ -12,9 +12,10 @@ namespace vps::scenes {
 
 namespace {
 
-constexpr double kFiner = 0.35;  ///< ratio of the exact samples' spacing to that of the scene's points
-constexpr std::size_t kMaxSamples = 40000;  ///< of a part; the spacing grows where there would be more
-constexpr double kReach_m = 0.3e-3;         ///< samples farther than this from all poses are left out
+constexpr double kFiner = 0.35;  ///< ratio of the exact samples' spacing to the scene's point spacing
+constexpr std::size_t kMaxSamples =
+    40000;                           ///< limit per part; the spacing grows if there would be more samples
+constexpr double kReach_m = 0.3e-3;  ///< samples farther than this from all poses are left out
 
 Box boxAt(const Mesh& mesh, const std::vector<Pose>& X_BPs) {
   Box box;
@@ -31,7 +32,7 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-/// |v - truth| / |truth|.
+/// Relative deviation |v - truth| / |truth|.
 double relative(const Vec3& v, const Vec3& truth) {
   return truth.norm() > 0 ? (v - truth).norm() / truth.norm() : 0;
 }
@@ -82,7 +83,7 @@ Probe::Truth Probe::truthAt(const Pose& X_WP) const {
     const ExactContact on_fixed =
         exactContact(moving_body_.body, fixed.samples, X_SP.inverse(), Vec3::Zero());
     truth.distance_m = std::min({truth.distance_m, on_moving.least_m, on_fixed.least_m});
-    // Half of each direction, as in queryBothSides(): both converge to the same force.
+    // The mean of both directions, as in queryBothSides(): both converge to the same force.
     truth.F_W.f += 0.5 * (fixed.X_WB.R * on_moving.F_S.f - X_WP.R * on_fixed.F_S.f);
     truth.F_W.tau += 0.5 * (fixed.X_WB.R * on_moving.F_S.tau - X_WP.R * on_fixed.F_S.tau);
   }

@@ -9,14 +9,15 @@
 
 namespace vps::scenes {
 
-/// Draws from [0, 1). Not std::uniform_real_distribution, whose numbers depend on the standard library.
+/// Draws uniformly from [0, 1). std::uniform_real_distribution is not used, since its numbers depend on the
+/// standard library.
 class SeededDraw {
  public:
   explicit SeededDraw(std::uint64_t seed) : random_(seed) {}
   double operator()() { return static_cast<double>(random_() >> 11) * 0x1p-53; }
-  /// Draws from the cube of size 1 around the origin. Each number has a statement of its own, because a
-  /// compiler may evaluate the arguments of a call in any order; GCC, which made all earlier results, began
-  /// with z.
+  /// Draws from the cube of size 1 around the origin, z first. Each coordinate has its own statement, because
+  /// the evaluation order of arguments is unspecified; the order z, y, x keeps the results of earlier
+  /// versions.
   Vec3 inUnitCube() {
     const double z = (*this)() - 0.5;
     const double y = (*this)() - 0.5;

@@ -12,7 +12,7 @@ void sampleTriangle(const Vec3& a, const Vec3& b, const Vec3& c, double spacing_
   Box own;
   for (const Vec3& p : {a, b, c}) own.add(p);
   if ((own.min.array() > box.max.array()).any() || (own.max.array() < box.min.array()).any()) return;
-  constexpr double kG = 1.32471795724474602596;  // root of x^3 = x + 1, of the R2 sequence
+  constexpr double kG = 1.32471795724474602596;  // root of x^3 = x + 1, the constant of the R2 sequence
   const double area_m2 = 0.5 * (b - a).cross(c - a).norm();
   const auto count = static_cast<long>(std::ceil(area_m2 / (spacing_m * spacing_m)));
   for (long i = 0; i < count; ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// trade(): measures one setting after another, as far as the time goes.
+// trade(): measures one setting after another within the time limit.
 #include "vps_scenes/planning/trade.h"
 
 #include <algorithm>
@@ -24,20 +24,20 @@ namespace {
 
 constexpr std::size_t kPoses = 16;
 constexpr std::size_t kThoroughPoses = 96;
-constexpr std::size_t kJudgeStride =
-    200;  ///< the fifty poses of a step with the deepest contacts are judged in any case
+/// Stride of the judged poses; the fifty poses of a step with the deepest contacts are always judged.
+constexpr std::size_t kJudgeStride = 200;
 
 std::vector<std::string> fixedChoices() {
   return {
-      "tree or exhaustive query: a run always uses the tree, whose result equals the exhaustive one to the "
+      "tree or exhaustive query: a run always uses the tree, whose result equals the exhaustive one bit for "
       "bit; "
-      "both are timed here",
+      "the times of both are listed",
 #ifdef VPS_BULLET_DOUBLE
       "float or double: chosen when Bullet and this program are built (cmake -DVPS_BULLET_DOUBLE=OFF); this "
-      "one is double",
+      "build uses double",
 #else
       "float or double: chosen when Bullet and this program are built (cmake -DVPS_BULLET_DOUBLE=ON); this "
-      "one is float",
+      "build uses float",
 #endif
   };
 }
@@ -61,10 +61,10 @@ void addRun(const AssembleResult& result, TradeRow& row) {
   row.run.bytes = result.modelled.bytes;
 }
 
-/// Ends a row early; what was measured is kept.
+/// Thrown to end a row early; results measured so far are kept.
 struct TradeStopped {};
 
-/// One run of trade().
+/// One call of trade().
 class Trade {
  public:
   Trade(const Scene& scene, const TradeOptions& options)
@@ -93,12 +93,13 @@ class Trade {
   }
 
   void measure(const TradeSetting& setting);
-  /// Measures the finest reference that there is time for.
+  /// Measures the finest reference for which there is time.
   void measureReference();
-  /// A failure ends the trade only for the scene's own setting; otherwise the rest of the row stays empty.
+  /// Fills a row. A failure with the scene's own setting ends the trade; with other settings the rest of the
+  /// row stays empty.
   void fillOrLeaveOut(TradeRow& row);
   void fill(TradeRow& row);
-  /// Progress that throws TradeStopped when the trade is stopped.
+  /// A progress callback that throws TradeStopped when the trade is stopped.
   [[nodiscard]] Progress untilStopped() const {
     return [this](std::string_view, double) {
       if (isStopped()) throw TradeStopped();
@@ -108,7 +109,7 @@ class Trade {
   /// Copies the probe of an earlier row with the same models; false if there is none.
   bool copyProbe(TradeRow& row) const;
   void runProcedure(const Scene& scene, TradeRow& row);
-  /// Computes the exact reference at contact poses of the scene's own run, and probes its models there.
+  /// Computes the exact values at contact poses of the scene's own run, and probes its models there.
   void beginProbe(const Scene& scene, const AssembleResult& result, TradeRow& row);
   void compareWithReference();
 
@@ -127,7 +128,7 @@ TradeResult Trade::run() {
   measure(design.front());
   for (std::size_t i = 1; i < design.size() && !isStopped(); ++i) {
     measure(design[i]);
-    // Early, while there is time for it, since all other runs are compared with it.
+    // Measured early, since all other runs are compared with the reference.
     if (i == 1) measureReference();
   }
   const TradeSetting suggestion = tradeSuggestion(scene_, result_.rows);
@@ -163,7 +164,7 @@ void Trade::measureReference() {
   }
   if (!isStopped())
     result_.left_out.emplace_back(
-        "reference: there was no time for even the coarsest, so runs are not compared");
+        "reference: there was no time for even the coarsest one, so runs are not compared with a reference");
 }
 
 void Trade::fillOrLeaveOut(TradeRow& row) {
@@ -241,12 +242,12 @@ void Trade::runProcedure(const Scene& scene, TradeRow& row) {
     report(row.setting.name);
     if (isStopped() || (!is_own && plan_.left_s() < 0)) is_late = true;
   };
-  Scene used = scene;  // a copy, since a run crops the models and the later rows need them whole
+  Scene used = scene;  // a copy, since a run crops the models and later rows need them whole
   const AssembleResult result = assemble(used, options);
   row.run.wall_s = std::chrono::duration<double>(Clock::now() - begun).count();
   if (is_late) {
-    result_.left_out.push_back(row.setting.name + (isStopped() ? ": its run was stopped"
-                                                               : ": its run was cut, since the time was up"));
+    result_.left_out.push_back(
+        row.setting.name + (isStopped() ? ": its run was stopped" : ": its run was cut at the time limit"));
     return;
   }
   plan_.runTook(row.setting, row.run.wall_s);

@@ -7,10 +7,10 @@ namespace vps::scenes {
 
 namespace {
 
-constexpr double kSuggestionShare = 0.6;  ///< of the time of the scene's own run: the reserve
+constexpr double kSuggestionShare = 0.6;  ///< reserve for the suggestion, relative to the scene's own run
 constexpr int kMinRuns = 4;               ///< with fewer runs there is no suggestion
-constexpr double kReferenceShare = 0.4;   ///< of the time left: limit for the reference
-constexpr double kTimeMargin = 1.2;       ///< bound of the real time over the estimate
+constexpr double kReferenceShare = 0.4;   ///< limit for the reference, as a share of the remaining time
+constexpr double kTimeMargin = 1.2;       ///< bound of the real time relative to the estimate
 
 }  // namespace
 
@@ -28,14 +28,14 @@ double TradePlan::left_s() const {
 }
 
 double TradePlan::modelShare(const TradeSetting& setting) const {
-  // Maps and shells cover the surface, so their nodes and points go with the inverse square of the length.
+  // Maps and shells cover the surface, so that nodes and points grow with the inverse square of the length.
   const double h = own_.voxel_m / setting.fidelity.voxel_m, s = own_.spacing_m / setting.fidelity.spacing_m;
   return 0.5 * (h * h + s * s);
 }
 
 double TradePlan::runShare(const TradeSetting& setting) const {
-  // Half of a run is the judge and other work that depends on the meshes alone; the rest goes with points and
-  // rates.
+  // About half of a run is spent in work that depends on the meshes alone, such as the judge; the rest grows
+  // with points and rates.
   const double s = own_.spacing_m / setting.fidelity.spacing_m;
   const double rate = setting.fidelity.physics_rate_hz / own_.physics_rate_hz;
   return 0.5 + 0.5 * std::max(0.25, s * s) * rate;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The time budget of a trade.
+// The time budget of a trade study.
 #pragma once
 
 #include <chrono>
@@ -8,31 +8,31 @@
 
 namespace vps::scenes {
 
-/// Estimates the time of a setting from the times of the scene's own, and keeps account of the time that is
-/// left. The clock decides which rows are measured, but not their contents.
+/// Estimates the time of a setting from the times of the scene's own setting, and tracks the remaining time.
+/// The times decide which rows are measured, but not the contents of a row.
 class TradePlan {
  public:
   TradePlan(const TradeOptions& options, const Fidelity& own);
 
   [[nodiscard]] double spent_s() const;
-  /// Less a reserve for the suggestion, which is measured last.
+  /// Remaining time, minus a reserve for the suggestion, which is measured last.
   [[nodiscard]] double left_s() const;
 
-  /// True if there is time to build and probe a setting's models; for the reference, to run it as well.
+  /// True if there is time to build and probe a setting's models; for a reference, also to run it.
   [[nodiscard]] bool hasTimeForModels(const TradeSetting& setting) const;
   [[nodiscard]] bool hasTimeForRun(const TradeSetting& setting) const;
 
-  /// The times of the scene's own setting, from which the others are estimated.
+  /// Records the times of the scene's own setting, from which the others are estimated.
   void ownModelsTook(double wall_s) { own_models_s_ = wall_s; }
   void ownProbeTook(double wall_s) { own_probe_s_ = wall_s; }
   void runTook(const TradeSetting& setting, double wall_s);
-  /// Makes the reserve available.
+  /// Makes the reserved time available.
   void releaseReserve() { is_reserve_released_ = true; }
 
  private:
   using Clock = std::chrono::steady_clock;
 
-  /// Estimated time of a setting relative to the scene's own.
+  /// Estimated time of a setting, relative to the scene's own.
   [[nodiscard]] double modelShare(const TradeSetting& setting) const;
   [[nodiscard]] double runShare(const TradeSetting& setting) const;
   [[nodiscard]] double probe_s(const TradeSetting& setting) const;

@@ -36,7 +36,8 @@ ContactProbes::ContactProbes(const PlacedSurface& a, const PlacedSurface& b, dou
 }
 
 bool ContactProbes::areStopped(const Vec3& d_W) const {
-  constexpr double kWays[] = {8, 80};  // in allowed depths: far enough to be deeper, at a slope of an eighth
+  constexpr double kWays[] = {
+      8, 80};  // in allowed depths: far enough to exceed the allowed depth at a slope of an eighth
   return std::ranges::any_of(kWays, [&](double way) {
     return std::ranges::any_of(sides_, [&](const Side& side) {
       const Pose X_OW = side.other->X_WP.inverse();

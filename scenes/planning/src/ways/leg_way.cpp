@@ -12,13 +12,14 @@ namespace {
 
 constexpr std::size_t kMostLegs = 4;
 constexpr std::size_t kMostPlaces = 96;
-constexpr double kLeastLeg = 0.02;  // of the part's size: less is play
+constexpr double kLeastLeg = 0.02;  // share of the part's size; shorter legs count as play
 constexpr double kTurn_rad = 2 * std::numbers::pi;
-/// Stops within a leg, as shares of it. assumed: a room beside a leg is wider than an eighth of it
+/// Stops within a leg, as shares of the leg. Assumed: an opening at the side of a leg is wider than an eighth
+/// of it.
 constexpr std::array kStops = {1.0, 0.5, 0.75, 0.25, 0.875, 0.625, 0.375, 0.125};
 
 struct Place {
-  Pose X_W;  ///< motion of the world that brings the part there
+  Pose X_W;  ///< motion of the world that brings the part to this place
   std::vector<Leg> legs;
 };
 
@@ -65,7 +66,7 @@ class LegSearch {
     });
   }
 
-  /// A way if the part leaves straight from there; else adds the places that it comes to.
+  /// Returns a path if the part leaves straight from this place; otherwise adds the places that it can reach.
   std::optional<Way> expand(const Place& from, std::deque<Place>& waiting) {
     std::vector<PlacedSurface> placed;
     for (const std::size_t part : parts_) placed.push_back(displaced(motions_.parts()[part], from.X_W));
@@ -94,7 +95,7 @@ class LegSearch {
       const double s = reachOf(motion, kTurn_rad).s;
       if (s > kLeastLeg) legs.emplace_back(motion, s);
     }
-    // Where it was stopped it can be as deep as is allowed: back to where it is free.
+    // A stopped part may be as deep as allowed; the leg is shortened to a pose where the part is free.
     double rest_m = 0;
     for (const MotionSearch& search : searches) rest_m = std::max(rest_m, search.rest_m());
     for (auto& [motion, s] : legs) s = std::max(0.0, s - 2 * rest_m / (motion.is_turn ? 0.5 * size_m_ : 1));
@@ -110,11 +111,11 @@ class LegSearch {
     });
   }
 
-  /// Shortens the last leg, which went as far as something stopped it, to the middle of where the part can
-  /// leave from: a hand does not follow a wall to the micrometre.
+  /// Shortens the last leg, which ended at an obstacle, to the middle of the range from which the part can
+  /// leave: a hand does not follow a wall to the micrometre.
   void giveRoom(const Place& from, const Motion& leaving, Way& way) {
     if (way.legs.empty() || way.legs.back().motion.is_turn) return;
-    constexpr double kMostRoom = 0.05;  // of the part's size. assumed: more than a hand needs
+    constexpr double kMostRoom = 0.05;  // share of the part's size; assumed: more than a hand needs
     constexpr int kHalvings = 10;
     Leg& last = way.legs.back();
     const auto isFreeBefore = [&](double back_m) {
@@ -126,7 +127,7 @@ class LegSearch {
       const double middle_m = 0.5 * (free_m + stopped_m);
       (isFreeBefore(middle_m) ? free_m : stopped_m) = middle_m;
     }
-    // Between the two the search looked at some places, and rarely at this one.
+    // The bisection tested other places in this range; the middle has to be tested as well.
     if (isFreeBefore(0.5 * free_m)) last.s -= 0.5 * free_m;
   }
 

@@ -3,31 +3,32 @@
 
 #include <algorithm>
 
-#include "surface/on_cores.h"
+#include "surface/placed_surface.h"
 
 namespace vps::scenes {
 
 namespace {
 
-/// For one motion of one pair: some ten seconds. Those of a bolt of 227,717 facets need 2 million.
+/// Work limit for one motion of one pair, about ten seconds. A bolt of 227,717 facets needs 2 million.
 constexpr std::uint64_t kMostWork = 10'000'000;
-/// To find out whether a motion needs an allowance: it is stopped early if it does, and takes long where
-/// faces slide along each other.
+/// Work limit for the test whether a motion needs an allowance. A motion that needs one is stopped early;
+/// others take long if faces slide along each other.
 constexpr std::uint64_t kMostExactWork = 300'000;
-constexpr double kFall_m = 1e-3;  // assumed: what sinks by less than this is carried
+constexpr double kFall_m = 1e-3;  // assumed: a part that sinks by less than this counts as carried
 
-/// How deep parts may be in each other on a way, beyond what is drawn and its error: facets of curved faces
-/// of one size cross by more than their chords where they slide along each other. Half of the 10 um that a
-/// step may penetrate, and a thousandth of small parts. A search with 1 um took ten times as long.
+/// Depth by which parts may overlap on a path, beyond the drawn overlap and its error: facets of curved faces
+/// of equal size cross by more than their chord error when they slide along each other. It is half of the 10
+/// um that a step may penetrate, or a thousandth of the size of small parts. A search with 1 um took ten
+/// times as long.
 double touchOf(const PlacedSurface& a, const PlacedSurface& b) {
   constexpr double kTouch_m = 5e-6, kShare = 1e-3;
   return std::min(
       {kTouch_m, kShare * a.surface->box().size().norm(), kShare * b.surface->box().size().norm()});
 }
 
-/// Whether a plane across an axis of the world parts two boxes, but for some depth, while one of them goes
-/// all the way along d. A search along faces that lie on each other takes a second where they have many
-/// edges.
+/// Whether a plane across an axis of the world separates two boxes, apart from some depth, while one of them
+/// moves all the way along d. This avoids motion searches along faces that lie on each other, which take a
+/// second if the faces have many edges.
 bool staysBeside(const Box& moving, const Box& held, const Vec3& d, double depth_m, double way_m) {
   for (int axis = 0; axis < 3; ++axis) {
     const double nearer_m = way_m * d[axis];
@@ -115,7 +116,7 @@ void PairMotions::findNear(const CheckResult& checked, const Progress& progress)
   std::vector<std::pair<const Pair, Near>*> all;
   for (auto& one : near_) all.push_back(&one);
   const Vec3 down_W = -directions_[up_];
-  std::vector<std::array<bool, 2>> falls(all.size());  // the first, the second
+  std::vector<std::array<bool, 2>> falls(all.size());  // of the first part, of the second part
   forEachOnCores(all.size(), progress, "preparing motions", [&](std::size_t i) {
     auto& [pair, near] = *all[i];
     near.search = std::make_unique<const MotionSearch>(
@@ -145,7 +146,7 @@ std::uint64_t PairMotions::slot(std::size_t a, std::size_t b, std::size_t direct
 }
 
 bool PairMotions::stops(std::size_t held, std::size_t part, std::size_t direction) const {
-  // The first of a pair moves: that the second moves is the same, backwards.
+  // The first part of a pair moves: a motion of the second part is the opposite motion of the first.
   if (held < part) return stops(part, held, Directions::opposite(direction));
   const Motion motion{directions_[direction], Vec3::Zero(), false};
   const Box &moving = parts_[part].box_W, &fixed = parts_[held].box_W;
@@ -160,7 +161,7 @@ bool PairMotions::stops(std::size_t held, std::size_t part, std::size_t directio
       !staysBeside(moving, fixed, motion.direction, depth_m, leave_m_) &&
       (is_near ? near->second.stops(motion, leave_m_, work)
                : search(parts_[part], part, {held}).reach(motion, leave_m_, &work).is_stopped);
-  // Another thread may have found it meanwhile.
+  // Another thread may have found the answer in the meantime.
   if (known_.emplace(key, Answer{is_stopped, work.isSpent()}).second && work.isSpent()) ++cut_;
   return is_stopped;
 }

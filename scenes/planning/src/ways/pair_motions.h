@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which part stops which, in which direction.
+// Which parts stop each other, and in which directions.
 #pragma once
 
 #include <tbb/concurrent_unordered_map.h>
@@ -16,10 +16,10 @@
 
 namespace vps::scenes {
 
-/// Unit vectors, each with its opposite: 2 k and 2 k + 1.
+/// Unit vectors, each stored with its opposite at the indices 2 k and 2 k + 1.
 class Directions {
  public:
-  /// The index of d, which is added if no other is within 1e-5 of it.
+  /// Returns the index of d; adds d if no stored vector is within 1e-5 of it.
   std::size_t add(const Vec3& d);
   const Vec3& operator[](std::size_t i) const { return vectors_[i]; }
   [[nodiscard]] std::size_t size() const { return vectors_.size(); }
@@ -29,58 +29,59 @@ class Directions {
   std::vector<Vec3> vectors_;
 };
 
-/// Straight motions of each part past each other one. A part leaves several held ones if it passes each, and
-/// several parts that move as one leave if each of them does, so that pairs alone need to be searched: the
-/// blocking graph of Wilson and Latombe (1994), one for each direction.
+/// Straight motions of each part past each other part. A part leaves several held parts if it passes each of
+/// them, and a group leaves if each member does, so that only pairs are searched: the blocking graph of
+/// Wilson and Latombe (1994), one for each direction.
 class PairMotions {
  public:
-  /// Both arguments outlive it.
+  /// `parts` and `checked` have to outlive this object.
   PairMotions(const std::vector<PlacedSurface>& parts, const CheckResult& checked, const Vec3& up_W,
               const Progress& progress);
 
   [[nodiscard]] const std::vector<PlacedSurface>& parts() const { return parts_; }
   [[nodiscard]] const Directions& directions() const { return directions_; }
   [[nodiscard]] std::size_t up() const { return up_; }
-  /// Likely directions of a part: up, the world's axes, its own, and those of its fits.
+  /// Likely directions of a part: up, the world's axes, the part's axes, and those of its fits.
   [[nodiscard]] const std::vector<std::size_t>& axesOf(std::size_t part) const { return axes_[part]; }
   /// The other directions: the vertices of a subdivided icosahedron.
   [[nodiscard]] const std::vector<std::size_t>& around() const { return around_; }
   [[nodiscard]] const std::vector<CheckedFit>& fitsOf(std::size_t part) const { return fits_[part]; }
-  /// The other part of each of its fits.
+  /// The other part of each fit in fitsOf().
   [[nodiscard]] const std::vector<std::size_t>& matesOf(std::size_t part) const { return mates_[part]; }
   [[nodiscard]] bool areNear(std::size_t a, std::size_t b) const { return near_.contains(std::minmax(a, b)); }
 
-  /// Whether a part that moves away in a direction meets the held one. Kept once it is known. Thread-safe.
+  /// Whether the held part stops a part that moves away in a direction. Results are cached. Thread-safe.
   bool stops(std::size_t held, std::size_t part, std::size_t direction) const;
-  /// Of a motion that is not stopped: how much of the allowance for meshes it may need [m], beyond what is
-  /// drawn; 0 if it needs none. Facets that may be only as deep in each other as they are where the part
-  /// stands then stop it. Also 0 where that takes too long to find out. Kept once it is known. Thread-safe.
+  /// For a motion that is not stopped: the allowance for meshes [m], beyond the drawn overlap, that the
+  /// motion may need; 0 if it needs none. A motion needs it if it is stopped when facets may be no deeper in
+  /// each other than at the part's placement. Also 0 if the work limit ends the test. Results are cached.
+  /// Thread-safe.
   double allowanceOf(std::size_t held, std::size_t part, std::size_t direction) const;
-  /// The answers of stops() so far, and those of an earlier plan of the same parts. A motion's number is its
-  /// slot(), then a bit for its answer and one for whether it was too long to be followed.
+  /// The answers of stops() so far, and those of an earlier plan of the same parts. A motion is encoded as
+  /// its slot(), then a bit for the answer and a bit that is set if the motion was too long to follow.
   [[nodiscard]] std::vector<std::uint64_t> found() const;
   void take(const std::vector<std::uint64_t>& found);
-  /// How many motions of stops() were too long to be followed to their end.
+  /// Number of motions of stops() that were too long to follow to their end.
   [[nodiscard]] std::size_t cutMotions() const { return cut_; }
   /// The parts that keep this one from falling by more than 1 mm, ascending.
   [[nodiscard]] const std::vector<std::size_t>& carriersOf(std::size_t part) const { return carriers_[part]; }
-  /// The parts that this one carries, ascending.
+  /// The parts that this part carries, ascending.
   [[nodiscard]] const std::vector<std::size_t>& carriedBy(std::size_t part) const { return carried_[part]; }
 
-  /// Motions of a part, which may stand elsewhere, past several others.
+  /// Prepares a search of motions of a part, from any pose, past several held parts.
   [[nodiscard]] MotionSearch search(const PlacedSurface& placed, std::size_t part,
                                     const std::vector<std::size_t>& held) const;
-  /// A way on which every part leaves all others.
+  /// A distance at which every part has left all others.
   [[nodiscard]] double leave_m() const { return leave_m_; }
 
  private:
   using Pair = std::pair<std::size_t, std::size_t>;
   struct Near {
-    double crossing_m = 0;   ///< how deep they may be in each other
-    double allowance_m = 0;  ///< what of that is not drawn
+    double crossing_m = 0;   ///< depth by which the two parts may overlap
+    double allowance_m = 0;  ///< share of crossing_m that exceeds the drawn overlap
     std::unique_ptr<const MotionSearch> search;
     ContactProbes probes;
-    /// Of a straight motion of the first.
+    /// Whether a straight motion of the first part is stopped by the second.
     bool stops(const Motion& motion, double most_m, SearchWork& work) const {
       return probes.areStopped(motion.direction) || search->reach(motion, most_m, &work).is_stopped;
     }
@@ -100,7 +101,7 @@ class PairMotions {
   std::vector<std::vector<std::size_t>> carriers_, carried_;
   double leave_m_ = 0;
   mutable std::atomic<std::size_t> cut_ = 0;
-  /// By slot(): whether the part is stopped. Only of pairs whose boxes do not tell.
+  /// By slot(): whether the part is stopped. Contains only pairs whose boxes do not decide.
   struct Answer {
     bool is_stopped = false, is_cut = false;
   };
@@ -108,7 +109,7 @@ class PairMotions {
   mutable tbb::concurrent_unordered_map<std::uint64_t, double> allowance_m_;  ///< by slot()
 };
 
-/// A part moved by a motion of the world.
+/// A copy of a part, moved by a motion of the world.
 PlacedSurface displaced(const PlacedSurface& part, const Pose& X_W);
 
 }  // namespace vps::scenes

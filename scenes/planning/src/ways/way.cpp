@@ -35,7 +35,7 @@ std::optional<Way> screwWay(const PairMotions& motions, std::size_t part,
     const std::string& mate = fit.shaft == screw.name ? fit.bore : fit.shaft;
     const auto at = std::ranges::find(held, mate, [&](std::size_t h) { return motions.parts()[h].name; });
     if (at == held.end()) continue;
-    // Once it is above its mate it leaves straight.
+    // Beyond its mate, the screw leaves straight.
     const auto along_m = [&](const Box& box) { return fit.axis_W.cwiseAbs().dot(box.size()); };
     const double out_m = along_m(screw.box_W) + along_m(motions.parts()[*at].box_W);
     const MotionSearch search = motions.search(screw, part, held);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The way on which a part leaves the others.
+// The path on which a part leaves the others.
 #pragma once
 
 #include <optional>
@@ -10,38 +10,39 @@
 
 namespace vps::scenes {
 
-/// A piece of a way, in the world.
+/// A piece of a path, in the world.
 struct Leg {
   Motion motion;
-  double s = 0;  ///< how far; of the last leg, which leads away, PairMotions::leave_m()
+  double s = 0;  ///< length or angle; for the last leg PairMotions::leave_m()
 };
 
+/// Way::direction of a path that is not straight.
 inline constexpr std::size_t kNoDirection = ~std::size_t{0};
 
-/// From home outwards. The last leg is straight.
+/// A path from the target outwards. The last leg is straight.
 struct Way {
   WayKind kind = WayKind::Straight;
   std::vector<Leg> legs;
-  std::size_t direction = kNoDirection;  ///< of a straight way
-  double lead_m = 0;                     ///< of a screw
-  double allowance_m = 0;                ///< of a straight way, see PairMotions::allowanceOf()
+  std::size_t direction = kNoDirection;  ///< of a straight path: index in PairMotions::directions()
+  double lead_m = 0;                     ///< of a screw: travel in one turn
+  double allowance_m = 0;                ///< of a straight path, see PairMotions::allowanceOf()
 };
 
-/// The poses at the ends of all legs but the last, as motions of the world: the first is home.
+/// The poses at the ends of all legs but the last, as motions of the world; the first is the target.
 std::vector<Pose> cornersOf(const Way& way);
 
-/// Whether a held part would stop another one on its way.
+/// Whether a held part stops another part on its path.
 bool stopsWay(const PairMotions& motions, std::size_t held, std::size_t part, const Way& way);
 
-/// A screw out of a thread of the part's fits with one of the held parts, then straight on.
+/// A screw motion out of a thread that the part's fits have with one of the held parts, then straight on.
 std::optional<Way> screwWay(const PairMotions& motions, std::size_t part,
                             const std::vector<std::size_t>& held);
 
-/// A way of several legs for parts that move as one, straight along their axes or, of one part, turning about
-/// those of its round fits: breadth first, from each place onwards as far as the part goes and to stops
-/// between, so that a way of fewest legs is found first. Where `work` is spent it ends. Source: the search
-/// over pushes of Tian et al., Assemble Them All, 2022, with exact motions in place of simulated ones. At
-/// most 4 legs and 96 places, so that none found is no proof.
+/// A path of several legs for parts that move as one. Legs are straight along the parts' axes; a single part
+/// may also turn about the axes of its round fits. Breadth first: from each place the part moves as far as it
+/// can and to stops in between, so that a path with the fewest legs is found first. The search ends when
+/// `work` is spent, at 4 legs or at 96 places, so an empty result is not a proof. Source: the search over
+/// pushes of Tian et al., Assemble Them All, 2022, with exact motions in place of simulated ones.
 std::optional<Way> legWay(const PairMotions& motions, const std::vector<std::size_t>& parts,
                           const std::vector<std::size_t>& held, SearchWork& work);
 

@@ -7,8 +7,8 @@
 #include <numbers>
 #include <set>
 
-#include "pair/surface_gap.h"
-#include "surface/on_cores.h"
+#include "pair/pair_measures.h"
+#include "surface/placed_surface.h"
 #include "surface/triangle_gap.h"
 
 namespace vps::scenes {
@@ -17,13 +17,13 @@ namespace {
 
 using Pair = std::pair<std::size_t, std::size_t>;
 
-constexpr double kEnough_m = 1e-6, kShare = 1e-3;  // of the least distance: within one of them
-constexpr double kResting_m = 10e-6;  // what rounding of a drawing leaves between faces that are to touch
+constexpr double kEnough_m = 1e-6, kShare = 1e-3;  // accuracy of the least distance: absolute, or relative
+constexpr double kResting_m = 10e-6;  // gap that rounding of a drawing leaves between faces that should touch
 
-/// By number, and in what order the parts of an assembly come into place.
+/// Indices of parts by name, and the pairs that touch.
 struct Numbers {
   std::map<std::string, std::size_t> of;
-  std::set<Pair> touching;  ///< at home, or in a fit
+  std::set<Pair> touching;  ///< in contact at their targets, or in a fit
 
   explicit Numbers(const Placing& placing) {
     for (std::size_t i = 0; i < placing.parts.size(); ++i) of[placing.parts[i].name] = i;
@@ -35,7 +35,8 @@ struct Numbers {
   }
 };
 
-/// The way of one part, as its scene states it: poses, with its centre on straight lines between.
+/// The path of one part as its scene states it: poses, between which the part's centre moves on straight
+/// lines.
 class PartWay {
  public:
   PartWay(const PlacedSurface& part, const PlannedStep& step) : part_(part) {
@@ -46,7 +47,7 @@ class PartWay {
     poses_.push_back(part.X_WP);
   }
 
-  /// Lowers `best_m` if the part comes nearer to the held one.
+  /// Lowers `best_m` if the part comes nearer to the held part than `best_m`.
   bool lower(const PlacedSurface& held, double& best_m) const {
     bool is_lower = false;
     for (std::size_t i = 0; i + 1 < poses_.size(); ++i) {
@@ -54,7 +55,7 @@ class PartWay {
       const Box end = moved(part_.surface->box(), poses_[i + 1]);
       swept.add(end.min);
       swept.add(end.max);
-      // A turn sweeps more than its ends.
+      // A turn sweeps a larger box than that of its end poses.
       const double turned_m = radius_m_ * angleBetween(poses_[i], poses_[i + 1]);
       if (!overlap(grown(swept, best_m + turned_m), held.box_W)) continue;
       Leg leg{held, poses_[i], poses_[i + 1], 0};
@@ -75,14 +76,14 @@ class PartWay {
   struct Leg {
     const PlacedSurface& held;
     const Pose &from, &to;
-    double length_m;  ///< no point of the surface moves farther
+    double length_m;  ///< upper bound of the path of any surface point
   };
 
   static double angleBetween(const Pose& a, const Pose& b) {
     return rotationVector(a.R.transpose() * b.R).norm();
   }
 
-  /// Around the axis of the last leg, along the thread.
+  /// Appends poses along the thread, around the axis of the last leg.
   void appendTurns(const PlannedStep& step) {
     constexpr double kPiece_rad = std::numbers::pi / 4;
     constexpr int kMostPieces = 400;  // fifty turns
@@ -101,10 +102,10 @@ class PartWay {
     }
   }
 
-  /// Of a straight leg without a turn, in one descent of both trees: the boxes are those of the whole leg.
-  /// The distance of two facets is convex along it, since it is that of two convex sets of which one is
-  /// moved.
-  /// @return at most best_m; above the least by at most a micrometre or a thousandth
+  /// Least distance along a straight leg without a turn, in one descent of both trees: the boxes are swept
+  /// along the whole leg. The distance of two facets is convex along the leg, since both are convex sets and
+  /// one is translated.
+  /// @return at most best_m; exceeds the least distance by at most a micrometre or a thousandth
   [[nodiscard]] double leastAlong(const Leg& leg, double best_m) const {
     const PartSurface &held = *leg.held.surface, &moving = *part_.surface;
     const Pose X_HP = leg.held.X_WP.inverse() * leg.from;
@@ -129,12 +130,13 @@ class PartWay {
     return best_m;
   }
 
-  /// Of two facets. Halves what is left while the tangents at its ends cross below what is known.
+  /// Least distance of two facets along the leg. Bisects the interval while the tangents at its ends cross
+  /// below the least known distance.
   template <class NearEnough>
   static void lowerAlong(const Triangle& held, const Triangle& start, const Vec3& way, NearEnough nearEnough,
                          double& best_m) {
     struct Point {
-      double share, gap_m, slope_m;  // of the distance along the whole way
+      double share, gap_m, slope_m;  // slope_m: derivative by the share of the leg
     };
     const auto at = [&](double share) {
       const Vec3 d = share * way;
@@ -145,7 +147,7 @@ class PartWay {
     };
     constexpr int kMostHalvings = 40;
     Point from = at(0), to = at(1);
-    // A tangent of a convex function is below it, and its least lies where the slope changes its sign.
+    // A tangent of a convex function lies below it, and the minimum lies where the slope changes its sign.
     for (int i = 0; i < kMostHalvings && from.slope_m < 0 && to.slope_m > 0; ++i) {
       const double crossing = (to.gap_m - from.gap_m + from.slope_m * from.share - to.slope_m * to.share) /
                               (from.slope_m - to.slope_m);
@@ -163,7 +165,7 @@ class PartWay {
 
   [[nodiscard]] double gapAt(const Leg& leg, double share, double& best_m) const {
     const Pose X_WP = poseAt(leg, share);
-    const double most_m = best_m + leg.length_m;  // farther than that, the leg is free
+    const double most_m = best_m + leg.length_m;  // a greater distance proves that the leg is free
     const double gap_m =
         surfaceGap(*part_.surface, *leg.held.surface, X_WP.inverse() * leg.held.X_WP, most_m).distance_m;
     best_m = std::min(best_m, gap_m);
@@ -190,7 +192,7 @@ class PartWay {
 
 void measureWays(const Placing& placing, PlannedAssembly& assembly, const Progress& progress) {
   const Numbers numbers(placing);
-  std::vector<std::size_t> held;  // in the order in which they come into place
+  std::vector<std::size_t> held;  // in order of assembly
   std::vector<std::size_t> held_before;
   for (const std::string& name : assembly.fixed) held.push_back(numbers.of.at(name));
   for (const PlannedStep& step : assembly.steps) {
@@ -200,7 +202,7 @@ void measureWays(const Placing& placing, PlannedAssembly& assembly, const Progre
   std::map<std::size_t, std::vector<const CheckedFit*>> fits;
   for (const CheckedFit& fit : placing.checked.fits)
     for (const std::string& name : {fit.shaft, fit.bore}) fits[numbers.of.at(name)].push_back(&fit);
-  forEachOnCores(assembly.steps.size(), progress, "measuring the ways", [&](std::size_t i) {
+  forEachOnCores(assembly.steps.size(), progress, "measuring the paths", [&](std::size_t i) {
     PlannedStep& step = assembly.steps[i];
     const std::vector<std::size_t> in_place(held.begin(),
                                             held.begin() + static_cast<std::ptrdiff_t>(held_before[i]));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How near a part comes to others on its way.
+// Least distance of a part to others along its path.
 #pragma once
 
 #include <vector>
@@ -10,7 +10,7 @@
 
 namespace vps::scenes {
 
-/// What the ways of a plan are measured on.
+/// The placed parts of a plan, with which its paths are measured.
 struct Placing {
   const std::vector<PlacedSurface>& parts;
   const CheckResult& checked;
@@ -18,8 +18,8 @@ struct Placing {
 };
 
 /// Sets PlannedStep::clearance_m, nearest and fit_clearance_m of each step. A distance changes by no more
-/// than the surface moves, so that a leg is divided where a lesser one can be: within a micrometre, or a
-/// thousandth of it. On all cores.
+/// than the surface moves; a leg is bisected until no smaller distance is possible, within a micrometre or a
+/// thousandth of the distance. Runs on all cores.
 void measureWays(const Placing& placing, PlannedAssembly& assembly, const Progress& progress);
 
 }  // namespace vps::scenes

@@ -40,6 +40,7 @@ inline constexpr double kMostModels_bytes = 1e9;
 /// Sets voxel and spacing of a planned scene whose values are those of the preset `normal`: smaller ones if a
 /// moved part is less than eight voxels across, larger ones if the models would exceed the memory limit
 /// (estimated from areas and edges). Depends on the scene alone.
+/// @return what was chosen and why, in words; empty: the preset is kept
 VPS_SCENES_API std::string fitFidelity(Scene& scene, double most_bytes = kMostModels_bytes);
 
 /// Checks the paths of all steps. Conservative advancement finds each overlap that is deeper than allowed,
