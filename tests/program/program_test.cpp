@@ -17,25 +17,6 @@ namespace {
 
 using nlohmann::json;
 
-const std::vector<std::string> kReady = {"check",  "plan",    "assemble", "replay", "simulate",  "query",
-                                         "import", "export",  "snapshot", "video",  "view",      "explain",
-                                         "trade",  "render",  "device",   "watch",  "calibrate", "margin",
-                                         "study",  "compare", "ask"};
-
-TEST_F(Program, EveryCommandHasHelpWithAnExample) {
-  const std::string overview = run("--help").out;
-  for (const std::string& command : kReady) {
-    const Ran ran = run(command + " --help");
-    EXPECT_EQ(ran.status, 0) << command;
-    EXPECT_EQ(ran.err, "") << command;
-    EXPECT_NE(ran.out.find("Example:\n  vps " + command), std::string::npos) << ran.out;
-    EXPECT_NE(overview.find(command), std::string::npos) << overview;
-  }
-  for (const char* status : {"0 done", "1 done, but", "2 not done", "3 not shown"})
-    EXPECT_NE(overview.find(status), std::string::npos) << overview;
-  EXPECT_EQ(run("--version").status, 0);
-}
-
 TEST_F(Program, SimulatingInRealTimeTakesThatLongAndGivesTheSameBodies) {
   ASSERT_EQ(run("simulate scene.toml --seconds 0.5 --json steps.json").status, 0);
   const auto begun = std::chrono::steady_clock::now();

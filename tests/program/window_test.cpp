@@ -15,7 +15,7 @@
 #include "vps_scenes/network/session_pointers.h"
 #include "vps_scenes/scene/display.h"
 #include "vps_scenes/scene/scene.h"
-#include "vps_viewer/draw/model_view.h"
+#include "vps_viewer/draw/model_meshes.h"
 #include "vps_viewer/draw/renderer.h"
 #include "vps_viewer/draw/stereo.h"
 #include "window_on_display.h"
@@ -408,7 +408,7 @@ TEST_F(Window, ShowsAllPicturesOfADisplayFileAndOneAloneByAKey) {
   EXPECT_TRUE(shows(expected(0, viewer::StereoMode::Mono, "wall.toml")));
   EXPECT_EQ(close(), 0);
   expectRefused("view scene.toml --display wall.toml --output back",
-                "shows no 'back', but front_anna, front_ben, floor_anna, floor_ben");
+                "has no output 'back'; its outputs are front_anna, front_ben, floor_anna, floor_ben");
 }
 
 TEST_F(Window, ADriverWithoutABufferForEachEyeIsSaid) {

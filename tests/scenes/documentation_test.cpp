@@ -19,8 +19,8 @@
 #include "vps_scenes/planning/study_fields.h"
 #include "vps_scenes/planning/trade_fields.h"
 #include "vps_scenes/scene/settings_fields.h"
-#include "vps_scenes/uses/compare_fields.h"
-#include "vps_scenes/uses/ergonomics_fields.h"
+#include "vps_scenes/uses/compare.h"
+#include "vps_scenes/uses/ergonomics.h"
 
 namespace vps::scenes {
 namespace {
@@ -208,7 +208,7 @@ TEST(Documentation, TheSceneFilesKeysAreThoseOfTheFieldTables) {
 }
 
 TEST(Documentation, TheResultsKeysAreThoseOfTheFieldTables) {
-  const std::string readme = "viewer/cli/README.md", head = kResultHead;
+  const std::string readme = "viewer/cli/JSON.md", head = kResultHead;
   checkSection(readme, "assemble",
                head + resultLines("", kAssembleFields) + resultLines("wall.", kAssembleWallFields));
   checkSection(

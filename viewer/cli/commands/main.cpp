@@ -10,11 +10,24 @@
 
 namespace vps::viewer {
 
-#define COMMAND(add) void add(CommandLine& line);
+// Each command_NAME.cpp defines one of these functions.
+#define COMMAND(add, name, summary, example) std::function<int()> add(CLI::App& command);
 #include "commands/command_list.inc"
 #undef COMMAND
 
 namespace {
+
+/// A row of command_list.inc.
+struct Command {
+  std::function<int()> (*add)(CLI::App& command);
+  const char *name, *summary, *example;
+};
+
+constexpr Command kCommands[] = {
+#define COMMAND(add, name, summary, example) {add, name, summary, example},
+#include "commands/command_list.inc"
+#undef COMMAND
+};
 
 int couldNot(const std::string& reason) {
   say(reason);
@@ -40,30 +53,34 @@ std::string reasonOf(const CLI::ParseError& error, const CLI::App& app) {
 }
 
 int run(int argc, char** argv) {
-  CommandLine line;
-  line.app.name("vps");
-  line.app.description(
+  CLI::App app;
+  std::function<int()> run_chosen;
+  app.name("vps");
+  app.description(
       "Voxmap-PointShell contact on CAD parts: import, assemble, simulate, query, measure, draw.");
-  line.app.set_version_flag("--version", std::string("vps ") + VPS_VERSION_STRING);
-  line.app.require_subcommand(1);
-  line.app.footer(
+  app.set_version_flag("--version", std::string("vps ") + VPS_VERSION_STRING);
+  app.require_subcommand(1);
+  app.footer(
       "Exit status: 0 done and good; 1 done, but the parts do not fit or a bound was missed; 2 not done;\n"
       "3 not shown: neither that the parts fit nor that they do not.\n"
       "Lengths carry a unit: 0.2mm, 20um, 0.01m. Example:\n"
       "  vps assemble scenes/peg_in_hole/scene.toml --out out");
-#define COMMAND(add) add(line);
-#include "commands/command_list.inc"
-#undef COMMAND
-  try {
-    line.app.parse(argc, argv);
-  } catch (const CLI::Success& help_or_version) {
-    return line.app.exit(help_or_version);
-  } catch (const CLI::ParseError& error) {
-    const auto chosen = line.app.get_subcommands();
-    const std::string help = chosen.empty() ? "vps --help" : "vps " + chosen.front()->get_name() + " --help";
-    return couldNot(reasonOf(error, line.app) + "; see " + help);
+  for (const Command& row : kCommands) {
+    CLI::App* command = app.add_subcommand(row.name, row.summary);
+    command->footer(std::string("Example:\n  ") + row.example);
+    // Only stores the function: the command runs after the whole command line has been parsed.
+    command->callback([&run_chosen, run = row.add(*command)] { run_chosen = run; });
   }
-  return line.run();
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& help_or_version) {
+    return app.exit(help_or_version);
+  } catch (const CLI::ParseError& error) {
+    const auto chosen = app.get_subcommands();
+    const std::string help = chosen.empty() ? "vps --help" : "vps " + chosen.front()->get_name() + " --help";
+    return couldNot(reasonOf(error, app) + "; see " + help);
+  }
+  return run_chosen();
 }
 
 int runSafely(int argc, char** argv) {
@@ -80,19 +97,6 @@ int runSafely(int argc, char** argv) {
 }
 
 }  // namespace
-
-CLI::App& addCommand(CommandLine& line, const std::string& name, const std::string& summary,
-                     const std::string& example, std::function<int()> run) {
-  CLI::App* command = line.app.add_subcommand(name, summary);
-  command->footer("Example:\n  " + example);
-  // Only notes the choice: the command runs after the whole command line is parsed.
-  command->callback([&line, run = std::move(run)] { line.run = run; });
-  return *command;
-}
-
-void addJsonOption(CLI::App& command, std::string& file) {
-  command.add_option("--json", file, "write the results to this file as JSON")->type_name("FILE");
-}
 
 }  // namespace vps::viewer
 

@@ -73,7 +73,7 @@ scenes::ImportedCad importedCad(const std::vector<std::string>& files, scenes::I
 }
 
 bool areCadFiles(const std::vector<std::string>& files) {
-  if (files.size() == 1 && !isCadExtension(lowerExtension(files.front()))) return false;
+  if (files.size() == 1 && !scenes::isCadExtension(lowerExtension(files.front()))) return false;
   for (const std::string& file : files) {
     if (files.size() > 1 && lowerExtension(file) == ".toml")
       throw LoadError(file, "",

@@ -2,11 +2,16 @@
 #include "input/file_kind.h"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
+#include <cmath>
 #include <filesystem>
+#include <fstream>
 
-#include "vps/errors.h"
+#include "input/cad_arguments.h"
+#include "output/terminal.h"
+#include "vps/solid.h"
+#include "vps_scenes/cad/import.h"
+#include "vps_scenes/scene/mesh_warning.h"
 
 namespace vps::viewer {
 
@@ -17,16 +22,9 @@ std::string lowerExtension(const std::string& file) {
   return extension;
 }
 
-bool isCadExtension(const std::string& lower_extension) {
-  static constexpr std::array<const char*, 20> kExtensions = {
-      ".step", ".stp", ".iges", ".igs", ".brep", ".brp", ".stl", ".obj", ".ply", ".gltf",
-      ".glb",  ".dae", ".iv",   ".wrl", ".wrz",  ".3ds", ".3mf", ".off", ".x3d", ".fbx"};
-  return std::find(kExtensions.begin(), kExtensions.end(), lower_extension) != kExtensions.end();
-}
-
 void requireSceneFile(const std::string& file) {
   const std::string extension = lowerExtension(file);
-  if (isCadExtension(extension))
+  if (scenes::isCadExtension(extension))
     throw LoadError(file, "",
                     "is a CAD file, not a scene; make a scene of it first: vps import " + file + " -o DIR");
   if (extension == ".vdb")
@@ -44,6 +42,57 @@ void requireCadFile(const std::string& file) {
         "such files from a mesh");
   if (extension == ".toml")
     throw LoadError(file, "", "is a scene already; vps assemble, vps simulate and vps explain read scenes");
+}
+
+namespace {
+
+/// Reads the header, which is text in every PLY format.
+bool hasNormalsAndNoFaces(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::string line;
+  bool has_normals = false;
+  constexpr int kMaxLines = 1000;  // a file of another format must not be read to its end
+  for (int i = 0; i < kMaxLines && std::getline(in, line); ++i) {
+    if (line.ends_with('\r')) line.pop_back();
+    if (line.starts_with("property ") && line.ends_with(" nx")) has_normals = true;
+    if (line.starts_with("element face ") && line != "element face 0") return false;
+    if (line == "end_header") return has_normals;
+  }
+  return false;
+}
+
+}  // namespace
+
+OperandKind operandKind(const std::string& file) {
+  const std::string extension = lowerExtension(file);
+  if (extension == ".vdb") return OperandKind::LevelSet;
+  if (extension == ".ply" && hasNormalsAndNoFaces(file)) return OperandKind::PointShell;
+  return OperandKind::Mesh;
+}
+
+Mesh readMesh(const std::string& file, std::optional<double> unit_m) {
+  scenes::ImportSettings settings;
+  settings.unit_m = unit_m;
+  const scenes::ImportedCad cad = scenes::importCad(file, settings);
+  for (const std::string& warning : cad.warnings) warn(file + ": " + warning);
+  if (unit_m && cad.states_unit) warn(file + ": " + kUnusedUnits);
+  Mesh mesh;
+  for (const scenes::ImportedPart& part : cad.parts) append(mesh, transformed(part.mesh, part.X_WP));
+  requireUsable(mesh, file, "");
+  return mesh;
+}
+
+VoxMap mapOf(const Mesh& mesh, const VoxMapSettings& settings, const std::string& file,
+             const std::optional<VoxMapCache>& cache, const Progress& progress) {
+  MeshReport report;
+  VoxMap map = cache ? cache->build(mesh, settings, file, progress, &report)
+                     : buildVoxMap(Solid(mesh, file), settings, file, progress, &report);
+  if (const std::string warning = scenes::meshWarning(report); !warning.empty()) warn(file + ": " + warning);
+  return map;
+}
+
+double spacingFor(const Mesh& mesh, std::size_t point_count) {
+  return std::sqrt(area(mesh) / static_cast<double>(point_count));
 }
 
 }  // namespace vps::viewer

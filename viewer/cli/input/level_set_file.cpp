@@ -8,7 +8,6 @@
 #include <system_error>
 #endif
 
-#include "vdb_module/level_set_module.h"
 #include "vps/errors.h"
 
 namespace vps::viewer {
@@ -17,7 +16,8 @@ namespace vps::viewer {
 
 namespace {
 
-/// Beside the program as it is built, or where it is installed; else null.
+/// Opens the module in the folder of the program, as in a build, or in the folder where it is installed. Null
+/// if neither has it.
 void* openModule() {
   namespace fs = std::filesystem;
   std::error_code none;
@@ -27,7 +27,7 @@ void* openModule() {
   return nullptr;
 }
 
-/// Opened once, and for good: what it gives has functions of it.
+/// Opens the module once and never closes it, because voxmaps that it made point to its code.
 const LevelSetModule& module(const std::string& file) {
   static std::string why = "it is not beside the program";
   static const auto* const found = [] {

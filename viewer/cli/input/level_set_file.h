@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Voxmaps as .vdb files, in builds with and without OpenVDB.
+// Voxmaps as .vdb files. The functions call a module of the program (vdb_module/), which alone is linked with
+// OpenVDB and is loaded when a .vdb file is read or written. A build without OpenVDB has no module.
 #pragma once
 
 #include <string>
@@ -8,12 +9,20 @@
 
 namespace vps::viewer {
 
-/// Throws LoadError that names the file in a build without OpenVDB, and where the program's module for it
-/// cannot be loaded.
+/// Throws LoadError that names the file if the program was built without OpenVDB or cannot load its module.
 void requireOpenVdb(const std::string& file);
 
-/// These throw LoadError when the file cannot be used, and in a build without OpenVDB.
+/// Reads a voxmap. Throws LoadError if the file cannot be used, or as requireOpenVdb().
 VoxMap loadLevelSet(const std::string& file);
+/// Writes a voxmap. Throws LoadError if the file cannot be written, or as requireOpenVdb().
 void saveLevelSet(const VoxMap& map, const std::string& file);
+
+/// Functions that the module provides. Both throw LoadError.
+struct LevelSetModule {
+  VoxMap (*load)(const std::string& file) = nullptr;
+  void (*save)(const VoxMap& map, const std::string& file) = nullptr;
+};
+/// Name of the module's only exported symbol, which has C linkage: a LevelSetModule.
+inline constexpr const char* kLevelSetSymbol = "vps_level_set_module";
 
 }  // namespace vps::viewer

@@ -8,7 +8,6 @@
 
 #include "input/file_kind.h"
 #include "output/output.h"
-#include "output/progress_bar.h"
 #include "output/terminal.h"
 #include "vps/errors.h"
 #include "vps_scenes/cad/import.h"

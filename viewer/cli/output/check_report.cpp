@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "output/check_report.h"
+#include "output/reports.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "output/table.h"
-#include "vps_viewer/report/check_words.h"
 #include "vps_viewer/report/csv.h"
+#include "vps_viewer/report/words.h"
 
 namespace vps::viewer {
 

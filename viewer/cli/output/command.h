@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a subcommand of `vps` is made of. Each command_*.cpp holds one: its options, its help and the function
-// that runs it. command_list.inc names them.
+// What a subcommand of `vps` is made of. A source command_NAME.cpp defines one function
+//
+//   std::function<int()> addName(CLI::App& command);
+//
+// which adds the options to the command and returns the function that runs it after the command line has been
+// parsed. That function returns an exit status or throws; main.cpp turns an exception into one line on stderr
+// and kCouldNot. A row of commands/command_list.inc names the function and holds the command's help.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -15,19 +20,9 @@ inline constexpr int kBad = 1;       ///< done, and the parts do not fit or a bo
 inline constexpr int kCouldNot = 2;  ///< bad input or use; one line on stderr gives the reason
 inline constexpr int kNotShown = 3;  ///< done, and neither fit nor misfit was established
 
-/// The command line while the subcommands add themselves, and what the user chose.
-struct CommandLine {
-  CLI::App app;
-  std::function<int()> run;  ///< the chosen subcommand; empty before app.parse()
-};
-
-/// Adds a subcommand, to which the caller adds options. It returns an exit status, or throws: main.cpp turns
-/// exceptions into a line on stderr and kCouldNot.
-/// @param example a command that works, for the help
-CLI::App& addCommand(CommandLine& line, const std::string& name, const std::string& summary,
-                     const std::string& example, std::function<int()> run);
-
-/// --json FILE.
-void addJsonOption(CLI::App& command, std::string& file);
+/// Adds --json FILE.
+inline void addJsonOption(CLI::App& command, std::string& file) {
+  command.add_option("--json", file, "write the results to this file as JSON")->type_name("FILE");
+}
 
 }  // namespace vps::viewer

@@ -13,8 +13,8 @@
 #include "vps_scenes/planning/study_fields.h"
 #include "vps_scenes/planning/trade_fields.h"
 #include "vps_scenes/run/result_fields.h"
-#include "vps_scenes/uses/compare_fields.h"
-#include "vps_scenes/uses/ergonomics_fields.h"
+#include "vps_scenes/uses/compare.h"
+#include "vps_scenes/uses/ergonomics.h"
 #include "vps_viewer/window/latency.h"
 
 namespace vps::viewer {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Results as JSON, with the keys that other programs rely on: viewer/cli/README.md lists them. Wall-clock
+// Results as JSON, with the keys that other programs rely on: viewer/cli/JSON.md lists them. Wall-clock
 // figures are in one object, `wall`, so that all else repeats byte for byte. Numbers that are not finite
 // become null.
 #pragma once

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "output/plan_report.h"
+#include "output/reports.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "output/run_report.h"
+#include "output/reports.h"
 
 #include <cstdio>
 
@@ -13,7 +13,7 @@
 #include "vps_scenes/uses/ergonomics.h"
 #include "vps_viewer/report/csv.h"
 #include "vps_viewer/report/report.h"
-#include "vps_viewer/report/verdict_words.h"
+#include "vps_viewer/report/words.h"
 
 namespace vps::viewer {
 
@@ -57,17 +57,9 @@ std::string describe(const scenes::AssembleResult& result) {
 
 }  // namespace
 
-int statusOf(scenes::Verdict verdict) {
-  switch (verdict) {
-    case scenes::Verdict::Fits:
-      return kGood;
-    case scenes::Verdict::Blocked:
-      return kBad;
-    case scenes::Verdict::NotShown:
-      break;
-  }
-  return kNotShown;
-}
+static_assert(scenes::exitStatusOf(scenes::Verdict::Fits) == kGood);
+static_assert(scenes::exitStatusOf(scenes::Verdict::Blocked) == kBad);
+static_assert(scenes::exitStatusOf(scenes::Verdict::NotShown) == kNotShown);
 
 std::vector<std::string> fillFolder(const OutputFolder& out, const scenes::Scene& scene,
                                     const scenes::AssembleResult& result, const RunFiles& files) {

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Messages on stderr, and the POSIX functions of the program: terminal, process id and Ctrl-C.
+// The program and its terminal: messages and progress on stderr, Ctrl-C, and settings of the process (POSIX).
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <exception>
 #include <string>
+
+#include "vps/errors.h"
 
 namespace vps::viewer {
 
@@ -31,5 +34,38 @@ struct Stopped : std::exception {
   }
 };
 void throwIfStopped();
+
+/// Shows the progress of long work on stderr: on a terminal as a bar, from the first second on; elsewhere as
+/// a line every ten seconds.
+class ProgressBar {
+ public:
+  ProgressBar();
+  ~ProgressBar() { clear(); }
+  ProgressBar(const ProgressBar&) = delete;
+  ProgressBar& operator=(const ProgressBar&) = delete;
+
+  /// A callback for the work, which refers to this bar. The callback throws Stopped after Ctrl-C.
+  Progress progress() {
+    return [this](std::string_view doing, double share) { show(doing, share); };
+  }
+  /// Clears the line for other output.
+  void clear();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  void show(std::string_view doing, double share);
+
+  bool is_on_ = false;
+  bool is_drawn_ = false;
+  Clock::time_point begun_, drawn_;
+};
+
+/// Others go first where the processor is busy; also for threads that are started later.
+void giveWay();
+
+/// Gives threads that are started later stacks of 1 MiB. The memory of a process that drives a device is
+/// locked, so each thread's stack is there as a whole, also that of a thread that has ended, until another
+/// one takes it over.
+void limitStacks();
 
 }  // namespace vps::viewer

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The part of the program that needs OpenVDB. It is loaded when a .vdb file is read or written: the symbols
 // of OpenVDB take a third of the time in which the program starts.
-#include "vdb_module/level_set_module.h"
+#include "input/level_set_file.h"
 
 #include "vps/vdb.h"
 

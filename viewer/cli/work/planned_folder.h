@@ -2,11 +2,12 @@
 // Plans an assembly into a folder: what `vps plan` does, and `vps assemble` for a CAD file.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
 #include "input/cad_arguments.h"
-#include "output/progress_bar.h"
+#include "output/terminal.h"
 #include "vps_scenes/planning/plan.h"
 
 namespace vps::viewer {
@@ -43,5 +44,9 @@ inline constexpr const char* kUnfinishedPlan = "unfinished_plan.json";
 /// plan.dot and plan.svg, and prints the plan and what is wrong with it. Parts of a CAD file that have very
 /// many triangles are read with a greater deflection, and this is said, unless --deflection is given.
 PlannedFolder planInto(const PlanArguments& given, ProgressBar& bar);
+
+/// The clearances of the ways of a scene file, by part, from the plan.json beside it; empty where there is
+/// none, or where it has no assembly of that name. Those of more than kNearWay_m are that.
+std::map<std::string, double> plannedClearances(const std::string& scene_file);
 
 }  // namespace vps::viewer

@@ -8,7 +8,6 @@
 #include <cstdio>
 
 #include "output/json_fields.h"
-#include "output/quoted.h"
 #include "output/terminal.h"
 #include "vps/errors.h"
 

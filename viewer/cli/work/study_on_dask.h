@@ -9,6 +9,13 @@
 
 namespace vps::viewer {
 
+/// A word of a POSIX shell.
+inline std::string quoted(const std::string& word) {
+  std::string out = "'";
+  for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return out + "'";
+}
+
 /// The Python script that shares tasks among workers: study_on_dask.py.
 extern const char* const kStudyOnDaskScript;
 

@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// vps assemble: brings the parts together by contact, and writes report, pictures and data.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "input/cad_arguments.h"
+#include "input/file_kind.h"
+#include "input/scene_arguments.h"
+#include "output/command.h"
+#include "output/json_out.h"
+#include "output/output.h"
+#include "output/reports.h"
+#include "output/table.h"
+#include "output/terminal.h"
+#include "vps/errors.h"
+#include "vps/write_file.h"
+#include "vps_scenes/run/assemble.h"
+#include "vps_scenes/run/disassembly.h"
+#include "vps_scenes/run/record.h"
+#include "vps_scenes/run/tries.h"
+#include "vps_viewer/report/words.h"
+#include "work/heard_run.h"
+#include "work/planned_folder.h"
+
+namespace vps::viewer {
+
+namespace {
+
+struct AssembleArguments {
+  SceneArguments scene;
+  PlanArguments plan;                   ///< of CAD files
+  std::vector<std::string> more_files;  ///< CAD, besides `scene`
+  std::string out = "out";
+  std::string json;
+  std::string record;  ///< file to record the run in; empty: none
+  std::string sound;   ///< WAV file of what it sounds like; empty: none
+  int tries = 1;
+  bool has_pictures = true;
+  bool stops_at_failure = false;
+  bool is_real_time = false;
+  bool has_local_contact = false;
+  bool sheds_load = true;  ///< in real time
+  bool takes_apart = false;
+  bool has_pdf = false;
+};
+
+scenes::Verdict runScene(const AssembleArguments& given) {
+  const std::string& file = given.scene.scene;
+  OutputFolder out(given.out);
+  OutputFile json(given.json, {file});
+  OutputFile wav(given.sound, {file});
+  ProgressBar bar;
+  requireNotRead(given.record, {file});
+  scenes::Scene scene = sceneFrom(file, given.scene.fidelity, {given.json, given.record}, given.scene.cache);
+  if (given.takes_apart) scene = scenes::disassemblyOf(std::move(scene));
+
+  scenes::AssembleOptions options;
+  const std::optional<VoxMapCache> cache = cacheFrom(given.scene.cache);
+  setModelOptions(options, bar, cache, given.scene.models_everything);
+  options.keep_going = !given.stops_at_failure;
+  options.stop = &stopRequested();
+  options.is_real_time = given.is_real_time;
+  options.degrades = given.sheds_load;
+  options.has_local_contact = given.has_local_contact;
+  HeardRun heard;
+  if (!given.sound.empty()) {
+    heard.hear(scene);
+    heard.listenTo(options);
+  }
+  const std::string unfinished = given.out + "/unfinished.json";
+  std::optional<scenes::AssembleResult> so_far;
+  options.on_step = [&](const scenes::AssembleResult& now) {
+    writeWholeFile(unfinished, toJson(now));
+    so_far = now;
+  };
+  const auto run = [&] {
+    if (given.tries > 1) return scenes::assembleTries(scene, {given.tries}, options);
+    return given.record.empty() ? scenes::assemble(scene, options)
+                                : scenes::assembleAndRecord(scene, given.record, options);
+  };
+  scenes::AssembleResult result;
+  try {
+    result = run();
+    throwIfStopped();
+  } catch (const Stopped&) {
+    bar.clear();
+    if (so_far) {
+      printSteps(*so_far, scene.fidelity);
+      std::printf("stopped; results so far: %s\n", unfinished.c_str());
+    }
+    throw;
+  }
+
+  bar.progress()("writing the report", 1);
+  const std::vector<std::string> notes = fillFolder(
+      out, scene, result,
+      {"vps assemble " + file + " --out " + given.out + (given.takes_apart ? " --disassemble" : "") +
+           (given.tries > 1 ? " --tries " + std::to_string(given.tries) : ""),
+       given.has_pictures});
+  out.commit();
+  std::filesystem::remove(unfinished);
+  json.write(toJson(result));
+  bar.clear();
+  if (!given.sound.empty()) wav.write(heard.wav());
+
+  printOutcome(scene, result, notes, given.record, given.out);
+  // Last, so that nothing is lost where it fails.
+  if (given.has_pdf) requirePrinted(given.out + "/report.html", given.out + "/report.pdf");
+  return result.verdict;
+}
+
+/// Runs the subassemblies of a planned product, inner ones first, each into a folder of its own, and then the
+/// product, which mounts each of them as one part. Takes apart in the reverse order.
+scenes::Verdict runPlanned(const AssembleArguments& given,
+                           const std::vector<PlannedFolder::SceneFile>& scene_files) {
+  namespace fs = std::filesystem;
+  Table table({"<assembly", "<verdict", "<report"});
+  scenes::Verdict whole = scenes::Verdict::Fits;
+  const auto run = [&](const AssembleArguments& of, const std::string& name) {
+    if (scene_files.size() > 1) std::printf("\n%s\n", name.c_str());
+    const scenes::Verdict verdict = runScene(of);
+    whole = scenes::worse(whole, verdict);
+    table.add({name, words(verdict), of.out + "/report.html"});
+  };
+  const auto runPart = [&](std::size_t i) {
+    AssembleArguments part = given;
+    part.scene.scene = scene_files[i].path;
+    const std::string name = fs::path(part.scene.scene).stem().string();
+    if (!scene_files[i].has_steps) {
+      std::printf(
+          "\n%s\nNone of its parts can be taken off, so it was not run; the plan names what is in the way.\n",
+          name.c_str());
+      const scenes::Judgement judged = scenes::judge({.blocked = "none of its parts can be taken off"});
+      whole = scenes::worse(whole, judged.verdict);
+      table.add({name, words(judged.verdict), "-"});
+      return;
+    }
+    part.out = (fs::path(given.out) / name).string();
+    part.json = part.record = part.sound = "";
+    run(part, name);
+  };
+  const auto runProduct = [&] {
+    AssembleArguments product = given;
+    product.scene.scene = scene_files.front().path;
+    run(product, "product");
+  };
+  const std::size_t count = scene_files.size();
+  if (given.takes_apart) runProduct();
+  for (std::size_t i = 1; i < count; ++i) runPart(given.takes_apart ? i : count - i);
+  if (!given.takes_apart) runProduct();
+  if (scene_files.size() > 1) std::printf("\n%s", table.text().c_str());
+  return whole;
+}
+
+std::vector<std::string> filesOf(const AssembleArguments& given) {
+  std::vector<std::string> files{given.scene.scene};
+  files.insert(files.end(), given.more_files.begin(), given.more_files.end());
+  return files;
+}
+
+/// Plans the CAD files into a folder of the results, then runs what was planned. Good only if both are.
+int runCad(AssembleArguments given) {
+  PlanArguments plan = std::move(given.plan);
+  plan.assembly = filesOf(given);
+  plan.cad.cache = given.scene.cache;
+  plan.out = (std::filesystem::path(given.out) / "plan").string();
+  plan.is_forced = true;
+  requireNotRead(given.json, plan.assembly);
+  ProgressBar bar;
+  const PlannedFolder planned = planInto(plan, bar);
+  if (planned.steps == 0 && planned.status == kGood)
+    throw LoadError(
+        given.scene.scene, "",
+        "has one part, so there is nothing to assemble; give the files of the other parts too, or "
+        "use `vps simulate`");
+  if (planned.steps == 0) {
+    std::printf("No part can be taken off, so nothing was run; the plan names what is in the way.\n");
+    return planned.status;
+  }
+  given.plan = {};
+  const scenes::Verdict verdict = runPlanned(given, planned.scene_files);
+  const scenes::Evidence of_plan{.blocked = planned.status == kGood ? "" : "the plan names blocked parts"};
+  return scenes::exitStatusOf(scenes::worse(verdict, scenes::judge(of_plan).verdict));
+}
+
+int runAssemble(const AssembleArguments& given) {
+  if (given.has_pdf) requirePdf();
+  if (areCadFiles(filesOf(given))) return runCad(given);
+  requireNoCadOptions(given.scene.scene, given.plan.cad);
+  if (!given.plan.bases.empty() || given.plan.has_bench || given.plan.is_resumed)
+    throw LoadError(given.scene.scene, "",
+                    "is a scene, which states its order and ways; leave out --base, --bench and --resume, or "
+                    "plan it anew "
+                    "with vps plan");
+  return scenes::exitStatusOf(runScene(given));
+}
+
+}  // namespace
+
+std::function<int()> addAssemble(CLI::App& command) {
+  const auto given = std::make_shared<AssembleArguments>();
+  addSceneOptions(command, given->scene);
+  command.get_option("scene")
+      ->description("scene file (TOML), or a CAD file, which is planned first, as vps plan does")
+      ->type_name("SCENE|CAD");
+  command.add_option("more", given->more_files, "more CAD files, which share one frame with the first")
+      ->type_name("CAD");
+  addCadOptions(command, given->plan.cad);
+  addPlanOptions(command, given->plan);
+  command.add_option("--out", given->out, "folder for the results")->capture_default_str()->type_name("DIR");
+  command.add_flag("!--no-pictures", given->has_pictures, "write only tables, plots and data");
+  command.add_flag("--pdf", given->has_pdf, "report.pdf as well, printed by Chromium");
+  command.add_flag("--stop-at-failure", given->stops_at_failure, "end at the first step that fails");
+  command.add_flag(
+      "--disassemble", given->takes_apart,
+      "maintenance: all parts are in place, and each is taken off along its way, the last first");
+  command.add_flag("--local-contact", given->has_local_contact,
+                   "let the haptic loop compute contact between physics steps; for slow physics");
+  command.add_flag("--real-time", given->is_real_time,
+                   "run by the clock, with threads for the haptic loop and physics; not repeatable");
+  command.add_flag("!--no-load-shedding", given->sheds_load,
+                   "with --real-time: keep the full fidelity when the rate cannot be held, and count missed "
+                   "periods");
+  command
+      .add_option("--record", given->record,
+                  "record the run with its scene and meshes (MCAP), for vps replay")
+      ->type_name("FILE");
+  command
+      .add_option(
+          "--sound", given->sound,
+          "write what the run sounds like (WAV): strikes and rubbing of the parts, beeps of the device")
+      ->type_name("FILE")
+      ->excludes("--real-time");
+  command
+      .add_option("--tries", given->tries,
+                  "run with this many seeds of the virtual operator, in parallel; one success is enough, and "
+                  "the share that succeeds is the ease of assembly")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str()
+      ->excludes("--real-time")
+      ->excludes("--local-contact")
+      ->excludes("--record")
+      ->excludes("--sound");
+  addJsonOption(command, given->json);
+  return [given] { return runAssemble(*given); };
+}
+
+}  // namespace vps::viewer

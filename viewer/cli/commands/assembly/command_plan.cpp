@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// vps plan: order and ways of an assembly, as a scene that vps assemble runs.
+#include <cstdio>
+#include <memory>
+
+#include "input/cad_arguments.h"
+#include "input/file_kind.h"
+#include "output/command.h"
+#include "output/json_out.h"
+#include "output/output.h"
+#include "output/reports.h"
+#include "output/terminal.h"
+#include "vps/errors.h"
+#include "vps_scenes/planning/plan.h"
+#include "work/planned_folder.h"
+
+namespace vps::viewer {
+
+namespace {
+
+int verify(const PlanArguments& given) {
+  if (given.assembly.size() > 1)
+    throw LoadError(given.assembly[1], "", "is a second file; --verify checks one scene");
+  OutputFile json(given.json, given.assembly);
+  ProgressBar bar;
+  requireSceneFile(given.assembly.front());
+  const scenes::Scene scene = loadedScene(given.assembly.front(), given.cad.cache, bar.progress());
+  const std::vector<scenes::WayFault> faults =
+      checkWays(scene, bar.progress(), plannedClearances(given.assembly.front()));
+  throwIfStopped();
+  json.write(toJson(scene.name, faults));
+  bar.clear();
+  for (const scenes::WayFault& fault : faults) std::printf("%s\n", inWords(fault).c_str());
+  std::printf("%s: %zu steps, %zu at fault\n", scene.name.c_str(), scene.steps.size(), faults.size());
+  return faults.empty() ? kGood : kBad;
+}
+
+struct PlanCommandArguments : PlanArguments {
+  bool is_verify = false;
+};
+
+int runPlan(const PlanCommandArguments& given) {
+  if (given.is_verify) return verify(given);
+  if (given.out.empty()) throw LoadError("", "", "--out is missing; name a folder for the planned scene");
+  ProgressBar bar;
+  return planInto(given, bar).status;
+}
+
+}  // namespace
+
+std::function<int()> addPlan(CLI::App& command) {
+  const auto given = std::make_shared<PlanCommandArguments>();
+  command
+      .add_option(
+          "assembly", given->assembly,
+          "a CAD file, or several in one frame, or a scene file (TOML): its parts at their targets, its "
+          "steps are replaced")
+      ->required()
+      ->type_name("CAD|SCENE");
+  command
+      .add_option("-o,--out", given->out, "folder for scene.toml, meshes, plan.json, plan.dot and plan.svg")
+      ->type_name("DIR");
+  addCadOptions(command, given->cad);
+  addCacheOptions(command, given->cad.cache);
+  addPlanOptions(command, *given);
+  command.add_flag("--force", given->is_forced, "replace a scene.toml that exists");
+  command.add_flag(
+      "--verify", given->is_verify,
+      "plan nothing: check that the ways of a scene lead through no part in place, keep the clearance of "
+      "the plan.json beside it, and that what is let go is carried");
+  addJsonOption(command, given->json);
+  return [given] { return runPlan(*given); };
+}
+
+}  // namespace vps::viewer

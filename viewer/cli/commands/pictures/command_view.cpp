@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// vps view: a window on a scene or a recording.
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "input/file_kind.h"
+#include "input/scene_arguments.h"
+#include "input/session_options.h"
+#include "output/command.h"
+#include "output/json_out.h"
+#include "output/output.h"
+#include "output/reports.h"
+#include "output/table.h"
+#include "output/terminal.h"
+#include "vps/errors.h"
+#include "vps_device/device_kinds.h"
+#include "vps_viewer/draw/stereo.h"
+#include "vps_viewer/window/latency.h"
+#include "vps_viewer/window/window.h"
+
+namespace vps::viewer {
+
+namespace {
+
+struct ViewArguments {
+  SceneArguments scene;
+  WindowOptions window;
+  std::string stereo = "mono", display;
+  std::vector<std::string> show;
+  bool measures_latency = false;
+  LatencySettings latency;
+  std::string json;
+};
+
+void addRow(Table& table, const std::string& words, const std::vector<double>& values_s) {
+  const auto ms = [&](double share) { return fixed(1e3 * percentile(values_s, share), 1); };
+  table.add({words, ms(0.5), ms(0.99), ms(1)});
+}
+
+void print(const LatencyResult& result) {
+  Table table({"<since the handle was read [ms]", "median", "p99", "longest"});
+  for (const LatencyStage& stage : latencyStages()) {
+    if (stage.is_sound && !result.hasSound()) continue;
+    std::vector<double> values_s;
+    for (const ContactTimes& times : result.contacts) values_s.push_back(times.*stage.time_s);
+    addRow(table, stage.words, values_s);
+  }
+  addRow(table, "picture, sound and force are apart", result.apart_s());
+  std::fputs(table.text().c_str(), stdout);
+  std::printf(
+      "%zu contacts of '%s'; pictures of %d x %d by %s, %.1f ms each; sound: %s\n"
+      "apart: %s (bound: 99 of 100 within %.0f ms). Not in it: what a display takes to show a picture.\n",
+      result.contacts.size(), result.part.c_str(), result.width, result.height, result.drawn_by.c_str(),
+      1e3 * result.picture_wall_s,
+      result.hasSound() ? ("a card in the program, three periods of 64 samples; samples late " +
+                           std::to_string(result.late_samples) + " times, the mixer " +
+                           std::to_string(result.late_mixes) + " times")
+                              .c_str()
+                        : result.silence.c_str(),
+      result.isGood() ? "good" : "too far, or not all seen", 1e3 * kApart_s);
+}
+
+/// vps view --measure-latency: measures, prints the table and writes the JSON file, unless its name is empty.
+/// Returns kBad where picture, sound and force are farther apart than kApart_s.
+int reportLatency(const SceneArguments& given, const LatencySettings& settings, const std::string& json) {
+  OutputFile out(json, {given.scene});
+  const scenes::Scene scene = sceneFrom(given.scene, given.fidelity, {json}, given.cache);
+  const std::optional<VoxMapCache> cache = cacheFrom(given.cache);
+  ProgressBar bar;
+  LatencySettings with_models = settings;
+  setModelOptions(with_models.models, bar, cache, given.models_everything);
+  const LatencyResult result = measureLatency(scene, with_models);
+  bar.clear();
+  throwIfStopped();
+  print(result);
+  out.write(toJson(result));
+  return result.isGood() ? kGood : kBad;
+}
+
+int measure(const ViewArguments& given) {
+  if (lowerExtension(given.scene.scene) == ".mcap")
+    throw LoadError(given.scene.scene, "",
+                    "is a recording, which makes no contact; --measure-latency is for scenes");
+  LatencySettings settings = given.latency;
+  settings.width = given.window.width;
+  settings.height = given.window.height;
+  settings.stop = &stopRequested();
+  return reportLatency(given.scene, settings, given.json);
+}
+
+int runView(const ViewArguments& given) {
+  if (given.measures_latency) return measure(given);
+  if (const std::string missing = missingForWindow(); !missing.empty()) throw LoadError("", "", missing);
+  const std::string& file = given.scene.scene;
+  WindowOptions window = given.window;
+  window.stop = &stopRequested();
+  window.say = [](const std::string& words) { say(words); };
+  window.stereo = stereoModeOf(given.stereo);
+  window.show = shownModels(given.show);
+  if (!given.display.empty()) window.display = scenes::loadDisplay(given.display);
+  if (!window.session.empty()) {
+    if (!file.empty())
+      throw LoadError(file, "", "is shown in place of a session; leave out the file, or --session");
+    const std::optional<scenes::Verdict> verdict = viewSession(window);
+    if (verdict) return scenes::exitStatusOf(*verdict);
+    throwIfStopped();
+    return kNotShown;
+  }
+  if (file.empty())
+    throw LoadError("", "", "say what to show: a scene file, a recording, or --session NAME of vps render");
+  if (lowerExtension(file) == ".mcap") {
+    if (window.runs || !window.record.empty() || !window.hand.empty())
+      throw LoadError(file, "", "is a recording; --run, --hand and --record are for scenes");
+    viewRecording(device::loadRecording(file), window);
+    return kGood;
+  }
+  if (window.full_screen > 0 && file.find_first_not_of("0123456789") == std::string::npos)
+    throw LoadError(file, "", "is taken for a file; a monitor is said by --full-screen=" + file);
+  requireNotRead(window.record, {file});
+  scenes::Scene scene = sceneFrom(file, given.scene.fidelity, {window.record}, given.scene.cache);
+  if (window.display) window.display->placeDevice(scene.device);
+  const std::optional<VoxMapCache> cache = cacheFrom(given.scene.cache);
+  if (!window.hand.empty()) {
+    if (device::findDeviceKind(window.hand) == nullptr)
+      throw LoadError("", "",
+                      "--hand '" + window.hand + "' is not known; known are " + device::deviceKindNames());
+    window.runs = true;
+  }
+  window.models.cache = cache ? &*cache : nullptr;
+  window.models.models_everything = given.scene.models_everything;
+  viewScene(scene, window);
+  return kGood;
+}
+
+}  // namespace
+
+std::function<int()> addView(CLI::App& command) {
+  const auto given = std::make_shared<ViewArguments>();
+  addSceneOptions(command, given->scene);
+  command.get_option("scene")->description("scene file (TOML), or what vps assemble --record wrote (MCAP)");
+  command.get_option("scene")->required(false);
+  WindowOptions& window = given->window;
+  CLI::Option* session =
+      command
+          .add_option(
+              "--session", window.session,
+              "follow this session of vps render in place of a file; M marks a place for all who watch")
+          ->type_name("NAME");
+  addNetworkOption(command, window.network)->needs(session);
+  command.add_option("--width", window.width, "width of the window")
+      ->capture_default_str()
+      ->check(CLI::Range(64, 16384));
+  command.add_option("--height", window.height, "height of the window")
+      ->capture_default_str()
+      ->check(CLI::Range(64, 16384));
+  command.add_flag("--dark", window.is_dark, "dark panels and background");
+  command.add_flag("!--silent", window.has_sound, "no sound");
+  command.add_flag("--run", window.runs, "run the procedure at once");
+  command
+      .add_option(
+          "--hand", window.hand,
+          "run the procedure at once, the part moved by this kind of device (vps device --list): mouse, "
+          "space_mouse, game_controller, dual_arm, ...")
+      ->type_name("KIND");
+  command
+      .add_option("--speed", window.speed,
+                  "of playing and of a run, by the clock; of a run, 0: as fast as it goes")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 1000.0));
+  command.add_option("--record", window.record, "record a run (MCAP), for vps replay and vps view")
+      ->type_name("FILE");
+  command.add_flag(
+      "--headset", window.seeks_headset,
+      "show the scene in a headset too, on a table before its wearer (OpenXR); its trigger picks "
+      "and, with --hand mouse, takes the part");
+  std::vector<std::string> modes;
+  for (const StereoMode mode : stereoModes()) modes.emplace_back(toText(mode));
+  command
+      .add_option("--stereo", given->stereo, "how the pictures of both eyes are shown at first; S switches")
+      ->capture_default_str()
+      ->check(CLI::IsMember(modes));
+  command.add_flag(
+      "--quad-buffer", window.has_stereo_buffers,
+      "each eye's picture in a buffer of its own, where the driver has that (shutter glasses); in "
+      "the mode mono");
+  command
+      .add_option(
+          "--display", given->display,
+          "display file (TOML): the window shows what its screens show to its viewers, O one of them alone, "
+          "and a device whose place it has moves the part where the hand is")
+      ->type_name("FILE");
+  command
+      .add_option("--output", window.output,
+                  "of a display file, show this alone at first: SCREEN, SCREEN_VIEWER, ...")
+      ->type_name("NAME")
+      ->needs("--display");
+  // A flag: an option whose value may be left out would take the scene for it.
+  command
+      .add_flag("--full-screen{1}", window.full_screen,
+                "fill the first monitor without panels, or another one, as in --full-screen=2; F11 switches")
+      ->check(CLI::Range(1, 64));
+  command
+      .add_option("--show", given->show,
+                  "the models of contact in place of the parts: points, voxels, or points,voxels (points of "
+                  "the parts that a step moves)")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"points", "voxels"}));
+  CLI::Option* latency = command.add_flag(
+      "--measure-latency", given->measures_latency,
+      "without window, display and sound card: how far picture, sound and force of a contact are apart");
+  command.add_option("--taps", given->latency.taps, "contacts to measure, about 0.4 s each")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 100000))
+      ->needs(latency);
+  addJsonOption(command, given->json);
+  command.get_option("--json")->needs(latency);
+  for (const char* name : {"--run", "--hand", "--record", "--stereo", "--display", "--show", "--session"})
+    latency->excludes(name);
+  for (const char* name : {"--run", "--hand", "--record"}) session->excludes(name);
+  command.add_option("--pictures", window.pictures, "saved pictures are NAME_1.png, NAME_2.png, ...")
+      ->capture_default_str()
+      ->type_name("NAME");
+  return [given] { return runView(*given); };
+}
+
+}  // namespace vps::viewer

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What commands print and write of their results: check_report.cpp, plan_report.cpp, run_report.cpp and
+// trade_report.cpp. JSON is in json_out.h.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "output/output.h"
+#include "vps/errors.h"
+#include "vps_scenes/fits/check_types.h"
+#include "vps_scenes/planning/plan.h"
+#include "vps_scenes/planning/trade.h"
+#include "vps_scenes/run/result.h"
+#include "vps_scenes/scene/scene.h"
+#include "vps_viewer/report/plot.h"
+
+namespace vps::viewer {
+
+// --- vps check
+
+/// Tables of pairs, fits and parts; what was not asked for, and what there is none of, is left out.
+std::string checkTables(const scenes::CheckResult& result);
+/// The answer in a sentence.
+std::string checkHeadline(const scenes::CheckResult& result);
+/// A line for each number: what, a, b, quantity, value, error.
+std::string checkCsv(const scenes::CheckResult& result);
+
+// --- vps plan
+
+/// A line for each different fastener with the names of the parts; empty if there are none.
+std::string fastenerText(const std::vector<scenes::Fastener>& fasteners);
+/// The steps of all assemblies, and what cannot be taken apart.
+std::string planTables(const scenes::PlanResult& plan);
+/// The answer in a sentence.
+std::string planHeadline(const scenes::PlanResult& plan);
+/// "the way of 'peg' leads through 'wall', 3.20 mm deep at (1.0, 2.0, 3.0) mm (0.01 mm allowed)"
+std::string inWords(const scenes::WayFault& fault);
+
+// --- vps assemble, vps render and vps replay
+
+struct RunFiles {
+  std::string command;  ///< that repeats the run
+  bool has_pictures = true;
+};
+
+/// Fills the folder, which is not yet committed: report.html with pictures and plots, trace.csv, steps.csv
+/// and assemble.json. Returns notes on what could not be drawn, for stderr at the end.
+std::vector<std::string> fillFolder(const OutputFolder& out, const scenes::Scene& scene,
+                                    const scenes::AssembleResult& result, const RunFiles& files);
+
+/// "voxels of 0.250 mm, points every 0.500 mm"
+std::string fidelityWords(const Fidelity& fidelity);
+
+/// Prints the table of steps, and a line for each problem of a step.
+/// @param fidelity  with which the scene was run
+void printSteps(const scenes::AssembleResult& result, const Fidelity& fidelity);
+
+/// Prints what a run came to: fidelity, steps, notes of fillFolder(), timing of a run by the clock,
+/// recording, verdict.
+/// @param record  file of the recording; empty: none
+/// @param out     folder of the results
+void printOutcome(const scenes::Scene& scene, const scenes::AssembleResult& result,
+                  const std::vector<std::string>& notes, const std::string& record, const std::string& out);
+
+// --- vps trade
+
+std::string tradeTable(const scenes::TradeResult& result);
+/// One line for each row, SI but for microseconds. A column's name is its path in the JSON file, joined by
+/// "_".
+std::string tradeCsv(const scenes::TradeResult& result);
+/// Error of depth over the time of a step, with the front as a line; writes file + ".png" and file + ".svg".
+PlotOutcome plotTrade(const scenes::TradeResult& result, const std::string& file);
+
+}  // namespace vps::viewer
