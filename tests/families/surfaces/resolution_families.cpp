@@ -14,7 +14,6 @@
 #include "support/random_draw.h"
 #include "vps/voxmap.h"
 #include "vps_scenes/planning/fidelity_choice.h"
-#include "vps_scenes/planning/resolution.h"
 #include "vps_scenes/run/explain.h"
 #include "vps_scenes/run/simulate.h"
 

@@ -6,7 +6,7 @@
 
 #include "scenes/assemblies_to_plan.h"
 #include "vps_scenes/planning/plan.h"
-#include "vps_scenes/planning/resolution.h"
+#include "vps_scenes/planning/fidelity_choice.h"
 #include "vps_scenes/run/explain.h"
 
 namespace vps::scenes {

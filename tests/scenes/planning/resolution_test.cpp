@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Voxel and spacing by the sizes of the parts and of what they meet; memory known before anything is built.
-#include "vps_scenes/planning/resolution.h"
+#include "vps_scenes/planning/fidelity_choice.h"
 
 #include <gtest/gtest.h>
 

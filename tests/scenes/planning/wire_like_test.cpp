@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <functional>
 
-#include "overlaps/wire_like.h"
+#include "overlaps/drawn_overlaps.h"
 #include "scenes/assemblies_to_plan.h"
 #include "support/swept.h"
 

@@ -12,7 +12,6 @@
 #include "vps/errors.h"
 #include "vps_scenes/cad/import.h"
 #include "vps_scenes/planning/fidelity_choice.h"
-#include "vps_scenes/planning/resolution.h"
 
 namespace vps::viewer {
 

@@ -37,7 +37,7 @@ struct NamedMesh {
   std::string name;  ///< for the words
 };
 /// The same for a mesh that no scene states a fidelity for: where neither preset nor voxel is given, by its
-/// size and that of what it meets (vps_scenes/planning/resolution.h).
+/// size and that of what it meets (vps_scenes/planning/fidelity_choice.h).
 /// @param other   may be null
 /// @param choice  is set to what was chosen for both, in words; empty: the preset serves
 Fidelity fidelityFrom(const FidelityArguments& given, const NamedMesh& mesh, const NamedMesh* other,

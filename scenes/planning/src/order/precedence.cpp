@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "order/precedence.h"
+#include "order/take_apart.h"
 
 #include <algorithm>
 #include <map>

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The order in which parts leave an assembly.
+// The order in which parts leave an assembly: base part, removals, precedence.
 #pragma once
 
 #include <functional>
+#include <string>
 #include <vector>
 
+#include "ways/pair_motions.h"
 #include "ways/way.h"
 
 namespace vps::scenes {
@@ -52,5 +54,22 @@ std::vector<std::vector<std::size_t>> connectedGroups(const PairMotions& motions
 
 /// Sort key of directions: up, sideways, down.
 int slopeOf(const PairMotions& motions, const Vec3& direction_W);
+
+struct BasePart {
+  std::size_t part = 0;
+  std::string reason;  ///< why it was chosen, in words
+};
+
+/// Proposes a base among the parts with at least half the volume of the largest part: the part with most
+/// neighbours that it touches or fits; of equals the largest, then the first. The volume of an open mesh is
+/// that of its box.
+BasePart proposedBase(const PairMotions& motions, const std::vector<std::size_t>& members);
+
+/// @param names  names of the removals, in their order
+std::vector<PlannedOrder> precedence(const PairMotions& motions, const Disassembly& apart,
+                                     const std::vector<std::string>& names);
+
+/// Removes the orders that follow from other orders by transitivity.
+std::vector<PlannedOrder> reducedOrder(const std::vector<PlannedOrder>& order);
 
 }  // namespace vps::scenes

@@ -6,7 +6,6 @@
 #include <cstdio>
 
 #include "fits/iso_sizes.h"
-#include "overlaps/wire_like.h"
 
 namespace vps::scenes {
 

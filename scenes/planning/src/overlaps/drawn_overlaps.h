@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Classifies overlaps of the parts as drawn.
+// Classifies parts and overlaps as drawn: threads, press fits, flexible parts, shafts as wide as their holes,
+// fasteners.
 #pragma once
 
 #include <optional>
 #include <vector>
 
 #include "fits/fastener_shape.h"
+#include "surface/placed_surface.h"
+#include "vps/mesh.h"
 #include "vps_scenes/planning/plan_types.h"
 
 namespace vps::scenes {
@@ -31,5 +34,37 @@ std::vector<OverlapChoice> noVolumeChoices(const std::vector<PlacedSurface>& par
 /// flexible parts. Ascending.
 std::vector<std::size_t> leftOut(const std::vector<PlacedSurface>& parts,
                                  const std::vector<OverlapChoice>& choices);
+
+/// A choice for each shaft whose diameter equals that of its hole within the error: as drawn there is neither
+/// clearance nor interference, so that a run by contact cannot decide whether it passes. In the planned scene
+/// the shaft is thinner by twice kPassingRoom_m.
+/// @param others  choices for overlaps; their parts and pairs get no second choice
+std::vector<OverlapChoice> lineToLineChoices(const std::vector<PlacedSurface>& parts,
+                                             const CheckResult& checked,
+                                             const std::vector<OverlapChoice>& others);
+
+/// Fasteners recognised by shape (pins only if they fit a bore), and keys: bars with key fits to two parts.
+/// @param shapes of the parts, see fastenerShapes()
+std::vector<Fastener> fastenersIn(const std::vector<PlacedSurface>& parts, const CheckResult& checked,
+                                  const std::vector<std::optional<FastenerShape>>& shapes);
+
+/// Measures of a surface that is cut into bands of equal distance from one of its ends, measured along the
+/// surface. A wire has one or two narrow bands at every distance, a shell has bands as wide as itself, and a
+/// perforated plate has many bands.
+struct WireMeasure {
+  double length_m = 0;  ///< along the centre line; of a loop, its circumference
+  double width_m = 0;   ///< mean diagonal of the box of a band
+  double bands = 0;     ///< number of bands per distance that 95 % of all distances do not exceed
+  [[nodiscard]] double slenderness() const { return width_m > 0 ? length_m / width_m : 0; }
+};
+
+/// Measures on a grid of cells along the surface. A cell is as wide as a quarter of the thickness of a round
+/// wire, or wider so that there are at most about 50,000 cells; turns of a spring that are nearer to each
+/// other than two cells are merged. Empty for a mesh without volume or area. O(cells log cells). The result
+/// is the same on every machine.
+WireMeasure measureWire(const Mesh& mesh);
+
+/// Whether a part is much longer than wide, with at most two bands at each distance from its end.
+bool isWireLike(const Mesh& mesh);
 
 }  // namespace vps::scenes

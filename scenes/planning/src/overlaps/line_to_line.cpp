@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "overlaps/line_to_line.h"
+#include "overlaps/drawn_overlaps.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,6 @@
 #include <string>
 
 #include "fits/faces.h"
-#include "overlaps/drawn_overlaps.h"
 #include "text/name_words.h"
 
 namespace vps::scenes {

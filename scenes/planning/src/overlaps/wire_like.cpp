@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "overlaps/wire_like.h"
+#include "overlaps/drawn_overlaps.h"
 
 #include <algorithm>
 #include <array>

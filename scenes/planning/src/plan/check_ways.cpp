@@ -9,7 +9,7 @@
 #include "check/check_placed.h"
 #include "surface/placed_surface.h"
 #include "ways/pair_motions.h"
-#include "ways/way_clearance.h"
+#include "ways/way.h"
 
 #include "vps_scenes/planning/plan.h"
 

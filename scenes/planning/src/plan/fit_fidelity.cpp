@@ -10,8 +10,8 @@
 #include "scene/usual_spacing.h"
 #include "text/length_words.h"
 #include "vps/box.h"
+#include "vps_scenes/planning/fidelity_choice.h"
 #include "vps_scenes/planning/plan.h"
-#include "vps_scenes/planning/resolution.h"
 #include "vps_scenes/run/explain.h"
 
 namespace vps::scenes {

@@ -11,17 +11,12 @@
 
 #include "check/check_placed.h"
 #include "core/machine.h"
-#include "order/base_part.h"
-#include "order/fasteners_in.h"
-#include "order/precedence.h"
+#include "order/take_apart.h"
 #include "overlaps/drawn_overlaps.h"
-#include "overlaps/leaning.h"
-#include "overlaps/line_to_line.h"
-#include "overlaps/room_beside.h"
-#include "plan/bench.h"
 #include "surface/placed_surface.h"
 #include "vps/errors.h"
-#include "ways/way_clearance.h"
+#include "ways/resting.h"
+#include "ways/way.h"
 
 namespace vps::scenes {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "order/precedence.h"
+#include "order/take_apart.h"
 #include "vps_scenes/planning/plan.h"
 
 namespace vps::scenes {

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <map>
 
-#include "order/precedence.h"
+#include "order/take_apart.h"
 #include "vps_scenes/planning/plan.h"
 
 namespace vps::scenes {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "vps_scenes/planning/resolution.h"
+#include "vps_scenes/planning/fidelity_choice.h"
 
 #include <algorithm>
 #include <array>

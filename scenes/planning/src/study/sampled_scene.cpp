@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <string_view>
 #include <vector>
 
-#include "study/counted_draw.h"
-#include "study/varied_scene.h"
+#include "study/variants.h"
+#include "vps_device/random.h"
 #include "vps_scenes/planning/study.h"
 
 namespace vps::scenes {
@@ -11,6 +15,33 @@ namespace {
 
 constexpr double kSigmas =
     3;  // from the middle to a limit: 99.73 % of a normal distribution lie within three
+
+std::uint64_t mixed(std::uint64_t x) {
+  return device::Random(x).next();
+}
+
+/// FNV-1a hash.
+std::uint64_t hashOf(std::string_view text) {
+  std::uint64_t hash = 0xCBF29CE484222325;
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001B3;
+  return hash;
+}
+
+/// Generator for one run of a study and one name. Its numbers do not depend on other runs and names.
+device::Random generatorOf(std::uint64_t seed, std::uint64_t run, std::string_view name) {
+  return device::Random(mixed(mixed(mixed(seed) ^ run) ^ hashOf(name)));
+}
+
+/// Uniform in the open interval (0, 1); Random::uniform() includes 0, whose logarithm is not finite.
+double openUniform(device::Random& random) {
+  return (static_cast<double>(random.next() >> 11) + 0.5) * 0x1p-53;
+}
+
+/// Standard normal. Source: [Box and Muller 1958].
+double standardNormal(device::Random& random) {
+  const double radius = std::sqrt(-2 * std::log(openUniform(random)));
+  return radius * std::cos(2 * std::numbers::pi * openUniform(random));
+}
 
 void add(const StudyVariable& variable, double value, PartDeviation& to) {
   switch (variable.quantity) {
@@ -39,10 +70,10 @@ std::vector<double> sampleStudy(const std::vector<StudyVariable>& variables, std
                                 std::size_t run) {
   std::vector<double> values;
   for (const StudyVariable& variable : variables) {
-    const CountedDraw draw(seed, run, variable.name);
+    device::Random random = generatorOf(seed, run, variable.name);
     const double half = 0.5 * (variable.upper - variable.lower);
-    const double of_half =
-        variable.distribution == Distribution::Normal ? draw.normal() / kSigmas : 2 * draw.uniform() - 1;
+    const double of_half = variable.distribution == Distribution::Normal ? standardNormal(random) / kSigmas
+                                                                         : 2 * openUniform(random) - 1;
     values.push_back(variable.middle() + half * of_half);
   }
   return values;
@@ -56,7 +87,7 @@ Scene sampledScene(const Scene& scene, const std::vector<StudyVariable>& variabl
     add(variables[i], values[i], deviations[variables[i].part]);
   Scene sampled = withDeviations(scene, deviations);
   // Scene files and recordings store seeds as signed numbers, so the seed has 32 bits.
-  sampled.hand.seed = CountedDraw(seed, run, "hand").bits(0) >> 32;
+  sampled.hand.seed = generatorOf(seed, run, "hand").next() >> 32;
   return sampled;
 }
 

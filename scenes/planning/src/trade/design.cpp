@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "trade/design.h"
+#include "trade/trade_plan.h"
 
 #include <algorithm>
 

@@ -10,12 +10,10 @@
 #include "core/machine.h"
 #include "models/scene_models.h"
 #include "scene/usual_spacing.h"
-#include "trade/seeded_draw.h"
-#include "trade/surface_samples.h"
+#include "trade/samples.h"
 #include "vps/errors.h"
 #include "vps/solid.h"
 #include "vps/voxmap.h"
-#include "vps_scenes/planning/resolution.h"
 #include "vps_scenes/scene/settings_fields.h"
 
 namespace vps::scenes {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "trade/model_query.h"
+#include "trade/probe.h"
 
 #include <algorithm>
 #include <limits>

@@ -1,16 +1,59 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "trade/probe.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
-#include "trade/exact_contact.h"
-#include "trade/model_query.h"
+#include "judge/overlap_judge.h"
+#include "trade/samples.h"
+#include "vps/wrench.h"
 
 namespace vps::scenes {
 
 namespace {
+
+/// Contact of one part's samples with another solid.
+struct ExactContact {
+  double least_m = std::numeric_limits<double>::infinity();
+  Wrench F_S;  ///< wrench on the sampled part about p_SO, in the solid's frame S
+};
+
+/// Computes the exact distance of each sample that may touch; the solid's map, whose error is known, excludes
+/// the others.
+/// @param X_SB  pose of the sampled part B in the solid's frame S
+/// @param p_SO  reference point of the wrench, in the solid's frame
+/// @return the same bits for any number of threads. O(samples), plus an exact distance for each near sample.
+ExactContact exactContact(const JudgedBody& solid, const std::vector<SurfaceSample>& samples,
+                          const Pose& X_SB, const Vec3& p_SO) {
+  std::vector<double> estimate_m(samples.size());
+  tbb::parallel_for(std::size_t{0}, samples.size(),
+                    [&](std::size_t i) { estimate_m[i] = solid.model->map->distance(X_SB * samples[i].p); });
+  const double error_m = solid.model->map->sampleError_m();
+  const double least_m = estimate_m.empty() ? 0 : *std::min_element(estimate_m.begin(), estimate_m.end());
+  const double cutoff_m = std::max(least_m + 2 * error_m, error_m);
+  std::vector<Solid::Closest> found(samples.size());
+  std::vector<double> exact(samples.size(), std::numeric_limits<double>::infinity());
+  tbb::parallel_for(std::size_t{0}, samples.size(), [&](std::size_t i) {
+    if (estimate_m[i] > cutoff_m || estimate_m[i] >= solid.model->map->band_m()) return;
+    const Vec3 p_S = X_SB * samples[i].p;
+    found[i] = solid.model->solid->closest(p_S);
+    const bool is_inside = (p_S - found[i].q).dot(found[i].normal) < 0;
+    exact[i] = is_inside ? -found[i].distance_m : found[i].distance_m;
+  });
+  ExactContact contact;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    contact.least_m = std::min(contact.least_m, exact[i]);
+    if (!(exact[i] < 0)) continue;
+    const Vec3 f_S = kProbeStiffness_N_per_m3 * samples[i].area_m2 * -exact[i] * found[i].normal;
+    contact.F_S.f += f_S;
+    contact.F_S.tau += (X_SB * samples[i].p - p_SO).cross(f_S);
+  }
+  return contact;
+}
 
 constexpr double kFiner = 0.35;  ///< ratio of the exact samples' spacing to the scene's point spacing
 constexpr std::size_t kMaxSamples =
@@ -116,6 +159,24 @@ void Probe::measure(const Scene& scene, TradeRow& row) const {
   row.query = timeQueries(scene, moving_, poses_, false);
   row.all_points = timeQueries(scene, moving_, poses_, true);
   row.has_probe = true;
+}
+
+std::vector<Pose> probePoses(const Scene& scene, const AssembleResult& run, std::size_t count) {
+  std::vector<const TraceRow*> touching;
+  for (const TraceRow& row : run.trace)
+    if (row.step == 0 && row.contacts > 0 && row.phase < 3) touching.push_back(&row);
+  std::vector<Pose> poses;
+  SeededDraw draw(1);
+  const double reach_m = scene.steps.front().clearance_m + 20e-6;
+  for (std::size_t i = 0; i < std::min(count, touching.size()); ++i) {
+    Pose X_WP = touching[i * touching.size() / std::min(count, touching.size())]->X_WP;
+    const double length_m =
+        draw() * reach_m;  // drawn before the direction, since the order of draws matters; see inUnitCube()
+    const Vec3 offset = draw.inUnitCube().normalized() * length_m;
+    if (i % 2 == 1) X_WP.p += offset;
+    poses.push_back(X_WP);
+  }
+  return poses;
 }
 
 }  // namespace vps::scenes

@@ -5,18 +5,22 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <map>
+#include <memory>
 #include <new>
 #include <optional>
+#include <utility>
+#include <vector>
 
+#include "core/machine.h"
 #include "models/scene_models.h"
-#include "trade/design.h"
-#include "trade/excerpt.h"
-#include "trade/front.h"
-#include "trade/model_store.h"
+#include "study/variants.h"
 #include "trade/probe.h"
 #include "trade/trade_plan.h"
 #include "vps/errors.h"
 #include "vps_scenes/run/assemble.h"
+#include "vps_scenes/scene/model_options.h"
+#include "vps_scenes/scene/scene.h"
 
 namespace vps::scenes {
 
@@ -40,6 +44,41 @@ std::vector<std::string> fixedChoices() {
       "build uses float",
 #endif
   };
+}
+
+/// Stores the maps of one scene's parts by voxel size, and their shells by spacing.
+class ModelStore {
+ public:
+  /// Sets the models of the scene's parts; builds those that are not stored. Returns the build time [s].
+  /// Throws as buildModels().
+  double fill(Scene& scene, const ModelOptions& options);
+
+ private:
+  using Key = std::pair<std::size_t, double>;
+  std::vector<std::shared_ptr<const PartModel>> models_;  ///< models of the last row, by part
+  std::map<Key, std::shared_ptr<const VoxMap>> maps_;
+  std::map<Key, std::shared_ptr<const PointShell>> shells_;
+};
+
+double ModelStore::fill(Scene& scene, const ModelOptions& options) {
+  const double voxel_m = scene.fidelity.voxel_m, spacing_m = scene.fidelity.spacing_m;
+  models_.resize(scene.parts.size());
+  for (std::size_t i = 0; i < scene.parts.size(); ++i) {
+    PartModel model = models_[i] ? *models_[i] : PartModel{};  // mesh and surface are the same for every row
+    model.map = maps_[{i, voxel_m}];
+    model.shell = shells_[{i, spacing_m}];
+    scene.parts[i].is_cropped = false;
+    scene.parts[i].model = std::make_shared<const PartModel>(std::move(model));
+  }
+  const double begun_s = wallSeconds();
+  buildModels(scene, options);
+  const double wall_s = wallSeconds() - begun_s;
+  for (std::size_t i = 0; i < scene.parts.size(); ++i) {
+    models_[i] = scene.parts[i].model;
+    maps_[{i, voxel_m}] = models_[i]->map;
+    shells_[{i, spacing_m}] = models_[i]->shell;
+  }
+  return wall_s;
 }
 
 /// Copies the result of a run to its row.

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The path on which a part leaves the others.
+// The path on which a part leaves the others, its clearance, and its start on a bench.
 #pragma once
 
 #include <optional>
 #include <vector>
 
+#include "surface/placed_surface.h"
+#include "vps/errors.h"
 #include "vps_scenes/planning/plan_types.h"
 #include "ways/pair_motions.h"
 
@@ -45,5 +47,24 @@ std::optional<Way> screwWay(const PairMotions& motions, std::size_t part,
 /// pushes of Tian et al., Assemble Them All, 2022, with exact motions in place of simulated ones.
 std::optional<Way> legWay(const PairMotions& motions, const std::vector<std::size_t>& parts,
                           const std::vector<std::size_t>& held, SearchWork& work);
+
+/// The placed parts of a plan, with which its paths are measured.
+struct Placing {
+  const std::vector<PlacedSurface>& parts;
+  const CheckResult& checked;
+  Vec3 up_W;
+};
+
+/// Sets PlannedStep::clearance_m, nearest and fit_clearance_m of each step. A distance changes by no more
+/// than the surface moves; a leg is bisected until no smaller distance is possible, within a micrometre or a
+/// thousandth of the distance. Runs on all cores.
+void measureWays(const Placing& placing, PlannedAssembly& assembly, const Progress& progress);
+
+/// Gives each step a start on a bench: a plane below the whole assembly. The parts lie on it in rings around
+/// the assembly, in the order of the steps and with the orientation of their starts, with gaps of a twentieth
+/// of the assembly's size. From the bench a part is lifted above everything, moved across, and lowered to its
+/// original start. The boxes of all starts and of the assembly do not overlap. A step whose part cannot be
+/// lowered, because parts in place cover its start on all sides, keeps its start.
+void layOnBench(const Placing& placing, PlannedAssembly& assembly);
 
 }  // namespace vps::scenes

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ways/way_clearance.h"
+#include "ways/way.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Scenes whose parts deviate in size or placement.
+// Variants of a scene: parts that deviate in size or placement, one step alone; and whether their parts fit.
 #pragma once
 
+#include <string>
 #include <vector>
 
+#include "surface/placed_surface.h"
 #include "vps_scenes/scene/scene.h"
 
 namespace vps::scenes {
@@ -31,5 +33,33 @@ struct PartDeviation {
 /// follows the size, displacement and tilt of the highest part in place, so that only deviations across the
 /// path can block it.
 Scene withDeviations(const Scene& scene, const std::vector<PartDeviation>& deviations);
+
+/// A scene with one step and the parts in place before it: the fixed parts, and the parts of earlier steps,
+/// fixed at their targets. Parts of later steps are left out. The virtual operator aims as in the whole
+/// scene.
+Scene excerptOf(const Scene& scene, std::size_t step);
+
+/// Reason why a moved part cannot be at its target, by exact distance; empty: nothing blocks it.
+struct DrawnMisfit {
+  std::string part, other, reason;
+  [[nodiscard]] bool isFound() const { return !reason.empty(); }
+};
+
+/// Finds misfits in variants of one scene. The parts of that scene are prepared once.
+class DrawnFit {
+ public:
+  explicit DrawnFit(const Scene& scene);
+
+  /// A misfit is an overlap beyond its error, or a shaft that is larger than its bore, measured on the
+  /// cylinders that the meshes approximate. Overlaps that the scene allows or declares are not misfits.
+  [[nodiscard]] DrawnMisfit findMisfit(const Scene& variant) const;
+
+  /// Checks the variant; parts that equal those of the prepared scene are not prepared again.
+  [[nodiscard]] CheckResult check(const Scene& variant, const CheckSettings& settings) const;
+
+ private:
+  std::vector<DrawnPart> parts_;
+  std::vector<PlacedSurface> placed_;  // refers to parts_
+};
 
 }  // namespace vps::scenes

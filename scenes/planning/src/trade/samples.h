@@ -1,13 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pseudo-random numbers that are the same on every platform.
+// Sample points on a mesh, and pseudo-random numbers that are the same on every platform.
 #pragma once
 
 #include <cstdint>
 #include <random>
+#include <vector>
 
+#include "vps/mesh.h"
 #include "vps/pose.h"
 
 namespace vps::scenes {
+
+struct SurfaceSample {
+  Vec3 p = Vec3::Zero();
+  double area_m2 = 0;  ///< 0 for a vertex, which is used for distances only
+};
+
+/// Samples each triangle with about one point per spacing_m^2, at least one, and adds all vertices; in the
+/// mesh's frame, only points inside `box`. The points of each triangle follow the R2 sequence, which is
+/// evenly distributed. Deterministic. O(points). Source: Roberts, The unreasonable effectiveness of
+/// quasirandom sequences, 2018.
+std::vector<SurfaceSample> sampleSurface(const Mesh& mesh, double spacing_m, const Box& box);
 
 /// Draws uniformly from [0, 1). std::uniform_real_distribution is not used, since its numbers depend on the
 /// standard library.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "order/fasteners_in.h"
+#include "overlaps/drawn_overlaps.h"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Parts that lean in their holes, sink or tip over until another part holds them.
+// How a part rests in its place: whether it leans, sinks or tips over, and its room within its play.
 #pragma once
 
 #include <vector>
@@ -21,5 +21,13 @@ bool sinksFromItsPlace(const PairMotions& motions, std::size_t part, const std::
 /// True for a part that sinks onto the parts in place and then touches them at points that cannot balance its
 /// weight without friction: a plate that stands in a slot while its centre of mass is not above the slot.
 bool tipsOver(const PairMotions& motions, std::size_t part, const std::vector<std::size_t>& held);
+
+/// Displacement from a part's target to the place with most room to all sides across a straight path out, for
+/// a part that is drawn against one side of its play. A slide that rests on the plate of its dovetail, for
+/// example, often catches the edge of that plate if a hand aims for the place where it is drawn. Zero if the
+/// part has play to both sides or to none, if it is not stopped within kSightTolerance_m, or if the path is
+/// not free from the displaced place.
+Vec3 toMostRoom_m(const PairMotions& motions, std::size_t part, const std::vector<std::size_t>& held,
+                  const Vec3& out_W);
 
 }  // namespace vps::scenes

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "trade/surface_samples.h"
+#include "trade/samples.h"
 
 #include <cmath>
 
