@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "fits/iso_286.h"
+#include "fits/iso_sizes.h"
 #include "support/lathe.h"
 #include "vps_scenes/fits/check.h"
 

@@ -10,7 +10,7 @@
 #include <numbers>
 #include <random>
 
-#include "fits/iso_262.h"
+#include "fits/iso_sizes.h"
 #include "motion/screw_profile.h"
 #include "support/lathe.h"
 #include "support/screw.h"

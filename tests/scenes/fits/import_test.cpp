@@ -20,7 +20,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "import/own_process.h"
+#include "import/child_processes.h"
 #include "import/part_names.h"
 #include "import/readers.h"
 #include "support/stl_box.h"
@@ -508,7 +508,7 @@ TEST(ImportStl, TheReaderOfBinaryFilesGivesWhatAssimpGives) {
   const std::string file = (fs::path(VPS_SOURCE_DIR) / "scenes" / "peg_in_hole" / "peg.stl").string();
   const auto own = import::readBinaryStl(file, inUnit("mm"));
   ASSERT_TRUE(own && own->parts.size() == 1);
-  const import::RawCad other = import::readAssimp(file, "STL", inUnit("mm"), {});
+  const import::RawCad other = import::readAssimp(file, import::CadFormat::Stl, inUnit("mm"), {});
   ASSERT_EQ(other.parts.size(), 1U);
   EXPECT_EQ(own->unit_m, other.unit_m);
   EXPECT_EQ(own->parts[0].name, other.parts[0].name);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The volume that two meshes share, and the bound of its error, against formulas of prisms and boxes.
-#include "pair/overlap_volume.h"
+#include "pair/pair_measures.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "judge/overlap_judge.h"
-#include "judge/surface_error.h"
+#include "judge/body_motion.h"
 #include "scenes/scene_part.h"
 #include "step/way_check.h"
 #include "support/lathe.h"

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "fits/fit_tolerance.h"
+#include "fits/fits.h"
 #include "scenes/peg_in_cup.h"
 #include "vps_scenes/run/assemble.h"
 

@@ -8,15 +8,12 @@
 #include <unordered_map>
 
 #include "check/check_placed.h"
-#include "check/check_play.h"
-#include "check/clearance_map.h"
-#include "check/section.h"
-#include "core/wall_clock.h"
+#include "core/machine.h"
 #include "fits/fits.h"
 #include "fits/press_fit.h"
-#include "pair/check_pair.h"
+#include "pair/pair_measures.h"
 #include "proof/places.h"
-#include "surface/on_cores.h"
+#include "surface/placed_surface.h"
 #include "vps/mesh_repair.h"
 
 namespace vps::scenes {
@@ -113,7 +110,7 @@ void sortPairs(std::vector<CheckedPair>& pairs) {
   });
 }
 
-/// The pairs of which fits are needed to judge the overlap.
+/// The pairs whose overlap cannot be judged without their fits.
 PartPairs pairsToJudge(const std::vector<PlacedSurface>& parts, const std::vector<CheckedPair>& pairs) {
   std::unordered_map<std::string_view, std::size_t> index_of;
   for (std::size_t i = 0; i < parts.size(); ++i) index_of.emplace(parts[i].name, i);
@@ -127,7 +124,7 @@ std::vector<CheckedFit> checkFits(const std::vector<PlacedSurface>& parts, const
                                   const Progress& progress) {
   std::vector<bool> is_near(parts.size());
   for (const auto& [a, b] : near) is_near[a] = is_near[b] = true;
-  // Equal parts share their surface.
+  // Parts of equal geometry share their surface, so that faces are found once for each surface.
   std::map<const PartSurface*, FitFaces> faces;
   for (std::size_t i = 0; i < parts.size(); ++i)
     if (is_near[i]) faces.try_emplace(parts[i].surface.get());
@@ -150,10 +147,10 @@ std::vector<CheckedFit> checkFits(const std::vector<PlacedSurface>& parts, const
   return fits;
 }
 
-/// Parts whose boxes are near no other one; and all of them where no two parts are near each other.
+/// Names of the parts whose boxes are near no other box; all parts if no two parts are near each other.
 std::vector<std::string> partsAlone(const std::vector<PlacedSurface>& parts, const CheckResult& result,
                                     const CheckSettings& settings) {
-  // assumed: parts of an assembly touch, or have a neighbour at less than this; the default of --near
+  // assumed: a part of an assembly has a neighbour nearer than this, the default of --near
   constexpr double kNeighbour_m = 1e-3;
   std::vector<std::string> alone;
   if (parts.size() < 2) return alone;
@@ -215,7 +212,7 @@ CheckResult checkPlaced(const std::string& name, const std::vector<PlacedSurface
   if (settings.has_fits && settings.has_places && settings.only_parts.empty())
     result.places = freePlaces(placed, result, progress);
   else if (result.clashes() > 0)
-    result.places = {Verdict::NotShown, {}, "places without overlap were not looked for"};
+    result.places = {Verdict::NotShown, {}, "places without overlap were not searched for"};
   result.places_wall_s = lap_s();
   if (!settings.has_fits) result.fits.clear();
   if (settings.has_sections) result.sections = checkSections(placed, result, progress);
@@ -226,6 +223,27 @@ CheckResult checkPlaced(const std::string& name, const std::vector<PlacedSurface
   if (settings.has_play) checkPlay(placed, result, settings, progress);
   result.play_wall_s = lap_s();
   return result;
+}
+
+std::vector<DrawnPart> drawnParts(const ImportedCad& cad) {
+  std::vector<DrawnPart> parts;
+  for (const ImportedPart& part : cad.parts)
+    parts.push_back({.name = part.name,
+                     .mesh = part.mesh,
+                     .X_WP = part.X_WP,
+                     .chord_m = part.deflection_m,
+                     .rounding_m = part.rounding_m});
+  return parts;
+}
+
+std::vector<DrawnPart> drawnParts(const Scene& scene) {
+  std::vector<DrawnPart> parts;
+  for (const ScenePart& part : scene.parts)
+    parts.push_back({part.part.name, part.part.mesh, part.X_WP, part.deflection_m, part.allow_overlap,
+                     part.press_fit_m, part.youngs_modulus_Pa, part.poissons_ratio,
+                     part.part.material.friction, part.rounding_m, part.is_fixed});
+  for (const SceneStep& step : scene.steps) parts[step.part].X_WP = placeOf(step);
+  return parts;
 }
 
 }  // namespace vps::scenes

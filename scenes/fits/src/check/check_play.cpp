@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "check/check_play.h"
+#include "check/check_placed.h"
 
 #include <algorithm>
 #include <array>
@@ -11,14 +11,14 @@
 #include <tbb/parallel_for.h>
 
 #include "motion/play.h"
-#include "surface/on_cores.h"
+#include "surface/placed_surface.h"
 
 namespace vps::scenes {
 
 namespace {
 
 constexpr std::size_t kAxes = 6;
-constexpr std::size_t kTasks = kAxes + 2;  // of a part: its axes, and the ways out, straight and by screw
+constexpr std::size_t kTasks = kAxes + 2;  // tasks of one part: its axes, straight ways out, screw ways out
 
 struct PartTask {
   std::unique_ptr<const MotionSearch> search;
@@ -27,7 +27,7 @@ struct PartTask {
   double error_m = 0;
 };
 
-/// The pairs and fits that each part takes part in.
+/// For each part, the pairs and fits that it belongs to.
 class Neighbours {
  public:
   struct Pair {
@@ -54,7 +54,8 @@ class Neighbours {
   std::vector<std::vector<const CheckedFit*>> fits_;
 };
 
-/// Empty for a part that clashes or is pressed in: what overlaps cannot be moved apart by it.
+/// The task of one part. It is empty for a part that clashes or is pressed in, since an overlapping part has
+/// no free motion to measure.
 PartTask taskOf(const std::vector<PlacedSurface>& parts, std::size_t part, const Neighbours& neighbours,
                 const std::shared_ptr<const StandingParts>& all) {
   PartTask task;
@@ -105,7 +106,8 @@ void measurePlay(const PlacedSurface& part, const PartTask& task, double leave_m
   out.play_center_W = task.frame.center_W;
   out.play_error_m = task.error_m;
   out.is_play_certain = !hasFlushFaces(task) && std::ranges::count(is_given_up, 1) == 0;
-  // A contact at half the part's least size from the axis; farther out the error is less.
+  // The error of a contact at half the part's least size from the axis. A contact farther from the axis has a
+  // smaller error.
   out.play_error_rad = task.error_m / (0.5 * part.surface->box().size().minCoeff());
 }
 

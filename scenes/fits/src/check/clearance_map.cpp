@@ -1,24 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "check/clearance_map.h"
+#include "check/check_placed.h"
 
 #include <algorithm>
 #include <array>
 #include <map>
 
-#include "surface/on_cores.h"
+#include "surface/placed_surface.h"
 
 namespace vps::scenes {
 
 namespace {
 
-constexpr std::size_t kMostParts = 24;         // assumed: more pictures than anybody looks at
-constexpr std::size_t kMostVertices = 40'000;  // assumed: a tenth of a second a part
-constexpr double kFine = 1.0 / 100;            // of the part's size: about four pixels
+constexpr std::size_t kMostParts = 24;         // assumed: more pictures than a reader looks at
+constexpr std::size_t kMostVertices = 40'000;  // assumed: takes a tenth of a second for a part
+constexpr double kFine = 1.0 / 100;            // longest edge in the part's size: about four pixels
 
 using Edge = std::array<std::uint32_t, 2>;
 
-/// Divides the edges longer than this that are near boxes of other parts, once. The mesh stays closed,
-/// because both facets at an edge divide it. False if there is none.
+/// Halves each edge that is longer than longest_m and near the box of another part. The mesh stays closed,
+/// because both facets at an edge divide it. Returns false if there is no such edge.
 bool divideOnce(Mesh& mesh, double longest_m, const std::vector<Box>& others_W) {
   std::map<Edge, std::uint32_t> middle;
   const auto divided = [&](std::uint32_t a, std::uint32_t b) -> std::uint32_t {
@@ -53,7 +53,7 @@ bool divideOnce(Mesh& mesh, double longest_m, const std::vector<Box>& others_W) 
     } else if (count == 3) {
       out.insert(out.end(), {{t[0], m[0], m[2]}, {t[1], m[1], m[0]}, {t[2], m[2], m[1]}, {m[0], m[1], m[2]}});
     } else {
-      // Turned so that edge 0 is divided and edge 2 is not.
+      // Rotates the triangle so that edge 0 is divided and edge 2 is not.
       while (!is_divided[0] || is_divided[2]) {
         std::rotate(t.begin(), t.begin() + 1, t.end());
         std::rotate(m.begin(), m.begin() + 1, m.end());
@@ -85,7 +85,8 @@ ClearanceMap mapOf(const PlacedSurface& part, const std::vector<const PlacedSurf
       const Vec3 out = (other->box_W.min - p_W).cwiseMax(p_W - other->box_W.max).cwiseMax(0);
       const double apart_m = out.norm();
       if (apart_m >= std::max(least_m, 1e-300)) continue;
-      // Nothing outside its box is inside a part; within the box a far surface can still be around the point.
+      // A point outside a part's box is outside the part. Within the box, the point can be inside although
+      // the surface is far away.
       const double most_m = apart_m > 0 ? least_m : near_m;
       const Vec3 p = other->X_WP.inverse() * p_W;
       least_m = std::min(least_m, other->surface->solid().signedDistance(p, most_m));
@@ -98,7 +99,7 @@ ClearanceMap mapOf(const PlacedSurface& part, const std::vector<const PlacedSurf
 
 std::vector<ClearanceMap> clearanceMaps(const std::vector<PlacedSurface>& parts, const CheckResult& result,
                                         double near_m, const Progress& progress) {
-  // The pairs are sorted, the tightest first.
+  // The pairs are sorted: the least clearance comes first.
   std::vector<std::size_t> wanted;
   for (const CheckedPair& pair : result.pairs)
     for (const std::string& name : {pair.a, pair.b}) {

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "check/section.h"
+#include "check/check_placed.h"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
-#include "surface/on_cores.h"
+#include "surface/placed_surface.h"
 #include "vps/mesh_distance.h"
 
 namespace vps::scenes {
 
 namespace {
 
-constexpr std::size_t kMost = 60;  // assumed: more pictures than anybody looks at
+constexpr std::size_t kMost = 60;  // assumed: more pictures than a reader looks at
 
-/// The unit vector square to a direction that is nearest to an axis of the world.
+/// The unit vector that is perpendicular to a direction and nearest to an axis of the world.
 Vec3 acrossOf(const Vec3& axis_W, const std::array<int, 3>& order = {0, 1, 2}) {
   Vec3 best = axis_W.unitOrthogonal();
   double most = 0;
@@ -27,7 +27,8 @@ Vec3 acrossOf(const Vec3& axis_W, const std::array<int, 3>& order = {0, 1, 2}) {
   return best;
 }
 
-/// A shaft stands upright as it is in the world, or lies; a key is seen along its length.
+/// The section of a fit. A shaft is drawn upright or level, whichever is nearer to its direction in the
+/// world; a key is seen along its length.
 CheckedSection sectionOf(const CheckedFit& fit) {
   CheckedSection section;
   section.is_fit = true;
@@ -52,7 +53,8 @@ CheckedSection sectionOf(const CheckedFit& fit) {
   return section;
 }
 
-/// Towards the nearest point of either surface: the way along which the overlap is as deep as is said.
+/// The direction from the deepest point to the nearest point of either surface, along which the depth of the
+/// overlap is measured.
 Vec3 depthDirection(const PlacedSurface& a, const PlacedSurface& b, const Vec3& at_W) {
   Vec3 nearest_W = Vec3::Zero();
   double least_m = 1e300, size_m = 0;
@@ -75,7 +77,7 @@ Vec3 depthDirection(const PlacedSurface& a, const PlacedSurface& b, const Vec3& 
     found.emplace_back(within_m, q_W);
     size_m = std::max(size_m, part->surface->box().size().norm());
   }
-  // The deepest point is often on one of the surfaces itself; the other one then says the direction.
+  // The deepest point often lies on one of the two surfaces. The other surface then gives the direction.
   for (const auto& [distance_m, q_W] : found)
     if (distance_m > 1e-9 * size_m && distance_m < least_m) {
       least_m = distance_m;
@@ -91,7 +93,7 @@ CheckedSection sectionOf(const CheckedPair& pair, const PlacedSurface& a, const 
   const double smaller_m = std::min(a.box_W.size().maxCoeff(), b.box_W.size().maxCoeff());
   section.half_m = std::max(0.6 * smaller_m, 8 * pair.interference_depth_m);
   section.near_half_m = std::min(4 * pair.interference_depth_m, section.half_m);
-  // The depth upright or level, whichever it is in the world.
+  // The direction of the depth is drawn upright or level, whichever is nearer to its direction in the world.
   if (std::abs(depth_W.z()) > 0.7) {
     section.up_W = depth_W;
     section.right_W = acrossOf(depth_W);
@@ -99,8 +101,8 @@ CheckedSection sectionOf(const CheckedPair& pair, const PlacedSurface& a, const 
     section.right_W = depth_W;
     section.up_W = acrossOf(depth_W, {2, 0, 1});
   }
-  // The deepest point is often on a face: the plane passes a little towards the middle of what
-  // both share, so that it does not graze the face.
+  // The deepest point often lies on a face. The plane is shifted a little towards the middle of the shared
+  // box, so that it does not graze the face.
   constexpr double kInwards = 0.02;
   const Vec3 middle_W = 0.5 * (a.box_W.min.cwiseMax(b.box_W.min) + a.box_W.max.cwiseMin(b.box_W.max));
   const Vec3 n_W = section.right_W.cross(section.up_W);

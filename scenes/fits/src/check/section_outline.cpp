@@ -4,8 +4,8 @@
 #include <cmath>
 #include <map>
 
-#include "check/section.h"
-#include "vps_scenes/fits/outline_clip.h"
+#include "check/check_placed.h"
+#include "vps_scenes/fits/check_types.h"
 
 namespace vps::scenes {
 
@@ -15,8 +15,8 @@ using Point = std::array<double, 2>;
 using Chain = std::vector<Point>;
 using Edge = std::array<std::uint32_t, 2>;
 
-/// A facet in the plane: from where one of its edges crosses to where another does, the material at the left
-/// as seen from in front.
+/// The cut of a facet by the plane: it leads from the point where one edge crosses the plane to the point
+/// where another edge does, with the material on the left as seen from in front.
 struct Cut {
   Edge from, to;
 };
@@ -79,7 +79,8 @@ double squaredDistance(const Point& a, const Point& b) {
   return (a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]);
 }
 
-/// Joins the ends of open chains to the nearest beginnings; true if there were any that do not meet.
+/// Joins the end of each open chain to the nearest beginning of a chain. Returns true if an end and its
+/// beginning were apart.
 bool closeChains(std::vector<Chain>& open, std::vector<Chain>& closed, double same_m) {
   bool has_gap = false;
   while (!open.empty()) {
@@ -110,7 +111,7 @@ SectionOutline outlineOf(const PlacedSurface& part, const CheckedSection& sectio
   const std::vector<Cut> cuts = cutter.cuts();
   std::multimap<Edge, std::size_t> beginning;
   for (std::size_t i = 0; i < cuts.size(); ++i) beginning.emplace(cuts[i].from, i);
-  // Chains that are open at their beginning start where no cut ends.
+  // A chain that is open at its beginning starts at a cut whose beginning is the end of no other cut.
   std::map<Edge, int> ends;
   for (const Cut& cut : cuts) ++ends[cut.to];
   std::vector<std::size_t> starts;

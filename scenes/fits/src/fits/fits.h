@@ -1,42 +1,35 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Fits between two parts: a shaft in a bore, a key in a slot, a screw in a nut.
+// Fits between two parts: a shaft in a bore, a key in a slot, a screw in a nut; and the tolerance that a fit
+// gives a part whose step states none.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <vector>
 
-#include "fits/flat_faces.h"
-#include "fits/round_faces.h"
-#include "fits/thread_faces.h"
+#include "fits/faces.h"
 #include "surface/placed_surface.h"
 
 namespace vps::scenes {
 
-/// The faces of a part that fits can have.
-struct FitFaces {
-  std::vector<RoundFace> round;
-  std::vector<FlatFace> flat;
-  std::vector<ThreadFace> threads;
-};
-FitFaces fitFaces(const PartSurface& surface);
-
-/// A part in place, with its faces.
+/// A part at its pose, with its faces.
 struct FittedPart {
   const PlacedSurface& part;
   const FitFaces& faces;
 };
 
-/// Cylinders of which one is in the other with a common axis, and pairs of parallel faces between two others.
-/// The clearance is at most mostClearance_m(). O(faces of a x faces of b). Thread-safe.
+/// Appends the fits of a shaft in a bore (two cylinders with a common axis) or of a key in a slot (two
+/// parallel faces between two others). The clearance of a fit is at most mostClearance_m(). O(faces of a x
+/// faces of b). Thread-safe.
 void appendShaftFits(const FittedPart& a, const FittedPart& b, std::vector<CheckedFit>& out);
 void appendKeyFits(const FittedPart& a, const FittedPart& b, std::vector<CheckedFit>& out);
-/// Threads outside of one part in threads inside of the other, with a common axis and lead. Removes the fits
-/// of the two parts that were appended before and are of the crests and roots of these threads.
+/// Appends the fits of an external thread of one part in an internal thread of the other, with a common axis
+/// and lead. Removes the shaft fits that were appended before and belong to crests and roots of these
+/// threads.
 void appendThreadFits(const FittedPart& a, const FittedPart& b, std::vector<CheckedFit>& out);
 
-/// From where to where two faces around nearly parallel axes are beside each other: along the axis of a, from
-/// a.p. Nowhere if the second is not more than the first.
+/// The range in which two faces with nearly parallel axes overlap along the axis of a, as two distances from
+/// a.p. The faces do not overlap if the second distance is not greater than the first.
 template <class Face, class OtherFace>
 std::array<double, 2> commonRange(const Face& a, const OtherFace& b) {
   const double shift_m = a.axis.dot(b.p - a.p), sign = a.axis.dot(b.axis) > 0 ? 1 : -1;
@@ -44,10 +37,31 @@ std::array<double, 2> commonRange(const Face& a, const OtherFace& b) {
   return {std::max(a.from_m, std::min(end_m, other_end_m)), std::min(a.to_m, std::max(end_m, other_end_m))};
 }
 
-/// The greatest clearance that is called a fit. assumed: a quarter of the size; below 3 mm, the smallest
-/// sizes of ISO 286, that of H11/c11 there, 0.18 mm, and no more than the size itself.
+/// The greatest clearance at which two faces count as a fit. assumed: a quarter of the size, but at least the
+/// clearance of H11/c11 at 3 mm, the smallest sizes of ISO 286, which is 0.18 mm, and no more than the size
+/// itself.
 inline double mostClearance_m(double size_m) {
   return std::max(0.25 * size_m, std::min(0.18e-3, size_m));
+}
+
+/// Greatest tolerance that a fit gives a part, apart from the play within the fit. assumed: a usual position
+/// tolerance
+inline constexpr double kFitTolerance_m = 0.1e-3;
+/// Tolerance of a part that no fit guides and that the operator places by eye: five standard deviations of
+/// device::OperatorHabits::see_error_m.
+inline constexpr double kSightTolerance_m = 0.5e-3;
+/// Length added to the clearance of a fit: depths up to 10 um count as contact, and a part may touch on both
+/// sides.
+inline constexpr double kContactOnBothSides_m = 20e-6;
+
+/// The tolerance of a part's position that a fit of this clearance gives; a negative clearance counts as 0. A
+/// part in a loose rectangular hole may lie in a corner of the hole, off by half of the clearance in two
+/// directions. The part then is in place as far as the fit can tell.
+inline double fitTolerance_m(double diametral_clearance_m) {
+  const double clearance_m = std::max(0.0, diametral_clearance_m);
+  constexpr double kToCorner = 0.70710678118654752;  // half of the square root of two
+  const double play_m = std::min(kSightTolerance_m, kToCorner * clearance_m + kContactOnBothSides_m);
+  return std::max(std::min(kFitTolerance_m, clearance_m + kContactOnBothSides_m), play_m);
 }
 
 }  // namespace vps::scenes

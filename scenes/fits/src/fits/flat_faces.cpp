@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "fits/flat_faces.h"
+#include "fits/faces.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,9 +9,9 @@ namespace vps::scenes {
 
 namespace {
 
-/// Coordinates of files with six or seven digits are off by up to 1e-6 of the greatest.
+/// Coordinates in files with six or seven digits deviate by up to 1e-6 of the greatest coordinate.
 constexpr double kFlatFacesRounding = 2e-6;
-constexpr double kFlatFacesParallel = 1e-3;  // of the normals of facets whose corners decide more precisely
+constexpr double kFlatFacesParallel = 1e-3;  // 1 - cosine of the normals; corners decide more precisely
 
 double offPlane(const FlatFace& face, const PartSurface& surface, std::uint32_t facet) {
   double off_m = 0;
@@ -20,12 +20,13 @@ double offPlane(const FlatFace& face, const PartSurface& surface, std::uint32_t 
   return off_m;
 }
 
-/// Joins faces in one plane that are beside each other: cracks, and facets that are divided on one side of an
-/// edge only, leave no neighbours. Only the largest are looked at, so that fine meshes of curved faces cost
-/// little: O(kJoined^2).
+/// Joins adjacent faces in one plane. Such faces have no common edge where there is a crack, or where facets
+/// are divided on one side of an edge only. Only the kJoined largest faces are examined, so that fine meshes
+/// of curved faces cost little: O(kJoined^2).
 void joinPieces(const PartSurface& surface, double tolerance_m, std::vector<FlatFace>& faces) {
   constexpr std::size_t kJoined = 2000;
-  constexpr double kMostGap = 0.05;  // assumed: in the smaller piece's size; slots are wider, cracks narrower
+  constexpr double kMostGap =
+      0.05;  // share of the smaller piece's size. assumed: slots are wider, cracks narrower
   const std::size_t count = std::min(kJoined, faces.size());
   std::vector<Box> boxes(count);
   for (std::size_t i = 0; i < count; ++i)

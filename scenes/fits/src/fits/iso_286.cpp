@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "fits/iso_286.h"
+#include "fits/iso_sizes.h"
 
 #include <algorithm>
 #include <array>
@@ -16,11 +16,11 @@ namespace {
 constexpr std::size_t kRanges = 13;
 using Row = std::array<int, kRanges>;  // um
 
-// Upper ends of the ranges of nominal sizes [mm]; a size at an end belongs to the range below.
+// Upper ends of the ranges of nominal sizes [mm]; a size at the end of a range belongs to that range.
 constexpr Row kUpTo_mm = {3, 6, 10, 18, 30, 50, 80, 120, 180, 250, 315, 400, 500};
 
-// Standard tolerances IT5 to IT11. ISO 286-1:2010, table 1. Above 3 mm they are 7, 10, 16, 25, 40, 64 and 100
-// times i = 0.45 cbrt(D) + 0.001 D [um, mm] at the geometric mean D of a range's ends, rounded.
+// Standard tolerances IT5 to IT11. ISO 286-1:2010, table 1. Above 3 mm, the tolerances are 7, 10, 16, 25, 40,
+// 64 and 100 times i = 0.45 cbrt(D) + 0.001 D [um, mm] at the geometric mean D of a range's ends, rounded.
 constexpr std::array<Row, 7> kTolerance = {{
     {4, 5, 6, 8, 9, 11, 13, 15, 18, 20, 23, 25, 27},
     {6, 8, 9, 11, 13, 16, 19, 22, 25, 29, 32, 36, 40},
@@ -50,8 +50,8 @@ constexpr std::array<Letter, 9> kShafts = {{
     {'p', {6, 12, 15, 18, 22, 26, 32, 37, 43, 50, 56, 62, 68}},
 }};
 
-// Hole-basis fits first, then shaft-basis fits, as ISO 286-1:2010, annex B recommends them; the finer before
-// the coarser.
+// Hole-basis fits first, then shaft-basis fits, as ISO 286-1:2010, annex B recommends them; finer fits
+// precede coarser ones.
 constexpr std::array kFits = {"H6/h5", "H7/h6", "H7/g6", "H7/k6", "H7/m6",  "H7/n6",   "H7/p6",  "H8/h7",
                               "H7/f7", "H8/f7", "H8/e8", "G7/h6", "F8/h6",  "H9/h9",   "H8/d9",  "F8/h9",
                               "E8/h9", "H9/e9", "H9/d9", "D9/h9", "H11/h9", "H11/h11", "D10/h9", "H11/d11"};
@@ -69,7 +69,8 @@ std::optional<Zone> isoZone(const std::string& zone, double nominal_m) {
   const auto row =
       std::find_if(kShafts.begin(), kShafts.end(), [&](const Letter& l) { return l.letter == letter; });
   if (grade < 5 || grade > 11 || row == kShafts.end()) return std::nullopt;
-  if (is_hole && letter > 'h') return std::nullopt;  // these need corrections that depend on the grade
+  if (is_hole && letter > 'h')
+    return std::nullopt;  // holes of these letters need corrections that depend on the grade
   const double width_m = 1e-6 * kTolerance[static_cast<std::size_t>(grade - 5)][range];
   const double deviation_m = 1e-6 * row->deviation[range];
   if (letter > 'h') return Zone{deviation_m, deviation_m + width_m};
@@ -78,7 +79,7 @@ std::optional<Zone> isoZone(const std::string& zone, double nominal_m) {
 
 std::string isoFit(double bore_m, double shaft_m) {
   constexpr double kStep_m = 0.5e-3;
-  // A deviation of less than a hundredth of a micrometre is one of the mesh's coordinates.
+  // A deviation below 0.01 um is rounding of the mesh's coordinates.
   constexpr double kRound_m = 0.01e-6;
   const auto lies = [](const std::optional<Zone>& zone, double deviation_m) {
     return zone && deviation_m >= zone->lower_m - kRound_m && deviation_m <= zone->upper_m + kRound_m;

@@ -4,14 +4,14 @@
 #include <cmath>
 
 #include "fits/fits.h"
-#include "fits/iso_286.h"
+#include "fits/iso_sizes.h"
 
 namespace vps::scenes {
 
 namespace {
 
-constexpr double kLeastFacing = 0.3;       // of the smaller of two faces, that the other one covers
-constexpr double kKeyFitsParallel = 1e-4;  // rad
+constexpr double kLeastFacing = 0.3;       // share of the smaller face that the other face covers
+constexpr double kKeyFitsParallel = 1e-4;  // greatest angle between parallel faces [rad]
 
 using Vec2 = Eigen::Vector2d;
 using Polygon = std::vector<Vec2>;
@@ -59,7 +59,7 @@ Seen seen(const FlatFace& face, const PlacedSurface& part) {
   return out;
 }
 
-/// The facets of a face as seen along a key's normal.
+/// The facets of a face, projected along a key's normal.
 struct FlatPatch {
   std::vector<std::array<Vec2, 3>> triangles;  // counter-clockwise
   std::vector<std::array<Vec2, 2>> boxes;
@@ -85,7 +85,7 @@ FlatPatch projected(const Seen& of, const Vec3& u, const Vec3& v) {
   return flat;
 }
 
-/// Where two faces cover each other, as seen along their normal.
+/// The area in which two faces cover each other, as seen along their normal.
 struct Facing {
   double area_m2 = 0;
   Vec2 min = Vec2::Constant(1e300), max = Vec2::Constant(-1e300);
@@ -115,7 +115,7 @@ Facing facing(const FlatPatch& a, const FlatPatch& b) {
   return out;
 }
 
-/// A face of the key that faces one of the slot.
+/// A face of the key and the face of the slot opposite it.
 struct Contact {
   Seen key, slot;
   double gap_m = 0;
@@ -140,9 +140,11 @@ std::vector<Contact> contacts(const FittedPart& key, const FittedPart& slot, dou
   return out;
 }
 
-/// The direction in a face along which the smallest rectangle around it lies: that of one of its edges.
+/// The direction, in the plane of a face, of the smallest rectangle around the face. One side of this
+/// rectangle is parallel to an edge of the face.
 Vec3 alongOf(const Seen& of) {
-  constexpr std::size_t kFacets = 64;  // more are the ends of round slots, where any direction will do
+  constexpr std::size_t kFacets =
+      64;  // a face with more facets has a curved outline, for which any direction serves
   Vec3 best = of.n_W.unitOrthogonal();
   double least_m2 = 1e300;
   const auto& facets = of.face->facets;
@@ -187,7 +189,7 @@ bool fitOf(const Contact& one, const Contact& two, CheckedFit& fit) {
   return true;
 }
 
-/// Faces that cracks or grooves divide give the same fit more than once: the longest is kept.
+/// Faces that cracks or grooves divide give the same fit more than once; the longest fit is kept.
 void addKeyOnce(const CheckedFit& fit, std::size_t first, std::vector<CheckedFit>& out) {
   for (std::size_t i = first; i < out.size(); ++i) {
     CheckedFit& other = out[i];
@@ -210,7 +212,7 @@ void appendFits(const FittedPart& key, const FittedPart& slot, std::vector<Check
   for (std::size_t i = 0; i < near.size(); ++i)
     for (std::size_t k = i + 1; k < near.size(); ++k) {
       if (!near[i].isOpposite(near[k])) continue;
-      // The normal of a fit's axis is the one whose greatest component is positive.
+      // Of the two opposite normals, the fit's axis is the one whose greatest component is positive.
       int greatest = 0;
       near[i].key.n_W.cwiseAbs().maxCoeff(&greatest);
       const bool is_first = near[i].key.n_W[greatest] > 0;

@@ -2,18 +2,18 @@
 #include "fits/press_fit.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
-#include "fits/ring_volume.h"
-#include "surface/near_axis.h"
+#include "surface/around_axis.h"
 
 namespace vps::scenes {
 
 namespace {
 
-/// Sizes of the same face in files of six digits differ by so much of the size.
+/// Relative difference between the sizes of one face in files that keep six digits.
 constexpr double kPressFitRounding = 2e-6;
 
 bool isOf(const CheckedFit& fit, const CheckedPair& pair) {
@@ -25,8 +25,8 @@ double interferenceOf(const CheckedFit& fit) {
   return fit.diametral_clearance_m < -beyond_m ? -fit.diametral_clearance_m : 0;
 }
 
-constexpr double kMiddle = 0.25;    // of the length, to each side: chamfers at the ends do not count
-constexpr double kFacingOut = 0.1;  // radial part of a facet's normal, from which it bounds the ring
+constexpr double kMiddle = 0.25;    // share of the length to each side; it excludes chamfers at the ends
+constexpr double kFacingOut = 0.1;  // least radial part of the normal of a facet that bounds the ring
 
 double hubOf(const CheckedFit& fit, const PlacedSurface& hub) {
   double least_m = std::numeric_limits<double>::max();
@@ -67,7 +67,7 @@ CheckedPress pressOf(const CheckedFit& fit, const PlacedSurface& shaft, const Pl
   press.pressure_Pa = jointPressure(ring, -fit.diametral_clearance_m);
   press.force_N = press.pressure_Pa * area_m2 * ring.friction;
   press.declared_force_N = jointPressure(ring, declared_m) * area_m2 * ring.friction;
-  // At the bore: hoop stress p (D2 + d2) / (D2 - d2), radial stress -p.
+  // Tresca at the bore: hoop stress p (D2 + d2) / (D2 - d2), radial stress -p.
   const double share = std::pow(ring.joint_m / ring.hub_m, 2);
   press.hub_stress_Pa = press.pressure_Pa * 2 / (1 - share);
   return press;
@@ -76,13 +76,13 @@ CheckedPress pressOf(const CheckedFit& fit, const PlacedSurface& shaft, const Pl
 void judge(const std::vector<PlacedSurface>& parts, CheckedPair& pair, std::vector<CheckedFit>& fits) {
   const bool is_contact = pair.state == PairState::Contact;
   bool is_declared = true;
-  double hidden_m = 0;  // of an interference that the facets hide
+  double hidden_m = 0;  // greatest radial interference that the facets hide
   const double facets_off_m = pair.error_m;
   double depth_limit_m = pair.press_fit_m;
   for (CheckedFit& fit : fits) {
     const double of_fit_m = interferenceOf(fit);
     if (of_fit_m == 0 || !isOf(fit, pair)) continue;
-    depth_limit_m = 0.5 * pair.press_fit_m;  // in diameter or width, so half to each side
+    depth_limit_m = 0.5 * pair.press_fit_m;  // the declared length is in diameter or width: half to each side
     is_declared = is_declared && of_fit_m - fit.error_m <= pair.press_fit_m;
     const bool is_hidden = is_contact && fit.kind == FitKind::Shaft && fit.offset_m < 0.5 * of_fit_m;
     if (is_hidden) {
@@ -136,6 +136,36 @@ void removeFalseFits(CheckResult& result) {
 void judgeByFits(const std::vector<PlacedSurface>& parts, CheckResult& result) {
   for (CheckedPair& pair : result.pairs)
     if (needsFit(pair)) judge(parts, pair, result.fits);
+}
+
+RingVolume ringVolume(const CheckedFit& fit, const PlacedSurface& shaft, const PlacedSurface& bore,
+                      double aside_m) {
+  constexpr int kAngles = 64, kPlaces = 16;
+  const Vec3 u = fit.axis_W.unitOrthogonal(), v = fit.axis_W.cross(u);
+  const auto hasMaterial = [](const PlacedSurface& part, const Vec3& p_W) {
+    return part.surface->solid().isInside(part.X_WP.inverse() * p_W);
+  };
+  std::array<std::array<bool, kAngles>, kPlaces> is_shared{};
+  int shared = 0, mixed = 0;
+  for (int k = 0; k < kPlaces; ++k)
+    for (int i = 0; i < kAngles; ++i) {
+      const double turn_rad = 2 * std::numbers::pi * (i + 0.5) / kAngles;
+      const Vec3 out = std::cos(turn_rad) * u + std::sin(turn_rad) * v;
+      const Vec3 middle_W = fit.at_W + ((k + 0.5) / kPlaces - 0.5) * fit.length_m * fit.axis_W;
+      is_shared[k][i] = hasMaterial(shaft, middle_W + (0.5 * fit.shaft_m - aside_m) * out) &&
+                        hasMaterial(bore, middle_W + (0.5 * fit.bore_m + aside_m) * out);
+      shared += is_shared[k][i] ? 1 : 0;
+    }
+  for (int k = 0; k < kPlaces; ++k)
+    for (int i = 0; i < kAngles; ++i) {
+      mixed += is_shared[k][i] != is_shared[k][(i + 1) % kAngles] ? 1 : 0;
+      mixed += k > 0 && is_shared[k][i] != is_shared[k - 1][i] ? 1 : 0;
+    }
+  constexpr double kCells = kAngles * kPlaces;
+  const double ring_m3 =
+      std::numbers::pi / 4 * (fit.shaft_m * fit.shaft_m - fit.bore_m * fit.bore_m) * fit.length_m;
+  const double surface_m2 = std::numbers::pi * fit.shaft_m * fit.length_m;
+  return {ring_m3 * shared / kCells, ring_m3 * mixed / kCells + surface_m2 * 0.5 * fit.error_m};
 }
 
 }  // namespace vps::scenes

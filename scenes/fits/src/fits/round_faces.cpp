@@ -1,28 +1,28 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "fits/round_faces.h"
+#include "fits/faces.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <optional>
 
-#include "fits/cylinder_fit.h"
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 
 namespace vps::scenes {
 
 namespace {
 
-/// Coordinates of files with six or seven digits are off by up to 1e-6 of the greatest.
+/// Coordinates in files with six or seven digits deviate by up to 1e-6 of the greatest coordinate.
 constexpr double kRoundFacesRounding = 2e-6;
-/// In the radius: 1 um at 4 mm, what coordinates in metres with six decimals need.
+/// Relative deviation of corners from a circle in coarse files: 1 um at a radius of 4 mm, for coordinates in
+/// metres with six decimals.
 constexpr double kCoarse = 2.5e-4;
 constexpr double kLeastTurn = 0.3;
-constexpr std::size_t kPatch = 16;  // facets from which a cylinder is guessed
-/// Flat strips from which a circle can be told; one strip may be divided into many facets.
+constexpr std::size_t kPatch = 16;  // number of facets from which a cylinder is guessed
+/// Number of flat strips that determine a circle; one strip may be divided into many facets.
 constexpr std::size_t kLeastNormals = 4;
-/// How far the middle of a facet is inside, in the radius: 1 - cos(kCurved_rad / 2).
+/// Greatest depth of a facet's middle below the cylinder, divided by the radius: 1 - cos(kCurved_rad / 2).
 constexpr double kMostChord = 0.02;
 
 class Finder {
@@ -64,15 +64,15 @@ class Finder {
     return std::ranges::any_of(surface_.neighbours()[i], [&](std::uint32_t k) { return isBent(i, k); });
   }
 
-  /// Calls visit(x) for the corners of a facet that lie on the true surface. Where a flat strip was divided
-  /// further, the other corners lie on it, inside the cylinder.
+  /// Calls visit(x) for the corners of a facet that lie on the true surface. If a flat strip of the cylinder
+  /// was divided further, the additional corners lie on the strip, inside the cylinder, and are skipped.
   template <class Visit>
   void forEachCorner(std::uint32_t i, Visit visit) const {
     for (const std::uint32_t v : mesh_.triangles[i])
       if (is_corner_[v]) visit(mesh_.vertices[v]);
   }
 
-  /// Facets that are connected to the seed over smooth edges, and of which `accepts` is true.
+  /// Facets for which `accepts` is true and that are connected to the seed across smooth edges.
   template <class Accepts>
   std::vector<std::uint32_t> flood(std::uint32_t seed, std::size_t most, Accepts accepts) {
     ++round_;
@@ -95,7 +95,8 @@ class Finder {
     }
     std::optional<Cylinder> guess = guessed(facets);
     if (!guess) return std::nullopt;
-    // Files of few digits have corners off the circle by more; the face's residual then says so.
+    // In files with few digits, corners deviate more from the circle. The face's residual then shows the
+    // deviation.
     for (const double within_m : {tolerance_m_, kCoarse * guess->radius_m})
       if (std::optional<RoundFace> face = grown(seed, *guess, within_m)) return face;
     return std::nullopt;
@@ -103,7 +104,8 @@ class Finder {
 
   std::optional<RoundFace> grown(std::uint32_t seed, Cylinder guess, double within_m) {
     std::vector<std::uint32_t> facets;
-    // A small patch tells the cylinder less well than all of it: the tolerance narrows.
+    // The guess from a small patch is less precise than one from the whole face, so the first tolerance is
+    // wider.
     for (const double loose_m : {1e-4 * guess.radius_m + 3 * within_m, within_m}) {
       const Cylinder& on = guess;
       const auto lies = [&](std::uint32_t i) { return liesOn(on, i, loose_m); };
@@ -115,7 +117,7 @@ class Finder {
     return finished(guess, std::move(facets));
   }
 
-  /// Their number, up to kLeastNormals.
+  /// Number of distinct normals among the facets, up to kLeastNormals.
   [[nodiscard]] std::size_t differentNormals(const std::vector<std::uint32_t>& facets) const {
     std::vector<Vec3> normals;
     for (const std::uint32_t i : facets) {
@@ -139,7 +141,8 @@ class Finder {
            });
   }
 
-  /// The normals of a cylinder are square to its axis, and its corners lie on a circle as seen along it.
+  /// Guesses a cylinder: its normals are perpendicular to its axis, and its corners lie on a circle as seen
+  /// along the axis.
   [[nodiscard]] std::optional<Cylinder> guessed(const std::vector<std::uint32_t>& facets) const {
     Mat3 spread = Mat3::Zero();
     Vec3 middle = Vec3::Zero();
@@ -206,8 +209,9 @@ class Finder {
   const Mesh& mesh_;
   double tolerance_m_ = 0;
   std::vector<bool> is_taken_;
-  std::vector<bool> is_tried_;   // on a cylinder of which too little is there, as the crests of a thread
-  std::vector<bool> is_corner_;  // by vertex: at an edge between two facets of a curved face
+  std::vector<bool>
+      is_tried_;  // by facet: on a cylinder of which too small a share exists, as a thread's crest
+  std::vector<bool> is_corner_;  // by vertex: lies on an edge between two facets of a curved face
   std::vector<std::uint32_t> seen_;
   std::uint32_t round_ = 0;
 };
@@ -216,6 +220,33 @@ class Finder {
 
 std::vector<RoundFace> roundFaces(const PartSurface& surface) {
   return Finder(surface).find();
+}
+
+bool fitCylinder(std::span<const Vec3> points, Cylinder& cylinder) {
+  using Vec5 = Eigen::Matrix<double, 5, 1>;
+  using Mat5 = Eigen::Matrix<double, 5, 5>;
+  constexpr int kRounds = 6;
+  for (int round = 0; round < kRounds; ++round) {
+    const Vec3 u = cylinder.axis.unitOrthogonal(), v = cylinder.axis.cross(u);
+    const double scale_m = cylinder.radius_m;  // makes tilts lengths
+    Mat5 sum = Mat5::Zero();
+    Vec5 right = Vec5::Zero();
+    for (const Vec3& x : points) {
+      const Vec3 out = cylinder.outward(x), r = out.normalized();
+      const double along = cylinder.axis.dot(x - cylinder.p) / scale_m;
+      Vec5 row;
+      row << -r.dot(u), -r.dot(v), -along * r.dot(u), -along * r.dot(v), -1;
+      sum += row * row.transpose();
+      right -= row * (out.norm() - cylinder.radius_m);
+    }
+    const Vec5 step = sum.ldlt().solve(right);
+    if (!step.allFinite() || step.norm() > cylinder.radius_m) return false;
+    cylinder.p += step[0] * u + step[1] * v;
+    cylinder.axis = (cylinder.axis + (step[2] * u + step[3] * v) / scale_m).normalized();
+    cylinder.radius_m += step[4];
+    if (step.norm() < 1e-13 * cylinder.radius_m) break;
+  }
+  return cylinder.radius_m > 0;
 }
 
 }  // namespace vps::scenes

@@ -3,17 +3,18 @@
 #include <cmath>
 
 #include "fits/fits.h"
-#include "fits/iso_286.h"
+#include "fits/iso_sizes.h"
 
 namespace vps::scenes {
 
 namespace {
 
-/// How far a shaft's axis may be from the bore's, in its diameter: drawings are not always exact.
+/// Greatest distance of a shaft's axis from the bore's, divided by the diameter; drawings are not always
+/// exact.
 constexpr double kMostOffset = 0.02;
-constexpr double kLeastLength = 1e-3;  // in the diameter
+constexpr double kLeastLength = 1e-3;  // least length of a fit, divided by the diameter
 
-/// The fit of a shaft in a bore that are both in the world frame; false if they are none.
+/// Fills the fit of a shaft in a bore, both given in the world frame; returns false if they are no fit.
 bool fitOf(const RoundFace& shaft, const RoundFace& bore, CheckedFit& fit) {
   const double d_m = 2 * shaft.radius_m, clearance_m = 2 * (bore.radius_m - shaft.radius_m);
   if (std::abs(clearance_m) > mostClearance_m(d_m)) return false;
@@ -46,7 +47,7 @@ RoundFace inWorld(const RoundFace& face, const Pose& X_WP) {
   RoundFace out = face;
   out.axis = X_WP.R * face.axis;
   out.p = X_WP * face.p;
-  // The direction of an axis is free; one that the eye expects: its greatest component is positive.
+  // The sign of an axis is free; the chosen direction has a positive greatest component, as a reader expects.
   int greatest = 0;
   out.axis.cwiseAbs().maxCoeff(&greatest);
   if (out.axis[greatest] > 0) return out;
@@ -57,7 +58,7 @@ RoundFace inWorld(const RoundFace& face, const Pose& X_WP) {
   return out;
 }
 
-/// Faces that a keyway or a groove divides give the same fit more than once: the longest is kept.
+/// Faces that a keyway or a groove divides give the same fit more than once; the longest fit is kept.
 void addOnce(const CheckedFit& fit, std::size_t first, std::vector<CheckedFit>& out) {
   for (std::size_t i = first; i < out.size(); ++i) {
     CheckedFit& other = out[i];

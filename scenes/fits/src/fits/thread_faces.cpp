@@ -1,8 +1,8 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// The normal of a helicoid r(phi), z = lead phi / 2 pi + ... has n_phi / n_z = -lead / (2 pi r), whatever its
-// profile. So each facet tells the lead of the thread that it belongs to, if it belongs to one around this
-// axis; facets of a thread agree, others do not. What they find is then confirmed by the surface's radius.
-#include "fits/thread_faces.h"
+// SPDX-License-Identifier: BSD-3-Clause The normal of a helicoid z = lead phi / 2 pi + f(r) has n_phi / n_z =
+// -lead / (2 pi r), whatever its profile. Each facet of a thread around an axis therefore gives the lead of
+// the thread; facets of one thread agree on the lead, other facets do not. The surface's radius along the
+// helix then confirms the thread.
+#include "fits/faces.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -12,7 +12,6 @@
 #include <map>
 #include <numbers>
 
-#include "fits/cylinder_fit.h"
 #include "scene/thread_form.h"
 
 namespace vps::scenes {
@@ -26,26 +25,28 @@ struct Line {
   Vec3 axis = Vec3::UnitZ();
 };
 
-/// A facet as seen from an axis.
+/// A facet in cylindrical coordinates around an axis.
 struct Flank {
   std::uint32_t facet = 0;
   double lead_m = 0;
-  double radius_m = 0, along_m = 0, turn = 0;  // of its middle; a turn is 0 to 1
+  double radius_m = 0, along_m = 0, turn = 0;  // coordinates of the facet's middle; `turn` is 0 to 1
   double area_m2 = 0;
 };
 
-constexpr double kLeastSlope = 0.15;   // flanks of 80 degrees from the axis
-constexpr double kLeastFacing = 0.05;  // away from the axis, or towards it
+constexpr double kLeastSlope =
+    0.15;  // least |n . axis|: a flank's normal is at most 81 degrees from the axis
+constexpr double kLeastFacing = 0.05;  // least radial part of a flank's normal
 
-/// A facet, whichever axis it is seen from.
+/// A facet, independent of an axis.
 struct Facet {
   std::uint32_t number = 0;
   Vec3 n = Vec3::Zero(), middle = Vec3::Zero();
   double area_m2 = 0;
 };
 
-/// The facets of a surface, and for each direction of an axis those that can be flanks by their normals
-/// alone: a plate with holes has many axes of one direction, and most of its facets are flat or plain walls.
+/// The facets of a surface, and for each direction of an axis the facets whose normals allow them to be
+/// flanks. A plate with holes has many axes of one direction, and most of its facets are flat or plain walls,
+/// which this list leaves out.
 class FlankFacets {
  public:
   explicit FlankFacets(const PartSurface& surface) {
@@ -57,10 +58,10 @@ class FlankFacets {
     }
   }
 
-  /// At least all whose normals lie as flanksAround() demands.
+  /// All facets whose normals meet the demands of flanksAround(), and possibly a few more.
   const std::vector<Facet>& along(const Vec3& axis) {
-    constexpr double kSameWay = 1 - 1e-6;  // within 1.4 mrad
-    constexpr double kMargin = 2e-3;       // of slope and facing, for those
+    constexpr double kSameWay = 1 - 1e-6;  // cosine: directions within 1.4 mrad
+    constexpr double kMargin = 2e-3;       // margin of slope and facing for directions that are merged
     for (const Direction& known : directions_)
       if (std::abs(axis.dot(known.axis)) > kSameWay) return known.facets;
     Direction& direction = directions_.emplace_back();
@@ -83,9 +84,9 @@ class FlankFacets {
   std::deque<Direction> directions_;
 };
 
-/// Facets that can be the flanks of a thread around the axis, outside or inside.
+/// Facets that can be flanks of an external or internal thread around the axis.
 std::vector<Flank> flanksAround(FlankFacets& facets, const Line& line, bool is_inside) {
-  constexpr double kLeastLead = 0.002, kMostLead = 1;  // in turns around the axis: 2 pi r
+  constexpr double kLeastLead = 0.002, kMostLead = 1;  // lead divided by 2 pi r
   const Vec3 x = line.axis.unitOrthogonal(), y = line.axis.cross(x);
   std::vector<Flank> out;
   for (const Facet& facet : facets.along(line.axis)) {
@@ -107,10 +108,10 @@ std::vector<Flank> flanksAround(FlankFacets& facets, const Line& line, bool is_i
   return out;
 }
 
-/// Those with the lead on which most of the area agrees, of one hand.
+/// The flanks of one hand whose lead agrees with the lead that has the largest area.
 std::vector<Flank> agreeing(const std::vector<Flank>& flanks) {
-  constexpr double kBin = 0.05;  // of the lead's logarithm
-  constexpr int kReach = 3;      // bins to each side: facets are flat, and divided coarsely
+  constexpr double kBin = 0.05;  // width of a bin of the lead's logarithm
+  constexpr int kReach = 3;      // bins to each side, since coarse facets scatter
   std::map<std::pair<bool, int>, double> area_m2;
   std::vector<std::pair<bool, int>> bins;
   bins.reserve(flanks.size());
@@ -135,7 +136,7 @@ std::vector<Flank> agreeing(const std::vector<Flank>& flanks) {
   return out;
 }
 
-/// Without those much nearer to the axis or farther from it than most.
+/// Removes the flanks that are much nearer to the axis, or farther from it, than the median flank.
 void keepOneRadius(std::vector<Flank>& flanks) {
   constexpr double kNear = 1.5;
   std::ranges::sort(flanks, {}, &Flank::radius_m);
@@ -155,8 +156,8 @@ void keepOneRadius(std::vector<Flank>& flanks) {
 bool goAllAround(const std::vector<Flank>& flanks) {
   constexpr std::size_t kParts = 12;
   constexpr double kLeastTurns = 1.2;  // between the middles of the first and the last facet
-  // Of the cylinder that they go around; half of it for a metric thread. Chamfers of a plate's many holes lie
-  // all around each of them, and cover a few hundredths.
+  // Least share of the flanks' cylinder that the flanks cover. A metric thread covers half of it. The
+  // chamfers of a plate's many holes lie all around each hole and cover a few hundredths.
   constexpr double kLeastCovered = 0.05;
   std::array<bool, kParts> is_there = {};
   double from_m = 1e300, to_m = -1e300, least_m = 1e300, area_m2 = 0;
@@ -172,7 +173,7 @@ bool goAllAround(const std::vector<Flank>& flanks) {
          area_m2 > kLeastCovered * kTurn_rad * least_m * (to_m - from_m);
 }
 
-/// The facets that face as the flanks do, where the flanks are.
+/// The facets of the thread: they lie between the ends and radii of the flanks and face the same side.
 std::vector<std::uint32_t> aroundFlanks(const PartSurface& surface, const Line& line,
                                         const std::vector<Flank>& flanks, bool is_inside) {
   double from_m = 1e300, to_m = -1e300, least_m = 1e300, greatest_m = 0;
@@ -198,7 +199,7 @@ std::vector<std::uint32_t> aroundFlanks(const PartSurface& surface, const Line& 
   return out;
 }
 
-/// Of some facets, each with corners of its own.
+/// A mesh of some facets; each facet has corners of its own.
 Mesh meshOf(const PartSurface& surface, const std::vector<std::uint32_t>& facets) {
   Mesh out;
   for (const std::uint32_t i : facets) {
@@ -210,7 +211,7 @@ Mesh meshOf(const PartSurface& surface, const std::vector<std::uint32_t>& facets
   return out;
 }
 
-/// A corner as seen from the axis of a thread.
+/// A corner in cylindrical coordinates around the axis of a thread.
 struct Corner {
   Vec3 at;
   double along_m = 0, radius_m = 0, turn = 0;
@@ -229,8 +230,8 @@ std::vector<Corner> cornersOf(const PartSurface& surface, const std::vector<Flan
   return out;
 }
 
-/// The corner farthest from the axis in each sector of each turn, but for half a turn at both ends: points of
-/// the crests of a screw, or the roots of a nut.
+/// The corner farthest from the axis in each sector of each turn, without half a turn at both ends. The
+/// corners are points on the crests of a screw or the roots of a nut.
 std::vector<Vec3> farthestCorners(const std::vector<Corner>& corners, double lead_m) {
   constexpr std::size_t kSectors = 12;
   double from_m = 1e300, to_m = -1e300;
@@ -254,10 +255,11 @@ std::vector<Vec3> farthestCorners(const std::vector<Corner>& corners, double lea
   return out;
 }
 
-/// Axis, radii and ends of the flanks: a cylinder through crests or roots, without those of chamfered ends.
+/// Measures axis, radii and ends of a thread by a cylinder through its crests or roots; points at chamfered
+/// ends are left out.
 bool measure(const PartSurface& surface, const std::vector<Flank>& flanks, ThreadFace& face) {
-  constexpr int kRounds = 4;           // a better axis finds better crests
-  constexpr double kChamfered = 0.15;  // of the thread's depth below the crests
+  constexpr int kRounds = 4;           // rounds, since a better axis finds better crests
+  constexpr double kChamfered = 0.15;  // share of the thread's depth below the crests
   Cylinder crests{face.axis, face.p, 0};
   double depth_m = 0;
   for (int round = 0; round < kRounds; ++round) {
@@ -306,8 +308,8 @@ std::vector<Line> candidateAxes(const PartSurface& surface, const std::vector<Ro
     for (int k = 0; k < 3; ++k) add({mass.com, principal.eigenvectors().col(k)});
   };
   addPrincipal(mass.inertia_m5);
-  // A rod that is 0.87 times as long as wide has the same inertia about all axes; its facets do not face all
-  // ways alike.
+  // A rod whose length is 0.87 times its width has the same inertia about all axes. The distribution of its
+  // normals still tells the axis.
   Mat3 facing_m2 = Mat3::Zero();
   for (std::uint32_t i = 0; i < surface.mesh().triangles.size(); ++i) {
     const Triangle t = surface.triangle(i);

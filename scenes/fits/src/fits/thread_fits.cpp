@@ -3,16 +3,17 @@
 #include <cmath>
 
 #include "fits/fits.h"
-#include "fits/iso_262.h"
+#include "fits/iso_sizes.h"
 
 namespace vps::scenes {
 
 namespace {
 
-constexpr double kSameLead = 0.03;
-constexpr double kLeastTurns = 0.5;     // in each other
-constexpr double kMostCrestGap = 0.25;  // between the major diameters, in them; assumed
-constexpr double kThreadOffset = 0.05;  // of the axes, in the diameter: a loose nut hangs on its bolt
+constexpr double kSameLead = 0.03;      // greatest relative difference of the leads
+constexpr double kLeastTurns = 0.5;     // least length of engagement in pitches
+constexpr double kMostCrestGap = 0.25;  // between the major diameters, relative; assumed
+constexpr double kThreadOffset =
+    0.05;  // between the axes, divided by the diameter: a loose nut hangs on its bolt
 
 ThreadFace threadInWorld(const ThreadFace& face, const Pose& X_WP) {
   ThreadFace out = face;
@@ -21,12 +22,12 @@ ThreadFace threadInWorld(const ThreadFace& face, const Pose& X_WP) {
   return out;
 }
 
-/// The fit of a screw in a nut that are both in the world frame; false if they are none.
+/// Fills the fit of a screw in a nut, both given in the world frame; returns false if they are no fit.
 bool fitOf(const ThreadFace& screw, const ThreadFace& nut, CheckedFit& fit) {
   if (std::abs(screw.axis.dot(nut.axis)) < 0.99) return false;
   if (std::abs(screw.lead_m - nut.lead_m) > kSameLead * std::abs(screw.lead_m) || screw.starts != nut.starts)
     return false;
-  // Crests of each reach into the grooves of the other.
+  // The crests of each thread must reach into the grooves of the other.
   if (screw.greatest_m <= nut.least_m || screw.greatest_m > (1 + 0.5 * kMostCrestGap) * nut.greatest_m ||
       nut.greatest_m > (1 + kMostCrestGap) * screw.greatest_m)
     return false;
@@ -54,7 +55,8 @@ bool fitOf(const ThreadFace& screw, const ThreadFace& nut, CheckedFit& fit) {
   return true;
 }
 
-/// Cylinders around the axis of a thread between its least and greatest radius, where the thread is.
+/// Whether a round fit belongs to a thread: same axis, between the thread's least and greatest radius, and
+/// within its length.
 bool isPartOf(const CheckedFit& round, const CheckedFit& thread, double least_m) {
   const Vec3 r = round.at_W - thread.at_W;
   const double along_m = thread.axis_W.dot(r);

@@ -8,7 +8,8 @@ namespace vps::scenes {
 
 namespace {
 
-/// A gap is known to within this share: boxes that can only shorten it by less are not opened.
+/// A gap is a lower bound of at least this share of the true distance: boxes that could shorten the gap only
+/// by less are not opened.
 constexpr double kShare = 0.8;
 
 double highestOf(const Box& box, const Vec3& n) {
@@ -53,7 +54,7 @@ ExactBody::ExactBody(std::shared_ptr<const Solid> solid)
 double ExactBody::highest_m(const Vec3& n) const {
   const std::vector<BoxTree::Node>& nodes = tree_.nodes();
   double highest_m = -1e300;
-  std::uint32_t stack[128];  // halved by count: 32 levels at most, one waiting child each
+  std::uint32_t stack[128];  // nodes are halved by count: at most 32 levels, one waiting child each
   int waiting = 0;
   if (!nodes.empty()) stack[waiting++] = 0;
   while (waiting > 0) {

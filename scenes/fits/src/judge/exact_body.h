@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// A body as exact measures see it, and how deep two of them overlap or how far they are apart.
+// SPDX-License-Identifier: BSD-3-Clause A body prepared for exact measures, and the depth or the gap of two
+// bodies.
 #pragma once
 
 #include <memory>
@@ -10,9 +10,10 @@
 
 namespace vps::scenes {
 
-/// Measured: so many pairs of boxes take a microsecond, a unit of Overlap::work.
+/// Number of pairs of boxes that are tested in one microsecond, which is a unit of Overlap::work; measured.
 inline constexpr std::size_t kBoxesPerWork = 8;
 
+/// A solid with the trees that exact measures need.
 class ExactBody {
  public:
   /// O(n log n).
@@ -34,15 +35,16 @@ class ExactBody {
   BoxTree tree_;  ///< of the triangles
 };
 
-/// What a measure of a pair found.
+/// The measure of a pair: depth of the overlap, or gap.
 struct PairMeasure {
-  double depth_m = 0;       ///< deepestOverlap(), sheets included; without overlap the gap, negative
-  Vec3 p_W = Vec3::Zero();  ///< the deepest point; not set without overlap
-  Vec3 n_W = Vec3::Zero();  ///< from the nearest point of a to that of b, unit; zero if not known
-  std::size_t work = 0;     ///< as Overlap::work
+  double depth_m = 0;       ///< deepestOverlap() with sheets; negative: the bodies are apart by this gap
+  Vec3 p_W = Vec3::Zero();  ///< the deepest point; not set if the bodies are apart
+  Vec3 n_W = Vec3::Zero();  ///< unit direction from the nearest point of a to that of b; zero if not known
+  std::size_t work = 0;     ///< work that was done, in the unit of Overlap::work
 };
 
-/// The gap is a lower bound, by a fifth or kOverlapCertain_m, and at most near_m.
+/// Measures a pair. The gap is a lower bound of the distance: smaller by up to a fifth or kOverlapCertain_m,
+/// and at most near_m.
 PairMeasure measurePair(const ExactBody& a, const Pose& X_WA, const ExactBody& b, const Pose& X_WB,
                         double near_m);
 

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// Convex hulls that stay apart: no exact measure is needed where one direction separates them.
+// SPDX-License-Identifier: BSD-3-Clause Convex hulls that stay apart: a pair needs no exact measure where one
+// direction separates the hulls.
 #include <algorithm>
 #include <cmath>
 
@@ -10,13 +10,13 @@ namespace vps::scenes {
 
 namespace {
 
-/// A direction along which hulls are apart is looked for until so many searches of one pair were in vain.
+/// Number of failed searches after which no separating direction is searched for a pair.
 constexpr int kSearches = 3;
 
 }  // namespace
 
-/// True if the hull of b overlaps that of a along n_A by at most enough_m, at all moments of a stretch.
-/// Points of b move along arcs, which are taken as chords.
+/// Whether the hulls of a and b overlap along n_A by at most enough_m at all moments of an interval. Points
+/// of b move along arcs, which are replaced by chords.
 bool MotionJudge::areApartAlong(PairPath& path, const Vec3& n_A, double from, double to, double enough_m) {
   const double highest_a_m = body(path.a).highest_m(n_A);
   double deep_m = 0;
@@ -40,7 +40,8 @@ bool MotionJudge::areApartAlong(PairPath& path, const Vec3& n_A, double from, do
   return true;
 }
 
-/// Tries the direction of the last time, then the axes of both bodies at the middle of the stretch.
+/// Whether a direction separates the hulls during the interval. Tries the direction that separated them last,
+/// then the axes of both bodies at the middle of the interval.
 bool MotionJudge::areHullsApart(PairPath& path, double from, double to, double enough_m) {
   const auto last = direction_A_.find(path.pair);
   if (last != direction_A_.end() && areApartAlong(path, last->second, from, to, enough_m)) return true;

@@ -11,14 +11,14 @@ namespace vps::scenes {
 
 namespace {
 
-/// Paid in advance: a passage takes about fifty measures of some ten units.
+/// Credit at the start. A passage takes about fifty measures of some ten units each.
 constexpr double kFirstCredit = 50e3;
-/// What is not used is kept up to this.
+/// Greatest credit that is saved for later searches.
 constexpr double kMostCredit = 200e3;
-/// A search may spend this share, so that something is left for a passage in a later one; or what its steps
-/// gave.
+/// A search may spend this share of the credit, or the credit that its steps gave if that is more. The rest
+/// is kept for a passage in a later search.
 constexpr double kShareOfCredit = 0.25;
-/// Of what a search may spend, for proofs that surfaces do not meet, which may be in vain.
+/// Share of a search's credit for proofs that surfaces do not meet, since such proofs may fail.
 constexpr double kShareOfProofs = 0.25;
 
 Box unionOf(Box a, const Box& b) {
@@ -32,9 +32,9 @@ Box unionOf(Box a, const Box& b) {
 struct MotionJudge::Stretch {
   std::size_t path;
   double from, to;      ///< in steps
-  double from_m, to_m;  ///< depth there, or more where it was not measured
+  double from_m, to_m;  ///< depth at the ends; an upper bound where it was not measured
   bool is_from_measured, is_to_measured;
-  double bound_m = 0;                           ///< of the depth in between
+  double bound_m = 0;                           ///< upper bound of the depth within the interval
   bool operator<(const Stretch& other) const {  // the deepest first, then the earliest
     if (bound_m != other.bound_m) return bound_m < other.bound_m;
     return path != other.path ? path > other.path : from > other.from;
@@ -109,25 +109,26 @@ void MotionJudge::allow(const Pair& pair, double depth_m) {
   most_allowed_m_ = std::max(most_allowed_m_, depth_m);
 }
 
-/// No point is deeper in a body than half the least side of its box.
+/// Upper bound of the depth of a pair: no point is deeper in a body than half the least side of the body's
+/// box.
 double MotionJudge::mostDepth_m(const Pair& pair) const {
   const auto half_m = [&](std::size_t i) { return 0.5 * bodies_[i].box_P.size().minCoeff(); };
   return std::max(half_m(pair.first), half_m(pair.second));
 }
 
-/// A bound of the depth at one moment by the boxes alone.
+/// Upper bound of the depth at one moment, from the boxes alone.
 double MotionJudge::boxDepth_m(const Pair& pair, double step) const {
   const auto box_W = [&](std::size_t i) { return moved(bodies_[i].box_P, poseAt(i, step)); };
   const double apart_m = distance_m(box_W(pair.first), box_W(pair.second));
   return apart_m > 0 ? -apart_m : mostDepth_m(pair);
 }
 
-/// Pairs whose boxes meet somewhere along the steps.
+/// Pairs whose boxes may meet during the steps.
 std::vector<MotionJudge::Pair> MotionJudge::nearPairs() const {
   std::vector<Box> swept_W(bodies_.size());
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     for (const Pose& X_WP : X_WP_[i]) swept_W[i] = unionOf(swept_W[i], moved(bodies_[i].box_P, X_WP));
-    double bend_m = 0;  // between the ends of a step a point leaves the chord by this at most
+    double bend_m = 0;  // greatest distance of a point from its chord within a step
     const double radius_m =
         0.5 * bodies_[i].box_P.size().norm() + (bodies_[i].box_P.center() - bodies_[i].center_P).norm();
     for (std::size_t step = 0; step + 1 < X_WP_[i].size(); ++step)
@@ -174,8 +175,9 @@ double MotionJudge::measure(PairPath& path, double step, double near_m) {
   return found.depth_m;
 }
 
-/// Where to measure next: an end that was not measured, or where the bound is attained. That is the end of a
-/// step if the stretch has one, whose pose is no assumption.
+/// The moment to measure next: an end of the interval that was not measured, else the moment at which the
+/// bound is attained. If the interval contains the end of a step, that moment is rounded to such an end,
+/// where the pose is not interpolated.
 double MotionJudge::nextMoment(const PairPath& path, const Stretch& now) const {
   if (!now.is_to_measured) return now.to;
   if (!now.is_from_measured) return now.from;
@@ -191,7 +193,8 @@ void MotionJudge::searchPaths(std::vector<PairPath>& paths, const std::atomic<bo
   const auto add = [&](Stretch stretch) {
     const PairPath& path = paths[stretch.path];
     const double travel_m = path.travelAt(stretch.to) - path.travelAt(stretch.from);
-    // An end that was not measured is no deeper than the other one and the way to it.
+    // The depth at an end that was not measured is at most the depth at the other end plus the travel between
+    // them.
     stretch.bound_m = std::min({0.5 * (stretch.from_m + stretch.to_m + travel_m), stretch.from_m + travel_m,
                                 stretch.to_m + travel_m, mostDepth_m(path.pair)});
     if (stretch.bound_m > enough_m(path.pair)) waiting.push(stretch);
@@ -205,7 +208,7 @@ void MotionJudge::searchPaths(std::vector<PairPath>& paths, const std::atomic<bo
     PairPath& path = paths[now.path];
     const double enough = enough_m(path.pair);
     if (now.bound_m <= enough || areHullsApart(path, now.from, now.to, enough)) continue;
-    // An end that is apart is so by a bound of its depth.
+    // A depth of at most 0 at one end means that the bodies are apart there.
     if (std::min(now.from_m, now.to_m) <= 0 && areSurfacesApart(path, now.from, now.to)) continue;
     if (may_spend_ <= 0 || (stop != nullptr && stop->load())) {
       left_m_ = std::max(left_m_, now.bound_m);

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// The deepest overlap of bodies along their motion, between the poses at the ends of the steps too.
+// SPDX-License-Identifier: BSD-3-Clause The deepest overlap of bodies along their motion, including the poses
+// between the ends of the steps.
 #pragma once
 
 #include <atomic>
@@ -16,15 +16,16 @@ namespace vps::scenes {
 
 struct PairPath;
 
-/// A body as MotionJudge knows it.
+/// A body whose motion is judged.
 struct MovingBody {
   Box box_P;
   Vec3 center_P = Vec3::Zero();  ///< centre of mass, about which it turns within a step
   bool is_fixed = false;
-  /// Called when the body first comes near another one.
+  /// Makes the body's exact model; called when the body first comes near another one.
   std::function<std::shared_ptr<const ExactBody>()> make;
 };
 
+/// The deepest overlap of any pair, and its place and time.
 struct DeepestOverlap {
   std::size_t a = 0, b = 0;  ///< numbers of the bodies
   double depth_m = 0;        ///< 0: none
@@ -32,61 +33,67 @@ struct DeepestOverlap {
   double time_s = 0;
 };
 
-/// Looks for the greatest depth f of any pair along all steps. The depth, and the gap as a negative depth, is
-/// 1-Lipschitz in the pair's relative travel C: between two moments it is at most (f0 + f1 + C1 - C0) / 2.
-/// The stretch of time with the greatest such bound is measured where the bound is attained, and divided
-/// there, until no bound exceeds the greatest depth found by more than toleranceOf() (Piyavskii 1972). A pair
-/// that has not moved by its gap is so never measured, one at rest once, and a passage is found however fast
-/// it is. Stretches in which the bodies' convex hulls stay apart, or overlap by less than the tolerance,
-/// along a direction that is fixed in one of them are not divided either: so sliding and rolling on a convex
-/// body costs little. Nor are those in which no two triangles of them meet on the way, if the bodies are
-/// apart at one of its ends: so a ball that flies along a bore, which lies within the bore's hull, is known
-/// to be apart by the distance of the facets that it passes, and not by its whole travel.
+/// Searches for the greatest depth f of any pair along all steps. The depth (a gap counts as a negative
+/// depth) is 1-Lipschitz in the pair's relative travel C: between two moments it is at most (f0 + f1 + C1 -
+/// C0) / 2. The search measures the time interval with the greatest such bound at the moment where the bound
+/// is attained, and divides the interval there, until no bound exceeds the greatest depth found by more than
+/// toleranceOf() (Piyavskii 1972). A pair that has moved by less than its gap is therefore never measured, a
+/// pair at rest is measured once, and a passage is found at any speed. Two kinds of intervals are not
+/// divided. The first kind are intervals in which the bodies' convex hulls stay apart, or overlap by less
+/// than the tolerance, along a direction that is fixed in one of the bodies; sliding and rolling on a convex
+/// body therefore cost little. The second kind are intervals in which no two triangles of the bodies meet, if
+/// the bodies are apart at one end of the interval. A ball that flies along a bore, inside the bore's hull,
+/// is such a case: its facets only have to pass the facets near it.
 ///
-/// The cost is bounded by counts: each step gives a credit, and stretches that are left when it is used up
-/// count in bound_m(). Same input, same bits.
+/// The cost is bounded by counts: each step gives a credit of work, and intervals that are left when the
+/// credit is spent enter bound_m(). The same input gives the same bits.
 class MotionJudge {
  public:
   using Pair = std::pair<std::size_t, std::size_t>;  ///< the lower number first
 
-  /// @param X_WP  poses at the start, by body
+  /// @param X_WP pose of each body at the start
   MotionJudge(std::vector<MovingBody> bodies, const std::vector<Pose>& X_WP, double time_s);
 
-  /// How much more than the greatest depth found may be missed where there is credit.
+  /// Tolerance of the search: while there is credit, no depth is missed that exceeds the greatest depth found
+  /// by more than this.
   static double toleranceOf(double depth_m) { return 1e-6 + depth_m / 50; }
 
-  /// Adds a step that ends at these poses; every kSteps steps are searched at once.
+  /// Adds a step that ends at these poses. After every kSteps steps they are searched together.
   /// @param credit  work that may be spent, in the unit of Overlap::work
   void addStep(double time_s, const std::vector<Pose>& X_WP, double credit,
                const std::atomic<bool>* stop = nullptr);
-  /// The bodies are put at these poses, without a motion.
+  /// Puts the bodies at these poses without judging the motion to them.
   void place(double time_s, const std::vector<Pose>& X_WP);
   /// Searches the steps that were added since the last search.
   void search(const std::atomic<bool>* stop = nullptr);
-  /// The depth of a pair at the end of the last step that was searched, measured elsewhere: the search goes
-  /// on from there.
+  /// Sets the depth of a pair at the end of the last step that was searched, if it was measured elsewhere.
+  /// The search continues from this depth.
   void setDepth(const Pair& pair, double depth_m, const Vec3& p_W);
 
-  /// Depths up to this are not searched for.
+  /// Sets the least depth that matters: smaller depths are not searched for.
   void setLeast(double depth_m) { least_m_ = depth_m; }
-  /// Depths of this pair up to depth_m do not count, until it has been apart; see deepest().
+  /// Allows overlaps of this pair up to depth_m: they do not count in deepest(). The caller ends this with
+  /// forbid().
   void allow(const Pair& pair, double depth_m);
   void forbid(const Pair& pair) { allowed_m_.erase(pair); }
 
-  /// Null as long as the body was not near another.
+  /// The exact model of a body; it is made on first use.
   [[nodiscard]] const ExactBody& body(std::size_t number);
 
-  [[nodiscard]] const DeepestOverlap& deepest() const { return deepest_; }  ///< of what counts
+  [[nodiscard]] const DeepestOverlap& deepest() const {
+    return deepest_;
+  }  ///< deepest overlap that is not allowed
   [[nodiscard]] const DeepestOverlap& deepestOfAll() const { return deepest_of_all_; }
-  /// No depth is more than this, along all steps that were searched.
+  /// Upper bound of the depth along all steps that were searched.
   [[nodiscard]] double bound_m() const;
-  /// False if credit was missing: then bound_m() is that of a stretch of time which was left.
+  /// False if the credit did not suffice; bound_m() is then the bound of an interval that was not divided
+  /// further.
   [[nodiscard]] bool isSearched() const { return left_m_ == 0 || left_m_ < bound_m(); }
-  [[nodiscard]] std::size_t measured() const { return measured_; }  ///< measures of pairs
+  [[nodiscard]] std::size_t measured() const { return measured_; }  ///< number of pair measures so far
 
  private:
   static constexpr std::size_t kSteps = 64;
-  struct Stretch;  // of time
+  struct Stretch;  // an interval of time of one pair
 
   [[nodiscard]] BodyMotion motion(std::size_t body, std::size_t step) const;
   [[nodiscard]] Pose poseAt(std::size_t body, double step) const;
@@ -97,7 +104,7 @@ class MotionJudge {
   [[nodiscard]] double mostDepth_m(const Pair& pair) const;
   [[nodiscard]] double boxDepth_m(const Pair& pair, double step) const;
   [[nodiscard]] double enough_m(const Pair& pair) const;
-  /// The depth, or less a lower bound of the gap.
+  /// Measures the depth of the pair; if the bodies are apart, minus a lower bound of the gap.
   double measure(PairPath& path, double step, double near_m);
   [[nodiscard]] bool areHullsApart(PairPath& path, double from, double to, double enough_m);
   [[nodiscard]] bool areSurfacesApart(PairPath& path, double from, double to);
@@ -114,14 +121,16 @@ class MotionJudge {
   std::vector<std::shared_ptr<const ExactBody>> exact_;  ///< by body; null: not needed so far
   std::vector<std::vector<Pose>> X_WP_;                  ///< by body, at the ends of the steps; fixed: one
   std::vector<double> time_s_;
-  std::map<Pair, double> depth_m_;    ///< upper bounds at the last moment, of pairs that are near
-  std::map<Pair, Vec3> direction_A_;  ///< along which the hulls were apart last, in the first of its path
+  std::map<Pair, double> depth_m_;  ///< pairs that are near: upper bound of the depth at the last moment
+  std::map<Pair, Vec3>
+      direction_A_;  ///< direction that separated the hulls last, in the frame of PairPath::a
   std::map<Pair, double> allowed_m_;
   DeepestOverlap deepest_, deepest_of_all_;
   double least_m_ = 0, most_allowed_m_ = 0;
-  double left_m_ = 0;                           ///< greatest bound of a stretch that was not divided further
-  double credit_, income_ = 0, may_spend_ = 0;  ///< in all; of the steps to be searched; for this search
-  double may_prove_ = 0;  ///< the share of may_spend_ for proofs that surfaces do not meet
+  double left_m_ = 0;  ///< greatest bound of an interval that was left undivided
+  double credit_, income_ = 0,
+                  may_spend_ = 0;  ///< work: in total, from steps not yet searched, for this search
+  double may_prove_ = 0;           ///< share of may_spend_ for areSurfacesApart()
   std::size_t measured_ = 0;
 };
 

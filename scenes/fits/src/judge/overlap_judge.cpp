@@ -14,24 +14,26 @@ namespace vps::scenes {
 
 namespace {
 
-constexpr double kSharp_rad = 0.35;  // about 20 degrees, as for pointshells
-constexpr double kFlat_rad = 1e-6;   // rounding turns the diagonal of a flat face by about 1e-8
+constexpr double kSharp_rad = 0.35;  // least angle of a sharp edge, about 20 degrees, as for pointshells
+constexpr double kFlat_rad = 1e-6;   // rounding bends a flat face at its diagonal by about 1e-8
 
 void keep(PointDepth& deepest, double depth_m, const Vec3& p_S) {
   if (depth_m > deepest.depth_m) deepest = {depth_m, p_S};
 }
 
-/// Exact signed distance of a point whose distance is at most most_m, which bounds the search.
+/// Exact signed distance of a point from a solid. The distance must be at most most_m, which bounds the
+/// search.
 double signedDistance(const JudgedBody& solid, const Vec3& p_S, double most_m) {
   return solid.model->solid->signedDistance(p_S, most_m * (1 + 1e-12) + 1e-12);
 }
 
-/// True if no point of segment ab can be inside, by the map's proven bound.
+/// Whether the map's bound proves that no point of segment ab is inside the solid.
 bool isSurelyOutside(const JudgedBody& solid, const Vec3& a, const Vec3& b) {
   return solid.model->map->leastDistance(0.5 * (a + b)) > 0.5 * (b - a).norm();
 }
 
-/// Numbers of the boxes of a tree in the other's frame that may reach into the solid, in ascending order.
+/// Indices of the boxes of a tree that may reach into the solid, in ascending order. The tree is in the other
+/// body's frame.
 std::vector<std::uint32_t> mayReachInto(const JudgedBody& solid, const BoxTree& tree, const Pose& X_SO) {
   std::vector<std::uint32_t> found;
   tree.forEach(
@@ -60,7 +62,7 @@ PointDepth deepestEdge(const JudgedBody& solid, const JudgedBody& other, const P
 }
 
 PointDepth deepestPoint(const JudgedBody& solid, const JudgedBody& other, const Pose& X_SO) {
-  // A point that is inside by exact distance reads less than the map's greatest error.
+  // For a point that is inside by exact distance, the map's distance is below the map's greatest error.
   QueryOptions options;
   options.cutoff_m = solid.model->map->sampleError_m();
   ContactSet candidates(other.model->shell->size());
@@ -69,7 +71,7 @@ PointDepth deepestPoint(const JudgedBody& solid, const JudgedBody& other, const 
   std::vector<double> depths(candidates.contacts.size());
   tbb::parallel_for(std::size_t{0}, depths.size(), [&](std::size_t i) {
     const Contact& contact = candidates.contacts[i];
-    // Deeper than the band the map has no value; then the search is not bounded.
+    // Below its band the map has no value, so that it does not bound the search.
     const bool is_in_band = std::abs(contact.distance_m) < solid.model->map->band_m();
     const double most_m = is_in_band ? std::abs(contact.distance_m) + solid.model->map->sampleError_m() : 1e3;
     depths[i] = -signedDistance(solid, X_SO * other.model->shell->points[contact.id], most_m);
@@ -108,7 +110,7 @@ JudgedBody makeJudgedBody(std::shared_ptr<const PartModel> model) {
     for (const std::uint32_t end : edge) is_curved[end] = true;
   for (const auto& [a, b] : sharpEdges(mesh, kSharp_rad)) {
     edges.push_back({mesh.vertices[a], mesh.vertices[b]});
-    is_curved[a] = is_curved[b] = false;  // measured with the edge
+    is_curved[a] = is_curved[b] = false;  // the edge's measure covers its ends
   }
   std::vector<Vec3> vertices;
   for (std::size_t i = 0; i < is_curved.size(); ++i)

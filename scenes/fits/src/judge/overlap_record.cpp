@@ -6,17 +6,17 @@
 #include <optional>
 #include <set>
 
-#include "judge/box_motion.h"
+#include "judge/body_motion.h"
 #include "judge/motion_judge.h"
 
 namespace vps::scenes {
 
 namespace {
 
-constexpr std::size_t kSuspects = 50;  ///< poses that are judged whatever the stride
+constexpr std::size_t kSuspects = 50;  ///< number of poses with the deepest contacts that are always judged
 
-/// For each passage, as Overlap::work. The run is over, so that a passage is searched to its end, which takes
-/// about fifty measures of some ten units; this is the bound.
+/// Credit for each passage, in the unit of Overlap::work. The run is over, so a passage can be searched to
+/// its end, which takes about fifty measures of some ten units; the credit is only an upper bound.
 constexpr double kCredit = 200e3;
 
 std::vector<MovingBody> bodiesOf(const OverlapJudge& judge, const JudgedBody& moving) {
@@ -32,14 +32,15 @@ std::vector<MovingBody> bodiesOf(const OverlapJudge& judge, const JudgedBody& mo
   return bodies;
 }
 
-/// What is left by searches with enough credit is not above what they look for; 0 then.
+/// OverlapVerdict::unsearched_m. A search with enough credit leaves no interval above its tolerance; the
+/// result is then 0.
 double unsearched_m(const MotionJudge& motions, double least_m) {
   const double decided_m = std::max(motions.deepestOfAll().depth_m, least_m);
   const double bound_m = motions.bound_m();
   return bound_m > decided_m + MotionJudge::toleranceOf(decided_m) ? bound_m : 0;
 }
 
-/// Looks for passages between samples that follow each other and are far from each other.
+/// Searches for overlaps between consecutive samples that are far from each other.
 void judgeBetween(const OverlapJudge& judge, const JudgedBody& moving,
                   const std::vector<OverlapSample>& samples, const std::atomic<bool>* stop,
                   OverlapVerdict& verdict) {

@@ -9,22 +9,23 @@
 
 namespace vps::scenes {
 
-/// Arcs are replaced by chords that leave them by at most this, a fraction of the tolerance.
+/// Greatest distance of an arc from the chords that replace it; a fraction of the search's tolerance.
 inline constexpr double kChord_m = 0.25e-6;
 inline constexpr double kMostChords = 64;
-/// Into how many chords an arc is divided that leaves its own by so much.
+/// Number of chords that replace an arc whose distance from its own chord is sagitta_m.
 inline double chordsOf(double sagitta_m) {
   return std::max(1.0, std::ceil(std::sqrt(sagitta_m / kChord_m)));
 }
 
+/// The relative motion of two bodies along some steps.
 struct PairPath {
   std::pair<std::size_t, std::size_t> pair;
-  std::size_t a, b;               ///< the one that is fixed, or else the larger one, first
-  std::vector<double> travel_m;   ///< relative travel since the first moment, by moment
-  std::vector<double> sagitta_m;  ///< see RelativeMotion; by step
-  double end_depth_m = 0;         ///< upper bound at the last moment
-  int searches = 0;               ///< of a direction that separates their hulls, in vain
-  int failures = 0;               ///< of proofs that their surfaces do not meet, beyond those that succeeded
+  std::size_t a, b;               ///< `a` is the fixed body of the pair, or else the larger one
+  std::vector<double> travel_m;   ///< by moment: relative travel since the first moment
+  std::vector<double> sagitta_m;  ///< by step: see RelativeMotion
+  double end_depth_m = 0;         ///< upper bound of the depth at the last moment
+  int searches = 0;               ///< failed searches for a direction that separates the hulls
+  int failures = 0;               ///< failed less successful proofs that the surfaces do not meet
 
   [[nodiscard]] double travelAt(double step) const {
     const auto i = std::min(static_cast<std::size_t>(step), travel_m.size() - 1);

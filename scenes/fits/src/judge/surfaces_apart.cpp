@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// Surfaces that do not meet on the way: bodies that were apart stay apart, although one encloses the other.
+// SPDX-License-Identifier: BSD-3-Clause Surfaces that do not meet during a motion: bodies that were apart
+// then stay apart, even where one encloses the other.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,12 +12,14 @@ namespace vps::scenes {
 
 namespace {
 
-/// Failed searches of a pair that are allowed beyond the successful ones.
+/// Number of failed proofs of a pair, less the successful ones, after which no further proof is tried.
 constexpr int kFailures = 3;
-/// For one stretch: a ball of 960 triangles that passes a bore of 384 takes 10,000 to 20,000.
+/// Greatest number of boxes that are tested for one interval. A ball of 960 triangles that passes a bore of
+/// 384 triangles takes 10,000 to 20,000.
 constexpr std::size_t kMostBoxes = 40000;
 
-/// A part of the motion in the frame of a: points of b move along lines, and leave them by at most bend_m.
+/// A part of the motion, in the frame of a. Each point of b moves along a line and deviates from it by at
+/// most bend_m.
 struct Chord {
   Pose from_AB, to_AB;
   double bend_m = 0;
@@ -39,8 +41,8 @@ Vec3 middleOf(const Triangle& t) {
   return (t[0] + t[1] + t[2]) / 3;
 }
 
-/// True if the points of a triangle are on one side of a plane with this normal, and the moving one's on the
-/// other, by more than apart_m.
+/// Whether a plane with this normal separates a fixed triangle from a moving triangle (at both ends of its
+/// motion) by more than apart_m.
 bool areOnBothSides(const Vec3& n, const Triangle& fixed, const std::array<Triangle, 2>& moving,
                     double apart_m) {
   double low = 1e300, high = -1e300, moving_low = 1e300, moving_high = -1e300;
@@ -56,11 +58,11 @@ bool areOnBothSides(const Vec3& n, const Triangle& fixed, const std::array<Trian
   return std::max(moving_low - high, low - moving_high) > apart_m * n.norm();
 }
 
-/// True if one plane keeps the triangles apart all along the chord.
+/// Whether one plane separates the triangles along the whole chord.
 bool areApart(const Triangle& fixed, const std::array<Triangle, 2>& moving, double apart_m) {
   const auto isAlong = [&](const Vec3& n) { return areOnBothSides(n, fixed, moving, apart_m); };
   if (isAlong(normalOf(fixed)) || isAlong(normalOf(moving[0])) || isAlong(normalOf(moving[1]))) return true;
-  // What passes a rim, or through a ring, is apart from it across its way.
+  // A triangle that passes a rim, or passes through a ring, is separated from it by a plane along its path.
   const Vec3 way = middleOf(moving[1]) - middleOf(moving[0]);
   for (const Triangle& t : {fixed, moving[0], moving[1]})
     for (std::size_t v = 0; v < 3; ++v)
@@ -71,7 +73,8 @@ bool areApart(const Triangle& fixed, const std::array<Triangle, 2>& moving, doub
   });
 }
 
-/// @param boxes  that may still be looked at
+/// Whether no triangles of the bodies can meet along the chord. @param boxes number of boxes that may still
+/// be tested
 bool areApartOn(const Chord& chord, const ExactBody& a, const ExactBody& b, std::size_t& boxes) {
   bool is_apart = true;
   visitPairs(
@@ -81,7 +84,9 @@ bool areApartOn(const Chord& chord, const ExactBody& a, const ExactBody& b, std:
         return chord.swept(box_B);
       },
       [](const Box& of_a, const Box& of_b) { return distance2(of_a, of_b); },
-      [&] { return is_apart && boxes > 0 ? 1e-300 : -1.0; },  // boxes that meet, until two triangles may
+      [&] {
+        return is_apart && boxes > 0 ? 1e-300 : -1.0;
+      },  // visits boxes that meet, until two triangles may meet
       [&](std::uint32_t i, std::uint32_t k) {
         if (!is_apart) return;
         const Triangle of_b = b.triangle(k);
@@ -97,8 +102,8 @@ bool areApartOn(const Chord& chord, const ExactBody& a, const ExactBody& b, std:
 
 }  // namespace
 
-/// True if no triangle of one body meets one of the other on the stretch. Bodies that are apart at one moment
-/// of it are then apart at all of it.
+/// Whether it is proven that no triangles of the two bodies meet during the interval. Bodies that are apart
+/// at one moment of the interval are then apart during all of it.
 bool MotionJudge::areSurfacesApart(PairPath& path, double from, double to) {
   if (path.failures > kFailures) return false;
   const auto stepsOf = [&](const auto& visit) {
@@ -112,7 +117,7 @@ bool MotionJudge::areSurfacesApart(PairPath& path, double from, double to) {
   };
   double all = 0;
   if (!stepsOf([&](double, double, double, double chords) { return (all += chords) <= kMostChords; }))
-    return false;  // too long a stretch; parts of it come later
+    return false;  // the interval is too long; its halves are tried later
   const double most = std::max(may_prove_, 0.0) * static_cast<double>(kBoxesPerWork);
   const auto limit = static_cast<std::size_t>(std::min<double>(kMostBoxes, most));
   std::size_t boxes = limit;

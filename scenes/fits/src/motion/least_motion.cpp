@@ -13,21 +13,21 @@ namespace {
 
 using Six = Eigen::Matrix<double, 6, 1>;
 
-/// How the gap of a row grows with the motion of one of its bodies.
+/// The derivative of a row's gap by the motion of the body that has the point.
 Six slope(const GapRow& row, const LooseBody& body) {
   Six out;
   out << row.n_W, (row.p_W - body.at_W).cross(row.n_W) / body.arm_m;
   return out;
 }
 
-/// Rows with their slopes; a missing body has a slope of zero at index 0.
+/// The derivatives of all rows. A body that does not move has a slope of zero at index 0.
 struct Slopes {
   struct Side {
     Eigen::Index at = 0;
     Six slope = Six::Zero();
   };
   std::vector<std::array<Side, 2>> of_row;
-  Motions start_m;  ///< by row: the gap at x = 0, by its slopes
+  Motions start_m;  ///< by row: the gap extrapolated to x = 0
 
   Slopes(std::span<const GapRow> rows, std::span<const LooseBody> bodies, const Motions& from)
       : of_row(rows.size()), start_m(static_cast<Eigen::Index>(rows.size())) {
@@ -56,7 +56,7 @@ double costOf(const Slopes& slopes, const Motions& most_m, double e, const Motio
   return 0.5 * sum;
 }
 
-/// The minimum if the gaps that are closed at x stay the closed ones.
+/// The minimum under the assumption that the gaps that are negative at x stay the only negative ones.
 Motions newtonPoint(const Slopes& slopes, const Motions& most_m, double e, const Motions& x) {
   Eigen::MatrixXd H = e * Eigen::MatrixXd::Identity(x.size(), x.size());
   Motions right = Motions::Zero(x.size());
@@ -81,7 +81,7 @@ Motions newtonPoint(const Slopes& slopes, const Motions& most_m, double e, const
 Motions leastMotion(std::span<const GapRow> rows, std::span<const LooseBody> bodies, const Motions& from,
                     double e, std::vector<double>& closed_m) {
   constexpr int kMostSteps = 60, kMostHalvings = 20;
-  constexpr double kEnough = 1e-9;  // of the cost
+  constexpr double kEnough = 1e-9;  // relative decrease of the cost that ends the iteration
   const Slopes slopes(rows, bodies, from);
   Motions x = from, most_m(from.size());
   for (std::size_t i = 0; i < bodies.size(); ++i)

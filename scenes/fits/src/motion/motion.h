@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// A straight, turning or screwing motion of a part, and how long a plane parts it from what is held.
+// SPDX-License-Identifier: BSD-3-Clause A translation, rotation or screw motion of a part, and how long a
+// plane separates the part from held parts.
 #pragma once
 
 #include <algorithm>
@@ -12,13 +12,13 @@
 
 namespace vps::scenes {
 
-/// The way s goes from 0 on: in metres along `direction`, or in radians about it through `center`, on which a
-/// screw goes forward as well.
+/// A motion with a parameter s that starts at 0: metres along `direction` for a translation, radians about
+/// the axis through `center` for a rotation. A screw motion also advances along its axis.
 struct Motion {
   Vec3 direction = Vec3::UnitZ();  ///< unit
   Vec3 center = Vec3::Zero();
   bool is_turn = false;
-  double forward_m = 0;  ///< of a turn: along `direction` for each radian
+  double forward_m = 0;  ///< advance of a screw motion along `direction` per radian
 
   [[nodiscard]] Pose at(double s) const {
     if (!is_turn) return Pose::translation(s * direction);
@@ -29,7 +29,7 @@ struct Motion {
   [[nodiscard]] Motion in(const Pose& X_F) const {
     return {X_F.R * direction, X_F * center, is_turn, forward_m};
   }
-  /// How what is held moves in the frame of the part.
+  /// The motion of held parts as seen in the frame of the moving part.
   [[nodiscard]] Motion reversed() const { return {-direction, center, is_turn, forward_m}; }
 
   /// Velocity of a point at s = 0, per unit of s.
@@ -37,8 +37,8 @@ struct Motion {
     return is_turn ? Vec3(direction.cross(p - center) + forward_m * direction) : direction;
   }
 
-  /// The s up to which n . p(s) >= least, if it is so at 0; the point p moves. Of a screw less by up to a
-  /// thousandth.
+  /// The parameter s up to which a moving point p stays above a plane: n . p(s) >= least, which must hold at
+  /// s = 0. For a screw motion the result may be too small by up to a thousandth.
   [[nodiscard]] double staysAbove(const Vec3& n, const Vec3& p, double least) const {
     constexpr double kForever = std::numeric_limits<double>::infinity();
     if (!is_turn) {
@@ -57,11 +57,12 @@ struct Motion {
   }
 
  private:
-  /// How long f(s) = level + cosine cos s + sine sin s + rate s, which is not negative at 0, stays so. Steps
-  /// to where f + f' h - swing h^2 / 2, which is never above f(s + h), is 0.
+  /// The parameter up to which f(s) = level + cosine cos s + sine sin s + rate s stays non-negative; f(0)
+  /// must not be negative. Each step leads to the zero of f + f' h - swing h^2 / 2, which is a lower bound of
+  /// f(s + h).
   [[nodiscard]] static double screwStaysAbove(double level, double cosine, double sine, double rate) {
     constexpr double kForever = std::numeric_limits<double>::infinity();
-    constexpr double kLeast = 1e-3;  // of the way so far
+    constexpr double kLeast = 1e-3;  // least step, relative to s
     constexpr int kMostSteps = 64;
     const double swing = std::hypot(cosine, sine);
     if (!(swing > 0)) return rate < 0 ? std::max(0.0, level / -rate) : kForever;

@@ -10,7 +10,7 @@
 
 #include "motion/motion.h"
 #include "motion/pair_step.h"
-#include "surface/axis_extents.h"
+#include "surface/around_axis.h"
 #include "surface/placed_surface.h"
 
 namespace vps::scenes {

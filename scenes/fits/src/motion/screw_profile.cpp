@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "surface/axis_extents.h"
+#include "surface/around_axis.h"
 
 namespace vps::scenes {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pair/certain_overlap.h"
+#include "pair/pair_measures.h"
 
 #include <algorithm>
 #include <array>

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pair/overlap_depth.h"
+#include "pair/pair_measures.h"
 
 #include <algorithm>
 #include <cmath>
 #include <queue>
 
-#include "pair/shared_ball.h"
 #include "surface/surface_piece.h"
 
 namespace vps::scenes {

@@ -6,7 +6,8 @@
 #include <vector>
 
 #include "pair/touches.h"
-#include "proof/loose_bodies.h"
+#include "proof/places.h"
+#include "surface/placed_surface.h"
 
 namespace vps::scenes {
 
@@ -39,5 +40,20 @@ std::vector<double> greatestGaps_m(const std::vector<PlacedSurface>& parts, cons
 double provenOverlap_m(const std::vector<PlacedSurface>& parts, const std::vector<Pose>& X_WP,
                        std::span<const PressedTouch> touches, const std::vector<MovableBody>& bodies,
                        const std::vector<double>& moved_m);
+
+/// How far a part may be from where it belongs without that being seen.
+double mayMove_m(const PlacedSurface& part);
+
+/// Whether a shaft overlaps its bore wherever the two parts are, as long as none of their points is farther
+/// from where it is drawn than sight tells (kSightTolerance_m; fixed parts stay). The corners of facets lie
+/// on the true faces, so that this holds to the error of the fit, however coarse the facets are.
+///
+/// Taken is a slice across the bore in which no third of a turn is without a point of its face. By whatever
+/// way t < radius the slice moves against the shaft, a point of it lies within a sixth of a turn of the
+/// direction back to the shaft's axis, and is then no farther from that axis than the bore's radius: inside
+/// the shaft, where this one is round all around and without a hole near its face, as far along its axis as
+/// the slice may move. A turn of the slice only brings its points nearer to the axis. It does not hold the
+/// other way around: a disc that is larger than a bore can stand in it at a slant.
+bool isProvenByFit(const std::vector<PlacedSurface>& parts, const CheckedFit& fit);
 
 }  // namespace vps::scenes

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "proof/fit_proof.h"
+#include "proof/blocked_proof.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
-#include "fits/fit_tolerance.h"
-#include "fits/round_faces.h"
-#include "surface/near_axis.h"
+#include "fits/faces.h"
+#include "fits/fits.h"
+#include "surface/around_axis.h"
 
 namespace vps::scenes {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "proof/loose_bodies.h"
+#include "proof/places.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include <string_view>
 #include <unordered_map>
 
-#include "fits/fit_tolerance.h"
+#include "fits/fits.h"
 
 namespace vps::scenes {
 

@@ -11,12 +11,10 @@
 
 #include <tbb/parallel_for.h>
 
-#include "fits/fit_tolerance.h"
-#include "pair/check_pair.h"
+#include "fits/fits.h"
+#include "pair/pair_measures.h"
 #include "pair/touches.h"
 #include "proof/blocked_proof.h"
-#include "proof/fit_proof.h"
-#include "proof/loose_bodies.h"
 #include "text/length_words.h"
 #include "text/name_words.h"
 #include "vps/mesh_overlap.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "surface/cracks.h"
+#include "surface/part_surface.h"
 
 #include <algorithm>
 #include <tuple>

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "judge/box_motion.h"
+#include "judge/body_motion.h"
 
 namespace vps::scenes {
 

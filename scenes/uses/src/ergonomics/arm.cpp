@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// An arm of two links, by the law of cosines, and its score.
+// SPDX-License-Identifier: BSD-3-Clause The pose of an arm of two links, by the law of cosines, and its RULA
+// score.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -32,7 +32,8 @@ ArmPose armTo(const Body& body, const Vec3& p_SH) {
   const double folded_m = std::abs(upper_m - fore_m);
   const double d_m = std::clamp(distance_m, folded_m, upper_m + fore_m);
   arm.elbow_rad = std::numbers::pi - cornerOf(upper_m, fore_m, d_m);
-  // From hanging down to the line shoulder-hand, less the angle between that line and the upper arm below it.
+  // The upper arm's angle from hanging down: the angle of the line from shoulder to hand, minus the angle
+  // between this line and the upper arm, which lies below the line.
   const double line_rad = distance_m > 0 ? std::acos(std::clamp(-p_SH.z() / distance_m, -1.0, 1.0)) : 0;
   const double inner_rad = d_m > 0 ? cornerOf(upper_m, d_m, fore_m) : 0;
   arm.raised_rad = std::abs(line_rad - inner_rad);

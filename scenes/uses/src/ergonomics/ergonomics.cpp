@@ -12,7 +12,7 @@ namespace vps::scenes {
 
 namespace {
 
-/// A place of the hand, and how long it is there.
+/// A position of the hand, and the time that the hand spends there.
 struct HandPlace {
   Vec3 p_W = Vec3::Zero();
   double time_s = 0;
@@ -23,7 +23,7 @@ bool isUpright(const Scene& scene) {
   return g.head<2>().norm() <= 1e-6 * std::abs(g.z()) && g.z() <= 0;
 }
 
-/// The grasp is at the part's centre of mass.
+/// Positions of the hand for each step. The hand grasps the part at its centre of mass.
 std::vector<std::vector<HandPlace>> placesOf(const Scene& scene, const std::vector<TraceRow>& trace) {
   std::vector<std::vector<HandPlace>> of_step(scene.steps.size());
   std::vector<Vec3> com_P;
@@ -39,7 +39,7 @@ std::vector<std::vector<HandPlace>> placesOf(const Scene& scene, const std::vect
   return of_step;
 }
 
-/// Of all parts in place, and of the path.
+/// Boxes of all parts in place, without and with the path of the hand.
 struct Surroundings {
   Box parts_W, all_W;
 };

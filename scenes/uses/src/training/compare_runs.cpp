@@ -60,7 +60,7 @@ std::vector<RecordedStep> stepsOf(const device::RecordedRun& run) {
   return steps;
 }
 
-/// Poses that lie kPathPiece_m apart, and the last one.
+/// Poses of the path, each at least kPathPiece_m from the one before.
 std::vector<Pose> pathOf(const std::vector<HandSample>& samples) {
   std::vector<Pose> path{samples.front().X_WG};
   for (const HandSample& sample : samples)
@@ -93,7 +93,7 @@ struct Deviation {
   double angle_rad = 0;
 };
 
-/// From the nearest place of a path.
+/// Deviation of a pose from the nearest point of a path.
 Deviation deviationFrom(const std::vector<Pose>& path, const Pose& X) {
   Deviation nearest;
   Pose X_nearest = path.front();
@@ -162,7 +162,7 @@ void noteDifferences(const device::RecordedRun& expert, const device::RecordedRu
     if (!key.starts_with(kMesh)) continue;
     const auto found = trainee.head.about.find(key);
     if (found != trainee.head.about.end() && found->second != hash)
-      result.notes.push_back(std::string("'")  // not with +: GCC 12 takes that for an overflow
+      result.notes.push_back(std::string("'")  // operator+ makes GCC 12 warn of an overflow
                                  .append(key, kMesh.size())
                                  .append("' has another shape in the trainee's run"));
   }
@@ -188,7 +188,7 @@ RunComparison compareRuns(const device::RecordedRun& expert, const device::Recor
       missing.expert = measuresOf(step.samples, pathOf(step.samples));
       missing.expert_samples = step.samples;
       result.steps.push_back(std::move(missing));
-      result.notes.push_back("the trainee did not come to '" + step.part + "'");
+      result.notes.push_back("the trainee did not reach the step of '" + step.part + "'");
     }
     result.score += result.steps.back().score / static_cast<double>(reference.size());
   }

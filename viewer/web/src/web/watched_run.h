@@ -10,7 +10,7 @@
 
 #include "run/hand_drag.h"
 #include "vps_device/recording.h"
-#include "vps_scenes/fits/verdict.h"
+#include "vps_scenes/fits/check_types.h"
 #include "vps_scenes/network/session_pointers.h"
 #include "vps_scenes/run/snapshot.h"
 #include "vps_scenes/scene/scene.h"

@@ -10,10 +10,10 @@
 #include <utility>
 
 #include "run/blow_sounds.h"
-#include "sound/lasting_output.h"
+#include "sound/live_sound.h"
 #include "vps/errors.h"
 #include "vps_device/metronome.h"
-#include "vps_scenes/fits/verdict.h"
+#include "vps_scenes/fits/check_types.h"
 
 namespace vps::viewer {
 

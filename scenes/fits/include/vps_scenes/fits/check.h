@@ -15,12 +15,13 @@ namespace vps::scenes {
 
 /// The parts of a CAD file at their poses.
 VPS_SCENES_API std::vector<DrawnPart> drawnParts(const ImportedCad& cad);
-/// The parts of a scene: those that a step mounts at the target of their last step, others at their pose.
+/// The parts of a scene. A part that a step mounts is at the target of its last step, any other part at its
+/// pose.
 VPS_SCENES_API std::vector<DrawnPart> drawnParts(const Scene& scene);
 
-/// Measures the parts as they stand, on all cores. The same bits on any number of threads. Throws LoadError
-/// for parts without a surface, and of sizes at which the answers would mean nothing (below 10 um, above
-/// 1 km).
+/// Measures the parts at their poses, on all cores. The result has the same bits on any number of threads.
+/// Throws LoadError for a part without a surface, and for a part that is too small or too large to be
+/// measured (below 10 um, above 1 km).
 VPS_SCENES_API CheckResult checkAssembly(const std::string& name, const std::vector<DrawnPart>& parts,
                                          const CheckSettings& settings = {}, const Progress& progress = {});
 

@@ -10,16 +10,16 @@
 namespace vps::scenes {
 
 inline constexpr auto kCheckedPairFields = std::make_tuple(
-    field("a", &CheckedPair::a, "name of one part"), field("b", &CheckedPair::b, "name of the other"),
+    field("a", &CheckedPair::a, "name of one part"), field("b", &CheckedPair::b, "name of the other part"),
     field("state", &CheckedPair::state,
-          "`apart`, `contact` (within the error), `press fit` (an overlap as declared) or `clash` (another "
-          "one)"),
+          "`apart`, `contact` (within the error), `press fit` (a declared overlap) or `clash` (an "
+          "overlap that is not declared)"),
     field("clearance_m", &CheckedPair::clearance_m,
           "least distance of the surfaces; 0 where the meshes overlap"),
     field(
         "interference_depth_m", &CheckedPair::interference_depth_m,
-        "greatest depth of a point of one part's surface below the other's, or diameter of the greatest ball "
-        "in both if that is more"),
+        "greatest depth of a point of one part's surface below the other part's surface, or diameter of the "
+        "greatest ball inside both parts, whichever is greater"),
     field("interference_volume_m3", &CheckedPair::interference_volume_m3, "shared volume of a clash"),
     field("volume_error_m3", &CheckedPair::volume_error_m3, "bound of the error of the volume"),
     field("error_m", &CheckedPair::error_m,
@@ -27,17 +27,19 @@ inline constexpr auto kCheckedPairFields = std::make_tuple(
     field("at_m", &CheckedPair::at_W, "the deepest point, or the middle of the nearest points, in the world"),
     field("is_allowed", &CheckedPair::is_allowed, "the scene allows the overlap (`allow_overlap`)"),
     field("is_uncertain", &CheckedPair::is_uncertain,
-          "it cannot be told whether they overlap, because a part has no inside there (`no_inside`)"),
+          "the check cannot decide whether the parts overlap, because a part encloses no volume there "
+          "(`no_inside`)"),
     field("press_fit_m", &CheckedPair::press_fit_m, "declared interference (`press_fit`); 0: none"));
 static_assert(coversAllMembers<CheckedPair>(kCheckedPairFields));
 
 inline constexpr auto kPressFields = std::make_tuple(
     field("hub_m", &CheckedPress::hub_m, "outer diameter of the largest ring of material around the bore"),
-    field("hole_m", &CheckedPress::hole_m, "diameter of the shaft's hole; 0: it has none"),
+    field("hole_m", &CheckedPress::hole_m, "diameter of the shaft's hole; 0: no hole"),
     field("pressure_Pa", &CheckedPress::pressure_Pa, "pressure in the joint, for the interference as drawn"),
     field("hub_stress_Pa", &CheckedPress::hub_stress_Pa, "greatest equivalent stress in the hub (Tresca)"),
-    field("force_N", &CheckedPress::force_N, "to press the shaft in along the fit's length, or out again"),
-    field("declared_force_N", &CheckedPress::declared_force_N, "the same for the declared interference"),
+    field("force_N", &CheckedPress::force_N,
+          "force that presses the shaft in along the fit's length, or out again"),
+    field("declared_force_N", &CheckedPress::declared_force_N, "force for the declared interference"),
     field("shaft_modulus_Pa", &CheckedPress::shaft_modulus_Pa,
           "Young's modulus of the shaft, from the scene or assumed"),
     field("hub_modulus_Pa", &CheckedPress::hub_modulus_Pa,
@@ -57,87 +59,95 @@ inline constexpr auto kCheckedFitFields = std::make_tuple(
     field("bore_m", &CheckedFit::bore_m,
           "diameter of the bore, major diameter of the nut, or width of the slot"),
     field("along", &CheckedFit::along_W, "direction of the length, in the world"),
-    field("length_m", &CheckedFit::length_m, "length over which both fit"),
+    field("length_m", &CheckedFit::length_m, "length of the fit"),
     field("diametral_clearance_m", &CheckedFit::diametral_clearance_m,
-          "bore less shaft; negative: interference"),
+          "bore minus shaft; negative: interference"),
     field("offset_m", &CheckedFit::offset_m, "greatest distance of the axes of shaft and bore"),
     field("error_m", &CheckedFit::error_m,
           "bound of the clearance's error, from the corners' distance to the faces"),
-    field("iso_286", &CheckedFit::iso_286, "a common fit whose zones hold both sizes; empty: none"),
-    field("lead_m", &CheckedFit::lead_m, "of a thread: its way in one turn; negative: left-hand"),
-    field("starts", &CheckedFit::starts, "of a thread: how many run side by side"),
-    field("thread", &CheckedFit::thread, "its name in ISO 262, as M16 or M16x1.5-LH; empty: none"),
+    field("iso_286", &CheckedFit::iso_286,
+          "common fit of ISO 286 whose zones contain both sizes; empty: none"),
+    field("lead_m", &CheckedFit::lead_m,
+          "lead of a thread, the axial advance in one turn; negative: left-hand"),
+    field("starts", &CheckedFit::starts, "number of starts of a thread"),
+    field("thread", &CheckedFit::thread, "name of a thread in ISO 262, as M16 or M16x1.5-LH; empty: none"),
     group("press", &CheckedFit::press, kPressFields));
 static_assert(coversAllMembers<CheckedFit>(kCheckedFitFields));
 
 inline constexpr auto kPlayFields = std::make_tuple(
     field(
         "play_m", [](const Play& play) { return std::vector<double>(play.m.begin(), play.m.end()); },
-        "how far it moves along +x, -x, +y, -y, +z, -z of `play_axes`; null: away from the others"),
+        "how far the part can move along +x, -x, +y, -y, +z, -z of `play_axes`; null: nothing stops it"),
     field(
         "play_rad", [](const Play& play) { return std::vector<double>(play.rad.begin(), play.rad.end()); },
-        "how far it turns about these axes through `play_center_m`; null: a whole turn"),
+        "how far the part can turn about the axes of `play_axes` through `play_center_m`; null: a whole "
+        "turn"),
     field(
         "play_errors_m",
         [](const Play& play) { return std::vector<double>(play.error_m.begin(), play.error_m.end()); },
-        "errors of `play_m` at the contact that stops it first; another one may stop it earlier by more. At "
-        "a "
-        "shallow contact, as in a taper, they are more than `play_error_m`; null: it may move on"),
+        "errors of `play_m` at the contact that stops the part first; another contact may stop it still "
+        "earlier. At a shallow contact, as in a taper, they exceed `play_error_m`; null: no bound, the part "
+        "may move farther"),
     field(
         "play_errors_rad",
         [](const Play& play) { return std::vector<double>(play.error_rad.begin(), play.error_rad.end()); },
-        "the same of `play_rad`; null: it may turn on"));
+        "errors of `play_rad`, as `play_errors_m`; null: no bound, the part may turn farther"));
 
 inline constexpr auto kCheckedPartFields = std::make_tuple(
     field("name", &CheckedPart::name, "name of the part"),
     field("triangles", &CheckedPart::triangles, "triangles of its mesh"),
     field("chord_error_m", &CheckedPart::chord_error_m,
           "greatest distance of the mesh from its curved faces"),
-    field("mesh_faults", &CheckedPart::mesh_faults, "faults of the mesh in words; empty: it is closed"),
-    field("no_inside", &CheckedPart::no_inside, "why it has no inside, or parts of it; empty: it has one"),
+    field("mesh_faults", &CheckedPart::mesh_faults, "faults of the mesh in words; empty: the mesh is closed"),
+    field("no_inside", &CheckedPart::no_inside,
+          "why the surface, or a part of it, encloses no volume; empty: it is a solid"),
     group("", &CheckedPart::play, kPlayFields),
     field("play_error_m", &CheckedPart::play_error_m,
-          "bound of the error of `play_m` where faces stop it squarely"),
-    field("play_error_rad", &CheckedPart::play_error_rad, "the same of `play_rad`"),
+          "bound of the error of `play_m` at contacts that are at right angles to the motion"),
+    field("play_error_rad", &CheckedPart::play_error_rad,
+          "bound of the error of `play_rad` at such contacts"),
     field("play_certain", &CheckedPart::is_play_certain,
-          "false: facets cross as drawn, curved faces of equal size touch, or the search ended early; meshes "
-          "can "
-          "then stop a motion that the faces allow"),
-    field("play_center_m", &CheckedPart::play_center_W, "where the axes of rotation meet, in the world"));
+          "false: facets cross as drawn, curved faces of equal size touch, or the search ended early; the "
+          "meshes "
+          "can then stop a motion that the true faces allow"),
+    field("play_center_m", &CheckedPart::play_center_W,
+          "point where the axes of rotation meet, in the world"));
 
 inline constexpr auto kMovedPartFields = std::make_tuple(
     field("name", &MovedPart::name, "name of the part"),
-    field("by_m", &MovedPart::by_W, "by how much the middle of its box is moved, in the world"),
-    field("turn_rad", &MovedPart::turn_W, "by how much it is turned about that point: rotation vector"),
-    field("most_m", &MovedPart::most_m, "how far the corner of its box goes that goes farthest"),
-    field("allowed_m", &MovedPart::allowed_m, "the most that it may: by its tightest fit, or by sight"),
+    field("by_m", &MovedPart::by_W, "displacement of the middle of the part's box, in the world"),
+    field("turn_rad", &MovedPart::turn_W, "rotation vector about the middle of the part's box"),
+    field("most_m", &MovedPart::most_m, "greatest displacement of a corner of the part's box"),
+    field("allowed_m", &MovedPart::allowed_m,
+          "limit of `most_m`: tolerance of the part's tightest fit, or 0.5 mm (placement by eye) without a "
+          "fit"),
     field(
         "position_m",
         [](const MovedPart& part) {
           return std::vector<double>{part.X_WP.p.x(), part.X_WP.p.y(), part.X_WP.p.z()};
         },
-        "where its origin is then, in the world"),
+        "position of the part's origin after the motion, in the world"),
     field(
         "rotation_xyzw",
         [](const MovedPart& part) {
           const Quat q = part.X_WP.quaternion();
           return std::vector<double>{q.x(), q.y(), q.z(), q.w()};
         },
-        "its rotation then, as a unit quaternion"));
+        "rotation of the part after the motion, as a unit quaternion"));
 
 inline constexpr auto kCheckedPlacesFields = std::make_tuple(
     field(
         "verdict", &CheckedPlaces::verdict,
-        "`fits`: nothing overlaps as drawn, or nothing does once the parts of `moved` are moved; `blocked`: "
-        "proven that there are no such places; `not_shown`: neither"),
-    field("reason", &CheckedPlaces::reason, "of another verdict, in words"));
+        "`fits`: no parts overlap as drawn, or after the parts of `moved` are moved; `blocked`: it is proven "
+        "that no such places exist; `not_shown`: neither places nor a proof were found"),
+    field("reason", &CheckedPlaces::reason, "reason for a verdict other than `fits`, in words"));
 
 inline constexpr auto kCheckWallFields =
     std::make_tuple(field("prepare_s", &CheckResult::prepare_wall_s, "time to prepare the parts"),
                     field("pairs_s", &CheckResult::pairs_wall_s, "time for the pairs"),
                     field("fits_s", &CheckResult::fits_wall_s, "time for the fits"),
                     field("pictures_s", &CheckResult::pictures_wall_s, "time for sections and maps"),
-                    field("play_s", &CheckResult::play_wall_s, "time for play and ways out"),
+                    field("play_s", &CheckResult::play_wall_s, "time for play and removal directions"),
                     field("places_s", &CheckResult::places_wall_s, "time for places without overlap"));
 
 }  // namespace vps::scenes

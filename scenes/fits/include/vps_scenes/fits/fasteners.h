@@ -21,15 +21,16 @@ enum class FastenerKind {
 };
 VPS_SCENES_API const char* toText(FastenerKind kind);
 
+/// A part that has the shape of a fastener.
 struct Fastener {
   std::string part;
   FastenerKind kind = FastenerKind::Screw;
-  std::string words;  ///< with its sizes: "screw M8 x 30, hexagon head"
+  std::string words;  ///< kind and sizes: "screw M8 x 30, hexagon head"
 };
 
-/// The fasteners among the parts, in their order, by the shape of each part alone; a key needs its fits and
-/// is only found by planAssembly(). Cylinders with fewer than 16 sides are prisms, and are not found. Throws
-/// LoadError for parts that cannot be measured.
+/// Finds the fasteners among the parts, in the order of the parts, from the shape of each part alone. Keys
+/// are not found here: they are recognised by their fits, in planAssembly(). A cylinder with fewer than 16
+/// sides counts as a prism and is not found. Throws LoadError for a part that cannot be measured.
 VPS_SCENES_API std::vector<Fastener> findFasteners(const std::vector<DrawnPart>& parts,
                                                    const Progress& progress = {});
 

@@ -8,56 +8,93 @@
 #include "vps/pose.h"
 #include "vps_device/recording.h"
 #include "vps_scenes/export.h"
+#include "vps_scenes/scene/fields.h"
 
 namespace vps::scenes {
 
 /// One sample of a step while the part is in hand.
 struct HandSample {
   double time_s = 0;  ///< since the step began
-  Pose X_WG;          ///< of the part, at its centre of mass
+  Pose X_WG;          ///< pose of the part, at its centre of mass
   double force_N = 0;
 };
 
-/// What one run did in a step, until the part was let go.
+/// Measures of one run in one step, from taking the part until releasing it.
 struct RunMeasures {
   double duration_s = 0;
-  double path_m = 0;        ///< way of the part's centre of mass, in pieces of kPathPiece_m
+  double path_m = 0;        ///< length of the path of the part's centre of mass, in pieces of kPathPiece_m
   double peak_force_N = 0;  ///< on the hand
   double mean_force_N = 0;  ///< over time
 };
 
-/// Shorter motions are the encoders' resolution, or a tremor, and count as none.
+/// Motions shorter than this do not count as path: they are within the encoders' resolution or the hand's
+/// tremor.
 inline constexpr double kPathPiece_m = 0.5e-3;
 
+/// One step of the trainee's run against the same step of the expert's run.
 struct ComparedStep {
   std::string part;
   bool is_done = false;  ///< the trainee brought the part to its target
   RunMeasures expert, trainee;
-  double detour_m = 0;     ///< the trainee's path less the expert's
+  double detour_m = 0;     ///< length of the trainee's path minus the expert's
   double deviation_m = 0;  ///< greatest distance of the trainee's path from the expert's
   double mean_deviation_m = 0;
   double deviation_rad = 0;   ///< greatest rotation against the nearest pose of the expert's path
-  double excess_force_N = 0;  ///< the trainee's peak force less the expert's
-  /// 0 to 100: the mean of three shares, each the expert's value by the trainee's and at most 1, of time,
-  /// path and peak force; 0 for a step that is not done. assumed: equal weights
+  double excess_force_N = 0;  ///< the trainee's peak force minus the expert's
+  /// Score from 0 to 100: the mean of three ratios, for time, path and peak force. Each ratio is the expert's
+  /// value divided by the trainee's and at most 1. The score of a step that is not done is 0. assumed: equal
+  /// weights
   double score = 0;
   std::vector<HandSample> expert_samples, trainee_samples;  ///< for pictures
 };
 
-/// A lesser force is as good as none, so that a share of forces means something. assumed: what a hand feels
-/// well
+/// Forces below this count as this force, so that the ratio of two small forces does not dominate a score.
+/// assumed: a force that a hand feels clearly
 inline constexpr double kLeastForce_N = 1;
 
 struct RunComparison {
-  std::string expert, trainee;      ///< files
+  std::string expert, trainee;      ///< file names of the recordings
   double score = 0;                 ///< mean over the expert's steps
   std::vector<ComparedStep> steps;  ///< in the expert's order
-  std::vector<std::string> notes;   ///< what makes the comparison doubtful, in words
+  std::vector<std::string> notes;   ///< reasons to doubt the comparison, in words
 };
 
-/// Steps are matched by the names of their parts. O(n m) for n and m samples of a step. Throws LoadError
-/// where a recording holds no scene or no trace, and where the two have no part in common.
+/// Compares two recordings step by step; steps are matched by the names of their parts. O(n m) for n and m
+/// samples of a step. Throws LoadError if a recording holds no scene or no trace, or if the two recordings
+/// have no part in common.
 VPS_SCENES_API RunComparison compareRuns(const device::RecordedRun& expert,
                                          const device::RecordedRun& trainee);
+
+inline constexpr auto kRunMeasureFields = std::make_tuple(
+    field("duration_s", &RunMeasures::duration_s, "from taking the part to letting it go, simulated time"),
+    field("path_m", &RunMeasures::path_m, "length of the path of the part's centre of mass"),
+    field("peak_force_N", &RunMeasures::peak_force_N, "greatest force on the hand"),
+    field("mean_force_N", &RunMeasures::mean_force_N, "mean force on the hand over time"));
+static_assert(coversAllMembers<RunMeasures>(kRunMeasureFields));
+
+inline constexpr auto kComparedStepFields = std::make_tuple(
+    field("part", &ComparedStep::part, "part of the step"),
+    field("done", &ComparedStep::is_done, "the trainee brought the part to its target"),
+    field("score", &ComparedStep::score,
+          "0 to 100: mean of the ratios of time, path and peak force, each the expert's value divided by the "
+          "trainee's and at most 1; forces below 1 N count as 1 N; 0: the step is not done"),
+    field("detour_m", &ComparedStep::detour_m, "length of the trainee's path minus the expert's"),
+    field("deviation_m", &ComparedStep::deviation_m,
+          "greatest distance of the trainee's path from the expert's path"),
+    field("mean_deviation_m", &ComparedStep::mean_deviation_m,
+          "mean distance along the trainee's path from the expert's path"),
+    field("deviation_rad", &ComparedStep::deviation_rad,
+          "greatest rotation against the nearest pose of the expert's path"),
+    field("excess_force_N", &ComparedStep::excess_force_N, "the trainee's peak force minus the expert's"),
+    group("expert", &ComparedStep::expert, kRunMeasureFields, "measures of the expert's run"),
+    group("trainee", &ComparedStep::trainee, kRunMeasureFields, "measures of the trainee's run"));
+
+inline constexpr auto kComparisonFields =
+    std::make_tuple(field("expert", &RunComparison::expert, "file of the expert's recording"),
+                    field("trainee", &RunComparison::trainee, "file of the trainee's recording"),
+                    field("score", &RunComparison::score, "mean score over the steps of the expert's run"),
+                    field("notes", &RunComparison::notes, "reasons to doubt the comparison"),
+                    list("steps", &RunComparison::steps, kComparedStepFields));
+static_assert(coversAllMembers<RunComparison>(kComparisonFields));
 
 }  // namespace vps::scenes

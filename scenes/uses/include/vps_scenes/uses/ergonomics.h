@@ -8,6 +8,7 @@
 
 #include "vps_scenes/export.h"
 #include "vps_scenes/run/result.h"
+#include "vps_scenes/scene/fields.h"
 #include "vps_scenes/scene/scene.h"
 
 namespace vps::scenes {
@@ -17,42 +18,45 @@ inline const char* toText(Posture posture) {
   return posture == Posture::Standing ? "standing" : "seated";
 }
 
-/// A person by stature. assumed: 5th percentile of women and 95th of men, 18 to 65 years [DIN 33402-2:2005].
-/// Lengths of the body are shares of the stature [Drillis and Contini 1966].
+/// A person, described by stature. assumed: the 5th percentile of women and the 95th percentile of men, 18 to
+/// 65 years [DIN 33402-2:2005]. Lengths of the body are fractions of the stature [Drillis and Contini 1966].
 struct Body {
   std::string name;
   double stature_m = 0;
   [[nodiscard]] double upperArm_m() const { return 0.186 * stature_m; }
-  /// To the middle of the closed hand.
+  /// Length from the elbow to the middle of the closed hand.
   [[nodiscard]] double forearm_m() const { return (0.146 + 0.054) * stature_m; }
-  /// From the body's middle to the joint.
+  /// Distance of the shoulder joint from the body's middle plane.
   [[nodiscard]] double shoulderAside_m() const { return 0.129 * stature_m; }
   [[nodiscard]] double shoulderHeight_m(Posture posture) const {
     return posture == Posture::Standing ? 0.818 * stature_m : kSeat_m + (0.818 - 0.530) * stature_m;
   }
-  /// assumed: of the seat, compressed; a desk chair [EN 1335-1: 0.40 to 0.51 m] set for a bench of 0.74 m
+  /// Height of the seat, compressed. assumed: a desk chair [EN 1335-1: 0.40 to 0.51 m] that is set for a
+  /// bench of 0.74 m.
   static constexpr double kSeat_m = 0.46;
 };
 VPS_SCENES_API const std::vector<Body>& assumedBodies();
 
-/// assumed: a table at which one sits, or stands [EN 527-1:2011].
+/// Heights of the bench at which a person sits or stands. assumed: tables by EN 527-1:2011.
 inline constexpr double kSeatedBench_m = 0.74, kStandingBench_m = 1.05;
-/// assumed: from the nearest part or place of the path to the shoulders, past the bench's edge
+/// Horizontal distance of the shoulders from the nearest part or point of the path; the bench's edge is
+/// between them. assumed
 inline constexpr double kToShoulder_m = 0.20;
 
 /// An arm whose hand holds a point; the elbow hangs below the line from shoulder to hand.
 struct ArmPose {
-  double reach_share = 0;   ///< distance of the hand from the shoulder, by the arm's length
-  double raised_rad = 0;    ///< upper arm, from hanging down
-  double elbow_rad = 0;     ///< flexion; 0: stretched
-  bool is_reached = false;  ///< false: too far, and the angles are of a stretched arm in its direction
+  double reach_share = 0;  ///< distance of the hand from the shoulder, divided by the arm's length
+  double raised_rad = 0;   ///< angle of the upper arm from hanging down
+  double elbow_rad = 0;    ///< flexion of the elbow; 0: stretched
+  bool is_reached =
+      false;  ///< false: the point is too far; the angles are then those of an arm stretched towards it
 };
 /// @param p_SH  hand from the shoulder; z is up
 VPS_SCENES_API ArmPose armTo(const Body& body, const Vec3& p_SH);
 
-/// Score of upper arm and lower arm by RULA's first two steps [McAtamney and Corlett 1993], summed: 2 (best)
-/// to 6. Upper arm by its angle: up to 20 degrees 1, to 45 degrees 2, to 90 degrees 3, above 4. Lower arm:
-/// elbow flexed by 60 to 100 degrees 1, else 2.
+/// Sum of the scores of upper arm and lower arm by RULA's first two steps [McAtamney and Corlett 1993]: 2
+/// (best) to 6. The upper arm scores 1 up to 20 degrees, 2 up to 45 degrees, 3 up to 90 degrees and 4 above.
+/// The lower arm scores 1 for an elbow flexed by 60 to 100 degrees, else 2.
 VPS_SCENES_API int rulaArm(const ArmPose& arm);
 inline constexpr int kBestRula = 2, kWorstRula = 6;
 
@@ -60,24 +64,42 @@ inline constexpr int kBestRula = 2, kWorstRula = 6;
 struct StepErgonomics {
   std::string part, body;
   Posture posture = Posture::Seated;
-  std::string hand;           ///< "left" or "right": the one that is reached for longer, or with less strain
-  double greatest_reach = 0;  ///< share of the arm's length
-  double out_of_reach_share = 0;  ///< of the time in hand
-  double raised_rad = 0;          ///< greatest
+  std::string
+      hand;  ///< "left" or "right": the hand that reaches the part for a longer time, or with less strain
+  double greatest_reach = 0;      ///< greatest distance from the shoulder, as a share of the arm's length
+  double out_of_reach_share = 0;  ///< share of the time in hand
+  double raised_rad = 0;          ///< greatest angle of the upper arm
   double elbow_least_rad = 0, elbow_most_rad = 0;
-  double rula_mean = 0;  ///< over time; what is out of reach counts as kWorstRula
+  double rula_mean = 0;  ///< mean over time; a point out of reach counts as kWorstRula
   int rula_worst = 0;
 };
 
 struct Ergonomics {
-  std::vector<StepErgonomics> steps;  ///< persons and postures of the first step, then of the next
-  Vec3 p_WB = Vec3::Zero();  ///< the front edge's side: below the shoulders' middle, at the bench's height
+  std::vector<StepErgonomics> steps;  ///< all persons and postures for the first step, then for the next step
+  Vec3 p_WB = Vec3::Zero();           ///< point below the middle of the shoulders, at the bench's height
 };
 
-/// Of the trace of a run. The person is at the side of the least y and looks along y; up is against gravity,
-/// which must be along z (else nothing is measured). The lowest point of the parts in place stands on the
-/// bench, and the person's middle is at the middle of the parts. O(samples). Rows of a part at rest do not
-/// count.
+/// Measures ergonomics on the trace of a run. The person is on the side of the least y and looks along +y.
+/// Gravity must point along -z, else the result is empty. The lowest point of the assembled parts touches the
+/// bench, and the person's middle is at the middle of the parts. Rows with the part at rest do not count.
+/// O(samples).
 VPS_SCENES_API Ergonomics measureErgonomics(const Scene& scene, const std::vector<TraceRow>& trace);
+
+inline constexpr auto kStepErgonomicsFields = std::make_tuple(
+    field("part", &StepErgonomics::part, "part of the step"),
+    field("body", &StepErgonomics::body, "`small woman` or `large man` (assumed sizes)"),
+    field("posture", &StepErgonomics::posture, "`seated` or `standing`"),
+    field("hand", &StepErgonomics::hand, "`left` or `right`: the hand with less strain"),
+    field("greatest_reach", &StepErgonomics::greatest_reach,
+          "greatest distance of the hand from the shoulder, as a share of the arm's length"),
+    field("out_of_reach_share", &StepErgonomics::out_of_reach_share,
+          "share of the time in hand with the part out of reach"),
+    field("raised_rad", &StepErgonomics::raised_rad, "greatest angle of the upper arm from hanging down"),
+    field("elbow_least_rad", &StepErgonomics::elbow_least_rad, "least flexion of the elbow; 0: stretched"),
+    field("elbow_most_rad", &StepErgonomics::elbow_most_rad, "greatest flexion of the elbow"),
+    field("rula_mean", &StepErgonomics::rula_mean,
+          "mean over time of RULA's score of upper and lower arm, 2 (best) to 6"),
+    field("rula_worst", &StepErgonomics::rula_worst, "greatest score of the step"));
+static_assert(coversAllMembers<StepErgonomics>(kStepErgonomicsFields));
 
 }  // namespace vps::scenes

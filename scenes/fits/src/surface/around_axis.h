@@ -1,16 +1,41 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The facets of a part in a slab across an axis.
+// Measures around an axis: how far facets are from it, and the facets in a slab across it.
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <vector>
 
+#include "surface/part_surface.h"
 #include "surface/placed_surface.h"
 #include "surface/surface_piece.h"
 
 namespace vps::scenes {
+
+struct AxisExtent {
+  double from_m = 1e300, to_m = -1e300;      ///< along the axis, from its centre
+  double nearest_m = 1e300, farthest_m = 0;  ///< from the axis
+
+  void add(const AxisExtent& other);
+  /// Whether what turns about the axis, and is moved along it by something between the two distances, can
+  /// come within this distance of the other.
+  [[nodiscard]] bool reaches(const AxisExtent& other, double within_m,
+                             const std::array<double, 2>& along_m = {}) const {
+    return from_m + along_m[0] <= other.to_m + within_m && other.from_m <= to_m + along_m[1] + within_m &&
+           nearest_m <= other.farthest_m + within_m && other.nearest_m <= farthest_m + within_m;
+  }
+};
+
+/// Of a triangle, around an axis with two unit vectors across it.
+AxisExtent axisExtent(const Triangle& t, const Vec3& center, const Vec3& axis, const Vec3& u, const Vec3& v);
+
+/// Of each node and each triangle of a part; the axis is in the part's frame. O(n).
+struct AxisExtents {
+  std::vector<AxisExtent> nodes, triangles;
+  AxisExtents(const PartSurface& part, const Vec3& axis, const Vec3& center);
+};
 
 /// The facets of a part, cut off where a slab across an axis ends.
 class NearAxis {

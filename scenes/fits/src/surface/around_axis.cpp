@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "surface/axis_extents.h"
+#include "surface/around_axis.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The faces of a part that can take part in a fit: cylinders, planes and screw threads, from the facets of
+// its mesh.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "surface/part_surface.h"
+#include "vps/pose.h"
+
+namespace vps::scenes {
+
+/// A cylinder without ends.
+struct Cylinder {
+  Vec3 axis = Vec3::UnitZ();  ///< unit
+  Vec3 p = Vec3::Zero();      ///< on the axis
+  double radius_m = 0;
+
+  /// The vector from the axis to x, perpendicular to the axis.
+  [[nodiscard]] Vec3 outward(const Vec3& x) const {
+    const Vec3 d = x - p;
+    return d - axis.dot(d) * axis;
+  }
+  /// Distance of x from the surface, negative inside.
+  [[nodiscard]] double off(const Vec3& x) const { return outward(x).norm() - radius_m; }
+};
+
+/// Fits a cylinder to points: minimises the sum of their squared distances from it, by Gauss-Newton.
+/// `cylinder` holds a guess and receives the result. Returns false if the iteration fails; `cylinder` may
+/// have changed then. O(points).
+bool fitCylinder(std::span<const Vec3> points, Cylinder& cylinder);
+
+/// Facets whose corners lie on one cylinder. The corners lie on the true surface, so the radius is free of
+/// the facets' chord error.
+struct RoundFace {
+  Vec3 axis = Vec3::UnitZ();  ///< unit, in the part's frame
+  Vec3 p = Vec3::Zero();      ///< on the axis
+  double radius_m = 0;
+  double from_m = 0, to_m = 0;        ///< along the axis, from p
+  double residual_m = 0;              ///< greatest distance of a corner from the cylinder
+  bool is_bore = false;               ///< the material is outside
+  std::vector<std::uint32_t> facets;  ///< ascending
+};
+
+/// Finds the cylindrical faces that cover at least three tenths of a turn. Coarse cylinders, whose facets
+/// meet at more than kCurved_rad, count as prisms and are not found. O(n).
+std::vector<RoundFace> roundFaces(const PartSurface& surface);
+
+/// A screw thread: its flanks, crests and roots.
+struct ThreadFace {
+  Vec3 axis = Vec3::UnitZ();  ///< unit, in the part's frame
+  Vec3 p = Vec3::Zero();      ///< on the axis
+  double lead_m = 0;          ///< axial advance in one turn; negative: a left-hand thread
+  int starts = 1;
+  bool is_inside = false;             ///< in a bore
+  double from_m = 0, to_m = 0;        ///< along the axis, from p
+  double least_m = 0;                 ///< least radius of the flanks
+  double greatest_m = 0;              ///< radius of the cylinder through crests (of a bore: roots)
+  double residual_m = 0;              ///< greatest distance of a crest (or root) from that cylinder
+  std::vector<std::uint32_t> facets;  ///< flanks, crests and roots; ascending
+};
+
+/// Finds threads of at least two turns with inclined flanks, around the axes of round faces and the principal
+/// axes of inertia through the centre of mass. Square threads are not found, nor threads whose flanks are
+/// divided into facets longer than a twelfth of a turn. O(facets) for each axis, and 0.1 s for each thread.
+std::vector<ThreadFace> threadFaces(const PartSurface& surface, const std::vector<RoundFace>& round);
+
+/// Facets in one plane that are connected or separated by a crack only, and that belong to no round face and
+/// no thread.
+struct FlatFace {
+  Vec3 n = Vec3::UnitZ();  ///< outward, unit, in the part's frame
+  double offset_m = 0;     ///< n . x for the points x of the face
+  double area_m2 = 0;
+  double residual_m = 0;              ///< greatest distance of a corner from the plane
+  std::vector<std::uint32_t> facets;  ///< ascending
+};
+
+/// The `most` largest flat faces, in descending order of area. O(n log n).
+std::vector<FlatFace> flatFaces(const PartSurface& surface, const std::vector<RoundFace>& round,
+                                const std::vector<ThreadFace>& threads, std::size_t most);
+
+/// All faces of a part that can take part in a fit.
+struct FitFaces {
+  std::vector<RoundFace> round;
+  std::vector<FlatFace> flat;
+  std::vector<ThreadFace> threads;
+};
+FitFaces fitFaces(const PartSurface& surface);
+
+}  // namespace vps::scenes
