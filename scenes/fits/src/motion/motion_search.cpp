@@ -8,17 +8,18 @@ namespace vps::scenes {
 namespace {
 
 constexpr double kMotionSearchForever = std::numeric_limits<double>::infinity();
-/// A step of less than this stops the motion: a tenth of the rest depth.
+/// A smaller step than this ends the motion: a tenth of the rest depth.
 constexpr double kLeastStep_m = 0.1 * MotionSearch::kRest_m;
 constexpr int kMostSteps = 400;
-/// A whole turn in a bore of n facets, with clearance c at radius r, takes some 2 n steps, and more where c
-/// is near the chord of the facets.
+/// Limit of the steps of a rotation. A whole turn in a bore of n facets takes about 2 n steps, and more where
+/// the clearance is near the facets' chord error.
 constexpr int kMostStepsOfTurn = 4000;
-/// The first step ends here, and each later one at four times as far: only what is near is looked at, where
-/// something is near.
+/// Length of the first piece of a motion; each later piece is four times as long. Where a contact is near,
+/// only near facets are examined.
 constexpr double kFirstStep_m = 0.1e-3;
 
-/// The greatest rest depth that the facets of a pair need as drawn.
+/// The greatest depth to which the facets of a pair penetrate each other as drawn, up to crossing_m, plus
+/// kRest_m.
 double restOf(const PlacedSurface& part, const PlacedSurface& held, const Pose& X_HM, double crossing_m) {
   const MovingPair pair{*part.surface, *held.surface, X_HM, {}, MotionSearch::kRest_m};
   double needed_m = 0;
@@ -29,7 +30,7 @@ double restOf(const PlacedSurface& part, const PlacedSurface& held, const Pose& 
   return MotionSearch::kRest_m + std::min(needed_m, crossing_m);
 }
 
-/// When a box that moves along d reaches another one; forever if it passes by.
+/// The distance after which a box that moves along d reaches another box; infinite if it passes by.
 double entry(const Box& moving, const Box& held, const Vec3& d) {
   double first = 0, last = kMotionSearchForever;
   for (int axis = 0; axis < 3; ++axis) {
@@ -61,7 +62,7 @@ double greatestSpeed(const Motion& motion, const Box& box) {
   return most;
 }
 
-/// How long all of a box that moves stays above a plane; 0 if it is not now.
+/// The parameter up to which a moving box stays above a plane; 0 if it is not above the plane at the start.
 double staysAbove(const Motion& motion, const Box& box, const Vec3& n, double least_m) {
   const double lowest_m = n.dot(box.center()) - 0.5 * n.cwiseAbs().dot(box.size());
   if (lowest_m < least_m) return 0;
@@ -70,18 +71,18 @@ double staysAbove(const Motion& motion, const Box& box, const Vec3& n, double le
   return s;
 }
 
-/// Whether two nodes of the trees, with a patch of a surface in one of them, pass beside each other on a
-/// straight motion, as besideMotion() tells of two facets.
+/// Whether two nodes of the trees pass each other on a straight motion. A patch in one of the nodes provides
+/// the separating plane, as besideMotion() does for two facets.
 bool passBeside(const PartSurface& held, std::uint32_t k, const PartSurface& moving, std::uint32_t i,
                 const Pose& X_HM, const Vec3& d_H, double rest_m) {
   const auto facets = [](const PartSurface& of, std::uint32_t node) {
     return of.tree().nodes()[node].end - of.tree().nodes()[node].first;
   };
-  constexpr std::uint32_t kFewPairs = 4;  // quicker by themselves
+  constexpr std::uint32_t kFewPairs = 4;  // so few pairs are tested faster one by one
   const std::uint32_t of_held = facets(held, k), of_moving = facets(moving, i);
   if (std::max(of_held, of_moving) > PartSurface::kFacetsOfPatch || of_held * of_moving <= kFewPairs)
     return false;
-  const auto isParted = [&](const Vec3& n_H) {  // the held one below, the moving one above
+  const auto isParted = [&](const Vec3& n_H) {  // the held part below the plane, the moving part above it
     const Vec3 n_M = X_HM.R.transpose() * n_H;
     return n_H.dot(X_HM.p) - moving.highest_m(i, -n_M) >= held.highest_m(k, n_H) - rest_m;
   };
@@ -104,7 +105,7 @@ Box boxOf(const Triangle& t) {
 PassingFacets::PassingFacets(std::size_t of_held, bool of_moving, std::vector<std::uint8_t> of_facets,
                              const BoxTree& tree)
     : held(of_held), is_of_moving(of_moving), facets(std::move(of_facets)), nodes(tree.nodes().size(), 1) {
-  for (std::size_t n = nodes.size(); n-- > 0;) {  // children stand after their parents
+  for (std::size_t n = nodes.size(); n-- > 0;) {  // children follow their parents
     const BoxTree::Node& node = tree.nodes()[n];
     if (!node.isLeaf()) {
       nodes[n] = nodes[n + 1] & nodes[node.right];
@@ -206,7 +207,7 @@ double MotionSearch::pairStops(const MovingPair& pair, std::uint32_t moving, std
 
 double MotionSearch::step(const Near& near, const std::optional<Turning>& turning, const Piece& piece,
                           const PassingFacets* passing, SearchWork* work, Reach& reach) const {
-  // No structured binding: clang 14 does not let a lambda use one.
+  // These are no structured bindings, because clang 14 does not let a lambda capture one.
   const Motion& motion_H = piece.motion_H;
   const Pose& X_HM = piece.X_HM;
   const double most = piece.most;
@@ -215,7 +216,7 @@ double MotionSearch::step(const Near& near, const std::optional<Turning>& turnin
   const PartSurface &moving = *part_.surface, &fixed = *held.part->surface;
   const MovingPair pair{moving, fixed, X_HM, motion_H, held.rest_m};
   const double near_m = 2 * held.rest_m;
-  // Times at which boxes can come within the rest depth of each other.
+  // The parameter at which two boxes can come within the rest depth of each other.
   const auto reaches = [&](const Box& of_moving, const Box& of_held, double radius_m) {
     const Box wide = grown(of_moving, near_m);
     if (!motion_H.is_turn) return entry(wide, of_held, motion_H.direction);
@@ -255,7 +256,7 @@ double MotionSearch::step(const Near& near, const std::optional<Turning>& turnin
     const Box box = moved(tree_M[i].box, X_HM);
     const double bound = reaches(box, tree[k].box, radius_m);
     if (!(bound < best)) return bound;
-    // As safeStep() does for two facets: the plane of a flat node parts all of both.
+    // The plane of a flat node can separate all facets of both nodes, as safeStep() separates two facets.
     if (const PartSurface::NodePlane& plane = fixed.planes()[k]; plane.isFlat())
       if (staysAbove(motion_H, box, plane.n, plane.highest_m - held.rest_m) >= best)
         return kMotionSearchForever;
@@ -306,7 +307,7 @@ std::array<Reach, 2> MotionSearch::reachBoth(const Motion& motion, double most,
                                              const std::array<const PassingFacets*, 2>& passing) const {
   const std::optional<Turning> turning = turningOf(motion);
   const std::vector<Near> near = nearOf(motion, most);
-  std::vector<Near> near_back;  // of a straight motion; a turn's are the same
+  std::vector<Near> near_back;  // for a translation; those of a rotation are the same
   if (!turning) near_back = nearOf(motion.reversed(), most);
   return {reach(motion, most, near, turning, passing[0], nullptr),
           reach(motion.reversed(), most, turning ? near : near_back, turning, passing[1], nullptr)};
@@ -343,13 +344,14 @@ Reach MotionSearch::reach(const Motion& motion, double most, const std::vector<N
   return backedOff(reach, motion, speed);
 }
 
-/// Takes back the rest depth by which facets may enter each other.
+/// Moves back by the rest depth to which facets may penetrate each other.
 Reach MotionSearch::backedOff(Reach reach, const Motion& motion_W, double speed) const {
   const Held held = heldAt(reach.by.held);
   const Motion motion = motion_W.in(held.part->X_WP.inverse());
   const MovingPair pair{*part_.surface, *held.part->surface, motion.at(reach.s) * held.X_HM, motion,
                         held.rest_m};
-  // A contact that closes more slowly is a grazing one, whose place is as uncertain as its depth allows.
+  // A contact that closes more slowly than this is a grazing contact, whose place is uncertain by more than
+  // the rest depth.
   const double closing =
       std::max(closingSpeed(pair, reach.by.moving_facet, reach.by.held_facet), 0.1 * speed);
   reach.rate = contactRate(pair, reach.by.moving_facet, reach.by.held_facet);

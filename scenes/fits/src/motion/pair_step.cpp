@@ -6,7 +6,7 @@ namespace vps::scenes {
 namespace {
 
 constexpr double kPairStepForever = std::numeric_limits<double>::infinity();
-/// Below this distance the direction between nearest points is rounding.
+/// Distance below which the direction between nearest points is not reliable, because of rounding.
 constexpr double kDirection_m = 1e-9;
 
 double lowest(const Vec3& n, const Triangle& t) {
@@ -53,7 +53,7 @@ class Step {
     const Vec3 v = pair_.motion.velocity(gap_.p_a);
     const double of_held = std::max(0.0, -v.dot(pair_.held.normal(held_))),
                  of_moving = std::max(0.0, v.dot(pair_.X_HM.R * pair_.moving.normal(moving_)));
-    if (gap_.distance_m > kDirection_m) {  // else they cross by rounding, and so may other features
+    if (gap_.distance_m > kDirection_m) {  // below, the triangles may cross at any feature by rounding
       if (gap_.feature_b == 0) return of_held;
       if (gap_.feature_a == 0) return of_moving;
       if (const Vec3 n = acrossEdges(); !n.isZero(0)) return std::abs(n.dot(v));
@@ -74,7 +74,7 @@ class Step {
   }
 
  private:
-  /// A plane of the held part with the moving one above it.
+  /// Tries a plane of the held part, with the moving triangle above it.
   void tryHeld(const Vec3& n, double least_m) {
     const double above_m = highest(n, b_) + least_m;
     if (lowest(n, a_) < above_m) return;
@@ -82,7 +82,7 @@ class Step {
     for (const Vec3& p : a_) s = std::min(s, pair_.motion.staysAbove(n, p, above_m));
     best_ = std::max(best_, s);
   }
-  /// A plane that moves, with the held part above it.
+  /// Tries a plane of the moving part, with the held triangle above it.
   void tryMoving(const Vec3& n, double least_m) {
     const double above_m = highest(n, a_) + least_m;
     if (lowest(n, b_) < above_m) return;
@@ -92,10 +92,10 @@ class Step {
     best_ = std::max(best_, s);
   }
 
-  /// Whether a plane along a straight motion parts the triangles, which then never meet: beside an edge of
-  /// one of them, or across an outward normal with the rest depth. Facets of flush curved faces cross by
-  /// their chords wherever they slide along each other, and the planes of slivers among them are tilted at
-  /// random.
+  /// Whether a plane along a straight motion separates the triangles, so that they never meet. The plane
+  /// contains an edge of one triangle, or is perpendicular to an outward normal (with the rest depth). Such
+  /// planes are needed for flush curved faces: their facets cross by the chord error wherever they slide
+  /// along each other, and the planes of slivers among them are tilted at random.
   [[nodiscard]] bool passesBeside() const {
     const Vec3& d = pair_.motion.direction;
     for (const Triangle* of : {&a_, &b_})
@@ -119,7 +119,7 @@ class Step {
                                [&](std::uint32_t v) { return std::ranges::any_of(of.normalsAround(v), is); });
   }
 
-  /// Outward normals around the nearest features of both, in the frame of the held part.
+  /// Visits the outward normals around the nearest features of both triangles, in the frame of the held part.
   template <class OfHeld, class OfMoving>
   void forEachFeatureNormal(OfHeld ofHeld, OfMoving ofMoving) const {
     forEachNormal(pair_.held, held_, gap_.feature_b, ofHeld);
@@ -127,7 +127,7 @@ class Step {
   }
   template <class Visit>
   static void forEachNormal(const PartSurface& of, std::uint32_t triangle, int feature, Visit visit) {
-    if (feature == 0) return;  // the facet's own was tried
+    if (feature == 0) return;  // the normal of the facet itself was tried before
     visit(of.solid().featureNormal(triangle, feature));
     if (feature > 3) {
       for (const Vec3& n : of.normalsAround(of.mesh().triangles[triangle][feature - 4])) visit(n);
@@ -148,7 +148,8 @@ class Step {
     if (n.dot(out_a) < 0) tryHeld(n, -pair_.rest_m);
   }
 
-  /// Unit; zero if the nearest features are not two edges, or those are parallel.
+  /// The common perpendicular of the two nearest edges, unit. Zero if the nearest features are not two edges,
+  /// or if the edges are parallel.
   [[nodiscard]] Vec3 acrossEdges() const {
     const auto isEdge = [](int feature) { return feature >= 1 && feature <= 3; };
     if (!isEdge(gap_.feature_a) || !isEdge(gap_.feature_b)) return Vec3::Zero();
@@ -160,7 +161,7 @@ class Step {
     return n / length;
   }
 
-  /// Triangles that touch along a line have many nearest points: the planes around all corners.
+  /// Tries the planes around all corners, for triangles that touch along a line and have many nearest points.
   void tryCorners() {
     for (const std::uint32_t v : pair_.held.mesh().triangles[held_])
       for (const Vec3& n : pair_.held.normalsAround(v)) tryHeld(n, -pair_.rest_m);
@@ -168,8 +169,8 @@ class Step {
       for (const Vec3& n : pair_.moving.normalsAround(v)) tryMoving(pair_.X_HM.R * n, -pair_.rest_m);
   }
 
-  /// Whether the nearest points are outside of the other part, and a facet faces the other triangle: those of
-  /// flush faces lie on side walls, where inside and outside are a matter of rounding.
+  /// Whether the nearest points are outside the other part and one of the facets faces the other triangle.
+  /// The nearest points of flush faces lie on side walls, where rounding decides between inside and outside.
   [[nodiscard]] bool isOutside() const {
     const Vec3 between = gap_.p_a - gap_.p_b;
     const bool is_faced = between.dot(pair_.held.normal(held_)) > 0 ||

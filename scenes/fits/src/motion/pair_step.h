@@ -1,5 +1,4 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// How far a triangle may move before it enters another.
+// SPDX-License-Identifier: BSD-3-Clause How far a triangle can move before it penetrates another one.
 #pragma once
 
 #include <optional>
@@ -9,19 +8,19 @@
 
 namespace vps::scenes {
 
-/// A moving part and one that is held, while the moving part stands at X_HM.
+/// A moving part and a held part, with the moving part at the pose X_HM.
 struct MovingPair {
   const PartSurface& moving;
   const PartSurface& held;
   Pose X_HM;
-  Motion motion;  ///< of the moving part, in the frame of the held one
-  /// How deep facets may be in each other: they rest on each other with rounding, and facets of flush curved
-  /// faces cross.
+  Motion motion;  ///< motion of the moving part, in the frame of the held part
+  /// Greatest depth to which facets may penetrate each other, since facets in contact overlap by rounding and
+  /// facets of flush curved faces cross.
   double rest_m = 0;
 };
 
-/// An outward normal across a straight motion d: a part above its plane stays so. None for a surface that
-/// faces the motion at more than 30 degrees.
+/// The outward normal n, made perpendicular to a straight motion d: a part above the plane of the result
+/// stays above it. Empty where n deviates by more than 30 degrees from a perpendicular of d.
 inline std::optional<Vec3> besideMotion(const Vec3& n, const Vec3& d) {
   constexpr double kMostFacing = 0.5;
   const double facing = n.dot(d);
@@ -29,22 +28,23 @@ inline std::optional<Vec3> besideMotion(const Vec3& n, const Vec3& d) {
   return (n - facing * d).normalized();
 }
 
-/// A way for which the triangles certainly do not enter each other by more than the rest depth: the longest
-/// for which one plane of a few parts them, with each part on its outer side. It is 0 where they touch and
-/// would enter, and exact where a face, an edge or a corner stops the other. 1 us.
+/// A step during which the triangles do not penetrate each other by more than the rest depth. It is the
+/// longest step for which one of a few planes separates the triangles, each part being on the plane's outer
+/// side. The step is 0 if the triangles touch and would penetrate, and exact where a face, an edge or a
+/// corner stops the other. Takes 1 us.
 double safeStep(const MovingPair& pair, std::uint32_t moving, std::uint32_t held);
 
-/// How fast the triangles come nearer along the normal of one of them, at their nearest points, per unit of
-/// the motion.
+/// The rate at which the triangles approach along the normal of one of them, at their nearest points, per
+/// unit of the motion.
 double closingSpeed(const MovingPair& pair, std::uint32_t moving, std::uint32_t held);
 
-/// How fast they come nearer along the normal of the contact, per unit of the motion, where they touch: along
-/// that of the face that is touched, or across two edges. Where that cannot be told the lesser of those of
-/// both triangles. Not negative.
+/// The rate at which triangles in contact approach along the contact normal, per unit of the motion; not
+/// negative. The contact normal is that of the touched face, or the common perpendicular of two edges. If it
+/// is unknown, the result is the lesser of the rates along the normals of both triangles.
 double contactRate(const MovingPair& pair, std::uint32_t moving, std::uint32_t held);
 
-/// How deep the triangles are in each other now: the least over the planes of the facets and their nearest
-/// features; 0 where a plane parts them.
+/// The depth to which the triangles penetrate each other: the least depth over the planes of the facets and
+/// of their nearest features, or 0 if a plane separates the triangles.
 double crossingDepth(const MovingPair& pair, std::uint32_t moving, std::uint32_t held);
 
 }  // namespace vps::scenes

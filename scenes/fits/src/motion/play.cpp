@@ -12,7 +12,7 @@ namespace vps::scenes {
 namespace {
 
 constexpr double kPlayForever = std::numeric_limits<double>::infinity();
-constexpr double kSame = 1e-9;  // of directions: their squared distance
+constexpr double kSame = 1e-9;  // squared distance of equal directions
 
 bool isOf(const CheckedFit& fit, const PlacedSurface& part) {
   return fit.shaft == part.name || fit.bore == part.name;
@@ -21,12 +21,12 @@ bool isOf(const CheckedFit& fit, const PlacedSurface& part) {
 Vec3 centreOf(const PlacedSurface& part) {
   const Box& box = part.surface->box();
   const MassProperties mass = part.surface->solid().mass();
-  // The centre of mass of an open mesh can be anywhere.
+  // The computed centre of mass of an open mesh can be anywhere.
   const bool is_within = mass.volume_m3 > 0 && isWithin(mass.com, box);
   return part.X_WP * (is_within ? mass.com : box.center());
 }
 
-/// The axes turned by the least angle so that the nearest of them is along d.
+/// Turns the axes by the least angle so that the axis nearest to d is parallel to d.
 Mat3 turnedTo(const Mat3& axes, const Vec3& d) {
   int nearest = 0;
   (axes.transpose() * d).cwiseAbs().maxCoeff(&nearest);
@@ -43,7 +43,8 @@ PlayFrame playFrame(const PlacedSurface& part, const std::vector<CheckedFit>& fi
   const CheckedFit* longest = nullptr;
   for (const CheckedFit& fit : fits) {
     if (!isOf(fit, part) || fit.kind == FitKind::Key) continue;
-    // A part is guided by the fits that it enters; those that enter it may be many.
+    // A part is guided by the fits in which it is the shaft. Fits in which it is the bore may be many and
+    // count less.
     const bool is_better =
         longest == nullptr || std::pair(fit.shaft == part.name, fit.length_m) >
                                   std::pair(longest->shaft == part.name, longest->length_m);
@@ -87,7 +88,7 @@ std::vector<Vec3> waysOut(const MotionSearch& search, const PlacedSurface& part,
   for (const Vec3& d : makeSphere(1, 1).vertices) add(d);
 
   std::vector<Vec3> ways;
-  std::vector<Blocker> blockers;  // what stopped one direction stops many
+  std::vector<Blocker> blockers;  // a facet pair that stopped one direction stops many others
   for (const Vec3& d : directions) {
     const Motion motion{d, Vec3::Zero(), false};
     if (std::ranges::any_of(blockers,
@@ -108,14 +109,14 @@ std::vector<ScrewWay> screwWaysOut(const MotionSearch& search, const PlacedSurfa
   for (const CheckedFit& fit : fits) {
     if (!isOf(fit, part) || fit.kind != FitKind::Thread) continue;
     const double forward_m = fit.lead_m / (2 * std::numbers::pi);
-    // Turned to the right, a right-hand thread goes along the axis; turned to the left, against it.
+    // A right-hand thread advances along the axis when it is turned to the right.
     const Motion screw{fit.axis_W, fit.at_W, true, forward_m};
     const double most_rad = leave_m / std::abs(forward_m);
     const bool is_screw = fit.shaft == part.name;
     const std::size_t mate = search.indexOf(is_screw ? fit.bore : fit.shaft);
     const PlacedSurface& other = search.held(mate);
     const PlacedSurface &inner = is_screw ? part : other, &outer = is_screw ? other : part;
-    // The nut moves over the screw, or the screw the other way through the nut.
+    // The nut moves over the screw, or the screw moves in the opposite direction through the nut.
     const Vec3 ahead_W = (forward_m > 0) == is_screw ? Vec3(-fit.axis_W) : fit.axis_W;
     const PassingFacets forwards(mate, is_screw, ScrewProfile(outer, screw, inner, ahead_W).passing(inner),
                                  inner.surface->tree());

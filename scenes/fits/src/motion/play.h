@@ -1,5 +1,4 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// Play of a part, and the ways on which it leaves.
+// SPDX-License-Identifier: BSD-3-Clause Play of a part, and the motions by which it can be removed.
 #pragma once
 
 #include <vector>
@@ -14,32 +13,33 @@ struct PlayFrame {
   Vec3 center_W = Vec3::Zero();
 };
 
-/// The part's own axes through its centre of mass. With fits, the axis of the longest is one of them, and the
-/// centre is on it.
+/// The axes of the part's frame through its centre of mass. If the part has a shaft or thread fit, the axes
+/// are turned so that one of them is the axis of the longest fit, and the centre lies on this axis.
 PlayFrame playFrame(const PlacedSurface& part, const std::vector<CheckedFit>& fits);
 
-/// Play along or about an axis, forwards and back.
+/// Play along or about an axis, forwards and backwards.
 struct AxisPlay {
   std::array<double, 2> way = {};
-  /// Of each way, by that of the distance between the surfaces where they touch: that divided by the rate at
-  /// which they come nearer. A shaft with a taper of 1:50 sinks by 100 times the radius that it lacks.
-  /// Infinite where the search ended before the play did; 0 where nothing stops it.
+  /// Error of each value of `way`: the error of the distance between the touching surfaces, divided by the
+  /// rate at which they approach each other. (A shaft with a taper of 1:50 sinks by 100 times the error of
+  /// its radius.) Infinite if the search ended before a contact was found; 0 if nothing stops the part.
   std::array<double, 2> error = {};
-  bool is_given_up = false;  ///< the search ended before the play did, which is more
+  bool is_given_up = false;  ///< the search ended before a contact was found; the play is greater
 };
 
-/// Along (0 to 2) or about (3 to 5) an axis of the frame.
-/// @param leave_m  a way on which a part certainly leaves all others
-/// @param error_m  of the distance of surfaces that are near as drawn; elsewhere the facets' own chord counts
+/// Measures play along (axis 0 to 2) or about (3 to 5) an axis of the frame.
+/// @param leave_m a distance after which a part is certainly clear of all others
+/// @param error_m error of the distance of surfaces that are near as drawn; at other contacts the chord error
+/// of the two facets counts if it is more
 AxisPlay playAlong(const MotionSearch& search, const PlayFrame& frame, int axis, double leave_m,
                    double error_m);
 
-/// Unit directions in the world in which the part leaves the others on a straight line: of the frame's axes,
-/// of those of its fits, and of 42 directions all around.
+/// Unit directions in the world in which the part can be removed in a straight line. Tried are the axes of
+/// the frame, the axes of the part's fits, and 42 directions all around.
 std::vector<Vec3> waysOut(const MotionSearch& search, const PlacedSurface& part, const PlayFrame& frame,
                           const std::vector<CheckedFit>& fits, double leave_m);
 
-/// Screws along the threads of its fits, both ways, on which the part leaves the others.
+/// Screw motions along the threads of the part's fits, in both directions, by which the part can be removed.
 std::vector<ScrewWay> screwWaysOut(const MotionSearch& search, const PlacedSurface& part,
                                    const std::vector<CheckedFit>& fits, double leave_m);
 

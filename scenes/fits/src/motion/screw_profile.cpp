@@ -13,7 +13,8 @@ namespace {
 
 constexpr double kWholeTurn_rad = 2 * std::numbers::pi;
 constexpr int kBins = 1024;
-/// Triangles that span more, or with radii farther apart, are halved: up to so many times, those on the axis.
+/// A triangle that spans a greater angle, or whose radii have a greater ratio, is halved, at most
+/// kMostHalvings times (a triangle on the axis needs more).
 constexpr double kMostTurn_rad = 0.3, kMostRatio = 1.5;
 constexpr int kMostHalvings = 16;
 
@@ -32,16 +33,16 @@ double farthest_m(const PlacedSurface& part, const Vec3& ahead_W) {
 
 }  // namespace
 
-/// A triangle by radius and phase of its corners. Between them both are nearly linear: a radius is at most
-/// the linear one, since the distance from a line is convex, and at least `shrink` times it; the phase is off
-/// by `slack_m` at most.
+/// A triangle, described by radius and phase of its corners. Between the corners both are nearly linear. The
+/// radius is at most its linear interpolation, since the distance from a line is convex, and at least
+/// `shrink` times the interpolation. The phase deviates from its interpolation by `slack_m` at most.
 struct ScrewProfile::Facet {
   double radius_m[3], phase_m[3];
   double shrink = 0, slack_m = 0;
-  double nearest_m = 0;        // exact
-  bool is_everywhere = false;  // its phase is not known
+  double nearest_m = 0;        // exact least distance from the axis
+  bool is_everywhere = false;  // the phase has no bound: the triangle counts in all bins
 
-  /// Least and greatest linear radius where the linear phase is between the two.
+  /// Least and greatest interpolated radius where the interpolated phase is between from_m and to_m.
   [[nodiscard]] std::array<double, 2> radii(double from_m, double to_m) const {
     std::array<double, 2> out = {1e300, -1e300};
     const auto add = [&](double r) { out = {std::min(out[0], r), std::max(out[1], r)}; };
@@ -82,16 +83,16 @@ ScrewProfile::Facet ScrewProfile::seen(const Triangle& triangle_W) const {
   // A mean of three vectors of lengths a_i, at angles of at most s to each other, with weights w_i, has the
   // squared length sum w_i w_j a_i a_j cos s_ij >= (sum w_i a_i)^2 (1 - 2/3 (1 - cos s)).
   out.shrink = std::sqrt(1 - 2.0 / 3 * (1 - std::cos(span_rad)));
-  // Its angle is the mean of the angles with weights w_i a_i, which differ from w_i by up to
-  // (a_max / a_min - 1) / 4 for each of two, but for what the angle on a chord is off the linear one,
-  // s^3 / 24 for each of two.
+  // The angle of this mean is the mean of the angles with weights w_i a_i, up to the deviation of the angle
+  // on a chord from the linear one, s^3 / 24 for each of two chords. The weights differ from w_i by up to
+  // (a_max / a_min - 1) / 4 for each of two.
   out.slack_m =
       std::abs(screw_.forward_m) * (span_rad * (greatest_m / least_m - 1) / 2 + std::pow(span_rad, 3) / 12);
   return out;
 }
 
-/// visit(bin, least radius, greatest radius), bounds of the facet where it has a phase of the bin; until it
-/// returns false, which is returned.
+/// Calls visit(bin, least radius, greatest radius) for each bin that the facet's phase may reach, with bounds
+/// of the facet's radius there. Ends when visit returns false, and then returns false.
 template <class Visit>
 bool ScrewProfile::forEachBin(const Facet& facet, Visit visit) const {
   const auto [least, greatest] = std::minmax({facet.radius_m[0], facet.radius_m[1], facet.radius_m[2]});
@@ -134,7 +135,7 @@ ScrewProfile::ScrewProfile(const PlacedSurface& nut, const Motion& screw, const 
                            const Vec3& ahead_W)
     : ScrewProfile(nut, screw, ahead_W, farthest_m(part, ahead_W)) {}
 
-/// Without what is beyond `end_m`, the place along ahead_W.
+/// Builds the profile without the facets beyond `end_m`, a distance along ahead_W.
 ScrewProfile::ScrewProfile(const PlacedSurface& nut, const Motion& screw, const Vec3& ahead_W, double end_m)
     : screw_(screw),
       x_(screw.direction.unitOrthogonal()),

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// Which facets of a screw can never touch its nut, however far it is turned.
+// SPDX-License-Identifier: BSD-3-Clause The facets of a screw that can never touch its nut, however far the
+// screw is turned.
 #pragma once
 
 #include <cstdint>
@@ -10,9 +10,9 @@
 
 namespace vps::scenes {
 
-/// The least radius of a nut around the axis of a screw motion, by phase z - lead turn. A screw motion
-/// changes neither the radius nor the phase of a point, so what is below this profile passes the nut for any
-/// number of turns.
+/// The least radius of a nut around the axis of a screw motion, as a function of the phase z - lead turn. A
+/// screw motion changes neither the radius nor the phase of a point, so a point below this profile passes the
+/// nut for any number of turns.
 ///
 ///        r ^        nut
 ///          |  \          /      profile: the nut's lower envelope
@@ -21,14 +21,15 @@ namespace vps::scenes {
 ///          +----------------> phase, 0 to the lead
 class ScrewProfile {
  public:
-  /// @param screw in the world, with a lead
+  /// @param screw motion in the world; its lead must not be 0
   ScrewProfile(const PlacedSurface& nut, const Motion& screw);
-  /// For a nut that moves in this direction along the axis only: without its facets beyond all of the part in
-  /// that direction, which never come to it, as the lid of a cap that is screwed off.
+  /// The profile of a nut that moves in the direction ahead_W only. Facets of the nut that are beyond the
+  /// whole part in this direction never reach the part and are left out, such as the lid of a cap that is
+  /// screwed off.
   ScrewProfile(const PlacedSurface& nut, const Motion& screw, const PlacedSurface& part, const Vec3& ahead_W);
 
-  /// By facet of a part in place: 1 if all of it is below the profile, facets as flat triangles. Bounds from
-  /// both sides: what is said to pass does pass. O(facets).
+  /// For each facet of a part at its pose: 1 if the whole flat triangle is below the profile. The profile is
+  /// a lower bound and the facet's radius an upper bound, so a facet with 1 certainly passes. O(facets).
   [[nodiscard]] std::vector<std::uint8_t> passing(const PlacedSurface& part) const;
 
  private:
@@ -44,7 +45,7 @@ class ScrewProfile {
   Motion screw_;
   Vec3 x_, y_;
   double lead_m_;
-  std::vector<double> least_m_;  // by bin of phase
+  std::vector<double> least_m_;  // least radius for each bin of the phase
 };
 
 }  // namespace vps::scenes

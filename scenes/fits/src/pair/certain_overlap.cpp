@@ -11,13 +11,14 @@ namespace vps::scenes {
 
 namespace {
 
-/// A face that the surface may be: a facet, or one beside it in the same curved face.
+/// A plane that the true face may have: that of a facet, or of an adjacent facet of the same curved face.
 struct Leaning {
   Vec3 n;
   double chord_m;
 };
 
-/// The normals that a curved face has at a facet lie between the facet's and those of its neighbours.
+/// Appends the planes of a facet. The normals of a curved face at a facet lie between the normals of the
+/// facet and of its neighbours.
 void addLeanings(const PartSurface& part, std::uint32_t facet, std::vector<Leaning>& to) {
   const double chord_m = part.chordBound_m(facet);
   const Vec3 n = part.normal(facet);
@@ -28,21 +29,21 @@ void addLeanings(const PartSurface& part, std::uint32_t facet, std::vector<Leani
       to.push_back({part.normal(other), chord_m});
 }
 
-/// How far an edge between two faces can move along n when each moves by its chord.
+/// How far an edge between two faces can move along n if each face moves by its chord error.
 double shiftOfEdge(const Leaning& one, const Leaning& two, const Vec3& n) {
   const double cosine = one.n.dot(two.n), sine2 = 1 - cosine * cosine;
   const double along_one = n.dot(one.n), along_two = n.dot(two.n);
-  // Of one curved face, or of one plane: the edge moves with it.
+  // An edge within one curved face or one plane moves with the face.
   if (cosine > std::cos(kCurved_rad))
     return std::max(one.chord_m, two.chord_m) * std::max(std::abs(along_one), std::abs(along_two));
-  constexpr double kKnife = 1e-3;  // two sides of a blade, whose edge may be anywhere
+  constexpr double kKnife = 1e-3;  // nearly opposite faces form a blade, whose edge may be anywhere
   if (sine2 < kKnife) return one.chord_m + two.chord_m > 0 ? std::numeric_limits<double>::infinity() : 0;
   return (std::abs(along_one - cosine * along_two) * one.chord_m +
           std::abs(along_two - cosine * along_one) * two.chord_m) /
          sine2;
 }
 
-/// Of the surface at a point that is nearest to one inside it.
+/// The chord error of the surface at the point of it that is nearest to p.
 double chordAt(const PartSurface& part, const Solid::Closest& nearest, const Vec3& p) {
   const Triangle t = part.triangle(nearest.triangle);
   double chord_m = part.chordBound_m(nearest.triangle);

@@ -9,19 +9,19 @@ namespace vps::scenes {
 
 namespace {
 
-/// Rounding of some sums of coordinates, and of the part's file; and where a crack was closed, the surface
-/// lies between its sides.
+/// Error of a part's coordinates: rounding in sums of coordinates, rounding in the part's file, and half the
+/// width of closed cracks, since the surface lies between a crack's sides.
 double uncertainty_m(const PlacedSurface& part) {
   const double greatest_m = part.box_W.min.cwiseAbs().cwiseMax(part.box_W.max.cwiseAbs()).maxCoeff();
   return 16 * std::numeric_limits<double>::epsilon() * greatest_m + part.drawn->rounding_m +
          0.5 * part.surface->solid().report().joined_m;
 }
 
-/// Distance of the meshes from the faces that they stand for, where the parts are near each other.
+/// Distance of the meshes from the faces that they approximate, where the parts are near each other.
 struct FaceError {
-  double chord_m = 0;       ///< of the facets of both
-  double most_chord_m = 0;  ///< of those of one of them
-  double crack_m = 0;       ///< widths of the cracks, of which either side may be the face
+  double chord_m = 0;       ///< chord errors of both parts, added
+  double most_chord_m = 0;  ///< the greater of the parts' chord errors
+  double crack_m = 0;       ///< widths of cracks, either side of which may be the face
 };
 
 FaceError faceError(const PlacedSurface& a, const PlacedSurface& b, double near_m) {
@@ -36,8 +36,9 @@ FaceError faceError(const PlacedSurface& a, const PlacedSurface& b, double near_
   return error;
 }
 
-/// Solids whose edges all lie on each other's surface, as those of a part that is drawn twice, share an
-/// inside that no edge shows. The deepest of some points below the middle of facets of a.
+/// The overlap of solids whose edges all lie on each other's surface, such as a part that is drawn twice. No
+/// edge shows such an overlap, so some points below the middles of facets of a are measured, and the deepest
+/// is returned.
 Overlap flushOverlap(const PlacedSurface& a, const PlacedSurface& b) {
   constexpr std::uint32_t kFacets = 16;
   const PartSurface& of = *a.surface;
@@ -59,8 +60,9 @@ Overlap flushOverlap(const PlacedSurface& a, const PlacedSurface& b) {
   return deepest;
 }
 
-/// What is inside is not certain at a crack, so that a search for the deepest point would find one: the depth
-/// is that of the edges, or the thickness where that is clearly more.
+/// The depth of parts with cracks. At a crack it is not certain which points are inside, so a search for the
+/// deepest point would end at a crack. The depth is therefore the depth of the edges, or the thickness if it
+/// is clearly greater.
 OverlapDepth depthOfTorn(const PlacedSurface& a, const PlacedSurface& b, const Overlap& found,
                          double error_m) {
   const Overlap ball = SharedBalls(a, b).greatest();
@@ -92,19 +94,19 @@ std::optional<CheckedPair> measured(const PlacedSurface& a, const PlacedSurface&
   const OverlapDepth overlap = deepestOf(a, b, pair.error_m + kOverlapCertain_m, faces.crack_m > 0);
   if (overlap.depth_m > 0) {
     if (overlap.depth_m > near_m) {
-      // The surface that a deep point is near may be as far away.
+      // The surface nearest to a deep point may be as far away as the depth.
       faces = faceError(a, b, overlap.most_m);
       round_m = uncertainty_m(a) + uncertainty_m(b) + faces.crack_m;
       chord_m = faces.chord_m;
     }
-    // A ball between two facets of one part grows by the chords of both.
+    // A ball between two facets of one part can grow by the chord errors of both facets.
     if (overlap.is_thickness) chord_m = std::max(chord_m, 2 * faces.most_chord_m);
     pair.error_m = chord_m + round_m + kOverlapCertain_m;
     pair.interference_depth_m = overlap.depth_m;
     pair.at_W = overlap.p_W;
     double unsettled_m = overlap.most_m - overlap.depth_m - kOverlapCertain_m;
     if (chord_m > 0) {
-      // Where flat faces overlap, the error of the round ones beside them does not count.
+      // Where flat faces overlap, the error of adjacent round faces does not count.
       const CertainOverlap certain = certainOverlap(a, b);
       const double error_m = certain.error_m + round_m + kOverlapCertain_m;
       const bool is_only_one = !pair.isBeyondContact() && certain.depth_m > error_m + kContactDepth_m;

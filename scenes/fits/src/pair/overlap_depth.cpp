@@ -11,25 +11,27 @@ namespace vps::scenes {
 
 namespace {
 
-/// Of a query for the nearest point, in units of visited nodes.
+/// Work of a query for the nearest point, in units of visited nodes.
 constexpr std::size_t kQueryWork = 200;
-/// Of one search: half a second, or some seconds where many facets are equally far.
+/// Limit of the work of one search: half a second, or some seconds where many facets are equally far.
 constexpr std::size_t kMostWork = 60'000'000;
-/// Directions that differ by less, as a cosine, count as one: 6 degrees.
+/// Directions count as equal if their cosine is greater than this (6 degrees).
 constexpr double kOneWay = 0.995;
 
-/// Of several places that are as deep as this, the first one found is kept.
+/// Depths that differ by less count as equal; the first one found is kept.
 constexpr double kSame_m = 1e-9;
 
+/// The state of a search, which all surfaces share.
 struct Search {
   OverlapDepth best;
-  double certain_m = 0;  ///< what has been found and so much more is to be proven enough
-  std::size_t work = 0;  ///< of the search that runs
+  double certain_m = 0;  ///< tolerance: enough_m() is to be proven an upper bound
+  std::size_t work = 0;  ///< work of the current search
   [[nodiscard]] double enough_m() const { return best.depth_m + certain_m; }
   [[nodiscard]] bool isSpent() const { return work >= kMostWork; }
 };
 
-/// A facet that is narrower than rounding has no certain plane; its points are those of the facets beside it.
+/// Whether a facet is narrower than rounding. Such a facet has no certain plane; its points belong to the
+/// adjacent facets.
 bool isSliver(const Triangle& t) {
   constexpr double kNarrow_m = 1e-10;
   const double longest_m = std::max({(t[1] - t[0]).norm(), (t[2] - t[1]).norm(), (t[0] - t[2]).norm()});
@@ -47,7 +49,7 @@ bool areWhole(const Halves& halves, const SurfacePiece& of) {
   return halves[0].size() >= least && halves[1].size() >= least;
 }
 
-/// In the middle of its extent in a direction.
+/// Cuts a piece in the middle of its extent along a direction.
 Halves cutAcross(const SurfacePiece& piece, const Vec3& along) {
   double lowest = along.dot(piece[0]), highest = lowest;
   for (const Vec3& p : piece) {
@@ -65,15 +67,15 @@ Halves cutLongest(const SurfacePiece& piece) {
   return cutAcross(piece, longest);
 }
 
-/// The way out of a solid: to the nearest point q of its surface.
+/// The shortest way out of a solid: unit direction `out` to the nearest point q of its surface.
 struct WayOut {
   Vec3 out, q;
 };
 
-/// Three times of four a piece is cut where two ways out are equally long, or else across the direction in
-/// which the distance changes: distances are often the same along the other one, for which small pieces would
-/// be many.
-/// @param n  of the piece's plane
+/// Divides a piece. At three of four levels, it is cut where two ways out are equally long, or else across
+/// the direction in which the distance changes. Distances often do not change along the other direction, so
+/// that cuts across it would make many small pieces.
+/// @param n normal of the piece's plane
 Halves divided(const SurfacePiece& piece, int level, const Vec3& n, const WayOut& middle,
                const WayOut& other) {
   if (level % 4 != 3) {
@@ -90,7 +92,8 @@ Halves divided(const SurfacePiece& piece, int level, const Vec3& n, const WayOut
   return cutLongest(piece);
 }
 
-/// The surface of one part in another one, in the frame of the latter.
+/// Searches the surface of one part (`of`) for the deepest point inside another part (`in`), in the frame of
+/// `in`.
 class DepthSearch {
  public:
   DepthSearch(const PlacedSurface& in, const PlacedSurface& of, Search& search)
@@ -100,7 +103,7 @@ class DepthSearch {
         X_IO_(in.X_WP.inverse() * of.X_WP),
         search_(search) {}
 
-  /// Returns a bound of the depth: enough_m(), or more if the work was spent.
+  /// Returns an upper bound of the depth: enough_m(), or more if the limit of work was reached.
   double run() {
     search_.work = 0;
     if (!of_.tree().nodes().empty()) addNode(0);
@@ -120,12 +123,12 @@ class DepthSearch {
   /// A node of the tree, or a piece of a facet.
   struct Waiting {
     double bound_m;
-    std::uint32_t node = 0;  ///< or the facet
+    std::uint32_t node = 0;  ///< index of the node, or of the facet that has the piece
     SurfacePiece piece = {};
     int level = 0;
     bool operator<(const Waiting& other) const { return bound_m < other.bound_m; }
   };
-  /// A point of the piece, how deep it is, and the direction out of the part.
+  /// A sample of a piece: the depth of a point, the direction out of the part, and the nearest surface point.
   struct Sample {
     double depth_m;
     Vec3 out, q;
@@ -172,7 +175,7 @@ class DepthSearch {
     if (bound_m > search_.enough_m()) waiting_.push({bound_m, facet, std::move(piece), level});
   }
 
-  /// Whether a direction takes all of the piece out of the part.
+  /// Whether a move by enough_m() along a direction takes the whole piece out of the part.
   bool leaves(const Waiting& next, const Vec3& out) {
     return isOutside(shifted(next.piece, search_.enough_m() * out), X_IO_.R * of_.normal(next.node), in_,
                      search_.work);
@@ -181,7 +184,7 @@ class DepthSearch {
   void divide(const Waiting& next) {
     const Sample middle = sample(middleOf(next.piece));
     if (leaves(next, middle.out)) return;
-    // The corner whose way out differs most from the middle's.
+    // Finds the corner whose way out differs most from that of the middle.
     Sample other = middle;
     for (const Vec3& corner : next.piece) {
       const Sample at = sample(corner);
@@ -200,7 +203,7 @@ class DepthSearch {
   std::priority_queue<Waiting> waiting_;
 };
 
-/// Balls in both parts that touch the surface of one of them, in the frame of that part.
+/// Searches for balls that lie in both parts and touch the surface of one of them, in the frame of that part.
 class TouchSearch {
  public:
   TouchSearch(const PlacedSurface& touched, const PlacedSurface& other, Search& search)
@@ -210,7 +213,7 @@ class TouchSearch {
         balls_(touched, other),
         search_(search) {}
 
-  /// Returns whether enough_m() is proven; if not, the work was spent.
+  /// Returns whether enough_m() is proven to be an upper bound; false if the limit of work was reached.
   bool run() {
     search_.work = 0;
     waiting_.clear();
@@ -228,12 +231,12 @@ class TouchSearch {
   }
 
  private:
-  /// Points of the surface, and the directions out of the part in which a ball may touch there: all that are
-  /// in the cone of these.
+  /// Points of the surface, and the cone of directions out of the part in which a ball may touch these
+  /// points.
   struct Touch {
     SurfacePiece piece;
     std::vector<Vec3> directions;
-    Vec3 n;  ///< of the plane of the piece
+    Vec3 n;  ///< normal of the piece's plane
     int level = 0;
   };
 
@@ -255,7 +258,7 @@ class TouchSearch {
     }
   }
 
-  /// Whether the material is around an edge by more than half a turn.
+  /// Whether the material covers more than half a turn around an edge.
   [[nodiscard]] bool isReflex(std::uint32_t facet, std::uint32_t next, const Vec3& a, const Vec3& b) const {
     constexpr double kLeast_rad = 1e-9;
     const double turn = touched_.normal(facet).cross(touched_.normal(next)).dot((b - a).normalized());
@@ -277,7 +280,8 @@ class TouchSearch {
       if (is_reflex[v] != 0 && isWithin(touched_.mesh().vertices[v], box_T)) addCorner(v);
   }
 
-  /// The directions are in the cone of the normals around the corner, which triangles cover.
+  /// Adds the touches of a corner. Their directions are in the cone of the normals around the corner, which
+  /// triangles cover.
   void addCorner(std::uint32_t vertex) {
     const std::span<const Vec3> around = touched_.normalsAround(vertex);
     Vec3 middle = Vec3::Zero();
@@ -295,7 +299,8 @@ class TouchSearch {
   static Cone coneOf(const Touch& touch) {
     Cone cone{middleOf(touch.directions), 0};
     const double length = cone.middle.norm();
-    if (length < 1e-6) return {touch.directions[0], 4.0};  // opposite directions: any
+    if (length < 1e-6)
+      return {touch.directions[0], 4.0};  // opposite directions: the cone contains all directions
     cone.middle /= length;
     for (const Vec3& m : touch.directions)
       cone.half_rad = std::max(cone.half_rad, std::acos(std::clamp(m.dot(cone.middle), -1.0, 1.0)));
@@ -307,7 +312,7 @@ class TouchSearch {
                     : isOutside(piece_T, n_T, touched_, search_.work);
   }
 
-  /// Whether no ball of more than this diameter touches.
+  /// Whether it is proven that no ball with a greater diameter touches.
   bool isSettled(const Touch& touch, double diameter_m) {
     const Cone cone = coneOf(touch);
     if (cone.half_rad >= 1.5) return false;
@@ -324,7 +329,8 @@ class TouchSearch {
     return areCentresNear(touch, cone, radius_m, limit);
   }
 
-  /// Whether one direction takes the centres of all such balls out of a solid within the radius.
+  /// Whether a move by at most the radius along one direction takes the centres of all such balls out of a
+  /// solid.
   bool areCentresNear(const Touch& touch, const Cone& cone, double radius_m,
                       const SharedBalls::Limit& limit) {
     SurfacePiece centres;
@@ -335,7 +341,8 @@ class TouchSearch {
       const Vec3 one = radius_m * touch.directions[0], two = radius_m * touch.directions[1];
       centres = {touch.piece[0] - one, touch.piece[1] - one, touch.piece[1] - two, touch.piece[0] - two};
     }
-    // Those of a cone lie on a cylinder or a ball, this far above the flat piece between its directions.
+    // The centres for a cone lie on a cylinder or a ball, above the flat piece between the cone's directions
+    // by at most this.
     const double above_m = radius_m * (1 - std::cos(cone.half_rad));
     const Vec3 n = touch.directions.size() == 1
                        ? touch.n
@@ -369,7 +376,7 @@ class TouchSearch {
       waiting_.push_back({half, touch.directions, touch.n, touch.level + 1});
   }
 
-  /// Between the two directions that differ most.
+  /// Divides a cone between the two directions that differ most.
   void divideCone(const Touch& touch) {
     std::size_t from = 0, to = 1;
     for (std::size_t i = 0; i < touch.directions.size(); ++i)
@@ -408,8 +415,8 @@ OverlapDepth overlapDepth(const PlacedSurface& a, const PlacedSurface& b, const 
   constexpr double kLeastShare = 1e-4;
   search.certain_m = certain_m(kLeastShare);
   const double in_a_m = DepthSearch(a, b, search).run(), in_b_m = DepthSearch(b, a, search).run();
-  // A ball is no thicker than the smallest box. Where the work does not suffice, from coarse to fine, so that
-  // something is proven in any case.
+  // A ball is no thicker than the smaller box. The finest tolerance is tried first. If its work does not
+  // suffice, tolerances from coarse to fine follow, so that a bound is proven in any case.
   double thickness_m = std::min(a.surface->box().size().minCoeff(), b.surface->box().size().minCoeff());
   TouchSearch of_a(a, b, search), of_b(b, a, search);
   for (const double share : {kLeastShare, 1.0, 0.1, 0.01, 1e-3}) {

@@ -16,16 +16,17 @@ namespace {
 /// A triangle with its plane.
 struct Flat {
   Triangle t;
-  Vec3 n;  // not unit: its length is twice the area
+  Vec3 n;  // normal; its length is twice the area
   explicit Flat(const Triangle& of) : t(of), n((of[1] - of[0]).cross(of[2] - of[0])) {}
   [[nodiscard]] double above(const Vec3& p) const { return n.dot(p - t[0]); }
-  /// Twice the signed area of the triangle of t[0], p and q.
+  /// Twice the signed area of the triangle with the corners t[0], p and q.
   [[nodiscard]] double sweep(const Vec3& p, const Vec3& q) const {
     return (p - t[0]).cross(q - t[0]).dot(n) / n.norm();
   }
 };
 
-/// The part of segment pq within the triangle, whose plane holds the segment; false if there is none.
+/// Clips segment pq, which lies in the plane of the triangle, to the triangle. Returns false if nothing is
+/// left.
 bool clip(const Flat& in, Vec3& p, Vec3& q) {
   const auto [from, to] = sharesWithin(in.t, in.n, p, q);
   if (!(from < to)) return false;
@@ -35,8 +36,8 @@ bool clip(const Flat& in, Vec3& p, Vec3& q) {
   return true;
 }
 
-/// Twice the area that the line in which `cutting` meets the triangle sweeps, with the inside of cutting's
-/// solid on its left.
+/// Twice the signed area of the triangle spanned by t[0] and the segment in which `cutting` meets the
+/// triangle. The segment has the inside of cutting's solid on its left.
 double sweepOfCut(const Flat& of, const Flat& cutting) {
   Vec3 ends[2];
   int count = 0;
@@ -52,7 +53,7 @@ double sweepOfCut(const Flat& of, const Flat& cutting) {
   return clip(of, ends[0], ends[1]) ? of.sweep(ends[0], ends[1]) : 0;
 }
 
-/// The same for the pieces of the triangle's own sides within the solid.
+/// Twice the signed area spanned by t[0] and the pieces of the triangle's sides that are inside the solid.
 double sweepOfSides(const Flat& of, const PartSurface& solid, std::vector<double>& crossings) {
   double sum = 0;
   for (int i = 0; i < 3; ++i) {
@@ -63,7 +64,7 @@ double sweepOfSides(const Flat& of, const PartSurface& solid, std::vector<double
     crossings.push_back(1);
     double from = 0;
     for (const double to : crossings) {
-      // A crossing at the border of two triangles is found twice, and differs by rounding.
+      // A crossing at the edge between two triangles is found twice, with values that differ by rounding.
       if (to > from + 1e-14 && solid.solid().isInside(a + 0.5 * (from + to) * (b - a)))
         sum += of.sweep(a + from * (b - a), a + to * (b - a));
       from = to;
@@ -72,15 +73,16 @@ double sweepOfSides(const Flat& of, const PartSurface& solid, std::vector<double
   return sum;
 }
 
+/// The contribution of one surface to the volume.
 struct Flux {
   double volume_m3 = 0, area_m2 = 0;
-  Vec3 vector_area_S = Vec3::Zero();  // [m2], in the frame of the solid
-  double wrong_m2 = 0;                // by which areas came out below zero or above their facet's
-  double faces_m3 = 0;                // that curved faces may sweep to where the facets are
+  Vec3 vector_area_S = Vec3::Zero();  // sum of the vector areas [m2], in the frame of the solid
+  double wrong_m2 = 0;                // sum by which computed areas were below zero or above the facet's area
+  double faces_m3 = 0;                // volume between the facets and the curved faces that they approximate
 };
 
-/// The area of a facet of a curved face that is in the solid, or may be where the solid's faces are curved as
-/// well: then all of it, if it is as near as that.
+/// The area of a curved face's facet that may be inside the solid. Where the solid's faces are curved too and
+/// within their chord error of the facet, the whole facet counts.
 double areaOfFace(const Flat& facet, double inside_m2, const PartSurface& solid) {
   const double all_m2 = 0.5 * facet.n.norm();
   Box box;
@@ -93,9 +95,9 @@ double areaOfFace(const Flat& facet, double inside_m2, const PartSurface& solid)
   return solid.solid().signedDistance(middle) <= reach_m + chord_m ? all_m2 : inside_m2;
 }
 
-/// The share that the surface of `of` within `solid` has in the volume.
-/// @param X_SO   pose of `of` in the solid's frame
-/// @param p_S    the point from which the volume is measured
+/// Contribution to the volume of the part of `of`'s surface that is inside `solid` (divergence theorem).
+/// @param X_SO pose of `of` in the solid's frame
+/// @param p_S apex of the cones whose volumes are summed, in the solid's frame
 Flux fluxInside(const PartSurface& of, const PartSurface& solid, const Pose& X_SO, const Vec3& p_S) {
   Flux flux;
   std::vector<double> crossings;
@@ -124,13 +126,14 @@ Flux fluxInside(const PartSurface& of, const PartSurface& solid, const Pose& X_S
   return flux;
 }
 
-/// The area of the surface's holes: of each group of connected open edges the length of its vector area.
-/// Cracks without width have none.
+/// The area of the surface's holes: for each group of connected open edges, the length of its vector area.
+/// Cracks without width have no area.
 double holeArea(const PartSurface& part) {
   if (!part.solid().isByWinding()) return 0;
   const Mesh& mesh = part.mesh();
   std::vector<std::array<std::uint32_t, 2>> open;
-  std::vector<std::uint32_t> group(mesh.vertices.size());  // each vertex leads to one of its group
+  std::vector<std::uint32_t> group(
+      mesh.vertices.size());  // union-find: each vertex leads to one of its group
   std::iota(group.begin(), group.end(), 0U);
   const auto groupOf = [&](std::uint32_t v) {
     while (group[v] != v) v = group[v] = group[group[v]];
@@ -157,7 +160,7 @@ double holeArea(const PartSurface& part) {
 }  // namespace
 
 OverlapVolume overlapVolume(const PartSurface& a, const PartSurface& b, const Pose& X_AB) {
-  // Any direction that is not parallel to faces as they are drawn.
+  // A direction that is not parallel to usual faces of drawings.
   const Vec3 shift = kVolumeShift_m * Vec3(0.4242, 0.5657, 0.7071).normalized();
   const Pose X_AS(X_AB.R, X_AB.p + shift), X_SA = X_AS.inverse();
   const Box box_B = moved(b.box(), X_AS);
@@ -167,12 +170,12 @@ OverlapVolume overlapVolume(const PartSurface& a, const PartSurface& b, const Po
   const Flux of_a = fluxInside(a, b, X_SA, X_SA * p_A), of_b = fluxInside(b, a, X_AS, p_A);
   OverlapVolume out;
   out.area_m2 = of_a.area_m2 + of_b.area_m2;
-  // A shift of each face by so much, and of each coordinate by some roundings.
+  // The error of shifting each face by kVolumeShift_m, and of rounding each coordinate.
   const double round_m = 1e-14 * (p_A.norm() + both.size().norm());
   out.error_m3 = out.area_m2 * (kVolumeShift_m + round_m);
-  // The vector areas of a closed surface sum to zero. A piece that is missing or too much counts with a third
-  // of its height above p_A, which is half the diagonal at most. Pieces that cancel each other, as of two
-  // holes opposite each other, are seen from the holes: near one, inside ends where there is no surface.
+  // The vector areas of a closed surface sum to zero. A missing or superfluous piece changes the volume by
+  // its area times a third of its height above p_A, which is at most half the diagonal. Pieces whose vector
+  // areas cancel, such as two opposite holes, are covered by the area of the holes.
   const double left_m2 = (X_AS.R * of_a.vector_area_S + of_b.vector_area_S).norm();
   const double holes_m2 = std::min(out.area_m2, holeArea(a) + holeArea(b));
   out.error_m3 += (left_m2 + of_a.wrong_m2 + of_b.wrong_m2 + holes_m2) * 0.5 * both.size().norm() / 3;

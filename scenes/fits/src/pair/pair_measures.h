@@ -9,33 +9,36 @@
 
 namespace vps::scenes {
 
+/// The least distance of two surfaces.
 struct SurfaceGap {
-  double distance_m = 0;  ///< at least most_m if nothing is nearer; 0 where the surfaces touch or cross
+  double distance_m = 0;  ///< most_m if the surfaces are farther apart; 0 if they touch or cross
   Vec3 p_A = Vec3::Zero(), p_B = Vec3::Zero();  ///< the nearest points, in the frame of A
 };
 
-/// Exact to rounding: the least distance over all pairs of triangles. @param X_AB pose of B in A.
-/// O(log n) typical, more where large areas are equally far.
+/// The least distance over all pairs of triangles, exact to rounding, up to most_m. @param X_AB pose of B in
+/// A. O(log n) typical, more where large areas are equally far.
 SurfaceGap surfaceGap(const PartSurface& a, const PartSurface& b, const Pose& X_AB, double most_m);
 
-/// Balls in both of two placed solids, in the frame of the first. Both must outlive it.
+/// Balls that lie inside both of two placed solids, in the frame of the first solid. Both solids must outlive
+/// it.
 class SharedBalls {
  public:
   SharedBalls(const PlacedSurface& a, const PlacedSurface& b);
 
-  /// Radius of the greatest ball around a point that is in both solids; negative outside of one of them, by
-  /// the distance from it. 1-Lipschitz.
+  /// Radius of the greatest ball around a point that lies in both solids. For a point outside one of the
+  /// solids it is negative: minus the distance from that solid. 1-Lipschitz.
   [[nodiscard]] double radiusAt(const Vec3& p_A) const;
-  /// The surface that limits that ball, which is the nearer one.
+  /// The nearer of the two surfaces, which limits the ball around a point.
   struct Limit {
     double radius_m;
     bool is_of_b;
-    Vec3 out, q;  ///< unit, out of that solid; the nearest point of its surface
+    Vec3 out, q;  ///< unit direction out of that solid; nearest point of its surface
   };
   [[nodiscard]] Limit limitAt(const Vec3& p_A) const;
-  /// A ball that no small displacement makes larger; its radius is depth_m.
+  /// Moves a ball to where no small displacement makes it larger. depth_m of the result is its radius.
   [[nodiscard]] Overlap grownFrom(const Vec3& p_A, double step_m) const;
-  /// The largest that is found from the points of a grid; there may be a larger one. Radius 0: none.
+  /// The largest ball found from the points of a grid; a larger one may exist. depth_m of the result is its
+  /// radius, 0 if there is none.
   [[nodiscard]] Overlap greatest() const;
 
  private:
@@ -45,72 +48,79 @@ class SharedBalls {
   Box both_A_;
 };
 
-/// The depth is the greater of two lengths, neither of which depends on how a surface is divided into facets:
-/// the greatest distance from a point of one part's surface inside the other part to the other's surface, and
-/// the thickness of what both parts share, the diameter of the greatest ball in it.
+/// How deep two solids penetrate each other, with a proven bound. The depth is the greater of two lengths:
+/// the greatest distance from a point of one part's surface inside the other part to the other part's
+/// surface, and the thickness of the shared volume, which is the diameter of the greatest ball in it. Neither
+/// length depends on how a surface is divided into facets.
 struct OverlapDepth {
-  double depth_m = 0;         ///< that was found, at most the true one
-  double most_m = 0;          ///< the true depth is at most this
+  double depth_m = 0;         ///< depth that was found, at most the true one
+  double most_m = 0;          ///< upper bound of the true depth
   Vec3 p_W = Vec3::Zero();    ///< the deepest point, or the ball's centre
   bool is_thickness = false;  ///< depth_m is the ball's diameter
 };
 
-/// `most_m` is `depth_m` and 0.1 um or a ten-thousandth, or more where the search ended at its limit.
+/// Measures the depth. `most_m` exceeds `depth_m` by the greater of 0.1 um and a ten-thousandth of the depth,
+/// or by more if the search ended at its limit of work.
 ///
-/// Branch and bound over both surfaces. A piece of a facet is settled where it cannot hold more than has been
-/// found and that much:
+/// The method is branch and bound over both surfaces. A piece of a facet is settled if it cannot contain more
+/// than the depth found so far plus this tolerance (together "enough"), for one of these reasons:
 ///
-///   depth:      by the distance at its middle and its size, since distance is 1-Lipschitz; or because the
-///               piece, moved by that much along one direction, is outside the other part: each of its points
-///               is then no farther from the surface
-///   thickness:  the ball touches a surface somewhere, its centre along the normal. The ends of the diameters
-///               of all larger balls that touch the piece are outside one of the parts; or their centres are
-///               too near a surface
+///   depth:      The distance at the middle of the piece plus the piece's size is at most enough, because
+///               distance is 1-Lipschitz. Or the piece, moved by enough along one direction, is outside the
+///               other part: each of its points is then no farther than enough from the surface.
+///   thickness:  The greatest ball touches a surface somewhere, with its centre along the normal. All larger
+///               balls that touch the piece have the ends of their diameters outside one of the parts, or
+///               their centres too near a surface.
 ///
-/// Others are divided: where two faces are equally far, else in the middle. Corners and edges that point into
-/// the part are touched in a cone of directions, which is divided as well.
+/// Other pieces are divided where two faces are equally far, else in the middle. A ball can touch a reflex
+/// corner or edge from a cone of directions, which is divided as well.
 ///
-/// The same on any machine: its limit is a count, of a second or two, and of some ten where many facets are
-/// equally far, as around the centre of a ball. In surfaces with holes a distance jumps by up to their width,
-/// which is not in the bound.
-/// @param known  a depth that was found in some other way, at most the true one
+/// The result is the same on any machine, since the limit of work is a count. The search takes one or two
+/// seconds at most, or about ten where many facets are equally far, as around the centre of a ball. The bound
+/// does not cover surfaces with holes, where a distance jumps by up to the hole's width.
+/// @param known a depth that is known already, at most the true one
 OverlapDepth overlapDepth(const PlacedSurface& a, const PlacedSurface& b, const OverlapDepth& known);
 
+/// An overlap that does not depend on how curved faces were divided into facets.
 struct CertainOverlap {
-  double depth_m = 0;  ///< 0: none is certain
-  double error_m = 0;  ///< at that place, less than the depth
+  double depth_m = 0;  ///< 0: no overlap is certain
+  double error_m = 0;  ///< error of the depth at its place; less than the depth
   Vec3 p_W = Vec3::Zero();
 };
 
-/// Of some points of the edges of each part in the other: that whose depth exceeds the error of the facets
-/// there by most. The distance of facets from the curved faces that they stand for counts in the direction
-/// of the depth only, so that a flat face in a flat face is certain, however coarse the faces beside them
-/// are. A search of ends, thirds and middles of the pieces of edges that are inside: what is found is
-/// certain, but there may be more. O(edges near the other part x log facets).
+/// Measures points on the edges of each part inside the other part, and returns the point whose depth exceeds
+/// its error by most. The distance of facets from the curved faces that they approximate counts only along
+/// the direction of the depth, so the overlap of two flat faces is certain, however coarse adjacent curved
+/// faces are. The points are the ends, thirds and middles of the pieces of edges that are inside, so a deeper
+/// overlap may be missed. O(edges near the other part x log facets).
 CertainOverlap certainOverlap(const PlacedSurface& a, const PlacedSurface& b);
 
+/// The volume that two solids share.
 struct OverlapVolume {
   double volume_m3 = 0;
-  double area_m2 = 0;  ///< of its surface
-  /// A bound for the meshes: the shift, and what the vector areas of the found surface lack of zero. A hole
-  /// of an open mesh adds its area times a sixth of the overlap's diagonal.
+  double area_m2 = 0;  ///< area of the shared volume's surface
+  /// Bound of the error for the meshes as they are. It consists of the shift by kVolumeShift_m, and of the
+  /// amount by which the vector areas of the volume's surface do not sum to zero. A hole of an open mesh adds
+  /// its area times a sixth of the overlap's diagonal.
   double error_m3 = 0;
-  double faces_error_m3 = 0;  ///< by the distance of the facets from the curved faces that they stand for
+  double faces_error_m3 = 0;  ///< error because facets deviate from curved faces
 };
 
-/// By the divergence theorem over the parts of each surface inside the other solid, whose areas are exact:
-/// B is moved by kVolumeShift_m first, so that no two faces coincide. O(facets near the other part x log
-/// facets).
+/// Displacement of B before overlapVolume() measures, so that no two faces coincide.
 inline constexpr double kVolumeShift_m = 1e-9;
+/// Measures the shared volume by the divergence theorem, over the part of each surface that is inside the
+/// other solid; the areas of these parts are exact. @param X_AB pose of B in A.
+/// O(facets near the other part x log facets).
 OverlapVolume overlapVolume(const PartSurface& a, const PartSurface& b, const Pose& X_AB);
 
-/// Empty if the parts are farther from each other than near_m. Thread-safe.
+/// Measures overlap or clearance of two parts. Empty if the parts are farther from each other than near_m.
+/// Thread-safe.
 std::optional<CheckedPair> checkPair(const PlacedSurface& a, const PlacedSurface& b, double near_m);
 
-/// How far the meshes of two parts may be from their true faces anywhere, both together: the greatest
-/// distance of facets from the curved faces that they stand for, cracks, and rounding. No error of a pair's
-/// depth is that of its meshes where a flat face shows the overlap. Infinite where one of them has no inside
-/// or is not closed: a depth in it has no bound.
+/// Bound of the distance of two meshes from their true faces anywhere, added: the greatest distance of facets
+/// from the curved faces that they approximate, widths of cracks, and rounding. The error of a pair's depth
+/// can be smaller, since it counts only the error near the overlap. Infinite if a mesh has no inside or is
+/// not closed, because a depth in it then has no bound.
 double meshError_m(const PlacedSurface& a, const PlacedSurface& b);
 
 }  // namespace vps::scenes

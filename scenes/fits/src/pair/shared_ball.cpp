@@ -7,7 +7,7 @@ namespace vps::scenes {
 
 namespace {
 
-/// Below this distance the direction to the nearest point is rounding.
+/// Distance below which the direction to the nearest point is not reliable, because of rounding.
 constexpr double kBallDirection_m = 1e-9;
 
 }  // namespace
@@ -41,8 +41,8 @@ Overlap SharedBalls::grownFrom(const Vec3& p_A, double step_m) const {
   return grownFrom(p_A, Vec3::Constant(step_m));
 }
 
-// A step to one of the 26 neighbours while that helps, then half of it. Steps along the axes alone end at the
-// ridges between faces.
+// Steps to the best of the 26 neighbours while the radius grows, then halves the step. Steps along the axes
+// alone would end at ridges between faces.
 Overlap SharedBalls::grownFrom(const Vec3& p_A, Vec3 step_A) const {
   constexpr int kRounds = 60;
   Vec3 best_A = p_A;

@@ -15,7 +15,7 @@ struct DeepCorner {
   std::uint32_t vertex;
 };
 
-/// The touch of a point that is inside the other part.
+/// The touch of a point of part `of` that is inside part `above`.
 Touch touchAt(const std::vector<PlacedSurface>& parts, const std::vector<Pose>& X_WP, std::size_t of,
               std::size_t above, const Vec3& p_O, std::uint32_t vertex) {
   Touch touch{of, above, vertex, p_O};
@@ -25,7 +25,7 @@ Touch touchAt(const std::vector<PlacedSurface>& parts, const std::vector<Pose>& 
 
 void appendCorners(const std::vector<PlacedSurface>& parts, const std::vector<Pose>& X_WP, std::size_t of,
                    std::size_t above, double more_than_m, PairTouches& out) {
-  constexpr std::size_t kMost = 64;  // of a pair in one direction: far more than there are directions to move
+  constexpr std::size_t kMost = 64;  // touches of one part in the other; far more than the degrees of freedom
   const Pose X_AO = X_WP[above].inverse() * X_WP[of];
   const PartSurface& other = *parts[above].surface;
   const std::vector<Vec3>& vertices = parts[of].surface->mesh().vertices;
@@ -51,8 +51,8 @@ void Touch::renew(const PartSurface& above_surface, const Pose& X_AO) {
   const Vec3 p_A = X_AO * p_O;
   const Solid::Closest nearest = above_surface.solid().closest(p_A);
   const Vec3 out = nearest.q - p_A;
-  if (!nearest.found || nearest.normal.dot(out) < 0) return;  // it is outside
-  // At an edge or a corner the way out is not the normal of the nearest facet.
+  if (!nearest.found || nearest.normal.dot(out) < 0) return;  // the point is outside
+  // At an edge or a corner, the direction to the surface differs from the normal of the nearest facet.
   constexpr double kSure_m = 1e-9;
   q_A = nearest.q;
   n_A = nearest.distance_m > kSure_m ? Vec3(out / nearest.distance_m) : nearest.normal;

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// Where two parts are in each other, as points of one and planes of the other.
+// SPDX-License-Identifier: BSD-3-Clause Contacts of two overlapping parts, as points of one part and planes
+// of the other.
 #pragma once
 
 #include <cstdint>
@@ -9,31 +9,33 @@
 
 namespace vps::scenes {
 
-/// A point of one part that is, or was, inside another, and the face of that one over which it leaves.
+/// A point of one part that is or was inside another part, and the plane of the other part's face through
+/// which the point leaves.
 struct Touch {
   static constexpr std::uint32_t kNoVertex = 0xffffffff;
-  std::size_t of = 0, above = 0;     ///< indices of the parts
-  std::uint32_t vertex = kNoVertex;  ///< of the first part's mesh, if the point is one
+  std::size_t of = 0, above = 0;     ///< indices of the part with the point and of the other part
+  std::uint32_t vertex = kNoVertex;  ///< vertex of the first part's mesh that is the point, if any
   Vec3 p_O = Vec3::Zero();           ///< the point, in the frame of its part
-  Vec3 q_A = Vec3::Zero();           ///< the nearest point of the other's surface, in the frame of that one
-  Vec3 n_A = Vec3::UnitZ();          ///< its outward normal there, unit
+  Vec3 q_A = Vec3::Zero();           ///< nearest point of the other part's surface, in the other part's frame
+  Vec3 n_A = Vec3::UnitZ();          ///< outward normal of that surface at q_A, unit
 
-  /// How high the point is above the plane.
+  /// Height of the point above the plane; negative below it.
   [[nodiscard]] double gap_m(const Pose& X_WO, const Pose& X_WA) const {
     return n_A.dot(X_WA.inverse() * (X_WO * p_O) - q_A);
   }
-  /// Takes the plane anew where the point is inside of the other part.
+  /// Determines the plane anew if the point is inside the other part.
   void renew(const PartSurface& above, const Pose& X_AO);
 };
 
+/// The touches of a pair, and its depth.
 struct PairTouches {
-  double depth_m = 0;  ///< by exact measure, as Overlap::depth_m
+  double depth_m = 0;  ///< depth by exact measure, as Overlap::depth_m
   std::vector<Touch> touches;
-  std::size_t work = 0;  ///< as Overlap::work
+  std::size_t work = 0;  ///< work that was done, in the unit of Overlap::work
 };
 
-/// The deepest point of two parts, and corners of each that are in the other by more than so much; of many
-/// the deepest. O(corners in the other's box x log triangles).
+/// Finds the touches of two parts: the deepest point, and the corners of each part that are deeper than
+/// more_than_m in the other part (at most the 64 deepest). O(corners in the other's box x log triangles).
 PairTouches touchesOf(const std::vector<PlacedSurface>& parts, const std::vector<Pose>& X_WP, std::size_t a,
                       std::size_t b, double more_than_m);
 

@@ -9,19 +9,19 @@ namespace vps::scenes {
 
 namespace {
 
-/// How far a body may be from where it stands now.
+/// How far a body may be from its present place.
 struct BodyReach {
-  double most_m = 0;    ///< of each of its points
+  double most_m = 0;    ///< greatest displacement of any of its points
   double turn_rad = 0;  ///< greatest turn
 };
 
-/// What a touch contributes to the mean, before its weight.
+/// The contribution of a touch to the mean, without its weight.
 struct Bounded {
-  double most_m = 0;  ///< h and all that is not linear in the motion
+  double most_m = 0;  ///< h plus the terms that are not linear in the motion
   Vec3 n_W = Vec3::Zero(), c_W = Vec3::Zero();
 };
 
-/// How far the bodies may be from where they stand.
+/// Bounds of the displacements of all bodies from their present places.
 class Reaches {
  public:
   Reaches(const std::vector<PlacedSurface>& parts, const std::vector<Pose>& X_WP,
@@ -30,7 +30,7 @@ class Reaches {
     for (std::size_t i = 0; i < bodies.size(); ++i) {
       const double most_m = bodies[i].allowed_m + moved_m[i];
       const double turn_rad = bodies[i].is_fixed ? 0 : bodies[i].mostTurn(most_m);
-      // at() is in the middle of the body as drawn, which may lie beside a thin one that has moved.
+      // at() is the middle of the body as drawn; a thin body that has moved may no longer contain this point.
       reach_.push_back({most_m + turn_rad * moved_m[i], turn_rad});
     }
   }
@@ -38,7 +38,8 @@ class Reaches {
   [[nodiscard]] const BodyReach& of(std::size_t body) const { return reach_[body]; }
   [[nodiscard]] const Vec3& at(std::size_t body) const { return bodies_[body].loose.at_W; }
 
-  /// With the ball, of some that touch the surface at the point's foot, for which the bound is least.
+  /// Bounds the contribution of a touch. Of several balls that touch the surface at the nearest point q_A,
+  /// the ball with the least bound is used.
   [[nodiscard]] Bounded bounded(const Touch& touch) const {
     constexpr int kBalls = 14;
     constexpr double kSmaller = 0.6;

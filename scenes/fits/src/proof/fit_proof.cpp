@@ -28,7 +28,7 @@ Vec3 fromAxis(const Axis& axis, const Vec3& p_W) {
   return r - axis.along_W.dot(r) * axis.along_W;
 }
 
-/// The greatest angle around a face's axis without a point of the face, in the slice through a point.
+/// The greatest angle around a face's axis that contains no point of the face, in the slice through at_W.
 double greatestGap(const PlacedSurface& part, const RoundFace& face, const Vec3& at_W) {
   const Axis axis = axisOf(part, face);
   const Vec3 u = axis.along_W.unitOrthogonal(), v = axis.along_W.cross(u);
@@ -50,7 +50,8 @@ double greatestGap(const PlacedSurface& part, const RoundFace& face, const Vec3&
   return most;
 }
 
-/// Angle times length that a polygon covers of a cylinder around the third axis, which it does not contain.
+/// Area (angle times length) that a polygon covers on a cylinder around the third axis. The polygon must not
+/// contain the axis.
 double unrolledArea(const std::vector<Vec3>& polygon) {
   double area = 0, angle = 0;
   for (std::size_t k = 0; k < polygon.size(); ++k) {
@@ -62,11 +63,11 @@ double unrolledArea(const std::vector<Vec3>& polygon) {
   return std::abs(area);
 }
 
-/// Whether a shaft's face is there all around, half_m to each side of a point along its axis, and there is
-/// nothing but material below it down to this distance from the axis.
+/// Whether a shaft's face is complete all around, half_m to each side of a point along its axis, and only
+/// material lies below it, down to the distance down_to_m from the axis.
 bool isRoundAndFull(const PlacedSurface& shaft, const RoundFace& face, const Vec3& at_W, double half_m,
                     double down_to_m) {
-  constexpr double kNone = 1e-5;  // of the area: rounding; a scratch is no room
+  constexpr double kNone = 1e-5;  // share of the area that counts as none: rounding
   const Axis axis = axisOf(shaft, face);
   const NearAxis slab(axis.along_W, at_W - fromAxis(axis, at_W), shaft, half_m);
   double covered = 0;
@@ -82,7 +83,7 @@ bool isRoundAndFull(const PlacedSurface& shaft, const RoundFace& face, const Vec
   return is_full;
 }
 
-/// The round faces of a part, in which the fit's are.
+/// The round faces of a part that can be the face of the fit.
 std::vector<RoundFace> facesOf(const PlacedSurface& part, bool is_bore, double size_m, const Vec3& at_W,
                                double beside_m) {
   const double same_m = 1e-9 * size_m;
@@ -104,18 +105,18 @@ bool isProvenByFit(const std::vector<PlacedSurface>& parts, const CheckedFit& fi
   if (fit.kind != FitKind::Shaft) return false;
   const PlacedSurface &shaft = named(parts, fit.shaft), &bore = named(parts, fit.bore);
   if (!shaft.surface->isClosed() || !bore.surface->isClosed()) return false;
-  // On both sides of the diameter; what is declared as a press fit is no overlap that blocks.
+  // kContactDepth_m counts on both sides of the diameter. A declared press fit does not block.
   const double beyond_m =
       fit.error_m + 2 * kContactDepth_m + std::max(shaft.drawn->press_fit_m, bore.drawn->press_fit_m);
   if (!(-fit.diametral_clearance_m > beyond_m)) return false;
   constexpr double kMostOffset_m = 0.1 * kSightTolerance_m, kMostTilt = 0.01;
   if (fit.offset_m > kMostOffset_m) return false;
-  // A point of the bore may lie beside the shaft's box, by no more than it moves; what turns the shaft then
-  // moves it by up to a quarter more.
+  // A point of the bore may lie outside the shaft's box, by at most its displacement. A rotation of the shaft
+  // then moves this point by up to a quarter more than the box's corners.
   constexpr double kBeside = 1.25;
   const double by_m = kBeside * (mayMove_m(shaft) + mayMove_m(bore)) + fit.offset_m;
-  // The slice turns by an angle whose sine is by / radius and the tilt at most. That t < radius cos(turn)
-  // holds from radius = 1.42 by on.
+  // The slice turns by an angle whose sine is at most by_m / radius plus the tilt. The proof's condition t <
+  // radius cos(turn) holds if the radius is at least 1.42 by_m.
   if (!(0.5 * fit.bore_m > 1.5 * by_m)) return false;
   constexpr double kSurrounds = 2 * std::numbers::pi / 3;
   for (const RoundFace& of_bore : facesOf(bore, true, fit.bore_m, fit.at_W, fit.offset_m))

@@ -14,7 +14,7 @@ namespace vps::scenes {
 
 namespace {
 
-/// Sets of numbers that are joined.
+/// Disjoint sets of numbers (union-find).
 class Sets {
  public:
   explicit Sets(std::size_t count) : up_(count) { std::iota(up_.begin(), up_.end(), std::size_t{0}); }
@@ -54,9 +54,9 @@ double MovableBody::mostMoved_m(const Eigen::Matrix<double, 6, 1>& motion, const
 }
 
 double MovableBody::mostTurn(double most_m) const {
-  // Two corners at a distance d across the axis go by 2 d sin(turn / 2) against each other, which is 2 most_m
-  // at most. No axis is along both of the longer edges, so that d is at least the second longest by the root
-  // of two.
+  // Two corners whose distance across the axis is d move by 2 d sin(turn / 2) relative to each other, which
+  // is at most 2 most_m. No axis is parallel to both of the longer edges, so d is at least the second longest
+  // edge divided by the root of two.
   std::array<double, 3> edges = {box_W.size().x(), box_W.size().y(), box_W.size().z()};
   std::ranges::sort(edges);
   const double across_m = edges[1] / std::numbers::sqrt2;
@@ -77,7 +77,7 @@ std::vector<MovableBody> looseBodies(const std::vector<PlacedSurface>& parts, co
     if (pair.state == PairState::PressFit) sets.join(index_of.at(pair.a), index_of.at(pair.b));
   std::vector<double> allowed_m(parts.size(), kSightTolerance_m);
   for (const CheckedFit& fit : checked.fits) {
-    // A fit within a body, as of a bushing in its lever, does not tell where the body is.
+    // A fit within a body, such as a bushing pressed into a lever, does not position the body.
     if (sets.of(index_of.at(fit.shaft)) == sets.of(index_of.at(fit.bore))) continue;
     for (const std::string& name : {fit.shaft, fit.bore}) {
       double& least_m = allowed_m[index_of.at(name)];

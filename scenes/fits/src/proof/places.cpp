@@ -15,8 +15,7 @@
 #include "pair/pair_measures.h"
 #include "pair/touches.h"
 #include "proof/blocked_proof.h"
-#include "text/length_words.h"
-#include "text/name_words.h"
+#include "text/words.h"
 #include "vps/mesh_overlap.h"
 
 namespace vps::scenes {
@@ -25,46 +24,47 @@ namespace {
 
 using Six = Eigen::Matrix<double, 6, 1>;
 
-/// Left of an overlap that counts as none: what deepestOverlap() is certain to, and room for the next digit.
+/// Remaining overlap that the search accepts: a few times the precision of deepestOverlap().
 constexpr double kClear_m = 3 * kOverlapCertain_m;
 static_assert(kClear_m + kOverlapCertain_m < kContactDepth_m);
-constexpr std::size_t kMostBodies = 40;  // moved at once: a step of the search solves for six times as many
+constexpr std::size_t kMostBodies = 40;  // that are moved at once; each adds six unknowns
 
-/// How much may be measured for parts that clash with each other, as Overlap::work: half a minute of one
+/// Limit of the work for one group of clashing parts, in the unit of Overlap::work: half a minute of one
 /// core.
 constexpr std::size_t kMostPlaceWork = 30'000'000;
 
-/// Two parts of different bodies that are or may come near each other.
+/// Two parts that are or may come near each other.
 struct NearPair {
   std::size_t a = 0, b = 0;
   bool is_clash = false;
   double drawn_depth_m = 0;
-  double allowed_m = 0;       ///< facets of parts in contact cross as drawn; no more of it is allowed
-  bool is_uncertain = false;  ///< as drawn: CheckedPair::is_uncertain
-  /// Of the meshes anywhere, and what a declared press fit allows; not the error of drawn_depth_m.
+  double allowed_m = 0;  ///< overlap as drawn of parts in contact, whose facets cross; more is not allowed
+  bool is_uncertain = false;  ///< CheckedPair::is_uncertain, at the drawn places
+  /// Error of the meshes anywhere plus a declared press fit. The error of drawn_depth_m is another one.
   double error_m = std::numeric_limits<double>::infinity();
 };
 
-constexpr std::size_t kMostNamed = 4;  // in a sentence
+constexpr std::size_t kMostNamed = 4;  // parts that are named in a message
 
-/// Bodies that are moved, and by how much.
+/// Bodies that are moved, and their motions.
 struct Moving {
   std::vector<std::size_t> bodies;
-  std::vector<std::size_t> variable;  ///< by body: its place among them, or GapRow::kHeld
+  std::vector<std::size_t> variable;  ///< by body: its index in `bodies`, or GapRow::kHeld
   std::vector<LooseBody> loose;
   Motions x;
 };
 
-/// What a try to move some bodies came to.
+/// The outcome of moving some bodies.
 struct Tried {
   Moving moving;
   bool is_free = false;
-  double left_m = 0;  ///< the deepest overlap beyond what is allowed
+  double left_m = 0;  ///< deepest remaining overlap beyond the allowed one
   std::vector<Six> motion;
   std::vector<Pose> X_WP;
-  std::vector<PressedTouch> pressed;  ///< of the last step
+  std::vector<PressedTouch> pressed;  ///< touches of the last step
 };
 
+/// The search for places without overlap, and for proofs that there are none.
 class PlaceSearch {
  public:
   PlaceSearch(const std::vector<PlacedSurface>& parts, const CheckResult& checked)
@@ -84,7 +84,7 @@ class PlaceSearch {
     CheckedPlaces out;
     const std::vector<std::vector<std::size_t>> groups = clashGroups();
     for (std::size_t i = 0; i < groups.size(); ++i) {
-      if (progress) progress("looking for places without overlap", double(i) / double(groups.size()));
+      if (progress) progress("searching for places without overlap", double(i) / double(groups.size()));
       const auto [verdict, reason] = freeGroup(groups[i]);
       const bool is_worse = verdict == Verdict::Blocked || out.verdict == Verdict::Fits;
       if (verdict != Verdict::Fits && is_worse) {
@@ -146,12 +146,12 @@ class PlaceSearch {
     }
   }
 
-  /// Bodies that clash, over others that do, in ascending order.
+  /// Groups of bodies that are connected by clashes; each group is in ascending order.
   [[nodiscard]] std::vector<std::vector<std::size_t>> clashGroups() const {
     std::vector<std::vector<std::size_t>> groups;
     std::vector<bool> is_seen(bodies_.size());
     for (const NearPair& pair : pairs_) {
-      // What clashes with fixed parts is not joined by these.
+      // Fixed parts do not connect the bodies that clash with them.
       const std::size_t first = body_of_[bodies_[body_of_[pair.a]].is_fixed ? pair.b : pair.a];
       if (!pair.is_clash || is_seen[first]) continue;
       groups.push_back(reachable(
@@ -161,7 +161,8 @@ class PlaceSearch {
     return groups;
   }
 
-  /// The bodies, and those that are joined to them by pairs, breadth first; sorted. A fixed body joins none.
+  /// The bodies and all bodies that are connected to them by pairs for which `joins` is true, found breadth
+  /// first and sorted. A fixed body connects no others.
   template <class Joins>
   [[nodiscard]] std::vector<std::size_t> reachable(std::vector<std::size_t> bodies, Joins joins,
                                                    std::size_t most) const {
@@ -182,7 +183,7 @@ class PlaceSearch {
     return bodies;
   }
 
-  /// Whether the pair is a clash of the group.
+  /// Whether the pair is a clash between bodies of the group.
   [[nodiscard]] bool isOf(const std::vector<std::size_t>& group, const NearPair& pair) const {
     const std::size_t body = body_of_[bodies_[body_of_[pair.a]].is_fixed ? pair.b : pair.a];
     return pair.is_clash && std::ranges::binary_search(group, body);
@@ -190,7 +191,7 @@ class PlaceSearch {
 
   [[nodiscard]] double size_m(std::size_t body) const { return bodies_[body].loose.arm_m; }
 
-  /// All that may be moved but the largest, unless a fixed one is among them.
+  /// The bodies that may be moved: all without the fixed ones, or, if none is fixed, all but the largest.
   [[nodiscard]] std::vector<std::size_t> movable(std::vector<std::size_t> bodies) const {
     const std::size_t count = bodies.size();
     std::erase_if(bodies, [&](std::size_t body) { return bodies_[body].is_fixed; });
@@ -199,7 +200,7 @@ class PlaceSearch {
     return bodies;
   }
 
-  /// What is moved in turn.
+  /// The sets of bodies that are moved, in the order of the tries.
   [[nodiscard]] std::vector<std::vector<std::size_t>> tries(const std::vector<std::size_t>& group) const {
     std::vector<std::vector<std::size_t>> out;
     std::vector<std::size_t> by_size = group;
@@ -217,7 +218,7 @@ class PlaceSearch {
     if (group.size() <= kMostBodies) add(movable(group));
     add(movable(reachable(
         group, [](const NearPair&) { return true; }, std::max(kMostBodies, group.size()))));
-    // Two that are each as deep in the other as both tolerances together have to share the way.
+    // If two bodies overlap by as much as both tolerances together, both must move.
     std::vector<std::size_t> all = group;
     std::erase_if(all, [&](std::size_t body) { return bodies_[body].is_fixed; });
     add(all);
@@ -253,7 +254,7 @@ class PlaceSearch {
     return {Verdict::NotShown, notShownWords(group, most_moved, last)};
   }
 
-  /// @param most_moved  parts of a try
+  /// The reason why no places were found. @param most_moved  greatest number of parts that a try moved
   [[nodiscard]] std::string notShownWords(const std::vector<std::size_t>& group, std::size_t most_moved,
                                           const Tried& last) const {
     std::vector<std::string> names;
@@ -267,48 +268,51 @@ class PlaceSearch {
                       lengthInWords(allowed_m) + " of where " + (names.size() == 1 ? "it is" : "they are") +
                       " drawn, and nothing proves that there are none";
     if (most_moved == 0) return why + "; too many parts overlap each other to be moved at once";
-    why += "; moved were up to " + std::to_string(most_moved) + (most_moved == 1 ? " part" : " parts");
-    // What the search for places counts as none may be a clash by the greater measure of the check.
+    why +=
+        "; up to " + std::to_string(most_moved) + (most_moved == 1 ? " part was moved" : " parts were moved");
+    // An overlap that the search accepts can still be a clash by the check's measure, which is greater.
     why += last.left_m <= kClear_m ? ", and no direction out was found"
                                    : ", with an overlap of " + lengthInWords(last.left_m) + " left";
     return why + (work_ < kMostPlaceWork ? "" : " when the search reached its limit");
   }
 
-  /// Why the pair overlaps wherever its parts are within what places as drawn may be off; empty: it may not.
+  /// The proof, in words, that the pair overlaps for all positions of its parts within kSightTolerance_m of
+  /// the drawn ones; empty if nothing is proven.
   [[nodiscard]] std::string provenAlone(const NearPair& pair) const {
     const std::string& a = parts_[pair.a].name;
     const std::string& b = parts_[pair.b].name;
     const double apart_m = mayMove_m(parts_[pair.a]) + mayMove_m(parts_[pair.b]);
-    // What only a fit shows may be of round faces that lie beside each other.
+    // An overlap that only a fit shows may belong to round faces that are not in each other.
     if (pair.drawn_depth_m > apart_m + pair.error_m + kContactDepth_m && hiddenByFacets(pair).empty())
       return quoted(a) + " and " + quoted(b) + " overlap by " + lengthInWords(pair.drawn_depth_m) +
-             ", more than the " + lengthInWords(apart_m) + " that their places as drawn may be off together";
+             ", more than the " + lengthInWords(apart_m) + " by which their drawn places may be off together";
     for (const CheckedFit& fit : checked_.fits) {
       const bool is_of_pair = (fit.shaft == a && fit.bore == b) || (fit.shaft == b && fit.bore == a);
       if (is_of_pair && isProvenByFit(parts_, fit))
         return quoted(fit.shaft) + " is " + lengthInWords(-fit.diametral_clearance_m) +
-               " larger than its bore in " + quoted(fit.bore) + ", whatever its place in it";
+               " larger than its bore in " + quoted(fit.bore) + ", wherever it is in the bore";
     }
     return {};
   }
 
-  /// A clash that only the fit shows: where the meshes cannot show an overlap, they cannot show that it is
-  /// gone.
+  /// The reason, in words, why a clash that only a fit shows cannot be cleared: where the meshes do not show
+  /// the overlap, they cannot show that it is gone. Empty if the meshes show the overlap.
   [[nodiscard]] std::string hiddenByFacets(const NearPair& pair) const {
-    // The depth that is found at once is a lower bound; the exact one takes a second.
+    // This depth is a lower bound that is found quickly; the exact depth takes a second.
     const PlacedSurface &a = parts_[pair.a], &b = parts_[pair.b];
     const Overlap found = deepestOverlap(a.surface->overlap(), a.X_WP, b.surface->overlap(), b.X_WP);
     if (found.depth_m > pair.error_m + kContactDepth_m) return {};
     const std::optional<CheckedPair> drawn = checkPair(parts_[pair.a], parts_[pair.b], checked_.near_m);
     if (drawn && drawn->state == PairState::Clash && !drawn->is_uncertain) return {};
     return "the overlap of " + quoted(parts_[pair.a].name) + " and " + quoted(parts_[pair.b].name) +
-           " is less than their meshes are off their faces, so that these cannot show it gone";
+           " is less than the distance of their meshes from the true faces, so the meshes cannot show that "
+           "it is gone";
   }
 
-  /// Why no motion by as much as places as drawn may be off frees the touches of a try; empty: one may. All
-  /// bodies of the touches are moved, from where they are drawn, so that forces are in balance on each. What
-  /// is pressed into another part may be drawn in the wrong place of it, so that nothing is proven of parts
-  /// that are tied.
+  /// The proof, in words, that no motion within kSightTolerance_m clears the touches of a try; empty if
+  /// nothing is proven. All bodies of the touches are moved from their drawn places, so that the forces on
+  /// each are in balance. Nothing is proven for parts that are pressed into each other, since they may be
+  /// drawn at a wrong place in each other.
   [[nodiscard]] std::string proven(const std::vector<PressedTouch>& touches) const {
     std::vector<std::size_t> bodies;
     for (const PressedTouch& pressed : touches)
@@ -320,7 +324,8 @@ class PlaceSearch {
     std::ranges::sort(bodies);
     bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
     if (bodies.size() > kMostBodies + 1) return {};
-    // A large cost keeps motions small, so that little is unknown; a small one, forces in balance.
+    // A large cost e keeps the motions, and so the remainders, small. A small cost keeps the forces in
+    // balance.
     for (const double e : {1.0, 0.1, 0.01, 0.001}) {
       Tried tried = startOf(bodies);
       for (LooseBody& body : tried.moving.loose) body.most_m = kSightTolerance_m;
@@ -330,10 +335,11 @@ class PlaceSearch {
     return {};
   }
 
-  /// What provenOverlap_m() says of the touches' least motion at this cost.
+  /// The result of provenOverlap_m() after the least motion of the touches for the cost e.
   double provenAfter(Tried& tried, double e) const {
     constexpr int kRounds = 4;
-    // Of the deepest overlap: touches whose bound bends away by more take from the proof.
+    // Share of the deepest overlap. Touches whose bound exceeds their gap by more weaken the proof and are
+    // left out.
     constexpr double kMostBend = 0.6;
     solve(tried, e);
     const auto moved_m = [&] {
@@ -375,7 +381,7 @@ class PlaceSearch {
            " or more beyond the error";
   }
 
-  /// A try to move some bodies, before the first step.
+  /// The start of a try: the bodies that it moves, before the first step.
   [[nodiscard]] Tried startOf(const std::vector<std::size_t>& moved_bodies) const {
     Tried tried;
     tried.motion = motion_;
@@ -392,7 +398,7 @@ class PlaceSearch {
     return tried;
   }
 
-  /// To where the gaps of the touches are open, or nearly.
+  /// Moves the bodies so that the gaps of the touches open as far as possible.
   void solve(Tried& tried, double e) const {
     Moving& moving = tried.moving;
     std::vector<GapRow> rows;
@@ -419,7 +425,7 @@ class PlaceSearch {
     });
   }
 
-  /// Moves the bodies until no pair with one of them overlaps.
+  /// Moves the bodies until no pair that contains one of them overlaps, or until no progress is made.
   [[nodiscard]] Tried move(const std::vector<std::size_t>& moved_bodies) {
     constexpr int kMostRounds = 40, kMostStalled = 8;
     constexpr double kGain = 0.9;
@@ -445,9 +451,9 @@ class PlaceSearch {
     return tried;
   }
 
-  /// Adds the touches of all pairs that overlap by more than is allowed; returns by how much they do at most.
+  /// Adds the touches of all pairs that overlap by more than allowed; returns the greatest excess.
   double addTouches(const std::vector<NearPair>& pairs, Tried& tried) {
-    constexpr double kSame_m = 0.05e-6;  // overlaps by less need no touch
+    constexpr double kSame_m = 0.05e-6;  // smaller overlaps need no touch
     std::vector<PairTouches> found(pairs.size());
     tbb::parallel_for(std::size_t{0}, pairs.size(), [&](std::size_t i) {
       found[i] = touchesOf(parts_, tried.X_WP, pairs[i].a, pairs[i].b, pairs[i].allowed_m + kSame_m);
@@ -470,7 +476,7 @@ class PlaceSearch {
     return most_m;
   }
 
-  /// Whether no pair clashes at these poses, by the measure of the check.
+  /// Whether no pair clashes at these poses, by the same measure as the check.
   [[nodiscard]] bool isFree(const std::vector<NearPair>& pairs, const std::vector<Pose>& X_WP) const {
     std::vector<PlacedSurface> at = parts_;
     for (std::size_t i = 0; i < at.size(); ++i) {
@@ -484,14 +490,14 @@ class PlaceSearch {
           for (const Vec3& p : at[part].surface->mesh().vertices) at[part].box_W.add(X_WP[part] * p);
     tbb::parallel_for(std::size_t{0}, pairs.size(), [&](std::size_t i) {
       const std::optional<CheckedPair> pair = checkPair(at[pairs[i].a], at[pairs[i].b], checked_.near_m);
-      // What cannot be told as drawn is said of the whole check.
+      // A pair that is uncertain at its drawn place makes the whole check uncertain, not this place.
       const bool is_new_doubt = pair && pair->is_uncertain && !pairs[i].is_uncertain;
       is_clash[i] = pair && (pair->state == PairState::Clash || is_new_doubt) ? 1 : 0;
     });
     return std::ranges::count(is_clash, 1) == 0;
   }
 
-  /// Those of which a part is moved.
+  /// The pairs that contain a moved part.
   [[nodiscard]] std::vector<NearPair> movedPairs() const {
     std::vector<NearPair> out;
     for (const NearPair& pair : pairs_)
@@ -517,12 +523,11 @@ class PlaceSearch {
   std::vector<MovableBody> bodies_;
   std::vector<std::size_t> body_of_;
   std::vector<NearPair> pairs_;
-  std::vector<NearPair> tied_;  // clashes within a body
-  std::vector<Six> motion_;     // by body, of the groups that are free by now
-  std::vector<Pose> X_WP_;      // by part, with these motions
-  std::vector<MovableBody>
-      by_sight_;          // the bodies, each allowed to move as far as sight leaves it: for proofs
-  std::size_t work_ = 0;  // done for the group
+  std::vector<NearPair> tied_;         // clashes between parts of one body
+  std::vector<Six> motion_;            // by body: motions of the groups that are free so far
+  std::vector<Pose> X_WP_;             // by part: poses after these motions
+  std::vector<MovableBody> by_sight_;  // the bodies, each allowed to move by kSightTolerance_m; for proofs
+  std::size_t work_ = 0;               // work done for the current group
 };
 
 }  // namespace

@@ -12,37 +12,39 @@
 
 namespace vps::scenes {
 
-/// Parts that move as one: one part, or several that are pressed into each other, or all that are fixed.
+/// Parts that move as one body: a single part, several parts that are pressed into each other, or all fixed
+/// parts.
 struct MovableBody {
   std::vector<std::size_t> parts;  ///< ascending
   bool is_fixed = false;
-  /// No corner of the parts' boxes may go farther: the tolerance of its tightest fit with another body.
+  /// Greatest allowed displacement of a corner of the parts' boxes: the tolerance of the body's tightest fit
+  /// with another body.
   double allowed_m = 0;
   Box box_W;  ///< as drawn
   LooseBody loose;
 
-  /// How far the corner of its boxes that goes farthest goes.
+  /// Greatest displacement of a corner of the body's box.
   [[nodiscard]] double mostMoved_m(const Eigen::Matrix<double, 6, 1>& motion) const;
-  /// The same of a box that moves with it.
+  /// Greatest displacement of a corner of a box that moves with the body.
   [[nodiscard]] double mostMoved_m(const Eigen::Matrix<double, 6, 1>& motion, const Box& of_W) const;
-  /// No turn for which every corner goes no farther than most_m is more than this [rad].
+  /// Upper bound of the rotation for which no corner moves by more than most_m [rad].
   [[nodiscard]] double mostTurn(double most_m) const;
 };
 
-/// The bodies of the parts. What a part may move by is the tolerance with which a run takes it to be in
-/// place: of its tightest fit with a part of another body, or of sight where it has none.
+/// The bodies of the parts. A part may move by the tolerance with which a run accepts it as in place: that of
+/// its tightest fit with a part of another body, or kSightTolerance_m without such a fit.
 std::vector<MovableBody> looseBodies(const std::vector<PlacedSurface>& parts, const CheckResult& checked);
 
-/// The body of each part.
+/// The index of each part's body.
 std::vector<std::size_t> bodyOfPart(const std::vector<MovableBody>& bodies, std::size_t part_count);
 
-/// See CheckedPlaces. Fits without more where nothing clashes.
+/// Searches for places without overlap; see CheckedPlaces. The verdict is Fits at once if no parts clash.
 ///
-/// Parts that clash with each other, over others that clash too, are looked at together. Moved is first one
-/// of them alone, the smallest first, then all but the largest, then with them all that is near, last all of
-/// them. The least motion that opens the gaps to first order is found, the overlap is measured exactly where
-/// that leads to, and again, until no pair overlaps. The same bits on any number of threads.
-/// @param checked  all pairs that are near each other, with their fits
+/// Parts that are connected by clashes form a group. The search moves first one part of a group alone (the
+/// smallest first), then all parts but the largest, then these and all near parts, and last the whole group.
+/// It finds the least motion that opens all gaps to first order, measures the overlap exactly after this
+/// motion, and repeats until no pair overlaps. The result has the same bits on any number of threads.
+/// @param checked the check's result, with all near pairs and their fits
 CheckedPlaces freePlaces(const std::vector<PlacedSurface>& parts, const CheckResult& checked,
                          const Progress& progress);
 

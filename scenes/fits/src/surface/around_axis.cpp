@@ -21,7 +21,7 @@ double cross(const Vec2& a, const Vec2& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
-/// Distance of the origin from a triangle, which may be a line or a point: facets are seen edge on.
+/// Distance of the origin from a triangle. The triangle may be degenerate, since facets may be seen edge-on.
 double distanceToOrigin(const std::array<Vec2, 3>& t) {
   double turns[3], nearest = 1e300;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -40,7 +40,7 @@ double distanceToOrigin(const std::array<Vec2, 3>& t) {
 
 AxisExtent axisExtent(const Triangle& t, const Vec3& center, const Vec3& axis, const Vec3& u, const Vec3& v) {
   AxisExtent extent;
-  std::array<Vec2, 3> seen;  // along the axis
+  std::array<Vec2, 3> seen;  // projected along the axis
   for (std::size_t k = 0; k < 3; ++k) {
     const Vec3 r = t[k] - center;
     const double along_m = axis.dot(r);
@@ -59,7 +59,7 @@ AxisExtents::AxisExtents(const PartSurface& part, const Vec3& axis, const Vec3& 
   for (std::uint32_t i = 0; i < triangles.size(); ++i)
     triangles[i] = axisExtent(part.triangle(i), center, axis, u, v);
   const auto& tree = part.tree().nodes();
-  for (std::size_t n = tree.size(); n-- > 0;) {  // children stand after their parents
+  for (std::size_t n = tree.size(); n-- > 0;) {  // children follow their parents
     if (!tree[n].isLeaf()) {
       nodes[n].add(nodes[n + 1]);
       nodes[n].add(nodes[tree[n].right]);

@@ -14,13 +14,14 @@
 
 namespace vps::scenes {
 
+/// Ranges along and around an axis of rotation; a rotation about the axis changes neither.
 struct AxisExtent {
-  double from_m = 1e300, to_m = -1e300;      ///< along the axis, from its centre
-  double nearest_m = 1e300, farthest_m = 0;  ///< from the axis
+  double from_m = 1e300, to_m = -1e300;      ///< range along the axis, from its centre
+  double nearest_m = 1e300, farthest_m = 0;  ///< range of the distance from the axis
 
   void add(const AxisExtent& other);
-  /// Whether what turns about the axis, and is moved along it by something between the two distances, can
-  /// come within this distance of the other.
+  /// Whether an extent that turns about the axis, and advances along it by a distance between along_m[0] and
+  /// along_m[1], can come within within_m of the other extent.
   [[nodiscard]] bool reaches(const AxisExtent& other, double within_m,
                              const std::array<double, 2>& along_m = {}) const {
     return from_m + along_m[0] <= other.to_m + within_m && other.from_m <= to_m + along_m[1] + within_m &&
@@ -28,21 +29,21 @@ struct AxisExtent {
   }
 };
 
-/// Of a triangle, around an axis with two unit vectors across it.
+/// The extent of a triangle around an axis. @param u, v unit vectors perpendicular to the axis
 AxisExtent axisExtent(const Triangle& t, const Vec3& center, const Vec3& axis, const Vec3& u, const Vec3& v);
 
-/// Of each node and each triangle of a part; the axis is in the part's frame. O(n).
+/// The extents of all nodes and triangles of a part around an axis in the part's frame. O(n).
 struct AxisExtents {
   std::vector<AxisExtent> nodes, triangles;
   AxisExtents(const PartSurface& part, const Vec3& axis, const Vec3& center);
 };
 
-/// The facets of a part, cut off where a slab across an axis ends.
+/// The facets of a part, clipped to a slab across an axis.
 class NearAxis {
  public:
-  /// @param of  must outlive it
-  /// @param axis_W  unit
-  /// @param half_length_m  of the slab around at_W, along the axis
+  /// @param of the part, which must outlive the object
+  /// @param axis_W unit vector
+  /// @param half_length_m half the thickness of the slab around at_W
   NearAxis(const Vec3& axis_W, const Vec3& at_W, const PlacedSurface& of, double half_length_m)
       : of_(of),
         axis_(axis_W),
@@ -51,13 +52,14 @@ class NearAxis {
         v_(axis_.cross(u_)),
         half_m_(half_length_m) {}
 
-  /// A facet within the slab, in coordinates along u, v and the axis; less than three corners: it is outside.
+  /// The clipped facet, in coordinates along u, v and the axis. It has fewer than three corners if the facet
+  /// is outside the slab.
   [[nodiscard]] std::vector<Vec3> clippedFacet(std::uint32_t i) const {
     return clipped(of_.surface->triangle(i));
   }
 
-  /// Calls visit(least, greatest distance from the axis, radial part of the normal, facet) for facets in the
-  /// slab.
+  /// Calls visit(least distance from the axis, greatest distance, radial part of the normal, facet) for each
+  /// facet in the slab.
   template <class Visit>
   void forEachFacet(Visit visit) const {
     for (std::uint32_t i = 0; i < of_.surface->mesh().triangles.size(); ++i) {
@@ -77,7 +79,7 @@ class NearAxis {
   }
 
  private:
-  /// In coordinates along u, v and the axis.
+  /// Clips a triangle to the slab; the result is in coordinates along u, v and the axis.
   [[nodiscard]] std::vector<Vec3> clipped(const Triangle& t) const {
     SurfacePiece polygon;
     for (const Vec3& p : t) {

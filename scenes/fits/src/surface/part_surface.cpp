@@ -10,7 +10,8 @@ namespace vps::scenes {
 
 namespace {
 
-/// Rounding turns the diagonal of a flat face by about 1e-8; curved faces turn by more than 1e-3.
+/// Angle below which facets are coplanar. Rounding bends a flat face at its diagonal by about 1e-8; facets of
+/// curved faces meet at more than 1e-3.
 constexpr double kFlat_rad = 1e-6;
 constexpr double kPartSurfaceParallel = 1e-12;  // 1 - cosine
 
@@ -18,7 +19,7 @@ double angleBetween(const Vec3& a, const Vec3& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-/// Distance of a triangle's corner from the line through its edge i opposite.
+/// Distance of a triangle's corner from the line through the opposite edge.
 double heightAcross(const Triangle& t, int edge) {
   const Vec3 along = t[(edge + 1) % 3] - t[edge];
   return along.cross(t[(edge + 2) % 3] - t[edge]).norm() / std::max(along.norm(), 1e-300);
@@ -43,7 +44,7 @@ PartSurface::PartSurface(std::shared_ptr<const Solid> solid, std::optional<doubl
   tellInside();
 }
 
-// A depth is measured in both parts, so in a plate of thickness t none is above t / 2.
+// A plate must be thicker than 1 um, since a depth in a plate of thickness t is at most t / 2.
 void PartSurface::tellInside() {
   constexpr double kThinnest_m = 10 * kOverlapCertain_m;
   const std::size_t sheets = solid().report().sheet_facets;
@@ -54,7 +55,7 @@ void PartSurface::tellInside() {
                      .append(std::to_string(mesh().triangles.size()))
                      .append(" facets belong to surfaces without an inside");
   else if (!(thickness_m > kThinnest_m))
-    no_inside_ = "it is thinner than 1 um";
+    no_inside_ = "the part is thinner than 1 um";
 }
 
 void PartSurface::gatherNormals() {
@@ -92,7 +93,7 @@ void PartSurface::findPlanes() {
 }
 
 void PartSurface::findPatches() {
-  constexpr double kOneWay = 0.9;  // about 25 degrees on average; assumed
+  constexpr double kOneWay = 0.9;  // |sum of vector areas| by area, about 25 degrees on average; assumed
   patches_.assign(tree_.nodes().size(), Vec3::Zero());
   for (std::size_t node = 0; node < patches_.size(); ++node) {
     const auto [first, end] = std::pair(tree_.nodes()[node].first, tree_.nodes()[node].end);
@@ -122,11 +123,11 @@ Triangle PartSurface::triangle(std::uint32_t i) const {
   return {mesh().vertices[t[0]], mesh().vertices[t[1]], mesh().vertices[t[2]]};
 }
 
-// A strip of width w across a curve turns by theta from its neighbours: the radius is w / theta, and the
-// middle of the strip is w theta / 8 inside the curve through its edges. A triangle of a ball has three such
-// edges, whose sum is more than its depth below the ball. A flat face beside a curved one is wider, so the
-// smaller width counts. A bevel of less than kCurved_rad is taken for a curve: the estimate is then too
-// large.
+// Estimates chord errors. If a strip of width w across a curve meets its neighbours at the angle theta, the
+// radius is w / theta, and the middle of the strip is w theta / 8 inside the curve through its edges. A
+// triangle of a ball has three such edges, and their sum exceeds the triangle's depth below the ball. A flat
+// face next to a curved one is wider, so the smaller of both widths counts. A bevel of less than kCurved_rad
+// is taken for a curve, and the estimate is then too large.
 void PartSurface::estimateChords() {
   chord_m_.assign(mesh().triangles.size(), 0);
   for (std::uint32_t i = 0; i < chord_m_.size(); ++i)
@@ -143,8 +144,8 @@ void PartSurface::estimateChords() {
     for (double& chord_m : chord_m_) chord_m = std::min(chord_m, *most_chord_m_);
 }
 
-// A strip of width w turns by no more than twice what it turns from a neighbour, which may be much narrower:
-// it is at most w theta / 4 inside the curve.
+// A strip of width w covers at most twice the angle theta to its neighbour, which may be much narrower. The
+// strip is therefore at most w theta / 4 inside the curve.
 double PartSurface::chordBound_m(std::uint32_t i) const {
   if (chord_m_[i] == 0) return 0;
   if (most_chord_m_) return *most_chord_m_;

@@ -18,27 +18,30 @@
 
 namespace vps::scenes {
 
-/// The facet beyond each edge of each triangle (edge i from corner i to the next); kNoFacet at an edge that
-/// does not have exactly two facets.
+/// The facet on the other side of each edge of each triangle (edge i leads from corner i to the next corner).
+/// kNoFacet for an edge that does not have exactly two facets.
 inline constexpr std::uint32_t kNoFacet = ~std::uint32_t{0};
 std::vector<std::array<std::uint32_t, 3>> neighboursOf(const Mesh& mesh);
 
+/// A narrow gap between open edges of a mesh.
 struct Crack {
   Vec3 p_P;        ///< a corner of an open edge
-  double width_m;  ///< to the nearest other open edge
+  double width_m;  ///< distance of the corner from the nearest other open edge
 };
 
-/// Cracks are narrow beside the edges that they part, and beside the part; anything wider is a hole. A corner
-/// in which a crack ends has none. O(n log n).
+/// Finds the cracks of a mesh. A crack is narrow compared with the edges along it and with the part; a wider
+/// gap is a hole. A corner at which a crack ends is not listed. O(n log n).
 std::vector<Crack> cracksOf(const Mesh& mesh, const std::vector<std::array<std::uint32_t, 3>>& neighbours,
                             const BoxTree& tree);
 
-/// Facets that meet at less than this belong to one curved face; import makes them meet at 0.35 at most.
+/// Facets that meet at a smaller angle belong to one curved face. Imported curved faces have angles of 0.35
+/// at most.
 inline constexpr double kCurved_rad = 0.4;
 
+/// The surface of a part, in the part's frame.
 class PartSurface {
  public:
-  /// @param chord_m see DrawnPart; empty: estimated
+  /// @param chord_m see DrawnPart; estimated if empty
   PartSurface(std::shared_ptr<const Solid> solid, std::optional<double> chord_m);
 
   [[nodiscard]] const Solid& solid() const { return overlap_.solid(); }
@@ -50,14 +53,14 @@ class PartSurface {
   [[nodiscard]] Triangle triangle(std::uint32_t i) const;
   [[nodiscard]] Vec3 normal(std::uint32_t i) const { return solid().featureNormal(i, 0); }
 
-  /// The different outward normals of the facets around a vertex.
+  /// The distinct outward normals of the facets around a vertex.
   [[nodiscard]] std::span<const Vec3> normalsAround(std::uint32_t vertex) const {
     return std::span(around_).subspan(first_around_[vertex],
                                       first_around_[vertex + 1] - first_around_[vertex]);
   }
 
-  /// By node of the tree: the outward normal if all facets of the node share it, else zero; and how far its
-  /// facets reach along it.
+  /// The plane of a tree node: the outward normal if all facets of the node share it, else zero; and the
+  /// greatest coordinate of the facets along it.
   struct NodePlane {
     Vec3 n = Vec3::Zero();
     double highest_m = 0;
@@ -65,27 +68,27 @@ class PartSurface {
   };
   [[nodiscard]] const std::vector<NodePlane>& planes() const { return planes_; }
 
-  /// By node of the tree: the mean outward normal, by area, of at most kFacetsOfPatch facets that face nearly
-  /// one way; else zero.
+  /// For each node of the tree: the mean outward normal, weighted by area, if the node has at most
+  /// kFacetsOfPatch facets that face nearly the same direction; else zero.
   static constexpr std::uint32_t kFacetsOfPatch = 64;
   [[nodiscard]] const std::vector<Vec3>& patches() const { return patches_; }
-  /// The highest point of a node's facets along n.
+  /// The greatest coordinate of a node's facets along n.
   [[nodiscard]] double highest_m(std::uint32_t node, const Vec3& n) const;
 
-  /// Why the surface, or parts of it, has no inside; empty: it has one.
+  /// The reason why the surface, or a part of it, encloses no volume; empty if it is a solid.
   [[nodiscard]] const std::string& noInside() const { return no_inside_; }
-  /// It has an inside everywhere, and no holes.
+  /// Whether the surface encloses a volume and has no holes.
   [[nodiscard]] bool isClosed() const { return no_inside_.empty() && solid().report().isClosed(); }
 
-  /// Greatest distance of a facet from the curved face that it stands for.
+  /// Greatest distance of a facet from the curved face that it approximates, as estimated.
   [[nodiscard]] double chord_m(std::uint32_t i) const { return chord_m_[i]; }
-  /// No less than that where facets of one face differ in width: zero only in flat faces. O(1).
+  /// Upper bound of chord_m() that also holds where facets of one face differ in width. Zero for flat faces
+  /// only. O(1).
   [[nodiscard]] double chordBound_m(std::uint32_t i) const;
   /// The greatest chord_m() of the facets whose boxes meet this one.
   [[nodiscard]] double chordIn(const Box& box_P) const;
 
-  /// Greatest width of the cracks that this box meets: between a corner of an open edge and the nearest other
-  /// open edge, where that is near beside their lengths. The surface may be anywhere between the two.
+  /// Greatest width of the cracks in this box. The true surface may be anywhere within a crack's width.
   [[nodiscard]] double crackIn(const Box& box_P) const;
 
  private:
@@ -104,7 +107,7 @@ class PartSurface {
   std::vector<Vec3> patches_;
   std::string no_inside_;
   std::vector<Vec3> around_;
-  std::vector<std::uint32_t> first_around_;  // by vertex, and the end
+  std::vector<std::uint32_t> first_around_;  // by vertex: first index in around_; and the end
 };
 
 }  // namespace vps::scenes

@@ -13,7 +13,7 @@ namespace vps::scenes {
 
 namespace {
 
-constexpr double kLeastPart_m = 10e-6;  // a hundred times the certainty of a depth
+constexpr double kLeastPart_m = 10e-6;  // a hundred times the precision of a depth
 constexpr double kGreatestPart_m = 1e3;
 
 void requireMeasurable(const DrawnPart& part) {

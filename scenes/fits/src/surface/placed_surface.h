@@ -18,28 +18,30 @@
 
 namespace vps::scenes {
 
+/// A part of an assembly with its prepared surface and its pose.
 struct PlacedSurface {
   std::string name;
-  std::shared_ptr<const PartSurface> surface;  ///< parts of equal geometry share it
+  std::shared_ptr<const PartSurface> surface;  ///< shared by parts of equal geometry
   Pose X_WP;
-  const DrawnPart* drawn = nullptr;  ///< for what the scene says of it
-  Box box_W;                         ///< of the vertices themselves
+  const DrawnPart* drawn = nullptr;  ///< the part as drawn, with the scene's settings
+  Box box_W;                         ///< box of the vertices in the world
 };
 
-/// On all cores; they point to the parts. Throws LoadError; see checkAssembly().
-/// @param prepared  surfaces of earlier parts, which are taken again where the geometry is equal
+/// Prepares the parts on all cores. The results point to `parts`, which must outlive them. Throws LoadError,
+/// as checkAssembly() does.
+/// @param prepared surfaces of earlier parts, which are reused for equal geometry
 std::vector<PlacedSurface> placedSurfaces(const std::vector<DrawnPart>& parts, const Progress& progress,
                                           std::span<const PlacedSurface> prepared = {});
 
-/// The part of this name, which is among them.
+/// The part with this name, which must exist.
 const PlacedSurface& named(const std::vector<PlacedSurface>& parts, const std::string& name);
 
-/// Pairs of parts whose boxes are nearer than near_m, in ascending order.
+/// Pairs of parts whose boxes are at most near_m apart, in ascending order.
 std::vector<std::pair<std::size_t, std::size_t>> nearPairs(const std::vector<PlacedSurface>& parts,
                                                            double near_m);
 
-/// Does `work(i)` for 0 to count - 1, and tells the progress on the caller's thread only. What either throws
-/// ends it.
+/// Calls `work(i)` for i = 0 to count - 1 on all cores, and reports progress on the caller's thread only. An
+/// exception from either ends the loop.
 template <class Work>
 void forEachOnCores(std::size_t count, const Progress& progress, const char* doing, Work work) {
   const std::thread::id caller = std::this_thread::get_id();

@@ -32,7 +32,7 @@ SurfacePiece shifted(const SurfacePiece& piece, const Vec3& by) {
 
 SurfacePiece below(const SurfacePiece& piece, const Vec3& n, double level) {
   SurfacePiece kept;
-  // A segment has one side, a polygon as many as corners.
+  // A segment has one side; a polygon has as many sides as corners.
   const std::size_t sides = piece.size() > 2 ? piece.size() : piece.size() - 1;
   for (std::size_t i = 0; i < piece.size(); ++i) {
     const Vec3 &a = piece[i], &b = piece[(i + 1) % piece.size()];
@@ -64,7 +64,7 @@ std::pair<double, double> sharesWithin(std::span<const Vec3> polygon, const Vec3
 
 namespace {
 
-/// A polygon and what tells quickly that a box or a facet is apart from it.
+/// A polygon with quick tests whether a box or a facet can meet it.
 class PieceTest {
  public:
   PieceTest(const SurfacePiece& piece, const Vec3& n) : piece_(piece), n_(n), level_(n.dot(piece[0])) {

@@ -22,7 +22,8 @@ int featureAt(int edge, double fraction) {
   return fraction >= 1 ? 4 + (edge + 1) % 3 : 1 + edge;
 }
 
-/// Where segment pq passes through triangle t; empty where it does not, or lies in its plane.
+/// The point where segment pq passes through triangle t; empty if it does not pass, or lies in the triangle's
+/// plane.
 std::optional<Vec3> crossing(const Vec3& p, const Vec3& q, const Triangle& t) {
   const Vec3 u = t[1] - t[0], v = t[2] - t[0], n = u.cross(v);
   const double above_p = n.dot(p - t[0]), above_q = n.dot(q - t[0]);
@@ -53,7 +54,8 @@ std::array<double, 2> nearestOfSegments(const Vec3& a, const Vec3& b, const Vec3
   if (uu == 0) return {0, vv == 0 ? 0 : clamped(vr / vv)};
   if (vv == 0) return {clamped(-ur / uu), 0};
   const double area2 = uu * vv - uv * uv;
-  // Parallel to rounding: any place will do, the clamps below then find the best one.
+  // For segments that are parallel up to rounding, any s serves; the clamps below then find the nearest
+  // points.
   double s = area2 > 1e-14 * uu * vv ? clamped((uv * vr - ur * vv) / area2) : 0;
   double t = (uv * s + vr) / vv;
   if (t < 0) return {clamped(-ur / uu), 0};

@@ -10,19 +10,20 @@ namespace vps::scenes {
 
 using Triangle = std::array<Vec3, 3>;
 
-/// Features are numbered as in TrianglePoint: 0 the face, 1 to 3 edges, 4 to 6 corners.
+/// The nearest points of two triangles. Features are numbered as in TrianglePoint: 0 the face, 1 to 3 edges,
+/// 4 to 6 corners.
 struct TriangleGap {
   double distance_m = 0;  ///< 0 where the triangles cross
   Vec3 p_a = Vec3::Zero(), p_b = Vec3::Zero();
   int feature_a = 0, feature_b = 0;
 };
 
-/// Exact to rounding: the least of 9 distances of edges and 6 of corners to faces, or 0 where an edge of one
-/// crosses the other.
+/// The distance of two triangles, exact to rounding: the least of 9 distances of edges and 6 distances of
+/// corners from faces, or 0 if an edge of one triangle crosses the other.
 TriangleGap triangleGap(const Triangle& a, const Triangle& b);
 
-/// Nearest points of segments ab and cd as fractions of them. Source: Ericson, Real-Time Collision Detection,
-/// section 5.1.9.
+/// The nearest points of segments ab and cd, as fractions of the segments. Source: Ericson, Real-Time
+/// Collision Detection, section 5.1.9.
 std::array<double, 2> nearestOfSegments(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
 }  // namespace vps::scenes

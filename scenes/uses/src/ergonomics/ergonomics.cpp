@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "vps/mesh.h"
-#include "vps_scenes/scene/part_mass.h"
+#include "vps_scenes/scene/scene_parts.h"
 
 namespace vps::scenes {
 

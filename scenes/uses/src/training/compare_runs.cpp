@@ -11,7 +11,7 @@
 #include "vps_device/operator.h"
 #include "vps_scenes/run/replay.h"
 #include "vps_scenes/run/result.h"
-#include "vps_scenes/scene/part_mass.h"
+#include "vps_scenes/scene/scene_parts.h"
 #include "vps_scenes/uses/compare.h"
 
 namespace vps::scenes {
