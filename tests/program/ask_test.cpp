@@ -66,9 +66,9 @@ class AskProgram : public Program {
 };
 
 TEST_F(AskProgram, WhoIsThereAndWhatTheyDo) {
-  expectRefused("ask who --session " + session_, "no vps render runs it");
+  expectRefused("ask who --session " + session_, "no vps render that accepts requests runs it");
   startRender();
-  ASSERT_TRUE(whoSays("device: none, it is waited for")) << texts();
+  ASSERT_TRUE(whoSays("device: none, the run waits for it")) << texts();
   watch_ = start({"watch", "--terminal"}, "watch.txt");
   EXPECT_TRUE(whoSays("watchers: 1")) << texts();
   startDevice();
@@ -173,7 +173,7 @@ TEST_F(AskProgram, OverANetworkWhoMayNotAskIsNotHeard) {
       [&] { return run(all + " --security keys/operate").out.find("render: 'pins'") != std::string::npos; },
       60))
       << texts();
-  expectRefused(all, "nothing answers");
+  expectRefused(all, "no answer");
   expectRefused(all + " --security keys/watch", "Not Allowed By Security");
 }
 

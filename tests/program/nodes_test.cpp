@@ -61,7 +61,7 @@ TEST_F(NodesProgram, ADeviceIsSafeWhenRenderIsKilledAndJoinsTheNextOne) {
   nodes_->render.killNow();
   nodes_->startRender();
   EXPECT_EQ(nodes_->render.wait(), 0) << texts();
-  EXPECT_NE(slurp(folder_ / "device.txt").find("the render node is lost"), std::string::npos) << texts();
+  EXPECT_NE(slurp(folder_ / "device.txt").find("the render node was lost"), std::string::npos) << texts();
   EXPECT_EQ(nodes_->segments(), 0u);
 }
 
@@ -108,7 +108,7 @@ TEST_F(NodesProgram, ASecondRenderOfASessionIsRefused) {
   ASSERT_TRUE(nodes_->join()) << texts();
   const Ran second = run("render pin_down.toml --out other --session program-" + std::to_string(getpid()));
   EXPECT_EQ(second.status, 2);
-  EXPECT_NE(second.err.find("another vps render runs it"), std::string::npos) << second.err;
+  EXPECT_NE(second.err.find("another vps render already runs it"), std::string::npos) << second.err;
 }
 
 TEST_F(NodesProgram, BadSessionNamesAreRefused) {

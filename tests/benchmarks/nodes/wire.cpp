@@ -102,7 +102,7 @@ bool wireRow(const std::string& scene, const WireFaults& faults) {
                 run["verdict"].get<std::string>().c_str(), static_cast<long>(done), run["steps"].size(),
                 1e3 * injected_J, run["steps"].empty() ? 0.0 : run["steps"][0]["peak_force_N"].get<double>(),
                 run["wall"]["haptic"].contains("faults") ? run["wall"]["haptic"]["faults"].get<long>() : -1L,
-                lineWith(render_text, "so the coupling has").c_str(), bandwidth.median_Mbit,
+                lineWith(render_text, "the coupling has").c_str(), bandwidth.median_Mbit,
                 bandwidth.most_Mbit, bandwidth.start_Mbit);
   const bool has_faults = faults.delay_s > 0;
   const bool is_reached = injected_J <= kInjectedBar_J && done == static_cast<long>(run["steps"].size()) &&

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A device's node whose render node sends what a render node must not.
+// A device node whose render node sends what a render node must not.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -131,7 +131,7 @@ TEST_F(HostileRender, NoPhysicsTakesTheForceBeyondTheDevicesLimits) {
   EXPECT_LE(most_Nm, hello_.limits.peak_torque_Nm * (1 + 1e-12));
   EXPECT_GT(with_force, 100) << "the test never reached the device";
   EXPECT_GT(most_N, 0.5 * hello_.limits.peak_force_N);
-  EXPECT_NE(said().find("this device is passive up to"), std::string::npos) << said();
+  EXPECT_NE(said().find("this device is only passive up to"), std::string::npos) << said();
 }
 
 // Without the bound a spring of 1 GN/m would reach its limit of force at any distance that can be measured.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Render node, device's node and watcher of one session. Here each is a thread, so that sanitizers see all of
+// Render node, device node and watcher of one session. Here each is a thread, so that sanitizers see all of
 // them; tests/program/nodes_test.cpp runs processes.
 #include "vps_scenes/network/nodes.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The render node's driver of a loop in another process, with a device's node that says what a test wants.
+// The render node's driver of a loop in another process, with a device node that says what a test wants.
 #include <gtest/gtest.h>
 
 #include <deque>

@@ -110,7 +110,7 @@ class RequestHandlerTest : public testing::Test {
 
 TEST_F(RequestHandlerTest, WhoTellsSceneStepDeviceAndWatchers) {
   EXPECT_TRUE(says(ask(AskKind::Who), "'two pins' (scene " + contentHash(bytes_) + "), before its first"));
-  EXPECT_TRUE(says(ask(AskKind::Who), "device: none, it is waited for"));
+  EXPECT_TRUE(says(ask(AskKind::Who), "device: none, the run waits for it"));
   joinDevice();
   requests_.beginStep(1);
   const std::unique_ptr<Link> watcher = joinSession(session_, NodeRole::Watch);
@@ -134,7 +134,7 @@ TEST_F(RequestHandlerTest, AnAnswerNamesWhomItIsForAndARequestThatIsRepeatedIsCa
 }
 
 TEST_F(RequestHandlerTest, PartsAreTakenInTheirOrderOnly) {
-  EXPECT_TRUE(says(ask(AskKind::Take), "takes its parts by itself"));
+  EXPECT_TRUE(says(ask(AskKind::Take), "takes its parts automatically"));
   requests_.setWaiting(true);
   EXPECT_FALSE(requests_.mayTake());
   EXPECT_TRUE(says(ask(AskKind::Take, "right"), "the next part is 'left'"));
@@ -189,7 +189,7 @@ TEST_F(RequestHandlerTest, OnlyADeviceThatAllowsItIsRearmedFromElsewhere) {
   EXPECT_TRUE(says(ask(AskKind::Rearm), "no device has joined"));
   joinDevice(false);
   requests_.setFaulted(true);
-  EXPECT_TRUE(says(ask(AskKind::Rearm), "a person holds the device"));
+  EXPECT_TRUE(says(ask(AskKind::Rearm), "the person at the device has not allowed"));
   EXPECT_FALSE(requests_.takeRearm());
   run_.setDevice("arm", true, gains(800, 8), gains(1000, 10));
   EXPECT_TRUE(ask(AskKind::Rearm).is_done);
@@ -203,11 +203,11 @@ TEST_F(RequestHandlerTest, GainsAreBoundedByWhatIsPassive) {
   joinDevice();
   EXPECT_TRUE(askGains(500).is_done);
   EXPECT_EQ(requests_.takeGains()->k_N_per_m, 500);
-  EXPECT_TRUE(says(askGains(5000), "1000 N/m and 8.0 N m/rad, up to which"));
+  EXPECT_TRUE(says(askGains(5000), "1000 N/m and 8.0 N m/rad, the limit at which"));
   EXPECT_EQ(requests_.takeGains()->k_N_per_m, 1000);
   begin("run.mcap");
   joinDevice();
-  EXPECT_TRUE(says(askGains(500), "recorded keeps its gains"));
+  EXPECT_TRUE(says(askGains(500), "the gains of a recorded run"));
   EXPECT_FALSE(requests_.takeGains());
 }
 
@@ -216,11 +216,11 @@ TEST_F(RequestHandlerTest, RightsAreHeld) {
   requests_.beginStep(0);
   EXPECT_TRUE(ask(AskKind::Who).is_done);
   for (const AskKind kind : {AskKind::Take, AskKind::Release, AskKind::Rearm, AskKind::Load, AskKind::Again})
-    EXPECT_TRUE(says(ask(kind), "may only be asked who is there"));
+    EXPECT_TRUE(says(ask(kind), "only `who` is allowed here"));
   PieceMessage piece;
-  EXPECT_TRUE(says(answerTo(std::string(asker_.write(piece))), "no scene may be sent"));
+  EXPECT_TRUE(says(answerTo(std::string(asker_.write(piece))), "accepts no scenes"));
   options_.rights = RequestRights::All;
-  EXPECT_TRUE(says(answerTo(std::string(asker_.write(message(AskKind::Release))), true), "of another user"));
+  EXPECT_TRUE(says(answerTo(std::string(asker_.write(message(AskKind::Release))), true), "to another user"));
   EXPECT_FALSE(requests_.isReleaseWanted());
   EXPECT_FALSE(handler_.takeNext());
 }
@@ -254,7 +254,7 @@ TEST_F(RequestHandlerTest, ARecordingIsFetchedInPiecesOnceItIsWhole) {
     EXPECT_EQ(fetched->asker, asker_.sender());
     return fetched;
   };
-  EXPECT_TRUE(says(answerTo(fetch(0)), "no recording was asked for"));
+  EXPECT_TRUE(says(answerTo(fetch(0)), "no recording was requested"));
   EXPECT_TRUE(says(askForFile("run.mcap"), "this run is recorded in"));
   EXPECT_TRUE(says(answerTo(fetch(0)), "has not ended"));
   const std::string file = handler_.recording();
@@ -348,7 +348,7 @@ TEST_F(RequestHandlerTest, ASceneIsSentInPiecesOnceAndThenKnownByItsHash) {
   damaged[100] ^= 1;
   AnswerMessage last;
   for (std::uint64_t at = 0; at < bytes.size(); at += PieceMessage::kMost) last = send(at, damaged);
-  EXPECT_TRUE(says(last, "came damaged"));
+  EXPECT_TRUE(says(last, "was damaged in transfer"));
   EXPECT_FALSE(handler_.takeNext());
   for (std::uint64_t at = 0; at < bytes.size(); at += PieceMessage::kMost) last = send(at, bytes);
   EXPECT_TRUE(last.is_done) << last.text.data();
@@ -555,12 +555,12 @@ TEST(SessionRequest, AWishForARecordingThatIsNotGrantedSaysWhy) {
   const auto names = [](const std::string& words, const char* part) {
     return words.find(part) != std::string::npos;
   };
-  EXPECT_PRED2(names, early.waitUntilAsked(0.3), "no vps render runs it that takes requests");
-  EXPECT_PRED2(names, early.finish(), "no vps render runs it that takes requests");
+  EXPECT_PRED2(names, early.waitUntilAsked(0.3), "no vps render that accepts requests runs it");
+  EXPECT_PRED2(names, early.finish(), "no vps render that accepts requests runs it");
   const RequestServer server(options);
   SessionRecording refused(wish);
-  EXPECT_PRED2(names, refused.waitUntilAsked(10), "may only be asked who is there");
-  EXPECT_PRED2(names, refused.finish(), "may only be asked who is there");
+  EXPECT_PRED2(names, refused.waitUntilAsked(10), "only `who` is allowed here");
+  EXPECT_PRED2(names, refused.finish(), "only `who` is allowed here");
 }
 
 /// Two ends of a socket of a session.
@@ -654,7 +654,7 @@ TEST(SessionRequest, AnotherUserOfTheMachineIsRefused) {
     const std::string bytes = channel->receive(std::chrono::seconds(5));
     if (reader.read(bytes, answer) != Reading::Good) _exit(12);
     const bool is_refused =
-        !answer.is_done && std::string(answer.text.data()).find("of another user") != std::string::npos;
+        !answer.is_done && std::string(answer.text.data()).find("to another user") != std::string::npos;
     _exit(is_refused ? 0 : 13);
   }
   int status = -1;

@@ -88,7 +88,7 @@ TEST(SharedRegion, OneThatOthersCouldHaveWrittenToIsRefused) {
   const std::string name = session();
   const SharedRegion region = SharedRegion::create(name, 4096);
   ASSERT_EQ(chmod(fileOf(name).c_str(), 0666), 0);
-  EXPECT_NE(refusal([&] { SharedRegion::open(name, true); }).find("open to other users"), std::string::npos);
+  EXPECT_NE(refusal([&] { SharedRegion::open(name, true); }).find("accessible to other users"), std::string::npos);
 }
 
 TEST(SharedRegion, ASecondOwnerIsRefusedWhileTheFirstLives) {

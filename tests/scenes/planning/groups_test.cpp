@@ -13,7 +13,7 @@
 #include "support/temporary_folder.h"
 #include "vps_scenes/fits/check.h"
 #include "vps_scenes/planning/plan.h"
-#include "vps_scenes/scene/scene_groups.h"
+#include "vps_scenes/scene/scene_parts.h"
 #include "vps_scenes/scene/scene_text.h"
 
 namespace vps::scenes {

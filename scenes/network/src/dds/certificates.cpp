@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kUnsecured = "none";
 
-/// Where the plugins are: beside the library of Cyclone DDS, or in Debian's folder there.
+/// Folder of the security plugins: the folder of the Cyclone DDS library, or Debian's subfolder there.
 fs::path pluginFolder() {
   Dl_info info{};
   if (dladdr(reinterpret_cast<const void*>(&dds_create_participant), &info) != 0 &&
@@ -35,10 +35,11 @@ std::string fileOf(const fs::path& folder, const char* name) {
     throw LoadError(
         folder.string(), "",
         std::string("has no ") + name + "; scenes/make_certificates.sh makes a folder for each node");
-  // Cyclone's settings are XML.
+  // Cyclone DDS's settings are XML, where these characters are special.
   for (const char c : file.string())
     if (c == '<' || c == '>' || c == '&' || c == '"')
-      throw LoadError(file.string(), "", "holds a character that --security cannot take; rename the folder");
+      throw LoadError(file.string(), "",
+                      "contains a character that --security does not support; rename the folder");
   return "file:" + file.string();
 }
 
@@ -59,8 +60,8 @@ std::string securitySettings(const SessionNetwork& network, bool is_loopback) {
     if (is_loopback) return {};
     throw LoadError("", "",
                     "--network " + network.interface +
-                        " lets whoever reaches it read and move everything; add --security FOLDER with the "
-                        "certificates that scenes/make_certificates.sh makes, or --security none");
+                        " gives everybody who can reach it read and write access; add --security FOLDER with "
+                        "the certificates that scenes/make_certificates.sh makes, or --security none");
   }
   const fs::path folder = network.security;
   const std::string authority = fileOf(folder, "ca.pem");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Who may take part in sessions over UDP: DDS-Security, by the plugins of Cyclone DDS.
+// Access control for sessions over UDP: DDS-Security, by the plugins of Cyclone DDS.
 #pragma once
 
 #include <string>
@@ -8,9 +8,9 @@
 
 namespace vps::scenes {
 
-/// The part of Cyclone's settings that names certificates and plugins; empty: without security. Throws
-/// LoadError where a file is missing, where this machine lacks the plugins, and where other machines could
-/// reach a network without certificates.
+/// The part of Cyclone DDS's settings that names certificates and plugins; empty: without security. Throws
+/// LoadError if a file or the plugins are missing, or if the network is reachable from other machines and no
+/// certificates are given.
 std::string securitySettings(const SessionNetwork& network, bool is_loopback);
 
 }  // namespace vps::scenes

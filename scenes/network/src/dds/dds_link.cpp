@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The link over UDP. The threads of a node use rings of their own process, as in shared memory; a thread of
-// the link passes them to DDS, and threads of DDS fill them. So no haptic thread calls DDS, which locks and
-// allocates. Physics writes its states itself.
+// The link over UDP. The threads of a node use rings in their own process, as in shared memory; a thread of
+// the link passes the messages to DDS, and threads of DDS fill the incoming rings. Thus no haptic thread
+// calls DDS, which locks and allocates. The physics thread writes its states to DDS directly.
 #include <semaphore.h>
 
 #include <algorithm>
@@ -27,10 +27,10 @@ namespace {
 
 constexpr std::int64_t kBeat_ns = 20'000'000;
 constexpr auto kSign_ns = static_cast<std::int64_t>(1e9 * kSignPeriod_s);
-constexpr double kAlive_s = 0.1;  ///< a node whose last beat is older is lost
-constexpr double kFind_s = 1;     ///< for a session to be found
-constexpr double kListen_s =
-    0.5;  ///< for another node to be heard. assumed: DDS finds a neighbour in a tenth
+constexpr double kAlive_s = 0.1;  ///< a node counts as lost if its last beat is older
+constexpr double kFind_s = 1;     ///< time limit to find a session
+/// Time limit to hear another node. Assumed: DDS finds a neighbour within a tenth of a second.
+constexpr double kListen_s = 0.5;
 constexpr std::size_t kDenseChannels = 2;  ///< Haptic and Physics, whose states have two forms
 constexpr std::size_t kTrips = 64;
 constexpr std::size_t kSceneHead = 16;
@@ -42,7 +42,8 @@ double since_s(std::int64_t ns) {
   return 1e-9 * static_cast<double>(now_ns() - ns);
 }
 
-/// At most so long. By the monotonic clock, since setting the other one must hold up no beat.
+/// Waits for the semaphore, at most `most_ns`. Uses the monotonic clock, so that setting the system clock
+/// delays no beat.
 void waitUntil(sem_t& semaphore, std::int64_t most_ns) {
   constexpr std::int64_t kSecond_ns = 1'000'000'000;
   timespec until{};
@@ -62,16 +63,16 @@ const char* nameOf(Channel channel) {
   return kNames[static_cast<std::size_t>(channel)];
 }
 
-/// What is known of another node.
+/// State of another node.
 struct Peer {
   NodeRole role = NodeRole::Watch;
   std::uint64_t session = 0;
   bool has_ended = false;
-  std::int64_t sent_ns = 0;   ///< its last beat, by its clock
-  std::int64_t heard_ns = 0;  ///< and by ours
-  MessageOrder order;         ///< of its beats
+  std::int64_t sent_ns = 0;   ///< sending time of its last beat, by its clock
+  std::int64_t heard_ns = 0;  ///< arrival time of its last beat, by our clock
+  MessageOrder order;         ///< order of its beats
   ClockEstimate clock;
-  std::vector<double> trips_s;  ///< the last ones
+  std::vector<double> trips_s;  ///< the last round trips
   std::size_t next_trip = 0;
 };
 
@@ -100,7 +101,7 @@ class DdsLink final : public Link {
       sem_post(&wake_);
       pump_.join();
     }
-    beats_in_.reset();  // no thread of DDS calls this object any more
+    beats_in_.reset();  // from here on no thread of DDS calls this object
     scene_.reset();
     for (std::optional<DdsTopic>& topic : topics_) topic.reset();
     for (std::optional<DdsTopic>& topic : dense_topics_) topic.reset();
@@ -108,7 +109,7 @@ class DdsLink final : public Link {
     sem_destroy(&arrived_);
   }
 
-  /// Opens a session of one's own.
+  /// Opens a new session.
   void open(std::string_view scene_bytes) {
     session_ = writer_.sender();
     std::string bytes;
@@ -121,7 +122,7 @@ class DdsLink final : public Link {
   void start() {
     pump_ = std::thread([this] { pump(); });
   }
-  /// Waits for a render node. False: there is none, or its scene has not come.
+  /// Waits for a render node. False: there is none, or its scene has not arrived.
   bool find() {
     return waitFor(kFind_s, [this] {
       const std::lock_guard lock(mutex_);
@@ -132,20 +133,20 @@ class DdsLink final : public Link {
     });
   }
 
-  /// Listens whether the session has a node of this kind, which tells so in every beat.
+  /// Whether the session has a node of this role, which sends its role in each beat; waits up to kListen_s.
   [[nodiscard]] bool hears(NodeRole role) const {
     return waitFor(kListen_s, [&] { return isAlive(role); });
   }
 
   [[nodiscard]] WireForm form() const noexcept override { return WireForm::Compact; }
   bool send(Channel channel, std::string_view message) noexcept override {
-    // The thread of physics may call DDS, which saves its states the way to the link's thread.
+    // The physics thread may call DDS; writing directly saves the detour over the link's thread.
     if (channel == Channel::Physics && role_ == NodeRole::Render) {
       stated_ns_.store(now_ns(), std::memory_order_relaxed);
       return write(channel, message);
     }
     const bool is_sent = writers_[static_cast<std::size_t>(channel)].write(message);
-    sem_post(&wake_);  // does not wait
+    sem_post(&wake_);  // never blocks
     return is_sent;
   }
   std::string_view receive(Channel channel, std::span<char> buffer) noexcept override {
@@ -194,7 +195,7 @@ class DdsLink final : public Link {
   }
 
  private:
-  /// How many nodes have the role in this session now.
+  /// Number of live nodes with this role in the session.
   [[nodiscard]] std::size_t aliveOf(NodeRole role) const {
     const std::lock_guard lock(mutex_);
     return static_cast<std::size_t>(std::count_if(peers_.begin(), peers_.end(), [&](const auto& entry) {
@@ -203,7 +204,7 @@ class DdsLink final : public Link {
              since_s(peer.heard_ns) < kAlive_s;
     }));
   }
-  /// Until it is so, at most so long.
+  /// Waits until the condition holds, at most `most_s`.
   template <typename IsSo>
   static bool waitFor(double most_s, IsSo is_so) {
     for (const std::int64_t begun_ns = now_ns(); since_s(begun_ns) < most_s;) {
@@ -224,7 +225,8 @@ class DdsLink final : public Link {
     if (!is_out)
       receive = [this, i](std::string_view bytes) {
         {
-          const std::lock_guard lock(receive_mutex_);  // two topics of a channel
+          const std::lock_guard lock(
+              receive_mutex_);  // a channel has two topics, whose threads write one ring
           writers_[i].write(bytes);
         }
         int waiting = 0;
@@ -249,24 +251,24 @@ class DdsLink final : public Link {
   void takeBeat(std::string_view bytes);
 
   NodeRole role_;
-  MessageWriter writer_;  ///< of beats
+  MessageWriter writer_;  ///< writer of beats
   DdsParticipant participant_;
   std::array<std::unique_ptr<SharedWord[]>, kChannels> rings_;
   std::array<RingWriter, kChannels> writers_;
   std::array<RingReader, kChannels> readers_;
   std::atomic<std::uint64_t> session_{0};
-  mutable std::mutex mutex_;  ///< of what follows; no haptic thread takes it
+  mutable std::mutex mutex_;  ///< guards the members below; no haptic thread locks it
   std::map<std::uint64_t, Peer> peers_;
   std::map<std::uint64_t, std::string> scenes_;
   std::vector<char> buffer_ = std::vector<char>(kLongestMessage);
   sem_t wake_{};
-  mutable sem_t arrived_{};                 ///< at most 1: something came since the last wait
-  std::atomic<std::uint64_t> signs_{0};     ///< that came of the render node
-  std::atomic<std::int64_t> stated_ns_{0};  ///< when physics sent its last state
+  mutable sem_t arrived_{};                 ///< at most 1: a message has arrived since the last wait
+  std::atomic<std::uint64_t> signs_{0};     ///< counts messages of the render node
+  std::atomic<std::int64_t> stated_ns_{0};  ///< time of physics' last state
   std::atomic<bool> is_ending_{false};
   std::atomic<std::uint64_t> refused_beats_{0};
   std::mutex receive_mutex_;
-  // After all that threads of DDS use.
+  // The topics are declared after all members that threads of DDS use.
   std::array<std::optional<DdsTopic>, kChannels> topics_, dense_topics_;
   std::optional<DdsTopic> beats_in_, beats_out_, scene_;
   std::thread pump_;
@@ -288,7 +290,7 @@ void DdsLink::pump() {
   std::int64_t next_beat_ns = now_ns();
   while (!is_ending_) {
     passOn();
-    // The device's node has to know that this one lives while a step of physics takes long.
+    // The device node has to see that this node is alive during a long physics step.
     const bool is_silent =
         role_ == NodeRole::Render && now_ns() - stated_ns_ >= kSign_ns && isAlive(NodeRole::Device);
     if (now_ns() >= next_beat_ns || is_silent) {
@@ -300,7 +302,7 @@ void DdsLink::pump() {
     }
   }
   passOn();
-  for (int i = 0; i < 3; ++i) sendBeats();  // best effort: that one of them arrives
+  for (int i = 0; i < 3; ++i) sendBeats();  // best effort, so several are sent
 }
 
 void DdsLink::passOn() {
@@ -341,9 +343,9 @@ void DdsLink::takeBeat(std::string_view bytes) {
     return;
   }
   const Envelope& envelope = reader.envelope();
-  if (envelope.sender == writer_.sender()) return;  // one's own
+  if (envelope.sender == writer_.sender()) return;  // a beat of this node
   const std::lock_guard lock(mutex_);
-  constexpr std::size_t kMostPeers = 64;  // a flood of senders takes no more memory than this
+  constexpr std::size_t kMostPeers = 64;  // limits the memory that a flood of senders can take
   if (!peers_.contains(envelope.sender) && peers_.size() >= kMostPeers)
     std::erase_if(peers_, [](const auto& entry) { return since_s(entry.second.heard_ns) > kAlive_s; });
   if (!peers_.contains(envelope.sender) && peers_.size() >= kMostPeers) return;
@@ -377,8 +379,8 @@ std::unique_ptr<Link> makeNetworkSession(const std::string& session, std::string
     DdsLink other(session, NodeRole::Watch, network);
     other.start();
     if (other.find() && other.isAlive(NodeRole::Render))
-      throw LoadError("", "",
-                      sessionWords(session) + ": another vps render runs it; choose another --session");
+      throw LoadError(
+          "", "", sessionWords(session) + ": another vps render already runs it; choose another --session");
   }
   auto link = std::make_unique<DdsLink>(session, NodeRole::Render, network);
   link->open(scene_bytes);

@@ -3,7 +3,7 @@
 
 #include "dds/ros_types.h"
 #include "dds/topics.h"
-#include "text/pose_numbers.h"
+#include "vps_scenes/scene/number_table.h"
 
 namespace vps::scenes {
 struct HeadTopic::Work {
@@ -14,14 +14,14 @@ struct HeadTopic::Work {
     const dds_entity_t name =
         ros::require(dds_create_topic(participant.entity(), &type, ("rt" + topic).c_str(), nullptr, nullptr));
     dds_qos_t* qos = dds_create_qos();
-    dds_qset_reliability(qos, DDS_RELIABILITY_BEST_EFFORT, 0);  // hears those that are reliable as well
+    dds_qset_reliability(qos, DDS_RELIABILITY_BEST_EFFORT, 0);  // matches reliable writers, too
     dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, 1);
     reader = dds_create_reader(participant.entity(), name, qos, nullptr);
     dds_delete_qos(qos);
     ros::require(reader);
   }
 
-  DdsParticipant participant;  // its end is that of its reader
+  DdsParticipant participant;  // deleting it deletes its reader
   dds_entity_t reader = 0;
 };
 

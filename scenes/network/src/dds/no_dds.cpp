@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// In place of dds_link.cpp where Cyclone DDS is missing.
+// Replaces the other sources of this folder if Cyclone DDS is missing.
 #include "link/link.h"
 #include "link/pointer_topic.h"
 #include "requests/request_channel.h"
@@ -13,8 +13,8 @@ namespace {
 
 [[noreturn]] void refuseNetwork() {
   throw LoadError("", "",
-                  "this build has no network, only shared memory; leave out --network, or build with Cyclone "
-                  "DDS (Debian: cyclonedds-dev)");
+                  "this build has no network support, only shared memory; leave out --network, or build with "
+                  "Cyclone DDS (Debian: cyclonedds-dev)");
 }
 
 }  // namespace
@@ -48,9 +48,9 @@ void RosTopics::publish(const Wrench&, std::int64_t) {}
 struct HeadTopic::Work {};
 HeadTopic::HeadTopic(const std::string& topic, int, const std::string&) {
   throw LoadError("", "",
-                  "this build has no network, so no head comes on '" + topic +
-                      "'; give 'head' or 'recorded' in its place, or build with Cyclone DDS (Debian: "
-                      "cyclonedds-dev)");
+                  "this build has no network support, so '" + topic +
+                      "' delivers no head poses; use 'head' or 'recorded' instead, or build with Cyclone DDS "
+                      "(Debian: cyclonedds-dev)");
 }
 HeadTopic::~HeadTopic() = default;
 std::optional<Pose> HeadTopic::take() {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Requests over UDP: a topic for what is asked, and one for the answers, which name whom they are for.
+// Requests over UDP: one topic for requests, and one for answers, which contain the asker's identity.
 #include <condition_variable>
 #include <deque>
 #include <mutex>
@@ -11,9 +11,9 @@ namespace vps::scenes {
 
 namespace {
 
-constexpr std::size_t kMostWaiting = 64;  // of a flood the newest
+constexpr std::size_t kMostWaiting = 64;  // in a flood, the newest messages are kept
 
-/// What a thread of DDS has received.
+/// Messages received by a thread of DDS.
 class Inbox {
  public:
   void put(std::string_view bytes) {
@@ -40,7 +40,7 @@ class Inbox {
   std::deque<std::string> waiting_;
 };
 
-/// One topic to write, and one to read.
+/// A topic to write and a topic to read.
 class Exchange {
  public:
   Exchange(const std::string& session, const SessionNetwork& network, const char* out, const char* in)
@@ -55,7 +55,7 @@ class Exchange {
  private:
   Inbox inbox_;
   DdsParticipant participant_;
-  DdsTopic out_, in_;  // after all that threads of DDS use
+  DdsTopic out_, in_;  // after all members that threads of DDS use
 };
 
 class NetworkServer final : public ServerChannel {

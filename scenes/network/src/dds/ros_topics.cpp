@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The names are those of ROS 2's mapping to DDS (design.ros2.org, "Topic and Service name mapping to DDS").
+// Topic names follow ROS 2's mapping to DDS (design.ros2.org, "Topic and Service name mapping to DDS").
 #include "vps_scenes/network/ros_topics.h"
 
 #include <dds/dds.h>
@@ -23,12 +23,12 @@ constexpr const char* kWorld = "world";
 
 struct WrenchStamped {
   Header header;
-  double wrench[6];  ///< force and torque
+  double wrench[6];  ///< force, then torque
 };
 struct TransformStamped {
   Header header;
   char* child_frame;
-  double transform[7];  ///< translation, and rotation x y z w
+  double transform[7];  ///< translation, then rotation x y z w
 };
 struct TfMessage {
   dds_sequence_t transforms;
@@ -41,7 +41,8 @@ constexpr std::uint32_t kWrenchOps[] = {kNumber,  offsetof(WrenchStamped, header
                                         kText,    offsetof(WrenchStamped, header.frame),
                                         kDoubles, offsetof(WrenchStamped, wrench),
                                         6,        DDS_OP_RTS};
-// Of a list: its place, the size of an element, and how far the next instruction and the element's are.
+// Operands of a list: its offset, the element size, and the distances to the next instruction and to the
+// element's.
 constexpr std::uint32_t kTfOps[] = {kList,
                                     offsetof(TfMessage, transforms),
                                     sizeof(TransformStamped),
@@ -102,7 +103,7 @@ struct RosTopics::Work {
     for (const ScenePart& part : scene.parts) frames.push_back(name + "/" + rosName(part.part.name));
   }
 
-  DdsParticipant participant;  // its end is that of its writers
+  DdsParticipant participant;  // deleting it deletes its writers
   dds_entity_t handle = 0, force = 0, tf = 0;
   std::vector<std::string> frames;
   std::vector<TransformStamped> transforms;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Types of ROS 2 as Cyclone DDS describes them. The layouts are those of ROS 2's common_interfaces.
-// Structures inside structures are written out, which is the same on the wire.
+// ROS 2 message types, described for Cyclone DDS. The layouts are those of ROS 2's common_interfaces. Nested
+// structures are flattened, which does not change the bytes on the wire.
 #pragma once
 
 #include <dds/dds.h>
@@ -17,7 +17,7 @@ struct Header {
 };
 struct PoseStamped {
   Header header;
-  double pose[7];  ///< position, and orientation x y z w
+  double pose[7];  ///< position, then orientation x y z w
 };
 
 inline constexpr std::uint32_t kNumber = static_cast<std::uint32_t>(DDS_OP_ADR) | DDS_OP_TYPE_4BY;
@@ -32,10 +32,10 @@ inline constexpr std::uint32_t kPoseOps[] = {kNumber,  offsetof(PoseStamped, hea
 inline constexpr std::uint32_t kPoseInstructions = 5;
 inline constexpr const char* kPoseName = "geometry_msgs::msg::dds_::PoseStamped_";
 
-/// @param instructions  in ops
+/// @param instructions  number of instructions in ops
 dds_topic_descriptor_t descriptor(const char* name, std::size_t size, const std::uint32_t* ops,
                                   std::uint32_t instructions);
-/// Throws LoadError where DDS refuses.
+/// Returns the entity. Throws LoadError if DDS refused to make it.
 dds_entity_t require(dds_entity_t made);
 
 }  // namespace vps::scenes::ros

@@ -22,7 +22,7 @@ namespace vps::scenes {
 
 namespace {
 
-/// struct Message { sequence<octet> bytes; }, as DDS lays it out.
+/// struct Message { sequence<octet> bytes; }, in the memory layout of Cyclone DDS.
 struct Message {
   dds_sequence_t bytes;
 };
@@ -31,7 +31,7 @@ constexpr std::uint32_t code(unsigned a, unsigned b, unsigned c) {
 }
 constexpr std::uint32_t kOperations[] = {code(DDS_OP_ADR, DDS_OP_TYPE_SEQ, DDS_OP_SUBTYPE_1BY),
                                          offsetof(Message, bytes), DDS_OP_RTS};
-/// struct State { octet bytes[40]; }: four bytes less than a sequence, which states how long it is.
+/// struct State { octet bytes[40]; }: four bytes shorter than a sequence, which stores its length.
 struct State {
   std::array<char, kDenseBytes> bytes;
 };
@@ -65,9 +65,9 @@ bool isLoopback(const std::string& interface) {
   return interface == "lo";
 }
 
-/// A thread of DDS that receives gets priority, where the system allows it.
+/// Raises the priority of a receiving thread of DDS, if the system allows it.
 void raiseThisThread() {
-  constexpr int kPriority = 76;  // below the haptic loop's 80, above the threads that use what came
+  constexpr int kPriority = 76;  // below the haptic loop's 80, above the threads that use the received data
   thread_local bool has_asked = false;
   if (!has_asked) device::requestRealTime(kPriority, false);
   has_asked = true;
@@ -76,10 +76,11 @@ void raiseThisThread() {
 void requireName(const std::string& interface) {
   for (const char c : interface)
     if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '.' && c != ':' && c != '-' && c != '_')
-      throw LoadError("", "", "--network " + interface + " names no network interface; `ip link` lists them");
+      throw LoadError("", "",
+                      "--network " + interface + " is no network interface; `ip link` lists the interfaces");
 }
 
-/// A domain cannot be made twice by a process.
+/// Returns the DDS domain for a network; a process can create each domain only once.
 dds_domainid_t domainOf(const SessionNetwork& network, int wanted) {
   struct Made {
     dds_domainid_t domain;
@@ -95,10 +96,10 @@ dds_domainid_t domainOf(const SessionNetwork& network, int wanted) {
     throw LoadError("", "", "--network " + interface + " was used with other certificates by this process");
   }
   requireName(interface);
-  // Cyclone DDS prints a line for each peer without a certificate of our authority, which a program's own
-  // words must not be mixed with.
+  // Cyclone DDS logs a line for each peer without a certificate of our authority; its log is disabled, so
+  // that it does not mix with the program's messages.
   dds_set_log_sink([](void*, const dds_log_data_t*) {}, nullptr);
-  // Loopback has no multicast, so the participants look for each other at the ports of the first few.
+  // Loopback has no multicast, so participants look for each other at the ports of the first few.
   const std::string find =
       isLoopback(interface)
           ? "<AllowMulticast>false</AllowMulticast></General><Discovery><ParticipantIndex>auto"
@@ -109,7 +110,7 @@ dds_domainid_t domainOf(const SessionNetwork& network, int wanted) {
       "<CycloneDDS><Domain id=\"any\"><General><Interfaces><NetworkInterface name=\"" + interface +
       "\"/></Interfaces>" + find + securitySettings(network, isLoopback(interface)) +
       "<Tracing><Verbosity>none</Verbosity></Tracing></Domain></CycloneDDS>";
-  // Sessions at different interfaces are apart on one machine.
+  // Different interfaces use different domains, which separates their sessions on one machine.
   const dds_domainid_t domain = wanted >= 0             ? static_cast<dds_domainid_t>(wanted)
                                 : isLoopback(interface) ? 77
                                                         : 78;
@@ -122,7 +123,7 @@ struct Qos {
   explicit Qos(Delivery delivery) {
     if (delivery == Delivery::Newest) {
       dds_qset_reliability(qos, DDS_RELIABILITY_BEST_EFFORT, 0);
-      dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, 16);  // until a thread of DDS has taken them
+      dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, 16);  // buffer until a thread of DDS takes them
     } else {
       dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, DDS_MSECS(100));
       dds_qset_history(qos, delivery == Delivery::Kept ? DDS_HISTORY_KEEP_LAST : DDS_HISTORY_KEEP_ALL, 1);
@@ -143,7 +144,8 @@ DdsParticipant::DdsParticipant(const SessionNetwork& network, int domain)
   require(entity_, network.security.empty()
                        ? ("interface " + network.interface).c_str()
                        : ("the certificates in " + network.security + " do not belong together").c_str());
-  // Threads of DDS use the security plugins until they end, which must be before those are unloaded at exit.
+  // Threads of DDS use the security plugins until they end, so DDS is shut down before the plugins are
+  // unloaded at exit.
   static const bool ends_in_order = std::atexit([] { dds_delete(DDS_CYCLONEDDS_HANDLE); }) == 0;
   (void)ends_in_order;
 }
@@ -154,7 +156,7 @@ DdsParticipant::~DdsParticipant() {
 
 std::string topicName(const std::string& session, const std::string& name) {
   std::string all = "vps/" + session + "/";
-  std::replace(all.begin(), all.end(), '-', '/');  // names of topics have no -
+  std::replace(all.begin(), all.end(), '-', '/');  // topic names must not contain -
   return all + name;
 }
 
@@ -213,7 +215,7 @@ DdsTopic::DdsTopic(const DdsParticipant& participant, const std::string& name, D
 }
 
 DdsTopic::~DdsTopic() {
-  dds_delete(work_->end);  // waits for a call of the listener
+  dds_delete(work_->end);  // waits for a running call of the listener
   dds_delete(work_->topic);
 }
 

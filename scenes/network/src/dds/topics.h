@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Topics of a session in DDS, as C++ objects.
+// DDS participants and topics of a session, as C++ objects.
 #pragma once
 
 #include <dds/dds.h>
@@ -13,11 +13,11 @@
 
 namespace vps::scenes {
 
-/// A participant in a domain of one network interface. Throws LoadError where the system refuses, and where
-/// the network needs certificates and has none.
+/// A participant in the domain of one network interface. Throws LoadError if the system refuses, or if the
+/// network needs certificates and none are given.
 class DdsParticipant {
  public:
-  /// @param domain  of other programs; negative: that of sessions
+  /// @param domain  domain of other programs; negative: the domain of sessions
   explicit DdsParticipant(const SessionNetwork& network, int domain = -1);
   ~DdsParticipant();
   DdsParticipant(const DdsParticipant&) = delete;
@@ -29,24 +29,25 @@ class DdsParticipant {
 };
 
 enum class Delivery {
-  Newest,    ///< best effort, and only the last one counts
-  Reliable,  ///< each one, in order
-  Kept,      ///< reliable; the last one is given to those who come later
+  Newest,    ///< best effort; only the newest message counts
+  Reliable,  ///< all messages, in order
+  Kept,      ///< reliable; late joiners get the last message
 };
 
-/// The name in DDS of what a session has under that name.
+/// DDS topic name of a session's topic.
 std::string topicName(const std::string& session, const std::string& name);
 
-/// What a topic carries.
+/// Data type of a topic.
 enum class TopicType {
   Message,  ///< in IDL: struct Message { sequence<octet> bytes; };
-  State,    ///< struct State { octet bytes[40]; }; a dense state, whose time of sending is that of the sample
+  State,    ///< in IDL: struct State { octet bytes[40]; }; a dense state, whose sending time is the sample's
+            ///< timestamp
 };
 
-/// Bytes that are published, or received, under a name.
+/// A topic that is either written or received.
 class DdsTopic {
  public:
-  /// @param receive  called by a thread of DDS, one call at a time; empty: the topic is written
+  /// @param receive  called by a thread of DDS, one call at a time; empty: the topic is for writing
   DdsTopic(const DdsParticipant& participant, const std::string& name, Delivery delivery,
            std::function<void(std::string_view bytes)> receive, TopicType type = TopicType::Message);
   ~DdsTopic();

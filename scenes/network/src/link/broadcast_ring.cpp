@@ -8,10 +8,12 @@ namespace vps::scenes {
 
 namespace {
 
-// memory[0] is the number of messages so far; slots begin on the next cache line. A slot holds its stamp, the
-// message's size, and its words. Message n has the stamp 2 n + 2, and 2 n + 1 while it is being written.
+// memory[0] is the number of messages written so far; slots begin on the next cache line. A slot holds a
+// stamp, the message's size, and its words. Message n has the stamp 2 n + 2, and 2 n + 1 while it is being
+// written.
 constexpr std::size_t kFirstSlot = 8;
-constexpr int kTries = 4;  // of latest(): each needs the writer to have lapped the whole ring meanwhile
+constexpr int kTries =
+    4;  // tries of latest(); a try fails only if the writer has lapped the whole ring in the meantime
 
 template <typename Word>
 Word* slotOf(Word* memory, const RingShape& shape, std::uint64_t number) {
@@ -23,8 +25,9 @@ Word* slotOf(Word* memory, const RingShape& shape, std::uint64_t number) {
 RingWriter::RingWriter(SharedWord* memory, RingShape shape) noexcept
     : memory_(memory), shape_(shape), number_(memory[0].load(std::memory_order_acquire)) {}
 
-// Words are stored with release, so that the odd stamp is visible before any of them; a reader that loads one
-// of them with acquire then sees that stamp when it checks. On x86 these are ordinary moves.
+// Words are stored with release order, so that the odd stamp is visible before any of them. A reader that
+// loads one of these words with acquire order therefore sees the odd stamp in its final check. On x86 these
+// are ordinary moves.
 bool RingWriter::write(std::string_view message) noexcept {
   if (message.size() > shape_.bytes) return false;
   SharedWord* slot = slotOf(memory_, shape_, number_);

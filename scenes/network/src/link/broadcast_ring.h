@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A ring of messages in memory that several processes share: one writer, any number of readers, no lock.
+// A ring of messages in memory shared by several processes: one writer, any number of readers, no lock.
 //
 // The writer never waits: it overwrites the oldest message. A slot carries the number of its message, odd
-// while it is being written, so that a reader notices a message that was overwritten while it was read. A
-// writer that is killed in the middle leaves the messages before it whole, and the next writer continues.
-// That is why states use this ring rather than a TripleBuffer: the latter keeps the ownership of its slots in
-// the two processes, where a kill loses it, and has one reader only.
+// while it is being written, so that a reader detects a message that was overwritten during reading. If the
+// writer is killed in the middle of a message, earlier messages stay intact, and the next writer continues. A
+// TripleBuffer is not used for states, because it has only one reader and keeps the ownership of its slots in
+// the two processes, where it is lost if one is killed.
 #pragma once
 
 #include <atomic>
@@ -17,9 +17,9 @@
 namespace vps::scenes {
 
 using SharedWord = std::atomic<std::uint64_t>;
-static_assert(SharedWord::is_always_lock_free && sizeof(SharedWord) == 8, "processes share no lock");
+static_assert(SharedWord::is_always_lock_free && sizeof(SharedWord) == 8, "processes must not share a lock");
 
-/// Slots and the room in each. Both are constants of the program, never read from shared memory.
+/// Number and size of the slots. Both are constants of the program and are never read from shared memory.
 struct RingShape {
   std::uint32_t slots = 0;  ///< a power of two
   std::uint32_t bytes = 0;  ///< longest message, a multiple of 8
@@ -28,33 +28,35 @@ struct RingShape {
   [[nodiscard]] constexpr std::size_t words() const { return 8 + slots * slotWords(); }
 };
 
-/// Continues where an earlier writer of the same memory stopped. Memory of zeros is an empty ring.
+/// Writes messages. Continues after the last message of an earlier writer of the same memory. Memory filled
+/// with zeros is an empty ring.
 class RingWriter {
  public:
   RingWriter() = default;
   RingWriter(SharedWord* memory, RingShape shape) noexcept;
 
-  /// Never waits or allocates. A longer message than the ring's is not written; false then. O(bytes).
+  /// Returns false, without writing, if the message is longer than the ring's slots. Never waits or
+  /// allocates. O(bytes).
   bool write(std::string_view message) noexcept;
 
  private:
   SharedWord* memory_ = nullptr;
   RingShape shape_;
-  std::uint64_t number_ = 0;  ///< of the next message
+  std::uint64_t number_ = 0;  ///< number of the next message
 };
 
-/// Each reader keeps its own place. Nothing that it finds in the memory is trusted.
+/// Reads messages. Each reader keeps its own position and validates everything that it reads from the memory.
 class RingReader {
  public:
   RingReader() = default;
   RingReader(const SharedWord* memory, RingShape shape) noexcept : memory_(memory), shape_(shape) {}
 
-  /// The oldest message not yet read; messages that were overwritten are counted in lost(). The result views
-  /// `buffer`, which has room for shape.bytes; empty: nothing new. Never waits or allocates.
+  /// The oldest unread message; messages that were overwritten are counted in lost(). The result is a view of
+  /// `buffer`, which has room for shape.bytes; empty: no new message. Never waits or allocates.
   [[nodiscard]] std::string_view next(std::span<char> buffer) noexcept;
-  /// The newest message, if it was not read yet. The ones before it are skipped.
+  /// The newest message if it is unread; older messages are skipped.
   [[nodiscard]] std::string_view latest(std::span<char> buffer) noexcept;
-  /// Skips what was written so far.
+  /// Skips all messages written so far.
   void skip() noexcept;
 
   [[nodiscard]] std::uint64_t lost() const noexcept { return lost_; }
@@ -64,7 +66,7 @@ class RingReader {
 
   const SharedWord* memory_ = nullptr;
   RingShape shape_;
-  std::uint64_t number_ = 0;  ///< of the next message to be read
+  std::uint64_t number_ = 0;  ///< number of the next message to read
   std::uint64_t lost_ = 0;
 };
 

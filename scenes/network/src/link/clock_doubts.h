@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Says once of each other node that its clock contradicts itself.
+// Reports each node whose clock contradicts itself, once.
 #pragma once
 
 #include <set>
@@ -10,12 +10,12 @@
 
 namespace vps::scenes {
 
-/// Used by one thread, which may wait for the link's other threads.
+/// Used by one thread, which may block on the link's other threads.
 class ClockDoubts {
  public:
-  /// A sentence for each node that has come into doubt since the last call.
+  /// A message for each node whose clock became inconsistent since the last call.
   std::vector<std::string> takeNew(const Link& link);
-  /// At the end: all of them with their counts. Empty: none.
+  /// Final summary of all inconsistent nodes with their counts. Empty: none.
   [[nodiscard]] static std::string summary(const Link& link);
 
  private:

@@ -8,9 +8,11 @@ namespace vps::scenes {
 
 namespace {
 
-constexpr std::int64_t kSpan_ns = 250'000'000;  // of which the shortest round trip is kept
-constexpr double kMostDrift = 1e-3;             // assumed: ten times what a bad quartz has
-constexpr int kStep = 20;  // this many contradictions in a row: the clock there was set, so begin anew
+constexpr std::int64_t kSpan_ns =
+    250'000'000;                     // span of which the exchange with the shortest round trip is kept
+constexpr double kMostDrift = 1e-3;  // assumed: ten times the drift of a bad quartz clock
+constexpr int kStep = 20;  // number of contradictions in a row after which the other clock was presumably
+                           // set; the estimate restarts
 
 double between_s(std::int64_t from_ns, std::int64_t to_ns) {
   return 1e-9 * static_cast<double>(to_ns - from_ns);
@@ -44,7 +46,7 @@ void ClockEstimate::add(const ClockExchange& exchange) noexcept {
 }
 
 ClockEstimate::Line ClockEstimate::line() const noexcept {
-  constexpr double kShare = 0.25, kLeast_s = 5e-6;  // assumed: what round trips differ by on an idle machine
+  constexpr double kShare = 0.25, kLeast_s = 5e-6;  // assumed: spread of round trips on an idle machine
   double shortest_s = point(0).round_trip_s;
   for (std::size_t i = 0; i < kept_; ++i) shortest_s = std::min(shortest_s, point(i).round_trip_s);
   Line line;
@@ -62,7 +64,7 @@ ClockEstimate::Line ClockEstimate::line() const noexcept {
   return line;
 }
 
-// With a single point the drift is not known and taken as none.
+// With a single point the drift is unknown and taken as zero.
 double ClockEstimate::drift() const noexcept {
   if (kept_ < 2) return 0;
   const Line line = this->line();
@@ -81,7 +83,7 @@ double ClockEstimate::offset_s(std::int64_t here_ns) const noexcept {
   return point(0).offset_s + mean_s + drift() * (between_s(point(0).here_ns, here_ns) - line.t_mean_s);
 }
 
-// Each point's offset is off by at most half of its round trip, and counts as much as the line says.
+// Each point's offset is off by at most half of its round trip, weighted by its share in the line.
 double ClockEstimate::error_s() const noexcept {
   if (kept_ == 0) return 0;
   const Line line = this->line();
@@ -93,7 +95,7 @@ double ClockEstimate::error_s() const noexcept {
 
 std::int64_t sentByClockHere_ns(std::int64_t sent_ns, double offset_s, std::int64_t now_ns) noexcept {
   constexpr std::int64_t kWrap_ns = (std::int64_t{1} << 32U) * 1000;
-  // Modulo the wrap, without overflow whatever a peer claims.
+  // Reduced modulo the wrap, so that no value sent by a peer can overflow.
   const std::int64_t offset_ns =
       static_cast<std::int64_t>(std::fmod(1e9 * offset_s, static_cast<double>(kWrap_ns)));
   std::int64_t ago_ns = (now_ns % kWrap_ns - sent_ns % kWrap_ns + offset_ns) % kWrap_ns;

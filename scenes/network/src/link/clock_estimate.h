@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Offset and drift of another machine's clock, from messages that go there and back.
+// Offset and drift of another machine's clock, from messages that are sent there and back.
 //
 //   here   t0 ----------------------- t3      offset = ((t1 - t0) + (t2 - t3)) / 2
 //               \                   /         error  <= half of the round trip (t3 - t0) - (t2 - t1)
 //   there        t1 ----------- t2
 //
-// The error is greatest where one way took all of the time, so exchanges with a short round trip are worth
-// most: of each quarter of a second only the shortest is kept (source: [Mills 1991], clock filter), and a
-// line is laid through those of the last 16 s, each of which weighs the less the more its round trip is above
-// the shortest. So a machine that is busy for seconds, with no short round trip meanwhile, does no harm.
+// The error is greatest if one direction took all of the time, so exchanges with a short round trip are the
+// most accurate. Of each quarter of a second only the exchange with the shortest round trip is kept (source:
+// [Mills 1991], clock filter), and a line is fitted to the kept exchanges of the last 16 s. An exchange has
+// less weight the more its round trip exceeds the shortest one. The estimate therefore survives a machine
+// that is busy for seconds and has no short round trip in this time.
 #pragma once
 
 #include <array>
@@ -17,7 +18,7 @@
 
 namespace vps::scenes {
 
-/// The four times of an exchange [ns], t0 and t3 by the clock here, t1 and t2 by the one there.
+/// The four times of an exchange [ns]: t0 and t3 by our clock, t1 and t2 by the other clock.
 struct ClockExchange {
   std::int64_t t0_ns = 0, t1_ns = 0, t2_ns = 0, t3_ns = 0;
 
@@ -29,21 +30,22 @@ struct ClockExchange {
   }
 };
 
-/// Used by one thread. Never allocates.
+/// Estimates another clock's offset. Used by one thread. Never allocates.
 class ClockEstimate {
  public:
-  /// Takes an exchange in order of its t3. One whose round trip is negative, or whose clock is farther off
-  /// than any drift explains, is not used but counted.
+  /// Adds an exchange; exchanges come in order of t3. An exchange with a negative round trip, or an offset
+  /// that no drift explains, is only counted as a contradiction.
   void add(const ClockExchange& exchange) noexcept;
 
   [[nodiscard]] bool isKnown() const noexcept { return kept_ > 0; }
-  /// What the clock there is ahead at that time by the clock here.
+  /// Offset of the other clock relative to ours at a time of our clock; positive: the other clock is ahead.
   [[nodiscard]] double offset_s(std::int64_t here_ns) const noexcept;
-  /// Bound of its error at the last exchange, if the clock there does not lie and its rate stays.
+  /// Error bound of offset_s() at the last exchange, provided that the other clock is honest and keeps its
+  /// rate.
   [[nodiscard]] double error_s() const noexcept;
-  /// Rate of the clock there against the one here, less 1.
+  /// Rate of the other clock relative to ours, minus 1.
   [[nodiscard]] double drift() const noexcept;
-  /// Exchanges that contradict the ones before.
+  /// Number of exchanges that contradict earlier ones.
   [[nodiscard]] std::uint64_t contradictions() const noexcept { return contradictions_; }
 
  private:
@@ -51,20 +53,20 @@ class ClockEstimate {
     std::int64_t here_ns = 0;
     double offset_s = 0, round_trip_s = 0;
   };
-  static constexpr std::size_t kPoints = 64;  ///< 16 s
+  static constexpr std::size_t kPoints = 64;  ///< covers 16 s
 
-  /// The line, as what each kept point counts in its value at a time.
+  /// The fitted line, stored as the weights of the kept points.
   struct Line {
     double weights = 0, t_mean_s = 0, square = 0;
     std::array<double, kPoints> weight{};
-    /// Of the point's offset in the line's value at that time from the newest point on.
+    /// Share of a point's offset in the line's value at time t_s, measured from the newest point.
     [[nodiscard]] double share(std::size_t i, double point_s, double t_s) const noexcept {
       const double slope = square > 0 ? (t_s - t_mean_s) * (point_s - t_mean_s) / square : 0;
       return weight[i] * (1 / weights + slope);
     }
   };
   [[nodiscard]] Line line() const noexcept;
-  /// By the clock here, from the newest point on.
+  /// Time of a point by our clock, relative to the newest point.
   [[nodiscard]] double time_s(std::size_t i) const noexcept {
     return 1e-9 * static_cast<double>(point(i).here_ns - point(0).here_ns);
   }
@@ -79,11 +81,11 @@ class ClockEstimate {
   int contradictions_in_a_row_ = 0;
 };
 
-/// When a message was sent, by the clock here; never later than now. Takes times of which only the lower 32
-/// bits of the microseconds came, too, as those of compact messages: so the result is within 36 minutes
-/// before now.
-/// @param sent_ns   by the clock there
-/// @param offset_s  what that clock is ahead
+/// Sending time of a message by our clock; never later than now. Also accepts times of which only the lower
+/// 32 bits of the microseconds were sent, as in compact messages; the result is then within 36 minutes before
+/// now.
+/// @param sent_ns   sending time by the other clock
+/// @param offset_s  offset of the other clock; positive: it is ahead
 std::int64_t sentByClockHere_ns(std::int64_t sent_ns, double offset_s, std::int64_t now_ns) noexcept;
 
 }  // namespace vps::scenes

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The connection between the nodes of a session, as one node sees it.
+// The connection between the nodes of a session, as one node uses it.
 #pragma once
 
 #include <array>
@@ -19,16 +19,16 @@
 
 namespace vps::scenes {
 
-/// What flows between nodes, each from one writer. States: the newest counts. The others: each counts, in
-/// order.
+/// Message streams between nodes, each with one writer. Of a state channel only the newest message matters;
+/// other channels deliver all messages in order.
 enum class Channel : std::uint8_t {
   Haptic,    ///< state, device to all
   Physics,   ///< state, render to device
   Snapshot,  ///< state, render to watchers
   Request,   ///< render to device
   Reply,     ///< device to render
-  Log,       ///< device to render: what a recording holds of the haptic loop
-  News,      ///< render to watchers: what happened, in words
+  Log,       ///< device to render: entries of the haptic loop's log, for a recording
+  News,      ///< render to watchers: events, in words
 };
 inline constexpr std::size_t kChannels = 7;
 
@@ -40,7 +40,7 @@ constexpr NodeRole writerOf(Channel channel) {
   return is_devices ? NodeRole::Device : NodeRole::Render;
 }
 
-/// Who gets a channel's messages over a network; in shared memory all can read them.
+/// Whether a role receives a channel over a network; in shared memory every node can read all channels.
 constexpr bool isReader(Channel channel, NodeRole role) {
   switch (channel) {
     case Channel::Haptic:
@@ -58,10 +58,10 @@ constexpr bool isReader(Channel channel, NodeRole role) {
   return false;
 }
 
-/// Longest message of any channel, a snapshot of a scene with many parts.
+/// Length limit of a message of any channel [bytes]; the longest is a snapshot of a scene with many parts.
 inline constexpr std::size_t kLongestMessage = 64 * 1024;
 
-/// Where a node keeps the messages of each channel until they are read.
+/// Ring shapes in which a node buffers the messages of each channel until they are read.
 inline constexpr std::array<RingShape, kChannels> kChannelShapes = {{
     {16, 1024},            // Haptic
     {16, 1024},            // Physics
@@ -72,91 +72,91 @@ inline constexpr std::array<RingShape, kChannels> kChannelShapes = {{
     {256, 1024},           // News
 }};
 
-/// How a peer on another machine is reached.
+/// Round trip to a peer on another machine, and its clock.
 struct PeerTiming {
-  double round_trip_s = 0;           ///< the longest of the last ones
-  double clock_offset_s = 0;         ///< what the peer's monotonic clock is ahead
-  double clock_error_s = 0;          ///< bound of that
-  double clock_drift = 0;            ///< its rate, less 1
-  std::uint64_t contradictions = 0;  ///< times that it gave and that cannot be
+  double round_trip_s = 0;           ///< longest of the last round trips
+  double clock_offset_s = 0;         ///< offset of the peer's monotonic clock; positive: it is ahead
+  double clock_error_s = 0;          ///< error bound of the offset
+  double clock_drift = 0;            ///< rate of the peer's clock, minus 1
+  std::uint64_t contradictions = 0;  ///< number of contradictory times from the peer
 };
 
-/// What another node said of its times, and cannot be.
+/// A node that sent contradictory times.
 struct PeerDoubt {
   NodeRole role = NodeRole::Watch;
   std::uint64_t sender = 0;
   std::uint64_t contradictions = 0;
 };
 
-/// Of the threads of a link. assumed: below the haptic loop's 80, above physics' 70
+/// Priority of the link's threads. Assumed: below the haptic loop's 80, above physics' 70.
 inline constexpr int kLinkPriority = 75;
 
-/// How often a render node that sends nothing else shows that it lives. assumed: three times within the limit
-/// of a silent peer.
+/// Period at which an otherwise silent render node signals that it is alive. Assumed: three signals within
+/// the limit for a silent peer.
 inline constexpr double kSignPeriod_s = 4e-3;
 
-/// send() and receive() neither throw, allocate, lock nor wait, except that the render node's send() calls
-/// the network. A channel is used by one thread at a time.
+/// The connection of one node. send() and receive() never throw, allocate, lock or wait, except that the
+/// render node's send() calls the network. A channel is used by one thread at a time.
 class Link {
  public:
   virtual ~Link() = default;
   Link(const Link&) = delete;
   Link& operator=(const Link&) = delete;
 
-  /// False: longer than the channel's messages may be.
+  /// Returns false if the message is longer than the channel allows.
   virtual bool send(Channel channel, std::string_view message) noexcept = 0;
-  /// The newest message of a state, the next one of another channel, as it came; views `buffer`. Empty:
-  /// nothing new.
+  /// The newest message of a state channel, or the next message of another channel; a view of `buffer`.
+  /// Empty: no new message.
   virtual std::string_view receive(Channel channel, std::span<char> buffer) noexcept = 0;
-  /// Messages of a channel that were overwritten before they were received.
+  /// Number of a channel's messages that were overwritten before they were received.
   [[nodiscard]] virtual std::uint64_t lost(Channel channel) const noexcept = 0;
 
-  /// Changes while the render node lives, every kSignPeriod_s, also during a long step of its physics. For
-  /// the device's node, whose haptic thread calls it: neither locks nor calls the system.
+  /// A counter that changes at least every kSignPeriod_s while the render node is alive, even during a long
+  /// physics step. The device node's haptic thread reads it, so it neither locks nor calls the system.
   [[nodiscard]] virtual std::uint64_t signsOfLife() const noexcept { return 0; }
 
-  /// In which states are sent.
+  /// The form in which states are sent.
   [[nodiscard]] virtual WireForm form() const noexcept { return WireForm::Exact; }
 
   // The functions below may call the system.
-  /// Over UDP until a message comes, or so long; for threads with nothing else to do, one at a time. In
-  /// shared memory nobody is told of a message, so it returns at once.
+  /// Over UDP, waits until a message comes, at most `most_ns`; for threads with nothing else to do, one at a
+  /// time. In shared memory it returns at once, since arrivals are not signalled there.
   virtual void waitForMessage(std::int64_t /*most_ns*/) const {}
-  /// Whether a process has the role now.
+  /// Whether a live process has the role.
   [[nodiscard]] virtual bool isAlive(NodeRole role) const = 0;
-  /// How many watchers there are now.
+  /// Number of live watchers.
   [[nodiscard]] virtual std::size_t watchers() const = 0;
-  /// A number that no other run of the render node has.
+  /// Identifier of this run of the render node, unique among all runs.
   [[nodiscard]] virtual std::uint64_t sessionId() const = 0;
-  /// The render node has ended the session in good order.
+  /// Whether the render node has ended the session regularly.
   [[nodiscard]] virtual bool hasEnded() const = 0;
-  /// Empty in one machine, and while nothing is known.
+  /// Timing of a peer; empty within one machine, and until it is known.
   [[nodiscard]] virtual std::optional<PeerTiming> timing(NodeRole) const { return {}; }
-  /// The nodes of this session whose times contradict themselves.
+  /// The nodes of this session that sent contradictory times.
   [[nodiscard]] virtual std::vector<PeerDoubt> doubts() const { return {}; }
-  /// Beats that could not be read, or were sent again.
+  /// Number of beats that could not be read, or were repeated.
   [[nodiscard]] virtual std::uint64_t refusedBeats() const { return 0; }
-  /// The scene, as its archive; the caller checks it.
+  /// The scene as an archive, which the caller has to validate.
   [[nodiscard]] virtual std::string sceneBytes() const = 0;
 
  protected:
   Link() = default;
 };
 
-/// In shared memory of this machine. For the render node: makes the session, whose link says that it has
-/// ended once it is destroyed. Throws LoadError where the session exists.
+/// Creates a session in shared memory of this machine, for the render node. Destroying the link ends the
+/// session. Throws LoadError if the session exists.
 std::unique_ptr<Link> makeSession(const std::string& session, std::string_view scene_bytes);
-/// For the other nodes: null where there is no such session now. Throws LoadError where it is of another
-/// version of this program, or another device has joined it.
+/// Joins a session in shared memory, for the other nodes. Returns null if there is no such session. Throws
+/// LoadError if it belongs to another version of this program, or if another device has joined it.
 std::unique_ptr<Link> joinSession(const std::string& session, NodeRole role);
 
-/// The same where the network says. Over UDP it waits up to a second for a session to be found. Throws
-/// LoadError also where this build has no network.
+/// Creates or joins a session in the given network. Over UDP it waits up to a second for a session to be
+/// found. Also throws LoadError if this build has no network support.
 std::unique_ptr<Link> makeSession(const std::string& session, std::string_view scene_bytes,
                                   const SessionNetwork& network);
 std::unique_ptr<Link> joinSession(const std::string& session, NodeRole role, const SessionNetwork& network);
 
-/// Over UDP only; in dds/.
+/// Creates or joins a session over UDP; implemented in dds/.
 std::unique_ptr<Link> makeNetworkSession(const std::string& session, std::string_view scene_bytes,
                                          const SessionNetwork& network);
 std::unique_ptr<Link> joinNetworkSession(const std::string& session, NodeRole role,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The way of pointers between nodes over UDP.
+// Transport of pointers between nodes over UDP.
 #pragma once
 
 #include <memory>
@@ -11,7 +11,7 @@
 
 namespace vps::scenes {
 
-/// What each who watches a session sends to all who do; best effort. Used by one thread.
+/// Sends the pointers of one watcher to all watchers of a session; best effort. Used by one thread.
 class PointerTopic {
  public:
   virtual ~PointerTopic() = default;
@@ -19,14 +19,14 @@ class PointerTopic {
   PointerTopic& operator=(const PointerTopic&) = delete;
 
   virtual void send(std::string_view message) = 0;
-  /// Those that came since the last call, one's own too; of a flood the newest.
+  /// Messages received since the last call, including the own ones; in a flood, the newest.
   virtual std::vector<std::string> take() = 0;
 
  protected:
   PointerTopic() = default;
 };
 
-/// In dds/. Throws LoadError as joinSession() over a network.
+/// Implemented in dds/. Throws LoadError as joinSession() over a network.
 std::unique_ptr<PointerTopic> makePointerTopic(const std::string& session, const SessionNetwork& network);
 
 }  // namespace vps::scenes

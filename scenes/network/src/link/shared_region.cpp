@@ -23,16 +23,18 @@ namespace vps::scenes {
 namespace {
 
 constexpr mode_t kMode = 0600;
-constexpr const char* kFolder = "/dev/shm";  // where Linux shows the names; elsewhere nothing is swept
-constexpr int kLockTries = 20;               // another process may be sweeping: its lock is held for moments
+constexpr const char* kFolder =
+    "/dev/shm";  // where Linux lists shared memory; on other systems dead regions are not searched
+constexpr int kLockTries =
+    20;  // another process may hold the lock for moments while it searches for dead regions
 constexpr std::chrono::milliseconds kPause{10};
-constexpr off_t kWatchers = 1000;          // bytes from here on are watchers' marks
-constexpr off_t kMostProcesses = 1 << 22;  // greatest number of a process in Linux
+constexpr off_t kWatchers = 1000;          // locks on bytes from here on mark watchers
+constexpr off_t kMostProcesses = 1 << 22;  // greatest process number in Linux
 
 std::string prefix() {
   return "/bullet-vps." + std::to_string(getuid()) + ".";
 }
-/// What belongs to a session besides its own region follows its name and a dot.
+/// Name of a session's region. Further regions of a session append a dot and another name.
 std::string nameOf(const std::string& session) {
   requireSessionName(session.substr(0, session.find('.')));
   return prefix() + session;
@@ -55,12 +57,12 @@ bool lockByte(int file, NodeRole role) {
   return fcntl(file, F_OFD_SETLK, &lock) == 0;
 }
 bool isLocked(int file, NodeRole role) {
-  // A file that is open for reading only can ask for, and test, a lock for reading.
+  // A file that is open for reading only can only request, and test, a read lock.
   struct flock lock = byteOf(role, F_RDLCK);
   return fcntl(file, F_OFD_GETLK, &lock) == 0 && lock.l_type != F_UNLCK;
 }
 
-/// Whether the name still stands for this file.
+/// Whether the name still refers to this file.
 bool isNamed(int file, const std::string& name) {
   const int other = shm_open(name.c_str(), O_RDONLY | O_CLOEXEC, 0);
   if (other < 0) return false;
@@ -72,7 +74,7 @@ bool isNamed(int file, const std::string& name) {
   return is_same;
 }
 
-/// Removes the name if its region's owner is dead. False where the owner is alive.
+/// Removes the name if its region's owner is dead. Returns false if the owner is alive.
 bool removeDead(const std::string& name) {
   const int file = shm_open(name.c_str(), O_RDWR | O_CLOEXEC, 0);
   if (file < 0) return errno == ENOENT;
@@ -91,7 +93,9 @@ std::span<std::byte> mapped(int file, std::size_t bytes, bool is_writable) {
 }  // namespace
 
 std::string sessionWords(const std::string& session) {
-  return std::string("session '").append(session).append("'");  // not with +: GCC 12 warns falsely
+  return std::string("session '")
+      .append(session)
+      .append("'");  // concatenation with + causes a false warning of GCC 12
 }
 
 void requireSessionName(const std::string& session) {
@@ -129,22 +133,22 @@ SharedRegion SharedRegion::create(const std::string& session, std::size_t bytes)
   for (int i = 0; i < kLockTries; ++i) {
     const int file = shm_open(name.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, kMode);
     if (file < 0 && errno != EEXIST)
-      refuse(session, std::string("shared memory cannot be made: ") + std::strerror(errno));
+      refuse(session, std::string("shared memory cannot be created: ") + std::strerror(errno));
     if (file < 0) {
       if (!removeDead(name)) std::this_thread::sleep_for(kPause);
       continue;
     }
     SharedRegion region(file, {}, name);
-    // A sweeper may hold the lock of a region that is a moment old, and remove its name.
+    // Another process that searches for dead regions may hold the lock of a new region, and remove its name.
     if (!region.take(NodeRole::Render) || !isNamed(file, name)) continue;
     if (ftruncate(file, static_cast<off_t>(bytes)) != 0)
-      refuse(session, std::string("shared memory has no room: ") + std::strerror(errno));
+      refuse(session, std::string("there is not enough shared memory: ") + std::strerror(errno));
     region.memory_ = mapped(file, bytes, true);
     if (!region.isOpen())
       refuse(session, std::string("shared memory cannot be mapped: ") + std::strerror(errno));
     return region;
   }
-  refuse(session, "another vps render runs it; choose another --session, or stop that one");
+  refuse(session, "another vps render already runs it; choose another --session, or stop that one");
 }
 
 SharedRegion SharedRegion::open(const std::string& session, bool is_writable) {
@@ -158,7 +162,7 @@ SharedRegion SharedRegion::open(const std::string& session, bool is_writable) {
   struct stat status {};
   if (fstat(file, &status) != 0 || status.st_size <= 0) return {};
   if (status.st_uid != getuid() || (status.st_mode & 0777) != kMode)
-    refuse(session, "its shared memory is open to other users, so it is not used; remove " +
+    refuse(session, "its shared memory is accessible to other users, so it is not used; remove " +
                         std::string(kFolder) + name);
   region.memory_ = mapped(file, static_cast<std::size_t>(status.st_size), is_writable);
   if (!region.isOpen())
@@ -170,14 +174,14 @@ bool SharedRegion::take(NodeRole role) const {
   return lockByte(file_, role);
 }
 
-// A lock for reading on a byte that has the process's number: such locks exclude nobody.
+// A read lock on a byte with the process's number; read locks do not exclude each other.
 void SharedRegion::markWatcher() const {
   struct flock lock = byteOf(NodeRole::Watch, F_RDLCK);
   lock.l_start = kWatchers + getpid();
   fcntl(file_, F_OFD_SETLK, &lock);
 }
 
-// The system names any lock of a range, not the first one, so both sides of it are searched.
+// The system reports any lock of a range, not necessarily the first, so both sides of it are searched.
 std::size_t SharedRegion::watchers() const {
   std::size_t count = 0;
   std::vector<std::pair<off_t, off_t>> ranges = {{kWatchers, kWatchers + kMostProcesses}};

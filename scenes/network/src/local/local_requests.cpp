@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Requests within a machine: a socket of Linux's abstract names, which vanish with their process, and whose
-// system tells who is at the other end. POSIX is in this file only.
+// Requests within a machine, over a socket with an abstract name (Linux). Such names vanish with their
+// process, and the system tells each end the other's user. Only this file uses these POSIX calls.
 #include <poll.h>
 #include <sys/socket.h>
 #include <sys/un.h>
@@ -20,8 +20,8 @@ namespace vps::scenes {
 
 namespace {
 
-constexpr std::size_t kMostConnected = 16;  // of this user
-constexpr std::size_t kMostStrangers = 4;   // of others, who are told only that they are refused
+constexpr std::size_t kMostConnected = 16;  // connections of this user
+constexpr std::size_t kMostStrangers = 4;   // connections of other users, who only get a refusal
 
 class Socket {
  public:
@@ -52,7 +52,8 @@ Name socketName(const std::string& session, uid_t user) {
   Name name;
   name.address.sun_family = AF_UNIX;
   const std::string text = "bullet-vps." + std::to_string(user) + "." + session + ".requests";
-  std::memcpy(name.address.sun_path + 1, text.data(), text.size());  // the first byte is 0
+  std::memcpy(name.address.sun_path + 1, text.data(),
+              text.size());  // an abstract name starts with a zero byte
   name.size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + text.size());
   return name;
 }
@@ -60,11 +61,11 @@ Name socketName(const std::string& session, uid_t user) {
 Socket newSocket(int flags) {
   Socket socket(::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC | flags, 0));
   if (socket.file() < 0)
-    throw LoadError("", "", std::string("no socket can be made: ") + std::strerror(errno));
+    throw LoadError("", "", std::string("no socket can be created: ") + std::strerror(errno));
   return socket;
 }
 
-/// The user at the other end; empty: it is gone.
+/// The user at the other end; empty: the other end has closed.
 std::optional<uid_t> userOf(int file) {
   ucred peer{};
   socklen_t size = sizeof peer;
@@ -76,7 +77,7 @@ bool isTrusted(uid_t user) {
   return user == getuid() || user == 0;
 }
 
-/// What has come; empty optional: the other end is gone.
+/// Received bytes, possibly none; no value: the other end has closed.
 std::optional<std::string> receiveFrom(int file) {
   std::string bytes(kLongestAsk, '\0');
   const ssize_t size = recv(file, bytes.data(), bytes.size(), MSG_DONTWAIT);
@@ -96,12 +97,14 @@ class LocalServer final : public ServerChannel {
     const Name name = socketName(session, getuid());
     if (bind(listener_.file(), reinterpret_cast<const sockaddr*>(&name.address), name.size) != 0)
       throw LoadError("", "",
-                      sessionWords(session) +
-                          (errno == EADDRINUSE ? ": another vps render runs it; choose another --session, "
-                                                 "or stop that one"
-                                               : std::string(": cannot be asked: ") + std::strerror(errno)));
+                      sessionWords(session) + (errno == EADDRINUSE
+                                                   ? ": another vps render already runs it; choose another "
+                                                     "--session, or stop that one"
+                                                   : std::string(": its request socket cannot be opened: ") +
+                                                         std::strerror(errno)));
     if (listen(listener_.file(), static_cast<int>(kMostConnected)) != 0)
-      throw LoadError("", "", sessionWords(session) + ": cannot be asked: " + std::strerror(errno));
+      throw LoadError(
+          "", "", sessionWords(session) + ": its request socket cannot be opened: " + std::strerror(errno));
   }
 
   std::optional<IncomingRequest> receive(std::chrono::milliseconds limit) override {
@@ -120,7 +123,8 @@ class LocalServer final : public ServerChannel {
         clients_.erase(clients_.begin() + static_cast<std::ptrdiff_t>(i));
         return {};
       }
-      // Who was just heard comes last the next time, so that nobody who sends without end keeps others out.
+      // The served client moves to the end of the list, so that a client that sends continuously does not
+      // block the others.
       std::rotate(clients_.begin() + static_cast<std::ptrdiff_t>(i),
                   clients_.begin() + static_cast<std::ptrdiff_t>(i) + 1, clients_.end());
       if (files[0].revents != 0) accept();
@@ -153,8 +157,8 @@ class LocalServer final : public ServerChannel {
     const auto is_alike = [is_stranger](const Client& one) { return one.is_stranger == is_stranger; };
     const auto alike = static_cast<std::size_t>(std::count_if(clients_.begin(), clients_.end(), is_alike));
     if (alike >= (is_stranger ? kMostStrangers : kMostConnected))
-      clients_.erase(
-          std::find_if(clients_.begin(), clients_.end(), is_alike));  // the one not heard for longest
+      clients_.erase(std::find_if(clients_.begin(), clients_.end(),
+                                  is_alike));  // the client that was silent for longest
     clients_.push_back({std::move(socket), ++count_, is_stranger});
   }
 
@@ -166,7 +170,7 @@ class LocalServer final : public ServerChannel {
 class LocalClient final : public ClientChannel {
  public:
   explicit LocalClient(Socket socket) : socket_(std::move(socket)) {}
-  /// Where the other end does not read, what does not fit is lost: it is sent again later.
+  /// If the other end does not read, a message that does not fit is dropped; the caller repeats it later.
   void send(std::string_view bytes) override {
     if (::send(socket_.file(), bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT) < 0)
       is_over_ = errno != EAGAIN && errno != ENOBUFS && errno != EINTR;
@@ -195,10 +199,10 @@ std::unique_ptr<ClientChannel> findLocalServer(const std::string& session, uid_t
   const Name name = socketName(session, user);
   Socket socket = newSocket(SOCK_NONBLOCK);
   if (connect(socket.file(), reinterpret_cast<const sockaddr*>(&name.address), name.size) != 0) {
-    if (errno == EAGAIN) throw LoadError("", "", sessionWords(session) + ": its vps render does not react");
+    if (errno == EAGAIN) throw LoadError("", "", sessionWords(session) + ": its vps render does not respond");
     return nullptr;
   }
-  // Anybody may take a name that is free.
+  // Any user may bind a free name, so the owner of the socket is checked.
   if (const std::optional<uid_t> owner = userOf(socket.file()); !owner || (*owner != user && *owner != 0))
     throw LoadError("", "", sessionWords(session) + ": its name is used by a program of another user");
   return std::make_unique<LocalClient>(std::move(socket));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The link in shared memory: a head, a ring for each channel, and the scene.
+// The link in shared memory: a header, a ring for each channel, and the scene.
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -15,12 +15,13 @@ namespace vps::scenes {
 
 namespace {
 
-constexpr std::uint64_t kMagic = 0x76707331'00000000;  // "vps1", and the version of the messages
+constexpr std::uint64_t kMagic = 0x76707331'00000000;  // "vps1", combined with the version of the messages
 constexpr std::uint64_t kScheme = kMagic | kMessageVersion;
 
 enum class SessionState : std::uint64_t { Making, Open, Ended };
 
-/// Words of the head, each written once, before the state becomes Open; kSigns is counted while it is open.
+/// Words of the header. Each is written once before the state becomes Open, except kSigns, which counts while
+/// it is open.
 enum Head : std::size_t { kState, kSchemeWord, kIdentity, kSceneSize, kSigns, kHeadWords = 8 };
 
 constexpr std::size_t offsetOf(std::size_t channel) {
@@ -41,7 +42,7 @@ class SharedLink final : public Link {
       else
         readers_[i] = RingReader(ring, kChannelShapes[i]);
     }
-    // Requests and logs of an earlier device are nobody's now; a watcher begins with what comes.
+    // A new device skips requests to an earlier device; a watcher starts with new messages.
     if (role == NodeRole::Device) reader(Channel::Request).skip();
     if (role == NodeRole::Watch)
       for (const Channel channel : {Channel::Request, Channel::Reply, Channel::Log}) reader(channel).skip();
@@ -101,7 +102,7 @@ class SharedLink final : public Link {
   NodeRole role_;
   std::array<RingWriter, kChannels> writers_;
   std::array<RingReader, kChannels> readers_;
-  std::optional<device::PeriodicThread> signs_;  ///< of the render node
+  std::optional<device::PeriodicThread> signs_;  ///< runs in the render node only
 };
 
 }  // namespace
@@ -130,7 +131,7 @@ std::unique_ptr<Link> joinSession(const std::string& session, NodeRole role) {
     throw LoadError("", "",
                     sessionWords(session) +
                         " is run by another version of vps render; use the same version for all nodes");
-  // The writers continue where the region's last device stopped, so the role comes first.
+  // A writer continues where the region's last device stopped, so it must own the role first.
   if (role == NodeRole::Device && !region.take(NodeRole::Device))
     throw LoadError("", "", sessionWords(session) + " has a device already; only one hand can hold the part");
   if (role == NodeRole::Watch) region.markWatcher();

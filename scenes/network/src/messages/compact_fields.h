@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The states between nodes where bytes are dear, over UDP: lengths as floats, rotations in eight bytes,
-// twists and wrenches as half floats. Of haptics and physics these are the whole states, of which there are
-// few; most are dense (dense_state.h).
+// The compact form of states and snapshots, for UDP: lengths are floats, rotations take eight bytes, twists
+// and wrenches are half floats. Most haptic and physics states are sent in the shorter dense form
+// (dense_state.h); the occasional whole states use this form.
 //
-// visit(x) takes the worth of a float of each number; visit.exact(x) every bit; visit.coarse(x) the worth of
-// a half float. Shared by writing and reading.
+// visit(x) stores numbers as floats, visit.exact(x) with all bits, and visit.coarse(x) as half floats. Writer
+// and reader share these functions.
 #pragma once
 
 #include "messages/message_fields.h"
@@ -64,7 +64,7 @@ void compactFields(SnapshotMessage& m, V& visit) {
   visit.list(s.contacts, [&visit](ContactMark& mark) {
     visit(mark.p_W);
     visit.coarse(mark.n_W);
-    visit.coarse(mark.depth_m);  // to 0.06 um, or a part in 2048
+    visit.coarse(mark.depth_m);  // precise to 0.06 um, or 1 part in 2048
     visit.coarse(mark.force_N);
   });
 }

@@ -18,15 +18,16 @@ constexpr unsigned kSenderBits = 18, kNumberBits = 24, kTickBits = 8, kTimeBits 
                    kComponentBits = 18;
 constexpr double kStep_m = 1e-6, kStep_s = 1e-6;
 constexpr double kLargest_m = kStep_m * ((1 << (kLengthBits - 1U)) - 1);
-constexpr double kLargest_J = 1e12;  // as of any number between nodes
-/// A dense state may be this much later, or in steps, than the one before, so that its lower bits tell it.
+constexpr double kLargest_J = 1e12;  // the limit of all numbers between nodes
+/// Greatest increase of time, or of steps, between consecutive dense states, so that the lower bits identify
+/// the full value.
 constexpr double kMostLater_s = 1000;
 constexpr std::int32_t kMostTicks = 32;
 constexpr int kExponents = 32, kLeastExponent = -22;
 
 enum class DenseKind : std::uint8_t { Haptic, Physics };
 
-/// Bits from the highest one of the first byte on.
+/// Writes bits, starting with the highest bit of the first byte.
 class BitWriter {
  public:
   void put(std::uint64_t value, unsigned bits) noexcept {
@@ -66,7 +67,7 @@ class BitReader {
 std::int64_t timeSteps(double time_s) noexcept {
   return std::llround(time_s / kStep_s);
 }
-/// The number with these lower bits that is nearest to another one.
+/// The number that is nearest to `to` among those with the given lower bits.
 std::int64_t nearest(std::uint64_t low, unsigned bits, std::int64_t to) noexcept {
   const std::int64_t all = std::int64_t{1} << bits;
   std::int64_t ahead = (static_cast<std::int64_t>(low) - to) % all;
@@ -89,7 +90,7 @@ bool get(BitReader& r, Pose& X) noexcept {
   return R.has_value();
 }
 
-/// The least exponent with which the greatest of the three fits; kExponents: none.
+/// The least exponent for which the largest of the three components fits; kExponents: none fits.
 int exponentOf(const Vec3& x, unsigned mantissa) noexcept {
   const double most = (1 << (mantissa - 1U)) - 1, greatest = x.cwiseAbs().maxCoeff();
   int e = 0;
@@ -136,19 +137,21 @@ void putHead(BitWriter& w, DenseKind kind, std::uint64_t sender, std::uint64_t n
   w.put(static_cast<std::uint32_t>(tick), kTickBits);
 }
 constexpr unsigned kHeadBits = 8 + kSenderBits + kNumberBits;
-/// Ticks go on, so of those with the lower bits it is the next one, or one a little before.
+/// Ticks increase, so of the ticks with these lower bits the next one is taken, or one slightly before the
+/// last.
 std::int32_t tickAfter(std::uint64_t low, std::int32_t last) noexcept {
   constexpr std::int64_t kBefore = 8;
   const std::int64_t middle = last + (std::int64_t{1} << (kTickBits - 1U)) - kBefore;
   return static_cast<std::int32_t>(nearest(low, kTickBits, middle));
 }
 
-/// Twist of the part in hand, which turns with the grasp.
+/// Twist of the part in hand, which moves rigidly with the grasp.
 Twist heldTwist(const CouplingState& grasp, const Pose& X_WP) noexcept {
   return {grasp.V_W.w, grasp.V_W.v + grasp.V_W.w.cross(X_WP.p - grasp.X_W.p)};
 }
-/// Under load the time of physics goes slower than that of the loop, and the grasp's twist is given in the
-/// loop's. What the part's twist is of the one that follows from the grasp, in steps.
+/// Under load, physics time runs slower than the loop's time, and the grasp's twist is given in the loop's
+/// time. The pace is the ratio of the part's twist to the twist that follows from the grasp, in steps of
+/// 1/64.
 constexpr unsigned kPaceBits = 10;
 constexpr double kPaceSteps = 64;
 double paceOf(const Twist& held, const Twist& follows) noexcept {
@@ -163,24 +166,26 @@ Twist scaled(const Twist& V, double share) noexcept {
   return {share * V.w, share * V.v};
 }
 
-/// Came after a later one. A number that is farther back was damaged, or the later one's was.
+/// Whether a state is older than the newest one. If its number is much lower, one of the two numbers was
+/// damaged.
 bool isLate(std::int32_t tick, std::int32_t now) noexcept {
   constexpr std::int32_t kFarthest = 64;
   return tick < now && tick >= now - kFarthest;
 }
 bool isNear(const Pose& a, const Pose& b) noexcept {
-  constexpr double kWay_m = 2e-6, kTurn = 1e-5;  // of the size of a dense pose's rounding
+  constexpr double kWay_m = 2e-6, kTurn = 1e-5;  // of the order of a dense pose's rounding
   return (a.p - b.p).norm() <= kWay_m && (a.R - b.R).cwiseAbs().maxCoeff() <= kTurn;
 }
 bool isNear(const Twist& a, const Twist& b) noexcept {
-  constexpr double kShare = 4e-3, kLeast = 1e-4;  // as the mantissas have it; and of a part at rest
+  constexpr double kShare = 4e-3,
+                   kLeast = 1e-4;  // relative error of the mantissas; absolute error for a part at rest
   return (a.v - b.v).norm() <= kLeast + kShare * b.v.norm() &&
          (a.w - b.w).norm() <= kLeast + kShare * b.w.norm();
 }
 
 }  // namespace
 
-/// Counts; `is_news`: so that all have to know it at once.
+/// Decides whether a whole state is due, and counts. @param is_news  a change that all readers need at once
 bool DenseWriter::isDue(bool is_news, bool is_wished) noexcept {
   if (is_news) whole_left_ = kWholeAfterNews;
   const bool is_due =
@@ -324,7 +329,7 @@ bool readDense(std::string_view bytes, const DenseBase& base, PhysicsMessage& m)
   get(r, state.part.V_W);
   const auto pace = static_cast<double>(r.get(kPaceBits));
   if (pace == 0) return false;
-  if (!state.part.is_coupled) return true;  // the part is where it was
+  if (!state.part.is_coupled) return true;  // the part stays where it was
   state.held.X_WP = state.part.X_W * base.X_GP;
   state.held.V_WP = scaled(heldTwist(state.part, state.held.X_WP), pace / kPaceSteps);
   return true;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The fields of each message, in the order of its bytes: one table for writing and reading.
 //
-// visit(x) for a number, vector, pose, twist, wrench, flag or text; visit.notNegative(x) for a number of at
-// least 0; visit.choice(e, count) for an enumeration with that many values; visit.raw(x) for bytes of any
-// value; visit.unchecked(on) where a number may be anything, as in the log of a faulty device.
+// visit(x) handles a number, vector, pose, twist, wrench, flag or text; visit.notNegative(x) a number of at
+// least 0; visit.choice(e, count) an enumeration with `count` values; visit.raw(x) arbitrary bytes.
+// visit.unchecked(on) allows numbers of any value, as in the log of a faulty device.
 #pragma once
 
 #include "messages/messages.h"
@@ -17,7 +17,7 @@ void fields(Envelope& m, V& visit) {
   visit(m.time_ns);
 }
 
-// Of these two the compact messages have the same fields.
+// The compact messages have the same fields for the next two types.
 template <typename V>
 void fields(device::PassivityObserver& energy, V& visit) {
   visit(energy.to_hand_J);
@@ -47,7 +47,7 @@ void fields(HapticMessage& m, V& visit) {
   visit(report.F_hand_W);
   visit(report.F_hand_D);
   visit(report.clutch_ratio);
-  visit(m.state.proxy.is_coupled);  // the rest of the proxy is in the report
+  visit(m.state.proxy.is_coupled);  // the remaining values of the proxy are in the report
   visit.choice(m.state.safety.fault, 8);
   visit(m.state.safety.faults);
   visit(m.state.safety.limited);
@@ -76,7 +76,7 @@ void fields(PhysicsMessage& m, V& visit) {
 
 template <typename V>
 void fields(CouplingGains& gains, V& visit) {
-  visit.notNegative(gains.k_N_per_m);  // a negative spring or damper makes energy
+  visit.notNegative(gains.k_N_per_m);  // a negative spring or damper would generate energy
   visit.notNegative(gains.b_Ns_per_m);
   visit.notNegative(gains.k_Nm_per_rad);
   visit.notNegative(gains.b_Nms_per_rad);

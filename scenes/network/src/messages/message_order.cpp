@@ -5,9 +5,10 @@ namespace vps::scenes {
 
 namespace {
 
-constexpr double kClocksDiffer_s = 1;  // assumed: far above what two clocks gain in a pause of a link
+constexpr double kClocksDiffer_s =
+    1;  // assumed: far above the drift of two clocks during a pause of the link
 
-// As doubles, since times that a peer sends may be any numbers.
+// Computed with doubles, since a peer may send arbitrary times.
 double elapsed_s(std::int64_t from_ns, std::int64_t to_ns) {
   return 1e-9 * (static_cast<double>(to_ns) - static_cast<double>(from_ns));
 }
@@ -33,7 +34,7 @@ bool MessageOrder::continuesRun(const Heard& message) noexcept {
   const double later_s = elapsed_s(last_.sent_ns, message.sent_ns);
   const bool is_later = later_s > 0 && later_s < elapsed_s(last_.at_ns, message.at_ns) + kClocksDiffer_s;
   if (!is_later || message.number == 0) return false;
-  if (run_length_ > 0 && message.number == run_.number) return false;  // came twice
+  if (run_length_ > 0 && message.number == run_.number) return false;  // a repeated message
   const bool continues = run_length_ > 0 && message.number > run_.number &&
                          message.number - run_.number <= kMostAtOnce && message.sent_ns >= run_.sent_ns;
   run_length_ = continues ? run_length_ + 1 : 1;

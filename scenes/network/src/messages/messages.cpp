@@ -17,13 +17,14 @@ namespace vps::scenes {
 
 namespace {
 
-constexpr double kLargest = 1e12;        // of any number that a node sends in good faith
-constexpr double kRotationError = 1e-6;  // assumed: far above rounding, far below what is felt
+constexpr double kLargest = 1e12;        // limit of any number that a correct node sends
+constexpr double kRotationError = 1e-6;  // assumed: far above rounding, far below the threshold of touch
 constexpr std::size_t kEnvelopeBytes = 28;
-// Of a compact message: kind and version, sender, number, microseconds.
+// Envelope of a compact message: kind and version, sender, number, microseconds.
 constexpr std::size_t kCompactEnvelopeBytes = 16;
 constexpr std::uint16_t kCompactBit = 0x80;
-constexpr std::uint32_t kLongestList = 1024;  // bodies, or contacts, of a snapshot; the rest is left out
+constexpr std::uint32_t kLongestList =
+    1024;  // limit of the bodies or contacts in a snapshot; further ones are left out
 
 template <typename Message>
 constexpr MessageKind kKindOf = MessageKind::Haptic;
@@ -65,7 +66,7 @@ constexpr MessageKind kKindOf<PieceMessage> = MessageKind::Piece;
 template <>
 constexpr MessageKind kKindOf<FetchedMessage> = MessageKind::Fetched;
 
-/// What both directions share: how a field is made of numbers.
+/// Composes fields from numbers, for writing and reading.
 template <typename Self>
 class Visit {
  public:
@@ -130,7 +131,7 @@ class Visit {
   Self& self() { return static_cast<Self&>(*this); }
 };
 
-/// The same for the compact form.
+/// Composes fields in the compact form, for writing and reading.
 template <typename Self>
 class CompactVisit {
  public:
@@ -252,7 +253,7 @@ class CompactGet : public CompactVisit<CompactGet> {
   bool is_good_ = true;
 };
 
-/// The time that has these lower bits of its microseconds and is nearest to now.
+/// The time whose microseconds have these lower bits and that is nearest to now.
 std::int64_t nearNow_ns(std::uint32_t low_us) {
   const std::int64_t now_us = device::monotonicClock().now_ns() / 1000;
   const auto ahead = static_cast<std::int32_t>(low_us - static_cast<std::uint32_t>(now_us));
@@ -367,9 +368,9 @@ const char* toText(Reading reading) {
     case Reading::TooFarAhead:
       return "with a number too far ahead";
     case Reading::Early:
-      return "before the first whole one";
+      return "received before the first whole state";
     case Reading::Overtaken:
-      return "overtaken by a later one";
+      return "overtaken by a later state";
   }
   return "unknown";
 }
@@ -400,7 +401,7 @@ std::string_view MessageWriter::write(const Message& message) noexcept {
       head.put(static_cast<std::uint32_t>(++numbers_[static_cast<std::size_t>(kKind)]));
       head.put(static_cast<std::uint32_t>(device::monotonicClock().now_ns() / 1000));
       CompactPut put(out_);
-      wire::compactFields(const_cast<Message&>(message), put);  // it changes nothing
+      wire::compactFields(const_cast<Message&>(message), put);  // CompactPut does not change the message
       return out_;
     }
   }
@@ -409,7 +410,7 @@ std::string_view MessageWriter::write(const Message& message) noexcept {
   put.number(kMessageVersion);
   Envelope envelope{sender_, ++numbers_[static_cast<std::size_t>(kKind)], device::monotonicClock().now_ns()};
   wire::fields(envelope, put);
-  wire::fields(const_cast<Message&>(message), put);  // Put changes nothing
+  wire::fields(const_cast<Message&>(message), put);  // Put does not change the message
   return out_;
 }
 

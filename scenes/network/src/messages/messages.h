@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The messages between nodes: versioned, without pointers, least significant byte first. Each is of a fixed
-// size, except snapshots, which grow with the scene.
+// The messages between nodes: versioned, without pointers, little-endian. Each kind has a fixed size, except
+// snapshots, which grow with the scene.
 //
-// Bytes from a peer are never trusted: size, version, number, and every value are checked before use.
+// Bytes from a peer are never trusted: size, version, number and every value are checked before use.
 #pragma once
 
 #include <array>
@@ -26,7 +26,7 @@
 
 namespace vps::scenes {
 
-/// Of all messages together; nodes of other versions are refused when they join.
+/// Version of the message formats; nodes of other versions are refused when they join.
 inline constexpr std::uint16_t kMessageVersion = 8;
 
 enum class MessageKind : std::uint16_t {
@@ -44,20 +44,21 @@ enum class MessageKind : std::uint16_t {
   Ask,
   Answer,
   Piece,
-  DenseHaptic,  ///< states in another form, which count by themselves
+  DenseHaptic,  ///< dense states are numbered separately
   DensePhysics,
   Fetched,
 };
-inline constexpr std::size_t kMessageKinds = 18;  ///< and 0, of none
+inline constexpr std::size_t kMessageKinds = 18;  ///< including 0, which no message has
 
-/// At the start of each message.
+/// Header of each message.
 struct Envelope {
-  std::uint64_t sender = 0;  ///< a number that no other process has; of compact ones the lower half
-  std::uint64_t number = 0;  ///< of the message, counted by its sender for each kind, from 1
-  std::int64_t time_ns = 0;  ///< of sending, by the sender's monotonic clock
+  std::uint64_t sender =
+      0;  ///< random number, unique to the sending process; compact messages contain its lower half
+  std::uint64_t number = 0;  ///< number of the message, counted by the sender for each kind, from 1
+  std::int64_t time_ns = 0;  ///< sending time by the sender's monotonic clock
 };
 
-/// The loop after a tick, and what the hand does.
+/// State of the haptic loop after a tick, and of the hand.
 struct HapticMessage {
   device::HapticState state;
   std::uint8_t hand = 0;  ///< device::toByte(OperatorState)
@@ -68,42 +69,42 @@ struct PhysicsMessage {
 };
 
 enum class RequestKind : std::uint8_t {
-  Command,  ///< of the physics thread to hand and loop
-  Start,    ///< the loop
-  Stop,     ///< the loop
-  Setup,    ///< gains, and whether what the loop does is sent on Channel::Log
+  Command,  ///< a command of the physics thread to hand and loop
+  Start,    ///< starts the loop
+  Stop,     ///< stops the loop
+  Setup,    ///< sets the gains, and whether the loop's log is sent on Channel::Log
 };
 
-/// Asks the device's node for something. A part's way points are in the scene, which both nodes have.
+/// A request to the device node. The way points of a part are taken from the scene, which both nodes have.
 struct RequestMessage {
   RequestKind kind = RequestKind::Command;
   device::SyncEventKind command = device::SyncEventKind::Tick;
-  bool keeps_log = false;       ///< of Setup
-  Pose X_WG{};                  ///< of HandOver
-  std::uint32_t step = 0;       ///< of Begin and GoBack
-  double now_s = 0;             ///< of Begin
-  device::OperatorTask task{};  ///< of Begin, without its way points
-  /// Of Begin: how many way points of the scene's step are still ahead of the part.
+  bool keeps_log = false;       ///< for Setup
+  Pose X_WG{};                  ///< for HandOver
+  std::uint32_t step = 0;       ///< for Begin and GoBack
+  double now_s = 0;             ///< for Begin
+  device::OperatorTask task{};  ///< for Begin, without its way points
+  /// For Begin: number of way points of the scene's step that are still ahead of the part.
   std::uint32_t way_points_left = 0;
-  CouplingGains gains{};  ///< of Setup
+  CouplingGains gains{};  ///< for Setup
 };
 
 struct ReplyMessage {
-  std::uint64_t request = 0;  ///< the number of the request that was carried out, or refused
-  std::uint8_t hand = 0;      ///< after it
-  std::int32_t tick = 0;      ///< the loop's last one; states of this tick and before show the hand before it
-  std::array<char, 160> refusal{};  ///< why it was not carried out, zero-terminated; empty: it was
+  std::uint64_t request = 0;  ///< number of the request that was carried out or refused
+  std::uint8_t hand = 0;      ///< state of the hand after the request
+  std::int32_t tick = 0;  ///< last tick of the loop; states up to this tick show the hand before the request
+  std::array<char, 160> refusal{};  ///< reason of a refusal, zero-terminated; empty: carried out
 };
 
-/// The device's node when it joins.
+/// Sent by the device node when it joins.
 struct HelloMessage {
   device::DeviceLimits limits;
-  std::array<char, 64> name{};  ///< of the device, zero-terminated
-  bool is_by_person = false;    ///< moved by a person, who takes longer than the virtual operator
-  bool may_rearm = false;       ///< after a lost peer, the render node may re-arm the loop
+  std::array<char, 64> name{};  ///< name of the device, zero-terminated
+  bool is_by_person = false;    ///< moved by a person, who is slower than the virtual operator
+  bool may_rearm = false;       ///< the render node may re-arm the loop after a peer was lost
 };
 
-/// How the device's node keeps time.
+/// Timing statistics of the device node.
 struct TimesMessage {
   TickTimes tick, late, response;
   std::array<std::uint64_t, device::kTickCauses> missed_by{};
@@ -114,7 +115,7 @@ struct TimesMessage {
 };
 
 struct LogMessage {
-  std::uint32_t number = 0;  ///< of the entry; those that were lost leave a gap
+  std::uint32_t number = 0;  ///< number of the entry; lost entries leave a gap
   device::LogEntry entry;    ///< a DeviceSample, a WrittenWrench or a SyncEvent
 };
 
@@ -125,94 +126,96 @@ struct SnapshotMessage {
 enum class NewsKind : std::uint8_t {
   Note,
   StepDone,
-  Ended,  ///< the run
+  Ended,  ///< the run has ended
 };
 
 struct NewsMessage {
   NewsKind kind = NewsKind::Note;
   std::int32_t step = -1;
   Verdict verdict = Verdict::NotShown;
-  double time_s = 0;             ///< simulated
+  double time_s = 0;             ///< simulated time
   std::array<char, 512> text{};  ///< zero-terminated
 };
 
-/// That a node lives, over a network; each 20 ms. It sends the last beat of each peer back, for the clocks.
+/// Shows over a network that a node is alive; sent every 20 ms. It returns the times of each peer's last
+/// beat, for the clock estimate.
 struct BeatMessage {
   NodeRole role = NodeRole::Render;
   std::uint64_t session = 0;  ///< Link::sessionId()
   bool has_ended = false;
-  std::uint64_t peer = 0;         ///< whose beat is sent back; 0: none
-  std::int64_t peer_sent_ns = 0;  ///< by the peer's clock
-  std::int64_t received_ns = 0;   ///< by the sender's
+  std::uint64_t peer = 0;         ///< sender of the beat whose times are returned; 0: none
+  std::int64_t peer_sent_ns = 0;  ///< sending time of that beat, by the peer's clock
+  std::int64_t received_ns = 0;   ///< arrival time of that beat, by the sender's clock
 };
 
-/// Where a person who watches points, to the others who watch.
+/// Position of a watching person's pointer, sent to the other watchers.
 struct PointerMessage {
-  std::uint32_t person = 0;  ///< counted by the sender
-  bool is_shown = false;     ///< false: no longer
+  std::uint32_t person = 0;  ///< number of the person, assigned by the sender
+  bool is_shown = false;     ///< false: the pointer was removed
   Vec3 p_W = Vec3::Zero();
 };
 
-/// What is asked of the render node by a program that is no node.
+/// Kinds of requests to the render node from a program that is not a node.
 enum class AskKind : std::uint8_t {
-  Who,      ///< who is there, and what they do
-  Take,     ///< the next part; `text`: its name, or empty
-  Release,  ///< the part in hand
-  Rearm,    ///< the haptic loop, after a fault
-  Gains,    ///< from the next part on
-  Load,     ///< the scene with the hash `text` in place of this one
-  Again,    ///< the same scene from its beginning
-  Record,   ///< the runs that begin from now on, in the file `text`; empty: none
-  Fetch,    ///< a piece of the recording that the sender asked for with `wants_file`, from `offset` on
+  Who,      ///< status of the nodes
+  Take,     ///< takes the next part; `text`: its name, or empty
+  Release,  ///< releases the part in hand
+  Rearm,    ///< re-arms the haptic loop after a fault
+  Gains,    ///< sets the gains from the next part on
+  Load,     ///< runs the scene with the hash `text` instead of the current one
+  Again,    ///< runs the same scene from its beginning
+  Record,   ///< records the runs that begin from now on in the file `text`; empty: stops recording
+  Fetch,    ///< requests a piece, from `offset` on, of the recording that the sender requested with
+            ///< `wants_file`
 };
 
 struct AskMessage {
   AskKind kind = AskKind::Who;
   std::array<char, 64> text{};  ///< zero-terminated
-  double k_N_per_m = 0;         ///< of Gains
-  double k_Nm_per_rad = 0;      ///< of Gains; 0: as it is
-  bool wants_file = false;      ///< of Record: the sender fetches the file once it is whole
-  std::uint64_t offset = 0;     ///< of Fetch [bytes]; the size of the file: all has come
+  double k_N_per_m = 0;         ///< for Gains
+  double k_Nm_per_rad = 0;      ///< for Gains; 0: unchanged
+  bool wants_file = false;      ///< for Record: the sender will fetch the file when it is complete
+  std::uint64_t offset = 0;     ///< for Fetch [bytes]; the size of the file means that all was received
 };
 
 struct AnswerMessage {
-  std::uint64_t asker = 0;  ///< the sender of what is answered, and its number
+  std::uint64_t asker = 0;  ///< sender of the answered request; `number` is the request's number
   std::uint64_t number = 0;
   bool is_done = false;
-  bool wants_scene = false;       ///< of Load: it is not known here, and is to be sent in pieces
-  std::array<char, 1024> text{};  ///< what is so, or why it was not done; zero-terminated
+  bool wants_scene = false;       ///< for Load: the scene is unknown here and has to be sent in pieces
+  std::array<char, 1024> text{};  ///< resulting state, or the reason of a refusal; zero-terminated
 };
 
-/// Of a scene's archive, in order, each answered before the next.
+/// A piece of a scene's archive. Pieces are sent in order, each answered before the next.
 struct PieceMessage {
   static constexpr std::size_t kMost = 32 * 1024;
-  std::array<char, 64> hash{};  ///< of the whole, zero-terminated
-  std::uint64_t total = 0;      ///< [bytes]
+  std::array<char, 64> hash{};  ///< hash of the whole archive, zero-terminated
+  std::uint64_t total = 0;      ///< size of the whole archive [bytes]
   std::uint64_t offset = 0;
   std::uint32_t size = 0;
   std::array<char, kMost> bytes{};
 };
 
-/// The answer to Fetch once the file is whole; an AnswerMessage before.
+/// The answer to Fetch once the file is complete; before, the answer is an AnswerMessage.
 struct FetchedMessage {
   std::uint64_t asker = 0;  ///< as in AnswerMessage
   std::uint64_t number = 0;
-  PieceMessage piece;  ///< of the file
+  PieceMessage piece;  ///< a piece of the file
 };
 
-/// What became of the bytes of a message.
+/// Result of reading a message.
 enum class Reading : std::uint8_t {
   Good,
   BadSize,
   BadVersion,
   BadKind,
-  BadValue,  ///< not finite, out of range, or a rotation that is none
+  BadValue,  ///< not finite, out of range, or not a rotation
   WrongSender,
-  Replayed,     ///< its number is not above the last one of its kind
-  TooFarAhead,  ///< its number is above what the sender can have sent by now; see MessageOrder
-  // Not refused for a fault of the sender:
-  Early,      ///< a dense state before the first whole one, as who joins late gets them
-  Overtaken,  ///< a dense state that came after a later whole one
+  Replayed,     ///< its number does not exceed the last number of its kind
+  TooFarAhead,  ///< its number exceeds what the sender can have sent by now; see MessageOrder
+  // The next results do not count as faults of the sender.
+  Early,      ///< a dense state before the first whole one, which is normal after a late join
+  Overtaken,  ///< a dense state that arrived after a later whole one
 };
 inline constexpr std::size_t kReadings = 10;
 constexpr bool isRefused(Reading reading) {
@@ -220,13 +223,13 @@ constexpr bool isRefused(Reading reading) {
 }
 const char* toText(Reading reading);
 
-/// Writes messages without allocating: `out` keeps its room from one message to the next.
+/// Writes messages without allocating; the buffer keeps its capacity between messages.
 class MessageWriter {
  public:
   /// @param sender  Envelope::sender
   explicit MessageWriter(std::uint64_t sender, WireForm form = WireForm::Exact);
 
-  /// The bytes, which stay until the next call. The time is that of the call.
+  /// Returns the bytes, which stay valid until the next call. The sending time is the time of the call.
   template <typename Message>
   std::string_view write(const Message& message) noexcept;
   /// Number of the last message of a kind.
@@ -234,9 +237,9 @@ class MessageWriter {
     return numbers_[static_cast<std::size_t>(kind)];
   }
   [[nodiscard]] std::uint64_t sender() const noexcept { return sender_; }
-  /// States have every bit from now on; a reader takes both forms.
+  /// From now on states are written with all bits; readers accept both forms.
   void writeExactStates() noexcept { has_exact_states_ = true; }
-  /// The next states are sent whole, for a reader that has none to begin with.
+  /// The next states are sent whole, for a reader that has not received a whole state.
   void startAnew() noexcept { dense_haptic_ = dense_physics_ = {}; }
 
  private:
@@ -248,21 +251,21 @@ class MessageWriter {
   DenseWriter dense_haptic_, dense_physics_;
 };
 
-/// Reads messages and counts what was refused.
+/// Reads messages and counts refused ones.
 class MessageReader {
  public:
   explicit MessageReader(device::RealTimeClock& clock = device::monotonicClock()) noexcept : clock_(&clock) {}
-  /// Refuses all senders but this one, whose messages begin at any number.
+  /// Accepts only this sender from now on; its first message may have any number.
   void bindTo(std::uint64_t sender) noexcept {
     sender_ = sender;
     forget();
   }
-  /// Good: `message` has the values. Otherwise it is unchanged. Takes all forms; of a dense state some values
-  /// are those that `message` had, so it is the one that was read before. Allocates for snapshots only.
+  /// Returns Good if `message` was filled; otherwise it is unchanged. Reads all forms. A dense state lacks
+  /// some values, for which `message` must hold the previously read state. Allocates for snapshots only.
   template <typename Message>
   Reading read(std::string_view bytes, Message& message) noexcept;
 
-  /// Of the last good message.
+  /// Envelope of the last good message.
   [[nodiscard]] const Envelope& envelope() const noexcept { return envelope_; }
   [[nodiscard]] const std::array<std::uint64_t, kReadings>& counts() const noexcept { return counts_; }
   [[nodiscard]] std::uint64_t refused() const noexcept;
@@ -279,7 +282,7 @@ class MessageReader {
   Reading readDenseState(std::string_view bytes, Message& message) noexcept;
 
   device::RealTimeClock* clock_;
-  std::uint64_t sender_ = 0;  ///< 0: any
+  std::uint64_t sender_ = 0;  ///< 0: any sender
   std::array<MessageOrder, kMessageKinds> orders_{};
   std::array<std::uint64_t, kMessageKinds> last_numbers_{};
   DenseBase haptic_base_, physics_base_;
@@ -287,10 +290,10 @@ class MessageReader {
   std::array<std::uint64_t, kReadings> counts_{};
 };
 
-/// The kind that a message claims to be.
+/// The kind that the bytes claim to be.
 MessageKind kindOf(std::string_view bytes) noexcept;
 
-/// A number for Envelope::sender.
+/// A new random identifier for Envelope::sender.
 std::uint64_t newSender();
 
 }  // namespace vps::scenes

@@ -7,15 +7,15 @@ namespace vps::scenes {
 
 namespace {
 
-/// Steps of a component.
+/// Quantisation steps of a component.
 struct Steps {
   explicit Steps(unsigned bits)
       : mask((std::uint64_t{1} << bits) - 1),
         middle(1 << (bits - 1U)),
         scale((middle - 1) * 1.41421356237309515) {}
   std::uint64_t mask;
-  double middle;  ///< of zero, so that no rotation is exact
-  double scale;   ///< the smaller ones are at most 1/sqrt(2)
+  double middle;  ///< step that stands for zero; no step is exact for rotations
+  double scale;   ///< the three smaller components are at most 1/sqrt(2)
 };
 
 }  // namespace
@@ -47,7 +47,7 @@ std::optional<Mat3> unpackedRotation(std::uint64_t packed, unsigned bits) {
     q[i] = (static_cast<double>(packed >> shift & steps.mask) - steps.middle) / steps.scale;
     rest -= q[i] * q[i];
   }
-  constexpr double kLeast = 0.249;  // the largest of four is at least 1/2
+  constexpr double kLeast = 0.249;  // the largest of four components is at least 1/2
   if (!(rest >= kLeast)) return {};
   q[largest] = std::sqrt(rest);
   return Eigen::Quaterniond(q[3], q[0], q[1], q[2]).normalized().toRotationMatrix();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A rotation in a few bytes.
+// Packs a rotation into a few bytes.
 #pragma once
 
 #include <cstdint>
@@ -9,11 +9,11 @@
 
 namespace vps::scenes {
 
-/// The three smaller components of the quaternion, 20 bits each, and which the largest one is: 62 bits. Right
-/// to 5e-6 rad, and to 2^n as much with n bits less.
-/// @param bits  of a component, at most 20
+/// Packs the three smaller components of the quaternion, 20 bits each, and the index of the largest one: 62
+/// bits in total. Accurate to 5e-6 rad; n bits less multiply the error by 2^n.
+/// @param bits  bits per component, at most 20
 std::uint64_t packedRotation(const Mat3& R, unsigned bits = 20);
-/// Empty: no rotation has this number.
+/// Unpacks a rotation; empty if no rotation has this packed value.
 std::optional<Mat3> unpackedRotation(std::uint64_t packed, unsigned bits = 20);
 
 }  // namespace vps::scenes

@@ -16,7 +16,8 @@ namespace {
 
 constexpr std::chrono::microseconds kReplyPoll{100};
 constexpr std::chrono::milliseconds kJoinPoll{2};
-constexpr double kAgain_s = 0.2;  // a request without a reply is sent again: the peer may not have been found
+constexpr double kAgain_s =
+    0.2;  // a request without a reply is sent again, since the peer may not have been discovered yet
 constexpr double kReplyLimit_s = 5;  // assumed: planning a step takes milliseconds
 
 std::int64_t now_ns() {
@@ -46,11 +47,11 @@ DeviceEnd::DeviceEnd(Link& link, const std::atomic<bool>* stop, std::function<vo
 
 void DeviceEnd::welcome(const HelloMessage& hello) {
   const std::uint64_t sender = hello_reader_.envelope().sender;
-  if (sender == sender_) return;  // it says so until it is asked for something
+  if (sender == sender_) return;  // a device node repeats its hello until it gets a request
   const std::string name = hello.name.data();
   if (first_ && !isSameDevice(*first_, hello)) {
     say_("the device '" + name + "' joined in place of '" + first_->name.data() +
-         "', whose limits the run was planned for; start vps device with that one");
+         "', for whose limits the run was planned; start vps device with the original device");
     return;
   }
   if (!first_) first_ = hello;
@@ -127,9 +128,9 @@ bool DeviceEnd::request(const RequestMessage& request, const std::function<void(
     std::this_thread::sleep_for(kReplyPoll);
   }
   heard_ns_ = now_ns();
-  // A run that ends does so whatever the device's node answers.
+  // A run ends in any case, whatever the device node answers.
   if (reply_.refusal[0] != '\0' && request.kind != RequestKind::Stop)
-    throw LoadError("", "", std::string("the device's node refuses: ") + reply_.refusal.data());
+    throw LoadError("", "", std::string("the device node refuses: ") + reply_.refusal.data());
   return true;
 }
 
@@ -154,7 +155,7 @@ std::string DeviceEnd::refusals() const {
     words += (words.empty() ? "" : ", ") + std::to_string(count) + " " + toText(static_cast<Reading>(i));
   }
   if (const std::uint64_t beats = link_.refusedBeats(); beats > 0)
-    words += (words.empty() ? "" : ", ") + std::to_string(beats) + " beats of any node";
+    words += (words.empty() ? "" : ", ") + std::to_string(beats) + " beats that were invalid or repeated";
   return words;
 }
 

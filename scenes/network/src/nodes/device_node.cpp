@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The device's node: the haptic side of a run, with physics at the other end of a link.
+// The device node: the haptic part of a run; physics runs at the other end of a link.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -27,22 +27,23 @@ namespace {
 
 constexpr std::chrono::microseconds kRequestPoll{200};  // assumed: below a haptic period
 constexpr std::chrono::milliseconds kSessionPoll{10};
-constexpr std::chrono::milliseconds kUntilSafe{25};  // kPeerLimit_s and a few ticks
-constexpr int kLastStates = 4;                       // assumed: one of them arrives
-constexpr int kPollsPerLook = 25;                    // whether the render node lives: each 5 ms
-constexpr int kPollsPerTimes = 500;                  // each 0.1 s
+constexpr std::chrono::milliseconds kUntilSafe{25};  // kPeerLimit_s plus a few ticks
+constexpr int kLastStates = 4;                       // assumed: at least one of them arrives
+constexpr int kPollsPerLook = 25;    // interval of checks whether the render node is alive: 5 ms
+constexpr int kPollsPerTimes = 500;  // interval of timing messages: 0.1 s
 
-/// A part's state has the time of the proxy's state that it answers, which the loop looks up to the bit. Over
-/// a network it comes rounded, so this end keeps the times that it sent.
+/// A part's state contains the time of the proxy's state that it answers, and the loop looks this time up by
+/// its exact bits. Over a network the time arrives rounded, so the device node stores the exact times that it
+/// sent.
 class SentTimes {
  public:
   void add(double time_s) noexcept {
     newest_ = (newest_ + 1) % times_s_.size();
     times_s_[newest_] = time_s;
   }
-  /// The sent time that rounds to this one; itself, if there is none.
+  /// The sent time that rounds to this one; the argument itself if there is none.
   [[nodiscard]] double exact_s(double rounded_s) const noexcept {
-    constexpr double kRounding_s = 0.6e-6;  // half a microsecond, and what a double adds
+    constexpr double kRounding_s = 0.6e-6;  // half a microsecond plus rounding of doubles
     for (std::size_t age = 0; age < times_s_.size(); ++age) {
       const double time_s = times_s_[(newest_ + times_s_.size() - age) % times_s_.size()];
       if (std::abs(time_s - rounded_s) < kRounding_s) return time_s;
@@ -51,11 +52,11 @@ class SentTimes {
   }
 
  private:
-  std::array<double, 512> times_s_{};  // as many as HapticLoop knows the work of
+  std::array<double, 512> times_s_{};  // as many as the ticks whose work HapticLoop remembers
   std::size_t newest_ = 0;
 };
 
-/// Whether the render node lives, for the haptic thread. A long physics step is no reason to let go.
+/// Tells the haptic thread whether the render node is alive. A long physics step does not count as silence.
 class SignsOfLife {
  public:
   explicit SignsOfLife(const Link& link) noexcept : link_(link) {}
@@ -63,7 +64,7 @@ class SignsOfLife {
     const std::uint64_t sign = link_.signsOfLife();
     const std::int64_t now_ns = device::monotonicClock().now_ns();
     const std::int64_t looked_ns = std::exchange(looked_ns_, now_ns);
-    // Who did not look for long does not know how long it was silent.
+    // After a long gap between calls, the duration of the silence is unknown, so the time starts anew.
     const bool has_slept = now_ns - looked_ns > kLimit_ns;
     if (sign != std::exchange(sign_, sign) || has_slept) changed_ns_ = now_ns;
     return now_ns - changed_ns_ > kLimit_ns;
@@ -77,7 +78,7 @@ class SignsOfLife {
   std::int64_t changed_ns_ = 0, looked_ns_ = 0;
 };
 
-/// The haptic thread's end of the link. Each message is read into, and written from, memory of its own.
+/// The haptic thread's end of the link. It has its own memory for reading and writing messages.
 class RemotePort final : public device::RemotePhysics {
  public:
   RemotePort(Link& link, MessageWriter& writer, const std::atomic<std::uint8_t>*& hand)
@@ -112,7 +113,7 @@ class RemotePort final : public device::RemotePhysics {
   std::atomic<std::uint64_t> refused_{0};
 };
 
-/// Sends the haptic thread's entries, if the render node records.
+/// Sends the haptic thread's log entries, if the render node records.
 class LinkLog final : public device::RunLog {
  public:
   LinkLog(Link& link, MessageWriter& writer) : link_(link), writer_(writer) {}
@@ -150,7 +151,7 @@ class DeviceSession {
     reader_.bindTo(link.sessionId());
     port_.remote = &remote_;
     const double physics_s = 1 / scene_.fidelity.physics_rate_hz;
-    // The scene comes from the render node, too, so what it wishes is bounded as well.
+    // The scene comes from the render node, so the gains that it requests are bounded as well.
     most_gains_ = passiveGains(scene_, hand_->device().limits(), scene_.fidelity.physics_rate_hz);
     device::LoopSettings settings = loopSettings(scene_, hand_->device());
     settings.gains = bounded(settings.gains);
@@ -160,7 +161,8 @@ class DeviceSession {
     hand_state_ = &side_->stateByte();
   }
 
-  /// True: the session has ended in good order, or the user stops.
+  /// Runs the session. Returns true if it ended regularly or the user stops, false if the render node was
+  /// lost.
   bool run() {
     for (int polls = 1;; ++polls) {
       if (!has_request_ && polls % kPollsPerTimes == 1) sayHello();
@@ -173,7 +175,7 @@ class DeviceSession {
       if (polls % kPollsPerLook == 0) {
         if (link_.hasEnded()) return finish(true);
         if (!link_.isAlive(NodeRole::Render)) {
-          // The loop finds by itself that the part's state is too old, and says so to those who watch.
+          // The loop itself detects that the part's state is too old, and shows the fault to watchers.
           std::this_thread::sleep_for(kUntilSafe);
           return finish(link_.hasEnded());
         }
@@ -221,7 +223,8 @@ class DeviceSession {
     for (std::string_view bytes; !(bytes = link_.receive(Channel::Request, buffer_)).empty();) {
       RequestMessage request;
       const Reading reading = reader_.read(bytes, request);
-      if (reading == Reading::Replayed) link_.send(Channel::Reply, writer_.write(reply_));  // it was lost
+      if (reading == Reading::Replayed)
+        link_.send(Channel::Reply, writer_.write(reply_));  // the first reply was lost
       if (reading != Reading::Good) continue;
       has_request_ = true;
       const std::string refusal = carryOut(request);
@@ -232,7 +235,7 @@ class DeviceSession {
       link_.send(Channel::Reply, writer_.write(reply_));
     }
   }
-  /// Empty: done. Otherwise why not.
+  /// Carries out a request. Returns the reason of a refusal; empty: done.
   std::string carryOut(const RequestMessage& request) {
     switch (request.kind) {
       case RequestKind::Start:
@@ -240,7 +243,8 @@ class DeviceSession {
         return {};
       case RequestKind::Stop:
         side_->stop();
-        // The last state belongs to the recording, and states may be lost on their way.
+        // The last state belongs to the recording, and states may be lost on their way, so it is sent several
+        // times.
         for (int i = 0; log_.isOn() && i < kLastStates; ++i) remote_.send(side_->loopState());
         sendTimes();
         return {};
@@ -252,10 +256,10 @@ class DeviceSession {
         break;
     }
     const bool begins = request.command == device::SyncEventKind::Begin;
-    // GoBack names the step after the last one, too.
+    // GoBack may also name the step after the last one.
     if (request.step >= scene_.steps.size() + (begins ? 0 : 1))
-      return "the render node names step " + std::to_string(request.step + std::uint64_t{1}) +
-             ", but the scene has " + std::to_string(scene_.steps.size()) + " steps; nothing was done";
+      return "the render node requests step " + std::to_string(request.step + std::uint64_t{1}) +
+             ", but the scene has " + std::to_string(scene_.steps.size()) + " steps; the request was ignored";
     HandCommand command{request.command, request.X_WG, request.step, request.now_s, request.task};
     if (begins) {
       const std::vector<Pose>& all = scene_.steps[request.step].way_points;
@@ -265,19 +269,19 @@ class DeviceSession {
     side_->carryOut(command);
     return {};
   }
-  /// What the device's passivity allows of the gains that another node wishes; said once.
+  /// Limits the gains that another node requests to those at which the device is passive; reports it once.
   CouplingGains bounded(const CouplingGains& wish) {
     const CouplingGains gains = device::softerOf(wish, most_gains_);
     const bool is_bounded = gains.k_N_per_m < wish.k_N_per_m || gains.b_Ns_per_m < wish.b_Ns_per_m ||
                             gains.k_Nm_per_rad < wish.k_Nm_per_rad ||
                             gains.b_Nms_per_rad < wish.b_Nms_per_rad;
     if (is_bounded && !std::exchange(has_said_bound_, true)) {
-      char words[160];
-      std::snprintf(
-          words, sizeof words,
-          "the render node wishes a coupling of %.0f N/m and %.1f N m/rad; this device is passive up to "
-          "%.0f and %.1f, so it uses these",
-          wish.k_N_per_m, wish.k_Nm_per_rad, most_gains_.k_N_per_m, most_gains_.k_Nm_per_rad);
+      char words[200];
+      std::snprintf(words, sizeof words,
+                    "the render node requests a coupling of %.0f N/m and %.1f N m/rad; this device is only "
+                    "passive up to "
+                    "%.0f and %.1f, which are used instead",
+                    wish.k_N_per_m, wish.k_Nm_per_rad, most_gains_.k_N_per_m, most_gains_.k_Nm_per_rad);
       say(words);
     }
     return gains;
@@ -292,7 +296,7 @@ class DeviceSession {
     result_.ticks += times.count;
     result_.missed += times.missed;
     result_.faults += side_->realTime().faults;
-    // A request that came twice was answered twice.
+    // A repeated request was answered again and does not count as refused.
     const std::uint64_t repeated = reader_.counts()[static_cast<std::size_t>(Reading::Replayed)];
     result_.refused += remote_.refused() + reader_.refused() - repeated + link_.refusedBeats();
     if (const std::string doubts = ClockDoubts::summary(link_); !doubts.empty()) say(doubts);
@@ -303,10 +307,10 @@ class DeviceSession {
   DeviceNodeResult& result_;
   Link& link_;
   std::uint64_t sender_;
-  MessageWriter writer_;         ///< of this thread
-  MessageWriter haptic_writer_;  ///< of the haptic thread: other kinds of messages
+  MessageWriter writer_;         ///< writer of this thread
+  MessageWriter haptic_writer_;  ///< writer of the haptic thread, for other kinds of messages
   MessageReader reader_;
-  ReplyMessage reply_;  ///< the last one
+  ReplyMessage reply_;  ///< the last reply
   ClockDoubts doubts_;
   CouplingGains most_gains_;
   bool has_said_bound_ = false;
@@ -346,7 +350,7 @@ DeviceNodeResult deviceNode(const DeviceNodeOptions& options) {
     say("the device '" + session.deviceName() + "' joins " + sessionWords(options.session));
     if (!session.run()) {
       ++result.lost;
-      say("the render node is lost; the force is zero until it is back");
+      say("the render node was lost; the force is zero until it is back");
       continue;
     }
     if (!options.stays) break;

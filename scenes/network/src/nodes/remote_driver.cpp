@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A run whose haptic loop is in the device's node. Physics goes by the clock, as with makeRealTimeDriver().
+// A run whose haptic loop is in the device node. Physics runs in real time, as with makeRealTimeDriver().
 //
-// A device that is lost stops physics, so that the part stays where it is. When the device, or a new process
-// with the same device, is back, it is brought to where the lost one was, and physics goes on.
+// If the device is lost, physics stops, so that the part stays where it is. When the device is back, or a new
+// process with the same device has joined, the device is moved to its last position, and physics continues.
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -20,15 +20,17 @@ namespace vps::scenes {
 
 namespace {
 
-/// A live device that is silent for longer stops physics as well. assumed: longer than any hiccup of a
-/// scheduler; the proxy stands still meanwhile.
+/// A live device that is silent for longer than this also stops physics [s]. Assumed: longer than any
+/// scheduling delay; the proxy stands still during the silence.
 constexpr double kHiccup_s = 0.1;
-constexpr double kLastLog_s = 2;                  ///< assumed: DDS sends again within a tenth
-constexpr std::uint64_t kAdvancesPerDoubt = 256;  // assumed: some times a second
-/// Good physics steps before the loop is re-armed, if its node allows that.
+constexpr double kLastLog_s =
+    2;  ///< time limit for the last log entries; assumed: DDS repeats a message within a tenth of a second
+constexpr std::uint64_t kAdvancesPerDoubt =
+    256;  // interval of checks for inconsistent clocks; assumed: a few times per second
+/// Number of good physics steps before the loop is re-armed, if its node allows that.
 constexpr int kStepsUntilRearm = 50;
 
-/// How many of a path's way points are still ahead of a part at p_W: those after the leg nearest to it.
+/// Number of way points still ahead of a part at p_W: those after the leg nearest to it.
 std::size_t wayPointsAhead(const SceneStep& step, const Vec3& p_W) {
   const std::size_t count = step.way_points.size();
   double nearest_m = std::numeric_limits<double>::infinity();
@@ -96,7 +98,8 @@ class RemoteDriver final : public ClockedDriver {
     takeLog();
     if (log_ != nullptr) log_->waitForTick(newest_.tick);
     logEvent(newest_, device::SyncEventKind::Step);
-    // Only now: it reports faults, which a replay logs after the step, too.
+    // The view is set after the step's log entry, because it reports faults, which a replay also logs after
+    // the step.
     setView(newest_);
     return true;
   }
@@ -143,42 +146,43 @@ class RemoteDriver final : public ClockedDriver {
   }
 
  private:
-  /// Once the device was lost, a recording has ended.
+  /// The setup request; a recording ends once the device was lost.
   [[nodiscard]] RequestMessage setup() const {
     return {.kind = RequestKind::Setup, .keeps_log = log_ != nullptr && interruptions_ == 0, .gains = gains_};
   }
-  /// Notes what a device that joins later has to be told.
+  /// Stores the commands that have to be repeated for a device that joins later.
   void keep(const HandCommand& command);
-  /// False: the device was lost meanwhile.
+  /// Sends a request. Returns false if the device was lost in the meantime.
   bool ask(const RequestMessage& request) {
     if (!end_.request(request, [this] { showThatPhysicsLives(); })) return false;
     known_state_ = device::stateFromByte(end_.reply().hand);
     return true;
   }
-  /// While a request is on its way physics stands still. The part does so, too, and its state is as new as
-  /// the proxy's, so that the loop does not take it for stalled. Not while a run is recorded, since a replay
-  /// knows the states of steps only.
+  /// Sends a state with a new time and zero velocity while a request is pending and physics stands still, so
+  /// that the loop does not treat the part as stalled. Not used in a recorded run, since a replay only has
+  /// states of steps.
   void showThatPhysicsLives();
-  /// A device that is lost before it has carried out the request is told so when it is back.
+  /// Sends a request; if the device is lost before it was carried out, restores the device when it is back.
   void askUntilDone(const RequestMessage& request) {
     if (!ask(request) && !end_.isStopped()) waitAndRestore();
   }
-  /// Waits for a lost device. False: stopped.
+  /// Handles a lost device by waiting for it. Returns false if the run was stopped.
   bool keepDevice();
   bool waitAndRestore();
-  /// Brings a new process of the device to where the lost one was in that phase. False: it was lost again.
+  /// Brings a new device process to the state that the lost one had in that phase. Returns false if it was
+  /// lost again.
   bool restore(device::OperatorPhase phase);
   bool restoreHold(device::OperatorPhase phase);
   void rearmWhenGood();
-  /// A state that was sent before the last request was carried out shows the hand as it was before: a phase
-  /// that is over, such as Done of the step before.
+  /// Takes the newest state. A state that was sent before the last request was carried out is ignored, since
+  /// it shows the phase of the hand before the request, such as Done of the previous step.
   void takeState() {
     const HapticMessage* message = end_.takeState();
     if (message == nullptr || message->state.tick < end_.reply().tick) return;
     if (message->state.tick > end_.reply().tick) known_state_ = device::stateFromByte(message->hand);
     newest_ = message->state;
   }
-  /// Over UDP a reply may come before the states that were sent before it.
+  /// Waits for a state that is newer than the last reply; over UDP a reply may overtake earlier states.
   void takeStateSinceRequest(double most_s = kPeerLimit_s) {
     takeState();
     for (double left_s = most_s; left_s > 0 && is_running_ && newest_.tick < end_.reply().tick;
@@ -192,7 +196,8 @@ class RemoteDriver final : public ClockedDriver {
       if (log_ != nullptr) log_->addFromLoop(number, entry);
     });
   }
-  /// All of a loop that has stopped. What has not come by then is lost.
+  /// Takes the remaining log entries of a stopped loop. Entries that do not arrive within kLastLog_s are
+  /// lost.
   void takeLastLog() {
     if (log_ == nullptr) return;
     log_->waitForEvent(device::SyncEventKind::Paused);
@@ -209,16 +214,16 @@ class RemoteDriver final : public ClockedDriver {
 
   DeviceEnd& end_;
   const Scene& scene_;
-  MergedLog* log_;                     ///< null: nothing is recorded
+  MergedLog* log_;                     ///< null: the run is not recorded
   device::OperatorState known_state_;  ///< as of the last advance() or command
-  device::HapticState newest_;         ///< of the loop; view_ follows in advance()
-  device::PhysicsState part_;          ///< the last one
+  device::HapticState newest_;         ///< newest state of the loop; advance() copies it to view_
+  device::PhysicsState part_;          ///< last state sent
   CouplingGains gains_;
-  std::optional<HandCommand> begun_;  ///< the hand works on this
-  Pose X_WG_;                         ///< of the part that the hand holds
+  std::optional<HandCommand> begun_;  ///< command on which the hand is working
+  Pose X_WG_;                         ///< pose of the grasp of the part that the hand holds
   bool is_holding_ = false, is_clutch_open_ = false;
   bool is_running_ = false, is_wanted_ = false, has_priority_ = false;
-  int good_steps_ = 0;  ///< since a fault
+  int good_steps_ = 0;  ///< number since the last fault
   PhysicsClock clock_;
   int joins_;
   std::uint64_t interruptions_ = 0, advances_ = 0;
@@ -241,7 +246,7 @@ void RemoteDriver::keep(const HandCommand& command) {
       is_holding_ = true;
       is_clutch_open_ = false;
       X_WG_ = command.X_WG;
-      part_.part.is_coupled = false;  // the last state was another part's
+      part_.part.is_coupled = false;  // the last state belonged to another part
       return;
     case device::SyncEventKind::LetGo:
       is_holding_ = false;
@@ -267,14 +272,14 @@ bool RemoteDriver::keepDevice() {
     const bool is_lost = silence_s > kHiccup_s || (silence_s > kPeerLimit_s && !end_.isPresent());
     if (!is_running_ || !is_lost) return true;
   }
-  end_.say("the device is silent; physics waits for it");
+  end_.say("the device does not respond; physics waits for it");
   return waitAndRestore();
 }
 
 bool RemoteDriver::waitAndRestore() {
   const device::OperatorPhase phase = known_state_.phase;
   ++interruptions_;
-  if (log_ != nullptr) log_->lose(1);  // a recording ends here: what the lost device did is not known
+  if (log_ != nullptr) log_->lose(1);  // a recording ends here, since the lost device's actions are unknown
   for (;;) {
     while (!end_.isPresent() || end_.silence_s() > kPeerLimit_s) {
       if (end_.isStopped()) return false;
@@ -283,12 +288,12 @@ bool RemoteDriver::waitAndRestore() {
       if (end_.isPresent() && end_.takeState() != nullptr) break;
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
-    if (end_.joins() == joins_) break;  // the same process goes on
+    if (end_.joins() == joins_) break;  // the same process responds again
     joins_ = end_.joins();
     if (restore(phase)) break;
     if (end_.isStopped()) return false;
   }
-  end_.say("the device is back; physics goes on");
+  end_.say("the device is back; physics continues");
   if (is_running_) clock_.start(false);
   good_steps_ = 0;
   return true;
@@ -304,7 +309,7 @@ bool RemoteDriver::restore(device::OperatorPhase phase) {
 
 bool RemoteDriver::restoreHold(device::OperatorPhase phase) {
   const std::size_t index = begun_ ? begun_->step : 0;
-  // The empty hand goes to where the step begins, and takes the part from there.
+  // The empty hand moves to the start of the step, and takes the part from there.
   RequestMessage request{.command = device::SyncEventKind::GoBack};
   request.step = static_cast<std::uint32_t>(index);
   if (!ask(request)) return false;
@@ -328,7 +333,8 @@ bool RemoteDriver::restoreHold(device::OperatorPhase phase) {
   return !is_clutch_open_ || ask({.command = device::SyncEventKind::OpenClutch});
 }
 
-// As a person does; the force then returns gradually, from a new grasp of the part where it is.
+// Re-arms as a person would; the force then returns gradually, starting with a new grasp of the part at its
+// pose.
 void RemoteDriver::rearmWhenGood() {
   end_.setFaulted(newest_.safety.fault != device::SafetyFault::None);
   if (is_running_ && end_.takeRearm() && end_.hello().may_rearm) return rearmIfFaulted();
@@ -359,14 +365,15 @@ std::optional<RealTimeResult> RemoteDriver::realTime() {
   result.behind_s = clock_.behind_s();
   result.physics_late = clock_.late();
   if (interruptions_ > 0)
-    result.warnings.push_back("the device was lost " + std::to_string(interruptions_) + " times");
+    result.warnings.push_back("number of times that the device was lost: " + std::to_string(interruptions_) +
+                              " times");
   if (const std::string refused = end_.refusals(); !refused.empty())
-    result.warnings.push_back("messages of the device that were refused: " + refused);
+    result.warnings.push_back("refused messages of the device: " + refused);
   if (const std::string doubts = end_.doubts(); !doubts.empty()) result.warnings.push_back(doubts);
   return result;
 }
 
-/// The device as its node describes it. Only its node reads and writes it.
+/// The remote device, as its node describes it. Only its node reads and writes the hardware.
 class DistantDevice final : public device::Device {
  public:
   explicit DistantDevice(const HelloMessage& hello) : hello_(hello) {}
@@ -388,7 +395,7 @@ class RemoteHand final : public Hand {
     return std::make_unique<RemoteDriver>(end_, scene_, settings, physics_s, report, log_);
   }
   device::Device& device() override { return device_; }
-  // Its driver sends the commands to the device's node.
+  // The driver sends the commands to the device node, so these functions are empty.
   void prepare(const device::OperatorTask&, std::size_t, double) override {}
   void begin() override {}
   void goBack(std::size_t) override {}

@@ -19,7 +19,7 @@ namespace vps::scenes {
 
 namespace {
 
-/// Tells the watchers what happens, from the physics thread.
+/// Sends snapshots and news to the watchers, from the physics thread.
 class Broadcast {
  public:
   Broadcast(DeviceEnd& end, const RenderOptions& options)
@@ -55,11 +55,11 @@ void requirePossible(const Scene& scene, const RenderOptions& options) {
   requireSteps(scene);
   if (!options.has_local_contact) return;
   throw LoadError(scene.file, "",
-                  "local contact needs the parts' models where the haptic loop runs; leave it out, or use "
-                  "vps assemble --real-time");
+                  "local contact needs the parts' models in the process of the haptic loop; leave it out, or "
+                  "use vps assemble --real-time");
 }
 
-/// From a state of the proxy to the answer to it. Gains follow from it, and it is said.
+/// Round trip from a state of the proxy to its answer. The coupling gains depend on it, and it is reported.
 double networkDelay_s(DeviceEnd& end, const RenderOptions& options) {
   if (options.network.empty()) return 0;
   constexpr int kTries = 200;
@@ -67,17 +67,17 @@ double networkDelay_s(DeviceEnd& end, const RenderOptions& options) {
     if (const std::optional<PeerTiming> timing = end.timing()) {
       char words[160];
       std::snprintf(words, sizeof words,
-                    "the device answers within %.2f ms; its clock is %.6f s ahead, within %.0f us",
+                    "the device answers within %.2f ms; its clock is %.6f s ahead, to within %.0f us",
                     1e3 * timing->round_trip_s, timing->clock_offset_s, 1e6 * timing->clock_error_s);
       end.say(words);
       return timing->round_trip_s;
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
-  throw LoadError("", "", "the device's answers do not come; check --network on both machines");
+  throw LoadError("", "", "no answers arrive from the device; check --network on both machines");
 }
 
-/// A run is known to those who ask, for as long as it goes on.
+/// Registers a run with the request server, for as long as the run lasts.
 class Served {
  public:
   Served(RequestServer* server, const Scene& scene, std::string scene_bytes, const Link& link,
@@ -97,7 +97,7 @@ class Served {
   void setDevice(const HelloMessage& hello, const CouplingGains& gains, const CouplingGains& most) {
     if (work_ != nullptr) work_->run.setDevice(hello.name.data(), hello.may_rearm, gains, most);
   }
-  /// The file in which the run is recorded, by its own wish or that of others.
+  /// The file in which the run is recorded, as requested by this user or by others.
   std::string beginRecording(const std::string& wish) const {
     if (work_ == nullptr) return wish;
     std::string file = wish.empty() ? server_->recording() : wish;
@@ -107,10 +107,10 @@ class Served {
   void finishRecording() const {
     if (work_ != nullptr) work_->run.finishRecording();
   }
-  /// Until the first part may be taken. False: stopped.
+  /// Waits until the first part may be taken. Returns false if the run was stopped.
   bool waitForTake(DeviceEnd& end) const {
     if (requests() == nullptr || requests()->mayTake()) return true;
-    end.say("the first part waits to be taken: vps ask take");
+    end.say("the run waits for a request to take the first part: vps ask take");
     while (!requests()->mayTake()) {
       if (end.isStopped()) return false;
       end.poll();
@@ -121,7 +121,7 @@ class Served {
 
  private:
   RequestServer* server_;
-  RequestServer::Work* work_;  ///< null: nobody can ask
+  RequestServer::Work* work_;  ///< null: no requests are accepted
 };
 
 }  // namespace
@@ -166,10 +166,10 @@ AssembleResult renderNode(Scene& scene, const RenderOptions& given, const std::s
   if (!device::areUsable(settings.gains))
     throw LoadError(scene.file, "",
                     "the device '" + std::string(hand->device().name()) +
-                        "' states limits from which no usable coupling follows; check its node");
+                        "' reports limits that allow no usable coupling; check its node");
   if (!given.network.empty()) {
     char words[120];
-    std::snprintf(words, sizeof words, "so the coupling has %.0f N/m and %.1f N m/rad",
+    std::snprintf(words, sizeof words, "the coupling has %.0f N/m and %.1f N m/rad",
                   settings.gains.k_N_per_m, settings.gains.k_Nm_per_rad);
     end.say(words);
   }

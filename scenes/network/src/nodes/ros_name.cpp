@@ -6,7 +6,7 @@
 namespace vps::scenes {
 
 std::string rosName(const std::string& name) {
-  // A name does not begin with a digit.
+  // ROS 2 names must not begin with a digit.
   const bool needs_start = name.empty() || std::isdigit(static_cast<unsigned char>(name[0])) != 0;
   std::string allowed(needs_start ? 1 : 0, '_');
   for (const char c : name) allowed.push_back(std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_');

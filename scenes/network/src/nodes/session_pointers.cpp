@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Each process that points has a small region of its own, in one of a few slots, which it alone writes: a
-// session's region has one writer for each channel, and watchers map it for reading only. Over a network all
-// write and read one topic, and a slot is a number for a sender.
+// Each process that points has its own small region, in one of a few slots, which only this process writes: a
+// session's region has one writer for each channel, and watchers map it read-only. Over a network all
+// watchers write and read one topic, and each sender is assigned a slot number.
 #include "vps_scenes/network/session_pointers.h"
 
 #include <algorithm>
@@ -24,19 +24,19 @@ namespace {
 
 constexpr RingShape kPointerRing{64, 1024};
 constexpr std::size_t kPointerBytes = 8 * kPointerRing.words();
-constexpr double kLookEach_s = 0.25;    // for processes that came or went
-constexpr double kRepeatEach_s = 0.5;   // assumed: who comes later does not notice this delay
-constexpr std::size_t kMostShown = 64;  // persons of one process
-constexpr double kGone_s = 2;  // over a network: who has repeated nothing for so long points no longer
+constexpr double kLookEach_s = 0.25;    // interval of searches for processes that came or ended
+constexpr double kRepeatEach_s = 0.5;   // assumed: a watcher who joins later does not notice this delay
+constexpr std::size_t kMostShown = 64;  // limit of persons of one process
+constexpr double kGone_s = 2;  // over a network: a sender that was silent for this time no longer points
 
 /// Another process that points.
 struct Other {
   SharedRegion region;  ///< not open over a network
   RingReader ring;
   MessageReader reader;
-  std::uint64_t sender = 0;   ///< over a network
-  double heard_s = 0;         ///< over a network
-  std::map<int, Vec3> shown;  ///< by person
+  std::uint64_t sender = 0;   ///< used over a network only
+  double heard_s = 0;         ///< used over a network only: time of the last message
+  std::map<int, Vec3> shown;  ///< shown places by person
 };
 
 }  // namespace
@@ -49,13 +49,13 @@ struct SessionPointers::Work {
   [[nodiscard]] std::string slotName(int slot) const { return session + ".pointer" + std::to_string(slot); }
   [[nodiscard]] static int whoOf(int slot, int person) { return 1000 * (slot + 1) + person; }
 
-  /// Where a process that is alive points from; not open: from nowhere.
+  /// The region of a slot if its process is alive; otherwise not open.
   [[nodiscard]] SharedRegion openSlot(int slot) const {
     try {
       SharedRegion region = SharedRegion::open(slotName(slot), false);
       const bool is_whole = region.isOpen() && region.memory().size() >= kPointerBytes;
       return is_whole && region.isTaken(NodeRole::Render) ? std::move(region) : SharedRegion();
-    } catch (const LoadError&) {  // open to others, so not to be believed
+    } catch (const LoadError&) {  // accessible to other users, so not trusted
       return {};
     }
   }
@@ -126,7 +126,8 @@ struct SessionPointers::Work {
       const int slot = slotOf(any.envelope().sender);
       if (slot < 0) continue;
       Other& other = *others[static_cast<std::size_t>(slot)];
-      if (other.reader.read(bytes, message) != Reading::Good) continue;  // overtaken by a later one
+      if (other.reader.read(bytes, message) != Reading::Good)
+        continue;  // invalid or older than an earlier message
       other.heard_s = now_s;
       accept(slot, other, message, changes);
     }
@@ -135,7 +136,7 @@ struct SessionPointers::Work {
           other && now_s > other->heard_s + kGone_s)
         leave(slot, changes);
   }
-  /// Of a sender, which gets a free one; negative: there is none.
+  /// Slot of a sender; a new sender gets a free slot. Negative: all slots are in use.
   int slotOf(std::uint64_t sender) {
     int free = -1;
     for (int slot = 0; slot < kMostPointing; ++slot) {
@@ -164,12 +165,12 @@ struct SessionPointers::Work {
   }
 
   std::string session;
-  std::unique_ptr<PointerTopic> topic;  ///< null: in shared memory
-  SharedRegion own;                     ///< not open until this process points
+  std::unique_ptr<PointerTopic> topic;  ///< null: shared memory is used
+  SharedRegion own;                     ///< not open before this process points
   int own_slot = -1;
   RingWriter writer;
   MessageWriter messages{newSender()};
-  std::map<int, Vec3> pointing;  ///< by person of this process
+  std::map<int, Vec3> pointing;  ///< places by person of this process
   std::array<std::optional<Other>, kMostPointing> others;
   std::array<char, kPointerRing.bytes> buffer{};
   double next_look_s = 0, next_repeat_s = 0;

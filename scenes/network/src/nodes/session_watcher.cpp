@@ -23,11 +23,11 @@ struct SessionWatcher::Work {
   std::unique_ptr<Link> link;
   Scene scene;
   std::vector<char> buffer;
-  MessageReader reader;         ///< of the render node
-  std::int64_t shot_ns = 0;     ///< when it sent the last snapshot
-  MessageReader device_reader;  ///< of any device
+  MessageReader reader;         ///< of the render node's messages
+  std::int64_t shot_ns = 0;     ///< sending time of the last snapshot, by the render node's clock
+  MessageReader device_reader;  ///< of any device's messages
   ClockDoubts doubts;
-  HapticMessage haptic;  ///< the last one, of which a compact one repeats a part
+  HapticMessage haptic;  ///< the last one; a compact message updates only a part of it
 };
 
 SessionWatcher::SessionWatcher(std::unique_ptr<Work> work) : work_(std::move(work)) {}
@@ -50,7 +50,7 @@ std::optional<Snapshot> SessionWatcher::takeSnapshot() {
   const std::string_view bytes = work_->link->receive(Channel::Snapshot, work_->buffer);
   if (bytes.empty() || work_->reader.read(bytes, message) != Reading::Good) return {};
   work_->shot_ns = work_->reader.envelope().time_ns;
-  const int step = message.snapshot.step;  // -1: outside of a step
+  const int step = message.snapshot.step;  // -1: no step is active
   if (step < -1 || std::cmp_greater_equal(step, work_->scene.steps.size())) return {};
   const std::size_t parts = work_->scene.parts.size();
   for (const BodySnapshot& body : message.snapshot.bodies)
@@ -61,7 +61,7 @@ std::optional<Snapshot> SessionWatcher::takeSnapshot() {
 
 std::int64_t SessionWatcher::snapshotSent_ns() const {
   const std::int64_t now_ns = device::monotonicClock().now_ns();
-  if (work_->link->form() == WireForm::Exact) return work_->shot_ns;  // of this machine
+  if (work_->link->form() == WireForm::Exact) return work_->shot_ns;  // the clock of this machine
   const std::optional<PeerTiming> timing = work_->link->timing(NodeRole::Render);
   return timing ? sentByClockHere_ns(work_->shot_ns, timing->clock_offset_s, now_ns) : now_ns;
 }

@@ -12,30 +12,30 @@
 namespace vps::scenes {
 namespace {
 
-constexpr double kSilent_s = 1;  // assumed: trackers send 60 poses a second and more
+constexpr double kSilent_s = 1;  // assumed: trackers send at least 60 poses a second
 constexpr std::chrono::milliseconds kLookAgain{10};
 
 }  // namespace
 
 struct TrackedHeads::Work {
   struct Stream {
-    std::unique_ptr<HeadTopic> topic;  ///< null: none
+    std::unique_ptr<HeadTopic> topic;  ///< null: the head has no topic
     bool has_come = false, is_silent = false, is_behind = false;
     double heard_s = 0;
   };
   Display display;
-  std::vector<Stream> streams;  ///< of each viewer
+  std::vector<Stream> streams;  ///< by viewer
   std::vector<std::string> news;
 
-  /// True: the head is there now.
+  /// Moves a viewer's head. Returns false, and reports it once, if the head is behind a screen.
   bool move(DisplayViewer& viewer, Stream& stream, const Pose& X_SE) {
     DisplayViewer moved = viewer;
     moved.X_SE = X_SE;
     for (const DisplayScreen& screen : display.screens)
       if (isBehind(moved, screen)) {
         if (!std::exchange(stream.is_behind, true))
-          news.push_back("'" + viewer.name + "' is behind '" + screen.name +
-                         "'; the pictures stay as seen from in front");
+          news.push_back("the head of '" + viewer.name + "' is behind '" + screen.name +
+                         "'; the last pose in front of it is used");
         return false;
       }
     stream.is_behind = false;
@@ -50,8 +50,8 @@ struct TrackedHeads::Work {
       stream.has_come = move(viewer, stream, *X_SE) || stream.has_come;
     } else if (stream.has_come && now_s - stream.heard_s > kSilent_s && !stream.is_silent) {
       stream.is_silent = true;
-      news.push_back("no pose of '" + viewer.name + "' comes on '" + viewer.topic +
-                     "' any more; see that the tracker runs");
+      news.push_back("no more head poses of '" + viewer.name + "' arrive on '" + viewer.topic +
+                     "'; check that the tracker runs");
     }
   }
 };
@@ -95,9 +95,10 @@ void TrackedHeads::waitForAll(double limit_s) {
     if (missing == nullptr) return;
     if (device::monotonicSeconds() > end_s)
       throw LoadError(work_->display.file, missing->name,
-                      "no pose in front of the screens comes on '" + missing->topic + "' (ROS domain " +
-                          std::to_string(missing->ros_domain) + ", network '" + missing->network +
-                          "'); see that the tracker publishes it, or give 'head' as well");
+                      "no head pose in front of the screens arrives on '" + missing->topic +
+                          "' (ROS domain " + std::to_string(missing->ros_domain) + ", network '" +
+                          missing->network +
+                          "'); check that the tracker publishes it, or give 'head' as well");
     std::this_thread::sleep_for(kLookAgain);
   }
 }

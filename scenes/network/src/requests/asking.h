@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A program that asks the render node of a session, and waits for each answer.
+// A client that sends requests to the render node of a session, and waits for each answer.
 #pragma once
 
 #include <chrono>
@@ -13,31 +13,32 @@
 
 namespace vps::scenes {
 
-/// Used by one thread. All of its requests have one sender.
+/// Sends requests and waits for answers. Used by one thread. All of its requests have the same sender.
 class Asking {
  public:
   static constexpr double kLimit_s = 5;
 
-  /// Throws LoadError where no render node of the session takes requests.
+  /// Throws LoadError if no render node of the session accepts requests.
   Asking(const std::string& session, const SessionNetwork& network)
       : session_(session),
         channel_(network.empty() ? findLocalServer(session) : findNetworkServer(session, network)),
         writer_(newSender()),
-        remedy_(network.empty() ? "its vps render is stopped, or too busy"
-                                : "check that vps render runs it at this --network, and that the "
-                                  "certificates are of its authority and allow requests") {
+        remedy_(network.empty() ? "its vps render is stopped or too busy"
+                                : "check that its vps render uses this --network, and that the certificates "
+                                  "are of the same authority and allow requests") {
     if (channel_ == nullptr)
-      throw LoadError("", "", sessionWords(session) + ": no vps render runs it that takes requests");
+      throw LoadError("", "", sessionWords(session) + ": no vps render that accepts requests runs it");
   }
 
-  /// Throws LoadError where nothing answers in time, the session has ended, or it is of another version.
+  /// Sends a message and returns the answer. Throws LoadError if no answer comes in time, if the session has
+  /// ended, or if it has another version.
   template <typename Message>
   AnswerMessage ask(const Message& message, double limit_s = kLimit_s) {
     AnswerMessage read;
     MessageReader().read(askFor(message, limit_s), read);
     return read;
   }
-  /// The bytes of an AnswerMessage or a FetchedMessage.
+  /// Sends a message and returns the bytes of an AnswerMessage or a FetchedMessage.
   template <typename Message>
   std::string askFor(const Message& message, double limit_s = kLimit_s) {
     const std::string bytes(writer_.write(message));
@@ -53,11 +54,12 @@ class Asking {
       again_s = device::monotonicSeconds() + kAgain_s;
       channel_->send(bytes);
     }
-    throw LoadError("", "", sessionWords(session_) + ": nothing answers; " + remedy_);
+    throw LoadError("", "", sessionWords(session_) + ": no answer; " + remedy_);
   }
 
  private:
-  static constexpr std::chrono::milliseconds kAgain{300};  // over a network: until the other end is found
+  static constexpr std::chrono::milliseconds kAgain{
+      300};  // interval of repetitions, needed over a network until the other end is discovered
   static constexpr double kAgain_s = 0.3;
 
   template <typename Message>
@@ -71,14 +73,14 @@ class Asking {
   }
   [[nodiscard]] bool isAnswerTo(const std::string& bytes, std::uint64_t number) const {
     if (kindOf(bytes) != MessageKind::Fetched) return isAnswerTo(bytes, number, AnswerMessage());
-    const auto fetched = std::make_unique<FetchedMessage>();  // too long for a stack
+    const auto fetched = std::make_unique<FetchedMessage>();  // too large for the stack
     return isAnswerTo(bytes, number, *fetched);
   }
 
   std::string session_;
   std::unique_ptr<ClientChannel> channel_;
   MessageWriter writer_;
-  const char* remedy_;  ///< where nothing answers
+  const char* remedy_;  ///< remedy in the message if no answer comes
 };
 
 }  // namespace vps::scenes

@@ -16,7 +16,7 @@ bool isRecordingName(const std::string& name) {
 }
 
 std::string recordingName(const std::string& file) {
-  constexpr std::size_t kLongest = 63;  // of AskMessage::text
+  constexpr std::size_t kLongest = 63;  // length limit of AskMessage::text
   const std::string name = std::filesystem::path(file).filename().string();
   return isRecordingName(name) && name.size() <= kLongest ? name : "run.mcap";
 }

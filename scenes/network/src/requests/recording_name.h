@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Names of recordings that others ask for.
+// Names of requested recordings.
 #pragma once
 
 #include <string>
 
 namespace vps::scenes {
 
-/// Of a file, without a folder, so that nobody chooses where on this machine it goes: letters, digits, -, _
-/// and dots, with the ending .mcap.
+/// Whether a name is allowed for a recording: a file name without a folder (the requester must not choose the
+/// location on this machine) with letters, digits, -, _ and dots, and the extension .mcap.
 bool isRecordingName(const std::string& name);
-/// Under which the render node keeps what goes to a file elsewhere: the same, where that is allowed.
+/// Name under which the render node stores a recording for a file elsewhere: the same name if it is allowed.
 std::string recordingName(const std::string& file);
 
 }  // namespace vps::scenes

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The way of requests and their answers, as the two ends see it.
+// Transport of requests and answers, for both ends.
 #pragma once
 
 #include <unistd.h>
@@ -15,22 +15,22 @@
 
 namespace vps::scenes {
 
-/// Longest request or answer.
+/// Length limit of a request or an answer [bytes].
 inline constexpr std::size_t kLongestAsk = 40 * 1024;
 
 struct IncomingRequest {
-  std::uint64_t from = 0;  ///< whom the answer goes to
+  std::uint64_t from = 0;  ///< identifies the requester for the answer
   std::string bytes;
-  bool is_stranger = false;  ///< of another user of this machine, who may be told only that
+  bool is_stranger = false;  ///< from another user of this machine, who only gets a refusal
 };
 
-/// Of the render node. Used by one thread.
+/// The render node's end. Used by one thread.
 class ServerChannel {
  public:
   virtual ~ServerChannel() = default;
   ServerChannel(const ServerChannel&) = delete;
   ServerChannel& operator=(const ServerChannel&) = delete;
-  /// The next request, for which it waits so long.
+  /// The next request; waits at most `limit`.
   virtual std::optional<IncomingRequest> receive(std::chrono::milliseconds limit) = 0;
   virtual void answer(std::uint64_t to, std::string_view bytes) = 0;
 
@@ -38,29 +38,29 @@ class ServerChannel {
   ServerChannel() = default;
 };
 
-/// Of who asks. Used by one thread.
+/// The requester's end. Used by one thread.
 class ClientChannel {
  public:
   virtual ~ClientChannel() = default;
   ClientChannel(const ClientChannel&) = delete;
   ClientChannel& operator=(const ClientChannel&) = delete;
   virtual void send(std::string_view bytes) = 0;
-  /// The next answer to anybody; empty: none within that time.
+  /// The next answer to any requester; empty: none within `limit`.
   virtual std::string receive(std::chrono::milliseconds limit) = 0;
-  /// The render node is gone.
+  /// Whether the render node has ended.
   [[nodiscard]] virtual bool isOver() const { return false; }
 
  protected:
   ClientChannel() = default;
 };
 
-/// Within a machine. Throws LoadError where the session has a server.
+/// Creates the server of a session within a machine. Throws LoadError if the session already has one.
 std::unique_ptr<ServerChannel> makeLocalServer(const std::string& session);
-/// Null: there is none.
-/// @param user  whose session it is
+/// Connects to the server of a session within a machine. Returns null if there is none.
+/// @param user  owner of the session
 std::unique_ptr<ClientChannel> findLocalServer(const std::string& session, uid_t user = getuid());
 
-/// Over UDP; in dds/. Throw LoadError as joinSession() over a network.
+/// Server and client over UDP; implemented in dds/. Both throw LoadError as joinSession() over a network.
 std::unique_ptr<ServerChannel> makeNetworkServer(const std::string& session, const SessionNetwork& network);
 std::unique_ptr<ClientChannel> findNetworkServer(const std::string& session, const SessionNetwork& network);
 

@@ -25,13 +25,13 @@ namespace vps::scenes {
 
 namespace {
 
-constexpr std::size_t kMostSenders = 64;         // a flood of senders takes no more memory than this
-constexpr std::uint64_t kMostScene = 1U << 30U;  // [bytes]
-constexpr double kTransferLimit_s = 10;          // who sends asks again every 0.3 s, and gives up after 5
-constexpr std::size_t kMostFetchers = 16;        // assumed
-constexpr double kFetchLimit_s = 5;              // who waits for a recording asks each 0.3 s
+constexpr std::size_t kMostSenders = 64;         // limits the memory that a flood of senders can take
+constexpr std::uint64_t kMostScene = 1U << 30U;  // size limit of a scene's archive [bytes]
+constexpr double kTransferLimit_s = 10;    // a sender repeats a piece every 0.3 s, and gives up after 5 s
+constexpr std::size_t kMostFetchers = 16;  // assumed
+constexpr double kFetchLimit_s = 5;        // a requester that waits for a recording asks every 0.3 s
 constexpr const char* kSceneEnding = ".scene";
-constexpr std::size_t kMostKept = 16;  // assumed: what a person works on; the newest stay
+constexpr std::size_t kMostKept = 16;  // assumed: as many as a person works on; the newest are kept
 
 template <std::size_t N>
 std::string textOf(const std::array<char, N>& text) {
@@ -48,7 +48,7 @@ std::string gainsInWords(const CouplingGains& gains) {
   return words;
 }
 
-/// Bytes of the text up to a limit, without half a character of UTF-8 at its end.
+/// Size of the longest prefix within a limit that does not split a UTF-8 character.
 std::size_t fittingSize(const std::string& text, std::size_t most) {
   std::size_t size = std::min(text.size(), most);
   if (size == text.size()) return size;
@@ -86,7 +86,7 @@ void ServedRun::begin(const Scene& scene, std::string scene_bytes, const Link& l
   facts_.bytes = std::move(scene_bytes);
   for (const SceneStep& step : scene.steps) facts_.parts.push_back(scene.parts[step.part].part.name);
   facts_.recording = recording;
-  if (!recording.empty()) recorded_[recording] = Recorded::Growing;  // it may be asked for from now on
+  if (!recording.empty()) recorded_[recording] = Recorded::Growing;  // from now on others may request it
   facts_.is_running = true;
   link_ = &link;
 }
@@ -153,7 +153,7 @@ std::string_view RequestHandler::write(std::uint64_t sender, std::uint64_t numbe
   return writer_.write(message);
 }
 
-/// Who is of another version learns that from the answer's own version.
+/// The answer's version tells a requester of another version that the versions differ.
 std::string_view RequestHandler::refuseUnread(Reading reading) {
   if (refused_++ == 0 && options_.say)
     options_.say(std::string("a request that cannot be read was refused: ") + toText(reading));
@@ -172,10 +172,11 @@ std::string_view RequestHandler::answer(const IncomingRequest& ask) {
   const Envelope envelope = any.envelope();
   if (ask.is_stranger)
     return write(envelope.sender, envelope.number,
-                 {false, "refused: the session is of another user of this machine", false});
+                 {false, "refused: the session belongs to another user of this machine", false});
   Client& client = clientOf(envelope.sender);
   const Reading reading = read(client.reader);
-  if (reading == Reading::Replayed && !client.last_answer.empty()) return client.last_answer;  // it was lost
+  if (reading == Reading::Replayed && !client.last_answer.empty())
+    return client.last_answer;  // the first answer was lost
   if (reading != Reading::Good) return refuseUnread(reading);
   Answer answer;
   if (!is_piece && message.kind == AskKind::Fetch) {
@@ -191,7 +192,8 @@ std::string_view RequestHandler::answer(const IncomingRequest& ask) {
 RequestHandler::Answer RequestHandler::obey(std::uint64_t sender, const AskMessage& ask) {
   if (ask.kind == AskKind::Who) return who();
   if (options_.rights != RequestRights::All)
-    return {false, "refused: this session may only be asked who is there (vps render --requests all)", false};
+    return {false, "refused: only `who` is allowed here; start vps render with --requests all to allow more",
+            false};
   const std::string text = textOf(ask.text);
   switch (ask.kind) {
     case AskKind::Who:
@@ -236,22 +238,23 @@ RequestHandler::Answer RequestHandler::who() const {
   }
   words += "\ndevice: ";
   if (!facts.has_device)
-    words += facts.is_running ? "none, it is waited for" : "none";
+    words += facts.is_running ? "none, the run waits for it" : "none";
   else
     words += (facts.device.empty() ? "joining" : quoted(facts.device) + ", " + gainsInWords(gainsOf(facts))) +
-             (requests_.isFaulted() ? "; safe after a fault: no force" : "");
+             (requests_.isFaulted() ? "; safe state after a fault, without force" : "");
   words += "\nwatchers: " + std::to_string(facts.watchers);
   return {true, words, false};
 }
 
-/// Those that were set last count from the step after that.
+/// The current gains; requested gains apply from the step after the request on.
 CouplingGains RequestHandler::gainsOf(const ServedRun::Facts& facts) const {
   return gains_ && requests_.step() > gains_step_ ? *gains_ : facts.gains;
 }
 
 RequestHandler::Answer RequestHandler::take(const std::string& part) {
   if (!requests_.isWaiting())
-    return {false, "refused: this run takes its parts by itself; start vps render with --on-request", false};
+    return {false, "refused: this run takes its parts automatically; start vps render with --on-request",
+            false};
   const ServedRun::Facts facts = run_.facts();
   const bool has_begun = requests_.phase() != RunPhase::Preparing;
   const auto next = static_cast<std::size_t>(has_begun ? requests_.step() + 1 : 0);
@@ -267,7 +270,8 @@ RequestHandler::Answer RequestHandler::take(const std::string& part) {
 
 RequestHandler::Answer RequestHandler::release() {
   const ServedRun::Facts facts = run_.facts();
-  const auto step = static_cast<std::size_t>(requests_.step());  // -1: none, beyond all parts
+  const auto step =
+      static_cast<std::size_t>(requests_.step());  // -1 (no step) becomes larger than all indices
   if (!facts.is_running || requests_.phase() != RunPhase::InHand || step >= facts.parts.size())
     return {false, "refused: nothing is in hand", false};
   requests_.release();
@@ -278,7 +282,7 @@ RequestHandler::Answer RequestHandler::rearm() {
   const ServedRun::Facts facts = run_.facts();
   if (!facts.has_device || facts.device.empty()) return {false, "refused: no device has joined", false};
   if (!facts.may_rearm)
-    return {false, "refused: a person holds the device and has not allowed that (vps device --auto-rearm)",
+    return {false, "refused: the person at the device has not allowed re-arming (vps device --auto-rearm)",
             false};
   if (!requests_.isFaulted()) return {false, "refused: the device has no fault", false};
   requests_.rearm();
@@ -288,21 +292,22 @@ RequestHandler::Answer RequestHandler::rearm() {
 RequestHandler::Answer RequestHandler::setGains(double k_N_per_m, double k_Nm_per_rad) {
   const ServedRun::Facts facts = run_.facts();
   if (!facts.is_running || facts.device.empty())
-    return {false, "refused: no device has joined, from whose limits the gains follow", false};
-  if (!facts.recording.empty()) return {false, "refused: a run that is recorded keeps its gains", false};
+    return {false, "refused: no device has joined, so the limits of the gains are unknown", false};
+  if (!facts.recording.empty())
+    return {false, "refused: the gains of a recorded run cannot be changed", false};
   CouplingGains wish = facts.most;
   wish.k_N_per_m = k_N_per_m;
   wish.k_Nm_per_rad = k_Nm_per_rad > 0 ? k_Nm_per_rad : gainsOf(facts).k_Nm_per_rad;
   const CouplingGains gains = device::softerOf(wish, facts.most);
   if (!device::areUsable(gains))
-    return {false, "refused: " + gainsInWords(wish) + " are too soft to hold a part", false};
+    return {false, "refused: " + gainsInWords(wish) + " are too low to hold a part", false};
   requests_.setGains(gains);
   gains_ = gains;
   gains_step_ = requests_.step();
   const bool is_bounded = gains.k_N_per_m < wish.k_N_per_m || gains.k_Nm_per_rad < wish.k_Nm_per_rad;
   return {true,
           "from the next part on " + gainsInWords(gains) +
-              (is_bounded ? ", up to which this device is passive here" : ""),
+              (is_bounded ? ", the limit at which this device is passive" : ""),
           false};
 }
 
@@ -311,30 +316,31 @@ std::string RequestHandler::fileOf(const std::string& hash) const {
 }
 
 RequestHandler::Answer RequestHandler::load(const std::string& hash) {
-  if (!isSceneHash(hash)) return {false, "refused: a scene is named by the 32 digits of its hash", false};
+  if (!isSceneHash(hash)) return {false, "refused: name a scene by the 32 digits of its hash", false};
   const ServedRun::Facts facts = run_.facts(true);
   if (facts.hash == hash) return begin(facts.bytes);
   if (const std::string file = fileOf(hash); !file.empty())
     if (const std::string bytes = readAll(file); contentHash(bytes) == hash) return begin(bytes);
-  return {false, "the scene " + hash + " is not known here; name its file, so that it is sent", true};
+  return {false, "the scene " + hash + " is unknown to this vps render; give its file, which is then sent",
+          true};
 }
 
 RequestHandler::Answer RequestHandler::addPiece(std::uint64_t sender, const PieceMessage& piece) {
-  if (options_.rights != RequestRights::All)
-    return {false, "refused: no scene may be sent to this session", false};
+  if (options_.rights != RequestRights::All) return {false, "refused: this session accepts no scenes", false};
   const std::string hash = textOf(piece.hash);
   if (!isSceneHash(hash) || piece.total == 0 || piece.total > kMostScene || piece.size > PieceMessage::kMost)
-    return {false, "refused: this is no piece of a scene", false};
+    return {false, "refused: this is not a valid piece of a scene", false};
   if (piece.offset == 0) transfer_ = {sender, hash, {}, piece.total, 0};
   Transfer& now = transfer_;
   if (now.sender != sender || now.hash != hash || now.total != piece.total ||
       now.bytes.size() != piece.offset || piece.size > now.total - piece.offset)
-    return {false, "refused: another scene was sent meanwhile; ask again", false};
+    return {false, "refused: another scene was sent in the meantime; try again", false};
   now.bytes.append(piece.bytes.data(), piece.size);
   now.heard_s = device::monotonicSeconds();
   if (now.bytes.size() < now.total) return {true, "more", true};
   const std::string bytes = std::exchange(transfer_, {}).bytes;
-  if (contentHash(bytes) != hash) return {false, "refused: the scene came damaged; ask again", false};
+  if (contentHash(bytes) != hash)
+    return {false, "refused: the scene was damaged in transfer; try again", false};
   const Answer answer = begin(bytes);
   if (answer.is_done) keep(hash, bytes);
   return answer;
@@ -357,14 +363,14 @@ void RequestHandler::keep(const std::string& hash, const std::string& bytes) con
       return a.last_write_time() > b.last_write_time();
     });
     for (std::size_t i = kMostKept; i < kept.size(); ++i) fs::remove(kept[i]);
-  } catch (const std::exception& failed) {  // it runs all the same
-    if (options_.say) options_.say(std::string("the scene that was sent is not kept: ") + failed.what());
+  } catch (const std::exception& failed) {  // the scene runs anyway
+    if (options_.say) options_.say(std::string("the received scene could not be stored: ") + failed.what());
   }
 }
 
 RequestHandler::Answer RequestHandler::begin(const std::string& bytes) {
   try {
-    Scene scene = sceneFromBytes(bytes, "the scene that was asked for");
+    Scene scene = sceneFromBytes(bytes, "the requested scene");
     requireSteps(scene);
     const std::string name = scene.name;
     gains_.reset();
@@ -377,7 +383,7 @@ RequestHandler::Answer RequestHandler::begin(const std::string& bytes) {
 
 RequestHandler::Answer RequestHandler::again() {
   const ServedRun::Facts facts = run_.facts(true);
-  if (facts.bytes.empty()) return {false, "refused: there was no run yet", false};
+  if (facts.bytes.empty()) return {false, "refused: there was no run so far", false};
   return begin(facts.bytes);
 }
 
@@ -389,27 +395,30 @@ RequestHandler::Answer RequestHandler::record(std::uint64_t sender, const std::s
     return {
         true,
         std::string("no further run is recorded") +
-            (!facts.is_running || facts.recording.empty() ? "" : "; the recording of this one ends with it"),
+            (!facts.is_running || facts.recording.empty() ? "" : "; the current recording ends with its run"),
         false};
   }
   if (!isRecordingName(name))
-    return {false, "refused: name a file as run_1.mcap, without a folder; it goes to where vps render runs",
+    return {false,
+            "refused: give a file name such as run_1.mcap, without a folder; vps render chooses the folder",
             false};
-  constexpr const char* kCrowd = "refused: too many wait for recordings";
+  constexpr const char* kCrowd = "refused: too many requesters wait for recordings";
   if (wants_file && facts.is_running && !facts.recording.empty()) {
     if (!addFetcher(sender, facts.recording, facts.number)) return {false, kCrowd, false};
-    return {true, "this run is recorded in " + facts.recording + " already; the file comes when it has ended",
-            false};
+    return {
+        true,
+        "this run is recorded in " + facts.recording + " already; the file is sent when the run has ended",
+        false};
   }
   const std::string folder = options_.recordings.empty() ? "." : options_.recordings;
   if (access(folder.c_str(), W_OK) != 0)
-    return {false, "refused: vps render cannot write into its folder for recordings", false};
+    return {false, "refused: vps render cannot write to its folder for recordings", false};
   const bool is_late = facts.is_running && facts.has_begun;
   const bool is_next = !facts.is_running || is_late;
   if (wants_file && !addFetcher(sender, "", facts.number + (is_next ? 1 : 0))) return {false, kCrowd, false};
   recording_ = (std::filesystem::path(folder) / name).string();
   const char* which = is_next ? "the next run is recorded in " : "this run is recorded in ";
-  return {true, which + unusedFile(recording_) + (is_late ? "; again begins one" : ""), false};
+  return {true, which + unusedFile(recording_) + (is_late ? "; `vps ask again` starts it" : ""), false};
 }
 
 bool RequestHandler::addFetcher(std::uint64_t sender, const std::string& file, std::uint64_t wanted) {
@@ -430,7 +439,7 @@ bool RequestHandler::isFetched(double now_s) const {
 std::string_view RequestHandler::fetch(const Envelope& envelope, std::uint64_t offset, Answer& words) {
   const auto found = fetchers_.find(envelope.sender);
   if (found == fetchers_.end()) {
-    words = {false, "refused: no recording was asked for, or too long ago", false};
+    words = {false, "refused: no recording was requested, or too long ago", false};
     return {};
   }
   Fetcher& fetcher = found->second;
@@ -447,7 +456,7 @@ std::string_view RequestHandler::fetch(const Envelope& envelope, std::uint64_t o
   PieceMessage& piece = message.piece;
   std::ifstream in(fetcher.file, std::ios::binary | std::ios::ate);
   if (state == ServedRun::Recorded::Failed || !in) {
-    words = {false, "the run was stopped before its end, so that it has no recording", false};
+    words = {false, "the run was stopped before its end, so there is no recording", false};
     fetchers_.erase(found);
     return {};
   }

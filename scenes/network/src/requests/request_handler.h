@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the render node tells of its run, and what is answered to a request. Nothing here knows sockets.
+// The facts of a render node's run, and the handling of requests. Independent of sockets.
 #pragma once
 
 #include <cstdint>
@@ -22,40 +22,42 @@ namespace vps::scenes {
 /// The first of run.mcap, run-2.mcap, ... that does not exist, so that no earlier run is lost.
 std::string unusedFile(const std::string& wanted);
 
-/// The run of now. All functions may be called by any thread.
+/// Facts of the current run. Thread-safe.
 class ServedRun {
  public:
-  /// @param link  stays until end()
+  /// @param link  must stay valid until end()
   void begin(const Scene& scene, std::string scene_bytes, const Link& link, const std::string& recording);
   void end();
-  /// @param most  gains at which the device is passive here
+  /// @param most  greatest gains at which the device is passive here
   void setDevice(const std::string& name, bool may_rearm, const CouplingGains& gains,
                  const CouplingGains& most);
 
-  /// The run is recorded from its beginning; empty: not. Nobody can change that from now on.
+  /// Called when the run begins. @param file  file of its recording; empty: none. This can no longer be
+  /// changed.
   void beginRecording(const std::string& file);
-  /// The file is whole.
+  /// Called when the recording's file is complete.
   void finishRecording();
-  /// Of a file that was given to begin() or beginRecording(). Any other file is Failed: nobody writes it.
+  /// State of a file that was given to begin() or beginRecording(). Any other file is Failed, since no run
+  /// writes it.
   enum class Recorded : std::uint8_t { Growing, Whole, Failed };
   [[nodiscard]] Recorded stateOf(const std::string& file) const;
 
   struct Facts {
-    std::uint64_t number = 0;        ///< of the run, from 1 on; 0: there was none yet
+    std::uint64_t number = 0;        ///< number of the run, starting at 1; 0: there was none so far
     std::string name, hash, bytes;   ///< of the scene
-    std::vector<std::string> parts;  ///< that each step moves
-    std::string recording;           ///< file, which stays until the next run begins; empty: none
-    std::string device;              ///< empty: none has joined
+    std::vector<std::string> parts;  ///< part of each step
+    std::string recording;           ///< file of the recording, kept until the next run begins; empty: none
+    std::string device;              ///< name of the device; empty: none has joined
     bool may_rearm = false;
     CouplingGains gains, most;
     bool is_running = false, has_device = false;
-    bool has_begun = false;  ///< so that it is too late to record it; stays until the next run begins
+    bool has_begun = false;  ///< true: too late to record this run; kept until the next run begins
     std::size_t watchers = 0;
   };
   [[nodiscard]] Facts facts(bool with_bytes = false) const;
 
  private:
-  mutable std::mutex mutex_;  ///< the physics thread takes it where a run begins and ends
+  mutable std::mutex mutex_;  ///< locked by the physics thread when a run begins and ends
   Facts facts_;
   std::map<std::string, Recorded> recorded_;
   const Link* link_ = nullptr;
@@ -64,26 +66,26 @@ class ServedRun {
 /// Reads requests and answers them. Used by one thread.
 class RequestHandler {
  public:
-  /// All outlive it.
+  /// All arguments must outlive this object.
   RequestHandler(const RequestServerOptions& options, RunRequests& requests, const ServedRun& run)
       : options_(options), requests_(requests), run_(run), writer_(newSender()) {}
 
-  /// The bytes of the answer; empty: none. They stay until the next call.
+  /// The bytes of the answer, valid until the next call; empty: no answer.
   std::string_view answer(const IncomingRequest& ask);
-  /// A scene that is to run next, once.
+  /// A requested scene that is to run next; returned once.
   std::optional<Scene> takeNext() { return std::exchange(next_, std::nullopt); }
-  /// The file that was asked for, for the runs that begin from now on; empty: none.
+  /// The requested recording file for runs that begin from now on; empty: none.
   [[nodiscard]] const std::string& recording() const { return recording_; }
-  /// Somebody is fetching a recording, or waits for it.
+  /// Whether a requester is fetching a recording, or waits for one.
   [[nodiscard]] bool isFetched(double now_s) const;
-  /// Frees the memory of a scene that its sender has ceased to send.
+  /// Frees the memory of a scene whose sender has stopped sending.
   void dropLostTransfer(double now_s);
 
  private:
   struct Client {
     MessageReader reader;
     std::string last_answer;
-    std::uint64_t heard = 0;  ///< count of requests then
+    std::uint64_t heard = 0;  ///< request count at the last message
   };
   struct Answer {
     bool is_done = false;
@@ -94,15 +96,15 @@ class RequestHandler {
     std::uint64_t sender = 0;
     std::string hash, bytes;
     std::uint64_t total = 0;
-    double heard_s = 0;  ///< when its last piece came, by device::monotonicSeconds()
+    double heard_s = 0;  ///< arrival time of its last piece, by device::monotonicSeconds()
   };
 
-  /// Who wants to have a recording.
+  /// A requester that wants a recording's file.
   struct Fetcher {
-    std::string file;          ///< empty: of the next run that is recorded
-    std::string hash;          ///< of the whole file; empty: not known yet
-    double heard_s = 0;        ///< by device::monotonicSeconds()
-    std::uint64_t wanted = 0;  ///< where `file` is empty: number of the first run that may be meant
+    std::string file;          ///< empty: the recording of the next recorded run
+    std::string hash;          ///< hash of the whole file; empty: not computed yet
+    double heard_s = 0;        ///< time of its last message, by device::monotonicSeconds()
+    std::uint64_t wanted = 0;  ///< if `file` is empty: number of the first run that may be meant
   };
 
   Client& clientOf(std::uint64_t sender);
@@ -110,7 +112,7 @@ class RequestHandler {
   std::string_view refuseUnread(Reading reading);
   Answer obey(std::uint64_t sender, const AskMessage& ask);
   Answer who() const;
-  /// That the coupling has now.
+  /// The current gains of the coupling.
   [[nodiscard]] CouplingGains gainsOf(const ServedRun::Facts& facts) const;
   Answer take(const std::string& part);
   Answer release();
@@ -119,15 +121,15 @@ class RequestHandler {
   Answer load(const std::string& hash);
   Answer again();
   Answer record(std::uint64_t sender, const std::string& name, bool wants_file);
-  /// Takes up who wants the file, or without one the recording of a run from number `wanted` on; false: there
-  /// are too many.
+  /// Registers a requester of a file, or, if `file` is empty, of the recording of a run with a number of at
+  /// least `wanted`. Returns false if there are too many requesters.
   bool addFetcher(std::uint64_t sender, const std::string& file, std::uint64_t wanted);
-  /// The answer in `words`, or, if the result is not empty, a piece of the file.
+  /// Returns a piece of the file; if the result is empty, `words` is the answer.
   std::string_view fetch(const Envelope& envelope, std::uint64_t offset, Answer& words);
   Answer addPiece(std::uint64_t sender, const PieceMessage& piece);
-  /// Checks the scene, and ends the run for it.
+  /// Validates the scene, and ends the current run to start it.
   Answer begin(const std::string& bytes);
-  /// In the folder of scenes that were sent.
+  /// Stores a scene in the folder of received scenes.
   void keep(const std::string& hash, const std::string& bytes) const;
   [[nodiscard]] std::string fileOf(const std::string& hash) const;
 
@@ -141,8 +143,8 @@ class RequestHandler {
   std::map<std::uint64_t, Fetcher> fetchers_;  ///< by sender
   std::optional<Scene> next_;
   std::string recording_;
-  std::optional<CouplingGains> gains_;  ///< that were set last
-  int gains_step_ = -1;                 ///< of the procedure, in which that was
+  std::optional<CouplingGains> gains_;  ///< last requested gains
+  int gains_step_ = -1;                 ///< step of the procedure during that request
 };
 
 }  // namespace vps::scenes

@@ -12,7 +12,7 @@ namespace vps::scenes {
 
 namespace {
 
-constexpr std::chrono::milliseconds kPoll{20};  // until a stop by the user is passed on
+constexpr std::chrono::milliseconds kPoll{20};  // interval of checks for a stop by the user
 
 }  // namespace
 
@@ -35,7 +35,7 @@ void RequestServer::Work::serve() {
     if (options.stop != nullptr && options.stop->load()) ends_run = true;
     try {
       serveOne();
-    } catch (const std::exception& failed) {  // such as memory that is not there; the run goes on
+    } catch (const std::exception& failed) {  // such as a lack of memory; the run continues
       if (options.say) options.say(std::string("a request was not carried out: ") + failed.what());
     }
   }
@@ -85,7 +85,7 @@ std::optional<Scene> RequestServer::waitForNext() {
 
 void RequestServer::waitForFetchers() const {
   const auto is_stopped = [this] { return work_->options.stop != nullptr && work_->options.stop->load(); };
-  do std::this_thread::sleep_for(2 * kPoll);  // what was asked in the meantime counts
+  do std::this_thread::sleep_for(2 * kPoll);  // requests that arrive in the meantime count
   while (work_->is_fetched && !is_stopped());
 }
 

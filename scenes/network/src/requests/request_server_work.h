@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The server of requests of a process, with its thread.
+// The request server of a process, with its thread.
 #pragma once
 
 #include <atomic>
@@ -22,15 +22,15 @@ struct RequestServer::Work {
   Work& operator=(const Work&) = delete;
 
   void serve();
-  /// Waits for a request for some milliseconds.
+  /// Waits a few milliseconds for a request and handles it.
   void serveOne();
 
   RequestServerOptions options;
   RunRequests requests;
   ServedRun run;
-  std::unique_ptr<ServerChannel> channel;  ///< of the thread, as is the handler
+  std::unique_ptr<ServerChannel> channel;  ///< used by the thread only, as is the handler
   RequestHandler handler;
-  std::mutex mutex;  ///< of the next two
+  std::mutex mutex;  ///< guards the next two members
   std::optional<Scene> next;
   std::string recording;
   std::atomic<bool> ends_run{false}, is_closing{false}, is_fetched{false};

@@ -22,12 +22,13 @@ namespace vps::scenes {
 
 namespace {
 
-constexpr std::chrono::milliseconds kLook{300};   // whether the run has ended
-constexpr std::chrono::milliseconds kAppear{20};  // until the session is there
+constexpr std::chrono::milliseconds kLook{300};   // interval of checks whether the run has ended
+constexpr std::chrono::milliseconds kAppear{20};  // interval of checks whether the session exists
 constexpr std::chrono::milliseconds kWait{5};
-constexpr std::uint64_t kMostFile = std::uint64_t{1} << 34U;  // [bytes] assumed: hours of a run
+constexpr std::uint64_t kMostFile = std::uint64_t{1}
+                                    << 34U;  // size limit of a recording [bytes]; assumed: hours of a run
 
-/// Another program's words, which control no terminal.
+/// Text from another program, without control characters that a terminal would interpret.
 std::string wordsOf(const AnswerMessage& answer) {
   return printable(answer.text.data());
 }
@@ -52,10 +53,10 @@ struct SessionRecording::Work {
     } catch (const std::exception& failed) {
       failure = failed.what();
     }
-    is_over = true;  // first: who sees is_asked reads here whether it was refused
+    is_over = true;  // set first: a thread that sees is_asked uses it to detect a refusal
     is_asked = true;
   }
-  /// Once the session is there. Empty: refused, or stopped.
+  /// Requests the recording as soon as the session exists. Returns nothing if it was refused or stopped.
   std::optional<Asking> ask() {
     AskMessage message;
     message.kind = AskKind::Record;
@@ -73,20 +74,20 @@ struct SessionRecording::Work {
         if (options.say) options.say(wordsOf(answer));
         is_asked = true;
         return asking;
-      } catch (const LoadError& error) {  // mostly: not there yet
+      } catch (const LoadError& error) {  // usually because the session does not exist yet
         keepProblem(error.what());
         std::this_thread::sleep_for(kAppear);
       }
     }
     failure = withProblem(
-        "no vps render of this session has answered; check that it takes requests, of this one too");
+        "no vps render of this session has answered; check that it runs and accepts requests from this node");
     return {};
   }
   void keepProblem(const std::string& words) {
     const std::lock_guard lock(mutex);
     problem = words;
   }
-  /// With what was in the way last.
+  /// Appends the last problem to a message.
   std::string withProblem(const std::string& words) {
     const std::lock_guard lock(mutex);
     return problem.empty() ? words : words + ": " + problem;
@@ -95,7 +96,7 @@ struct SessionRecording::Work {
     AskMessage message;
     message.kind = AskKind::Fetch;
     std::string bytes, hash;
-    const auto piece = std::make_unique<FetchedMessage>();  // too long for a stack
+    const auto piece = std::make_unique<FetchedMessage>();  // too large for the stack
     while (!isStopped()) {
       message.offset = bytes.size();
       const std::string answered = asking.askFor(message);
@@ -116,29 +117,29 @@ struct SessionRecording::Work {
     }
     failure = "stopped before the run had ended";
   }
-  /// So that the other end does not wait.
+  /// Tells the render node that the file has arrived, so that it does not wait.
   static void tellThatItIsHere(Asking& asking, const AskMessage& message) {
     try {
       asking.ask(message);
-    } catch (const LoadError&) {  // it has ended already; the file is whole and here all the same
+    } catch (const LoadError&) {  // the session has ended, but the file is complete
     }
   }
-  /// True: that was the last piece.
+  /// Appends a piece. Returns true after the last piece.
   static bool take(const PieceMessage& piece, std::string& hash, std::string& bytes) {
     if (hash.empty()) hash = piece.hash.data();
     if (piece.offset != bytes.size() || hash != piece.hash.data() || piece.size > PieceMessage::kMost ||
         piece.size == 0 || piece.total > kMostFile || piece.size > piece.total - piece.offset)
-      throw LoadError("", "", "the recording came in pieces that do not fit");
+      throw LoadError("", "", "the received pieces of the recording are inconsistent");
     bytes.append(piece.bytes.data(), piece.size);
     if (bytes.size() < piece.total) return false;
-    if (contentHash(bytes) != hash) throw LoadError("", "", "the recording came damaged");
+    if (contentHash(bytes) != hash) throw LoadError("", "", "the recording was damaged in transfer");
     return true;
   }
 
   SessionRecordingOptions options;
-  std::string failure;  ///< of the thread, until is_over
-  std::mutex mutex;     ///< of the next
-  std::string problem;  ///< why nothing could be asked, the last time
+  std::string failure;  ///< written by the thread before is_over is set
+  std::mutex mutex;     ///< guards the next member
+  std::string problem;  ///< reason of the last failed attempt
   std::atomic<bool> is_asked{false}, is_over{false}, is_ending{false};
   std::thread thread;
 };
@@ -150,12 +151,12 @@ SessionRecording::~SessionRecording() = default;
 std::string SessionRecording::waitUntilAsked(double most_s) {
   for (double left_s = most_s; left_s > 0 && !work_->is_asked; left_s -= 5e-3)
     std::this_thread::sleep_for(kWait);
-  if (!work_->is_asked) return work_->withProblem("nothing answers the wish for a recording");
+  if (!work_->is_asked) return work_->withProblem("no answer to the request for a recording");
   return work_->is_over ? work_->failure : "";
 }
 
 std::string SessionRecording::finish() {
-  constexpr double kLate_s = 2;  // a session that is over answers nothing any more
+  constexpr double kLate_s = 2;  // a session that has ended answers no more
   if (!work_->is_asked && !waitUntilAsked(kLate_s).empty()) work_->is_ending = true;
   while (!work_->is_over) std::this_thread::sleep_for(kWait);
   return work_->failure;

@@ -14,13 +14,12 @@ namespace vps::scenes {
 
 namespace {
 
-constexpr double kLoadLimit_s = 120;  // assumed: a scene of 1 GB is read and checked within that
+constexpr double kLoadLimit_s = 120;  // assumed: a scene of 1 GB is read and checked within this time
 
 AskMessage messageOf(AskKind kind, const std::string& text = "") {
   AskMessage message;
   message.kind = kind;
-  if (text.size() >= message.text.size())
-    throw LoadError("", "", "'" + text + "' is too long a name for a request");
+  if (text.size() >= message.text.size()) throw LoadError("", "", "'" + text + "' is too long for a request");
   std::memcpy(message.text.data(), text.data(), text.size());
   return message;
 }
@@ -32,7 +31,7 @@ SessionAnswer answerOf(const AnswerMessage& message) {
 }  // namespace
 
 bool isSceneHash(const std::string& text) {
-  constexpr std::size_t kDigits = 32;  // of contentHash()
+  constexpr std::size_t kDigits = 32;  // length of contentHash()
   return text.size() == kDigits && text.find_first_not_of("0123456789abcdef") == std::string::npos;
 }
 

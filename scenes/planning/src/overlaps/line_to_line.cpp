@@ -8,7 +8,7 @@
 #include <string>
 
 #include "fits/faces.h"
-#include "text/name_words.h"
+#include "text/words.h"
 
 namespace vps::scenes {
 

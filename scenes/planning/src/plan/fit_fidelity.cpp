@@ -7,8 +7,8 @@
 #include <string>
 
 #include "models/meeting_sizes.h"
-#include "scene/usual_spacing.h"
-#include "text/length_words.h"
+#include "scene/steps.h"
+#include "text/words.h"
 #include "vps/box.h"
 #include "vps_scenes/planning/fidelity_choice.h"
 #include "vps_scenes/planning/plan.h"

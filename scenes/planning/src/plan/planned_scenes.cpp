@@ -7,7 +7,7 @@
 #include <set>
 
 #include "vps_scenes/planning/plan.h"
-#include "vps_scenes/scene/scene_groups.h"
+#include "vps_scenes/scene/scene_parts.h"
 
 namespace vps::scenes {
 

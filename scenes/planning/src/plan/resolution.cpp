@@ -10,8 +10,8 @@
 
 #include "models/meeting_sizes.h"
 #include "models/scene_models.h"
-#include "scene/usual_spacing.h"
-#include "text/length_words.h"
+#include "scene/steps.h"
+#include "text/words.h"
 #include "vps/voxmap.h"
 #include "vps_scenes/planning/plan.h"
 #include "vps_scenes/run/explain.h"

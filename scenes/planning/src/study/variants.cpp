@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "check/check_placed.h"
-#include "models/shrunk_mesh.h"
-#include "scene/insertion_axis.h"
-#include "text/length_words.h"
+#include "models/scene_models.h"
+#include "scene/steps.h"
+#include "text/words.h"
 #include "vps_scenes/fits/check.h"
 
 namespace vps::scenes {

@@ -9,7 +9,7 @@
 
 #include "core/machine.h"
 #include "models/scene_models.h"
-#include "scene/usual_spacing.h"
+#include "scene/steps.h"
 #include "trade/samples.h"
 #include "vps/errors.h"
 #include "vps/solid.h"

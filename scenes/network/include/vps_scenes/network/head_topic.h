@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where a tracked head is now, from the network.
+// Poses of a tracked head, received from the network.
 #pragma once
 
 #include <memory>
@@ -11,20 +11,20 @@
 
 namespace vps::scenes {
 
-/// A pose topic of ROS 2 (geometry_msgs/PoseStamped), as trackers publish it. Its frame is not looked at: the
-/// poses are in the room. Used by one thread; nothing waits.
+/// Receives a pose topic of ROS 2 (geometry_msgs/PoseStamped), as trackers publish it. The frame name is
+/// ignored: poses are in the room's frame. Used by one thread; no call waits.
 class VPS_SCENES_API HeadTopic {
  public:
-  /// @param topic      "/anna/head"
+  /// @param topic      name of the topic, such as "/anna/head"
   /// @param domain     ROS_DOMAIN_ID, 0 to 232
-  /// @param interface  of the network; "lo": this machine only
-  /// Throws LoadError where this build has no network, or the system refuses.
+  /// @param interface  network interface; "lo": this machine only
+  /// Throws LoadError if this build has no network support, or the system refuses.
   HeadTopic(const std::string& topic, int domain, const std::string& interface);
   ~HeadTopic();
   HeadTopic(const HeadTopic&) = delete;
   HeadTopic& operator=(const HeadTopic&) = delete;
 
-  /// The newest pose since the last call. What is no pose (not finite, no rotation) is left out.
+  /// The newest pose since the last call. Invalid poses (not finite, or not a rotation) are ignored.
   std::optional<Pose> take();
 
  private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where a render node is asked for something while it runs: who is there, take, release, re-arm, gains,
-// another scene, a recording. Each request has a reply, in words.
+// Answers requests to a running render node: status, take, release, re-arm, gains, another scene, a
+// recording. Each request gets a reply in words.
 #pragma once
 
 #include <atomic>
@@ -17,47 +17,48 @@
 namespace vps::scenes {
 
 enum class RequestRights {
-  Look,  ///< who is there
-  All,
+  Look,  ///< status only
+  All,   ///< all requests
 };
 
 struct RequestServerOptions {
   std::string session = "default";
   SessionNetwork network;
   RequestRights rights = RequestRights::All;
-  /// Each part is taken when somebody asks for it. Otherwise the procedure goes on by itself.
+  /// True: each part is taken only on request. False: the procedure continues by itself.
   bool waits = false;
-  std::string scenes;      ///< folder of scenes that were sent, by their hash; empty: they are not kept
-  std::string recordings;  ///< folder of the recordings that are asked for
+  std::string scenes;      ///< folder of received scenes, stored by hash; empty: they are not stored
+  std::string recordings;  ///< folder of the requested recordings
   const std::atomic<bool>* stop = nullptr;
-  Say say;  ///< may be empty
+  Say say;  ///< messages for the user; may be empty
 };
 
-/// One for a process, over all its runs. Within a machine, processes of the same user ask through a socket
-/// without a name in the file system, and others are refused; over a network, whoever may write its topic.
-/// Answers from a thread of its own.
+/// One server per process serves all its runs. Within a machine, processes of the same user connect through a
+/// socket without a name in the file system, and other users are refused. Over a network, each node that may
+/// write the request topic is served. A separate thread answers.
 class VPS_SCENES_API RequestServer {
  public:
-  /// Throws LoadError where the session has a server, or its name or network cannot be used.
+  /// Throws LoadError if the session already has a server, or if its name or network cannot be used.
   explicit RequestServer(const RequestServerOptions& options);
   ~RequestServer();
   RequestServer(const RequestServer&) = delete;
   RequestServer& operator=(const RequestServer&) = delete;
 
-  /// The run has to end, since another is asked for or the user stops. For AssembleOptions::stop.
+  /// Becomes true when the run has to end, because another run was requested or the user stops. For
+  /// AssembleOptions::stop.
   [[nodiscard]] const std::atomic<bool>* endsRun() const;
-  /// The scene of the run that was asked for; empty: none was. Clears endsRun(), unless the user stops.
+  /// The scene of the requested run; empty: none was requested. Clears endsRun(), unless the user stops.
   std::optional<Scene> takeNext();
-  /// Waits for it. Empty: the user stops.
+  /// Waits for the scene of the next run. Empty: the user stops.
   std::optional<Scene> waitForNext();
-  /// The file of the next run's recording, which does not exist yet; empty: none is asked for.
+  /// The file of the next run's recording, which does not exist yet; empty: no recording was requested.
   [[nodiscard]] std::string recording() const;
 
-  /// Until those who asked for a recording have its file, or are silent for 5 s, or the user stops.
+  /// Waits until each node that requested a recording has its file or was silent for 5 s, or the user stops.
   void waitForFetchers() const;
 
   struct Work;
-  /// For renderNode().
+  /// Internal state, for renderNode().
   [[nodiscard]] Work& work() { return *work_; }
 
  private:

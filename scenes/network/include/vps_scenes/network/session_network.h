@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where the nodes of a session meet.
+// The network of a session.
 #pragma once
 
 #include <string>
@@ -7,21 +7,22 @@
 
 namespace vps::scenes {
 
-/// The same in all nodes, apart from the folder, which is each node's own.
+/// Network of a session; the same in all nodes, apart from the certificate folder, which each node has for
+/// itself.
 struct SessionNetwork {
   SessionNetwork() = default;
   SessionNetwork(std::string interface, std::string security = "")
       : interface(std::move(interface)), security(std::move(security)) {}
   SessionNetwork(const char* interface) : interface(interface) {}
 
-  /// In shared memory of one machine, rather than over UDP.
+  /// True: shared memory of one machine. False: UDP.
   [[nodiscard]] bool empty() const { return interface.empty(); }
   bool operator==(const SessionNetwork&) const = default;
 
   std::string interface;  ///< "lo" for this machine only, "eth0"; empty: shared memory
-  /// Folder with the certificates of this node, which scenes/make_certificates.sh makes: peers prove who they
-  /// are, and all that is sent is encrypted. Empty: on loopback only, whose users trust each other. "none":
-  /// whoever reaches the interface can read and move everything.
+  /// Folder with the certificates of this node, made by scenes/make_certificates.sh: nodes authenticate each
+  /// other, and all data is encrypted. Empty: no security, allowed on loopback only, whose users trust each
+  /// other. "none": no security on any interface; everybody who can reach it can read and write the session.
   std::string security;
 };
 

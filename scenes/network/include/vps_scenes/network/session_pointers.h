@@ -1,6 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// Where those who watch a session point, for all others who watch it. The render node and the device have no
-// part in it.
+// Shares the places that watchers point at with the other watchers of a session. The render node and the
+// device node are not involved. part in it.
 #pragma once
 
 #include <memory>
@@ -15,26 +14,26 @@
 namespace vps::scenes {
 
 struct SessionPointer {
-  int who = 0;                ///< of all persons at this session, 1000 and above
-  std::optional<Vec3> p_W{};  ///< none: no longer
+  int who = 0;                ///< number of the person, 1000 or above, unique in the session
+  std::optional<Vec3> p_W{};  ///< the place; none: the person no longer points
 };
 
-/// Processes of one user on one machine, or those of a network, find each other by the session's name. At
-/// most kMostPointing of them point at one time, and the pointers of others are not seen. Used by one thread;
-/// nothing waits.
+/// Processes of one user on one machine, or nodes of a network, find each other by the session's name. At
+/// most kMostPointing processes can point at the same time; pointers of further processes are not shown. Used
+/// by one thread; no call waits.
 class VPS_SCENES_API SessionPointers {
  public:
   static constexpr int kMostPointing = 8, kMostPersons = 999;
 
-  /// Throws LoadError for a name that cannot be a session's, and as SessionWatcher::join() for a network.
+  /// Throws LoadError for an invalid session name, and as SessionWatcher::join() for a network.
   explicit SessionPointers(const std::string& session, const SessionNetwork& network = {});
   ~SessionPointers();
 
-  /// A person of this process points at a place, or no longer.
-  /// @param person  1 to kMostPersons; others are not passed on
+  /// Sets or clears the place that a person of this process points at.
+  /// @param person  1 to kMostPersons; other numbers are ignored
   void point(int person, const std::optional<Vec3>& p_W);
-  /// What persons of other processes point at, each change once; those of a process that ended point no
-  /// longer. Call it several times a second: it also repeats what this process points at, for those who come
+  /// Changes of the pointers of other processes, each once; when a process ends, its pointers are cleared.
+  /// Call it several times a second: it also repeats the pointers of this process, for watchers that join
   /// later.
   std::vector<SessionPointer> take();
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Has the run of a session recorded where it is computed, and brings the recording here.
+// Requests a recording of a session's run at the render node, and fetches the file.
 #pragma once
 
 #include <atomic>
@@ -15,26 +15,27 @@ namespace vps::scenes {
 struct SessionRecordingOptions {
   std::string session = "default";
   SessionNetwork network;
-  std::string file;  ///< for the recording, here
-  std::string name;  ///< of the file that the render node keeps; empty: that of `file`
+  std::string file;  ///< local file for the recording
+  std::string name;  ///< name of the file at the render node; empty: that of `file`
   const std::atomic<bool>* stop = nullptr;
-  Say say;  ///< may be empty; called by a thread of its own
+  Say say;  ///< messages for the user; may be empty; called by a thread of its own
 };
 
-/// Works on a thread of its own from the constructor on. The run that waits for its device is recorded; one
-/// that has begun is only if it is recorded anyway, otherwise the next one.
+/// Works in its own thread from the constructor on. A run that waits for its device is recorded. If a run has
+/// begun, it is fetched if it is recorded anyway; otherwise the next run is recorded.
 class VPS_SCENES_API SessionRecording {
  public:
   explicit SessionRecording(SessionRecordingOptions options);
-  /// Gives up what has not come.
+  /// Cancels a recording that has not arrived.
   ~SessionRecording();
   SessionRecording(const SessionRecording&) = delete;
   SessionRecording& operator=(const SessionRecording&) = delete;
 
-  /// Until the render node has answered the wish, at most so long. Returns why it has not granted it; empty:
-  /// it has.
+  /// Waits until the render node has answered the request, at most `most_s`. Returns the reason of a refusal;
+  /// empty: granted.
   std::string waitUntilAsked(double most_s);
-  /// Once the run is over: until the file is here. Returns why it is not; empty: it is.
+  /// Call it when the run is over: waits until the file has arrived. Returns the reason of a failure; empty:
+  /// the file has arrived.
   std::string finish();
 
  private:

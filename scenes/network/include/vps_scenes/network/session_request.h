@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Asks the render node of a session for something.
+// Sends requests to the render node of a session.
 #pragma once
 
 #include <functional>
@@ -11,36 +11,37 @@
 
 namespace vps::scenes {
 
-/// Whether a text has the form of a scene's hash: 32 hexadecimal digits, in small letters.
+/// Whether a text has the form of a scene's hash: 32 lower-case hexadecimal digits.
 VPS_SCENES_API bool isSceneHash(const std::string& text);
 
 struct SessionAnswer {
   bool is_done = false;
-  std::string words;  ///< what is so, or why it was not done
+  std::string words;  ///< the reply: the resulting state, or the reason of a refusal
 };
 
-/// All functions wait for the answer, and throw LoadError where there is no such session, it is of another
-/// version, or nothing answers within 5 s.
+/// All functions wait for the answer. They throw LoadError if there is no such session, if it has another
+/// version, or if no answer comes within 5 s.
 class VPS_SCENES_API SessionRequest {
  public:
   explicit SessionRequest(std::string session, SessionNetwork network = {});
 
   [[nodiscard]] SessionAnswer who() const;
-  /// The next part of the procedure. @param part  its name; empty: whichever it is
+  /// Takes the next part of the procedure. @param part  its name; empty: any
   [[nodiscard]] SessionAnswer take(const std::string& part = "") const;
-  /// The part in hand, where it is.
+  /// Releases the part in hand where it is.
   [[nodiscard]] SessionAnswer release() const;
   [[nodiscard]] SessionAnswer rearm() const;
-  /// From the next part on. @param k_Nm_per_rad  0: as it is
+  /// Sets the coupling gains from the next part on. @param k_Nm_per_rad  0: unchanged
   [[nodiscard]] SessionAnswer setGains(double k_N_per_m, double k_Nm_per_rad = 0) const;
-  /// Another scene in place of the one that runs. It is sent only where the render node does not know it.
-  /// @param progress  gets the share that was sent; may be empty
+  /// Runs another scene instead of the current one. The scene is sent only if the render node does not have
+  /// it.
+  /// @param progress  called with the share that was sent; may be empty
   [[nodiscard]] SessionAnswer load(const Scene& scene,
                                    const std::function<void(double)>& progress = nullptr) const;
-  /// One that the render node knows. See isSceneHash().
+  /// Runs a scene that the render node already has, by its hash; see isSceneHash().
   [[nodiscard]] SessionAnswer load(const std::string& hash) const;
   [[nodiscard]] SessionAnswer again() const;
-  /// The runs that begin from now on. @param name  of a file, without a folder; empty: no more
+  /// Records all runs that begin from now on. @param name  file name without a folder; empty: stop recording
   [[nodiscard]] SessionAnswer record(const std::string& name) const;
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A display whose viewers move: their heads follow their streams.
+// A display for moving viewers: the eye points follow the tracked heads.
 #pragma once
 
 #include <memory>
@@ -11,30 +11,30 @@
 
 namespace vps::scenes {
 
-/// How long a program waits for a head that only the network knows. assumed: discovery takes less than one
+/// Time that a program waits for the first pose of a head from the network [s]. Assumed: discovery takes less
+/// than one second.
 inline constexpr double kHeadWait_s = 3;
 
-/// Used by one thread.
+/// A display with its viewers' heads. Used by one thread.
 class VPS_SCENES_API TrackedHeads {
  public:
-  /// Listens to the topics of its viewers. Throws LoadError as HeadTopic.
+  /// Subscribes to the topics of the viewers. Throws LoadError as HeadTopic.
   explicit TrackedHeads(Display display);
   ~TrackedHeads();
   TrackedHeads(TrackedHeads&&) noexcept;
   TrackedHeads& operator=(TrackedHeads&&) noexcept;
 
-  /// The display with each head where its stream has it: a constant one where the file says, a recorded one
-  /// at that time, one from the network where it is now. A head that its stream has behind a screen, or that
-  /// the stream does not know, stays where it was last.
+  /// The display with the current pose of each head: a constant pose as the file states, a recorded pose at
+  /// that time, or the newest pose from the network. A head keeps its last pose if the new pose is behind a
+  /// screen or unknown.
   const Display& at(double time_s);
   [[nodiscard]] const Display& display() const;
-  /// Returns when each head that the file does not place has come from the network. Throws LoadError, which
-  /// names the topic, after that time.
+  /// Waits until each head without a pose in the file has a pose from the network. Throws LoadError with the
+  /// topic's name after the time limit.
   void waitForAll(double limit_s);
-  /// Whether a head is where the network says, so that the display changes by itself.
+  /// Whether a head follows a network topic, so that the display changes over time.
   [[nodiscard]] bool isLive() const;
-  /// What happened since the last call, in words, each once: a head that went behind a screen or is not heard
-  /// any more.
+  /// Messages since the last call, each once: a head that moved behind a screen, or whose poses stopped.
   [[nodiscard]] std::vector<std::string> takeNews();
 
  private:
