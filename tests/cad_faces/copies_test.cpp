@@ -24,7 +24,7 @@
 #include <TopoDS_Compound.hxx>
 #include <gp_Ax2.hxx>
 
-#include "import/forked_workers.h"
+#include "import/child_processes.h"
 #include "occt/tessellate_all.h"
 #include "vps_scenes/cad/import.h"
 

@@ -21,7 +21,7 @@
 #include <XCAFDoc_ShapeTool.hxx>
 
 #include "cad_faces/damaged_file.h"
-#include "occt/entity_numbers.h"
+#include "occt/file_faults.h"
 
 namespace vps::scenes {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // CAD files that were read before come from the cache, to the bit, unless anything about them has changed.
-#include "import/kept_cad.h"
+#include "import/part_bytes.h"
 
 #include <gtest/gtest.h>
 
@@ -36,7 +36,7 @@ class KeptCad : public testing::Test {
   }
   [[nodiscard]] std::string step() const { return (folder_.path() / "shaft.step").string(); }
   [[nodiscard]] std::string madeFrom() const {
-    return import::madeFrom(step(), "STEP", settings_, import::occtVersion());
+    return import::madeFrom(step(), import::CadFormat::Step, settings_);
   }
   [[nodiscard]] std::size_t files() const {
     const fs::path folder = folder_.path() / "cache";
@@ -153,8 +153,8 @@ TEST_F(KeptCad, OfAFileThatNamesOthersIsNotKept) {
   EXPECT_EQ(madeFrom(), "");
   static_cast<void>(importCad(step(), settings_));
   EXPECT_EQ(files(), 0U);
-  EXPECT_EQ(import::madeFrom(step(), "glTF", settings_, ""), "");
-  EXPECT_EQ(import::madeFrom("nowhere.step", "STEP", settings_, ""), "");
+  EXPECT_EQ(import::madeFrom(step(), import::CadFormat::Gltf, settings_), "");
+  EXPECT_EQ(import::madeFrom("nowhere.step", import::CadFormat::Step, settings_), "");
 }
 
 }  // namespace

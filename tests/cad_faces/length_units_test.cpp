@@ -13,7 +13,7 @@
 #include <STEPControl_Writer.hxx>
 
 #include "cad_faces/damaged_file.h"
-#include "occt/entity_numbers.h"
+#include "occt/file_faults.h"
 
 namespace vps::scenes {
 namespace {

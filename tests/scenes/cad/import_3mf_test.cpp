@@ -8,11 +8,11 @@
 #include <random>
 #include <utility>
 
-#include "import/stored_archive.h"
+#include "lib3mf/stored_archive.h"
 #include "support/temporary_folder.h"
 #include "vps/errors.h"
 #include "vps_scenes/cad/import.h"
-#include "vps_scenes/cad/srgb.h"
+#include "vps_scenes/cad/colors.h"
 
 namespace vps::scenes {
 namespace {
@@ -215,7 +215,7 @@ const std::vector<Oddity>& oddities() {
          f.more_objects = R"(<object id="3" type="support" name="s">)" + boxMesh({1, 1, 1}) + "</object>";
          f.items += R"(<item objectid="3"/>)";
        },
-       "plate", "block", kGray, "1 object is for printing alone"},
+       "plate", "block", kGray, "1 object is for printing only"},
       {"a component of type other",
        [](File3mf& f) {
          f.more_objects = R"(<object id="3" type="other" name="s">)" + boxMesh({1, 1, 1}) +
@@ -223,7 +223,7 @@ const std::vector<Oddity>& oddities() {
                           R"(<component objectid="2"/><component objectid="3"/></components></object>)";
          f.items = R"(<item objectid="1"/><item objectid="4" transform="1 0 0 0 1 0 0 0 1 10 0 0"/>)";
        },
-       "plate", "block", kGray, "1 object is for printing alone"},
+       "plate", "block", kGray, "1 object is for printing only"},
       {"a beam lattice beside a mesh",
        [](File3mf& f) {
          f.attributes = R"( xmlns:b="http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02")";
@@ -310,7 +310,7 @@ TEST_F(Import3mf, HasTheUnitsNamesColoursAndPlacesOfTheFile) {
         for (const std::string& warning : cad.warnings)
           EXPECT_TRUE((oddity.has_remark && warning.find(oddity.has_remark) != std::string::npos) ||
                       warning.find("is the unit right") != std::string::npos ||
-                      warning.find("whose numbers of 32 bits") != std::string::npos)
+                      warning.find("whose 32-bit numbers") != std::string::npos)
               << what << ": " << warning;
       } catch (const LoadError& e) {
         ADD_FAILURE() << what << ": " << e.what();

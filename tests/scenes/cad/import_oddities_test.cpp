@@ -7,8 +7,7 @@
 #include <fstream>
 #include <functional>
 
-#include "assimp/gltf_extensions.h"
-#include "import/missing_library.h"
+#include "assimp/mesh_text.h"
 #include "import/readers.h"
 #include "support/temporary_folder.h"
 #include "vps/errors.h"

@@ -322,7 +322,7 @@ TEST(ImportCollada, AUnitThatIsMissingOrWrongIsTold) {
            Case{"<unit name=\"millimeter\" meter=\"0.001\"/>", 1e-3, ""},
            Case{"<unit meter='2.54e-2'></unit>", 25.4e-3, ""},
            Case{"<unit meter=\"0.001\"/>", 1e-3, "", true},
-           Case{"<unit name=\"mm\" meter=\"1\"/>", 1, "calls its unit 'mm', but says that it has 1 m"},
+           Case{"<unit name=\"mm\" meter=\"1\"/>", 1, "calls its unit 'mm', but states that it has 1 m"},
            Case{"", 1, "states no unit: metres are assumed"},
            Case{"", 1e-3, "", true},
            Case{"<unit meter=\"0\"/>", 1, "states a unit of '0' m: metres are assumed"},

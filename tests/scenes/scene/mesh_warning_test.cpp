@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What is said of meshes whose inside may be in doubt.
-#include "vps_scenes/scene/mesh_warning.h"
+#include "vps_scenes/scene/model_options.h"
 
 #include <gtest/gtest.h>
 

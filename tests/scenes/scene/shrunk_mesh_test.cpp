@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "models/shrunk_mesh.h"
+#include "models/scene_models.h"
 
 #include <gtest/gtest.h>
 

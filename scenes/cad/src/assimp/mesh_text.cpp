@@ -19,7 +19,7 @@ namespace {
 constexpr std::string_view kWord = "vps_object_";
 constexpr std::string_view kBlank = " \t\r\f\v";
 
-/// Without a byte order mark, which assimp would take for a part of the first word.
+/// The bytes of a file without its byte order mark, which assimp would take for a part of the first word.
 std::string bytesOf(const std::string& file) {
   std::ifstream in(file, std::ios::binary);
   std::string bytes(std::istreambuf_iterator<char>(in), {});
@@ -33,7 +33,7 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(from, text.find_last_not_of(kBlank) - from + 1);
 }
 
-/// What follows the keyword of a line; empty optional: the line has another keyword.
+/// The rest of a line after its keyword; empty if the line has another keyword.
 std::optional<std::string_view> afterKeyword(std::string_view line, std::string_view keyword) {
   const std::size_t from = line.find_first_not_of(kBlank);
   if (from == std::string_view::npos || !line.substr(from).starts_with(keyword)) return std::nullopt;
@@ -61,8 +61,8 @@ std::optional<Vertex> vertexOf(std::string_view text) {
   return out;
 }
 
-/// With a zero before each decimal point that begins a number, as in ".5" and "-.5": assimp 5.2.5 does not
-/// count these numbers, and skips the vertex.
+/// Appends a line with a zero before each decimal point that begins a number, as in ".5" and "-.5":
+/// assimp 5.2.5 does not count such numbers, and skips the vertex.
 void appendWithZeros(std::string_view line, std::string& out) {
   for (std::size_t point = line.find('.'); point != std::string_view::npos; point = line.find('.')) {
     const bool has_digit = point > 0 && line[point - 1] >= '0' && line[point - 1] <= '9';
@@ -78,8 +78,8 @@ std::string_view keywordOf(std::string_view line) {
   return text.substr(0, text.find_first_of(kBlank));
 }
 
-/// Whether assimp 5.2.5 would take the line for one of faces, lines or points, by its first letter alone:
-/// "lod", "parm".
+/// Whether assimp 5.2.5 would misread the line as a face, line or point because of its first letter, as with
+/// "lod" and "parm".
 bool isTakenForElement(std::string_view keyword) {
   constexpr std::array<std::string_view, 4> kElements = {"f", "fo", "l", "p"};
   return !keyword.empty() && std::string_view("flp").find(keyword.front()) != std::string_view::npos &&
@@ -95,9 +95,9 @@ void forEachLine(std::string_view bytes, F f) {
   }
 }
 
-/// The middle of the vertices, where they are far from the origin beside their size, so that at least two of
-/// the 24 bits of a float are won; else zero. Zero too where a vertex cannot be read, or has a weight, or
-/// goes on in the next line.
+/// The centre of the vertices, if they are so far from the origin in proportion to their extent that the
+/// shift gains at least two of the 24 bits of a float. Zero otherwise, and if a vertex cannot be read, has a
+/// weight, or continues on the next line.
 Vec3 shiftOf(std::string_view bytes, std::string_view keyword) {
   constexpr double kFar = 4;
   Box box;
@@ -128,7 +128,7 @@ void appendVertex(std::string_view keyword, const Vertex& vertex, const Vec3& sh
   out += vertex.rest;
 }
 
-/// Writes the vertices without the shift, and all other lines as f gives them.
+/// Writes the vertices minus the shift, and all other lines as f(line, out) writes them.
 template <class F>
 MeshText rewritten(const std::string& bytes, std::string_view keyword, F f) {
   MeshText out;
@@ -143,6 +143,12 @@ MeshText rewritten(const std::string& bytes, std::string_view keyword, F f) {
   return out;
 }
 
+/// The '"' that ends a string of JSON which begins before `at`; the text's size if it is cut.
+std::size_t endOfString(std::string_view json, std::size_t at) {
+  while ((at = json.find_first_of("\"\\", at)) != std::string_view::npos && json[at] == '\\') at += 2;
+  return std::min(at, json.size());
+}
+
 }  // namespace
 
 std::string MeshText::nameIn(const std::string& word) const {
@@ -153,13 +159,14 @@ std::string MeshText::nameIn(const std::string& word) const {
 }
 
 MeshText objText(const std::string& file) {
-  std::string group;  // that is active; assimp begins no new object where it is named again
+  std::string group;  // the active group; assimp begins no new object where the group is named again
   std::size_t group_word = 0;
-  bool is_continued = false, is_dropped = false;  // the line before ends in '\\'; it was left out
+  bool is_continued = false,
+       is_dropped = false;  // the line before ends in '\\'; the line before was left out
   return rewritten(bytesOf(file), "v", [&](std::string_view line, MeshText& out) {
     const std::string_view text = line.substr(0, line.find('\n'));
     if (std::exchange(is_continued, trimmed(text).ends_with('\\'))) {
-      if (!is_dropped) out.bytes += line;  // a blank at its beginning parts two numbers
+      if (!is_dropped) out.bytes += line;  // a blank at its beginning separates two numbers
       return;
     }
     const std::string_view keyword = keywordOf(text);
@@ -167,7 +174,7 @@ MeshText objText(const std::string& file) {
     is_dropped = isTakenForElement(keyword);
     if (is_dropped) return;
     const auto object = afterKeyword(text, "o"), faces = afterKeyword(text, "g");
-    const bool is_one_line = text.find('\r') >= text.size() - 1;  // else line ends are '\r' alone
+    const bool is_one_line = text.find('\r') >= text.size() - 1;  // otherwise lines end in '\r' alone
     if ((!object && !faces) || !is_one_line) {
       // assimp skips a line that begins with a blank.
       const std::string_view rest = line.substr(std::min(line.find_first_not_of(" \t"), line.size()));
@@ -199,6 +206,42 @@ std::optional<MeshText> stlText(const std::string& file) {
   // A binary file may begin with the same word.
   if (bytes.find('\0') != std::string::npos) return std::nullopt;
   return rewritten(bytes, "vertex", [](std::string_view line, MeshText& out) { out.bytes += line; });
+}
+
+std::vector<std::string> requiredExtensions(std::string_view json) {
+  constexpr std::string_view kKey = "extensionsRequired";
+  std::vector<std::string> names;
+  bool is_key_last = false, is_in_list = false;  // the last string is the key; the list behind it is open
+  std::size_t depth = 0;
+  for (std::size_t at = 0; (at = json.find_first_of("\"{}[]", at)) < json.size(); ++at) {
+    const char c = json[at];
+    if (c == '"') {
+      const std::size_t from = at + 1;
+      at = endOfString(json, from);
+      const std::string_view text = json.substr(from, at - from);
+      if (is_in_list) names.emplace_back(text);
+      is_key_last = depth == 1 && text == kKey;
+    } else if (c == '{' || c == '[') {
+      is_in_list = is_key_last && c == '[';
+      is_key_last = false;
+      ++depth;
+    } else {
+      is_in_list = false;
+      depth -= depth > 0 ? 1 : 0;
+    }
+  }
+  return names;
+}
+
+std::string unreadExtension(const std::vector<std::string>& names) {
+  constexpr std::array<std::string_view, 6> kNoGeometry = {"_materials_", "_texture_",   "_lights_",
+                                                           "_xmp",        "_animation_", "_image_"};
+  const auto found = std::ranges::find_if(names, [&](const std::string& name) {
+    return name != "KHR_draco_mesh_compression" &&
+           std::ranges::none_of(kNoGeometry,
+                                [&](std::string_view word) { return name.find(word) != std::string::npos; });
+  });
+  return found == names.end() ? "" : *found;
 }
 
 }  // namespace vps::scenes::import

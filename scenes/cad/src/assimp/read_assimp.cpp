@@ -20,7 +20,6 @@
 #include <optional>
 #include <string_view>
 
-#include "assimp/gltf_extensions.h"
 #include "assimp/mesh_text.h"
 #include "assimp/xml_tags.h"
 #include "color/palette.h"
@@ -48,8 +47,8 @@ void appendMesh(const aiMesh& from, Mesh& to) {
   }
 }
 
-/// The colours of the triangles that appendMesh() takes: a corner's, where the file has them by vertex, in
-/// the mean, else the mesh's.
+/// Appends the colours of the triangles that appendMesh() takes: the mean of the corners' colours if the file
+/// has colours of vertices, else the colour of the mesh.
 void appendColors(const aiMesh& from, const Color& of_mesh, bool is_gltf, FaceColors& to) {
   FaceColors own;
   std::size_t count = 0;
@@ -73,7 +72,7 @@ std::array<float, 3> colorOf(const aiScene& scene, const aiMesh& mesh, bool is_g
   aiColor4D c;
   if (mesh.mMaterialIndex >= scene.mNumMaterials) return ImportedPart().color;
   aiMaterial& material = *scene.mMaterials[mesh.mMaterialIndex];
-  // glTF's factor is linear by its specification; the others mean the colour on the screen.
+  // glTF's factor is linear by its specification; the other formats give the colour on the screen.
   if (is_gltf && material.Get(AI_MATKEY_BASE_COLOR, c) == AI_SUCCESS) return {c.r, c.g, c.b};
   if (std::string(material.GetName().C_Str()) == AI_DEFAULT_MATERIAL_NAME) {
     return ImportedPart().color;  // the material is assimp's default, not the file's
@@ -82,7 +81,7 @@ std::array<float, 3> colorOf(const aiScene& scene, const aiMesh& mesh, bool is_g
   return ImportedPart().color;
 }
 
-/// Gives assimp other bytes in place of one file; the files that it names are read where they are.
+/// Gives assimp other bytes in place of one file; files that this file names are read from disk.
 class ReplacedFile : public Assimp::DefaultIOSystem {
  public:
   ReplacedFile(std::string file, const std::string& bytes) : file_(std::move(file)), bytes_(bytes) {}
@@ -96,7 +95,7 @@ class ReplacedFile : public Assimp::DefaultIOSystem {
   const std::string& bytes_;
 };
 
-/// The name of a node or mesh; empty for what assimp writes in place of a name.
+/// The name of a node or mesh; empty for assimp's placeholders.
 std::string nameFrom(const aiString& text) {
   const std::string name = text.C_Str();
   const bool is_placeholder = name.starts_with("<") || name.starts_with("nodes[") ||
@@ -142,9 +141,9 @@ void makeZUp(RawCad& cad, bool is_gltf) {
   }
 }
 
-/// For a binary PLY whose first value begins with the byte '\n': the bytes to give to assimp instead.
-/// assimp 5.2.5 takes that byte for the second half of a line end and drops it, so the header gets a line end
-/// of two bytes.
+/// The bytes to give to assimp for a binary PLY file whose first value begins with the byte '\n'; empty for
+/// other files. assimp 5.2.5 takes that byte for the second half of a line end and drops it, so the header
+/// gets a line end of two bytes.
 std::optional<std::string> plyItReadsRight(const std::string& file) {
   std::ifstream in(file, std::ios::binary);
   bool is_binary = false;
@@ -158,7 +157,7 @@ std::optional<std::string> plyItReadsRight(const std::string& file) {
   return bytes;
 }
 
-/// Gives each node that has an identifier and no name its identifier as its name.
+/// The text in which each node without a name is named by its identifier.
 std::string withNamesOfNodes(std::string_view collada) {
   std::string out;
   std::size_t copied = 0, at = 0;
@@ -173,9 +172,9 @@ std::string withNamesOfNodes(std::string_view collada) {
   return out.append(collada.substr(copied));
 }
 
-/// The text of a Collada file, of whose unit assimp makes a scale in the root's transform, and 1 where it is
-/// missing or no number. In place of a unit that is no positive length that of the settings applies, or
-/// else the metre, which Collada defines for files without one; a warning says so.
+/// The text of a Collada file, to be given to assimp, which turns the file's unit into a scale of the root's
+/// transform (1 if the unit is missing or not a number). If the unit is not a positive length, the unit of
+/// the settings applies, or else the metre, which Collada defines for files without a unit, with a warning.
 std::string colladaText(const std::string& file, const ImportSettings& settings, RawCad& cad) {
   std::ifstream in(file, std::ios::binary);
   std::string text(std::istreambuf_iterator<char>(in), {});
@@ -189,8 +188,8 @@ std::string colladaText(const std::string& file, const ImportSettings& settings,
     const std::string name(tag->value("name").value_or(""));
     const std::optional<double> named_m = unitFromText(name);
     if (named_m && std::abs(unit_m - *named_m) > 0.01 * *named_m)
-      cad.warnings.push_back("calls its unit '" + name + "', but says that it has " + meter +
-                             " m, which is taken");
+      cad.warnings.push_back("calls its unit '" + name + "', but states that it has " + meter +
+                             " m, which is used");
   } else {
     cad.unit_m = settings.unit_m.value_or(1.0);
     if (!settings.unit_m)
@@ -206,7 +205,7 @@ std::string colladaText(const std::string& file, const ImportSettings& settings,
   return withNamesOfNodes(text);
 }
 
-/// The JSON text of a glTF file, that of a binary one as well.
+/// The JSON text of a glTF file, be it text or binary.
 std::string gltfJson(const std::string& file) {
   constexpr std::size_t kHeader = 20;  // "glTF", version, size; size of the first chunk, "JSON"
   std::ifstream in(file, std::ios::binary);
@@ -226,17 +225,19 @@ std::string gltfJson(const std::string& file) {
   return json;
 }
 
-/// The text to read in place of a glTF file with a byte order mark.
+/// The text to read in place of a glTF file with a byte order mark; empty for other files. Throws LoadError
+/// for a file that needs an extension that is not read.
 std::optional<std::string> gltfText(const std::string& file) {
   std::string json = gltfJson(file);
   if (const std::string name = unreadExtension(requiredExtensions(json)); !name.empty())
-    throw LoadError(file, "",
-                    "needs the extension '" + name + "' of glTF, which is not read; export it without");
+    throw LoadError(
+        file, "",
+        "needs the extension '" + name + "' of glTF, which is not read; export it without this extension");
   if (!json.starts_with(kByteOrderMark)) return std::nullopt;
   return json.erase(0, kByteOrderMark.size());
 }
 
-/// Back to the axes of the file: the user says which of them is up.
+/// Rotates the parts back to the axes of the file, since the user states which axis is up.
 void keepFileAxes(RawCad& cad) {
   const Eigen::Affine3d X_YZ(Eigen::AngleAxisd(-0.5 * EIGEN_PI, Vec3::UnitX()));
   for (RawPart& part : cad.parts) part.X_WP = X_YZ * part.X_WP;
@@ -257,32 +258,20 @@ bool hasAllVertices(const aiMesh& mesh) {
 
 }  // namespace
 
-double unitOf(const std::string& file, const std::string& format, const ImportSettings& settings) {
-  if (settings.unit_m) return *settings.unit_m;
-  // assimp 5.2.5 drops the units of some formats.
-  constexpr std::array<std::string_view, 5> kWithout = {"STL", "OBJ", "PLY", "OFF", "3DS"};
-  const bool is_without = std::ranges::find(kWithout, format) != kWithout.end();
-  throw LoadError(
-      file, "",
-      is_without
-          ? format + R"( files do not state their unit; set unit = "mm" in the scene or give --units mm)"
-          : "the unit of " + format +
-                R"( files is not read; set unit = "mm" in the scene or give --units mm)");
-}
-
-RawCad readAssimp(const std::string& file, const std::string& format, const ImportSettings& settings,
+RawCad readAssimp(const std::string& file, const FileFormat& format, const ImportSettings& settings,
                   const Progress&) {
   std::optional<MeshText> text;
   Assimp::Importer importer;  // its logger is silent unless asked
-  if (format.empty() || (format != "glTF" && !importer.IsExtensionSupported("." + format)) ||
-      format == "IFC") {
+  const bool is_gltf = format.id == CadFormat::Gltf, is_collada = format.id == CadFormat::Collada;
+  if (format.name.empty() || (!is_gltf && !importer.IsExtensionSupported("." + format.name)) ||
+      format.name == "IFC") {
     throw LoadError(file, "", "has an unknown format; export STEP, glTF, STL, OBJ or PLY");
   }
   RawCad cad;
-  cad.states_unit = format == "glTF";  // metres, by its specification
+  cad.states_unit = is_gltf;  // metres, by its specification
   std::optional<std::string> replaced;
-  if (format == "glTF") replaced = gltfText(file);
-  if (format == "DAE")
+  if (is_gltf) replaced = gltfText(file);
+  if (is_collada)
     replaced = colladaText(file, settings, cad);
   else if (!cad.states_unit)
     cad.unit_m = unitOf(file, format, settings);
@@ -291,10 +280,10 @@ RawCad readAssimp(const std::string& file, const std::string& format, const Impo
   const aiScene* scene = nullptr;
   try {
     std::optional<std::string> ply;
-    if (format == "PLY") ply = plyItReadsRight(file);
-    if (format == "OBJ") text = objText(file);
-    if (format == "STL") text = stlText(file);
-    if (text || replaced)  // the importer deletes it
+    if (format.id == CadFormat::Ply) ply = plyItReadsRight(file);
+    if (format.id == CadFormat::Obj) text = objText(file);
+    if (format.id == CadFormat::Stl) text = stlText(file);
+    if (text || replaced)  // the importer deletes the handler
       importer.SetIOHandler(new ReplacedFile(file, text ? text->bytes : *replaced));
     scene =
         ply ? importer.ReadFileFromMemory(ply->data(), ply->size(), 0, "ply") : importer.ReadFile(file, 0);
@@ -307,21 +296,21 @@ RawCad readAssimp(const std::string& file, const std::string& format, const Impo
   } catch (const LoadError&) {
     throw;
   } catch (const std::exception& e) {
-    throw LoadError(file, "",
-                    std::string("is not a readable ") + format + " file (" + e.what() + "); export it again");
+    throw LoadError(
+        file, "",
+        std::string("is not a readable ") + format.name + " file (" + e.what() + "); export it again");
   }
   if (scene != nullptr && scene->mRootNode != nullptr && scene->mNumMeshes == 0)
     throw LoadError(file, "", "holds no surfaces; export solids or meshes");
   if (!scene || !scene->mRootNode || (scene->mFlags & AI_SCENE_FLAGS_INCOMPLETE)) {
     std::string reason = importer.GetErrorString();
     for (char& c : reason) c = c == '\n' ? ' ' : c;
-    throw LoadError(file, "", "is not a readable " + format + " file (" + reason + "); export it again");
+    throw LoadError(file, "", "is not a readable " + format.name + " file (" + reason + "); export it again");
   }
-  const bool is_gltf = format == "glTF";
   Walk{*scene, is_gltf, cad}.node(*scene->mRootNode, Eigen::Affine3d::Identity());
-  if (is_gltf || format == "DAE") makeZUp(cad, is_gltf);
+  if (is_gltf || is_collada) makeZUp(cad, is_gltf);
   if (is_gltf && settings.up) keepFileAxes(cad);
-  if (format == "OBJ") cad.open_shapes = Shapes::BoundOne;
+  if (format.id == CadFormat::Obj) cad.open_shapes = Shapes::BoundOne;
   if (text && text->surface_count > 0)
     cad.warnOfMissing("has " + std::to_string(text->surface_count) +
                       (text->surface_count == 1 ? " free-form surface ('surf') that is"
@@ -332,7 +321,8 @@ RawCad readAssimp(const std::string& file, const std::string& format, const Impo
       part.name = text->nameIn(part.name);
       for (Vec3& p : part.mesh.vertices) p += text->shift;
     }
-    if (format == "STL" && cad.parts.size() == 1) part.name.clear();  // STL's header is no name
+    if (format.id == CadFormat::Stl && cad.parts.size() == 1)
+      part.name.clear();  // the header of an STL file is not a name
   }
   return cad;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Binary STL without colours. A scene of 10,000 parts has as many files, and a process of its own for each
-// (own_process.h) would copy this one's pages each time; here nothing can crash. Other STL files are left to
-// assimp.
+// Reads binary STL without colours. A scene of 10,000 parts has as many files, and a child process for each
+// (child_processes.h) would copy this process's page tables each time; this reader checks all sizes and needs
+// no child. assimp reads other STL files.
 //
 //   80 bytes    header
 //   4           number n of triangles
@@ -46,7 +46,7 @@ std::optional<RawCad> readBinaryStl(const std::string& file, const ImportSetting
   const std::size_t count = valueAt<std::uint32_t>(&bytes[80]);
   if (bytes.size() != kHeader + count * kTriangle || hasColor(bytes)) return std::nullopt;
   RawCad cad;
-  cad.unit_m = unitOf(file, "STL", settings);
+  cad.unit_m = unitOf(file, CadFormat::Stl, settings);
   Mesh& mesh = cad.parts.emplace_back().mesh;
   mesh.vertices.reserve(3 * count);
   mesh.triangles.reserve(count);

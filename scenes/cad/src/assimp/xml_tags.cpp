@@ -26,8 +26,8 @@ std::size_t endOfTag(std::string_view xml, std::size_t at) {
   return at == std::string_view::npos ? at : at + 1;
 }
 
-/// The position behind a comment, unparsed text, an instruction or a declaration at `at`; `at` itself where
-/// none of these begins.
+/// The position behind the comment, unparsed text, instruction or declaration that begins at `at`; `at`
+/// itself if none of these begins there.
 std::size_t behindOther(std::string_view xml, std::size_t at) {
   const std::string_view text = xml.substr(at);
   const std::string_view end = text.starts_with("<!--")        ? "-->"
@@ -40,7 +40,7 @@ std::size_t behindOther(std::string_view xml, std::size_t at) {
   return found == std::string_view::npos ? xml.size() : found + end.size();
 }
 
-/// UTF-8 [RFC 3629]; empty for what is no character.
+/// A character in UTF-8 [RFC 3629]; empty for a number that is not a character.
 std::string utf8(std::uint32_t character) {
   const bool is_surrogate = character >= 0xD800 && character < 0xE000;
   if (character == 0 || is_surrogate || character > 0x10FFFF) return "";

@@ -1,28 +1,28 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Adds colours to a palette that has each once.
+// Adds colours to a palette that holds each colour once.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <map>
 
-#include "vps_scenes/cad/face_colors.h"
+#include "vps_scenes/cad/colors.h"
 
 namespace vps::scenes {
 
-/// The colours must outlive it, and are changed by it alone meanwhile.
+/// @invariant `colors` outlives the Palette and is changed only by it meanwhile.
 class Palette {
  public:
   explicit Palette(FaceColors& colors) : colors_(colors) {
     for (std::uint32_t i = 0; i < colors.palette.size(); ++i) known_.emplace(colors.palette[i], i);
   }
-  /// O(log colours).
+  /// Index of a colour in the palette, which is extended if necessary. O(log colours).
   std::uint32_t numberOf(const Color& color) {
     const auto [it, is_new] = known_.emplace(color, static_cast<std::uint32_t>(colors_.palette.size()));
     if (is_new) colors_.palette.push_back(color);
     return it->second;
   }
-  /// The colour of the next triangle.
+  /// Appends a triangle of this colour.
   void add(const Color& color) { colors_.of_triangle.push_back(numberOf(color)); }
 
  private:

@@ -17,14 +17,14 @@ inline bool isEqualGeometry(const Mesh& a, const Mesh& b) {
          a.vertices == b.vertices && a.triangles == b.triangles;
 }
 
-/// Indices of meshes by a hash of their vertices, so that each is compared with few others: bolts that differ
-/// in length alone have equal triangles.
+/// Indices of meshes by a hash of their vertices, so that each mesh is compared with few others. Triangles
+/// alone do not tell meshes apart: bolts that differ only in length have equal triangles.
 class EqualMeshes {
  public:
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
-  /// The first index that was added with an equal hash and for which isEqual(index) is true, else kNone. Then
-  /// `index` is added. O(vertices) beside isEqual().
+  /// The first index that was added with an equal hash and for which isEqual(index) is true. If there is
+  /// none, adds `index` and returns kNone. O(vertices), without the cost of isEqual().
   template <class IsEqual>
   std::size_t findOrAdd(std::size_t index, const Mesh& mesh, IsEqual isEqual) {
     const std::size_t hash = hashOf(mesh);

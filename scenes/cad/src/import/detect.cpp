@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 
 #include "import/readers.h"
 #include "vps/errors.h"
@@ -15,12 +16,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string upperExtension(const std::string& file) {
-  std::string extension = fs::path(file).extension().string();
+/// The extension without its point.
+std::string extensionOf(const fs::path& file) {
+  std::string extension = file.extension().string();
   if (!extension.empty()) extension.erase(0, 1);
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return char(std::toupper(c)); });
   return extension;
+}
+
+FileFormat byExtension(const std::string& file) {
+  const std::string extension = extensionOf(file);
+  FileFormat format = formatOfExtension(extension);
+  if (format.id == CadFormat::Other)
+    std::ranges::transform(extension, std::back_inserter(format.name),
+                           [](unsigned char c) { return char(std::toupper(c)); });
+  return format;
 }
 
 std::string bytes(std::ifstream& in, std::uint64_t at, std::size_t count) {
@@ -38,32 +47,31 @@ std::uint32_t littleEndian(const std::string& four) {
   return value;
 }
 
-std::string formatOf(const std::string& head, const std::string& extension, const std::string& file) {
+FileFormat formatOf(const std::string& head, const std::string& file) {
   const auto startsWith = [&](const char* text) { return head.starts_with(text); };
-  if (startsWith("ISO-10303-21")) return "STEP";
-  if (startsWith("#VRML")) return "VRML";
-  if (startsWith("#Inventor")) return "Inventor";
-  if (startsWith("DBRep_DrawableShape") || startsWith("CASCADE Topology")) return "BREP";
-  if (startsWith("glTF") || extension == "GLB" || extension == "GLTF") return "glTF";
+  const FileFormat by_extension = byExtension(file);
+  if (startsWith("ISO-10303-21")) return CadFormat::Step;
+  if (startsWith("#VRML")) return CadFormat::Vrml;
+  if (startsWith("#Inventor")) return CadFormat::Inventor;
+  if (startsWith("DBRep_DrawableShape") || startsWith("CASCADE Topology")) return CadFormat::Brep;
+  if (startsWith("glTF") || by_extension.id == CadFormat::Gltf) return CadFormat::Gltf;
   if (startsWith("\x1f\x8b")) {  // gzip: Inventor and VRML files may be compressed
-    const std::string inner = upperExtension(fs::path(file).stem().string());  // of "part.wrl.gz"
-    if (extension == "WRZ" || inner == "WRL") return "VRML";
-    return "Inventor";
+    const CadFormat inner = formatOfExtension(extensionOf(fs::path(file).stem()));  // of "part.wrl.gz"
+    const bool is_vrml = by_extension.id == CadFormat::Vrml || inner == CadFormat::Vrml;
+    return is_vrml ? CadFormat::Vrml : CadFormat::Inventor;
   }
   // An IGES line is 80 columns; the first section's letter is in column 73.
-  if (head.size() >= 80 && (head[72] == 'S' || head[72] == 'B') && head.find('\n') >= 80) return "IGES";
-  if (extension == "STP" || extension == "STEP") return "STEP";
-  if (extension == "IGS" || extension == "IGES") return "IGES";
-  if (extension == "WRL") return "VRML";
-  if (extension == "IV") return "Inventor";
-  return extension;
+  if (head.size() >= 80 && (head[72] == 'S' || head[72] == 'B') && head.find('\n') >= 80)
+    return CadFormat::Iges;
+  return by_extension;
 }
 
 /// True if the file ends as a complete file of this format does.
-bool isWhole(const std::string& format, std::ifstream& in, std::uint64_t size, const std::string& head) {
+bool isWhole(CadFormat format, std::ifstream& in, std::uint64_t size, const std::string& head) {
   const std::uint64_t tail_at = size > 1024 ? size - 1024 : 0;
-  if (format == "STEP") return bytes(in, tail_at, 1024).find("END-ISO-10303-21") != std::string::npos;
-  if (format == "IGES") {
+  if (format == CadFormat::Step)
+    return bytes(in, tail_at, 1024).find("END-ISO-10303-21") != std::string::npos;
+  if (format == CadFormat::Iges) {
     const std::string tail = bytes(in, tail_at, 1024);
     const std::size_t last = tail.find_last_not_of(" \r\n\t");
     if (last == std::string::npos) return false;
@@ -71,12 +79,12 @@ bool isWhole(const std::string& format, std::ifstream& in, std::uint64_t size, c
     const std::size_t line = before == std::string::npos ? 0 : before + 1;
     return last - line >= 72 && tail[line + 72] == 'T';  // the terminate section
   }
-  if (format == "glTF" && head.starts_with("glTF"))
+  if (format == CadFormat::Gltf && head.starts_with("glTF"))
     return head.size() >= 12 && littleEndian(head.substr(8, 4)) == size;
-  if (format == "STL" && head.starts_with("solid") && head.find("facet") != std::string::npos) {
+  if (format == CadFormat::Stl && head.starts_with("solid") && head.find("facet") != std::string::npos) {
     return bytes(in, tail_at, 1024).find("endsolid") != std::string::npos;
   }
-  if (format == "STL")
+  if (format == CadFormat::Stl)
     return head.size() >= 84 && size >= 84 + 50 * std::uint64_t(littleEndian(head.substr(80, 4)));
   return true;
 }
@@ -89,7 +97,7 @@ std::string stem(const std::string& file) {
   return path.stem().string();
 }
 
-std::string detectFormat(const std::string& file) {
+FileFormat detectFormat(const std::string& file) {
   std::error_code error;
   const fs::file_status status = fs::status(file, error);
   if (!fs::exists(status)) throw LoadError(file, "", "no such file; check the path");
@@ -100,10 +108,10 @@ std::string detectFormat(const std::string& file) {
   const std::uint64_t size = fs::file_size(file, error);
   if (error || size == 0) throw LoadError(file, "", "is empty; export it again");
   const std::string head(withoutByteOrderMark(bytes(in, 0, 1024)));
-  const std::string format = formatOf(head, upperExtension(file), file);
-  if (!isWhole(format, in, size, head)) {
+  const FileFormat format = formatOf(head, file);
+  if (!isWhole(format.id, in, size, head)) {
     throw LoadError(file, "",
-                    "is cut or is not a " + format + " file (" + std::to_string(size) +
+                    "is cut or is not a " + format.name + " file (" + std::to_string(size) +
                         " bytes); copy or export it again");
   }
   return format;

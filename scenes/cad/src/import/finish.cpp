@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Turns what a reader found into parts: metres, rigid poses, welded meshes, unique names, warnings.
+// Turns a reader's result into parts: metres, rigid poses, welded meshes, unique names, warnings.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -10,11 +10,11 @@
 
 #include "core/equal_meshes.h"
 #include "core/valid_text.h"
+#include "import/part_names.h"
 #include "import/readers.h"
-#include "import/unique_names.h"
 #include "vps/errors.h"
 #include "vps/mesh.h"
-#include "vps_scenes/cad/srgb.h"
+#include "vps_scenes/cad/colors.h"
 
 namespace vps::scenes::import {
 namespace {
@@ -33,7 +33,8 @@ ImportedPart inMetres(const RawPart& raw, double unit_m) {
   part.deflection_m = raw.deviation_m;
   part.note = raw.note;
   part.within = raw.within;
-  // That of two parts together is then no more than the 0.1 um to which check finds the depth of an overlap.
+  // Smaller values are ignored: for two parts together they stay below 0.1 um, the accuracy of an overlap's
+  // depth in `vps check`.
   constexpr double kLeastRounding_m = 0.05e-6;
   if (const double rounding_m = raw.rounding * unit_m; rounding_m > kLeastRounding_m)
     part.rounding_m = rounding_m;
@@ -54,8 +55,8 @@ ImportedPart inMetres(const RawPart& raw, double unit_m) {
   return part;
 }
 
-/// Welds with the least tolerance that closes the mesh, or else with the one that leaves the fewest open
-/// edges. Exporters round to float (1e-7 of the size) or to CAD tolerance (1 um at most).
+/// Welds with the least tolerance that closes the mesh, or else with the tolerance that leaves the fewest
+/// open edges. Exporters round to float (1e-7 of the size) or to CAD tolerance (1 um at most).
 WeldedMesh weldedToClose(const Mesh& mesh, MeshReport& report) {
   const double size_m = bounds(mesh).size().norm();
   WeldedMesh best;
@@ -71,8 +72,8 @@ WeldedMesh weldedToClose(const Mesh& mesh, MeshReport& report) {
   return best;
 }
 
-/// The connected components of a mesh, with their triangles' numbers in it; triangles with a common vertex
-/// are connected.
+/// The connected components of a mesh, each with the indices of its triangles in the mesh. Triangles with a
+/// common vertex are connected.
 std::vector<WeldedMesh> shells(const Mesh& mesh) {
   std::vector<std::uint32_t> parent(mesh.vertices.size());
   std::iota(parent.begin(), parent.end(), 0u);
@@ -110,8 +111,8 @@ bool hasVertex(const ImportedPart& part, const Vec3& p_W) {
                      [&](const Vec3& p) { return (part.X_WP * p - p_W).squaredNorm() < 1e-12; });
 }
 
-/// Replaces open shapes that together form closed surfaces by the bodies that they bound, in the assembly's
-/// frame.
+/// Replaces open shapes that together form closed surfaces by the bodies that these surfaces bound, in the
+/// assembly's frame.
 void joinShapes(std::vector<ImportedPart>& parts, Shapes meaning) {
   std::vector<ImportedPart> kept, open;
   std::size_t open_edges = 0;
@@ -171,21 +172,20 @@ void describe(const ImportedPart& part, const MeshReport& report, std::vector<st
   warn(report.non_manifold_edges, "edges with more than two triangles: bodies touch or surfaces cross there");
   warn(report.flipped_edges, "edges between facets of opposite orientation: some facets face inwards");
   warn(report.degenerate_triangles, "triangles without area");
-  constexpr double kNamed_m = 1e-6;  // as far as import follows curved faces
+  constexpr double kNamed_m = 1e-6;  // the default deflection of import
   if (part.rounding_m > kNamed_m) {
     char text[320];
-    std::snprintf(
-        text, sizeof text,
-        "part '%s': is %.3g m from the origin of its file, whose numbers of 32 bits are off by up to "
-        "%.2g um there, and this counts as its error; move the assembly to the origin and export it "
-        "again, or export STEP",
-        part.name.c_str(), farthest_m(part), 1e6 * part.rounding_m);
+    std::snprintf(text, sizeof text,
+                  "part '%s': is %.3g m from the origin of its file, whose 32-bit numbers round by up to "
+                  "%.2g um there, which counts as an error of the part; move the assembly to the origin and "
+                  "export it again, or export STEP",
+                  part.name.c_str(), farthest_m(part), 1e6 * part.rounding_m);
     warnings.emplace_back(text);
   }
   const double extent_m = bounds(part.mesh).size().maxCoeff();
   if (extent_m > 10 || extent_m < 1e-3) {
     char text[160];
-    std::snprintf(text, sizeof text, "part '%s': is %.3g m large; is the unit right?", part.name.c_str(),
+    std::snprintf(text, sizeof text, "part '%s': is %.3g m large; check the unit", part.name.c_str(),
                   extent_m);
     warnings.emplace_back(text);
   }
@@ -195,7 +195,7 @@ void describe(const ImportedPart& part, const MeshReport& report, std::vector<st
 
 namespace {
 
-/// A mesh as a part gets it.
+/// A welded mesh with all facets outward, as a part has it.
 struct FinishedMesh : WeldedMesh {
   MeshReport report;
   bool is_turned = false;
@@ -210,7 +210,7 @@ FinishedMesh finished(const Mesh& mesh) {
   return out;
 }
 
-/// Equal meshes are welded once, different ones on all cores.
+/// Welds the meshes of all parts: equal meshes once, different ones on all cores.
 void weldAll(ImportedCad& cad) {
   EqualMeshes known;
   std::vector<std::size_t> own, source(cad.parts.size());
@@ -232,7 +232,8 @@ void weldAll(ImportedCad& cad) {
     part.face_colors = ofTriangles(part.face_colors, of.sources);
     simplify(part.face_colors, part.color);
     requireUsable(part.mesh, cad.file, part.name);
-    if (of.is_turned) cad.warnings.push_back("part '" + part.name + "': was inside out; turned");
+    if (of.is_turned)
+      cad.warnings.push_back("part '" + part.name + "': was inside out; its facets were reversed");
     describe(part, of.report, cad.warnings);
   }
 }
@@ -245,7 +246,8 @@ double floatRounding(const Mesh& mesh, const Eigen::Affine3d& X_WP) {
   for (const Vec3& p : mesh.vertices) farthest = std::max(farthest, p.squaredNorm());
   const double vertex = kRelative * std::sqrt(farthest);
   if (X_WP.matrix().isIdentity(0)) return vertex;
-  // Vertices, the matrix that multiplies them, and its translation.
+  // The terms are the roundings of the vertices and of the matrix that multiplies them, and of the
+  // translation.
   return 2 * X_WP.linear().norm() * vertex + kRelative * X_WP.translation().norm();
 }
 
@@ -272,7 +274,7 @@ void finish(RawCad raw, ImportedCad& cad) {
   for (const RawPart& part : raw.parts) {
     if (!part.mesh.triangles.empty()) cad.parts.push_back(inMetres(part, raw.unit_m));
   }
-  // A shape without area is nothing; a file with no other shapes is an error, reported below.
+  // A shape without area is ignored; a file with no other shapes is an error, reported below.
   const auto isNothing = [](const ImportedPart& part) { return area(part.mesh) == 0; };
   if (!std::all_of(cad.parts.begin(), cad.parts.end(), isNothing)) {
     const std::size_t count = std::erase_if(cad.parts, isNothing);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "import/forked_workers.h"
+#include "import/child_processes.h"
 
 #include <algorithm>
 #include <optional>
@@ -60,7 +60,7 @@ class SharedCounter {
 
  private:
   using Counter = std::atomic<std::size_t>;
-  static_assert(Counter::is_always_lock_free);  // one with a lock would not be shared
+  static_assert(Counter::is_always_lock_free);  // a counter with a lock would not work across processes
   void* memory_;
   Counter* counter_ = nullptr;
 };
@@ -80,13 +80,13 @@ bool writeAll(int to, const void* data, std::size_t size) {
   return true;
 }
 
-/// @param parent  the process that forks this one
+/// Runs a copy. @param parent the process that forked it
 [[noreturn]] void runCopy(pid_t parent, int to, SharedCounter& counter, const std::vector<std::size_t>& order,
                           const Make& make) noexcept {
 #ifdef __linux__
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
 #endif
-  if (::getppid() != parent) ::_exit(1);  // it ended before that
+  if (::getppid() != parent) ::_exit(1);  // the parent ended before prctl()
   try {
     for (std::size_t k = counter.next(); k < order.size(); k = counter.next()) {
       const std::string result = make(order[k]);
@@ -94,19 +94,19 @@ bool writeAll(int to, const void* data, std::size_t size) {
       if (!writeAll(to, &header, sizeof header) || !writeAll(to, result.data(), result.size())) break;
     }
     ::_exit(0);
-  } catch (...) {  // what it was to make is made by the parent, which then throws the same
+  } catch (...) {  // the parent makes the missing results, and throws the same exception
     ::_exit(1);
   }
 }
 
-/// A copy and what it has sent so far.
+/// A copy and the bytes that it has sent so far.
 struct Copy {
   pid_t id = -1;
   int from = -1;
   std::string received;
 };
 
-/// Takes whole results out of what a copy has sent.
+/// Takes complete results out of the bytes that a copy has sent.
 void takeResults(Copy& copy, Results& results, const std::function<void()>& done) {
   std::size_t at = 0;
   for (Header header; copy.received.size() - at >= sizeof header;) {
@@ -120,7 +120,7 @@ void takeResults(Copy& copy, Results& results, const std::function<void()>& done
   copy.received.erase(0, at);
 }
 
-/// Reads what there is; false at the end.
+/// Reads the available bytes; false at the end of the pipe.
 bool receive(Copy& copy) {
   constexpr std::size_t kBuffer = 1 << 20;
   const std::size_t before = copy.received.size();
@@ -132,7 +132,7 @@ bool receive(Copy& copy) {
   return count > 0;
 }
 
-/// All copies; ends those that still run.
+/// All copies. The destructor ends copies that still run.
 class Copies {
  public:
   ~Copies() {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which parts of a CAD file are one body.
+// Finds groups of parts in a CAD file that are one body.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -18,7 +18,7 @@ namespace {
 
 using Members = std::vector<std::size_t>;
 
-/// Whether a name is as a pattern says, in which * stands for any text.
+/// Whether a name matches a pattern, in which * stands for any text.
 bool matches(std::string_view name, std::string_view pattern) {
   if (pattern.empty()) return name.empty();
   if (pattern.front() != '*')
@@ -28,7 +28,7 @@ bool matches(std::string_view name, std::string_view pattern) {
   return false;
 }
 
-/// Unions of things by number.
+/// Disjoint sets of the numbers 0 to count - 1 (union-find).
 class Unions {
  public:
   explicit Unions(std::size_t count) : parent_(count) {
@@ -46,7 +46,7 @@ class Unions {
   std::vector<std::size_t> parent_;
 };
 
-/// The corners of all parts, those within 1 um of each other as one.
+/// Numbers the corners of all parts; corners within 1 um of each other have one number.
 class Corners {
  public:
   std::uint32_t numberOf(const Vec3& p_W) {
@@ -63,7 +63,7 @@ class Corners {
 
  private:
   using Cell = std::array<std::int64_t, 3>;
-  static constexpr double kSame_m = 1e-6;  // exporters round to that
+  static constexpr double kSame_m = 1e-6;  // exporters round coordinates to 1 um
   static Cell cellOf(const Vec3& p) {
     return {std::llround(p.x() / kSame_m), std::llround(p.y() / kSame_m), std::llround(p.z() / kSame_m)};
   }
@@ -71,7 +71,7 @@ class Corners {
   std::uint32_t count_ = 0;
 };
 
-/// Edges with one triangle.
+/// Edges that belong to one triangle only.
 std::vector<std::array<std::uint32_t, 2>> openEdges(const Mesh& mesh) {
   std::map<std::array<std::uint32_t, 2>, int> count;
   for (const auto& t : mesh.triangles)
@@ -85,10 +85,10 @@ std::vector<std::array<std::uint32_t, 2>> openEdges(const Mesh& mesh) {
   return open;
 }
 
-/// Open surfaces that share open edges.
+/// Sets of open surfaces that share open edges.
 std::vector<Members> surfacesThatMeet(const std::vector<ImportedPart>& parts) {
   Corners corners;
-  std::map<std::array<std::uint32_t, 2>, std::size_t> first;  // part of an edge
+  std::map<std::array<std::uint32_t, 2>, std::size_t> first;  // the first part that has the edge
   Unions unions(parts.size());
   for (std::size_t i = 0; i < parts.size(); ++i) {
     if (!parts[i].within.empty()) continue;
@@ -162,7 +162,7 @@ class Grouping {
       group.parts.push_back(cad_.parts[i].name);
       is_taken_[i] = true;
     }
-    // Its own parts are not parts of the scene any more.
+    // A name of the group's own members is free, since they are no parts of the scene any more.
     const auto isUsed = [&](const std::string& word) {
       return std::ranges::any_of(groups_, [&](const PartGroup& other) { return other.name == word; }) ||
              std::ranges::any_of(cad_.parts, [&](const ImportedPart& part) {

@@ -7,33 +7,18 @@
 #include <optional>
 #include <set>
 
-#include "core/machine_memory.h"
-#include "import/kept_cad.h"
-#include "import/own_process.h"
+#include "core/machine.h"
+#include "import/child_processes.h"
+#include "import/part_bytes.h"
 #include "import/readers.h"
 #include "vps/errors.h"
 
 namespace vps::scenes {
 namespace {
 
-struct Reader {
-  const char* library;
-  import::RawCad (*read)(const std::string& file, const std::string& format, const ImportSettings& settings,
-                         const Progress& progress);
-};
+using import::FileFormat;
 
-bool hasExactFaces(const std::string& format) {
-  return format == "STEP" || format == "IGES" || format == "BREP";
-}
-
-Reader readerOf(const std::string& format) {
-  if (hasExactFaces(format)) return {"Open CASCADE", import::readOcct};
-  if (format == "Inventor" || format == "VRML") return {"Coin", import::readCoin};
-  if (format == "3MF") return {"lib3mf", import::read3mf};
-  return {"assimp", import::readAssimp};
-}
-
-/// Gives assemblies and products other names where another file has the same.
+/// Renames assemblies and products whose names another file has as well.
 void nameTreeApart(ImportedCad& one, const ImportedCad& others) {
   std::set<std::string> taken, own;
   for (const ImportedPart& part : others.parts) taken.insert(part.within.begin(), part.within.end());
@@ -51,27 +36,22 @@ void nameTreeApart(ImportedCad& one, const ImportedCad& others) {
     }
 }
 
-/// Formats in which y is up as often as z, and no file says which.
-bool isUpOpen(const std::string& format) {
-  return format == "Inventor" || format == "VRML";
-}
-
-/// The parts of a file in its own axes, made by its reader.
-void readAnew(const std::string& file, const ImportSettings& settings, const Progress& progress,
-              ImportedCad& cad) {
-  const Reader reader = readerOf(cad.format);
-  const auto read = [&](const Progress& inner) { return reader.read(file, cad.format, settings, inner); };
+/// Reads a file by its format's reader; the parts keep the file's axes.
+void readAnew(const std::string& file, const FileFormat& format, const ImportSettings& settings,
+              const Progress& progress, ImportedCad& cad) {
+  const import::FormatRow& row = format.row();
+  const auto read = [&](const Progress& inner) { return row.read(file, format, settings, inner); };
   std::optional<import::RawCad> raw;
-  if (cad.format == "STL") raw = import::readBinaryStl(file, settings);
+  if (row.read_here != nullptr) raw = row.read_here(file, settings);
   if (!raw)
-    raw = settings.in_own_process ? import::inOwnProcess(file, reader.library, settings, progress, read)
+    raw = settings.in_own_process ? import::inOwnProcess(file, row.library, settings, progress, read)
                                   : read(progress);
   cad.states_unit = raw->states_unit;
   cad.missing = raw->missing;
   if (settings.part_per == PartPer::Object) raw->open_shapes = import::Shapes::AreParts;
   import::finish(std::move(*raw), cad);
   for (ImportedPart& part : cad.parts) {
-    if (hasExactFaces(cad.format))
+    if (row.has_exact_faces)
       part.deflection_m = std::max(part.deflection_m.value_or(0), settings.deflection_m);
     else
       part.deflection_m.reset();
@@ -98,7 +78,13 @@ ImportedPart wholeFile(const ImportedCad& cad) {
   return whole;
 }
 
-ImportedCad withFileAxes(const std::string& file, ImportSettings settings, const Progress& progress) {
+/// A file's parts in the file's axes.
+struct CadInFileAxes {
+  ImportedCad cad;
+  bool is_up_open = false;  ///< see FormatRow
+};
+
+CadInFileAxes withFileAxes(const std::string& file, ImportSettings settings, const Progress& progress) {
   if (settings.unit_m && !(*settings.unit_m > 0))
     throw LoadError(file, "", "is given a unit that is not a positive length; give metres per file unit");
   if (!(settings.deflection_m > 0) || !(settings.angle_rad > 0)) {
@@ -106,21 +92,21 @@ ImportedCad withFileAxes(const std::string& file, ImportSettings settings, const
   }
   if (settings.most_memory_bytes == 0)
     settings.most_memory_bytes = static_cast<std::uint64_t>(0.5 * machineMemoryBytes());
+  const FileFormat format = import::detectFormat(file);
   ImportedCad cad;
   cad.file = file;
-  cad.format = import::detectFormat(file);
+  cad.format = format.name;
   if (progress) progress("reading " + import::stem(file), 0);
-  const std::string made_from =
-      settings.cache != nullptr ? import::madeFrom(file, cad.format, settings, import::occtVersion()) : "";
+  const std::string made_from = settings.cache != nullptr ? import::madeFrom(file, format, settings) : "";
   std::optional<std::string> kept;
   if (!made_from.empty()) kept = settings.cache->find(made_from);
   if (!kept || !import::readKeptBytes(*kept, cad)) {
-    readAnew(file, settings, progress, cad);
+    readAnew(file, format, settings, progress, cad);
     if (!made_from.empty()) settings.cache->keep(made_from, import::keptBytes(cad));
   }
   if (settings.part_per == PartPer::File) cad.parts = {wholeFile(cad)};
   if (progress) progress("reading " + import::stem(file), 1);
-  return cad;
+  return {std::move(cad), format.row().is_up_open};
 }
 
 void setUp(ImportedCad& cad, bool is_open, const ImportSettings& settings) {
@@ -131,9 +117,9 @@ void setUp(ImportedCad& cad, bool is_open, const ImportSettings& settings) {
 }  // namespace
 
 ImportedCad importCad(const std::string& file, const ImportSettings& settings, const Progress& progress) {
-  ImportedCad cad = withFileAxes(file, settings, progress);
-  setUp(cad, isUpOpen(cad.format), settings);
-  return cad;
+  CadInFileAxes one = withFileAxes(file, settings, progress);
+  setUp(one.cad, one.is_up_open, settings);
+  return std::move(one.cad);
 }
 
 ImportedCad importCad(const std::vector<std::string>& files, const ImportSettings& settings,
@@ -143,9 +129,9 @@ ImportedCad importCad(const std::vector<std::string>& files, const ImportSetting
   bool is_up_open = true;
   std::vector<std::size_t> ends;
   for (const std::string& file : files) {
-    ImportedCad one = withFileAxes(file, settings, progress);
+    auto [one, is_open] = withFileAxes(file, settings, progress);
     if (all.file.empty()) all.file = file;
-    is_up_open = is_up_open && isUpOpen(one.format);
+    is_up_open = is_up_open && is_open;
     all.states_unit = all.states_unit && one.states_unit;
     if (all.format.find(one.format) == std::string::npos)
       all.format += (all.format.empty() ? "" : ", ") + one.format;

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "import/kept_cad.h"
+#include "import/part_bytes.h"
 
 #include <algorithm>
 #include <fstream>
 #include <iterator>
 #include <new>
 #include <stdexcept>
-
-#include "import/part_bytes.h"
 
 namespace vps::scenes::import {
 namespace {
@@ -23,7 +21,7 @@ void transferParts(Io& io, ImportedCad& cad) {
   transferArray(io, cad.missing);
 }
 
-/// Whether all that its triangles name exists.
+/// Whether all vertices and colours that the triangles refer to exist.
 bool isConsistent(const ImportedPart& part) {
   const std::size_t vertices = part.mesh.vertices.size(), triangles = part.mesh.triangles.size();
   const FaceColors& colors = part.face_colors;
@@ -37,17 +35,16 @@ bool isConsistent(const ImportedPart& part) {
 
 }  // namespace
 
-std::string madeFrom(const std::string& file, const std::string& format, const ImportSettings& settings,
-                     const std::string& reader) {
-  if (format != "STEP" && format != "IGES" && format != "BREP") return "";
+std::string madeFrom(const std::string& file, const FileFormat& format, const ImportSettings& settings) {
+  if (format.row().version == nullptr) return "";
   std::ifstream in(file, std::ios::binary);
   std::string out(std::istreambuf_iterator<char>(in), {});
-  // Parts in files of their own [ISO 10303-203 and 214: DOCUMENT_FILE].
+  // DOCUMENT_FILE [ISO 10303-203 and 214] refers to parts in other files.
   if (!in || out.empty() || out.find("DOCUMENT_FILE") != std::string::npos) return "";
   ToBytes io;
   auto version = kKeptVersion;
   transfer(io, version);
-  for (std::string text : {format, reader, stem(file)}) transferArray(io, text);
+  for (std::string text : {format.name, format.row().version(), stem(file)}) transferArray(io, text);
   double unit_m = settings.unit_m.value_or(0), deflection_m = settings.deflection_m,
          angle_rad = settings.angle_rad, coarsest_m = settings.coarsest_m;
   std::uint64_t most_triangles = settings.most_triangles;
@@ -59,7 +56,7 @@ std::string madeFrom(const std::string& file, const std::string& format, const I
 
 std::string keptBytes(const ImportedCad& cad) {
   ToBytes io;
-  ImportedCad copy = cad;  // transfer() takes what could be read as well
+  ImportedCad copy = cad;  // transfer() needs values that it may change
   transferParts(io, copy);
   return std::move(io.out);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Files that were exported part by part, each in the frame in which it was modelled, and not in that of their
-// assembly: then all lie about the origin, and each reaches deep into another.
+// Detects files that were exported part by part, each in its modelling frame instead of the frame of the
+// assembly: all then lie about the origin, and each reaches deep into another.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -15,8 +15,8 @@
 namespace vps::scenes::import {
 namespace {
 
-/// Whether two coordinates of the box's middle or of its least corner are zero, as of a part that is modelled
-/// about an axis or from a corner.
+/// Whether two coordinates of the box's centre or of its lowest corner are zero, as in a part that is
+/// modelled about an axis or from a corner.
 bool isAboutOrigin(const Box& box) {
   const double near_m = 1e-3 * box.size().norm();
   int count = 0;
@@ -29,7 +29,7 @@ double leastExtent_m(const Box& box) {
   return box.size().minCoeff();
 }
 
-/// Points below the surface, spread evenly over it, in the part's frame: the same ones each time.
+/// Points below the surface, spread evenly over it, in the part's frame. Deterministic.
 std::vector<Vec3> pointsBelow(const Mesh& mesh, double depth_m, std::size_t count) {
   const double step_m2 = area(mesh) / double(count);
   std::vector<Vec3> points;
@@ -41,7 +41,8 @@ std::vector<Vec3> pointsBelow(const Mesh& mesh, double depth_m, std::size_t coun
     done_m2 += 0.5 * u.cross(v).norm();
     for (; double(points.size()) + 0.5 < done_m2 / step_m2;
          points.emplace_back(p + a * u + b * v - depth_m * n)) {
-      // Multiples of these numbers leave no gaps in the unit square; half of it is the triangle.
+      // Multiples of these numbers cover the unit square evenly; the half with a + b > 1 is mirrored into the
+      // triangle.
       a = std::fmod(a + 0.7548776662466927, 1);
       b = std::fmod(b + 0.5698402909980532, 1);
       if (a + b > 1) {
@@ -53,14 +54,14 @@ std::vector<Vec3> pointsBelow(const Mesh& mesh, double depth_m, std::size_t coun
   return points;
 }
 
-/// A part, with distances that are prepared where they are needed.
+/// A part, with distances that are prepared when they are first needed.
 struct Placed {
   const ImportedPart* part = nullptr;
   Box box = {};  ///< in the world
   std::unique_ptr<const MeshDistance> distance = nullptr;
 
-  /// Whether a ball about this point of the part's frame fits into the part. It fits into no open mesh:
-  /// winding numbers would tell its inside, and cost more than such a hint is worth.
+  /// Whether a ball about this point of the part's frame fits into the part. False for an open mesh, whose
+  /// inside only winding numbers would tell, at a cost that such a hint does not justify.
   bool hasBall(const Vec3& p, double radius_m, std::size_t& queries) {
     if (!distance && checkMesh(part->mesh).isClosed()) distance = std::make_unique<MeshDistance>(part->mesh);
     if (!distance) return false;
@@ -71,10 +72,10 @@ struct Placed {
 
 struct OneFile {
   std::vector<Placed> parts = {};
-  Box box = {};  ///< of all, in the world
+  Box box = {};  ///< of all parts, in the world
 };
 
-/// Where the middle of a ball that fits into both boxes can be; empty if none does.
+/// The box of all centres of balls that fit into both boxes; empty if no ball fits.
 Box middles(const Box& a, const Box& b, double radius_m) {
   return {a.min.cwiseMax(b.min).array() + radius_m, a.max.cwiseMin(b.max).array() - radius_m};
 }
@@ -82,13 +83,13 @@ Box middles(const Box& a, const Box& b, double radius_m) {
 /// The greatest number of distances that are computed, about 0.2 s.
 constexpr std::size_t kMostQueries = 100'000;
 
-/// The names of two parts, one of each file, into both of which a ball of this radius fits at one place;
-/// nothing if there are none. Only places below the surfaces of the first file's parts are tried.
+/// The names of two parts, one of each file, for which a ball of this radius at one place fits into both;
+/// empty if there are none. Only places below the surfaces of the first file's parts are tried.
 std::optional<std::pair<std::string, std::string>> commonBall(OneFile& one, OneFile& other, double radius_m,
                                                               std::size_t& queries) {
   const std::size_t count = std::clamp<std::size_t>(30'000 / one.parts.size(), 20, 300);
   for (Placed& part : one.parts) {
-    std::vector<std::pair<Placed*, Box>> near;  // with where the ball's middle may be
+    std::vector<std::pair<Placed*, Box>> near;  // with the box of possible centres of the ball
     for (Placed& neighbor : other.parts)
       if (const Box both = middles(part.box, neighbor.box, radius_m); !both.isEmpty())
         near.emplace_back(&neighbor, both);
@@ -111,10 +112,10 @@ std::optional<std::pair<std::string, std::string>> commonBall(OneFile& one, OneF
 
 std::string ownFramesWarning(const std::vector<ImportedPart>& parts, const std::vector<std::size_t>& ends,
                              std::size_t* query_count) {
-  // A fraction of the smaller file's least extent. Threads and press fits overlap by less.
+  // Radius of the ball, as a fraction of the smaller file's least extent. Threads and press fits overlap by
+  // less.
   constexpr double kDeep = 0.1;
-  // To prepare distances to more triangles, or to compare the boxes of more parts, takes longer than such a
-  // hint is worth.
+  // Limits of the effort for this hint: the preparation of distances, and the comparison of boxes.
   constexpr std::size_t kMostTriangles = 300'000, kMostParts = 3'000;
   std::size_t triangles = 0, own_count = 0;
   for (const ImportedPart& part : parts) triangles += part.mesh.triangles.size();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "import/own_process.h"
+#include "import/child_processes.h"
 
 #if !defined(__unix__)
 
@@ -33,7 +33,7 @@ RawCad inOwnProcess(const std::string&, const std::string&, const ImportSettings
 #include <sys/prctl.h>
 #endif
 
-#include "import/forked_workers.h"
+#include "import/child_processes.h"
 #include "import/part_bytes.h"
 #include "vps/errors.h"
 
@@ -41,15 +41,15 @@ namespace vps::scenes::import {
 namespace {
 
 // Messages of the child: Progressed (share, text) any number of times, then once Done (a RawCad) or Failed
-// (the text of the error). Both ends are the same program, so values are sent as they lie in memory
+// (the text of the error). Both processes run the same program, so values keep their layout in memory
 // (part_bytes.h).
 enum class Message : std::uint8_t { Progressed, Done, Failed };
 
-/// How long to wait for a message, and how often to look at the child's memory, which takes a walk through
-/// its page tables.
+/// Longest wait for a message, and interval between checks of the child's memory, for which the kernel walks
+/// through its page tables.
 constexpr int kLook_ms = 200;
 
-/// The child's messages ended early.
+/// Thrown when the child's messages end early.
 struct Broken {};
 
 struct Close {
@@ -73,7 +73,7 @@ class Writer {
 
 class Reader {
  public:
-  /// @param wait  called while nothing comes, five times a second; may throw
+  /// @param wait called five times a second while no message arrives; may throw
   Reader(Stream stream, std::function<void()> wait) : stream_(std::move(stream)), wait_(std::move(wait)) {
     ready_.resize(kBuffer);
   }
@@ -116,24 +116,25 @@ class Reader {
 
 /// In the child: makes a crash silent, fast and harmless to the parent.
 void prepareToCrash() {
-  // No core file, and none of the signal handlers that the program has set for itself.
+  // The child writes no core file and has none of the program's signal handlers.
   const rlimit no_core = {0, 0};
   ::setrlimit(RLIMIT_CORE, &no_core);
   for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGTERM, SIGPIPE})
     std::signal(signal, SIG_DFL);
-  // A terminal sends Ctrl-C to both processes. The parent decides, and ends this one.
+  // A terminal sends Ctrl-C to both processes. Only the parent handles it, and ends the child if necessary.
   std::signal(SIGINT, SIG_IGN);
-  // The parent writes what it has not flushed yet. stderr is unbuffered, and sanitizers use it.
+  // The child must not write the parent's unflushed output to stdout. stderr is unbuffered, and sanitizers
+  // use it.
   const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
   if (nowhere >= 0) ::dup2(nowhere, STDOUT_FILENO);
 #ifdef __linux__
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // a reader that hangs goes with the program
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // a reader that hangs ends with the program
   // If memory runs out, the kernel ends this process first.
   if (const Stream score(std::fopen("/proc/self/oom_score_adj", "w")); score) std::fputs("1000", score.get());
 #endif
 }
 
-/// Runs the child. Ends by _exit, since buffers, handlers and statics belong to the parent.
+/// Runs the reader in the child. Ends by _exit, since buffers, handlers and statics belong to the parent.
 [[noreturn]] void runChild(Stream stream, const std::string& file, const Progress& progress,
                            const std::function<RawCad(const Progress&)>& read) noexcept {
   prepareToCrash();
@@ -148,7 +149,7 @@ void prepareToCrash() {
   };
   try {
     RawCad cad;
-    std::string error;  // none while empty
+    std::string error;  // empty: no error
     try {
       cad = read(progress ? send : Progress());
     } catch (const LoadError& e) {
@@ -167,7 +168,7 @@ void prepareToCrash() {
     }
     out.flush();
     ::_exit(0);
-  } catch (...) {  // the parent has ended, or the library threw something that is no std::exception
+  } catch (...) {  // the parent has ended, or the library threw an object that is not a std::exception
     ::_exit(1);
   }
 }
@@ -176,15 +177,16 @@ class Child {
  public:
   explicit Child(pid_t id) : id_(id) {}
   ~Child() {
-    // Its result has been read, or progress threw and it is not needed.
+    // The child's result has been read, or `progress` threw and the result is not needed.
     if (!is_gone_) end();
   }
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
 
-  /// Ends it if it has not ended. The signal that ended it; 0: none did.
+  /// Ends the child if it still runs.
+  /// @return the signal that ended it; 0: no signal, or the one sent here
   int end() {
-    // One that closed its pipe is about to end by itself, with the signal that is asked for.
+    // A child that closed its pipe is about to end by itself, and its own signal is wanted.
     int status = 0;
     constexpr int kRounds = 100;
     for (int i = 0; i < kRounds && !is_gone_; ++i) {
@@ -197,14 +199,14 @@ class Child {
       while (::waitpid(id_, &status, 0) < 0 && errno == EINTR) {
       }
       is_gone_ = true;
-      return 0;  // by this
+      return 0;  // ended by the SIGKILL above
     }
     return WIFSIGNALED(status) ? WTERMSIG(status) : 0;
   }
   void setClosed() { is_closed_ = true; }
 
-  /// Memory that it occupies itself, and copies that it forked; 0 where that is not known. With copies, of
-  /// pages that several processes share each has its share, so that none is counted twice.
+  /// Memory of the child and of the copies that it forked; 0 if it is unknown. With copies, a page that
+  /// several processes share counts in equal shares for each of them, so that no page is counted twice.
   [[nodiscard]] std::uint64_t memory_bytes() const {
     const std::string process = "/proc/" + std::to_string(id_);
     const std::string list = process + "/task/" + std::to_string(id_) + "/children";
@@ -222,7 +224,7 @@ class Child {
   }
 
  private:
-  /// A process's memory, of what it shares its share.
+  /// A process's proportional set size: its own pages and its share of the shared pages.
   static std::uint64_t ownShare_bytes(long id) {
     const Stream rollup(std::fopen(("/proc/" + std::to_string(id) + "/smaps_rollup").c_str(), "r"));
     unsigned long long kilobytes = 0;
@@ -301,7 +303,8 @@ RawCad receive(Reader& in, Watch& watch) {
 RawCad inOwnProcess(const std::string& file, const std::string& library, const ImportSettings& limits,
                     const Progress& progress, const std::function<RawCad(const Progress&)>& read) {
   if (!mayFork()) return read(progress);
-  // A child that is forked meanwhile would keep this pipe open, and hide a crash until it ends.
+  // A child that another thread forks meanwhile would keep this pipe open, and hide a crash until that child
+  // ends.
   static std::mutex one_at_a_time;
   std::unique_lock lock(one_at_a_time);
   int ends[2];
@@ -324,14 +327,14 @@ RawCad inOwnProcess(const std::string& file, const std::string& library, const I
   try {
     return receive(in, watch);
   } catch (const Broken&) {
-    watch.look();  // a stop is told before its consequence
+    watch.look();  // if a limit ended the child, that error is the cause
     child.setClosed();
     const int signal = child.end();
     if (signal == SIGKILL || signal == SIGTERM || signal == SIGINT)
       throw LoadError(
           file, "",
-          "was not read, because the process that reads it was ended from outside, as when memory "
-          "runs out; export fewer parts into one file, or read STEP and IGES with a greater deflection");
+          "was not read, because the process that reads it was ended from outside, for example when memory "
+          "ran out; export fewer parts into one file, or read STEP and IGES with a greater deflection");
     throw LoadError(file, "", library + " crashed while reading it; the file is damaged, so export it again");
   }
 }

@@ -2,7 +2,7 @@
 // Parts as bytes, for another process or another run of this program on the same machine.
 //
 // One transfer() for each type serves both directions, so that they cannot disagree: `io(pointer, size)`
-// copies the bytes of a value out or in. Values are copied as they lie in memory.
+// copies the bytes of a value out or in. Values keep their layout in memory.
 #pragma once
 
 #include <array>
@@ -24,7 +24,7 @@ class ToBytes {
   std::string out;
 };
 
-/// Fewer bytes than they say, or a value that no part has.
+/// Thrown for bytes that end early or hold a value that no part has.
 struct Damaged {};
 
 class FromBytes {
@@ -134,5 +134,15 @@ void transfer(Io& io, ImportedPart& part) {
   transfer(io, rounding_m);
   transfer(io, face_colors);
 }
+
+/// The key under which the parts of a file are kept between runs: the file's bytes, the settings, and the
+/// versions of the reader and of this code. Empty for a format without FormatRow::version, for a STEP file
+/// that names other files, and for a file that cannot be read.
+std::string madeFrom(const std::string& file, const FileFormat& format, const ImportSettings& settings);
+
+/// Parts and warnings as bytes, from which readKeptBytes() restores every bit on the same machine.
+std::string keptBytes(const ImportedCad& cad);
+/// Sets parts and warnings; false for bytes of another kind, which leave `cad` unchanged.
+bool readKeptBytes(const std::string& bytes, ImportedCad& cad);
 
 }  // namespace vps::scenes::import

@@ -17,11 +17,11 @@ bool isDigit(char c) {
   return c >= '0' && c <= '9';
 }
 bool isLetter(char c) {
-  // A byte beyond ASCII is of a letter of another script.
+  // A byte beyond ASCII belongs to a letter of another script.
   return std::isalpha(static_cast<unsigned char>(c)) != 0 || static_cast<unsigned char>(c) >= 0x80;
 }
 
-/// The name without the number of an instance: digits in brackets, behind a separator, or at the end.
+/// The name without an instance's number: digits in brackets, behind a separator, or at the end.
 std::string withoutNumber(std::string name) {
   const auto endsIn = [&](std::string_view set) {
     return !name.empty() && set.find(name.back()) != std::string_view::npos;
@@ -39,7 +39,7 @@ std::string wordOf(const std::string& name) {
   return lower;
 }
 
-/// Whether the name is a word that exporters and kernels write where they know no name.
+/// Whether the name is a word that exporters and CAD kernels write in place of an unknown name.
 bool isOfExporter(const std::string& name) {
   const std::string word = wordOf(name);
   constexpr std::array<std::string_view, 10> kWords = {"nauo",
@@ -56,8 +56,8 @@ bool isOfExporter(const std::string& name) {
          word.starts_with("open cascade step translator") || word.starts_with("=>[");
 }
 
-/// Whether the name has replaced characters or those of control, or mostly signs, as an exporter writes it
-/// that lacks the characters.
+/// Whether the name has control characters or replacement characters, or consists mostly of punctuation, as
+/// from an exporter that cannot write some characters.
 bool isGarbled(const std::string& name) {
   const auto letters =
       std::ranges::count_if(name, [](char c) { return isLetter(c) || isDigit(c) || c == ' '; });
@@ -65,9 +65,9 @@ bool isGarbled(const std::string& name) {
          name.find("??") != std::string::npos || 2 * letters < std::ssize(name);
 }
 
-/// Whether the name is one long word that changes between capitals, small letters and digits at every other
-/// place, and more than once from a small letter to a capital, as the identifiers of instances do:
-/// "MqXw0GXkVJeNj9w4". Designations as "DIN912M8x20A2K" and "LH_Arm_V2_01" do not.
+/// Whether the name is one long word that changes between capitals, small letters and digits at more than
+/// every other place, and at least twice from a small letter to a capital, as in identifiers of instances:
+/// "MqXw0GXkVJeNj9w4". Designations such as "DIN912M8x20A2K" and "LH_Arm_V2_01" are not random in this sense.
 bool isRandom(const std::string& name) {
   constexpr std::ptrdiff_t kLeast = 12;
   enum Kind { Separator, Digit, Capital, Small, Sign };
@@ -110,7 +110,8 @@ bool isIdentifier(const std::string& name) {
   return hex == std::ssize(name) && hex >= kLeast && std::ranges::count_if(name, isDigit) >= kLeastDigits;
 }
 
-/// 0: nothing, 1: a word that any part could have, or one that nobody gave, 2: a name.
+/// How meaningful a name is. 0: not at all, 1: a word that any part could have, or a garbled or random one,
+/// 2: a real name.
 int meaningOf(const std::string& name) {
   if (!std::ranges::any_of(name, isLetter) || isOfExporter(name) || isIdentifier(name)) return 0;
   return isGeneric(name) || isGarbled(name) || isRandom(name) ? 1 : 2;
@@ -123,7 +124,7 @@ std::string bestName(const std::string& instance, const std::string& product) {
   if (std::max(of_instance, of_product) == 0) return "";
   if (of_instance != of_product) return of_instance > of_product ? instance : product;
   if (of_product == 1) return product;
-  // "bolt:3" and "bolt<3>" are counters of CAD systems; "bolt_3" can be a name that a person gave.
+  // CAD systems count instances as "bolt:3" and "bolt<3>"; a person may have chosen "bolt_3".
   const bool is_counted = instance.starts_with(product) && withoutNumber(instance) == product &&
                           instance.find_first_of(":<#", product.size()) == product.size();
   return is_counted ? product : instance;

@@ -1,16 +1,36 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which of several names in a CAD file says most.
+// Chooses the most meaningful name of a part, and keeps names unique.
 #pragma once
 
+#include <map>
+#include <set>
 #include <string>
 
 namespace vps::scenes::import {
 
-/// The better one of the names of an instance and of its product. Names of exporters count as none: counters,
-/// identifiers and kinds of shapes ("NAUO7", "=>[0:1:1:2]", "3f2a9c40-...", "SOLID"); words that any part
-/// could have ("Body1", "Part 2"), names with characters that were lost, and long words of random characters
-/// are only taken where there is no other. An instance that only numbers its product ("bolt:3", "bolt<3>")
-/// has the product's name. Empty if neither means anything.
+/// The more meaningful one of the names of an instance and of its product. Names that exporters generate are
+/// ignored: counters, identifiers and kinds of shapes ("NAUO7", "=>[0:1:1:2]", "3f2a9c40-...", "SOLID").
+/// Words that any part could have ("Body1", "Part 2"), names with lost characters, and long words of random
+/// characters are only taken if there is no other name. An instance that only numbers its product ("bolt:3",
+/// "bolt<3>") gets the product's name. Empty if neither name is meaningful.
 std::string bestName(const std::string& instance, const std::string& product);
+
+/// Gives out each name once.
+class UniqueNames {
+ public:
+  /// The name, or "<name>_2" and so on if the name was given out before. O(log n) amortised.
+  std::string unique(const std::string& name) {
+    if (taken_.insert(name).second) return name;
+    int& n = tried_.try_emplace(name, 1).first->second;
+    std::string other;
+    do other = name + "_" + std::to_string(++n);
+    while (!taken_.insert(other).second);
+    return other;
+  }
+
+ private:
+  std::set<std::string> taken_;
+  std::map<std::string, int> tried_;  ///< last number that was tried for each repeated name
+};
 
 }  // namespace vps::scenes::import

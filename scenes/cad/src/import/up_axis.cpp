@@ -12,25 +12,16 @@
 #include "vps/mesh.h"
 #include "vps/mesh_repair.h"
 
-namespace vps::scenes {
-
+namespace vps::scenes::import {
 namespace {
 
-constexpr double kGround = 0.005;  // of the height: feet of one foundation are drawn that even
-constexpr double kShaky_deg = 10;  // assumed: nobody draws a product so that less than this tips it over
-constexpr double kFirm_deg = 20;
+constexpr double kGround = 0.005;  // share of the height within which points count as standing on the ground
+constexpr double kShaky_deg = 10;  // assumed: a product is not drawn so that a smaller angle tips it over
+constexpr double kFirm_deg = 20;   // assumed
 
-}  // namespace
-
-void import::turnUp(ImportedCad& cad, const Vec3& axis) {
-  const Pose turn(Quat::FromTwoVectors(axis, Vec3::UnitZ()).toRotationMatrix(), Vec3::Zero());
-  for (ImportedPart& part : cad.parts) part.X_WP = turn * part.X_WP;
-}
-
-namespace {
-
-/// The angle by which the parts, as one body, tip over with an axis up: from the centre of mass to the edge
-/// of what is on the ground. Negative where they do not stand at all.
+/// The angle at which the parts, as one body, tip over with an axis up: between the vertical and the line
+/// from the nearest edge of the base through the centre of mass. Negative where the parts do not stand at
+/// all.
 double tipsAt_deg(const ImportedCad& cad, int axis) {
   Box box;
   Vec3 com = Vec3::Zero();
@@ -38,7 +29,7 @@ double tipsAt_deg(const ImportedCad& cad, int axis) {
   std::vector<Vec3> points;
   for (const ImportedPart& part : cad.parts) {
     for (const Vec3& p : part.mesh.vertices) points.push_back(part.X_WP * p);
-    // Of the repaired solid: facets may face in.
+    // Mass properties are those of the repaired solid, since facets may face inwards.
     const MassProperties mass = area(part.mesh) > 0 ? solidMass(part.mesh, part.name) : MassProperties();
     if (!(mass.volume_m3 > 0)) continue;  // a surface without an inside
     com += mass.volume_m3 * (part.X_WP * mass.com);
@@ -64,29 +55,29 @@ double tipsAt_deg(const ImportedCad& cad, int axis) {
 
 }  // namespace
 
-// The format's own axis is kept unless the parts would hardly stand. Which side is flatter tells less: a
+void turnUp(ImportedCad& cad, const Vec3& axis) {
+  const Pose turn(Quat::FromTwoVectors(axis, Vec3::UnitZ()).toRotationMatrix(), Vec3::Zero());
+  for (ImportedPart& part : cad.parts) part.X_WP = turn * part.X_WP;
+}
+
+// The format's own axis is kept unless the parts would hardly stand. A flat side is a worse criterion: a
 // machine on four feet has a flat top and a flat end.
-void import::guessUp(ImportedCad& cad) {
+void guessUp(ImportedCad& cad) {
   if (cad.parts.empty()) return;
   const double y_deg = tipsAt_deg(cad, 1), z_deg = tipsAt_deg(cad, 2);
   const bool is_y = y_deg > kShaky_deg || z_deg < kFirm_deg;
-  const auto stand = [](double deg) {
+  const auto stability = [](double deg) {
     return deg > 0 ? "tip over at " + std::to_string(std::lround(deg)) + " degrees"
                    : std::string("do not stand");
   };
-  const char other = is_y ? 'z' : 'y';
-  cad.warnings.push_back(std::string(is_y ? "y is taken to be up, as Inventor and VRML define"
-                                          : "z is taken to be up, though Inventor and VRML define y") +
-                         ": so the parts " + stand(is_y ? y_deg : z_deg) + ", and with " + other +
-                         " up they " + stand(is_y ? z_deg : y_deg) + "; --up " + other + " says otherwise");
+  std::string formats;
+  for (const FormatRow& row : formatRows())
+    if (row.is_up_open) formats.append(formats.empty() ? "" : " and ").append(row.name);
+  cad.warnings.push_back((is_y ? "y is taken to be up, as " + formats + " define"
+                               : "z is taken to be up, although " + formats + " define y") +
+                         ": with y up the parts " + stability(y_deg) + ", with z up they " +
+                         stability(z_deg) + "; give --up " + (is_y ? "z if z" : "y if y") + " is up");
   if (is_y) turnUp(cad, Vec3::UnitY());
 }
 
-std::optional<Vec3> axisFromText(const std::string& text) {
-  const bool is_negative = text.starts_with("-");
-  const std::string name = text.substr(is_negative ? 1 : 0);
-  if (name.size() != 1 || name < "x" || name > "z") return std::nullopt;
-  return Vec3((is_negative ? -1 : 1) * Vec3::Unit(name[0] - 'x'));
-}
-
-}  // namespace vps::scenes
+}  // namespace vps::scenes::import

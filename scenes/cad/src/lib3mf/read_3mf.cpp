@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// 3MF by lib3mf: what the build places, with units, names, components and colours.
-// Source of the meanings: 3MF Core Specification 1.3, Materials and Properties Extension 1.2.
+// Reads 3MF by lib3mf: the objects that the build places, with units, names, components and colours. Sources:
+// 3MF Core Specification 1.3, Materials and Properties Extension 1.2.
 #include <Common/NMR_ErrorConst.h>
 #include <Model/COM/NMR_DLLInterfaces.h>
 
@@ -11,17 +11,15 @@
 #include <string_view>
 
 #include "color/palette.h"
+#include "import/part_names.h"
 #include "import/readers.h"
-#include "import/unique_names.h"
-#include "lib3mf/archive.h"
-#include "lib3mf/model_faults.h"
-#include "lib3mf/model_units.h"
+#include "lib3mf/model_files.h"
 #include "vps/errors.h"
 
 namespace vps::scenes::import {
 namespace {
 
-/// A call that failed.
+/// Thrown when a call of lib3mf fails.
 struct Failed {};
 
 void require(LIB3MFRESULT result) {
@@ -31,7 +29,7 @@ void require(LIB3MFRESULT result) {
 struct Release {
   void operator()(NMR::PLib3MFBase* object) const { NMR::lib3mf_release(object); }
 };
-/// Each class of lib3mf is a pointer to void in its interface.
+/// An object of lib3mf, whose interface has a pointer to void for every class.
 using Object = std::unique_ptr<NMR::PLib3MFBase, Release>;
 
 /// The value that f(arguments..., address) writes to the address.
@@ -64,13 +62,13 @@ constexpr std::array<std::pair<std::string_view, double>, 6> kUnits = {
      {"centimeter", 1e-2},
      {"inch", 25.4e-3},
      {"foot", 0.3048},
-     {"meter", 1}}};  // in the order of lib3mf's numbers
+     {"meter", 1}}};  // in the order of lib3mf's constants
 
 std::string counted(std::size_t count, const std::string& thing) {
   return std::to_string(count) + " " + thing + (count == 1 ? " is" : "s are");
 }
 
-/// lib3mf's matrix has the images of the axes and of the origin as its columns.
+/// Converts lib3mf's matrix, whose columns are the images of the axes and of the origin.
 Eigen::Affine3d affine(const NMR::MODELTRANSFORM& transform) {
   Eigen::Affine3d X = Eigen::Affine3d::Identity();
   for (int row = 0; row < 3; ++row)
@@ -111,15 +109,17 @@ class Reader {
       throw LoadError(file_, "", "places no object with a mesh; export it again with its objects placed");
     if (supports_ > 0)
       cad_.warnings.push_back(counted(supports_, "object") +
-                              " for printing alone (supports, or of type 'other'), and left out");
+                              " for printing only (supports, or of type 'other') and left out");
     if (bad_colors_ > 0)
-      cad_.warnings.push_back(counted(bad_colors_, "colour") +
-                              " not in the file; the object's own, or grey, is taken there");
+      cad_.warnings.push_back(
+          counted(bad_colors_, "colour") +
+          " referred to but missing in the file; the object's own colour, or grey, is used there");
   }
 
  private:
-  /// The reader with its warnings; null, with lib3mf's words, if it fails.
-  /// @param bytes  of an archive that is read in place of the file; empty: the file
+  /// Reads the model.
+  /// @return the reader, which has the warnings; null if it fails, with lib3mf's reason in `words`
+  /// @param bytes  archive that is read in place of the file; empty: the file is read
   Object readModel(std::string bytes, std::string& words) {
     model_ = objectOf(NMR::lib3mf_createmodel);
     Object reader = objectOf(NMR::lib3mf_model_queryreader, model_.get(), "3mf");
@@ -135,7 +135,7 @@ class Reader {
     return nullptr;
   }
 
-  /// The unit of the root model applies to all model files, by the specification.
+  /// Reads the unit of the root model, which by the specification applies to all model files.
   void readUnit() {
     const ModelFiles files = modelFiles(file_);
     requires_beams_ = files.root && std::ranges::any_of(files.root->required, [](const std::string& space) {
@@ -145,8 +145,8 @@ class Reader {
     const std::string stated = files.root ? files.root->unit : std::string(kUnits.at(number).first);
     for (const ModelFile& other : files.others)
       if (files.root && other.unit != stated) {
-        cad_.warnings.push_back("states the unit '" + stated + "', which is taken, and '" + other.unit +
-                                "' in " + other.name);
+        cad_.warnings.push_back("states the unit '" + stated + "', which is used, and the unit '" +
+                                other.unit + "' in " + other.name);
         break;
       }
     const auto known = std::ranges::find(kUnits, stated, &std::pair<std::string_view, double>::first);
@@ -154,11 +154,11 @@ class Reader {
     cad_.unit_m = cad_.states_unit ? known->second : settings_.unit_m.value_or(1e-3);
     if (!cad_.states_unit && !settings_.unit_m)
       cad_.warnings.push_back("states the unit '" + stated +
-                              "', which 3MF does not have: millimetres are assumed; set unit or --units");
+                              "', which 3MF does not define: millimetres are assumed; set unit or --units");
   }
 
-  /// Warns of what breaks the specification, as lib3mf finds it. Slicers add attributes and metadata of their
-  /// own.
+  /// Warns of violations of the specification that lib3mf finds. Attributes and metadata that slicers add are
+  /// ignored.
   void addRemarks(const Object& reader) {
     constexpr std::array<DWORD, 7> kNoMatter = {
         NMR_ERROR_INVALIDMODELUNIT,  // see readUnit()
@@ -173,18 +173,19 @@ class Reader {
       DWORD code = 0;
       const std::string words = textOf(NMR::lib3mf_reader_getwarningutf8, reader.get(), i, &code);
       if (code == NMR_ERROR_REQUIREDEXTENSIONNOTSUPPORTED)
-        throw LoadError(file_, "", "needs an extension of 3MF that is not read; export it again without");
+        throw LoadError(file_, "",
+                        "needs an extension of 3MF that is not read; export it again without extensions");
       if (std::ranges::find(kNoMatter, code) != kNoMatter.end()) continue;
       if (++others == 0) first = words;
     }
     if (first.empty()) return;
-    cad_.warnings.push_back("breaks the rules of 3MF, and was read as far as it is clear: " + first +
+    cad_.warnings.push_back("violates the 3MF specification and was read as far as possible:  " + first +
                             (others > 0 ? " (and " + std::to_string(others) + " more)" : ""));
   }
 
   void visit(const Object& object, const Eigen::Affine3d& X_WO, std::string name,
              std::vector<std::string> within) {
-    // assumed: more than assemblies have; a file of 3 kB can place 10 million objects.
+    // Assumed limits, above those of real assemblies: a file of 3 kB can place 10 million objects.
     constexpr std::size_t kMostLevels = 100, kMostVisits = 200'000;
     if (within.size() >= kMostLevels || ++visits_ > kMostVisits)
       throw LoadError(file_, "",
@@ -231,13 +232,13 @@ class Reader {
     const std::string whose = name.empty() ? "an object" : "object '" + name + "'";
     if (beam_count > 0 && requires_beams_)
       throw LoadError(file_, name,
-                      "has a lattice of beams, which the file says is needed and which is not read; export "
-                      "it as a mesh");
+                      "has a lattice of beams, which the file marks as required and which is not read; "
+                      "export it as a mesh");
     if (beam_count > 0)
       cad_.warnOfMissing(whose + " has a lattice of " + std::to_string(beam_count) +
                          " beams, which are not read; export it as a mesh");
     if (vertex_count == 0 || triangle_count == 0) {
-      cad_.warnings.push_back(whose + " has no triangles, and is left out");
+      cad_.warnings.push_back(whose + " has no triangles and is left out");
       return;
     }
     require(NMR::lib3mf_meshobject_getvertices(object.get(), vertices.data(), vertex_count, nullptr));
@@ -250,7 +251,7 @@ class Reader {
     readColors(object, triangle_count, part);
   }
 
-  /// The result of f, or `otherwise` where the file has no such colour.
+  /// The result of f, or `otherwise` if the file lacks the colour.
   template <class F>
   Color colorOr(const Color& otherwise, F f) {
     try {
@@ -322,19 +323,20 @@ class Reader {
   RawCad& cad_;
   Object model_;
   UniqueNames instances_;
-  std::map<DWORD, RawPart> meshes_;  ///< with colours, by the numbers of their objects
-  bool requires_beams_ = false;      ///< the file says that it cannot be read without them
+  std::map<DWORD, RawPart> meshes_;  ///< meshes with colours, by the number of their object
+  bool requires_beams_ = false;      ///< the file marks beam lattices as required
   std::size_t supports_ = 0, bad_colors_ = 0, visits_ = 0;
 };
 
 }  // namespace
 
-RawCad read3mf(const std::string& file, const std::string&, const ImportSettings& settings, const Progress&) {
+RawCad read3mf(const std::string& file, const FileFormat&, const ImportSettings& settings, const Progress&) {
   RawCad cad;
   try {
     Reader(file, settings, cad).read();
   } catch (const Failed&) {
-    throw LoadError(file, "", "is not a readable 3MF file (lib3mf refuses an object of it); export it again");
+    throw LoadError(file, "",
+                    "is not a readable 3MF file (lib3mf refuses one of its objects); export it again");
   }
   return cad;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "occt/damaged_entities.h"
+#include "occt/file_faults.h"
 
 #include <algorithm>
 #include <array>
@@ -45,8 +45,8 @@ std::string joined(std::string text) {
   return text;
 }
 
-/// The parameter that a message of Open CASCADE is about, "face_bound" of "Parameter n0.1 (face_bound) not a
-/// LIST" and "name" of "(representation_item.name)"; empty where it names none.
+/// The parameter that a message of Open CASCADE names: "face_bound" for "Parameter n0.1 (face_bound) not a
+/// LIST", and "name" for "(representation_item.name)". Empty if the message names no parameter.
 std::string_view parameterOf(std::string_view message) {
   const std::size_t from = message.find("Parameter n0.");
   const std::size_t open = from == std::string_view::npos ? from : message.find('(', from);
@@ -56,7 +56,7 @@ std::string_view parameterOf(std::string_view message) {
   return name.substr(name.rfind('.') + 1);
 }
 
-/// Whether the name of an unknown kind has a word of kinds that are no shapes, so that it is no loss.
+/// Whether the name of an unknown kind of entity contains a word that marks kinds without geometry.
 bool isNoShape(std::string_view kind) {
   constexpr std::array<std::string_view, 12> kWords = {"ANNOTATION", "DRAUGHTING", "CALLOUT", "TEXT",
                                                        "LEADER",     "DIMENSION",  "SYMBOL",  "CAMERA",
@@ -69,7 +69,7 @@ bool isNoShape(std::string_view kind) {
   return false;
 }
 
-/// The damaged entities of one file.
+/// Finds the damaged entities of one file.
 class Finder {
  public:
   explicit Finder(const Handle(Interface_InterfaceModel) & model)
@@ -102,7 +102,8 @@ class Finder {
  private:
   [[nodiscard]] bool isNeeded(int i) const { return is_needed_[std::size_t(i)]; }
 
-  /// Marks what the shapes of products refer to at any depth, and in IGES what is geometry by its number.
+  /// Marks the entities to which shapes of products refer, at any depth, and in IGES the entities whose type
+  /// number is that of geometry.
   void findNeeded() {
     std::vector<int> left;
     const auto need = [&](int i) {
@@ -133,24 +134,24 @@ class Finder {
       has_angles_ = has_angles_ || (has_pcurve && is_round) ||
                     isAny<StepGeom_ConicalSurface, StepGeom_TrimmedCurve, StepGeom_RectangularTrimmedSurface,
                           StepShape_RevolvedAreaSolid, StepShape_RevolvedFaceSolid>(entity);
-      if (isAny<IGESData_IGESEntity>(entity)) continue;  // all geometry of IGES is found by its number
+      if (isAny<IGESData_IGESEntity>(entity)) continue;  // all geometry of IGES is found by its type number
       for (Interface_EntityIterator it = graph_.Shareds(entity); it.More(); it.Next())
         if (!isNoGeometry(it.Value())) need(model_->Number(it.Value()));
     }
   }
 
-  /// Whether it is an annotation, a style, a tolerance, an uncertainty or an unknown entity: an entity that
-  /// refers to one of these and needs it is damaged itself.
+  /// Whether the entity is an annotation, a style, a tolerance, an uncertainty or an unknown entity. An
+  /// entity that needs one of these is reported as damaged itself.
   static bool isNoGeometry(const Entity& entity) {
     const std::string_view type = entity->DynamicType()->Name();
     return type.starts_with("StepVisual_") || type.starts_with("StepDimTol_") ||
            isAny<StepBasic_UncertaintyMeasureWithUnit, StepData_UndefinedEntity>(entity);
   }
 
-  /// The first message about lost geometry of a needed entity; empty if its geometry is whole.
+  /// The first message about lost geometry of a needed entity; empty if its geometry is complete.
   [[nodiscard]] std::string lossOf(int i) const {
-    // These parameters give accuracy, names or identifiers, not shapes. Open CASCADE computes pcurves that
-    // are missing, and takes units by their kind and factor, not by their exponents.
+    // Parameters with accuracy, names or identifiers have no geometry. Open CASCADE computes missing pcurves,
+    // and identifies units by kind and factor, not by exponents.
     constexpr std::array<std::string_view, 10> kNoGeometry = {"name",
                                                               "id",
                                                               "reference_designator",
@@ -163,7 +164,8 @@ class Finder {
                                                               "associated_geometry"};
     const Entity entity = model_->Value(i);
     const std::string_view type = entity->DynamicType()->Name();
-    // Products, their contexts and categories, dates, persons: all that is not a unit.
+    // StepBasic entities other than units have no geometry: products, their contexts and categories, dates,
+    // persons.
     if (type.starts_with("StepBasic_") && !isAny<StepBasic_NamedUnit, StepBasic_MeasureWithUnit>(entity))
       return "";
     if (type.ends_with("SolidAngleUnit") || (type.ends_with("PlaneAngleUnit") && !has_angles_)) return "";
@@ -175,7 +177,8 @@ class Finder {
       const std::string message = check->CFail(k);
       const std::string_view parameter = parameterOf(message);
       if (parameter.empty()) {
-        // "A reference to another entity is unresolved" comes beside a message with the parameter.
+        // The message "A reference to another entity is unresolved" accompanies another message that names
+        // the parameter.
         if (message.find("unresolved") == std::string::npos || without_parameter.empty())
           without_parameter = message;
         continue;
@@ -194,8 +197,8 @@ class Finder {
     return is_repeated ? "" : without_parameter;
   }
 
-  /// What is lost of a representation's items; empty if it has a shape, and only entities of unknown kinds
-  /// that are no shapes by their names are not read.
+  /// The loss among the items of a representation, in words. Empty if the representation has a shape and all
+  /// items that were not read are of unknown kinds whose names mark them as no shapes.
   [[nodiscard]] std::string lostItem(const Entity& representation) const {
     bool has_shape = false;
     std::size_t unknown = 0, lost = 0;
@@ -213,12 +216,13 @@ class Finder {
     const Handle(Interface_Check) check = model_->Check(model_->Number(representation), true);
     for (int k = 1; k <= check->NbFails(); ++k)
       if (parameterOf(check->CFail(k)) == "representation_item") ++lost;
-    // If more items are lost than are of unknown kinds, an item is missing from the file, and may be a shape.
+    // If the number of lost items exceeds the number of unknown kinds, an item is missing from the file, and
+    // it may be a shape.
     return has_shape && lost <= unknown ? "" : check->CFail(1);
   }
 
-  /// Whether a relationship joins a representation that has a shape with one of an unknown kind, as with a
-  /// tessellation in place of the exact shape.
+  /// Whether a relationship joins a representation with a shape to a representation of an unknown kind, such
+  /// as a tessellation of the exact shape.
   [[nodiscard]] bool isBesideUnknown(const Entity& relationship) const {
     bool has_shape = false, has_unknown = false;
     for (Interface_EntityIterator it = graph_.Shareds(relationship); it.More(); it.Next()) {
@@ -229,7 +233,8 @@ class Finder {
            !isAny<StepRepr_ShapeRepresentationRelationshipWithTransformation>(relationship);
   }
 
-  /// The first error of the whole file; unresolved references are also errors of the entities that have them.
+  /// The first error of the file as a whole. Unresolved references are skipped, since they are also errors of
+  /// their entities.
   [[nodiscard]] std::string globalLoss() const {
     const Handle(Interface_Check) global = model_->GlobalCheck(true);
     for (int k = 1; k <= global->NbFails(); ++k)
@@ -252,8 +257,8 @@ class Finder {
   Handle(Interface_InterfaceModel) model_;
   Interface_Graph graph_;
   std::vector<bool> is_needed_;  // by the entities' numbers, which begin with 1
-  /// The geometry depends on the unit of angles: by a cone's half angle, by a parameter at the end of a conic
-  /// or of a surface, by the angle of a revolution, or by pcurves on round surfaces.
+  /// The geometry depends on the unit of angles, through a cone's half angle, a parameter at the end of a
+  /// conic or of a surface, the angle of a revolution, or pcurves on round surfaces.
   bool has_angles_ = false;
 };
 

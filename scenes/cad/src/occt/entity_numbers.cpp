@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "occt/entity_numbers.h"
+#include "occt/file_faults.h"
 
 #include <algorithm>
 #include <charconv>
@@ -16,7 +16,7 @@ constexpr std::uint64_t kTooLong = ~std::uint64_t{0};
 struct Number {
   std::uint64_t value = 0;  ///< kTooLong: more than 64 bits
   std::size_t from = 0, end = 0;
-  std::size_t equals = 0;  ///< where the '=' is that makes this number the entity's own; 0: it is a reference
+  std::size_t equals = 0;  ///< position of the '=' after an entity's own number; 0: the number is a reference
 };
 
 std::size_t after(std::string_view text, std::size_t at, std::string_view end) {
@@ -31,7 +31,7 @@ std::size_t afterBlanksAndComments(std::string_view text, std::size_t at) {
   return at;
 }
 
-/// Calls f(Number) for each "#12" outside of strings and comments. From the first byte on, since the header
+/// Calls f(Number) for each "#12" outside of strings and comments. Begins at the first byte, since the header
 /// has strings as well.
 template <class F>
 void forEachNumber(std::string_view text, F f) {
@@ -55,7 +55,7 @@ void forEachNumber(std::string_view text, F f) {
   }
 }
 
-/// The numbers of the entities of a file, in order, and those that none has, from the greatest down.
+/// The sorted numbers of a file's entities; gives out unused numbers from the greatest down.
 class EntityNumbers {
  public:
   explicit EntityNumbers(std::string_view text) {
@@ -68,7 +68,8 @@ class EntityNumbers {
       if (number > kGreatest && number != kTooLong) smaller_.try_emplace(number, 0);
     for (auto& [number, other] : smaller_) other = unused();
   }
-  /// The number to write; that of a lost entity if the file has none of this number.
+  /// The number to write for a number of the file. A reference to an entity that is not in the file gets the
+  /// number of no entity.
   std::uint64_t readable(const Number& number) {
     if (number.value == kTooLong) return number.equals != 0 ? unused() : lost_;
     if (!std::ranges::binary_search(own_, number.value)) return lost_;

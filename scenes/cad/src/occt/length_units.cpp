@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "occt/length_units.h"
+#include "occt/file_faults.h"
 
 #include <cmath>
 
@@ -24,7 +24,7 @@ namespace {
 
 using Units = Handle(StepBasic_HArray1OfNamedUnit);
 
-/// Null if the context has none.
+/// The units of a context; null if it has none.
 template <class Context>
 Units unitsOf(const Entity& context) {
   const auto of = Handle(Context)::DownCast(context);

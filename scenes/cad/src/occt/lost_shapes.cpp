@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "occt/lost_shapes.h"
+#include "occt/file_faults.h"
 
 #include <algorithm>
 #include <map>
@@ -28,7 +28,7 @@
 namespace vps::scenes::import {
 namespace {
 
-/// Which products have a shape, and which of their instances have no placement.
+/// Finds products with a shape, and their instances without a placement.
 class Placements {
  public:
   explicit Placements(const Handle(Interface_InterfaceModel) & model) : model_(model) {
@@ -41,7 +41,7 @@ class Placements {
     for (const auto& [assembly, instances] : instances_of_)
       for (const Handle(StepRepr_NextAssemblyUsageOccurrence) & instance : instances) {
         std::set<Entity> seen;
-        // A mapped item of the assembly's shape is a placement as well.
+        // A mapped item in the assembly's shape is also a placement.
         if (placed_.contains(instance) || anyItemOf(assembly, isAny<StepRepr_MappedItem>) ||
             !hasShape(instance->RelatedProductDefinition(), seen))
           continue;
@@ -78,7 +78,7 @@ class Placements {
     }
   }
 
-  /// Whether f(item) is true of an item of a product's shape.
+  /// Whether f(item) is true for any item of a product's shape.
   template <class F>
   [[nodiscard]] bool anyItemOf(const Entity& product, F f) const {
     const auto own = shapes_of_.find(product);
@@ -90,7 +90,7 @@ class Placements {
                      }));
            });
   }
-  /// Whether a product or one of its parts has a shape; `seen` ends the search where products contain
+  /// Whether a product or one of its parts has a shape. `seen` ends the search in products that contain
   /// themselves.
   [[nodiscard]] bool hasShape(const Entity& product, std::set<Entity>& seen) const {
     if (product.IsNull() || !seen.insert(product).second) return false;
@@ -107,7 +107,8 @@ class Placements {
   std::set<Entity> placed_;
 };
 
-/// The number of solids that were not translated, with the reason for the first, in words.
+/// The number of solids that were not translated, with the reason for the first, in words; empty if there are
+/// none.
 std::string leftOut(const Handle(Interface_InterfaceModel) & model,
                     const Transfer_TransientProcess& process) {
   std::string first;
@@ -128,7 +129,7 @@ std::string leftOut(const Handle(Interface_InterfaceModel) & model,
   for (int i = 1; i <= model->NbEntities(); ++i) {
     const Entity entity = model->Value(i);
     if (isAny<StepShape_SolidModel, StepShape_ShellBasedSurfaceModel>(entity)) look(entity);
-    // A primitive within a solid of several is not looked at.
+    // A primitive inside a solid that consists of several is not examined.
     anyItem(entity, [&](const Entity& item) {
       if (isPrimitive(item)) look(item);
       return false;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Replaces the Open CASCADE reader in a build without Open CASCADE.
-#include "import/missing_library.h"
 #include "import/readers.h"
 
 namespace vps::scenes::import {
@@ -9,8 +8,8 @@ std::string occtVersion() {
   return "";
 }
 
-RawCad readOcct(const std::string& file, const std::string& format, const ImportSettings&, const Progress&) {
-  throw missingLibrary(file, format, "Open CASCADE", "libocct-data-exchange-dev");
+RawCad readOcct(const std::string& file, const FileFormat& format, const ImportSettings&, const Progress&) {
+  throw missingLibrary(file, format.name, "Open CASCADE", "libocct-data-exchange-dev");
 }
 
 }  // namespace vps::scenes::import

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// STEP and IGES with names, tree, places and colours (Open CASCADE's XDE), and BREP.
+// Reads STEP and IGES with names, tree, poses and colours (Open CASCADE's XDE), and BREP.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -34,12 +34,7 @@
 
 #include "import/part_names.h"
 #include "import/readers.h"
-#include "import/unique_names.h"
-#include "occt/damaged_entities.h"
-#include "occt/entity_numbers.h"
-#include "occt/length_units.h"
-#include "occt/lost_shapes.h"
-#include "occt/pieces.h"
+#include "occt/file_faults.h"
 #include "occt/tessellate_all.h"
 #include "vps/errors.h"
 
@@ -60,7 +55,7 @@ class Quiet {
   Message_SequenceOfPrinters printers_;
 };
 
-/// A document that is closed with its scope.
+/// A document that is closed at the end of its scope.
 class Document {
  public:
   Document() { XCAFApp_Application::GetApplication()->NewDocument("BinXCAF", document_); }
@@ -88,7 +83,7 @@ std::string nameOf(const TDF_Label& label) {
   return utf8.ToCString();
 }
 
-/// Of the triangles from the faces.
+/// Error of the triangles: their greatest distance from the exact faces [m].
 double errorOf(const Tessellation& made, const ImportSettings& settings) {
   return made.deflection_m > settings.deflection_m ? std::max(made.deviation_m, made.deflection_m)
                                                    : made.deviation_m;
@@ -123,8 +118,9 @@ class Tree {
     Eigen::Affine3d X_PieceMesh;  ///< in file units
     Color color;
     bool has_color;
-    bool is_by_faces = false;                    ///< `color` is that of most of them
-    std::vector<std::optional<Color>> of_faces;  ///< of the tessellation; empty: none has one
+    bool is_by_faces = false;  ///< `color` is the colour of most of the faces
+    std::vector<std::optional<Color>>
+        of_faces;  ///< colours of the tessellation's faces; empty: no face has one
   };
 
   /// Calls f(component) for each component of an assembly.
@@ -140,7 +136,7 @@ class Tree {
     return XCAFDoc_ShapeTool::GetReferredShape(label, target) ? target : label;
   }
 
-  /// The pieces of each product below a label, named for the progress.
+  /// Collects the pieces of each product below a label; `name` is for the progress.
   void collect(const TDF_Label& label, std::string name) {
     const TDF_Label product = referred(label);
     if (const std::string own_name = bestName(nameOf(label), nameOf(product)); !own_name.empty())
@@ -164,7 +160,7 @@ class Tree {
         });
   }
 
-  /// What is above an instance.
+  /// Name and assemblies that an instance inherits.
   struct Above {
     std::string name;
     std::vector<std::string> within;
@@ -199,7 +195,7 @@ class Tree {
       part.within = above.within;
       if (piece.has_color) part.color = piece.color;
       if (color) part.color = *color;
-      // Over the faces' own goes only what is said of this instance.
+      // Only a colour of this instance overrides the faces' own colours.
       if (!is_instance_colored && !piece.of_faces.empty())
         part.face_colors = faceColors(piece, !color && piece.is_by_faces ? ImportedPart().color : part.color);
       cad_.parts.push_back(std::move(part));
@@ -222,15 +218,15 @@ class Tree {
       piece.has_color = colorOf(shape, piece.color, piece.is_by_faces);
       piece.tessellation = tessellated_.tessellations[tessellated_.shapes[i].number];
       piece.X_PieceMesh = tessellated_.shapes[i].X_ST;
-      piece.of_faces = colored.of(shape);  // a copy's faces are in the order of those it is a copy of
-      // Faces that were healed may be others.
+      piece.of_faces = colored.of(shape);  // a rigid copy has its faces in the order of the original
+      // Healing may have changed the number of faces.
       if (piece.of_faces.size() != piece.tessellation.faces.size()) piece.of_faces.clear();
       it->second.push_back(std::move(piece));
     }
     return it->second;
   }
 
-  /// The colours that a product's faces have of their own.
+  /// The colours of single faces of a product.
   class ColoredFaces {
    public:
     ColoredFaces(const TDF_Label& product, const Tree& tree) {
@@ -244,7 +240,7 @@ class Tree {
         colors_.push_back(color);
       }
     }
-    /// By face, in the order of TopExp_Explorer; empty where none has a colour.
+    /// Colours by face, in the order of TopExp_Explorer; empty if no face has a colour.
     [[nodiscard]] std::vector<std::optional<Color>> of(const TopoDS_Shape& shape) const {
       std::vector<std::optional<Color>> out;
       bool has_any = false;
@@ -283,7 +279,8 @@ class Tree {
     return false;
   }
 
-  /// The solid's colour, or the one that most of the area of its faces has, among those that have one.
+  /// The solid's colour, or else the colour that covers most area among its coloured faces. False if neither
+  /// exists.
   bool colorOf(const TopoDS_Shape& shape, Color& out, bool& is_by_faces) const {
     const auto has = [&](const TopoDS_Shape& s) {
       Quantity_Color c;
@@ -321,8 +318,8 @@ class Tree {
   TessellatedShapes tessellated_;
 };
 
-LoadError unreadable(const std::string& file, const std::string& format, const std::string& why) {
-  return {file, "", "is not a readable " + format + " file (" + why + "); export it again"};
+LoadError unreadable(const std::string& file, const FileFormat& format, const std::string& why) {
+  return {file, "", "is not a readable " + format.name + " file (" + why + "); export it again"};
 }
 
 XSControl_Reader& basic(STEPCAFControl_Reader& reader) {
@@ -332,8 +329,8 @@ XSControl_Reader& basic(IGESCAFControl_Reader& reader) {
   return reader;
 }
 
-IFSelect_ReturnStatus readText(XSControl_Reader& reader, const std::string& file, const std::string& format) {
-  if (format != "STEP") return reader.ReadFile(file.c_str());
+IFSelect_ReturnStatus readText(XSControl_Reader& reader, const std::string& file, const FileFormat& format) {
+  if (format.id != CadFormat::Step) return reader.ReadFile(file.c_str());
   std::ifstream in(file, std::ios::binary);
   std::string text(std::filesystem::file_size(file), '\0');
   in.read(text.data(), std::ssize(text));
@@ -348,7 +345,7 @@ IFSelect_ReturnStatus readText(XSControl_Reader& reader, const std::string& file
   return reader.ReadStream(file.c_str(), stream);
 }
 
-/// The unit of the settings, or the millimetre, in place of one that the file does not state.
+/// Uses the unit of the settings, or else the millimetre, for a file that states no unit.
 void readUnit(const LengthUnits& units, const ImportSettings& settings, RawCad& cad) {
   cad.states_unit = units.is_stated;
   if (!units.remark.empty()) cad.warnings.push_back(units.remark);
@@ -360,13 +357,13 @@ void readUnit(const LengthUnits& units, const ImportSettings& settings, RawCad& 
 }
 
 template <class Reader>
-void transfer(Reader& reader, const std::string& file, const std::string& format,
+void transfer(Reader& reader, const std::string& file, const FileFormat& format,
               const Handle(TDocStd_Document) & document, const ImportSettings& settings, RawCad& cad) {
   reader.SetNameMode(true);
   reader.SetColorMode(true);
   if (readText(basic(reader), file, format) != IFSelect_RetDone)
     throw unreadable(file, format, "its syntax is wrong");
-  // Open CASCADE 7.6.3 crashes on some of what was not read, as a face bound without its loop.
+  // Open CASCADE 7.6.3 crashes on some entities that were not read, such as a face bound without its loop.
   nameColors(basic(reader).Model());
   const Damage damage = damageOf(basic(reader).Model());
   if (!damage.lost_geometry.empty()) throw unreadable(file, format, damage.lost_geometry);
@@ -381,16 +378,12 @@ void transfer(Reader& reader, const std::string& file, const std::string& format
   if (!lost.left_out.empty()) cad.warnOfMissing(lost.left_out);
 }
 
-RawCad read(const std::string& file, const std::string& format, const ImportSettings& settings,
+RawCad read(const std::string& file, const FileFormat& format, const ImportSettings& settings,
             const Progress& progress) {
   RawCad cad;
   cad.unit_m = 1e-3;  // both readers convert to mm
-  if (format == "BREP") {
-    if (!settings.unit_m) {
-      throw LoadError(
-          file, "", "BREP files do not state their unit; set unit = \"mm\" in the scene or give --units mm");
-    }
-    cad.unit_m = *settings.unit_m;
+  if (format.id == CadFormat::Brep) {
+    cad.unit_m = unitOf(file, format, settings);
     TopoDS_Shape shape;
     if (!BRepTools::Read(shape, file.c_str(), BRep_Builder()) || shape.IsNull()) {
       throw unreadable(file, format, "its syntax is wrong");
@@ -411,8 +404,8 @@ RawCad read(const std::string& file, const std::string& format, const ImportSett
     return cad;
   }
   Document document;
-  if (format == "STEP") {
-    STEPCAFControl_Controller::Init();  // defines the static below
+  if (format.id == CadFormat::Step) {
+    STEPCAFControl_Controller::Init();  // defines the parameter below
     Interface_Static::SetCVal("xstep.cascade.unit", "MM");
     STEPCAFControl_Reader reader;
     transfer(reader, file, format, document.get(), settings, cad);
@@ -432,9 +425,9 @@ std::string occtVersion() {
   return OCC_VERSION_STRING_EXT;
 }
 
-RawCad readOcct(const std::string& file, const std::string& format, const ImportSettings& settings,
+RawCad readOcct(const std::string& file, const FileFormat& format, const ImportSettings& settings,
                 const Progress& progress) {
-  static std::mutex one_at_a_time;  // its settings and messages are global
+  static std::mutex one_at_a_time;  // Open CASCADE's settings and messages are global
   const std::lock_guard lock(one_at_a_time);
   const Quiet quiet;
   try {

@@ -29,21 +29,21 @@ bool isAny(const Entity& entity) {
   return !entity.IsNull() && (entity->IsKind(STANDARD_TYPE(Types)) || ...);
 }
 
-/// Whether it is a primitive or an operation of constructive solid geometry.
+/// Whether the entity is a primitive or an operation of constructive solid geometry.
 inline bool isPrimitive(const Entity& entity) {
   return isAny<StepShape_Block, StepShape_RightAngularWedge, StepShape_RightCircularCone,
                StepShape_RightCircularCylinder, StepShape_Sphere, StepShape_Torus, StepShape_BooleanResult,
                StepShape_HalfSpaceSolid>(entity);
 }
 
-/// Whether it is a shape as an item of a representation.
+/// Whether the entity is a shape when it is an item of a representation.
 inline bool isShape(const Entity& entity) {
   return isPrimitive(entity) ||
          isAny<StepShape_SolidModel, StepShape_ShellBasedSurfaceModel, StepShape_FaceBasedSurfaceModel,
                StepShape_GeometricSet, StepRepr_MappedItem>(entity);
 }
 
-/// Whether f(item) is true of an item of a representation.
+/// Whether f(item) is true for any item of a representation.
 template <class F>
 bool anyItem(const Entity& representation, F f) {
   const auto of = Handle(StepRepr_Representation)::DownCast(representation);

@@ -2,22 +2,123 @@
 #include "occt/tessellate_all.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <string>
 #include <utility>
 
+#include <BRepAdaptor_Curve.hxx>
+#include <BRepBndLib.hxx>
+#include <BRepBuilderAPI_Sewing.hxx>
+#include <BRepTools.hxx>
+#include <BRep_Tool.hxx>
+#include <Bnd_Box.hxx>
+#include <GeomAdaptor_Surface.hxx>
+#include <Geom_Surface.hxx>
+#include <Standard_Failure.hxx>
 #include <TopExp_Explorer.hxx>
+#include <TopoDS.hxx>
+#include <TopoDS_Edge.hxx>
+#include <TopoDS_Face.hxx>
 
-#include "import/forked_workers.h"
+#include "import/child_processes.h"
 #include "import/part_bytes.h"
-#include "occt/congruent.h"
 
 namespace vps::scenes::import {
 
 namespace {
 
-/// Without the handles of its faces.
+/// Properties that a rigid copy of a shape shares with the shape, in one order: kinds and counts of its faces
+/// and edges, and points on them.
+struct ShapeTrace {
+  std::vector<int> kinds;
+  std::vector<Vec3> points;
+};
+
+Vec3 toVec3(const gp_Pnt& p) {
+  return {p.X(), p.Y(), p.Z()};
+}
+
+void addEdge(const TopoDS_Edge& edge, ShapeTrace& trace) {
+  constexpr int kPoints = 5;
+  trace.kinds.push_back(edge.Orientation());
+  if (BRep_Tool::Degenerated(edge)) {
+    trace.kinds.push_back(-1);
+    return;
+  }
+  const BRepAdaptor_Curve curve(edge);
+  trace.kinds.push_back(curve.GetType());
+  const double from = curve.FirstParameter(), to = curve.LastParameter();
+  for (int i = 0; i < kPoints; ++i)
+    trace.points.push_back(toVec3(curve.Value(from + (to - from) * i / (kPoints - 1))));
+}
+
+void addFace(const TopoDS_Face& face, ShapeTrace& trace) {
+  trace.kinds.push_back(face.Orientation());
+  const Handle(Geom_Surface) surface = BRep_Tool::Surface(face);  // in the face's location
+  if (surface.IsNull()) {
+    trace.kinds.push_back(-1);
+    return;
+  }
+  const int kind = GeomAdaptor_Surface(surface).GetType();
+  trace.kinds.push_back(kind);
+  double u0 = 0, u1 = 0, v0 = 0, v1 = 0;
+  BRepTools::UVBounds(face, u0, u1, v0, v1);
+  // Few points determine a plane, a cylinder or another elementary surface.
+  const int cells = kind < GeomAbs_BezierSurface ? 2 : 8;
+  for (int i = 0; i <= cells; ++i)
+    for (int k = 0; k <= cells; ++k)
+      trace.points.push_back(toVec3(surface->Value(u0 + (u1 - u0) * i / cells, v0 + (v1 - v0) * k / cells)));
+}
+
+/// Faces, their orientation, surfaces and edges in the shape's order; for each edge five points, and for each
+/// face a grid of its surface. O(faces + edges). Empty for a damaged shape, which counts as no copy of
+/// another.
+ShapeTrace traceOf(const TopoDS_Shape& shape) try {
+  ShapeTrace trace;
+  trace.kinds = {shape.ShapeType(), shape.Orientation()};
+  for (TopExp_Explorer face(shape, TopAbs_FACE); face.More(); face.Next()) {
+    addFace(TopoDS::Face(face.Current()), trace);
+    for (TopExp_Explorer edge(face.Current(), TopAbs_EDGE); edge.More(); edge.Next())
+      addEdge(TopoDS::Edge(edge.Current()), trace);
+  }
+  return trace;
+} catch (const Standard_Failure&) {
+  return {};
+}
+
+/// Whether all distances from the first point agree, as after a motion; each point may be off by the
+/// tolerance. Ends at the first difference, so that different shapes cost little.
+bool haveSameDistances(const std::vector<Vec3>& a, const std::vector<Vec3>& b, double tolerance) {
+  for (std::size_t i = 1; i < a.size(); ++i)
+    if (!(std::abs((a[i] - a[0]).norm() - (b[i] - b[0]).norm()) <= 2 * tolerance)) return false;
+  return true;
+}
+
+/// The motion X with X a = b, if all points of b are then within `tolerance` of those of a; never a mirror
+/// image. Two shapes with the same trace are taken for equal: surfaces that agree at their edges and at the
+/// grid could still differ in between, such as free-form faces that were edited between the grid's points.
+std::optional<Eigen::Affine3d> motionBetween(const ShapeTrace& a, const ShapeTrace& b, double tolerance) {
+  if (a.kinds != b.kinds || a.points.size() != b.points.size() || a.points.empty()) return std::nullopt;
+  if (!haveSameDistances(a.points, b.points, tolerance)) return std::nullopt;
+  using Columns = Eigen::Matrix<double, 3, Eigen::Dynamic>;
+  const auto columns = [](const std::vector<Vec3>& points) {
+    return Eigen::Map<const Columns>(points.front().data(), 3, static_cast<Eigen::Index>(points.size()));
+  };
+  const Columns from = columns(a.points), to = columns(b.points);
+  if (!from.allFinite() || !to.allFinite()) return std::nullopt;
+  constexpr bool kWithScale = false;
+  Eigen::Affine3d X;
+  X.matrix() = Eigen::umeyama(from, to, kWithScale);
+  if (!X.matrix().allFinite()) return std::nullopt;
+  const Columns moved = (X.linear() * from).colwise() + X.translation();
+  if (!((moved - to).colwise().norm().maxCoeff() <= tolerance)) return std::nullopt;
+  return X;
+}
+
+/// Transfers a tessellation without the handles of its faces.
 template <class Io>
 void transfer(Io& io, Tessellation& t) {
   transfer(io, t.mesh);
@@ -44,7 +145,7 @@ Tessellation tessellationFrom(const std::string& bytes) {
   return t;
 }
 
-/// Finds for each shape the first one that it is a rigid copy of.
+/// Finds for each shape the first shape of which it is a rigid copy.
 class Different {
  public:
   explicit Different(double tolerance) : tolerance_(tolerance) {}
@@ -68,7 +169,7 @@ class Different {
   std::map<std::vector<int>, std::vector<std::size_t>> with_kinds_;
 };
 
-/// Those with many edges first, since they take longest.
+/// Shapes with many edges first, since they take longest.
 std::vector<std::size_t> longestFirst(const std::vector<TopoDS_Shape>& shapes) {
   std::vector<int> edges;
   for (const TopoDS_Shape& shape : shapes) {
@@ -83,6 +184,24 @@ std::vector<std::size_t> longestFirst(const std::vector<TopoDS_Shape>& shapes) {
 
 }  // namespace
 
+std::vector<TopoDS_Shape> pieces(const TopoDS_Shape& shape) {
+  std::vector<TopoDS_Shape> found;
+  for (TopExp_Explorer it(shape, TopAbs_SOLID); it.More(); it.Next()) found.push_back(it.Current());
+  // 1 um [mm], which suffices for most IGES edges; far less where the file states that the part is tiny.
+  Bnd_Box box;
+  BRepBndLib::Add(shape, box);
+  const double tolerance = box.IsVoid() ? 1e-3 : std::min(1e-3, 1e-5 * std::sqrt(box.SquareExtent()));
+  BRepBuilderAPI_Sewing sewing(tolerance);
+  int loose = 0;
+  for (TopExp_Explorer it(shape, TopAbs_FACE, TopAbs_SOLID); it.More(); it.Next(), ++loose)
+    sewing.Add(it.Current());
+  if (loose > 0) {
+    sewing.Perform();
+    if (!sewing.SewedShape().IsNull()) found.push_back(sewing.SewedShape());
+  }
+  return found;
+}
+
 TessellatedShapes tessellateAll(const std::vector<TopoDS_Shape>& shapes, const ImportSettings& settings,
                                 double units_per_m,
                                 const std::function<void(std::size_t, std::size_t)>& done) {
@@ -96,7 +215,7 @@ TessellatedShapes tessellateAll(const std::vector<TopoDS_Shape>& shapes, const I
     if (done) done(++count, own.size());
   };
   const auto make = [&](std::size_t i) { return tessellate(own[i], settings, units_per_m); };
-  if (!settings.in_own_process) {  // triangulation then uses threads itself
+  if (!settings.in_own_process) {  // Open CASCADE then uses threads itself
     for (std::size_t i = 0; i < own.size(); ++i) {
       out.tessellations.push_back(make(i));
       oneMore();

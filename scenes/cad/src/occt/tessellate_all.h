@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Triangulates the shapes of a file: rigid copies once, the others on all cores.
+// Divides the shapes of a file into rigid pieces and triangulates them: rigid copies once, the others on all
+// cores.
 #pragma once
 
 #include <functional>
@@ -12,20 +13,24 @@
 
 namespace vps::scenes::import {
 
+/// The rigid pieces of a shape: each solid, and the faces outside of solids, sewn together where they meet.
+std::vector<TopoDS_Shape> pieces(const TopoDS_Shape& shape);
+
 struct TessellatedShape {
-  std::size_t number = 0;                              ///< of its tessellation
+  std::size_t number = 0;                              ///< index of its tessellation
   Eigen::Affine3d X_ST = Eigen::Affine3d::Identity();  ///< from the tessellation's frame to the shape's
 };
 
 struct TessellatedShapes {
-  std::vector<TessellatedShape> shapes;  ///< as they were given
-  /// Of the different ones. Where they were made in another process, `faces` has no handles of faces.
+  std::vector<TessellatedShape> shapes;  ///< in the order of the given shapes
+  /// One for each set of rigid copies. Tessellation::faces has no handles if it was made in another process.
   std::vector<Tessellation> tessellations;
 };
 
-/// What tessellate() gives for each shape. A shape that is a rigid copy of an earlier one within a nanometre
-/// has that one's triangles, so that equal parts are equal to all that comes after.
-/// @param done  called with how many of the different shapes are triangulated, and how many there are
+/// Calls tessellate() for each shape. A shape that is a rigid copy of an earlier one within a nanometre gets
+/// the earlier shape's triangles, so that later code finds equal parts equal.
+/// @param done  called with the number of different shapes that are triangulated so far, and their total
+/// number
 TessellatedShapes tessellateAll(const std::vector<TopoDS_Shape>& shapes, const ImportSettings& settings,
                                 double units_per_m,
                                 const std::function<void(std::size_t, std::size_t)>& done);

@@ -30,16 +30,16 @@ namespace vps::scenes::import {
 
 namespace {
 
-/// Open CASCADE keeps the deflection along edges and checks it at some points within faces.
-/// Assumed: three times as much is still as asked for.
+/// Greatest accepted deviation, in deflections (assumed). Open CASCADE keeps the deflection along edges and
+/// checks it at some points within faces.
 constexpr double kTimes = 3;
 
-/// Points inside faces. Planes and cylinders keep the deflection by their rims alone, but where a cylinder
-/// has many of them Open CASCADE 7.6 can span it by triangles that are millimetres off.
+/// Points inside faces. Planes and cylinders keep the deflection through the points on their boundary alone,
+/// but Open CASCADE 7.6 can span a cylinder with many boundary curves by triangles that are millimetres off.
 enum class Inner { None, AsAsked, Finer };
 
-/// True if a face has so many holes that Open CASCADE's algorithm named Delabella is quicker than its
-/// default: 3.4 s for 6.4 s at 84 to 120 holes. On a torus it is slower, 14 s for 8 s.
+/// True if a face has so many holes that Open CASCADE's algorithm Delabella is faster than its default: 3.4 s
+/// instead of 6.4 s with 84 to 120 holes. On a torus Delabella is slower: 14 s instead of 8 s.
 bool hasManyHoles(const TopoDS_Shape& shape) {
   constexpr int kMany = 20;  // assumed
   for (TopExp_Explorer face(shape, TopAbs_FACE); face.More(); face.Next())
@@ -47,7 +47,7 @@ bool hasManyHoles(const TopoDS_Shape& shape) {
   return false;
 }
 
-/// Triangles that are turned over in their face's parameters: of a face that is folded.
+/// Number of triangles that are inverted in the face's parameters, as in a folded face.
 int foldedTriangles(const TopoDS_Face& face) {
   TopLoc_Location location;
   const Handle(Poly_Triangulation) triangulation = BRep_Tool::Triangulation(face, location);
@@ -58,7 +58,7 @@ int foldedTriangles(const TopoDS_Face& face) {
     triangulation->Triangle(i).Get(a, b, c);
     const gp_XY p = triangulation->UVNode(a).XY(), ab = triangulation->UVNode(b).XY() - p,
                 ac = triangulation->UVNode(c).XY() - p;
-    // Slivers may be turned by rounding.
+    // Rounding may invert slivers.
     count += (ab ^ ac) < -1e-9 * ab.Modulus() * ac.Modulus();
   }
   return count;
@@ -84,14 +84,14 @@ void appendFace(const TopoDS_Face& face, Mesh& mesh) {
   }
 }
 
-/// Greatest distance of the triangles' centres from the face's surface. The point of the surface at the
-/// middle of the corners' parameters is near the centre, so that the nearest one is only looked for where
-/// that is farther than `enough`.
+/// Greatest distance of the triangles' centres from the face's surface. The surface point at the mean of the
+/// corners' parameters is near the centre, so the nearest point is only searched for where that point is
+/// farther away than `enough`.
 double deviationOf(const TopoDS_Face& face, double enough) {
   TopLoc_Location location;
   const Handle(Poly_Triangulation) triangulation = BRep_Tool::Triangulation(face, location);
   if (triangulation.IsNull() || !triangulation->HasUVNodes()) return 0;
-  const Handle(Geom_Surface) surface = BRep_Tool::Surface(face);  // where the face is
+  const Handle(Geom_Surface) surface = BRep_Tool::Surface(face);  // in the face's location
   if (surface.IsNull()) return 0;
   Handle(ShapeAnalysis_Surface) nearest;
   double worst = 0;
@@ -109,7 +109,7 @@ double deviationOf(const TopoDS_Face& face, double enough) {
       if (nearest.IsNull()) nearest = new ShapeAnalysis_Surface(surface);
       const gp_Pnt2d at = nearest->ValueOfUV(gp_Pnt(center), Precision::Confusion());
       distance = std::min(distance, nearest->Value(at).Distance(gp_Pnt(center)));
-      // That looks near the best of a grid of points, which can be another valley of the distance.
+      // ValueOfUV() starts at the nearest point of a grid, from which it may reach another local minimum.
       if (distance > std::max(enough, worst)) {
         const GeomAPI_ProjectPointOnSurf all(gp_Pnt(center), surface);
         if (all.NbPoints() > 0) distance = std::min(distance, all.LowerDistance());
@@ -129,7 +129,7 @@ void triangulate(const TopoDS_Shape& shape, const ImportSettings& settings, doub
   parameters.InParallel = !settings.in_own_process;  // a forked process may start no threads
   parameters.InternalVerticesMode = inner != Inner::None;
   parameters.MeshAlgo = algorithm;
-  // A BREP file can hold triangles, which may be of another shape by now.
+  // A BREP file can hold triangles, which may no longer fit the shape.
   BRepTools::Clean(shape);
   BRepMesh_IncrementalMesh(shape, parameters);
 }
@@ -147,7 +147,8 @@ std::size_t triangleCount(const TopoDS_Shape& shape) {
 
 struct Affordable {
   double deflection_m = 0;
-  bool is_triangulated = false;  ///< with it, without points inside faces, by the shape's first algorithm
+  bool is_triangulated =
+      false;  ///< the shape has the triangles of this deflection, by firstAlgorithm() and Inner::None
 };
 
 /// The algorithm that is tried first.
@@ -155,9 +156,9 @@ IMeshTools_MeshAlgoType firstAlgorithm(const TopoDS_Shape& shape) {
   return hasManyHoles(shape) ? IMeshTools_MeshAlgoType_Delabella : IMeshTools_MeshAlgoType_DEFAULT;
 }
 
-/// The least deflection from the one asked for on, by powers of four, with which the shape has no more
-/// triangles than asked for. From the coarsest down, so that a shape that needs too many is never made: a
-/// cylinder has twice as many with a quarter of the deflection, and a ball four times.
+/// The least deflection, the requested one times a power of four, with which the shape has no more triangles
+/// than allowed. Tries the coarsest first, so that too many triangles are never made: a quarter of the
+/// deflection doubles the triangles of a cylinder, and makes four times as many on a ball.
 Affordable affordable(const TopoDS_Shape& shape, ImportSettings settings, double units_per_m) {
   constexpr double kStep = 4, kRounding = 1.01;
   const double asked_m = settings.deflection_m;
@@ -181,10 +182,10 @@ Affordable affordable(const TopoDS_Shape& shape, ImportSettings settings, double
   return {asked_m, true};
 }
 
-/// By how much the area of a face's triangles differs from its own beyond what it may; 0: by no more.
-/// Triangles of a flat face differ by chords along its rim alone, so that one across a hole is seen; those of
-/// a curved face also by the angle a between them: a strip of a cylinder has (a / 2) / sin(a / 2) times their
-/// area, 0.5 % more at 20 degrees, and a doubly curved face twice that.
+/// The difference between the area of a face and of its triangles, if it is more than tessellation explains;
+/// else 0. On a flat face only chords along the boundary change the area, so that a triangle across a hole is
+/// detected. On a curved face the angle a between triangles also counts: a strip of a cylinder has (a / 2) /
+/// sin(a / 2) times their area, 0.5 % more at 20 degrees, and a doubly curved face has twice that excess.
 double areaError(const TopoDS_Face& face, const Mesh& mesh, std::size_t from, double enough,
                  double angle_rad) {
   double covered = 0;
@@ -198,13 +199,14 @@ double areaError(const TopoDS_Face& face, const Mesh& mesh, std::size_t from, do
   BRepGProp::LinearProperties(face, rim);
   const bool is_flat = BRepAdaptor_Surface(face, false).GetType() == GeomAbs_Plane;
   constexpr double kSides = 2,
-                   kIntegration = 1e-2;  // of both parameters; of Open CASCADE for splines, assumed
+                   kIntegration =
+                       1e-2;  // curved in two directions; error of Open CASCADE's areas of splines, assumed
   const double x = 0.5 * angle_rad, curved = is_flat ? 1e-6 : kSides * (x / std::sin(x) - 1) + kIntegration;
   const double error = std::abs(covered - exact.Mass());
   return error > enough * rim.Mass() + curved * exact.Mass() ? error : 0;
 }
 
-/// Whether the triangles are in the box of the exact face, which Open CASCADE may take too large but not too
+/// Whether the triangles are in the box of the exact face; Open CASCADE's box may be too large but not too
 /// small.
 bool isInItsBox(const TopoDS_Face& face, const Mesh& mesh, std::size_t from, double enough) {
   Bnd_Box box;
@@ -218,7 +220,7 @@ bool isInItsBox(const TopoDS_Face& face, const Mesh& mesh, std::size_t from, dou
   return true;
 }
 
-/// A solid, or faces that were sewn together, without an open edge.
+/// Whether the shape is a solid or a set of sewn faces, without an open edge.
 bool isClosedShape(const TopoDS_Shape& shape) {
   bool has_shell = false;
   for (TopExp_Explorer it(shape, TopAbs_SHELL); it.More(); it.Next()) {
@@ -234,7 +236,7 @@ Tessellation triangulated(const TopoDS_Shape& shape, const ImportSettings& setti
   return compared(shape, settings, units_per_m);
 }
 
-/// The shape with those of its faces healed that are not as asked for.
+/// The shape after healing the faces that are not `is_good`.
 TopoDS_Shape withFacesHealed(const TopoDS_Shape& shape, const Tessellation& tessellation) {
   const Handle(ShapeBuild_ReShape) changes = new ShapeBuild_ReShape;
   for (const Tessellation::Face& face : tessellation.faces) {
@@ -266,7 +268,8 @@ Tessellation compared(const TopoDS_Shape& shape, const ImportSettings& settings,
     deviation = std::max(deviation, of_face);
     const bool is_missing = own.triangles == 0, is_off = of_face > enough;
     const double area_error = areaError(face, out.mesh, before, enough, settings.angle_rad);
-    deviation = std::max(deviation, std::sqrt(area_error));  // as wide as what is not covered, or is too much
+    deviation = std::max(deviation,
+                         std::sqrt(area_error));  // side of a square of the area that is missing or in excess
     const bool is_uncovered = !is_missing && area_error > 0;
     const bool is_outside = !isInItsBox(face, out.mesh, first, enough);
     out.missing += is_missing;
@@ -278,7 +281,7 @@ Tessellation compared(const TopoDS_Shape& shape, const ImportSettings& settings,
   if (isClosedShape(shape) && !out.mesh.triangles.empty()) {
     out.open_edges = checkMesh(welded(out.mesh, kMostWeld_m * units_per_m)).open_edges;
     GProp_GProps exact;
-    BRepGProp::VolumeProperties(shape, exact, 1e-4);  // to a ten-thousandth
+    BRepGProp::VolumeProperties(shape, exact, 1e-4);  // relative accuracy
     const double volume = std::abs(massProperties(out.mesh).volume_m3),
                  error = std::abs(volume - std::abs(exact.Mass()));
     if (error > 1e-3 * volume) deviation = std::max(deviation, error / area(out.mesh));
@@ -304,7 +307,7 @@ Tessellation tessellate(const TopoDS_Shape& shape, ImportSettings settings, doub
   const auto tryThat = [&](const TopoDS_Shape& other, Inner inner) {
     if (best.isTrusted()) return;
     Tessellation next = triangulated(other, settings, units_per_m, inner);
-    // Finer triangles alone make the search for contacts slower.
+    // Finer triangles without fewer faults only make the search for contacts slower.
     const bool is_better = next.faults() < best.faults() ||
                            (next.faults() == best.faults() && next.deviation_m < 0.5 * best.deviation_m);
     if (!is_better) return;
@@ -346,18 +349,18 @@ std::string inWords(const Tessellation& tessellation, const ImportSettings& sett
     add(ofFaces(tessellation.off) + "have triangles up to " + deviation + " off (" + asked +
         " was asked for)");
   if (tessellation.uncovered > 0)
-    add(ofFaces(tessellation.uncovered) +
-        "have another area than their triangles, as where these span a hole");
+    add(ofFaces(tessellation.uncovered) + "differ in area from their triangles, which may span a hole");
   if (tessellation.outside > 0) add(ofFaces(tessellation.outside) + "have triangles outside of their bounds");
   if (tessellation.open_edges > 0)
     add("its faces are closed, but its triangles have " + std::to_string(tessellation.open_edges) +
         " open edges");
   if (tessellation.off == 0 && tessellation.deviation_m > kTimes * tessellation.deflection_m)
-    add(std::string("its volume differs from that of its faces by as much as a layer of ") + deviation);
+    add(std::string("its volume differs from the exact volume by as much as a layer on its surface of  ") +
+        deviation);
   return faults +
-         "; neither finer triangles nor healing helped, and what is measured there is no surer than that; "
-         "where that "
-         "matters, let the CAD program write the part as a mesh (STL, OBJ), or those faces anew";
+         "; neither finer triangles nor healing the faces helped, so measurements there are no more accurate "
+         "than this; if that matters, export the part from the CAD program as a mesh (STL, OBJ), or model "
+         "these faces again";
 }
 
 }  // namespace vps::scenes::import

@@ -17,44 +17,45 @@ namespace vps::scenes::import {
 /// Triangles of a shape, in its length unit (a metre has units_per_m of them), outward for a solid. Faces of
 /// one shape share the points of their common edges, so welding closes it.
 struct Tessellation {
-  /// A face, and how many triangles it has; they follow each other in the mesh.
+  /// A face, and the number of its triangles, which are consecutive in the mesh.
   struct Face {
     TopoDS_Face face;
     std::size_t triangles = 0;
-    bool is_good = true;  ///< has triangles, which lie on it, cover it, and are within its box
+    bool is_good = true;  ///< the face has triangles, which lie on it, cover it, and are within its box
   };
 
   Mesh mesh;
   std::vector<Face> faces;
-  /// Greatest distance of a triangle's centre from its exact face, or, where the volume is wrong, its error
-  /// over the area, or, where the area of a face is wrong, the root of its error [m].
+  /// Greatest of these lengths [m]: distance of a triangle's centre from its exact face; error of the volume
+  /// divided by the surface's area, if the volume is wrong; square root of the error of a face's area, if
+  /// that is wrong.
   double deviation_m = 0;
-  double deflection_m = 0;     ///< that it was made with: as asked for, or more, see ImportSettings
+  double deflection_m = 0;     ///< deflection in use: the requested one, or more, see ImportSettings
   int missing = 0;             ///< faces without triangles
-  int off = 0;                 ///< faces with triangles that are farther off than asked for
-  int folded = 0;              ///< triangles that are turned over within their face
-  int uncovered = 0;           ///< faces whose triangles have another area, as where one spans a hole
+  int off = 0;                 ///< faces with triangles that deviate more than accepted
+  int folded = 0;              ///< triangles that are inverted within their face
+  int uncovered = 0;           ///< faces whose triangles differ in area, for example by spanning a hole
   int outside = 0;             ///< faces with triangles outside of the face's bounding box
-  std::size_t open_edges = 0;  ///< of the mesh of a shape that is closed
+  std::size_t open_edges = 0;  ///< open edges in the mesh of a closed shape
 
-  /// Faces that are not as they should be, and one for a mesh that is open.
+  /// Number of faulty faces, plus one for an open mesh.
   [[nodiscard]] int faults() const { return missing + uncovered + outside + (open_edges > 0 ? 1 : 0); }
   [[nodiscard]] bool isTrusted() const;
 };
 
-/// The triangles that the shape has, compared with its faces: their distance at the triangles' centres, their
-/// area and bounding box; for a closed shape, be it a solid or loose faces that were sewn together, that the
-/// mesh is closed and its volume.
+/// Takes the triangles that the shape has and compares them with its faces: distance at the triangles'
+/// centres, area, bounding box. For a closed shape (a solid, or loose faces that were sewn together) also
+/// checks that the mesh is closed, and its volume.
 Tessellation compared(const TopoDS_Shape& shape, const ImportSettings& settings, double units_per_m);
 
-/// Open CASCADE can triangulate a face in quite another place without an error: of 17 solids of one public
-/// motor 6 had triangles up to 24 mm off a cylinder, and all were closed. So triangles are compared with
-/// faces, and where they are not as asked for the shape is triangulated with points inside its faces, then
-/// finer, then with the faces healed that are not as asked for, and then all of it; the best is returned.
-/// Cost besides the triangulation: a surface's point for each triangle, and the volume of a solid.
+/// Triangulates a shape and compares the triangles with its faces, since Open CASCADE can place a face's
+/// triangles elsewhere without an error: of 17 solids of one public motor 6 had triangles up to 24 mm off a
+/// cylinder, and all were closed. While the result is not trusted, tries points inside faces, then finer
+/// triangles, then healed faulty faces, then a healed shape, and returns the best result. Cost in addition to
+/// the triangulation: a point of the surface for each triangle, and the volume of a solid.
 Tessellation tessellate(const TopoDS_Shape& shape, ImportSettings settings, double units_per_m);
 
-/// A warning about a part that is not as asked for; empty if it is.
+/// A warning about a part that is coarser or less accurate than requested; empty if it is not.
 std::string inWords(const Tessellation& tessellation, const ImportSettings& settings);
 
 }  // namespace vps::scenes::import

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "core/wall_clock.h"
+#include "core/machine.h"
 #include "models/scene_models.h"
 #include "vps/box.h"
 #include "vps/friction.h"

@@ -11,7 +11,7 @@
 #include <unordered_map>
 #include <utility>
 
-#include "text/length_words.h"
+#include "text/words.h"
 #include "vps/box.h"
 #include "vps/mesh_distance.h"
 

@@ -8,8 +8,7 @@
 
 #include "core/equal_meshes.h"
 #include "models/scene_models.h"
-#include "scene/insertion_axis.h"
-#include "scene/parts_in_place.h"
+#include "scene/steps.h"
 #include "vps/box.h"
 
 namespace vps::scenes {

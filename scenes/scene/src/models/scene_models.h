@@ -18,9 +18,18 @@ struct BuildTimes {
   double map_wall_s = 0, shell_wall_s = 0;
 };
 
-/// Throws LoadError, with the voxel that would do, if a voxmap of the plan takes more than one may, or all
-/// models more than the options or this machine have. By the areas of the meshes; builds nothing.
-/// O(triangles).
+/// A mesh with the same facets, each moved inwards by the given distance, or outwards if it is negative: the
+/// surface of a part that is pressed in, or that deviates from its size. If the facets at a corner have no
+/// common point at that distance, the corner moves to the nearest one. For distances far below the size of
+/// the facets.
+Mesh shrunkMesh(const Mesh& mesh, double by_m);
+
+/// Whether a step of the plan has the part in its fixed field.
+bool isCooked(const ModelPlan& plan, std::size_t part);
+
+/// Throws LoadError, with a voxel that fits, if a voxmap of the plan exceeds the greatest size of a voxmap,
+/// or all models together exceed the memory of the options or of this machine. Estimates from the areas of
+/// the meshes, and builds nothing. O(triangles).
 void requireModelsFit(const Scene& scene, const ModelPlan& plan, const ModelOptions& options);
 
 /// Gives every part of the plan its ScenePart::model. A voxmap, pointshell or surface that a part has already

@@ -10,17 +10,15 @@
 #include <span>
 #include <sstream>
 
-#include "import/missing_library.h"
+#include "import/readers.h"
 #include "scene/read_fields.h"
-#include "scene/screw_keys.h"
-#include "scene/toml_text.h"
-#include "scene/usual_spacing.h"
+#include "scene/scene_file_tables.h"
 #include "vps/errors.h"
 #include "vps_device/device_kinds.h"
 #include "vps_device/dual_arm/parameters.h"
+#include "vps_scenes/cad/colors.h"
 #include "vps_scenes/cad/import.h"
-#include "vps_scenes/cad/srgb.h"
-#include "vps_scenes/scene/scene_groups.h"
+#include "vps_scenes/scene/scene_parts.h"
 #include "vps_scenes/scene/settings_fields.h"
 
 namespace vps::scenes {
@@ -85,9 +83,6 @@ ScenePart placedPart(const ImportedPart& imported, const std::string& file, cons
   return part;
 }
 
-/// Tolerance of `fidelity = "auto"` where no bound is set. assumed: a usual bound in mechanical design
-constexpr double kAutoTolerance_m = 10e-6;
-
 class SceneReader {
  public:
   SceneReader(const toml::table& root, const std::string& file, const Progress& progress,
@@ -109,7 +104,7 @@ class SceneReader {
     readDevice();
     readTable("operator", scene_.hand, kOperatorFields);
     readTable("coupling", scene_.coupling, kCouplingFields);
-    readFidelity();
+    readFidelity(top_, context_, scene_);
     readTable("record", scene_.record, kRecordFields);
     return std::move(scene_);
   }
@@ -362,59 +357,6 @@ class SceneReader {
       keys.fail("parameters", std::string("cannot be used: ") + error.what());
     }
     scene_.device.data = path(file);
-  }
-
-  /// The name of a preset, "auto", or a table of single settings. Without a preset the points are as far
-  /// apart as the parts allow.
-  void readFidelity() {
-    scene_.fidelity = fidelityPreset("normal");
-    if (top_.has("fidelity")) return top_.isText("fidelity") ? readNamedFidelity() : readFidelityTable();
-    scene_.fidelity.spacing_m = usualSpacing_m(scene_);
-    scene_.chooses_voxel = scene_.chooses_spacing = true;
-  }
-
-  void readFidelityTable() {
-    const SceneKeys keys(*top_.table("fidelity"), context_, "[fidelity]", keysOf(kFidelityKeys));
-    const std::vector<std::string> presets = {"fast", "normal", "fine"};
-    std::size_t index = 1;
-    if (keys.word("preset", presets, index)) scene_.fidelity = fidelityPreset(presets[index]);
-    readFields(keys, scene_.fidelity, kFidelityFields);
-    if (scene_.fidelity.substeps == 0 && !keys.isText("substeps"))
-      keys.fail("substeps", "must be a number from 1 to 10000, or \"auto\": 0 parts are no step");
-    readFidelityWish(keys);
-    const bool is_open = !keys.has("preset") && !scene_.fidelity_wish;
-    scene_.chooses_voxel = is_open && !keys.has("voxel");
-    scene_.chooses_spacing = is_open && !keys.has("spacing");
-    if (!keys.has("preset") && !keys.has("spacing")) scene_.fidelity.spacing_m = usualSpacing_m(scene_);
-  }
-
-  void readNamedFidelity() {
-    const std::vector<std::string> names = {"fast", "normal", "fine", "auto"};
-    std::size_t index = 1;
-    top_.word("fidelity", names, index);
-    if (names[index] == "auto") return setWish({});
-    scene_.fidelity = fidelityPreset(names[index]);
-  }
-
-  void readFidelityWish(const SceneKeys& keys) {
-    FidelityWish wish;
-    bool is_auto = false;
-    keys.flag("auto", is_auto);
-    readFields(keys, wish, kFidelityWishFields);
-    if (!is_auto) {
-      for (const std::string_view key : keysOf(kFidelityWishFields))
-        if (keys.has(key)) keys.fail(key, "has an effect with 'auto = true' only; add that, or leave it out");
-      return;
-    }
-    for (const char* key : {"voxel", "spacing"})
-      if (keys.has(key)) keys.fail(key, "cannot be combined with 'auto = true', which chooses it");
-    setWish(wish);
-  }
-
-  void setWish(FidelityWish wish) {
-    if (!wish.budget_hz && !wish.tolerance_m && !wish.memory_bytes) wish.tolerance_m = kAutoTolerance_m;
-    wish.place = top_.placeOf("fidelity");
-    scene_.fidelity_wish = wish;
   }
 
   SceneFileContext context_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reads the keys of one TOML table of a scene file; errors state file, line, key and remedy.
+// Reads TOML files and the keys of one of their tables; errors state file, line, key and remedy.
 #pragma once
 
 #include <cstdint>
@@ -20,6 +20,14 @@
 #pragma pop_macro("NDEBUG")
 
 namespace vps::scenes {
+
+/// The text of a TOML file. Throws LoadError if it cannot be read.
+/// @param what, example  for messages: "scene file", "scene.toml"
+std::string readTomlText(const std::string& file, const std::string& what, const std::string& example);
+
+/// Parses TOML. Throws LoadError with the line of an error of syntax.
+/// @param file  for messages
+toml::table parseToml(const std::string& text, const std::string& file);
 
 /// Shared by all tables of one scene file.
 struct SceneFileContext {

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "core/valid_text.h"
-#include "vps_scenes/cad/srgb.h"
+#include "vps_scenes/cad/colors.h"
 #include "vps_scenes/scene/settings_fields.h"
 
 namespace vps::scenes {

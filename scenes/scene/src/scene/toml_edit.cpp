@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "vps_scenes/scene/toml_edit.h"
-
 #include <algorithm>
 
-#include "scene/toml_text.h"
+#include "scene/scene_file_keys.h"
 #include "vps/errors.h"
+#include "vps_scenes/scene/scene_text.h"
 
 namespace vps::scenes {
 namespace {

@@ -34,4 +34,12 @@ std::vector<NumberRow> readNumberTable(const std::string& file, std::size_t colu
   return rows;
 }
 
+std::optional<Pose> poseOf(std::span<const double, 7> n) {
+  constexpr double kUnit = 1e-3;
+  const Quat q(n[6], n[3], n[4], n[5]);
+  const Vec3 p(n[0], n[1], n[2]);
+  if (!p.allFinite() || !(std::abs(q.norm() - 1) <= kUnit)) return {};
+  return Pose(q.normalized(), p);
+}
+
 }  // namespace vps::scenes

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where pictures are shown and who looks at them: screens by their corners, viewers by their heads.
+// Screens and viewers in a room: the corners of each screen, and the pose of each viewer's head.
 #pragma once
 
 #include <optional>
@@ -8,10 +8,23 @@
 
 #include "vps/pose.h"
 #include "vps_scenes/export.h"
-#include "vps_scenes/scene/head_track.h"
 #include "vps_scenes/scene/scene.h"
 
 namespace vps::scenes {
+
+/// Recorded poses of a head in the room's frame S, in order of time.
+struct VPS_SCENES_API HeadTrack {
+  std::vector<double> time_s;
+  std::vector<Pose> X_SE;
+
+  /// The pose at a time: between two poses on the straight line and the shortest rotation, outside the track
+  /// the nearest pose. The track must not be empty.
+  [[nodiscard]] Pose at(double t_s) const;
+};
+
+/// Reads rows of time [s], x, y, z [m] and a quaternion x, y, z, w. Throws LoadError with the line; also for
+/// times that do not increase, and for a quaternion that is no rotation.
+VPS_SCENES_API HeadTrack loadHeadTrack(const std::string& file);
 
 /// A flat screen in the room's frame S [m].
 struct DisplayScreen {
@@ -19,46 +32,46 @@ struct DisplayScreen {
   Vec3 lower_left_S = Vec3::Zero(), lower_right_S = Vec3::Zero(), upper_left_S = Vec3::Zero();
   int width = 1920, height = 1080;  ///< pixels
 
-  /// Unit vectors to the right, up, and to the side from which it is seen.
+  /// Unit vectors to the right, up, and towards the side from which the screen is seen.
   [[nodiscard]] Mat3 axes() const;
 };
 
-/// A head in the room. Its eyes are on a line through its middle, along x; it looks along -z. Where it is
-/// comes from a stream: constant, recorded, or a topic of the network (tracked_heads.h).
+/// A head in the room. Its eyes are on a line through its centre, along x; it looks along -z. Its pose is
+/// constant, recorded, or received from a topic of the network (tracked_heads.h).
 struct DisplayViewer {
   std::string name;
-  Pose X_SE;               ///< now
-  bool is_placed = false;  ///< the file says where the head is, or was at first
-  HeadTrack track;         ///< recorded; empty: not
-  std::string topic;       ///< of ROS 2; empty: none
+  Pose X_SE;               ///< current pose
+  bool is_placed = false;  ///< the file gives the pose of the head, or the first pose of its record
+  HeadTrack track;         ///< recorded poses; empty: none
+  std::string topic;       ///< topic of ROS 2; empty: none
   int ros_domain = 0;
-  std::string network = "lo";     ///< interface
+  std::string network = "lo";     ///< network interface
   double eye_distance_m = 0.063;  ///< mean of adults: Dodgson 2004
-  /// Of one eye: -1 left, 1 right, 0 the middle of the head.
+  /// Position of an eye: -1 left, 1 right; 0 is the centre of the head.
   [[nodiscard]] Vec3 eye_S(int side) const { return X_SE * Vec3(0.5 * side * eye_distance_m, 0, 0); }
 };
 
-/// Whether an eye of the viewer is behind the screen, or as near as 1 mm.
+/// Whether an eye of the viewer is behind the screen, or within 1 mm of its plane.
 [[nodiscard]] VPS_SCENES_API bool isBehind(const DisplayViewer& viewer, const DisplayScreen& screen);
 
 struct Display {
   std::string file;
   std::vector<DisplayScreen> screens;
   std::vector<DisplayViewer> viewers;
-  Pose X_SW;         ///< where the scene stands in the room
-  double scale = 1;  ///< metres in the room for a metre of the scene
-  /// Where the device stands in the room, by `vps calibrate`; none: it is not known.
+  Pose X_SW;         ///< pose of the scene in the room
+  double scale = 1;  ///< metres in the room per metre of the scene
+  /// Pose of the device in the room, from `vps calibrate`; none: it is unknown.
   std::optional<Pose> X_SD;
 
-  /// What a scene's `[device]` has to say, so that a part in hand is seen where the hand is. Without X_SD
-  /// nothing changes.
+  /// Sets scale and placement of a scene's `[device]` so that a part in hand is seen at the hand. Without
+  /// X_SD, changes nothing.
   VPS_SCENES_API void placeDevice(DeviceSettings& device) const;
   [[nodiscard]] Vec3 toScene(const Vec3& p_S) const { return X_SW.inverse() * p_S / scale; }
 };
 
-/// Reads a display file (TOML, viewer/README.md). Throws LoadError with file, line, key and remedy: also for
-/// corners that are no rectangle, and for a screen behind a viewer's head or seen from behind, at any time of
-/// a recorded head.
+/// Reads a display file (TOML, viewer/README.md). Throws LoadError with file, line, key and remedy; also for
+/// corners that do not form a rectangle, and for a screen that a viewer has behind the head or sees from
+/// behind, at any time of a record.
 VPS_SCENES_API Display loadDisplay(const std::string& file);
 
 }  // namespace vps::scenes

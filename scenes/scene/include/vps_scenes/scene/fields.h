@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Field tables: a row for each member of a struct of settings or results. The readers and writers of TOML,
-// archive, JSON, CSV and documentation walk the rows, so a new setting or number needs a member, a row, and
-// its use.
+// archive, JSON, CSV and documentation iterate over the rows, so a new setting or number needs a member, a
+// row, and its use.
 #pragma once
 
 #include <concepts>
@@ -21,7 +21,7 @@ namespace vps::scenes {
 
 /// How a scene file spells a number. Members and JSON are always SI.
 enum class Quantity {
-  Plain,      ///< as the member: the key names the unit, if there is one
+  Plain,      ///< the member's own unit, which the key names
   Length,     ///< key "voxel": in the file's unit, or text with a unit ("20um"); in JSON "voxel_m"
   Angle,      ///< key "tilt_deg": degrees; in JSON "tilt_rad"
   Megabytes,  ///< key "memory_MB"; in JSON "memory_bytes"
@@ -44,10 +44,10 @@ inline constexpr Range kNotNegative{.min = 0};
 
 struct FieldTraits {
   Quantity quantity = Quantity::Plain;
-  Range range = kAny;                  ///< of a setting
+  Range range = kAny;                  ///< allowed values of a setting
   int since = 1;                       ///< version of the scene archive that first holds the setting
-  std::string_view type = {};          ///< for the documentation, where the member's type does not tell
-  std::string_view default_text = {};  ///< for the documentation, where the struct's default does not tell
+  std::string_view type = {};          ///< for the documentation; empty: the member's type
+  std::string_view default_text = {};  ///< for the documentation; empty: the struct's default
   std::string_view zero_word = {};     ///< of an integer: what a scene file writes for 0
 };
 
@@ -60,14 +60,14 @@ struct Field {
   FieldTraits traits;
 };
 
-/// An object within the struct's object; with an empty key its rows stand among the others. Left out when
-/// `get` returns a null pointer or an empty optional.
+/// An object within the struct's object; with an empty key, its rows are rows of the outer object. Left out
+/// when `get` returns a null pointer or an empty optional.
 template <class Get, class Rows>
 struct Group {
   std::string_view key;
   Get get;
   Rows rows;
-  std::string_view meaning;  ///< documents all rows in one line; empty: each has a line of its own
+  std::string_view meaning;  ///< documents all rows in one line; empty: each row has its own line
 };
 
 /// A list of objects.
@@ -85,7 +85,8 @@ struct Columns {
   Rows rows;
 };
 
-/// A key of a scene file that its reader looks at itself. Without a meaning it is documented elsewhere.
+/// A key of a scene file that loadScene() reads without the field table. A key without a meaning is
+/// documented elsewhere.
 struct Key {
   std::string_view key, type = {}, default_text = {}, meaning = {};
 };
@@ -127,7 +128,7 @@ constexpr Path<First, Second> path(First first, Second second) {
   return {first, second};
 }
 
-/// Getter of the struct itself where a flag of it is set, and of nothing elsewhere.
+/// Getter of the struct itself if its flag is set, else of a null pointer.
 template <class Struct>
 struct When {
   bool Struct::*flag;
@@ -144,7 +145,7 @@ constexpr void forEachRow(const Rows& rows, Visit&& visit) {
   std::apply([&](const auto&... row) { (visit(row), ...); }, rows);
 }
 
-/// The key of a number in JSON and CSV, where it is SI.
+/// The key of a number in JSON and CSV, where numbers are in SI units.
 inline std::string siKey(std::string_view key, Quantity quantity) {
   switch (quantity) {
     case Quantity::Plain:
@@ -163,7 +164,7 @@ std::string siKey(const Field<Get>& field) {
   return siKey(field.key, field.traits.quantity);
 }
 
-/// The object that a group's getter returned; null where the group is left out.
+/// The object that a group's getter returned; null if the group is left out.
 template <class Struct>
 constexpr const Struct* pointerTo(const Struct* of) {
   return of;
@@ -177,11 +178,11 @@ constexpr const Struct* pointerTo(const Struct& of) {
   return &of;
 }
 
-/// The number of values of an enum of settings, whose words are toText() of 0, 1, ...
+/// The number of values of an enum of settings. The words of its values are toText() of 0, 1, ...
 template <class Enum>
 inline constexpr int kValueCount = 0;
 
-// --- Does a table have a row for every member?
+// --- Check that a table has a row for every member
 
 struct VPS_SCENES_API AnyValue {
   template <class T>
@@ -220,8 +221,8 @@ struct RowCounter {
   constexpr void operator()(const Key&) {}
 };
 
-/// True if the tables together have a row for each member of the struct, but for some that are handled by
-/// hand.
+/// True if the tables together have a row for each member of the struct, except for `by_hand` members that
+/// other code handles.
 template <class Struct, std::size_t by_hand = 0, class... Tables>
 consteval bool coversAllMembers(const Tables&... tables) {
   RowCounter<Struct> counter;

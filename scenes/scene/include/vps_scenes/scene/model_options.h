@@ -1,32 +1,37 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Options for building the models of a scene's parts.
+// Options, warnings and cost of building the models of a scene's parts.
 #pragma once
 
 #include <functional>
 #include <string>
 
 #include "vps/errors.h"
+#include "vps/mesh.h"
 #include "vps/voxmap_cache.h"
+#include "vps_scenes/export.h"
 
 namespace vps::scenes {
 
-/// What the models of a scene take.
+/// Number and memory of a scene's models.
 struct ModelledCost {
   std::size_t voxmaps = 0, pointshells = 0;
-  std::size_t points = 0;        ///< of the parts' own pointshells
-  std::size_t field_points = 0;  ///< of the fixed field
-  std::size_t bytes = 0;         ///< of all
+  std::size_t points = 0;        ///< points of the parts' own pointshells
+  std::size_t field_points = 0;  ///< points of the fixed field
+  std::size_t bytes = 0;         ///< memory of all models
 };
 
 struct ModelOptions {
   Progress progress;
   bool models_everything = false;      ///< models every part everywhere (model_plan.h)
-  const VoxMapCache* cache = nullptr;  ///< where models are kept between runs; null: built each time
-  double memory_bytes =
-      0;  ///< models that need more are refused before any is built; 0: what the machine has
-  /// Gets one line for each part whose inside and outside could not be told apart with certainty. May be
-  /// empty.
+  const VoxMapCache* cache = nullptr;  ///< keeps models between runs; null: they are built each time
+  double memory_bytes = 0;  ///< limit of the models' memory, checked before any is built; 0: the machine's
+  /// Receives one line for each part whose mesh does not tell inside from outside everywhere. May be empty.
   std::function<void(const std::string&)> warn;
 };
+
+/// Defects of a mesh that make its inside uncertain, in words: "is not a closed surface: 2 open edges; inside
+/// and outside are certain for 99.9 % of the space near it". Empty for a mesh without such defects, such as a
+/// closed block with a void in it.
+VPS_SCENES_API std::string meshWarning(const MeshReport& report);
 
 }  // namespace vps::scenes

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Writes scene files.
+// Writes scene files, and changes single values of TOML files.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -10,9 +11,9 @@
 
 namespace vps::scenes {
 
-/// The text of a scene file, in metres, that loadScene() reads as the same scene: each part with the mesh
-/// file that is named for it, and every setting that is not the default. Meshes are not written.
-/// @param files    of the parts, in their order, relative to the scene file
+/// The text of a scene file, in metres, that loadScene() reads as the same scene: each part with its mesh
+/// file, and every setting that differs from the default. Does not write the meshes.
+/// @param files    mesh files of the parts, in the order of the parts, relative to the scene file
 /// @param comment  a line at the top
 VPS_SCENES_API std::string sceneText(const Scene& scene, const std::vector<std::string>& files,
                                      const std::string& comment);
@@ -20,9 +21,20 @@ VPS_SCENES_API std::string sceneText(const Scene& scene, const std::vector<std::
 /// A `[[group]]` of a scene file, with its reason as a comment.
 VPS_SCENES_API std::string groupText(const PartGroup& group);
 
-/// A TOML basic string.
+/// A text as a TOML basic string.
 VPS_SCENES_API std::string tomlText(const std::string& text);
-/// {position = [x, y, z], rotation_xyzw = [x, y, z, w]}, in metres with twelve digits.
+/// A pose as {position = [x, y, z], rotation_xyzw = [x, y, z, w]}, in metres with twelve digits.
 VPS_SCENES_API std::string tomlPose(const Pose& pose);
+
+/// A key of one of the file's tables, and its new value as TOML text: {"device", "scale", "0.25"}.
+struct TomlValue {
+  std::string table, key, value;
+};
+
+/// The text of a TOML file with these values in place of its own; a missing key or table is added. Comments,
+/// order and every other byte remain. The result is parsed again to check that it differs from the file by
+/// these values alone. Throws LoadError when the file cannot be read or is not TOML, and when a value is
+/// written in a form that this function cannot replace (for example, as a table of its own).
+VPS_SCENES_API std::string editedToml(const std::string& file, std::span<const TomlValue> values);
 
 }  // namespace vps::scenes

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The keys of a scene file: one table for each of its tables, in the order of scenes/README.md, which is made
-// from them. Rows of `field()` are read, archived and written by the table alone.
+// The keys of a scene file: one field table for each of its TOML tables, in the order of the documentation,
+// which is made from these tables. Rows of `field()` are read, archived and written without further code.
 #pragma once
 
 #include "vps_scenes/scene/fields.h"
@@ -40,32 +40,35 @@ inline constexpr auto kSceneKeys = std::make_tuple(
     Key{"missing", "text", "none",
         "geometry of the CAD file that no part has; each command warns of it, and `vps import` writes it"},
     field("release_s", &Scene::release_s,
-          "how long a mounted part stays dynamic before it joins the fixed field",
+          "time for which a mounted part stays dynamic before it joins the fixed field",
           {.range = kNotNegative, .type = "seconds"}),
     Key{"material", "table", "steel",
         "`density`, `friction`, `restitution`, `stiffness` of all parts that do not state their own"},
     Key{"part"}, Key{"group"}, Key{"step"}, Key{"device"}, Key{"operator"}, Key{"coupling"}, Key{"fidelity"},
     Key{"record"});
 
-inline constexpr auto kMaterialFields = std::make_tuple(
-    field("density", &Material::density_kg_m3, "density of the material",
-          {.range = kPositive, .type = "kg/m^3"}),
-    field("friction", &Material::friction,
-          "Coulomb coefficient of the material on itself; two materials have the geometric mean of theirs",
-          {.range = kNotNegative}),
-    field("restitution", &Material::restitution,
-          "0 inelastic to 1 elastic; two parts have the product of theirs",
-          {.range = {.min = 0, .max = 1}, .type = "0 to 1"}),
-    field("stiffness", &Material::stiffness_N_per_m3, "penalty stiffness per area; of two parts the lesser",
-          {.range = kPositive, .type = "N/m^3"}));
+inline constexpr auto kMaterialFields =
+    std::make_tuple(field("density", &Material::density_kg_m3, "density of the material",
+                          {.range = kPositive, .type = "kg/m^3"}),
+                    field("friction", &Material::friction,
+                          "Coulomb coefficient of the material on itself; two parts have the geometric mean "
+                          "of their coefficients",
+                          {.range = kNotNegative}),
+                    field("restitution", &Material::restitution,
+                          "0 inelastic to 1 elastic; two parts have the product of their values",
+                          {.range = {.min = 0, .max = 1}, .type = "0 to 1"}),
+                    field("stiffness", &Material::stiffness_N_per_m3,
+                          "penalty stiffness per area; two parts have the lower of their values",
+                          {.range = kPositive, .type = "N/m^3"}));
 static_assert(coversAllMembers<Material>(kMaterialFields));
 
-/// `[[part]]`, for `vps study`. Not archived: a recording is of one run.
+/// `[[part]]`: tolerances for `vps study`. Not archived, since a recording holds a single run.
 inline constexpr auto kToleranceFields = std::make_tuple(
-    field("size_tolerance", &PartTolerance::size_class,
-          "`vps study`: tolerance class of ISO 286 of its fit, `\"H7\"` (a hole) or `\"g6\"` (a shaft)",
-          {.default_text = "none"}),
-    field("nominal_size", &PartTolerance::nominal_m, "`vps study`: of `size_tolerance`",
+    field(
+        "size_tolerance", &PartTolerance::size_class,
+        "`vps study`: tolerance class of ISO 286 of the part's fit, `\"H7\"` (a hole) or `\"g6\"` (a shaft)",
+        {.default_text = "none"}),
+    field("nominal_size", &PartTolerance::nominal_m, "`vps study`: nominal size for `size_tolerance`",
           {.quantity = Quantity::Length,
            .range = kNotNegative,
            .default_text = "the drawn size, rounded to half a millimetre"}),
@@ -73,18 +76,21 @@ inline constexpr auto kToleranceFields = std::make_tuple(
         "size_lower", &PartTolerance::lower_m,
         "`vps study`: least deviation of diameter or width from the drawn one, in place of `size_tolerance`",
         {.quantity = Quantity::Length}),
-    field("size_upper", &PartTolerance::upper_m, "`vps study`: the greatest", {.quantity = Quantity::Length}),
-    field("size_of", &PartTolerance::size_of, "`vps study`: what `size_lower` and `size_upper` are of"),
+    field("size_upper", &PartTolerance::upper_m,
+          "`vps study`: greatest deviation of diameter or width from the drawn one",
+          {.quantity = Quantity::Length}),
+    field("size_of", &PartTolerance::size_of,
+          "`vps study`: the feature that `size_lower` and `size_upper` describe"),
     field("position_tolerance", &PartTolerance::position_m,
-          "`vps study`: greatest displacement of its place along each of its axes",
+          "`vps study`: greatest displacement of the part along each of its axes",
           {.quantity = Quantity::Length, .range = kNotNegative}),
     field("angle_tolerance_deg", &PartTolerance::angle_rad,
-          "`vps study`: greatest rotation of its place about each of its axes",
+          "`vps study`: greatest rotation of the part about each of its axes",
           {.quantity = Quantity::Angle, .range = kNotNegative}),
     field("friction_tolerance", &PartTolerance::friction, "`vps study`: greatest difference from `friction`",
           {.range = kNotNegative}),
     field("distribution", &PartTolerance::distribution,
-          "`vps study`: normal: the limits are three standard deviations from their middle; uniform: even "
+          "`vps study`: normal: the limits are three standard deviations from their mean; uniform: uniform "
           "between the limits"));
 static_assert(coversAllMembers<PartTolerance>(kToleranceFields));
 
@@ -92,21 +98,23 @@ static_assert(coversAllMembers<PartTolerance>(kToleranceFields));
 inline constexpr auto kPartKeys = std::make_tuple(
     Key{"file", "file", "", "mesh or CAD file, in any format that `vps import` reads"},
     Key{"node", "text", "",
-        "the part's name within the file, where the file has several; `\"*\"`: all of it as one part"},
+        "the part's name within the file, if the file has several parts; `\"*\"`: the whole file as one "
+        "part"},
     Key{"name", "text", "`node`, or the file's stem", "unique in the scene"},
     Key{"pose", "pose", "as in the file", "designed pose in the world"},
     Key{"velocity_m_s", "3 numbers", "0",
-        "of the part's origin in the world, at the start of `vps simulate`"},
-    Key{"angular_velocity_rad_s", "3 numbers", "0", "in the world, at the start of `vps simulate`"},
+        "velocity of the part's origin in the world, at the start of `vps simulate`"},
+    Key{"angular_velocity_rad_s", "3 numbers", "0",
+        "angular velocity in the world, at the start of `vps simulate`"},
     field("fixed", &ScenePart::is_fixed, "the part never moves and is in place from the start"),
     group("", path(&ScenePart::part, &Part::material), kMaterialFields),
-    Key{"color", "`\"#rrggbb\"` or 3 numbers 0 to 1", "as in the file, or grey", "sRGB"},
+    Key{"color", "`\"#rrggbb\"` or 3 numbers 0 to 1", "as in the file, or grey", "colour in sRGB"},
     field("deflection", &ScenePart::deflection_m,
-          "greatest distance of the mesh from the faces that it stands for; `vps import` writes it",
+          "greatest distance of the mesh from the exact faces; `vps import` writes it",
           {.quantity = Quantity::Length, .range = kNotNegative, .default_text = "of the file, or estimated"}),
     field("rounding", &ScenePart::rounding_m,
-          "greatest distance of the vertices from where they were before a file kept them as 32-bit floats; "
-          "`vps import` writes it",
+          "greatest displacement of the vertices by a file that rounded them to 32-bit floats; `vps import` "
+          "writes it",
           {.quantity = Quantity::Length, .range = kNotNegative, .default_text = "of the file"}),
     field("allow_overlap", &ScenePart::allow_overlap,
           "the part may start inside another one (interference fits)"),
@@ -123,7 +131,8 @@ inline constexpr auto kPartKeys = std::make_tuple(
           "`vps assemble` leaves the part out: it is not fixed, no step moves it, and nothing collides with "
           "it"),
     field("fastener", &ScenePart::fastener,
-          "what `vps plan` takes the part for by its shape, as `\"nut M8\"`; for readers, it changes nothing",
+          "kind of fastener that `vps plan` recognized by the shape, as `\"nut M8\"`; information for "
+          "readers, without effect",
           {.default_text = "none"}),
     group("", &ScenePart::tolerance, kToleranceFields));
 
@@ -135,19 +144,21 @@ inline constexpr auto kGroupKeys = std::make_tuple(
 /// `[[step]]`
 inline constexpr auto kStepKeys = std::make_tuple(
     Key{"part", "text", "required", "name of the part to mount"},
-    Key{"target", "pose", "the designed pose", "where the part belongs"},
-    Key{"start", "pose", "see below", "where the hand takes the part; what is left out is the target's"},
+    Key{"target", "pose", "the designed pose", "pose of the mounted part"},
+    Key{"start", "pose", "see below",
+        "pose in which the hand takes the part; position or rotation that is left out is the target's"},
     Key{"approach", "3 lengths", "see below", "the start as an offset from the target, in the world"},
     Key{"way_points", "list of poses", "none",
         "poses of the part that the hand passes, from start to target"},
     field("tolerance", &SceneStep::tolerance_m,
-          "greatest distance of the part's surface from where it belongs",
+          "greatest distance of the part's surface from its place at the target",
           {.quantity = Quantity::Length,
            .range = kNotNegative,
-           .default_text = "20 um and the clearance of the tightest fit that `vps check` finds there, at "
-                           "most 0.1 mm, or what its play lets the part lie in the corner of a rectangular "
-                           "hole (0.71 of the clearance and 20 um, at most 0.5 mm), if that is more; 0.5 mm "
-                           "where it finds none, or with `holds`, since sight alone then stops the part"}),
+           .default_text =
+               "20 um plus the clearance of the tightest fit that `vps check` finds at the target, at most "
+               "0.1 mm; for a rectangular hole at least the distance by which the play lets the part lie in "
+               "a corner (0.71 of the clearance plus 20 um, at most 0.5 mm); 0.5 mm if no fit is found, or "
+               "with `holds`, since the operator then stops the part by sight alone"}),
     field("tolerance_deg", &SceneStep::tolerance_rad, "greatest rotation from the target",
           {.quantity = Quantity::Angle, .range = kNotNegative, .default_text = "not judged"}),
     field("clearance", &SceneStep::clearance_m,
@@ -157,14 +168,17 @@ inline constexpr auto kStepKeys = std::make_tuple(
     field("timeout_s", &SceneStep::timeout_s, "simulated time after which the step has failed",
           {.range = kPositive, .type = "seconds"}),
     field("holds", &SceneStep::is_held,
-          "a fixture or the other hand holds the part after it is let go: it need not stay there by itself",
+          "a fixture or the other hand holds the part after its release, so that it need not stay in place "
+          "by itself",
           {.since = 4}),
     field("motion", &SceneStep::motion,
-          "push: along the last leg of the path; screw: turned about that leg as well, see below",
+          "push: the part moves along the last leg of the path; screw: it also rotates about that leg, see "
+          "below",
           {.since = 5}),
-    field("pitch", &SceneStep::pitch_m, "of a screw: its way in one turn; negative: a left-hand thread",
+    field("pitch", &SceneStep::pitch_m, "of a screw: travel in one turn; negative: a left-hand thread",
           {.quantity = Quantity::Length, .since = 5, .default_text = "found in the mesh"}),
-    field("torque_Nm", &SceneStep::torque_Nm, "of a screw: it is turned until it resists with this torque",
+    field("torque_Nm", &SceneStep::torque_Nm,
+          "of a screw: the screw is turned until it resists with this torque",
           {.range = kNotNegative, .since = 5, .default_text = "turned to the height of its target"}));
 static_assert(coversAllMembers<SceneStep, 5>(kStepKeys));
 
@@ -173,19 +187,17 @@ inline constexpr auto kDeviceKeys = std::make_tuple(
     field("kind", &DeviceSettings::kind, "`dual_arm`, or a name that `vps device --list` shows"),
     // Read by hand, since its file is checked; the member is a path.
     Key{"parameters", "file", "none",
-        "what differs from [the built-in dual arm](../device/data/dual_arm.toml)"},
+        "parameters that differ from [the built-in dual arm](../../device/data/dual_arm.toml)"},
     field("scale", &DeviceSettings::scale, "scene metres per device metre", {.range = kPositive}),
-    field("quantised_encoders", &DeviceSettings::has_quantised_encoders,
-          "encoders have their finite resolution"),
+    field("quantised_encoders", &DeviceSettings::has_quantised_encoders, "encoders have a finite resolution"),
     field("indexing", &DeviceSettings::has_indexing,
-          "a path that is longer, or turns farther, than the device can is split, see below; false: such a "
-          "path is an error",
+          "a path that exceeds the workspace or the rotation of the device is split, see below; false: such "
+          "a path is an error",
           {.since = 3}),
     // Read by hand, since it is a pose.
     Key{"placement", "pose", "none",
-        "where the device stands in the scene, by `vps calibrate`: a part that a person takes is then where "
-        "the "
-        "hand is. None: the device's axes are the scene's"});
+        "pose of the device in the scene, from `vps calibrate`, so that a part that a person holds appears "
+        "at the hand. None: the device's axes are the scene's"});
 static_assert(coversAllMembers<DeviceSettings, 2>(kDeviceKeys));
 
 /// `[operator]`
@@ -196,11 +208,11 @@ inline constexpr auto kOperatorFields = std::make_tuple(
     field("aim_error_deg", &OperatorSettings::aim_error_rad, "standard deviation of the aimed orientation",
           {.quantity = Quantity::Angle, .range = kNotNegative}),
     field("aim_turn_deg", &OperatorSettings::aim_turn_rad,
-          "greatest error about the axis of insertion, which the operator does not see",
+          "greatest error about the axis of insertion, which the operator does not correct by sight",
           {.quantity = Quantity::Angle, .range = kNotNegative, .since = 4}),
     field("speed_m_s", &OperatorSettings::speed_m_s, "average speed along the path", {.range = kPositive}),
-    field("press_N", &OperatorSettings::press_N, "force with which the operator presses a part home",
-          {.range = kNotNegative}),
+    field("press_N", &OperatorSettings::press_N,
+          "force with which the operator presses a part into its place", {.range = kNotNegative}),
     field("force_limit_N", &OperatorSettings::force_limit_N, "the operator backs off above this force",
           {.range = kPositive}));
 static_assert(coversAllMembers<OperatorSettings>(kOperatorFields));
@@ -229,17 +241,18 @@ inline constexpr auto kFidelityFields = std::make_tuple(
          .default_text = "of the preset; without one, a quarter of the smallest moved part, between two and "
                          "four voxels, and two with `penalty`"}),
     field("sides", &Fidelity::sides,
-          "one: points of the moving part against the field of the fixed parts; both: the other way as well"),
+          "one: points of the moving part are tested against the field of the fixed parts; both: points of "
+          "the fixed parts are tested as well"),
     field("gradient", &Fidelity::gradient, "how the field's gradient is interpolated"),
     field("contact_limit", &Fidelity::contact_limit,
           "contacts of each pair of parts given to the solver; checks of solved steps may add up to 16",
           {.range = {.min = 4, .max = kCount.max}}),
     field("haptic_rate_hz", &Fidelity::haptic_rate_hz, "rate of the haptic loop", {.range = kRate_Hz}),
     field("physics_rate_hz", &Fidelity::physics_rate_hz, "rate of the physics steps", {.range = kRate_Hz}),
-    field("substeps", &Fidelity::substeps,
-          "each physics step is divided into so many; `\"auto\"`: into as many as keep what turns right, "
-          "see below",
-          {.range = {.min = 0, .max = 1e4}, .since = 8, .type = "number or `\"auto\"`", .zero_word = "auto"}),
+    field(
+        "substeps", &Fidelity::substeps,
+        "number of parts of each physics step; `\"auto\"`: as many as the fastest rotation needs, see below",
+        {.range = {.min = 0, .max = 1e4}, .since = 8, .type = "number or `\"auto\"`", .zero_word = "auto"}),
     field("solver_iterations", &Fidelity::solver_iterations, "iterations of the contact solver in a step",
           {.range = kCount}),
     field(
@@ -249,23 +262,25 @@ inline constexpr auto kFidelityFields = std::make_tuple(
         {.since = 2}));
 static_assert(coversAllMembers<Fidelity>(kFidelityFields));
 
-/// `[fidelity]`: what `auto = true` chooses by. Not archived: a recording holds what was chosen.
+/// `[fidelity]`: the bounds for `auto = true`. Not archived, since a recording holds the values that were
+/// chosen.
 inline constexpr auto kFidelityWishFields = std::make_tuple(
     field(
         "tolerance", &FidelityWish::tolerance_m,
         "greatest error of depth at 95 of 100 points of every surface",
         {.quantity = Quantity::Length, .range = kPositive, .default_text = "`\"10um\"` if no bound is set"}),
-    field("budget_hz", &FidelityWish::budget_hz, "physics steps a second",
+    field("budget_hz", &FidelityWish::budget_hz, "physics steps per second",
           {.range = kRate_Hz, .default_text = "no limit"}),
     field("memory_MB", &FidelityWish::memory_bytes, "memory of all models",
           {.quantity = Quantity::Megabytes, .range = kPositive, .default_text = "no limit"}));
 static_assert(coversAllMembers<FidelityWish, 1>(kFidelityWishFields));
 
-/// `[fidelity]`: where its values come from.
-inline constexpr auto kFidelityChoiceKeys = std::make_tuple(
-    Key{"preset", "`\"fast\"`, `\"normal\"`, `\"fine\"`", "`\"normal\"`",
-        "gives the values of the keys that are not set"},
-    Key{"auto", "bool", "false", "`voxel` and `spacing` are chosen, see [FIDELITY.md](FIDELITY.md)"});
+/// `[fidelity]`: the source of the values.
+inline constexpr auto kFidelityChoiceKeys =
+    std::make_tuple(Key{"preset", "`\"fast\"`, `\"normal\"`, `\"fine\"`", "`\"normal\"`",
+                        "sets the keys that the table does not have"},
+                    Key{"auto", "bool", "false",
+                        "the program chooses `voxel` and `spacing`, see [FIDELITY.md](../FIDELITY.md)"});
 
 /// `[fidelity]`, whole.
 inline constexpr auto kFidelityKeys =
@@ -274,7 +289,7 @@ inline constexpr auto kFidelityKeys =
 /// `[record]`
 inline constexpr auto kRecordFields = std::make_tuple(
     field("csv_rate_hz", &RecordSettings::csv_rate_hz,
-          "rows of trace.csv, and of the trace in a recording, a second; above the physics rate: each step",
+          "rows per second of trace.csv and of the trace in a recording; above the physics rate: each step",
           {.range = kPositive}));
 static_assert(coversAllMembers<RecordSettings>(kRecordFields));
 

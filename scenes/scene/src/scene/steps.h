@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Properties of a scene's steps: direction of insertion, parts in place, size and point spacing of the moved
+// parts.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "vps_scenes/scene/scene.h"
+
+namespace vps::scenes {
+
+/// The direction in which a step moves its part home: unit vector, in W, of the last leg of the path of G.
+/// For a step that takes its part off, of the first leg, along which the part comes free. Zero if the part
+/// only rotates there.
+Vec3 insertionAxis(const SceneStep& step, const Pose& X_PG);
+
+/// A part that is in place before a step.
+struct PartInPlace {
+  std::size_t part = 0;
+  Pose X_WP;
+};
+
+/// Fixed parts, in their order; then parts that later steps take off, the last step first; then parts that
+/// earlier steps mounted. So the parts that two steps have in common come first and in the same order.
+std::vector<PartInPlace> partsInPlace(const Scene& scene, std::size_t before_step);
+
+/// The moved part with the least dimension of its box, in its own frame. Moved parts are those of the steps
+/// or, in a scene without steps, those that are not fixed.
+struct SmallestPart {
+  std::string name;     ///< empty: no part moves
+  double across_m = 0;  ///< infinite: no part moves
+};
+SmallestPart smallestMoved(const Scene& scene);
+
+/// Distance between the points of a scene that states none: a quarter of the smallest moved part, between two
+/// and four voxels. In penalty contact each point stands for an area, and the distance is always two voxels.
+/// O(vertices of moved parts).
+///
+/// Measured: a peg of 8 mm is brought home less than 1 um deep with points every 2 mm, and gets 129 um deep
+/// into the rim of its hole with 4 mm. Edges have points at half the distance, and crossings of edges are
+/// found without points, so more points on faces add time and no accuracy to rigid contacts (FIDELITY.md).
+double usualSpacing_m(const Scene& scene);
+
+}  // namespace vps::scenes
