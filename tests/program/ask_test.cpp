@@ -155,7 +155,8 @@ TEST_F(AskProgram, RightsAreRefusedInWords) {
   for (const char* what :
        {"take", "release", "rearm", "again", "gains 100", "record a.mcap", "load other.toml"})
     expectRefused("ask " + std::string(what) + " --session " + session_, "may only be asked who is there");
-  expectRefused("render pins.toml --requests none --stay --session x-" + session_, "leaves nobody to ask");
+  expectRefused("render pins.toml --requests none --stay --session x-" + session_,
+                "contradicts --on-request and --stay");
 }
 
 /// Over UDP on this machine, with certificates.

@@ -50,7 +50,7 @@ TEST_F(Program, AFilmHasTheSoundOfTheRunThatWasRecorded) {
     EXPECT_NE(slurp(folder_ / "streams.txt").find("audio"), std::string::npos);
   }
   expectRefused("video run.mcap -o slow.mp4 --speed 0.5 --sound", "--speed");
-  expectRefused("video -o odd.mp4 --sound run.mcap run.mcap", "is no WAV file");
+  expectRefused("video -o odd.mp4 --sound run.mcap run.mcap", "is not a WAV file");
 }
 
 TEST_F(Program, AFilmThatFollowsThePartBeginsWithItInTheMiddle) {

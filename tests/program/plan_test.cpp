@@ -156,7 +156,7 @@ TEST_F(Plan, SeveralCadFilesAreOneAssemblyForPlanAssembleAndCheck) {
   EXPECT_EQ(plan_json["assemblies"][0]["fixed"][0], "block");
   EXPECT_EQ(plan_json["assemblies"][0]["steps"][0]["is_on_bench"], true) << plan_json.dump(1);
 
-  expectRefused("check plate.obj scene.toml --units mm", "is a scene, which is given alone");
+  expectRefused("check plate.obj scene.toml --units mm", "is a scene, which must be the only file");
   expectRefused("plan --verify planned/scene.toml block.obj", "--verify checks one scene");
   expectRefused("assemble planned/scene.toml --out again --bench", "leave out --base, --bench");
 }
@@ -215,10 +215,10 @@ TEST_F(Plan, WhatItFoundWhenItWasStoppedIsKeptAndResumed) {
   }
   ASSERT_TRUE(is_stopped) << "it was never stopped while it took apart; the last try:\n"
                           << slurp(folder_ / "out.txt");
-  EXPECT_NE(slurp(folder_ / "out.txt").find("go on with --resume"), std::string::npos);
+  EXPECT_NE(slurp(folder_ / "out.txt").find("continue with --resume"), std::string::npos);
 
   expectRefused("plan many.obj --units mm -o planned --resume --base 'block 3'",
-                "is of other parts or another base");
+                "belongs to other parts or another base");
   ASSERT_EQ(run("plan many.obj --units mm -o planned --resume").status, 0);
   for (const char* file : {"scene.toml", "plan.dot", "plan.svg"})
     EXPECT_EQ(slurp(folder_ / "planned" / file), slurp(folder_ / "whole" / file)) << file;
@@ -356,8 +356,8 @@ TEST_F(Plan, FaultsOfTheDrawingAreNamed) {
   };
   const std::string frames =
       wordsOf({{"plate", {0, 0, 20}, {60, 60, 30}}, bar("x", 0), bar("y", 1), bar("z", 2)}, 1);
-  EXPECT_NE(frames.find("each in a frame of its own"), std::string::npos) << frames;
-  EXPECT_EQ(large.find("each in a frame of its own"), std::string::npos) << large;
+  EXPECT_NE(frames.find("each part seems to be drawn in a frame of its own"), std::string::npos) << frames;
+  EXPECT_EQ(large.find("each part seems to be drawn in a frame of its own"), std::string::npos) << large;
 
   // Boxes in a row, each a little way into the next one.
   const auto row = [](double into_mm) {
@@ -367,12 +367,12 @@ TEST_F(Plan, FaultsOfTheDrawingAreNamed) {
     return boxes;
   };
   const std::string through = wordsOf(row(2), 0);
-  EXPECT_NE(through.find("6 parts hang together by overlaps of up to 2.000 mm"), std::string::npos)
+  EXPECT_NE(through.find("6 parts are connected by overlaps of up to 2.000 mm"), std::string::npos)
       << through;
   // Like panels of a box that are to be glued.
   const std::string glued = wordsOf(row(0.19), 0);
-  EXPECT_EQ(glued.find("hang together"), std::string::npos) << glued;
-  EXPECT_EQ(glued.find("each in a frame of its own"), std::string::npos) << glued;
+  EXPECT_EQ(glued.find("are connected by overlaps"), std::string::npos) << glued;
+  EXPECT_EQ(glued.find("each part seems to be drawn in a frame of its own"), std::string::npos) << glued;
 
   const std::string floating = wordsOf({kPlate, {"block", {20, 20, 15}, {40, 40, 30}}}, 0);
   EXPECT_NE(floating.find("Nothing carries 'block'"), std::string::npos) << floating;

@@ -87,7 +87,7 @@ TEST_F(Program, DevicePrintsTableOneAndRefusesABadFile) {
   expectRefused("device --characterise --parameters bad.toml",
                 "bad.toml:2: [handle] mass_kg is -1; expected more than 0 and at most 100");
   expectRefused("device --characterise --parameters gone.toml", "gone.toml: no such file");
-  expectRefused("device", "say what to do");
+  expectRefused("device", "give --session NAME");
   expectRefused("device --json a.json", "--characterise");
 }
 

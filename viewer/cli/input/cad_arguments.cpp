@@ -8,7 +8,7 @@
 #include "output/terminal.h"
 #include "vps/errors.h"
 #include "vps_scenes/planning/plan.h"
-#include "vps_scenes/scene/scene_groups.h"
+#include "vps_scenes/scene/scene_parts.h"
 #include "vps_scenes/scene/scene_text.h"
 
 namespace vps::viewer {
@@ -21,21 +21,23 @@ bool CadArguments::isAny() const {
 void addCadOptions(CLI::App& command, CadArguments& given) {
   addUnitsOption(command, given.units);
   addDeflectionOption(command, given.deflection);
-  command.add_option("--up", given.up, "the file's axis that is up and becomes z: x, -x, y, -y, z or -z")
+  command
+      .add_option("--up", given.up, "axis of the file that points up and becomes z: x, -x, y, -y, z or -z")
       ->type_name("AXIS");
   command
       .add_option("--part-per", given.part_per,
-                  "what is one part: each solid or closed surface (body), also each open object, group or "
-                  "shape (object), or each file (file)")
+                  "what becomes one part: each solid or closed surface (body), also each open object, group "
+                  "or shape (object), or each file (file)")
       ->type_name("THING")
       ->check(CLI::IsMember({"body", "object", "file"}));
   command
       .add_option("--group", given.groups.names,
-                  "an assembly or product of the file, or part names with *, that is one body; may be given "
-                  "several times")
+                  "assembly or product of the file, or part names with *, whose parts become one body; may "
+                  "be given several times")
       ->type_name("NAME");
-  command.add_flag("--no-groups", given.has_no_groups, "look for no other groups; each solid is a part");
-  command.add_option("--time-limit", given.time_limit_s, "give up reading a file after so many seconds")
+  command.add_flag("--no-groups", given.has_no_groups,
+                   "find no groups except those of --group; each solid is a part");
+  command.add_option("--time-limit", given.time_limit_s, "stop reading a file after this many seconds")
       ->type_name("SECONDS")
       ->check(CLI::PositiveNumber);
 }
@@ -77,7 +79,7 @@ bool areCadFiles(const std::vector<std::string>& files) {
   for (const std::string& file : files) {
     if (files.size() > 1 && lowerExtension(file) == ".toml")
       throw LoadError(file, "",
-                      "is a scene, which is given alone; several files are parts of one assembly in CAD");
+                      "is a scene, which must be the only file; several files are CAD parts of one assembly");
     requireCadFile(file);
   }
   return true;

@@ -16,10 +16,10 @@ class App;
 
 namespace vps::viewer {
 
-/// A part that would have more is read coarser: a check of it takes minutes.
+/// A part that would have more triangles is read with a coarser mesh, because checking it would take minutes.
 inline constexpr std::size_t kMostTriangles = 250'000;
 
-/// The warning where --units is given and not used.
+/// Warning if --units is given and not used.
 inline constexpr const char* kUnusedUnits = "states its unit itself, so that --units is not used";
 
 struct CadArguments {
@@ -27,16 +27,17 @@ struct CadArguments {
   double time_limit_s = 0;
   scenes::GroupWishes groups;
   bool has_no_groups = false;
-  CacheArguments cache;              ///< of what is read
-  [[nodiscard]] bool isAny() const;  ///< whether one of the others is given
+  CacheArguments cache;              ///< cache for the parts that are read
+  [[nodiscard]] bool isAny() const;  ///< whether an option other than the cache's is given
 };
 
-/// Adds --units, --deflection, --up, --part-per, --group, --no-groups and --time-limit; those of the cache
-/// come by addCacheOptions().
+/// Adds --units, --deflection, --up, --part-per, --group, --no-groups and --time-limit. addCacheOptions()
+/// adds those of the cache.
 void addCadOptions(CLI::App& command, CadArguments& given);
 
-/// What was given, and otherwise what suits a file that nobody has looked at: parts of more than
-/// `most_triangles` are read coarser, and what is up is guessed. Throws LoadError naming the option.
+/// Import settings from the options. The defaults suit an unknown file: parts with more than `most_triangles`
+/// triangles are read with a coarser mesh, and the vertical axis is guessed. Throws LoadError that names the
+/// option.
 scenes::ImportSettings importSettingsFrom(const CadArguments& given, std::size_t most_triangles);
 
 /// Reads the files into one frame, or takes their parts from the cache.
@@ -44,18 +45,18 @@ scenes::ImportedCad importedCad(const std::vector<std::string>& files, scenes::I
                                 const CadArguments& given, const Progress& progress);
 
 /// Whether these are CAD files, which are read into one frame, and not a scene file. Throws LoadError for a
-/// scene among several files, and for what is no CAD file.
+/// scene among several files, and for a file that is not CAD.
 bool areCadFiles(const std::vector<std::string>& files);
 /// The files, quoted as in TOML, with commas between them.
 std::string listedFiles(const std::vector<std::string>& files);
 
-/// Finds the groups of the file, and says on stderr which and why.
+/// Finds the groups of the file, and prints them with their reasons on stderr.
 std::vector<scenes::PartGroup> groupsOf(scenes::ImportedCad& cad, const CadArguments& given);
 
 /// The scene of a CAD file, with its groups as bodies and its warnings.
 scenes::Scene groupedScene(scenes::ImportedCad cad, const CadArguments& given);
 
-/// Throws LoadError when one of the options is given for a scene file, which states all of that itself.
+/// Throws LoadError if one of the options is given for a scene file, which states these settings itself.
 void requireNoCadOptions(const std::string& scene, const CadArguments& given);
 
 }  // namespace vps::viewer

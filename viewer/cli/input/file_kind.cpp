@@ -11,7 +11,7 @@
 #include "output/terminal.h"
 #include "vps/solid.h"
 #include "vps_scenes/cad/import.h"
-#include "vps_scenes/scene/mesh_warning.h"
+#include "vps_scenes/scene/model_options.h"
 
 namespace vps::viewer {
 

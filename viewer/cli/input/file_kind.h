@@ -13,7 +13,7 @@
 
 namespace vps::viewer {
 
-/// ".step" of "Part.STEP"; empty if there is none.
+/// The extension in lower case, such as ".step" for "Part.STEP"; empty if there is none.
 std::string lowerExtension(const std::string& file);
 
 /// Throws LoadError, naming the command that reads the file, unless the file can be a scene.
@@ -23,7 +23,7 @@ void requireCadFile(const std::string& file);
 
 enum class OperandKind { Mesh, LevelSet, PointShell };
 
-/// By extension; a .ply is a pointshell if it has normals and no faces.
+/// Kind of a file by its extension; a .ply file is a pointshell if it has normals and no faces.
 OperandKind operandKind(const std::string& file);
 
 /// All parts of a CAD file as one mesh, in the file's frame and in metres. Prints warnings on stderr. Throws

@@ -31,7 +31,8 @@ std::string stlBytes(const Mesh& mesh) {
 
 std::string meshExtension(const Mesh& mesh, const scenes::FaceColors& colors) {
   constexpr double kMostRounding_m = 0.1e-6, kFloat = 0x1p-24;
-  constexpr double kFar = 4;  // sizes: a reader that takes off the middle of the vertices wins two bits
+  constexpr double kFar =
+      4;  // in sizes of the mesh: a reader that subtracts the centre of the vertices gains two bits
   const Box box = bounds(mesh);
   const double farthest_m = box.min.cwiseAbs().cwiseMax(box.max.cwiseAbs()).norm();
   const bool is_far = kFloat * farthest_m > kMostRounding_m && farthest_m > kFar * box.size().norm();
@@ -50,7 +51,7 @@ std::string meshBytes(const Mesh& mesh, const scenes::FaceColors& colors) {
     out += 'v';
     for (int axis = 0; axis < 3; ++axis) put(out, mesh.vertices[vertex][axis]);
   };
-  // Where colours meet, a vertex is there once for each.
+  // A vertex at which several colours meet is written once for each colour.
   std::map<std::array<std::uint32_t, 2>, std::uint32_t> number_of;  // of vertex and colour
   if (colors.isNone())
     for (std::uint32_t vertex = 0; vertex < mesh.vertices.size(); ++vertex) {

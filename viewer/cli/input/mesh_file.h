@@ -6,19 +6,19 @@
 #include <string>
 
 #include "vps/mesh.h"
-#include "vps_scenes/cad/face_colors.h"
+#include "vps_scenes/cad/colors.h"
 
 namespace vps::viewer {
 
-/// The bytes of the file, in metres. Coordinates are floats, which resolve 0.06 um at 1 m; vertices that are
-/// equal stay equal to the bit, so that readers can weld them.
+/// The mesh as a binary STL file, in metres. Coordinates are floats, which resolve 0.06 um at 1 m; vertices
+/// that are equal stay equal to the bit, so that readers can weld them.
 std::string stlBytes(const Mesh& mesh);
 
-/// ".stl", or ".obj" for a mesh whose faces have colours, or that is so far from its origin that floats would
-/// move its vertices by more than 0.1 um.
+/// File extension that suits the mesh: ".obj" if its faces have colours, or if it is so far from its origin
+/// that the floats of STL would move its vertices by more than 0.1 um; else ".stl".
 std::string meshExtension(const Mesh& mesh, const scenes::FaceColors& colors = {});
-/// A file with that extension, in metres. OBJ reads back within a float's resolution of the mesh's size, and
-/// has colours (sRGB) by vertex.
+/// The bytes of a file with the extension meshExtension(), in metres. OBJ coordinates are as precise as
+/// floats relative to the size of the mesh; OBJ colours (sRGB) are stored by vertex.
 std::string meshBytes(const Mesh& mesh, const scenes::FaceColors& colors = {});
 
 /// A file name made from a part's name, different from those in `taken`, to which it is added. Binary PLY

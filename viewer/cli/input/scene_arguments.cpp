@@ -91,15 +91,15 @@ void addCacheOptions(CLI::App& command, CacheArguments& given) {
   CLI::Option* folder = command
                             .add_option("--cache", given.folder,
                                         "folder in which models and the parts of CAD files are kept between "
-                                        "runs and looked up; without it "
-                                        "bullet-vps in $XDG_CACHE_HOME or ~/.cache")
+                                        "runs (default: bullet-vps in $XDG_CACHE_HOME or ~/.cache)")
                             ->type_name("DIR");
   command
-      .add_flag("--no-cache", given.is_off, "build the models and read the CAD files again, and keep none")
+      .add_flag("--no-cache", given.is_off,
+                "build all models and read all CAD files again, and keep none of them")
       ->excludes(folder);
   command
       .add_option("--cache-limit", given.limit_GB,
-                  "size of that folder; what was not used for the longest time is removed")
+                  "size limit of that folder; the least recently used files are removed")
       ->type_name("GB")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
@@ -108,7 +108,7 @@ void addCacheOptions(CLI::App& command, CacheArguments& given) {
 void addSceneOptions(CLI::App& command, SceneArguments& given) {
   addSceneArgument(command, given.scene);
   command.add_flag("--model-everything", given.models_everything,
-                   "build a voxmap and a pointshell of every part, share none and leave none out");
+                   "build a voxmap and a pointshell of every part, without sharing models of equal parts");
   addFidelityOptions(command, given.fidelity);
   addCacheOptions(command, given.cache);
 }
@@ -143,7 +143,7 @@ std::optional<VoxMapCache> cacheFrom(const std::string& folder) {
 
 namespace {
 
-/// Empty with --no-cache, and where the user has no folder for caches.
+/// Folder of the cache; empty with --no-cache, or if the user has no folder for caches.
 std::string folderOf(const CacheArguments& given) {
   if (given.is_off) return "";
   return given.folder.empty() ? defaultCacheFolder() : given.folder;
@@ -202,7 +202,7 @@ scenes::Scene sceneFrom(const std::string& file, const FidelityArguments& given,
   if (!scene.device.data.empty()) read.push_back(scene.device.data);
   for (const std::string& output : outputs) requireNotRead(output, read);
   for (const std::string& warning : scene.warnings) warn(warning);
-  // What the command line gives is not chosen.
+  // Values from the command line are not chosen automatically.
   if (!given.preset.empty() || !given.voxel.empty()) scene.chooses_voxel = scene.chooses_spacing = false;
   if (!given.spacing.empty()) scene.chooses_spacing = false;
   scenes::resolveFidelity(scene);

@@ -30,26 +30,26 @@ struct FidelityArguments {
 void addFidelityOptions(CLI::App& command, FidelityArguments& given);
 /// Adds --points, which excludes --spacing. Call addFidelityOptions() first.
 void addPointsOption(CLI::App& command, FidelityArguments& given);
-/// `base` with what was given on the command line. Throws LoadError naming the option.
+/// `base`, changed by the options that were given. Throws LoadError that names the option.
 Fidelity fidelityFrom(const FidelityArguments& given, Fidelity base);
 struct NamedMesh {
   const Mesh& mesh;
-  std::string name;  ///< for the words
+  std::string name;  ///< for messages
 };
-/// The same for a mesh that no scene states a fidelity for: where neither preset nor voxel is given, by its
-/// size and that of what it meets (vps_scenes/planning/fidelity_choice.h).
+/// Fidelity of a mesh without a scene. If neither preset nor voxel size is given, the voxel size follows from
+/// the sizes of this mesh and of the other one (vps_scenes/planning/fidelity_choice.h).
 /// @param other   may be null
-/// @param choice  is set to what was chosen for both, in words; empty: the preset serves
+/// @param choice  is set to a description of the choice; empty if the preset is used
 Fidelity fidelityFrom(const FidelityArguments& given, const NamedMesh& mesh, const NamedMesh* other,
                       std::string& choice);
-/// Says what was chosen, if anything was.
+/// Prints the choice on stderr, unless it is empty.
 void sayChoice(const std::string& resolution_choice);
 
-/// Where models and the parts of CAD files are kept between runs.
+/// Options of the cache that keeps models and the parts of CAD files between runs.
 struct CacheArguments {
-  std::string folder;   ///< empty: the user's own, see defaultCacheFolder()
+  std::string folder;   ///< empty: defaultCacheFolder()
   bool is_off = false;  ///< models are built each time
-  double limit_GB = 4;  ///< the files that were not used for the longest time are removed
+  double limit_GB = 4;  ///< above this size the least recently used files are removed
 };
 
 /// A scene and how its models are built.
@@ -64,15 +64,16 @@ struct SceneArguments {
 void addSceneArgument(CLI::App& command, std::string& scene);
 /// Adds --cache.
 void addCacheOption(CLI::App& command, std::string& folder);
-/// Adds --cache, --no-cache and --cache-limit. Where the command builds no models, only CAD files are meant.
+/// Adds --cache, --no-cache and --cache-limit. Commands that build no models use the cache only for CAD
+/// files.
 void addCacheOptions(CLI::App& command, CacheArguments& given);
-/// Adds SCENE and the options --model-everything, those of addCacheOptions() and of addFidelityOptions().
+/// Adds SCENE, --model-everything, and the options of addCacheOptions() and addFidelityOptions().
 void addSceneOptions(CLI::App& command, SceneArguments& given);
 
 /// The scene, with the command line's fidelity instead of its own. Prints warnings about its CAD files on
 /// stderr. Throws LoadError when one of `outputs` is a file that the scene was read from, and names the
 /// command that reads `file` when it is no scene but a CAD file, a level set or a recording.
-/// @param cache  of the parts of its CAD files
+/// @param cache cache for the parts of its CAD files
 scenes::Scene sceneFrom(const std::string& file, const FidelityArguments& given,
                         const std::vector<std::string>& outputs, const CacheArguments& cache);
 
@@ -85,14 +86,14 @@ std::optional<double> unitFrom(const std::string& text);
 /// Throws LoadError when --units or --deflection is given for a scene file, which states both itself.
 void requireOwnUnits(const std::string& scene, const std::string& units, const std::string& deflection);
 
-/// Reads a scene, and its CAD files from the cache.
+/// Reads a scene. Parts of its CAD files are taken from the cache if they are there.
 scenes::Scene loadedScene(const std::string& file, const CacheArguments& cache, const Progress& progress);
 
 /// The cache in a folder, which reports damaged files on stderr; none for an empty name.
 std::optional<VoxMapCache> cacheFrom(const std::string& folder);
-/// The cache that the options stand for; none with --no-cache, and where the user has no folder for caches.
+/// The cache that the options stand for; none with --no-cache, or if the user has no folder for caches.
 std::optional<VoxMapCache> cacheFrom(const CacheArguments& given);
-/// The same folder for the parts of CAD files.
+/// The cache for the parts of CAD files, in the same folder.
 std::optional<ByteCache> cadCacheFrom(const CacheArguments& given);
 /// bullet-vps in $XDG_CACHE_HOME, or else in $HOME/.cache; empty where neither is an absolute path.
 /// Source: XDG Base Directory Specification 0.8.

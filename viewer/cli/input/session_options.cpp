@@ -12,13 +12,13 @@ namespace vps::viewer {
 CLI::Option* addNetworkOption(CLI::App& command, scenes::SessionNetwork& network) {
   CLI::Option* option = command
                             .add_option("--network", network.interface,
-                                        "meet over UDP through this network interface, in place of shared "
-                                        "memory; lo: this machine only. Beyond it --security is needed")
+                                        "communicate over UDP on this network interface instead of shared "
+                                        "memory; lo: within this machine. Other interfaces need --security")
                             ->type_name("INTERFACE");
   command
       .add_option("--security", network.security,
-                  "folder with this node's certificates (scenes/make_certificates.sh): others can neither "
-                  "read nor move anything; none: everybody can who reaches the interface")
+                  "folder with this node's certificates (scenes/make_certificates.sh), which keep others "
+                  "from reading or moving anything; none: everybody who reaches the interface can")
       ->type_name("FOLDER")
       ->needs(option);
   return option;
@@ -32,10 +32,9 @@ CLI::Option* addSessionOption(CLI::App& command, std::string& session) {
 
 CLI::Option* addRecordOption(CLI::App& command, std::string& file) {
   return command
-      .add_option(
-          "--record", file,
-          "have vps render record the run, and bring the recording here when it has ended (MCAP), for vps "
-          "replay. It may be asked for until the run begins")
+      .add_option("--record", file,
+                  "ask vps render to record the run, and receive the recording when the run has ended "
+                  "(MCAP), for vps replay; possible until the run begins")
       ->type_name("FILE.mcap");
 }
 
@@ -52,7 +51,7 @@ scenes::SessionRecordingOptions recordingOptions(const std::string& session,
 }
 
 void requireAsked(scenes::SessionRecording& recording, const std::string& option) {
-  constexpr double kLimit_s = 8;  // more than an answer takes
+  constexpr double kLimit_s = 8;  // longer than an answer takes
   if (const std::string why = recording.waitUntilAsked(kLimit_s); !why.empty())
     throw LoadError(option, "", why);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Writes the rows of a field table as JSON. Includes nlohmann/json, which is slow to compile: json_out.cpp
-// and study_log.cpp alone include this header.
+// Writes the rows of a field table as JSON. Includes nlohmann/json, which is slow to compile, so only
+// json_out.cpp, study_log.cpp and study_on_dask.cpp include this header.
 #pragma once
 
 #include <nlohmann/json.hpp>

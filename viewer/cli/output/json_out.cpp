@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Results as JSON. With study_log.cpp the only source of the program that includes nlohmann/json.
+// Results as JSON.
 #include "output/json_out.h"
 
 #include <algorithm>
@@ -8,8 +8,8 @@
 #include "vps_device/dual_arm/character.h"
 #include "vps_scenes/fits/check_fields.h"
 #include "vps_scenes/planning/fidelity_choice.h"
-#include "vps_scenes/planning/study_fields.h"
 #include "vps_scenes/planning/plan_fields.h"
+#include "vps_scenes/planning/study_fields.h"
 #include "vps_scenes/planning/trade_fields.h"
 #include "vps_scenes/run/result_fields.h"
 #include "vps_scenes/uses/compare.h"

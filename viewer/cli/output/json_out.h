@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Results as JSON, with the keys that other programs rely on: viewer/cli/JSON.md lists them. Wall-clock
-// figures are in one object, `wall`, so that all else repeats byte for byte. Numbers that are not finite
-// become null.
+// Results as JSON. Other programs rely on the keys, which viewer/cli/JSON.md lists. Wall-clock
+// figures are in one object, `wall`, so that everything else is the same in every run. Numbers that are not
+// finite become null.
 #pragma once
 
 #include <cstddef>
@@ -36,14 +36,14 @@ namespace vps::viewer {
 
 struct LatencyResult;
 
-/// What `vps query` found at one pose.
+/// Result of `vps query` at one pose.
 struct PoseAnswer {
   Pose X_AB;
   double min_distance_m = 0;  ///< negative when touching; a lower bound if is_beyond
-  bool is_beyond = false;     ///< nothing within the band
-  bool is_saturated = false;  ///< as deep as the band is wide, or deeper
+  bool is_beyond = false;     ///< no point is within the band
+  bool is_saturated = false;  ///< the depth is the width of the band, or greater
   std::size_t contact_count = 0, points_tested = 0;
-  Wrench F_Bo_A;  ///< on B about its origin, in A
+  Wrench F_Bo_A;  ///< wrench on B about B's origin, in the frame of A
   [[nodiscard]] double maxDepth_m() const { return min_distance_m < 0 ? -min_distance_m : 0; }
 };
 
@@ -51,13 +51,13 @@ struct QueryAnswer {
   std::string mesh_a, mesh_b;
   std::vector<PoseAnswer> poses;
   std::size_t points_total = 0, memory_bytes = 0;
-  double voxel_m = 0, point_spacing_m = 0;  ///< of A's voxmap and B's points
-  double voxel_b_m = 0;                     ///< of B's voxmap; 0: one-sided
+  double voxel_m = 0, point_spacing_m = 0;  ///< voxel size of A's voxmap, and distance between B's points
+  double voxel_b_m = 0;                     ///< voxel size of B's voxmap; 0: the query is one-sided
   scenes::TickTimes time;
   double build_wall_s = 0;
 };
 
-/// What `vps import` says of a part.
+/// A part in the result of `vps import`.
 struct ImportedPartAnswer {
   std::string name, file;
   std::size_t triangles = 0;
@@ -73,7 +73,7 @@ struct ImportAnswer {
   std::vector<std::string> warnings;
 };
 
-/// What `vps export` wrote into one file; `model` says which of the numbers apply.
+/// A file that `vps export` wrote; `model` determines which of the numbers apply.
 struct ExportedFileAnswer {
   std::string file, model;     ///< "voxmap", "pointshell" or "mesh"
   double voxel_m = 0;          ///< of a voxmap
@@ -84,7 +84,7 @@ struct ExportedFileAnswer {
 };
 
 struct ExportAnswer {
-  std::string source, part;  ///< part: of a scene
+  std::string source, part;  ///< part: name of the part, if the source is a scene
   std::vector<ExportedFileAnswer> files;
 };
 
@@ -96,7 +96,8 @@ struct SnapshotAnswer {
   int greatest_difference = 0, tolerance = 0;
 };
 
-/// What `vps explain` found, and the cost of modelling everything if that was requested.
+/// Result of `vps explain`; `everything` is the cost of modelling all parts, and empty with
+/// --model-everything.
 struct ExplainAnswer {
   scenes::Scene scene;
   scenes::ExplainedModels chosen;

@@ -148,7 +148,7 @@ const std::string& checked(const std::string& file) {
 }  // namespace
 
 void addPdfOption(CLI::App& command, std::string& file) {
-  command.add_option("--pdf", file, "writes the page as PDF, printed by Chromium")->type_name("FILE");
+  command.add_option("--pdf", file, "write the page as PDF, printed by Chromium")->type_name("FILE");
 }
 
 void requirePdf() {
@@ -159,7 +159,7 @@ void requirePdf() {
 void requirePrinted(const std::string& page, const std::string& pdf) {
   OutputFile out(pdf, {page});
   if (const std::string failure = printPdf(page, out.partial()); !failure.empty())
-    throw LoadError(pdf, "", "is not made: " + failure);
+    throw LoadError(pdf, "", "was not made: " + failure);
   out.commit();
 }
 
@@ -169,7 +169,7 @@ PdfFile::PdfFile(const std::string& file, const std::vector<std::string>& inputs
 void PdfFile::write(const std::string& html) {
   if (file_.empty()) return;
   if (const std::string failure = printPdfOf(html, out_.partial()); !failure.empty())
-    throw LoadError(file_, "", "is not made: " + failure);
+    throw LoadError(file_, "", "was not made: " + failure);
   out_.commit();
 }
 

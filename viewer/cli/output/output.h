@@ -14,15 +14,15 @@
 
 namespace vps::viewer {
 
-/// Throws LoadError when `output` is one of the files that a command reads, under whatever name.
+/// Throws LoadError if `output` is one of the files that the command reads, even under another name.
 void requireNotRead(const std::string& output, const std::vector<std::string>& inputs);
 
 /// One output file. It is opened when the work starts, so that a place that cannot be written is reported
 /// before the work.
 class OutputFile {
  public:
-  /// Throws LoadError when nothing can be written there, or when it is one of the command's `inputs`. An
-  /// empty name is no output: write() then does nothing.
+  /// Throws LoadError when nothing can be written there, or when it is one of the command's `inputs`. With an
+  /// empty name write() does nothing.
   OutputFile(const std::string& file, const std::vector<std::string>& inputs);
 
   /// The file to write before commit(): a temporary file in the same folder, or the device or pipe itself.
@@ -63,17 +63,18 @@ class OutputFolder {
 /// Adds --pdf.
 void addPdfOption(CLI::App& command, std::string& file);
 
-/// Throws LoadError where nothing can be printed here (missingForPdf()).
+/// Throws LoadError if PDF files cannot be printed on this machine (missingForPdf()).
 void requirePdf();
-/// Prints a page. Throws LoadError where that fails; what was there before stays then.
+/// Prints the HTML file `page` as the file `pdf`. Throws LoadError if that fails, and then keeps an earlier
+/// file.
 void requirePrinted(const std::string& page, const std::string& pdf);
 
-/// Made before the work, so that what is missing is said before it.
+/// A page as PDF. The object is made before the work, so that a missing Chromium is reported early.
 class PdfFile {
  public:
-  /// An empty name is no output. Throws as requirePdf() and OutputFile.
+  /// With an empty name nothing is written. Throws as requirePdf() and OutputFile do.
   PdfFile(const std::string& file, const std::vector<std::string>& inputs);
-  /// Throws LoadError where it fails.
+  /// Prints the page. Throws LoadError if that fails.
   void write(const std::string& html);
 
  private:

@@ -43,18 +43,18 @@ std::string needsText(const scenes::PlannedAssembly& assembly, const scenes::Pla
   return before.empty() ? "" : "after " + listed(before);
 }
 
-/// The way with the least clearance.
+/// Describes the path with the least clearance.
 std::string tightestText(const scenes::PlannedAssembly& assembly) {
   const scenes::PlannedStep* tightest = nullptr;
   for (const scenes::PlannedStep& step : assembly.steps)
     if (step.clearance_m && (tightest == nullptr || *step.clearance_m < *tightest->clearance_m))
       tightest = &step;
   if (tightest == nullptr) return "";
-  return "The least clearance on a way, to parts that it passes: '" + tightest->name + "' passes '" +
-         tightest->nearest + "' at " + fixed(1e3 * *tightest->clearance_m, 3) + " mm.\n";
+  return "The least clearance on a path: '" + tightest->name + "' passes '" + tightest->nearest + "' at " +
+         fixed(1e3 * *tightest->clearance_m, 3) + " mm.\n";
 }
 
-/// Ways on which facets are in each other.
+/// Describes the paths on which facets overlap more than drawn.
 std::string allowanceText(const scenes::PlannedAssembly& assembly) {
   std::vector<std::string> names;
   double most_m = 0;
@@ -64,10 +64,9 @@ std::string allowanceText(const scenes::PlannedAssembly& assembly) {
     most_m = std::max(most_m, step.allowance_m);
   }
   if (names.empty()) return "";
-  return "On the way of " + listed(names) + " facets are deeper in each other than drawn, by no more than " +
-         um(most_m) +
-         " um, which the distance of meshes from the faces and 5 um allow. No way without that was "
-         "found: a finer mesh tells more, and a hole may be too small.\n";
+  return "On the path of " + listed(names) + " facets overlap by up to " + um(most_m) +
+         " um more than drawn, which the errors of the meshes and 5 um allow. No path without this overlap "
+         "was found: use a finer mesh; a hole may be too small.\n";
 }
 
 std::string benchText(const scenes::PlannedAssembly& assembly) {
@@ -78,13 +77,14 @@ std::string benchText(const scenes::PlannedAssembly& assembly) {
     if (!step.is_on_bench) left.push_back(step.name);
   }
   if (!is_any || left.empty()) return "";
-  return "Covered on all sides when it is mounted, so not laid out on the bench: " + listed(left) + ".\n";
+  return "Not laid out on the bench, because it is covered on all sides when it is mounted: " + listed(left) +
+         ".\n";
 }
 
 std::string assemblyTable(const scenes::PlannedAssembly& assembly) {
   std::string out =
       assembly.name + " begins with '" + assembly.fixed.front() + "' (" + assembly.fixed_reason + ").\n";
-  Table table({"step", "<part", "<way", "<moves", "<stays", "passes [mm]", "fit [mm]", "<order"});
+  Table table({"step", "<part", "<path", "<moves", "<stays", "passes [mm]", "fit [mm]", "<order"});
   for (std::size_t i = 0; i < assembly.steps.size(); ++i) {
     const scenes::PlannedStep& step = assembly.steps[i];
     const std::string name = step.parts.size() == 1 ? step.name : step.name + " (" + listed(step.parts) + ")";
@@ -102,16 +102,18 @@ std::string assemblyTable(const scenes::PlannedAssembly& assembly) {
   for (const scenes::PlannedStep& step : assembly.steps)
     if (!step.is_carried) held.push_back(step.name);
   if (!held.empty())
-    out += "Nothing carries " + listed(held) +
-           "; the hand holds each until the end of its step. If a fixture holds it "
-           "afterwards, give the fixture as a part; what is not to be assembled is scenery = true.\n";
+    out +=
+        "Nothing carries " + listed(held) +
+        "; the hand holds each until the end of its step. If a fixture holds it "
+        "afterwards, give the fixture as a part; a part that is not to be assembled gets scenery = true.\n";
   for (const scenes::PlannedStep& step : assembly.steps)
     if (!step.falling.empty())
       out += "Until '" + step.name + "' is in place, nothing carries " + listed(step.falling) + ".\n";
   for (const scenes::BlockedPart& blocked : assembly.blocked)
-    out += "'" + blocked.name + "' cannot be taken off: " +
-           (blocked.by.empty() ? std::string("no way was found") : "it is stopped by " + listed(blocked.by)) +
-           (blocked.is_searched ? "" : "; the search for ways of several legs ended at its limit") + ".\n";
+    out +=
+        "'" + blocked.name + "' cannot be taken off: " +
+        (blocked.by.empty() ? std::string("no path was found") : "it is stopped by " + listed(blocked.by)) +
+        (blocked.is_searched ? "" : "; the search for paths of several legs ended at its limit") + ".\n";
   return out;
 }
 
@@ -131,7 +133,7 @@ double depthOf(const scenes::PlanResult& plan, const scenes::OverlapChoice& choi
 class DrawnThrough {
  public:
   explicit DrawnThrough(const scenes::PlanResult& plan) {
-    constexpr double kLeast_m = 0.5e-3;  // assumed: what is to be pressed or glued overlaps by less
+    constexpr double kLeast_m = 0.5e-3;  // assumed: parts that are to be pressed or glued overlap by less
     for (const scenes::OverlapChoice& choice : plan.choices) {
       const double depth_m = depthOf(plan, choice);
       if (choice.kind != scenes::OverlapKind::Clash || depth_m < kLeast_m) continue;
@@ -143,7 +145,7 @@ class DrawnThrough {
   [[nodiscard]] std::size_t parts() const { return set_of_.size(); }
   [[nodiscard]] std::size_t clashes() const { return clashes_; }
   [[nodiscard]] double most_m() const { return most_m_; }
-  /// Parts of the largest set that hangs together by such overlaps.
+  /// Number of parts of the largest set that is connected by such overlaps.
   [[nodiscard]] std::size_t largest() const {
     std::map<std::size_t, std::size_t> sizes;
     std::size_t most = 0;
@@ -164,23 +166,23 @@ class DrawnThrough {
   double most_m_ = 0;
 };
 
-// Files of single parts are often drawn each in a frame of its own, so that all lie in one another. Models
-// that are made for pictures have bodies of several shapes that run into one another.
+// Files of single parts often have a frame of their own each, so that the parts overlap one another. Models
+// that are made for pictures have bodies of several shapes that intersect.
 std::string framesText(const scenes::PlanResult& plan) {
-  constexpr std::size_t kFewest = 3;  // assumed: two that overlap are a drawn interference
+  constexpr std::size_t kFewest = 3;  // assumed: two overlapping parts are a drawn interference
   const DrawnThrough drawn(plan);
   const std::size_t count = drawn.parts(), pairs = count * (count - 1) / 2;
   if (count < kFewest || 2 * count < partCount(plan.assemblies.front())) return "";
   if (2 * drawn.clashes() >= pairs)
     return std::to_string(count) + " parts overlap one another, " + std::to_string(drawn.clashes()) + " of " +
            std::to_string(pairs) +
-           " pairs: it seems that they are drawn each in a frame of its own. Export the assembly as one "
+           " pairs: each part seems to be drawn in a frame of its own. Export the assembly as one "
            "file, or give each part its pose in a scene.\n";
   if (drawn.largest() < kFewest) return "";
-  return std::to_string(drawn.largest()) + " parts hang together by overlaps of up to " +
+  return std::to_string(drawn.largest()) + " parts are connected by overlaps of up to " +
          fixed(1e3 * drawn.most_m(), 3) +
-         " mm: it seems that bodies are drawn as several shapes that run into one another, as for pictures. "
-         "Make one body of those that belong together, by --group 'NAME*' or [[group]] in a scene.\n";
+         " mm: bodies seem to be drawn as several shapes that intersect, as for pictures. Join the shapes of "
+         "each body by --group 'NAME*' or [[group]] in a scene.\n";
 }
 
 }  // namespace
@@ -233,15 +235,15 @@ std::string planHeadline(const scenes::PlanResult& plan) {
 std::string inWords(const scenes::WayFault& fault) {
   if (fault.kind == scenes::WayFaultKind::Support)
     return "nothing in place carries '" + fault.part +
-           "' when it is let go; mount what carries it before, or say holds = true in its step";
+           "' when it is let go; mount the part that carries it before, or set holds = true in its step";
   if (fault.kind == scenes::WayFaultKind::Clearance)
-    return "the way of '" + fault.part + "' passes '" + fault.against + "' at " +
+    return "the path of '" + fault.part + "' passes '" + fault.against + "' at " +
            fixed(1e3 * fault.clearance_m, 3) + " mm, where " + fixed(1e3 * fault.planned_m, 3) +
            " mm were planned; give other way_points";
   const std::string remedy = fault.kind == scenes::WayFaultKind::Order
                                  ? "; mount '" + fault.against + "' after it, or give other way_points"
                                  : "; give other way_points, or another order";
-  return "the way of '" + fault.part + "' leads through '" + fault.against + "', " +
+  return "the path of '" + fault.part + "' leads through '" + fault.against + "', " +
          fixed(1e3 * fault.depth_m, 3) + " mm deep at (" + fixed(1e3 * fault.at_W.x(), 2) + ", " +
          fixed(1e3 * fault.at_W.y(), 2) + ", " + fixed(1e3 * fault.at_W.z(), 2) + ") mm (" +
          fixed(1e3 * fault.allowed_m, 3) + " mm allowed)" + remedy;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What commands print and write of their results: check_report.cpp, plan_report.cpp, run_report.cpp and
-// trade_report.cpp. JSON is in json_out.h.
+// Tables, sentences and files in which commands report their results: check_report.cpp, plan_report.cpp,
+// run_report.cpp and trade_report.cpp. JSON is in json_out.h.
 #pragma once
 
 #include <string>
@@ -19,9 +19,9 @@ namespace vps::viewer {
 
 // --- vps check
 
-/// Tables of pairs, fits and parts; what was not asked for, and what there is none of, is left out.
+/// Tables of pairs, fits and parts. Tables that are empty or were not requested are left out.
 std::string checkTables(const scenes::CheckResult& result);
-/// The answer in a sentence.
+/// The result in one sentence.
 std::string checkHeadline(const scenes::CheckResult& result);
 /// A line for each number: what, a, b, quantity, value, error.
 std::string checkCsv(const scenes::CheckResult& result);
@@ -30,22 +30,22 @@ std::string checkCsv(const scenes::CheckResult& result);
 
 /// A line for each different fastener with the names of the parts; empty if there are none.
 std::string fastenerText(const std::vector<scenes::Fastener>& fasteners);
-/// The steps of all assemblies, and what cannot be taken apart.
+/// Tables of the steps of all assemblies, and the parts that cannot be taken off.
 std::string planTables(const scenes::PlanResult& plan);
-/// The answer in a sentence.
+/// The result in one sentence.
 std::string planHeadline(const scenes::PlanResult& plan);
-/// "the way of 'peg' leads through 'wall', 3.20 mm deep at (1.0, 2.0, 3.0) mm (0.01 mm allowed)"
+/// "the path of 'peg' leads through 'wall', 3.20 mm deep at (1.0, 2.0, 3.0) mm (0.01 mm allowed)"
 std::string inWords(const scenes::WayFault& fault);
 
 // --- vps assemble, vps render and vps replay
 
 struct RunFiles {
-  std::string command;  ///< that repeats the run
+  std::string command;  ///< command line that repeats the run
   bool has_pictures = true;
 };
 
 /// Fills the folder, which is not yet committed: report.html with pictures and plots, trace.csv, steps.csv
-/// and assemble.json. Returns notes on what could not be drawn, for stderr at the end.
+/// and assemble.json. Returns notes on pictures and plots that could not be drawn, for stderr at the end.
 std::vector<std::string> fillFolder(const OutputFolder& out, const scenes::Scene& scene,
                                     const scenes::AssembleResult& result, const RunFiles& files);
 
@@ -53,10 +53,10 @@ std::vector<std::string> fillFolder(const OutputFolder& out, const scenes::Scene
 std::string fidelityWords(const Fidelity& fidelity);
 
 /// Prints the table of steps, and a line for each problem of a step.
-/// @param fidelity  with which the scene was run
+/// @param fidelity fidelity of the run
 void printSteps(const scenes::AssembleResult& result, const Fidelity& fidelity);
 
-/// Prints what a run came to: fidelity, steps, notes of fillFolder(), timing of a run by the clock,
+/// Prints the outcome of a run: fidelity, steps, notes of fillFolder(), timing of a run in real time,
 /// recording, verdict.
 /// @param record  file of the recording; empty: none
 /// @param out     folder of the results
@@ -65,8 +65,10 @@ void printOutcome(const scenes::Scene& scene, const scenes::AssembleResult& resu
 
 // --- vps trade
 
+/// A table with a row for each measured setting.
 std::string tradeTable(const scenes::TradeResult& result);
-/// One line for each row, SI but for microseconds. A column's name is its path in the JSON file, joined by
+/// One line for each row, in SI units except for microseconds. A column's name is its path in the JSON file,
+/// joined by
 /// "_".
 std::string tradeCsv(const scenes::TradeResult& result);
 /// Error of depth over the time of a step, with the front as a line; writes file + ".png" and file + ".svg".

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Plain-text tables, and lines of CSV.
+// Plain-text tables, and numbers as text.
 #pragma once
 
 #include <string>

@@ -62,7 +62,7 @@ void throwIfStopped() {
 
 namespace {
 
-/// "42 %: " ; nothing where the share is not known.
+/// "42 %: "; empty if the share is not known.
 std::string inWords(double share) {
   if (!std::isfinite(share)) return {};
   return std::to_string(static_cast<int>(100 * std::clamp(share, 0.0, 1.0))).append(" %: ");
@@ -106,9 +106,9 @@ void ProgressBar::clear() {
 void giveWay() {
 #if defined(__unix__)
 #ifdef SCHED_BATCH
-  // A batch thread that wakes up takes the processor from no other one, however long it has slept.
+  // A batch thread that wakes up does not preempt another thread, however long it has slept.
   const sched_param none{};
-  sched_setscheduler(0, SCHED_BATCH, &none);  // refused: it is as before
+  sched_setscheduler(0, SCHED_BATCH, &none);  // if refused, nothing changes
 #endif
   constexpr int kNice = 10;
   if (getpriority(PRIO_PROCESS, 0) < kNice) setpriority(PRIO_PROCESS, 0, kNice);

@@ -60,12 +60,13 @@ class ProgressBar {
   Clock::time_point begun_, drawn_;
 };
 
-/// Others go first where the processor is busy; also for threads that are started later.
+/// Lowers the priority of this process, so that others run first on a busy processor. Threads that are
+/// started later get it, too.
 void giveWay();
 
-/// Gives threads that are started later stacks of 1 MiB. The memory of a process that drives a device is
-/// locked, so each thread's stack is there as a whole, also that of a thread that has ended, until another
-/// one takes it over.
+/// Gives threads that are started later stacks of 1 MiB. A process that drives a device locks its memory, so
+/// the whole stack of a thread occupies memory, also after the thread has ended, until another thread reuses
+/// it.
 void limitStacks();
 
 }  // namespace vps::viewer

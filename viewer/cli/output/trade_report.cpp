@@ -15,7 +15,7 @@ namespace {
 std::string family(scenes::TradeKnob knob) {
   switch (knob) {
     case scenes::TradeKnob::Own:
-      return "as it is";
+      return "own settings";
     case scenes::TradeKnob::Voxel:
       return "voxel size";
     case scenes::TradeKnob::Spacing:

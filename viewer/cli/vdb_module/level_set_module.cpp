@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The part of the program that needs OpenVDB. It is loaded when a .vdb file is read or written: the symbols
-// of OpenVDB take a third of the time in which the program starts.
+// The part of the program that needs OpenVDB. The program loads this module only when a .vdb file is read or
+// written, because resolving the symbols of OpenVDB takes a third of the start time.
 #include "input/level_set_file.h"
 
 #include "vps/vdb.h"

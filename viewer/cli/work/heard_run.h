@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The sound of a run, from every physics step of it.
+// The sound of a run, computed from every physics step.
 #pragma once
 
 #include <cmath>
@@ -18,9 +18,9 @@ class HeardRun {
   HeardRun(const HeardRun&) = delete;
   HeardRun& operator=(const HeardRun&) = delete;
 
-  /// The scene that is run, before its first step; it outlives the run.
+  /// Sets the scene before its first step. The scene must outlive the run.
   void hear(const scenes::Scene& scene) { sound_.emplace(scene); }
-  /// Of AssembleOptions or ReplayOptions.
+  /// Connects this object to a run, by AssembleOptions or ReplayOptions.
   template <class Options>
   void listenTo(Options& options) {
     options.tap = &tap_;
@@ -28,7 +28,7 @@ class HeardRun {
       if (sound_) sound_->beep(device::beepOf(event.kind));
     };
   }
-  /// The bytes of a WAV file; says on stdout how loud it is.
+  /// The sound as the bytes of a WAV file. Prints its loudness on stdout.
   [[nodiscard]] std::string wav();
 
  private:
@@ -52,7 +52,7 @@ inline std::string HeardRun::wav() {
   if (full_scale_Pa > 0)
     std::printf("sound: at most %.0f dB at half a metre\n", 20 * std::log10(0.708 * full_scale_Pa / 20e-6));
   else
-    std::printf("sound: none, since nothing touched\n");
+    std::printf("sound: none, because no parts touched\n");
   return bytes;
 }
 

@@ -55,7 +55,7 @@ std::optional<json> jsonOf(const std::string& file) {
 
 /// A number that differs where the parts, their poses or the settings of the plan differ.
 std::string planKey(const scenes::Scene& scene, const scenes::PlanSettings& settings) {
-  constexpr int kForm = 1;  // of what PlanFindings::motions mean
+  constexpr int kForm = 1;  // version of the format of PlanFindings::motions
   Key key;
   key.add(kForm);
   for (const scenes::DrawnPart& part : drawnParts(scene)) {
@@ -82,7 +82,7 @@ std::optional<scenes::PlanFindings> readFindings(const std::string& file, const 
   if (!all) return std::nullopt;
   try {
     if (all->at("parts").get<std::string>() != key)
-      throw LoadError(file, "", "is of other parts or another base; delete it, or leave out --resume");
+      throw LoadError(file, "", "belongs to other parts or another base; delete it, or leave out --resume");
     return scenes::PlanFindings{all->at("motions").get<std::vector<std::uint64_t>>(),
                                 all->at("taken_off").get<std::vector<std::string>>()};
   } catch (const json::exception&) {
@@ -90,8 +90,9 @@ std::optional<scenes::PlanFindings> readFindings(const std::string& file, const 
   }
 }
 
-/// Faces of splines can have a hundred times the triangles of the same faces as cylinders: those of one
-/// public bolt have 227,717. The search for ways takes time with their product.
+/// Faces that are splines can have a hundred times as many triangles as the same faces as cylinders; one
+/// public bolt has 227,717. The time of the search for paths grows with the product of the numbers of
+/// triangles of two parts.
 constexpr std::size_t kMostToPlan = 50'000;
 constexpr double kCoarsestToPlan_m = 16e-6;
 
@@ -105,12 +106,12 @@ scenes::Scene sceneToPlan(const PlanArguments& given, const Progress& progress) 
   return groupedScene(importedCad(given.assembly, settings, given.cad, progress), given.cad);
 }
 
-/// Of the product, which comes first, and of each subassembly.
+/// Name of the scene file of the i-th assembly; the first assembly is the product.
 std::string sceneFileName(const scenes::PlanResult& plan, std::size_t i) {
   return i == 0 ? "scene.toml" : plan.assemblies[i].name + ".toml";
 }
 
-/// scene.toml, and a scene file named like each subassembly, with the meshes.
+/// Writes scene.toml, a scene file named after each subassembly, and the meshes.
 void writeScenes(const PlanArguments& given, const std::vector<scenes::Scene>& planned,
                  const scenes::PlanResult& plan, const std::vector<std::string>& read,
                  const OutputFolder& out) {
@@ -137,7 +138,7 @@ void writeScenes(const PlanArguments& given, const std::vector<scenes::Scene>& p
   }
 }
 
-/// Of the files as they are written.
+/// Faults of the paths, read from the scene files as they were written.
 std::vector<scenes::WayFault> faultsOf(const scenes::PlanResult& plan, const OutputFolder& out,
                                        const Progress& progress) {
   std::vector<scenes::WayFault> faults;
@@ -149,7 +150,7 @@ std::vector<scenes::WayFault> faultsOf(const scenes::PlanResult& plan, const Out
   return faults;
 }
 
-/// Plans; what it had found when it is stopped is kept in the folder.
+/// Plans. If the program is stopped, the results so far are kept in the folder.
 scenes::PlanResult planned(const PlanArguments& given, const scenes::Scene& scene,
                            scenes::PlanSettings settings, ProgressBar& bar) {
   const std::string unfinished = (std::filesystem::path(given.out) / kUnfinishedPlan).string();
@@ -157,7 +158,7 @@ scenes::PlanResult planned(const PlanArguments& given, const scenes::Scene& scen
   std::optional<scenes::PlanFindings> known;
   if (given.is_resumed) {
     known = readFindings(unfinished, key);
-    if (!known) say("no " + unfinished + ": there is nothing to resume, and all is planned");
+    if (!known) say("no " + unfinished + ": there is nothing to resume, so the whole assembly is planned");
   }
   scenes::PlanFindings found;
   if (known) settings.known = &*known;
@@ -172,7 +173,7 @@ scenes::PlanResult planned(const PlanArguments& given, const scenes::Scene& scen
                   found.taken_off.size());
       for (std::size_t i = 0; i < found.taken_off.size(); ++i)
         std::printf("%s'%s'", i == 0 ? ": " : ", ", found.taken_off[i].c_str());
-      std::printf("; kept in %s, go on with --resume\n", unfinished.c_str());
+      std::printf("; kept in %s, continue with --resume\n", unfinished.c_str());
     }
     throw;
   }
@@ -181,12 +182,12 @@ scenes::PlanResult planned(const PlanArguments& given, const scenes::Scene& scen
 }  // namespace
 
 void addPlanOptions(CLI::App& command, PlanArguments& given) {
-  command.add_option("--base", given.bases, "a part that stands still, by name; may be given several times")
+  command.add_option("--base", given.bases, "name of a part that does not move; may be given several times")
       ->type_name("NAME");
   command.add_flag("--bench", given.has_bench,
-                   "lay the parts out around the base; each is lifted over everything to where it goes");
+                   "lay the parts out around the base; each is lifted over all others to its place");
   command.add_flag("--resume", given.is_resumed,
-                   "go on where an earlier plan into the same folder was stopped (Ctrl-C)");
+                   "continue an earlier plan into the same folder that was stopped (Ctrl-C)");
 }
 
 PlannedFolder planInto(const PlanArguments& given, ProgressBar& bar) {
@@ -226,7 +227,7 @@ PlannedFolder planInto(const PlanArguments& given, ProgressBar& bar) {
   std::fputs(planTables(plan).c_str(), stdout);
   for (const scenes::WayFault& fault : faults) warn(inWords(fault));
   std::printf("%s; scene: %s/scene.toml\n", planHeadline(plan).c_str(), given.out.c_str());
-  // The planner has said already what nothing carries.
+  // The plan has already reported parts that nothing carries.
   const bool is_free = std::ranges::all_of(
       faults, [](const scenes::WayFault& fault) { return fault.kind == scenes::WayFaultKind::Support; });
   PlannedFolder folder{plan.blocked() > 0 || !is_free ? kBad : kGood, plan.steps(), {}};
@@ -254,7 +255,7 @@ std::map<std::string, double> plannedClearances(const std::string& scene_file) {
       }
     }
   } catch (const json::exception&) {
-    return {};  // of another program
+    return {};  // written by another program
   }
   return out;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Plans an assembly into a folder: what `vps plan` does, and `vps assemble` for a CAD file.
+// Plans an assembly into a folder, for `vps plan` and for `vps assemble` of CAD files.
 #pragma once
 
 #include <map>
@@ -18,35 +18,36 @@ struct PlanArguments {
   CadArguments cad;
   std::vector<std::string> bases;
   bool is_forced = false;
-  bool is_resumed = false;  ///< takes what an earlier plan into `out` had found when it was stopped
+  bool is_resumed = false;  ///< continues from the results that a stopped plan left in `out`
   bool has_bench = false;   ///< see scenes::PlanSettings
 };
 
 /// Adds --base, --bench and --resume.
 void addPlanOptions(CLI::App& command, PlanArguments& given);
 
-/// What planInto() came to.
+/// Result of planInto().
 struct PlannedFolder {
   int status = 0;         ///< the program's exit status
-  std::size_t steps = 0;  ///< of all assemblies
+  std::size_t steps = 0;  ///< number of steps of all assemblies
   struct SceneFile {
     std::string path;
     bool has_steps = true;  ///< false: none of its parts can be taken off
   };
-  /// Of the product, then of its subassemblies; each comes after the one that mounts it.
+  /// The scene of the product, then those of its subassemblies, each after the assembly that mounts it.
   std::vector<SceneFile> scene_files;
 };
 
-/// Where planInto() keeps what it had found when it was stopped.
+/// File in which a stopped planInto() keeps its results.
 inline constexpr const char* kUnfinishedPlan = "unfinished_plan.json";
 
 /// Plans CAD files or a scene, writes scene.toml, the scene files of subassemblies, meshes, plan.json,
-/// plan.dot and plan.svg, and prints the plan and what is wrong with it. Parts of a CAD file that have very
-/// many triangles are read with a greater deflection, and this is said, unless --deflection is given.
+/// plan.dot and plan.svg, and prints the plan and its faults. Unless --deflection is given, CAD parts with
+/// very many triangles are read with a greater deflection, which is reported.
 PlannedFolder planInto(const PlanArguments& given, ProgressBar& bar);
 
-/// The clearances of the ways of a scene file, by part, from the plan.json beside it; empty where there is
-/// none, or where it has no assembly of that name. Those of more than kNearWay_m are that.
+/// The least clearance on the path of each part of a scene file, from the plan.json in the same folder.
+/// Clearances of more than kNearWay_m count as kNearWay_m. Empty if there is no plan.json, or if it has no
+/// assembly of that name.
 std::map<std::string, double> plannedClearances(const std::string& scene_file);
 
 }  // namespace vps::viewer

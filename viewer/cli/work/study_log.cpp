@@ -13,7 +13,8 @@ namespace vps::viewer {
 
 namespace {
 
-constexpr const char* kLogKey = "vps_study_log";  // of the first line; its value is the format's version
+constexpr const char* kLogKey =
+    "vps_study_log";  // key of the first line; its value is the version of the format
 
 /// Numbers are written with as many digits as give the same bits.
 std::string lineOf(const Json& json) {
@@ -51,8 +52,8 @@ StudyLog::StudyLog(const std::string& file, const std::string& fingerprint,
   std::string text(std::istreambuf_iterator<char>(in), {});
   in.close();
   const std::size_t whole = text.rfind('\n') == std::string::npos ? 0 : text.rfind('\n') + 1;
-  if (whole == 0 && !text.empty() && text.front() != '{')  // nothing of ours: do not cut it
-    throw LoadError(file, "", "is no log of a study; choose another file for --log");
+  if (whole == 0 && !text.empty() && text.front() != '{')  // not a log: leave the file unchanged
+    throw LoadError(file, "", "is not the log of a study; choose another file for --log");
   std::size_t number = 0;
   for (std::size_t from = 0; from < whole;) {
     const std::size_t to = text.find('\n', from);
@@ -73,7 +74,7 @@ void StudyLog::readLine(const std::string& line, std::size_t number) {
   const Json json = Json::parse(line, nullptr, false);
   const bool is_head = json.is_object() && json.contains(kLogKey);
   if (number == 1 && !is_head)
-    throw LoadError(file_, "", "is no log of a study; choose another file for --log");
+    throw LoadError(file_, "", "is not the log of a study; choose another file for --log");
   if (is_head) {
     if (json.value("study", "") == fingerprint_) return;
     throw LoadError(file_, "",

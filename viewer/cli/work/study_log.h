@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The runs of a study in a file, a line of JSON for each, so that a study that was cut goes on where it was.
+// A log file with a line of JSON for each run of a study, so that an interrupted study can continue.
 #pragma once
 
 #include <cstdio>
@@ -11,20 +11,21 @@
 
 namespace vps::viewer {
 
-/// The line of a run, without its end.
+/// The line of a run, without the line end.
 std::string studyLine(const scenes::StudyRun& run);
 
-/// A log begins with a line that names the study by its fingerprint. Logs of one study may be joined end to
-/// end; a run that is there twice counts once.
+/// A log begins with a line that names the study by its fingerprint. Logs of one study may be concatenated; a
+/// run that occurs twice counts once.
 class StudyLog {
  public:
-  /// Opens the log, or begins it, and reads the runs that are there. A last line that is cut is removed.
-  /// Throws LoadError where the file holds another study, is no log, or cannot be written.
+  /// Opens or creates the log, and reads its runs. An incomplete last line is removed. Throws LoadError if
+  /// the file belongs
+  /// to another study, is not a log, or cannot be written.
   StudyLog(const std::string& file, const std::string& fingerprint,
            const std::vector<scenes::StudyVariable>& variables);
 
   [[nodiscard]] const std::vector<scenes::StudyRun>& runs() const { return runs_; }
-  /// Appends a run, which the system has before this returns. Throws LoadError when it cannot.
+  /// Appends a run and flushes the file. Throws LoadError if that fails.
   void add(const scenes::StudyRun& run);
 
  private:

@@ -37,9 +37,9 @@ void makeOnDask(const std::string& address, const std::string& log, const std::v
       words.push_back(word);
     tasks += words.dump(-1, ' ', true, Json::error_handler_t::replace) + "\n";
   }
-  // A script that ends early leaves a pipe that nobody reads.
+  // If the script ends early, writing to its pipe would raise SIGPIPE.
   auto* const before = std::signal(SIGPIPE, SIG_IGN);
-  // Dask as Debian packages it is not seen by a python3 that a user has put before that of the system.
+  // Debian's package of Dask is not visible to another python3 that comes first on the PATH.
   const std::string line =
       "python=/usr/bin/python3; python3 -c 'import distributed' >/dev/null 2>&1 </dev/null && "
       "python=python3; "
@@ -56,7 +56,7 @@ void makeOnDask(const std::string& address, const std::string& log, const std::v
   if (status == 0) return;
   if (WIFEXITED(status) && WEXITSTATUS(status) == 127)
     throw LoadError("", "", "--dask needs python3 with Dask (Debian: python3-distributed)");
-  throw LoadError(log, "", "has not all runs; the same command goes on with those that are missing");
+  throw LoadError(log, "", "does not contain all runs; the same command makes the missing ones");
 }
 
 }  // namespace vps::viewer

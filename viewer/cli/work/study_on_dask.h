@@ -9,7 +9,7 @@
 
 namespace vps::viewer {
 
-/// A word of a POSIX shell.
+/// The word in single quotes, for a POSIX shell.
 inline std::string quoted(const std::string& word) {
   std::string out = "'";
   for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
@@ -19,15 +19,15 @@ inline std::string quoted(const std::string& word) {
 /// The Python script that shares tasks among workers: study_on_dask.py.
 extern const char* const kStudyOnDaskScript;
 
-/// First and last number of runs.
+/// Numbers of the first and the last run of a range.
 using RunRange = std::pair<std::size_t, std::size_t>;
 
-/// Shares the numbers, which ascend, in ranges of about equal length without gaps.
+/// Divides the numbers, which must ascend, into ranges of about equal length without gaps.
 std::vector<RunRange> rangesOf(const std::vector<std::size_t>& numbers, std::size_t tasks);
 
-/// Makes runs and appends them to the log. Tasks that were made are in the log whatever happens to the
-/// others. Throws LoadError where not all of them were made; the script has said why by then.
-/// @param command  words of the command of which a task is made by --first, --last and --log
+/// Makes runs on the workers and appends them to the log. Finished tasks are in the log even if others fail.
+/// Throws LoadError if runs are missing, after the script has printed the reason.
+/// @param command  words of the command; each task appends --first, --last and --log
 void makeOnDask(const std::string& address, const std::string& log, const std::vector<std::string>& command,
                 const std::vector<RunRange>& ranges);
 

@@ -3,17 +3,17 @@
 
 usage: study_on_dask.py ADDRESS LOG, with a task on each line of standard input: the words of a command, as JSON.
 
-A task that was on a worker that died is made again on another one. A task that fails is named, and the others go on.
+A task whose worker died is made again on another worker. A task that fails is reported, and the others continue.
 """
 import json
 import os
 import sys
 
-WAIT_S = 10  # assumed: a scheduler that is there answers well within
+WAIT_S = 10  # assumed: a running scheduler answers much sooner
 
 
 def make(words):
-    """On a worker: the log that the command writes."""
+    """Runs the command on a worker. Returns the log that the command writes."""
     import os
     import subprocess
     import tempfile

@@ -27,7 +27,7 @@ struct CheckArguments {
 struct Assembly {
   std::string name;
   std::vector<scenes::DrawnPart> parts;
-  std::vector<std::string> read;  ///< files
+  std::vector<std::string> read;  ///< files that were read
 };
 
 Assembly readScene(const CheckArguments& given, const Progress& progress) {
@@ -76,7 +76,7 @@ int runCheck(const CheckArguments& given) {
   bar.clear();
   std::fputs(checkTables(result).c_str(), stdout);
   std::printf("%s\n", checkHeadline(result).c_str());
-  pdf.write(page);  // last, so that nothing is lost where it fails
+  pdf.write(page);  // last, so that a failure loses no other result
   return scenes::exitStatusOf(result.verdict());
 }
 
@@ -85,17 +85,20 @@ int runCheck(const CheckArguments& given) {
 std::function<int()> addCheck(CLI::App& command) {
   const auto given = std::make_shared<CheckArguments>();
   command
-      .add_option("assembly", given->assembly,
-                  "a CAD file, or several in one frame, or a scene file (TOML): its parts at their targets")
+      .add_option(
+          "assembly", given->assembly,
+          "CAD files that share one frame, or a scene file (TOML), whose parts are then at their targets")
       ->required()
       ->type_name("CAD|SCENE");
   addCadOptions(command, given->cad);
   addCacheOptions(command, given->cad.cache);
   command.add_option("--near", given->near,
                      "clearance up to which pairs are reported, with unit (default: 1mm)");
-  command.add_flag("--no-play", given->has_no_play, "leave out play and ways out, which take longest");
-  command.add_option("--csv", given->csv, "writes each number with its error on a line")->type_name("FILE");
-  command.add_option("--html", given->html, "writes a page with tables")->type_name("FILE");
+  command.add_flag("--no-play", given->has_no_play,
+                   "leave out play and ways out, which take the longest time");
+  command.add_option("--csv", given->csv, "write each number with its error on a line of this file")
+      ->type_name("FILE");
+  command.add_option("--html", given->html, "write a page with tables")->type_name("FILE");
   addPdfOption(command, given->pdf);
   addJsonOption(command, given->json);
   return [given] { return runCheck(*given); };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vps compare: training; a trainee's recorded run against an expert's.
+// vps compare: compares a trainee's recorded run with an expert's, for training.
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -69,8 +69,8 @@ std::function<int()> addCompare(CLI::App& command) {
       ->type_name("TRAINEE");
   command.add_option("-o,--out", given->out, "folder for compare.html with pictures, and compare.json")
       ->type_name("DIR");
-  command.add_flag("--pdf", given->has_pdf, "compare.pdf as well, printed by Chromium")->needs("--out");
-  command.add_option("--pass", given->pass, "score that is needed: below it the exit status is 1")
+  command.add_flag("--pdf", given->has_pdf, "also write compare.pdf, printed by Chromium")->needs("--out");
+  command.add_option("--pass", given->pass, "required score: below it the exit status is 1")
       ->check(CLI::Range(0.0, 100.0))
       ->type_name("SCORE");
   addJsonOption(command, given->json);

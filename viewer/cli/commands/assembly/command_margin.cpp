@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vps margin: how much room each step of a procedure has.
+// vps margin: measures how much the part of each step may grow before the step fails.
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -28,7 +28,7 @@ struct MarginArguments {
 };
 
 std::string marginTable(const scenes::MarginResult& result) {
-  Table table({"<step", "goes with [um]", "fails with [um]", "geometry allows [um]", "<fails as",
+  Table table({"<step", "fits with [um]", "fails with [um]", "geometry allows [um]", "<fails as",
                "position [um]", "angle [mrad]"});
   for (const scenes::StepMargin& step : result.steps)
     table.add({step.part, step.goes ? um(step.growth_m) : "-",
@@ -39,13 +39,13 @@ std::string marginTable(const scenes::MarginResult& result) {
   return table.text();
 }
 
-/// The tightest step is the first.
+/// Prints the table and the tightest step, which is the first. Returns the exit status.
 int tell(const scenes::MarginResult& result) {
   std::fputs(marginTable(result).c_str(), stdout);
   if (result.steps.empty()) return kCouldNot;
   const scenes::StepMargin& worst = result.steps.front();
   if (!worst.goes) {
-    std::printf("'%s' does not go as drawn: %s\n", worst.part.c_str(), worst.fails_why.c_str());
+    std::printf("'%s' fails as drawn: %s\n", worst.part.c_str(), worst.fails_why.c_str());
     return scenes::exitStatusOf(worst.fails_as);
   }
   std::printf("The tightest step is '%s': each of its faces may grow by %s um%s.\n", worst.part.c_str(),
@@ -63,7 +63,7 @@ int runMargin(const MarginArguments& given) {
   ProgressBar bar;
   scenes::Scene scene = sceneFrom(given.scene.scene, given.scene.fidelity,
                                   {given.json, given.html, given.pdf}, given.scene.cache);
-  // No cache: each model is of a size of its own, and would push out those that are used again.
+  // No cache: each model has another size and would displace models that are used again.
   setModelOptions(options, bar, std::nullopt, given.scene.models_everything);
   const scenes::MarginResult result = scenes::measureMargins(scene, options);
   throwIfStopped();
@@ -72,7 +72,7 @@ int runMargin(const MarginArguments& given) {
   html.write(page);
   bar.clear();
   const int status = tell(result);
-  pdf.write(page);  // last, so that nothing is lost where it fails
+  pdf.write(page);  // last, so that a failure loses no other result
   return status;
 }
 
@@ -81,10 +81,12 @@ int runMargin(const MarginArguments& given) {
 std::function<int()> addMargin(CLI::App& command) {
   const auto given = std::make_shared<MarginArguments>();
   addSceneArgument(command, given->scene.scene);
-  command.add_option("--resolution", given->resolution, "of the growth, with unit")->capture_default_str();
-  command.add_flag("!--geometry", given->has_contact,
-                   "by exact distances alone, without runs of the hand: quick, and an upper bound");
-  command.add_option("--html", given->html, "writes a page with bars")->type_name("FILE");
+  command.add_option("--resolution", given->resolution, "resolution of the growth, with unit")
+      ->capture_default_str();
+  command.add_flag(
+      "!--geometry", given->has_contact,
+      "use exact distances alone, without runs of the virtual operator: quick, and an upper bound");
+  command.add_option("--html", given->html, "write a page with bars")->type_name("FILE");
   addPdfOption(command, given->pdf);
   addFidelityOptions(command, given->scene.fidelity);
   addJsonOption(command, given->json);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vps plan: order and ways of an assembly, as a scene that vps assemble runs.
+// vps plan: finds order and paths of an assembly, and writes them as a scene that vps assemble runs.
 #include <cstdio>
 #include <memory>
 
@@ -51,10 +51,9 @@ int runPlan(const PlanCommandArguments& given) {
 std::function<int()> addPlan(CLI::App& command) {
   const auto given = std::make_shared<PlanCommandArguments>();
   command
-      .add_option(
-          "assembly", given->assembly,
-          "a CAD file, or several in one frame, or a scene file (TOML): its parts at their targets, its "
-          "steps are replaced")
+      .add_option("assembly", given->assembly,
+                  "CAD files that share one frame, or a scene file (TOML), whose parts are then at their "
+                  "targets and whose steps are replaced")
       ->required()
       ->type_name("CAD|SCENE");
   command
@@ -64,10 +63,9 @@ std::function<int()> addPlan(CLI::App& command) {
   addCacheOptions(command, given->cad.cache);
   addPlanOptions(command, *given);
   command.add_flag("--force", given->is_forced, "replace a scene.toml that exists");
-  command.add_flag(
-      "--verify", given->is_verify,
-      "plan nothing: check that the ways of a scene lead through no part in place, keep the clearance of "
-      "the plan.json beside it, and that what is let go is carried");
+  command.add_flag("--verify", given->is_verify,
+                   "plan nothing: check that the paths of a scene lead through no part in place and keep the "
+                   "clearance in the plan.json next to it, and that released parts are carried");
   addJsonOption(command, given->json);
   return [given] { return runPlan(*given); };
 }

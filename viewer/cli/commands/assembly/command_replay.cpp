@@ -24,7 +24,7 @@ struct ReplayArguments {
   CacheArguments cache;
   std::string out, json;
   std::string csv;              ///< folder for the recorded channels as tables; empty: none
-  bool is_tables_only = false;  ///< do not run
+  bool is_tables_only = false;  ///< writes the tables and does not run
 };
 
 void writeTables(const device::RecordedRun& run, const OutputFolder& out) {
@@ -34,7 +34,7 @@ void writeTables(const device::RecordedRun& run, const OutputFolder& out) {
   out.write("about.csv", about);
 }
 
-/// Prints what the replay found; returns the exit status.
+/// Prints the result of the replay. Returns the exit status.
 int verdict(const device::RecordedRun& run, const scenes::ReplayResult& replayed) {
   const double end_s = replayed.result.simulated_s;
   if (!replayed.departure.empty()) {
@@ -91,7 +91,7 @@ int runReplay(const ReplayArguments& given) {
 
 std::function<int()> addReplay(CLI::App& command) {
   const auto given = std::make_shared<ReplayArguments>();
-  command.add_option("recording", given->recording, "what vps assemble --record wrote")
+  command.add_option("recording", given->recording, "recording that vps assemble --record wrote")
       ->required()
       ->type_name("RECORDING");
   command.add_option("--csv", given->csv, "folder for the recorded channels as tables")->type_name("DIR");

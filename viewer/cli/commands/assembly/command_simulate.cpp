@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vps simulate: the bodies of a scene move under gravity, without a hand.
+// vps simulate: moves the bodies of a scene under gravity, without an operator.
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -45,7 +45,7 @@ std::string traceRow(double time_s, const std::vector<scenes::BodyState>& bodies
   return csvLine(cells);
 }
 
-/// What overlaps, by exact distance. Returns false if more does than the scene's limit.
+/// Prints the overlaps by exact distance. Returns false if one exceeds the scene's limit.
 bool printOverlap(const scenes::JudgedOverlap& judged) {
   const auto um = [](double length_m) { return fixed(length_m * 1e6, 2); };
   for (const auto& [start, apart_s, end_depth_m] : judged.at_start)
@@ -65,7 +65,7 @@ bool printOverlap(const scenes::JudgedOverlap& judged) {
   return judged.isWithinLimit();
 }
 
-/// The deepest overlap of the run, and what it is at most at any time.
+/// Describes the deepest overlap of the run, and its upper bound at any time.
 std::string depthInWords(const scenes::SimulateResult& result) {
   const auto um = [](double length_m) { return fixed(length_m * 1e6, 2) + " um"; };
   const scenes::PairOverlap& deepest = result.exact.deepest;
@@ -74,9 +74,9 @@ std::string depthInWords(const scenes::SimulateResult& result) {
                                                 : "";
   const std::string found = "deepest " + um(deepest.depth_m) + " by exact distance" + which;
   const std::string bound = um(result.exact.bound_m);
-  if (!result.exact.is_searched) return found + "; not searched at all times: at most " + bound;
+  if (!result.exact.is_searched) return found + "; the search was not completed: at most " + bound;
   if (result.exact.bound_m <= 2e-6 + 1.05 * deepest.depth_m) return found + ", at no time more than " + bound;
-  return found + "; parts that start inside each other may be deeper for a moment, by no more than " + bound +
+  return found + "; parts that overlap at the start may be deeper for a moment, by at most " + bound +
          " in all";
 }
 
@@ -137,14 +137,14 @@ std::function<int()> addSimulate(CLI::App& command) {
   addSceneOptions(command, given->scene);
   command.add_option("--seconds", given->seconds, "simulated time")->capture_default_str()->type_name("S");
   command
-      .add_option("--judge-every", given->judge_every,
-                  "measure the overlap of all bodies after every so many steps, and search the steps between "
-                  "them ten "
-                  "times as long as without this option; exit status 1 if it exceeds the scene's limit")
+      .add_option(
+          "--judge-every", given->judge_every,
+          "measure the overlap of all bodies after every so many steps, and search the steps between them "
+          "ten times as long as without this option; exit status 1 if an overlap exceeds the scene's limit")
       ->type_name("STEPS")
       ->check(CLI::PositiveNumber);
   command.add_flag("--real-time", given->is_real_time,
-                   "start each step by the clock when it is due, and count missed periods");
+                   "start each step when it is due in real time, and count missed periods");
   command.add_option("--trace", given->trace, "CSV file with a row for each step")->type_name("FILE");
   addJsonOption(command, given->json);
   return [given] { return runSimulate(*given); };

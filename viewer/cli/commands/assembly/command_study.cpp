@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vps study: the yield of a procedure whose parts are off within their tolerances.
+// vps study: estimates the yield of a procedure whose parts vary within their tolerances.
 #include <algorithm>
 #include <cctype>
 #include <cstdint>
@@ -25,23 +25,25 @@ namespace vps::viewer {
 
 namespace {
 
-/// Many more than workers, so that none waits long for the last; few beside the start of a process.
+/// Many more tasks than workers, so that no worker is idle for long at the end; few enough that starting a
+/// process for each costs little.
 constexpr std::size_t kDaskTasks = 64;
 
 struct StudyArguments {
   std::string scene;
   FidelityArguments fidelity;
-  std::size_t runs = 100, first = 0, last = 0;  ///< last: 0: of all runs
+  std::size_t runs = 100, first = 0,
+              last = 0;  ///< numbers of the runs to make; without --last up to the last run
   std::uint64_t seed = 1;
   unsigned threads = 0;
   bool has_contact = true;
-  std::size_t tasks = 0;             ///< of --print-tasks; 0: not given
-  std::optional<std::size_t> only;   ///< of --repeat
+  std::size_t tasks = 0;             ///< value of --print-tasks; 0: not given
+  std::optional<std::size_t> only;   ///< value of --repeat
   std::string log, json, html, pdf;  ///< empty: none
-  std::string dask;                  ///< address of a scheduler; empty: on this machine
+  std::string dask;  ///< address of a Dask scheduler; empty: the runs are made on this machine
 };
 
-/// The command that makes runs of this study; which ones, is added to it.
+/// The command that makes runs of this study; the caller appends the range of runs.
 std::vector<std::string> taskWords(const StudyArguments& given, const std::string& scene) {
   std::vector<std::string> words = {
       "vps", "study", scene, "--runs", std::to_string(given.runs), "--seed", std::to_string(given.seed)};
@@ -57,15 +59,15 @@ std::vector<std::string> taskWords(const StudyArguments& given, const std::strin
   return words;
 }
 
-/// A shell takes it as it is.
+/// Whether a shell needs no quotes around the word.
 bool isPlain(const std::string& word) {
   return std::ranges::all_of(word, [](unsigned char c) {
     return std::isalnum(c) != 0 || c == '-' || c == '.' || c == '/' || c == '_';
   });
 }
 
-/// One line for each task, which a shell, GNU parallel or an array job of Slurm runs. Each has a log of its
-/// own.
+/// Prints a command for each task, for a shell, GNU parallel or an array job of Slurm. Each task has its own
+/// log.
 void printTasks(const StudyArguments& given) {
   const std::string log = given.log.empty() ? "study.jsonl" : given.log;
   std::string common;
@@ -90,7 +92,7 @@ void printResult(const scenes::StudyResult& result) {
               result.runs.size() - result.good - result.blocked);
 }
 
-/// The runs that are asked for and not in the log.
+/// Numbers of the requested runs that are not in the log.
 std::vector<std::size_t> missingRuns(const StudyArguments& given, const std::vector<scenes::StudyRun>& done) {
   std::set<std::size_t> known;
   for (const scenes::StudyRun& run : done) known.insert(run.run);
@@ -128,7 +130,7 @@ int repeatRun(const scenes::Scene& scene, const std::vector<scenes::StudyVariabl
 int runStudyCommand(StudyArguments given, bool has_last) {
   requireRange(given, has_last);
   if (!given.dask.empty() && given.log.empty())
-    throw LoadError("", "", "--dask needs --log FILE, where the runs of all workers are gathered");
+    throw LoadError("", "", "--dask needs --log FILE, which collects the runs of all workers");
   if (given.tasks > 0) {
     printTasks(given);
     return kGood;
@@ -169,7 +171,7 @@ int runStudyCommand(StudyArguments given, bool has_last) {
   html.write(page);
   bar.clear();
   printResult(result);
-  pdf.write(page);  // last, so that nothing is lost where it fails
+  pdf.write(page);  // last, so that a failure loses no other result
   return kGood;
 }
 
@@ -181,28 +183,29 @@ std::function<int()> addStudy(CLI::App& command) {
   command.add_option("--runs", given->runs, "number of runs")
       ->capture_default_str()
       ->check(CLI::Range(std::size_t{1}, std::size_t{100000000}));
-  command.add_option("--seed", given->seed, "of the deviations")->capture_default_str();
-  command.add_flag("!--geometry", given->has_contact,
-                   "judge by exact distances alone, without runs of the hand: quick, and an upper bound");
+  command.add_option("--seed", given->seed, "seed of the random deviations")->capture_default_str();
+  command.add_flag(
+      "!--geometry", given->has_contact,
+      "judge by exact distances alone, without runs of the virtual operator: quick, and an upper bound");
   command
       .add_option("--log", given->log,
-                  "file with a line for each run; a study that was cut goes on with what is missing there")
+                  "file with a line for each run; an interrupted study continues with the runs that are "
+                  "missing in it")
       ->type_name("FILE");
   command.add_option("--threads", given->threads, "runs at the same time (default: one for each core)");
   command.add_option("--first", given->first, "make only the runs from this number on");
-  const CLI::Option* last = command.add_option("--last", given->last, "and up to this one");
+  const CLI::Option* last = command.add_option("--last", given->last, "make only the runs up to this number");
   command.add_option("--repeat", given->only, "make this run again, print it, and compare it with the log");
   command
       .add_option("--print-tasks", given->tasks,
-                  "print so many commands that share the runs, for GNU parallel or Slurm, and stop")
+                  "print this many commands that share the runs, for GNU parallel or Slurm, and end")
       ->check(CLI::Range(std::size_t{1}, std::size_t{1000000}));
   command
-      .add_option(
-          "--dask", given->dask,
-          "make the runs on the workers of this Dask scheduler; they need vps and the scene's files in the "
-          "same place")
+      .add_option("--dask", given->dask,
+                  "make the runs on the workers of this Dask scheduler, which need vps and the scene's files "
+                  "at the same paths")
       ->type_name("ADDRESS");
-  command.add_option("--html", given->html, "writes a page with histograms")->type_name("FILE");
+  command.add_option("--html", given->html, "write a page with histograms")->type_name("FILE");
   addPdfOption(command, given->pdf);
   addFidelityOptions(command, given->fidelity);
   addJsonOption(command, given->json);

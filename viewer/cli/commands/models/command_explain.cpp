@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vps explain: what of a scene is modelled, what not, why, and at what cost.
+// vps explain: prints which parts of a scene are modelled and which are not, why, and at what cost.
 #include <cstdio>
 #include <map>
 #include <memory>
@@ -19,15 +19,16 @@ namespace {
 struct ExplainArguments {
   SceneArguments scene;
   std::string json;
-  bool is_for_simulate = false;  ///< what vps simulate would model; always so for a scene without steps
-  bool is_measured = false;      ///< builds everything, instead of estimating it
+  bool is_for_simulate =
+      false;                 ///< explains vps simulate instead of vps assemble, as for a scene without steps
+  bool is_measured = false;  ///< builds the models instead of estimating their cost
 };
 
 std::string megabytes(std::size_t bytes) {
   return fixed(1e-6 * static_cast<double>(bytes), 2);
 }
 
-constexpr std::size_t kNamed = 12;  // of more parts of a kind, one is named and the others are counted
+constexpr std::size_t kNamed = 12;  // a longer list names one part and counts the others
 
 std::string othersOf(std::size_t count) {
   return " and " + std::to_string(count) + " others";
@@ -58,8 +59,8 @@ std::string whereOf(const scenes::PartModelPlan& part) {
   return "near " + std::to_string(part.kept_P.size()) + (part.kept_P.size() == 1 ? " path" : " paths");
 }
 
-/// Parts that are not modelled, in groups that have the same reason. A group of more than kNamed has one row,
-/// in place of its first part: a product has thousands that nothing comes near.
+/// Groups the parts that are not modelled for the same reason. A group of more than kNamed parts has one row,
+/// at its first part, because a product can have thousands of parts that no moving part comes near.
 class Folded {
  public:
   Folded(const scenes::Scene& scene, const scenes::ModelPlan& plan) : first_(plan.parts.size()) {
@@ -94,8 +95,8 @@ class Folded {
   struct Group {
     std::size_t others = 0, triangles = 0;
   };
-  std::vector<std::size_t> first_;  // by part: the part in whose row it is counted, itself if it has its own
-  std::map<std::size_t, Group> groups_;  // by their first part
+  std::vector<std::size_t> first_;  // by part: the part whose row counts it; the part itself if it has a row
+  std::map<std::size_t, Group> groups_;  // by the first part of the group
 };
 
 std::string tableOfParts(const scenes::Scene& scene, const scenes::ExplainedModels& explained) {
@@ -157,7 +158,7 @@ int runExplain(const ExplainArguments& given) {
   const scenes::Scene scene =
       sceneFrom(given.scene.scene, given.scene.fidelity, {given.json}, given.scene.cache);
   scenes::ModelOptions options;
-  // The time to build is measured, so that models are taken only from a folder that was asked for.
+  // Build times are measured, so models come from a cache only if --cache names its folder.
   const std::optional<VoxMapCache> cache = cacheFrom(given.scene.cache.folder);
   setModelOptions(options, bar, cache, given.scene.models_everything);
   const scenes::ModelPurpose purpose = given.is_for_simulate || scene.steps.empty()
@@ -185,7 +186,7 @@ int runExplain(const ExplainArguments& given) {
   if (answer.everything)
     std::fputs(totalOf("with --model-everything  ", answer.everything->cost).c_str(), stdout);
   if (!given.is_measured)
-    std::fputs("estimated from areas and edges; --measure builds all of it and measures memory and time\n",
+    std::fputs("estimated from areas and edges; --measure builds the models and measures memory and time\n",
                stdout);
   return kGood;
 }
@@ -199,7 +200,7 @@ std::function<int()> addExplain(CLI::App& command) {
                    "explain vps simulate instead of vps assemble; the default for a scene without steps");
   command.add_flag("--measure", given->is_measured,
                    "build the models, and those of --model-everything, and measure their memory and time; "
-                   "without it both are estimated");
+                   "without this option both are estimated");
   addJsonOption(command, given->json);
   return [given] { return runExplain(*given); };
 }

@@ -24,13 +24,13 @@ namespace {
 
 struct ExportArguments {
   std::string source;  ///< CAD file, scene or level set
-  std::string part;    ///< of a scene; empty: the only one
+  std::string part;    ///< name of a part of a scene; empty: its only part
   std::vector<std::string> out;
   std::string units, cache, json;
   FidelityArguments fidelity;
 };
 
-/// What is exported, in the part's own frame, or for a CAD file in the file's.
+/// The geometry to export: in the part's own frame, or for a CAD file in the file's frame.
 struct Source {
   Mesh mesh;
   std::optional<VoxMap> map;  ///< of a .vdb file, which has no mesh
@@ -60,7 +60,8 @@ Source sourceFrom(const ExportArguments& given) {
     requireUsable(source.mesh, given.source, given.part);
     return source;
   }
-  if (!given.part.empty()) throw LoadError("", "", "--part needs a scene; " + given.source + " is none");
+  if (!given.part.empty())
+    throw LoadError("", "", "--part needs a scene; " + given.source + " is not a scene");
   if (extension == ".vdb") {
     return {{}, loadLevelSet(given.source), {}};
   }
@@ -115,7 +116,7 @@ ExportedFileAnswer writeModel(const Source& source, const ExportArguments& given
   return row;
 }
 
-/// Before the work, since a voxmap takes a while to build.
+/// Checks the file name before the work, because building a voxmap takes time.
 void requireExportable(const std::string& file) {
   const std::string extension = lowerExtension(file);
   if (extension != ".vdb" && extension != ".ply" && extension != ".stl")

@@ -21,7 +21,7 @@
 #include "vps_scenes/fits/check.h"
 #include "vps_scenes/fits/fasteners.h"
 #include "vps_scenes/planning/plan.h"
-#include "vps_scenes/scene/scene_groups.h"
+#include "vps_scenes/scene/scene_parts.h"
 #include "vps_scenes/scene/scene_text.h"
 
 namespace vps::viewer {
@@ -68,7 +68,7 @@ Proposal propose(const std::vector<scenes::ScenePart>& bodies) {
   return proposal;
 }
 
-/// A fixed group has one fixed part.
+/// Whether `part` is the part of `body` that is marked as fixed: of a group only the first part is.
 bool isOf(const std::string& part, const std::string& body, const std::vector<scenes::PartGroup>& groups) {
   for (const scenes::PartGroup& group : groups)
     if (group.name == body) return part == group.parts.front();
@@ -96,7 +96,7 @@ std::string textOf(const scenes::ImportedCad& cad, const std::vector<std::string
   if (!proposal.steps.empty())
     out +=
         R"(# A proposal: the largest part is fixed, the others follow upwards along z. Correct the order of the steps, or let
-# vps plan find order and ways.
+# vps plan find order and paths.
 )";
   for (const std::string& name : proposal.steps) out += "[[step]]\npart = " + scenes::tomlText(name) + "\n\n";
   out.pop_back();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vps query: contact of two parts at given poses of B in A.
+// vps query: computes the contact of two parts at given poses of B in A.
 #include <algorithm>
 #include <charconv>
 #include <chrono>
@@ -36,7 +36,7 @@ struct QueryArguments {
   std::string cache;  ///< folder for voxmaps; empty: none
   FidelityArguments fidelity;
   double stiffness_N_per_m3 = 1e12;
-  int repeats = 0;  ///< timed runs of each pose; 0: as many as make 100 in all
+  int repeats = 0;  ///< timed runs of each pose; 0: about 100 runs shared by all poses
 };
 
 double secondsSince(Clock::time_point begun) {
@@ -92,7 +92,7 @@ void warnIfThin(const Mesh& mesh, double voxel_m, const std::string& file) {
          fixed(voxel_m * 1e3, 3) + " mm: depths in it are unreliable; use a finer --voxel");
 }
 
-/// What the two files give: meshes, or the voxmap of A and the pointshell of B themselves.
+/// The contents of the two files: meshes, or the voxmap of A and the pointshell of B.
 struct Operands {
   std::optional<Mesh> mesh_a, mesh_b;
   std::optional<VoxMap> map_a;        ///< A is a .vdb
@@ -170,14 +170,14 @@ OneWayResult queryOneWay(const OneWay& models, const Pose& X_MP, const Vec3& p_M
   return result;
 }
 
-/// Whether the reading is the band's width, where the field ends: that deep or deeper. The tolerance of a
-/// millionth is for the rounding of float.
+/// Whether the depth is the band's width, where the field ends, so that the true depth may be greater. The
+/// tolerance of a millionth covers the rounding of float.
 bool isSaturated(const QueryResult& found, const VoxMap& map) {
   return found.min_distance_m <= -map.band_m() * (1 - 1e-6);
 }
 
 /// @param b_in_a B's points in A's field
-/// @param a_in_b the reverse, if the query is two-sided; each direction then counts half
+/// @param a_in_b A's points in B's field, if the query is two-sided; each direction then counts half
 PoseAnswer queryAt(const Pose& X_AB, const OneWay& b_in_a, const std::optional<OneWay>& a_in_b,
                    const QuerySettings& settings) {
   PoseAnswer answer;
@@ -227,7 +227,7 @@ std::string tableOf(const QueryAnswer& answer) {
   return table.text();
 }
 
-/// Times every query; `repeats` of each pose.
+/// Runs and times the queries, each pose `repeats` times.
 void runPoses(const std::vector<Pose>& poses, std::size_t repeats, const OneWay& b_in_a,
               const std::optional<OneWay>& a_in_b, const QuerySettings& settings, const Progress& progress,
               QueryAnswer& answer) {
@@ -259,7 +259,7 @@ int runQuery(const QueryArguments& given) {
   std::optional<NamedMesh> a, b;
   if (operands.mesh_a) a.emplace(NamedMesh{*operands.mesh_a, given.mesh_a});
   if (operands.mesh_b) b.emplace(NamedMesh{*operands.mesh_b, given.mesh_b});
-  std::string choice;  // the same for both, where both are meshes
+  std::string choice;  // the choice in words; the same for A and B if both are meshes
   const auto fidelityOf = [&](const std::optional<NamedMesh>& mesh, const std::optional<NamedMesh>& other) {
     return mesh ? fidelityFrom(given.fidelity, *mesh, other ? &*other : nullptr, choice) : usual;
   };

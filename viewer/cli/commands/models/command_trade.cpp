@@ -21,7 +21,7 @@ namespace vps::viewer {
 
 namespace {
 
-constexpr double kSeconds = 46;  ///< for measuring; with loading and plotting a trade takes 50 s
+constexpr double kSeconds = 46;  ///< time for measurements; with loading and plotting the command takes 50 s
 
 struct TradeArguments {
   std::string scene;
@@ -44,7 +44,7 @@ void print(const scenes::TradeResult& result) {
   for (const std::string& words : result.left_out) std::printf("left out: %s\n", words.c_str());
 }
 
-/// "64MB", "1.5GB".
+/// Number of bytes in a text such as "64MB" or "1.5GB". Throws LoadError.
 double bytesFromText(const std::string& text) {
   std::size_t used = 0;
   double number = 0;
@@ -56,7 +56,9 @@ double bytesFromText(const std::string& text) {
   const std::string unit = text.substr(used);
   const double scale = unit == "kB" ? 1e3 : unit == "MB" ? 1e6 : unit == "GB" ? 1e9 : 0;
   if (used == 0 || scale == 0 || !(number > 0) || !std::isfinite(number))
-    throw LoadError("", "", "--memory is '" + text + "'; expected more than 0 with kB, MB or GB, as 64MB");
+    throw LoadError(
+        "", "",
+        "--memory is '" + text + "'; expected a number greater than 0 with kB, MB or GB, such as 64MB");
   return scale * number;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vps snapshot: a picture of the finished assembly without a display, and its difference from an earlier one.
+// vps snapshot: draws the finished assembly without a display, and compares the picture with an earlier one.
 #include <algorithm>
 #include <charconv>
 #include <cstdio>
@@ -34,9 +34,10 @@ struct SnapshotArguments {
   bool has_section = false;
   int tolerance = 2;
   std::string display;     ///< display file; empty: one picture from `view`
-  double head_time_s = 0;  ///< of a recorded head
+  double head_time_s = 0;  ///< time at which recorded head poses are used
   std::string stereo = "mono";
-  std::string eye_distance;  ///< in the scene; empty: a thirtieth of the distance
+  std::string
+      eye_distance;  ///< distance between the eyes, in the scene; empty: a thirtieth of the viewing distance
   std::vector<std::string> show;
   CacheArguments cache;
 };
@@ -78,7 +79,8 @@ std::vector<std::string> viewNames() {
   return names;
 }
 
-/// Prints how far the picture is from the wanted one, and fills the answer. Returns whether they agree.
+/// Prints how much the picture differs from the expected one, and fills the answer. Returns whether they
+/// agree.
 bool compareWith(const Image& wanted, const Image& image, const SnapshotArguments& given,
                  SnapshotAnswer& answer) {
   const ImageDifference found = compare(image, wanted, given.tolerance);
@@ -208,18 +210,19 @@ std::function<int()> addSnapshot(CLI::App& command) {
   command.add_option("--size", given->size, "width and height in pixels")
       ->capture_default_str()
       ->type_name("WxH");
-  command.add_option("--view", given->view, "side to look from")
+  command.add_option("--view", given->view, "direction from which the scene is seen")
       ->capture_default_str()
       ->check(CLI::IsMember(viewNames()));
   command.add_flag("--section", given->has_section, "cut away the front half");
   std::vector<std::string> modes;
   for (const StereoMode mode : stereoModes()) modes.emplace_back(toText(mode));
-  command.add_option("--stereo", given->stereo, "how the pictures of both eyes are brought to a screen")
+  command.add_option("--stereo", given->stereo, "how the pictures for both eyes are combined")
       ->capture_default_str()
       ->check(CLI::IsMember(modes));
   command
       .add_option("--eye-distance", given->eye_distance,
-                  "between the eyes, in the scene (2mm); without it a thirtieth of the distance")
+                  "distance between the eyes, in the scene, such as 2mm (default: a thirtieth of the viewing "
+                  "distance)")
       ->type_name("LENGTH");
   command
       .add_option("--display", given->display,
@@ -228,14 +231,13 @@ std::function<int()> addSnapshot(CLI::App& command) {
       ->excludes("--eye-distance");
   command
       .add_option("--head-time", given->head_time_s,
-                  "where a recorded head was at this time [s]; without it at the start")
+                  "time [s] at which recorded head poses are used (default: the start)")
       ->needs("--display")
       ->type_name("SECONDS");
   command
-      .add_option(
-          "--show", given->show,
-          "the models of contact in place of the parts: points, voxels, or points,voxels (points of the "
-          "parts that a step moves)")
+      .add_option("--show", given->show,
+                  "draw the models of contact instead of the parts: points, voxels, or points,voxels (points "
+                  "of the parts that a step moves, voxels of the others)")
       ->delimiter(',')
       ->check(CLI::IsMember({"points", "voxels"}));
   command.add_option("--compare", given->compare, "exit with status 1 if the picture differs from this one")

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vps video: a recording as a film.
+// vps video: makes a film of a recording.
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -25,7 +25,7 @@ struct VideoArguments {
   VideoSettings settings;
 };
 
-/// A track for the film: the recorded run happens again, and is heard.
+/// Makes the sound track of the film by running the recording again. Returns the bytes of a WAV file.
 std::string soundOf(const device::RecordedRun& run, const Progress& progress) {
   HeardRun heard;
   scenes::ReplayOptions options;
@@ -36,7 +36,7 @@ std::string soundOf(const device::RecordedRun& run, const Progress& progress) {
   const scenes::ReplayResult replayed = scenes::replay(run, options);
   throwIfStopped();
   if (!replayed.departure.empty())
-    warn(run.file + " does not run again as it was recorded, so sound and pictures differ from " +
+    warn(run.file + " gives other results when it runs again, so sound and pictures differ from " +
          replayed.departure + " on");
   return heard.wav();
 }
@@ -48,7 +48,7 @@ void requireSound(const VideoArguments& given) {
   if (!given.sound.empty() && lowerExtension(given.sound) != ".wav")
     throw LoadError(
         given.sound, "",
-        "is no WAV file; --sound alone, at the end of the line, makes the track from the recording");
+        "is not a WAV file; --sound alone, at the end of the line, makes the track from the recording");
 }
 
 int runVideo(const VideoArguments& given) {
@@ -81,7 +81,7 @@ int runVideo(const VideoArguments& given) {
   bar.clear();
   std::printf("%zu pictures: %s\n", count, folder.c_str());
   if (!failure.empty())
-    throw LoadError(given.out, "", "is not made: " + failure + "; the pictures are there");
+    throw LoadError(given.out, "", "was not made: " + failure + "; the pictures are complete");
   out.commit();
   std::printf("film: %s\n", given.out.c_str());
   return kGood;
@@ -92,34 +92,33 @@ int runVideo(const VideoArguments& given) {
 std::function<int()> addVideo(CLI::App& command) {
   const auto given = std::make_shared<VideoArguments>();
   command.parse_complete_callback([given, &command] { given->has_sound = command.count("--sound") > 0; });
-  command.add_option("recording", given->recording, "what vps assemble --record wrote")
+  command.add_option("recording", given->recording, "recording that vps assemble --record wrote")
       ->required()
       ->type_name("RECORDING");
   command.add_option("-o,--out", given->out, "film to write")->required()->type_name("FILE.mp4");
-  command.add_option("--frames", given->frames, "folder of the pictures; without it NAME_frames")
+  command.add_option("--frames", given->frames, "folder for the pictures (default: NAME_frames)")
       ->type_name("DIR");
   command
-      .add_option(
-          "--sound", given->sound,
-          "sound track: made from the recording, whose run happens again for it; or this file, which vps "
-          "assemble --sound wrote of the same run")
+      .add_option("--sound", given->sound,
+                  "add a sound track: made by running the recording again, or this file, which vps assemble "
+                  "--sound wrote of the same run")
       ->expected(0, 1)
       ->check(CLI::ExistingFile)
       ->type_name("[FILE.wav]");
   VideoSettings& settings = given->settings;
-  command.add_option("--width", settings.width, "of the pictures")
+  command.add_option("--width", settings.width, "width of the pictures")
       ->capture_default_str()
       ->check(CLI::Range(16, 4096));
-  command.add_option("--height", settings.height, "of the pictures")
+  command.add_option("--height", settings.height, "height of the pictures")
       ->capture_default_str()
       ->check(CLI::Range(16, 4096));
-  command.add_option("--rate", settings.frames_per_s, "pictures a second")
+  command.add_option("--rate", settings.frames_per_s, "pictures per second")
       ->capture_default_str()
       ->check(CLI::Range(1.0, 240.0));
-  command.add_option("--speed", settings.speed, "of the run in the film; 1: as it was")
+  command.add_option("--speed", settings.speed, "speed of the run in the film; 1: the original speed")
       ->capture_default_str()
       ->check(CLI::Range(0.001, 1000.0));
-  command.add_option("--view", settings.view, "side to look from")
+  command.add_option("--view", settings.view, "direction from which the scene is seen")
       ->capture_default_str()
       ->check(CLI::IsMember({"iso", "front", "back", "left", "right", "top", "bottom"}));
   command
@@ -129,15 +128,14 @@ std::function<int()> addVideo(CLI::App& command) {
   std::vector<std::string> modes;
   for (const StereoMode mode : stereoModes())
     if (mode != StereoMode::Spectral) modes.emplace_back(toText(mode));
-  command.add_option("--stereo", given->stereo, "how the pictures of both eyes are brought to a screen")
+  command.add_option("--stereo", given->stereo, "how the pictures for both eyes are combined")
       ->capture_default_str()
       ->check(CLI::IsMember(modes));
-  CLI::Option* display =
-      command
-          .add_option("--display", given->display,
-                      "display file (TOML): the film is its first screen, seen by its first viewer, whose "
-                      "recorded head goes with the run's time")
-          ->type_name("FILE");
+  CLI::Option* display = command
+                             .add_option("--display", given->display,
+                                         "display file (TOML): the film shows its first screen as seen by "
+                                         "its first viewer; a recorded head follows the run's time")
+                             ->type_name("FILE");
   for (const char* name : {"--width", "--height", "--view", "--camera"}) display->excludes(name);
   return [given] { return runVideo(*given); };
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vps view: a window on a scene or a recording.
+// vps view: opens a window on a scene, a recording or a session.
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -48,11 +48,12 @@ void print(const LatencyResult& result) {
     for (const ContactTimes& times : result.contacts) values_s.push_back(times.*stage.time_s);
     addRow(table, stage.words, values_s);
   }
-  addRow(table, "picture, sound and force are apart", result.apart_s());
+  addRow(table, "between picture, sound and force", result.apart_s());
   std::fputs(table.text().c_str(), stdout);
   std::printf(
       "%zu contacts of '%s'; pictures of %d x %d by %s, %.1f ms each; sound: %s\n"
-      "apart: %s (bound: 99 of 100 within %.0f ms). Not in it: what a display takes to show a picture.\n",
+      "apart: %s (bound: 99 of 100 within %.0f ms). The time that a display takes to show a picture is not "
+      "included.\n",
       result.contacts.size(), result.part.c_str(), result.width, result.height, result.drawn_by.c_str(),
       1e3 * result.picture_wall_s,
       result.hasSound() ? ("a card in the program, three periods of 64 samples; samples late " +
@@ -60,7 +61,7 @@ void print(const LatencyResult& result) {
                            std::to_string(result.late_mixes) + " times")
                               .c_str()
                         : result.silence.c_str(),
-      result.isGood() ? "good" : "too far, or not all seen", 1e3 * kApart_s);
+      result.isGood() ? "good" : "too far, or not all contacts were found", 1e3 * kApart_s);
 }
 
 /// vps view --measure-latency: measures, prints the table and writes the JSON file, unless its name is empty.
@@ -103,14 +104,15 @@ int runView(const ViewArguments& given) {
   if (!given.display.empty()) window.display = scenes::loadDisplay(given.display);
   if (!window.session.empty()) {
     if (!file.empty())
-      throw LoadError(file, "", "is shown in place of a session; leave out the file, or --session");
+      throw LoadError(file, "", "cannot be shown together with a session; leave out the file, or --session");
     const std::optional<scenes::Verdict> verdict = viewSession(window);
     if (verdict) return scenes::exitStatusOf(*verdict);
     throwIfStopped();
     return kNotShown;
   }
   if (file.empty())
-    throw LoadError("", "", "say what to show: a scene file, a recording, or --session NAME of vps render");
+    throw LoadError("", "",
+                    "give something to show: a scene file, a recording, or --session NAME of vps render");
   if (lowerExtension(file) == ".mcap") {
     if (window.runs || !window.record.empty() || !window.hand.empty())
       throw LoadError(file, "", "is a recording; --run, --hand and --record are for scenes");
@@ -118,7 +120,7 @@ int runView(const ViewArguments& given) {
     return kGood;
   }
   if (window.full_screen > 0 && file.find_first_not_of("0123456789") == std::string::npos)
-    throw LoadError(file, "", "is taken for a file; a monitor is said by --full-screen=" + file);
+    throw LoadError(file, "", "is taken as a file name; to choose a monitor, write --full-screen=" + file);
   requireNotRead(window.record, {file});
   scenes::Scene scene = sceneFrom(file, given.scene.fidelity, {window.record}, given.scene.cache);
   if (window.display) window.display->placeDevice(scene.device);
@@ -147,7 +149,7 @@ std::function<int()> addView(CLI::App& command) {
       command
           .add_option(
               "--session", window.session,
-              "follow this session of vps render in place of a file; M marks a place for all who watch")
+              "follow this session of vps render instead of a file; key M marks a place for all watchers")
           ->type_name("NAME");
   addNetworkOption(command, window.network)->needs(session);
   command.add_option("--width", window.width, "width of the window")
@@ -158,60 +160,57 @@ std::function<int()> addView(CLI::App& command) {
       ->check(CLI::Range(64, 16384));
   command.add_flag("--dark", window.is_dark, "dark panels and background");
   command.add_flag("!--silent", window.has_sound, "no sound");
-  command.add_flag("--run", window.runs, "run the procedure at once");
+  command.add_flag("--run", window.runs, "start the procedure at once");
   command
-      .add_option(
-          "--hand", window.hand,
-          "run the procedure at once, the part moved by this kind of device (vps device --list): mouse, "
-          "space_mouse, game_controller, dual_arm, ...")
+      .add_option("--hand", window.hand,
+                  "run the procedure at once and move the parts with this kind of device (vps device "
+                  "--list): mouse, space_mouse, game_controller, dual_arm, ...")
       ->type_name("KIND");
   command
-      .add_option("--speed", window.speed,
-                  "of playing and of a run, by the clock; of a run, 0: as fast as it goes")
+      .add_option(
+          "--speed", window.speed,
+          "speed of a recording or a run relative to real time; 0: a run is computed as fast as possible")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 1000.0));
   command.add_option("--record", window.record, "record a run (MCAP), for vps replay and vps view")
       ->type_name("FILE");
-  command.add_flag(
-      "--headset", window.seeks_headset,
-      "show the scene in a headset too, on a table before its wearer (OpenXR); its trigger picks "
-      "and, with --hand mouse, takes the part");
+  command.add_flag("--headset", window.seeks_headset,
+                   "also show the scene in a headset (OpenXR), on a table in front of the user; the "
+                   "controller's trigger picks a part and, with --hand mouse, takes it");
   std::vector<std::string> modes;
   for (const StereoMode mode : stereoModes()) modes.emplace_back(toText(mode));
-  command
-      .add_option("--stereo", given->stereo, "how the pictures of both eyes are shown at first; S switches")
+  command.add_option("--stereo", given->stereo, "stereo mode at the start; key S switches")
       ->capture_default_str()
       ->check(CLI::IsMember(modes));
-  command.add_flag(
-      "--quad-buffer", window.has_stereo_buffers,
-      "each eye's picture in a buffer of its own, where the driver has that (shutter glasses); in "
-      "the mode mono");
+  command.add_flag("--quad-buffer", window.has_stereo_buffers,
+                   "give each eye a buffer of its own, if the driver supports it (shutter glasses); only in "
+                   "the mode mono");
   command
-      .add_option(
-          "--display", given->display,
-          "display file (TOML): the window shows what its screens show to its viewers, O one of them alone, "
-          "and a device whose place it has moves the part where the hand is")
+      .add_option("--display", given->display,
+                  "display file (TOML): the window shows the picture of each screen for each viewer (key O: "
+                  "one alone); if the file states where the device stands, the part is drawn at the hand")
       ->type_name("FILE");
   command
       .add_option("--output", window.output,
-                  "of a display file, show this alone at first: SCREEN, SCREEN_VIEWER, ...")
+                  "picture of the display file that is shown alone at the start: SCREEN, SCREEN_VIEWER, ...")
       ->type_name("NAME")
       ->needs("--display");
-  // A flag: an option whose value may be left out would take the scene for it.
+  // A flag, because an option with an optional value would take the scene file as its value.
   command
-      .add_flag("--full-screen{1}", window.full_screen,
-                "fill the first monitor without panels, or another one, as in --full-screen=2; F11 switches")
+      .add_flag(
+          "--full-screen{1}", window.full_screen,
+          "fill the first monitor without panels, or another one, as in --full-screen=2; key F11 switches")
       ->check(CLI::Range(1, 64));
   command
       .add_option("--show", given->show,
-                  "the models of contact in place of the parts: points, voxels, or points,voxels (points of "
-                  "the parts that a step moves)")
+                  "draw the models of contact instead of the parts: points, voxels, or points,voxels (points "
+                  "of the parts that a step moves, voxels of the others)")
       ->delimiter(',')
       ->check(CLI::IsMember({"points", "voxels"}));
-  CLI::Option* latency = command.add_flag(
-      "--measure-latency", given->measures_latency,
-      "without window, display and sound card: how far picture, sound and force of a contact are apart");
-  command.add_option("--taps", given->latency.taps, "contacts to measure, about 0.4 s each")
+  CLI::Option* latency = command.add_flag("--measure-latency", given->measures_latency,
+                                          "measure the time between picture, sound and force of a contact, "
+                                          "without window, display and sound card");
+  command.add_option("--taps", given->latency.taps, "number of contacts to measure, about 0.4 s each")
       ->capture_default_str()
       ->check(CLI::Range(1, 100000))
       ->needs(latency);

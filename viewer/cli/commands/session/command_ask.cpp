@@ -28,26 +28,26 @@ struct AskArguments {
   std::string json;
   std::string part, scene, name, bring;
   std::vector<double> gains;
-  /// What was chosen.
+  /// Sends the chosen request.
   std::function<scenes::SessionAnswer(const scenes::SessionRequest&, const AskArguments&)> ask;
 };
 
-/// The answer's lines. Names in it are another program's, and control no terminal.
+/// Replaces control characters, because the answer may contain names from another program.
 std::string printable(std::string words) {
   std::replace_if(
       words.begin(), words.end(), [](unsigned char c) { return c != '\n' && (c < 0x20 || c == 0x7f); }, ' ');
   return words;
 }
 
-/// Empty: none.
+/// Returns why the text is not a stiffness; empty if it is one.
 std::string stiffnessFault(const std::string& text) {
   char* end = nullptr;
   const double value = std::strtod(text.c_str(), &end);
   const bool is_good = !text.empty() && *end == '\0' && std::isfinite(value) && value > 0;
-  return is_good ? std::string() : "'" + text + "' is no stiffness; give a number above 0";
+  return is_good ? std::string() : "'" + text + "' is not a stiffness; give a number greater than 0";
 }
 
-/// Waits for the recording.
+/// Waits until the run has ended, and receives its recording.
 int bringRecording(const AskArguments& given) {
   scenes::SessionRecordingOptions options = recordingOptions(given.session, given.network, given.bring);
   options.name = given.name;
@@ -87,41 +87,45 @@ std::function<int()> addAsk(CLI::App& command) {
     sub->callback([given, ask] { given->ask = ask; });
     return sub;
   };
-  add("who", "who is there, and what they do",
+  add("who", "lists the nodes of the session and what they do",
       [](const auto& request, const AskArguments&) { return request.who(); });
-  add("take", "the hand takes the next part (vps render --on-request)",
+  add("take", "takes the next part in hand (vps render --on-request)",
       [](const auto& request, const AskArguments& chosen) { return request.take(chosen.part); })
-      ->add_option("part", given->part, "its name, so that no other one is taken")
+      ->add_option("part", given->part, "name of the part; the request is refused if another part is next")
       ->type_name("PART");
-  add("release", "the hand lets go of the part where it is; the step ends there",
+  add("release", "releases the part where it is, which ends the step",
       [](const auto& request, const AskArguments&) { return request.release(); });
-  add("rearm", "force returns to the hand after a fault",
+  add("rearm", "re-arms the device after a fault, so that it gives force again",
       [](const auto& request, const AskArguments&) { return request.rearm(); });
-  add("gains", "stiffness of the coupling from the next part on, as far as the device is passive",
+  add("gains",
+      "sets the stiffness of the coupling from the next part on, within the limit at which the device is "
+      "passive",
       [](const auto& request, const AskArguments& chosen) {
         return request.setGains(chosen.gains.front(), chosen.gains.size() > 1 ? chosen.gains.back() : 0);
       })
-      ->add_option("gains", given->gains, "N/m, and N m/rad")
+      ->add_option("gains", given->gains, "translational stiffness [N/m], and rotational stiffness [N m/rad]")
       ->required()
       ->expected(1, 2)
       ->check(stiffnessFault)
       ->type_name("K");
-  add("load", "another scene in place of this one; it is sent where vps render does not know it",
+  add("load", "loads another scene, which is sent if vps render does not have it yet",
       [](const auto& request, const AskArguments& chosen) { return load(request, chosen.scene); })
-      ->add_option("scene", given->scene, "scene file (TOML), or the hash of a scene that is known there")
+      ->add_option("scene", given->scene, "scene file (TOML), or the hash of a scene that vps render has")
       ->required()
       ->type_name("SCENE");
-  add("again", "the same scene from its beginning",
+  add("again", "runs the same scene again from its beginning",
       [](const auto& request, const AskArguments&) { return request.again(); });
   CLI::App* record =
-      add("record", "records the runs that begin from now on, in the folder of vps render",
+      add("record", "records the following runs, in the folder of vps render",
           [](const auto& request, const AskArguments& chosen) { return request.record(chosen.name); });
-  record->add_option("name", given->name, "of the file, such as run_1.mcap")->required()->type_name("NAME");
+  record->add_option("name", given->name, "name of the file, such as run_1.mcap")
+      ->required()
+      ->type_name("NAME");
   record
       ->add_option("--bring", given->bring,
-                   "wait until the run has ended, and bring its recording here, into this file")
+                   "wait until the run has ended, and receive its recording into this file")
       ->type_name("FILE.mcap");
-  add("stop-recording", "no further run is recorded",
+  add("stop-recording", "stops recording the following runs",
       [](const auto& request, const AskArguments&) { return request.record(""); });
   return [given] { return runAsk(*given); };
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vps calibrate: where the device stands in a room, and where its two arms stand to each other.
+// vps calibrate: computes where the device stands in a room, and where its two arms stand relative to each
+// other.
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -15,7 +16,7 @@
 #include "vps_scenes/scene/display.h"
 #include "vps_scenes/scene/number_table.h"
 #include "vps_scenes/scene/scene.h"
-#include "vps_scenes/scene/toml_edit.h"
+#include "vps_scenes/scene/scene_text.h"
 
 namespace vps::viewer {
 
@@ -28,7 +29,7 @@ struct CalibrateArguments {
   std::string written_display, written_scene;  ///< files that the result is written into
 };
 
-/// What was found, to print, and where it goes.
+/// The result: text to print, and the values for each file.
 struct Calibrated {
   std::string summary, toml;
   std::vector<scenes::TomlValue> for_display, for_scene;
@@ -40,7 +41,7 @@ std::string listOf(const Vec3& v) {
   return text;
 }
 
-/// With their unit, since a scene's may be another.
+/// Coordinates with a unit, because the scene may use another unit.
 std::string metres(const Vec3& v) {
   char text[128];
   std::snprintf(text, sizeof text, "[\"%.9gm\", \"%.9gm\", \"%.9gm\"]", v.x(), v.y(), v.z());
@@ -66,7 +67,8 @@ std::string tableText(const std::string& comment, const std::vector<scenes::Toml
   return text;
 }
 
-/// For the display file, or, with one, for the scene that it shows.
+/// Computes where the device stands: in the room, for the display file, or, if a display file is given, in
+/// the scene that this display shows.
 Calibrated placementOf(const std::string& file, const std::string& display_file) {
   std::vector<device::TouchedPoint> points;
   for (const scenes::NumberRow& row :
@@ -75,9 +77,12 @@ Calibrated placementOf(const std::string& file, const std::string& display_file)
     points.push_back({{n[0], n[1], n[2]}, {n[3], n[4], n[5]}});
   }
   const device::Placement found = device::fitPlacement(points);
-  if (found.status == Status::Truncated) throw LoadError(file, "", "has fewer than three points; touch more");
+  if (found.status == Status::Truncated)
+    throw LoadError(file, "", "has fewer than three points; touch more points");
   if (found.status != Status::Ok)
-    throw LoadError(file, "", "has points on one line, which leave a turn about it open; touch others");
+    throw LoadError(file, "",
+                    "has all points on one line, so that the rotation about this line is undetermined; touch "
+                    "other points");
   char residual[160];
   std::snprintf(residual, sizeof residual,
                 "%zu points: residual %.3g mm rms, greatest %.3g mm at point %zu\n", points.size(),
@@ -108,13 +113,15 @@ Calibrated basesOf(const std::string& file, const std::string& parameters) {
     case Status::Ok:
       break;
     case Status::Truncated:
-      throw LoadError(file, "", "has fewer than twelve readings; move the handle about and take a hundred");
+      throw LoadError(file, "", "has fewer than twelve readings; move the handle and take about a hundred");
     case Status::Singular:
-      throw LoadError(file, "",
-                      "has readings too similar to tell all six numbers; tilt and move the handle more");
+      throw LoadError(
+          file, "",
+          "has readings that are too similar to determine all six parameters; tilt and move the handle more");
     default:
       throw LoadError(file, "",
-                      "leads to no answer; is it of this device, and are its bases roughly in place?");
+                      "gives no solution; check that the readings are of this device and that its bases are "
+                      "roughly in place");
   }
   char summary[200];
   std::snprintf(summary, sizeof summary,
@@ -128,38 +135,40 @@ Calibrated basesOf(const std::string& file, const std::string& parameters) {
           {}};
 }
 
-/// The file of the room that the result is for; empty: none is given. Refuses options that do not go
-/// together.
+/// The display file that describes the room; empty if none is given. Throws LoadError for options that
+/// exclude each other.
 std::string roomFile(const CalibrateArguments& given) {
   if (given.points.empty() && !(given.written_display + given.written_scene).empty())
-    throw LoadError("", "", "--write-display and --write-scene go with --points, not with --bases");
+    throw LoadError("", "", "--write-display and --write-scene need --points, and do not work with --bases");
   if (!given.display.empty() && !given.written_display.empty())
     throw LoadError("", "", "--display and --write-display both name the room; give one");
   const std::string room = given.display.empty() ? given.written_display : given.display;
   if (room.empty() && !given.written_scene.empty())
-    throw LoadError("", "", "--write-scene needs the room that the scene stands in; add --display FILE");
+    throw LoadError("", "", "--write-scene needs the display file of the room; add --display FILE");
   return room;
 }
 
-/// A rename would replace a file that is write-protected as well. Returns its name.
+/// Throws LoadError unless the file may be written, because a rename would also replace a write-protected
+/// file. Returns the file name.
 const std::string& requireWritable(const std::string& file) {
   std::error_code error;
   const fs::file_status status = fs::status(file, error);
   if (fs::exists(status) && !fs::is_regular_file(status))
-    throw LoadError(file, "", "is no ordinary file, so it cannot be edited");
+    throw LoadError(file, "", "is not a regular file, so it cannot be edited");
   constexpr fs::perms kAnyWrite = fs::perms::owner_write | fs::perms::group_write | fs::perms::others_write;
   if (fs::exists(status) && (status.permissions() & kAnyWrite) == fs::perms::none)
     throw LoadError(file, "", "is write-protected; allow writing (chmod u+w), or write a copy");
   return file;
 }
 
-/// The edited text stands complete beside the file, with the file's permissions, until commit() replaces the
-/// file by it; without commit() the file is as it was.
+/// A user's TOML file in which a command changes single values. The edited text is written to a temporary
+/// file with the same permissions; commit() replaces the file by it. Without commit() the file is not
+/// changed.
 class EditedFile {
  public:
   /// Throws LoadError when the file cannot be read, edited or replaced.
   EditedFile(const std::string& file, std::span<const scenes::TomlValue> values);
-  /// Throws LoadError; the file is then as it was.
+  /// Replaces the file. Throws LoadError, and then leaves the file unchanged.
   void commit() { out_.commit(); }
 
  private:
@@ -174,13 +183,13 @@ EditedFile::EditedFile(const std::string& file, std::span<const scenes::TomlValu
   if (error) throw LoadError(file, "", "cannot be written: " + error.message() + "; choose another place");
 }
 
-/// Both files are complete on the disk before the first one is replaced.
+/// Writes both files completely under temporary names before it replaces the first one.
 void writeInto(const CalibrateArguments& given, const Calibrated& found) {
   std::vector<std::unique_ptr<EditedFile>> files;
   if (!given.written_display.empty())
     files.push_back(std::make_unique<EditedFile>(given.written_display, found.for_display));
   if (!given.written_scene.empty()) {
-    scenes::loadScene(given.written_scene);  // says what is wrong with a file that is no scene
+    scenes::loadScene(given.written_scene);  // throws LoadError if the file is not a scene
     files.push_back(std::make_unique<EditedFile>(given.written_scene, found.for_scene));
   }
   for (const auto& file : files) file->commit();
@@ -207,28 +216,30 @@ int runCalibrate(const CalibrateArguments& given) {
 std::function<int()> addCalibrate(CLI::App& command) {
   const auto given = std::make_shared<CalibrateArguments>();
   command
-      .add_option("--points", given->points,
-                  "points that the handle touched: rows of x, y, z by the device and x, y, z in the room [m]")
+      .add_option(
+          "--points", given->points,
+          "points that the handle touched: rows of x, y, z as read by the device and x, y, z in the room [m]")
       ->type_name("TABLE.csv");
   command
       .add_option(
           "--bases", given->bases,
-          "readings of the dual arm with its handle moved about: left t1, t2, d3, right t1, t2, d3, q3 "
+          "readings of the dual arm at many poses of its handle: left t1, t2, d3, right t1, t2, d3, q3 "
           "[rad, m]")
       ->type_name("TABLE.csv");
   command.add_option("--parameters", given->parameters, "parameters of the dual arm to start from")
       ->type_name("FILE.toml");
   command
       .add_option("--display", given->display,
-                  "with --points: display file whose room it is; the result is then for the scene's own file")
+                  "with --points: display file of the room; the result is then for the scene file")
       ->type_name("FILE.toml");
   command
       .add_option("--write-display", given->written_display,
-                  "with --points: display file to write the result into; all else in it stays as it is")
+                  "with --points: display file to write the result into; nothing else in it is changed")
       ->type_name("FILE.toml");
   command
       .add_option("--write-scene", given->written_scene,
-                  "with --points: scene of that room, or of --display, to write the result into")
+                  "with --points: scene file to write the result into; its room is that of --write-display "
+                  "or --display")
       ->type_name("FILE.toml");
   command.add_option("-o,--out", given->out, "TOML file to write")->type_name("FILE.toml");
   return [given] { return runCalibrate(*given); };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // vps device --characterise: Table 1 and figure 5 of the paper for the simulated dual arm.
 // vps device --list: the kinds of device.
-// vps device --session NAME: the device's node of a run that vps render computes.
+// vps device --session NAME: the process of the device in a run that vps render computes.
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -169,7 +169,7 @@ void print(const device::DualArmCharacter& c) {
 }
 
 int listKinds() {
-  Table table({"<kind", "<what it is", "<available"});
+  Table table({"<kind", "<description", "<available"});
   for (const device::DeviceKind& kind : device::deviceKinds()) {
     const std::string missing = kind.missing();
     const std::string remedy = missing.empty() ? "yes" : "no: " + missing + "; " + std::string(kind.remedy);
@@ -191,7 +191,7 @@ int runNode(const DeviceArguments& given) {
   std::optional<scenes::SessionRecording> recording;
   if (!given.record.empty()) {
     options.before_hello = [&] {
-      if (recording) return;  // of the session that was lost, whose recording ends there
+      if (recording) return;  // the recording ended when an earlier connection was lost
       recording.emplace(recordingOptions(given.session, given.network, given.record));
       requireAsked(*recording, "--record");
     };
@@ -209,8 +209,8 @@ int runDevice(const DeviceArguments& given) {
   if (!given.session.empty()) return runNode(given);
   if (!given.is_characterise)
     throw LoadError("", "",
-                    "say what to do: --session NAME joins a run of vps render, --list names the kinds of "
-                    "device, --characterise prints the dual arm's figures");
+                    "give --session NAME to join a run of vps render, --list for the kinds of device, or "
+                    "--characterise for the dual arm's figures");
   const std::vector<std::string> inputs = {given.parameters};
   OutputFile json(given.json, inputs);
   const device::DualArmFile file =
@@ -248,9 +248,9 @@ std::function<int()> addDevice(CLI::App& command) {
       addSessionOption(command, given->session)->excludes(characterise)->excludes("--list");
   addNetworkOption(command, given->network)->needs(session);
   command
-      .add_flag("--auto-rearm", given->rearms,
-                "when the render node was lost and is back, let force return by itself; simulated devices "
-                "always do")
+      .add_flag(
+          "--auto-rearm", given->rearms,
+          "re-arm the device automatically when a lost render node is back; simulated devices always do this")
       ->needs(session);
   addRecordOption(command, given->record)->needs(session)->excludes("--list");
   command.add_flag("--stay", given->stays, "wait for the next session when one has ended")->needs(session);

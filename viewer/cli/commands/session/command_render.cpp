@@ -30,17 +30,17 @@ struct RenderArguments {
   bool stops_at_failure = false;
   bool sheds_load = true;
   std::string requests = "all";
-  bool waits = false;  ///< parts are taken on request
-  bool stays = false;  ///< after a run waits for the next one to be asked for
+  bool waits = false;  ///< each part is taken only when vps ask take requests it
+  bool stays = false;  ///< after a run, waits until vps ask requests the next one
 };
 
 constexpr const char* kNoRequests = "none";
 
-/// Where others ask for something; null: nobody may.
+/// The server that answers vps ask; null with --requests none.
 std::unique_ptr<scenes::RequestServer> requestServerFrom(const RenderArguments& given) {
   if (given.requests == kNoRequests) {
     if (given.waits || given.stays)
-      throw LoadError("--requests none", "", "leaves nobody to ask, for which --on-request and --stay wait");
+      throw LoadError("--requests none", "", "contradicts --on-request and --stay, which wait for requests");
     return nullptr;
   }
   scenes::RequestServerOptions options;
@@ -52,14 +52,14 @@ std::unique_ptr<scenes::RequestServer> requestServerFrom(const RenderArguments& 
   const std::string folder = cache.folder.empty() ? defaultCacheFolder() : cache.folder;
   if (!cache.is_off && !folder.empty()) options.scenes = folder + "/scenes";
   options.stop = &stopRequested();
-  options.say = [](const std::string& words) {  // of another thread than the progress bar's
+  options.say = [](const std::string& words) {  // called by another thread than that of the progress bar
     if (isTerminal()) std::fputs("\r\033[K", stderr);
     say(words);
   };
   return std::make_unique<scenes::RequestServer>(options);
 }
 
-/// One run, and its results.
+/// Makes one run and writes its results.
 /// @param command  that began it, for the report
 scenes::Verdict runOnce(const RenderArguments& given, const scenes::RenderOptions& options,
                         scenes::Scene& scene, const std::string& command, const std::string& folder,
@@ -71,7 +71,7 @@ scenes::Verdict runOnce(const RenderArguments& given, const scenes::RenderOption
   run.on_recording = [&recorded](const std::string& file) { recorded = file; };
   const scenes::AssembleResult result = scenes::renderNode(scene, run, record);
   throwIfStopped();
-  if (options.stop->load()) return scenes::Verdict::NotShown;  // another run was asked for
+  if (options.stop->load()) return scenes::Verdict::NotShown;  // vps ask requested another run
   const std::vector<std::string> notes =
       fillFolder(out, scene, result, {command + " --session " + given.session, given.has_pictures});
   out.commit();
@@ -111,10 +111,10 @@ int runRender(const RenderArguments& given) {
     const std::string folder = given.out + "-" + std::to_string(run);
     try {
       verdict = runOnce(given, options, *next, "vps ask load", folder, "", bar);
-    } catch (const LoadError& failed) {  // of a scene that others chose
+    } catch (const LoadError& failed) {  // an error of a scene that vps ask loaded
       if (!given.stays) throw;
       verdict = scenes::Verdict::NotShown;
-      options.say(std::string(failed.what()) + "; waits for the next scene");
+      options.say(std::string(failed.what()) + "; waiting for the next scene");
     }
   }
   if (server) server->waitForFetchers();
@@ -140,15 +140,14 @@ std::function<int()> addRender(CLI::App& command) {
       ->type_name("FILE");
   command
       .add_option("--requests", given->requests,
-                  "what vps ask may ask for: all, or only who is there. Others than this user, and without "
-                  "certificates where those are needed, are refused in any case")
+                  "requests that are answered: all, who (only the list of nodes), or none. Other users, and "
+                  "nodes without the required certificates, are always refused")
       ->check(CLI::IsMember({"all", "who", kNoRequests}))
       ->capture_default_str();
-  command.add_flag("--on-request", given->waits, "each part is taken when vps ask take asks for it");
-  command.add_flag(
-      "--stay", given->stays,
-      "after a run waits for vps ask load or vps ask again; results of the n-th run go to DIR-n, and "
-      "--json is of the last one");
+  command.add_flag("--on-request", given->waits, "take each part only when vps ask take requests it");
+  command.add_flag("--stay", given->stays,
+                   "after a run, wait for vps ask load or vps ask again; the results of the n-th run go to "
+                   "DIR-n, and --json contains those of the last run");
   addJsonOption(command, given->json);
   return [given] { return runRender(*given); };
 }

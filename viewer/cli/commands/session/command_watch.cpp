@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vps watch: shows a session in a window, or prints what happens in it. A watcher reads only, so that it can
-// disturb nobody.
-// vps watch --web: shows a session, a run of a scene, or a recording in web browsers.
+// vps watch: shows a session in a window, or prints its steps, forces and verdict. A watcher only reads, so
+// it cannot disturb the session. vps watch --web: shows a session, a run of a scene, or a recording in web
+// browsers.
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -48,16 +48,16 @@ struct WatchArguments {
 };
 
 constexpr std::chrono::milliseconds kWatchPoll{5};
-constexpr std::chrono::milliseconds kLook{50};  ///< for who only reads words, which wait in a ring of 256
+constexpr std::chrono::milliseconds kLook{50};  ///< without ROS 2: messages wait in a ring of 256
 
-/// What a watcher knows.
+/// Follows one session: reads its messages, snapshots and forces, prints them, and publishes them in ROS 2.
 class Watching {
  public:
   Watching(scenes::SessionWatcher& watcher, const WatchArguments& given)
       : watcher_(watcher), rate_hz_(given.rate_hz) {
     try {
       pointers_.emplace(given.session, given.network);
-    } catch (const LoadError& refused) {  // certificates of before there were pointers
+    } catch (const LoadError& refused) {  // the certificates are older than pointers
       say(std::string("pointers are not shown: ") + refused.what());
     }
     const std::string interface = given.network.empty() ? "lo" : given.network.interface;
@@ -65,16 +65,16 @@ class Watching {
       ros_ = std::make_unique<scenes::RosTopics>(given.ros_domain, interface, given.session, watcher.scene());
   }
 
-  /// Until the session is over, or the user stops.
+  /// Runs until the session is over or the user stops the program.
   void run() {
     while (!stopRequested()) {
-      const bool is_over = watcher_.isOver();  // first, so that the last news is read
+      const bool is_over = watcher_.isOver();  // asked first, so that the last messages are read
       readAll();
       if (is_over) return;
       std::this_thread::sleep_for(ros_ ? kWatchPoll : kLook);
     }
   }
-  /// Of the run; empty: it has not ended.
+  /// Verdict of the run; empty until the run has ended.
   [[nodiscard]] std::optional<scenes::Verdict> verdict() const { return verdict_; }
   [[nodiscard]] std::size_t snapshots() const { return snapshots_; }
 
@@ -100,7 +100,7 @@ class Watching {
     std::printf("%8.2f s  %s%s\n", news.time_s, what, news.text.c_str());
     std::fflush(stdout);
   }
-  /// Where a pointer appears; its way from there would be too many lines.
+  /// Prints where a pointer appears; printing its motion would take too many lines.
   void tell(const scenes::SessionPointer& pointer) {
     if (!pointer.p_W) {
       pointing_.erase(pointer.who);
@@ -125,7 +125,7 @@ class Watching {
       if (body.part == scene.steps[step].part)
         std::printf("%8.2f s  at %s mm, %zu contacts, force on the hand %.1f N%s\n", now.time_s,
                     millimetres(body.X_WP.p).c_str(), now.contacts.size(), force_.F_hand_W.f.norm(),
-                    force_.is_faulted ? " (the device is safe: no force)" : "");
+                    force_.is_faulted ? " (safety stop: the device gives no force)" : "");
     std::fflush(stdout);
   }
   static std::int64_t systemTime_ns() {
@@ -166,7 +166,7 @@ int serveWeb(const WatchArguments& given) {
   if (lowerExtension(given.scene.scene) == ".mcap") {
     if (web.allows_hand)
       throw LoadError(given.scene.scene, "",
-                      "is a recording, whose parts nobody can take; leave out --allow-hand");
+                      "is a recording, in which no part can be moved; leave out --allow-hand");
     serveRecording(device::loadRecording(given.scene.scene), web);
     return kGood;
   }
@@ -178,7 +178,8 @@ int serveWeb(const WatchArguments& given) {
   return kGood;
 }
 
-/// ROS 2's tools hear the topics without certificates, and so does everybody else at that interface.
+/// Throws LoadError if a session with certificates would be published as topics of ROS 2, which are not
+/// encrypted, without --ros-in-clear.
 void requireRosAllowed(const WatchArguments& given) {
   const std::string& interface = given.network.interface;
   if (given.ros_domain < 0 || given.is_ros_in_clear || interface.empty()) return;
@@ -190,7 +191,7 @@ void requireRosAllowed(const WatchArguments& given) {
           "everybody on that network may read them, or leave out --ros");
 }
 
-/// Where there is a display and nothing was asked for that only the terminal does.
+/// Whether there is a display and no option needs the terminal.
 bool wantsWindow(const WatchArguments& given) {
   const bool has_display = std::getenv("DISPLAY") != nullptr || std::getenv("WAYLAND_DISPLAY") != nullptr;
   return has_display && !given.is_terminal && given.ros_domain < 0 && missingForWindow().empty();
@@ -209,7 +210,8 @@ int showWindow(const WatchArguments& given) {
   return kNotShown;
 }
 
-/// Its exit status; empty: no window can be opened, which is said, as with a DISPLAY that nobody serves.
+/// Shows the window and returns the exit status. Empty if no window can be opened, for example because no
+/// server answers at DISPLAY; the reason has been printed then.
 std::optional<int> tryWindow(const WatchArguments& given) {
   try {
     return showWindow(given);
@@ -222,7 +224,7 @@ std::optional<int> tryWindow(const WatchArguments& given) {
 }
 
 int follow(const WatchArguments& given) {
-  // On a machine of several nodes who watches waits rather than who computes.
+  // On a machine with several nodes the watcher must not delay the nodes that compute.
   if (given.scene.scene.empty() && !given.web.allows_hand) giveWay();
   if (given.port >= 0) return serveWeb(given);
   if (!given.scene.scene.empty())
@@ -272,8 +274,8 @@ std::function<int()> addWatch(CLI::App& command) {
   const auto given = std::make_shared<WatchArguments>();
   addSceneOptions(command, given->scene);
   command.get_option("scene")->required(false)->description(
-      "scene file (TOML) that is run for the web page, or a recording (MCAP) that it plays; without one, a "
-      "session is followed");
+      "scene file (TOML) to run, or recording (MCAP) to play, for the web page; without it a session is "
+      "followed");
   addSessionOption(command, given->session);
   addNetworkOption(command, given->network);
   command
@@ -281,39 +283,42 @@ std::function<int()> addWatch(CLI::App& command) {
       ->capture_default_str()
       ->check(CLI::Range(0.0, 100.0));
   command.add_flag("--terminal", given->is_terminal,
-                   "print what happens in place of a window; also without a display, and with --ros");
+                   "print steps, forces and verdict instead of opening a window; the default without a "
+                   "display and with --ros");
   addRecordOption(command, given->record);
-  command.add_flag("--silent", given->is_silent, "a window without sound");
+  command.add_flag("--silent", given->is_silent, "open the window without sound");
   command
-      .add_option("--ros", given->ros_domain,
-                  "publish what is seen as topics of ROS 2 in this domain (ROS_DOMAIN_ID): handle "
-                  "(PoseStamped), force (WrenchStamped) and /tf, at the interface of --network, or else lo")
+      .add_option(
+          "--ros", given->ros_domain,
+          "publish the session as topics of ROS 2 in this domain (ROS_DOMAIN_ID): handle (PoseStamped), "
+          "force (WrenchStamped) and /tf, on the interface of --network, or on lo without it")
       ->type_name("DOMAIN")
       ->check(CLI::Range(0, 232));
   command
       .add_flag("--ros-in-clear", given->is_ros_in_clear,
-                "with --security: publish the topics of ROS 2 all the same, which nothing encrypts")
+                "with --security: publish the topics of ROS 2 although they are not encrypted")
       ->needs("--ros");
   CLI::Option* web =
       command
-          .add_option("--web", given->port,
-                      "serve a page for web browsers at this port; 0: one that is free. The page turns and "
-                      "cuts the run, shows forces and verdict, sounds, and points for the others")
+          .add_option(
+              "--web", given->port,
+              "serve a page for web browsers at this port; 0: a free port. The page shows the run in 3D with "
+              "section planes, forces, verdict and sound, and can mark a place for all watchers")
           ->type_name("PORT")
           ->excludes("--ros")
           ->check(CLI::Range(0, 65535));
   command.get_option("scene")->needs(web);
   command
       .add_option("--listen", given->web.address,
-                  "address of this machine at which the page is served. Beyond loopback a token is needed: "
-                  "whoever knows it can watch, and use what --allow-hand allows")
+                  "address of this machine at which the page is served. Addresses other than loopback need a "
+                  "token: everybody who knows it can watch and, with --allow-hand, move the part")
       ->capture_default_str()
       ->type_name("ADDRESS")
       ->needs(web);
   command
       .add_option("--token", given->web.token,
-                  "token of at least 16 letters, digits, - and _; without it a new one is made where one is "
-                  "needed. Others on this machine can see it on the command line")
+                  "token of at least 16 letters, digits, - and _ (default: a new one if one is needed). "
+                  "Other users of this machine can see it on the command line")
       ->envname("VPS_WEB_TOKEN")
       ->needs(web);
   command
