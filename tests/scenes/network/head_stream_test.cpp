@@ -10,7 +10,6 @@
 
 #include "support/temporary_folder.h"
 #include "vps/errors.h"
-#include "vps_scenes/network/head_topic.h"
 #include "vps_scenes/network/ros_topics.h"
 #include "vps_scenes/network/tracked_heads.h"
 #include "vps_scenes/scene/number_table.h"

@@ -11,7 +11,7 @@
 #include <optional>
 
 #include "link/link.h"
-#include "messages/packed_rotation.h"
+#include "messages/dense_state.h"
 #include "support/no_alloc.h"
 
 namespace vps::scenes {

@@ -8,7 +8,6 @@
 #include <functional>
 #include <thread>
 
-#include "link/clock_doubts.h"
 #include "link/link.h"
 #include "messages/messages.h"
 #include "record/scene_archive.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dds/certificates.h"
+#include "dds/topics.h"
 
 #include <dds/dds.h>
 #include <dlfcn.h>

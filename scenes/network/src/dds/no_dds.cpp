@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Replaces the other sources of this folder if Cyclone DDS is missing.
 #include "link/link.h"
-#include "link/pointer_topic.h"
 #include "requests/request_channel.h"
 #include "vps/errors.h"
-#include "vps_scenes/network/head_topic.h"
 #include "vps_scenes/network/ros_topics.h"
 
 namespace vps::scenes {

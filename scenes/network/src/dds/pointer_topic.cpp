@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "link/pointer_topic.h"
+#include "link/link.h"
 
 #include <deque>
 #include <iterator>

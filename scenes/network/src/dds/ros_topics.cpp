@@ -1,21 +1,75 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Topic names follow ROS 2's mapping to DDS (design.ros2.org, "Topic and Service name mapping to DDS").
+// ROS 2 topics over Cyclone DDS. Topic names follow ROS 2's mapping to DDS (design.ros2.org, "Topic and
+// Service name mapping to DDS").
 #include "vps_scenes/network/ros_topics.h"
 
 #include <dds/dds.h>
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <iterator>
 #include <string>
 #include <vector>
 
-#include "dds/ros_types.h"
 #include "dds/topics.h"
+#include "vps/errors.h"
+#include "vps_scenes/scene/number_table.h"
 
 namespace vps::scenes {
 
 namespace {
+
+// ROS 2 message types, described for Cyclone DDS. The layouts are those of ROS 2's common_interfaces. Nested
+// structures are flattened, which does not change the bytes on the wire.
+namespace ros {
+
+struct Header {
+  std::int32_t sec;
+  std::uint32_t nanosec;
+  char* frame;
+};
+struct PoseStamped {
+  Header header;
+  double pose[7];  ///< position, then orientation x y z w
+};
+
+constexpr std::uint32_t kNumber = static_cast<std::uint32_t>(DDS_OP_ADR) | DDS_OP_TYPE_4BY;
+constexpr std::uint32_t kText = static_cast<std::uint32_t>(DDS_OP_ADR) | DDS_OP_TYPE_STR;
+constexpr std::uint32_t kDoubles =
+    static_cast<std::uint32_t>(DDS_OP_ADR) | DDS_OP_TYPE_ARR | DDS_OP_SUBTYPE_8BY;
+constexpr std::uint32_t kPoseOps[] = {kNumber,  offsetof(PoseStamped, header.sec),
+                                      kNumber,  offsetof(PoseStamped, header.nanosec),
+                                      kText,    offsetof(PoseStamped, header.frame),
+                                      kDoubles, offsetof(PoseStamped, pose),
+                                      7,        DDS_OP_RTS};
+constexpr std::uint32_t kPoseInstructions = 5;
+constexpr const char* kPoseName = "geometry_msgs::msg::dds_::PoseStamped_";
+
+/// @param instructions  number of instructions in ops
+dds_topic_descriptor_t descriptor(const char* name, std::size_t size, const std::uint32_t* ops,
+                                  std::uint32_t instructions) {
+  return {.m_size = static_cast<std::uint32_t>(size),
+          .m_align = alignof(double),
+          .m_flagset = 0,
+          .m_nkeys = 0,
+          .m_typename = name,
+          .m_keys = nullptr,
+          .m_nops = instructions,
+          .m_ops = ops,
+          .m_meta = "",
+          .type_information = {},
+          .type_mapping = {},
+          .restrict_data_representation = 0};
+}
+
+/// Returns the entity. Throws LoadError if DDS refused to make it.
+dds_entity_t require(dds_entity_t made) {
+  if (made >= 0) return made;
+  throw LoadError("", "", std::string("ROS 2 topics: ") + dds_strretcode(-made));
+}
+
+}  // namespace ros
 
 using ros::descriptor, ros::Header, ros::kDoubles, ros::kNumber, ros::kText, ros::PoseStamped, ros::require;
 
@@ -140,6 +194,43 @@ void RosTopics::publish(const Wrench& F_hand_W, std::int64_t time_ns) {
       headerOf(time_ns),
       {F_hand_W.f.x(), F_hand_W.f.y(), F_hand_W.f.z(), F_hand_W.tau.x(), F_hand_W.tau.y(), F_hand_W.tau.z()}};
   dds_write(work_->force, &wrench);
+}
+
+struct HeadTopic::Work {
+  Work(const std::string& topic, int domain, const std::string& interface)
+      : participant(SessionNetwork(interface, "none"), domain) {
+    const dds_topic_descriptor_t type =
+        ros::descriptor(ros::kPoseName, sizeof(ros::PoseStamped), ros::kPoseOps, ros::kPoseInstructions);
+    const dds_entity_t name =
+        ros::require(dds_create_topic(participant.entity(), &type, ("rt" + topic).c_str(), nullptr, nullptr));
+    dds_qos_t* qos = dds_create_qos();
+    dds_qset_reliability(qos, DDS_RELIABILITY_BEST_EFFORT, 0);  // matches reliable writers, too
+    dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, 1);
+    reader = dds_create_reader(participant.entity(), name, qos, nullptr);
+    dds_delete_qos(qos);
+    ros::require(reader);
+  }
+
+  DdsParticipant participant;  // deleting it deletes its reader
+  dds_entity_t reader = 0;
+};
+
+HeadTopic::HeadTopic(const std::string& topic, int domain, const std::string& interface)
+    : work_(std::make_unique<Work>(topic, domain, interface)) {}
+HeadTopic::~HeadTopic() = default;
+
+std::optional<Pose> HeadTopic::take() {
+  std::optional<Pose> newest;
+  for (;;) {
+    void* sample = nullptr;
+    dds_sample_info_t info{};
+    const dds_return_t count = dds_take(work_->reader, &sample, &info, 1, 1);
+    if (count <= 0) return newest;
+    if (info.valid_data)
+      if (const std::optional<Pose> X = poseOf(static_cast<const ros::PoseStamped*>(sample)->pose))
+        newest = X;
+    dds_return_loan(work_->reader, &sample, count);
+  }
 }
 
 }  // namespace vps::scenes

@@ -13,7 +13,6 @@
 #include <mutex>
 #include <utility>
 
-#include "dds/certificates.h"
 #include "messages/dense_state.h"
 #include "vps/errors.h"
 #include "vps_device/periodic_thread.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// DDS participants and topics of a session, as C++ objects.
+// DDS participants and topics of a session, as C++ objects; access control by DDS-Security.
 #pragma once
 
 #include <dds/dds.h>
@@ -60,5 +60,10 @@ class DdsTopic {
   struct Work;
   std::unique_ptr<Work> work_;
 };
+
+/// The part of Cyclone DDS's settings that names certificates and plugins; empty: without security. Throws
+/// LoadError if a file or the plugins are missing, or if the network is reachable from other machines and no
+/// certificates are given.
+std::string securitySettings(const SessionNetwork& network, bool is_loopback);
 
 }  // namespace vps::scenes

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "link/clock_doubts.h"
+#include "link/link.h"
 
 namespace vps::scenes {
 

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -14,10 +15,15 @@
 
 #include "link/broadcast_ring.h"
 #include "link/shared_region.h"
-#include "link/wire_form.h"
 #include "vps_scenes/network/session_network.h"
 
 namespace vps::scenes {
+
+/// Number format of states and snapshots; other messages have one form.
+enum class WireForm : std::uint8_t {
+  Exact,    ///< all bits, as a recording needs them
+  Compact,  ///< a tenth of the bytes (dense_state.h, compact_fields.h)
+};
 
 /// Message streams between nodes, each with one writer. Of a state channel only the newest message matters;
 /// other channels deliver all messages in order.
@@ -161,5 +167,35 @@ std::unique_ptr<Link> makeNetworkSession(const std::string& session, std::string
                                          const SessionNetwork& network);
 std::unique_ptr<Link> joinNetworkSession(const std::string& session, NodeRole role,
                                          const SessionNetwork& network);
+
+/// Used by one thread, which may block on the link's other threads.
+class ClockDoubts {
+ public:
+  /// A message for each node whose clock became inconsistent since the last call.
+  std::vector<std::string> takeNew(const Link& link);
+  /// Final summary of all inconsistent nodes with their counts. Empty: none.
+  [[nodiscard]] static std::string summary(const Link& link);
+
+ private:
+  std::set<std::uint64_t> said_;
+};
+
+/// Sends the pointers of one watcher to all watchers of a session; best effort. Used by one thread.
+class PointerTopic {
+ public:
+  virtual ~PointerTopic() = default;
+  PointerTopic(const PointerTopic&) = delete;
+  PointerTopic& operator=(const PointerTopic&) = delete;
+
+  virtual void send(std::string_view message) = 0;
+  /// Messages received since the last call, including the own ones; in a flood, the newest.
+  virtual std::vector<std::string> take() = 0;
+
+ protected:
+  PointerTopic() = default;
+};
+
+/// Implemented in dds/. Throws LoadError as joinSession() over a network.
+std::unique_ptr<PointerTopic> makePointerTopic(const std::string& session, const SessionNetwork& network);
 
 }  // namespace vps::scenes

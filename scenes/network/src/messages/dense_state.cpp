@@ -8,7 +8,6 @@
 #include <optional>
 
 #include "messages/messages.h"
-#include "messages/packed_rotation.h"
 
 namespace vps::scenes {
 

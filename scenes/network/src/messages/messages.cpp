@@ -8,8 +8,8 @@
 
 #include "link/link.h"
 #include "messages/compact_fields.h"
+#include "messages/dense_state.h"
 #include "messages/message_fields.h"
-#include "messages/packed_rotation.h"
 #include "vps_device/detail/bytes.h"
 #include "vps_device/metronome.h"
 

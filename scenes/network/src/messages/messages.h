@@ -12,8 +12,7 @@
 #include <variant>
 #include <vector>
 
-#include "link/shared_region.h"
-#include "link/wire_form.h"
+#include "link/link.h"
 #include "messages/dense_state.h"
 #include "messages/message_order.h"
 #include "vps_device/coupling_port.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "messages/packed_rotation.h"
+#include "messages/dense_state.h"
 
 #include <cmath>
 

@@ -11,7 +11,6 @@
 
 #include "haptics/hand.h"
 #include "haptics/merged_log.h"
-#include "link/clock_doubts.h"
 #include "link/link.h"
 #include "messages/messages.h"
 #include "vps_scenes/run/run_requests.h"

@@ -11,7 +11,7 @@
 
 #include "haptics/haptic_driver.h"
 #include "haptics/haptic_side.h"
-#include "link/clock_doubts.h"
+#include "link/link.h"
 #include "nodes/device_end.h"
 #include "record/scene_archive.h"
 #include "vps/errors.h"

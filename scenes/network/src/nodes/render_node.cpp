@@ -169,8 +169,8 @@ AssembleResult renderNode(Scene& scene, const RenderOptions& given, const std::s
                         "' reports limits that allow no usable coupling; check its node");
   if (!given.network.empty()) {
     char words[120];
-    std::snprintf(words, sizeof words, "the coupling has %.0f N/m and %.1f N m/rad",
-                  settings.gains.k_N_per_m, settings.gains.k_Nm_per_rad);
+    std::snprintf(words, sizeof words, "the coupling has %.0f N/m and %.1f N m/rad", settings.gains.k_N_per_m,
+                  settings.gains.k_Nm_per_rad);
     end.say(words);
   }
   served.setDevice(end.hello(), settings.gains,

@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "link/broadcast_ring.h"
-#include "link/pointer_topic.h"
+#include "link/link.h"
 #include "link/shared_region.h"
 #include "messages/messages.h"
 #include "vps/errors.h"

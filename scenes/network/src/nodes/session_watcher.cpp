@@ -2,7 +2,6 @@
 #include <utility>
 #include <vector>
 
-#include "link/clock_doubts.h"
 #include "link/clock_estimate.h"
 #include "link/link.h"
 #include "messages/messages.h"

@@ -7,7 +7,7 @@
 
 #include "vps/errors.h"
 #include "vps_device/metronome.h"
-#include "vps_scenes/network/head_topic.h"
+#include "vps_scenes/network/ros_topics.h"
 
 namespace vps::scenes {
 namespace {

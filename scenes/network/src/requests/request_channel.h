@@ -3,7 +3,6 @@
 #pragma once
 
 #include <unistd.h>
-
 #include <chrono>
 #include <cstdint>
 #include <memory>
@@ -63,5 +62,11 @@ std::unique_ptr<ClientChannel> findLocalServer(const std::string& session, uid_t
 /// Server and client over UDP; implemented in dds/. Both throw LoadError as joinSession() over a network.
 std::unique_ptr<ServerChannel> makeNetworkServer(const std::string& session, const SessionNetwork& network);
 std::unique_ptr<ClientChannel> findNetworkServer(const std::string& session, const SessionNetwork& network);
+
+/// Whether a name is allowed for a recording: a file name without a folder (the requester must not choose the
+/// location on this machine) with letters, digits, -, _ and dots, and the extension .mcap.
+bool isRecordingName(const std::string& name);
+/// Name under which the render node stores a recording for a file elsewhere: the same name if it is allowed.
+std::string recordingName(const std::string& file);
 
 }  // namespace vps::scenes

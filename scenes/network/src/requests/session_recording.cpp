@@ -2,6 +2,7 @@
 #include "vps_scenes/network/session_recording.h"
 
 #include <algorithm>
+#include <cctype>
 #include <chrono>
 #include <cstring>
 #include <filesystem>
@@ -14,7 +15,6 @@
 #include "core/valid_text.h"
 #include "record/scene_archive.h"
 #include "requests/asking.h"
-#include "requests/recording_name.h"
 #include "vps/errors.h"
 #include "vps/write_file.h"
 
@@ -34,6 +34,20 @@ std::string wordsOf(const AnswerMessage& answer) {
 }
 
 }  // namespace
+
+bool isRecordingName(const std::string& name) {
+  const auto is_good = [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '-' || c == '_' || c == '.';
+  };
+  return name.size() > 5 && name.ends_with(".mcap") && name.front() != '.' &&
+         std::all_of(name.begin(), name.end(), is_good);
+}
+
+std::string recordingName(const std::string& file) {
+  constexpr std::size_t kLongest = 63;  // length limit of AskMessage::text
+  const std::string name = std::filesystem::path(file).filename().string();
+  return isRecordingName(name) && name.size() <= kLongest ? name : "run.mcap";
+}
 
 struct SessionRecording::Work {
   explicit Work(SessionRecordingOptions given) : options(std::move(given)), thread([this] { run(); }) {}
