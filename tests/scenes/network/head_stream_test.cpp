@@ -71,7 +71,7 @@ TEST_F(HeadStream, WhatIsWrongInATrackIsSaidWithItsLine) {
     EXPECT_NE(said.find(words), std::string::npos) << said;
   };
   says(kTrack + "0.5, 0, -1, 0.5, 0, 0, 0, 1\n", "anna.csv:4: is not later");
-  says(kTrack + "2, 0, -1, 0.5, 0, 0, 1, 1\n", "anna.csv:4: columns 5 to 8 are no rotation");
+  says(kTrack + "2, 0, -1, 0.5, 0, 0, 1, 1\n", "anna.csv:4: has no rotation in columns 5 to 8");
   says(kTrack + "2, 0, -1\n", "anna.csv:4: expected 8 numbers");
   says(kTrack + "2, nan, -1, 0.5, 0, 0, 0, 1\n", "anna.csv:4: expected 8 numbers");
   says("time_s,x\n", "has no row");
