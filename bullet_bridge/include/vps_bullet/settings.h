@@ -9,12 +9,35 @@
 
 namespace vps::bullet {
 
+/// A law of dry friction. In each step it gives the coefficient mu of every contact: the friction force is at
+/// most mu times the normal force. A host may define its own model.
+struct FrictionModel {
+  const char* name = "";
+  /// @param mu         coefficient of both materials at rest: the product of the two bodies' friction
+  /// @param slip_m_s   speed at which the two surfaces slide on each other at the start of the step, >= 0
+  /// @return           coefficient in this step, finite and >= 0
+  /// Null means that the coefficient is mu at every speed. It is called for each contact and step, from
+  /// several threads with bullet::Dispatcher, and must not throw.
+  double (*coefficient)(double mu, double slip_m_s) = nullptr;
+  const char* description = "";
+};
+
+/// All friction models of this library. To add a model, add a row here.
+inline constexpr FrictionModel kFrictionModels[] = {
+    {"coulomb", nullptr, "the coefficient is the same at rest and at every speed"},
+    // Dry steel on steel has 0.74 at rest and 0.57 in motion [Serway and Jewett, Physics for Scientists and
+    // Engineers, table of coefficients of friction]. Below 1 mm/s a contact counts as resting.
+    {"static_and_kinetic", [](double mu, double slip_m_s) { return slip_m_s > 1e-3 ? 0.57 / 0.74 * mu : mu; },
+     "the coefficient falls to 0.77 of its value while the surfaces slide faster than 1 mm/s"},
+};
+
 struct Settings {
   /// Penalty requires bullet::Solver. With any other solver the contacts are rigid, as with Constraint, which
   /// a message (log.h) reports once. Penalty contact has no restitution.
   ContactMethod contact_method = ContactMethod::Constraint;
   double stiffness_N_per_m3 = 1e12;  ///< stiffness per area of penalty contact; assumed: steel, 0.2 m thick
-  int contact_limit = 32;            ///< contacts of each pair, >= 4; the checks of a step may add 16
+  FrictionModel friction_model = kFrictionModels[0];
+  int contact_limit = 32;  ///< contacts of each pair, >= 4; the checks of a step may add 16
   /// A point is a contact if it can come within this distance during the step. With a larger value the solver
   /// gets contacts that do not act; with a smaller one points are missed that rotation and the solver's
   /// residual bring into contact. 20 um was chosen by measurement.

@@ -295,6 +295,13 @@ void requireUsable(const Settings& s) {
     throw std::invalid_argument("install: stiffness_N_per_m3 must be positive and finite");
   if (!(s.contact_margin_m > 0) || !(s.contact_margin_m < 1e-2))
     throw std::invalid_argument("install: contact_margin_m must be positive and below 10 mm");
+  for (const double slip_m_s : {0.0, 1e-3, 1.0}) {
+    const double mu = s.friction_model.coefficient ? s.friction_model.coefficient(0.1, slip_m_s) : 0.1;
+    if (!(mu >= 0) || !std::isfinite(mu))
+      throw std::invalid_argument("install: friction_model gives a coefficient of " + std::to_string(mu) +
+                                  " at a slip of " + std::to_string(slip_m_s) +
+                                  " m/s where the materials have 0.1; it must be 0 or more and finite");
+  }
 }
 
 }  // namespace

@@ -183,6 +183,54 @@ TEST_P(RestWithSolver, SticksBelowTheFrictionAngleAndSlidesAbove) {
     }
 }
 
+// The slope is between the angles of kinetic and of static friction: what rests stays, what slides goes on.
+TEST_P(RestWithSolver, AFrictionModelGivesTheCoefficientAtRestAndWhileSliding) {
+  constexpr double kMu = 0.3, kKinetic = 0.8 * kMu, kSpeed_m_s = 0.1;
+  bullet::Settings settings;
+  settings.friction_model = {"static and kinetic",
+                             [](double mu, double slip_m_s) { return slip_m_s > 1e-3 ? 0.8 * mu : mu; }};
+  const double angle_rad = std::atan(0.9 * kMu);
+  const Mat3 R = rotationFromVector(Vec3(0, angle_rad, 0));
+  const Vec3 down = R * Vec3(1, 0, 0);
+  for (const bool slides : {false, true}) {
+    World world(GetParam(), settings);
+    const Built box = steelBox(), ground = plate();
+    world.add(ground, Pose(R, R * Vec3(0, 0, -0.005)), true, kMu);
+    btRigidBody& body = world.add(box, Pose(R, R * Vec3(-0.01, 0, 0.005)), false, kMu);
+    world.step(50);  // the contacts settle
+    const Vec3 start = fromBt(body.getWorldTransform().getOrigin());
+    if (slides) body.setLinearVelocity(toBt(Vec3(kSpeed_m_s * down)));
+    constexpr int kSteps = 100;
+    world.step(kSteps);
+    const double moved_m = (fromBt(body.getWorldTransform().getOrigin()) - start).dot(down);
+    // a = g (sin - mu cos), by steps: v t + a dt^2 n (n + 1) / 2.
+    const double a = kGravity * (std::sin(angle_rad) - kKinetic * std::cos(angle_rad));
+    const double expected_m = slides ? kSpeed_m_s * kSteps * 1e-3 + a * 1e-6 * kSteps * (kSteps + 1) / 2 : 0;
+    // As in SticksBelowTheFrictionAngleAndSlidesAbove: friction has an error of 0.3 % at most.
+    const double friction_m = kGravity * kKinetic * 1e-6 * kSteps * (kSteps + 1) / 2;
+    EXPECT_NEAR(moved_m, expected_m, slides ? 3e-3 * friction_m : 1e-6) << slides;
+  }
+}
+
+TEST(FrictionModels, EveryModelHasANameAndGivesTheMaterialsCoefficientAtRest) {
+  for (const bullet::FrictionModel& model : bullet::kFrictionModels) {
+    EXPECT_FALSE(std::string(model.name).empty());
+    EXPECT_FALSE(std::string(model.description).empty()) << model.name;
+    if (!model.coefficient) continue;
+    EXPECT_EQ(model.coefficient(0.3, 0), 0.3) << model.name;
+    for (const double slip_m_s : {1e-6, 1e-3, 1.0, 100.0}) {
+      EXPECT_GE(model.coefficient(0.3, slip_m_s), 0) << model.name;
+      EXPECT_LE(model.coefficient(0.3, slip_m_s), 0.3) << model.name;
+    }
+  }
+}
+
+TEST(FrictionModels, AModelWhoseCoefficientIsNegativeIsRefused) {
+  bullet::Settings settings;
+  settings.friction_model = {"negative", [](double mu, double slip_m_s) { return mu - slip_m_s; }};
+  EXPECT_THROW(World(SolverKind::Constraint, settings), std::invalid_argument);
+}
+
 TEST_P(RestWithSolver, FallsFreelyUntilItTouches) {
   World world(GetParam());
   const Built box = steelBox(), ground = plate();

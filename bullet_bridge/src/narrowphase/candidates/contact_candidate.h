@@ -57,7 +57,8 @@ struct Candidate {
 
 /// Motion of body 0 relative to body 1 in the step, and which points it can bring into contact.
 struct RelativeMotion {
-  Twist V;  ///< velocity of body 0 minus that of body 1, about the world's origin, in W
+  Twist V;        ///< velocity of body 0 minus that of body 1, about the world's origin, in W
+  Twist V_start;  ///< as V, but at the start of the step; zero unless the friction model depends on it
   double dt_s = 0;
   double contact_margin_m = 0;
   double speed_m_s = 0;      ///< upper bound of the relative speed of the smaller body's points

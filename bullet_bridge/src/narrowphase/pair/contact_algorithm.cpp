@@ -166,8 +166,9 @@ ContactAlgorithm::ContactAlgorithm(const btCollisionAlgorithmConstructionInfo& i
                                    const btCollisionObjectWrapper* body1, std::shared_ptr<Context> context)
     : PairAlgorithm(info, body0, body1), state_(std::make_unique<PairState>()) {
   state_->context = std::move(context);
-  state_->writer = std::make_unique<ManifoldWriter>(*m_dispatcher, body0->getCollisionObject(),
-                                                    body1->getCollisionObject());
+  state_->writer =
+      std::make_unique<ManifoldWriter>(*m_dispatcher, body0->getCollisionObject(),
+                                       body1->getCollisionObject(), state_->context->settings.friction_model);
 }
 
 ContactAlgorithm::~ContactAlgorithm() {
@@ -198,6 +199,7 @@ void ContactAlgorithm::prepare(const btCollisionObjectWrapper* body0, const btCo
       is_penalty ? std::min(2 * kSamePlace_m, settings.contact_margin_m) : settings.contact_margin_m;
   const bool is_held = !is_penalty && state.selection.is_valid && !state.selection.contacts.empty();
   state.motion = relativeMotion(pair, info.m_timeStep, contact_margin_m, is_held);
+  if (settings.friction_model.coefficient) state.motion.V_start = presentVelocity(pair);
   is_penalty ? selectPenalty(pair, state) : selectRigid(pair, state);
 }
 

@@ -44,8 +44,8 @@ bool hasAnisotropicFriction(const btCollisionObject& a, const btCollisionObject&
 
 // Sets what btManifoldResult::addContactPoint would set from the bodies.
 void setMaterial(btManifoldPoint& point, const Candidate& c, const PairMaterial& material,
-                 const btCollisionObject* a, const btCollisionObject* b) {
-  point.m_combinedFriction = toBt(material.friction(c));
+                 const RelativeMotion& motion, const btCollisionObject* a, const btCollisionObject* b) {
+  point.m_combinedFriction = toBt(material.friction(c, motion));
   point.m_combinedRestitution = toBt(material.restitution(c));
   point.m_combinedRollingFriction = btManifoldResult::calculateCombinedRollingFriction(a, b);
   point.m_combinedSpinningFriction = btManifoldResult::calculateCombinedSpinningFriction(a, b);
@@ -75,7 +75,7 @@ btManifoldPoint makePoint(const Candidate& c, const PairMaterial& material,
   point.m_index1 = indexOn(c, 1);
   point.m_partId0 = c.surface[0];
   point.m_partId1 = c.surface[1];
-  setMaterial(point, c, material, bodies[0]->getCollisionObject(), bodies[1]->getCollisionObject());
+  setMaterial(point, c, material, motion, bodies[0]->getCollisionObject(), bodies[1]->getCollisionObject());
   if (c.rest_m > 0) setRestGap(point, c.rest_m);
   setArea(point, c.area_m2);
   if (c.bounces) setBounces(point);

@@ -24,8 +24,8 @@ bool wantsAdded(const btCollisionObject* a, const btCollisionObject* b) {
 }  // namespace
 
 ManifoldWriter::ManifoldWriter(btDispatcher& dispatcher, const btCollisionObject* object0,
-                               const btCollisionObject* object1)
-    : dispatcher_(dispatcher), objects_{object0, object1} {}
+                               const btCollisionObject* object1, const FrictionModel& friction_model)
+    : dispatcher_(dispatcher), objects_{object0, object1}, friction_model_(friction_model) {}
 
 ManifoldWriter::~ManifoldWriter() {
   // Bullet would report the end of contact once per manifold.
@@ -86,7 +86,7 @@ void ManifoldWriter::write(std::span<const Candidate> contacts,
     manifolds_.push_back(manifold);
   }
   const bool is_custom = wantsAdded(objects_[0], objects_[1]);
-  const PairMaterial material(bodies);
+  const PairMaterial material(bodies, friction_model_);
   // Bullet's own algorithms call the added callback again for up to four points in each step and keep the
   // other points' values. Here one manifold per step is added again, in turn.
   const std::size_t added_again = used > 0 ? turn_++ % used : 0;
@@ -153,7 +153,7 @@ void ManifoldWriter::end() {
 btManifoldPoint* ManifoldWriter::put(const Candidate& contact,
                                      const btCollisionObjectWrapper* const (&bodies)[2],
                                      const RelativeMotion& motion) {
-  const PairMaterial material(bodies);
+  const PairMaterial material(bodies, friction_model_);
   if (btManifoldPoint* had = find(contact.key())) {
     const btManifoldPoint old = *had;
     *had = makePoint(contact, material, bodies, motion);

@@ -44,8 +44,9 @@ void keepMaterial(btManifoldPoint& point, const btManifoldPoint& old);
 
 class ManifoldWriter {
  public:
-  ManifoldWriter(btDispatcher& dispatcher, const btCollisionObject* object0,
-                 const btCollisionObject* object1);
+  /// @param friction_model  must outlive the writer
+  ManifoldWriter(btDispatcher& dispatcher, const btCollisionObject* object0, const btCollisionObject* object1,
+                 const FrictionModel& friction_model);
   ~ManifoldWriter();
   ManifoldWriter(const ManifoldWriter&) = delete;
   ManifoldWriter& operator=(const ManifoldWriter&) = delete;
@@ -83,6 +84,7 @@ class ManifoldWriter {
 
   btDispatcher& dispatcher_;
   const btCollisionObject* objects_[2];
+  const FrictionModel& friction_model_;
   std::vector<btPersistentManifold*> manifolds_;
   std::vector<Old> old_;      // last step's points, ascending by key
   bool has_started_ = false;  // contact has started, and has not ended

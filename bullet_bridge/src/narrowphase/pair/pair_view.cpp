@@ -78,6 +78,12 @@ Pose displacement(const btCollisionObject& object, const Twist& V, double t_s) {
   return {R, center + (V.v + V.w.cross(center)) * t_s - R * center};
 }
 
+Twist presentVelocity(const PairView& pair) {
+  const Twist V0 = predictedVelocity(*pair.wrapper[0]->getCollisionObject(), 0, false);
+  const Twist V1 = predictedVelocity(*pair.wrapper[1]->getCollisionObject(), 0, false);
+  return {V0.w - V1.w, V0.v - V1.v};
+}
+
 RelativeMotion relativeMotion(const PairView& pair, double dt_s, double contact_margin_m, bool is_held) {
   RelativeMotion motion;
   motion.dt_s = dt_s;
@@ -166,11 +172,13 @@ double limitedFriction(double product) {
 
 }  // namespace
 
-PairMaterial::PairMaterial(const btCollisionObjectWrapper* const (&bodies)[2])
+PairMaterial::PairMaterial(const btCollisionObjectWrapper* const (&bodies)[2],
+                           const FrictionModel& friction_model)
     : object_{bodies[0]->getCollisionObject(), bodies[1]->getCollisionObject()},
       shape_{shapeWithMaterials(*bodies[0]), shapeWithMaterials(*bodies[1])},
       friction_(gCalculateCombinedFrictionCallback(object_[0], object_[1])),
-      restitution_(gCalculateCombinedRestitutionCallback(object_[0], object_[1])) {}
+      restitution_(gCalculateCombinedRestitutionCallback(object_[0], object_[1])),
+      coefficient_(friction_model.coefficient) {}
 
 const SurfaceMaterial& PairMaterial::at(const Candidate& c, int i) const {
   static constexpr SurfaceMaterial kNone{};
@@ -179,7 +187,14 @@ const SurfaceMaterial& PairMaterial::at(const Candidate& c, int i) const {
   return c.surface[i] < surfaces.size() ? surfaces[c.surface[i]].material : kNone;
 }
 
-double PairMaterial::friction(const Candidate& c) const {
+double PairMaterial::friction(const Candidate& c, const RelativeMotion& motion) const {
+  const double mu = frictionAtRest(c);
+  if (!coefficient_) return mu;
+  const Vec3 v = motion.V_start.v + motion.V_start.w.cross(c.p_W);
+  return coefficient_(mu, (v - c.n_W.dot(v) * c.n_W).norm());
+}
+
+double PairMaterial::frictionAtRest(const Candidate& c) const {
   const SurfaceMaterial &a = at(c, 0), &b = at(c, 1);
   const bool is_hosts = gCalculateCombinedFrictionCallback != &btManifoldResult::calculateCombinedFriction;
   if (is_hosts || (!a.friction && !b.friction)) return friction_;

@@ -5,11 +5,13 @@
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "narrowphase/candidates/contact_candidate.h"
 #include "native_shapes/native_shape.h"
 #include "vps/pose.h"
 #include "vps_bullet/convert.h"
+#include "vps_bullet/settings.h"
 #include "vps_bullet/shape.h"
 
 class btCollisionObject;
@@ -60,7 +62,8 @@ struct PairView {
       if (!each || !each->models().mesh) return 0;
     const Box &box0 = shape[0]->bounds(), &box1 = shape[1]->bounds();
     const Pose X_01 = this->X_01();
-    return std::max(distance_m(box0, moved(box1, X_01)), distance_m(moved(box0, X_01.inverse()), box1));
+    return std::sqrt(
+        std::max(distance2(box0, moved(box1, X_01)), distance2(moved(box0, X_01.inverse()), box1)));
   }
   /// Key of a side that is not a Shape; it changes with the shape's size.
   [[nodiscard]] ShapeKey key(int i) const {
@@ -86,6 +89,9 @@ struct PairView {
     return X_WS[i] * shape[i]->bounds().center();
   }
 };
+
+/// Present velocity of body 0 minus that of body 1, about the world's origin, in W.
+Twist presentVelocity(const PairView& pair);
 
 /// @param is_held  contacts held the bodies in the last step. The pull of couplings is then limited to the
 ///   query range
@@ -120,9 +126,11 @@ void coast(const PairView& pair, double dt_s, Pose (&way)[2]);
 /// multiplied. Bodies and shapes must outlive it.
 class PairMaterial {
  public:
-  explicit PairMaterial(const btCollisionObjectWrapper* const (&bodies)[2]);
+  PairMaterial(const btCollisionObjectWrapper* const (&bodies)[2], const FrictionModel& friction_model);
 
-  [[nodiscard]] double friction(const Candidate& c) const;
+  /// Coefficient of friction in the step: the friction model's value for the product of both sides and the
+  /// speed of slip at the start of the step.
+  [[nodiscard]] double friction(const Candidate& c, const RelativeMotion& motion) const;
   [[nodiscard]] double restitution(const Candidate& c) const;
   /// Stiffness per area of penalty contact: the lesser value of both sides.
   /// @param usual_N_per_m3  value of a side whose surface has none of its own
@@ -130,10 +138,12 @@ class PairMaterial {
 
  private:
   [[nodiscard]] const SurfaceMaterial& at(const Candidate& c, int i) const;
+  [[nodiscard]] double frictionAtRest(const Candidate& c) const;
 
   const btCollisionObject* object_[2];
   const Shape* shape_[2];          // null if no surface of the shape has a material of its own
   double friction_, restitution_;  // of the bodies
+  double (*coefficient_)(double mu, double slip_m_s);  // FrictionModel::coefficient
 };
 
 }  // namespace vps::bullet

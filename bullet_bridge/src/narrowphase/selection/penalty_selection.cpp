@@ -88,7 +88,7 @@ void updatePenaltyPoints(PenaltyPair& pair, std::span<const Candidate> candidate
     point.p_W = c.p_W;
     point.n_W = c.n_W;
     point.k_N_per_m = material.stiffness_N_per_m3(c, usual_N_per_m3) / sides * c.area_m2;
-    point.mu = material.friction(c);
+    point.mu = material.friction(c, motion);
     double before_m = 0;  // zero for a new point
     while (before != old.end() && before->key < point.key) ++before;
     if (before != old.end() && before->key == point.key) {
@@ -121,7 +121,8 @@ void selectPenalty(const PairView& pair, PairState& state) {
   CandidateMotion moved;
   if (!reusePenaltyPoints(pair, state, moved)) selectPenaltyPoints(pair, state);
   for (int i = 0; i < 2; ++i) state.penalty.object[i] = pair.wrapper[i]->getCollisionObject();
-  updatePenaltyPoints(state.penalty, state.selection.penalty_points, PairMaterial(pair.wrapper),
+  updatePenaltyPoints(state.penalty, state.selection.penalty_points,
+                      PairMaterial(pair.wrapper, context.settings.friction_model),
                       context.settings.stiffness_N_per_m3, sideCount(pair, context.settings.sides),
                       state.motion, moved);
 }

@@ -82,7 +82,7 @@ void selectRigid(const PairView& pair, PairState& state) {
     storeSelection(state.contacts, pair, state.motion, state.selection);
   }
   markSharp(pair, context.settings, !checksAlone(pair, state), state.contacts);
-  markBounces(state.contacts, state.motion, PairMaterial(pair.wrapper));
+  markBounces(state.contacts, state.motion, PairMaterial(pair.wrapper, context.settings.friction_model));
 }
 
 }  // namespace vps::bullet
