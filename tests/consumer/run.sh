@@ -52,6 +52,13 @@ configure app app $(missing "${others[@]}" tomlplusplus) >/dev/null
 "$work/app/app"
 "$work/app/hello_vps"
 
+if [ "$kind" = static ]; then
+  echo "== the examples"
+  configure examples examples >/dev/null
+  "$cmake" --build "$work/examples" >/dev/null
+  "$work/examples/gear_train"
+fi
+
 echo "== find_package(vps COMPONENTS plugin)"
 configure plugin_alone plugin_alone $(missing "${others[@]}" tomlplusplus VpsBullet) >/dev/null
 "$cmake" --build "$work/plugin_alone" >/dev/null
