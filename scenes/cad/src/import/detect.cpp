@@ -111,7 +111,7 @@ FileFormat detectFormat(const std::string& file) {
   const FileFormat format = formatOf(head, file);
   if (!isWhole(format.id, in, size, head)) {
     throw LoadError(file, "",
-                    "is cut or is not a " + format.name + " file (" + std::to_string(size) +
+                    "is truncated or is not in " + format.name + " format (" + std::to_string(size) +
                         " bytes); copy or export it again");
   }
   return format;
