@@ -66,6 +66,14 @@ template <typename Divide>
   return tree;
 }
 
+/// Copies the links of a hierarchy to nodes that also have data, such as bounds: nodes[n] becomes node n of
+/// the tree. There are as many nodes afterwards as the tree has.
+template <typename Node>
+void copyLinks(const Hierarchy& tree, std::vector<Node>& nodes) {
+  nodes.resize(tree.nodes.size());
+  for (std::size_t n = 0; n < nodes.size(); ++n) static_cast<HierarchyNode&>(nodes[n]) = tree.nodes[n];
+}
+
 /// The axis along which a box is longest; the first of equal ones.
 [[nodiscard]] inline int longestAxis(const Box& box) {
   int axis = 0;

@@ -2,8 +2,6 @@
 // Axis-aligned boxes.
 #pragma once
 
-#include <limits>
-
 #include "vps/pose.h"
 
 namespace vps {
@@ -43,12 +41,8 @@ struct Box {
   out.max.array() += by_m;
   return out;
 }
-/// Distance of the nearest points; 0 where they overlap, infinite for an empty box.
-[[nodiscard]] inline double distance_m(const Box& a, const Box& b) noexcept {
-  if (a.isEmpty() || b.isEmpty()) return std::numeric_limits<double>::infinity();
-  return (a.min - b.max).cwiseMax(b.min - a.max).cwiseMax(0).norm();
-}
-/// The square of distance_m(). Neither box may be empty.
+/// Squared distance [m^2] of the boxes' nearest points; 0 where they overlap, infinite if a new Box, which is
+/// empty, is one of them.
 [[nodiscard]] inline double distance2(const Box& a, const Box& b) noexcept {
   return (a.min - b.max).cwiseMax(b.min - a.max).cwiseMax(0.0).squaredNorm();
 }

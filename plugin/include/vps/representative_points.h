@@ -27,7 +27,7 @@ inline std::uint32_t directionCell(const Vec3& n) {
 /// taken to first order: the group's inward normals are a linear function of position, fitted once.
 ///
 /// find() reads the same points as queryContacts(), but computes normals for, and reports, only a few of each
-/// thousand: with 153,000 near points it takes a fifth of the time (plugin/README.md).
+/// thousand: with 153,000 near points it takes a fifth of the time.
 class VPS_API RepresentativePoints {
  public:
   struct Request {

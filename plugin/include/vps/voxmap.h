@@ -21,7 +21,7 @@ struct VoxMapSettings {
 
 /// How the normal is read from the field. `Continuous` interpolates nodal gradients: the force does not jump
 /// from cell to cell, but is only nearly conservative. `Trilinear` is the exact derivative of the
-/// interpolated distance, and jumps at cell borders. Cost and error of both: plugin/README.md.
+/// interpolated distance, and jumps at cell borders. Cost and error of both: plugin/method.md.
 enum class Gradient { Continuous, Trilinear };
 
 class Solid;

@@ -23,10 +23,9 @@ BoxTree::BoxTree(std::span<const Box> boxes, std::uint32_t most_in_leaf, Axis ax
     return half;
   });
   order_ = std::move(tree.order);
-  nodes_.resize(tree.nodes.size());
+  copyLinks(tree, nodes_);
   for (std::size_t n = nodes_.size(); n-- > 0;) {
     Node& node = nodes_[n];
-    static_cast<HierarchyNode&>(node) = tree.nodes[n];
     const auto add = [&node](const Box& box) {
       node.box.add(box.min);
       node.box.add(box.max);

@@ -214,8 +214,7 @@ void WindingNumber::build(std::vector<Corners> triangles, double cluster_error) 
   });
   corners_.reserve(triangles.size());
   for (const std::uint32_t i : tree.order) corners_.push_back(triangles[i]);
-  nodes_.resize(tree.nodes.size());
-  for (std::size_t n = 0; n < nodes_.size(); ++n) static_cast<HierarchyNode&>(nodes_[n]) = tree.nodes[n];
+  copyLinks(tree, nodes_);
   expand();
 }
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <random>
 
@@ -31,14 +32,14 @@ TEST(Box, DistanceIsThatOfTheNearestPoints) {
       q = p.cwiseMax(b.min).cwiseMin(b.max);
       p = q.cwiseMax(a.min).cwiseMin(a.max);
     }
-    ASSERT_NEAR(distance_m(a, b), (p - q).norm(), 1e-12);
-    ASSERT_EQ(distance_m(a, b), distance_m(b, a));
-    ASSERT_EQ(distance_m(a, b) == 0, overlap(a, b));
-    apart += distance_m(a, b) > 0 ? 1 : 0;
+    ASSERT_NEAR(std::sqrt(distance2(a, b)), (p - q).norm(), 1e-12);
+    ASSERT_EQ(distance2(a, b), distance2(b, a));
+    ASSERT_EQ(distance2(a, b) == 0, overlap(a, b));
+    apart += distance2(a, b) > 0 ? 1 : 0;
   }
   EXPECT_GT(apart, 300);
   EXPECT_LT(apart, 990);
-  EXPECT_EQ(distance_m(Box(), drawnBox(random)), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(distance2(Box(), drawnBox(random)), std::numeric_limits<double>::infinity());
 }
 
 // A turned box lies in the box around it, so the distance to the latter is a lower bound.
@@ -48,7 +49,7 @@ TEST(Box, NoPointOfATurnedBoxIsNearerThanTheBoxAroundIt) {
   for (int i = 0; i < 300; ++i) {
     const Box a = drawnBox(random), b = drawnBox(random);
     const Pose X{test::drawnRotation(normal, random), 2 * test::drawnVector(normal, random)};
-    const double least_m = distance_m(a, moved(b, X));
+    const double least_m = std::sqrt(distance2(a, moved(b, X)));
     for (int corner = 0; corner < 8; ++corner) {
       const Vec3 p = X * Vec3(corner & 1 ? b.max.x() : b.min.x(), corner & 2 ? b.max.y() : b.min.y(),
                               corner & 4 ? b.max.z() : b.min.z());

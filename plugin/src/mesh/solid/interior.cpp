@@ -42,7 +42,7 @@ WindingSlope::WindingSlope(const Mesh& mesh) {
     });
     return items.size() / 2;
   });
-  for (std::size_t n = 0; n < nodes_.size(); ++n) static_cast<HierarchyNode&>(nodes_[n]) = tree.nodes[n];
+  copyLinks(tree, nodes_);
   for (const std::uint32_t i : tree.order) edges_.push_back(edges[i]);
 }
 

@@ -8,7 +8,7 @@
 
 namespace vps {
 
-Nearest nearestOfSegments(const Vec3& p1, const Vec3& q1, const Vec3& p2, const Vec3& q2) {
+Nearest nearestPointsOfSegments(const Vec3& p1, const Vec3& q1, const Vec3& p2, const Vec3& q2) {
   const Vec3 d1 = q1 - p1, d2 = q2 - p2, r = p1 - p2;
   const double a = d1.squaredNorm(), e = d2.squaredNorm(), f = d2.dot(r), c = d1.dot(r), b = d1.dot(d2);
   const double square = a * e - b * b;
@@ -33,7 +33,7 @@ using Kind = FeatureContact::Kind;
 Nearest nearestOf(Kind kind, const Vec3 (&a)[3], const Vec3 (&b)[3]) {
   if (kind == Kind::CornerOnFacet) return {a[0], closestOnTriangleInline(a[0], b[0], b[1], b[2]).q};
   if (kind == Kind::FacetOnCorner) return {closestOnTriangleInline(b[0], a[0], a[1], a[2]).q, b[0]};
-  return nearestOfSegments(a[0], a[1], b[0], b[1]);
+  return nearestPointsOfSegments(a[0], a[1], b[0], b[1]);
 }
 
 int pointsOf(const FeatureSet& part, Kind kind, int i, std::uint32_t feature, Vec3 (&out)[3]) {

@@ -20,7 +20,7 @@ struct Nearest {
 };
 
 /// Nearest points of the segments from p1 to q1 and from p2 to q2. Source: Ericson 2005, section 5.1.9.
-Nearest nearestOfSegments(const Vec3& p1, const Vec3& q1, const Vec3& p2, const Vec3& q2);
+Nearest nearestPointsOfSegments(const Vec3& p1, const Vec3& q1, const Vec3& p2, const Vec3& q2);
 
 /// Nearest points of two features.
 /// @param a, b  corners of the features, from pointsOf(), in one frame

@@ -200,7 +200,7 @@ class CrossingTest {
   // True for edges that overlap or are near after the step; false for edges that have passed each other's
   // ends.
   [[nodiscard]] bool meetsInStep(const EdgeSegment& s0, const EdgeSegment& s1, const Vec3& n) const {
-    const Nearest then = nearestOfSegments(s0.from, s0.to, X_01_end_ * s1.from, X_01_end_ * s1.to);
+    const Nearest then = nearestPointsOfSegments(s0.from, s0.to, X_01_end_ * s1.from, X_01_end_ * s1.to);
     const bool is_between = then.end[0] == Nearest::kBetween && then.end[1] == Nearest::kBetween;
     return (is_between && n.dot(then.p - then.q) < 0) || then.distance_m() <= reachOfCrossing_m(cutoff_m_);
   }

@@ -98,7 +98,7 @@ class EdgePairSearch {
       at.reach_m = std::sqrt(at.way2_m2) + turn_rad_ * b.radius_m + b.width_m + reach_m_;
     }
     const double near_m = a.width_m + at.reach_m;
-    const Nearest nearest = nearestOfSegments(a.from, a.to, at.from, at.to);
+    const Nearest nearest = nearestPointsOfSegments(a.from, a.to, at.from, at.to);
     return (nearest.p - nearest.q).squaredNorm() <= near_m * near_m;
   }
 

@@ -21,7 +21,7 @@ EdgeTree::EdgeTree(std::vector<Line> lines) : lines_(std::move(lines)) {
     });
     return own.size() / 2;
   });
-  for (std::size_t n = 0; n < nodes_.size(); ++n) static_cast<HierarchyNode&>(nodes_[n]) = tree.nodes[n];
+  copyLinks(tree, nodes_);
   order_ = std::move(tree.order);
 }
 

@@ -119,7 +119,7 @@ double MotionJudge::mostDepth_m(const Pair& pair) const {
 /// Upper bound of the depth at one moment, from the boxes alone.
 double MotionJudge::boxDepth_m(const Pair& pair, double step) const {
   const auto box_W = [&](std::size_t i) { return moved(bodies_[i].box_P, poseAt(i, step)); };
-  const double apart_m = distance_m(box_W(pair.first), box_W(pair.second));
+  const double apart_m = std::sqrt(distance2(box_W(pair.first), box_W(pair.second)));
   return apart_m > 0 ? -apart_m : mostDepth_m(pair);
 }
 
