@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vps_curves: data behind the pictures of plugin/README.md. `vps_curves time DIR` and
+// vps_curves: data behind the pictures of plugin/measurements.md. `vps_curves time DIR` and
 // `vps_curves accuracy DIR` write plain columns for gnuplot (plots/*.gp) and Markdown tables.
 #include <cstdio>
 #include <filesystem>
