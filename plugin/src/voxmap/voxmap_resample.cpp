@@ -66,7 +66,7 @@ class ResampledField final : public AddedField {
 
   void write(std::size_t cell, NodeValue* nodes) const override {
     // All bricks have the same blocks; the pose moves them to this brick.
-    const Motion motion(field_, {X_PM_.R, X_PM_ * centerOf(cellAt(cell))});
+    const GridPose motion(field_, {X_PM_.R, X_PM_ * centerOf(cellAt(cell))});
     const ShellBlock* batch[kBatch];
     ReadBatch read;
     for (int first = 0; first < kBlocksOfBrick; first += kBatch) {

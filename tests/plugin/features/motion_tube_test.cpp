@@ -44,7 +44,7 @@ TEST(MotionTube, PointsOfMotionsThatItHoldsStayWithinItsMargin) {
     ASSERT_TRUE(tube.holds(start));
     ASSERT_TRUE(tube.holds(end)) << trial;
     // A place on the expected motion, and off it.
-    const RelativeMotion way(ball0, ball1, tube.from(), tube.to());
+    const MotionBetweenPoses way(ball0, ball1, tube.from(), tube.to());
     const double off_m = 1.5 * tube.margin_m() * unit(random);
     Pose X[2];
     for (Pose& pose : X) {
@@ -56,7 +56,7 @@ TEST(MotionTube, PointsOfMotionsThatItHoldsStayWithinItsMargin) {
     ++held;
     const bool is_first = ball0.radius_m <= ball1.radius_m;
     const Ball& smaller = is_first ? ball0 : ball1;
-    const RelativeMotion between(ball0, ball1, X[0], X[1]);
+    const MotionBetweenPoses between(ball0, ball1, X[0], X[1]);
     for (int k = 0; k < 20; ++k) {
       const Pose at_10 = between.at(unit(random));
       const Vec3 own = smaller.center + smaller.radius_m * direction(random);

@@ -157,7 +157,7 @@ struct Trial {
     std::memset(batch.get(), 0, sizeof *batch);
     const ShellBlock* pointers[kBatch];
     for (std::size_t i = 0; i < kBatch; ++i) pointers[i] = &blocks[i];
-    readKernels(simd).read(view, Motion(view, X_MP), pointers, kBatch, *batch);
+    readKernels(simd).read(view, GridPose(view, X_MP), pointers, kBatch, *batch);
     return batch;
   }
   [[nodiscard]] std::unique_ptr<ReadBatch> read(Simd simd) const { return read(simd, field.view()); }
@@ -250,7 +250,7 @@ TEST(SimdKernels, ALeafThatReachesBeyondTheNeighbourCellsIsRead) {
       block.y[i] = block.z[i] = 0;
     }
     const ShellBlock* const blocks[1] = {&block};
-    readKernels(Simd::Best).read(field.view(), Motion(field.view(), Pose()), blocks, 1, *batch);
+    readKernels(Simd::Best).read(field.view(), GridPose(field.view(), Pose()), blocks, 1, *batch);
     for (int i = 0; i < kLanes; ++i)
       ASSERT_NEAR(batch->value[i], field.at(center + Vec3(static_cast<double>(block.x[i]), 0, 0)), 20.0);
   }
@@ -279,7 +279,7 @@ TEST(SimdKernels, SumsOfTouchingPointsHaveTheSameBitsOnEveryPath) {
   for (unsigned seed = 0; seed < kTrials; ++seed) {
     const Trial trial(seed);
     const auto batch = trial.read(Simd::Scalar);
-    const Motion motion(trial.field.view(), trial.X_MP);
+    const GridPose motion(trial.field.view(), trial.X_MP);
     const std::int32_t reference[3] = {static_cast<std::int32_t>(seed), -1'000'000'000, 17};
     const auto sumsBy = [&](Simd simd, std::uint32_t lost[kBatch]) {
       auto row = std::make_unique<RowSums>();
@@ -308,7 +308,7 @@ TEST(SimdKernels, SumsOfTouchingPointsHaveTheSameBitsOnEveryPath) {
 TEST(SimdKernels, BoundsOfSpheresHaveTheSameBitsOnEveryPath) {
   for (unsigned seed = 0; seed < kTrials; ++seed) {
     Trial trial(seed);
-    const Motion motion(trial.field.view(), trial.X_MP);
+    const GridPose motion(trial.field.view(), trial.X_MP);
     for (const ShellBlock& block : trial.blocks)
       for (const float cutoff : {0.0f, 2.5f}) {
         SphereBounds plain, wide;

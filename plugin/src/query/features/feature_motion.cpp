@@ -176,7 +176,7 @@ double curvature_per_m(const FeatureSet& part, const FeatureEdge& edge) {
 // held them. A row of the solver holds two straight lines on a straight way, so it is off by the bend of the
 // way, and by the bend of curved edges along the slide.
 double bendOf_m(const FeatureSet& part0, const FeatureSet& part1, const Pose& start, const Pose& end,
-                const RelativeMotion& way, const FeatureContact& contact) {
+                const MotionBetweenPoses& way, const FeatureContact& contact) {
   const double slide_m = std::max((start.inverse() * contact.p[0] - end.inverse() * contact.p[0]).norm(),
                                   (start * contact.p[1] - end * contact.p[1]).norm());
   const double curvature = curvature_per_m(part0, part0.edges()[contact.feature[0]]) +
@@ -194,7 +194,7 @@ bool entersFromItsEnd(const FeatureSet& part0, const FeatureSet& part1, const st
   if (!findCrossingOf(part0, part1, feature, met, end.inverse(), contact) ||
       findCrossingOf(part0, part1, feature, met, start.inverse(), before))
     return false;
-  const RelativeMotion way(ballAround(part0), ballAround(part1), start, end);
+  const MotionBetweenPoses way(ballAround(part0), ballAround(part1), start, end);
   const double bend_m = bendOf_m(part0, part1, start, end, way, contact);
   thread_local std::vector<Pose> way_10;
   way.divide(way_10);
@@ -217,7 +217,7 @@ void FeatureMotion::check(const FeatureSet& part0, const FeatureSet& part1, cons
   const int stretches = static_cast<int>(
       std::clamp(std::ceil(travel_m(part0, part1, start, end) / stretch_m), 1.0, 10 * kMostStretches));
   if (stretches == 1) return checkStretch(part0, part1, {start, end, start, end, true}, holds_close, out);
-  const RelativeMotion way(ballAround(part0), ballAround(part1), start, end);
+  const MotionBetweenPoses way(ballAround(part0), ballAround(part1), start, end);
   const double gap_m = rest_m(part0, part1);
   const std::size_t first = out.size();
   Pose from = start;
@@ -291,7 +291,7 @@ void FeatureMotion::checkStretch(const FeatureSet& part0, const FeatureSet& part
     near.distance_m = nearest.distance_m();
     near.path_m = path_m_;
     if (near.distance_m > step_m + looked_at_m || near.distance_m < kRounding_m) continue;
-    if (way_10_.empty()) RelativeMotion(ballAround(part0), ballAround(part1), start, to).divide(way_10_);
+    if (way_10_.empty()) MotionBetweenPoses(ballAround(part0), ballAround(part1), start, to).divide(way_10_);
     const double least_m = std::min(looked_at_m, 0.5 * near.distance_m);
     const bool is_held = holds_close && near.distance_m < kHeldShare * gap_m;
     const Nearest at_start = nearest;

@@ -28,7 +28,7 @@ class MotionTube {
     constexpr double kLongest = 24;
     const double step_m = travel_m(ball0, ball1, start, end);
     slack_m_ = width * std::clamp(kOfStep * step_m, kLeast_m, kMost_m);
-    const double step_rad = RelativeMotion(ball0, ball1, start, end).turn_rad();
+    const double step_rad = MotionBetweenPoses(ball0, ball1, start, end).turn_rad();
     const double bend_m = bendOf(step_m, step_rad);
     double steps = kLongest;
     if (step_m > 0) steps = std::min(steps, 2 * longestStretch_m(ball0, ball1) / step_m);
@@ -38,7 +38,7 @@ class MotionTube {
     for (int k = 2; k <= static_cast<int>(steps); ++k) to = to * once;
     from_ = seen_ = start;
     to_ = to;
-    way_ = RelativeMotion(ball0, ball1, start, to);
+    way_ = MotionBetweenPoses(ball0, ball1, start, to);
     bend_m_ = bendOf(travel_m(ball0, ball1, start, to), way_.turn_rad());
   }
 
@@ -102,7 +102,7 @@ class MotionTube {
   Ball ball0_, ball1_;
   Pose from_, to_;
   Pose seen_;
-  RelativeMotion way_;
+  MotionBetweenPoses way_;
   double width_ = 1;
   double slack_m_ = 0, bend_m_ = 0;
 };

@@ -40,10 +40,10 @@ inline double longestStretch_m(const Ball& ball0, const Ball& ball1) {
 
 /// The motion between two poses of part 1 in part 0: the smaller part's centre moves on a straight line in
 /// the other part's frame, and the smaller part turns at a constant rate.
-class RelativeMotion {
+class MotionBetweenPoses {
  public:
-  RelativeMotion() = default;
-  RelativeMotion(const Ball& ball0, const Ball& ball1, const Pose& start_01, const Pose& end_01)
+  MotionBetweenPoses() = default;
+  MotionBetweenPoses(const Ball& ball0, const Ball& ball1, const Pose& start_01, const Pose& end_01)
       : is_first_(ball0.radius_m <= ball1.radius_m),
         from_(is_first_ ? start_01.inverse() : start_01),
         to_(is_first_ ? end_01.inverse() : end_01),

@@ -21,7 +21,7 @@ namespace vps {
 template <typename Consume>
 class CoherentWalk {
  public:
-  CoherentWalk(const Reading& reading, const Pose& X_MP, double cutoff, QueryMemory& memory,
+  CoherentWalk(const MapReading& reading, const Pose& X_MP, double cutoff, QueryMemory& memory,
                Consume consume) noexcept
       : reading_(reading),
         memory_(memory),
@@ -36,7 +36,8 @@ class CoherentWalk {
   /// Call before the first group of a pose. If the last cutoff was smaller, its thresholds are too late by at
   /// most the difference of the cutoffs, which is added to the odometers. If it was larger, they are too
   /// early, which only costs readings.
-  static void begin(QueryMemory& memory, const Reading& reading, double cutoff, const Pose& X_MP) noexcept {
+  static void begin(QueryMemory& memory, const MapReading& reading, double cutoff,
+                    const Pose& X_MP) noexcept {
     const double last = std::exchange(memory.cutoff_, cutoff);
     if (last == QueryMemory::kNoQuery) memory.X_MP_ = X_MP;
     if (last == QueryMemory::kNoQuery || cutoff <= last) return;
@@ -61,7 +62,7 @@ class CoherentWalk {
   static constexpr double kNever = std::numeric_limits<double>::infinity();
 
   /// The true distance above which the field reads above the cutoff.
-  static double beyond(const Reading& reading, double cutoff) noexcept {
+  static double beyond(const MapReading& reading, double cutoff) noexcept {
     const double least = cutoff + reading.field.error;
     return least < reading.field.band ? least : reading.field.band + reading.field.diagonal;
   }
@@ -201,7 +202,7 @@ class CoherentWalk {
     group.next = std::min(group.next, leaf_next);
   }
 
-  const Reading& reading_;
+  const MapReading& reading_;
   QueryMemory& memory_;
   const double cutoff_;
   const double error_;  ///< error of the field: half a cell's diagonal and a quantum
@@ -221,8 +222,9 @@ inline QueryMemory* memoryFor(QueryMemory* memory, const VoxMap& map, const Poin
 /// Calls consume(const ReadLeaf&), in ascending order, for every leaf that may have a point within the
 /// cutoff; returns a lower bound of the readings at the points of all other leaves [voxels].
 template <typename Consume>
-double readNearLeaves(const Reading& reading, const Pose& X_MP, const QueryOptions& options, double cutoff_m,
-                      QueryMemory* memory, std::size_t& points_read, Consume consume) noexcept {
+double readNearLeaves(const MapReading& reading, const Pose& X_MP, const QueryOptions& options,
+                      double cutoff_m, QueryMemory* memory, std::size_t& points_read,
+                      Consume consume) noexcept {
   const double cutoff = cutoff_m / reading.field.voxel_m;
   double least = std::numeric_limits<double>::infinity();
   if (reading.shell.leaf_blocks == 0) return least;
@@ -249,7 +251,7 @@ double readNearLeaves(const Reading& reading, const Pose& X_MP, const QueryOptio
 
 /// Sets the result's distance from the least reading [quanta] and the lower bound for the points that were
 /// not read [voxels].
-inline void setDistance(const VoxMap& map, const Reading& reading, float least_read, double least_skipped,
+inline void setDistance(const VoxMap& map, const MapReading& reading, float least_read, double least_skipped,
                         QueryResult& result) noexcept {
   const double read_m = reading.field.quantum_m * least_read;
   // If nothing was skipped both are infinite; min() because saturated bounds were rounded to floats.

@@ -20,8 +20,8 @@ inline double usedCutoff(const VoxMap& map, double cutoff_m) noexcept {
 /// Collects the contacts of leaves that have been read.
 class ContactCollector {
  public:
-  ContactCollector(const VoxMap& map, const Reading& reading, const Pose& X_MP, const QueryOptions& options,
-                   double cutoff_m, ContactSet& out) noexcept
+  ContactCollector(const VoxMap& map, const MapReading& reading, const Pose& X_MP,
+                   const QueryOptions& options, double cutoff_m, ContactSet& out) noexcept
       : sampler_(map),
         reading_(reading),
         X_MP_(X_MP),
@@ -74,7 +74,7 @@ class ContactCollector {
   }
 
   VoxSampler sampler_;
-  const Reading& reading_;
+  const MapReading& reading_;
   const Pose& X_MP_;
   const float cutoff_;
   const bool has_owners_;

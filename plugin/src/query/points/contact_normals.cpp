@@ -30,7 +30,7 @@ void trilinearGradient(const ReadLeaf& leaf, int i, float g[3]) {
 
 }  // namespace
 
-double readingAt(const ReadLeaf& leaf, int lane, const Motion& motion, const Vec3& p_P) noexcept {
+double readingAt(const ReadLeaf& leaf, int lane, const GridPose& motion, const Vec3& p_P) noexcept {
   double value = static_cast<double>(leaf.value(lane));
   if (!leaf.batch.is_read[leaf.slot]) return value;
   const int i = kLanes * leaf.slot + lane;

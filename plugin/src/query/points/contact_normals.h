@@ -11,14 +11,14 @@ namespace vps {
 /// to which the point was rounded. Otherwise a stiff contact would show the steps of 1/16384 voxel (15 nm at
 /// 0.25 mm).
 /// @param p_P  position of the lane's point
-double readingAt(const ReadLeaf& leaf, int lane, const Motion& motion, const Vec3& p_P) noexcept;
+double readingAt(const ReadLeaf& leaf, int lane, const GridPose& motion, const Vec3& p_P) noexcept;
 
 /// Collects points of leaves that have been read and computes their unit outward normals. `Continuous` reads
 /// the field one voxel before and one voxel behind along each axis: the difference equals the interpolated
 /// central difference of the nodes.
 class ContactNormals {
  public:
-  ContactNormals(const Reading& reading, Gradient gradient) noexcept
+  ContactNormals(const MapReading& reading, Gradient gradient) noexcept
       : reading_(reading), gradient_(gradient) {}
 
   void add(const ReadLeaf& leaf, int lane) noexcept;
@@ -38,7 +38,7 @@ class ContactNormals {
   static constexpr int kReads = 6;  // two along each axis
   static constexpr int kMaxCount = kBatchLanes / kReads;
 
-  const Reading& reading_;
+  const MapReading& reading_;
   const Gradient gradient_;
   int count_ = 0;
   std::int32_t whole_[3][kBatchLanes];

@@ -13,8 +13,8 @@
 namespace vps {
 
 /// A map, a shell and a pose, prepared for reading.
-struct Reading {
-  Reading(const VoxMap& map, const PointShell& its_shell, const Pose& X_MP, Simd simd) noexcept
+struct MapReading {
+  MapReading(const VoxMap& map, const PointShell& its_shell, const Pose& X_MP, Simd simd) noexcept
       : field(map), motion(field, X_MP), shell(its_shell), kernels(readKernels(simd)) {
     field.prefetches = shell.leaf_blocks > kCachedLeaves;
   }
@@ -24,7 +24,7 @@ struct Reading {
   static constexpr std::size_t kCachedLeaves = 512;
 
   FieldView field;
-  Motion motion;
+  GridPose motion;
   const PointShell& shell;
   const ReadKernels& kernels;
 };
@@ -42,7 +42,7 @@ struct ReadLeaf {
 
 /// True if every point under a block lies where all cells are the outer constant, so that it reads as the
 /// band.
-inline bool isFarOutside(const Reading& reading, const ShellBlock& block) noexcept {
+inline bool isFarOutside(const MapReading& reading, const ShellBlock& block) noexcept {
   const FieldView& f = reading.field;
   const double reach = block.radius_m / f.voxel_m + 1;  // as in read()
   bool is_within = true;
@@ -63,7 +63,7 @@ inline bool isFarOutside(const Reading& reading, const ShellBlock& block) noexce
 template <typename Consume>
 class LeafReader {
  public:
-  LeafReader(const Reading& reading, Consume consume) noexcept : reading_(reading), consume_(consume) {}
+  LeafReader(const MapReading& reading, Consume consume) noexcept : reading_(reading), consume_(consume) {}
 
   void add(std::uint32_t leaf) noexcept {
     const ShellBlock& block = reading_.shell.blocks[leaf];
@@ -115,7 +115,7 @@ class LeafReader {
     flush();
   }
 
-  const Reading& reading_;
+  const MapReading& reading_;
   Consume consume_;
   ReadBatch batch_;
   const ShellBlock* blocks_[kBatch];
@@ -138,7 +138,7 @@ inline std::size_t groupCount(const PointShell& shell) noexcept {
 /// lower bound of the readings of the leaves that were left out [voxels]; it is above the band, which is
 /// their reading.
 template <typename Reader>
-double readEverything(const Reading& reading, Reader& reader) noexcept {
+double readEverything(const MapReading& reading, Reader& reader) noexcept {
   const auto& blocks = reading.shell.blocks;
   const std::size_t leaves = reading.shell.leaf_blocks, rows = rowCount(reading.shell);
   double least = std::numeric_limits<double>::infinity();
@@ -164,7 +164,7 @@ double readEverything(const Reading& reading, Reader& reader) noexcept {
 /// Walks the spheres under a block and calls `take(leaf)` for the leaves in which the field may reach the
 /// cutoff [voxels]; returns the least bound of the other leaves [voxels].
 template <typename Take>
-float walkNear(const Reading& reading, std::uint32_t root, float cutoff, Take take) noexcept {
+float walkNear(const MapReading& reading, std::uint32_t root, float cutoff, Take take) noexcept {
   const auto& blocks = reading.shell.blocks;
   float least_skipped = std::numeric_limits<float>::infinity();
   // On each level sixteen children wait; 2^32 points make eight levels.

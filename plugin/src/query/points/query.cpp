@@ -46,7 +46,7 @@ double farBound(const VoxSampler& sampler, const PointShell& shell, const Pose& 
 /// Branch and bound for the least reading [quanta]: spheres with the nearest centres are opened first.
 class LeastReading {
  public:
-  explicit LeastReading(const Reading& reading) noexcept : reading_(reading), reader_(reading, {this}) {}
+  explicit LeastReading(const MapReading& reading) noexcept : reading_(reading), reader_(reading, {this}) {}
 
   float find() noexcept {
     if (!reading_.shell.blocks.empty()) open(static_cast<std::uint32_t>(reading_.shell.blocks.size() - 1));
@@ -78,7 +78,7 @@ class LeastReading {
     LeastReading* self;
     void operator()(const ReadLeaf& leaf) const { self->least_ = std::min(self->least_, leaf.least()); }
   };
-  const Reading& reading_;
+  const MapReading& reading_;
   LeafReader<Consume> reader_;
   float least_ = kFullBand;
 };
@@ -94,7 +94,7 @@ QueryResult queryContacts(const VoxMap& map, const PointShell& shell, const Pose
     result.status = Status::BadPose;
     return result;
   }
-  const Reading reading(map, shell, X_MP, options.simd);
+  const MapReading reading(map, shell, X_MP, options.simd);
   const double cutoff_m = usedCutoff(map, options.cutoff_m);
   ContactCollector collector(map, reading, X_MP, options, cutoff_m, out);
   const double least_skipped =
@@ -112,7 +112,7 @@ QueryResult queryDistance(const VoxMap& map, const PointShell& shell, const Pose
     result.status = Status::BadPose;
     return result;
   }
-  const Reading reading(map, shell, X_MP, simd);
+  const MapReading reading(map, shell, X_MP, simd);
   LeastReading search(reading);
   result.min_distance_m = reading.field.quantum_m * search.find();
   result.points_tested = search.pointsRead();

@@ -18,7 +18,7 @@ QueryResult queryWrench(const VoxMap& map, const PointShell& shell, const Pose& 
     result.status = Status::BadPose;
     return result;
   }
-  const Reading reading(map, shell, X_MP, options.simd);
+  const MapReading reading(map, shell, X_MP, options.simd);
   WrenchCollector collector(reading, X_MP, options.gradient, p_MO);
   const double least_skipped =
       readNearLeaves(reading, X_MP, options, 0, memoryFor(memory, map, shell), result.points_tested,

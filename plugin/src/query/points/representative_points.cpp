@@ -22,7 +22,7 @@ std::uint32_t RepresentativePoints::groupOf(std::uint32_t id) const noexcept {
 /// One walk over the near leaves.
 class RepresentativePoints::Search {
  public:
-  Search(RepresentativePoints& self, const Reading& reading, const Pose& X_MP, const Request& request,
+  Search(RepresentativePoints& self, const MapReading& reading, const Pose& X_MP, const Request& request,
          double cutoff_m) noexcept
       : self_(self),
         quantum_m_(reading.field.quantum_m),
@@ -244,7 +244,7 @@ QueryResult RepresentativePoints::find(const VoxMap& map, const Pose& X_MP, cons
   out.contacts.clear();
   out.left_out = 0;
   QueryResult result;
-  const Reading reading(map, *shell_, X_MP, options.simd);
+  const MapReading reading(map, *shell_, X_MP, options.simd);
   const double cutoff_m = usedCutoff(map, options.cutoff_m);
   Search search(*this, reading, X_MP, request, cutoff_m);
   const double least_skipped =

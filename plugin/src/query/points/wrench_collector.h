@@ -28,7 +28,7 @@ inline double sumOfLanes(const double lanes[kLanes]) {
 /// Adds up leaves, then rows, then groups.
 class WrenchCollector {
  public:
-  WrenchCollector(const Reading& reading, const Pose& X_MP, Gradient gradient, const Vec3& p_MO) noexcept
+  WrenchCollector(const MapReading& reading, const Pose& X_MP, Gradient gradient, const Vec3& p_MO) noexcept
       : reading_(reading), X_MP_(X_MP), gradient_(gradient), normals_(reading, gradient) {
     for (int k = 0; k < 3; ++k) {
       const double o = p_MO[k] / reading.field.voxel_m - reading.field.low[k];
@@ -158,7 +158,7 @@ class WrenchCollector {
     has_sums_ = false;
   }
 
-  const Reading& reading_;
+  const MapReading& reading_;
   const Pose& X_MP_;
   const Gradient gradient_;
   std::int32_t reference_[3];

@@ -45,7 +45,7 @@ FieldView::FieldView(const VoxMap& map) noexcept : voxel_m(map.voxel_m()), quant
   slope = 1.7320509f * (layout.steepest + quantum) * (1 + 1e-6f);
 }
 
-Motion::Motion(const FieldView& field, const Pose& X_MP) noexcept {
+GridPose::GridPose(const FieldView& field, const Pose& X_MP) noexcept {
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
       R[3 * i + j] = column[j][i] = X_MP.R(i, j) / field.voxel_m;

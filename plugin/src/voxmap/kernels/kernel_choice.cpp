@@ -50,7 +50,7 @@ class Workload {
 
   /// Seconds for one batch: all its leaves are read, and the touching points of every fourth leaf are added.
   double run(const ReadKernels& kernels) {
-    const Motion motion(view_, Pose());
+    const GridPose motion(view_, Pose());
     const std::int32_t reference[3] = {0, 0, 0};
     RowSums sums;
     const auto start = std::chrono::steady_clock::now();

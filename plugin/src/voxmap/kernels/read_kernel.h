@@ -39,8 +39,8 @@ struct FieldView {
 };
 
 /// A shell's pose in the form that the kernels use.
-struct Motion {
-  Motion(const FieldView& field, const struct Pose& X_MP) noexcept;
+struct GridPose {
+  GridPose(const FieldView& field, const struct Pose& X_MP) noexcept;
 
   double R[9];                      ///< row by row, voxels per metre
   alignas(32) double p[4];          ///< the shell's origin, in voxels from the directory's corner; and 0
@@ -105,14 +105,14 @@ struct alignas(64) TouchSums {
 
 struct ReadKernels {
   /// Distances at the points (or sphere centres) of up to kBatch blocks.
-  void (*read)(const FieldView&, const Motion&, const ShellBlock* const* blocks, int count, ReadBatch&);
+  void (*read)(const FieldView&, const GridPose&, const ShellBlock* const* blocks, int count, ReadBatch&);
   /// Bounds for the spheres of an inner block, for a cutoff in voxels below the band.
-  void (*bound)(const FieldView&, const Motion&, const ShellBlock&, float cutoff, SphereBounds&);
+  void (*bound)(const FieldView&, const GridPose&, const ShellBlock&, float cutoff, SphereBounds&);
   /// Adds the touching points of one block of a batch that has been read. Each point was rounded to a step,
   /// so its depth is extrapolated along the slope to its exact position; otherwise a stiff contact would show
   /// steps of 15 nm (at 0.25 mm voxels). Normals are those of the trilinear distance. Returns the lanes
   /// without a normal as bits; the caller adds these.
-  std::uint32_t (*touch)(const Motion&, const ReadBatch&, int slot, const ShellBlock&,
+  std::uint32_t (*touch)(const GridPose&, const ReadBatch&, int slot, const ShellBlock&,
                          const std::int32_t* reference, RowSums&);
   void (*addRow)(const RowSums&, TouchSums&);
   /// Distances at `count` (up to kBatchLanes) points, given per lane as whole voxels and fractions.
