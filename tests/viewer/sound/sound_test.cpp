@@ -16,9 +16,8 @@
 #include <sstream>
 #include <thread>
 
-#include "sound/beeper.h"
+#include "sound/voices.h"
 #include "sound/live_sound.h"
-#include "sound/part_voice.h"
 #include "support/temporary_folder.h"
 #include "vps_device/metronome.h"
 

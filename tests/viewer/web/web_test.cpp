@@ -16,7 +16,7 @@
 #include "web/access.h"
 #include "web/browser_message.h"
 #include "web/hub.h"
-#include "web/part_glb.h"
+#include "web/web_files.h"
 #include "web/snapshot_coder.h"
 
 namespace vps::viewer {

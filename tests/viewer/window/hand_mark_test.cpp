@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "run/hand_mark.h"
+#include "run/hand_drag.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "scenes/two_pins.h"
-#include "view/planned_path.h"
+#include "view/procedure_view.h"
 
 namespace vps::viewer {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "view/section_drag.h"
+#include "view/camera_motion.h"
 
 namespace vps::viewer {
 namespace {

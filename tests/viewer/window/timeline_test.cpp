@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "view/exploded.h"
+#include "view/procedure_view.h"
 #include "view/view_state.h"
 
 namespace vps::viewer {

@@ -6,11 +6,10 @@
 #include <optional>
 #include <utility>
 
-#include "sound/beeper.h"
-#include "sound/scene_voice.h"
+#include "sound/voices.h"
 #include "vps/voxmap.h"
 #include "vps_device/random.h"
-#include "vps_scenes/scene/part_mass.h"
+#include "vps_scenes/scene/scene_parts.h"
 #include "vps_viewer/sound/sound.h"
 
 namespace vps::viewer {

@@ -8,7 +8,7 @@
 
 #include "web/access.h"
 #include "web/hub.h"
-#include "web/web_page.h"
+#include "web/web_files.h"
 
 namespace vps::viewer {
 

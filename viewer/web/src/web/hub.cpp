@@ -5,11 +5,11 @@
 #include <charconv>
 #include <nlohmann/json.hpp>
 
-#include "mesh/visible_parts.h"
+#include "mesh/scene_meshes.h"
 #include "run/presentation.h"
 #include "vps_device/metronome.h"
-#include "vps_scenes/cad/srgb.h"
-#include "web/part_glb.h"
+#include "vps_scenes/cad/colors.h"
+#include "web/web_files.h"
 
 namespace vps::viewer {
 

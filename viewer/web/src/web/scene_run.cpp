@@ -5,7 +5,7 @@
 
 #include "run/live_run.h"
 #include "vps_device/metronome.h"
-#include "vps_viewer/report/verdict_words.h"
+#include "vps_viewer/report/words.h"
 #include "web/watched_run.h"
 
 namespace vps::viewer {

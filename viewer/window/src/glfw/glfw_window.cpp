@@ -2,7 +2,7 @@
 #include "glfw/glfw_window.h"
 
 #include <epoxy/gl.h>
-// After epoxy, which GLFW's own OpenGL header would collide with.
+// GLFW must not include its own OpenGL header, which collides with epoxy's.
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <backends/imgui_impl_glfw.h>
@@ -18,7 +18,7 @@
 namespace vps::viewer {
 namespace {
 
-// Dear ImGui spreads what an event changes over up to three frames.
+// Dear ImGui may need up to three frames to show the effect of an event.
 constexpr int kFramesAfterEvent = 3;
 
 std::string lastError() {
@@ -96,7 +96,7 @@ GlfwWindow::GlfwWindow(const std::string& title, PictureSize size, bool wants_st
   glfwSwapInterval(1);
   glfwSetWindowUserPointer(window_, this);
   openImGui();
-  if (wants_stereo) {  // a driver may give a window without, although it was asked
+  if (wants_stereo) {  // a driver may ignore the hint
     GLboolean is_stereo = GL_FALSE;
     glGetBooleanv(GL_STEREO, &is_stereo);
     has_stereo_ = is_stereo == GL_TRUE;
@@ -121,7 +121,7 @@ void GlfwWindow::onAny(GLFWwindow* window) {
 }
 
 void GlfwWindow::openImGui() {
-  // Set before ImGui sets its own, which call these.
+  // These callbacks are set before those of ImGui, which call them.
   glfwSetKeyCallback(window_, [](GLFWwindow* w, int key, int, int action, int) {
     onAny(w);
     const char* name = nameOf(key);
@@ -145,7 +145,7 @@ void GlfwWindow::openImGui() {
   glfwGetWindowContentScale(window_, &across, &down);
   scale_ = std::clamp(across, 0.5f, 4.0f);
   ImGui::CreateContext();
-  ImGui::GetIO().IniFilename = nullptr;  // leaves no file behind
+  ImGui::GetIO().IniFilename = nullptr;  // ImGui writes no settings file
   ImGui_ImplGlfw_InitForOpenGL(window_, true);
   ImGui_ImplOpenGL3_Init("#version 330");
   ImGui::GetStyle().ScaleAllSizes(scale_);
@@ -212,7 +212,7 @@ int GlfwWindow::screenRow() const {
       continue;
     top = above;
   }
-  // Where the display counts in larger units than pixels, they start on whole ones.
+  // Some displays count in units of several pixels; windows then start at whole units.
   const int pixels = height > 0 ? std::max(1, size().height / height) : 1;
   return (y - top) * pixels;
 }
@@ -259,7 +259,7 @@ void GlfwWindow::present() {
 
 namespace {
 
-/// A part of the image's columns.
+/// Uploads `width` columns of the image, from column from_x.
 void upload(unsigned texture, const Image& image, int from_x, int width, bool has_size) {
   glBindTexture(GL_TEXTURE_2D, texture);
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A window with OpenGL and Dear ImGui, and the picture that it shows.
+// A window with OpenGL and Dear ImGui, with the renderer's picture as its background.
 #pragma once
 
 #include <array>
@@ -14,14 +14,15 @@ struct GLFWwindow;
 
 namespace vps::viewer {
 
-/// Throws as GlfwWindow does where there is no display. Not while there is a window.
+/// Throws as GlfwWindow does if there is no display. Must not be called while a GlfwWindow exists.
 void requireDisplay();
 
-/// Used on the thread that made it, except wake(). One at a time.
+/// All functions except wake() are called on the thread that made the window. Only one window may exist at a
+/// time.
 class GlfwWindow {
  public:
-  /// Throws std::runtime_error, which says what is missing: a display, or OpenGL 3.3.
-  /// @param wants_stereo  with a buffer for each eye, where the driver has that; see hasStereo()
+  /// Throws std::runtime_error if there is no display or it has no OpenGL 3.3.
+  /// @param wants_stereo  asks the driver for a buffer for each eye; hasStereo() tells whether it has them
   GlfwWindow(const std::string& title, PictureSize size, bool wants_stereo = false);
   ~GlfwWindow();
   GlfwWindow(const GlfwWindow&) = delete;
@@ -32,32 +33,35 @@ class GlfwWindow {
 
   /// Waits for events. Returns whether there is something new to draw.
   bool wait(double longest_s);
-  /// Ends wait(), from any thread.
+  /// Ends wait(). May be called by any thread.
   void wake();
   [[nodiscard]] bool isClosed() const;
-  /// Fills that monitor, counted from 0, or goes back to where the window was. False where there is none.
+  /// Fills a monitor, counted from 0, or restores the window's place and size. Returns false if there is no
+  /// such monitor.
   bool setFullScreen(bool is_full, int monitor);
   [[nodiscard]] bool isFullScreen() const { return is_full_screen_; }
-  /// In pixels; 0 while it is minimised.
+  /// Size of the window's content in pixels; 0 while the window is minimised.
   [[nodiscard]] PictureSize size() const;
-  /// Row of the monitor that shows the window's uppermost row; 0 where the display does not say it (Wayland).
+  /// Row of the monitor that shows the window's uppermost row; 0 if the display does not tell it (Wayland).
   [[nodiscard]] int screenRow() const;
   /// Greatest width and height of setPicture()'s image.
   [[nodiscard]] int greatestPicture() const { return greatest_picture_; }
-  /// Of texts and distances: 1 on a common screen, 2 on one with twice the pixels for the same length.
+  /// Scale of texts and distances: 1 on a common screen, 2 on a screen with twice the pixels per length.
   [[nodiscard]] float scale() const { return scale_; }
 
   void beginFrame(bool is_dark);
   void endFrame();
   /// Shows what endFrame() drew.
   void present();
-  /// The picture that picture() stands for, as ImGui's images want it.
+  /// Uploads the picture to the texture that picture() returns.
   void setPicture(const Image& image);
-  /// Whether it has a buffer for each eye. Then setPicture()'s left half is the left eye's picture.
+  /// Whether the window has a buffer for each eye. If so, the left half of setPicture()'s image is the left
+  /// eye's.
   [[nodiscard]] bool hasStereo() const { return has_stereo_; }
+  /// The picture's texture, for ImGui's AddImage().
   [[nodiscard]] void* picture() const;
   [[nodiscard]] bool hasPicture() const { return has_picture_; }
-  /// Between endFrame() and present(): what endFrame() drew, panels included.
+  /// The window's content with its panels. Call it between endFrame() and present().
   [[nodiscard]] Image readBack() const;
 
  private:
@@ -71,7 +75,7 @@ class GlfwWindow {
   float scale_ = 1;
   int greatest_picture_ = 0;
   bool has_picture_ = false, is_full_screen_ = false, has_stereo_ = false;
-  std::array<int, 4> windowed_{};  ///< place and size before it filled a monitor
+  std::array<int, 4> windowed_{};  ///< place and size before the window filled a monitor
   int frames_due_ = 3;
   std::atomic<bool> has_news_{false};
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A headset beside the window: it shows what the window shows, and its controllers pick and take parts.
+// The headset of a window: it shows the window's scene, and its controllers pick and grab parts.
 #include <algorithm>
 
 #include "glfw/session.h"
@@ -7,7 +7,8 @@
 namespace vps::viewer {
 namespace {
 
-/// What a controller points at: the part in hand is taken there where a person moves it, another part picked.
+/// Handles a trigger press: grabs the part in hand at the place that the controller points at, if a person
+/// moves the part; picks any other part.
 void pressed(Session& session, std::size_t hand, const Pose& X_WH) {
   const Ray ray = {X_WH.p, -X_WH.R.col(2)};
   const std::optional<PickedPlace> place = pick(session.drawn, session.placed, session.view.draw, ray);
@@ -55,13 +56,13 @@ void useHeadset(Session& session) {
       session.holding_hand.reset();
     } else if (is_holding && now[i].is_tracked) {
       if (last.is_tracked) moved(session, last, now[i]);
-      // As strong as the force, of which a controller has nothing else to show.
-      constexpr double kMost_N = 10;  // of a handle that is pulled (device/pulled_handle.h)
+      // The vibration is proportional to the force, since a controller cannot show the force otherwise.
+      constexpr double kMost_N = 10;  // greatest force of the mouse's handle (device/pulled_handle.h)
       session.headset->tremble(i, std::min(1.0, session.shown.F_hand_W.f.norm() / kMost_N));
     } else if (now[i].is_tracked && now[i].is_taking && !last.is_taking) {
       pressed(session, i, now[i].X_WH);
     }
-    // A hand that is not seen for a while is where it was: then it goes on from where it is seen again.
+    // A hand that was not tracked for a while moves the part again from the place where it reappears.
     last = now[i];
   }
 }

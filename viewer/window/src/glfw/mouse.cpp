@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "glfw/session.h"
-#include "view/section_drag.h"
+#include "view/camera_motion.h"
 
 namespace vps::viewer {
 namespace {
@@ -13,7 +13,7 @@ void dragOnPicture(Session& session, const ImGuiIO& io) {
   ViewState& view = session.view;
   const PixelPlace drag = {io.MouseDelta.x, io.MouseDelta.y};
   if (drag[0] == 0 && drag[1] == 0) return;
-  // What the mouse moved before the press may come in one frame with it.
+  // A frame may report a press together with motion of the mouse from before the press.
   for (const ImGuiMouseButton button :
        {ImGuiMouseButton_Left, ImGuiMouseButton_Right, ImGuiMouseButton_Middle})
     if (ImGui::IsMouseClicked(button)) return;
@@ -40,7 +40,7 @@ std::optional<PickedPlace> pickAt(const Session& session, const PixelPlace& at) 
               rayThrough(session.view.camera, at, session.focus.size));
 }
 
-/// The place in the picture of one eye.
+/// Converts a place in the stereo picture to a place in the picture of one eye.
 PixelPlace inOneEye(StereoMode mode, PixelPlace at, PictureSize size) {
   const auto half = [](double x, int whole) { return 2 * std::fmod(x, 0.5 * std::max(1, whole)); };
   if (mode == StereoMode::SideBySide) at[0] = half(at[0], size.width);
@@ -48,7 +48,7 @@ PixelPlace inOneEye(StereoMode mode, PixelPlace at, PictureSize size) {
   return at;
 }
 
-/// A press on the part in hand grabs it, and it stays grabbed until all buttons are up.
+/// Grabs the part in hand when a button is pressed on it, and releases it when all buttons are up.
 void grabOrLetGo(Session& session, const ImGuiIO& io, const PixelPlace& at) {
   const bool is_pressed =
       ImGui::IsMouseClicked(ImGuiMouseButton_Left) || ImGui::IsMouseClicked(ImGuiMouseButton_Right);
@@ -73,9 +73,9 @@ void dragPart(Session& session, const ImGuiIO& io) {
     session.drag.pull(session.view.camera, kWheelStep * io.MouseWheel * session.box_W().size().norm());
 }
 
-/// A press and its release at one place, with nothing in between.
+/// Whether the left button was pressed and released at one place without moving in between.
 bool isClick(const ImGuiIO& io) {
-  constexpr float kClick_px = 3;  // a press that moved farther is a drag, also where it came back
+  constexpr float kClick_px = 3;  // a press that moved farther is a drag, even if it came back
   return ImGui::IsMouseReleased(ImGuiMouseButton_Left) && !io.KeyCtrl &&
          io.MouseDragMaxDistanceSqr[ImGuiMouseButton_Left] < kClick_px * kClick_px;
 }
@@ -83,12 +83,12 @@ bool isClick(const ImGuiIO& io) {
 }  // namespace
 
 void useMouse(Session& session) {
-  if (session.holding_hand) return;  // a headset's controller has the part
+  if (session.holding_hand) return;  // a headset's controller holds the part
   const ImGuiIO& io = ImGui::GetIO();
   const PixelPlace at =
       inOneEye(session.view.stereo, {io.MousePos.x - session.focus.x, io.MousePos.y - session.focus.y},
                session.focus.size);
-  if (session.drag.isGrabbed()) {  // also over the panels
+  if (session.drag.isGrabbed()) {  // the drag goes on over the panels
     dragPart(session, io);
     return grabOrLetGo(session, io, at);
   }

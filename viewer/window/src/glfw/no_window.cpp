@@ -7,7 +7,7 @@
 namespace vps::viewer {
 
 std::string missingForWindow() {
-  return "this build has no window; install libglfw3-dev and libimgui-dev and build again";
+  return "this build has no window; install libglfw3-dev and libimgui-dev, then build again";
 }
 
 void viewScene(const scenes::Scene&, const WindowOptions&) {

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "glfw/session.h"
-#include "view/section_drag.h"
+#include "view/camera_motion.h"
 #include "vps_device/device_kinds.h"
-#include "vps_viewer/report/verdict_words.h"
+#include "vps_viewer/report/words.h"
 
 namespace vps::viewer {
 namespace {
@@ -43,10 +43,10 @@ void drawPart(Session& session) {
     const Vec3 p_mm = 1e3 * body.X_WP.p;
     ImGui::Text("at %.3f, %.3f, %.3f mm", p_mm.x(), p_mm.y(), p_mm.z());
   }
-  ImGui::TextDisabled("near it, where it is shown:");
+  ImGui::TextDisabled("near this part, at the shown poses:");
   if (const std::optional<MeasuredGaps> measured = session.gaps->of(index))
     for (const std::string& line : gapLines(session.scene, *measured)) wrapped("  " + line);
-  ImGui::TextDisabled("near it, as drawn:");
+  ImGui::TextDisabled("near this part, in the finished assembly:");
   for (const std::string& line : session.neighbours.of(part.part.name)) wrapped("  " + line);
 }
 
@@ -112,7 +112,7 @@ void drawTicks(const char* name, const scenes::TickTimes& times) {
   ImGui::Text("  longest %.0f µs, %llu missed", times.max_us, static_cast<unsigned long long>(times.missed));
 }
 
-/// The least distance of the part in hand, where it is shown.
+/// Shows the least distance of the part in hand at the shown poses.
 void drawClearance(const Session& session) {
   const scenes::BodySnapshot* body = partInHand(session.shown);
   if (body == nullptr) return;
@@ -121,7 +121,7 @@ void drawClearance(const Session& session) {
   wrapped("part in hand: " + gapLines(session.scene, *measured).front());
 }
 
-/// The kinds of device by which a run is made.
+/// Lists the kinds of device that can move the part in hand.
 void drawHands(Session& session) {
   if (!ImGui::BeginCombo("hand", session.hand.c_str())) return;
   for (const device::DeviceKind& kind : device::deviceKinds()) {
@@ -137,7 +137,7 @@ void drawHands(Session& session) {
   ImGui::EndCombo();
 }
 
-/// Undo, redo, and what is taken freely.
+/// Draws the buttons for undo, redo and free assembly.
 void drawWork(Session& session) {
   ViewState& view = session.view;
   if (session.is_at_work) {
@@ -168,11 +168,11 @@ void drawRun(Session& session) {
     const FollowedSession& followed = *session.followed;
     wrapped(followed.verdict()
                 ? words(*followed.verdict())
-                : "session '" + session.options.session + "'" + (followed.isOver() ? ": it is over" : ""));
+                : "session '" + session.options.session + "'" + (followed.isOver() ? ": it has ended" : ""));
     if (session.shown.has_hand) ImGui::Text("force on the hand %.1f N", session.shown.F_hand_W.f.norm());
-    ImGui::Text("%zu others point at something", followed.pointers().size());
-    session.view.wants_point |= ImGui::Button(followed.pointing() ? "mark the picked place, or no longer"
-                                                                  : "mark the picked place for all");
+    ImGui::Text("%zu other people point at a place", followed.pointers().size());
+    session.view.wants_point |=
+        ImGui::Button(followed.pointing() ? "move or remove the mark" : "mark the picked place for all");
     return;
   }
   drawGuidance(session.view);
@@ -184,7 +184,7 @@ void drawRun(Session& session) {
   }
   const LiveStatus& status = session.status;
   if (status.is_over) {
-    wrapped(status.error.empty() ? verdictLine(status.result) : "could not go on: " + status.error);
+    wrapped(status.error.empty() ? verdictLine(status.result) : "the run failed: " + status.error);
     drawTicks("haptic ticks", status.result.haptic);
     drawTicks("physics steps", status.result.physics);
     if (status.error.empty()) ImGui::Text("energy injected %.3g mJ", 1e3 * status.result.energy.injected_J);
@@ -200,7 +200,7 @@ void drawRun(Session& session) {
       wrapped(line);
   drawClearance(session);
   if (session.run->isByClock()) {
-    ImGui::TextDisabled("by the clock, with %s", session.run_hand.c_str());
+    ImGui::TextDisabled("in real time, with %s", session.run_hand.c_str());
   } else {
     if (ImGui::Button(session.run->isPaused() ? "go on" : "pause"))
       session.run->pause(!session.run->isPaused());
@@ -278,7 +278,7 @@ void drawKeys(ViewState& view, const PictureSize& size) {
   std::vector<const KeyBinding*> all;
   for (const std::span<const KeyBinding> list : {keyBindings(), mouseBindings()})
     for (const KeyBinding& binding : list) all.push_back(&binding);
-  const std::size_t rows = (all.size() + 1) / 2;  // in one column it is higher than a window of 720 pixels
+  const std::size_t rows = (all.size() + 1) / 2;  // one column would be higher than a window of 720 pixels
   if (ImGui::BeginTable("keys", 4, ImGuiTableFlags_SizingFixedFit)) {
     for (std::size_t i = 0; i < rows; ++i) {
       drawBinding(all[i]);
@@ -301,7 +301,7 @@ void drawFailure(const Session& session) {
   ImGui::Begin("no picture", nullptr, kFixed | ImGuiWindowFlags_NoTitleBar);
   wrapped(session.picture_failure);
   const bool runs = session.run && !session.status.is_over;
-  ImGui::TextDisabled("%s", runs ? "The run goes on. The picture is tried again." : "It is tried again.");
+  ImGui::TextDisabled("%s", runs ? "The run continues. Drawing is tried again." : "Drawing is tried again.");
   ImGui::End();
 }
 

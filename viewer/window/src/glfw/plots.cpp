@@ -29,8 +29,8 @@ struct Frame {
   [[nodiscard]] float y(float value) const { return high.y - (high.y - low.y) * value / top; }
 };
 
-/// One vertical line a column of pixels, from the least to the greatest value in it; none where no value is
-/// known.
+/// Draws one vertical line per column of pixels, from the least to the greatest value in the column. A column
+/// without known values stays empty.
 void drawCurve(ImDrawList& list, const Frame& frame, const std::vector<double>& time_s,
                const std::vector<float>& values, ImU32 color) {
   const std::size_t count = std::min(time_s.size(), values.size());

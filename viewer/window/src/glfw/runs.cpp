@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the window does with runs: start and stop them, take back and do again, and parts that are taken
-// freely.
+// Runs in the window: start, stop, undo, redo, and free assembly.
 #include <algorithm>
 #include <filesystem>
 #include <utility>
 
 #include "glfw/session.h"
 #include "vps_device/metronome.h"
-#include "vps_viewer/report/verdict_words.h"
+#include "vps_viewer/report/words.h"
 
 namespace vps::viewer {
 namespace {
 
-/// "run.mcap", "run_2.mcap", ...: what was undone stays in the file before.
+/// Name of the next recording: "run.mcap", "run_2.mcap" and so on. A run after an undo has a file of its own.
 std::string nextRecording(Session& session) {
   const std::string& first = session.options.record;
   if (first.empty() || ++session.recordings == 1) return first;
@@ -48,7 +47,7 @@ void beginLine(Session& session) {
   session.view.is_playing = false;
 }
 
-/// @param part  taken freely; none: the procedure goes on
+/// @param part  in free assembly, the part to take in hand; none: the procedure's next step
 void startRun(Session& session, GlfwWindow& window, std::optional<std::size_t> part = {}) {
   session.drag = HandDrag(session.scene.device.scale);
   LiveSettings settings;
@@ -82,7 +81,7 @@ void backToTour(Session& session) {
   session.view.time_s = 0;
 }
 
-/// What has been put down, with nothing in hand.
+/// Ends the run and shows the parts that were put down, with no part in hand.
 void rest(Session& session) {
   session.before = session.work.results();
   beginLine(session);
@@ -92,22 +91,21 @@ void goOn(Session& session, GlfwWindow& window) {
   if (session.work.isFree()) return rest(session);
   if (!session.work.isOver()) return startRun(session, window);
   rest(session);
-  session.say("all steps are done; Z takes the last one back");
+  session.say("all steps are done; the key Z undoes the last step");
 }
 
 void undo(Session& session, GlfwWindow& window) {
-  if (!session.is_at_work) return session.say("there is nothing to take back; R runs the procedure");
+  if (!session.is_at_work) return session.say("there is no step to undo; the key R runs the procedure");
   const bool was_in_hand = session.work.isFree() && session.run;
   stopRun(session);
-  // Freely: a part in hand goes back to where it was taken. In the procedure the step under way begins anew
-  // where none is done.
-  if (!was_in_hand && !session.work.undo() && session.work.isFree())
-    session.say("there is nothing to take back");
+  // In free assembly, a part in hand returns to the place where it was taken. In the procedure, the current
+  // step begins anew if no step is done.
+  if (!was_in_hand && !session.work.undo() && session.work.isFree()) session.say("there is no step to undo");
   goOn(session, window);
 }
 
 void redo(Session& session, GlfwWindow& window) {
-  if (!session.is_at_work || !session.work.redo()) return session.say("there is nothing to do again");
+  if (!session.is_at_work || !session.work.redo()) return session.say("there is no step to redo");
   stopRun(session);
   goOn(session, window);
 }
@@ -118,12 +116,13 @@ void switchFree(Session& session) {
   session.work.begin(true);
   session.is_at_work = true;
   rest(session);
-  session.view.wants_fit = true;  // the parts lie beside each other
-  session.say("free assembly: click on a part, Enter takes it in hand and puts it down");
+  session.view.wants_fit = true;  // free assembly lays the parts out side by side
+  session.say("free assembly: click on a part; the key Enter takes it in hand and puts it down");
 }
 
 void takeOrPutDown(Session& session, GlfwWindow& window) {
-  if (!session.work.isFree()) return session.say("U begins free assembly, where any part can be taken");
+  if (!session.work.isFree())
+    return session.say("the key U begins free assembly, in which you can take any part");
   std::optional<std::size_t> held;
   if (session.run) {
     if (const scenes::BodySnapshot* body = partInHand(session.shown)) {
@@ -134,11 +133,11 @@ void takeOrPutDown(Session& session, GlfwWindow& window) {
   }
   const std::optional<PickedPlace>& picked = session.view.picked;
   if (picked && picked->part != held) return startRun(session, window, picked->part);
-  if (!held) session.say("click on a part first");
+  if (!held) session.say("click on a part first, then take it");
   rest(session);
 }
 
-/// Least distance of the part in hand to another one, as last measured.
+/// The last measured least distance from the part in hand to another part.
 std::optional<double> clearanceOf(const Session& session, const scenes::Snapshot& shot) {
   const scenes::BodySnapshot* body = partInHand(shot);
   if (body == nullptr) return {};
@@ -159,7 +158,7 @@ void addToCurves(Session& session, const scenes::Snapshot& shot) {
   });
 }
 
-/// Notes the steps that the run has done since the last time.
+/// Stores the steps that the run has finished since the last call.
 void noteSteps(Session& session) {
   scenes::AssembleResult& result = session.status.result;
   if (session.work.isFree()) return;
@@ -173,11 +172,11 @@ void noteSteps(Session& session) {
     tellVerdict(session.run_line.chapters[i + 1], result.steps[i]);
 }
 
-/// Rates are those of the last second.
+/// Stores the run's counts; rates are averaged over the last second.
 void keepFigures(Session& session, const scenes::RunFigures& figures) {
   constexpr double kRate_s = 1;
   const double now_s = device::monotonicSeconds();
-  if (session.figures.ticks == 0) {  // the first ones: before them models were built
+  if (session.figures.ticks == 0) {  // the first counts; models were built before
     session.figures = session.figures_before = figures;
     session.figures_s = session.figures_before_s = now_s;
   }
@@ -190,14 +189,15 @@ void keepFigures(Session& session, const scenes::RunFigures& figures) {
   session.figures_s = now_s;
 }
 
-/// Where the person has clicked; the same place again: no longer.
+/// Marks the clicked place for all who watch; a second call with the same place removes the mark.
 void pointAtPicked(Session& session) {
   FollowedSession& followed = *session.followed;
   const std::optional<PickedPlace>& picked = session.view.picked;
   const bool is_new = picked && picked->p_W != followed.pointing();
-  if (!is_new && !followed.pointing()) return session.say("click on a place first; M then marks it for all");
+  if (!is_new && !followed.pointing())
+    return session.say("click on a place first; the key M then marks it for all");
   followed.point(is_new ? std::optional(picked->p_W) : std::nullopt);
-  session.say(is_new ? "all who watch see the mark; M takes it away" : "the mark is gone");
+  session.say(is_new ? "all who watch see the mark; the key M removes it" : "the mark is removed");
 }
 
 }  // namespace
@@ -252,7 +252,7 @@ void followSession(Session& session) {
 void carryOutPoint(Session& session) {
   if (!std::exchange(session.view.wants_point, false)) return;
   if (session.followed == nullptr)
-    return session.say("only a session has others who would see it; vps view --session NAME");
+    return session.say("marks are for people who watch a session together: vps view --session NAME");
   pointAtPicked(session);
 }
 
@@ -268,8 +268,8 @@ void carryOutWork(Session& session, GlfwWindow& window) {
   if (std::exchange(view.wants_one_step, false) && session.run) session.run->oneStep();
   if (std::ranges::none_of(wants, [](bool wanted) { return wanted; })) return;
   if (session.followed != nullptr)
-    return session.say("the session is run by vps render, and moved by its device; here it is watched");
-  if (session.is_recording) return session.say("a recording is not run; vps replay does");
+    return session.say("this window only watches the session; vps render runs it with the session's device");
+  if (session.is_recording) return session.say("the window only plays a recording; vps replay runs it again");
   if (wants[0] && session.is_at_work)
     backToTour(session);
   else if (wants[0])

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The window's loop: events, panels, and what the picture shows.
+// The window's loop: events, panels, and requests for pictures.
 #include "vps_viewer/window/window.h"
 
 #include <imgui.h>
@@ -13,14 +13,14 @@
 
 #include "glfw/session.h"
 #include "sound/live_sound.h"
-#include "view/exploded.h"
+#include "view/procedure_view.h"
 #include "vps/errors.h"
 #include "vps_scenes/run/replay.h"
 
 namespace vps::viewer {
 namespace {
 
-// Larger windows show a smaller picture, stretched: 4096 x 4096 with their samples are a GiB of memory.
+// A larger window stretches a picture of this size, since 4096 x 4096 pixels with their samples take 1 GiB.
 constexpr int kGreatestPicture = 4096;
 constexpr double kFrame_s = 1.0 / 60, kIdle_s = 0.5;
 constexpr std::chrono::milliseconds kSessionPoll{20};
@@ -66,13 +66,13 @@ void addTiles(Session& session, const scenes::Display& display) {
   }
 }
 
-/// Two eyes about the camera, of which each sees a picture of that size.
+/// Two eyes, left and right of the camera, for pictures of the given size.
 EyePair eyesAbout(const Camera& camera, PictureSize size) {
   return viewer::eyesOf(camera, kEyeShare * (camera.eye_W - camera.target_W).norm(),
                         double(size.width) / std::max(1, size.height));
 }
 
-/// Beside each other, for two projectors that are one desktop.
+/// Places the pictures of both eyes side by side, for two projectors that share one desktop.
 void addSpectralTiles(Session& session) {
   const PictureSize half = {session.area.size.width / 2, session.area.size.height};
   const EyePair eyes = eyesAbout(session.view.camera, half);
@@ -80,7 +80,7 @@ void addSpectralTiles(Session& session) {
                    {eyes, {half.width, 0, half.width, half.height}, 1}};
 }
 
-/// Which pictures there are and where, and of several the one that the mouse is in.
+/// Lays out the tiles of the picture area, and finds the tile under the mouse.
 void layOut(Session& session) {
   session.tiles.clear();
   session.tile_names.clear();
@@ -104,7 +104,8 @@ void layOut(Session& session) {
   if (session.heads) session.view.camera = middleEye(used.eyes);
 }
 
-/// Stretched rows would not keep the eyes apart, so a window that is larger than a texture has no such mode.
+/// Switches interleaved stereo off in a window that is larger than the greatest texture: stretching the
+/// picture would mix the rows of both eyes.
 void limitStereo(Session& session, const GlfwWindow& window) {
   const int most = window.greatestPicture();
   if (session.view.stereo != StereoMode::Interleaved ||
@@ -114,8 +115,8 @@ void limitStereo(Session& session, const GlfwWindow& window) {
   session.view.stereo = StereoMode::Mono;
 }
 
-/// The left eye's picture beside the right one's, which go to a buffer each; in the other modes the same to
-/// both, since the screen's own way to keep the eyes apart is not used then.
+/// Requests both eyes' pictures side by side, one for each buffer. In stereo modes other than Mono both
+/// buffers get the same picture, since that picture holds both eyes already.
 void addStereoBuffers(PictureRequest& wanted) {
   const int width = wanted.options.width, height = wanted.options.height;
   EyePair eyes = wanted.eyes ? *wanted.eyes : eyesAbout(wanted.camera, {width, height});
@@ -167,7 +168,7 @@ void askForPicture(Session& session, PictureWorker& worker, const GlfwWindow& wi
   worker.request(wanted);
 }
 
-/// The whole window as a picture file.
+/// Saves the whole window as a PNG file.
 void savePicture(Session& session, const GlfwWindow& window) {
   std::string file;
   do {
@@ -181,7 +182,7 @@ void savePicture(Session& session, const GlfwWindow& window) {
   }
 }
 
-/// Of several pictures, in the upper left corner of each.
+/// Draws the name of each tile in its upper left corner, if there are several.
 void drawTileNames(const Session& session) {
   if (session.tiles.size() < 2 || session.view.is_full_screen) return;
   for (std::size_t i = 0; i < session.tile_names.size(); ++i) {
@@ -196,7 +197,7 @@ void drawTileNames(const Session& session) {
   }
 }
 
-/// The output that is to be shown alone at first. Throws LoadError where there is none of that name.
+/// Index of the output that options.output names. Throws LoadError if the display file has no such output.
 std::optional<std::size_t> firstOutput(const WindowOptions& options) {
   if (options.output.empty() || !options.display) return {};
   std::string names;
@@ -205,7 +206,8 @@ std::optional<std::size_t> firstOutput(const WindowOptions& options) {
     if (outputs[i].name == options.output) return i;
     names += (i > 0 ? ", " : "") + outputs[i].name;
   }
-  throw LoadError(options.display->file, "", "shows no '" + options.output + "', but " + names);
+  throw LoadError(options.display->file, "",
+                  "has no output '" + options.output + "'; its outputs are " + names);
 }
 
 void fillScreen(Session& session, GlfwWindow& window) {
@@ -213,7 +215,8 @@ void fillScreen(Session& session, GlfwWindow& window) {
   const int monitor = std::max(0, session.options.full_screen - 1);
   if (!window.setFullScreen(session.view.is_full_screen, monitor)) {
     session.view.is_full_screen = window.isFullScreen();
-    session.say("there is no monitor " + std::to_string(monitor + 1) + " to fill; they are counted from 1");
+    session.say("there is no monitor " + std::to_string(monitor + 1) +
+                " to fill; monitors are counted from 1");
   }
 }
 
@@ -224,8 +227,8 @@ void drawFrame(Session& session, GlfwWindow& window, PictureWorker& worker) {
   layOut(session);
   session.view.size = session.focus.size;
   useMouse(session);
-  // After the click that came before the key. Dear ImGui shows a press and its release one frame apart, so a
-  // place may still be picked while a button is down.
+  // The key M follows the click that picks a place. Dear ImGui reports a press and its release one frame
+  // apart, so the mark waits until no button is down.
   if (!ImGui::IsAnyMouseDown()) carryOutPoint(session);
   askForPicture(session, worker, window);
   if (window.hasPicture())
@@ -258,7 +261,8 @@ void loop(Session& session, GlfwWindow& window) {
   session.view.wants_run = session.options.runs;
   session.view.stereo = session.options.stereo;
   session.view.is_full_screen = session.options.full_screen > 0;
-  // What wakes the window ends before it, whatever ends the loop.
+  // Run, gap watch and headset wake the window from their threads, so they end before it, also after an
+  // exception.
   const struct Ending {
     Session& session;
     ~Ending() {
@@ -306,7 +310,8 @@ void openAndLoop(Session& session, const std::string& title) {
                     session.options.has_stereo_buffers);
   if (session.options.has_stereo_buffers && !window.hasStereo()) {
     const std::string words =
-        "this driver has no buffer for each eye (quad-buffered stereo); S has other modes";
+        "this driver has no buffer for each eye (quad-buffered stereo); the key S chooses another stereo "
+        "mode";
     session.say(words);
     if (session.options.say) session.options.say(words);
   }
@@ -345,7 +350,7 @@ std::optional<scenes::Verdict> viewSession(const WindowOptions& options) {
     watcher = scenes::SessionWatcher::join(options.session, options.network);
     if (watcher != nullptr) break;
     if (!has_said && options.say)
-      options.say("waiting for the session '" + options.session + "', which vps render starts");
+      options.say("waiting for the session '" + options.session + "'; vps render starts it");
     std::this_thread::sleep_for(kSessionPoll);
   }
   if (watcher == nullptr) return {};

@@ -9,13 +9,13 @@
 namespace vps::viewer {
 namespace {
 
-constexpr double kApartContacts_s = 0.06;  // assumed: longer than a part bounces
-constexpr double kLongest_s = 0.3;         // what comes later does not belong to the contact
-constexpr double kBefore_s = 0.05;         // the force and the sound before a contact are taken over this
-constexpr double kNear_s = 5e-3;           // and until this before it
-constexpr double kForceStep_N = 0.5;       // assumed: felt
-constexpr float kClick = 4;                // times the peak before
-constexpr float kSilence = 1e-5F;          // of full scale: -100 dB
+constexpr double kApartContacts_s = 0.06;  // assumed: bounces of a part are shorter
+constexpr double kLongest_s = 0.3;         // a later event does not belong to the contact
+constexpr double kBefore_s = 0.05;  // force and sound without contact are taken from this time before it ...
+constexpr double kNear_s = 5e-3;    // ... until this time before it
+constexpr double kForceStep_N = 0.5;  // assumed: a person feels such a step
+constexpr float kClick = 4;           // a click is this much louder than the peak before the contact
+constexpr float kSilence = 1e-5F;     // share of full scale: -100 dB
 
 template <class List, class TimeOf>
 auto firstAt(const List& list, double time_s, TimeOf timeOf) {
@@ -88,7 +88,7 @@ double ContactTimes::apart_s(bool has_sound) const {
 
 const std::vector<LatencyStage>& latencyStages() {
   static const std::vector<LatencyStage> kStages = {
-      {"found", "physics step with it done", &ContactTimes::found_s},
+      {"found", "physics step with the contact done", &ContactTimes::found_s},
       {"force", "force: wrench written to the device", &ContactTimes::force_s},
       {"sound_written", "sound: sample given to the card", &ContactTimes::sound_written_s, true},
       {"sound", "sound: sample played", &ContactTimes::sound_s, true},

@@ -22,12 +22,12 @@
 namespace vps::viewer {
 namespace {
 
-// Taps before those that count: the first picture comes late, and so does the first sound, since the modes of
-// the parts are found when the run begins. Without sound after the most, it is measured without.
+// Taps that do not count: the first pictures and sounds are late, since the modes of the parts are computed
+// when the run begins. If there is no sound after kMostWarmUp taps, the measurement goes on without sound.
 constexpr std::size_t kWarmUp = 3, kMostWarmUp = 100;
-constexpr double kMostTap_s = 2;  // of a tap with all of its pauses, for what is kept
+constexpr double kMostTap_s = 2;  // upper bound of a tap with its pauses, for the size of the log
 
-/// Stamps what is written to a sound card.
+/// A sound output that logs the times of its writes.
 class StampedOutput final : public SoundOutput {
  public:
   StampedOutput(std::unique_ptr<SoundOutput> inner, std::vector<LatencyLog::Written>& written,
@@ -49,7 +49,7 @@ class StampedOutput final : public SoundOutput {
   std::atomic<bool>& has_begun_;
 };
 
-/// Keeps the device of a run, which the run deletes.
+/// Lets the run own a device object while the measurement keeps the handle.
 class SharedHandle final : public device::Device {
  public:
   explicit SharedHandle(std::shared_ptr<TappingHandle> handle) : handle_(std::move(handle)) {}
@@ -69,9 +69,9 @@ TapPlan planFor(const scenes::Scene& scene) {
   const scenes::ScenePart& part = scene.parts[step.part];
   if (!(way_W.norm() > 0))
     throw LoadError(scene.file, part.part.name,
-                    "does not move, so there is nothing to measure; give its step a start");
+                    "does not move, so there is no contact to measure; set a start pose for its step");
   TapPlan plan;
-  plan.d_D = way_W.normalized();  // the axes of this handle are the scene's
+  plan.d_D = way_W.normalized();  // this handle's axes are parallel to the scene's
   const Vec3 across_W = plan.d_D.unitOrthogonal();
   const Box box_P = bounds(part.part.mesh);
   const Vec3 size_W = step.X_WP_start.R.cwiseAbs() * box_P.size();
@@ -86,14 +86,14 @@ bool isLit(const Image& image) {
   return image.at(middle, image.height - 1 - middle)[0] > 127;
 }
 
-/// Takes the run's snapshots to the pictures, as the window does, and notes the pictures.
+/// Draws pictures of the run's snapshots as the window does, and logs them.
 class Watcher {
  public:
   explicit Watcher(const scenes::Scene& scene, const LatencySettings& settings)
       : worker_(drawnMeshes(scene), [this] { wake(); }) {
     wanted_.options.width = settings.width;
     wanted_.options.height = settings.height;
-    wanted_.options.supersampling = 1;  // as the window's
+    wanted_.options.supersampling = 1;  // as in the window
     wanted_.options.show_legend = false;
     wanted_.options.show_flash = true;
   }
@@ -104,7 +104,7 @@ class Watcher {
     }
     news_.notify_one();
   }
-  /// Waits for news, for a tenth of a second at most.
+  /// Waits for a new snapshot or picture, for at most 0.1 s.
   void wait() {
     std::unique_lock lock(mutex_);
     news_.wait_for(lock, std::chrono::milliseconds(100), [this] { return has_news_; });
@@ -128,7 +128,7 @@ class Watcher {
   std::condition_variable news_;
   bool has_news_ = false;
   PictureRequest wanted_;
-  PictureWorker worker_;  // last, since it calls wake()
+  PictureWorker worker_;  // declared last, since it calls wake()
 };
 
 Camera cameraOf(const scenes::Scene& scene, const LatencySettings& settings) {
@@ -146,9 +146,9 @@ void requireGoing(const LiveRun& run, const TappingHandle& handle, const scenes:
   const LiveStatus status = run.status();
   if (!status.error.empty()) throw std::runtime_error(status.error);
   if (handle.hasFoundNothing())
-    throw LoadError(
-        scene.file, part,
-        "met nothing on its way, beside the hole; measure with another scene, as scenes/peg_in_hole");
+    throw LoadError(scene.file, part,
+                    "touched nothing on its path next to the hole; measure with another scene, such as "
+                    "scenes/peg_in_hole");
   if (status.is_over) throw LoadError(scene.file, part, "was put down before all taps were made");
 }
 
@@ -161,7 +161,7 @@ LatencyResult measureLatency(scenes::Scene scene, const LatencySettings& setting
   result.part = scene.parts[scene.steps.front().part].part.name;
   result.width = settings.width;
   result.height = settings.height;
-  const std::size_t wanted = settings.taps + 1;  // the last one is not seen to its end
+  const std::size_t wanted = settings.taps + 1;  // the last tap is not recorded to its end
   const std::size_t most_taps = kMostWarmUp + wanted;
   LatencyLog log;
   log.steps.reserve(

@@ -10,10 +10,10 @@
 namespace vps::viewer {
 namespace {
 
-constexpr double kRest_s = 1;             // until the part is in hand. assumed
-constexpr double kAside_s = 0.5;          // assumed: no jump for the safety guard
-constexpr double kMean_s = 0.05;          // over which the force without contact is averaged
-constexpr double kLongestPause_s = 0.02;  // a longer pause of the thread is no motion
+constexpr double kRest_s = 1;             // assumed: by then the part is in hand
+constexpr double kAside_s = 0.5;          // assumed: slow enough for the safety guard
+constexpr double kMean_s = 0.05;          // averaging time of the force without contact
+constexpr double kLongestPause_s = 0.02;  // a longer pause of the thread counts as this time
 
 }  // namespace
 
@@ -22,7 +22,7 @@ TappingHandle::TappingHandle(const TapPlan& plan, std::size_t ticks) : plan_(pla
 }
 
 device::DeviceLimits TappingHandle::limits() const noexcept {
-  return device::PulledHandle().limits();  // as the mouse's, whose place it takes
+  return device::PulledHandle().limits();  // the limits of the mouse's handle, which this handle replaces
 }
 
 double TappingHandle::now_s() noexcept {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A handle that taps by itself, so that how late picture, sound and force are can be measured without a
-// person.
+// A simulated handle that taps by itself, so that the latency of picture, sound and force can be measured
+// without a person.
 #pragma once
 
 #include <atomic>
@@ -13,27 +13,31 @@
 
 namespace vps::viewer {
 
-/// A motion of the handle in D: first aside, then towards the contact, and to and fro there.
+/// Motion of the handle in D: first sideways, then towards the contact, then repeated taps.
 struct TapPlan {
-  Vec3 aside_D = Vec3::Zero();  ///< [m]
-  Vec3 d_D = -Vec3::UnitZ();    ///< unit vector of the taps
-  double reach_m = 0.1;         ///< farther along d_D there is no contact
-  double speed_m_s = 0.05;      ///< assumed: as a person taps
-  double press_N = 2;           ///< the tap goes on until the hand feels this
-  double hold_s = 0.1;          ///< and stays there. Longer than a slow picture takes, so that none is missed
-  double least_s = 0.1, most_s = 0.2;  ///< away, drawn at random, so that no other rhythm agrees with it
+  Vec3 aside_D = Vec3::Zero();  ///< first motion [m]
+  Vec3 d_D = -Vec3::UnitZ();    ///< direction of the taps, a unit vector
+  double reach_m = 0.1;         ///< greatest distance along d_D at which contact is sought
+  double speed_m_s = 0.05;      ///< assumed: the speed of a person's tap
+  double press_N = 2;           ///< force on the hand that ends a tap
+  double hold_s =
+      0.1;  ///< contact time of a tap, longer than a slow picture takes, so that a picture shows it
+  double least_s = 0.1,
+         most_s =
+             0.2;  ///< bounds of the random pause between taps, so that they do not follow another period
 };
 
-/// What the device's side of a loop did in one tick, by device::monotonicSeconds().
+/// Times of one tick of the device, by device::monotonicSeconds(), and the force written.
 struct DeviceTick {
   double read_s = 0, written_s = 0;
   Vec3 f_Ho_D = Vec3::Zero();
 };
 
-/// One thread calls read() and write(). Its samples' time is device::monotonicSeconds().
+/// A device that follows a TapPlan. One thread calls read() and write(); time_s of its samples is
+/// device::monotonicSeconds().
 class VPS_VIEWER_API TappingHandle final : public device::Device {
  public:
-  /// @param ticks   as many are kept; later ones are not
+  /// @param ticks  number of ticks to store; later ticks are not stored
   TappingHandle(const TapPlan& plan, std::size_t ticks);
 
   device::DeviceSample read() noexcept override { return readAt(now_s()); }
@@ -41,14 +45,15 @@ class VPS_VIEWER_API TappingHandle final : public device::Device {
   [[nodiscard]] device::DeviceLimits limits() const noexcept override;
   [[nodiscard]] std::string_view name() const noexcept override { return "tapping_handle"; }
 
-  /// read() and write() at a given time.
+  /// As read() and write(), at a given time.
   device::DeviceSample readAt(double time_s) noexcept;
   void writeAt(const Wrench& F_Ho_D, double time_s) noexcept;
 
-  /// Any thread: taps so far, and whether the whole reach was without contact.
+  /// Number of taps so far. May be called by any thread.
   [[nodiscard]] std::size_t taps() const noexcept { return taps_.load(); }
+  /// Whether the handle moved over the whole reach without contact. May be called by any thread.
   [[nodiscard]] bool hasFoundNothing() const noexcept { return has_found_nothing_.load(); }
-  /// Once no thread calls read() any more.
+  /// The stored ticks. Call it after the last read().
   [[nodiscard]] const std::vector<DeviceTick>& ticks() const noexcept { return ticks_; }
 
  private:
@@ -63,7 +68,7 @@ class VPS_VIEWER_API TappingHandle final : public device::Device {
   Phase phase_ = Phase::Rest;
   double in_phase_s_ = 0, away_s_ = 0;
   double along_m_ = 0;
-  Vec3 f_D_ = Vec3::Zero(), f_free_D_ = Vec3::Zero();  ///< as written last, and its mean without contact
+  Vec3 f_D_ = Vec3::Zero(), f_free_D_ = Vec3::Zero();  ///< force written last, and mean force without contact
   bool has_time_ = false;
   std::vector<DeviceTick> ticks_;
   std::atomic<std::size_t> taps_{0};

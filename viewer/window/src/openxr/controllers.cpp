@@ -33,7 +33,7 @@ XrPath Controllers::path(const char* text) const {
   return found;
 }
 
-/// A runtime that does not know the profile refuses it, which changes nothing.
+/// Suggests bindings for a kind of controller. A runtime that does not know the profile ignores it.
 void Controllers::suggest(const char* profile, const char* trigger) const {
   std::vector<XrActionSuggestedBinding> bindings;
   for (const std::string hand : kHands) {
@@ -58,7 +58,7 @@ Controllers::Controllers(XrInstance instance, XrSession session) : instance_(ins
   aim_ = makeAction(set_, XR_ACTION_TYPE_POSE_INPUT, "hand", "Hand", hands_);
   take_ = makeAction(set_, XR_ACTION_TYPE_BOOLEAN_INPUT, "take", "Take the part", hands_);
   tremble_ = makeAction(set_, XR_ACTION_TYPE_VIBRATION_OUTPUT, "tremble", "Force on the hand", hands_);
-  // A trigger of any travel gives the bool by the runtime's own threshold (OpenXR 1.0, section 11.4).
+  // The runtime converts an analogue trigger to the bool by its own threshold (OpenXR 1.0, section 11.4).
   suggest("/interaction_profiles/khr/simple_controller", "/input/select/click");
   suggest("/interaction_profiles/oculus/touch_controller", "/input/trigger/value");
   suggest("/interaction_profiles/valve/index_controller", "/input/trigger/value");
@@ -80,7 +80,7 @@ Controllers::Controllers(XrInstance instance, XrSession session) : instance_(ins
 Controllers::~Controllers() {
   for (const XrSpace space : spaces_)
     if (space != XR_NULL_HANDLE) xrDestroySpace(space);
-  xrDestroyActionSet(set_);  // and its actions
+  xrDestroyActionSet(set_);  // destroys its actions, too
 }
 
 std::array<Controller, 2> Controllers::at(XrSpace room, XrTime time) const {
@@ -89,7 +89,7 @@ std::array<Controller, 2> Controllers::at(XrSpace room, XrTime time) const {
   auto sync = xrStruct<XrActionsSyncInfo>(XR_TYPE_ACTIONS_SYNC_INFO);
   sync.countActiveActionSets = 1;
   sync.activeActionSets = &active;
-  // Not in focus, as while the runtime shows a menu: nothing is held.
+  // The session is not in focus, for example while the runtime shows a menu: no trigger counts as held.
   if (xrSyncActions(session_, &sync) != XR_SUCCESS) return found;
   for (std::size_t i = 0; i < 2; ++i) {
     auto of = xrStruct<XrActionStateGetInfo>(XR_TYPE_ACTION_STATE_GET_INFO);
@@ -115,7 +115,7 @@ void Controllers::tremble(std::size_t hand, double share) const {
   of.subactionPath = hands_[hand];
   auto wanted = xrStruct<XrHapticVibration>(XR_TYPE_HAPTIC_VIBRATION);
   wanted.amplitude = static_cast<float>(std::clamp(share, 0.0, 1.0));
-  wanted.duration = 50'000'000;  // ns: until the next is asked for
+  wanted.duration = 50'000'000;  // ns, until the next request
   wanted.frequency = XR_FREQUENCY_UNSPECIFIED;
   xrApplyHapticFeedback(session_, &of, reinterpret_cast<const XrHapticBaseHeader*>(&wanted));
 }

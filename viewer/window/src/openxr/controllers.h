@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The hand controllers of a headset: where they are, whether their triggers are held, their trembling.
+// The hand controllers of a headset: poses, triggers and vibration.
 #pragma once
 
 #include <array>
 
-#include "openxr/xr_calls.h"
+#include "openxr/xr_instance.h"
 
 namespace vps::viewer {
 
-/// In the room; it points along its -z.
+/// State of a controller; it points along the -z of its frame H, whose pose is in the room's frame R.
 struct Controller {
   bool is_tracked = false, is_taking = false;
   Pose X_RH;
@@ -16,13 +16,13 @@ struct Controller {
 
 class Controllers {
  public:
-  /// Before the session's first frame. Throws std::runtime_error.
+  /// Call it before the session's first frame. Throws std::runtime_error.
   Controllers(XrInstance instance, XrSession session);
   ~Controllers();
   Controllers(const Controllers&) = delete;
   Controllers& operator=(const Controllers&) = delete;
 
-  /// As they are at that time of the runtime's.
+  /// State of both controllers at a time of the runtime's clock.
   [[nodiscard]] std::array<Controller, 2> at(XrSpace room, XrTime time) const;
   void tremble(std::size_t hand, double share) const;
 

@@ -2,11 +2,13 @@
 #include "openxr/eye_pictures.h"
 
 #include <algorithm>
+#include <stdexcept>
 
 namespace vps::viewer {
 namespace {
 
-/// Our bytes are sRGB, which only formats that say so keep; the others are shown too bright.
+/// The best format that the runtime offers. Our bytes are sRGB; a runtime shows them too bright from a linear
+/// format.
 std::int64_t formatOf(XrSession session) {
   std::uint32_t count = 0;
   check(xrEnumerateSwapchainFormats(session, 0, &count, nullptr), "xrEnumerateSwapchainFormats");
@@ -14,8 +16,29 @@ std::int64_t formatOf(XrSession session) {
   check(xrEnumerateSwapchainFormats(session, count, &count, offered.data()), "xrEnumerateSwapchainFormats");
   for (const std::int64_t wanted : {GL_SRGB8_ALPHA8, GL_SRGB8, GL_RGBA8})
     if (std::ranges::find(offered, wanted) != offered.end()) return wanted;
-  throw std::runtime_error("the headset's runtime takes no pictures of 8 bits a colour");
+  throw std::runtime_error("the headset's runtime accepts no pictures with 8 bits per colour");
 }
+
+[[noreturn]] void fail(Display* display, const std::string& what) {
+  if (display != nullptr) XCloseDisplay(display);
+  throw std::runtime_error("a headset needs " + what);
+}
+
+/// Ignores X errors for its lifetime, since Xlib's own handler ends the process.
+class QuietErrors {
+ public:
+  explicit QuietErrors(Display* display) : display_(display) {}
+  ~QuietErrors() {
+    XSync(display_, 0);
+    XSetErrorHandler(before_);
+  }
+  QuietErrors(const QuietErrors&) = delete;
+  QuietErrors& operator=(const QuietErrors&) = delete;
+
+ private:
+  Display* display_;
+  XErrorHandler before_ = XSetErrorHandler([](Display*, XErrorEvent*) { return 0; });
+};
 
 }  // namespace
 
@@ -49,7 +72,7 @@ XrSwapchainSubImage EyePictures::put(const Image& image) {
   auto wait = xrStruct<XrSwapchainImageWaitInfo>(XR_TYPE_SWAPCHAIN_IMAGE_WAIT_INFO);
   wait.timeout = XR_INFINITE_DURATION;
   check(xrWaitSwapchainImage(swapchain_, &wait), "xrWaitSwapchainImage");
-  // OpenGL's rows begin at the bottom.
+  // Rows are flipped, since those of OpenGL begin at the bottom.
   const std::size_t row = 3 * static_cast<std::size_t>(width);
   flipped_.resize(row * static_cast<std::size_t>(height));
   for (int y = 0; y < height; ++y)
@@ -63,6 +86,71 @@ XrSwapchainSubImage EyePictures::put(const Image& image) {
   place.swapchain = swapchain_;
   place.imageRect.extent = {width, height};
   return place;
+}
+
+GlxContext::GlxContext() : display_(XOpenDisplay(nullptr)) {
+  // This connection to the display is separate, so that no other thread uses it.
+  if (display_ == nullptr) fail(nullptr, "an X display; set DISPLAY (under Wayland: XWayland's display)");
+  const int screen = DefaultScreen(display_);
+  if (epoxy_glx_version(display_, screen) < 13 ||
+      !epoxy_has_glx_extension(display_, screen, "GLX_ARB_create_context_profile"))
+    fail(display_, "GLX 1.3 with OpenGL 3.3 on its X display (Debian: libgl1-mesa-dri)");
+  const int wanted[] = {GLX_DRAWABLE_TYPE,
+                        GLX_PBUFFER_BIT | GLX_WINDOW_BIT,
+                        GLX_RENDER_TYPE,
+                        GLX_RGBA_BIT,
+                        GLX_RED_SIZE,
+                        8,
+                        GLX_GREEN_SIZE,
+                        8,
+                        GLX_BLUE_SIZE,
+                        8,
+                        0};
+  int count = 0;
+  GLXFBConfig* configs = glXChooseFBConfig(display_, screen, wanted, &count);
+  if (configs == nullptr || count == 0) fail(display_, "a GLX visual with 8 bits per colour");
+  config_ = configs[0];
+  XFree(configs);
+  if (XVisualInfo* visual = glXGetVisualFromFBConfig(display_, config_); visual != nullptr) {
+    visual_ = static_cast<unsigned>(visual->visualid);
+    XFree(visual);
+  }
+  const int version[] = {
+      GLX_CONTEXT_MAJOR_VERSION_ARB,    3, GLX_CONTEXT_MINOR_VERSION_ARB, 3, GLX_CONTEXT_PROFILE_MASK_ARB,
+      GLX_CONTEXT_CORE_PROFILE_BIT_ARB, 0};
+  const int size[] = {GLX_PBUFFER_WIDTH, 1, GLX_PBUFFER_HEIGHT, 1, 0};
+  {
+    const QuietErrors quiet(display_);
+    context_ = glXCreateContextAttribsARB(display_, config_, nullptr, 1, version);
+    surface_ = glXCreatePbuffer(display_, config_, size);
+  }
+  if (context_ == nullptr) fail(display_, "OpenGL 3.3 on its X display (Debian: libgl1-mesa-dri)");
+}
+
+GlxContext::~GlxContext() {
+  release();
+  glXDestroyPbuffer(display_, surface_);
+  glXDestroyContext(display_, context_);
+  XCloseDisplay(display_);
+}
+
+void GlxContext::makeCurrent() const {
+  if (!glXMakeContextCurrent(display_, surface_, surface_, context_))
+    throw std::runtime_error("the headset's OpenGL context cannot be used");
+}
+
+void GlxContext::release() const {
+  glXMakeContextCurrent(display_, 0, 0, nullptr);
+}
+
+XrGraphicsBindingOpenGLXlibKHR GlxContext::binding() const {
+  auto made = xrStruct<XrGraphicsBindingOpenGLXlibKHR>(XR_TYPE_GRAPHICS_BINDING_OPENGL_XLIB_KHR);
+  made.xDisplay = display_;
+  made.visualid = visual_;
+  made.glxFBConfig = config_;
+  made.glxDrawable = surface_;
+  made.glxContext = context_;
+  return made;
 }
 
 }  // namespace vps::viewer

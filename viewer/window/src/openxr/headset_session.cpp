@@ -12,7 +12,6 @@
 
 #include "openxr/controllers.h"
 #include "openxr/eye_pictures.h"
-#include "openxr/glx_context.h"
 #include "openxr/xr_instance.h"
 #include "view/table_room.h"
 #include "vps_device/metronome.h"
@@ -22,10 +21,10 @@ namespace vps::viewer {
 namespace {
 
 constexpr XrViewConfigurationType kTwoEyes = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO;
-constexpr double kLeave_s = 1;      // assumed: a runtime lets a session go within a frame or two
-constexpr int kGreatestEye = 4096;  // of memory for samples, as of the window's picture
+constexpr double kLeave_s = 1;      // assumed: a runtime ends a session within a frame or two
+constexpr int kGreatestEye = 4096;  // limits the memory for samples, as for the window's picture
 
-/// A pyramid that stands for a controller: its tip at the origin, pointing along -z.
+/// A pyramid that shows a controller, with its tip at the origin, pointing along -z.
 Mesh pointerMesh(double scale) {
   const double length = 0.12 / scale, half = 0.018 / scale;
   Mesh mesh;
@@ -35,7 +34,7 @@ Mesh pointerMesh(double scale) {
   return mesh;
 }
 
-/// The one that the runtime prefers.
+/// The blend mode that the runtime prefers.
 XrEnvironmentBlendMode firstBlendMode(const XrConnection& connection) {
   const auto ask = [&](std::uint32_t room, std::uint32_t& count, XrEnvironmentBlendMode* modes) {
     check(xrEnumerateEnvironmentBlendModes(connection.instance(), connection.system(), kTwoEyes, room, &count,
@@ -54,8 +53,8 @@ HeadsetEye eyeOf(const XrView& view) {
           std::tan(view.fov.angleDown), std::tan(view.fov.angleUp)};
 }
 
-/// How much is left out of a picture so that a headset gets enough of them: 0 in full, then drafts with fewer
-/// and fewer pixels.
+/// Quality of the pictures, lowered so that drawing keeps the headset's frame rate. Level 0: full quality;
+/// higher levels: drafts with fewer and fewer pixels.
 class Effort {
  public:
   [[nodiscard]] DrawOptions apply(DrawOptions options) const {
@@ -69,7 +68,8 @@ class Effort {
   }
   void took(double wall_s, double period_s) {
     if (wall_s > period_s && level_ < kLeast) ++level_;
-    if (wall_s < 0.2 * period_s && level_ > 0) --level_;  // a full picture takes several times as long
+    if (wall_s < 0.2 * period_s && level_ > 0)
+      --level_;  // a full picture takes several times as long as a draft
   }
 
  private:
@@ -91,8 +91,8 @@ struct HeadsetSession::Work {
   void run();
   void begin(XrSession& session);
   void loop(XrSession session);
-  /// Calls f() while no context of GLX is current, which a Renderer needs. It is again afterwards, also where
-  /// f() throws: what belongs to the session ends with it.
+  /// Calls f() while no GLX context is current, as a Renderer needs it. The context is made current again
+  /// afterwards, also if f() throws, since the session's objects are destroyed with it.
   template <typename F>
   void withoutContext(F f) {
     context->release();
@@ -104,7 +104,7 @@ struct HeadsetSession::Work {
     }
     context->makeCurrent();
   }
-  /// Returns whether the session goes on.
+  /// Handles the runtime's events. Returns whether the session continues.
   bool follow(XrSession session, bool& is_running);
   void frame(XrSession session, Renderer& renderer, std::array<std::unique_ptr<EyePictures>, 2>& eyes,
              const Controllers& controllers, XrSpace space);
@@ -130,7 +130,7 @@ struct HeadsetSession::Work {
   Effort effort;
   XrEnvironmentBlendMode blend = XR_ENVIRONMENT_BLEND_MODE_OPAQUE;
 
-  std::mutex mutex;  // of what follows
+  std::mutex mutex;  // guards the members below, up to `messages`
   scenes::Snapshot shown;
   DrawOptions options;
   std::array<HeadsetHand, 2> hands;
@@ -138,11 +138,11 @@ struct HeadsetSession::Work {
   std::vector<std::string> messages;
 
   std::atomic<bool> is_ending{false};
-  std::thread thread;  // last, since it uses the others
+  std::thread thread;  // declared last, since the thread uses the other members
 };
 
 void HeadsetSession::Work::begin(XrSession& session) {
-  // Runtimes refuse a session before they were asked this.
+  // Runtimes refuse a session before the program has called this function.
   PFN_xrGetOpenGLGraphicsRequirementsKHR ask = nullptr;
   check(xrGetInstanceProcAddr(connection.instance(), "xrGetOpenGLGraphicsRequirementsKHR",
                               reinterpret_cast<PFN_xrVoidFunction*>(&ask)),
@@ -163,11 +163,11 @@ void HeadsetSession::Work::run() {
     begin(session);
     loop(session);
   } catch (const std::exception& error) {
-    say(std::string("the headset shows nothing more: ") + error.what());
+    say(std::string("the headset stops showing the scene: ") + error.what());
   }
   {
     const std::lock_guard lock(mutex);
-    hands = {};  // what a hand held is let go
+    hands = {};  // releases the part that a hand held
   }
   on_news();
   if (session != XR_NULL_HANDLE) xrDestroySession(session);
@@ -179,7 +179,7 @@ bool HeadsetSession::Work::follow(XrSession session, bool& is_running) {
     auto event = xrStruct<XrEventDataBuffer>(XR_TYPE_EVENT_DATA_BUFFER);
     if (xrPollEvent(connection.instance(), &event) != XR_SUCCESS) return true;
     if (event.type == XR_TYPE_EVENT_DATA_INSTANCE_LOSS_PENDING) {
-      say("the headset's runtime ends; the window goes on");
+      say("the headset's runtime ends; the window stays open");
       return false;
     }
     if (event.type != XR_TYPE_EVENT_DATA_SESSION_STATE_CHANGED) continue;
@@ -197,10 +197,10 @@ bool HeadsetSession::Work::follow(XrSession session, bool& is_running) {
         is_running = false;
         break;
       case XR_SESSION_STATE_LOSS_PENDING:
-        say("the headset is gone; the window goes on");
+        say("the headset was disconnected; the window stays open");
         return false;
       case XR_SESSION_STATE_EXITING:
-        if (!is_ending) say("the headset's session was ended; the window goes on");
+        if (!is_ending) say("the headset's session was ended; the window stays open");
         return false;
       default:
         break;
@@ -213,7 +213,7 @@ void HeadsetSession::Work::loop(XrSession session) {
   check(xrEnumerateViewConfigurationViews(connection.instance(), connection.system(), kTwoEyes, 0, &count,
                                           nullptr),
         "xrEnumerateViewConfigurationViews");
-  if (count != 2) throw std::runtime_error("it has not two eyes");
+  if (count != 2) throw std::runtime_error("the headset's runtime does not offer two eyes");
   std::array<XrViewConfigurationView, 2> sizes;
   sizes.fill(xrStruct<XrViewConfigurationView>(XR_TYPE_VIEW_CONFIGURATION_VIEW));
   check(xrEnumerateViewConfigurationViews(connection.instance(), connection.system(), kTwoEyes, count, &count,

@@ -9,7 +9,7 @@ struct HeadsetSession::Work {};
 std::unique_ptr<HeadsetSession> HeadsetSession::begin(const RenderScene&, const Box&, std::function<void()>,
                                                       std::string& why_not) {
   why_not =
-      "this build does not look for headsets (Debian: libopenxr-dev, libx11-dev); a headset also shows the "
+      "this build does not support headsets (Debian: libopenxr-dev, libx11-dev); a headset also shows the "
       "scene by its browser: vps watch SCENE --web 8080";
   return nullptr;
 }

@@ -7,11 +7,11 @@
 namespace vps::viewer {
 
 XrConnection::XrConnection() {
-  setenv("XR_LOADER_DEBUG", "none", 0);  // what the loader prints by itself; we say it in words
+  setenv("XR_LOADER_DEBUG", "none", 0);  // whyNot() reports errors, so the loader need not print them
   static constexpr const char* kOpenGl[] = {XR_KHR_OPENGL_ENABLE_EXTENSION_NAME};
   auto wanted = xrStruct<XrInstanceCreateInfo>(XR_TYPE_INSTANCE_CREATE_INFO);
   wanted.applicationInfo.apiVersion =
-      XR_MAKE_VERSION(1, 0, 0);  // nothing newer is used, and old runtimes refuse it
+      XR_MAKE_VERSION(1, 0, 0);  // old runtimes refuse a newer version, which is not needed
   wanted.enabledExtensionCount = 1;
   wanted.enabledExtensionNames = kOpenGl;
   std::snprintf(static_cast<char*>(wanted.applicationInfo.applicationName), XR_MAX_APPLICATION_NAME_SIZE,
@@ -42,9 +42,9 @@ std::string XrConnection::whyNot() const {
   if (result_ == XR_ERROR_RUNTIME_UNAVAILABLE)
     return "no OpenXR runtime is installed or chosen, so there is no headset here" + browser;
   if (result_ == XR_ERROR_EXTENSION_NOT_PRESENT)
-    return "the OpenXR runtime takes no pictures from OpenGL (XR_KHR_opengl_enable)" + browser;
-  if (XR_FAILED(result_)) return "the OpenXR runtime does not start; see that its service runs" + browser;
-  if (system_ == XR_NULL_SYSTEM_ID) return runtime() + " (OpenXR) has no headset; connect it" + browser;
+    return "the OpenXR runtime does not support OpenGL (XR_KHR_opengl_enable)" + browser;
+  if (XR_FAILED(result_)) return "the OpenXR runtime does not start; check that its service runs" + browser;
+  if (system_ == XR_NULL_SYSTEM_ID) return runtime() + " (OpenXR) finds no headset; connect it" + browser;
   return "";
 }
 

@@ -11,16 +11,16 @@
 #include <utility>
 
 #include "run/hand_drag.h"
-#include "sound/scene_voice.h"
-#include "vps_scenes/scene/part_mass.h"
+#include "sound/voices.h"
+#include "vps_scenes/scene/scene_parts.h"
 
 namespace vps::viewer {
 
 namespace {
 
-constexpr double kLeastSpeed_m_s = 2e-3;      // assumed: slower ones are not heard
-constexpr double kLength_s = 0.4;             // assumed: by then a part in a hand has died away by 70 dB
-constexpr std::size_t kMostWaitingBlows = 4;  // more are not kept apart by an ear
+constexpr double kLeastSpeed_m_s = 2e-3;      // assumed: slower impacts are inaudible
+constexpr double kLength_s = 0.4;             // assumed: a part in a hand has decayed by 70 dB
+constexpr std::size_t kMostWaitingBlows = 4;  // an ear cannot tell more apart
 
 std::vector<double> massesOf(const scenes::Scene& scene) {
   std::vector<double> masses_kg;
@@ -50,7 +50,7 @@ std::optional<Blow> BlowSense::hear(const scenes::Snapshot& shot) {
     const Vec3 v_W = (body->X_WP.p - before->X_WP.p) / (shot.time_s - last_->time_s);
     if (last_->contacts.empty() && n_W.norm() > 0) {
       n_W.normalize();
-      // Whichever of the two the normal points to.
+      // The normal may point to either of the two parts.
       const double speed_m_s = std::abs(n_W.dot(v_W_)) - std::max(0.0, std::abs(n_W.dot(v_W)));
       if (speed_m_s > kLeastSpeed_m_s)
         blow = Blow{
@@ -116,7 +116,7 @@ struct BlowSounds::Impl {
   std::deque<Blow> blows;
   std::vector<BlowSound> ready;
   bool is_over = false;
-  std::thread thread;  // last, since it uses the others
+  std::thread thread;  // declared last, since the thread uses the other members
 };
 
 BlowSounds::BlowSounds(const scenes::Scene& scene) : impl_(std::make_unique<Impl>(scene)) {}

@@ -19,17 +19,17 @@ namespace vps::viewer {
 
 namespace {
 
-constexpr double kFullBlow_Pa = 0.2;  // as of a run's sound, live_sound.cpp
+constexpr double kFullBlow_Pa = 0.2;  // as for the sound of a run, see live_sound.cpp
 constexpr std::chrono::milliseconds kSoundPeriod{10};
-/// From a snapshot to its sound: synthesis, the pace of its thread, and the card's three periods. assumed,
-/// from the 9 ms that are measured from a contact to its sample (vps view --measure-latency).
+/// Delay from a snapshot to its sound: synthesis, the period of the writing thread, and the card's three
+/// periods. assumed from the 9 ms that `vps view --measure-latency` measures from a contact to its sample.
 constexpr std::int64_t kSoundWay_ns = 9'000'000;
-constexpr double kReopen_s = 2;  // between attempts to open a card that is gone; as LiveSound
+constexpr double kReopen_s = 2;  // between attempts to open a card that was lost; as in LiveSound
 
 }  // namespace
 
-/// Impacts through the loudspeakers. The card plays what it is given when it comes, so a thread writes at an
-/// even pace, also while the window draws a slow picture.
+/// Plays impacts through the loudspeakers. The card plays samples as soon as it gets them, so a thread writes
+/// them at a constant rate, also while the window draws a slow picture.
 struct FollowedSession::Sound {
   Sound(const scenes::Scene& scene, std::unique_ptr<SoundOutput> card)
       : output(std::move(card), &Sound::open, kReopen_s, [this](const std::string& words) { tell(words); }),
@@ -48,7 +48,7 @@ struct FollowedSession::Sound {
     const std::lock_guard lock(mutex);
     X_WL = pose;
   }
-  /// Once, if the sound card is gone, or is back: a line that says so.
+  /// A message that the sound card was lost or is back; empty: nothing changed since the last call.
   std::string takeNews() {
     const std::lock_guard lock(mutex);
     return std::exchange(news, {});
@@ -71,7 +71,7 @@ struct FollowedSession::Sound {
       ahead.resize(std::max(ahead.size(), kPeriod));
       for (float& x : ahead) x = std::clamp(x, -1.0f, 1.0f);
       if (!std::exchange(was_open, output.isOpen()))
-        next = std::chrono::steady_clock::now();  // nothing to catch up with
+        next = std::chrono::steady_clock::now();  // the time until here need not be caught up
       output.write(std::span(ahead).first(kPeriod), silence, to_L);
       ahead.erase(ahead.begin(), ahead.begin() + kPeriod);
       std::this_thread::sleep_until(next + kSoundPeriod);
@@ -89,12 +89,12 @@ struct FollowedSession::Sound {
 
   LastingOutput output;
   std::mutex mutex;
-  std::string news;  ///< empty: none
-  std::string told;  ///< the last news
+  std::string news;  ///< next message; empty: none
+  std::string told;  ///< last message
   BlowSounds blows;
   Pose X_WL;
   std::atomic<bool> is_over{false};
-  std::thread thread;  // last, since it uses the others
+  std::thread thread;  // declared last, since the thread uses the other members
 };
 
 FollowedSession::FollowedSession(std::unique_ptr<scenes::SessionWatcher> watcher, const std::string& session,
@@ -102,8 +102,8 @@ FollowedSession::FollowedSession(std::unique_ptr<scenes::SessionWatcher> watcher
     : watcher_(std::move(watcher)), sounds_(kPresentAfter_ns - kSoundWay_ns) {
   try {
     pointing_.emplace(session, network);
-  } catch (const LoadError& refused) {  // certificates of before there were pointers
-    messages_.push_back(std::string("pointers are not passed on: ") + refused.what());
+  } catch (const LoadError& refused) {  // certificates made before pointers existed
+    messages_.push_back(std::string("the pointers of other people cannot be shown: ") + refused.what());
   }
   if (!has_sound) return;
   std::string why;
@@ -118,7 +118,7 @@ void FollowedSession::poll() {
   if (sound_)
     if (const std::string news = sound_->takeNews(); !news.empty()) messages_.push_back(news);
   if (is_over_) return;
-  const bool is_over = watcher_->isOver();  // first, so that the last news is read
+  const bool is_over = watcher_->isOver();  // asked first, so that the last news is still read below
   while (const auto news = watcher_->takeNews()) tell(*news);
   for (const std::string& doubt : watcher_->takeDoubts()) messages_.push_back(doubt);
   if (pointing_)
@@ -137,7 +137,7 @@ void FollowedSession::poll() {
   sounds_.take(now_ns, [this](const scenes::Snapshot& shot, std::int64_t) { sound_->hear(shot); });
   pictures_.take(now_ns, [this](scenes::Snapshot&& shot, std::int64_t) { newest_ = std::move(shot); });
   const bool has_device = watcher_->hasDevice();
-  if (had_device_ && !has_device && !is_over) messages_.emplace_back("no device is in the session");
+  if (had_device_ && !has_device && !is_over) messages_.emplace_back("no device is in the session any more");
   had_device_ = has_device;
   if (!is_over) return;
   is_over_ = true;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A session of vps render that a window follows: its snapshots, news, sound, and where people point.
+// A session of vps render that a window follows: its snapshots, messages, sound, and people's pointers.
 #pragma once
 
 #include <map>
@@ -15,11 +15,11 @@
 
 namespace vps::viewer {
 
-/// Used by one thread; nothing of it waits.
+/// Used by one thread. No function waits.
 class VPS_VIEWER_API FollowedSession {
  public:
-  /// @param watcher    of the session with this name
-  /// @param has_sound  impacts are heard where there is a sound card
+  /// @param watcher    watcher of the session with the name `session`
+  /// @param has_sound  plays impacts, if there is a sound card
   FollowedSession(std::unique_ptr<scenes::SessionWatcher> watcher, const std::string& session,
                   const scenes::SessionNetwork& network, bool has_sound);
   ~FollowedSession();
@@ -27,26 +27,27 @@ class VPS_VIEWER_API FollowedSession {
   FollowedSession& operator=(const FollowedSession&) = delete;
 
   [[nodiscard]] const scenes::Scene& scene() const { return watcher_->scene(); }
-  /// Reads what is new. Call it before the others, several times a second.
+  /// Reads the session's new snapshots and messages. Call it several times a second, before the functions
+  /// below.
   void poll();
-  /// The newest snapshot that is due (presentation.h), once.
+  /// The newest snapshot that is due (see presentation.h); empty if it was taken already.
   std::optional<scenes::Snapshot> take() { return std::exchange(newest_, std::nullopt); }
-  /// In words, each once.
+  /// The messages for the user since the last call.
   std::vector<std::string> takeMessages() { return std::exchange(messages_, {}); }
-  /// Verdicts of the steps so far, by step.
+  /// Verdicts of the finished steps, by step.
   [[nodiscard]] const std::map<int, scenes::Verdict>& steps() const { return steps_; }
-  /// Of the run; empty: it has not ended.
+  /// Verdict of the run; empty: the run has not ended.
   [[nodiscard]] std::optional<scenes::Verdict> verdict() const { return verdict_; }
-  /// The session has ended, or its render node is lost.
+  /// Whether the session has ended or its render node is lost.
   [[nodiscard]] bool isOver() const { return is_over_; }
 
-  /// Where others point, by person.
+  /// The places that other people point at, by person.
   [[nodiscard]] const std::map<int, Vec3>& pointers() const { return others_; }
-  /// Where the person at this window points, for all others; none: no longer.
+  /// Shows all other people the place that the person at this window points at; none: removes the mark.
   void point(const std::optional<Vec3>& p_W);
   [[nodiscard]] const std::optional<Vec3>& pointing() const { return own_; }
 
-  /// The listener, as of a camera.
+  /// Sets the listener's pose, with the axes of a camera.
   void listenAt(const Pose& X_WL);
 
  private:

@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
+
+#include "vps_device/pulled_handle.h"
 
 namespace vps::viewer {
 
@@ -49,7 +52,7 @@ void HandDrag::drag(const Camera& camera, const PixelPlace& drag, PictureSize si
 }
 
 void HandDrag::pull(const Camera& camera, double way_m) {
-  // Along the ray through the grabbed point, so that it stays under the cursor.
+  // The point moves along the ray through the eye, so that it stays under the cursor.
   move(way_m * (camera.eye_W - cursor_W_).normalized());
 }
 
@@ -57,7 +60,8 @@ void HandDrag::letGo(const scenes::Snapshot& shot) {
   is_grabbed_ = false;
   const scenes::BodySnapshot* body = partInHand(shot);
   if (body == nullptr || !shot.has_hand || shot.step != step_) return;
-  // The proxy moves and turns as the handle does, wherever the spring between cursor and handle ends.
+  // The wish follows from the proxy's motion since the grab, since the proxy moves and turns as the handle
+  // does.
   const Pose X_WG = body->X_WP * X_PG_;
   X_DH_.p = X_DH_grab_.p + (X_WG.p - X_WG_grab_.p) / scale_;
   X_DH_.R = X_DH_grab_.R;
@@ -80,6 +84,27 @@ const scenes::BodySnapshot* partInHand(const scenes::Snapshot& shot) {
   for (const scenes::BodySnapshot& body : shot.bodies)
     if (body.role == scenes::BodyRole::InHand) return &body;
   return nullptr;
+}
+
+HandMark handMark(const scenes::Snapshot& shot) {
+  const double force_N = shot.F_hand_W.f.norm(), torque_Nm = shot.F_hand_W.tau.norm();
+  const device::PulledHandleSettings full;
+  char words[64];
+  std::snprintf(words, sizeof words, "%.1f N  %.2f N m", force_N, torque_Nm);
+  return {words, std::max(force_N / full.force_N, torque_Nm / full.torque_Nm)};
+}
+
+std::vector<PixelPlace> handMarkPlaces(StereoMode mode, const Vec3& hand_W, const Camera& camera,
+                                       PictureSize size) {
+  constexpr double kBeside_px = 16, kAbove_px = 40;
+  if (mode == StereoMode::Mono) {
+    const auto [x, y] = camera.project(hand_W, size.width, size.height);
+    return {{x + kBeside_px, y}};
+  }
+  const double x = kBeside_px, y = size.height - kAbove_px;
+  if (mode == StereoMode::SideBySide) return {{x, y}, {x + 0.5 * size.width, y}};
+  if (mode == StereoMode::TopBottom) return {{x, y - 0.5 * size.height}, {x, y}};
+  return {{x, y}};
 }
 
 }  // namespace vps::viewer

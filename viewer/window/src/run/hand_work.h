@@ -1,44 +1,46 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What has been put down in the window: undo it, redo it, and the scene to go on with. Knows no window and no
-// run.
+// The parts that were put down in the window, with undo and redo, and the scene for the next run. Independent
+// of window and run.
 #pragma once
 
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "vps_scenes/run/put_down.h"
+#include "vps_scenes/run/derived_scenes.h"
 #include "vps_scenes/run/snapshot.h"
 #include "vps_viewer/export.h"
 
 namespace vps::viewer {
 
-/// Either along the procedure, step after step, or freely, any part at any time. An undone step leaves
-/// exactly what was before it, so that the same scene goes on: the same motion then gives the same bits.
+/// The work follows the procedure step by step, or is free: any part at any time. Undo restores the state
+/// before the step exactly, so that the same motion gives the same bits again.
 class VPS_VIEWER_API HandWork {
  public:
-  /// The scene outlives it.
+  /// The scene must outlive the HandWork.
   explicit HandWork(const scenes::Scene& scene) : scene_(&scene) {}
 
-  /// Begins anew; false: along the procedure.
+  /// Begins anew.
+  /// @param is_free  false: the work follows the procedure
   void begin(bool is_free);
   [[nodiscard]] bool isFree() const { return is_free_; }
 
-  /// A step of the procedure is done, or a part was put down freely. What was undone cannot be redone any
-  /// more.
+  /// Adds a finished step of the procedure, or a part that was put down in free assembly. Undone steps cannot
+  /// be redone afterwards.
   void putDown(const scenes::PutDown& put, const scenes::StepResult& result = {});
-  /// False, and nothing done, where there is none.
+  /// Undoes the last step. Returns false if there is none.
   bool undo();
+  /// Restores the step that was undone last. Returns false if there is none.
   bool redo();
 
-  /// Of the procedure: the step that comes next; its number of steps if all are done.
+  /// Index of the procedure's next step; the number of steps if all are done.
   [[nodiscard]] std::size_t nextStep() const { return done_.size(); }
   [[nodiscard]] bool isOver() const { return !is_free_ && nextStep() >= scene_->steps.size(); }
-  /// What was found in the steps that are done.
+  /// Results of the finished steps.
   [[nodiscard]] std::vector<scenes::StepResult> results() const;
-  /// From nextStep() on, or with that part in hand.
+  /// The scene of the next run: the procedure from nextStep() on, or in free assembly one part in hand.
   [[nodiscard]] scenes::Scene sceneToRun(std::optional<std::size_t> part = {}) const;
-  /// Where everything lies.
+  /// All parts at their present poses.
   [[nodiscard]] scenes::Snapshot snapshot() const;
 
  private:
@@ -50,11 +52,12 @@ class VPS_VIEWER_API HandWork {
 
   const scenes::Scene* scene_;
   bool is_free_ = false;
-  std::vector<Done> done_, undone_;  ///< the last one at the end
+  std::vector<Done> done_, undone_;  ///< in the order of time
 };
 
-/// Adds what earlier runs of the same work have found: the results of all steps, and the verdict on the
+/// Adds the step results of earlier runs of the same work to a run's result, and updates the verdict of the
 /// whole.
+/// @param planned  number of steps of the whole procedure
 VPS_VIEWER_API void addEarlierSteps(std::vector<scenes::StepResult> before, std::size_t planned,
                                     scenes::AssembleResult& result);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A headset of this machine that shows the scene on a table before its wearer, by OpenXR.
+// A headset of this machine that shows the scene on a table in front of its wearer, by OpenXR.
 #pragma once
 
 #include <array>
@@ -13,31 +13,34 @@
 
 namespace vps::viewer {
 
-/// A controller of the headset: 0 the left one, 1 the right one.
+/// State of a controller of the headset. Controller 0 is the left one, 1 the right one.
 struct HeadsetHand {
-  bool is_tracked = false, is_taking = false;  ///< taking: its trigger is held
-  Pose X_WH;                                   ///< in the scene; it points along its -z
+  bool is_tracked = false, is_taking = false;  ///< is_taking: the trigger is held
+  Pose X_WH;                                   ///< pose in the scene; the controller points along its -z
 };
 
-/// Draws on a thread of its own, with an OpenGL context of its own: no other picture waits for it, nor a run.
+/// Draws on a thread of its own, with an OpenGL context of its own, so that neither the window nor a run
+/// waits.
 class VPS_VIEWER_API HeadsetSession {
  public:
-  /// @param scene    its meshes outlive the session
-  /// @param box_W    what is to stand on the table
+  /// Connects to the headset; null if that is not possible.
+  /// @param scene    its meshes must outlive the session
+  /// @param box_W    bounds of the scene that is placed on the table
   /// @param on_news  called on the session's thread when hands() or the messages have changed
-  /// @param why_not  in words, where the result is null: no runtime, no headset, no X display
+  /// @param why_not  receives the reason if the result is null: no runtime, no headset, no X display
   static std::unique_ptr<HeadsetSession> begin(const RenderScene& scene, const Box& box_W,
                                                std::function<void()> on_news, std::string& why_not);
   ~HeadsetSession();
   HeadsetSession(const HeadsetSession&) = delete;
   HeadsetSession& operator=(const HeadsetSession&) = delete;
 
-  /// What is shown from the next frame on.
+  /// Sets the snapshot that the headset shows from the next frame on.
   void show(const scenes::Snapshot& snapshot, const DrawOptions& options);
   [[nodiscard]] std::array<HeadsetHand, 2> hands() const;
-  /// Lets a controller tremble as strongly as that share of its most, for a moment.
+  /// Vibrates a controller for a moment.
+  /// @param share  of the greatest amplitude
   void tremble(std::size_t hand, double share);
-  /// What happened since the last call, in words: the headset was put on, or its session has ended.
+  /// Messages for the user since the last call: the session has begun or has ended.
   [[nodiscard]] std::vector<std::string> takeMessages();
 
   struct Work;

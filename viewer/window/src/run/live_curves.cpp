@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a run shows of itself while it goes on.
+// Curves and rates of a live run.
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -51,7 +51,8 @@ void addChapters(Timeline& line, std::size_t step, double time_s,
 
 std::vector<std::string> figureLines(const scenes::RunFigures& now, const scenes::RunFigures& before,
                                      double elapsed_s) {
-  // In two lines: one would be too long for the panel, and ImGui breaks lines within a number.
+  // The energies take two lines, since one would be too long for the panel, and ImGui breaks lines within a
+  // number.
   char energy[80], injected[80];
   std::snprintf(energy, sizeof energy, "energy: %.3g mJ to the hand, %.3g from it", 1e3 * now.to_hand_J,
                 1e3 * now.from_hand_J);

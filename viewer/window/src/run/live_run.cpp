@@ -7,7 +7,7 @@
 
 #include "vps_device/device_kinds.h"
 #include "vps_scenes/run/assemble.h"
-#include "vps_scenes/run/record.h"
+#include "vps_scenes/run/replay.h"
 
 namespace vps::viewer {
 namespace {
@@ -32,7 +32,7 @@ LiveRun::LiveRun(scenes::Scene scene, const LiveSettings& settings, std::functio
   if (!settings.hand.empty()) scene_.device.kind = settings.hand;
   is_by_clock_ = settings.device != nullptr || isByPerson(scene_.device.kind);
   if (scene_.device.kind == "mouse" || settings.device != nullptr)
-    scene_.device.placement.reset();  // it stands nowhere in the room
+    scene_.device.placement.reset();  // such a device has no place in the room
   snaps_ = settings.snaps;
   if (is_by_clock_) {
     is_paused_ = false;
@@ -154,9 +154,9 @@ void LiveRun::keepTime(double time_s) {
     clock_time_s_ = time_s;
   }
   const double ahead_s = (time_s - clock_time_s_) / speed_ - (now_s - clock_s_);
-  // A run that fell behind does not hurry to make up for it.
+  // A run that fell behind does not catch up.
   if (ahead_s < 0) clock_s_ -= ahead_s;
-  constexpr double kLeastWait_s = 1e-3;  // shorter waits cost more than they are worth
+  constexpr double kLeastWait_s = 1e-3;  // shorter waits are not worth their overhead
   if (ahead_s >= kLeastWait_s)
     wake_.wait_for(lock, std::chrono::duration<double>(ahead_s), [this] { return stop_.load(); });
 }
@@ -196,7 +196,7 @@ void LiveRun::run(const LiveSettings& settings) {
   }
   {
     const std::lock_guard lock(mutex_);
-    result.trace.clear();  // every status is a copy
+    result.trace.clear();  // status() copies the result, so large data is removed
     result.start.clear();
     result.contact.clear();
     result.end.clear();

@@ -8,7 +8,7 @@
 #include <optional>
 #include <utility>
 
-#include "files/run_program.h"
+#include "files/external.h"
 #include "view/camera_motion.h"
 #include "view/picture_worker.h"
 #include "view/timeline.h"
@@ -19,7 +19,7 @@
 namespace vps::viewer {
 namespace {
 
-/// Around the scene at all times.
+/// Bounds of the scene over the whole time.
 Box boxOf(const RenderScene& drawn, const Timeline& line) {
   constexpr int kSamples = 40;
   Box all = snapshotBounds(drawn, line.at(0));
@@ -34,7 +34,7 @@ Box boxOf(const RenderScene& drawn, const Timeline& line) {
 const StandardView& viewNamed(const std::string& name) {
   for (const StandardView& view : standardViews())
     if (view.name == name) return view;
-  throw LoadError("", "", "no view is called '" + name + "'");
+  throw LoadError("", "", "there is no view named '" + name + "'");
 }
 
 Camera turnedAbout(Camera camera, double turn_rad) {
@@ -43,7 +43,8 @@ Camera turnedAbout(Camera camera, double turn_rad) {
   return camera;
 }
 
-/// The film's camera. It follows the part in hand with a lag, so that a person's tremor does not shake it.
+/// The film's camera. CameraPath::Follow follows the part in hand with a lag, so that a person's tremor does
+/// not shake the picture.
 class FilmCamera {
  public:
   FilmCamera(const Camera& start, const RenderScene& drawn, const VideoSettings& settings)
@@ -59,7 +60,7 @@ class FilmCamera {
     for (const scenes::BodySnapshot& body : shot.bodies)
       if (body.role == scenes::BodyRole::InHand)
         wanted_W_ = body.X_WP * bounds(*drawn_[body.part].mesh).center();
-    // A film that begins with a part in hand begins with that in the middle.
+    // A film that begins with a part in hand begins with this part in the centre.
     const double keep =
         std::exchange(has_begun_, true) ? std::exp(-1 / (kLag_s * settings_.frames_per_s)) : 0;
     target_W_ = keep * target_W_ + (1 - keep) * wanted_W_;
@@ -75,11 +76,11 @@ class FilmCamera {
   const RenderScene& drawn_;
   const VideoSettings& settings_;
   Vec3 target_W_;
-  Vec3 wanted_W_;  ///< the middle of the part that was in hand last
+  Vec3 wanted_W_;  ///< centre of the part that was in hand last
   bool has_begun_ = false;
 };
 
-/// Of one film: from the display's viewer, or from the film's camera.
+/// The view of each frame: from the display's viewer, or from the film's camera.
 class FilmView {
  public:
   FilmView(const FilmCamera& camera, const VideoSettings& settings) : camera_(camera), settings_(settings) {
@@ -130,8 +131,7 @@ std::size_t writeFrames(const device::RecordedRun& run, const std::string& folde
                         const VideoSettings& settings) {
   const scenes::Scene scene = scenes::recordedScene(run);
   const Timeline line = recordedTimeline(scene, run);
-  if (line.time_s.empty())
-    throw LoadError(run.file, "", "has no trace of a step, so there is nothing to show");
+  if (line.time_s.empty()) throw LoadError(run.file, "", "has no recorded step, so there is nothing to show");
   const RenderScene drawn = drawnMeshes(scene);
   Renderer renderer(drawn);
   const Camera start =
@@ -164,7 +164,7 @@ std::string encodeVideo(const std::string& folder, double frames_per_s, const st
   std::vector<std::string> words = {"ffmpeg",     "-y", "-loglevel", "error",
                                     "-framerate", rate, "-i",        folder + "/%06d.png"};
   if (!sound.empty()) words.insert(words.end(), {"-i", sound, "-c:a", "aac", "-shortest"});
-  // Half the pixels in colour, as most players want; they need even sizes.
+  // Colour is stored at half resolution (yuv420p), as most players expect; it needs even sizes.
   words.insert(words.end(), {"-vf", "crop=trunc(iw/2)*2:trunc(ih/2)*2", "-c:v", "libx264", "-crf", "18",
                              "-pix_fmt", "yuv420p", "-f", "mp4", file});
   return runProgram(words, "", "ffmpeg is not installed (Debian: apt install ffmpeg)");

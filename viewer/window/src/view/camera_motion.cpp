@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "mesh/scene_meshes.h"
+
 namespace vps::viewer {
 namespace {
 
@@ -13,7 +15,7 @@ double metresPerPixel(const Camera& camera, double depth_m, PictureSize size) {
   return 2 * depth_m * std::tan(0.5 * camera.fov_rad) / std::max(1, size.height);
 }
 
-/// The point on the ray at the target's depth.
+/// The point on the pixel's ray at the target's depth.
 Vec3 atTargetDepth(const Camera& camera, const PixelPlace& at, PictureSize size) {
   const Ray ray = rayThrough(camera, at, size);
   const Vec3 ahead = (camera.target_W - camera.eye_W).normalized();
@@ -21,15 +23,6 @@ Vec3 atTargetDepth(const Camera& camera, const PixelPlace& at, PictureSize size)
 }
 
 }  // namespace
-
-Ray rayThrough(const Camera& camera, const PixelPlace& at, PictureSize size) {
-  const int width = std::max(1, size.width), height = std::max(1, size.height);
-  const auto [half_x, half_y] = camera.halfView(width, height);
-  const Vec3 d_C(camera.shift_x + half_x * (2 * at[0] / width - 1),
-                 camera.shift_y - half_y * (2 * at[1] / height - 1), -1);
-  const Pose X_WC = camera.pose();
-  return {camera.eye_W, (X_WC.R * d_C).normalized()};
-}
 
 void orbit(Camera& camera, const PixelPlace& drag, PictureSize size) {
   constexpr double kPole_rad = 0.02;  // least angle between the view and the up direction
@@ -91,6 +84,45 @@ Camera fitted(const Camera& camera, const Box& box_W, PictureSize size) {
                            double(std::max(1, size.width)) / std::max(1, size.height));
   near.up_W = camera.up_W;
   return near;
+}
+
+CutPlane sectionFacing(const Camera& camera, const Box& box_W) {
+  const Vec3 back = camera.eye_W - camera.target_W;
+  int axis = 0;
+  for (int k = 1; k < 3; ++k)
+    if (std::abs(back[k]) > std::abs(back[axis])) axis = k;
+  CutPlane cut;
+  cut.p_W = box_W.center();
+  cut.n_W = Vec3::Unit(axis) * (back[axis] < 0 ? -1 : 1);
+  return cut;
+}
+
+void dragSection(CutPlane& cut, const Camera& camera, const PixelPlace& drag, PictureSize size,
+                 const Box& box_W) {
+  const Vec3 n_W = cut.n_W.normalized();
+  const Vec3 n_C = camera.pose().R.transpose() * n_W;
+  const double depth_m = std::max(1e-9, -(camera.pose().inverse() * cut.p_W).z());
+  const double m_per_px = 2 * depth_m * std::tan(0.5 * camera.fov_rad) / std::max(1, size.height);
+  // The drag is projected onto the picture of the normal. A normal that points at the eye has no direction in
+  // the picture; then a drag up moves the plane away from the eye.
+  const double flat = std::hypot(n_C.x(), n_C.y());
+  constexpr double kSinTenDegrees = 0.17;
+  const double along_px = flat > kSinTenDegrees ? (n_C.x() * drag[0] - n_C.y() * drag[1]) / (flat * flat)
+                                                : (n_C.z() > 0 ? drag[1] : -drag[1]);
+  double low = 1e300, high = -1e300;
+  for (const Vec3& p_W : corners(box_W)) {
+    low = std::min(low, n_W.dot(p_W));
+    high = std::max(high, n_W.dot(p_W));
+  }
+  const double offset = n_W.dot(cut.p_W);
+  cut.p_W += n_W * (std::clamp(offset + m_per_px * along_px, low, high) - offset);
+}
+
+void tiltSection(CutPlane& cut, const Camera& camera, const PixelPlace& drag, PictureSize size) {
+  const double rad_per_px = std::numbers::pi / std::max(1, size.height);
+  const Mat3 R_WC = camera.pose().R;
+  const Vec3 turn_W = R_WC * Vec3(rad_per_px * drag[1], rad_per_px * drag[0], 0);
+  cut.n_W = (rotationFromVector(turn_W) * cut.n_W).normalized();
 }
 
 }  // namespace vps::viewer

@@ -1,57 +1,53 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How the mouse moves the camera: orbit, pan, zoom, fit, standard views.
+// How the mouse moves the camera (orbit, pan, zoom, fit, standard views) and the section plane.
 #pragma once
 
-#include <array>
 #include <string_view>
 #include <vector>
 
-#include "vps_viewer/draw/camera.h"
+#include "view/picking.h"
 #include "vps_viewer/export.h"
 
 namespace vps::viewer {
 
-/// Size of the picture in pixels.
-struct PictureSize {
-  int width = 1280, height = 720;
-  bool operator==(const PictureSize&) const = default;
-};
-
-/// A place in the picture in pixels: x right, y down.
-using PixelPlace = std::array<double, 2>;
-
-/// A ray from the eye; its direction is a unit vector.
-struct Ray {
-  Vec3 p_W = Vec3::Zero();
-  Vec3 d_W = -Vec3::UnitZ();
-};
-[[nodiscard]] VPS_VIEWER_API Ray rayThrough(const Camera& camera, const PixelPlace& at, PictureSize size);
-
-/// Turns the camera about its target: half a turn for a drag over the picture's height. It stops short of
-/// looking along its up direction, where left and right would change places.
+/// Turns the camera about its target: half a turn for a drag over the picture's height. The camera stops
+/// before it looks along its up direction, where left and right would swap.
 VPS_VIEWER_API void orbit(Camera& camera, const PixelPlace& drag, PictureSize size);
 
 /// Moves eye and target so that a point at depth_m in front of the eye follows the cursor.
 VPS_VIEWER_API void pan(Camera& camera, const PixelPlace& drag, double depth_m, PictureSize size);
-/// The same at the target's depth.
+/// Moves eye and target so that a point at the target's depth follows the cursor.
 VPS_VIEWER_API void pan(Camera& camera, const PixelPlace& drag, PictureSize size);
 
-/// Divides the distance from eye to target by `factor`; what is under the cursor at the target's depth stays
-/// there. The distance stays between the given ones.
+/// Divides the distance from eye to target by `factor`, and keeps the point under the cursor at the target's
+/// depth in place. The distance stays between least_m and most_m.
 VPS_VIEWER_API void zoom(Camera& camera, double factor, const PixelPlace& at, PictureSize size,
                          double least_m, double most_m);
 
-/// A direction from the scene to the eye, with a name and the up direction that goes with it.
+/// A named view: the direction from the scene to the eye, and the up direction.
 struct StandardView {
   std::string_view name;  ///< "front"
   Vec3 direction_W, up_W;
 };
-/// iso, front, back, left, right, top, bottom.
+/// The views iso, front, back, left, right, top and bottom.
 VPS_VIEWER_API const std::vector<StandardView>& standardViews();
 
-/// The nearest view of the box from that side.
+/// Camera of a standard view, as near as the box fits into the picture.
 [[nodiscard]] VPS_VIEWER_API Camera cameraFor(const StandardView& view, const Box& box_W, PictureSize size);
-/// The nearest view of the box from where the camera looks now.
+/// Camera with the present direction of view, as near as the box fits into the picture.
 [[nodiscard]] VPS_VIEWER_API Camera fitted(const Camera& camera, const Box& box_W, PictureSize size);
+
+/// A section plane through the box's centre, perpendicular to the axis of W that points most to the viewer.
+/// The section cuts away the half on the viewer's side.
+[[nodiscard]] VPS_VIEWER_API CutPlane sectionFacing(const Camera& camera, const Box& box_W);
+
+/// Moves the plane along its normal, so that a point of the plane follows the drag on the screen. If the
+/// normal points at the eye, a drag up moves the plane away. The plane stays within the box.
+VPS_VIEWER_API void dragSection(CutPlane& cut, const Camera& camera, const PixelPlace& drag, PictureSize size,
+                                const Box& box_W);
+
+/// Tilts the plane about its point p_W: half a turn for a drag over the picture's height.
+VPS_VIEWER_API void tiltSection(CutPlane& cut, const Camera& camera, const PixelPlace& drag,
+                                PictureSize size);
 
 }  // namespace vps::viewer

@@ -7,9 +7,9 @@
 namespace vps::viewer {
 namespace {
 
-constexpr double kGap_px = 4;  // between outputs, so that it is seen where each ends
+constexpr double kGap_px = 4;  // between outputs, so that their borders are visible
 
-/// The largest rectangle of that aspect in the middle of a cell.
+/// The largest rectangle of the given aspect ratio, centred in a cell.
 TilePlace fitted(double aspect, double x, double y, double width, double height) {
   const double w = std::min(width, height * aspect), h = w / aspect;
   return {static_cast<int>(std::lround(x + 0.5 * (width - w))),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The pictures of a display file in one window: each screen as each viewer sees it, beside each other.
+// The pictures of a display file, tiled in one window: one for each screen and each viewer of it.
 #pragma once
 
 #include <span>
@@ -11,11 +11,11 @@
 
 namespace vps::viewer {
 
-/// What one projector or monitor shows: a screen for one viewer, or for one of the viewer's eyes.
+/// The picture of one projector or monitor: a screen seen by one viewer, or by one of the viewer's eyes.
 struct DisplayOutput {
-  std::string name;  ///< "front", "front_anna", "front_anna_left": as renderDisplay() names them
+  std::string name;  ///< "front", "front_anna", "front_anna_left"; the names of renderDisplay()
   std::size_t screen = 0, viewer = 0;
-  int eye = 0;        ///< of Spectral: -1 left, 1 right; else 0
+  int eye = 0;        ///< Spectral stereo: -1 left, 1 right; other modes: 0
   double aspect = 1;  ///< width over height of the screen
 };
 [[nodiscard]] VPS_VIEWER_API std::vector<DisplayOutput> outputsOf(const scenes::Display& display,
@@ -29,8 +29,17 @@ struct TilePlace {
     return at_x >= x && at_y >= y && at_x < x + width && at_y < y + height;
   }
 };
-/// Rows of equal cells, as many as let the outputs be largest; each output is in the middle of its cell in
-/// its own proportions. A single one fills the area.
+
+/// A view for two eyes, and the rectangle of the picture that shows it.
+struct PictureTile {
+  EyePair eyes;
+  TilePlace place;  ///< in a picture of the size in DrawOptions
+  int eye = 0;      ///< as DisplayOutput::eye
+};
+
+/// Lays the outputs out in rows of equal cells. The number of rows is chosen so that the outputs are as large
+/// as possible. Each output keeps its aspect ratio and is centred in its cell; a single output fills the
+/// area.
 [[nodiscard]] VPS_VIEWER_API std::vector<TilePlace> tilePlaces(std::span<const DisplayOutput> outputs,
                                                                PictureSize area);
 

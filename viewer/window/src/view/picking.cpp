@@ -4,14 +4,14 @@
 #include <limits>
 #include <utility>
 
-#include "mesh/visible_parts.h"
+#include "mesh/scene_meshes.h"
 
 namespace vps::viewer {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
 
-/// The share of the ray inside the section's kept half space, as distances along it.
+/// The interval of the ray inside the half space that the section keeps, as distances along the ray.
 std::pair<double, double> keptRange(const Ray& ray, const CutPlane& cut) {
   const double along = cut.n_W.dot(ray.d_W), offset = cut.n_W.dot(cut.p_W - ray.p_W);
   if (along == 0) return offset >= 0 ? std::pair(0.0, kNone) : std::pair(kNone, kNone);
@@ -33,7 +33,7 @@ bool meetsBox(const Ray& ray_P, const Box& box) {
   return near <= far;
 }
 
-/// Distance along the ray to the triangle, infinite where it misses. Source: Moeller and Trumbore 1997.
+/// Distance along the ray to the triangle; infinite if the ray misses it. Source: Moeller and Trumbore 1997.
 double hit(const Ray& ray, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 ab = b - a, ac = c - a, p = ray.d_W.cross(ac);
   const double det = ab.dot(p);
@@ -45,7 +45,7 @@ double hit(const Ray& ray, const Vec3& a, const Vec3& b, const Vec3& c) {
   return t > 0 ? t : kNone;
 }
 
-/// The nearest hit within the range; where the ray enters the range inside the part, that is the cut face.
+/// The nearest hit within the range. If the range begins inside the part, the hit is on the cut face.
 double nearest(const Mesh& mesh, const Ray& ray_P, std::pair<double, double> range) {
   double best = kNone;
   std::size_t before = 0;
@@ -59,6 +59,15 @@ double nearest(const Mesh& mesh, const Ray& ray_P, std::pair<double, double> ran
 }
 
 }  // namespace
+
+Ray rayThrough(const Camera& camera, const PixelPlace& at, PictureSize size) {
+  const int width = std::max(1, size.width), height = std::max(1, size.height);
+  const auto [half_x, half_y] = camera.halfView(width, height);
+  const Vec3 d_C(camera.shift_x + half_x * (2 * at[0] / width - 1),
+                 camera.shift_y - half_y * (2 * at[1] / height - 1), -1);
+  const Pose X_WC = camera.pose();
+  return {camera.eye_W, (X_WC.R * d_C).normalized()};
+}
 
 std::optional<PickedPlace> pick(const RenderScene& scene, const scenes::Snapshot& snapshot,
                                 const DrawOptions& options, const Ray& ray) {

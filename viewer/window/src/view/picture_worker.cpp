@@ -41,15 +41,16 @@ bool isSameTiles(const std::vector<PictureTile>& a, const std::vector<PictureTil
   });
 }
 
-/// Whether both differ by what the snapshot shows only.
+/// Whether the requests differ in nothing but their snapshots.
 bool isSameView(const PictureRequest& a, const PictureRequest& b) {
   return a.camera == b.camera && a.options == b.options && a.stereo == b.stereo &&
          isSameEyes(a.eyes, b.eyes) && a.rows == b.rows && isSameTiles(a.tiles, b.tiles);
 }
 
-/// @param options  of a draft, which may have fewer pixels
+/// Draws all tiles on black.
+/// @param options  those of a draft may have fewer pixels than the request
 Image drawTiles(Renderer& renderer, const PictureRequest& asked, const DrawOptions& options) {
-  const bool has_rows = asked.stereo == StereoMode::Interleaved;  // which are the screen's, also of a draft
+  const bool has_rows = asked.stereo == StereoMode::Interleaved;  // a draft keeps the rows of the screen
   const int whole_w = has_rows && asked.rows.width > 0 ? asked.rows.width : options.width;
   const int whole_h = has_rows && asked.rows.height > 0 ? asked.rows.height : options.height;
   const auto scaled = [](int px, int from, int to) {
@@ -102,7 +103,8 @@ Image drawDraft(Renderer& renderer, const PictureRequest& asked, int shrink) {
   options.supersampling = 1;
   Camera camera = asked.camera;
   if (shrink > 1) {
-    camera.aspect = double(options.width) / options.height;  // the same view, although sizes are rounded
+    camera.aspect =
+        double(options.width) / options.height;  // rounding the draft's size must not change the view
     options.width = pictureLength_px(options.width / shrink);
     options.height = pictureLength_px(options.height / shrink);
   }
@@ -177,19 +179,20 @@ void PictureWorker::run(const RenderScene& scene, double wait_s) {
 }
 
 void PictureWorker::drawAll(Renderer& renderer) {
-  // A full picture takes the place of drafts for a second at most, so it waits until the view has rested.
+  // While a full picture is drawn, which may take a second, there are no drafts. So the view must rest first.
   constexpr auto kRest = std::chrono::milliseconds(150);
-  // Drafts that take longer than a picture of a moving view may (20 a second) have fewer pixels. assumed: a
-  // third of them across still shows what moves where. Between the two times nothing changes.
+  // A draft that takes longer than kSlowDraft_s (20 pictures a second) gets fewer pixels, down to a third of
+  // the width and height; a draft faster than kFastDraft_s gets more. assumed: a third still shows where
+  // parts move.
   constexpr double kSlowDraft_s = 0.05, kFastDraft_s = 0.015;
   constexpr int kMostShrink = 3;
-  // Where the view stands still only what moves is drawn, and a contact is to be seen soon: a draft is being
-  // drawn when it happens, and it is in the next, both of them within the 24 ms that picture, sound and force
-  // may be apart.
+  // In a view at rest only the region that changed is drawn. A contact must be visible within 24 ms, the
+  // bound between picture, sound and force. It may happen while a draft is drawn and then appears in the next
+  // one, so two such drafts must fit into the bound.
   constexpr double kSlowPart_s = 0.006, kFastPart_s = 0.002;
   int shrink = 1;
   PictureRequest asked;
-  bool has_draft = false;  // of `asked`, and it is not drawn in full yet
+  bool has_draft = false;  // `asked` was drawn as a draft, but not in full
   for (;;) {
     bool is_draft = true, is_still = false;
     {

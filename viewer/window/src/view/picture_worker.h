@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A thread that draws what the window asks for, so that the window answers while a slow picture is drawn.
+// A thread that draws the pictures that the window requests, so that the window responds during a slow
+// picture.
 #pragma once
 
 #include <condition_variable>
@@ -16,49 +17,44 @@
 
 namespace vps::viewer {
 
-/// What a part of the picture shows.
-struct PictureTile {
-  EyePair eyes;
-  TilePlace place;  ///< in a picture of the options' size
-  int eye = 0;      ///< of Spectral, see DisplayOutput
-};
-
 struct PictureRequest {
   scenes::Snapshot snapshot;
   Camera camera;
   DrawOptions options;
   StereoMode stereo = StereoMode::Mono;
   std::optional<EyePair>
-      eyes;         ///< of a picture for two eyes, or for the middle between them; none: `camera`'s
-  ScreenRows rows;  ///< of an interleaved picture
-  std::vector<PictureTile> tiles;  ///< on black, in place of `camera` and `eyes`; empty: the picture is whole
+      eyes;  ///< used in place of `camera`; without stereo the picture is seen from the middle between them
+  ScreenRows rows;  ///< for an interleaved picture
+  std::vector<PictureTile>
+      tiles;  ///< drawn on black in place of `camera` and `eyes`; empty: one whole picture
 };
-/// Whether both give the same picture.
+/// Whether both requests give the same picture.
 [[nodiscard]] VPS_VIEWER_API bool isSame(const PictureRequest& a, const PictureRequest& b);
 
-/// In full.
+/// Draws the picture in full quality and size.
 [[nodiscard]] VPS_VIEWER_API Image drawInFull(Renderer& renderer, const PictureRequest& asked);
-/// The same view as a draft with that share of the pixels across. An interleaved one has all of its rows.
+/// Draws the same view as a draft, with width and height divided by `shrink`. An interleaved draft keeps all
+/// rows.
 /// @param shrink  >= 1
 [[nodiscard]] VPS_VIEWER_API Image drawDraft(Renderer& renderer, const PictureRequest& asked, int shrink);
 
 struct DrawnPicture {
   Image image;
   bool is_draft = false;
-  double wall_s = 0;   ///< time that drawing took
-  double clock_s = 0;  ///< when it was done, by device::monotonicSeconds()
+  double wall_s = 0;   ///< duration of drawing
+  double clock_s = 0;  ///< end of drawing, by device::monotonicSeconds()
 };
 
-/// Draws the newest request first as a draft, and in full once nothing newer is wanted. Requests in between
-/// are skipped, and one that asks for the same again draws nothing. Where the renderer fails (no OpenGL, out
-/// of memory, the graphics card was reset), it makes a new one after a while and draws the newest request
-/// again.
+/// Draws the newest request first as a draft, and in full if no newer request follows. Older requests are
+/// skipped, and a request for the same picture draws nothing. If the renderer fails (no OpenGL, out of
+/// memory, the graphics card was reset), the worker makes a new renderer after a while and draws the newest
+/// request again.
 class VPS_VIEWER_API PictureWorker {
  public:
-  /// @param scene    its meshes outlive the worker
+  /// @param scene    its meshes must outlive the worker
   /// @param on_done  called on the worker's thread after each picture, and after a failure
-  /// @param wait_s   from a first failure to the next attempt; twice as long after each further one, up to
-  ///                 kLongestWait_s
+  /// @param wait_s   time from the first failure to the next attempt; doubled after each further failure,
+  ///                 up to kLongestWait_s
   explicit PictureWorker(RenderScene scene, std::function<void()> on_done, double wait_s = 1);
   ~PictureWorker();
   PictureWorker(const PictureWorker&) = delete;
@@ -66,14 +62,13 @@ class VPS_VIEWER_API PictureWorker {
 
   void request(const PictureRequest& wanted);
   static constexpr double kLongestWait_s = 30;
-  /// The newest picture, once.
+  /// The newest picture; empty if it was taken already.
   [[nodiscard]] std::optional<DrawnPicture> take();
-  /// Why there is no picture of the newest request, in words with a remedy; empty: nothing has failed since
-  /// the last picture.
+  /// Why the newest request has no picture, with a remedy; empty: nothing has failed since the last picture.
   [[nodiscard]] std::string failure() const;
-  /// Pictures drawn so far.
+  /// Number of pictures drawn so far.
   [[nodiscard]] std::size_t count() const;
-  /// What draws, in words; empty before the first picture.
+  /// Name of the OpenGL renderer; empty before the first picture.
   [[nodiscard]] std::string description() const;
 
  private:
@@ -89,7 +84,7 @@ class VPS_VIEWER_API PictureWorker {
   std::string failure_, description_;
   std::size_t count_ = 0;
   bool is_ending_ = false;
-  std::thread thread_;  // last, since it uses the others
+  std::thread thread_;  // declared last, since the thread uses the other members
 };
 
 }  // namespace vps::viewer

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A recorded run, from the trace in its recording.
+// The timeline of a recorded run, from the trace in the recording.
 #include <algorithm>
 #include <memory>
 
@@ -80,7 +80,7 @@ Timeline recordedTimeline(const scenes::Scene& scene, const device::RecordedRun&
     line.chapters.push_back(
         {std::to_string(step + 1) + " " + scene.parts[begun.part].part.name, row.time_s, ""});
   }
-  if (line.chapters.empty()) line.chapters.push_back({"no step was traced", 0, ""});
+  if (line.chapters.empty()) line.chapters.push_back({"no step was recorded", 0, ""});
   line.end_s = rows->empty() ? 0 : rows->back().time_s;
   addCurves(line, *rows);
   for (const device::LogEntry& entry : run.entries)

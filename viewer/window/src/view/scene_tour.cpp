@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The procedure of a scene as it is meant, without physics.
+// The timeline of a scene's planned procedure, without physics.
 #include <algorithm>
 #include <cmath>
 
@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kFinished_s = 2, kMove_s = 1.5, kRest_s = 0.5;
 
-/// The pose on the path after a share of its legs, each of which takes the same time.
+/// The pose on the path after a share of the time; each leg takes the same time.
 Pose onPath(const scenes::SceneStep& step, double share) {
   std::vector<Pose> path = {step.X_WP_start};
   path.insert(path.end(), step.way_points.begin(), step.way_points.end());

@@ -30,7 +30,7 @@ Camera cameraOf(const TableRoom& room, const HeadsetEye& eye, const Box& box_W) 
   const double height = std::max(1e-6, eye.up - eye.down), width = std::max(1e-6, eye.right - eye.left);
   Camera camera;
   camera.eye_W = X_WE.p;
-  // How far the target is does not change what is seen, only how fine shading is computed.
+  // The distance of the target does not change the view, only the scale of shading effects.
   const double distance_m = std::max(1e-6, (box_W.center() - X_WE.p).norm());
   camera.target_W = X_WE.p - distance_m * X_WE.R.col(2);
   camera.up_W = X_WE.R.col(1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a window plays: snapshots over time, with the steps and curves that belong to them.
+// The data that a window plays: snapshots over time, with their steps and curves.
 #pragma once
 
 #include <functional>
@@ -18,11 +18,12 @@ namespace vps::viewer {
 struct Chapter {
   std::string name;
   double start_s = 0;
-  std::string verdict;      ///< in words; empty: not known
-  std::string reason = {};  ///< of the verdict, in the judge's words; empty: it fits, or none is known
+  std::string verdict;  ///< as text; empty: not known
+  std::string reason =
+      {};  ///< the judge's reason for the verdict; empty: the part fits, or the reason is unknown
 };
 
-/// A quantity over time, at Timeline::time_s; not a number where it is not known.
+/// A quantity at the times Timeline::time_s; NaN where it is not known.
 struct Curve {
   std::string name, unit;
   std::vector<float> values;
@@ -35,40 +36,40 @@ struct Message {
 
 struct VPS_VIEWER_API Timeline {
   double end_s = 0;
-  std::vector<Chapter> chapters;  ///< in order of time; not empty
+  std::vector<Chapter> chapters;  ///< sorted by time; not empty
   std::vector<double> time_s;
   std::vector<Curve> curves;
   std::vector<Message> messages;
-  std::function<scenes::Snapshot(double time_s)> at;  ///< for any time; times outside are the nearest inside
+  std::function<scenes::Snapshot(double time_s)> at;  ///< snapshot at a time, which is clamped to the range
 
   /// Index of the chapter at that time.
   [[nodiscard]] std::size_t chapterAt(double t_s) const;
 };
 
-/// The curves that a run draws while it goes on: force, torque, depth, contacts, clearance, energy.
+/// The curves of a live run, still empty: force, torque, depth, contacts, clearance, energy.
 [[nodiscard]] VPS_VIEWER_API std::vector<Curve> liveCurves();
-/// Adds an instant of a run to them.
-/// @param clearance_m  least distance of the part in hand to another; none: not known, or farther than
-/// measured
+/// Adds the values of a snapshot to the curves.
+/// @param clearance_m  least distance of the part in hand to another part; none: unknown, or not measured
 VPS_VIEWER_API void addInstant(Timeline& line, const scenes::Snapshot& shot,
                                std::optional<double> clearance_m);
-/// Adds the chapter of a step that is under way, unless it is there. Who joins a session late has not seen
-/// the steps before: their chapters begin with it.
-/// @param line  whose first chapter is what comes before the first step
-/// @param name  of a step's chapter
+/// Adds the chapter of the current step, unless it exists. For a watcher who joins a session late, the
+/// chapters of the missed steps begin at the same time.
+/// @param line  timeline whose first chapter is the time before the first step
+/// @param name  returns the name of a step's chapter
 VPS_VIEWER_API void addChapters(Timeline& line, std::size_t step, double time_s,
                                 const std::function<std::string(std::size_t step)>& name);
-/// In words: what a run has done so far, at which rate, what it missed, and its energy. One line each.
-/// @param elapsed_s  by the clock, in which `shot`'s figures came to be since `before`'s
+/// Lines of text with a run's rates, missed periods and energies.
+/// @param elapsed_s  wall time between the figures `before` and `now`
 [[nodiscard]] VPS_VIEWER_API std::vector<std::string> figureLines(const scenes::RunFigures& now,
                                                                   const scenes::RunFigures& before,
                                                                   double elapsed_s);
 
-/// The finished assembly at time 0, then each step's part on its path, without physics: 2 s a step. The scene
-/// outlives it.
+/// Shows the finished assembly at first, then moves each step's part along its path, without physics: 2 s a
+/// step. The scene must outlive the timeline.
 VPS_VIEWER_API Timeline sceneTour(const scenes::Scene& scene);
 
-/// A recorded run as its trace has it. Contacts are not recorded, only their number. Both outlive it.
+/// A recorded run, from its trace. A recording has the number of contacts, but not the contacts. Scene and
+/// run must outlive the timeline.
 VPS_VIEWER_API Timeline recordedTimeline(const scenes::Scene& scene, const device::RecordedRun& run);
 
 }  // namespace vps::viewer

@@ -4,18 +4,18 @@
 #include <algorithm>
 #include <array>
 
-#include "view/section_drag.h"
+#include "view/camera_motion.h"
 
 namespace vps::viewer {
 namespace {
 
-constexpr double kNudge_s = 0.02;  // of the arrow keys: five rows of a trace at 250 Hz
+constexpr double kNudge_s = 0.02;  // step of the arrow keys: five rows of a trace at 250 Hz
 
 void goTo(ViewState& state, const Timeline& line, double time_s) {
   state.time_s = std::clamp(time_s, 0.0, line.end_s);
 }
 
-/// From within a step back to its start, from its start to that of the one before.
+/// Goes to the start of the current step; from there, to the start of the step before.
 void goToLastStep(ViewState& state, const Timeline& line) {
   std::size_t now = line.chapterAt(state.time_s);
   if (now > 0 && state.time_s - line.chapters[now].start_s < kNudge_s) --now;
@@ -34,13 +34,14 @@ void toggleSection(ViewState& state, const Box& box_W) {
     state.draw.cut = sectionFacing(state.camera, box_W);
 }
 
-/// All, the first alone, ..., the last alone, all.
+/// Switches through: all outputs, each output alone, and all again.
 void nextOutput(ViewState& state) {
   const std::size_t next = state.output ? *state.output + 1 : 0;
   state.output = next < state.outputs && state.outputs > 1 ? std::optional(next) : std::nullopt;
 }
 
-/// Of a display file, Spectral has a picture for each eye in place of one; what is shown alone stays so.
+/// Switches the stereo mode. With a display file, Spectral has two outputs (one for each eye) where other
+/// modes have one, so the index of the output that is shown alone changes.
 void switchStereo(ViewState& state) {
   const bool had_eyes = state.stereo == StereoMode::Spectral;
   state.stereo = nextStereo(state.stereo);
@@ -86,35 +87,34 @@ std::span<const KeyBinding> keyBindings() {
       KeyBinding{Action::View6, "6", "top view"},
       KeyBinding{Action::View7, "7", "bottom view"},
       KeyBinding{Action::Explode, "E", "exploded view on or off"},
-      KeyBinding{Action::Section, "X", "section on or off, across what you look along"},
+      KeyBinding{Action::Section, "X", "section on or off, perpendicular to the view"},
       KeyBinding{Action::FlipSection, "V", "cuts away the other half"},
-      KeyBinding{Action::CutHand, "C", "the section cuts the part in hand too, or not"},
+      KeyBinding{Action::CutHand, "C", "the section cuts the part in hand: yes or no"},
       KeyBinding{Action::Target, "T", "shows or hides the target"},
       KeyBinding{Action::Edges, "L", "shows or hides edge lines"},
       KeyBinding{Action::Ground, "G", "shows or hides the shadow on the floor"},
       KeyBinding{Action::Theme, "D", "dark or light"},
       KeyBinding{Action::PlayPause, "Space", "plays or pauses"},
       KeyBinding{Action::Back, "Left", "20 ms back"},
-      KeyBinding{Action::Forward, "Right", "20 ms ahead"},
-      KeyBinding{Action::LastStep, "Up", "to the start of this step, then of the one before"},
+      KeyBinding{Action::Forward, "Right", "20 ms forward"},
+      KeyBinding{Action::LastStep, "Up", "to the start of this step, then of the previous step"},
       KeyBinding{Action::NextStep, "Down", "to the next step"},
       KeyBinding{Action::ToStart, "Home", "to the start"},
       KeyBinding{Action::ToEnd, "End", "to the end"},
       KeyBinding{Action::RunLive, "R", "runs the procedure, or goes back to the tour"},
-      KeyBinding{Action::TakeByMouse, "H", "takes the parts in hand by the mouse, or goes back to the tour"},
-      KeyBinding{Action::OneStep, "N", "of a paused run: one physics step"},
-      KeyBinding{Action::Undo, "Z", "takes back the last step that was done, and goes on from there"},
-      KeyBinding{Action::Redo, "Y", "does again, as it was, what Z took back"},
+      KeyBinding{Action::TakeByMouse, "H", "moves the parts by the mouse, or goes back to the tour"},
+      KeyBinding{Action::OneStep, "N", "in a paused run: one physics step"},
+      KeyBinding{Action::Undo, "Z", "undoes the last step and continues from there"},
+      KeyBinding{Action::Redo, "Y", "redoes the step that Z undid"},
       KeyBinding{Action::Free, "U", "free assembly without a procedure, or back to the tour"},
-      KeyBinding{Action::TakeOrPutDown, "Enter",
-                 "in free assembly: takes the picked part in hand, or puts it down"},
-      KeyBinding{Action::Snap, "A", "axis snap: a spring guides the part in hand to its axis, or not"},
+      KeyBinding{Action::TakeOrPutDown, "Enter", "in free assembly: takes the picked part, or puts it down"},
+      KeyBinding{Action::Snap, "A", "axis snap on or off: a spring guides the part to its axis"},
       KeyBinding{Action::Path, "W", "shows or hides the planned path"},
       KeyBinding{Action::Stereo, "S",
                  "stereo: none, side by side, top and bottom, anaglyph, interleaved, spectral"},
-      KeyBinding{Action::Output, "O", "of a display file: all its pictures, or one after the other alone"},
-      KeyBinding{Action::FullScreen, "F11", "the picture alone, on the whole monitor, or no longer"},
-      KeyBinding{Action::Point, "M", "of a session: marks the picked place for all who watch, or no longer"},
+      KeyBinding{Action::Output, "O", "with a display file: all its pictures, or each one alone"},
+      KeyBinding{Action::FullScreen, "F11", "full screen on or off: the picture alone on the monitor"},
+      KeyBinding{Action::Point, "M", "in a session: marks the picked place for all, or removes the mark"},
       KeyBinding{Action::SavePicture, "P", "saves the picture to a PNG file"},
       KeyBinding{Action::Deselect, "Escape", "deselects the part"},
       KeyBinding{Action::Close, "Q", "closes the window"}};
@@ -129,7 +129,7 @@ std::span<const KeyBinding> mouseBindings() {
       KeyBinding{Action::Help, "left click", "picks a part"},
       KeyBinding{Action::Help, "Ctrl + left drag", "moves the section"},
       KeyBinding{Action::Help, "Ctrl + right drag", "tilts the section"},
-      KeyBinding{Action::Help, "by hand, on the part in hand:", ""},
+      KeyBinding{Action::Help, "on the part in hand, in a run by the mouse:", ""},
       KeyBinding{Action::Help, "left drag", "moves it along the screen"},
       KeyBinding{Action::Help, "Shift + left drag, wheel", "moves it in depth"},
       KeyBinding{Action::Help, "right drag", "turns it"},
@@ -159,7 +159,7 @@ void apply(Action action, ViewState& state, const Timeline& line, const Box& box
       break;
     case Action::Explode:
       state.explode = state.explode > 0 ? 0 : 1;
-      state.wants_fit = true;  // once the parts are where they are shown then
+      state.wants_fit = true;  // the view is fitted once the parts have moved
       break;
     case Action::Section:
       toggleSection(state, box_W);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How late picture, sound and force of a contact are, measured in one run without display and sound card.
+// Measures how late picture, sound and force of a contact are, in one run without display and sound card.
 //
-// One clock stamps all of it. A handle of the program taps with the part in hand. Each tap is found again in
+// All times are of one clock. A simulated handle taps with the part in hand. Each tap is found again in
 // the wrenches that are written to the device (a step of force), in the samples that leave the sound card (a
 // click), and in the pictures that are read back (a flash).
 #pragma once
@@ -18,7 +18,8 @@
 
 namespace vps::viewer {
 
-/// How far picture, sound and force of a contact may be apart, 99 of 100 times: section 2 of the paper.
+/// Bound on the time between picture, sound and force of a contact, which 99 of 100 contacts keep. Source:
+/// section 2 of the paper.
 inline constexpr double kApart_s = 24e-3;
 
 struct LatencySettings {
@@ -28,53 +29,53 @@ struct LatencySettings {
   const std::atomic<bool>* stop = nullptr;
 };
 
-/// The way of a contact, by the times [s] since the handle was read that the physics step followed. Negative:
-/// not seen.
+/// Delays of one contact [s], from the reading of the handle that its physics step used. Negative: the event
+/// was not found.
 struct ContactTimes {
-  double found_s = -1;          ///< the physics step that found it was done: the contact's time
-  double force_s = -1;          ///< the first wrench with it was written to the device
-  double sound_written_s = -1;  ///< its first sample went to the sound card
-  double sound_s = -1;          ///< that sample is played
-  double drawing_s = -1;        ///< drawing of the first picture with it began
-  double picture_s = -1;        ///< that picture was read back
+  double found_s = -1;          ///< end of the physics step that found the contact
+  double force_s = -1;          ///< first wrench with the contact written to the device
+  double sound_written_s = -1;  ///< first sample of the contact written to the sound card
+  double sound_s = -1;          ///< the same sample played
+  double drawing_s = -1;        ///< drawing of the first picture with the contact began
+  double picture_s = -1;        ///< the same picture read back
 
-  /// Between the first and the last of picture, sound and force; negative where one was not seen.
-  /// @param has_sound  false: of picture and force
+  /// Time between the first and the last of picture, sound and force; negative if one was not found.
+  /// @param has_sound  false: only picture and force count
   [[nodiscard]] VPS_VIEWER_API double apart_s(bool has_sound) const;
 };
 
-/// A row of the table of the whole way: all times of one kind.
+/// A row of the table of delays: one event of the way from the encoder to the eye, ear or hand.
 struct LatencyStage {
   const char* key;    ///< "picture_ms"
   const char* words;  ///< "picture: read back"
   double ContactTimes::*time_s;
   bool is_sound = false;
 };
-/// From the encoder to photon and sample, in order.
+/// All rows, in the order in which the events happen.
 VPS_VIEWER_API const std::vector<LatencyStage>& latencyStages();
 
 struct LatencyResult {
   std::string scene, part, drawn_by;
-  std::string silence;           ///< why there was no sound; empty: there was
-  std::size_t late_samples = 0;  ///< times that the card had nothing to play, since samples came too late
-  std::size_t late_mixes = 0;    ///< and since they were mixed too late
-  double picture_wall_s = 0;     ///< median time that a picture took
+  std::string silence;           ///< why there was no sound; empty: there was sound
+  std::size_t late_samples = 0;  ///< gaps in the card's output because samples were written too late
+  std::size_t late_mixes = 0;    ///< gaps in the card's output because the mixer ran too late
+  double picture_wall_s = 0;     ///< median wall time of drawing a picture
   int width = 0, height = 0;
   std::vector<ContactTimes> contacts;
 
   [[nodiscard]] bool hasSound() const { return silence.empty(); }
-  /// Of all contacts; negative where one of the three was not seen.
+  /// ContactTimes::apart_s() of each contact.
   [[nodiscard]] VPS_VIEWER_API std::vector<double> apart_s() const;
-  /// Whether each contact was seen in all three, and 99 of 100 within kApart_s.
+  /// Whether picture, sound and force of each contact were found, and 99 of 100 contacts keep kApart_s.
   [[nodiscard]] VPS_VIEWER_API bool isGood() const;
 };
 
-/// Nearest rank of what was seen; NaN without any.
+/// Percentile of the values that are not negative, by the nearest rank; NaN if there is none.
 VPS_VIEWER_API double percentile(std::vector<double> values, double share);
 
-/// Runs the first step of the scene by the clock, in about 0.4 s a tap. The handle goes aside by a quarter of
-/// the part's size first, so that the part meets the face beside the hole. Throws LoadError where nothing is
-/// met, std::runtime_error as Renderer.
+/// Runs the first step of the scene in real time; a tap takes about 0.4 s. The handle first moves sideways by
+/// a quarter of the part's size, so that the part touches the face next to the hole. Throws LoadError if the
+/// part touches nothing, and std::runtime_error as Renderer does.
 VPS_VIEWER_API LatencyResult measureLatency(scenes::Scene scene, const LatencySettings& settings);
 
 }  // namespace vps::viewer

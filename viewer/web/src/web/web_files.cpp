@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "web/part_glb.h"
+#include "web/web_files.h"
 
 #include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <utility>
 #include <vector>
 
+#include "files/external.h"
 #include "mesh/coarse_mesh.h"
 #include "vps_device/detail/bytes.h"
 
 namespace vps::viewer {
-
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -108,6 +109,29 @@ std::string padded(std::string text, char with) {
 }
 
 }  // namespace
+
+WebPage::WebPage() {
+  constexpr const char* kScript = "text/javascript; charset=utf-8";
+  files_["/"] = {"text/html; charset=utf-8", kPageHtml};
+  files_["/page.css"] = {"text/css; charset=utf-8", kPageCss};
+  files_["/page.js"] = {kScript, kPageScript};
+  constexpr std::pair<const char*, const char*> kLibrary[] = {
+      {"/three.js", "build/three.min.js"},
+      {"/orbit_controls.js", "examples/js/controls/OrbitControls.js"},
+      {"/gltf_loader.js", "examples/js/loaders/GLTFLoader.js"}};
+  for (const auto& [path, file] : kLibrary) {
+    std::string text = textOf(std::string(kThreeFolder) + file);
+    if (text.empty())
+      missing_ = std::string("three.js, which draws in the browser, is not in ") + kThreeFolder +
+                 ": install libjs-three";
+    files_[path] = {kScript, std::move(text)};
+  }
+}
+
+const WebFile* WebPage::find(std::string_view path) const {
+  const auto found = files_.find(path);
+  return found == files_.end() ? nullptr : &found->second;
+}
 
 std::string partGlb(const ShadingMesh& mesh, std::size_t wanted, bool has_edges) {
   GlbBuffer buffer;
