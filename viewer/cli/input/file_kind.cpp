@@ -51,7 +51,7 @@ bool hasNormalsAndNoFaces(const std::string& file) {
   std::ifstream in(file, std::ios::binary);
   std::string line;
   bool has_normals = false;
-  constexpr int kMaxLines = 1000;  // a file of another format must not be read to its end
+  constexpr int kMaxLines = 1000;  // so that a file of another format is not read to its end
   for (int i = 0; i < kMaxLines && std::getline(in, line); ++i) {
     if (line.ends_with('\r')) line.pop_back();
     if (line.starts_with("property ") && line.ends_with(" nx")) has_normals = true;

@@ -104,7 +104,7 @@ std::string partTable(const scenes::CheckResult& result) {
 
 namespace {
 
-/// Press fits that are declared and not drawn.
+/// Lists press fits that are declared but drawn without an overlap.
 std::string undrawnPressFits(const scenes::CheckResult& result) {
   std::string out;
   for (const scenes::CheckedPair& pair : result.pairs)

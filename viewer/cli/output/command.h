@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a subcommand of `vps` is made of. A source command_NAME.cpp defines one function
+// The parts of a subcommand of `vps`. A source command_NAME.cpp defines one function
 //
 //   std::function<int()> addName(CLI::App& command);
 //

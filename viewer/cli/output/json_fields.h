@@ -14,7 +14,7 @@
 
 namespace vps::viewer {
 
-// Keys keep the order in which they are added.
+// An ordered_json keeps its keys in the order in which they were added.
 using Json = nlohmann::ordered_json;
 
 inline Json toValue(const Vec3& v) {

@@ -20,7 +20,7 @@ namespace vps::viewer {
 
 namespace {
 
-/// Names come from files and need not be UTF-8; an invalid byte becomes U+FFFD and is no exception.
+/// Names come from files and need not be UTF-8; an invalid byte becomes U+FFFD and causes no error.
 std::string text(const Json& json) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

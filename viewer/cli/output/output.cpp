@@ -21,14 +21,14 @@ namespace fs = std::filesystem;
   throw LoadError(file, "", "cannot be written: " + reason + "; choose another place");
 }
 
-/// A device or a pipe: a rename would put a file in its place.
+/// Whether the path is a device or a pipe, which a rename would replace by a file.
 bool isStream(const fs::path& path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
 }
 
-/// The file that symbolic links lead to, which need not exist: a rename onto the link would replace the link.
+/// The target of symbolic links, which need not exist. A rename onto a link would replace the link itself.
 fs::path resolveLinks(fs::path path) {
   constexpr int kMaxLinks = 40;  // as many as Linux follows
   std::error_code error;

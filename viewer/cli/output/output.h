@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Results appear whole at the end of a run that succeeded, or not at all; until then the results of an
-// earlier run stay. Symbolic links are followed, and devices and pipes are written directly: none is replaced
-// by a file.
+// Results appear complete at the end of a run that succeeded, or not at all; until then the results of an
+// earlier run are kept. Symbolic links are followed, and devices and pipes are written directly instead of
+// being replaced by a file.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -17,11 +17,11 @@ namespace vps::viewer {
 /// Throws LoadError if `output` is one of the files that the command reads, even under another name.
 void requireNotRead(const std::string& output, const std::vector<std::string>& inputs);
 
-/// One output file. It is opened when the work starts, so that a place that cannot be written is reported
+/// One output file. It is opened when the work starts, so that a file that cannot be written is reported
 /// before the work.
 class OutputFile {
  public:
-  /// Throws LoadError when nothing can be written there, or when it is one of the command's `inputs`. With an
+  /// Throws LoadError if the file cannot be written, or if it is one of the command's `inputs`. With an
   /// empty name write() does nothing.
   OutputFile(const std::string& file, const std::vector<std::string>& inputs);
 
@@ -39,20 +39,20 @@ class OutputFile {
   std::optional<WholeFile> whole_;  ///< empty for a device or pipe
 };
 
-/// A folder of results.
+/// A folder of results, which are moved into place together.
 class OutputFolder {
  public:
-  /// Makes the folder if it does not exist; throws LoadError when nothing can be written there.
+  /// Makes the folder if it does not exist. Throws LoadError if nothing can be written into it.
   explicit OutputFolder(const std::string& folder);
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
 
-  /// The folder to fill until commit().
+  /// The temporary folder for new files until commit().
   [[nodiscard]] const std::string& partial() const { return partial_; }
-  /// Writes a new file into the folder to fill.
+  /// Writes a new file into the temporary folder.
   void write(const std::string& name, std::string_view bytes) const;
-  /// Moves each file into place, over earlier ones of its name. Files of other names stay.
+  /// Moves each new file into place and replaces earlier files of the same name. Other files are kept.
   void commit();
 
  private:

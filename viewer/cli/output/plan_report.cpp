@@ -21,7 +21,7 @@ std::string listed(const std::vector<std::string>& names) {
   return out;
 }
 
-/// "-z" for an axis of the world, else three numbers.
+/// A direction as text: "-z" for an axis of the world, else three numbers.
 std::string directionText(const Vec3& d) {
   constexpr double kAlong = 1e-6;
   if (d.isZero(0)) return "turn";
@@ -129,7 +129,7 @@ double depthOf(const scenes::PlanResult& plan, const scenes::OverlapChoice& choi
   return pair == plan.overlaps.end() ? 0 : pair->interference_depth_m;
 }
 
-/// Parts that are drawn so deep in each other that no fit can be meant.
+/// Parts whose drawn overlap is too deep for a fit.
 class DrawnThrough {
  public:
   explicit DrawnThrough(const scenes::PlanResult& plan) {

@@ -23,7 +23,7 @@ namespace vps::viewer {
 std::string checkTables(const scenes::CheckResult& result);
 /// The result in one sentence.
 std::string checkHeadline(const scenes::CheckResult& result);
-/// A line for each number: what, a, b, quantity, value, error.
+/// CSV with a line for each number: what, a, b, quantity, value, error.
 std::string checkCsv(const scenes::CheckResult& result);
 
 // --- vps plan
@@ -34,7 +34,8 @@ std::string fastenerText(const std::vector<scenes::Fastener>& fasteners);
 std::string planTables(const scenes::PlanResult& plan);
 /// The result in one sentence.
 std::string planHeadline(const scenes::PlanResult& plan);
-/// "the path of 'peg' leads through 'wall', 3.20 mm deep at (1.0, 2.0, 3.0) mm (0.01 mm allowed)"
+/// The fault in words: "the path of 'peg' leads through 'wall', 3.20 mm deep at (1.0, 2.0, 3.0) mm (0.01 mm
+/// allowed)"
 std::string inWords(const scenes::WayFault& fault);
 
 // --- vps assemble, vps render and vps replay
@@ -49,7 +50,7 @@ struct RunFiles {
 std::vector<std::string> fillFolder(const OutputFolder& out, const scenes::Scene& scene,
                                     const scenes::AssembleResult& result, const RunFiles& files);
 
-/// "voxels of 0.250 mm, points every 0.500 mm"
+/// The fidelity in words: "voxels of 0.250 mm, points every 0.500 mm".
 std::string fidelityWords(const Fidelity& fidelity);
 
 /// Prints the table of steps, and a line for each problem of a step.
@@ -71,7 +72,8 @@ std::string tradeTable(const scenes::TradeResult& result);
 /// joined by
 /// "_".
 std::string tradeCsv(const scenes::TradeResult& result);
-/// Error of depth over the time of a step, with the front as a line; writes file + ".png" and file + ".svg".
+/// Plots the error of depth over the time of a step, with the Pareto front as a line, into file + ".png" and
+/// file + ".svg".
 PlotOutcome plotTrade(const scenes::TradeResult& result, const std::string& file);
 
 }  // namespace vps::viewer

@@ -23,15 +23,15 @@ std::string tableOf(const std::vector<scenes::StepResult>& steps) {
   Table table({"<step", "<verdict", "time [s]", "deepest [um]", "limit [um]", "peak [N]", "peak [N m]",
                "drift [um]"});
   for (const scenes::StepResult& step : steps)
-    table.add(
-        {step.part, words(step.verdict), fixed(step.duration_s, 2), fixed(step.max_penetration_m * 1e6, 2),
-         fixed(step.penetration_limit_m * 1e6, 2), fixed(step.peak_force_N, 1), fixed(step.peak_torque_Nm, 2),
-         // Of a part that was not brought home it is how far it fell, which the reason says if it counts.
-         step.completed ? fixed(step.rest_drift_m * 1e6, 2) : "-"});
+    table.add({step.part, words(step.verdict), fixed(step.duration_s, 2),
+               fixed(step.max_penetration_m * 1e6, 2), fixed(step.penetration_limit_m * 1e6, 2),
+               fixed(step.peak_force_N, 1), fixed(step.peak_torque_Nm, 2),
+               // For a part that did not reach its target the drift is the distance that it fell.
+               step.completed ? fixed(step.rest_drift_m * 1e6, 2) : "-"});
   return table.text();
 }
 
-/// One line for each change of the load level.
+/// Describes each change of the load level in one line.
 std::string describeLoadChanges(const std::vector<scenes::LoadLevelChange>& load_changes) {
   std::string lines;
   for (const scenes::LoadLevelChange& change : load_changes)
@@ -40,19 +40,20 @@ std::string describeLoadChanges(const std::vector<scenes::LoadLevelChange>& load
   return lines;
 }
 
-/// The periods and times of the haptic loop and of physics, one line each.
+/// Describes periods and times of the haptic loop and of physics in one line each.
 std::string describe(const scenes::AssembleResult& result) {
   const scenes::RealTimeResult& timing = *result.real_time;
   const auto us = [](double value) { return fixed(value, 0) + " us"; };
   return "haptic loop: " + std::to_string(result.haptic.count) + " ticks at " +
          fixed(result.haptic_rate_hz, 0) + " Hz, p50 " + us(result.haptic.p50_us) + ", p99 " +
          us(result.haptic.p99_us) + ", longest " + us(result.haptic.max_us) + "; " +
-         std::to_string(result.haptic.missed) + " periods missed; longest time from due to written " +
-         us(timing.worst_us) + ", because of " + timing.worst_cause +
-         "\nphysics: " + std::to_string(result.physics.count) + " steps at " +
-         fixed(result.physics_rate_hz, 0) + " Hz, p99 " + us(result.physics.p99_us) + "; begun late by p99 " +
-         us(timing.physics_late.p99_us) + "; " + std::to_string(timing.physics_missed) + " periods missed, " +
-         fixed(timing.behind_s, 2) + " s behind the clock\n" + describeLoadChanges(timing.load_changes);
+         std::to_string(result.haptic.missed) +
+         " periods missed; longest time from a tick's due time to its output " + us(timing.worst_us) +
+         ", because of " + timing.worst_cause + "\nphysics: " + std::to_string(result.physics.count) +
+         " steps at " + fixed(result.physics_rate_hz, 0) + " Hz, p99 " + us(result.physics.p99_us) +
+         "; p99 of the delay of a step's start " + us(timing.physics_late.p99_us) + "; " +
+         std::to_string(timing.physics_missed) + " periods missed, " + fixed(timing.behind_s, 2) +
+         " s behind the clock\n" + describeLoadChanges(timing.load_changes);
 }
 
 }  // namespace
@@ -90,18 +91,17 @@ void printSteps(const scenes::AssembleResult& result, const Fidelity& fidelity) 
       std::printf("%s: this step was tried with '%s' put at its target, which it had not reached\n", name,
                   step.stands_on.c_str());
     if (!step.aligned_by.empty())
-      std::printf(
-          "%s: it lies within its tolerance; from here on it is where it belongs, since '%s' takes it "
-          "there\n",
-          name, step.aligned_by.c_str());
+      std::printf("%s: the part is within its tolerance; '%s' moves it to its exact target in a later step\n",
+                  name, step.aligned_by.c_str());
     if (step.index_count > 0)
       std::printf(
-          "%s: the device was recentred %s, since the path is longer, or turns farther, than it can\n", name,
-          step.index_count == 1 ? "once" : (std::to_string(step.index_count) + " times").c_str());
+          "%s: the device was recentred %s, because the path is longer than its workspace, or turns "
+          "farther\n",
+          name, step.index_count == 1 ? "once" : (std::to_string(step.index_count) + " times").c_str());
   }
   if (result.contacts_left_out > 0)
     warn(std::to_string(result.contacts_left_out) +
-         " near points found no room in a query; choose a coarser spacing");
+         " points near contact exceeded the limit of a query; choose a coarser spacing");
   if (!result.fast_turns.empty()) warn(inWords(result.fast_turns, fidelity));
 }
 

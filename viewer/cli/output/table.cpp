@@ -9,7 +9,7 @@ namespace vps::viewer {
 
 namespace {
 
-/// Number of code points in UTF-8.
+/// Width of the text: its number of UTF-8 code points.
 std::size_t width(const std::string& text) {
   return static_cast<std::size_t>(
       std::count_if(text.begin(), text.end(), [](unsigned char c) { return (c & 0xC0) != 0x80; }));

@@ -82,7 +82,7 @@ void ProgressBar::show(std::string_view doing, double share) {
     say(inWords(share) + std::string(doing));
     return;
   }
-  // At most ten times a second.
+  // The bar is drawn at most ten times a second.
   if (now - begun_ < std::chrono::seconds(1) || (is_drawn_ && now - drawn_ < std::chrono::milliseconds(100)))
     return;
   drawn_ = now;

@@ -11,7 +11,7 @@ namespace vps::viewer {
 
 namespace {
 
-/// The series of the plot that a row belongs to.
+/// Name of the plot's series to which a row belongs.
 std::string family(scenes::TradeKnob knob) {
   switch (knob) {
     case scenes::TradeKnob::Own:

@@ -32,7 +32,7 @@ namespace {
 
 using nlohmann::json;
 
-/// FNV-1a of 64 bits.
+/// A 64-bit FNV-1a hash.
 class Key {
  public:
   void add(const void* data, std::size_t size) {
@@ -53,7 +53,7 @@ std::optional<json> jsonOf(const std::string& file) {
   return json::parse(in, nullptr, false);
 }
 
-/// A number that differs where the parts, their poses or the settings of the plan differ.
+/// A hash of the parts, their poses and the settings of the plan.
 std::string planKey(const scenes::Scene& scene, const scenes::PlanSettings& settings) {
   constexpr int kForm = 1;  // version of the format of PlanFindings::motions
   Key key;

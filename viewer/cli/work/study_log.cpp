@@ -16,7 +16,7 @@ namespace {
 constexpr const char* kLogKey =
     "vps_study_log";  // key of the first line; its value is the version of the format
 
-/// Numbers are written with as many digits as give the same bits.
+/// The line of JSON; numbers have enough digits to be read back with the same bits.
 std::string lineOf(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }

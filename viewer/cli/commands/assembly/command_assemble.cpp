@@ -19,9 +19,8 @@
 #include "vps/errors.h"
 #include "vps/write_file.h"
 #include "vps_scenes/run/assemble.h"
-#include "vps_scenes/run/disassembly.h"
-#include "vps_scenes/run/record.h"
-#include "vps_scenes/run/tries.h"
+#include "vps_scenes/run/derived_scenes.h"
+#include "vps_scenes/run/replay.h"
 #include "vps_viewer/report/words.h"
 #include "work/heard_run.h"
 #include "work/planned_folder.h"
@@ -32,18 +31,18 @@ namespace {
 
 struct AssembleArguments {
   SceneArguments scene;
-  PlanArguments plan;                   ///< of CAD files
-  std::vector<std::string> more_files;  ///< CAD, besides `scene`
+  PlanArguments plan;                   ///< options for CAD files
+  std::vector<std::string> more_files;  ///< CAD files that follow the first, which is in `scene`
   std::string out = "out";
   std::string json;
   std::string record;  ///< file to record the run in; empty: none
-  std::string sound;   ///< WAV file of what it sounds like; empty: none
+  std::string sound;   ///< WAV file for the sound of the run; empty: none
   int tries = 1;
   bool has_pictures = true;
   bool stops_at_failure = false;
   bool is_real_time = false;
   bool has_local_contact = false;
-  bool sheds_load = true;  ///< in real time
+  bool sheds_load = true;  ///< in real time: lowers the fidelity if the rate cannot be held
   bool takes_apart = false;
   bool has_pdf = false;
 };
@@ -108,13 +107,13 @@ scenes::Verdict runScene(const AssembleArguments& given) {
   if (!given.sound.empty()) wav.write(heard.wav());
 
   printOutcome(scene, result, notes, given.record, given.out);
-  // Last, so that nothing is lost where it fails.
+  // Printed last, so that a failure loses no other result.
   if (given.has_pdf) requirePrinted(given.out + "/report.html", given.out + "/report.pdf");
   return result.verdict;
 }
 
 /// Runs the subassemblies of a planned product, inner ones first, each into a folder of its own, and then the
-/// product, which mounts each of them as one part. Takes apart in the reverse order.
+/// product, which mounts each of them as one part. --disassemble reverses this order.
 scenes::Verdict runPlanned(const AssembleArguments& given,
                            const std::vector<PlannedFolder::SceneFile>& scene_files) {
   namespace fs = std::filesystem;
@@ -162,7 +161,8 @@ std::vector<std::string> filesOf(const AssembleArguments& given) {
   return files;
 }
 
-/// Plans the CAD files into a folder of the results, then runs what was planned. Good only if both are.
+/// Plans the CAD files into the folder `plan` of the results, then runs the planned scenes. The exit status
+/// is kGood only if both the plan and the runs are good.
 int runCad(AssembleArguments given) {
   PlanArguments plan = std::move(given.plan);
   plan.assembly = filesOf(given);
@@ -192,10 +192,11 @@ int runAssemble(const AssembleArguments& given) {
   if (areCadFiles(filesOf(given))) return runCad(given);
   requireNoCadOptions(given.scene.scene, given.plan.cad);
   if (!given.plan.bases.empty() || given.plan.has_bench || given.plan.is_resumed)
-    throw LoadError(given.scene.scene, "",
-                    "is a scene, which states its order and ways; leave out --base, --bench and --resume, or "
-                    "plan it anew "
-                    "with vps plan");
+    throw LoadError(
+        given.scene.scene, "",
+        "is a scene, which states its order and paths; leave out --base, --bench and --resume, or "
+        "plan it anew "
+        "with vps plan");
   return scenes::exitStatusOf(runScene(given));
 }
 
@@ -205,7 +206,7 @@ std::function<int()> addAssemble(CLI::App& command) {
   const auto given = std::make_shared<AssembleArguments>();
   addSceneOptions(command, given->scene);
   command.get_option("scene")
-      ->description("scene file (TOML), or a CAD file, which is planned first, as vps plan does")
+      ->description("scene file (TOML), or a CAD file, which is planned first, as by vps plan")
       ->type_name("SCENE|CAD");
   command.add_option("more", given->more_files, "more CAD files, which share one frame with the first")
       ->type_name("CAD");
@@ -213,15 +214,15 @@ std::function<int()> addAssemble(CLI::App& command) {
   addPlanOptions(command, given->plan);
   command.add_option("--out", given->out, "folder for the results")->capture_default_str()->type_name("DIR");
   command.add_flag("!--no-pictures", given->has_pictures, "write only tables, plots and data");
-  command.add_flag("--pdf", given->has_pdf, "report.pdf as well, printed by Chromium");
+  command.add_flag("--pdf", given->has_pdf, "also write report.pdf, printed by Chromium");
   command.add_flag("--stop-at-failure", given->stops_at_failure, "end at the first step that fails");
-  command.add_flag(
-      "--disassemble", given->takes_apart,
-      "maintenance: all parts are in place, and each is taken off along its way, the last first");
+  command.add_flag("--disassemble", given->takes_apart,
+                   "run the procedure backwards, for maintenance: all parts are in place and are taken off "
+                   "along their paths, the last one first");
   command.add_flag("--local-contact", given->has_local_contact,
-                   "let the haptic loop compute contact between physics steps; for slow physics");
+                   "let the haptic loop compute contact between physics steps; useful if physics is slow");
   command.add_flag("--real-time", given->is_real_time,
-                   "run by the clock, with threads for the haptic loop and physics; not repeatable");
+                   "run in real time, with threads for the haptic loop and physics; not repeatable");
   command.add_flag("!--no-load-shedding", given->sheds_load,
                    "with --real-time: keep the full fidelity when the rate cannot be held, and count missed "
                    "periods");
@@ -230,9 +231,8 @@ std::function<int()> addAssemble(CLI::App& command) {
                   "record the run with its scene and meshes (MCAP), for vps replay")
       ->type_name("FILE");
   command
-      .add_option(
-          "--sound", given->sound,
-          "write what the run sounds like (WAV): strikes and rubbing of the parts, beeps of the device")
+      .add_option("--sound", given->sound,
+                  "write the sound of the run (WAV): impacts and rubbing of the parts, beeps of the device")
       ->type_name("FILE")
       ->excludes("--real-time");
   command

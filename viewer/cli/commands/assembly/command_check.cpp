@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vps check: overlap, clearance, fits and play of an assembly as drawn.
+// vps check: measures overlap, clearance, fits and play of an assembly as drawn.
 #include <cstdio>
 #include <memory>
 

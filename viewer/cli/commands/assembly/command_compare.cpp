@@ -19,7 +19,7 @@ namespace {
 
 struct CompareArguments {
   std::string expert, trainee;
-  std::string out, json;  ///< empty: none
+  std::string out, json;  ///< folder and file for results; empty: none
   std::optional<double> pass;
   bool has_pdf = false;
 };

@@ -24,7 +24,7 @@ struct MarginArguments {
   SceneArguments scene;
   std::string resolution = "1um";
   bool has_contact = true;
-  std::string json, html, pdf;  ///< empty: none
+  std::string json, html, pdf;  ///< output files; empty: none
 };
 
 std::string marginTable(const scenes::MarginResult& result) {

@@ -95,8 +95,8 @@ class Folded {
   struct Group {
     std::size_t others = 0, triangles = 0;
   };
-  std::vector<std::size_t> first_;  // by part: the part whose row counts it; the part itself if it has a row
-  std::map<std::size_t, Group> groups_;  // by the first part of the group
+  std::vector<std::size_t> first_;  // index of the part whose row includes part i; i if it has its own row
+  std::map<std::size_t, Group> groups_;  // keyed by the first part of the group
 };
 
 std::string tableOfParts(const scenes::Scene& scene, const scenes::ExplainedModels& explained) {

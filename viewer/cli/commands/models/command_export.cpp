@@ -33,7 +33,7 @@ struct ExportArguments {
 /// The geometry to export: in the part's own frame, or for a CAD file in the file's frame.
 struct Source {
   Mesh mesh;
-  std::optional<VoxMap> map;  ///< of a .vdb file, which has no mesh
+  std::optional<VoxMap> map;  ///< set for a .vdb file, which has no mesh
   Fidelity fidelity;
 };
 

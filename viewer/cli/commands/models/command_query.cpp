@@ -95,8 +95,8 @@ void warnIfThin(const Mesh& mesh, double voxel_m, const std::string& file) {
 /// The contents of the two files: meshes, or the voxmap of A and the pointshell of B.
 struct Operands {
   std::optional<Mesh> mesh_a, mesh_b;
-  std::optional<VoxMap> map_a;        ///< A is a .vdb
-  std::optional<PointShell> shell_b;  ///< B is a .ply with normals and no faces
+  std::optional<VoxMap> map_a;        ///< set if A is a .vdb file
+  std::optional<PointShell> shell_b;  ///< set if B is a .ply file with normals and no faces
 
   [[nodiscard]] bool hasBothMeshes() const { return mesh_a && mesh_b; }
 };
@@ -154,7 +154,7 @@ struct QuerySettings {
 struct OneWayResult {
   QueryResult distance;
   std::size_t contact_count = 0, points_tested = 0;
-  Wrench F_M;  ///< on the shell's part about p_MO
+  Wrench F_M;  ///< wrench on the pointshell's part about p_MO
 };
 
 OneWayResult queryOneWay(const OneWay& models, const Pose& X_MP, const Vec3& p_MO,

@@ -27,9 +27,9 @@ struct TradeArguments {
   std::string scene;
   FidelityArguments fidelity;
   bool is_thorough = false;
-  std::string out, csv, json;  ///< empty: none
+  std::string out, csv, json;  ///< folder and files for results; empty: none
   std::optional<double> budget_hz;
-  std::optional<std::string> tolerance, memory;  ///< "10um", "64MB"
+  std::optional<std::string> tolerance, memory;  ///< as text, such as "10um" and "64MB"
 };
 
 void print(const scenes::TradeResult& result) {
@@ -71,7 +71,7 @@ std::optional<scenes::FidelityWish> wishFrom(const TradeArguments& given) {
         "--thorough, --out and --csv belong to a measurement, but --tolerance, --budget-hz and --memory "
         "pick a fidelity without measuring; leave out one or the other");
   scenes::FidelityWish wish;
-  // CLI::Range lets nan through.
+  // CLI::Range accepts NaN.
   if (given.budget_hz && !std::isfinite(*given.budget_hz))
     throw LoadError("", "", "--budget-hz must be a finite number of more than 0");
   wish.budget_hz = given.budget_hz;
@@ -108,14 +108,14 @@ int runTrade(const TradeArguments& given) {
   const scenes::Scene scene = sceneFrom(given.scene, given.fidelity, {given.json, given.csv}, {});
   if (wish) return pick(scene, *wish, json, bar);
   scenes::TradeOptions options;
-  // Does not throw after Ctrl-C, so that finished rows are kept.
+  // The callback does not throw after Ctrl-C, so that finished rows are kept.
   options.progress = [show = bar.progress()](std::string_view doing, double share) {
     if (!stopRequested()) show(doing, share);
   };
   options.warn = warn;
   options.is_thorough = given.is_thorough;
   options.stop = &stopRequested();
-  // The time for loading counts too.
+  // The time limit includes loading.
   options.seconds = kSeconds - std::chrono::duration<double>(Clock::now() - begun).count();
   const scenes::TradeResult result = scenes::trade(scene, options);
   const bool is_stopped = stopRequested();

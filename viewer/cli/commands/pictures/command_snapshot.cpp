@@ -51,14 +51,14 @@ const std::map<std::string, Vec3>& views() {
   return views;
 }
 
-/// "1280x960"; throws LoadError.
+/// Width and height from a text such as "1280x960". Throws LoadError.
 std::array<int, 2> sizeFromText(const std::string& text) {
   std::array<int, 2> size{};
   const char* const end = text.data() + text.size();
   const auto width = std::from_chars(text.data(), end, size[0]);
   const bool has_width = width.ec == std::errc{} && width.ptr != end && *width.ptr == 'x';
   const auto height = has_width ? std::from_chars(width.ptr + 1, end, size[1]) : width;
-  // 16384 is the greatest texture that OpenGL drivers commonly take; a quarter leaves room for supersampling.
+  // OpenGL drivers commonly support textures of up to 16384 pixels; a quarter leaves room for supersampling.
   if (!has_width || height.ec != std::errc{} || height.ptr != end || size[0] < 16 || size[1] < 16 ||
       size[0] > 4096 || size[1] > 4096)
     throw LoadError("", "", "--size is '" + text + "'; expected WIDTHxHEIGHT, each 16 to 4096");
@@ -103,7 +103,7 @@ bool compareWith(const Image& wanted, const Image& image, const SnapshotArgument
   return is_equal;
 }
 
-/// A picture with the file to write it to.
+/// A picture, and the suffix of the file that it is written to.
 struct NamedPicture {
   std::string suffix;  ///< before the file's extension; empty: none
   Image image;
@@ -163,7 +163,7 @@ int runSnapshot(const SnapshotArguments& given) {
   const std::vector<std::string> inputs = {given.scene, given.compare, given.display};
   OutputFile out(is_one ? given.out : "", inputs), difference(given.difference, inputs),
       json(given.json, inputs);
-  // Loaded before rendering, so that a missing image is reported at once.
+  // The image is loaded before rendering, so that a missing image is reported at once.
   const Image wanted = given.compare.empty() ? Image() : loadPng(given.compare);
 
   const scenes::Scene scene =

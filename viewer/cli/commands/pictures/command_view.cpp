@@ -64,8 +64,8 @@ void print(const LatencyResult& result) {
       result.isGood() ? "good" : "too far, or not all contacts were found", 1e3 * kApart_s);
 }
 
-/// vps view --measure-latency: measures, prints the table and writes the JSON file, unless its name is empty.
-/// Returns kBad where picture, sound and force are farther apart than kApart_s.
+/// Runs vps view --measure-latency: prints the table and writes the JSON file, unless its name is empty.
+/// Returns kBad if picture, sound and force are more than kApart_s apart.
 int reportLatency(const SceneArguments& given, const LatencySettings& settings, const std::string& json) {
   OutputFile out(json, {given.scene});
   const scenes::Scene scene = sceneFrom(given.scene, given.fidelity, {json}, given.cache);

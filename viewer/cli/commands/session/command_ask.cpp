@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vps ask: asks the render node of a session for something.
+// vps ask: sends a request to the render node of a session.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

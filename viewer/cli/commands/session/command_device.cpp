@@ -25,8 +25,9 @@ namespace {
 struct DeviceArguments {
   bool is_characterise = false;
   bool is_list = false;
-  std::string parameters;        ///< parameter file over the built-in device; empty: none
-  std::string plot = "figure5";  ///< figure 5 goes to plot + ".png" and plot + ".svg"; empty: nowhere
+  std::string parameters;  ///< file of parameters that replace built-in ones; empty: none
+  std::string plot =
+      "figure5";  ///< figure 5 is written to plot + ".png" and plot + ".svg"; empty: not written
   std::string json;
   std::string session;  ///< empty: none
   scenes::SessionNetwork network;

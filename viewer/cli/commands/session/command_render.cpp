@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// vps render: the haptic rendering node: physics, contact and procedure, with the hand in another process.
+// vps render: the haptic rendering node, which computes physics, contact and procedure; the device is in
+// another process.
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -60,7 +61,7 @@ std::unique_ptr<scenes::RequestServer> requestServerFrom(const RenderArguments& 
 }
 
 /// Makes one run and writes its results.
-/// @param command  that began it, for the report
+/// @param command  command that started the run, for the report
 scenes::Verdict runOnce(const RenderArguments& given, const scenes::RenderOptions& options,
                         scenes::Scene& scene, const std::string& command, const std::string& folder,
                         const std::string& record, ProgressBar& bar) {

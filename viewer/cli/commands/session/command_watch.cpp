@@ -35,16 +35,16 @@ namespace {
 struct WatchArguments {
   std::string session = kDefaultSession;
   scenes::SessionNetwork network;
-  double rate_hz = 1;   ///< lines a second about the part in hand; 0: none
+  double rate_hz = 1;   ///< printed lines per second about the part in hand; 0: none
   std::string record;   ///< file for the recording of the run; empty: none
   int ros_domain = -1;  ///< negative: no topics of ROS 2
   bool is_ros_in_clear = false;
-  bool is_terminal = false;  ///< no window, also where there is a display
+  bool is_terminal = false;  ///< opens no window even if there is a display
   bool is_silent = false;
   SceneArguments scene;
-  int port = -1;  ///< of the web page; negative: none
+  int port = -1;  ///< port of the web page; negative: no page
   WebOptions web;
-  std::vector<std::string> tls;  ///< certificate and key; empty: none
+  std::vector<std::string> tls;  ///< files of certificate and key; empty: no https
 };
 
 constexpr std::chrono::milliseconds kWatchPoll{5};
@@ -279,7 +279,8 @@ std::function<int()> addWatch(CLI::App& command) {
   addSessionOption(command, given->session);
   addNetworkOption(command, given->network);
   command
-      .add_option("--rate", given->rate_hz, "in the terminal: lines a second about the part in hand; 0: none")
+      .add_option("--rate", given->rate_hz,
+                  "in the terminal: printed lines per second about the part in hand; 0: none")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 100.0));
   command.add_flag("--terminal", given->is_terminal,
