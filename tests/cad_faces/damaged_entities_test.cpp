@@ -26,7 +26,7 @@
 namespace vps::scenes {
 namespace {
 
-/// An assembly of a red box of 10 x 20 x 30 mm at 100 mm along x, a cylinder, and, if asked for, a cone.
+/// An assembly of a red box of 10 x 20 x 30 mm at 100 mm along x, a cylinder, and optionally a cone.
 class DamagedEntities : public DamagedFile {
  protected:
   std::string written(bool has_cone, bool has_pin = true) {
@@ -252,7 +252,7 @@ TEST_F(DamagedEntities, AnInstanceWithoutAPlacementIsRefused) {
   EXPECT_EQ(cad->parts.size(), 2U);
 }
 
-// A reference designator, the unit of an uncertainty.
+// Damages a reference designator and the unit of an uncertainty.
 TEST_F(DamagedEntities, DamageBesideTheShapeIsARemark) {
   const std::string sound = written(false);
   const std::vector<Truth> truth = truthOf(sound);
@@ -448,7 +448,7 @@ TEST_F(DamagedEntities, AMissingEntityIsNotReplacedByAnother) {
   EXPECT_GT(read_whole, 3);
 }
 
-// Wherever the damage is, the parts that are read must be those of the sound file.
+// Wherever the damage is, the parts that are read must equal the parts of the sound file.
 TEST_F(DamagedEntities, NoDamageGivesAnotherVolumeOrPlace) {
   const std::string sound = written(false);
   const std::vector<Truth> truth = truthOf(sound);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// 3MF: units, names, colours, places and volumes are those of the file, whatever else is in it.
+// 3MF: units, names, colours, poses and volumes are read correctly, whatever else the file has.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,13 +11,13 @@
 #include "lib3mf/stored_archive.h"
 #include "support/temporary_folder.h"
 #include "vps/errors.h"
-#include "vps_scenes/cad/import.h"
 #include "vps_scenes/cad/colors.h"
+#include "vps_scenes/cad/import.h"
 
 namespace vps::scenes {
 namespace {
 
-/// A box of `size` from the origin, in file units; `attributes` are those of its triangles.
+/// A box of `size` from the origin, in file units; its triangles have the `attributes`.
 std::string boxMesh(const Vec3& size, const std::string& attributes = "") {
   const Mesh box = makeBox(size);
   std::string text = "<mesh><vertices>";
@@ -33,20 +33,20 @@ std::string boxMesh(const Vec3& size, const std::string& attributes = "") {
   return text + "</triangles></mesh>";
 }
 
-/// A 3MF file in parts that can be changed: a plate 4 x 3 x 1 at the origin and a block 1 x 2 x 3 at (10, 0,
+/// A 3MF file whose elements can be changed: a plate 4 x 3 x 1 at the origin and a block 1 x 2 x 3 at (10, 0,
 /// 0).
 struct File3mf {
   std::string unit = " unit=\"millimeter\"", head, attributes;
   std::string before_resources;
-  std::string resources;  ///< before the objects
+  std::string resources;  ///< text before the objects
   std::string plate = "name=\"plate\"", block = "name=\"block\"";
-  std::string triangles;  ///< attributes of those of the plate
+  std::string triangles;  ///< attributes of the plate's triangles
   std::string more_objects;
   std::string items = R"(<item objectid="1"/><item objectid="2" transform="1 0 0 0 1 0 0 0 1 10 0 0"/>)";
   std::string model = "3D/3dmodel.model";
   std::string relations, types;
   std::vector<std::pair<std::string, std::string>> files;
-  std::size_t cut_bytes = 0;  ///< that the end of the model lacks
+  std::size_t cut_bytes = 0;  ///< number of bytes that are cut off at the end of the model
 
   [[nodiscard]] std::string modelText() const {
     return R"(<?xml version="1.0" encoding="UTF-8"?>)" + head + "\n<model" + unit + attributes +
@@ -83,7 +83,7 @@ struct Import3mf : testing::Test {
     std::ofstream(file, std::ios::binary) << bytes;
     return importCad(file, settings);
   }
-  /// The error's text.
+  /// The text of the error for the file.
   std::string refusalOf(const File3mf& file) {
     try {
       read(file.bytes());
@@ -93,7 +93,7 @@ struct Import3mf : testing::Test {
     ADD_FAILURE() << "was read";
     return "";
   }
-  /// Whether the library is built in.
+  /// Whether this build has lib3mf.
   bool canRead() {
     try {
       read(File3mf().bytes());
@@ -124,11 +124,11 @@ struct Oddity {
   std::string name;
   std::function<void(File3mf&)> change;
   std::string plate = "plate", block = "block";
-  Color color = kGray;  ///< of the plate
+  Color color = kGray;  ///< expected colour of the plate
   const char* has_remark = nullptr;
 };
 
-/// Of two beams, without triangles.
+/// An object of two beams, without triangles.
 std::string latticeObject(int id) {
   return "<object id=\"" + std::to_string(id) +
          R"(" type="model" name="lattice"><mesh><vertices><vertex x="0" y="0" z="0"/><vertex x="0" y="9" z="0"/>)"
@@ -224,7 +224,7 @@ const std::vector<Oddity>& oddities() {
          f.items = R"(<item objectid="1"/><item objectid="4" transform="1 0 0 0 1 0 0 0 1 10 0 0"/>)";
        },
        "plate", "block", kGray, "1 object is for printing only"},
-      {"a beam lattice beside a mesh",
+      {"a beam lattice in addition to a mesh",
        [](File3mf& f) {
          f.attributes = R"( xmlns:b="http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02")";
          f.more_objects = latticeObject(3);
@@ -246,7 +246,7 @@ const std::vector<Oddity>& oddities() {
        "plate", "block", kRed, "not in the file"},
       {"components",
        [](File3mf& f) {
-         // Turned by 90 degrees about z, which takes (0, -10, 0) to (10, 0, 0), and back by another
+         // Rotated by 90 degrees about z, which moves (0, -10, 0) to (10, 0, 0), and rotated back by another
          // component.
          f.more_objects =
              R"(<object id="3" type="model"><components><component objectid="2" )"
@@ -318,7 +318,7 @@ TEST_F(Import3mf, HasTheUnitsNamesColoursAndPlacesOfTheFile) {
     }
 }
 
-// One face has a material, one a colour, one three colours, and one that of the object.
+// One face has a material, one a colour, one three colours, and one the colour of the object.
 TEST_F(Import3mf, TrianglesHaveColoursOfTheirOwn) {
   if (!canRead()) GTEST_SKIP() << "its library is not built in";
   File3mf file;
@@ -395,7 +395,7 @@ TEST_F(Import3mf, WhatCannotBeReadIsRefusedInWords) {
   beams.more_objects = latticeObject(3);
   beams.items = R"(<item objectid="3"/>)";
   EXPECT_NE(refusalOf(beams).find("places no object with a mesh"), std::string::npos);
-  File3mf deep, many;  // 200 levels; and 10^8 objects
+  File3mf deep, many;  // 200 levels of components; 10^8 objects
   for (int id = 3; id < 203; ++id)
     deep.more_objects += "<object id=\"" + std::to_string(id) +
                          R"(" type="model"><components><component objectid=")" + std::to_string(id - 1) +
@@ -417,7 +417,7 @@ TEST_F(Import3mf, WhatCannotBeReadIsRefusedInWords) {
             std::string::npos);
 }
 
-// lib3mf takes 4 of "4,5" and "4mm", and of a model that is cut the objects before the end.
+// lib3mf reads "4,5" and "4mm" as 4, and reads the objects before the end of a model that is cut.
 TEST_F(Import3mf, FaultsThatTheLibraryReadsOverAreRefused) {
   if (!canRead()) GTEST_SKIP() << "its library is not built in";
   for (const char* number : {"4,5", "4mm", "4 5", "nan", "0x4", ""}) {
@@ -437,7 +437,7 @@ TEST_F(Import3mf, FaultsThatTheLibraryReadsOverAreRefused) {
   }
 }
 
-// Bytes of the archive, and of the model within an archive that is whole.
+// Changes bytes of the archive, and bytes of the model within a valid archive.
 TEST_F(Import3mf, ADamagedFileIsReadOrRefused) {
   if (!canRead()) GTEST_SKIP() << "its library is not built in";
   std::mt19937 random(1);
@@ -462,7 +462,7 @@ TEST_F(Import3mf, ADamagedFileIsReadOrRefused) {
     tryToRead(whole.substr(0, random() % whole.size()), true);
     std::string changed = whole;
     for (int k = 0; k < 3; ++k) changed[random() % changed.size()] = static_cast<char>(random());
-    tryToRead(changed, true);  // the archive has sums of its bytes
+    tryToRead(changed, true);  // the archive has checksums
     std::string text = model;
     const std::string digits = "-0123456789.\"<>e";
     for (int k = 0; k < 3; ++k) text[random() % text.size()] = digits[random() % digits.size()];

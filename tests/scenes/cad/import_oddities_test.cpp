@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// OBJ, STL and glTF files that are odd and sound: read with the right sizes, names, colours and volumes.
-// Those of 3MF are in import_3mf_test.cpp, those of STEP and IGES in tests/cad_faces.
+// Valid but unusual OBJ, STL and glTF files are read with the right sizes, names, colours and volumes. Tests
+// of 3MF are in import_3mf_test.cpp, tests of STEP and IGES in tests/cad_faces.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -94,7 +94,7 @@ TEST_F(ImportOddities, OfObjChangeNothing) {
       {"numbers that begin with the point",
        "vt .5 .5\nvn 0 0 -.9\n" +
            replacedAll(replacedAll(plain, "4.000000", ".4e1"), "f 1 3 4 2", "f 1/1/1 3/1/1 4/1/1 2/1/1")},
-      {"keywords that begin as those of elements", plain + "lod 1\nparm u 0 \\\n1\nlod 2\n"},
+      {"keywords that begin like keywords of elements", plain + "lod 1\nparm u 0 \\\n1\nlod 2\n"},
   };
   for (const auto& [unit, unit_m] :
        {std::pair("mm", 1e-3), std::pair("inch", 25.4e-3), std::pair("cm", 1e-2)})
@@ -151,7 +151,7 @@ TEST_F(ImportOddities, OfStlAByteOrderMarkChangesNothing) {
 
 TEST_F(ImportOddities, OfObjSeveralObjectsAreOnePartOrSeveralAsAskedFor) {
   const std::string two = written("two.obj", boxObj("o left\n") + boxObj("o right\n", 9, 10));
-  // Half of the faces in each of two groups: open, and together closed.
+  // Each of two groups has half of the faces, so that each is open and both together are closed.
   const std::string halves =
       written("halves.obj", replacedAll(boxObj("o left\n"), "\nf 3", "\no right\nf 3"));
   ImportSettings settings;
@@ -188,7 +188,7 @@ std::string base64(const std::string& bytes) {
   return text;
 }
 
-/// A box of 4 x 3 x 2 in glTF; node 0 is it, and the rest of the JSON's members can be given.
+/// A box of 4 x 3 x 2 in glTF, as node 0; the other members of the JSON text can be given.
 std::string boxGltf(const std::string& node = R"("name":"box")", const std::string& scene = "[0]",
                     const std::string& more_nodes = "", const std::string& primitive = "",
                     const std::string& members = "", bool has_indices = true) {
@@ -229,7 +229,7 @@ TEST_F(ImportOddities, OfGltfChangeNothing) {
   struct Odd {
     std::string name, text, part = "box";
     double scale = 1;
-    Color color = {1, 1, 1};  // of glTF's default material
+    Color color = {1, 1, 1};  // colour of glTF's default material
   };
   const std::string red = R"(,"materials":[{"pbrMetallicRoughness":{"baseColorFactor":[1,0,0,1]}}])";
   const std::vector<Odd> all = {
@@ -258,7 +258,7 @@ TEST_F(ImportOddities, OfGltfChangeNothing) {
       {"an extension that is needed elsewhere",
        boxGltf(R"("name":"box","extras":{"extensionsRequired":["MY_thing"]})")},
   };
-  for (const bool has_unit : {false, true})  // which is not used
+  for (const bool has_unit : {false, true})  // glTF does not use the unit of the settings
     for (const Odd& odd : all) {
       ImportSettings settings;
       if (has_unit) settings.unit_m = 25.4e-3;
@@ -276,7 +276,7 @@ TEST_F(ImportOddities, OfGltfChangeNothing) {
     }
 }
 
-// Positions of 16 bits, instances in a buffer, and meshes that are packed are read wrongly or not at all.
+// assimp reads 16-bit positions, instances in a buffer, and compressed meshes wrongly or not at all.
 TEST_F(ImportOddities, OfGltfANeededExtensionThatIsNotReadIsRefused) {
   const std::string text = boxGltf(R"("name":"box")", "[0]", "", "",
                                    R"(,"extensionsRequired" : [ "KHR_materials_unlit", "MY_\"thing" ])");
@@ -302,7 +302,7 @@ TEST_F(ImportOddities, OfGltfANeededExtensionThatIsNotReadIsRefused) {
   EXPECT_EQ(import::unreadExtension({"KHR_mesh_quantization"}), "KHR_mesh_quantization");
 }
 
-// Three blocks, each modelled about the origin, and as their assembly has them.
+// Three blocks, each modelled about the origin, and at their poses in the assembly.
 TEST_F(ImportOddities, FilesInFramesOfTheirOwnAreToldOf) {
   ImportSettings settings;
   settings.unit_m = 1e-3;
@@ -318,9 +318,9 @@ TEST_F(ImportOddities, FilesInFramesOfTheirOwnAreToldOf) {
   EXPECT_NE(warningOf({a, b}).find("the 2 files seem to lie in frames of their own"), std::string::npos);
   EXPECT_NE(warningOf({a, b, c}).find("'pose'"), std::string::npos);
   EXPECT_EQ(warningOf({c, away}), "");     // side by side
-  EXPECT_EQ(warningOf({a, b, away}), "");  // a clash of two, and a third where it belongs
+  EXPECT_EQ(warningOf({a, b, away}), "");  // two parts clash, and a third is in its place
   EXPECT_EQ(warningOf({a}), "");
-  // A pin in its sleeve, both about the z axis: the sleeve has a square hole.
+  // A pin in its sleeve, both about the z axis. The sleeve has a square hole.
   const std::string pin = written("pin.obj", boxObj("o pin\n", 1, -2));
   std::string wall;
   int first = 1;
@@ -331,7 +331,7 @@ TEST_F(ImportOddities, FilesInFramesOfTheirOwnAreToldOf) {
   EXPECT_EQ(warningOf({pin, written("sleeve.obj", "o sleeve\n" + wall)}), "");
 }
 
-/// A cube of 10 mm; without its last facets where it is open.
+/// A cube of 10 mm; an open one lacks its last facets.
 ImportedPart cubeAt(const Vec3& p_m, bool is_open = false) {
   ImportedPart part;
   part.name = "cube";
@@ -341,7 +341,7 @@ ImportedPart cubeAt(const Vec3& p_m, bool is_open = false) {
   return part;
 }
 
-// What is looked at is bounded by the number of distances, whatever the number of parts.
+// The number of computed distances is bounded for any number of parts.
 TEST(OwnFrames, ManyPartsAndOpenOnesCostFewDistances) {
   constexpr int kSide = 26;
   const auto gridAt = [](double z_m, double step_m) {

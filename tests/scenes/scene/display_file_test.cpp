@@ -14,7 +14,8 @@ namespace {
 const std::string kWall =
     "[[screen]]\nname = 'wall'\npixels = [1600, 900]\nlower_left = [-0.8, 0, 0]\nlower_right = [0.8, 0, 0]\n"
     "upper_left = [-0.8, 0, 0.9]\n";
-// Upright in front of it: the head's x along the screen's, its -z towards the screen.
+// A head upright in front of the screen: its x axis is parallel to the screen's, its -z axis points to the
+// screen.
 const std::string kHead =
     "[[viewer]]\nname = 'anna'\nhead = {position = [0, -1, 0.5], rpy_deg = [90, 0, 0]}\n";
 
@@ -50,7 +51,7 @@ TEST_F(DisplayFile, HoldsScreensViewersAndThePlaceOfTheScene) {
 }
 
 TEST_F(DisplayFile, AScreenBehindTheHeadIsRefused) {
-  // Turned about by half a turn: the head looks away from the wall.
+  // A head that is rotated by 180 degrees looks away from the wall.
   const std::string away =
       "[[viewer]]\nname = 'anna'\nhead = {position = [0, -1, 0.5], rpy_deg = [90, 0, 180]}\n";
   EXPECT_NE(refusal(kWall + away).find("has 'wall' behind it"), std::string::npos) << refusal(kWall + away);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is said of meshes whose inside may be in doubt.
+// Warnings of meshes whose inside may be uncertain.
 #include "vps_scenes/scene/model_options.h"
 
 #include <gtest/gtest.h>

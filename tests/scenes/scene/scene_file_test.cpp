@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder of its own with a plate of 40 x 40 x 10 and a pin of 4 x 4 x 20, both in millimetres.
+/// A temporary folder with a plate of 40 x 40 x 10 and a pin of 4 x 4 x 20, both in millimetres.
 class SceneFile : public testing::Test {
  protected:
   void SetUp() override {
@@ -62,8 +62,8 @@ class SceneFile : public testing::Test {
 };
 
 const std::string kPlate = "unit = 'mm'\n[[part]]\nfile = 'plate.stl'\nfixed = true\n";  // lines 1 to 4
-const std::string kPin = kPlate + "[[part]]\nfile = 'pin.stl'\n";                        // 5 and 6
-const std::string kStep = kPin + "[[step]]\npart = 'pin'\n";                             // 7 and 8
+const std::string kPin = kPlate + "[[part]]\nfile = 'pin.stl'\n";                        // lines 5 and 6
+const std::string kStep = kPin + "[[step]]\npart = 'pin'\n";                             // lines 7 and 8
 
 TEST_F(SceneFile, TwoMeshesAndOneStepAreAScene) {
   const Scene scene = load(kStep);
@@ -174,7 +174,7 @@ csv_rate_hz = 100
   const SceneStep& step = scene.steps[0];
   EXPECT_NEAR(step.X_WP_start.p.z(), 0.09, 1e-15);
   EXPECT_NEAR((step.X_WP_start.R - pin.X_WP.R).norm(), 0,
-              1e-15);  // the part that a pose leaves out is the target's
+              1e-15);  // a rotation that a pose leaves out is the target's
   ASSERT_EQ(step.way_points.size(), 2u);
   EXPECT_NEAR(step.way_points[0].p.z(), 0.05, 1e-15);
   EXPECT_NEAR((step.way_points[1].R - Vec3(1, -1, -1).asDiagonal().toDenseMatrix()).norm(), 0, 1e-15);
@@ -228,7 +228,7 @@ TEST_F(SceneFile, APresetMayBeGivenByItsName) {
   EXPECT_EQ(load("fidelity = 'fast'\n" + kPin).fidelity.voxel_m, fidelityPreset("fast").voxel_m);
 }
 
-// A quarter of the smallest part that moves, between two and four voxels of 0.25 mm.
+// The spacing is a quarter of the smallest part that moves, between two and four voxels of 0.25 mm.
 TEST_F(SceneFile, WithoutASpacingThePointsAreAsFarApartAsTheSmallestMovedPartAllows) {
   const auto spacing_m = [&](double across_mm, const std::string& fidelity) {
     write("small.stl", stlBox(Vec3(across_mm, 40, 40)));
@@ -265,9 +265,10 @@ TEST_F(SceneFile, ACadFileGivesAllItsPartsAndPartsRefineThem) {
 }
 
 struct Mistake {
-  std::string text;   ///< after a scene of two parts and one step (8 lines), or alone if it begins with '!'
-  std::string line;   ///< "9"
-  std::string words;  ///< that the message must have
+  std::string text;   ///< follows a scene of two parts and one step (8 lines); with '!' at its beginning, it
+                      ///< is the whole file
+  std::string line;   ///< number of the line that the message must name
+  std::string words;  ///< text that the message must have
 };
 
 TEST_F(SceneFile, AFileOfSeveralObjectsIsOnePartIfAskedFor) {
@@ -281,7 +282,8 @@ TEST_F(SceneFile, AFileOfSeveralObjectsIsOnePartIfAskedFor) {
   }
   write("two.obj", two);
   const std::string part = kPin + "[[part]]\nfile = 'two.obj'\n";
-  EXPECT_NE(messageOf(part).find("has 2 parts; say which with 'node', or node = \"*\" for all of it"),
+  EXPECT_NE(messageOf(part).find(
+                "has 2 parts; name one of them with 'node', or write node = \"*\" for the whole file"),
             std::string::npos)
       << messageOf(part);
   const Scene scene = load(part + "node = '*'\n[[part]]\nfile = 'two.obj'\nnode = 'right'\n");
@@ -321,9 +323,9 @@ TEST_F(SceneFile, EveryMistakeIsReportedWithLineAndKey) {
       {"start = {positon = [0, 0, 1]}\n", "9", "did you mean 'position'?"},
       {"start = {rotation_xyzw = [0, 0, 0, 0]}\n", "9", "key 'rotation_xyzw' has the length 0"},
       {"start = {rotation_xyzw = [0, 0, 0, 1], rpy_deg = [0, 0, 0]}\n", "9", "key 'rpy_deg'"},
-      {"motion = 'screw'\n", "9", "key 'motion' is a screw, whose 'pitch' is not found in the mesh"},
-      {"pitch = '2mm'\n", "9", "key 'pitch' is of a screw"},
-      {"motion = 'screw'\npitch = 1\nstart = {rpy_deg = [0, 0, 9]}\n", "9", "but the path turns it"},
+      {"motion = 'screw'\n", "9", "key 'motion' is a screw, but the mesh has no thread"},
+      {"pitch = '2mm'\n", "9", "key 'pitch' applies to a screw only"},
+      {"motion = 'screw'\npitch = 1\nstart = {rpy_deg = [0, 0, 9]}\n", "9", "but the path rotates it"},
       {"way_points = 3\n", "9", "key 'way_points' is 3; expected a list of poses"},
       {"way_points = [1]\n", "9", "key 'way_points'"},
       {"[[step]]\n", "9", "[[step]] has no 'part'"},
@@ -372,10 +374,11 @@ TEST_F(SceneFile, EveryMistakeIsReportedWithLineAndKey) {
       {"!unit = 'furlong'\n", "1", "key 'unit' is 'furlong'; expected one of: mm"},
       {"!unit = 'mm'\nstep = 3\n[[part]]\nfile = 'pin.stl'\n", "2", "key 'step'"},
       {"!part = [1]\n", "1", "key 'part' has 1 in it"},
-      {"!device = 1\n[[part]]\nfile = 'pin.stl'\n", "3", "key 'file' cannot be used: pin.stl"},  // no unit
+      {"!device = 1\n[[part]]\nfile = 'pin.stl'\n", "3",
+       "key 'file' cannot be used: pin.stl"},  // the file states no unit
       {"!\n[[part]]\nfile = 'pin.stl'\npose = {position = [1, 0, 0]}\n", "3", "key 'file' cannot be used"},
       {"!cad = 'gone.step'\nunit = 'mm'\n", "1", "key 'cad' cannot be used: gone.step"},
-      {"!cad_fallback = 'pin.stl'\nunit = 'mm'\n", "1", "key 'cad_fallback' needs a 'cad'"},
+      {"!cad_fallback = 'pin.stl'\nunit = 'mm'\n", "1", "key 'cad_fallback' replaces a 'cad'"},
       {"!unit = 'mm'\ncad = 'plate.stl'\n[[part]]\nname = 'plat'\n", "4", "did you mean 'plate'?"},
       {"!unit = 'mm'\ncad = 'plate.stl'\n[[part]]\nname = 'plate'\n[[part]]\nname = 'plate'\n", "5",
        "second time"},
@@ -439,13 +442,13 @@ TEST_F(SceneFile, TheDualArmMayHaveParametersOfTheUser) {
 }
 
 TEST_F(SceneFile, ATableHeaderWithoutAKeyIsRefused) {
-  // toml++ 3.3 would abort here where assertions are on.
+  // toml++ 3.3 would abort here in a build with assertions.
   for (const char* header : {"[=]\n", "[[#]]\n", "[\n", "[[{x]]\n"})
     EXPECT_NE(messageOf(kStep + header).find("not valid TOML"), std::string::npos) << header;
 }
 
 TEST_F(SceneFile, AnyChangedByteLoadsOrIsRefused) {
-  // Each byte replaced by characters that TOML gives a meaning, and by some it forbids.
+  // Replaces each byte by characters with a meaning in TOML, and by forbidden characters.
   for (std::size_t at = 0; at < kStep.size(); ++at)
     for (const char byte : {'\0', '"', '\'', '[', ']', '{', '=', '\n', '#', '9', '\xFF', '\\'}) {
       std::string text = kStep;

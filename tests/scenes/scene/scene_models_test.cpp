@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kMm = 1e-3;
 
-/// Tubes of different sizes, of which every third lacks some triangles.
+/// Tubes of different sizes; every third one lacks some triangles.
 Scene tubes(int count) {
   Scene scene;
   scene.file = scene.name = "tubes";

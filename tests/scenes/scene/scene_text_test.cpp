@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Scenes that are written and read again.
+// Scenes are written and read again without a change.
 #include "vps_scenes/scene/scene_text.h"
 
 #include <gtest/gtest.h>

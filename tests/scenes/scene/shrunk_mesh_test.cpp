@@ -18,7 +18,7 @@ TEST(ShrunkMesh, EachFaceIsMovedInwards) {
   const Mesh small = shrunkMesh(box, by_m);
   EXPECT_LT((bounds(small).size() - (bounds(box).size() - Vec3::Constant(2 * by_m))).norm(), 1e-12);
   const Mesh rod = test::lathe({{0, 0}, {4e-3, 0}, {4e-3, 9e-3}, {0, 9e-3}}, 128);
-  // 128 flats of a circle: the volume within the faces.
+  // The volume within a prism of 128 sides.
   const double flat = std::cos(std::numbers::pi / 128), face_m = 4e-3 * flat - by_m,
                area = 128 * std::tan(std::numbers::pi / 128);
   EXPECT_NEAR(massProperties(shrunkMesh(rod, by_m)).volume_m3, area * face_m * face_m * (9e-3 - 2 * by_m),

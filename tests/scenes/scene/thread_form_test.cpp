@@ -30,7 +30,8 @@ TEST(ThreadForm, LeadAndHandOfRodsAndNuts) {
       const test::ThreadShape thread = threadOf(pitch_m, turns);
       for (const bool is_nut : {false, true}) {
         const Mesh right = is_nut ? test::makeNut(thread, 11e-3) : test::makeThreadedRod(thread);
-        // A hundredth for five turns; with fewer the rounded ends weigh more.
+        // The tolerance is 1 % for five turns, and more for fewer turns, where the rounded ends have more
+        // weight.
         const double tol_m = (turns < 5 ? 0.03 : 0.01) * pitch_m;
         for (const double sign : {1.0, -1.0}) {
           const auto form = findThread(sign < 0 ? mirrored(right) : right, {20e-6, 0, 0}, Vec3::UnitZ());
@@ -43,7 +44,7 @@ TEST(ThreadForm, LeadAndHandOfRodsAndNuts) {
     }
 }
 
-// Seen along its axis from either end a thread has the same hand.
+// A thread has the same hand when seen from either end of its axis.
 TEST(ThreadForm, DoesNotDependOnTheAxisDirection) {
   const Mesh rod = test::makeThreadedRod(threadOf(1.5e-3, 6));
   const auto up = findThread(rod, Vec3::Zero(), Vec3::UnitZ()),
@@ -52,7 +53,7 @@ TEST(ThreadForm, DoesNotDependOnTheAxisDirection) {
   EXPECT_NEAR(up->lead_m, down->lead_m, 1e-6);
 }
 
-// Smooth, polygonal and grooved bodies, and bodies of random corners.
+// No thread is found on smooth, polygonal and grooved bodies, and on bodies with random corners.
 TEST(ThreadForm, IsNotSeenWhereThereIsNone) {
   std::vector<Mesh> bodies = {makeCylinder(5e-3, 20e-3, 60), makeCylinder(5e-3, 20e-3, 6),
                               makeTube(5e-3, 3e-3, 20e-3, 40), makeBox({5e-3, 6e-3, 20e-3}),

@@ -21,9 +21,9 @@ namespace vps::scenes::import {
 /// Without fork(), and under AddressSanitizer in a program with threads, runs read() in this process.
 ///
 /// The child is a fork of this process with the calling thread alone. For a program with more threads POSIX
-/// promises little, but with glibc malloc and stdio work in the child. That suffices if `read` starts no
-/// threads and no other thread of this process uses the same library, whose locks would stay locked. Cost
-/// besides read(): a fork (about 1 ms for each 100 MB of this process) and one copy of the parts.
+/// promises little, but with glibc malloc and stdio work in the child. This is enough if `read` starts no
+/// threads and no other thread of this process uses the same library, whose locks would stay locked. Cost in
+/// addition to read(): a fork (about 1 ms for each 100 MB of this process) and one copy of the parts.
 RawCad inOwnProcess(const std::string& file, const std::string& library, const ImportSettings& limits,
                     const Progress& progress, const std::function<RawCad(const Progress&)>& read);
 

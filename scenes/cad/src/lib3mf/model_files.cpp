@@ -26,7 +26,7 @@ struct CloseZip {
 constexpr std::size_t kWholeFile = std::numeric_limits<std::size_t>::max();
 
 /// Calls f(name, text) for each file of an archive, with about the first `most_bytes` bytes of the file,
-/// until f returns false. Of a file that cannot be unpacked, `text` has the bytes before the fault.
+/// until f returns false. If a file cannot be unpacked, `text` has the bytes before the fault.
 void forEachFile(const std::string& archive, std::size_t most_bytes,
                  const std::function<bool(std::string_view name, std::string& text)>& f) {
   const std::unique_ptr<void, CloseZip> zip(unzOpen64(archive.c_str()));

@@ -22,7 +22,7 @@ PlacedSolid placedSolid(const FieldPart& part) {
   return {part.model->solid.get(), part.placed.X_WP};
 }
 
-/// The first part's map in W: its own, where its frame is W's.
+/// The first part's map in W: its own map if its frame is W, else a new one.
 std::shared_ptr<const VoxMap> firstMap(const FieldPart& part, const FieldOrder& order) {
   if (part.model->map && !order.rebuilds_maps && isInPlace(part.placed.X_WP)) return part.model->map;
   VoxMap map = cookVoxMap({placedSolid(part)}, voxMapSettings(order.fidelity));

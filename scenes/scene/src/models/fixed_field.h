@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The fixed field: all parts in place, merged ("cooked") into one voxmap, one pointshell and one body (paper,
-// section 5). It is made from immutable models on any thread, so a run need not stop for it.
+// section 5). Any thread can make it from immutable models, so a run need not stop for it.
 #pragma once
 
 #include <atomic>
@@ -14,9 +14,9 @@
 
 namespace vps::scenes {
 
-/// What contacts with a part of this material take from it. Bullet multiplies the two bodies' values: with
-/// square roots the product of friction is the geometric mean, so that two parts of 0.15 have 0.15 between
-/// them, as in tables of friction.
+/// The contact parameters of a part of this material. Bullet multiplies the values of two bodies: with square
+/// roots the product of the friction coefficients is their geometric mean, so that two parts of 0.15 have
+/// 0.15 between them, as in tables of friction.
 bullet::SurfaceMaterial surfaceMaterial(const Material& material);
 /// The models of a moving part, with its material.
 bullet::ShapeModels shapeModels(const PartModel& model);
@@ -30,21 +30,22 @@ struct FixedPart {
 /// A part in place, with its models.
 struct FieldPart {
   FixedPart placed;
-  std::shared_ptr<const PartModel> model;  ///< mesh and surface; its map may be null, its shell as well
-  std::vector<Box> kept_P;                 ///< as PartModelPlan::kept_P
+  std::shared_ptr<const PartModel> model;  ///< mesh and surface; map and shell may be null
+  std::vector<Box> kept_P;                 ///< see PartModelPlan::kept_P
 };
 
-/// All that cookField() reads.
+/// The input of cookField().
 struct FieldOrder {
-  std::vector<FieldPart> parts;         ///< in the field's owner order
-  std::shared_ptr<const VoxMap> below;  ///< the merged map of the first parts, to build on; null: none
-  std::size_t below_count = 0;          ///< how many parts `below` holds
-  std::optional<Box> region_W;          ///< where points are needed; none: everywhere
+  std::vector<FieldPart> parts;  ///< in the field's owner order
+  std::shared_ptr<const VoxMap>
+      below;                    ///< merged map of the first parts, to which the others are added; null: none
+  std::size_t below_count = 0;  ///< how many parts `below` holds
+  std::optional<Box> region_W;  ///< region that needs points; none: everywhere
   bool has_shell = true;
-  bool has_mesh = false;       ///< triangles for ray tests as well; a run needs none
-  bool rebuilds_maps = false;  ///< every map is built from its mesh, and the parts' own maps are not used
+  bool has_mesh = false;       ///< the field also has triangles, for ray tests; a run needs none
+  bool rebuilds_maps = false;  ///< builds every map from its mesh instead of using the parts' own maps
   Fidelity fidelity;
-  const std::atomic<bool>* stop = nullptr;  ///< ends cooking between two parts when set; may be null
+  const std::atomic<bool>* stop = nullptr;  ///< when set, ends cooking between two parts; may be null
 };
 
 struct CookedField {
@@ -57,9 +58,9 @@ struct CookedField {
   [[nodiscard]] std::size_t memoryBytes(const std::vector<std::shared_ptr<const VoxMap>>& own) const;
 };
 
-/// Cooks a field from the parts' own meshes and, where given, from `below`, to which the other parts are
-/// added. O(surface of the added parts) and O(points in the region). Same input, same bits. Throws LoadError
-/// as cookVoxMap(). When stopped, the result may have no shape; an order without parts has none.
+/// Cooks a field from the parts' own meshes, beginning with `below` if it is given. O(surface of the added
+/// parts) and O(points in the region). The same input gives the same bits. Throws LoadError as cookVoxMap().
+/// The result has no shape for an order without parts, and may have none when stopped.
 CookedField cookField(const FieldOrder& order);
 
 }  // namespace vps::scenes

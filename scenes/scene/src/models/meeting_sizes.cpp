@@ -19,26 +19,27 @@ namespace vps::scenes {
 
 namespace {
 
-constexpr std::size_t kFacets = 4096;  // samples of a mesh, assumed: one facet of a bore is enough
-constexpr std::uint32_t kCells = 12;   // along each axis of the mesh, assumed
-/// Of walls that face each other: within 45 degrees of opposite. The flanks of gear teeth (2 x 20 degrees)
-/// are; those of a metric thread (60 degrees) are not.
+constexpr std::size_t kFacets =
+    4096;  // assumed: greatest number of samples in a mesh; one facet of a bore is enough
+constexpr std::uint32_t kCells = 12;  // assumed: cells along each axis of the mesh
+/// Greatest cosine between the normals of opposite walls: they deviate by less than 45 degrees. Flanks of
+/// gear teeth (2 x 20 degrees) are opposite walls; flanks of a metric thread (60 degrees) are not.
 constexpr double kOpposite = -0.7;
-constexpr double kNearest = 1e-3;   // of the mesh's size, assumed: below this two facets are one wall
-constexpr double kFits = 1 + 1e-3;  // a wall is no wider than its gap, up to the facets of both
+constexpr double kNearest = 1e-3;   // assumed, of the mesh's size: closer facets are one wall
+constexpr double kFits = 1 + 1e-3;  // tolerance of a wall's width against its gap, for the facets of both
 
 bool isFinite(const Mesh& mesh) {
   return std::ranges::all_of(mesh.vertices, [](const Vec3& p) { return p.allFinite(); });
 }
 
-/// Measures along normals.
+/// Measures distances between walls along normals.
 class WallSearch {
  public:
   WallSearch(const Mesh& mesh, double most_m)
       : distance_(mesh), most_m_(most_m), least_m_(kNearest * bounds(mesh).size().norm()) {}
 
-  /// From p on a facet of this normal to the next facet along `way` (the normal or its opposite), if that
-  /// faces the other way.
+  /// Distance from p on a facet with this normal to the next facet along `way` (the normal or its opposite),
+  /// if that facet is opposite.
   [[nodiscard]] std::optional<double> width(const Vec3& p, const Vec3& normal, const Vec3& way) {
     const double off_m = 0.1 * least_m_;
     const Vec3 from = p + off_m * way, to = p + most_m_ * way;
@@ -64,7 +65,7 @@ Vec3 normalTimesArea(const Mesh& mesh, std::size_t t) {
   return 0.5 * (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]);
 }
 
-/// Facets of about the same place, size and direction have the same number.
+/// A number that facets of similar place, size and direction share.
 std::uint32_t kindOf(const Mesh& mesh, std::size_t t, const Box& box) {
   const Vec3 normal = normalTimesArea(mesh, t);
   const double side_m = std::max(1e-300, box.size().maxCoeff() / kCells);
@@ -75,12 +76,13 @@ std::uint32_t kindOf(const Mesh& mesh, std::size_t t, const Box& box) {
   int axis = 0;
   normal.cwiseAbs().maxCoeff(&axis);
   kind = kind * 6 + static_cast<std::uint32_t>(2 * axis + (normal[axis] > 0 ? 1 : 0));
-  const double size = std::log2(std::max(1e-18, normal.norm() / (side_m * side_m))) / 2;  // of its side
+  const double size = std::log2(std::max(1e-18, normal.norm() / (side_m * side_m))) /
+                      2;  // log2 of the facet's side, in cells
   return kind * 32 + static_cast<std::uint32_t>(std::clamp(size + 30, 0.0, 31.0));
 }
 
-/// All facets of a mesh of up to kFacets. Of a finer one, a facet of each kind, the rarest kinds first, so
-/// that the walls of a small bore are among them.
+/// All facets of a mesh with up to kFacets facets. For a finer mesh, one facet of each kind, the rarest kinds
+/// first, so that the walls of a small bore are included.
 std::vector<std::size_t> sampledFacets(const Mesh& mesh) {
   const std::size_t count = mesh.triangles.size();
   std::vector<std::size_t> facets(count);
@@ -102,8 +104,8 @@ std::vector<std::size_t> sampledFacets(const Mesh& mesh) {
   return facets;
 }
 
-/// Calls visit(point, normal) for the middle of each sampled facet, and three more points of it in a coarse
-/// mesh.
+/// Calls visit(point, normal) for the centre of each sampled facet, and in a coarse mesh for three more
+/// points of the facet.
 template <class Visit>
 void forEachSample(const Mesh& mesh, const Visit& visit) {
   const bool is_coarse = 4 * mesh.triangles.size() <= kFacets;
@@ -138,7 +140,7 @@ std::string quoted(const ScenePart& part) {
 }  // namespace
 
 double across_m(const Mesh& mesh) {
-  constexpr double kFlat = 1e-6;  // of the greatest size
+  constexpr double kFlat = 1e-6;  // share of the greatest dimension
   const Vec3 size = bounds(mesh).size();
   double across_m = std::numeric_limits<double>::infinity();
   for (const double length_m : size)
@@ -150,7 +152,8 @@ WallSizes wallSizes(const Mesh& mesh, double most_m) {
   WallSizes sizes;
   if (mesh.triangles.empty() || !isFinite(mesh)) return sizes;
   WallSearch search(mesh, most_m);
-  if (!(search.least_m() < most_m)) return sizes;  // one facet then is as far as the next
+  if (!(search.least_m() < most_m))
+    return sizes;  // no distance between facets is both long enough and short enough
   forEachSample(mesh, [&](const Vec3& p, const Vec3& normal) {
     if (const auto gap_m = search.width(p, normal, normal)) sizes.gaps_m.push_back(*gap_m);
     if (const auto wall_m = search.width(p, normal, -normal))

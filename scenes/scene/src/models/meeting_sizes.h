@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The least dimensions that have to be resolved where the parts of a scene meet.
+// The least dimensions of parts that voxels have to resolve: sizes of parts, gaps, and walls that fit into
+// gaps.
 #pragma once
 
 #include <limits>
@@ -10,33 +11,33 @@
 
 namespace vps::scenes {
 
-/// Opposite walls of one mesh, up to a distance.
+/// Distances between opposite walls of one mesh.
 struct WallSizes {
   double thinnest_m = std::numeric_limits<double>::infinity();  ///< least thickness of material
   std::vector<double> gaps_m;                                   ///< widths of bores, slots and tooth spaces
 };
 
-/// Measured along the normals of at most some 4000 facets, to the next facet if that faces the other way
-/// within 45 degrees: a V-groove, a thread and a wedge have no walls in this sense. Walls farther apart than
-/// `most_m` are left out, and nearer than 1e-3 of the mesh (doubled facets). O(n log n).
+/// Measures along the normals of at most about 4000 facets, to the next facet if that is opposite within 45
+/// degrees: a V-groove, a thread and a wedge have no walls in this sense. Leaves out walls farther apart than
+/// `most_m`, and walls closer than 1e-3 of the mesh's size (doubled facets). O(n log n).
 WallSizes wallSizes(const Mesh& mesh, double most_m);
 
-/// The least size of a part's box [m]; of a flat sheet, the least that is not its thickness. Infinite for a
-/// mesh without extent.
+/// The least dimension of a part's box [m], without a dimension that is zero, as the thickness of a flat
+/// sheet. Infinite for a mesh without extent.
 double across_m(const Mesh& mesh);
 
-/// What has to be resolved of one part.
+/// The least dimension that has to be resolved in one part.
 struct MeetingSize {
   double least_m = std::numeric_limits<double>::infinity();
   std::string words;  ///< "the gap of 100 um in 'gear'"
 };
 
 /// For each part of the scene, the least of
-/// - its size across, if it moves, or if the scene has no steps,
+/// - across_m(), if the part moves or the scene has no steps,
 /// - its bores, slots and tooth spaces into which a wall of another part fits,
 /// - its walls that fit into such a gap of another part,
-/// as far as these are below `most_m`. One of the two parts moves. Where a small part may go in the course of
-/// a run is not asked: a fit is found from the sizes, wherever the parts begin. O(triangles log triangles).
+/// if that is below `most_m`. One of the two parts of a fit moves. Fits follow from the sizes alone,
+/// independent of the poses and paths of the parts. O(triangles log triangles).
 std::vector<MeetingSize> meetingSizes(const Scene& scene, double most_m);
 
 }  // namespace vps::scenes

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The memory of a scene's models: refuses models that do not fit, before any is built, with a voxel that
-// fits.
+// Estimates the memory of a scene's models and refuses models that do not fit before any is built; the
+// message states a voxel that fits.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -30,12 +30,12 @@ bool isBuilt(const ModelPlan& plan, std::size_t part) {
   return !planned.same_as && (planned.has_map || planned.has_shell || isCooked(plan, part));
 }
 
-/// A part that is only in the fixed field has its map there.
+/// Whether a map of the part is built, be it the part's own or its share of the fixed field.
 bool needsMap(const ModelPlan& plan, std::size_t part) {
   return isBuilt(plan, part) && (plan.parts[part].has_map || isCooked(plan, part));
 }
 
-/// To two digits, never down.
+/// Rounds up to two digits.
 double roundedUp(double value) {
   const double digit = std::pow(10.0, std::floor(std::log10(value)) - 1);
   return digit * std::ceil(value / digit * (1 - 1e-12));
@@ -47,9 +47,9 @@ bool needsShell(const ModelPlan& plan, std::size_t part) {
 
 using FidelityOf = std::function<Fidelity(const ScenePart&)>;
 
-/// About what whole models of a plan take, by areas alone: seldom less than they do take.
+/// Estimated memory of a plan's complete models, from areas alone; seldom less than the actual memory.
 double mostModelBytes(const Scene& scene, const ModelPlan& plan, const FidelityOf& of) {
-  constexpr double kDensest = 2;  // points for each square of the spacing; more where edges are near
+  constexpr double kDensest = 2;  // points in each square of the spacing, which is more near edges
   double bytes = 0;
   for (std::size_t i = 0; i < scene.parts.size(); ++i) {
     if (!isBuilt(plan, i)) continue;
@@ -76,10 +76,12 @@ double modelBytes(const Scene& scene, const ModelPlan& plan, const FidelityOf& o
   return bytes;
 }
 
-/// The models' memory where it may be less than some limit, else about that. The first takes points on all
-/// edges, which are many where the spacing is far too small; the second O(triangles).
+/// Estimated memory of the models: exact where the estimate from areas does not decide whether the models
+/// fit, else from areas. The exact one needs the points on all edges, which are many if the spacing is far
+/// too small; the other is O(triangles).
 double aboutModelBytes(const Scene& scene, const ModelPlan& plan, const FidelityOf& of, double most_bytes) {
-  constexpr double kFar = 8;  // by areas alone at most twice as much; then cropped models keep a share
+  constexpr double kFar = 8;  // the estimate from areas is at most twice the memory of complete models;
+                              // cropped models keep a share of it
   const double by_areas = mostModelBytes(scene, plan, of);
   const bool is_known = by_areas <= most_bytes || by_areas > kFar * most_bytes;
   const bool is_cropped =
@@ -87,7 +89,7 @@ double aboutModelBytes(const Scene& scene, const ModelPlan& plan, const Fidelity
   return is_known && !(is_cropped && by_areas > most_bytes) ? by_areas : modelBytes(scene, plan, of);
 }
 
-/// To two digits, never down, in millimetres.
+/// Rounds up to two digits in millimetres.
 double roundedLength_m(double length_m) {
   constexpr double kRounding = 1 + 1e-12;
   return 1e-3 * roundedUp(1e3 * length_m * kRounding);
@@ -99,14 +101,14 @@ Fidelity scaled(Fidelity fidelity, double factor) {
   return fidelity;
 }
 
-/// Finds a voxel and a spacing with which the models of a plan are built, all with the same, as where a scene
-/// states them. What is found passes the checks below.
+/// Finds one voxel and one spacing for all parts, as a scene file can state them, with which the models of a
+/// plan pass the checks below.
 class Remedy {
  public:
   Remedy(const Scene& scene, const ModelPlan& plan, double most_bytes)
       : scene_(scene), plan_(plan), most_bytes_(most_bytes > 0 ? most_bytes : kNoLimit) {}
 
-  /// The least, to two digits.
+  /// The least voxel and spacing that fit, to two digits.
   [[nodiscard]] Fidelity find() const {
     const Fidelity least = leastOfParts();
     double high = 1;
@@ -130,7 +132,7 @@ class Remedy {
  private:
   static constexpr double kNoLimit = 1e300;
 
-  /// The scene's, made larger where a map or a shell would not be built: of these the other one need not be.
+  /// The scene's fidelity with a larger voxel if a map, and a larger spacing if a shell, would not be built.
   [[nodiscard]] Fidelity leastOfParts() const {
     constexpr double kCertain = 1.001;  // see fittingVoxel_m()
     Fidelity least = scene_.fidelity;
@@ -169,7 +171,8 @@ class Remedy {
   const double most_bytes_;
 };
 
-/// Refuses a map or a shell that would not be built, before the others are: some take minutes. O(triangles).
+/// Refuses a map or a shell that could not be built, before others are built, which may take minutes.
+/// O(triangles).
 void requireParts(const Scene& scene, const ModelPlan& plan, double most_bytes) {
   for (std::size_t i = 0; i < scene.parts.size(); ++i) {
     const ScenePart& part = scene.parts[i];
@@ -183,7 +186,7 @@ void requireParts(const Scene& scene, const ModelPlan& plan, double most_bytes) 
       if (const double bytes = expectedMapBytes(mesh, voxels); bytes > largestMapBytes())
         std::snprintf(words.data(), words.size(),
                       "of %.4g x %.4g x %.4g mm needs about %.3g GiB of memory for voxels of %.3g mm, and a "
-                      "voxmap takes at most %.0f; set larger ones in the scene file: ",
+                      "voxmap may take at most %.0f GiB; set larger voxels in the scene file:  ",
                       size_mm.x(), size_mm.y(), size_mm.z(), bytes / kGiB, 1e3 * voxels.voxel_m,
                       largestMapBytes() / kGiB);
     }
@@ -192,15 +195,15 @@ void requireParts(const Scene& scene, const ModelPlan& plan, double most_bytes) 
       std::snprintf(
           words.data(), words.size(),
           "of %.4g x %.4g x %.4g mm has too many points for a pointshell with a spacing of %.3g mm; "
-          "set a larger one in the scene file: ",
+          "set a larger spacing in the scene file:  ",
           size_mm.x(), size_mm.y(), size_mm.z(), 1e3 * fidelity.spacing_m);
     if (words[0] != 0)
       throw LoadError(part.file, part.part.name, words.data() + Remedy(scene, plan, most_bytes).words());
   }
 }
 
-/// Refuses a plan whose models need more memory than there is, since the system would end the program without
-/// a word. The exact estimate is only made where the areas alone do not tell. O(triangles).
+/// Refuses a plan whose models need more memory than the machine has, since the system would end the program
+/// without a message. O(triangles).
 void requireMemory(const Scene& scene, const ModelPlan& plan, double most_bytes) {
   if (!(most_bytes > 0)) return;
   const double about = aboutModelBytes(
@@ -208,12 +211,13 @@ void requireMemory(const Scene& scene, const ModelPlan& plan, double most_bytes)
   if (about <= most_bytes) return;
   std::array<char, 200> words{};
   std::snprintf(words.data(), words.size(),
-                "its models need about %.3g MB of memory, and there are %.3g MB; choose larger voxels and "
-                "spacing (",
+                "its models need about %.3g MB of memory, but only %.3g MB are available; choose larger "
+                "voxels and spacing (",
                 1e-6 * about, 1e-6 * most_bytes);
-  throw LoadError(scene.file, "",
-                  words.data() + Remedy(scene, plan, most_bytes).words() +
-                      "), or leave parts out that nothing touches (vps explain lists what each part needs)");
+  throw LoadError(
+      scene.file, "",
+      words.data() + Remedy(scene, plan, most_bytes).words() +
+          "), or leave out parts that nothing touches (vps explain lists the memory of each part)");
 }
 
 }  // namespace

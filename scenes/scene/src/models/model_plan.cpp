@@ -25,15 +25,16 @@ constexpr double kClearlySmaller = 2;
 double margin_m(const Scene& scene, const Box& part) {
   const OperatorSettings& hand = scene.hand;
   const VoxMapSettings map = voxMapSettings(scene.fidelity);
-  // The distance ahead of the part that PlacedParts::isCovered() requires at the peak speed of a reach.
+  // PlacedParts::isCovered() requires this distance ahead of the part at the peak speed of a motion.
   const double ahead_m = 2 * kPeakOverMean * hand.speed_m_s / scene.fidelity.physics_rate_hz;
   return map.band_voxels * map.voxel_m + kSpare_m + ahead_m +
          kDeviations * (hand.aim_error_m + hand.aim_error_rad * 0.5 * part.size().norm());
 }
 
-/// A screw turns at every place of its last leg.
+/// Adds the boxes of a screw, which may have any rotation about its axis on its last leg.
 void addTurned(const SceneStep& step, const Box& part, Box& path) {
-  constexpr int kTurns = 8;  // of 45 degrees; in between a box reaches out by less than the region's margin
+  constexpr int kTurns =
+      8;  // of 45 degrees; between these rotations a box protrudes by less than the region's margin
   const Vec3 center_P = part.center();
   const Vec3 axis_W = insertionAxis(step, Pose::translation(center_P));
   if (axis_W.isZero()) return;
@@ -148,16 +149,17 @@ class Planner {
                                            : "moves in step " + std::to_string(s + 1) + servesLater(i, s);
       return;
     }
-    part.why = "no step moves it and it is not fixed: nobody can touch it, so it is only drawn";
+    part.why = "no step moves it and it is not fixed: nothing can touch it, so it is only drawn";
   }
 
-  /// The later steps for which a mounted part is cooked.
+  /// Words on the later steps for which a mounted part is cooked.
   [[nodiscard]] std::string servesLater(std::size_t i, std::size_t moved_in) const {
     std::string steps;
     for (std::size_t s = moved_in + 1; s < plan_.steps.size(); ++s)
       if (std::ranges::count(plan_.steps[s].cooked, i) > 0)
         steps += (steps.empty() ? "" : ", ") + std::to_string(s + 1);
-    return steps.empty() ? "; touched by no later step, so never cooked" : "; then cooked, for step " + steps;
+    return steps.empty() ? "; no later step comes near it, so it is never cooked"
+                         : "; then cooked, for step " + steps;
   }
 
   void planFixed(std::size_t i, PartModelPlan& part) {
@@ -166,7 +168,7 @@ class Planner {
       if (std::ranges::count(step.cooked, i) > 0) part.kept_P.push_back(moved(*step.region_W, X_PW));
     part.has_map = part.has_shell = !part.kept_P.empty();
     part.why = part.has_map ? "fixed: cooked, where a moving part may come"
-                            : "fixed, but no moving part comes near: nobody can touch it";
+                            : "fixed, but no moving part comes near: nothing can touch it";
   }
 
   void planFree(std::size_t i, PartModelPlan& part) {
@@ -174,7 +176,7 @@ class Planner {
     if (scene_.parts[i].is_fixed) {
       const bool is_cooked = std::ranges::count(all.cooked, i) > 0;
       part.has_shell = is_cooked && all.has_shell;
-      part.why = is_cooked ? "fixed: only in the cooked field" : "nothing moves, so nobody can touch it";
+      part.why = is_cooked ? "fixed: only in the cooked field" : "nothing moves, so nothing can touch it";
       return;
     }
     std::size_t others = 0;
@@ -209,7 +211,7 @@ class Planner {
 
   const Scene& scene_;
   ModelPlan plan_;
-  std::vector<Box> boxes_;  ///< of the parts, each in its frame
+  std::vector<Box> boxes_;  ///< bounding boxes of the parts, each in the part's frame
 };
 
 }  // namespace

@@ -63,16 +63,17 @@ Fidelity fidelityOf(const ScenePart& part, const Fidelity& fidelity) {
 
 namespace {
 
-/// What map and shell are built from, and contacts and overlaps of a run are measured with. A rigid part
-/// cannot give way, so that a part that is pressed in has none of its declared interference, half of it on
-/// each side, and a little less than the 10 um that count as contact, since without clearance it would jam.
+/// The solid from which map and shell are built, and with which a run measures contacts and overlaps. A rigid
+/// part cannot deform, so a part that is pressed in is reduced by its declared interference, half of it on
+/// each side, and by a little less than the 10 um that count as contact, since it would jam without
+/// clearance.
 std::shared_ptr<const Solid> solidOf(const ScenePart& part, const Mesh& mesh) {
   constexpr double kPressSlack_m = 8e-6;
   const double by_m = part.press_fit_m > 0 ? 0.5 * part.press_fit_m + kPressSlack_m : 0;
   return std::make_shared<const Solid>(by_m > 0 ? shrunkMesh(mesh, by_m) : mesh, part.part.name);
 }
 
-/// What a cache knows a part's models by.
+/// The mesh that identifies a part's models in a cache.
 const Mesh& cachedMesh(const ScenePart& part, const Solid& solid) {
   return part.press_fit_m > 0 ? solid.mesh() : part.part.mesh;
 }
@@ -100,8 +101,8 @@ std::shared_ptr<const VoxMap> mapOf(const ScenePart& part, const Solid& solid, c
   return map;
 }
 
-/// What is still valid of the models that the part has, or of `shared`, which is the model of a part of equal
-/// geometry. Name and material are always the part's own.
+/// A model that begins with the valid models of the part itself, or with `shared`, the model of a part of
+/// equal geometry. Name and material are always the part's own.
 PartModel startingModel(const ScenePart& scene_part, const PartModel* shared) {
   const PartModel* from = shared != nullptr ? shared : scene_part.model.get();
   PartModel model = from != nullptr ? *from : PartModel{};
@@ -169,7 +170,7 @@ class ModelBuilder {
   }
 
  private:
-  /// The parts with models of their own, so that no core is left with a large one at the end.
+  /// The parts with models of their own, largest first, so that no core begins a large part at the end.
   [[nodiscard]] std::vector<std::size_t> largestFirst() {
     std::vector<std::size_t> order;
     for (const std::size_t i : parts_)
@@ -184,7 +185,7 @@ class ModelBuilder {
     if (i > first_failed_) return;
     try {
       report(i);
-      // Without isolation a thread that waits for one part's voxels would begin another part.
+      // Without isolation, a thread that waits for the voxels of a part would begin another part.
       tbb::this_task_arena::isolate([&] { build(i); });
     } catch (...) {
       errors_[i] = std::current_exception();
@@ -193,7 +194,7 @@ class ModelBuilder {
     }
   }
 
-  /// Progress is counted in triangles of the parts that were begun.
+  /// Reports progress as the share of triangles in the parts that were begun.
   void report(std::size_t i) {
     if (!options_.progress) return;
     const std::lock_guard lock(reporting_);
@@ -203,7 +204,7 @@ class ModelBuilder {
     begun_ += scene_.parts[i].part.mesh.triangles.size();
   }
 
-  /// True if the part needs a solid at least.
+  /// True if the part needs a model, be it only a solid.
   [[nodiscard]] bool isModelled(std::size_t i) const {
     return plan_.parts[i].has_map || plan_.parts[i].has_shell || isCooked(plan_, i);
   }
@@ -220,7 +221,7 @@ class ModelBuilder {
     part.model = std::make_shared<const PartModel>(std::move(model));
   }
 
-  /// Takes the models of an earlier part of equal geometry.
+  /// Gives the part the models of an earlier part of equal geometry.
   void share(std::size_t i) {
     ScenePart& part = scene_.parts[i];
     part.is_cropped = false;
@@ -235,7 +236,7 @@ class ModelBuilder {
   std::vector<BuildTimes> times_;
   std::vector<std::vector<std::string>> warnings_;  ///< by part
   std::vector<std::exception_ptr> errors_;          ///< by part
-  std::atomic<std::size_t> first_failed_;           ///< later parts need not be begun
+  std::atomic<std::size_t> first_failed_;  ///< first part with an error; later parts need not be begun
   std::mutex reporting_;
   std::size_t triangles_ = 0, begun_ = 0;
 };
@@ -253,7 +254,7 @@ std::vector<BuildTimes> buildModels(Scene& scene, const ModelPlan& plan, std::ve
   requireModelsFit(scene, plan, options);
   if (scene.fidelity_wish)
     throw LoadError(scene.file, "",
-                    "asks for an automatic fidelity that was not chosen yet; call resolveFidelity() first");
+                    "needs an automatic fidelity, which was not chosen yet; call resolveFidelity() first");
   return ModelBuilder(scene, plan, std::move(parts), options).run();
 }
 

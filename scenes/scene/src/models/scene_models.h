@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Builds the models of a scene's parts at the scene's fidelity, as a model plan says.
+// Builds the models of a scene's parts at the scene's fidelity, according to a model plan.
 #pragma once
 
 #include "vps_scenes/scene/model_options.h"
@@ -13,7 +13,7 @@ PointShellSettings pointShellSettings(const Fidelity& fidelity);
 /// The scene's fidelity, with the voxel and spacing of this part's own models.
 Fidelity fidelityOf(const ScenePart& part, const Fidelity& fidelity);
 
-/// Time to build one part's own models; 0 where it has none or shares them.
+/// Time to build one part's own models; 0 if the part has none or shares them.
 struct BuildTimes {
   double map_wall_s = 0, shell_wall_s = 0;
 };
@@ -32,24 +32,25 @@ bool isCooked(const ModelPlan& plan, std::size_t part);
 /// the meshes, and builds nothing. O(triangles).
 void requireModelsFit(const Scene& scene, const ModelPlan& plan, const ModelOptions& options);
 
-/// Gives every part of the plan its ScenePart::model. A voxmap, pointshell or surface that a part has already
-/// is kept, unless it is cropped. Parts are built in parallel, with the same bits on any number of cores;
+/// Sets ScenePart::model of every part of the plan. Keeps a voxmap, pointshell or surface that a part already
+/// has, unless it is cropped. Parts are built in parallel, with the same bits on any number of cores;
 /// progress is called by one thread at a time. Throws LoadError naming the file and the first part that
 /// cannot be modelled.
 std::vector<BuildTimes> buildModels(Scene& scene, const ModelPlan& plan, const ModelOptions& options);
 
-/// The same of these parts only, in ascending order. No other part shares the models of one of them.
+/// Builds the models of these parts only, in ascending order. No other part may share the models of one of
+/// them.
 std::vector<BuildTimes> buildModels(Scene& scene, const ModelPlan& plan, std::vector<std::size_t> parts,
                                     const ModelOptions& options);
 
-/// Whole models of every part; parts of equal geometry share them.
+/// Builds complete models of every part; parts of equal geometry share them.
 void buildModels(Scene& scene, const ModelOptions& options);
 
-/// For a run whose part comes to the border of its region: whole models of all fixed parts, and a plan
-/// without regions.
+/// Builds complete models of all fixed parts and removes the regions from the plan, for a run whose part
+/// reaches the border of its region.
 void buildWhole(Scene& scene, ModelPlan& plan, const ModelOptions& options);
 
-/// Memory of the models of all parts; shared ones count once.
+/// Number and memory of the models of all parts; shared models count once.
 ModelledCost modelledCost(const Scene& scene);
 
 }  // namespace vps::scenes

@@ -10,11 +10,11 @@ namespace vps::scenes {
 
 namespace {
 
-constexpr double kSameFace = 1e-9;     // of 1 - cos: facets of one plane count once
-constexpr double kIndependent = 0.02;  // facets that meet at less than a degree count as one bent face
-constexpr double kFarthest = 3;        // of the distance, which a cube's corner needs 1.7 of
+constexpr double kSameFace = 1e-9;     // least 1 - cos of two facets' angle; facets of one plane count once
+constexpr double kIndependent = 0.02;  // facets at less than a degree count as one curved face
+constexpr double kFarthest = 3;        // greatest move in distances; a cube's corner needs 1.7
 
-/// The move of a corner that takes all its facets inwards, or outwards for a negative distance.
+/// The displacement of a corner that moves all its facets inwards, or outwards for a negative distance.
 Vec3 inwards(const std::vector<Vec3>& normals, double by_m) {
   if (normals.empty()) return Vec3::Zero();
   Eigen::MatrixX3d planes(static_cast<Eigen::Index>(normals.size()), 3);

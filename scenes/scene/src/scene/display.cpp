@@ -16,20 +16,19 @@
 namespace vps::scenes {
 namespace {
 
-constexpr double kSquare = 0.01;     // cosine by which corners may miss a right angle
-constexpr double kNearest_m = 1e-3;  // of an eye to a screen's plane
+constexpr double kSquare = 0.01;     // greatest cosine of a corner's angle
+constexpr double kNearest_m = 1e-3;  // least distance of an eye to a screen's plane
 
 void readCorners(const SceneKeys& keys, DisplayScreen& screen) {
   for (const char* key : {"lower_left", "lower_right", "upper_left"})
-    if (!keys.has(key))
-      keys.fail(key, "is missing; a screen is given by lower_left, lower_right and upper_left");
+    if (!keys.has(key)) keys.fail(key, "is missing; a screen needs lower_left, lower_right and upper_left");
   keys.position("lower_left", screen.lower_left_S);
   keys.position("lower_right", screen.lower_right_S);
   keys.position("upper_left", screen.upper_left_S);
   const Vec3 across = screen.lower_right_S - screen.lower_left_S,
              up = screen.upper_left_S - screen.lower_left_S;
   if (!(across.norm() > 0) || !(up.norm() > 0))
-    keys.failWhole("has no area; two of its corners are one point");
+    keys.failWhole("has no area, because two of its corners coincide; measure the corners again");
   if (std::abs(across.normalized().dot(up.normalized())) > kSquare)
     keys.fail("upper_left", "makes no right angle with lower_right at lower_left; measure the corners again");
 }
@@ -46,7 +45,7 @@ DisplayScreen readScreen(const SceneKeys& keys, std::size_t number) {
   return screen;
 }
 
-/// A name in the display file's folder, unless it is absolute.
+/// Reads a head's record; `name` is relative to the display file's folder, unless it is absolute.
 void readTrack(const SceneKeys& keys, const std::string& name, DisplayViewer& viewer) {
   const std::string place = keys.placeOf("recorded");
   const std::filesystem::path display(place.substr(0, place.rfind(':')));
@@ -60,7 +59,7 @@ void readTopic(const SceneKeys& keys, DisplayViewer& viewer) {
     return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '/';
   };
   if (viewer.topic.size() < 2 || viewer.topic.front() != '/' || !std::ranges::all_of(viewer.topic, is_good))
-    keys.fail("topic", "is '" + viewer.topic + "'; expected a topic of ROS 2, as \"/anna/head\"");
+    keys.fail("topic", "is '" + viewer.topic + "'; expected a topic of ROS 2, for example \"/anna/head\"");
   std::int64_t domain = viewer.ros_domain;
   keys.integer("ros_domain", domain, {.min = 0, .max = 232});
   viewer.ros_domain = static_cast<int>(domain);
@@ -75,7 +74,7 @@ DisplayViewer readViewer(const SceneKeys& keys, std::size_t number) {
   std::string recorded;
   const bool is_recorded = keys.text("recorded", recorded), is_topic = keys.text("topic", viewer.topic);
   if (is_recorded && (is_topic || viewer.is_placed))
-    keys.fail("recorded", "says where the head is at all times; leave out " +
+    keys.fail("recorded", "gives the pose of the head at all times; leave out  " +
                               std::string(is_topic ? "'topic'" : "'head'") + ", or this");
   if (!viewer.is_placed && !is_recorded && !is_topic)
     keys.fail("head", "is missing; give its pose, {position = [...]}, or its stream: 'recorded' or 'topic'");
@@ -87,8 +86,8 @@ DisplayViewer readViewer(const SceneKeys& keys, std::size_t number) {
 
 void requireInFront(const SceneKeys& keys, const DisplayViewer& viewer, const DisplayScreen& screen) {
   const char* const remedy =
-      "', which is seen from where lower_left is at the left; move the head, or swap the screen's left and "
-      "right corners";
+      "', whose front is the side from which lower_left is at the left; move the head, or swap the screen's "
+      "left and right corners";
   if (!viewer.track.time_s.empty()) {
     DisplayViewer moved = viewer;
     for (std::size_t i = 0; i < viewer.track.time_s.size(); ++i) {
@@ -108,7 +107,7 @@ void requireInFront(const SceneKeys& keys, const DisplayViewer& viewer, const Di
     is_seen = is_seen || -viewer.X_SE.R.col(2).dot(corner_S - viewer.X_SE.p) > 0;
   if (!is_seen)
     keys.fail("head", "of '" + viewer.name + "' has '" + screen.name +
-                          "' behind it; a head looks along its -z: turn it by rpy_deg or rotation_xyzw");
+                          "' behind it; a head looks along its -z: rotate it by rpy_deg or rotation_xyzw");
 }
 
 }  // namespace
@@ -137,13 +136,14 @@ HeadTrack loadHeadTrack(const std::string& file) {
     const std::vector<double>& n = row.numbers;
     const std::optional<Pose> X_SE = poseOf(std::span(n).subspan<1, 7>());
     if (!X_SE)
-      throw LoadError(row.place, "", "columns 5 to 8 are no rotation; expected a unit quaternion x, y, z, w");
+      throw LoadError(row.place, "",
+                      "has no rotation in columns 5 to 8; expected a unit quaternion x, y, z, w");
     if (!track.time_s.empty() && n[0] <= track.time_s.back())
       throw LoadError(row.place, "", "is not later than the row before; put the rows in order of time");
     track.time_s.push_back(n[0]);
     track.X_SE.push_back(*X_SE);
   }
-  if (track.time_s.empty()) throw LoadError(file, "", "has no row; record where the head is");
+  if (track.time_s.empty()) throw LoadError(file, "", "has no row; record the poses of the head");
   return track;
 }
 
@@ -158,7 +158,7 @@ Mat3 DisplayScreen::axes() const {
 void Display::placeDevice(DeviceSettings& device) const {
   if (!X_SD) return;
   // p_S = X_SD p_D and p_S = X_SW (scale p_W), and the scene's map is p_W = placement (device.scale p_D).
-  const Pose X_AD = X_SW.inverse() * *X_SD;  // A: the scene's axes and origin, in metres of the room
+  const Pose X_AD = X_SW.inverse() * *X_SD;  // frame A: the scene's axes and origin, in metres of the room
   device.scale = 1 / scale;
   device.placement = Pose(X_AD.R, Vec3(X_AD.p / scale));
 }

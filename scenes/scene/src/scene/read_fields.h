@@ -22,7 +22,7 @@ void addKey(std::vector<std::string_view>& keys, const Group<Get, Rows>& group) 
   forEachRow(group.rows, [&](const auto& row) { addKey(keys, row); });
 }
 
-/// Every key of a table.
+/// All keys of a field table.
 template <class Rows>
 std::vector<std::string_view> keysOf(const Rows& rows) {
   std::vector<std::string_view> keys;
@@ -102,8 +102,8 @@ void readRow(const SceneKeys& keys, Struct& out, const Group<Get, Rows>& group) 
   forEachRow(group.rows, [&](const auto& row) { readRow(keys, std::invoke(group.get, out), row); });
 }
 
-/// Reads what the table's fields name into the struct; absent keys leave its members unchanged. The values of
-/// `Key` rows are the caller's to read. Throws LoadError as SceneKeys.
+/// Reads the fields of a table into the struct; absent keys leave its members unchanged. The caller reads the
+/// values of `Key` rows. Throws LoadError as SceneKeys.
 template <class Struct, class Rows>
 void readFields(const SceneKeys& keys, Struct& out, const Rows& rows) {
   forEachRow(rows, [&](const auto& row) { readRow(keys, out, row); });

@@ -27,7 +27,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// "#rrggbb" or [r, g, b] from 0 to 1, both sRGB.
+/// Reads "#rrggbb" or [r, g, b] from 0 to 1, both in sRGB.
 void readColor(const SceneKeys& keys, std::array<float, 3>& color) {
   double srgb[3];
   if (std::string text; keys.isText("color") && keys.text("color", text)) {
@@ -47,7 +47,7 @@ std::string didYouMean(const std::string& name, const std::vector<std::string>& 
   constexpr std::size_t kShown = 12;
   std::string list;
   for (std::size_t i = 0; i < std::min(names.size(), kShown); ++i)
-    list += (i ? ", " : "; there are: ") + names[i];
+    list += (i ? ", " : "; the names are:  ") + names[i];
   return list + (names.size() > kShown ? ", ..." : "");
 }
 
@@ -126,14 +126,14 @@ class SceneReader {
     readTable("material", material_, kMaterialFields);
   }
 
-  /// A table whose keys are all in its field table.
+  /// Reads a table whose keys are all in its field table.
   template <typename Struct, typename Rows>
   void readTable(const std::string& name, Struct& out, const Rows& rows) {
     if (const toml::table* table = top_.table(name))
       readFields(SceneKeys(*table, context_, "[" + name + "]", keysOf(rows)), out, rows);
   }
 
-  /// The path of a file that is named relative to the scene file's folder.
+  /// The path of a file whose name is relative to the scene file's folder.
   [[nodiscard]] std::string path(const std::string& file) const {
     return (fs::path(context_.file).parent_path() / file).lexically_normal().string();
   }
@@ -147,7 +147,7 @@ class SceneReader {
       import_.part_per = part_per;
       const ImportedCad& cad =
           cads_.emplace(std::pair(file, part_per), importCad(path(file), import_, progress_)).first->second;
-      for (const std::string& warning : cad.warnings)  // a file may be read as parts and as one part
+      for (const std::string& warning : cad.warnings)  // the same file may be read as parts and as one part
         if (const std::string line = file + ": " + warning;
             std::ranges::find(scene_.warnings, line) == scene_.warnings.end())
           scene_.warnings.push_back(line);
@@ -163,7 +163,8 @@ class SceneReader {
   void readCad() {
     std::string file, fallback;
     if (top_.text("cad_fallback", fallback) && !top_.has("cad"))
-      top_.fail("cad_fallback", "needs a 'cad' that it replaces; add one");
+      top_.fail("cad_fallback",
+                "replaces a 'cad' where its library is missing, but the file has no 'cad'; add one");
     if (!top_.text("cad", file)) return;
     if (fallback.empty()) return addCad("cad", file);
     try {
@@ -195,11 +196,11 @@ class SceneReader {
     for (const char* key : {"velocity_m_s", "angular_velocity_rad_s"})
       if (part.is_fixed && keys.has(key))
         keys.fail(key, "has no effect on a fixed part; leave one of them out");
-    if (keys.has("color")) part.part.face_colors = {};  // one colour for all of it
+    if (keys.has("color")) part.part.face_colors = {};  // the file sets one colour for the whole part
     readColor(keys, part.part.color);
   }
 
-  /// A part with a file of its own.
+  /// Adds a part with a file of its own.
   ScenePart& addPart(const SceneKeys& keys) {
     std::string file, node, name;
     keys.text("file", file);
@@ -213,9 +214,11 @@ class SceneReader {
       std::vector<std::string> names;
       for (const ImportedPart& part : found.parts) names.push_back(part.name);
       if (found.parts.size() != 1)
-        keys.fail("file", "has " + std::to_string(found.parts.size()) +
-                              " parts; say which with 'node', or node = \"*\" for all of it as one part" +
-                              didYouMean("", names));
+        keys.fail(
+            "file",
+            "has " + std::to_string(found.parts.size()) +
+                " parts; name one of them with 'node', or write node = \"*\" for the whole file as one part" +
+                didYouMean("", names));
       name = fs::path(file).stem().string();
     }
     keys.text("name", name);
@@ -224,7 +227,7 @@ class SceneReader {
     return scene_.parts.back();
   }
 
-  /// A part of the scene's CAD file that the [[part]] describes further.
+  /// The part of the scene's CAD file to which a [[part]] without a file belongs.
   ScenePart& cadPart(const SceneKeys& keys) {
     std::string name, node;
     if (!keys.text("name", name) && !keys.has("node"))
@@ -256,15 +259,19 @@ class SceneReader {
       group_of_[name] = group.name;
       if (first == nullptr) first = &part;
       if (part.is_scenery != first->is_scenery)
-        keys.fail("parts", "names '" + first->part.name + "' and '" + name +
-                               "', of which only one is scenery; a body is scenery as a whole or not at all");
+        keys.fail("parts",
+                  "names '" + first->part.name + "' and '" + name +
+                      "', of which only one is scenery; either all parts of a group are scenery or none");
     }
     for (const PartGroup& other : groups_)
       if (other.name == group.name)
-        keys.fail("name", "is '" + group.name + "', which another group has; give it another one");
+        keys.fail("name",
+                  "is '" + group.name + "', which is also the name of another group; give it another name");
     for (const ScenePart& part : scene_.parts)
       if (part.part.name == group.name && std::ranges::find(group.parts, group.name) == group.parts.end())
-        keys.fail("name", "is '" + group.name + "', which a part has that is not in it; give it another one");
+        keys.fail("name",
+                  "is '" + group.name +
+                      "', which is also the name of a part outside of the group; give it another name");
     groups_.push_back(std::move(group));
   }
 
@@ -299,8 +306,8 @@ class SceneReader {
     scene_.steps.push_back(std::move(step));
   }
 
-  /// The distance along +z from its target at which half a part's own height lies between it and all that is
-  /// in place by then (fixed parts, and those of earlier steps) [m].
+  /// The distance [m] along +z from its target at which a part is above everything in place by then (fixed
+  /// parts, and parts of earlier steps), with a gap of half the part's height.
   [[nodiscard]] double liftToClear(const SceneStep& step) {
     const auto include = [this](std::size_t part, const Pose& X_WP) {
       top_m_ = std::max(top_m_, boundsAt(scene_.parts[part].part.mesh, X_WP).max.z());
@@ -321,7 +328,7 @@ class SceneReader {
     return box;
   }
 
-  /// At 1000 km a coordinate rounds to 1e-10 m, which is far below every tolerance.
+  /// Refuses coordinates above 1000 km, where rounding is 1e-10 m, still far below every tolerance.
   void requireNearOrigin() const {
     constexpr double kFarthest_m = 1e6;
     const auto require = [&](const ScenePart& part, const Pose& X_WP) {
@@ -329,7 +336,7 @@ class SceneReader {
       if (box.min.cwiseAbs().cwiseMax(box.max.cwiseAbs()).maxCoeff() <= kFarthest_m) return;
       throw LoadError(
           scene_.file, part.part.name,
-          "is more than 1000 km from the origin; check its unit, its pose and those of its steps");
+          "is more than 1000 km from the origin; check its unit, its pose and the poses of its steps");
     };
     for (const ScenePart& part : scene_.parts) require(part, part.X_WP);
     for (const SceneStep& step : scene_.steps)
@@ -347,10 +354,10 @@ class SceneReader {
     if (keys.has("placement")) keys.pose("placement", scene_.device.placement.emplace());
   }
 
-  /// The run reads the file; it is checked here, so that its errors are stated with line and key.
+  /// Checks the device file, which the run reads again, so that an error is reported with line and key.
   void readDeviceFile(const SceneKeys& keys, const std::string& file) {
     if (!device::findDeviceKind(scene_.device.kind)->isSimulated())
-      keys.fail("parameters", "applies to a dual_arm or an ideal_dual_arm alone; leave it out");
+      keys.fail("parameters", "applies to a dual_arm or an ideal_dual_arm only; leave it out");
     try {
       device::loadDualArm(path(file));
     } catch (const LoadError& error) {
@@ -364,14 +371,14 @@ class SceneReader {
   const Progress& progress_;
   Scene scene_;
   ImportSettings import_;
-  Material material_;  ///< [material]: of the parts that do not state their own
+  Material material_;  ///< [material]: for parts that do not state their own
   std::map<std::pair<std::string, PartPer>, ImportedCad> cads_;
   std::vector<PartGroup> groups_;
-  std::map<std::string, std::string> group_of_;  ///< by part
-  std::size_t cad_count_ = 0;                    ///< the first parts of the scene are those of its 'cad'
-  std::vector<bool> is_described_;               ///< of those parts: has a [[part]] of its own
-  /// The highest point of the first fixed parts and of the parts of the first steps, as far as they are in
-  /// it.
+  std::map<std::string, std::string> group_of_;  ///< name of the group of each part
+  std::size_t cad_count_ = 0;       ///< number of parts from 'cad', which are the first parts of the scene
+  std::vector<bool> is_described_;  ///< for each of these parts: it has a [[part]]
+  /// The highest point of the fixed parts and of the parts of earlier steps, among the first topped_parts_
+  /// and topped_steps_.
   double top_m_ = -std::numeric_limits<double>::infinity();
   std::size_t topped_parts_ = 0, topped_steps_ = 0;
 };

@@ -67,10 +67,10 @@ struct Renamed {
   std::string_view place, old_name, new_name;
 };
 constexpr Renamed kRenamedKeys[] = {{"[device]", "ratchet", "indexing"}};
-/// Words of a key's value; `place` is the key.
+/// Renamed values of keys; `place` is the key.
 constexpr Renamed kRenamedWords[] = {{"contact", "rigid", "constraint"}, {"contact", "compliant", "penalty"}};
 
-/// The new name of something in a place; empty when it was not renamed.
+/// The new name of a key or value; empty when it was not renamed.
 template <std::size_t N>
 std::string_view newName(const Renamed (&table)[N], std::string_view place, std::string_view name) {
   const auto* const found = std::find_if(std::begin(table), std::end(table), [&](const Renamed& entry) {
@@ -335,12 +335,13 @@ Pose SceneKeys::requirePose(std::string_view key, const toml::node& node, Pose f
     if (keys.has("rpy_deg"))
       keys.fail("rpy_deg", "cannot be combined with 'rotation_xyzw'; give one of them");
     const Quat rotation(q[3], q[0], q[1], q[2]);
-    // Files carry four digits or more, so a larger deviation is a mistake and not rounding.
+    // Files state four digits or more, so a larger deviation is a mistake and not rounding.
     if (std::abs(rotation.norm() - 1) > 1e-3)
-      keys.fail("rotation_xyzw", "has the length " + shortNumber(rotation.norm()) + "; a rotation's is 1");
+      keys.fail("rotation_xyzw",
+                "has the length " + shortNumber(rotation.norm()) + "; a rotation needs the length 1");
     from = Pose(rotation, from.p);
   } else if (keys.numbers("rpy_deg", 3, rpy_deg)) {
-    // About fixed axes: first roll about x, then pitch about y, then yaw about z.
+    // Rotations about fixed axes: first roll about x, then pitch about y, then yaw about z.
     from.R = (Eigen::AngleAxisd(rpy_deg[2] * kRadPerDeg, Vec3::UnitZ()) *
               Eigen::AngleAxisd(rpy_deg[1] * kRadPerDeg, Vec3::UnitY()) *
               Eigen::AngleAxisd(rpy_deg[0] * kRadPerDeg, Vec3::UnitX()))

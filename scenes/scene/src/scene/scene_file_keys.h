@@ -29,17 +29,17 @@ std::string readTomlText(const std::string& file, const std::string& what, const
 /// @param file  for messages
 toml::table parseToml(const std::string& text, const std::string& file);
 
-/// Shared by all tables of one scene file.
+/// Facts that all tables of one scene file share.
 struct SceneFileContext {
   std::string file;              ///< as the user named it, for messages
-  std::optional<double> unit_m;  ///< metres per plain number where a length is meant; empty: not stated
+  std::optional<double> unit_m;  ///< metres per plain number of a length; empty: not stated
 };
 
-/// The word of `known` with the least edit distance to `word`; empty when none is similar.
+/// The element of `known` with the least edit distance to `word`; empty when no element is similar.
 std::string nearestWord(std::string_view word, const std::vector<std::string>& known);
 
-/// One table. Each read returns false and leaves `out` unchanged when the key is absent, and throws LoadError
-/// when its value is wrong (type, range, not finite).
+/// The keys of one table. Each reading function returns false and leaves `out` unchanged when the key is
+/// absent, and throws LoadError when its value is wrong (type, range, not finite).
 class SceneKeys {
  public:
   /// @param place  name of the table in messages: "[[part]]", "[device]"; "" at the top
@@ -57,20 +57,21 @@ class SceneKeys {
   bool number(std::string_view key, double& out, Range range = kAny) const;
   bool integer(std::string_view key, std::int64_t& out, Range range = kAny) const;
   bool numbers(std::string_view key, std::size_t count, double* out, Range range = kAny) const;
-  /// A number in the file's unit, or text with a unit ("20um"); metres.
+  /// Reads a length in metres from a number in the file's unit, or from text with a unit ("20um").
   bool length(std::string_view key, double& out_m, Range range = kAny) const;
-  /// Degrees in the file, radians out.
+  /// Reads an angle that the file gives in degrees.
   bool angle(std::string_view key, double& out_rad, Range range = kAny) const;
-  /// Three lengths.
+  /// Reads three lengths.
   bool position(std::string_view key, Vec3& out_m) const;
-  /// {position = [..], rotation_xyzw = [..] or rpy_deg = [..]}; what is left out keeps its value.
+  /// Reads {position = [..], rotation_xyzw = [..] or rpy_deg = [..]}; a position or rotation that is left out
+  /// keeps its value.
   bool pose(std::string_view key, Pose& out) const;
-  /// A list of poses; what one leaves out is taken from `from`.
+  /// Reads a list of poses; a position or rotation that a pose leaves out is taken from `from`.
   bool poses(std::string_view key, const Pose& from, std::vector<Pose>& out) const;
-  /// One of the words; index into them.
+  /// Reads one of the words; `out` is its index.
   bool word(std::string_view key, const std::vector<std::string>& words, std::size_t& out) const;
 
-  /// The table, or the list of tables, under a key; throws LoadError when the value is something else.
+  /// The table, or the list of tables, under a key; throws LoadError when the value is of another type.
   [[nodiscard]] const toml::table* table(std::string_view key) const;
   [[nodiscard]] std::vector<const toml::table*> tables(std::string_view key) const;
 

@@ -51,7 +51,7 @@ class FidelityReader {
     if (keys.word("preset", presets, index)) scene_.fidelity = fidelityPreset(presets[index]);
     readFields(keys, scene_.fidelity, kFidelityFields);
     if (scene_.fidelity.substeps == 0 && !keys.isText("substeps"))
-      keys.fail("substeps", "must be a number from 1 to 10000, or \"auto\": 0 parts are no step");
+      keys.fail("substeps", "must be a number from 1 to 10000, or \"auto\"");
     readWish(keys);
     const bool is_open = !keys.has("preset") && !scene_.fidelity_wish;
     scene_.chooses_voxel = is_open && !keys.has("voxel");
@@ -92,7 +92,7 @@ void completeScrew(const SceneKeys& keys, const Mesh& mesh, SceneStep& step) {
   constexpr double kTurned_rad = 1e-6;  // more than the rounding of the file's numbers
   if (step.motion != StepMotion::Screw) {
     for (const char* key : {"pitch", "torque_Nm"})
-      if (keys.has(key)) keys.fail(key, "is of a screw; say motion = \"screw\" as well, or leave it out");
+      if (keys.has(key)) keys.fail(key, "applies to a screw only; add motion = \"screw\", or leave it out");
     return;
   }
   const auto turns = [&](const Pose& X_WP) {
@@ -100,16 +100,15 @@ void completeScrew(const SceneKeys& keys, const Mesh& mesh, SceneStep& step) {
   };
   if (turns(step.X_WP_start) || std::any_of(step.way_points.begin(), step.way_points.end(), turns))
     keys.fail("motion",
-              "is a screw, but the path turns it; give start and way points the rotation of the "
-              "target, since the hand turns it by itself");
+              "is a screw, but the path rotates it; give start and way points the rotation of the target, "
+              "since the hand turns a screw by itself");
   if (step.pitch_m == 0) step.pitch_m = leadOnMesh_m(mesh, step);
   if (step.pitch_m == 0)
-    keys.fail(
-        "motion",
-        "is a screw, whose 'pitch' is not found in the mesh: around its axis of insertion there are no two "
-        "turns of a thread; give 'pitch', negative for a left-hand thread");
+    keys.fail("motion",
+              "is a screw, but the mesh has no thread of two turns around the axis of insertion; give "
+              "'pitch', negative for a left-hand thread");
   if (std::abs(step.pitch_m) > bounds(mesh).size().norm())
-    keys.fail("pitch", "is longer than the part itself; give the way in one turn");
+    keys.fail("pitch", "is longer than the part itself; give the travel in one turn");
 }
 
 void readFidelity(const SceneKeys& top, const SceneFileContext& context, Scene& scene) {

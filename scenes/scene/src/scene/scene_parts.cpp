@@ -19,7 +19,7 @@ namespace {
 
 using MeshKey = std::pair<std::uint64_t, std::uint64_t>;
 
-// 128 bits of the mesh's content.
+/// A hash of 128 bits of the mesh's content.
 MeshKey keyOf(const Mesh& mesh) {
   const auto bytes = [](const auto& list) { return list.size() * sizeof(list[0]); };
   const std::uint64_t vertices = XXH3_64bits(mesh.vertices.data(), bytes(mesh.vertices));
@@ -27,8 +27,8 @@ MeshKey keyOf(const Mesh& mesh) {
   return {all.low64, all.high64 ^ vertices};
 }
 
-/// Masses of meshes that have no Solid, by content: callers ask for the same parts again, some for each frame
-/// that is drawn, and a repair may take seconds.
+/// Cache of the masses of meshes that have no Solid, by content: callers request the same parts repeatedly,
+/// some for each frame, and the repair of a mesh may take seconds.
 class KnownMasses {
  public:
   MassProperties of(const Mesh& mesh, const std::string& part) {
@@ -85,7 +85,8 @@ ScenePart unitedPart(const std::string& name, const std::vector<ScenePart>& part
     if (part.deflection_m) whole.deflection_m = std::max(*part.deflection_m, whole.deflection_m.value_or(0));
   }
   simplify(whole.part.face_colors, whole.part.color);
-  // Members that overlap fill less than the sum of their volumes, which is otherwise known to rounding.
+  // Overlapping members fill less than the sum of their volumes. Without overlap both volumes agree up to
+  // rounding.
   constexpr double kRounding = 1e-9;
   const double united_m3 = solidMass(whole.part.mesh, name).volume_m3;
   if (std::abs(united_m3 - volume_m3) > kRounding * volume_m3 && united_m3 > 0) volume_m3 = united_m3;

@@ -28,7 +28,7 @@ std::string tomlValue(const FieldTraits&, const std::string& value) {
 }
 std::string tomlValue(const FieldTraits& traits, double value) {
   constexpr int kExact = 17;
-  constexpr int kNoted = 12;  // a unit's factor rounds
+  constexpr int kNoted = 12;  // twelve digits hide the rounding of a unit's factor
   if (traits.quantity == Quantity::Angle) return tomlNumber(value * 180 / std::numbers::pi, kNoted);
   if (traits.quantity == Quantity::Megabytes) return tomlNumber(value / 1e6, kNoted);
   const std::string noted = tomlNumber(value, kNoted);
@@ -61,7 +61,7 @@ void addLine(std::string& out, const Struct& of, const Struct& standard, const G
   });
 }
 
-/// A line for each setting of a field table that is not the standard's.
+/// A line for each setting of a field table that differs from `standard`.
 template <class Struct, class Rows>
 std::string linesOf(const Struct& of, const Rows& rows, const Struct& standard = {}) {
   std::string out;
@@ -73,7 +73,7 @@ std::string tableOf(const std::string& name, const std::string& lines) {
   return lines.empty() ? "" : "[" + name + "]\n" + lines + "\n";
 }
 
-/// sRGB, as the file states it.
+/// A colour in sRGB, as in a scene file.
 std::string colorText(const std::array<float, 3>& linear) {
   std::string out = "\"#";
   for (const float c : linear) {
@@ -145,8 +145,7 @@ std::string tomlText(const std::string& text) {
 
 std::string tomlPose(const Pose& pose) {
   const Quat q = pose.quaternion();
-  // Twelve digits resolve a picometre in a metre; more would show the rounding errors of the file's
-  // arithmetic.
+  // Twelve digits resolve a picometre in a metre; further digits would only show rounding errors.
   const auto n = [](double value) { return tomlNumber(value, 12); };
   return "{position = [" + n(pose.p.x()) + ", " + n(pose.p.y()) + ", " + n(pose.p.z()) +
          "], rotation_xyzw = [" + n(q.x()) + ", " + n(q.y()) + ", " + n(q.z()) + ", " + n(q.w()) + "]}";

@@ -23,7 +23,7 @@ struct PartInPlace {
 };
 
 /// Fixed parts, in their order; then parts that later steps take off, the last step first; then parts that
-/// earlier steps mounted. So the parts that two steps have in common come first and in the same order.
+/// earlier steps mounted. The parts that two steps have in common therefore come first and in the same order.
 std::vector<PartInPlace> partsInPlace(const Scene& scene, std::size_t before_step);
 
 /// The moved part with the least dimension of its box, in its own frame. Moved parts are those of the steps

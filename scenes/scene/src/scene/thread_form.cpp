@@ -16,8 +16,8 @@ namespace {
 constexpr double kTurn_rad = 2 * std::numbers::pi;
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
-/// Radius of the surface around an axis, by angle and height: the greatest of a solid's outside, or the least
-/// of a bore.
+/// Radius of the surface around an axis, by angle and height: the greatest radius for the outside of a solid,
+/// or the least for a bore.
 class RadiusMap {
  public:
   static constexpr int kAngles = 64;
@@ -26,7 +26,7 @@ class RadiusMap {
   RadiusMap(const Mesh& mesh, const Vec3& p, const Vec3& axis, bool is_inside)
       : is_inside_(is_inside), radius_m_(std::size_t{kAngles} * kHeights, kUnknown) {
     const Vec3 x = axis.unitOrthogonal(), y = axis.cross(x);
-    std::vector<Vec3> at;  // in a frame with z along the axis
+    std::vector<Vec3> at;  // vertices in a frame with z along the axis
     low_m_ = std::numeric_limits<double>::infinity();
     double high_m = -low_m_;
     for (const Vec3& v : mesh.vertices) {
@@ -46,7 +46,8 @@ class RadiusMap {
   }
 
  private:
-  // At points closer to each other than half a cell at the triangle's greatest radius.
+  // Samples a triangle at points that are closer to each other than half a cell at the triangle's greatest
+  // radius.
   void sample(const Vec3& a, const Vec3& b, const Vec3& c) {
     const double radius_m = std::max({a.head<2>().norm(), b.head<2>().norm(), c.head<2>().norm()});
     const double arc_m = std::max(radius_m * kTurn_rad / kAngles, row_m_);
@@ -55,12 +56,12 @@ class RadiusMap {
       return static_cast<int>(
           std::clamp(std::ceil(2 * (std::abs(way.z()) / row_m_ + way.head<2>().norm() / arc_m)), 1.0, kMost));
     };
-    // On lines along the shortest side, ac.
+    // The samples are on lines along the shortest side, ac.
     if (pieces(b - a) < pieces(c - a)) return sample(a, c, b);
     if (pieces(b - c) < pieces(c - a)) return sample(c, a, b);
     const int n = std::max(pieces(b - a), pieces(b - c));
     for (int i = 0; i <= n; ++i) {
-      const Vec3 from = a + (b - a) * i / n, to = c + (b - c) * i / n;  // on ab and on cb
+      const Vec3 from = a + (b - a) * i / n, to = c + (b - c) * i / n;  // points on ab and on cb
       const int m = pieces(to - from);
       for (int k = 0; k <= m; ++k) put(from + (to - from) * k / m);
     }
@@ -85,16 +86,16 @@ struct Wave {
   int order = 0;  // positive: right-handed
   double pitch_m = 0;
   double amplitude_m = 0;
-  double share = 0;  // of the variance in the window
+  double share = 0;  // share of the variance in the window
 };
 
 constexpr int kMostStarts = 4;
 
-/// A row of the map: its mean and spread, and what goes around the axis in waves of each order.
+/// A row of the map: its mean, its mean square, and the Fourier coefficients around the axis.
 struct Row {
   bool is_known = false;
   double mean_m = 0, mean_square_m2 = 0;
-  std::complex<double> wave[kMostStarts + 1];  // of order m; that of -m is its conjugate
+  std::complex<double> wave[kMostStarts + 1];  // coefficient of order m; the one of -m is its conjugate
 };
 
 Row rowOf(const RadiusMap& map, int row) {
@@ -119,7 +120,7 @@ Row rowOf(const RadiusMap& map, int row) {
   return out;
 }
 
-/// The rows of a window.
+/// The rows of a window, and their spectrum along the axis.
 class Spectrum {
  public:
   Spectrum(std::span<const Row> rows, double row_m)
@@ -134,17 +135,17 @@ class Spectrum {
     is_known = variance_m2_ > 0;
   }
 
-  /// The strongest wave that goes around the axis.
+  /// The strongest wave with an order other than 0.
   [[nodiscard]] Wave strongest() const {
     constexpr double kLeastRows = 5, kLeastTurns = 2;
-    constexpr int kFiner = 4;  // than one wave in the window
+    constexpr int kFiner = 4;  // frequency steps per wave in the window
     const double length_m = count_ * row_m_;
     Wave best;
     double best_power = 0, best_frequency = 0;
     Eigen::FFT<double> transform;
     std::vector<std::complex<double>> spectrum, padded(static_cast<std::size_t>(kFiner * count_));
     for (int m = -kMostStarts; m <= kMostStarts; ++m) {
-      if (m == 0) continue;  // grooves
+      if (m == 0) continue;  // order 0: grooves around the axis, not a thread
       for (int row = 0; row < count_; ++row)
         padded[static_cast<std::size_t>(row)] = smooth(row) * waveAt(m, row);
       transform.fwd(spectrum, padded);
@@ -156,7 +157,8 @@ class Spectrum {
         }
     }
     if (!(best_power > 0)) return best;
-    // Between its neighbours the peak of a smooth window has no other one.
+    // With a smooth window, the power has a single peak between the neighbouring frequencies, which a ternary
+    // search finds.
     double low = best_frequency - 0.5 / length_m, high = best_frequency + 0.5 / length_m;
     for (int i = 0; i < 40; ++i) {
       const double a = low + (high - low) / 3, b = high - (high - low) / 3;
@@ -172,17 +174,17 @@ class Spectrum {
     return best;
   }
 
-  bool is_known = false;  ///< all rows
+  bool is_known = false;  ///< all rows are known
 
  private:
   [[nodiscard]] std::complex<double> waveAt(int order, int row) const {
     const std::complex<double>* wave = rows_[static_cast<std::size_t>(row)].wave;
     return order < 0 ? std::conj(wave[-order]) : wave[order];
   }
-  // A raised cosine, so that what goes on beyond the window adds little.
+  // A raised cosine, so that the cut at the window's ends adds little.
   [[nodiscard]] double smooth(int row) const { return 1 - std::cos(kTurn_rad * (row + 0.5) / count_); }
 
-  // @param is_smooth  weighted
+  // @param is_smooth  weights the rows by smooth()
   [[nodiscard]] std::complex<double> coefficient(int order, double frequency, bool is_smooth) const {
     const std::complex<double> step = std::polar(1.0, -kTurn_rad * frequency * row_m_);
     std::complex<double> turn = 1, sum = 0;
@@ -198,7 +200,7 @@ class Spectrum {
   double variance_m2_ = 0;
 };
 
-// The thread in the longest window that is mostly thread.
+// The thread in the longest window in which the thread has most of the variance.
 std::optional<ThreadForm> threadIn(const RadiusMap& map, bool is_inside) {
   constexpr double kMostlyThread = 0.5, kLeastDepth = 0.05;  // assumed; ISO threads have 0.9 and 0.5
   if (!(map.row_m() > 0)) return std::nullopt;

@@ -8,7 +8,7 @@
 namespace vps::scenes {
 namespace {
 
-/// Where a line begins; lines count from 1. The text's end for a line beyond the last.
+/// The offset at which a line begins; lines count from 1. The text's end for a line beyond the last.
 std::size_t lineStart(const std::string& text, toml::source_index line) {
   std::size_t at = 0;
   for (; line > 1 && at != std::string::npos; --line) {
@@ -18,7 +18,7 @@ std::size_t lineStart(const std::string& text, toml::source_index line) {
   return std::min(at, text.size());
 }
 
-/// The byte at a position of toml++, which counts characters of UTF-8 in a line, from 1.
+/// The offset of a position of toml++, which counts UTF-8 characters in a line, from 1.
 std::size_t offsetOf(const std::string& text, const toml::source_position& place) {
   const auto isWithinCharacter = [](char c) { return (static_cast<unsigned char>(c) & 0xC0) == 0x80; };
   std::size_t at = lineStart(text, place.line);
@@ -44,7 +44,7 @@ std::string added(const std::string& text, const toml::table* table, const TomlV
   std::size_t at = offsetOf(text, place);
   if (table->is_inline())
     return text.substr(0, at + 1) + line + (table->empty() ? "" : ", ") + text.substr(at + 1);
-  if (at < text.size() && text[at] != '[') {  // it has dotted keys, and this is the first
+  if (at < text.size() && text[at] != '[') {  // the table consists of dotted keys, and this is the first
     at = lineStart(text, place.line);
     return text.substr(0, at) + set.table + "." + line + newline + text.substr(at);
   }
@@ -53,7 +53,7 @@ std::string added(const std::string& text, const toml::table* table, const TomlV
   return text.substr(0, at) + (is_last_line ? newline : "") + line + newline + text.substr(at);
 }
 
-/// The old content with the value set.
+/// The old content with the new value.
 toml::table contentWith(toml::table content, const TomlValue& set) {
   const toml::table one = toml::parse(set.key + " = " + set.value);
   content.insert(set.table, toml::table());
@@ -66,14 +66,15 @@ std::string edited(const std::string& text, const std::string& file, const TomlV
   const toml::table* table = content[set.table].as_table();
   const toml::node* old = table ? table->get(set.key) : nullptr;
   std::string out = old ? replaced(text, *old, set) : added(text, table, set);
-  // What was written in an unforeseen form is left to its author.
+  // A value in an unforeseen form is not edited.
   try {
     if (toml::parse(out) == contentWith(content, set)) return out;
-  } catch (const toml::parse_error&) {  // handled as another content is
+  } catch (const toml::parse_error&) {  // handled as a different content below
   }
   throw LoadError(file, "",
                   "has '" + set.key + "' of [" + set.table +
-                      "] in a form that cannot be edited; write it there as: " + set.key + " = " + set.value);
+                      "] in a form that cannot be edited; write it in this form:  " + set.key + " = " +
+                      set.value);
 }
 
 }  // namespace
