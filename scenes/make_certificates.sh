@@ -4,10 +4,10 @@
 #
 #     scenes/make_certificates.sh keys render device watch
 #
-# makes keys/render, keys/device and keys/watch, one folder for each node, which is all that its machine needs, and
-# keys/authority, which stays here: with it more nodes are made later. What a node may do follows from the start of its
-# name: render..., device..., watch... and operate... (vps ask); a watcher can change nothing. Copy the folders by a way that
-# nobody else reads.
+# makes the folders keys/render, keys/device and keys/watch, one for each node, and keys/authority. The machine of a node needs
+# the folder of its node only. keys/authority stays here; with it, certificates for more nodes can be made later. The start of a
+# node's name determines its rights: render..., device..., watch... or operate... (vps ask); a watcher can change nothing. Copy
+# the folders over a channel that nobody else can read.
 set -euo pipefail
 [ $# -ge 2 ] || { sed -n '3,10s/^# \{0,1\}//p' "$0"; exit 2; }
 out=$1; shift
@@ -59,11 +59,11 @@ XML
 
 topics() { for topic in "$@"; do printf '<topic>%s</topic>' "$topic"; done; }
 
-# Of each topic one role is the writer (scenes/network/src/link/link.h). Who watches may point, for the others who watch.
+# Each topic has one role that writes it (scenes/network/src/link/link.h). A watcher may write a pointer, which the other watchers see.
 written_by() {
   case $1 in
     render*) topics 'vps/*/beat' 'vps/*/scene' 'vps/*/physics' 'vps/*/physics_state' 'vps/*/snapshot' 'vps/*/request' 'vps/*/news' 'vps/*/answer' ;;
-    device*) topics 'vps/*/beat' 'vps/*/haptic' 'vps/*/haptic_state' 'vps/*/reply' 'vps/*/log' 'vps/*/pointer' ;;  # also of a page with a hand
+    device*) topics 'vps/*/beat' 'vps/*/haptic' 'vps/*/haptic_state' 'vps/*/reply' 'vps/*/log' 'vps/*/pointer' ;;  # device nodes of web pages with a hand write pointers too
     watch*) topics 'vps/*/beat' 'vps/*/pointer' ;;
     operate*) topics 'vps/*/ask' ;;
     *) echo "make_certificates.sh: $1 must begin with render, device, watch or operate" >&2; exit 2 ;;

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Measures the saving of modelling only what a scene requires: runs scenes with and without --model-everything,
-alternately, and prints the table of scenes/README.md. Usage: scenes/measure_saving.py [VPS] [--repeats N] [--scenes NAME ...]"""
+alternately, and prints the table of scenes/scene/MODELS.md. Usage: scenes/measure_saving.py [VPS] [--repeats N] [--scenes NAME ...]"""
 import argparse
 import json
 import os

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The key tables in the READMEs are made from the field tables. To write them again after a change:
+// The key tables of scenes/scene/SCENE_FILE.md and viewer/cli/JSON.md are made from the field tables. The
+// command that writes them again after a change:
 //   VPS_WRITE_DOCUMENTATION=1 build/release/tests/test_scenes --gtest_filter=Documentation.*
 #include <gtest/gtest.h>
 
@@ -14,8 +15,8 @@
 #include "scene/read_fields.h"
 #include "vps_scenes/cad/import.h"
 #include "vps_scenes/fits/check_fields.h"
-#include "vps_scenes/planning/study_fields.h"
 #include "vps_scenes/planning/plan_fields.h"
+#include "vps_scenes/planning/study_fields.h"
 #include "vps_scenes/planning/trade_fields.h"
 #include "vps_scenes/scene/settings_fields.h"
 #include "vps_scenes/uses/compare.h"
@@ -104,7 +105,7 @@ void addSetting(std::string& out, const Struct& of, const Group<Get, Rows>& grou
   forEachRow(group.rows, [&](const auto& row) { addSetting(out, std::invoke(group.get, of), row); });
 }
 
-/// Wishes and settings of one table of a scene file.
+/// The lines of the key table of one table of a scene file.
 template <class Struct, class Rows>
 std::string settingLines(const Rows& rows) {
   std::string out;
@@ -164,14 +165,14 @@ std::string resultLines(const std::string& prefix, const Rows& rows) {
 
 const char* const kResultHead = "| key | meaning |\n|---|---|\n";
 
-// --- The READMEs
+// --- The documents
 
 std::string textOf(const std::string& file) {
   std::ifstream in(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// Compares, or writes, the text between the markers "<!-- keys: name -->" and "<!-- end -->" of a README.
+/// Compares, or writes, the text between the markers "<!-- keys: name -->" and "<!-- end -->" of a document.
 void checkSection(const std::string& readme, const std::string& name, const std::string& expected) {
   const std::string file = std::string(VPS_SOURCE_DIR) + "/" + readme;
   std::string text = textOf(file);
@@ -192,7 +193,7 @@ void checkSection(const std::string& readme, const std::string& name, const std:
 }
 
 TEST(Documentation, TheSceneFilesKeysAreThoseOfTheFieldTables) {
-  const std::string readme = "scenes/README.md", head = kSettingHead;
+  const std::string readme = "scenes/scene/SCENE_FILE.md", head = kSettingHead;
   checkSection(readme, "top", head + settingLines<Scene>(kSceneKeys));
   checkSection(readme, "part", head + settingLines<ScenePart>(kPartKeys));
   checkSection(readme, "group", head + settingLines<PartGroup>(kGroupKeys));

@@ -32,11 +32,11 @@ std::vector<double> greatestGaps_m(const std::vector<PlacedSurface>& parts, cons
 ///
 /// A point p of one part overlaps a ball of radius r about c inside another part unless h = |p - c| - r >= 0.
 /// A mean of such h with positive weights is negative only if one of them is negative. Let n be the direction
-/// from c to p, and w the displacement of p relative to c. It increases h by at most n . w + |w|^2 / (2 (|p -
-/// c| - |w|)). The displacement w is linear in the motion of the bodies, up to |turn|^2 arm / 2 for a
-/// rotation. With the weights of the least-squares solution, the forces along n are in balance on each body,
-/// so the linear part of the mean vanishes up to rounding. The remainder of the linear part is bounded over
-/// all motions within the tolerances. Source: Farkas' lemma, with remainders.
+/// from c to p, and w the displacement of p relative to c. The displacement increases h by at most n . w +
+/// |w|^2 / (2 (|p - c| - |w|)). The displacement w is linear in the motion of the bodies, up to |turn|^2 arm
+/// / 2 for a rotation. With the weights of the least-squares solution, the forces along n are in balance on
+/// each body, so the linear part of the mean vanishes up to rounding. The remainder of the linear part is
+/// bounded over all motions within the tolerances. Source: Farkas' lemma, with remainders.
 /// @param moved_m  by body: how far its farthest corner is from where it is drawn
 double provenOverlap_m(const std::vector<PlacedSurface>& parts, const std::vector<Pose>& X_WP,
                        std::span<const PressedTouch> touches, const std::vector<MovableBody>& bodies,
