@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Mesh formats by assimp: STL, OBJ, PLY, glTF, Collada and others.
+// Reads mesh formats by assimp: STL, OBJ, PLY, glTF, Collada and others.
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/MemoryIOWrapper.h>
 #include <assimp/config.h>
@@ -62,7 +62,7 @@ void appendColors(const aiMesh& from, const Color& of_mesh, bool is_gltf, FaceCo
     for (unsigned k = 0; k < 3; ++k) mean += from.mColors[0][face.mIndices[k]];
     Color color = {mean.r / 3, mean.g / 3, mean.b / 3};
     if (!is_gltf) color = linearFromSrgb(color);
-    for (std::size_t k = 0; is_gltf && k < 3; ++k) color[k] *= of_mesh[k];  // by its specification
+    for (std::size_t k = 0; is_gltf && k < 3; ++k) color[k] *= of_mesh[k];  // as glTF specifies
     palette.add(color);
   }
   append(to, count, own, of_mesh);
@@ -128,9 +128,9 @@ struct Walk {
   }
 };
 
-/// glTF is y-up by its specification, and exporters rotate z-up models with their meshes; rotated back, a
-/// part has its frame in CAD. assimp makes Collada y-up by the root's transform alone, so only poses are
-/// rotated back.
+/// Rotates glTF and Collada from y-up to z-up. glTF is y-up by its specification, and exporters rotate z-up
+/// models with their meshes, so meshes are rotated back too, into the part's frame in CAD. assimp makes
+/// Collada y-up through the root's transform alone, so only poses are rotated back.
 void makeZUp(RawCad& cad, bool is_gltf) {
   const Eigen::Affine3d X_ZY(Eigen::AngleAxisd(0.5 * EIGEN_PI, Vec3::UnitX()));
   for (RawPart& part : cad.parts) {
@@ -197,7 +197,7 @@ std::string colladaText(const std::string& file, const ImportSettings& settings,
           (tag ? "states a unit of '" + meter + "' m" : std::string("states no unit")) +
           ": metres are assumed, as Collada defines; set unit or --units for another unit");
   }
-  // assimp reads neither signs nor blanks.
+  // The unit is written anew, since assimp reads neither signs nor blanks in it.
   if (tag)
     text.replace(
         tag->from, tag->end - tag->from,
@@ -261,21 +261,22 @@ bool hasAllVertices(const aiMesh& mesh) {
 RawCad readAssimp(const std::string& file, const FileFormat& format, const ImportSettings& settings,
                   const Progress&) {
   std::optional<MeshText> text;
-  Assimp::Importer importer;  // its logger is silent unless asked
+  Assimp::Importer importer;  // assimp's logger is silent by default
   const bool is_gltf = format.id == CadFormat::Gltf, is_collada = format.id == CadFormat::Collada;
   if (format.name.empty() || (!is_gltf && !importer.IsExtensionSupported("." + format.name)) ||
       format.name == "IFC") {
     throw LoadError(file, "", "has an unknown format; export STEP, glTF, STL, OBJ or PLY");
   }
   RawCad cad;
-  cad.states_unit = is_gltf;  // metres, by its specification
+  cad.states_unit = is_gltf;  // glTF is in metres by its specification
   std::optional<std::string> replaced;
   if (is_gltf) replaced = gltfText(file);
   if (is_collada)
     replaced = colladaText(file, settings, cad);
   else if (!cad.states_unit)
     cad.unit_m = unitOf(file, format, settings);
-  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);  // else identifiers
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES,
+                           true);  // otherwise names are identifiers
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   const aiScene* scene = nullptr;
   try {

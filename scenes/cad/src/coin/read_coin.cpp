@@ -66,7 +66,8 @@ bool areBelow(const SoMFInt32& indices, std::int64_t count) {
   return std::all_of(values, values + indices.getNum(), [&](std::int32_t i) { return i < count; });
 }
 
-/// True if first plus the sum of the counts is within the list; a count of -1 means "the rest".
+/// True if `first` plus the sum of the counts is at most `available`; a count of -1 means "all others" and
+/// adds nothing.
 bool addUpTo(std::int64_t first, const SoMFInt32& counts, std::int64_t available) {
   for (int i = 0; i < counts.getNum(); ++i) first += std::max(counts[i], 0);
   return first <= available;
@@ -183,7 +184,7 @@ std::string nameOf(const SoCallbackAction& action) {
   const SoPath* path = const_cast<SoCallbackAction&>(action).getCurPath();
   for (int i = path->getLength() - 1; i >= 0; --i) {
     const std::string name = path->getNode(i)->getName().getString();
-    if (!name.empty() && name.front() != '_') return name;  // exporters use "_+0" and the like as counters
+    if (!name.empty() && name.front() != '_') return name;  // exporters write counters such as "_+0"
   }
   return "";
 }
@@ -196,7 +197,8 @@ SoCallbackAction::Response beginShape(void* user, SoCallbackAction* action, cons
   }
   RawPart part;
   part.name = nameOf(*action);
-  const SbMatrix& m = action->getModelMatrix();  // for row vectors: the transpose of ours
+  const SbMatrix& m =
+      action->getModelMatrix();  // Coin multiplies row vectors, so its matrix is the transpose of ours
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 4; ++column) part.X_WP(row, column) = double(m[column][row]);
   }
@@ -257,7 +259,7 @@ RawCad readCoin(const std::string& file, const FileFormat& format, const ImportS
     throw LoadError(file, "", "is not a readable " + format.name + " file (" + why + "); export it again");
   }
 
-  // Spheres, cones and cylinders are as fine as Coin makes them, unless the file sets it.
+  // Spheres, cones and cylinders get Coin's finest triangles, unless the file sets its own complexity.
   auto* root = new SoSeparator;
   const NodeHold hold_root(root);
   auto* complexity = new SoComplexity;

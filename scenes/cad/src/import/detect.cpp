@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Detects a file's format, by content before extension, and refuses a file that is cut, where its format
-// defines the end of a complete file: a library may read half an assembly without an error.
+// Detects a file's format, by content before extension. Refuses a file that is cut if its format defines the
+// end of a complete file, since a library may read half an assembly without an error.
 #include <algorithm>
 #include <cctype>
 #include <cstdint>

@@ -256,7 +256,7 @@ class Finder {
 
   Handle(Interface_InterfaceModel) model_;
   Interface_Graph graph_;
-  std::vector<bool> is_needed_;  // by the entities' numbers, which begin with 1
+  std::vector<bool> is_needed_;  // indexed by the number of an entity, from 1
   /// The geometry depends on the unit of angles, through a cone's half angle, a parameter at the end of a
   /// conic or of a surface, the angle of a revolution, or pcurves on round surfaces.
   bool has_angles_ = false;

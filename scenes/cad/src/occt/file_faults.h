@@ -35,7 +35,7 @@ struct Damage {
 
 /// Finds entities that could not be read and cost geometry. Open CASCADE continues with null pointers, zeros
 /// or defaults in their place. In STEP, an entity costs geometry if a shape of a product refers to it, at any
-/// depth, and more could not be read than a name, a pcurve that accompanies a curve in space, an uncertainty,
+/// depth, unless the unread data is only a name, a pcurve that accompanies a curve in space, an uncertainty,
 /// or an annotation or placement that accompanies a shape. In IGES, it costs geometry if it is a curve,
 /// surface, solid, transformation, or an instance of one of these. O(entities and references).
 Damage damageOf(const Handle(Interface_InterfaceModel) & model);

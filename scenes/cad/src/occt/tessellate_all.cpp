@@ -187,7 +187,7 @@ std::vector<std::size_t> longestFirst(const std::vector<TopoDS_Shape>& shapes) {
 std::vector<TopoDS_Shape> pieces(const TopoDS_Shape& shape) {
   std::vector<TopoDS_Shape> found;
   for (TopExp_Explorer it(shape, TopAbs_SOLID); it.More(); it.Next()) found.push_back(it.Current());
-  // 1 um [mm], which suffices for most IGES edges; far less where the file states that the part is tiny.
+  // Tolerance of sewing in mm: 1 um, which is enough for most IGES edges, and less for a tiny part.
   Bnd_Box box;
   BRepBndLib::Add(shape, box);
   const double tolerance = box.IsVoid() ? 1e-3 : std::min(1e-3, 1e-5 * std::sqrt(box.SquareExtent()));

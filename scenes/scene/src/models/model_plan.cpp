@@ -152,7 +152,7 @@ class Planner {
     part.why = "no step moves it and it is not fixed: nothing can touch it, so it is only drawn";
   }
 
-  /// Words on the later steps for which a mounted part is cooked.
+  /// The later steps for which a mounted part is cooked, in words.
   [[nodiscard]] std::string servesLater(std::size_t i, std::size_t moved_in) const {
     std::string steps;
     for (std::size_t s = moved_in + 1; s < plan_.steps.size(); ++s)

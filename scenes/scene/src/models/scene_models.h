@@ -20,8 +20,8 @@ struct BuildTimes {
 
 /// A mesh with the same facets, each moved inwards by the given distance, or outwards if it is negative: the
 /// surface of a part that is pressed in, or that deviates from its size. If the facets at a corner have no
-/// common point at that distance, the corner moves to the nearest one. For distances far below the size of
-/// the facets.
+/// common point at that distance, the corner moves to the nearest one. Meant for distances far below the size
+/// of the facets.
 Mesh shrunkMesh(const Mesh& mesh, double by_m);
 
 /// Whether a step of the plan has the part in its fixed field.

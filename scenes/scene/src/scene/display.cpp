@@ -193,7 +193,7 @@ Display loadDisplay(const std::string& file) {
     const SceneKeys keys(*table, context, "[[viewer]]",
                          {"name", "head", "recorded", "topic", "ros_domain", "network", "eye_distance"});
     display.viewers.push_back(readViewer(keys, display.viewers.size() + 1));
-    if (!display.viewers.back().is_placed) continue;  // its place comes from the network
+    if (!display.viewers.back().is_placed) continue;  // the pose of the head comes from the network
     for (const DisplayScreen& screen : display.screens) requireInFront(keys, display.viewers.back(), screen);
   }
   if (display.viewers.empty()) throw LoadError(file, "", "has no [[viewer]]; give the pose of a head");

@@ -12,7 +12,7 @@
 #include "vps_scenes/scene/fields.h"
 
 // toml++ 3.3 asserts (under clang: assumes) that a table header holds a key, so "[=]" in a user's file would
-// abort. With the assertion off its next lines report the mistake as they should.
+// abort. Without the assertion, the code after it reports the mistake.
 #define TOML_ASSERT(expr) static_assert(true)
 #pragma push_macro("NDEBUG")
 #undef NDEBUG

@@ -11,9 +11,9 @@
 
 namespace vps::scenes {
 
-/// The direction in which a step moves its part home: unit vector, in W, of the last leg of the path of G.
-/// For a step that takes its part off, of the first leg, along which the part comes free. Zero if the part
-/// only rotates there.
+/// The direction in which a step moves its part to its target: unit vector, in W, of the last leg of the path
+/// of G. A step that takes its part off has the direction of the first leg, along which the part comes free.
+/// Zero if the part only rotates there.
 Vec3 insertionAxis(const SceneStep& step, const Pose& X_PG);
 
 /// A part that is in place before a step.
@@ -38,9 +38,10 @@ SmallestPart smallestMoved(const Scene& scene);
 /// and four voxels. In penalty contact each point stands for an area, and the distance is always two voxels.
 /// O(vertices of moved parts).
 ///
-/// Measured: a peg of 8 mm is brought home less than 1 um deep with points every 2 mm, and gets 129 um deep
-/// into the rim of its hole with 4 mm. Edges have points at half the distance, and crossings of edges are
-/// found without points, so more points on faces add time and no accuracy to rigid contacts (FIDELITY.md).
+/// Measured: a peg of 8 mm penetrates its hole by less than 1 um on the way to its target with points every 2
+/// mm, and the rim of the hole by 129 um with points every 4 mm. Edges have points at half the distance, and
+/// crossings of edges are found without points, so more points on faces add time and no accuracy to rigid
+/// contacts (FIDELITY.md).
 double usualSpacing_m(const Scene& scene);
 
 }  // namespace vps::scenes

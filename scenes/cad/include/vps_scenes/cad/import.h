@@ -47,8 +47,8 @@ struct ImportSettings {
   bool guesses_up = false;
   PartPer part_per = PartPer::Body;
   /// Runs the format's library in a child process (POSIX), so that a crash on a damaged file becomes a
-  /// LoadError. False: in this process, for a debugger, or where other threads use Open CASCADE or Coin
-  /// themselves.
+  /// LoadError. False: runs it in this process, for a debugger, or in a program whose other threads use Open
+  /// CASCADE or Coin.
   bool in_own_process = true;
   /// Limits of the child process, which is ended with a LoadError when it exceeds one of them.
   std::uint64_t most_memory_bytes = 0;  ///< 0: half of the machine's memory
@@ -66,7 +66,8 @@ struct ImportedPart {
   /// Greatest distance of the mesh from the faces that the file describes exactly (STEP, IGES, BREP): the
   /// setting, or the measured distance if that is greater; empty for a file of meshes.
   std::optional<double> deflection_m = {};
-  std::string note = {};  ///< how the mesh differs from the exact faces, also among the warnings; empty: not
+  std::string note =
+      {};  ///< deviation of the mesh from the exact faces in words, also among the warnings; empty: none
   /// Names of the assemblies that contain the part, from the outermost, then the name of its product, if the
   /// format has a tree (STEP, IGES, 3MF). Names of instances are unique: a repeated one becomes "<name>_2"
   /// and so on.
@@ -92,8 +93,8 @@ struct ImportedCad {
 /// shapes that together form a closed surface are joined: some exporters write a shape for each face.
 /// glTF and Collada are y-up by definition and are rotated to z-up; other files keep their axes. Inventor
 /// without Units, VRML, and Collada without a unit are in metres unless unit_m is given, STEP and IGES
-/// without one in millimetres. Throws LoadError if the file is missing, cut, empty or damaged, its unit is
-/// unknown, or its format is not built in (the message names the package).
+/// without a unit are in millimetres. Throws LoadError if the file is missing, cut, empty or damaged, its
+/// unit is unknown, or its format is not built in (the message names the package).
 VPS_SCENES_API ImportedCad importCad(const std::string& file, const ImportSettings& settings = {},
                                      const Progress& progress = {});
 
@@ -110,7 +111,7 @@ VPS_SCENES_API bool isCadExtension(std::string_view extension);
 /// Parts that move as one body.
 struct PartGroup {
   std::string name;
-  std::vector<std::string> parts;  ///< names of two or more
+  std::vector<std::string> parts;  ///< names of its parts, two or more
   std::string reason;              ///< why they are a group, in words
 };
 

@@ -19,7 +19,7 @@
 
 namespace vps::scenes {
 
-/// How a scene file spells a number. Members and JSON are always SI.
+/// Notation of a number in a scene file. Members and JSON are always in SI units.
 enum class Quantity {
   Plain,      ///< the member's own unit, which the key names
   Length,     ///< key "voxel": in the file's unit, or text with a unit ("20um"); in JSON "voxel_m"
@@ -48,7 +48,7 @@ struct FieldTraits {
   int since = 1;                       ///< version of the scene archive that first holds the setting
   std::string_view type = {};          ///< for the documentation; empty: the member's type
   std::string_view default_text = {};  ///< for the documentation; empty: the struct's default
-  std::string_view zero_word = {};     ///< of an integer: what a scene file writes for 0
+  std::string_view zero_word = {};     ///< word for the integer 0 in a scene file; empty: none
 };
 
 /// One setting or one reported number.
@@ -99,7 +99,7 @@ template <class Get, class Rows>
 constexpr Group<Get, Rows> group(std::string_view key, Get get, Rows rows, std::string_view meaning = {}) {
   return {key, get, rows, meaning};
 }
-/// An object of members of the struct itself.
+/// A group whose rows are members of the struct itself.
 template <class Rows>
 constexpr Group<std::identity, Rows> object(std::string_view key, Rows rows, std::string_view meaning = {}) {
   return {key, {}, rows, meaning};

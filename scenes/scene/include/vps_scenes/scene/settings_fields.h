@@ -25,7 +25,7 @@ inline constexpr int kValueCount<Distribution> = 2;
 inline constexpr Range kRate_Hz{.min = 1, .max = 1e6};
 inline constexpr Range kCount{.min = 1, .max = 1e6};
 
-/// At the top of the file.
+/// Keys at the top of the file.
 inline constexpr auto kSceneKeys = std::make_tuple(
     Key{"name", "text", "the folder's name", "name of the scene in reports"},
     Key{"unit", "`\"um\"`, `\"mm\"`, `\"cm\"`, `\"m\"`, `\"inch\"`", "none",
@@ -185,7 +185,7 @@ static_assert(coversAllMembers<SceneStep, 5>(kStepKeys));
 /// `[device]`
 inline constexpr auto kDeviceKeys = std::make_tuple(
     field("kind", &DeviceSettings::kind, "`dual_arm`, or a name that `vps device --list` shows"),
-    // Read by hand, since its file is checked; the member is a path.
+    // Read without the field table, since the file is checked and the member is a path.
     Key{"parameters", "file", "none",
         "parameters that differ from [the built-in dual arm](../../device/data/dual_arm.toml)"},
     field("scale", &DeviceSettings::scale, "scene metres per device metre", {.range = kPositive}),
@@ -194,7 +194,7 @@ inline constexpr auto kDeviceKeys = std::make_tuple(
           "a path that exceeds the workspace or the rotation of the device is split, see below; false: such "
           "a path is an error",
           {.since = 3}),
-    // Read by hand, since it is a pose.
+    // Read without the field table, since it is a pose.
     Key{"placement", "pose", "none",
         "pose of the device in the scene, from `vps calibrate`, so that a part that a person holds appears "
         "at the hand. None: the device's axes are the scene's"});
@@ -282,7 +282,7 @@ inline constexpr auto kFidelityChoiceKeys =
                     Key{"auto", "bool", "false",
                         "the program chooses `voxel` and `spacing`, see [FIDELITY.md](../FIDELITY.md)"});
 
-/// `[fidelity]`, whole.
+/// All keys of `[fidelity]`.
 inline constexpr auto kFidelityKeys =
     std::tuple_cat(kFidelityChoiceKeys, kFidelityWishFields, kFidelityFields);
 
