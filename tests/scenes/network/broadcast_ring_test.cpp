@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The ring of messages in shared memory: order, overruns, torn messages, a writer that dies, and garbage.
+// The ring of messages in shared memory: order, overruns, torn messages, a killed writer, and invalid
+// contents.
 #include "link/broadcast_ring.h"
 
 #include <gtest/gtest.h>
@@ -62,7 +63,7 @@ TEST_F(BroadcastRing, AMessageThatIsTooLongIsNotWritten) {
 TEST_F(BroadcastRing, AWriterThatDiesInTheMiddleLeavesTheMessagesBeforeAndTheNextWriterGoesOn) {
   writer_.write("before");
   const std::size_t second_slot = 8 + kShape.slotWords();
-  memory_[second_slot] = 2 * 1 + 1;  // being written
+  memory_[second_slot] = 2 * 1 + 1;  // marks the slot as being written
   memory_[second_slot + 1] = 5;
   EXPECT_EQ(latest(), "before");
   RingWriter next_writer(memory_.get(), kShape);
@@ -93,7 +94,7 @@ TEST_F(BroadcastRing, WritingAndReadingAllocateNothing) {
   EXPECT_EQ(reader_.latest(buffer_).size(), 64u);
 }
 
-/// A message in which every byte says which message it is.
+/// Each byte of a message identifies the message, so that a mixture is detected.
 TEST_F(BroadcastRing, NoReaderSeesHalfOfAMessageWhileOneIsBeingWritten) {
   constexpr int kMessages = 200'000;
   std::atomic<bool> is_done{false};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Offset and drift of another clock, against clocks whose offset and drift are given.
+// Offset and drift of another clock, tested with clocks of known offset and drift.
 #include "link/clock_estimate.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 namespace vps::scenes {
 namespace {
 
-/// Another clock, and a network between: each way takes 20 us and a random time.
+/// Another clock, and a network to it: each direction takes 20 us plus a random time.
 class OtherClock {
  public:
   OtherClock(double offset_s, double drift, double greatest_wait_s)
@@ -33,7 +33,7 @@ class OtherClock {
 
 TEST(ClockEstimate, AnExchangeWithEqualWaysGivesTheOffsetItself) {
   const ClockExchange exchange{1'000'000, 3'000'500'000, 3'000'700'000, 2'200'000};
-  // One way is 500 us: the clock there is 2.999 s ahead.
+  // Each direction takes 500 us, so the other clock is 2.999 s ahead.
   EXPECT_DOUBLE_EQ(exchange.roundTrip_s(), 1e-3);
   EXPECT_DOUBLE_EQ(exchange.offset_s(), 2.999);
   ClockEstimate estimate;
@@ -44,26 +44,27 @@ TEST(ClockEstimate, AnExchangeWithEqualWaysGivesTheOffsetItself) {
   EXPECT_DOUBLE_EQ(estimate.error_s(), 0.5e-3);
 }
 
-// Half of the round trip bounds the error of one exchange. Of 50 in each quarter of a second the shortest
-// counts, whose waits are some 20 us of 100; the bar is 50 us.
+// Half of the round trip bounds the error of one exchange. The shortest of 50 exchanges in each quarter of a
+// second is used; its random delays are about 20 us of at most 100. The test requires 50 us.
 TEST(ClockEstimate, ThreeSecondsAndAHundredPartsInAMillionAreFoundWithinFiftyMicroseconds) {
   OtherClock other(3, 100e-6, 100e-6);
   ClockEstimate estimate;
   for (int i = 0; i < 4000; ++i) {
     const double here_s = 100 + 5e-3 * i;
     estimate.add(other.exchange(here_s));
-    if (i < 800) continue;  // 4 s, all that it keeps
+    if (i < 800) continue;  // the first 4 s fill the history
     const double error_s = estimate.offset_s(std::llround(1e9 * here_s)) - other.offsetAt_s(here_s);
     ASSERT_LE(std::abs(error_s), 50e-6) << i;
     ASSERT_LE(std::abs(error_s), estimate.error_s()) << i;
   }
-  // Offsets off by at most 50 us over 16 s: by least squares well below twice 50 us / 16 s.
+  // Offsets that are off by at most 50 us over 16 s give a drift error well below twice 50 us / 16 s (least
+  // squares).
   EXPECT_NEAR(estimate.drift(), 100e-6, 25e-6);
   EXPECT_EQ(estimate.contradictions(), 0u);
 }
 
-// Two of three stretches of 2 s are busy: each way waits up to 2 ms there, so that the shortest of 50 round
-// trips is some 0.3 ms too long, one way or the other.
+// Two of three periods of 2 s are busy: each direction is delayed by up to 2 ms, so that the shortest of 50
+// round trips is about 0.3 ms too long, in either direction.
 TEST(ClockEstimate, StretchesOfABusyMachineDoNotSpoilIt) {
   OtherClock quiet(3, 100e-6, 60e-6), busy(3, 100e-6, 2e-3);
   ClockEstimate estimate;
@@ -71,7 +72,7 @@ TEST(ClockEstimate, StretchesOfABusyMachineDoNotSpoilIt) {
     const double here_s = 100 + 5e-3 * i;
     const bool is_busy = i / 400 % 3 != 0;
     estimate.add((is_busy ? busy : quiet).exchange(here_s));
-    if (i < 1200) continue;  // one quiet stretch and two busy ones
+    if (i < 1200) continue;  // one quiet period and two busy ones
     const double error_s = estimate.offset_s(std::llround(1e9 * here_s)) - quiet.offsetAt_s(here_s);
     ASSERT_LE(std::abs(error_s), 50e-6) << here_s;
     ASSERT_LE(std::abs(error_s), estimate.error_s()) << here_s;
@@ -86,7 +87,7 @@ TEST(ClockEstimate, APeerThatLiesAboutTimeIsNoticedAndNotBelieved) {
   lie.t1_ns += 20'000'000;
   lie.t2_ns += 20'000'000;
   estimate.add(lie);
-  ClockExchange impossible = other.exchange(1.02);  // answered before it was asked
+  ClockExchange impossible = other.exchange(1.02);  // received before it was sent
   impossible.t2_ns += 10'000'000;
   estimate.add(impossible);
   EXPECT_EQ(estimate.contradictions(), 2u);
@@ -103,17 +104,19 @@ TEST(ClockEstimate, AClockThatWasSetIsFollowedAfterAWhile) {
 }
 
 TEST(ClockEstimate, ATimeOfSendingIsGivenByTheClockHereHoweverFarTheClocksAreApart) {
-  constexpr std::int64_t kNow_ns = 90'000'000'000'000, kAgo_ns = 40'000'000;  // a day after boot; 40 ms ago
+  constexpr std::int64_t kNow_ns = 90'000'000'000'000,
+                         kAgo_ns = 40'000'000;  // a day after boot; sent 40 ms ago
   for (const double ahead_s : {0.0, 3.0, -3.0, 40'000.0, -80'000.0, 1e9}) {
     const auto there_ns = static_cast<std::int64_t>(kNow_ns - kAgo_ns + 1e9 * ahead_s);
-    // A double has 1e18 ns to 128 ns.
+    // A double represents 1e18 ns with a precision of 128 ns.
     EXPECT_NEAR(static_cast<double>(kNow_ns - sentByClockHere_ns(there_ns, ahead_s, kNow_ns)), kAgo_ns, 300);
-    // Of a compact message only the lower bits of the microseconds came: any whole number of wraps is lost.
+    // A compact message has only the lower bits of the microseconds, so any number of wraps may be missing.
     const std::int64_t wraps_ns = 5 * (std::int64_t{1} << 32U) * 1000;
     EXPECT_NEAR(static_cast<double>(kNow_ns - sentByClockHere_ns(there_ns + wraps_ns, ahead_s, kNow_ns)),
                 kAgo_ns, 300);
   }
-  EXPECT_EQ(sentByClockHere_ns(kNow_ns + 1000, 0, kNow_ns), kNow_ns) << "nothing comes before it is sent";
+  EXPECT_EQ(sentByClockHere_ns(kNow_ns + 1000, 0, kNow_ns), kNow_ns)
+      << "a message cannot arrive before it is sent";
 }
 
 }  // namespace

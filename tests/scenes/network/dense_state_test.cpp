@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// States in 40 bytes: right to their rounding, whole ones where these do not do, and no fault by loss, late
-// comers or damage.
+// States in 40 bytes: accurate to their rounding, replaced by whole states if necessary, and robust against
+// loss, late joining and damage.
 #include "messages/dense_state.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ namespace vps::scenes {
 namespace {
 
 constexpr double kPeriod_s = 1.0 / 1600;
-constexpr int kWhole = 8;  ///< sent whole at the beginning
+constexpr int kWhole = 8;  ///< number of whole states at the beginning
 
 Pose poseAt(double x) {
   return {rotationFromVector({0.1 * x, -0.2 * x, 0.3}), Vec3(0.01 * x, 0.4 - 0.02 * x, -0.3)};
@@ -56,8 +56,8 @@ double angle(const Mat3& a, const Mat3& b) {
   return rotationVector(a * b.transpose()).norm();
 }
 
-// Half a micrometre in each direction; rotations four times as coarse as with 20 bits (4.7e-6); mantissas of
-// 9 and 8 bits: half of 1/127 and 1/63 of the greatest.
+// Half a micrometre in each coordinate; rotations four times as coarse as with 20 bits (4.7e-6); mantissas of
+// 9 and 8 bits: half of 1/127 and 1/63 of the greatest component.
 constexpr double kNear_m = 0.87e-6, kNear_rad = 19e-6, kNearTwist = 1.74 * 0.5 / 127,
                  kNearForce = 1.74 * 0.5 / 63;
 
@@ -85,10 +85,10 @@ TEST(DenseState, AHapticStateIsRightToItsRounding) {
     EXPECT_LT((b.V_WG.w - a.V_WG.w).norm(), kNearTwist * a.V_WG.w.norm());
     EXPECT_LT((b.F_hand_W.f - a.F_hand_W.f).norm(), kNearForce * a.F_hand_W.f.norm());
     EXPECT_LT((b.F_hand_W.tau - a.F_hand_W.tau).norm(), kNearForce * a.F_hand_W.tau.norm());
-    EXPECT_EQ(b.F_hand_D.f, a.F_hand_D.f);  // of whole ones
+    EXPECT_EQ(b.F_hand_D.f, a.F_hand_D.f);  // only whole states contain it
     EXPECT_GT(reader.envelope().time_ns, 0);
   }
-  EXPECT_GT(dense, 970);  // one of 65 is whole
+  EXPECT_GT(dense, 970);  // 1 of 65 states is whole
 }
 
 TEST(DenseState, APhysicsStateTellsWhereThePartInHandIs) {
@@ -100,7 +100,7 @@ TEST(DenseState, APhysicsStateTellsWhereThePartInHandIs) {
     ASSERT_EQ(reader.read(writer.write(sent), read), Reading::Good) << step;
     const device::PhysicsState &a = sent.state, &b = read.state;
     EXPECT_EQ(b.step, step);
-    EXPECT_EQ(b.stored_J, 0.25);  // a float has it
+    EXPECT_EQ(b.stored_J, 0.25);  // a float represents it exactly
     EXPECT_NEAR(b.part.time_s, a.part.time_s, 0.6e-6);
     EXPECT_LT((b.part.X_W.p - a.part.X_W.p).norm(), kNear_m);
     const double lever_m = kX_GP.p.norm();
@@ -112,7 +112,7 @@ TEST(DenseState, APhysicsStateTellsWhereThePartInHandIs) {
   }
 }
 
-// Under load, physics' second may be four of the loop's.
+// Under load, one second of physics may take four seconds of the loop.
 TEST(DenseState, APartThatPhysicsMovesMoreSlowlyNeedsNoWholeStates) {
   MessageWriter writer(77, WireForm::Compact);
   MessageReader reader;
@@ -129,7 +129,7 @@ TEST(DenseState, APartThatPhysicsMovesMoreSlowlyNeedsNoWholeStates) {
   EXPECT_GT(dense, 180);
 }
 
-// A part that is taken elsewhere is told at once, and again, since some messages are lost.
+// A new grasp of the part is sent immediately and repeated, since some messages are lost.
 TEST(DenseState, ANewGraspIsSentWholeEightTimes) {
   MessageWriter writer(77, WireForm::Compact);
   int step = 1;
@@ -168,7 +168,7 @@ TEST(DenseState, WhatIsOutOfRangeIsSentWhole) {
   EXPECT_FALSE(isSentDense([](auto& s) { s.tick += 40; }));
 }
 
-// 2 of 10 lost, 1 of 10 after the next one, over a change of the grasp.
+// 2 of 10 messages are lost, and 1 of 10 arrives after its successor, during a change of the grasp.
 TEST(DenseState, LossAndReorderingMakeNoStateWrong) {
   MessageWriter haptics(77, WireForm::Compact), physics(78, WireForm::Compact);
   MessageReader haptic_reader, physics_reader;
@@ -203,7 +203,7 @@ TEST(DenseState, LossAndReorderingMakeNoStateWrong) {
     ASSERT_EQ(part.state.step, newest);
     ASSERT_NEAR(haptic.state.report.time_s, hapticAt(newest).state.report.time_s, 0.6e-6);
     ASSERT_LT((part.state.part.X_W.p - physicsAt(newest).state.part.X_W.p).norm(), kNear_m);
-    // At most the eight that were sent whole after the new grasp were lost.
+    // At most the eight whole states after the new grasp were lost.
     if (tick >= 9'000 && tick < 9'008) continue;
     ASSERT_LT((part.state.held.X_WP.p - physicsAt(newest, X_GP).state.held.X_WP.p).norm(), 5e-6) << tick;
   }
@@ -213,7 +213,7 @@ TEST(DenseState, LossAndReorderingMakeNoStateWrong) {
 TEST(DenseState, WhoJoinsLateWaitsForAWholeOneAndCallsNothingRefused) {
   MessageWriter writer(77, WireForm::Compact);
   for (int tick = 1; tick <= 20; ++tick) writer.write(hapticAt(tick));
-  MessageReader reader;  // of any device
+  MessageReader reader;  // accepts any device
   HapticMessage read;
   int early = 0;
   for (int tick = 21; tick < 200; ++tick) {
@@ -247,7 +247,7 @@ TEST(DenseState, ReplayedForeignAndDamagedOnesAreRefused) {
   bytes[0] = static_cast<char>(bytes[0] ^ 0x20);
   EXPECT_EQ(reader.read(bytes, read), Reading::BadKind);
   bytes = dense;
-  bytes[7] = static_cast<char>(bytes[7] | 0x38);  // a status that there is not
+  bytes[7] = static_cast<char>(bytes[7] | 0x38);  // an invalid status
   EXPECT_EQ(reader.read(bytes, read), Reading::BadValue);
   EXPECT_EQ(read.state.tick, 20);
   EXPECT_EQ(reader.read(dense, read), Reading::Good);
@@ -257,7 +257,7 @@ TEST(DenseState, ReplayedForeignAndDamagedOnesAreRefused) {
   EXPECT_EQ(reader.read(dense, physics), Reading::BadKind);
 }
 
-// Found by fuzzing: a float holds energies that a whole state may not have.
+// Found by fuzzing: a float can hold energies that a whole state must not have.
 TEST(DenseState, AnEnergyBeyondWhatNodesSendIsRefused) {
   MessageWriter writer(77, WireForm::Compact);
   MessageReader reader;
@@ -271,7 +271,7 @@ TEST(DenseState, AnEnergyBeyondWhatNodesSendIsRefused) {
   EXPECT_EQ(reader.read(bytes, read), Reading::BadValue);
 }
 
-// Whatever one flipped bit does, the state is right again by the next whole one.
+// After one flipped bit, the state is correct again with the next whole state at the latest.
 TEST(DenseState, AFlippedBitIsOverWithTheNextWholeState) {
   for (std::size_t bit = 0; bit < 8 * kDenseMessageBytes; ++bit) {
     MessageWriter writer(77, WireForm::Compact);

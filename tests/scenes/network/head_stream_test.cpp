@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where the heads in front of a display are: recorded, or from the network.
+// Poses of the heads in front of a display, recorded or from the network.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -20,7 +20,8 @@ namespace {
 const std::string kWall =
     "[[screen]]\nname = 'wall'\nlower_left = [-0.8, 0, 0]\nlower_right = [0.8, 0, 0]\n"
     "upper_left = [-0.8, 0, 0.9]\n[[viewer]]\nname = 'anna'\n";
-// Upright in front of the wall; a second later 0.2 m to the right and turned by 90 degrees about its x.
+// The head is upright in front of the wall; a second later it is 0.2 m to the right and turned by 90 degrees
+// about its x axis.
 const std::string kTrack =
     "time_s,x,y,z,qx,qy,qz,qw\n0,0,-1,0.5,0.70710678,0,0,0.70710678\n"
     "1, 0.2, -1, 0.5, 0, 0, 0, 1\n";
@@ -51,9 +52,10 @@ TEST_F(HeadStream, ARecordedHeadIsBetweenItsPosesAndStaysBeyondThem) {
   EXPECT_FALSE(heads.isLive());
   const auto head = [&](double time_s) { return heads.at(time_s).viewers[0].X_SE; };
   EXPECT_EQ(head(-1).p, Vec3(0, -1, 0.5));
-  // 1e-15: sums of numbers below one.
+  // 1e-15 is the rounding of sums of numbers below one.
   EXPECT_LT((head(0.25).p - Vec3(0.05, -1, 0.5)).norm(), 1e-15);
-  EXPECT_NEAR(rotationVector(head(0.25).R)[0], 0.75 * std::numbers::pi / 2, 1e-7);  // as the file has digits
+  EXPECT_NEAR(rotationVector(head(0.25).R)[0], 0.75 * std::numbers::pi / 2,
+              1e-7);  // precision of the digits in the file
   EXPECT_EQ(head(7).p, Vec3(0.2, -1, 0.5));
 }
 
@@ -110,7 +112,7 @@ Snapshot headAt(const Vec3& p_S) {
   return shot;
 }
 
-/// Until the head is there, for 10 s at most, as discovery takes its time.
+/// Waits until the head's pose has arrived, for at most 10 s because of discovery.
 bool comes(TrackedHeads& heads, RosTopics& tracker, const Vec3& published_S, const Vec3& wanted_S) {
   for (int i = 0; i < 1000; ++i) {
     tracker.publish(headAt(published_S), 0);
@@ -122,13 +124,13 @@ bool comes(TrackedHeads& heads, RosTopics& tracker, const Vec3& published_S, con
 
 TEST_F(HeadStream, AHeadFollowsItsTopicAndStaysInFrontOfTheScreen) {
   TrackedHeads heads(load(kTopic + "head = {position = [0, -1, 0.5], rpy_deg = [90, 0, 0]}\n"));
-  heads.waitForAll(0);  // its place is known
+  heads.waitForAll(0);  // its pose is known
   EXPECT_TRUE(heads.isLive());
   EXPECT_EQ(heads.at(0).viewers[0].X_SE.p, Vec3(0, -1, 0.5));
   RosTopics tracker(kDomain, "lo", "tracker", Scene());
   ASSERT_TRUE(comes(heads, tracker, {0.25, -1.5, 0.5}, {0.25, -1.5, 0.5}));
   EXPECT_TRUE(heads.takeNews().empty());
-  // Behind the wall: the picture stays, and this is said once.
+  // The head is behind the wall: the picture keeps the last pose, which is reported once.
   for (int i = 0; i < 100; ++i) {
     tracker.publish(headAt({0, 1, 0.5}), 0);
     std::this_thread::sleep_for(std::chrono::milliseconds(10));

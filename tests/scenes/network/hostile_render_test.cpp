@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A device node whose render node sends what a render node must not.
+// A device node whose render node sends invalid data.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -21,7 +21,7 @@
 namespace vps::scenes {
 namespace {
 
-/// The render node's end of a session, written by hand.
+/// The render node's end of a session, implemented by hand.
 class HostileRender : public testing::Test {
  protected:
   void SetUp() override {
@@ -113,8 +113,8 @@ TEST_F(HostileRender, NoPhysicsTakesTheForceBeyondTheDevicesLimits) {
     most_Nm = std::max(most_Nm, now.report.F_hand_D.tau.norm());
     with_force += now.report.F_hand_D.f.norm() > 1;
     if (now.safety.fault != device::SafetyFault::None) ask({.command = device::SyncEventKind::Rearm});
-    // A part that is pulled away by half a metre and turned, and later one that jumps from side to side at
-    // the speed of a bullet, spins, and weighs as much as a ship.
+    // A part that is pulled away by half a metre and turned; later a part that jumps from side to side at the
+    // speed of a bullet, spins, and weighs as much as a ship.
     const bool jumps = i > 1500;
     const double side = jumps && i / 40 % 2 == 0 ? -0.5 : 0.5;
     PhysicsMessage physics;
@@ -126,7 +126,7 @@ TEST_F(HostileRender, NoPhysicsTakesTheForceBeyondTheDevicesLimits) {
     physics.state.step = i;
     link_->send(Channel::Physics, writer_->write(physics));
   }
-  // Rounding of the scaling to the limit: a few parts in 1e16.
+  // Tolerance for the rounding of the scaling to the limit: a few parts in 1e16.
   EXPECT_LE(most_N, hello_.limits.peak_force_N * (1 + 1e-12));
   EXPECT_LE(most_Nm, hello_.limits.peak_torque_Nm * (1 + 1e-12));
   EXPECT_GT(with_force, 100) << "the test never reached the device";
@@ -134,25 +134,25 @@ TEST_F(HostileRender, NoPhysicsTakesTheForceBeyondTheDevicesLimits) {
   EXPECT_NE(said().find("this device is only passive up to"), std::string::npos) << said();
 }
 
-// Without the bound a spring of 1 GN/m would reach its limit of force at any distance that can be measured.
+// Without the bound, a spring of 1 GN/m would reach its force limit at any measurable distance.
 TEST_F(HostileRender, StiffnessIsBoundedByWhatTheDevicesPassivityAllows) {
   const CouplingGains most = passiveGains(scene_, hello_.limits, scene_.fidelity.physics_rate_hz);
   CouplingGains stiff = most;
-  stiff.k_N_per_m = 1e5;  // usable(), but hundreds of times too stiff
+  stiff.k_N_per_m = 1e5;  // accepted by areUsable(), but hundreds of times too stiff
   stiff.b_Ns_per_m = 0;
   ask({.kind = RequestKind::Setup, .gains = stiff});
   ask({.kind = RequestKind::Start});
   RequestMessage hand_over{.command = device::SyncEventKind::HandOver};
   hand_over.X_WG = state().report.X_WG;
   ask(hand_over);
-  // A part that is held 2 mm away: the force ramps up after the grasp, so the greatest one counts.
+  // The part is held 2 mm away. The force ramps up after the grasp, so the greatest force is compared.
   constexpr double kAway_m = 2e-3;
   const Vec3 p_W = hand_over.X_WG.p + Vec3(kAway_m, 0, 0);
   double stiffest_N_per_m = 0;
   for (int i = 0; i < 1500; ++i) {
     const device::HapticState& now = state();
-    // The device waits 15 ms for physics, and a busy machine may keep this thread from running for longer.
-    // Rearmed it takes the part without force from where it is, so it gets it again 2 mm away.
+    // The device waits 15 ms for physics, and on a busy machine this thread may be delayed for longer. A
+    // re-armed device grasps the part without force at its pose, so the part is moved 2 mm away again.
     if (now.safety.fault != device::SafetyFault::None) {
       ask({.command = device::SyncEventKind::Rearm});
       ask(hand_over);
@@ -167,8 +167,8 @@ TEST_F(HostileRender, StiffnessIsBoundedByWhatTheDevicesPassivityAllows) {
     link_->send(Channel::Physics, writer_->write(physics));
   }
   EXPECT_GT(stiffest_N_per_m, 0.1 * most.k_N_per_m) << "the test never reached the spring";
-  // The part's state is a few ticks old, and the damper adds its share: far below the factor of 100 asked
-  // for.
+  // The part's state is a few ticks old, and the damper contributes; the sum is far below the requested
+  // factor of 100.
   EXPECT_LT(stiffest_N_per_m, 2 * most.k_N_per_m);
 }
 
@@ -178,7 +178,8 @@ TEST_F(HostileRender, AStepThatTheSceneDoesNotHaveIsRefusedInWords) {
   EXPECT_NE(std::string(ask(begin).refusal.data()).find("names step 3, but the scene has 2 steps"),
             std::string::npos);
   RequestMessage back{.command = device::SyncEventKind::GoBack};
-  back.step = static_cast<std::uint32_t>(scene_.steps.size());  // after the last one: home
+  back.step =
+      static_cast<std::uint32_t>(scene_.steps.size());  // the step after the last one: the home position
   EXPECT_STREQ(ask(back).refusal.data(), "");
   back.step = 0xffffffff;
   EXPECT_STRNE(ask(back).refusal.data(), "");
@@ -186,7 +187,7 @@ TEST_F(HostileRender, AStepThatTheSceneDoesNotHaveIsRefusedInWords) {
   EXPECT_EQ(result_.refused_requests, 2u);
 }
 
-// Viewers take the step as an index.
+// Viewers use the step as an index.
 TEST_F(HostileRender, ASnapshotOfAStepThatTheSceneDoesNotHaveIsNotTaken) {
   const std::unique_ptr<SessionWatcher> watcher = SessionWatcher::join(session_);
   ASSERT_NE(watcher, nullptr);
@@ -210,7 +211,7 @@ TEST_F(HostileRender, NegativeGainsAreNotRead) {
   RequestMessage setup{.kind = RequestKind::Setup};
   setup.gains.b_Ns_per_m = -1;
   link_->send(Channel::Request, writer_->write(setup));
-  ask({.kind = RequestKind::Start});  // in order, so the one before was read
+  ask({.kind = RequestKind::Start});  // requests are read in order, so the previous one was read
   endDevice();
   EXPECT_EQ(result_.refused, 1u);
 }

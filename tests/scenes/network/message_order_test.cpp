@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One damaged number must not make all later messages old, and what somebody kept must not become new.
+// One damaged number must not make all later messages old, and replayed messages must not become new.
 #include "messages/message_order.h"
 
 #include <gtest/gtest.h>
@@ -17,11 +17,11 @@ constexpr std::int64_t kPeriod_ns = 1'000'000;
 class Sender {
  public:
   Place send(std::uint64_t number) { return order.place(number, timeOf(number), at(number)); }
-  /// A message with a damaged number, at that time.
+  /// A message with a damaged number, sent at this time.
   Place sendAs(std::uint64_t number, std::uint64_t when) {
     return order.place(number, timeOf(when), at(when));
   }
-  /// A message that was kept and comes again later.
+  /// A message that was stored and is sent again later.
   Place sendAgain(std::uint64_t number, std::uint64_t when) {
     return order.place(number, timeOf(number), at(when));
   }
@@ -45,7 +45,8 @@ TEST(MessageOrder, NoBitOfANumberStopsTheMessagesAfterIt) {
 
 TEST(MessageOrder, ADamagedFirstNumberIsCorrected) {
   Sender sender;
-  EXPECT_EQ(sender.sendAs(std::uint64_t{1} << 60U, 1), Place::Next);  // nothing to compare it with
+  EXPECT_EQ(sender.sendAs(std::uint64_t{1} << 60U, 1),
+            Place::Next);  // the first message has no predecessor to compare with
   EXPECT_EQ(sender.send(2), Place::Old);
   EXPECT_EQ(sender.send(3), Place::Old);
   EXPECT_EQ(sender.send(4), Place::Next);
@@ -63,7 +64,7 @@ TEST(MessageOrder, KeptMessagesStayOldHoweverManyComeAndWhenever) {
 TEST(MessageOrder, APauseOfTheLinkIsNoJump) {
   Sender sender;
   ASSERT_EQ(sender.send(1), Place::Next);
-  EXPECT_EQ(sender.send(60'000), Place::Next);  // after a minute
+  EXPECT_EQ(sender.send(60'000), Place::Next);  // sent a minute later
   EXPECT_EQ(sender.sendAs(60'001 + MessageOrder::kMostAtOnce + 100, 60'001), Place::TooFarAhead);
   EXPECT_EQ(sender.send(60'001), Place::Next);
 }
@@ -75,9 +76,9 @@ TEST(MessageOrder, ARequestThatIsSentAgainCountsOnce) {
   EXPECT_EQ(sender.send(20), Place::Next);
 }
 
-// The bytes of the number in a message, as a flipped bit on the way changes them.
+// The bytes of the number in a message, which a flipped bit changes.
 TEST(MessageOrder, AReaderSurvivesAFlippedBitInEachByteOfTheNumber) {
-  constexpr std::size_t kNumberAt = 12;  // kind, version and sender are before it
+  constexpr std::size_t kNumberAt = 12;  // kind, version and sender precede it
   for (std::size_t byte = 0; byte < 8; ++byte) {
     MessageWriter writer(5);
     MessageReader reader;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Messages between nodes: read back to the bit, and refused where anything about them is wrong.
+// Messages between nodes: read back bit for bit, and refused if any part of them is invalid.
 #include "messages/messages.h"
 
 #include <gtest/gtest.h>
@@ -63,7 +63,7 @@ Reading readingOf(std::string_view bytes) {
   return reader.read(bytes, message);
 }
 
-/// What was read has the bytes that were written.
+/// A message that was written again after reading has the same bytes.
 template <typename Message>
 void expectReadBack(const Message& message) {
   const std::string bytes = bytesOf(message);
@@ -161,12 +161,12 @@ TEST(Messages, ValuesThatNoNodeSendsInGoodFaithAreRefused) {
   EXPECT_TRUE(refused([](auto& s) { s.part.X_W.p.y() = kNan; }));
   EXPECT_TRUE(refused([](auto& s) { s.part.V_W.w.z() = kInfinite; }));
   EXPECT_TRUE(refused([](auto& s) { s.part.time_s = 1e300; }));
-  EXPECT_TRUE(refused([](auto& s) { s.held.X_WP.R *= 1.001; }));                      // no rotation
+  EXPECT_TRUE(refused([](auto& s) { s.held.X_WP.R *= 1.001; }));                      // not a rotation
   EXPECT_TRUE(refused([](auto& s) { s.part.X_W.R.col(0) = -s.part.X_W.R.col(0); }));  // a reflection
   EXPECT_FALSE(refused([](auto& s) { s.part.X_W.p.x() = 1e3; }));
 
   std::string flag = bytesOf(HelloMessage{});
-  flag.back() = 2;  // may_rearm
+  flag.back() = 2;  // the byte of may_rearm
   EXPECT_EQ(readingOf<HelloMessage>(flag), Reading::BadValue);
   HelloMessage endless;
   endless.name.fill('x');
@@ -198,8 +198,8 @@ TEST(Messages, TheHapticThreadsMessagesAreWrittenAndReadWithoutAllocating) {
   EXPECT_FALSE(writer.write(log).empty());
 }
 
-// Over UDP, the whole ones. A pose is right to a float's rounding (6e-8 of a length) and 20 bits of a
-// quaternion, twist and wrench to a half float's (5e-4).
+// The whole states over UDP. A pose is accurate to a float's rounding (6e-8 of a length) and to 20 bits of a
+// quaternion, twist and wrench to a half float's rounding (5e-4).
 TEST(Messages, CompactStatesAreRightToTheirRounding) {
   MessageWriter compact(5, WireForm::Compact);
   MessageReader reader;
@@ -229,8 +229,8 @@ TEST(Messages, EveryRotationIsPackedToTwentyBits) {
     ASSERT_TRUE(read.has_value());
     worst_rad = std::max(worst_rad, rotationVector(*read * R.transpose()).norm());
   }
-  // Three components are off by half a step of 1.35e-6 each, and a turn is twice a quaternion's way; the
-  // largest one follows from them.
+  // Three components are off by half a step of 1.35e-6 each, and the rotation angle is twice the distance of
+  // the quaternions; the largest component follows from the others.
   EXPECT_LT(worst_rad, 5e-6);
   EXPECT_FALSE(unpackedRotation(~std::uint64_t{0}).has_value());
   EXPECT_FALSE(unpackedRotation((std::uint64_t{1} << 60U) - 1).has_value());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The link over UDP, on the loopback interface: both ends in this process, which DDS does not make shorter.
+// The link over UDP on the loopback interface. Both ends are in this process; DDS uses no shortcut for that.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -41,7 +41,7 @@ class NetworkLink : public testing::Test {
       if (auto link = joinSession(session_, role, "lo")) return link;
     return nullptr;
   }
-  /// Within a few seconds.
+  /// Waits for a few seconds until the condition holds.
   static bool soon(const std::function<bool()>& isSo) {
     for (int i = 0; i < 500; ++i) {
       if (isSo()) return true;
@@ -88,12 +88,12 @@ TEST_F(NetworkLink, BothKnowTheRoundTripAndThatTheClocksAreOne) {
   ASSERT_TRUE(soon([&] { return render_->timing(NodeRole::Device).has_value(); }));
   const PeerTiming timing = *render_->timing(NodeRole::Device);
   EXPECT_GT(timing.round_trip_s, 0);
-  // Both ends read the same clock: its offset is 0.
+  // Both ends read the same clock, so the offset is 0.
   EXPECT_LE(std::abs(timing.clock_offset_s), timing.clock_error_s);
 }
 
 #if __has_include(<dds/dds.h>)
-// It says that it had a beat a second before that was sent, so a round trip took less than no time.
+// The peer claims to have received a beat a second before it was sent, so that the round trip is negative.
 TEST_F(NetworkLink, APeerThatLiesAboutTimeIsReportedOnceAndItsBadBeatsAreCounted) {
   const DdsParticipant participant("lo");
   std::atomic<std::uint64_t> render{0};
@@ -130,8 +130,8 @@ TEST_F(NetworkLink, APeerThatLiesAboutTimeIsReportedOnceAndItsBadBeatsAreCounted
 }
 #endif
 
-// Pictures were stamped with the time at which they were read, so that a watcher that was busy showed them as
-// new.
+// Earlier, snapshots were stamped with the time at which they were read, so that a busy watcher showed old
+// snapshots as new.
 TEST_F(NetworkLink, AWatcherKnowsWhenASnapshotWasSentByItsOwnClock) {
   render_.reset();
   render_ = makeSession(session_ + "-clock", sceneToBytes(twoPins()), "lo");
@@ -147,7 +147,8 @@ TEST_F(NetworkLink, AWatcherKnowsWhenASnapshotWasSentByItsOwnClock) {
     const std::int64_t sent_ns = now_ns();
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
     if (!watcher->takeSnapshot()) continue;
-    const double error_ns = 1e9 * render_->timing(NodeRole::Watch)->round_trip_s + 1000;  // of a compact time
+    const double error_ns =
+        1e9 * render_->timing(NodeRole::Watch)->round_trip_s + 1000;  // plus the rounding of compact times
     is_known = static_cast<double>(watcher->snapshotSent_ns() - sent_ns) < error_ns &&
                static_cast<double>(before_ns - watcher->snapshotSent_ns()) < error_ns && error_ns < 1e8;
   }
@@ -192,7 +193,8 @@ TEST_F(NetworkLink, ARunOverUdpHasTheVerdictOfOneProcess) {
   EXPECT_EQ(device_result.refused, 0u);
 }
 
-// States are sent with every bit then, and the loop's log comes later than the states that physics answers.
+// During a recording, states are sent with all bits, and the loop's log arrives later than the states that
+// physics answers.
 TEST_F(NetworkLink, ARunOverUdpIsReplayedBitForBit) {
   render_.reset();
   const test::TemporaryFolder folder;

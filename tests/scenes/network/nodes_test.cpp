@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Render node, device node and watcher of one session. Here each is a thread, so that sanitizers see all of
-// them; tests/program/nodes_test.cpp runs processes.
+// Render node, device node and watcher of one session. Each node is a thread here, so that sanitizers check
+// all of them; tests/program/nodes_test.cpp runs processes.
 #include "vps_scenes/network/nodes.h"
 
 #include <gtest/gtest.h>
@@ -32,7 +32,7 @@ struct Ran {
   DeviceNodeResult device;
 };
 
-/// Runs two pins with the device on a thread of its own.
+/// Runs two pins with the device node in its own thread.
 Ran runTwoPins(const std::string& file = "") {
   Scene scene = twoPins();
   RenderOptions render;
@@ -70,10 +70,10 @@ TEST(Nodes, ARecordingOfTwoNodesIsReplayedBitForBitByOne) {
   EXPECT_GT(replayed.equal, ran.result.haptic.count);
 }
 
-// Physics that takes long lives all the same. The hand was let go of after 15 ms, and with a few of these on
-// its way a part of the sample scene was not brought home. A busy machine can keep the thread that gives the
-// sign of life from running for as long, which is then a fault in earnest, so one session of five must be
-// without: if long steps were faults, each session would have several.
+// A long physics step must not count as a lost node. Earlier the device released the part after 15 ms, and a
+// part of the sample scene did not reach its target. On a busy machine the thread that sends the signs of
+// life may be delayed for as long, which is a true fault. Therefore one session of five must be without
+// faults: if long steps were faults, each session would have several.
 TEST(Nodes, ALongStepOfPhysicsIsNoFault) {
   constexpr int kSessions = 5;
   for (int i = 0; i < kSessions; ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The render node's driver of a loop in another process, with a device node that says what a test wants.
+// The render node's driver of a loop in another process, with a scripted device node.
 #include <gtest/gtest.h>
 
 #include <deque>
@@ -14,7 +14,8 @@
 namespace vps::scenes {
 namespace {
 
-/// Answers each request at once, and gives the states that a test has put there, as a network might.
+/// Answers each request at once, and returns the states that a test has queued, as a network might deliver
+/// them.
 class ScriptedDevice final : public Link {
  public:
   explicit ScriptedDevice(bool may_rearm = false) {
@@ -35,7 +36,7 @@ class ScriptedDevice final : public Link {
     addLog(device::SyncEvent{0, tick, 1, 0, device::SyncEventKind::Tick});
     addLog(device::WrittenWrench{});
   }
-  ReplyMessage answer;  ///< to what is asked next
+  ReplyMessage answer;  ///< to the next request
   std::optional<device::SyncEventKind> last_command;
 
   bool send(Channel channel, std::string_view bytes) noexcept override {
@@ -76,8 +77,8 @@ class ScriptedDevice final : public Link {
   std::uint32_t log_number_ = 0;
 };
 
-// A recording could not be replayed, and a step ended before it began, when the state of the tick before a
-// command came after its reply.
+// Earlier, if the state of the tick before a command came after its reply, a recording could not be replayed,
+// and a step ended before it began.
 TEST(RemoteDriver, AStateFromBeforeACommandDoesNotShowWhatTheHandDoesAfterIt) {
   using device::OperatorPhase;
   ScriptedDevice device;
@@ -101,7 +102,7 @@ TEST(RemoteDriver, AStateFromBeforeACommandDoesNotShowWhatTheHandDoesAfterIt) {
   EXPECT_EQ(driver->phase(), OperatorPhase::Press);
 }
 
-/// What physics logs, in words.
+/// The log entries of physics, in words.
 class WrittenLog final : public device::RunLog {
  public:
   void add(const device::LogEntry& entry) noexcept override {
@@ -118,8 +119,8 @@ device::RunEvent faultIn(const std::string& words) {
   return event;
 }
 
-// A replay reads the loop's state after it has logged the step. A run that reported the fault before it was
-// not replayed: "comes with /run/sync_event where the recording has /run/event".
+// A replay reads the loop's state after it has logged the step. A run that reported the fault before the step
+// was not replayed: "comes with /run/sync_event where the recording has /run/event".
 TEST(RemoteDriver, AFaultIsReportedAfterTheStepThatSeesIt) {
   ScriptedDevice device;
   DeviceEnd end(device, nullptr, [](const std::string&) {});
@@ -139,7 +140,7 @@ TEST(RemoteDriver, AFaultIsReportedAfterTheStepThatSeesIt) {
   EXPECT_EQ(written.order, "step 1; step 2; fault; ");
 }
 
-/// The command that a faulted loop gets once others have asked for it to be re-armed.
+/// The command that a faulted loop gets after others requested that it be re-armed.
 std::optional<device::SyncEventKind> commandAfterRearm(bool may_rearm) {
   ScriptedDevice device(may_rearm);
   RunRequests requests;
@@ -155,14 +156,15 @@ std::optional<device::SyncEventKind> commandAfterRearm(bool may_rearm) {
     device.addState(tick, device::OperatorPhase::Insert, 1);
     EXPECT_TRUE(driver->advance());
   }
-  EXPECT_FALSE(device.last_command) << "nobody has asked";
+  EXPECT_FALSE(device.last_command) << "nobody has requested it";
   requests.rearm();
   device.addState(3, device::OperatorPhase::Insert, 1);
   EXPECT_TRUE(driver->advance());
   return device.last_command;
 }
 
-// The request handler refuses it in words; a device that joined in between is safe all the same.
+// The request handler refuses the request with a reason; a device that joined in the meantime must be safe as
+// well.
 TEST(RemoteDriver, OnlyADeviceThatAllowsItIsRearmedForOthers) {
   EXPECT_EQ(commandAfterRearm(true), device::SyncEventKind::Rearm);
   EXPECT_EQ(commandAfterRearm(false), std::nullopt);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is asked of a render node while it runs. tests/program/ask_test.cpp does the same by the program.
+// Requests to a running render node. tests/program/ask_test.cpp tests the same with the program.
 #include "vps_scenes/network/request_server.h"
 
 #include <fcntl.h>
@@ -39,7 +39,7 @@ std::string sessionName() {
       .append(std::to_string(std::hash<std::string>{}(info->name()) % 100000));
 }
 
-/// A handler of a run of two pins, without sockets and without a run.
+/// A request handler for two pins, without sockets and without a run.
 class RequestHandlerTest : public testing::Test {
  protected:
   void SetUp() override { begin(); }
@@ -87,7 +87,7 @@ class RequestHandlerTest : public testing::Test {
     wish.wants_file = true;
     return answerTo(std::string(asker_.write(wish)));
   }
-  /// The first piece of the recording that was asked for.
+  /// The first piece of the requested recording.
   std::string fetchedBytes() {
     const auto fetched = std::make_unique<FetchedMessage>();
     answered_ = handler_.answer({1, std::string(asker_.write(message(AskKind::Fetch))), false});
@@ -128,7 +128,7 @@ TEST_F(RequestHandlerTest, AnAnswerNamesWhomItIsForAndARequestThatIsRepeatedIsCa
   EXPECT_EQ(answer.asker, asker_.sender());
   EXPECT_EQ(answer.number, 1u);
   EXPECT_TRUE(requests_.isReleaseWanted());
-  requests_.beginStep(1);  // clears it
+  requests_.beginStep(1);  // clears the request
   EXPECT_EQ(answerTo(bytes).number, 1u);
   EXPECT_FALSE(requests_.isReleaseWanted());
 }
@@ -158,16 +158,16 @@ TEST_F(RequestHandlerTest, NothingIsReleasedThatIsNotInHand) {
   EXPECT_FALSE(ask(AskKind::Release).is_done);
   EXPECT_FALSE(requests_.isReleaseWanted());
   requests_.beginStep(1);
-  run_.end();  // stopped while a part was in hand
+  run_.end();  // the run stopped while a part was in hand
   EXPECT_TRUE(says(ask(AskKind::Release), "nothing is in hand"));
   EXPECT_TRUE(says(askGains(500), "no device has joined"));
 }
 
-// The system lists their marks in the order in which they joined, not by the number of their process.
+// The system lists the watchers' locks in the order in which they joined, and not by process number.
 TEST_F(RequestHandlerTest, WatchersAreCountedWhateverTheirOrder) {
   int pipe_ends[2];
   ASSERT_EQ(pipe(pipe_ends), 0);
-  const pid_t child = fork();  // has a higher number than this process, and joins before it
+  const pid_t child = fork();  // has a higher number than this process, and joins first
   if (child == 0) {
     const std::unique_ptr<Link> watcher = joinSession(session_, NodeRole::Watch);
     (void)!write(pipe_ends[1], "w", 1);
@@ -290,7 +290,7 @@ TEST_F(RequestHandlerTest, ARunThatHasBegunIsRecordedNoLongerAndAStoppedOneHasNo
   EXPECT_FALSE(says(between, "again"));
 }
 
-// As with vps render --stay.
+// This is the case of vps render --stay.
 TEST_F(RequestHandlerTest, WhoAsksBetweenTwoRunsReceivesTheRecordingOfTheNextOne) {
   const test::TemporaryFolder folder;
   options_.recordings = folder.path();
@@ -301,7 +301,7 @@ TEST_F(RequestHandlerTest, WhoAsksBetweenTwoRunsReceivesTheRecordingOfTheNextOne
   run_.end();
   EXPECT_TRUE(says(askForFile("second.mcap"), "the next run is recorded in"));
   EXPECT_TRUE(says(ask(AskKind::Fetch), "has not ended"));
-  EXPECT_FALSE(handler_.isFetched(device::monotonicSeconds()));  // no file is his yet
+  EXPECT_FALSE(handler_.isFetched(device::monotonicSeconds()));  // the requester has no file yet
   begin();
   EXPECT_TRUE(says(ask(AskKind::Fetch), "has not ended"));
   run_.beginRecording(second);
@@ -311,7 +311,7 @@ TEST_F(RequestHandlerTest, WhoAsksBetweenTwoRunsReceivesTheRecordingOfTheNextOne
   EXPECT_EQ(fetchedBytes(), "second");
 }
 
-// A load by vps ask ends it while it waits for its device.
+// `vps ask load` ends a run that still waits for its device.
 TEST_F(RequestHandlerTest, ARunThatEndsBeforeItsRecordingBeginsHasNone) {
   begin("run.mcap");
   EXPECT_TRUE(says(askForFile("other.mcap"), "run.mcap already"));
@@ -329,7 +329,7 @@ TEST_F(RequestHandlerTest, ASceneIsSentInPiecesOnceAndThenKnownByItsHash) {
   options_.scenes = folder.path() / "scenes";
   Scene other = twoPins();
   other.name = "other pins";
-  other.parts[0].part.mesh = makeSphere(10e-3, 5);  // of several pieces
+  other.parts[0].part.mesh = makeSphere(10e-3, 5);  // its archive has several pieces
   const std::string bytes = sceneToBytes(other), hash = contentHash(bytes);
   ASSERT_GT(bytes.size(), 2 * PieceMessage::kMost);
   EXPECT_TRUE(ask(AskKind::Load, hash).wants_scene);
@@ -343,7 +343,8 @@ TEST_F(RequestHandlerTest, ASceneIsSentInPiecesOnceAndThenKnownByItsHash) {
     std::copy_n(from.begin() + static_cast<std::ptrdiff_t>(offset), piece.size, piece.bytes.begin());
     return answerTo(std::string(asker_.write(piece)));
   };
-  EXPECT_TRUE(says(send(PieceMessage::kMost, bytes), "another scene was sent"));  // not from its begin
+  EXPECT_TRUE(says(send(PieceMessage::kMost, bytes),
+                   "another scene was sent"));  // the transfer does not start at offset 0
   std::string damaged = bytes;
   damaged[100] ^= 1;
   AnswerMessage last;
@@ -357,10 +358,11 @@ TEST_F(RequestHandlerTest, ASceneIsSentInPiecesOnceAndThenKnownByItsHash) {
   EXPECT_EQ(handler_.takeNext()->name, "other pins");
 }
 
-// Who sends a scene and is killed meanwhile leaves what came; it is forgotten once nothing has come for 10 s.
+// A sender that is killed during a transfer leaves an incomplete scene, which is dropped after 10 s without a
+// message.
 TEST_F(RequestHandlerTest, ASceneWhoseSenderIsGoneIsForgotten) {
   Scene other = twoPins();
-  other.parts[0].part.mesh = makeSphere(10e-3, 5);  // of several pieces
+  other.parts[0].part.mesh = makeSphere(10e-3, 5);  // its archive has several pieces
   const std::string bytes = sceneToBytes(other), hash = contentHash(bytes);
   const auto send = [&](std::uint64_t offset) {
     PieceMessage piece;
@@ -408,7 +410,7 @@ TEST_F(RequestHandlerTest, WhatCannotBeReadIsRefusedAndSaidOnce) {
   for (std::size_t i = 0; i < bytes.size(); ++i)
     EXPECT_EQ(handler_.answer({1, bytes.substr(0, i), false}), "");
   EXPECT_EQ(said.size(), 1u);
-  bytes[2] ^= 1;  // another version
+  bytes[2] ^= 1;  // changes the version
   AnswerMessage answer;
   MessageReader reader;
   EXPECT_EQ(reader.read(std::string(handler_.answer({1, bytes, false})), answer), Reading::Good);
@@ -466,7 +468,7 @@ TEST_F(RequestServerTest, APartThatIsReleasedEndsItsStepAndTheRunReplaysBitForBi
   const std::string file = folder.path() / "run.mcap";
   start(file);
   ASSERT_TRUE(waitFor([&] { return requests().phase() == RunPhase::InHand; }));
-  std::this_thread::sleep_for(std::chrono::milliseconds(300));  // the hand works
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));  // gives the hand time to work
   ASSERT_EQ(requests().step(), 0);
   EXPECT_TRUE(request_.release().is_done);
   join();
@@ -517,8 +519,8 @@ TEST_F(RequestServerTest, APartWaitsUntilItIsAskedForAndGainsComeWithIt) {
   EXPECT_TRUE(request_.take().is_done);
   join();
   EXPECT_EQ(result_.steps.size(),
-            2u);  // whether the hand had time enough is another matter on a busy machine
-  EXPECT_FALSE(requests().takeGains());  // they were taken
+            2u);                         // on a busy machine the hand may not have had enough time
+  EXPECT_FALSE(requests().takeGains());  // the run has taken them
 }
 
 TEST_F(RequestServerTest, AnotherSceneEndsTheRunAndIsNext) {
@@ -563,7 +565,7 @@ TEST(SessionRequest, AWishForARecordingThatIsNotGrantedSaysWhy) {
   EXPECT_PRED2(names, refused.finish(), "only `who` is allowed here");
 }
 
-/// Two ends of a socket of a session.
+/// Two clients of a session's request socket.
 class LocalRequestsTest : public testing::Test {
  protected:
   std::string session_ = sessionName();
@@ -586,7 +588,7 @@ TEST_F(LocalRequestsTest, WhoSendsWithoutEndKeepsNobodyOut) {
   EXPECT_TRUE(is_heard);
 }
 
-// The render node may be stopped as soon as its last piece has left.
+// The render node may be stopped as soon as its last piece was sent.
 TEST_F(LocalRequestsTest, ARecordingThatHasComeIsKeptAlthoughTheSessionHasEnded) {
   const test::TemporaryFolder folder;
   const std::string file = folder.path() / "run.mcap", whole = "a recording", hash = contentHash(whole);
@@ -602,7 +604,7 @@ TEST_F(LocalRequestsTest, ARecordingThatHasComeIsKeptAlthoughTheSessionHasEnded)
       EXPECT_EQ(reader.read(heard->bytes, ask), Reading::Good);
       return reader.envelope();
     }
-    ADD_FAILURE() << "nothing was asked";
+    ADD_FAILURE() << "no request arrived";
     return Envelope{};
   };
   MessageWriter writer(newSender());
@@ -626,7 +628,7 @@ TEST_F(LocalRequestsTest, ARecordingThatHasComeIsKeptAlthoughTheSessionHasEnded)
 TEST_F(LocalRequestsTest, WhoAsksWaitsForNoServerThatDoesNotRead) {
   const std::unique_ptr<ClientChannel> channel = findLocalServer(session_);
   const std::string bytes(kLongestAsk, 'x');
-  for (int i = 0; i < 100; ++i) channel->send(bytes);  // more than the system keeps
+  for (int i = 0; i < 100; ++i) channel->send(bytes);  // more than the system buffers
   EXPECT_FALSE(channel->isOver());
   std::vector<std::unique_ptr<ClientChannel>> waiting;
   EXPECT_THROW(
@@ -636,14 +638,14 @@ TEST_F(LocalRequestsTest, WhoAsksWaitsForNoServerThatDoesNotRead) {
       LoadError);
 }
 
-// Needs the right to become another user.
+// The test needs the right to become another user.
 TEST(SessionRequest, AnotherUserOfTheMachineIsRefused) {
   if (getuid() != 0) GTEST_SKIP() << "only root can become another user";
   RequestServerOptions options;
   options.session = sessionName();
   const RequestServer server(options);
   const pid_t child = fork();
-  if (child == 0) {  // another user, without the server's thread
+  if (child == 0) {  // the child becomes another user, without the server's thread
     if (setuid(65534) != 0) _exit(10);
     const std::unique_ptr<ClientChannel> channel = findLocalServer(options.session, 0);
     if (channel == nullptr) _exit(11);

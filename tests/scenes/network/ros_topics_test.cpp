@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The topics of ROS 2, as bytes on the wire. No ROS is packaged here, so its bytes are written down by hand.
+// ROS 2 topics as bytes on the wire. No ROS installation is used; the expected bytes were written by hand.
 #include "vps_scenes/network/ros_topics.h"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ TEST(RosTopics, NamesAreThoseThatRosAllows) {
 
 #if __has_include(<dds/dds.h>)
 
-/// Bytes in hexadecimal digits.
+/// Bytes as hexadecimal digits.
 std::string hex(const std::string& bytes) {
   std::string text;
   for (const unsigned char c : bytes) {
@@ -35,8 +35,8 @@ std::string hex(const std::string& bytes) {
   return text;
 }
 
-/// What any DDS participant receives under the name and type that a ROS 2 node would use. The type's layout
-/// here is bytes, so nothing of the sender's description is shared.
+/// Receives samples as any DDS participant does under the name and type of a ROS 2 node. Its type is plain
+/// bytes, so that it shares no description with the sender.
 class Subscriber {
  public:
   Subscriber(int domain, const char* topic, const char* type, const std::uint32_t* ops, std::uint32_t count) {
@@ -55,14 +55,14 @@ class Subscriber {
     participant_ = dds_create_participant(static_cast<dds_domainid_t>(domain), nullptr, nullptr);
     const dds_entity_t handle = dds_create_topic(participant_, &descriptor, topic, nullptr, nullptr);
     dds_qos_t* qos = dds_create_qos();
-    dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, DDS_MSECS(100));  // as ROS 2's default
+    dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, DDS_MSECS(100));  // ROS 2's default
     dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, 10);
     reader_ = dds_create_reader(participant_, handle, qos, nullptr);
     dds_delete_qos(qos);
   }
   ~Subscriber() { dds_delete(participant_); }
 
-  /// The next sample with its header of encapsulation; empty: none within 5 s.
+  /// The next sample with its encapsulation header; empty: none within 5 s.
   template <typename Publish>
   std::string next(const Publish& publish) {
     for (int i = 0; i < 500; ++i) {
@@ -114,7 +114,8 @@ Snapshot onePose() {
   return shot;
 }
 
-// Encapsulation CDR_LE; stamp; "world" with its length and zero, padded to 8 from the start of the data.
+// Encapsulation CDR_LE; stamp; "world" with its length and terminator, padded to 8 bytes from the start of
+// the data.
 const std::string kEncapsulation = "00010000";
 const std::string kHeader =
     "00f15365"
@@ -178,7 +179,7 @@ TEST(RosTopics, ATransformHasTheBytesOfTf2Msgs) {
   RosTopics topics(kDomain, "lo", "s-1", onePart());
   Subscriber subscriber(kDomain, "rt/tf", "tf2_msgs::msg::dds_::TFMessage_", kTfMessage, 8);
   const std::string bytes = subscriber.next([&] { topics.publish(onePose(), kTime_ns); });
-  // One transform; "s_1/peg_1" is 10 bytes with its zero.
+  // One transform; "s_1/peg_1" is 10 bytes with its terminator.
   EXPECT_EQ(hex(bytes), kEncapsulation + "01000000" + kHeader +
                             "0000"
                             "0a000000"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pointers of several processes at one session.
+// Pointers of several processes in one session.
 #include "vps_scenes/network/session_pointers.h"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ std::string sessionName() {
   return "pointers-" + std::to_string(getpid());
 }
 
-/// Until something changes, at most two seconds.
+/// Waits until a pointer changes, at most two seconds.
 std::vector<SessionPointer> wait(SessionPointers& of) {
   for (int i = 0; i < 200; ++i) {
     std::vector<SessionPointer> changes = of.take();
@@ -40,7 +40,7 @@ TEST(SessionPointers, APointerIsSeenByTheOthersUntilItIsTakenBack) {
   ASSERT_EQ(seen.size(), 1U);
   EXPECT_EQ(seen[0].p_W, Vec3(0.1, 0.2, 0.3));
   EXPECT_GE(seen[0].who, 1000);
-  EXPECT_TRUE(a.take().empty());  // one's own is not news
+  EXPECT_TRUE(a.take().empty());  // own pointers are not reported
   a.point(3, {});
   const std::vector<SessionPointer> gone = wait(b);
   ASSERT_EQ(gone.size(), 1U);
@@ -52,7 +52,7 @@ TEST(SessionPointers, TwoWhoPointHaveDifferentNumbersAndALateOneSeesBoth) {
   SessionPointers a(sessionName()), b(sessionName());
   a.point(1, Vec3(1, 0, 0));
   b.point(1, Vec3(2, 0, 0));
-  for (int i = 0; i < 200; ++i) {  // more than a ring holds
+  for (int i = 0; i < 200; ++i) {  // more messages than a ring holds
     a.point(2, Vec3(0, i, 0));
     b.take();
   }
@@ -60,7 +60,7 @@ TEST(SessionPointers, TwoWhoPointHaveDifferentNumbersAndALateOneSeesBoth) {
   SessionPointers late(sessionName());
   std::vector<int> who;
   for (int i = 0; i < 100 && who.size() < 2; ++i) {
-    a.take();  // repeats what it points at
+    a.take();  // repeats its own pointers
     b.take();
     for (const SessionPointer& pointer : late.take())
       if (pointer.p_W && pointer.p_W->y() == 0) who.push_back(pointer.who);
@@ -89,7 +89,7 @@ TEST(SessionPointers, APointerGoesWithAProcessThatIsKilled) {
   const std::vector<SessionPointer> gone = wait(watcher);
   ASSERT_EQ(gone.size(), 1U);
   EXPECT_FALSE(gone[0].p_W);
-  // Its slot is free again.
+  // The slot of the ended process is free again.
   SessionPointers next(session);
   next.point(1, Vec3(4, 5, 6));
   EXPECT_EQ(wait(watcher).at(0).who, seen[0].who);
@@ -118,7 +118,7 @@ TEST(SessionPointers, WhatIsNoPersonOrNoPlaceIsNotPassedOn) {
   EXPECT_THROW(SessionPointers("demo.pointer1"), LoadError);
 }
 
-/// Over UDP on this machine.
+/// Pointers over UDP on this machine.
 class NetworkPointers : public testing::Test {
  protected:
   void SetUp() override {
@@ -130,7 +130,7 @@ class NetworkPointers : public testing::Test {
       GTEST_SKIP() << "this build has no network";
     }
   }
-  /// Until something changes, at most eight seconds, while the other one says what it points at.
+  /// Waits until a pointer changes, at most eight seconds, while the other end repeats its pointers.
   static std::vector<SessionPointer> wait(SessionPointers& of, SessionPointers* other) {
     for (int i = 0; i < 800; ++i) {
       if (other != nullptr) other->take();

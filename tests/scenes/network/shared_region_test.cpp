@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Shared memory of a session: who may open it, who is alive, and what a crash leaves behind.
+// Shared memory of a session: access, live processes, and remains of a crash.
 #include "link/shared_region.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@
 namespace vps::scenes {
 namespace {
 
-/// A name of its own for each test and process.
+/// A session name that is unique for each test and process.
 std::string session() {
   const auto* info = testing::UnitTest::GetInstance()->current_test_info();
   return std::string("test-")
@@ -38,7 +38,7 @@ std::string refusal(const std::function<void()>& act) {
   return "";
 }
 
-/// A process that does its work, says so, and sleeps until it is killed.
+/// A process that does its work, reports completion, and sleeps until it is killed.
 class Sleeper {
  public:
   explicit Sleeper(const std::function<void()>& work) {
@@ -88,7 +88,8 @@ TEST(SharedRegion, OneThatOthersCouldHaveWrittenToIsRefused) {
   const std::string name = session();
   const SharedRegion region = SharedRegion::create(name, 4096);
   ASSERT_EQ(chmod(fileOf(name).c_str(), 0666), 0);
-  EXPECT_NE(refusal([&] { SharedRegion::open(name, true); }).find("accessible to other users"), std::string::npos);
+  EXPECT_NE(refusal([&] { SharedRegion::open(name, true); }).find("accessible to other users"),
+            std::string::npos);
 }
 
 TEST(SharedRegion, ASecondOwnerIsRefusedWhileTheFirstLives) {
@@ -113,7 +114,7 @@ TEST(SharedRegion, WhatAKilledOwnerLeavesIsReplacedByANewEmptyOne) {
   EXPECT_FALSE(old.isTaken(NodeRole::Render));
   const SharedRegion region = SharedRegion::create(name, 4096);
   EXPECT_EQ(region.memory()[0], std::byte{0});
-  EXPECT_EQ(old.memory()[0], std::byte{1});  // still there for those who have it open
+  EXPECT_EQ(old.memory()[0], std::byte{1});  // still valid for processes that have it open
   EXPECT_TRUE(SharedRegion::open(name, false).isTaken(NodeRole::Render));
 }
 

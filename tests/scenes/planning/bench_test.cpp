@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Starts on a bench, and the clearance on the ways.
+// Starts on a bench, and the clearance along the paths.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -65,7 +65,7 @@ TEST(Bench, ItsPlaneFollowsWhatIsUp) {
   expectApart(parts, X_W.R * Vec3::UnitZ());
 }
 
-// From the side, under a roof: it cannot come straight down to its start.
+// The part comes from the side, under a roof, so that it cannot be lowered straight to its start.
 TEST(Bench, APartThatComesFromTheSideIsCarriedAroundTheRoof) {
   const std::vector<DrawnPart> parts = {
       at("box", roofedBox(), {0, 0, 0}), at("plate", makeBox(Vec3(0.1, 0.1, 0.002)), {0, 0, -0.0061}),
@@ -73,7 +73,7 @@ TEST(Bench, APartThatComesFromTheSideIsCarriedAroundTheRoof) {
   expectApart({parts[2], parts[3]}, Vec3::UnitZ());
 }
 
-// A block comes down past a pillar at 1.5 mm, and stands on the plate; a second one stands 3 mm away.
+// A block passes a pillar at a distance of 1.5 mm on its way down to the plate; a second block is 3 mm away.
 TEST(WayClearance, IsThatToTheNearestPartThatIsPassed) {
   const std::vector<DrawnPart> parts = {at("plate", makeBox(Vec3(0.1, 0.1, 0.01)), {0, 0, -0.005}),
                                         at("pillar", makeBox(Vec3(0.01, 0.01, 0.05)), {0, 0, 0.025}),
@@ -88,7 +88,7 @@ TEST(WayClearance, IsThatToTheNearestPartThatIsPassed) {
   EXPECT_FALSE(step.fit_clearance_m);
 }
 
-// A bump on the pillar, half-way up: only a way from high above comes near it.
+// A bump on the pillar, halfway up, is near only to a path that comes from high above.
 TEST(WayClearance, IsFoundInTheMiddleOfAWay) {
   Mesh pillar = block({0, -0.005, 0}, {0.01, 0.005, 0.08});
   append(pillar, block({0.005, -0.005, 0.0381}, {0.0137, 0.005, 0.0384}));

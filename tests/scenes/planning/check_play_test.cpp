@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Play and ways out of parts for which both have a formula.
+// Play and directions of removal of parts for which both are known by a formula.
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
@@ -16,7 +16,7 @@
 namespace vps::scenes {
 namespace {
 
-constexpr double kMetre = 1e-6, kRadian = 1e-4;  // what play is promised to
+constexpr double kMetre = 1e-6, kRadian = 1e-4;  // guaranteed accuracy of the play
 
 DrawnPart part(const std::string& name, const Mesh& mesh, const Pose& X_WP = Pose()) {
   return {name, mesh, X_WP, {}, false};
@@ -34,7 +34,7 @@ void expectFree(const std::array<double, 6>& play, int axis) {
   for (const int i : {2 * axis, 2 * axis + 1})
     EXPECT_TRUE(std::isinf(play[static_cast<std::size_t>(i)])) << i;
 }
-/// The angle at which r cos + h sin is `reach`: a corner at (r, h) reaches a wall.
+/// The angle at which r cos + h sin equals `reach`: a corner at (r, h) reaches a wall.
 double tilt(double r, double h, double reach) {
   return std::acos(reach / std::hypot(r, h)) * -1 + std::atan2(h, r);
 }
@@ -42,7 +42,8 @@ bool has(const std::vector<Vec3>& ways, const Vec3& d) {
   return std::any_of(ways.begin(), ways.end(), [&](const Vec3& way) { return (way - d).norm() < 1e-6; });
 }
 
-// A round peg in a bore of its own size, the corners of one beside those of the other: their facets cross.
+// A round peg in a bore of its own size. The corners of both are at different angles, so that their facets
+// cross.
 TEST(CheckPlay, IsNotCertainWhereRoundFacesOfOneSizeTouch) {
   const CheckedPart peg =
       playOf("peg", {part("bore", makeTube(0.01, 4e-3, 0.02, 100)),
@@ -52,8 +53,8 @@ TEST(CheckPlay, IsNotCertainWhereRoundFacesOfOneSizeTouch) {
   EXPECT_FALSE(peg.is_play_certain);
 }
 
-// Equal facets of both stand one behind the other; those of the cone are 7.4 um inside those of the cup, so
-// that their edges pass 3 um from its facets wherever the cone is turned.
+// The facets of cone and cup are equal and aligned. The cone's facets are 7.4 um inside the cup's, so that
+// its edges pass the cup's facets at 3 um at any rotation.
 TEST(CheckPlay, AConeInACupTurnsFreely) {
   constexpr double kLow_m = 6e-3, kHigh_m = 10e-3, kHeight_m = 10e-3, kRaised_m = 20e-6;
   const std::vector<DrawnPart> parts = {
@@ -93,8 +94,8 @@ TEST(CheckPlay, APlateWithHolesSlidesOnAnother) {
   // The hole is 2 mm high and leaves the pin less than 1 mm to each side.
   EXPECT_TRUE(has(pinned.ways_out_W, X_W.R.col(2)));
   for (const Vec3& way : pinned.ways_out_W) EXPECT_GT(way.dot(X_W.R.col(2)), std::cos(std::atan(0.5)));
-  // The pin's corners at 0.5 mm reach the hole's facet pi / 32 from x: its circle is nearer than that by 2
-  // um.
+  // The pin's corners at 0.5 mm reach the hole's facet at the angle pi / 32 from x, which is 2 um nearer than
+  // its circle.
   ASSERT_TRUE(pinned.play);
   const double half = 0.5e-3, chord_m = 1.5e-3 * (1 - std::cos(std::numbers::pi / 32));
   const double reach_m = std::sqrt(1.5e-3 * 1.5e-3 - half * half) - half;
@@ -121,7 +122,8 @@ TEST(CheckPlay, AMotionEndsAsStoppedWhereItsWorkIsSpent) {
   EXPECT_EQ(little.done, little.most);
 }
 
-// A tree finds the parts that a motion comes near. What stops it is the first of what stops it alone.
+// A tree finds the parts near a motion. The expected result is the first of the parts that stop the motion
+// individually.
 TEST(CheckPlay, AmongManyPartsAMotionIsStoppedByTheFirstOfThem) {
   std::mt19937 random(11);
   std::uniform_real_distribution<double> place(-0.05, 0.05), size(2e-3, 20e-3);
@@ -136,7 +138,7 @@ TEST(CheckPlay, AmongManyPartsAMotionIsStoppedByTheFirstOfThem) {
   std::vector<const PlacedSurface*> pointers;
   for (const PlacedSurface& one : placed) pointers.push_back(&one);
   const auto all = std::make_shared<const StandingParts>(pointers);
-  std::vector<double> crossing_m(placed.size());  // one of them much greater than the others
+  std::vector<double> crossing_m(placed.size());  // one of them is much greater than the others
   crossing_m[5] = 0.5e-3;
   int stopped = 0;
   for (std::size_t i = 0; i < placed.size(); ++i) {
@@ -155,9 +157,9 @@ TEST(CheckPlay, AmongManyPartsAMotionIsStoppedByTheFirstOfThem) {
             first, MotionSearch(placed[i], alone, of_pair, CrossingDepth::UpToMost).reach(motion, most).s);
       }
       const Reach reach = among_all.reach(motion, most);
-      // Each ends within a tenth of the rest depth of where facets meet, and is set back by that depth over
-      // the speed at which they close, at least a tenth of the fastest corner's, here over 1 mm from the
-      // axis.
+      // Each motion ends within a tenth of the rest depth of the point where facets meet. It is then moved
+      // back by that depth divided by the closing speed, which is at least a tenth of the speed of the
+      // fastest corner, here over 1 mm from the axis.
       EXPECT_NEAR(reach.s, first, 10 * MotionSearch::kRest_m / (is_turn ? 1e-3 : 1)) << i << is_turn;
       EXPECT_EQ(reach.is_stopped, first < most);
       stopped += reach.is_stopped && reach.s > 0 ? 1 : 0;
@@ -185,8 +187,8 @@ TEST(CheckPlay, NearPairsAreThoseWhoseBoxesAreNear) {
   }
 }
 
-// A peg of 8 mm that is as long as its bore: it moves half the clearance across, and tilts until both ends
-// touch.
+// A peg of 8 mm that is as long as its bore. It can move by half the clearance across, and tilt until both
+// ends touch.
 TEST(CheckPlay, APegInAThroughBore) {
   const double r = 4e-3, length_m = 20e-3;
   for (const double clearance_m : {10e-6, 50e-6, 200e-6}) {
@@ -208,7 +210,7 @@ TEST(CheckPlay, APegInAThroughBore) {
   }
 }
 
-/// A shaft with a taper, in a bore with the same one: both to a radius that grows by a hundredth of the
+/// A shaft with a taper, in a bore with the same taper: the radius of both grows by a hundredth of the
 /// height.
 Mesh taper(double radius_m, double outer_m, int segments) {
   constexpr double kHeight_m = 30e-3, kGrows_m = 0.3e-3;
@@ -218,7 +220,8 @@ Mesh taper(double radius_m, double outer_m, int segments) {
                      segments);
 }
 
-// A pin that is too small by 10 um in radius sinks by a hundred times as much, and so does the error.
+// A pin whose radius is 10 um too small sinks by a hundred times as much; the error is multiplied by the same
+// factor.
 TEST(CheckPlay, ATaperSinksByItsLackOverItsSlopeWithinTheErrorThatIsSaid) {
   for (const auto& [bore_segments, pin_segments] : {std::pair{64, 64}, {64, 61}, {128, 100}, {200, 180}})
     for (const double lack_m : {5e-6, 10e-6}) {
@@ -227,7 +230,7 @@ TEST(CheckPlay, ATaperSinksByItsLackOverItsSlopeWithinTheErrorThatIsSaid) {
       ASSERT_TRUE(pin.play);
       EXPECT_NEAR(pin.play->m[5], 100 * lack_m, pin.play->error_m[5])
           << bore_segments << ", " << pin_segments;
-      // Twice the chords of both, for how they are estimated, and the rest depth, over the slope.
+      // Twice the chord errors of both, because of their estimate, plus the rest depth, divided by the slope.
       const double chords_m = 4.3e-3 * std::pow(std::numbers::pi, 2) / 2 *
                               (1 / std::pow(bore_segments, 2) + 1 / std::pow(pin_segments, 2));
       EXPECT_LT(pin.play->error_m[5], 102 * (2 * chords_m + 0.3e-6)) << bore_segments << ", " << pin_segments;
@@ -236,7 +239,7 @@ TEST(CheckPlay, ATaperSinksByItsLackOverItsSlopeWithinTheErrorThatIsSaid) {
     }
 }
 
-// The same with another number of facets, in another place and attitude.
+// The same scene with another number of facets, at another pose.
 TEST(CheckPlay, MovesWithTheAssembly) {
   const Pose X(rotationFromVector(Vec3(0.6, -0.5, 0.8)), Vec3(0.1, -0.05, 0.2));
   const CheckedPart peg = playOf("peg", {part("bore", makeTube(0.01, 4.025e-3, 20e-3, 900), X),
@@ -265,7 +268,7 @@ TEST(CheckPlay, APegInABlindBoreStandsOnItsFloor) {
   EXPECT_TRUE(has(peg.ways_out_W, Vec3::UnitZ()));
 }
 
-// A key of 5 x 20 mm between walls as long as it, on a floor 3 um below.
+// A key of 5 x 20 mm between walls of its own length, 3 um above a floor.
 TEST(CheckPlay, AKeyInASlot) {
   const double b = 5e-3, l = 20e-3, h = 6e-3, c = 40e-6, below_m = 3e-6;
   Mesh slot = transformed(makeBox(Vec3(0.03, l, 0.01)), Pose::translation(Vec3(0, 0, -0.005 - below_m)));
@@ -282,13 +285,14 @@ TEST(CheckPlay, AKeyInASlot) {
   EXPECT_NEAR(key.play->m[5], below_m, kMetre);
   expectBoth(key.play->rad, 2, tilt(b / 2, l / 2, (b + c) / 2), kRadian);
   expectBoth(key.play->rad, 0, tilt(h / 2, l / 2, h / 2 + below_m), kRadian);
-  EXPECT_EQ(key.ways_out_W.size(), 5U);  // along the slot both ways, up, and two of the directions between
+  EXPECT_EQ(key.ways_out_W.size(),
+            5U);  // both directions along the slot, up, and two of the directions in between
   for (const Vec3& d : {Vec3(0, 1, 0), Vec3(0, -1, 0), Vec3(0, 0, 1)})
     EXPECT_TRUE(has(key.ways_out_W, d)) << d;
   for (const Vec3& d : key.ways_out_W) EXPECT_NEAR(d.x(), 0, 1e-9);
 }
 
-// A disc between two shoulders that cover it, around a shaft with more clearance than it needs to tilt.
+// A disc between two shoulders that cover it, around a shaft with more clearance than the disc needs to tilt.
 TEST(CheckPlay, ADiscBetweenShoulders) {
   const double r = 10e-3, t = 4e-3, c = 30e-6;
   const Mesh disc = makeTube(r, 5e-3, t, 720);
@@ -323,7 +327,8 @@ TEST(CheckPlay, ABlockOnAPlateLeavesIntoTheHalfSpaceAboveOnly) {
   for (const Vec3& d : block.ways_out_W) EXPECT_GE(d.z(), -1e-9);
 }
 
-// Stacked flush: all side walls are in one plane, and only the faces between them stop the upper block.
+// Two blocks stacked flush: their side walls are coplanar, and only the faces between them stop the upper
+// block.
 TEST(CheckPlay, EqualBlocksOneOnAnother) {
   const Mesh block = makeBox(Vec3(0.02, 0.02, 0.02));
   const CheckedPart upper =
@@ -382,7 +387,7 @@ TEST(CheckPlay, WhatIsAskedOfOnePartIsWhatTheWholeCheckSaysOfIt) {
   settings.only_parts = {"peg"};
   const CheckResult asked = checkAssembly("test", parts, settings);
   ASSERT_EQ(whole.pairs.size(), 3U);
-  ASSERT_EQ(asked.pairs.size(), 2U);  // not bore and cap
+  ASSERT_EQ(asked.pairs.size(), 2U);  // without the pair of bore and cap
   for (const CheckedPair& pair : asked.pairs) {
     const auto same = std::ranges::find_if(
         whole.pairs, [&](const CheckedPair& p) { return p.a == pair.a && p.b == pair.b; });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// CAD that interferes as it is usually drawn: what each overlap is taken for, and what the plan does about
-// it.
+// CAD files with typical drawn interferences: the classification of each overlap, and the change that the
+// plan makes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -53,7 +53,7 @@ TEST(DrawnOverlaps, AScrewInTheMinorDiameterIsAThread) {
   const PlannedStep& step = plan.assemblies[0].steps.back();
   EXPECT_EQ(step.name, "screw");
   EXPECT_NEAR(step.insertion_W.z(), -1, 1e-6);
-  // In the planned scene it passes, and its head is as it was.
+  // In the planned scene the screw passes, and its head is unchanged.
   const Scene drawn = sceneOf(parts);
   EXPECT_EQ(checkAssembly("drawn", drawnParts(drawn)).clashes(), 1U);
   EXPECT_EQ(checkAssembly("planned", drawnParts(scene)).clashes(), 0U);
@@ -81,7 +81,7 @@ TEST(DrawnOverlaps, ANutWithAPlainHoleIsAThreadAndItsHoleIsWidened) {
   EXPECT_EQ(plan.choices[0].changed, "nut");
   EXPECT_EQ(plan.blocked(), 0U);
   EXPECT_EQ(checkAssembly("planned", drawnParts(scene)).clashes(), 0U);
-  // The bolt is as drawn.
+  // The bolt is unchanged.
   EXPECT_NEAR(massProperties(partOf(scene, "bolt").part.mesh).volume_m3,
               massProperties(parts[1].mesh).volume_m3, 1e-15);
 }
@@ -128,7 +128,7 @@ TEST(DrawnOverlaps, AShaftAsWideAsItsHolesIsMadeThinnerOnce) {
   ASSERT_EQ(checked.fits.size(), 3U);
   for (const CheckedFit& fit : checked.fits)
     EXPECT_NEAR(fit.diametral_clearance_m, 50e-6, 1e-6) << fit.shaft << " in " << fit.bore;
-  // Its head and its length are as they were.
+  // The pin's head and length are unchanged.
   const Vec3 size_m = bounds(partOf(scene, "pin").part.mesh).size();
   EXPECT_NEAR(size_m.x(), 16e-3, 1e-9);
   EXPECT_NEAR(size_m.z(), 31e-3, 1e-9);
@@ -200,7 +200,7 @@ TEST(DrawnOverlaps, APartWithoutVolumeIsLeftOut) {
   EXPECT_EQ(plan.choices[1].left_out, "face");
   EXPECT_TRUE(partOf(scene, "label").is_scenery);
   EXPECT_TRUE(partOf(scene, "face").is_scenery);
-  ASSERT_EQ(plan.steps(), 1U);  // 10 um are a body
+  ASSERT_EQ(plan.steps(), 1U);  // a thickness of 10 um counts as a body
   EXPECT_EQ(plan.assemblies[0].steps[0].name, "foil");
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Fasteners of known kinds and sizes, and parts that are none.
+// Fasteners of known kinds and sizes, and parts that are not fasteners.
 #include "vps_scenes/fits/fasteners.h"
 
 #include <gtest/gtest.h>
@@ -26,14 +26,14 @@ Mesh plainNut(double hole_m, double corner_m, double height_m) {
   });
 }
 
-/// With a round head, its shank downwards from z = 0.
+/// A screw with a round head; its shank points downwards from z = 0.
 Mesh headed(double shank_m, double length_m, double head_m, double height_m) {
   return test::lathe(
       {{0, -length_m}, {shank_m, -length_m}, {shank_m, 0}, {head_m, 0}, {head_m, height_m}, {0, height_m}},
       64);
 }
 
-/// Of each part its words; "" if it is none.
+/// The description of each part; "" if it is not a fastener.
 std::map<std::string, std::string> wordsOf(const std::vector<DrawnPart>& parts) {
   std::map<std::string, std::string> out;
   for (const DrawnPart& part : parts) out[part.name] = "";
@@ -42,7 +42,7 @@ std::map<std::string, std::string> wordsOf(const std::vector<DrawnPart>& parts) 
 }
 
 TEST(Fasteners, AreNamedWithTheirSizes) {
-  // They may lie anywhere.
+  // Position and orientation of the fasteners are arbitrary.
   const Pose X_W(rotationFromVector({0.3, -1.1, 0.4}), {0.1, 0.2, -0.3});
   std::vector<DrawnPart> parts = {at("bolt", headed(4e-3, 30e-3, 6.5e-3, 8e-3), {0, 0, 0}),
                                   at("nut", plainNut(3.324e-3, 7.5e-3, 6.5e-3), {0, 0, 0}),
@@ -90,7 +90,7 @@ TEST(Fasteners, OtherPartsAreNone) {
 }
 
 TEST(Fasteners, AKeyIsABarBetweenTwoParts) {
-  // A shaft and a hub with a slot each, as boxes.
+  // A shaft and a hub, each with a slot, made of boxes.
   Mesh shaft = block({-0.01, -0.02, -0.02}, {0.01, 0.02, -0.003});
   append(shaft, block({-0.01, -0.02, -0.003}, {-0.003, 0.02, 0}));
   append(shaft, block({0.003, -0.02, -0.003}, {0.01, 0.02, 0}));

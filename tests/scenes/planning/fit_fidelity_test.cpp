@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Voxels of planned scenes, by the size of parts and by memory.
+// Voxels of planned scenes, chosen from the sizes of the parts and the memory limit.
 #include <gtest/gtest.h>
 
 #include <numbers>
 
 #include "scenes/assemblies_to_plan.h"
-#include "vps_scenes/planning/plan.h"
 #include "vps_scenes/planning/fidelity_choice.h"
+#include "vps_scenes/planning/plan.h"
 #include "vps_scenes/run/explain.h"
 
 namespace vps::scenes {
@@ -39,7 +39,7 @@ TEST(FitFidelity, ASmallPartIsEightVoxelsAcross) {
   EXPECT_NE(words.find("'part' is 1.00 mm across"), std::string::npos) << words;
 }
 
-// Each step of voxels halves the memory: the last one before is too much.
+// Each step of the voxel size halves the memory; one step finer exceeds the limit.
 TEST(FitFidelity, AsFineAsTheMemoryAllows) {
   constexpr double kMost_bytes = 20e6;
   Scene scene = blockOnPlate(50e-3);
@@ -58,7 +58,7 @@ TEST(FitFidelity, WhereMemoryLeavesASmallPartTooFewVoxelsItIsNamed) {
   const std::string words = fitFidelity(scene, 10e3);
   EXPECT_GT(scene.fidelity.voxel_m, 1e-3);
   EXPECT_NE(words.find("'part', 8.00 mm across, is less than eight of them"), std::string::npos) << words;
-  // Finer than the preset only for a fifth of the memory.
+  // Voxels finer than the preset's may take only a fifth of the memory limit.
   scene = blockOnPlate(1e-3);
   const double preset_bytes = bytesOf(scene);
   const std::string small_words = fitFidelity(scene, 5 * preset_bytes);
@@ -88,8 +88,8 @@ TEST(FitFidelity, WhatASceneStatesIsKept) {
   EXPECT_EQ(scene.fidelity.voxel_m, Fidelity().voxel_m);
 }
 
-// Two blocks that are drawn in each other: the hand need not try for long where a person looks at the
-// drawing.
+// Two blocks that are drawn in each other. The hand tries only briefly, since the drawing has to be
+// corrected.
 TEST(FitFidelity, AStepThatIsDrawnThroughAnotherPartIsTriedForHalfASecond) {
   const auto timeout = [](double deep_m) {
     const std::vector<DrawnPart> parts = {

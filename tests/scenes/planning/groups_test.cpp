@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rigid groups: in the scene file, as import proposes them, and as one body everywhere.
+// Rigid groups: in the scene file, as proposed by import, and as one body in all uses.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -76,9 +76,9 @@ TEST_F(SceneGroups, AGroupIsOnePartInPlaceOfItsFirst) {
   EXPECT_EQ(plug.part.mesh.triangles.size(), 24U);
   EXPECT_LT((plug.X_WP.p - Vec3(0, 0, 0.015)).norm(), 1e-12);
   EXPECT_LT((bounds(plug.part.mesh).size() - Vec3(8e-3, 4e-3, 20e-3)).norm(), 1e-8);
-  // Two equal volumes of 1000 and 3000 kg/m^3.
+  // Two equal volumes with densities of 1000 and 3000 kg/m^3.
   EXPECT_NEAR(plug.part.material.density_kg_m3, 2000, 1e-6);
-  EXPECT_EQ(plug.part.material.friction, 0.15);  // of the first
+  EXPECT_EQ(plug.part.material.friction, 0.15);  // the friction of the group's first part
   EXPECT_FALSE(plug.is_fixed);
   ASSERT_EQ(scene.steps.size(), 1U);
   EXPECT_EQ(scene.steps[0].part, 1U);
@@ -135,7 +135,7 @@ ImportedCad plugAndSocket() {
   cad.file = "plug.step";
   cad.parts.push_back(
       imported("socket", block({-0.02, -0.02, -0.02}, {0.02, 0.02, 0}), Vec3::Zero(), {"product", "socket"}));
-  for (int i = 0; i < 12; ++i)  // blades and shell: each touches the next
+  for (int i = 0; i < 12; ++i)  // blades and shell, each touching the next
     cad.parts.push_back(imported(i == 0 ? "plug" : "plug_" + std::to_string(i + 1),
                                  makeBox(Vec3::Constant(2e-3)), Vec3(2e-3 * (i % 4), 2e-3 * (i / 4), 1e-3),
                                  {"product", "plug"}));
@@ -192,7 +192,7 @@ TEST(PartGroups, AreWishedForByAssemblyOrByPattern) {
 }
 
 TEST(PartGroups, OpenSurfacesThatShareEdgesAreOne) {
-  // A cube without its top, its top without a quarter, and a sheet elsewhere.
+  // A cube without its top, a top with one quarter missing, and a separate sheet.
   Mesh open = makeBox(Vec3::Constant(0.01)), top;
   top.vertices = open.vertices;
   std::erase_if(open.triangles, [&](const auto& t) {
@@ -206,7 +206,7 @@ TEST(PartGroups, OpenSurfacesThatShareEdgesAreOne) {
   const std::vector<PartGroup> groups = partGroups(cad, {});
   ASSERT_EQ(groups.size(), 1U);
   EXPECT_EQ(groups[0].parts, (Names{"shell", "lid"}));
-  // Solids that touch are parts.
+  // Solids that touch remain separate parts.
   cad.parts = {imported("a", makeBox(Vec3::Constant(0.01)), {0, 0, 0}),
                imported("b", makeBox(Vec3::Constant(0.01)), {0.01, 0, 0}),
                imported("c", makeBox(Vec3::Constant(0.01)), {0.03, 0, 0})};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Margins of a peg in its hole, whose room is known by construction.
+// Margins of a peg in its hole whose clearance is known by construction.
 #include "vps_scenes/planning/margin.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 namespace vps::scenes {
 namespace {
 
-/// Distance between the flats of peg and cup: the corners are on the radii.
+/// Distance between the flats of peg and cup; the radii are those of the corners.
 double gapOf(const PegInCup& of) {
   return (of.bore_m - of.peg_m) * std::cos(std::numbers::pi / of.flats);
 }
@@ -25,13 +25,13 @@ MarginOptions byGeometry(double resolution_m = 0.25e-6) {
   return options;
 }
 
-/// Rounding of the meshes' coordinates and of the fit that is found on them.
+/// Rounding of the meshes' coordinates and of the fit detected on them.
 constexpr double kRounding_m = 0.05e-6;
 
 class MarginByGeometry : public testing::TestWithParam<PegInCup> {};
 
-// Every face moves outwards by the growth, so that the gap on each side is what may be added: half of the
-// diametral clearance.
+// Every face moves outwards by the growth, so that the margin is the gap on each side: half of the diametral
+// clearance.
 TEST_P(MarginByGeometry, IsTheGapOnEachSide) {
   const MarginOptions options = byGeometry();
   const MarginResult result = measureMargins(pegInCup(GetParam()), options);
@@ -50,15 +50,15 @@ TEST_P(MarginByGeometry, IsTheGapOnEachSide) {
   EXPECT_EQ(step.runs, 0U);
 }
 
-// Displaced across the path, the peg touches after the same gap. Turned, an edge of the length that is in the
-// bore does: at most the gap over half of that length, which is where it touches if it turns about the
-// middle, and at least the gap over the whole length.
+// A displacement across the path makes the peg touch after the same gap. A rotation makes an edge of the
+// length inside the bore touch. The angle is at most the gap over half of that length (rotation about the
+// middle) and at least the gap over the whole length.
 TEST_P(MarginByGeometry, HasThePlayAcrossThePath) {
   const MarginResult result = measureMargins(pegInCup(GetParam()), byGeometry());
   const StepMargin& step = result.steps[0];
   const double gap_m = gapOf(GetParam());
   ASSERT_TRUE(step.position_m.has_value());
-  // The corners of the square are on the axes, so that it moves along its diagonals.
+  // The corners of the square are on the axes, so the peg moves along its diagonals.
   const double along_axis_m = GetParam().flats == 4 ? gap_m * std::sqrt(2.0) : gap_m;
   EXPECT_NEAR(*step.position_m, along_axis_m, step.position_error_m + kRounding_m);
   EXPECT_NEAR(step.position_W.z(), 0, 1e-6);
@@ -74,8 +74,8 @@ INSTANTIATE_TEST_SUITE_P(OfARoundAndASquarePeg, MarginByGeometry,
                                   std::to_string(std::lround(1e6 * (info.param.bore_m - info.param.peg_m)));
                          });
 
-// The hand needs some of the room: never more than geometry allows, and no more than 10 um less, which is
-// the depth at which its contacts begin.
+// By contact, the margin never exceeds that of geometry, and is at most 10 um smaller, the depth at which
+// contacts begin.
 TEST(Margin, ByContactIsAtMostThatOfGeometryAndLessByNoMoreThanTheContactsDepth) {
   const PegInCup of{4.03e-3, 4e-3};
   MarginOptions options;

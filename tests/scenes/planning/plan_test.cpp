@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Orders and ways of assemblies of which both are known.
+// Orders and paths of assemblies for which both are known.
 #include "vps_scenes/planning/plan.h"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ bool has(const std::vector<PlannedOrder>& order, const std::string& before, cons
 }
 using Names = std::vector<std::string>;
 
-/// No way of the plan leads through a part, by a measure that is not the search's.
+/// Checks that no path of the plan leads through a part, by a measure that is independent of the search.
 void expectFreeWays(const std::vector<DrawnPart>& parts, const PlanResult& plan) {
   for (const Scene& scene : plannedScenes(sceneOf(parts), plan))
     for (const WayFault& fault : checkWays(scene))
@@ -46,7 +46,7 @@ TEST(Plan, ABlockOnAPlateComesFromAbove) {
   const PlannedStep& step = whole.steps.front();
   EXPECT_EQ(step.kind, WayKind::Straight);
   EXPECT_LT((step.insertion_W - Vec3(0, 0, -1)).norm(), 1e-12);
-  // Half its own height above the plate, on which it stands.
+  // The block's start is half of its own height above its target.
   ASSERT_EQ(step.before_W.size(), 1U);
   EXPECT_NEAR(step.before_W.front().p.z(), 0.01, 1e-9);
   EXPECT_TRUE(step.is_carried);
@@ -69,7 +69,7 @@ TEST(Plan, NestedCupsGoFromTheOutsideIn) {
 TEST(Plan, APegInABlindHoleHasOneDirection) {
   const std::vector<DrawnPart> parts = {at("block", blindHole(), {0, 0, 0}),
                                         at("peg", makeCylinder(4e-3, 0.02, 96), {0, 0, 0.01})};
-  // It lies on its side: what is up does not decide.
+  // The assembly lies on its side, so the upward direction does not decide.
   std::vector<DrawnPart> turned = parts;
   const Pose X_W(rotationFromVector({1.2, 0.3, -0.4}), {0.01, 0.02, 0.03});
   for (DrawnPart& part : turned) part.X_WP = X_W * part.X_WP;
@@ -82,7 +82,8 @@ TEST(Plan, APegInABlindHoleHasOneDirection) {
   }
 }
 
-// Its facets lean across the bore's by a fraction of their chords, everywhere and in every direction.
+// The peg's facets are tilted against the bore's by a fraction of their chord errors, everywhere and in every
+// direction.
 TEST(Plan, APegOfUnevenFacetsLeavesABoreOfItsOwnSize) {
   const Pose X_W(rotationFromVector({0.4, -0.2, 0.1}), {0, 0, 0});
   const std::vector<DrawnPart> parts = {
@@ -101,7 +102,7 @@ TEST(Plan, APegOfUnevenFacetsLeavesABoreOfItsOwnSize) {
   expectFreeWays(parts, plan);
 }
 
-// Once its bolt has left it could leave to all sides.
+// Once its bolt has left, the nut could leave in any direction.
 TEST(Plan, ANutComesAlongItsBolt) {
   const Mesh bolt =
       test::lathe({{0, -15e-3}, {4e-3, -15e-3}, {4e-3, 5e-3}, {7e-3, 5e-3}, {7e-3, 10e-3}, {0, 10e-3}}, 64);
@@ -117,12 +118,13 @@ TEST(Plan, ANutComesAlongItsBolt) {
   expectFreeWays(parts, plan);
 }
 
-/// Along x, in the middle.
+/// A box along x, in the middle.
 Mesh alongX(const Mesh& alongZ) {
   return transformed(alongZ, Pose(rotationFromVector({0, std::numbers::pi / 2, 0}), Vec3::Zero()));
 }
 
-// A pin through a wall, and through two: in one it leans by its play, as its middle is beside the wall.
+// A pin through one wall leans by its play, since its centre of mass is not in the wall; a pin through two
+// walls does not.
 TEST(Plan, APinThatLeansInALevelHoleIsHeld) {
   const Mesh wall = alongX(makeTube(20e-3, 5.025e-3, 8e-3, 64));
   const Mesh pin = alongX(makeCylinder(5e-3, 40e-3, 64));
@@ -134,14 +136,14 @@ TEST(Plan, APinThatLeansInALevelHoleIsHeld) {
     EXPECT_EQ(plan.blocked(), 0U);
     return plan.assemblies[0].steps.at(0).is_carried;
   };
-  const Vec3 lies = {0, 0, -0.025e-3};  // on the bottom of the hole
+  const Vec3 lies = {0, 0, -0.025e-3};  // the pin lies on the bottom of the hole
   EXPECT_TRUE(isCarried({at("wall", wall, {0, 0, 0})}, lies));
   EXPECT_FALSE(isCarried({at("wall", wall, {0, 0, 0})}, lies + Vec3(10e-3, 0, 0)));
   EXPECT_TRUE(
       isCarried({at("wall", wall, {0, 0, 0}), at("other", wall, {15e-3, 0, 0})}, lies + Vec3(10e-3, 0, 0)));
 }
 
-// A plate that stands on a wide block stays; on a narrow one at its end it tips over.
+// A plate on a wide block is stable; on a narrow block at its end it tips over.
 TEST(Plan, APlateThatIsCarriedBesideItsMiddleIsHeld) {
   const auto isCarried = [](double at_m) {
     const std::vector<DrawnPart> parts = {at("block", makeBox(Vec3(0.02, 0.02, 0.04)), {at_m, 0, 0}),
@@ -154,11 +156,12 @@ TEST(Plan, APlateThatIsCarriedBesideItsMiddleIsHeld) {
   };
   EXPECT_TRUE(isCarried(0));
   EXPECT_TRUE(isCarried(0.009));   // the block ends a millimetre beyond the plate's middle
-  EXPECT_FALSE(isCarried(0.014));  // and four before it: 6 % of the plate's size, where 3 % count as balanced
+  EXPECT_FALSE(isCarried(0.014));  // the block ends 4 mm before the plate's middle: 6 % of the plate's size;
+                                   // up to 3 % counts as balanced
   EXPECT_FALSE(isCarried(-0.025));
 }
 
-// At its speed a hand needs the usual time for the way of a long rod alone.
+// The hand needs the default time for the path of a long rod alone.
 TEST(Plan, AStepHasTimeForItsWayAndForTheUsualWork) {
   const std::vector<DrawnPart> parts = {at("wall", makeTube(20e-3, 5.025e-3, 8e-3, 64), {0, 0, 0}),
                                         at("rod", makeCylinder(5e-3, 0.3, 64), {0, 0, 0})};
@@ -169,7 +172,7 @@ TEST(Plan, AStepHasTimeForItsWayAndForTheUsualWork) {
   const SceneStep& step = planned.steps.at(0);
   const double way_s = (step.X_WP_target.p - step.X_WP_start.p).norm() / planned.hand.speed_m_s;
   EXPECT_GT(way_s, 5);
-  constexpr double kSearches_s = 40;  // each kind of search twice
+  constexpr double kSearches_s = 40;  // two rounds of each kind of search
   EXPECT_GE(step.timeout_s, SceneStep().timeout_s + kSearches_s + way_s);
 }
 
@@ -183,7 +186,7 @@ TEST(Plan, APartDrawnTwiceIsNamed) {
   ASSERT_EQ(plan.twice.size(), 1U);
   EXPECT_EQ(plan.twice.front().first, "one");
   EXPECT_EQ(plan.twice.front().second, "two");
-  // Nearly in one place is an overlap, no twin.
+  // A part at nearly the same place is an overlap and not a duplicate.
   parts.back().X_WP.p.x() = 0.1e-3;
   EXPECT_TRUE(planAssembly("test", parts).twice.empty());
 }
@@ -199,9 +202,9 @@ TEST(Plan, ADovetailSlidesAlongItsGroove) {
   expectFreeWays(parts, plan);
 }
 
-// Resting on the groove's floor, the tail has 0.125 mm to each wall, which lean by 0.5 mm for each mm of
-// height: it goes in the middle of its 0.25 mm of height, and down at the end. In the middle of its play it
-// goes straight.
+// The tail rests on the groove's floor, with 0.125 mm to each wall; the walls lean by 0.5 mm per mm of
+// height. It moves in the middle of its vertical play of 0.25 mm, and is lowered at the end. If it is drawn
+// in the middle of its play, it moves straight.
 TEST(Plan, ATailThatRestsInItsGrooveGoesWhereItHasMostRoom) {
   for (const double z_m : {0.0, -0.05e-3}) {
     const std::vector<DrawnPart> parts = {at("groove", dovetailGroove(), {0, 0, 0}),
@@ -233,7 +236,7 @@ TEST(Plan, ALidComesAfterWhatItCovers) {
   EXPECT_NE(planDot(plan).find("\"0/part\" -> \"0/lid\""), std::string::npos);
 }
 
-// All three could be taken off in any order, but the lower ones carry the upper ones.
+// All three parts could be taken off in any order, but the lower ones carry the upper ones.
 TEST(Plan, WhatStandsOnOthersComesAfterThem) {
   const Mesh brick = makeBox(Vec3(0.02, 0.02, 0.01));
   const std::vector<DrawnPart> parts = {at("second", brick, {0, 0, 0.02}), at("third", brick, {0, 0, 0.03}),
@@ -266,8 +269,8 @@ TEST(Plan, AScrewTurnsOutOfItsNut) {
   expectFreeWays(parts, plan);
 }
 
-// A plate with holes and a stepped pin in each: nothing but the way up is free for any of them.
-// With 32 across, 1025 parts, it passes in 56 s of processor time and 168 MB.
+// A plate with holes and a stepped pin in each: every pin can only move upwards. With 32 pins across, 1025
+// parts, the test passes in 56 s of processor time and 168 MB.
 TEST(Plan, PinsByTheHundredLeaveTheirPlate) {
   constexpr int kAcross = 12;
   const Mesh pin =
@@ -296,7 +299,7 @@ TEST(Plan, LinksOfAChainAreBlockedByEachOther) {
   PlanSettings settings;
   settings.fixed = {"plate"};
   const PlanResult plan = planAssembly("test", parts, settings);
-  ASSERT_EQ(plan.assemblies.size(), 2U);  // they leave the plate as one, and then not each other
+  ASSERT_EQ(plan.assemblies.size(), 2U);  // the links leave the plate as one set, and cannot leave each other
   EXPECT_EQ(plan.assemblies[0].steps.front().parts, (Names{"one", "two"}));
   EXPECT_TRUE(plan.assemblies[0].blocked.empty());
   const PlannedAssembly& links = plan.assemblies[1];
@@ -313,15 +316,15 @@ TEST(Plan, ABlockUnderARoofSlidesAndThenRises) {
   ASSERT_EQ(stepsOf(plan.assemblies.front()), Names{"block"});
   const PlannedStep& step = plan.assemblies.front().steps.front();
   EXPECT_EQ(step.kind, WayKind::Legs);
-  ASSERT_EQ(step.before_W.size(), 2U);  // above the opening, then in it
+  ASSERT_EQ(step.before_W.size(), 2U);  // above the opening, then in the opening
   EXPECT_GT(step.before_W[0].p.z(), 0.01);
   EXPECT_GT(step.before_W[1].p.x(), 0.018 - 0.005 + 0.005 - 0.006);
   EXPECT_NEAR(step.before_W[1].p.z(), 0, 1e-6);
   expectFreeWays(parts, plan);
 }
 
-// A hand does not follow a wall to the micrometre: the block rises in the middle of an opening that is 0.2 mm
-// wider, and 0.4 mm, a fortieth of its size, from the wall of a wide one.
+// A hand does not follow a wall to the micrometre. The block rises in the middle of an opening that is 0.2 mm
+// wider, and at 0.4 mm (a fortieth of its size) from the wall of a wide opening.
 TEST(Plan, ABlockRisesWhereItHasRoom) {
   const auto risesAt_m = [](double roof_m) {
     const std::vector<DrawnPart> parts = {at("housing", roofedBox(roof_m), {0, 0, 0}),
@@ -334,7 +337,7 @@ TEST(Plan, ABlockRisesWhereItHasRoom) {
   EXPECT_NEAR(risesAt_m(0.02), 0.024 - 0.5 * 0.05 * 0.01 * std::sqrt(3.0), 20e-6);
 }
 
-// The same with the opening closed.
+// The same housing with its opening closed.
 TEST(Plan, ABlockInAClosedHousingIsBlocked) {
   Mesh closed = roofedBox();
   append(closed, block({0.015, -0.01, 0.012}, {0.04, 0.01, 0.015}));
@@ -361,7 +364,8 @@ TEST(Plan, ABayonetTurnsBeforeItLeaves) {
   expectFreeWays(parts, plan);
 }
 
-// The tongue of one is in the groove of the other, and walls keep them from parting: they go in as one.
+// The tongue of one part is in the groove of the other, and walls keep them from parting, so they are
+// inserted as one.
 TEST(Plan, PartsThatLockEachOtherInAPocketAreASubassembly) {
   const std::vector<DrawnPart> parts = {at("pocket", pocket(), {0, 0, 0}), at("left", tongue(), {0, 0, 0}),
                                         at("right", grooved(), {0, 0, 0})};
@@ -418,11 +422,11 @@ TEST(Plan, ContactsSayWhoTouchesWhomAndWhatStopsWhat) {
   const PlanResult plan =
       planAssembly("test", {at("left", cube, {-0.03, 0, 0.015}), at("right", cube, {0.03, 0, 0.015}),
                             at("plate", makeBox(Vec3(0.1, 0.1, 0.01)), {0, 0, 0})});
-  ASSERT_EQ(plan.contacts.size(), 2U);  // the cubes are 40 mm apart
+  ASSERT_EQ(plan.contacts.size(), 2U);  // the cubes are 40 mm apart and form no pair
   for (const PlannedContact& contact : plan.contacts) {
     EXPECT_EQ(contact.b, "plate");
     EXPECT_EQ(contact.state, PairState::Contact);
-    // Of the six axes the plate stops a cube only downwards.
+    // Of the six directions of the world's axes, the plate stops a cube only downwards.
     ASSERT_EQ(contact.blocked_W.size(), 1U);
     EXPECT_EQ(contact.blocked_W.front(), Vec3(0, 0, -1));
     EXPECT_EQ(contact.free_W.size(), 5U);
@@ -471,7 +475,8 @@ TEST(Plan, StoppedInTheMiddleAndGoneOnWithIsTheSame) {
   for (std::size_t i = 0; i < whole.assemblies.front().steps.size(); ++i)
     EXPECT_EQ(resumed.assemblies.front().steps[i].before_W.front().p,
               whole.assemblies.front().steps[i].before_W.front().p);
-  // What was known is used: had it been that nothing stops anything, all would leave upwards at once.
+  // The known answers are used: with answers that say that nothing stops anything, all parts leave upwards at
+  // once.
   PlanFindings wrong = found;
   for (std::uint64_t& one : wrong.motions) one &= ~std::uint64_t{3};
   settings.known = &wrong;
@@ -479,7 +484,7 @@ TEST(Plan, StoppedInTheMiddleAndGoneOnWithIsTheSame) {
 }
 
 TEST(CheckWays, AWayThroughAWallThinnerThanAnyStepIsNamed) {
-  // 0.1 mm on a way of 1 m, of which 24 poses are 42 mm apart, and the block is 20 mm long.
+  // The wall is 0.1 mm thick. The path is 1 m long with 24 poses 42 mm apart, and the block is 20 mm long.
   const std::vector<DrawnPart> parts = {at("block", makeBox(Vec3::Constant(0.02)), {0, 0, 0.015}),
                                         at("plate", makeBox(Vec3(0.1, 0.1, 0.01)), {0, 0, 0}),
                                         at("wall", makeBox(Vec3(0.2, 0.2, 1e-4)), {0, 0, 0.07})};
@@ -494,7 +499,7 @@ TEST(CheckWays, AWayThroughAWallThinnerThanAnyStepIsNamed) {
     ASSERT_EQ(faults.size(), 1U) << turn_rad;
     EXPECT_EQ(faults.front().kind, WayFaultKind::Through);
     EXPECT_EQ(faults.front().against, "wall");
-    EXPECT_NEAR(faults.front().depth_m, 50e-6, 2e-6);  // in the middle of the wall
+    EXPECT_NEAR(faults.front().depth_m, 50e-6, 2e-6);  // the greatest depth, in the middle of the wall
   }
 }
 
@@ -515,7 +520,7 @@ TEST(CheckWays, AnOrderASupportAndAClearanceThatAreLostAreNamed) {
   EXPECT_EQ(order.front().against, "lid");
 
   Scene loose = scene;
-  for (SceneStep& step : loose.steps) step.is_held = false;  // the lid hangs in the air
+  for (SceneStep& step : loose.steps) step.is_held = false;  // the lid is not carried by anything
   const std::vector<WayFault> support = checkWays(loose);
   ASSERT_EQ(support.size(), 1U);
   EXPECT_EQ(support.front().kind, WayFaultKind::Support);
@@ -530,7 +535,7 @@ TEST(CheckWays, AClearanceThatIsLessThanPlannedIsNamed) {
   settings.fixed = {"plate", "post"};
   Scene scene = plannedScenes(sceneOf(parts), planAssembly("test", parts, settings)).front();
   ASSERT_EQ(scene.steps.size(), 1U);
-  const std::map<std::string, double> planned = {{"block", 3e-3}};  // from x = 10 to 13 mm
+  const std::map<std::string, double> planned = {{"block", 3e-3}};  // the distance from x = 10 to 13 mm
   EXPECT_TRUE(checkWays(scene, {}, planned).empty());
   scene.steps.front().X_WP_start.p.x() += 1e-3;
   const std::vector<WayFault> faults = checkWays(scene, {}, planned);
@@ -541,10 +546,11 @@ TEST(CheckWays, AClearanceThatIsLessThanPlannedIsNamed) {
   EXPECT_EQ(faults.front().planned_m, 3e-3);
 }
 
-// On its way of 45 degrees to the upper left the block's upper right edge, x = 10 and z = 25 mm, passes the
-// post's lower left one, which is 3 mm beside the way of that edge and halfway along it.
+// The block moves at 45 degrees to the upper left. Its upper right edge (x = 10, z = 25 mm) passes the lower
+// left edge of the post at a distance of 3 mm, halfway along the path.
 TEST(CheckWays, TheLeastClearanceOfAStraightWayIsFoundBetweenItsEnds) {
-  const double sum_m = 35e-3 + 3e-3 * std::sqrt(2.0), difference_m = 75e-3;  // z + x and z - x of the edge
+  const double sum_m = 35e-3 + 3e-3 * std::sqrt(2.0),
+               difference_m = 75e-3;  // z + x and z - x of the post's edge
   const Vec3 edge(0.5 * (sum_m - difference_m), 0, 0.5 * (sum_m + difference_m));
   const std::vector<DrawnPart> parts = {
       at("block", makeBox(Vec3::Constant(0.02)), {0, 0, 0.015}),
@@ -562,7 +568,7 @@ TEST(CheckWays, TheLeastClearanceOfAStraightWayIsFoundBetweenItsEnds) {
   ASSERT_EQ(faults.size(), 1U);
   EXPECT_EQ(faults.front().kind, WayFaultKind::Clearance);
   EXPECT_EQ(faults.front().against, "post");
-  EXPECT_NEAR(faults.front().clearance_m, 3e-3, 3e-6);  // measured within a thousandth
+  EXPECT_NEAR(faults.front().clearance_m, 3e-3, 3e-6);  // measured to within a thousandth
 }
 
 TEST(CheckWays, AWayThroughAWallIsNamedWithItsDepth) {
@@ -570,15 +576,16 @@ TEST(CheckWays, AWayThroughAWallIsNamedWithItsDepth) {
                                         at("plate", makeBox(Vec3(0.1, 0.1, 0.01)), {0, 0, 0})};
   Scene scene = plannedScenes(sceneOf(parts), planAssembly("test", parts)).front();
   EXPECT_TRUE(checkWays(scene).empty());
-  scene.steps.front().X_WP_start.p.z() -= 0.0603;  // from below, through the plate
+  scene.steps.front().X_WP_start.p.z() -= 0.0603;  // the path now comes from below, through the plate
   const std::vector<WayFault> faults = checkWays(scene);
   ASSERT_EQ(faults.size(), 1U);
   EXPECT_EQ(faults.front().part, "block");
   EXPECT_EQ(faults.front().against, "plate");
-  EXPECT_NEAR(faults.front().depth_m, 0.005, 0.6e-3);  // in the middle of 10 mm, at one of 24 poses
+  EXPECT_NEAR(faults.front().depth_m, 0.005,
+              0.6e-3);  // in the middle of the 10 mm thick plate, at one of 24 poses
 }
 
-// A lid closes the nut, so that there is one way off.
+// A lid closes the nut, so that the cap can leave in one direction only.
 TEST(Plan, AThreadedCapTurnsOffItsNeck) {
   test::ThreadShape neck;
   neck.clearance_m = 0;
@@ -603,7 +610,8 @@ TEST(Plan, AThreadedCapTurnsOffItsNeck) {
   expectFreeWays(parts, plan);
 }
 
-/// A blind cap on a threaded neck. Thread and cap of any size, and shorter or longer than the cap is high.
+/// A blind cap on a threaded neck; the thread's size and length are parameters, and the thread may be shorter
+/// or longer than the cap is high.
 std::vector<DrawnPart> cappedNeck(double major_m, double pitch_m, double length_m) {
   test::ThreadShape neck;
   neck.major_m = major_m;
@@ -620,8 +628,8 @@ std::vector<DrawnPart> cappedNeck(double major_m, double pitch_m, double length_
   return {at("neck", test::makeThreadedRod(neck), {0, 0, -pitch_m}), at("cap", cap, {0, 0, 0})};
 }
 
-// A screw starts as it stands at home, and is turned onto its thread by hand: inside of the thread it would
-// overlap it, unless it is whole turns above its place.
+// A screw starts in the orientation of its target, and the hand turns it onto its thread. A start inside the
+// thread would overlap it, except at whole turns above the target.
 TEST(Plan, AScrewStartsOutsideOfItsThreadHoweverShortItIs) {
   struct Size {
     double major_m, pitch_m, turns;
@@ -637,7 +645,7 @@ TEST(Plan, AScrewStartsOutsideOfItsThreadHoweverShortItIs) {
     const Pose& X_WP = scenes.front().steps.front().X_WP_start;
     EXPECT_GT(X_WP.p.z() + bounds(parts[1].mesh).min.z(), bounds(parts[0].mesh).max.z() - size.pitch_m);
     EXPECT_TRUE(checkWays(scenes.front()).empty());
-    // Half a turn above its place, and not turned, it is in the thread's flanks.
+    // Half a turn above its target, and not turned, the cap overlaps the thread's flanks.
     scenes.front().steps.front().X_WP_start = Pose::translation({0, 0, 1.5 * size.pitch_m});
     const std::vector<WayFault> faults = checkWays(scenes.front());
     ASSERT_EQ(faults.size(), 1U) << size.major_m;
@@ -645,7 +653,7 @@ TEST(Plan, AScrewStartsOutsideOfItsThreadHoweverShortItIs) {
   }
 }
 
-/// A plate with a bore of 10 mm and a pin of 9.9 mm through it, whose head hangs below.
+/// A plate with a bore of 10 mm and a pin of 9.9 mm through it, whose head is below the plate.
 std::vector<DrawnPart> hangingHead(double head_radius_m, int segments) {
   return {
       at("plate", test::lathe({{5e-3, 0}, {25e-3, 0}, {25e-3, 10e-3}, {5e-3, 10e-3}}, segments), {0, 0, 0}),
@@ -660,7 +668,7 @@ std::vector<DrawnPart> hangingHead(double head_radius_m, int segments) {
          {0, 0, 0})};
 }
 
-// Within the allowance for meshes the head passes the bore, upwards, which is what gravity prefers.
+// Within the allowance for meshes the head passes the bore upwards, the direction that gravity prefers.
 TEST(Plan, AHoleThatIsTooSmallByLessThanTheAllowanceIsNotTheWayWhereTheOtherSideIsFree) {
   for (const int segments : {32, 64, 200})
     for (const double too_large_m : {0.5e-6, 2e-6, 5e-6, 8e-6}) {
@@ -675,7 +683,7 @@ TEST(Plan, AHoleThatIsTooSmallByLessThanTheAllowanceIsNotTheWayWhereTheOtherSide
 }
 
 TEST(Plan, AWayThatNeedsTheAllowanceIsTakenWhereThereIsNoOtherAndIsSaid) {
-  // A floor below, fixed as well, leaves the pin the way through the bore.
+  // A floor below, also fixed, leaves only the path through the bore.
   std::vector<DrawnPart> parts = hangingHead(5e-3 + 2e-6, 64);
   parts.push_back(at("floor", makeBox({0.05, 0.05, 1e-3}), {0, 0, -6.6e-3}));
   PlanSettings settings;
@@ -687,7 +695,7 @@ TEST(Plan, AWayThatNeedsTheAllowanceIsTakenWhereThereIsNoOtherAndIsSaid) {
   EXPECT_GE(step.allowance_m, 2e-6);
 }
 
-// The floor, which carries nothing, can be taken off first, and then the pin leaves without an allowance.
+// The floor carries nothing and can be taken off first; then the pin leaves without an allowance.
 TEST(Plan, WhatNeedsTheAllowanceWaitsUntilTheOtherSideIsFree) {
   std::vector<DrawnPart> parts = hangingHead(5e-3 + 2e-6, 64);
   parts.push_back(at("floor", makeBox({0.05, 0.05, 1e-3}), {0, 0, -8.5e-3}));
@@ -699,7 +707,7 @@ TEST(Plan, WhatNeedsTheAllowanceWaitsUntilTheOtherSideIsFree) {
   EXPECT_EQ(plan.assemblies.front().steps.front().allowance_m, 0);
 }
 
-/// The plan of a block above a table, which it touches nowhere.
+/// The plan of a block that is drawn floating above a table.
 PlannedStep blockAboveTable(double gap_m) {
   const std::vector<DrawnPart> parts = {at("table", makeBox({0.1, 0.1, 0.01}), {0, 0, -0.005}),
                                         at("block", makeBox({0.02, 0.02, 0.02}), {0, 0, 0.01 + gap_m})};
@@ -710,7 +718,7 @@ PlannedStep blockAboveTable(double gap_m) {
   return plan.assemblies.front().steps.front();
 }
 
-// Without a fit a part may be 0.5 mm off.
+// Without a fit a part may be displaced by 0.5 mm.
 TEST(Plan, APartThatIsDrawnFloatingIsHeld) {
   EXPECT_TRUE(blockAboveTable(0).is_carried);
   EXPECT_TRUE(blockAboveTable(0.4e-3).is_carried);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Puzzles at random, most of them with parts that lock each other: what an exhaustive search says of them
-// against what the planner finds.
+// Random puzzles, most of them with parts that lock each other: the planner's result is compared with an
+// exhaustive search.
 #include <gtest/gtest.h>
 
 #include "scenes/assemblies_to_plan.h"
@@ -11,7 +11,7 @@ namespace vps::scenes {
 namespace {
 
 std::vector<DrawnPart> drawn(const test::VoxelPuzzle& puzzle, double cell_m) {
-  constexpr double kInwards_m = 50e-6;  // 0.1 mm between parts
+  constexpr double kInwards_m = 50e-6;  // gives gaps of 0.1 mm between parts
   std::vector<DrawnPart> parts;
   for (std::size_t i = 0; i < puzzle.parts().size(); ++i)
     parts.push_back(at("part " + std::to_string(i), puzzle.mesh(i, cell_m, kInwards_m), Vec3::Zero()));
@@ -37,8 +37,8 @@ int expectTruth(const test::VoxelPuzzle& puzzle, std::uint64_t seed) {
   return comes_apart ? 1 : 0;
 }
 
-// Of 300 cubes 211 come apart, and of 133 burrs, among the first 100,000 seeds, 88; the planner is right
-// about all 433. Here are some of them.
+// Of 300 cubes 211 come apart, and of 133 burrs, found among the first 100,000 seeds, 88; the planner is
+// right in all 433 cases. The tests run some of them.
 TEST(PuzzlePlan, PiecesOfACubeComeApartIfAnExhaustiveSearchSaysSo) {
   int apart = 0;
   for (std::uint64_t seed = 0; seed < 60; ++seed)
@@ -59,7 +59,7 @@ TEST(PuzzlePlan, ABurrComesApartIfAnExhaustiveSearchSaysSo) {
   EXPECT_LT(apart, 25);
 }
 
-// Two bars of it lock each other, and leave the others together, in two legs.
+// Two bars of the burr lock each other, and leave the others together in two legs.
 TEST(PuzzlePlan, PartsThatLockEachOtherLeaveTogetherRoundACorner) {
   const PlanResult plan = planned(drawn(test::randomBurr(11200, 0), 10e-3));
   EXPECT_EQ(plan.blocked(), 0U);
@@ -78,7 +78,8 @@ TEST(PuzzlePlan, PiecesOfAJigsawComeFromAbove) {
     EXPECT_LT((step.insertion_W + Vec3::UnitZ()).norm(), 1e-9) << step.name;
 }
 
-// Ten pairs that lock each other, each in a pocket of its own that only both together leave.
+// Ten pairs of parts that lock each other; each pair is in its own pocket, which only both parts together can
+// leave.
 TEST(PuzzlePlan, TwentyPartsNeedTenSubassemblies) {
   std::vector<DrawnPart> parts;
   Mesh pockets;
@@ -99,7 +100,7 @@ TEST(PuzzlePlan, TwentyPartsNeedTenSubassemblies) {
   }
 }
 
-// No link leaves by itself: each keeps the one before it in the one after it.
+// No link leaves alone, since each link holds the previous link in the next one.
 TEST(PuzzlePlan, AChainOfTwentyLeavesItsLastLinkAsOne) {
   EXPECT_TRUE(test::lockedChain(5).comesApart());
   for (const int links : {5, 20}) {
@@ -111,7 +112,7 @@ TEST(PuzzlePlan, AChainOfTwentyLeavesItsLastLinkAsOne) {
     std::size_t alone = 0;
     for (const PlannedAssembly& assembly : plan.assemblies)
       for (const PlannedStep& step : assembly.steps) alone += step.parts.size() == 1 ? 1 : 0;
-    // Each link is the first of an assembly, or brought by itself.
+    // Each link is either the base of an assembly or mounted alone.
     EXPECT_EQ(alone + plan.assemblies.size(), static_cast<std::size_t>(links));
   }
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Voxel and spacing by the sizes of the parts and of what they meet; memory known before anything is built.
+// Voxel and spacing from the sizes of parts and of the faces they fit; memory estimated before models are
+// built.
 #include "vps_scenes/planning/fidelity_choice.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +23,7 @@ namespace {
 
 constexpr double kMm = 1e-3;
 
-/// A cube on a plate, of a scene that states no resolution.
+/// A cube on a plate, in a scene that states no resolution.
 Scene cubeOnPlate(double cube_m) {
   Scene scene;
   scene.file = scene.name = "cube";
@@ -81,7 +82,7 @@ TEST(Resolution, TheModelsOfALargePartTakeNoMoreThanThoseOfACubeOf150Mm) {
   }
 }
 
-// Each is at its cap, and together they would take 50 times that.
+// Each part's voxmap is at its memory limit, and together they would take 50 times the limit of all models.
 TEST(Resolution, TheModelsOfManyLargePartsTakeNoMoreThanThoseOfAPlannedScene) {
   Scene scene = cubeOnPlate(0.4);
   for (int i = 0; i < 50; ++i)
@@ -180,7 +181,7 @@ Mesh dividedBox(const Vec3& size, int n) {
   return mesh;
 }
 
-// The bore is a shell of its own in the middle of the list: a part of its kind need not be one solid here.
+// The bore is a separate shell in the middle of the list; a part does not have to be one solid for this.
 TEST(WallSizes, ABoreOfAFewFacetsInAVeryFinePartIsFound) {
   for (const int facets : {12, 24, 64})
     for (const int n : {40, 150}) {  // 19200 and 270000 facets
@@ -215,7 +216,7 @@ TEST(Resolution, ATooLargeModelIsRefusedBeforeAnyIsBuiltWithTheKeyToSet) {
     const std::string words = error.what();
     for (const char* part : {"800 x 800 x 800 mm", "GiB", "[fidelity] voxel = \"0."})
       EXPECT_NE(words.find(part), std::string::npos) << words;
-    // What is named fits.
+    // The voxel named in the message is accepted.
     double voxel_mm = 0;
     ASSERT_EQ(std::sscanf(words.c_str() + words.find("voxel = \"") + 9, "%lf", &voxel_mm), 1) << words;
     scene.fidelity.voxel_m = voxel_mm * kMm;
@@ -224,7 +225,8 @@ TEST(Resolution, ATooLargeModelIsRefusedBeforeAnyIsBuiltWithTheKeyToSet) {
   EXPECT_LT(scene.fidelity.voxel_m, 2 * Fidelity().voxel_m);
 }
 
-// The voxel that is named is for all parts, and with it the models fit, though parts had their own.
+// The voxel named in the message applies to all parts, and the models fit with it, although parts had their
+// own voxels.
 TEST(Resolution, TheVoxelThatIsNamedWhereMemoryIsShortFits) {
   Scene scene = cubeOnPlate(0.3);
   chooseResolution(scene);
@@ -252,10 +254,10 @@ TEST(Resolution, TheVoxelThatIsNamedWhereMemoryIsShortFits) {
   EXPECT_THROW(simulate(scene, 0.002, options), LoadError) << voxel_mm;
 }
 
-// Spacings far too small, a plate of 15 m, and voxels of a micrometre: by the voxmap's limit, the
-// pointshell's, and the memory's.
+// Refusals by three limits: spacings that are far too small (pointshell), a plate of 15 m (voxmap), and
+// voxels of a micrometre (memory).
 TEST(Resolution, WhatIsNamedWhereModelsAreRefusedIsAcceptedAndFoundInASecond) {
-  const std::array<double, 3> cases[] = {// cube, voxel, spacing [m]
+  const std::array<double, 3> cases[] = {// cube, voxel and spacing [m]
                                          {10 * kMm, 0.25 * kMm, 1e-5}, {10 * kMm, 0.25 * kMm, 1e-6},
                                          {10 * kMm, 0.25 * kMm, 1e-7}, {10 * kMm, 1.2 * kMm, 4.8e-6},
                                          {10 * kMm, 1e-6, 0.5 * kMm},  {5, 0.25 * kMm, 1 * kMm},
@@ -290,7 +292,7 @@ TEST(Resolution, WhatIsNamedWhereModelsAreRefusedIsAcceptedAndFoundInASecond) {
     }
 }
 
-// All numbers of the two runs differ by powers of two.
+// All numbers of the two runs differ by powers of two only.
 TEST(ScaledScene, ASmallSceneHasTheAnswersOfTheSimilarOneToTheLastBit) {
   const auto run = [](double factor, double gap_mm = 0.1) {
     Scene scene = cubeOnPlate(0.8 * kMm * factor);
@@ -315,7 +317,7 @@ TEST(ScaledScene, ASmallSceneHasTheAnswersOfTheSimilarOneToTheLastBit) {
   EXPECT_EQ(small_deep.exact.deepest.depth_m * 0x1p6, deep.exact.deepest.depth_m);
   EXPECT_GT(deep.contact_depth_m, 0);
   EXPECT_EQ(small_deep.contact_depth_m * 0x1p6, deep.contact_depth_m);
-  EXPECT_EQ(small.overlap->limit_m, 10e-6);  // drawn lengths, whatever the scene is simulated in
+  EXPECT_EQ(small.overlap->limit_m, 10e-6);  // drawn lengths, independent of the scale of the simulation
   EXPECT_EQ(one.overlap->limit_m, 10e-6);
   EXPECT_EQ(Vec3(small.bodies[0].X_WP.p * 0x1p6), one.bodies[0].X_WP.p);
   EXPECT_EQ(small.bodies[0].X_WP.R, one.bodies[0].X_WP.R);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The yield of a peg and a hole of normal diameters, which has a closed formula.
+// The yield of a peg and a hole with normally distributed diameters, which is known by a formula.
 #include "vps_scenes/planning/study.h"
 
 #include <gtest/gtest.h>
@@ -15,13 +15,13 @@ namespace vps::scenes {
 namespace {
 
 constexpr double kMean_m = 6e-6;                           // diametral clearance as drawn
-constexpr double kBoreSigma_m = 5e-6, kPegSigma_m = 4e-6;  // of the diameters
+constexpr double kBoreSigma_m = 5e-6, kPegSigma_m = 4e-6;  // standard deviations of the diameters
 
 double normalShare(double z) {
   return 0.5 * std::erfc(-z / std::sqrt(2.0));
 }
 
-/// The share of pairs in which the bore is larger than the peg.
+/// Share of the pairs in which the bore is larger than the peg.
 double formula(double bore_sigma_m, double peg_sigma_m) {
   return normalShare(kMean_m / std::hypot(bore_sigma_m, peg_sigma_m));
 }
@@ -66,11 +66,11 @@ TEST(Study, YieldOfTwoNormalDiametersIsThatOfTheFormulaInNineteenOfTwentyStudies
     const StudyResult result = judgedByClearance(kRuns, seed);
     yield += result.yield / kStudies;
     covered += result.yield_low <= expected && expected <= result.yield_high ? 1 : 0;
-    // The half width of a 95 % interval, to Wilson's corrections of the order 1 / runs.
+    // Half width of a 95 % interval, up to Wilson's corrections of the order 1 / runs.
     const double half = 1.96 * std::sqrt(result.yield * (1 - result.yield) / kRuns);
     EXPECT_NEAR(0.5 * (result.yield_high - result.yield_low), half, 0.02 * half);
   }
-  // Four standard deviations of a mean, and of a count of hits of 95 %.
+  // Four standard deviations of a mean, and of the number of 95 % intervals that contain the true value.
   EXPECT_NEAR(yield, expected, 4 * std::sqrt(expected * (1 - expected) / (kStudies * kRuns)));
   EXPECT_NEAR(covered, 0.95 * kStudies, 4 * std::sqrt(0.95 * 0.05 * kStudies));
 }
@@ -78,7 +78,7 @@ TEST(Study, YieldOfTwoNormalDiametersIsThatOfTheFormulaInNineteenOfTwentyStudies
 TEST(Study, HalvingATolerancesGivesTheYieldOfTheFormulaForIt) {
   const StudyResult result = judgedByClearance(20000);
   ASSERT_EQ(result.effects.size(), 2U);
-  EXPECT_EQ(result.effects[0].variable.name, "cup size");  // the wider one costs more
+  EXPECT_EQ(result.effects[0].variable.name, "cup size");  // the wider tolerance has the greater effect
   for (const StudyEffect& effect : result.effects) {
     const bool is_bore = effect.variable.name == "cup size";
     const double expected =
@@ -97,7 +97,8 @@ TEST(Study, OfMeshesWhoseFacesAreOffsetHasTheYieldOfTheFormula) {
   const double expected = formula(kBoreSigma_m, kPegSigma_m);
   EXPECT_LE(result.yield_low, expected);
   EXPECT_GE(result.yield_high, expected);
-  // Each run is judged as its two numbers say. The meshes' coordinates are exact to nanometres.
+  // The verdict of each run has to follow from its two deviations. The meshes' coordinates are exact to
+  // nanometres.
   for (const StudyRun& run : result.runs) {
     const double clearance_m = kMean_m + run.values[0] - run.values[1];
     if (std::abs(clearance_m) > 0.05e-6) {
@@ -143,7 +144,7 @@ TEST(Study, AnotherSeedOrAnotherToleranceIsAnotherStudy) {
     prints.insert(studyFingerprint(scene, studyVariables(scene), settings));
   };
   add(kGeometry);
-  add({.seed = 1, .has_contact = false, .threads = 7});  // threads change nothing
+  add({.seed = 1, .has_contact = false, .threads = 7});  // the number of threads does not change the study
   EXPECT_EQ(prints.size(), 1U);
   add({.seed = 2, .has_contact = false});
   add({.seed = 1, .has_contact = true});
@@ -169,12 +170,12 @@ TEST(Study, UniformDeviationsLieEvenlyWithinTheirLimits) {
     sum += x;
     squares += (x - 1) * (x - 1);
   }
-  // Variance 16/12; four standard errors of mean and variance.
+  // Variance 16/12; the bounds are four standard errors of mean and variance.
   EXPECT_NEAR(sum / kCount, 1, 4 * std::sqrt(16.0 / 12 / kCount));
   EXPECT_NEAR(squares / kCount, 16.0 / 12, 4 * std::sqrt((16.0 / 5 - 16.0 / 9) / kCount));
 }
 
-// ISO 286: H7 of 8 mm is 0 to +15 um, g6 is -14 to -5 um.
+// By ISO 286, H7 of 8 mm is 0 to +15 um, and g6 is -14 to -5 um.
 TEST(Study, AToleranceClassIsRelativeToTheNominalSize) {
   Scene scene = pegInCup({4.01e-3, 4e-3});
   scene.parts[0].tolerance.size_class = "H7";
@@ -183,13 +184,13 @@ TEST(Study, AToleranceClassIsRelativeToTheNominalSize) {
   ASSERT_EQ(variables.size(), 2U);
   EXPECT_TRUE(variables[0].is_hole);
   EXPECT_FALSE(variables[1].is_hole);
-  EXPECT_NEAR(variables[0].lower, -20e-6, 1e-8);  // drawn 20 um above 8 mm
+  EXPECT_NEAR(variables[0].lower, -20e-6, 1e-8);  // the drawn size is 20 um above 8 mm
   EXPECT_NEAR(variables[0].upper, -5e-6, 1e-8);
   EXPECT_NEAR(variables[1].lower, -14e-6, 1e-8);
   EXPECT_NEAR(variables[1].upper, -5e-6, 1e-8);
 }
 
-// A hole that stands beside its drawn place leaves the peg half of the clearance less.
+// An offset of the hole from its drawn position reduces the room of the peg on one side.
 TEST(Study, AnOffsetPlaceIsInTheWayWhereItExceedsTheGap) {
   Scene scene = pegInCup({4.01e-3, 4e-3});
   scene.parts[0].tolerance.position_m = 20e-6;
@@ -201,7 +202,7 @@ TEST(Study, AnOffsetPlaceIsInTheWayWhereItExceedsTheGap) {
   for (const StudyRun& run : runs) {
     const double off_m = std::hypot(run.values[0], run.values[1]);
     fit += run.verdict == Verdict::Fits;
-    // The chords of 96 flats hide up to r (1 - cos(pi/96)) = 2.2 um of each surface.
+    // The chords of 96 flats deviate by up to r (1 - cos(pi/96)) = 2.2 um from each surface.
     if (off_m < 9.9e-6) {
       EXPECT_EQ(run.verdict, Verdict::Fits) << run.run << ": " << run.reason;
     } else if (off_m > 10e-6 + 2 * 2.2e-6) {
@@ -217,7 +218,7 @@ TEST(Study, WithoutAToleranceOrWithOneThatIsNotKnownIsRefused) {
   EXPECT_THROW(studyVariables(scene), LoadError);
   scene.parts[1].tolerance.size_class = "q9";
   EXPECT_THROW(studyVariables(scene), LoadError);
-  scene.parts[1].tolerance.size_class = "H7";  // the peg is no hole
+  scene.parts[1].tolerance.size_class = "H7";  // a class for holes, but the peg is a shaft
   EXPECT_THROW(studyVariables(scene), LoadError);
   scene.parts[1].tolerance = {};
   scene.parts[1].tolerance.lower_m = 1e-6;

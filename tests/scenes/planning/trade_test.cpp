@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Trades between speed and accuracy: the measured rows, and the choice of a fidelity.
-// More than 400 lines: the tests share the scenes of this file.
+// Trade studies of speed against accuracy: the measured rows, and the choice of a fidelity. The file has more
+// than 400 lines because the tests share its scenes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,12 +13,12 @@
 
 #include "models/scene_models.h"
 #include "record/scene_archive.h"
+#include "study/variants.h"
 #include "support/random_draw.h"
 #include "support/stl_box.h"
 #include "support/temporary_folder.h"
-#include "trade/trade_plan.h"
-#include "study/variants.h"
 #include "trade/probe.h"
+#include "trade/trade_plan.h"
 #include "vps/errors.h"
 #include "vps/mesh_distance.h"
 #include "vps/voxmap.h"
@@ -29,9 +29,9 @@ namespace vps::scenes {
 namespace {
 
 constexpr double kRadius_m = 3e-3;
-constexpr int kRings = 5;  // facets of some 0.2 mm
+constexpr int kRings = 5;  // gives facets of about 0.2 mm
 
-/// A ball over a plate: nothing was tuned on this scene.
+/// A ball over a plate; no setting was tuned on this scene.
 Scene ballOnPlate() {
   Scene scene;
   scene.file = "scene.toml";
@@ -53,8 +53,8 @@ Scene ballOnPlate() {
   return scene;
 }
 
-/// The row of a plate pushed 20 um into a ball, offset and rotated. Only the plate's points are tested, so
-/// that the depth comes from the ball's curved field alone.
+/// The row for a plate that is pushed 20 um into a ball, offset and rotated. Only the plate's points are
+/// tested, so that the depth comes from the ball's curved field alone.
 TradeRow rowAt(double voxel_m, double spacing_m) {
   Scene scene = ballOnPlate();
   std::swap(scene.parts[0].part, scene.parts[1].part);
@@ -77,14 +77,16 @@ TradeRow rowAt(double voxel_m, double spacing_m) {
 
 TEST(Trade, AFinerVoxelIsMoreAccurateAndLarger) {
   const double s = 0.125e-3;
-  // No coarser, since with 1 mm neither the field nor the points find the contact, which is only 20 um deep.
+  // Coarser voxels are not tested: with 1 mm neither the field nor the points find the contact, which is only
+  // 20 um deep.
   const TradeRow coarse = rowAt(0.5e-3, s), middle = rowAt(0.25e-3, s), fine = rowAt(0.125e-3, s);
   EXPECT_LT(middle.probe.penetration_m, coarse.probe.penetration_m);
   EXPECT_LT(fine.probe.penetration_m, middle.probe.penetration_m);
   EXPECT_GT(middle.bytes, coarse.bytes);
   EXPECT_GT(fine.bytes, middle.bytes);
-  // Trilinear in a ball's field: h^2/8 times its second derivatives, 2/r in sum. The plate's nearest point
-  // lies within s of the deepest one, where the ball is s^2/(2 r) farther. OverlapJudge is certain to 0.5 um.
+  // Trilinear error in a ball's field: h^2/8 times the sum of its second derivatives, 2/r. The plate's
+  // nearest point lies within s of the deepest point, where the ball is s^2/(2 r) farther away. OverlapJudge
+  // is accurate to 0.5 um.
   const double h = 0.125e-3, inner_m = kRadius_m - 20e-6;
   EXPECT_LE(fine.probe.penetration_m, h * h / (4 * inner_m) + s * s / (2 * inner_m) + 0.5e-6);
 }
@@ -108,19 +110,19 @@ TEST(Trade, MorePointsTakeMoreTime) {
 
 TEST(Trade, TheScenesOwnSettingIsRunAndTheOthersAreMeasuredOrListedAsLeftOut) {
   TradeOptions options;
-  options.seconds = 1e-3;  // no time for more than the first
+  options.seconds = 1e-3;  // time for the first row only
   const Scene scene = ballOnPlate();
   const TradeResult result = trade(scene, options);
   ASSERT_EQ(result.rows.size(), 1u);
   EXPECT_TRUE(result.rows[0].has_run);
   EXPECT_EQ(result.excerpt, "step 1 of 1: ball");
   EXPECT_EQ(result.left_out.size(),
-            tradeDesign(scene).size());  // the reference is among them, the first setting is not
+            tradeDesign(scene).size());  // the design includes the reference and excludes the first setting
   EXPECT_EQ(result.fixed.size(), 2u);
 }
 
-/// Progress that acts at the second report about a row: the first announces the row, the second comes from
-/// its run.
+/// Progress that acts at the second report about a row: the first report announces the row, the second comes
+/// from its run.
 Progress inRow(const std::string& name, const std::function<void()>& act) {
   return [name, act, count = 0](std::string_view doing, double) mutable {
     if (doing == name && ++count == 2) act();
@@ -198,7 +200,8 @@ TradeRow judged(double step_us, double error_m, std::size_t bytes) {
 }
 
 TEST(Trade, TheFrontHoldsTheRowsThatNoOtherDominates) {
-  // Only the second dominates the third, in one criterion; likewise the fourth the last but one.
+  // Only the second row dominates the third, in one criterion; likewise the fourth dominates the last but
+  // one.
   std::vector<TradeRow> rows = {judged(100, 5e-6, 10), judged(200, 1e-6, 20), judged(200, 2e-6, 20),
                                 judged(300, 1e-6, 5),  judged(300, 1e-6, 6),  judged(50, 9e-6, 99)};
   rows.back().run.completed = false;  // fast, but not completed
@@ -275,7 +278,8 @@ TEST(FidelityChoice, KeepsItsMemoryAndItsBudgetOfPoints) {
   Scene scene = ballOnPlate();
   buildModels(scene, {});
   FidelityWish wish;
-  wish.memory_bytes = 1.4 * static_cast<double>(modelledCost(scene).bytes);  // with the cooked field: 2
+  wish.memory_bytes =
+      1.4 * static_cast<double>(modelledCost(scene).bytes);  // with the cooked field the factor would be 2
   const FidelityChoice small = chooseFidelity(scene, wish);
   ASSERT_TRUE(small.is_met) << small.failure_reason;
   EXPECT_LE(2 * static_cast<double>(modelledCost(scene).bytes), *wish.memory_bytes);
@@ -283,18 +287,18 @@ TEST(FidelityChoice, KeepsItsMemoryAndItsBudgetOfPoints) {
   Scene again = ballOnPlate();
   again.fidelity.spacing_m = 0.05e-3;
   FidelityWish quick;
-  quick.budget_hz = 1000;  // 1000 us: 600 us by the model are 10,909 points
+  quick.budget_hz = 1000;  // 1000 us: the model leaves 600 us for points, which is 10,909 points
   const FidelityChoice few = chooseFidelity(again, quick);
   ASSERT_TRUE(few.is_met) << few.failure_reason;
   const std::size_t sides = few.fidelity.sides == Sides::Both ? 2 : 1;
   EXPECT_LE(sides * again.parts[1].model->shell->size(), 10910u);
-  EXPECT_GT(few.fidelity.spacing_m, 0.05e-3);  // fewer points came first
+  EXPECT_GT(few.fidelity.spacing_m, 0.05e-3);  // fewer points were chosen before other changes
   EXPECT_EQ(few.fidelity.voxel_m, ballOnPlate().fidelity.voxel_m);
 }
 
 TEST(FidelityChoice, TakesOneSideForARateAloneButNotWithATolerance) {
   FidelityWish wish;
-  wish.budget_hz = 1e6 / (kStepBase_us + 0.2);  // 4 points: fewer than any spacing leaves both sides
+  wish.budget_hz = 1e6 / (kStepBase_us + 0.2);  // allows 4 points, fewer than both sides have at any spacing
   Scene scene = ballOnPlate();
   EXPECT_EQ(chooseFidelity(scene, wish).fidelity.sides, Sides::One);
   wish.tolerance_m = 20e-6;
@@ -317,11 +321,11 @@ TEST(FidelityChoice, NamesTheBoundThatCannotBeKept) {
   EXPECT_FALSE(chooseFidelity(scene, wish).is_met);
 }
 
-// Halved until they are 15 um, the ball's map and the plate's would take 256 MB and more.
+// With voxels halved down to 15 um, the maps of the ball and the plate would take at least 256 MB.
 TEST(FidelityChoice, BuildsNoMapThatWouldNotFitIntoMemory) {
   Scene scene = ballOnPlate();
   FidelityWish wish;
-  wish.tolerance_m = 0.01e-6;  // so that the search goes on to the finest
+  wish.tolerance_m = 0.01e-6;  // makes the search continue to the finest voxel
   const FidelityChoice none = chooseFidelity(scene, wish, {.progress = {}, .machine_bytes = 40e6});
   EXPECT_FALSE(none.is_met);
   EXPECT_NE(none.failure_reason.find("half of this machine's memory"), std::string::npos)
@@ -330,14 +334,14 @@ TEST(FidelityChoice, BuildsNoMapThatWouldNotFitIntoMemory) {
   const FidelityChoice small = chooseFidelity(scene, wish);
   EXPECT_FALSE(small.is_met);
   EXPECT_NE(small.failure_reason.find("only 2 MB are allowed"), std::string::npos) << small.failure_reason;
-  // Without a tolerance there is no search, and the scene's own maps are too large.
+  // Without a tolerance there is no search, and the scene's own maps are already too large.
   wish = {};
   wish.budget_hz = 1;
   EXPECT_FALSE(chooseFidelity(scene, wish, {.progress = {}, .machine_bytes = 1e4}).is_met);
   EXPECT_FALSE(scene.parts[0].model) << "it was built nevertheless";
 }
 
-// Flat, round, thin, and of many small faces.
+// Flat, round and thin parts, and a part of many small faces.
 TEST(FidelityChoice, TheEstimatedMemoryOfMapsIsAtLeastTheirOwnAndAtMostTheStatedMultiple) {
   const Mesh meshes[] = {makeBox({12e-3, 12e-3, 3e-3}), makeSphere(3e-3, 5), makeBox({30e-3, 30e-3, 0.3e-3}),
                          makeCylinder(4e-3, 15e-3, 64)};
@@ -372,7 +376,7 @@ TEST(FidelityChoice, AnAutomaticFidelityIsTheSameEachTimeAndIsRecorded) {
 
 TEST(FidelityChoice, AWishThatCannotBeMetIsRefusedWithItsLine) {
   Scene scene = ballOnPlate();
-  resolveFidelity(scene);  // without a wish nothing happens
+  resolveFidelity(scene);  // without a wish it changes nothing
   EXPECT_EQ(scene.fidelity_choice, "");
   scene.fidelity_wish.emplace().memory_bytes = 1;
   scene.fidelity_wish->place = "scene.toml:4";

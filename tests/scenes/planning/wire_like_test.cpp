@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Wires and what is taken for them: families by generators.
+// Generated families of wires, and of parts that could be mistaken for wires.
 #include <gtest/gtest.h>
 
 #include <cmath>
