@@ -32,16 +32,21 @@ PC_REQUIRES;PC_PRIVATE_REQUIRES;PC_CFLAGS;PC_PRIVATE_LIBS" ${ARGN})
   vps_install_library(${name} "${ARG_PUBLIC}" ${ARGN})
 endfunction()
 
-# vps_add_wing(LIBRARY NAME [WINGS name...] [PUBLIC target...] [PRIVATE target...] [SOURCES file...])
+# vps_add_wing(LIBRARY NAME [WINGS name...] [PUBLIC target...] [PRIVATE target...] [SOURCES file...] [ONLY])
 # A wing of a library: a folder with sources and headers of its own, built and linked alone as vps::LIBRARY_NAME.
 # vps_join_wings() makes the library from them.
 #   WINGS            the wings that it includes; it sees their public and private headers, and those that they include
 #   SOURCES          besides all sources in src/*/; a folder there that has a CMakeLists.txt lists its own
+#   ONLY             the wing consists of SOURCES; src/*/ is left out
 function(vps_add_wing library name)
-  cmake_parse_arguments(ARG "" "" "WINGS;PUBLIC;PRIVATE;SOURCES" ${ARGN})
+  cmake_parse_arguments(ARG "ONLY" "" "WINGS;PUBLIC;PRIVATE;SOURCES" ${ARGN})
   set(target vps_${library}_${name})
   file(GLOB sources CONFIGURE_DEPENDS src/*/*.cpp)
   file(GLOB own_lists CONFIGURE_DEPENDS src/*/CMakeLists.txt)
+  if(ARG_ONLY)
+    set(sources "")
+    set(own_lists "")
+  endif()
   foreach(list IN LISTS own_lists)
     get_filename_component(folder ${list} DIRECTORY)
     list(FILTER sources EXCLUDE REGEX "^${folder}/")

@@ -39,7 +39,8 @@ const LevelSetModule& module(const std::string& file) {
   if (found == nullptr)
     throw LoadError(file, "",
                     "needs OpenVDB and this program's module " VPS_VDB_MODULE " (" + why +
-                        "); install both (Debian: libopenvdb10.0)");
+                        "); install both (Debian: libopenvdb10.0), or build the module with "
+                        "'cmake --build build/release'");
   return *found;
 }
 
