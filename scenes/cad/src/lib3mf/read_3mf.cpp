@@ -179,7 +179,7 @@ class Reader {
       if (++others == 0) first = words;
     }
     if (first.empty()) return;
-    cad_.warnings.push_back("violates the 3MF specification and was read as far as possible:  " + first +
+    cad_.warnings.push_back("violates the 3MF specification and was read as far as possible: " + first +
                             (others > 0 ? " (and " + std::to_string(others) + " more)" : ""));
   }
 

@@ -355,7 +355,7 @@ std::string inWords(const Tessellation& tessellation, const ImportSettings& sett
     add("its faces are closed, but its triangles have " + std::to_string(tessellation.open_edges) +
         " open edges");
   if (tessellation.off == 0 && tessellation.deviation_m > kTimes * tessellation.deflection_m)
-    add(std::string("its volume differs from the exact volume by as much as a layer on its surface of  ") +
+    add(std::string("its volume differs from the exact volume by as much as a layer on its surface of ") +
         deviation);
   return faults +
          "; neither finer triangles nor healing the faces helped, so measurements there are no more accurate "

@@ -186,7 +186,7 @@ void requireParts(const Scene& scene, const ModelPlan& plan, double most_bytes) 
       if (const double bytes = expectedMapBytes(mesh, voxels); bytes > largestMapBytes())
         std::snprintf(words.data(), words.size(),
                       "of %.4g x %.4g x %.4g mm needs about %.3g GiB of memory for voxels of %.3g mm, and a "
-                      "voxmap may take at most %.0f GiB; set larger voxels in the scene file:  ",
+                      "voxmap may take at most %.0f GiB; set larger voxels in the scene file: ",
                       size_mm.x(), size_mm.y(), size_mm.z(), bytes / kGiB, 1e3 * voxels.voxel_m,
                       largestMapBytes() / kGiB);
     }
@@ -195,7 +195,7 @@ void requireParts(const Scene& scene, const ModelPlan& plan, double most_bytes) 
       std::snprintf(
           words.data(), words.size(),
           "of %.4g x %.4g x %.4g mm has too many points for a pointshell with a spacing of %.3g mm; "
-          "set a larger spacing in the scene file:  ",
+          "set a larger spacing in the scene file: ",
           size_mm.x(), size_mm.y(), size_mm.z(), 1e3 * fidelity.spacing_m);
     if (words[0] != 0)
       throw LoadError(part.file, part.part.name, words.data() + Remedy(scene, plan, most_bytes).words());

@@ -167,7 +167,7 @@ class Planner {
     for (const FieldPlan& step : plan_.steps)
       if (std::ranges::count(step.cooked, i) > 0) part.kept_P.push_back(moved(*step.region_W, X_PW));
     part.has_map = part.has_shell = !part.kept_P.empty();
-    part.why = part.has_map ? "fixed: cooked, where a moving part may come"
+    part.why = part.has_map ? "fixed: cooked in the region where a moving part may come"
                             : "fixed, but no moving part comes near: nothing can touch it";
   }
 

@@ -74,7 +74,7 @@ DisplayViewer readViewer(const SceneKeys& keys, std::size_t number) {
   std::string recorded;
   const bool is_recorded = keys.text("recorded", recorded), is_topic = keys.text("topic", viewer.topic);
   if (is_recorded && (is_topic || viewer.is_placed))
-    keys.fail("recorded", "gives the pose of the head at all times; leave out  " +
+    keys.fail("recorded", "gives the pose of the head at all times; leave out " +
                               std::string(is_topic ? "'topic'" : "'head'") + ", or this");
   if (!viewer.is_placed && !is_recorded && !is_topic)
     keys.fail("head", "is missing; give its pose, {position = [...]}, or its stream: 'recorded' or 'topic'");

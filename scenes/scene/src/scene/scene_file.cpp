@@ -47,7 +47,7 @@ std::string didYouMean(const std::string& name, const std::vector<std::string>& 
   constexpr std::size_t kShown = 12;
   std::string list;
   for (std::size_t i = 0; i < std::min(names.size(), kShown); ++i)
-    list += (i ? ", " : "; the names are:  ") + names[i];
+    list += (i ? ", " : "; the names are: ") + names[i];
   return list + (names.size() > kShown ? ", ..." : "");
 }
 

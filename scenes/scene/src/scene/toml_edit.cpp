@@ -73,7 +73,7 @@ std::string edited(const std::string& text, const std::string& file, const TomlV
   }
   throw LoadError(file, "",
                   "has '" + set.key + "' of [" + set.table +
-                      "] in a form that cannot be edited; write it in this form:  " + set.key + " = " +
+                      "] in a form that cannot be edited; write it in this form: " + set.key + " = " +
                       set.value);
 }
 

@@ -111,11 +111,11 @@ inline constexpr auto kPartKeys = std::make_tuple(
     Key{"color", "`\"#rrggbb\"` or 3 numbers 0 to 1", "as in the file, or grey", "colour in sRGB"},
     field("deflection", &ScenePart::deflection_m,
           "greatest distance of the mesh from the exact faces; `vps import` writes it",
-          {.quantity = Quantity::Length, .range = kNotNegative, .default_text = "of the file, or estimated"}),
+          {.quantity = Quantity::Length, .range = kNotNegative, .default_text = "the file's, or estimated"}),
     field("rounding", &ScenePart::rounding_m,
           "greatest displacement of the vertices by a file that rounded them to 32-bit floats; `vps import` "
           "writes it",
-          {.quantity = Quantity::Length, .range = kNotNegative, .default_text = "of the file"}),
+          {.quantity = Quantity::Length, .range = kNotNegative, .default_text = "the file's"}),
     field("allow_overlap", &ScenePart::allow_overlap,
           "the part may start inside another one (interference fits)"),
     field("press_fit", &ScenePart::press_fit_m,
@@ -232,14 +232,13 @@ inline constexpr auto kFidelityFields = std::make_tuple(
     field("voxel", &Fidelity::voxel_m, "grid step of the voxmaps",
           {.quantity = Quantity::Length,
            .range = kPositive,
-           .default_text = "of the preset; without one, `\"0.25mm\"`, or other ones for parts and fits below "
-                           "2 mm and for large parts, see below"}),
-    field(
-        "spacing", &Fidelity::spacing_m, "distance between the points of a pointshell",
-        {.quantity = Quantity::Length,
-         .range = kPositive,
-         .default_text = "of the preset; without one, a quarter of the smallest moved part, between two and "
-                         "four voxels, and two with `penalty`"}),
+           .default_text = "the preset's; without a preset, `\"0.25mm\"`, or another value for parts and "
+                           "fits below 2 mm and for large parts, see below"}),
+    field("spacing", &Fidelity::spacing_m, "distance between the points of a pointshell",
+          {.quantity = Quantity::Length,
+           .range = kPositive,
+           .default_text = "the preset's; without a preset, a quarter of the smallest moved part, between "
+                           "two and four voxels, or two voxels with `penalty`"}),
     field("sides", &Fidelity::sides,
           "one: points of the moving part are tested against the field of the fixed parts; both: points of "
           "the fixed parts are tested as well"),
