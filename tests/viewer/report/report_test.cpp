@@ -16,7 +16,6 @@
 #include <string>
 #include <vector>
 
-#include "files/base64.h"
 #include "viewer/small_run.h"
 #include "vps_scenes/fits/check.h"
 #include "vps_viewer/draw/image.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pages/run_view.h"
+#include "pages/sections.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <span>
 #include <string>
 
-#include "files/base64.h"
+#include "files/html.h"
 #include "support/process/chromium.h"
 #include "viewer/small_run.h"
 #include "vps_scenes/run/assemble.h"

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "mesh/float_vectors.h"
+#include "mesh/shading_mesh.h"
 
 namespace vps::viewer {
 namespace {

@@ -1,12 +1,40 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Title, caption and legend, drawn over a finished picture.
+// Text on images, by FreeType with the font DejaVu Sans; and the title, caption and legend of a finished
+// picture.
 #pragma once
 
-#include "marks/text.h"
+#include <memory>
+#include <string>
+
 #include "vps_viewer/draw/image.h"
 #include "vps_viewer/draw/render_scene.h"
 
 namespace vps::viewer {
+
+enum class FontWeight { Regular, Bold };
+
+struct TextStyle {
+  double size_px = 18;
+  FontWeight weight = FontWeight::Regular;
+  std::uint8_t level = 40;  ///< grey, 0 black
+};
+
+class Lettering {
+ public:
+  Lettering();  ///< does not throw: without the font, write() does nothing and isReady() is false
+  ~Lettering();
+  Lettering(Lettering&&) noexcept;
+  Lettering& operator=(Lettering&&) noexcept;
+  [[nodiscard]] bool isReady() const;
+  /// Width in pixels of one line of UTF-8.
+  [[nodiscard]] double width(const std::string& utf8, const TextStyle& style) const;
+  /// Draws one line whose baseline begins at (x, y). Returns its width.
+  double write(Image& image, double x, double y, const std::string& utf8, const TextStyle& style) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
 
 struct LegendColors {
   Eigen::Vector3f hand, target;  ///< linear RGB

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mesh/float_vectors.h"
 #include "vps/mesh.h"
 
 namespace vps::viewer {

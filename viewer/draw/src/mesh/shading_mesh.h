@@ -7,9 +7,18 @@
 #include <vector>
 
 #include "vps/mesh.h"
-#include "vps_scenes/cad/face_colors.h"
+#include "vps/pose.h"
+#include "vps_scenes/cad/colors.h"
 
 namespace vps::viewer {
+
+inline std::array<float, 3> toFloat(const Vec3& v) {
+  return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
+}
+
+inline Vec3 toVec3(const std::array<float, 3>& v) {
+  return {v[0], v[1], v[2]};
+}
 
 struct ShadingVertex {
   std::array<float, 3> p;  ///< relative to ShadingMesh::center

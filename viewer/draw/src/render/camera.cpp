@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mesh/box_corners.h"
+#include "mesh/scene_meshes.h"
 
 namespace vps::viewer {
 

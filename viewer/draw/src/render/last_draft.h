@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "render/screen_box.h"
+#include "render/view.h"
 #include "vps_viewer/draw/image.h"
 
 namespace vps::viewer {

@@ -9,7 +9,6 @@
 
 #include "marks/marks.h"
 #include "render/gpu_resources.h"
-#include "render/screen_box.h"
 #include "render/view.h"
 #include "vps_viewer/draw/image.h"
 

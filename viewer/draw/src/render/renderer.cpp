@@ -6,7 +6,7 @@
 
 #include "gl/egl_context.h"
 #include "marks/overlay.h"
-#include "mesh/visible_parts.h"
+#include "mesh/scene_meshes.h"
 #include "render/last_draft.h"
 #include "render/passes.h"
 

@@ -2,9 +2,9 @@
 // The hatched cut faces of a section, found with the stencil buffer.
 #include <cmath>
 
-#include "mesh/box_corners.h"
+#include "mesh/scene_meshes.h"
 #include "render/passes.h"
-#include "render/screen_box.h"
+#include "render/view.h"
 
 namespace vps::viewer {
 namespace {

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pieces of an HTML page.
+// Pieces of an HTML page: escaped text, numbers, tables, pictures, and files written into the page.
 #pragma once
 
+#include <cstddef>
+#include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -37,5 +40,23 @@ std::string figure(const std::string& file, const std::string& caption_html, con
 std::string page(const std::string& title, const std::string& body, const std::string& folder = {});
 
 }  // namespace html
+
+/// RFC 4648, section 4, with padding.
+std::string base64(std::span<const std::byte> bytes);
+/// The bytes of a PNG file as a data URL (RFC 2397), for a picture inside a page.
+std::string pngInText(std::string_view bytes);
+
+/// The number of micrometres, without unit: "12.34".
+inline std::string micrometres(double length_m, const char* form = "%.2f") {
+  return html::format(1e6 * length_m, form);
+}
+
+/// Of round lengths, with the unit that suits them: "5 mm", "200 µm".
+inline std::string lengthText(double length_m) {
+  if (length_m >= 1) return html::format(length_m, "%g m");
+  if (length_m >= 1e-3) return html::format(1e3 * length_m, "%g mm");
+  if (length_m >= 1e-6) return html::format(1e6 * length_m, "%g µm");
+  return html::format(1e9 * length_m, "%g nm");
+}
 
 }  // namespace vps::viewer

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "vps_viewer/report/check_page.h"
+#include "vps_viewer/report/pages.h"
 
 #include <algorithm>
 #include <array>
@@ -7,10 +7,9 @@
 #include <cmath>
 
 #include "files/html.h"
-#include "files/length_text.h"
-#include "pages/clearance_pictures.h"
-#include "pages/section_svg.h"
-#include "vps_viewer/report/check_words.h"
+#include "pages/pictures.h"
+#include "pages/svg.h"
+#include "vps_viewer/report/words.h"
 
 namespace vps::viewer {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "vps_viewer/report/compare_page.h"
+#include "vps_viewer/report/pages.h"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "files/html.h"
-#include "pages/bar_svg.h"
+#include "pages/svg.h"
 #include "vps/errors.h"
 #include "vps/mesh.h"
 #include "vps/write_file.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pages/ergonomics_section.h"
+#include "pages/sections.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "files/html.h"
-#include "files/thinned_trace.h"
 
 namespace vps::viewer {
 

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "vps_viewer/report/margin_page.h"
+#include "vps_viewer/report/pages.h"
 
 #include <vector>
 
 #include "files/html.h"
-#include "files/length_text.h"
-#include "pages/bar_svg.h"
+#include "pages/svg.h"
 
 namespace vps::viewer {
 

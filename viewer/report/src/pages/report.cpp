@@ -7,11 +7,8 @@
 #include <utility>
 
 #include "files/html.h"
-#include "files/length_text.h"
-#include "files/thinned_trace.h"
-#include "pages/ergonomics_section.h"
 #include "pages/pictures.h"
-#include "pages/run_view.h"
+#include "pages/sections.h"
 #include "plots/run_plot.h"
 #include "vps/errors.h"
 #include "vps/write_file.h"
@@ -19,9 +16,9 @@
 #include "vps_scenes/fits/check.h"
 #include "vps_scenes/run/load_level.h"
 #include "vps_scenes/scene/scene_text.h"
-#include "vps_viewer/report/check_page.h"
 #include "vps_viewer/report/csv.h"
-#include "vps_viewer/report/verdict_words.h"
+#include "vps_viewer/report/pages.h"
+#include "vps_viewer/report/words.h"
 
 namespace vps::viewer {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pages/run_view.h"
+#include "pages/sections.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,19 +9,15 @@
 #include <span>
 #include <vector>
 
-#include "files/base64.h"
-#include "files/text_file.h"
-#include "files/thinned_trace.h"
-#include "files/three.h"
+#include "files/external.h"
+#include "files/html.h"
 #include "mesh/coarse_mesh.h"
+#include "mesh/scene_meshes.h"
 #include "mesh/shading_mesh.h"
-#include "mesh/visible_parts.h"
-#include "pages/run_view_script.h"
-#include "vps_scenes/cad/srgb.h"
+#include "vps_scenes/cad/colors.h"
 #include "vps_viewer/draw/render_scene.h"
 
 namespace vps::viewer {
-
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -218,6 +214,18 @@ RunView runView(const scenes::Scene& scene, const scenes::AssembleResult& result
       .append(scriptElement("", controls))
       .append(scriptElement("", kRunViewScript));
   return view;
+}
+
+std::vector<scenes::TraceRow> thinned(const std::vector<scenes::TraceRow>& trace, double rate_hz) {
+  std::vector<scenes::TraceRow> rows;
+  double next_s = 0;
+  for (const scenes::TraceRow& row : trace) {
+    // The tolerance of half a microsecond is for the rounding of times, which are sums of steps.
+    if (row.time_s < next_s - 0.5e-6) continue;
+    rows.push_back(row);
+    next_s = std::max(next_s + 1 / rate_hz, row.time_s);
+  }
+  return rows;
 }
 
 }  // namespace vps::viewer

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "vps_viewer/report/study_page.h"
+#include "vps_viewer/report/pages.h"
 
 #include <algorithm>
 #include <map>
 #include <vector>
 
 #include "files/html.h"
-#include "pages/bar_svg.h"
-#include "vps_viewer/report/verdict_words.h"
+#include "pages/svg.h"
+#include "vps_viewer/report/words.h"
 
 namespace vps::viewer {
 

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "plots/gnuplot.h"
-#include "plots/plot_style.h"
 #include "plots/run_plot.h"
 #include "vps_viewer/report/plot.h"
 

@@ -2,11 +2,12 @@
 #include "plots/gnuplot.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
 
-#include "files/run_program.h"
+#include "files/external.h"
 #include "vps/write_file.h"
 
 namespace vps::viewer {
@@ -94,4 +95,67 @@ PlotOutcome draw(const std::string& body, const std::string& file, int width, in
 }
 
 }  // namespace gnuplot
+
+namespace {
+
+using gnuplot::number;
+
+constexpr std::size_t kBuckets = 1500;  // about one for each pixel of the plot's width
+
+}  // namespace
+
+std::string plotStyle() {
+  return "set encoding utf8\n"
+         "set border 3 lc rgb \"#666666\" lw 0.8\n"
+         "set tics nomirror out scale 0.6 textcolor rgb \"#333333\"\n"
+         "set grid lc rgb \"#D9D9D9\" lw 0.6 lt 1\n"
+         "set key outside right top vertical Left reverse samplen 1.6 spacing 1.15 width 1 textcolor rgb "
+         "\"#333333\"\n";
+}
+
+void addPoints(std::string& script, const std::string& name, const Curve& curve) {
+  std::vector<std::vector<double>> rows;
+  for (const auto& [x, y] : gnuplot::thinned(curve, kBuckets)) rows.push_back({x, y});
+  if (rows.empty()) rows.push_back({std::nan(""), std::nan("")});  // gnuplot rejects an empty block
+  script += gnuplot::dataBlock(name, rows);
+}
+
+std::string plotLines(const std::vector<Line>& lines, const std::string& more) {
+  std::string out = "plot ";
+  for (const Line& line : lines)
+    out += std::string("$").append(line.name) + " with lines lw " + number(line.width) + " lc rgb \"" +
+           line.color + "\" title " + gnuplot::quoted(line.title) + ", \\\n  ";
+  out += more;
+  while (out.back() == ' ' || out.back() == '\n' || out.back() == '\\' || out.back() == ',') out.pop_back();
+  return out + "\n";
+}
+
+PlotOutcome plotSeries(const Plot& plot, const std::string& file) {
+  static constexpr std::array<const char*, 7> kColors = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
+                                                         "#E69F00", "#56B4E9", "#333333"};
+  std::string script = plotStyle();
+  if (plot.is_log_x) script += "set logscale x\n";
+  if (plot.is_log_y) script += "set logscale y\n";
+  if (!plot.title.empty())
+    script += "set title " + gnuplot::quoted(plot.title) + " textcolor rgb \"#222222\"\n";
+  script +=
+      "set xlabel " + gnuplot::quoted(plot.x_label) + "\nset ylabel " + gnuplot::quoted(plot.y_label) + "\n";
+  std::string commands;
+  bool has_points = false;
+  for (std::size_t i = 0; i < plot.series.size(); ++i) {
+    const Series& s = plot.series[i];
+    const std::string name = std::string("s").append(std::to_string(i));
+    addPoints(script, name, s.points);
+    has_points = has_points || !s.points.empty();
+    commands += std::string("$").append(name) + " with " +
+                (s.is_scatter    ? "points pt 7 ps 1.1"
+                 : s.has_markers ? "linespoints pt 7 ps 0.8"
+                                 : "lines") +
+                " lw 1.6 lc rgb \"" + kColors[i % kColors.size()] + "\" title " + gnuplot::quoted(s.name) +
+                ", \\\n  ";
+  }
+  if (!has_points) return {false, "no points to plot"};
+  return gnuplot::draw(script + plotLines({}, commands), file, 1100, 620);
+}
+
 }  // namespace vps::viewer

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Runs gnuplot on a script.
+// Scripts of gnuplot: their pieces, the look of all plots, and running them.
 #pragma once
 
 #include <string>
@@ -30,3 +30,30 @@ std::vector<std::pair<double, double>> thinned(const std::vector<std::pair<doubl
 PlotOutcome draw(const std::string& body, const std::string& file, int width, int height);
 
 }  // namespace vps::viewer::gnuplot
+
+namespace vps::viewer {
+
+using Curve = std::vector<std::pair<double, double>>;
+
+// The palette of Okabe and Ito, which colour-blind readers and grey prints can tell apart.
+inline constexpr const char* kRed = "#D55E00";
+inline constexpr const char* kGreen = "#009E73";
+inline constexpr const char* kBlue = "#0072B2";
+inline constexpr const char* kInk = "#333333";
+
+/// Sets border, tics, grid and key.
+std::string plotStyle();
+
+/// Appends a data block of that name, thinned to the plot's resolution.
+void addPoints(std::string& script, const std::string& name, const Curve& curve);
+
+/// A curve of a data block.
+struct Line {
+  std::string name, title, color;
+  double width = 1.3;
+};
+
+/// A plot command for the lines, followed by what `more` holds (ended by ", \\\n" or empty).
+std::string plotLines(const std::vector<Line>& lines, const std::string& more = {});
+
+}  // namespace vps::viewer

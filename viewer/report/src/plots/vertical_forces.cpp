@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "plots/gnuplot.h"
-#include "vps_viewer/report/device_plot.h"
+#include "vps_viewer/report/plot.h"
 
 namespace vps::viewer {
 namespace {

@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pointshells and voxels as meshes that can be drawn, as in figures 7 and 8 of the paper.
+// Pointshells and voxels as meshes (figures 7 and 8 of the paper), and a scene drawn with them in place of
+// its parts.
 #pragma once
 
 #include <array>
+#include <memory>
+#include <string>
 #include <vector>
 
 #include "vps/pointshell.h"
 #include "vps/voxmap.h"
+#include "vps_scenes/scene/scene.h"
+#include "vps_viewer/draw/render_scene.h"
 #include "vps_viewer/export.h"
 
 namespace vps::viewer {
@@ -29,5 +34,23 @@ struct TintedMesh {
 /// with too many of them is drawn with cubes of twice, thrice, ... the voxel's size.
 /// @param cube_m  if given, receives their edge
 VPS_VIEWER_API TintedMesh voxelMesh(const VoxMap& map, double* cube_m = nullptr);
+
+struct ShownModels {
+  bool has_points = false, has_voxels = false;
+  [[nodiscard]] bool isNone() const { return !has_points && !has_voxels; }
+};
+/// From the words of `--show`: "points", "voxels".
+VPS_VIEWER_API ShownModels shownModels(const std::vector<std::string>& words);
+
+/// Pointshells and voxels in place of the parts (figures 7 and 8 of the paper): where both are shown, points
+/// of the parts that a step moves and voxels of the others, as contact uses them.
+class VPS_VIEWER_API ModelView {
+ public:
+  /// Changes the meshes of `drawn`, to its own, which live as long as it does.
+  ModelView(const scenes::Scene& scene, const ShownModels& shown, RenderScene& drawn);
+
+ private:
+  std::vector<std::unique_ptr<TintedMesh>> meshes_;
+};
 
 }  // namespace vps::viewer

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "vps_device/dual_arm/character.h"
 #include "vps_scenes/run/contact_episodes.h"
 #include "vps_scenes/run/result.h"
 #include "vps_viewer/export.h"
@@ -44,5 +45,11 @@ VPS_VIEWER_API PlotOutcome plotForces(const std::vector<scenes::TraceRow>& trace
 
 /// Plots curves over a common axis. Writes file + ".png" and file + ".svg".
 VPS_VIEWER_API PlotOutcome plotSeries(const Plot& plot, const std::string& file);
+
+/// Left: the least force over each column of the workspace, as surfaces over x and y. Right: the least over x
+/// and z, along y, with the paper's 5 N and 12 N. Writes file + ".png" and file + ".svg"; the same input
+/// gives the same bytes.
+VPS_VIEWER_API PlotOutcome plotVerticalForces(const std::vector<device::VerticalForceAt>& forces,
+                                              const std::string& file);
 
 }  // namespace vps::viewer

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Charts of bars as SVG, for pages.
+// Charts of bars, and sections of a check, as SVG for pages.
 #pragma once
 
 #include <string>
 #include <vector>
+
+#include "vps_scenes/fits/check_types.h"
 
 namespace vps::viewer {
 
@@ -28,5 +30,13 @@ struct Column {
 /// have the same width. Lower counts are green, upper ones red.
 std::string histogram(const std::vector<Column>& columns, const std::string& left_text,
                       const std::string& right_text, const std::string& caption_html);
+
+/// Two pictures beside each other: the whole, and what is near the place, each with a scale bar. Inner part
+/// blue, outer part tan, their overlap red, others grey. `id` makes names unique within a page.
+std::string sectionSvg(const scenes::CheckResult& result, const scenes::CheckedSection& section,
+                       std::size_t id);
+
+/// All sections, with captions.
+std::string sectionPictures(const scenes::CheckResult& result);
 
 }  // namespace vps::viewer

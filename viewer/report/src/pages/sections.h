@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The three-dimensional view of a run in the report.
+// The report's sections with a source of their own: the three-dimensional view of the run, and ergonomics.
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "vps_scenes/run/result.h"
 #include "vps_scenes/scene/scene.h"
+#include "vps_scenes/uses/ergonomics.h"
 
 namespace vps::viewer {
 
@@ -22,5 +24,14 @@ RunView runView(const scenes::Scene& scene, const scenes::AssembleResult& result
 
 inline constexpr std::size_t kRunViewTriangles = 150000;
 inline constexpr double kRunViewRate_hz = 25;
+
+extern const char* const kRunViewScript;
+
+/// A table, and a side view for each posture with the path, both persons' arms at the path's farthest place
+/// and what they reach. Empty where nothing was measured.
+std::string ergonomicsSection(const scenes::Scene& scene, const scenes::AssembleResult& result);
+
+/// The first row of every period 1 / rate_hz.
+std::vector<scenes::TraceRow> thinned(const std::vector<scenes::TraceRow>& trace, double rate_hz);
 
 }  // namespace vps::viewer

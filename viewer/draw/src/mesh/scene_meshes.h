@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which parts of a scene a snapshot shows, where, and the box around them.
+// The parts that a snapshot shows: which, at which pose, and the box around them.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <vector>
 
+#include "vps/mesh.h"
 #include "vps_viewer/draw/render_scene.h"
 
 namespace vps::viewer {
@@ -27,5 +29,15 @@ void forEachVisiblePart(
 /// The box in W around all visible parts and, with show_target, the target. Empty if nothing is visible.
 Box visibleBounds(const std::vector<PartExtent>& parts, const scenes::Snapshot& snapshot, bool show_waiting,
                   bool show_target);
+
+/// Corner i takes the greatest x, y, z where bit 0, 1, 2 of i is set.
+inline std::array<Vec3, 8> corners(const Box& box) {
+  std::array<Vec3, 8> points;
+  for (int i = 0; i < 8; ++i)
+    points[static_cast<std::size_t>(i)] =
+        Vec3((i & 1) != 0 ? box.max.x() : box.min.x(), (i & 2) != 0 ? box.max.y() : box.min.y(),
+             (i & 4) != 0 ? box.max.z() : box.min.z());
+  return points;
+}
 
 }  // namespace vps::viewer

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Runs another program to its end: gnuplot, ffmpeg.
+// Other programs (gnuplot, ffmpeg, Chromium), and the files of other packages.
 #pragma once
 
 #include <string>
@@ -16,5 +16,11 @@ std::string runProgram(const std::vector<std::string>& words, const std::string&
 
 /// Whether PATH has it.
 bool hasProgram(const std::string& name);
+
+/// Its bytes; empty where it cannot be read.
+std::string textOf(const std::string& file);
+
+inline constexpr const char* kThreeFolder =
+    "/usr/share/javascript/three/";  // of Debian's package libjs-three
 
 }  // namespace vps::viewer

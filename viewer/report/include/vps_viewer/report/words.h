@@ -1,13 +1,29 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is said of a check in words, in the text and on the page.
+// Results in words, the same on the terminal and on the pages: verdicts of runs, answers of checks.
 #pragma once
 
 #include <string>
 
 #include "vps_scenes/fits/check_types.h"
+#include "vps_scenes/run/result.h"
 #include "vps_viewer/export.h"
 
 namespace vps::viewer {
+
+/// "fits", "blocked", "not shown"
+VPS_VIEWER_API const char* words(scenes::Verdict verdict);
+
+/// Whether a step's part was brought home by contact: "yes", or "no: " and why not.
+VPS_VIEWER_API std::string contactWords(const scenes::StepResult& step);
+
+/// "Ease of assembly: 7 of 10 tries succeeded"; empty for a single run.
+VPS_VIEWER_API std::string easeWords(const scenes::AssembleResult& result);
+
+/// The run took parts off (vps assemble --disassemble).
+VPS_VIEWER_API bool isDisassembly(const scenes::AssembleResult& result);
+
+/// One sentence: "Yes, the parts go together: all 3 steps fit."
+VPS_VIEWER_API std::string verdictLine(const scenes::AssembleResult& result);
 
 /// How the overlap in the tables is meant.
 inline constexpr const char* kOverlapMeaning =

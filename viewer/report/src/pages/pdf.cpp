@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "vps_viewer/report/pdf.h"
+#include "vps_viewer/report/pages.h"
 
 #include <unistd.h>
 
@@ -8,7 +8,7 @@
 #include <fstream>
 #include <vector>
 
-#include "files/run_program.h"
+#include "files/external.h"
 
 namespace vps::viewer {
 namespace {
