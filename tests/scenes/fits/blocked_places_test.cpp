@@ -1,6 +1,6 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// "Cannot be assembled" is said only where it is proven: assemblies that can be put together by construction,
-// though they overlap as drawn and a weaker proof would rule them out, and some that cannot.
+// SPDX-License-Identifier: BSD-3-Clause The verdict Blocked is given only where it is proven. The assemblies
+// of these tests can be put together by construction, although they overlap as drawn and a wrong proof would
+// call them blocked; some others cannot.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -37,8 +37,8 @@ DrawnPart plate(bool is_fixed = true) {  // its top is at z = 4 mm
 
 using Profile = std::vector<std::pair<double, double>>;
 
-/// What a polygon of (radius, height) [mm], anticlockwise, sweeps around z in some steps: all around, or from
-/// one angle to another with flat ends.
+/// The solid that an anticlockwise polygon of (radius, height) [mm] sweeps around z in some steps: all
+/// around, or between two angles with flat ends.
 Mesh swept(const Profile& profile_mm, int steps, double from_rad = 0, double by_rad = 2 * std::numbers::pi) {
   Mesh mesh;
   const bool is_whole = by_rad >= 2 * std::numbers::pi;
@@ -64,9 +64,9 @@ Mesh swept(const Profile& profile_mm, int steps, double from_rad = 0, double by_
   return mesh;
 }
 
-// A pin with 20 um of room all around, which ends within its bore, and the flange of which is drawn 20 um
-// into the plate: it lifts. The facets of pin and bore cross by more than that wherever it stands, which is
-// their error and no overlap; that of the flat flange is far less.
+// A pin with 20 um of clearance all around ends within its bore, and its flange is drawn 20 um into the
+// plate: the pin can be lifted. The facets of pin and bore cross by more than 20 um at every place; this is
+// their error and no overlap. The error of the flat flange is far less.
 TEST(BlockedPlaces, TheErrorOfAFlatClashIsNotThatOfRoundFacesBesideIt) {
   for (const int segments : {16, 20, 24, 32})
     for (const bool is_fixed : {false, true}) {
@@ -118,7 +118,7 @@ TEST(BlockedPlaces, APinThatIsDrawnTooDeepLeavesAlongItsOwnAxis) {
     return placesOf({part("block", block, Vec3::Zero(), true),
                      part("dowel", makeCylinder(5 * kMm, 20 * kMm, 180), up(10 * kMm - deep_m))});
   };
-  // Its fit leaves it 30 um.
+  // The fit gives the pin a tolerance of 30 um.
   EXPECT_EQ(drawn(20 * kUm).verdict, Verdict::Fits);
   const CheckedPlaces places = drawn(50 * kUm);
   EXPECT_EQ(places.verdict, Verdict::NotShown);
@@ -133,8 +133,8 @@ TEST(BlockedPlaces, APinInALooseLeverMovesWithIt) {
   EXPECT_NE(places.verdict, Verdict::Blocked) << places.reason;
 }
 
-// The shaft is 5 um larger in radius than two cradles that together are around it, but not beside each other:
-// it stands in them at a slant.
+// The shaft's radius is 5 um larger than that of two cradles. Together they surround the shaft, but at
+// different places along it, so the shaft can stand in them at a slant.
 TEST(BlockedPlaces, CradlesAtTwoPlacesAlongAShaftDoNotSurroundIt) {
   Mesh bracket = swept({{5, 0}, {8, 0}, {8, 5}, {5, 5}}, 130, -65 * kDegree, 130 * kDegree);
   append(bracket, swept({{5, 25}, {8, 25}, {8, 30}, {5, 30}}, 130, 115 * kDegree, 130 * kDegree));
@@ -152,7 +152,7 @@ TEST(BlockedPlaces, ADiscLargerThanABoreStandsInItAtASlant) {
   EXPECT_EQ(drawn(4 * kMm).verdict, Verdict::Blocked);
 }
 
-// A shaft with a flat on one side, and one with a hole near its face, are no proof; the hub with a slit is.
+// A shaft with a flat on one side, or with a hole near its face, gives no proof; a hub with a slit gives one.
 TEST(BlockedPlaces, AShaftMustBeRoundAndFullToBeTooLarge) {
   const Mesh slit_hub = swept({{5, -6}, {10, -6}, {10, 6}, {5, 6}}, 300, 10 * kDegree, 340 * kDegree);
   const Mesh shaft = makeCylinder(5.01 * kMm, 20 * kMm, 720);
@@ -161,12 +161,12 @@ TEST(BlockedPlaces, AShaftMustBeRoundAndFullToBeTooLarge) {
       swept({{2, -10}, {5.01, -10}, {5.01, 10}, {2, 10}}, 300, 10 * kDegree, 340 * kDegree);
   const Mesh hub = makeTube(10 * kMm, 5 * kMm, 12 * kMm, 720);
   EXPECT_NE(placesOf({part("hub", hub), part("shaft", slit_shaft)}).verdict, Verdict::Fits);
-  const Mesh sleeve = makeTube(5.01 * kMm, 4.5 * kMm, 20 * kMm, 720);  // by its wall alone nothing is proven
+  const Mesh sleeve = makeTube(5.01 * kMm, 4.5 * kMm, 20 * kMm, 720);  // a thin wall alone proves nothing
   EXPECT_EQ(placesOf({part("hub", hub), part("shaft", sleeve)}).verdict, Verdict::NotShown);
 }
 
 TEST(BlockedPlaces, ABlockMuchWiderThanAFixedSlotIsBlocked) {
-  // 0.4 mm in each of the walls, which no place within 0.5 mm changes in the mean of both.
+  // The overlap is 0.4 mm in each of two walls; no place within 0.5 mm changes the mean of both.
   const Mesh wall = makeBox({8 * kMm, 30 * kMm, 20 * kMm});
   const CheckedPlaces places =
       placesOf({part("left", wall, {-9 * kMm, 0, 0}, true), part("right", wall, {9 * kMm, 0, 0}, true),
@@ -194,8 +194,8 @@ TEST(BlockedPlaces, TwoThatAreEachLessDeepThanBothMayMoveShareTheWay) {
   EXPECT_EQ(placesOf({part("a", box), part("b", box, up(10 * kMm - 1.1 * kMm))}).verdict, Verdict::Blocked);
 }
 
-// Whether an open sheet overlaps the ring around it cannot be told as drawn, which the verdict of the whole
-// says; the places of the others are found.
+// An open sheet as drawn may or may not overlap the ring around it. The verdict of the whole assembly reports
+// this doubt; the places of the other parts are found.
 TEST(BlockedPlaces, PairsThatCannotBeToldAsDrawnDoNotHidePlaces) {
   Mesh sheet;
   sheet.vertices = {

@@ -10,7 +10,7 @@
 namespace vps::scenes {
 namespace {
 
-/// The table of scenes/bearing_block/README.md.
+/// The fits in the table of scenes/bearing_block/README.md.
 TEST(CheckAssemblies, TheBearingBlocksDesignedClearancesAreFound) {
   ImportSettings settings;
   settings.in_own_process = false;
@@ -47,13 +47,14 @@ TEST(CheckAssemblies, TheBearingBlocksDesignedClearancesAreFound) {
     });
     ASSERT_NE(fit, found.fits.end()) << d.shaft << " in " << d.bore;
     EXPECT_NEAR(fit->diametral_clearance_m, d.clearance_m, 2e-6) << d.shaft << " in " << d.bore;
-    // The file has single precision: 2 nm at 30 mm, for each of four faces.
+    // The file has single precision: an error of 2 nm at 30 mm, for each of four faces.
     EXPECT_NEAR(fit->diametral_clearance_m, d.clearance_m, fit->error_m + 8e-9)
         << d.shaft << " in " << d.bore;
   }
 }
 
-// 66 pins, each in a sleeve: each moves by half its clearance, which differs from pin to pin.
+// The assembly has 66 pins, each in a sleeve. Each pin moves by half of its clearance, which differs from pin
+// to pin.
 TEST(CheckAssemblies, SixtySixPinsEachHaveTheirOwnPlay) {
   const auto clearanceOf = [](int i) { return 10e-6 + 2e-6 * i; };
   std::vector<DrawnPart> parts;

@@ -72,7 +72,8 @@ TEST(CheckFits, AShaftInABoreHasItsClearanceWhateverTheFacets) {
     }
 }
 
-// As files of other programs have it: the new corners lie on the flat facets, inside the circle.
+// Other programs write facets that are divided further: the new corners lie on the flat facets, inside the
+// circle.
 TEST(CheckFits, ADividedMeshHasTheSizesOfItsCorners) {
   Mesh bore = makeTube(0.02, 0.00605, 0.03, 60);
   for (int round = 0; round < 3; ++round) {
@@ -97,7 +98,7 @@ TEST(CheckFits, ADividedMeshHasTheSizesOfItsCorners) {
 }
 
 TEST(CheckFits, AKeywayLeavesTheRestOfTheBore) {
-  // A bore of 300 degrees: facets of the gap are left out, and the surface is open there.
+  // The bore covers 300 degrees. The facets of the rest are left out, so the surface is open there.
   Mesh bore = makeTube(0.02, 0.00601, 0.03, 180);
   std::erase_if(bore.triangles, [&](const auto& t) {
     const Vec3 p = (bore.vertices[t[0]] + bore.vertices[t[1]] + bore.vertices[t[2]]) / 3;
@@ -136,7 +137,7 @@ TEST(CheckFits, AKeyInASlotHasItsWidthsAndClearance) {
   const Pose X(rotationFromVector(Vec3(0.2, 0.5, -0.4)), Vec3(0.01, 0.02, 0.03));
   for (const double clearance_m : {-5e-6, 0.0, 40e-6, 0.3e-3}) {
     const double wall_m = 10e-3, slot_m = 5e-3 + clearance_m;
-    // Two walls on a floor, as one part.
+    // The slot is one part: two walls on a floor.
     Mesh slot = makeBox(Vec3(0.03, 0.03, 0.01));
     for (const double side : {-1.0, 1.0})
       append(slot, transformed(makeBox(Vec3(wall_m, 0.03, 0.01)),
@@ -155,7 +156,7 @@ TEST(CheckFits, AKeyInASlotHasItsWidthsAndClearance) {
   }
 }
 
-/// Each triangle divided into four, and drawn towards its middle by this much of its size.
+/// Divides each triangle into four, and moves the corners towards its middle by a share of its size.
 Mesh inPieces(const Mesh& mesh, int times, double drawn) {
   Mesh out;
   const auto add = [&](const std::array<Vec3, 3>& t) {
@@ -175,7 +176,7 @@ Mesh inPieces(const Mesh& mesh, int times, double drawn) {
   return out;
 }
 
-// All facets have cracks between them, of about 20 um.
+// There are cracks of about 20 um between all facets.
 TEST(CheckFits, AFaceInPiecesFitsOnce) {
   const Mesh key = makeBox(Vec3(0.03, 10e-3, 8e-3)), wall = makeBox(Vec3(0.03, 5e-3, 8e-3));
   Mesh slot = transformed(wall, Pose::translation(Vec3(0, 7.52e-3, 0)));
@@ -193,7 +194,8 @@ TEST(CheckFits, AFaceInPiecesFitsOnce) {
   EXPECT_NEAR(pieces[0].length_m, whole[0].length_m, 0.1e-3);
 }
 
-// H11/c11, the loosest of the common fits, has up to 0.18 mm below 3 mm, so no share of the size limits it.
+// H11/c11, the loosest common fit, has a clearance of up to 0.18 mm below 3 mm, so a share of the size does
+// not limit the clearance.
 TEST(CheckFits, AThinPlateFitsItsSlot) {
   for (const double thick_m : {0.05e-3, 0.5e-3}) {
     const Mesh wall = makeBox(Vec3(0.03, 5e-3, 8e-3));

@@ -65,7 +65,7 @@ TEST(CheckPairs, ABlockInAPlateHasDepthVolumeAndPlace) {
   }
 }
 
-// Half a micrometre is what the depths of a run are measured to; the search of the check may be 0.1 um off.
+// Depths of a run have a precision of 0.5 um; the check's search may be off by 0.1 um.
 TEST(CheckPairs, AnOverlapIsAClashFromHalfAMicrometreBeyondItsErrorOn) {
   for (const auto& [depth_m, state] : {std::pair{0.15e-6, PairState::Contact},
                                        {0.3e-6, PairState::Contact},
@@ -102,7 +102,7 @@ TEST(CheckPairs, CoincidentFacesAreContact) {
   }
 }
 
-// The facets of the pin leave those of the bore and cross them: both stand for one cylinder.
+// Facets of the pin cross facets of the bore, since both approximate one cylinder.
 TEST(CheckPairs, APinAsLargeAsItsBoreIsContactWhateverTheFacets) {
   const Mesh bore = makeTube(0.02, 0.01, 0.03, 180);
   for (const int segments : {90, 180, 203}) {
@@ -128,7 +128,8 @@ TEST(CheckPairs, APinIsAClashFromTheErrorOn) {
   }
 }
 
-// The chord of sixteen facets is 96 um, in the radius; the disc's base is flat and so is the plate.
+// Sixteen facets have a chord error of 96 um in the radius. The base of the disc and the plate are flat and
+// have none.
 TEST(CheckPairs, AFlatFaceInAFlatFaceIsAClashHoweverCoarseTheRoundFacesBesideThem) {
   const Pose X_WP(rotationFromVector(Vec3(0.4, -1.1, 0.3)), Vec3(0.2, -0.1, 0.3));
   for (const int segments : {16, 24, 60, 200})
@@ -144,7 +145,8 @@ TEST(CheckPairs, AFlatFaceInAFlatFaceIsAClashHoweverCoarseTheRoundFacesBesideThe
     }
 }
 
-// The depth is a cosine of the lean; of the chord of the round face only its sine counts.
+// The depth is proportional to the cosine of the lean; only the sine of the lean times the round face's chord
+// error enters its error.
 TEST(CheckPairs, TheRimOfALeaningDiscIsCertainToWithinTheChordTimesTheSineOfTheLean) {
   const double lean_rad = 2e-3, depth_m = 20e-6, radius_m = 5e-3;
   const double chord_m = radius_m * (1 - std::cos(std::numbers::pi / 16));
@@ -189,7 +191,7 @@ TEST(CheckPairs, BallsHaveTheirGapAndTheVolumeOfTheirLensWithinTheError) {
       EXPECT_NEAR(pair.interference_volume_m3, 2 * std::numbers::pi * h * h * (r - h / 3),
                   pair.volume_error_m3);
     }
-    EXPECT_LT(pair.error_m, 60e-6);  // the facets of 0.8 mm are up to 13 um inside each ball
+    EXPECT_LT(pair.error_m, 60e-6);  // facets of 0.8 mm are up to 13 um inside each ball
   }
 }
 
@@ -203,7 +205,7 @@ TEST(CheckPairs, ATurnedBlockInABlockSharesAnOctagon) {
   EXPECT_LT(result.pairs[0].volume_error_m3, 1e-9);  // 17 cm2 by 0.1 um would be 0.17 mm3
 }
 
-// Each bar's edges are 2 mm inside the other one's faces, and what they share is 6 mm thick.
+// Each bar's edges are 2 mm inside the other bar's faces, and the shared volume is 6 mm thick.
 TEST(CheckPairs, BarsThatCrossAreAsDeepAsWhatTheyShareIsThick) {
   const CheckResult result = check(
       {block("along", {0.1, 0.01, 0.01}, at(0, 0, 0)), block("across", {0.006, 0.1, 0.006}, at(0, 0, 0))});
@@ -212,9 +214,10 @@ TEST(CheckPairs, BarsThatCrossAreAsDeepAsWhatTheyShareIsThick) {
   EXPECT_NEAR(result.pairs[0].interference_volume_m3, 6e-3 * 6e-3 * 10e-3, result.pairs[0].volume_error_m3);
 }
 
-// A block on the floor of a trough with 20 um of air a side, all facets torn apart. Each corner is moved by
-// up to jitter_m along each axis, so that cracks are up to 2 sqrt(3) of it wide. A point of the block's lower
-// edges, at a crack of the floor, was taken to be as deep as it is far from the walls.
+// A block stands on the floor of a trough with a gap of 20 um on each side, and all facets are torn apart.
+// Each corner is moved by up to jitter_m along each axis, so cracks have widths of up to 2 sqrt(3) jitter_m.
+// A point of the block's lower edges, at a crack of the floor, must not count as deep as its distance from
+// the walls.
 TEST(CheckPairs, FacetsThatAreTornApartAreNoClashAndTheirCracksAreInTheError) {
   const Mesh trough = test::faulty::bracket(), block = makeBox({8e-3 - 40e-6, 6e-3, 8e-3});
   for (const double jitter_m : {0.2e-6, 1e-6, 5e-6, 25e-6})
@@ -224,7 +227,7 @@ TEST(CheckPairs, FacetsThatAreTornApartAreNoClashAndTheirCracksAreInTheError) {
                                         part("block", test::faulty::unwelded(block, jitter_m), X_WP)});
       ASSERT_EQ(result.pairs.size(), 1U);
       const CheckedPair& pair = result.pairs[0];
-      // The cracks of two parts; half of those that were closed; the certainty of a depth.
+      // The sum of the cracks of two parts, half of the closed cracks, and the precision of a depth.
       EXPECT_LE(pair.error_m, 2 * 2 * std::sqrt(3.0) * jitter_m + 2e-6 + 0.11e-6) << jitter_m;
       EXPECT_NEAR(pair.interference_depth_m, depth_m, pair.error_m) << jitter_m;
       if (depth_m == 0) {
@@ -248,14 +251,14 @@ TEST(CheckPairs, AnAssemblyWithASurfaceThatHasNoInsideGetsNoVerdict) {
     EXPECT_EQ(result.uncertain(), 1U);
     EXPECT_FALSE(result.parts[1].no_inside.empty());
     EXPECT_TRUE(result.parts[0].no_inside.empty());
-    // Beside the part nothing is uncertain.
+    // Away from the part nothing is uncertain.
     const CheckResult beside = check({cube, part("sheet", thin, at(0, 0, 5.1e-3))});
     EXPECT_EQ(beside.uncertain(), 0U);
     EXPECT_EQ(beside.pairs.at(0).state, PairState::Apart);
   }
 }
 
-// Two of three facets of a ball are missing: what is inside cannot be told.
+// Two of three facets of a ball are missing, so it is undefined which points are inside.
 TEST(CheckPairs, ASurfaceTornToPiecesGetsNoVerdict) {
   Mesh torn = makeSphere(0.02, 2);
   Mesh pieces;

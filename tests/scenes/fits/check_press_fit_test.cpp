@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// Declared interference fits whose sizes are known by construction, and the force to press them by Lame.
+// SPDX-License-Identifier: BSD-3-Clause Declared interference fits whose sizes are known by construction, and
+// the press force by Lame's formula.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -20,7 +20,8 @@ DrawnPart part(const std::string& name, const Mesh& mesh, double press_fit_m = 0
   return out;
 }
 
-/// A ring of 20 mm bore, 40 mm outside and 30 mm length, and a pin in it whose diameter is larger by this.
+/// A ring with a bore of 20 mm, an outer diameter of 40 mm and a length of 30 mm, and a pin in it whose
+/// diameter is larger by a given interference.
 CheckResult ringAndPin(double interference_m, double declared_m, int segments = 720,
                        const CheckSettings& settings = kFits) {
   const Mesh pin = makeCylinder(10e-3 + interference_m / 2, 50e-3, segments);
@@ -29,11 +30,12 @@ CheckResult ringAndPin(double interference_m, double declared_m, int segments = 
                        settings);
 }
 
-// Solid steel shaft, hub of twice its diameter: p = delta E / (d (5/3 + 1)), as nu cancels.
+// For a solid steel shaft and a hub of twice its diameter, p = delta E / (d (5/3 + 1)), since nu cancels.
 TEST(CheckPressFit, ThePressureOfASolidShaftInARingOfTwiceItsDiameterIsThatOfTheFormula) {
   const PressedRing ring{20e-3, 40e-3, 0, 30e-3, 0.15, 210e9, 0.3, 210e9, 0.3};
   EXPECT_NEAR(jointPressure(ring, 20e-6), 20e-6 * 210e9 / (20e-3 * 8 / 3), 1);
-  // Shigley, example 3-14 in substance: both of one material, hollow shaft of half the joint's diameter.
+  // After Shigley, example 3-14: both parts have one material, and the hollow shaft's hole has half the
+  // joint's diameter.
   const PressedRing hollow{20e-3, 40e-3, 10e-3, 30e-3, 0.15, 210e9, 0.3, 210e9, 0.3};
   EXPECT_NEAR(jointPressure(hollow, 20e-6), 20e-6 * 210e9 / (20e-3 * 10 / 3), 1);
 }
@@ -56,11 +58,12 @@ TEST(CheckPressFit, PressureAndForceAreThoseOfLame) {
   const CheckResult result = ringAndPin(15e-6, 20e-6);
   ASSERT_TRUE(result.fits.at(0).press);
   const CheckedPress& press = *result.fits[0].press;
-  // The ring is taken from facets, whose middles are inside by 1 - cos(pi / 720): 1e-5 of its size.
+  // The ring is measured on facets, whose middles are inside the cylinder by 1 - cos(pi / 720), 1e-5 of its
+  // size.
   EXPECT_NEAR(press.hub_m, 40e-3, 1e-6);
   EXPECT_EQ(press.hole_m, 0);
   const double pressure_Pa = 15e-6 * 210e9 / (20e-3 * 8 / 3);
-  // The joint is 7.5 um in 10 mm larger than the bore, and the ring 1e-5 smaller.
+  // The joint is larger than the bore by 7.5 um in 10 mm, and the ring is smaller by 1e-5.
   EXPECT_NEAR(press.pressure_Pa, pressure_Pa, 2e-3 * pressure_Pa);
   const double force_N = 0.15 * pressure_Pa * std::numbers::pi * 20e-3 * 30e-3;
   EXPECT_NEAR(press.force_N, force_N, 3e-3 * force_N);  // 16.7 kN
@@ -83,7 +86,7 @@ TEST(CheckPressFit, AHollowShaftAndOtherMaterialsGiveWay) {
   EXPECT_NEAR(press.friction, 0.3, 1e-12);  // sqrt(0.15 * 0.6)
 }
 
-// Facets of 2 degrees are 1.5 um inside of the true cylinders; those of 10 degrees 38 um.
+// Facets of 2 degrees are 1.5 um inside the true cylinders; facets of 10 degrees are 38 um inside.
 TEST(CheckPressFit, AnInterferenceThatTheFacetsHideIsSeenFromTheirCorners) {
   const CheckResult hidden = ringAndPin(10e-6, 0, 36);
   const CheckResult as_meshes =
@@ -98,7 +101,8 @@ TEST(CheckPressFit, AnInterferenceThatTheFacetsHideIsSeenFromTheirCorners) {
   for (const CheckResult* result : {&hidden, &as_meshes}) {
     EXPECT_EQ(result->pairs.at(0).state, PairState::Clash);
     EXPECT_NEAR(result->pairs[0].interference_depth_m, 5e-6, 0.1e-6);
-    // The ring between the cylinders, 30 mm long, with material all around: only the radii have an error.
+    // The shared volume is a ring between the cylinders, 30 mm long, with material all around. Only the radii
+    // have an error.
     const double ring_m3 = std::numbers::pi * (10.005e-3 * 10.005e-3 - 10e-3 * 10e-3) * 30e-3;
     EXPECT_NEAR(result->pairs[0].interference_volume_m3, ring_m3, result->pairs[0].volume_error_m3);
     EXPECT_LT(result->pairs[0].volume_error_m3, 0.01 * ring_m3);
@@ -124,7 +128,8 @@ TEST(CheckPressFit, ABlockPressedInWithoutAFitIsJudgedByItsDepth) {
   EXPECT_EQ(check(21e-6), PairState::Clash);
 }
 
-// A pin that is drawn through the ring's wall is no press fit, however right its diameter is.
+// A pin that is drawn through the ring's wall is no press fit, even if its diameter has the declared
+// interference.
 TEST(CheckPressFit, ADeclaredPressFitDoesNotHideAnotherOverlap) {
   const Mesh seat =
       test::lathe({{0, -10e-3}, {20e-3, -10e-3}, {20e-3, 20e-3}, {10e-3, 20e-3}, {10e-3, 0}, {0, 0}}, 720);

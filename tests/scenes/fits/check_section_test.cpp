@@ -18,7 +18,7 @@ DrawnPart part(const std::string& name, const Mesh& mesh, const Pose& X_WP = Pos
   return {name, mesh, X_WP, {}, false};
 }
 
-/// Of all chains, those around holes negative.
+/// The sum of the areas of all chains; chains around holes count as negative.
 double areaOf(const SectionOutline& outline) {
   double sum_m2 = 0;
   for (const auto& chain : outline.chains)
@@ -47,15 +47,15 @@ TEST(CheckSection, AShaftInABushingIsCutThroughItsAxis) {
   EXPECT_EQ(section.parts[1].part, "bushing");
   EXPECT_FALSE(section.parts[0].is_open);
   EXPECT_FALSE(section.parts[1].is_open);
-  // Facets are inside by 1 - cos(pi / 360): 4e-5.
+  // Facets are inside the circle by 1 - cos(pi / 360), 4e-5 of the radius.
   EXPECT_NEAR(areaOf(section.parts[0]), 20e-3 * 24e-3, 1e-4 * 20e-3 * 24e-3);
-  // The picture shows 1.1 bores to each side, and a tenth more is kept.
+  // The picture shows 1.1 bore diameters to each side; outlines reach a tenth farther.
   const double side_m = std::min(20e-3, 1.1 * section.half_m) - 10.05e-3;
   EXPECT_NEAR(areaOf(section.parts[1]), 2 * side_m * 30e-3, 3e-4 * 2 * side_m * 30e-3);
   EXPECT_EQ(section.parts[1].chains.size(), 2U);
 }
 
-// A box whose corners lie in the plane: they count as in front of it, and the outline closes.
+// Corners of a box that lie in the plane count as in front of it, so the outline closes.
 TEST(CheckSection, AnOverlapIsCutWhereItIsDeepestAlongItsDepth) {
   const CheckResult result = checkAssembly(
       "test",
@@ -69,13 +69,13 @@ TEST(CheckSection, AnOverlapIsCutWhereItIsDeepestAlongItsDepth) {
   for (const SectionOutline& outline : section.parts) EXPECT_FALSE(outline.is_open) << outline.part;
   ASSERT_EQ(section.parts[1].part, "block");
   EXPECT_EQ(section.parts[1].chains.size(), 1U);
-  // The picture shows 18 mm to each side of the lower edge of the block, and a tenth more is kept.
+  // The picture shows 18 mm to each side of the lower edge of the block; outlines reach a tenth farther.
   EXPECT_NEAR(areaOf(section.parts[1]), 10e-3 * 1.1 * section.half_m, 1e-9);
 }
 
 TEST(CheckSection, AnOutlineOfASurfaceWithAHoleIsClosedAndSaysSo) {
   Mesh open = makeTube(20e-3, 10.05e-3, 30e-3, 90);
-  // Without a strip of the outside.
+  // A strip of the outside is missing.
   std::erase_if(open.triangles, [&](const auto& t) {
     const Vec3 p = (open.vertices[t[0]] + open.vertices[t[1]] + open.vertices[t[2]]) / 3;
     return p.head<2>().norm() > 19e-3 && std::abs(p.z()) < 14e-3;
@@ -101,7 +101,7 @@ TEST(CheckSection, AMapHasTheGapAtEachPointOfTheSurface) {
     EXPECT_TRUE(checkMesh(map.mesh_W).isClosed()) << map.part;
     for (std::size_t i = 0; i < map.distance_m.size(); ++i) {
       const Vec3& p = map.mesh_W.vertices[i];
-      double expected_m = p.z() - 0;  // of the block, above the plate
+      double expected_m = p.z() - 0;  // height of the block's vertex above the plate
       if (map.part == "plate") {
         const Vec3 out = (p.cwiseAbs() - Vec3(0.015, 0.01, 0)).cwiseMax(0);
         expected_m = Vec3(out.x(), out.y(), gap_m - p.z()).norm();

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// Threads of screws and nuts whose shape is known by construction, and the ways on which they come apart.
+// SPDX-License-Identifier: BSD-3-Clause Threads of screws and nuts whose shape is known by construction, and
+// the motions that take them apart.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ DrawnPart drawn(const std::string& name, const Mesh& mesh, const Pose& X_WP = Po
   return {name, mesh, X_WP, {}, false};
 }
 
-/// M12, of 96 facets around.
+/// An M12 thread with 96 facets in a turn.
 test::ThreadShape threadOf(double turns, double clearance_m = 0) {
   test::ThreadShape thread;
   thread.length_m = turns * thread.pitch_m;
@@ -40,8 +40,8 @@ test::ThreadShape threadOf(double turns, double clearance_m = 0) {
   return thread;
 }
 
-/// A nut of six turns in the middle of a rod of ten: their phases agree, so the nut is as loose all around as
-/// its clearance.
+/// A nut of six turns in the middle of a rod of ten turns. Their phases agree, so the clearance is the same
+/// all around.
 struct RodAndNut {
   Mesh rod = test::makeThreadedRod(threadOf(10)), nut = test::makeNut(threadOf(6, kRadial), 11e-3);
 };
@@ -52,7 +52,7 @@ CheckResult check(const std::vector<DrawnPart>& parts, bool has_play = false) {
 
 TEST(Iso262, ThreadsAreNamedByMajorDiameterAndPitch) {
   EXPECT_EQ(metricThread(16e-3, 2e-3).name, "M16");
-  // 6g of ISO 965-2: 15.682 to 15.962.
+  // The tolerance 6g of ISO 965-2 allows 15.682 to 15.962.
   EXPECT_EQ(metricThread(15.682e-3, 2e-3).name, "M16");
   EXPECT_EQ(metricThread(15.9e-3, 1.5e-3).name, "M16x1.5");
   EXPECT_EQ(metricThread(9.97e-3, -1.25e-3).name, "M10x1.25-LH");
@@ -78,12 +78,12 @@ TEST(CheckThreads, ANutOnARodIsAThreadWithItsLeadAndHand) {
     EXPECT_EQ(fit.thread, is_left ? "M12-LH" : "M12");
     EXPECT_EQ(fit.lead_m, is_left ? -1.75e-3 : 1.75e-3);
     EXPECT_EQ(fit.starts, 1);
-    // Corners of the facets lie on the crests and roots, whose radii the axis' offset may change.
+    // Corners of the facets lie on the crests and roots; an offset of the axis may change their radii.
     EXPECT_LT(fit.error_m, 2e-6);
     EXPECT_NEAR(fit.shaft_m, 12e-3, fit.error_m + 1e-12);
     EXPECT_NEAR(fit.diametral_clearance_m, 2 * kRadial, fit.error_m + 1e-12);
     EXPECT_NEAR(std::abs(fit.axis_W.dot(X.R * Vec3::UnitZ())), 1, 1e-6);
-    // The nut's length, but for the rounding of its ends.
+    // The nut's length, apart from the rounding of its ends.
     EXPECT_NEAR(fit.length_m, 6 * 1.75e-3, 0.1 * 1.75e-3);
   }
 }
@@ -102,7 +102,7 @@ TEST(CheckThreads, WhatIsNoThreadInAThreadIsNoThreadFit) {
   EXPECT_FALSE(has(check({drawn("nut", made.nut), drawn("rod", test::makeThreadedRod(fine))})));
   EXPECT_FALSE(has(check({drawn("nut", made.nut), drawn("pin", makeCylinder(5e-3, 0.03, 96))})));
   EXPECT_FALSE(has(check({drawn("tube", makeTube(9e-3, 6.1e-3, 0.01, 96)), drawn("rod", made.rod)})));
-  // Beside each other.
+  // The parts are next to each other.
   EXPECT_FALSE(
       has(check({drawn("nut", made.nut, Pose::translation({17.2e-3, 0, 0})), drawn("rod", made.rod)})));
 }
@@ -114,20 +114,20 @@ TEST(CheckThreads, ANutLeavesItsRodByScrewAtBothEnds) {
                                      drawn("rod", is_left ? mirrored(made.rod) : made.rod)},
                                     true);
     for (const CheckedPart& part : found.parts) {
-      EXPECT_TRUE(part.ways_out_W.empty()) << part.name;  // nor straight
+      EXPECT_TRUE(part.ways_out_W.empty()) << part.name;  // it cannot be removed in a straight line either
       ASSERT_EQ(part.screw_ways_out.size(), 2U) << part.name;
       EXPECT_NEAR(part.screw_ways_out[0].axis_W.dot(part.screw_ways_out[1].axis_W), -1, 1e-9);
       for (const ScrewWay& way : part.screw_ways_out) EXPECT_EQ(way.lead_m, is_left ? -1.75e-3 : 1.75e-3);
     }
-    // Flanks rise by sqrt(3) to the axis, so this far apart along it; facets of 1/96 turn are 3.2 um off at
-    // r = 6 mm.
+    // Flanks rise by sqrt(3) relative to the axis, so the play along the axis is the radial clearance times
+    // sqrt(3). Facets of 1/96 turn deviate by 3.2 um at r = 6 mm.
     const CheckedPart& nut = found.parts[0];
     ASSERT_TRUE(nut.play);
     EXPECT_NEAR(nut.play->m[4], kRadial / std::sqrt(3.0), 3.2e-6);
   }
 }
 
-// A disc on one end of the rod, in one piece with it, is wider than the nut's hole.
+// The rod has a disc on one end, in one piece with it, which is wider than the nut's hole.
 TEST(CheckThreads, ANutLeavesABoltOnlyAwayFromItsHead) {
   const RodAndNut made;
   Mesh bolt = made.rod;
@@ -141,7 +141,7 @@ TEST(CheckThreads, ANutLeavesABoltOnlyAwayFromItsHead) {
   }
 }
 
-// A turn of 1.5 rad without its 0.42 mm along the axis puts the flanks into each other.
+// A rotation of 1.5 rad without the advance of 0.42 mm along the axis makes the flanks overlap.
 TEST(CheckThreads, ThreadsThatAreDrawnOutOfPhaseClash) {
   const RodAndNut made;
   const Pose turned(rotationFromVector(Vec3(0, 0, 1.5)), Vec3::Zero());
@@ -150,7 +150,7 @@ TEST(CheckThreads, ThreadsThatAreDrawnOutOfPhaseClash) {
   for (const CheckedPart& part : found.parts) EXPECT_TRUE(part.screw_ways_out.empty());
 }
 
-/// Points of the facets at random: radius, and phase as a share of the lead.
+/// Random points of the facets, as radius and phase; the phase is a share of the lead.
 template <class Visit>
 void forEachPoint(const PlacedSurface& part, const Motion& screw, Visit visit) {
   std::mt19937 random(7);
@@ -176,8 +176,8 @@ TEST(ScrewProfile, WhatPassesIsBelowTheNutAtEveryPhase) {
     const std::vector<PlacedSurface> placed = placedSurfaces(parts, {});
     const std::vector<std::uint8_t> passing = ScrewProfile(placed[0], screw).passing(placed[1]);
     const auto count = std::count(passing.begin(), passing.end(), 1);
-    // A facet of 1/96 turn is 3.2 um off at r = 6 mm, and bins of the profile are 1.7 um, so 3 um along
-    // flanks.
+    // A facet of 1/96 turn deviates by 3.2 um at r = 6 mm. Bins of the profile are 1.7 um wide, which is 3 um
+    // along flanks.
     if (clearance_m > 0)
       EXPECT_EQ(count, static_cast<std::ptrdiff_t>(passing.size())) << clearance_m;
     else
@@ -190,7 +190,7 @@ TEST(ScrewProfile, WhatPassesIsBelowTheNutAtEveryPhase) {
     forEachPoint(placed[0], screw, [&](std::uint32_t, double radius_m, double phase) {
       least_m[binOf(phase)] = std::min(least_m[binOf(phase)], radius_m);
     });
-    const double rise_m = std::sqrt(3.0) * 1.75e-3 / kBins;  // of a flank in a bin
+    const double rise_m = std::sqrt(3.0) * 1.75e-3 / kBins;  // rise of a flank within a bin
     forEachPoint(placed[1], screw, [&](std::uint32_t i, double radius_m, double phase) {
       if (passing[i] != 0) {
         ASSERT_LT(radius_m, least_m[binOf(phase)] + rise_m);

@@ -1,6 +1,6 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// CAD import: parts, poses and units are those of the file, and damaged files are refused.
-// More than 400 lines: all file formats, with files that the tests write themselves.
+// SPDX-License-Identifier: BSD-3-Clause CAD import: parts, poses and units agree with the file, and damaged
+// files are refused. The file has more than 400 lines, since it tests all file formats, with files that the
+// tests write themselves.
 #include "vps_scenes/cad/import.h"
 
 #include <algorithm>
@@ -34,7 +34,7 @@ namespace fs = std::filesystem;
 
 const fs::path kBlock = fs::path(VPS_SOURCE_DIR) / "scenes" / "bearing_block";
 
-/// Folder of real CAD exports, whose licences do not allow to commit them.
+/// Folder of CAD files from real programs, whose licences do not allow to commit them.
 fs::path cadFolder() {
   const char* given = std::getenv("VPS_CAD_DIR");
   return given ? fs::path(given) : fs::path(VPS_SOURCE_DIR) / ".." / "shared" / "cad";
@@ -49,7 +49,7 @@ ImportSettings inUnit(const std::string& unit) {
   return settings;
 }
 
-/// The import; empty where the format's library is not built in.
+/// The imported file; empty if the format's library is not built in.
 std::optional<ImportedCad> tryImport(const fs::path& file, const ImportSettings& settings = {}) {
   try {
     return importCad(file.string(), settings);
@@ -64,7 +64,7 @@ std::optional<ImportedCad> tryImport(const fs::path& file, const ImportSettings&
   if (!imported_##name) GTEST_SKIP() << "its library is not built in"; \
   const ImportedCad& name = *imported_##name
 
-/// The bearing block's STEP, imported once: it takes a second.
+/// The bearing block's STEP file, imported once, since the import takes a second.
 const std::optional<ImportedCad>& stepBlock() {
   static const std::optional<ImportedCad> cad = tryImport(kBlock / "bearing_block.step");
   return cad;
@@ -116,7 +116,7 @@ std::size_t closedCount(const ImportedCad& cad) {
                                    [](const ImportedPart& part) { return checkMesh(part.mesh).isClosed(); }));
 }
 
-/// A unit cube: 12 facets, outward. `offset` moves it along x.
+/// A unit cube of 12 facets that face outward. `offset` moves it along x.
 std::string cubeObj(double scale, const std::string& name, int first = 1, double offset = 0) {
   std::string text = "o " + name + "\n";
   for (int i = 0; i < 8; ++i) {
@@ -152,10 +152,10 @@ TEST(PartNames, TheBetterOneOfInstanceAndProductIsTaken) {
     EXPECT_EQ(bestName(instance, "probe"), "probe") << instance;
   EXPECT_EQ(bestName("PlanetaryGearStage2Carrier", "carrier"), "PlanetaryGearStage2Carrier");
   EXPECT_EQ(bestName("M8x1.25-6H", "nut"), "M8x1.25-6H");
-  // Designations, not random words.
+  // These names are designations, not random identifiers.
   for (const char* name : {"LH_Arm_V2_01", "Bolt_M8_x_25_A2", "DIN912M8x20A2K", "GearZ24M2WithHubB12"})
     EXPECT_EQ(bestName(name, "screw"), name);
-  EXPECT_EQ(bestName("decade", "facade"), "decade");  // of hexadecimal digits, and words
+  EXPECT_EQ(bestName("decade", "facade"), "decade");  // both are made of hexadecimal digits, and are words
 }
 
 TEST(Units, AreReadAndOthersRefused) {
@@ -199,14 +199,14 @@ void expectBearingBlock(const ImportedCad& cad) {
   for (std::size_t i = 0; i < cad.parts.size(); ++i) {
     const ImportedPart& part = cad.parts[i];
     EXPECT_EQ(part.name, kBlockParts[i].name);
-    // glTF keeps places as floats: 2^-24 of 60 mm is 4 nm.
+    // glTF stores positions as floats: 2^-24 of 60 mm is 4 nm.
     EXPECT_LT((part.X_WP.p - kBlockParts[i].p_mm * 1e-3).norm(), 1e-8) << part.name;
     EXPECT_LT((part.X_WP.R - Mat3::Identity()).norm(), 1e-6) << part.name;
     EXPECT_TRUE(checkMesh(part.mesh).isClosed()) << part.name;
     EXPECT_GT(volume(part), 0) << part.name;
   }
   const auto& bronze = partNamed(cad, "bushing_lower").color;
-  // Linear RGB as modelled; STEP keeps sRGB to 12 digits, floats 7.
+  // The expected colours are linear RGB as modelled. STEP keeps sRGB to 12 digits; floats keep 7 digits.
   EXPECT_NEAR(bronze[0], 0.52, 1e-5);
   EXPECT_NEAR(bronze[1], 0.26, 1e-5);
   EXPECT_NEAR(bronze[2], 0.06, 1e-5);
@@ -227,11 +227,11 @@ TEST(ImportGltf, BearingBlockHasItsPartsNamesPosesAndColours) {
 
 TEST(ImportGltf, TheDowelsVolumeIsThatOfItsFormulaWithinTheTessellation) {
   const ImportedCad cad = importCad((kBlock / "bearing_block.glb").string());
-  // Pin of radius r, length L; ends are frustums of axial length a down to radius r - c.
+  // A pin of radius r and length L, whose ends are frustums of axial length a down to radius r - c.
   const double r = 2e-3, L = 16e-3, c = 0.6e-3, a = c * std::sqrt(3.0), s = r - c;
   const double truth_m3 = EIGEN_PI * (r * r * (L - 2 * a) + 2 * a / 3 * (r * r + r * s + s * s));
-  // Chords lie inside by at most 1 um, two thirds of it on average: the loss is below the lateral area times
-  // 1 um.
+  // Chords lie inside the pin by at most 1 um, and by two thirds of it on average, so the volume lost is
+  // below the lateral area times 1 um.
   const double lateral_m2 = 2 * EIGEN_PI * r * L;
   const double found_m3 = volume(partNamed(cad, "dowel_1"));
   EXPECT_LT(found_m3, truth_m3);
@@ -245,7 +245,8 @@ TEST(ImportStep, GivesTheSamePartsAsTheMeshes) {
   ASSERT_EQ(step.parts.size(), gltf.parts.size());
   for (const ImportedPart& part : step.parts) {
     const ImportedPart& other = partNamed(gltf, part.name);
-    // Same generator, same deflection; the rest is rounding to floats, 4 nm of the area.
+    // Both files come from the same generator with the same deflection. The remaining difference is rounding
+    // to floats, 4 nm times the area.
     EXPECT_NEAR(volume(part), volume(other), area(part.mesh) * 4e-9) << part.name;
     const Box a = bounds(part.mesh), b = bounds(other.mesh);
     EXPECT_LT((a.min - b.min).norm() + (a.max - b.max).norm(), 1e-8) << part.name << ": another frame";
@@ -255,7 +256,8 @@ TEST(ImportStep, GivesTheSamePartsAsTheMeshes) {
 TEST(ImportStep, ChordsStayWithinTheDeflection) {
   if (!stepBlock()) GTEST_SKIP() << "Open CASCADE is not built in";
   const ImportedCad& cad = *stepBlock();
-  // Midpoints of the long bore edges of the lower bushing, radius 6.012: a chord's sagitta.
+  // The midpoints of the long bore edges of the lower bushing, radius 6.012 mm, are inside by a chord's
+  // sagitta.
   const Mesh& mesh = partNamed(cad, "bushing_lower").mesh;
   double deepest_m = 0;
   for (const auto& t : mesh.triangles) {
@@ -295,7 +297,7 @@ TEST(ImportGltf, WithoutMeshesItHoldsNoSurfaces) {
   EXPECT_NE(message.find("holds no surfaces"), std::string::npos) << message;
 }
 
-/// A tetrahedron with legs of 1 as Collada, with a text in place of its unit.
+/// A tetrahedron with legs of 1 as a Collada file; `unit` is the text of its unit element.
 std::string tetrahedronDae(const std::string& unit) {
   return R"(<?xml version="1.0" encoding="utf-8"?>
 <COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1"><asset>)" +
@@ -438,7 +440,8 @@ TEST(ImportObj, NamesKeepTheirSpacesAndGroupsThatGoOnAreOnePart) {
             "side plate");
 }
 
-/// Two cubes of 10 mm above each other with a gap of 40 um, 300 m from the origin; exact in decimals.
+/// Two cubes of 10 mm above each other with a gap of 40 um, 300 m from the origin. All coordinates are exact
+/// decimals.
 std::string farCubesObj() {
   constexpr int kFaces[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
                                 {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
@@ -480,14 +483,14 @@ TEST(ImportFar, TheFloatsOfABinaryFileCountAsErrorAndAreToldOf) {
     parts.push_back(drawnParts(cad).at(0));
     parts.back().name = std::to_string(z_m);
     warnings = cad.warnings;
-    // Half of the last of 24 bits at 300 m: 2^-24 * 300 m.
+    // The error is half of the last of 24 bits at 300 m: 2^-24 * 300 m.
     EXPECT_NEAR(cad.parts[0].rounding_m, 17.9e-6, 0.1e-6);
   }
   ASSERT_EQ(warnings.size(), 1U);
   EXPECT_NE(warnings[0].find("300 m from the origin of its file"), std::string::npos) << warnings[0];
   const CheckResult found = checkAssembly("far", parts, {.has_fits = false, .has_play = false});
   ASSERT_EQ(found.pairs.size(), 1U);
-  // The gap of 20 um is within the error of both: none can be told.
+  // The gap of 20 um is within the errors of both parts, so it cannot be distinguished from contact.
   EXPECT_EQ(found.pairs[0].state, PairState::Contact);
   EXPECT_LE(std::abs(found.pairs[0].clearance_m - 20e-6), found.pairs[0].error_m);
 }
@@ -496,7 +499,7 @@ TEST(ImportObj, AnInvertedMeshIsFlippedWithAWarning) {
   const Folder folder;
   std::string text = cubeObj(1, "cube");
   for (std::size_t at = text.find("\nv "); at != std::string::npos; at = text.find("\nv ", at + 1)) {
-    text.insert(at + 3, "-");  // mirrored in x: the same facets look inwards
+    text.insert(at + 3, "-");  // mirrored in x, so that the same facets face inwards
   }
   const ImportedCad cad = importCad(folder.write("cube.obj", text).string(), inUnit("m"));
   EXPECT_NEAR(volume(cad.parts.at(0)), 1, 1e-6);
@@ -600,7 +603,7 @@ TEST(ImportVrml, WithoutUnitIsInMetresWithAWarning) {
   EXPECT_NEAR(volume(importCad(file.string(), inUnit("mm")).parts.at(0)), 6e-9, 1e-14);
 }
 
-// Axes are those of the file, which is y up.
+// The axes are those of the file, in which y is up.
 TEST(ImportUp, TheAxisThatIsUpBecomesZ) {
   const std::string file = (kBlock / "bearing_block.glb").string();
   const ImportedCad as_is = importCad(file);
@@ -617,8 +620,8 @@ TEST(ImportUp, TheAxisThatIsUpBecomesZ) {
   for (const char* name : {"", "-", "w", "yy", "--y"}) EXPECT_FALSE(axisFromText(name)) << name;
 }
 
-// A post on its foot, and a bench on four short legs with flat ends, are y up, as Inventor has it; so is a
-// cube. A plate that lies in the plane of x and y is z up.
+// A post on its foot, a bench on four short legs with flat ends, and a cube are read with y up, as Inventor
+// defines. A plate that lies in the plane of x and y is read with z up.
 TEST(ImportUp, IsYAsInventorDefinesUnlessTheDrawingSpeaksClearlyAgainstIt) {
   const Folder folder;
   const auto write = [&](const std::string& name, const std::string& shapes) {
@@ -635,7 +638,7 @@ TEST(ImportUp, IsYAsInventorDefinesUnlessTheDrawingSpeaksClearlyAgainstIt) {
   EXPECT_NEAR((partNamed(cad, "post").X_WP * Vec3::Zero()).z(), 32e-3, 1e-8);
   ASSERT_EQ(cad.warnings.size(), 1U);
   EXPECT_NE(cad.warnings[0].find("y is taken to be up"), std::string::npos) << cad.warnings[0];
-  // Said by the user, or not asked for.
+  // The user states the axis, or the import does not guess it.
   settings.up = Vec3::UnitZ();
   EXPECT_NEAR(partNamed(importCad(standing.string(), settings), "post").X_WP.p.z(), 3e-3, 1e-8);
   EXPECT_NEAR(partNamed(importCad(standing.string()), "post").X_WP.p.z(), 3e-3, 1e-8);
@@ -688,7 +691,7 @@ TEST(ImportErrors, ACoordinateThatIsNotFiniteIsRefused) {
   EXPECT_NE(messageOf(folder.write("nan.obj", text), inUnit("m")), "");
 }
 
-/// Cuts a file at many lengths: each cut is refused or gives usable parts, and none crashes.
+/// Cuts a file at many lengths. Each cut file must be refused or give usable parts, without a crash.
 void expectCutsAreCalm(const fs::path& source, const std::string& name, bool may_give_parts) {
   const Folder folder;
   const std::string whole = contents(source);
@@ -728,7 +731,7 @@ TEST(ImportErrors, CutColladaNeverCrashes) {
   expectCutsAreCalm(folder.write("whole.dae", tetrahedronDae("<unit meter=\"0.001\"/>")), "cut.dae", true);
 }
 
-/// A STEP file that ends as it should but whose middle is missing or scrambled.
+/// A STEP file with a correct end whose middle is missing or scrambled.
 TEST(ImportErrors, DamagedStepNeverCrashes) {
   const Folder folder;
   const std::string whole = contents(kBlock / "bearing_block.step");
@@ -751,7 +754,8 @@ TEST(ImportErrors, DamagedStepNeverCrashes) {
   }
 }
 
-/// A cube of edge about 1 as a PLY; the first vertex's x is `x`, and lines of the header end as given.
+/// A cube with edges of about 1 as a PLY file. The first vertex's x is `x`, and the header's lines end as
+/// given.
 std::string cubePly(float x, bool is_binary, const std::string& last_line_end) {
   std::string text = std::string("ply\nformat ") + (is_binary ? "binary_little_endian" : "ascii") +
                      " 1.0\nelement vertex 8\nproperty float x\nproperty float y\nproperty float z\n"
@@ -759,7 +763,7 @@ std::string cubePly(float x, bool is_binary, const std::string& last_line_end) {
                      last_line_end;
   const auto put = [&](auto value) {
     char bytes[sizeof value];
-    std::memcpy(bytes, &value, sizeof value);  // little-endian, as every machine we run on
+    std::memcpy(bytes, &value, sizeof value);  // little-endian, as all supported machines are
     text.append(bytes, sizeof value);
   };
   char line[80];
@@ -848,7 +852,7 @@ TEST(OwnProcess, ReturnsTheReadersResultAndProgress) {
   const import::RawCad found = import::inOwnProcess(
       "a.step", "The library", {},
       [&](std::string_view doing, double share) {
-        // What was said is said again where the machine is slow.
+        // A slow machine reports the same progress repeatedly.
         const std::pair<std::string, double> now(doing, share);
         if (now.first != "reading a" && (heard.empty() || heard.back() != now)) heard.push_back(now);
       },
@@ -907,7 +911,7 @@ TEST(OwnProcess, EndsWithItsProgressAndLeavesNoChild) {
   EXPECT_EQ(::waitpid(-1, nullptr, WNOHANG), -1) << "a child is left";
 }
 
-/// A reader that says nothing and never ends.
+/// A reader that reports nothing and never ends.
 import::RawCad readForEver(const Progress&) {
   for (;
 ;) ::pause();
@@ -923,7 +927,7 @@ TEST(OwnProcess, EndsWithItsProgressWhileTheLibrarySaysNothing) {
   EXPECT_EQ(::waitpid(-1, nullptr, WNOHANG), -1) << "a child is left";
 }
 
-// A terminal sends the signal to both processes; the parent then throws from its progress.
+// A terminal sends the signal to both processes; the parent then throws from its progress callback.
 TEST(OwnProcess, CtrlCIsAStopAndNoCrash) {
   pid_t child = 0;
   const auto progress = [&](std::string_view doing, double share) {
@@ -969,7 +973,7 @@ TEST(OwnProcess, BeyondItsTimeOrMemoryItIsEndedWithARemedy) {
     return import::RawCad();
   });
   EXPECT_NE(grown.find("needs more than 0.1 GB of memory to read ("), std::string::npos) << grown;
-  // From outside, as when the kernel ends it.
+  // The signal comes from outside, as when the kernel ends the process.
   const std::string killed = messageWith({}, [](const Progress&) {
     std::raise(SIGKILL);
     return import::RawCad();
@@ -1008,7 +1012,7 @@ TEST(OwnProcess, GivesTheSameBitsAsThisProcess) {
     EXPECT_TRUE(isSameMesh(here.parts[i].mesh, there.parts[i].mesh)) << here.parts[i].name;
 }
 
-/// The text with some digits changed; the same seed gives the same text on every machine.
+/// Changes some digits of a text; the same seed gives the same text on every machine.
 std::string withOtherDigits(std::string text, unsigned seed, int count) {
   std::minstd_rand random(seed);
   while (count > 0) {
@@ -1027,7 +1031,7 @@ TEST(ImportReal, DamagedIgesNeverCrashes) {
   const std::string whole = contents(source);
   ImportSettings coarse;
   coarse.deflection_m = 1e-4;
-  // Open CASCADE 7.6.3 crashes (SIGSEGV) on these of 400 tried; what other versions do is theirs.
+  // Open CASCADE 7.6.3 crashes (SIGSEGV) on these seeds of 400; other versions may behave differently.
   for (const unsigned seed : {152u, 299u}) {
     const fs::path file = folder.write("damaged.iges", withOtherDigits(whole, seed, 3));
     try {
@@ -1046,7 +1050,7 @@ TEST(ImportReal, As1HasEighteenClosedSolidsInPlace) {
   IMPORT_OR_SKIP(cad, file, settings);
   EXPECT_EQ(cad.parts.size(), 18u);
   EXPECT_EQ(closedCount(cad), 18u);
-  // Two levels of sub-assemblies: the rod's first nut lies 175 mm along x.
+  // The file has two levels of sub-assemblies; the rod's first nut is 175 mm along x.
   EXPECT_NEAR(partNamed(cad, "nut_1").X_WP.p.x(), 0.175, 1e-9);
   EXPECT_NEAR(partNamed(cad, "nut_2").X_WP.p.x(), 0.002, 1e-9);
 }

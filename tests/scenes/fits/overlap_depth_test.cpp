@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// The depth and the volume that a check prints are those of the solids, however their faces are divided.
+// SPDX-License-Identifier: BSD-3-Clause The depth and volume of a check are properties of the solids: they do
+// not depend on how faces are divided.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// Each triangle in four.
+/// Divides each triangle into four.
 Mesh refined(const Mesh& mesh) {
   Mesh fine;
   const auto add = [&](const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -53,7 +53,7 @@ Mesh turnedBall(double radius_m, int segments) {
   return test::lathe(profile, segments);
 }
 
-/// Ten divisions of a ball, of a box.
+/// Ten divisions of a ball and of a box.
 Mesh ball(double radius_m, int division) {
   constexpr std::array kSegments = {40, 48, 56, 64, 72, 80, 96};
   return division < 3 ? makeSphere(radius_m, division + 3) : turnedBall(radius_m, kSegments.at(division - 3));
@@ -62,7 +62,7 @@ Mesh box(const Vec3& size_m, int division) {
   return cutBox(size_m, division % 4);
 }
 
-/// The parts in one random frame and the second at a place in it.
+/// Measures two parts in a random frame; the second part is at a given place in the frame.
 CheckedPair measured(const Mesh& a, const Mesh& b, const Vec3& p_AB, int seed) {
   std::mt19937 random(static_cast<unsigned>(seed));
   std::normal_distribution<double> draw;
@@ -74,16 +74,17 @@ CheckedPair measured(const Mesh& a, const Mesh& b, const Vec3& p_AB, int seed) {
   return result.pairs.at(0);
 }
 
-/// That the depth is right within the error, and the error no more than the chords of the balls, twice, and a
-/// ten-thousandth.
+/// Expects that the depth is right within its error, and that the error is at most twice the balls' chord
+/// errors plus a ten-thousandth of the depth.
 void expectDepth(const CheckedPair& pair, double depth_m, double chord_m, const std::string& what) {
   EXPECT_NEAR(pair.interference_depth_m, depth_m, pair.error_m) << what;
   EXPECT_LE(pair.error_m, 4 * chord_m + std::max(0.11e-6, 1.1e-4 * depth_m)) << what;
   EXPECT_EQ(pair.state, PairState::Clash) << what;
 }
 
-/// Of the coarsest ball: 40 segments, or an icosahedron divided three times, whose edges are as long as 7.9
-/// degrees. Its facets are as far inside as the circles around them, by up to 1.33 of an edge's chord.
+/// Chord error of the coarsest ball, with 40 segments, or of an icosahedron that is divided three times and
+/// has edges of 7.9 degrees. A facet is inside the ball by the depth of its circumscribed circle, up to 1.33
+/// times an edge's chord error.
 double chordOf(double radius_m) {
   return 2 * radius_m * (1 - std::cos(kPi / 40));
 }
@@ -92,7 +93,7 @@ TEST(OverlapDepth, APlateInABallIsAsDeepAsItsFaceIsBelowTheBall) {
   const double r = 20e-3, t = 2e-3;
   for (int division = 0; division < 10; ++division)
     for (const double above_m : {0.0, 0.6e-3, 5e-3}) {
-      // The middle of the plate's face that is nearer to the centre.
+      // The deepest point is the middle of the plate's face that is nearer to the centre.
       const double depth_m = r - std::abs(above_m - 0.5 * t);
       expectDepth(
           measured(ball(r, 9 - division), box({30e-3, 30e-3, t}, division), {0, 0, above_m}, division),
@@ -121,7 +122,7 @@ TEST(OverlapDepth, ABallInABallIsAsDeepAsTheCirclesSay) {
   const double r = 5e-3, R = 12e-3;
   for (int division = 0; division < 10; ++division)
     for (const double d : {9e-3, 14e-3, 16e-3}) {
-      if (d < 14e-3 && division % 3 != 0) continue;  // many facets are equally far, which takes its time
+      if (d < 14e-3 && division % 3 != 0) continue;  // many facets are equally far, so the search takes long
       const double surface_m = std::max(R - std::abs(r - d), r - std::abs(R - d));
       const double shared_m = std::min(2 * r, R + r - d);
       expectDepth(measured(ball(R, division), ball(r, 9 - division), Vec3(0.6, 0, 0.8) * d, division),
@@ -130,7 +131,7 @@ TEST(OverlapDepth, ABallInABallIsAsDeepAsTheCirclesSay) {
     }
 }
 
-// The greatest ball in both is between the bars' sides; along their edges they are less deep.
+// The greatest ball in both bars lies between their sides; the depth along their edges is smaller.
 TEST(OverlapDepth, BarsThatCrossAreAsDeepAsWhatTheyShareIsThick) {
   for (int division = 0; division < 10; ++division)
     expectDepth(measured(box({100e-3, 10e-3, 10e-3}, division), box({6e-3, 100e-3, 6e-3}, division / 3),
@@ -145,7 +146,7 @@ TEST(OverlapDepth, APartDrawnTwiceIsAsDeepAsItIsThick) {
                 2e-3, 0, std::to_string(division));
 }
 
-// A hollow's edges point into the part; the greatest ball touches one of them, and the floor.
+// The edges of a hollow point into the part. The greatest ball touches one of these edges and the floor.
 TEST(OverlapDepth, TheBallBetweenAConesTipAndAFaceIsFound) {
   const double tip_m = 4e-3;
   for (const int segments : {8, 13, 24, 40}) {
@@ -155,7 +156,8 @@ TEST(OverlapDepth, TheBallBetweenAConesTipAndAFaceIsFound) {
         {{0, 0}, {20e-3, 0}, {20e-3, tip_m + depth_m}, {rim_m, tip_m + depth_m}, {0, tip_m}}, segments);
     // The other part is a tall box that is wider than the ball and narrower than the pit.
     const CheckedPair pair = measured(block, makeBox({5e-3, 5e-3, 40e-3}), Vec3::Zero(), segments);
-    // Its surface in the block is no deeper than half of the block's height there, 4 + 5 mm * 2.5 / 8.32.
+    // The box's surface inside the block is no deeper than half of the block's height there, 4 + 5 mm * 2.5 /
+    // 8.32.
     EXPECT_GE(pair.interference_depth_m, tip_m - pair.error_m) << segments;
     EXPECT_LE(pair.interference_depth_m, 5e-3 + pair.error_m) << segments;
   }
@@ -171,7 +173,7 @@ TEST(OverlapVolume, IsKnownWithinAPartOfItWhereverFlatFacesBoundIt) {
       EXPECT_NEAR(pair.interference_volume_m3, volume_m3, pair.volume_error_m3) << division << ", " << t;
       EXPECT_LT(pair.volume_error_m3, 0.1 * volume_m3) << division << ", " << t;
     }
-    // A disc that is pressed into a plate by 5 um: its side has a chord, its face has none.
+    // A disc is pressed into a plate by 5 um. The disc's side has a chord error, its face has none.
     const int segments = 32 + 16 * division;
     const Mesh disc = test::lathe({{0, -5e-6}, {r, -5e-6}, {r, 10e-3}, {0, 10e-3}}, segments);
     const CheckedPair pair = measured(test::lathe({{0, -20e-3}, {50e-3, -20e-3}, {50e-3, 0}, {0, 0}}, 4),

@@ -39,7 +39,7 @@ TEST_F(OverlapJudgeOfBoxes, BoxThreeMicrometresDeepIsThreeMicrometresDeep) {
 }
 
 TEST_F(OverlapJudgeOfBoxes, ACornerThatDipsInIsFound) {
-  // Turned by a about y, the lowest edge is 5 mm (cos a + sin a) below the centre.
+  // If the cube is turned by a about y, its lowest edge is 5 mm (cos a + sin a) below the centre.
   const double a = 0.1, reach_m = 5e-3 * (std::cos(a) + std::sin(a));
   const Pose X_WP(rotationFromVector({0, a, 0}), Vec3(0, 0, 5e-3 + reach_m - 2e-6));
   EXPECT_NEAR(judge_.deepest(box_, X_WP).depth_m, 2e-6, kRounding_m);

@@ -26,7 +26,7 @@ Pose askew(double tilt_rad) {
   return Pose(rotationFromVector(Vec3(tilt_rad, 0.3 * tilt_rad, -tilt_rad)), Vec3(0.01, -0.02, 0.03));
 }
 
-// The edges of both prisms stand one behind the other, and their faces are flush at one end.
+// The edges of both prisms are in line, and their faces are flush at one end.
 TEST(OverlapVolume, PrismsWithOneNumberOfFacetsShareARing) {
   for (const int facets : {6, 20, 24, 96})
     for (const double deeper_m : {0.0, 3e-6, 30e-6, 1e-3})
@@ -37,12 +37,12 @@ TEST(OverlapVolume, PrismsWithOneNumberOfFacetsShareARing) {
         const double ring_m3 =
             kHeight_m * (polygonArea(kRadius_m + deeper_m, facets) - polygonArea(kRadius_m, facets));
         EXPECT_NEAR(found.volume_m3, ring_m3, found.error_m3) << facets << " " << deeper_m << " " << tilt_rad;
-        EXPECT_LT(found.error_m3, 1.1e-9 * found.area_m2 + 1e-18);  // the shift by 1 nm, and no piece missing
+        EXPECT_LT(found.error_m3, 1.1e-9 * found.area_m2 + 1e-18);  // the shift by 1 nm; no piece is missing
       }
 }
 
-// A polygon turned by t in an equal one: they share one with twice the corners, which touches the circle of
-// their faces; each of its n pairs of corners spans the angles t and 2 pi / n - t.
+// A polygon and an equal polygon turned by t share a polygon with twice the corners, whose sides touch the
+// circle inscribed in both. Each of its n pairs of corners spans the angles t and 2 pi / n - t.
 TEST(OverlapVolume, TurnedPrismsShareAPolygonOfTwiceTheFacets) {
   for (const int facets : {6, 20, 24})
     for (const double share : {0.1234, 0.25, 0.5}) {
@@ -58,7 +58,7 @@ TEST(OverlapVolume, TurnedPrismsShareAPolygonOfTwiceTheFacets) {
     }
 }
 
-/// A block with the facets that face up left out.
+/// A block without the facets that face up.
 Mesh openAbove(const Vec3& size_m) {
   Mesh mesh = makeBox(size_m);
   std::erase_if(mesh.triangles, [&](const auto& t) {
@@ -77,11 +77,11 @@ TEST(OverlapVolume, TheErrorOfAnOpenMeshHoldsWhereThePartReachesIntoTheHole) {
         shared(openAbove(size_m), makeBox(inner_m), Pose(), Pose::translation(Vec3(0, 0, raised_m)));
     const double height_m = std::min(5e-3, raised_m + 2e-3) - std::max(-5e-3, raised_m - 2e-3);
     EXPECT_NEAR(found.volume_m3, 1e-4 * height_m, found.error_m3) << raised_m;
-    EXPECT_GT(found.error_m3, 0.01 * found.volume_m3);  // it is not claimed to be known
+    EXPECT_GT(found.error_m3, 0.01 * found.volume_m3);  // the error admits that the volume is not known well
   }
 }
 
-// Facets that are divided on one side of an edge only: open edges without a hole.
+// Facets are divided on one side of an edge only, which leaves open edges without a hole.
 TEST(OverlapVolume, ACrackWithoutWidthAddsNoError) {
   Mesh block = makeBox(Vec3(0.02, 0.02, 0.01));
   const auto [a, b, c] = block.triangles[0];

@@ -1,6 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// Whether an assembly can be put together, beside whether its parts overlap as drawn: on parts of flat faces,
-// of which both answers are known by construction.
+// SPDX-License-Identifier: BSD-3-Clause Whether an assembly can be put together, and whether its parts
+// overlap as drawn, on parts with flat faces for which both answers are known by construction.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -30,8 +29,8 @@ Pose at(double x_m, double z_m) {
   return Pose::translation({x_m, 0, z_m});
 }
 
-/// A bar along x from z = -8 mm to 0, with walls of 10 mm on it: from each of the xs to the next, in turns
-/// with gaps between them, beginning and ending with a wall. 30 mm wide along y.
+/// A bar along x, from z = -8 mm to 0 and 30 mm wide along y, with walls of 10 mm height on it. Walls and
+/// gaps alternate between the xs, beginning and ending with a wall.
 Mesh comb(const std::vector<double>& xs) {
   constexpr double kHalf_m = 15 * kMm, kLow_m = -8 * kMm, kHigh_m = 10 * kMm;
   Mesh mesh;
@@ -43,7 +42,8 @@ Mesh comb(const std::vector<double>& xs) {
     mesh.triangles.push_back({a, b, c});
     mesh.triangles.push_back({a, c, d});
   };
-  // By x: front (y < 0) and back, at the bottom, the floor of the gaps and the top of the walls.
+  // Vertices for each x: front (y < 0) and back, at the bottom, at the floor of the gaps and at the top of
+  // the walls.
   std::vector<std::array<std::array<std::uint32_t, 3>, 2>> at;
   for (const double x : xs) {
     auto& column = at.emplace_back();
@@ -75,14 +75,14 @@ Mesh comb(const std::vector<double>& xs) {
   return mesh;
 }
 
-/// A slot of this width in the middle of a base, and a block of 10 mm that stands in it.
+/// A slot of a given width in the middle of a base, and a block of 10 mm that stands in it.
 std::vector<DrawnPart> blockInSlot(double width_m, const Pose& X_off) {
   const double half_m = 0.5 * width_m;
   return {part("slot", comb({-half_m - 8 * kMm, -half_m, half_m, half_m + 8 * kMm})),
           part("block", makeBox({10 * kMm, 14 * kMm, 8 * kMm}), X_off * Pose::translation({0, 0, 4 * kMm}))};
 }
 
-/// Two combs that face each other, with slots at pitches that differ, and keys of 6 mm through both.
+/// Two combs that face each other, with slots at different pitches, and keys of 6 mm through both combs.
 std::vector<DrawnPart> keysThroughCombs(double clearance_m, double pitch_error_m) {
   constexpr double kWidth_m = 6 * kMm, kPitch_m = 20 * kMm;
   const auto slots = [&](double pitch_m) {
@@ -119,7 +119,7 @@ TEST(Places, ABlockDrawnIntoTheWallOfItsSlotIsFreeOnceItMovesByItsOverlap) {
   EXPECT_LT((moved.by_W - Vec3(-10 * kUm, 0, 0)).norm(), 0.5 * kUm) << moved.by_W.transpose();
   EXPECT_LT(moved.turn_W.norm(), 1e-5);
   EXPECT_LE(moved.most_m, moved.allowed_m);
-  // The check of these places finds nothing.
+  // A check of the parts at these places finds no clash.
   std::vector<DrawnPart> parts =
       blockInSlot(10 * kMm + 40 * kUm, moved.X_WP * Pose::translation({0, 0, -4 * kMm}));
   EXPECT_EQ(check(parts).clashes(), 0U);
@@ -137,13 +137,13 @@ TEST(Places, AFixedPartIsNotMoved) {
   EXPECT_NE(check(parts).places.verdict, Verdict::Fits);
 }
 
-/// From -1 to 1, the same with every compiler.
+/// A random number from -1 to 1 that is the same with every compiler.
 double drawn(std::mt19937_64& random) {
   return static_cast<double>(random() >> 11U) * 0x1p-52 - 1;
 }
 
-/// How deep a block is in the walls of its slot: its corners reach farthest across, and they are in the walls
-/// as far as the turned block's side leans out of them.
+/// The overlap of a turned block with the walls of its slot: the reach of its farthest corner across the
+/// slot, minus half of the slot's width.
 double overlapOf(double width_m, const Pose& X_off) {
   const double turn = rotationVector(X_off.R).norm();
   return std::abs(X_off.p.x()) + 5 * kMm * std::cos(turn) + 7 * kMm * std::sin(turn) - 0.5 * width_m;
@@ -162,7 +162,7 @@ TEST(Places, EveryBlockThatIsDrawnIntoAFixedPartIsLookedAt) {
   }
 }
 
-// The answer does not depend on where in its play, or beside it, the loose part is drawn.
+// The answer does not depend on where the loose part is drawn, inside or outside of its play.
 TEST(Places, ABlockWithPlayFitsWhereverItIsDrawn) {
   std::mt19937_64 random(48);
   for (const double play_um : {2.0, 5.0, 20.0, 50.0})
@@ -173,7 +173,7 @@ TEST(Places, ABlockWithPlayFitsWhereverItIsDrawn) {
       const CheckResult found = check(blockInSlot(width_m, X_off));
       EXPECT_EQ(found.places.verdict, Verdict::Fits)
           << play_um << " um, draw " << i << ": " << found.places.reason;
-      // Beyond 0.5 um and the search's 0.1 um.
+      // The overlap must exceed 0.5 um plus the search's 0.1 um.
       const double overlap_m = overlapOf(width_m, X_off);
       if (std::abs(overlap_m - 0.6 * kUm) < 0.15 * kUm) continue;
       EXPECT_EQ(found.clashes() > 0, overlap_m > 0.6 * kUm) << play_um << " um, draw " << i;
@@ -190,14 +190,15 @@ TEST(Places, ABlockThatIsTooWideFitsNowhere) {
       const Pose X_off(rotationFromVector(Vec3(0, 0, turn)), Vec3(x_m, drawn(random) * kMm, 0));
       const CheckResult found = check(blockInSlot(10 * kMm + play_um * kUm, X_off));
       EXPECT_GT(found.clashes(), 0U);
-      // Both may be as far off as sight leaves them, which is too much room for a proof.
+      // Both parts may be off by kSightTolerance_m, which is too much for a proof.
       EXPECT_EQ(found.verdict(), Verdict::NotShown)
           << play_um << " um, draw " << i << ": " << found.places.reason;
     }
 }
 
 TEST(Places, KeysThroughSlotsOfTwoPitchesAreFreeWhereEachMovesByItsShare) {
-  // The outer keys are 10 um in the cover as drawn and have 20 um of room on each side of the base.
+  // As drawn, the outer keys overlap the cover by 10 um, and have 20 um of clearance on each side in the
+  // base.
   const CheckResult found = check(keysThroughCombs(40 * kUm, 30 * kUm));
   EXPECT_EQ(found.clashes(), 2U);
   ASSERT_EQ(found.places.verdict, Verdict::Fits) << found.places.reason;
@@ -209,8 +210,7 @@ TEST(Places, KeysThroughSlotsOfTwoPitchesAreFreeWhereEachMovesByItsShare) {
 }
 
 TEST(Places, KeysThroughSlotsWhosePitchesDifferByMoreThanTheirPlayFitNowhere) {
-  // An outer key needs 30 um, and its clearances give 10 from the middle one of its slots to that of the
-  // other.
+  // An outer key needs 30 um, and its clearances give only 10 um between the middles of its two slots.
   const CheckResult found = check(keysThroughCombs(10 * kUm, 30 * kUm));
   EXPECT_EQ(found.verdict(), Verdict::NotShown) << found.places.reason;
 }
@@ -225,7 +225,7 @@ TEST(Places, APinMovesWithinItsBoreAndIsBlockedByASmallerOne) {
   ASSERT_EQ(free.places.verdict, Verdict::Fits) << free.places.reason;
   ASSERT_EQ(free.places.moved.size(), 1U);
   EXPECT_NEAR(free.places.moved.front().by_W.x(), -5 * kUm, 0.6 * kUm);
-  // The facets of 36 to a turn are 19 um off the cylinder: the fit is what shows the interference.
+  // With 36 facets in a turn, facets are 19 um off the cylinder; only the fit shows the interference.
   for (const int segments : {36, 720})
     for (const double off_m : {0.0, 1 * kUm, 4 * kUm}) {
       const CheckResult tight = drawn(-10 * kUm, off_m, segments);
@@ -241,7 +241,7 @@ TEST(Places, WhatIsDeeperThanSightLeavesItIsBlocked) {
          part("block", makeBox({6 * kMm, 6 * kMm, 6 * kMm}), Pose::translation({0, 0, 7 * kMm - deep_m}))});
   };
   EXPECT_EQ(drawn(0.45 * kMm).places.verdict, Verdict::Fits);
-  // Sight places it to 0.5 mm.
+  // The part without a fit is placed by eye, to 0.5 mm.
   EXPECT_EQ(drawn(0.55 * kMm).places.verdict, Verdict::Blocked);
   EXPECT_EQ(drawn(2 * kMm).places.verdict, Verdict::Blocked);
 }
@@ -255,7 +255,7 @@ TEST(Places, PartsThatAreNowhereNearOthersShowNothing) {
   EXPECT_EQ(apart.alone.size(), 4U);
   EXPECT_EQ(apart.verdict(), Verdict::NotShown);
   EXPECT_EQ(check({parts[0]}).verdict(), Verdict::Fits);
-  // A plate below three of them.
+  // A plate lies below three of the gears.
   parts.push_back(
       part("plate", makeBox({60 * kMm, 20 * kMm, 4 * kMm}), Pose::translation({20 * kMm, 0, -4 * kMm})));
   const CheckResult on_plate = check(parts);

@@ -17,15 +17,15 @@ namespace {
 
 constexpr double kMm = 1e-3;
 
-/// A straight way of 100 mm along x, in pieces of 1 mm.
+/// A run along a straight path of 100 mm along x, in pieces of 1 mm.
 struct Made {
   double duration_s = 2;
   double force_N = 2;
-  double peak_N = 4;    ///< at the middle
-  double detour_m = 0;  ///< between 30 and 70 mm it runs this much higher
-  double turn_rad = 0;  ///< about z, at the middle
+  double peak_N = 4;    ///< force in the middle of the path
+  double detour_m = 0;  ///< height of the path between 30 and 70 mm above the straight path
+  double turn_rad = 0;  ///< rotation about z in the middle of the path
   bool is_done = true;
-  double shift_m = 0;  ///< of the whole way, along y
+  double shift_m = 0;  ///< displacement of the whole path along y
 };
 
 device::RunTrace rowAt(double time_s, const Vec3& p, double force_N, const Vec3& com_P) {
@@ -50,7 +50,7 @@ class Compare : public ::testing::Test {
     head.about["mesh_hash.peg"] = contentHash(scene.parts[1].part.mesh);
     const std::string file = (folder_.path() / name).string();
     device::Recorder recorder(file, head);
-    constexpr double kBegun_s = 5;  // of the run; times of a step count from there
+    constexpr double kBegun_s = 5;  // start of the step in the run; a step's times count from here
     device::RunEvent take;
     take.kind = device::RunEventKind::Take;
     take.step = 0;
@@ -83,7 +83,7 @@ class Compare : public ::testing::Test {
       recorder.add(done);
     }
     device::RunTrace rest = rowAt(kBegun_s + made.duration_s + 1, {0, 0, -5}, 99, com_P);
-    rest.phase = 3;  // let go: what the part does then is not the trainee's
+    rest.phase = 3;  // the part is released: later rows are not the trainee's motion
     recorder.add(rest);
     recorder.finish();
     return device::loadRecording(file);
@@ -111,18 +111,18 @@ TEST_F(Compare, ADetourOfFiveMillimetresAndSixNewtonsMoreAreFound) {
       compareRuns(record({}, "expert.mcap"),
                   record({.duration_s = 3, .force_N = 3, .peak_N = 10, .detour_m = 5 * kMm}, "trainee.mcap"));
   const ComparedStep& step = result.steps[0];
-  // Up and down again.
+  // The detour goes up and down again.
   EXPECT_NEAR(step.detour_m, 10 * kMm, kRounding_m);
   EXPECT_NEAR(step.trainee.path_m, 110 * kMm, kRounding_m);
   EXPECT_NEAR(step.deviation_m, 5 * kMm, kRounding_m);
-  // 40 mm run 5 mm away. Each flank of 5 mm counts the distances at the ends of its pieces: 1, 2, 3, 4, 5 mm
-  // on the way up, 4, 3, 2, 1, 0 on the way down.
+  // The path runs at a distance of 5 mm for 40 mm. Each flank of 5 mm counts the distances at the ends of its
+  // pieces: 1, 2, 3, 4, 5 mm upwards, and 4, 3, 2, 1, 0 mm downwards.
   EXPECT_NEAR(step.mean_deviation_m, (40 * 5 + 15 + 10) / 110.0 * kMm, kRounding_m);
   EXPECT_NEAR(step.excess_force_N, 6, 1e-12);
   EXPECT_NEAR(step.trainee.duration_s, 3, 1e-9);
   EXPECT_NEAR(step.score, 100 * (2.0 / 3 + 100.0 / 110 + 4.0 / 10) / 3, 1e-6);
   EXPECT_DOUBLE_EQ(result.score, step.score);
-  // One of 111 samples has the peak; the first has no time before it.
+  // One of 111 samples has the peak force; the first sample has a duration of 0.
   EXPECT_NEAR(step.trainee.mean_force_N, 3 + 7.0 / 110, 0.02);
 }
 

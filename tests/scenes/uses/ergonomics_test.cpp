@@ -1,5 +1,4 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// Arms and reach whose angles follow from a drawing.
+// SPDX-License-Identifier: BSD-3-Clause Arms and reach with angles that follow from a drawing.
 #include "vps_scenes/uses/ergonomics.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +13,7 @@ namespace vps::scenes {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr double kRounding_rad = 1e-6;  // of an arc cosine near 1: the root of the rounding of doubles
+constexpr double kRounding_rad = 1e-6;  // error of an arc cosine near 1: root of a double's rounding
 
 const Body kBody{"somebody", 1.70};
 const double kUpper_m = kBody.upperArm_m(), kFore_m = kBody.forearm_m();
@@ -60,7 +59,7 @@ TEST(Arm, TheScoreChangesAtTheAnglesOfRula) {
   EXPECT_EQ(at(91, 101), kWorstRula);
 }
 
-/// A row with the peg's centre of mass at p_W.
+/// A row of the trace with the peg's centre of mass at p_W.
 TraceRow rowAt(const Scene& scene, double time_s, const Vec3& p_W) {
   TraceRow row;
   row.time_s = time_s;
@@ -69,17 +68,17 @@ TraceRow rowAt(const Scene& scene, double time_s, const Vec3& p_W) {
   return row;
 }
 
-/// The first that sits.
+/// The first seated person.
 const StepErgonomics& seated(const Ergonomics& of) {
   return of.steps.at(0);
 }
 
 TEST(Ergonomics, APartThatHangsBeforeTheElbowIsHeldWithBestScore) {
   const Scene scene = pegInCup({});
-  // The cup is 14 mm deep and 18 mm wide about the origin; its lowest point stands on the bench.
+  // The cup is 14 mm deep and 18 mm wide about the origin; its lowest point touches the bench.
   const Body& body = assumedBodies()[0];
-  const double shoulder_m =
-      -14e-3 + body.shoulderHeight_m(Posture::Seated) - kSeatedBench_m;  // above the origin
+  const double shoulder_m = -14e-3 + body.shoulderHeight_m(Posture::Seated) -
+                            kSeatedBench_m;  // height of the shoulders above the origin
   const double ahead_m = body.forearm_m(), y_shoulder = -9e-3 - kToShoulder_m;
   const Vec3 easy(body.shoulderAside_m(), y_shoulder + ahead_m, shoulder_m - body.upperArm_m());
   const std::vector<TraceRow> trace{rowAt(scene, 0, easy), rowAt(scene, 2, easy)};
@@ -97,7 +96,7 @@ TEST(Ergonomics, APartThatHangsBeforeTheElbowIsHeldWithBestScore) {
 TEST(Ergonomics, TimeOutOfReachIsCounted) {
   const Scene scene = pegInCup({});
   const Vec3 near(0, 0, 0), far(0, 1.5, 0);
-  // A second near, three seconds at 1.5 m; the row at rest does not count.
+  // The hand is near for one second and at 1.5 m for three seconds; the row at rest does not count.
   std::vector<TraceRow> trace{rowAt(scene, 0, near), rowAt(scene, 1, near), rowAt(scene, 4, far),
                               rowAt(scene, 9, far)};
   trace.back().phase = static_cast<int>(TracePhase::Rest);
