@@ -96,8 +96,8 @@ TEST(Trade, FinerPointsGiveAMoreAccurateForce) {
 }
 
 TEST(Trade, MorePointsTakeMoreTime) {
-  // An eighth of the spacing gives 64 times the points, and an exhaustive query reads each of them. Twice the
-  // time is the claim: a loaded machine with cold caches was seen to bring the ratio of 64 down to 14.
+  // An eighth of the spacing gives 64 times the points, and an exhaustive query reads each of them. The test
+  // only requires twice the time, since a loaded machine with cold caches reduced the ratio of 64 to 14.
   double few_us = 1e9, many_us = 1e9;
   for (int i = 0; i < 3; ++i) {
     const TradeRow few = rowAt(0.25e-3, 1e-3), many = rowAt(0.25e-3, 0.125e-3);
