@@ -8,7 +8,7 @@
 
 #include "hand_scenes.h"
 #include "vps/errors.h"
-#include "vps_scenes/run/tries.h"
+#include "vps_scenes/run/assemble.h"
 
 namespace vps::hand {
 namespace {

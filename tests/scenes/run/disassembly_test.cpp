@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Maintenance runs whose answer is known by construction.
-#include "vps_scenes/run/disassembly.h"
+#include "vps_scenes/run/derived_scenes.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,6 @@
 #include "support/temporary_folder.h"
 #include "vps/errors.h"
 #include "vps_scenes/run/assemble.h"
-#include "vps_scenes/run/record.h"
 #include "vps_scenes/run/replay.h"
 
 namespace vps::scenes {

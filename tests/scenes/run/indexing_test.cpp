@@ -11,7 +11,6 @@
 #include "vps/errors.h"
 #include "vps_device/random.h"
 #include "vps_scenes/run/assemble.h"
-#include "vps_scenes/run/record.h"
 #include "vps_scenes/run/replay.h"
 
 namespace vps::scenes {

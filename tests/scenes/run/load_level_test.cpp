@@ -10,7 +10,7 @@
 #include <functional>
 #include <string>
 
-#include "core/wall_clock.h"
+#include "core/machine.h"
 #include "vps_scenes/run/assemble.h"
 
 namespace vps::scenes {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Assemblies that go on from what was put down before.
-#include "vps_scenes/run/put_down.h"
+#include "vps_scenes/run/derived_scenes.h"
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,6 @@
 #include "support/recorded.h"
 #include "support/temporary_folder.h"
 #include "vps_scenes/run/assemble.h"
-#include "vps_scenes/run/record.h"
 #include "vps_scenes/run/replay.h"
 
 namespace vps::scenes {

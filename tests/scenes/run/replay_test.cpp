@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Recorded runs repeat to the bit, and the scene in a recording comes back.
 #include "vps_scenes/run/replay.h"
-#include "vps_scenes/run/record.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "scene/usual_spacing.h"
+#include "scene/steps.h"
 #include "scenes/scene_part.h"
 #include "support/swept.h"
 #include "vps_scenes/run/assemble.h"

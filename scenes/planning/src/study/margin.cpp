@@ -7,10 +7,8 @@
 #include <utility>
 
 #include "procedure/assembly_run.h"
-#include "scene/insertion_axis.h"
-#include "study/drawn_fit.h"
-#include "study/varied_scene.h"
-#include "trade/excerpt.h"
+#include "scene/steps.h"
+#include "study/variants.h"
 #include "vps/errors.h"
 #include "vps_scenes/fits/check.h"
 #include "vps_scenes/run/assemble.h"
@@ -20,21 +18,17 @@ namespace vps::scenes {
 
 namespace {
 
-constexpr double kMostGrowth = 0.05;  // of the least extent: offsets must stay far below the facets
-constexpr double kLift = 0.01;        // of the part's diagonal: off its seat, which would stop every tilt
-constexpr double kAcross = 0.5;       // |cos| below which an axis counts as across the path
+constexpr double kMostGrowth =
+    0.05;  // relative to the least extent: offsets must stay far below the size of facets
+constexpr double kLift =
+    0.01;  // relative to the part's diagonal: lifts the part off its seat, which would stop every tilt
+constexpr double kAcross = 0.5;  // |cos| below which an axis counts as across the path
 
-/// What one probe of the bisection found.
-struct Probe {
-  Verdict verdict = Verdict::Fits;
-  std::string why;
-};
-
-/// The greatest offset that passes and the least that fails, by one criterion.
+/// The greatest offset that passes and the least offset that fails, by one criterion.
 struct Bracket {
   double passes_m = 0;
   std::optional<double> fails_m;
-  Probe failure;
+  Judgement failure;
 };
 
 /// Halves the bracket until it is as narrow as the resolution.
@@ -42,8 +36,8 @@ template <class Try>
 void narrow(Bracket& bracket, double resolution_m, Try attempt) {
   while (bracket.fails_m && *bracket.fails_m - bracket.passes_m > resolution_m) {
     const double middle_m = 0.5 * (bracket.passes_m + *bracket.fails_m);
-    Probe probe = attempt(middle_m);
-    if (probe.verdict == Verdict::Fits) {
+    Judgement probe = attempt(middle_m);
+    if (isGood(probe.verdict)) {
       bracket.passes_m = middle_m;
     } else {
       bracket.fails_m = middle_m;
@@ -52,7 +46,7 @@ void narrow(Bracket& bracket, double resolution_m, Try attempt) {
   }
 }
 
-/// Measures one step, which is the only one of its scene.
+/// Measures the margins of the only step of a scene.
 class StepProbe {
  public:
   StepProbe(Scene scene, const MarginOptions& options)
@@ -61,7 +55,7 @@ class StepProbe {
   StepMargin measure() {
     StepMargin out;
     out.part = scene_.parts[scene_.steps[0].part].part.name;
-    if (scene_.steps[0].tolerance_m <= 0)  // one limit for all sizes: that of the part as drawn
+    if (scene_.steps[0].tolerance_m <= 0)  // all sizes get the tolerance of the part as drawn
       scene_.steps[0].tolerance_m = checkDrawnTargets(scene_, {})[0].tolerance_m;
     measureGrowth(out);
     measurePlay(out);
@@ -73,13 +67,12 @@ class StepProbe {
  private:
   [[nodiscard]] bool isStopped() const { return options_.stop != nullptr && *options_.stop; }
 
-  Probe byGeometry(double by_m) {
+  Judgement byGeometry(double by_m) {
     ++checks_;
-    DrawnMisfit found = fit_.findMisfit(withGrownStep(scene_, 0, by_m));
-    return {found.isFound() ? Verdict::Blocked : Verdict::Fits, std::move(found.reason)};
+    return judge({.blocked = fit_.findMisfit(withGrownStep(scene_, 0, by_m)).reason});
   }
 
-  Probe byContact(double by_m) {
+  Judgement byContact(double by_m) {
     ++runs_;
     Scene grown = withGrownStep(scene_, 0, by_m);
     AssembleOptions run;
@@ -102,8 +95,8 @@ class StepProbe {
     Bracket bracket;
     for (double by_m = 8 * options_.resolution_m;; by_m *= 2) {
       by_m = std::min(by_m, most_m);
-      Probe probe = byGeometry(by_m);
-      if (probe.verdict != Verdict::Fits) {
+      Judgement probe = byGeometry(by_m);
+      if (!isGood(probe.verdict)) {
         bracket.fails_m = by_m;
         bracket.failure = std::move(probe);
         break;
@@ -115,30 +108,30 @@ class StepProbe {
     return bracket;
   }
 
-  /// The greatest offset, up to that of geometry, with which the hand brings the part home.
+  /// The greatest offset, within the geometric bound, with which the virtual hand completes the step.
   Bracket shownByContact(const Bracket& bound) {
     Bracket shown = bound;
-    Probe at_bound = byContact(bound.passes_m);
-    if (at_bound.verdict == Verdict::Fits) return shown;
+    Judgement at_bound = byContact(bound.passes_m);
+    if (isGood(at_bound.verdict)) return shown;
     shown.passes_m = 0;
     shown.fails_m = bound.passes_m;
     shown.failure = std::move(at_bound);
     const double width_m = bound.passes_m;
     narrow(shown, options_.resolution_m, [&](double by_m) {
       tell(0.5 + 0.5 * (1 - (*shown.fails_m - shown.passes_m) / width_m));
-      return isStopped() ? Probe{Verdict::NotShown, "stopped"} : byContact(by_m);
+      return isStopped() ? judge({.is_in_place = false, .failure = "stopped"}) : byContact(by_m);
     });
     return shown;
   }
 
   void measureGrowth(StepMargin& out) {
     tell(0);
-    Probe drawn = byGeometry(0);
-    if (drawn.verdict == Verdict::Fits && options_.has_contact) drawn = byContact(0);
-    out.goes = drawn.verdict == Verdict::Fits;
+    Judgement drawn = byGeometry(0);
+    if (isGood(drawn.verdict) && options_.has_contact) drawn = byContact(0);
+    out.goes = isGood(drawn.verdict);
     if (!out.goes) {
       out.fails_as = drawn.verdict;
-      out.fails_why = drawn.why;
+      out.fails_why = drawn.reason;
       out.growth_fails_m = 0;
       return;
     }
@@ -150,10 +143,11 @@ class StepProbe {
     out.growth_m = bracket.passes_m;
     out.growth_fails_m = bracket.fails_m;
     out.fails_as = bracket.fails_m ? bracket.failure.verdict : Verdict::Fits;
-    out.fails_why = bracket.failure.why;
+    out.fails_why = bracket.failure.reason;
   }
 
-  /// Off its seat by a hundredth of its size, since a part that stands on a face cannot be tilted at all.
+  /// Measures the play with the part lifted off its seat by a hundredth of its size, since a part that stands
+  /// on a face cannot be tilted.
   void measurePlay(StepMargin& out) {
     Scene lifted = scene_;
     SceneStep& step = lifted.steps[0];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Yield, its interval, and what each tolerance costs.
+// The yield of a study, its interval, and the effect of each tolerance on the yield.
 #include <algorithm>
 #include <cmath>
 
@@ -9,9 +9,10 @@ namespace vps::scenes {
 
 namespace {
 
-constexpr double kZ = 1.959963984540054;  // 95 % of a normal distribution lie within
+constexpr double kZ =
+    1.959963984540054;  // 95 % of a normal distribution lie within this many standard deviations
 
-/// Source: [Wilson 1927].
+/// Sets the interval of the yield. Source: [Wilson 1927].
 void addInterval(StudyResult& result, double count) {
   if (count == 0) {
     result.yield_high = 1;
@@ -24,7 +25,7 @@ void addInterval(StudyResult& result, double count) {
   result.yield_high = std::min(1.0, middle + half);
 }
 
-/// Density with half the tolerance over that with the whole one.
+/// Ratio of the probability density with half of the tolerance to the density with the whole tolerance.
 double weightIfHalved(const StudyVariable& variable, double value) {
   const double of_half = (value - variable.middle()) / (0.5 * (variable.upper - variable.lower));
   if (variable.distribution == Distribution::Uniform) return std::abs(of_half) <= 0.5 ? 2 : 0;
@@ -38,16 +39,16 @@ StudyEffect effectOf(const StudyVariable& variable, std::size_t index, const Stu
   for (const StudyRun& run : result.runs) {
     const double weight = weightIfHalved(variable, run.values[index]);
     weights += weight;
-    good += run.verdict == Verdict::Fits ? weight : 0;
+    good += isGood(run.verdict) ? weight : 0;
   }
   if (weights == 0) return effect;
   const auto count = static_cast<double>(result.runs.size());
   effect.yield_if_halved = good / weights;
   effect.gain = effect.yield_if_halved - result.yield;
-  // By the delta method: both yields come from the same runs.
+  // The delta method is used, since both yields are computed from the same runs.
   double squares = 0;
   for (const StudyRun& run : result.runs) {
-    const double passed = run.verdict == Verdict::Fits ? 1 : 0;
+    const double passed = isGood(run.verdict) ? 1 : 0;
     const double weight = weightIfHalved(variable, run.values[index]) * count / weights;
     const double off = weight * (passed - effect.yield_if_halved) - (passed - result.yield);
     squares += off * off;
@@ -68,7 +69,7 @@ StudyResult sumUpStudy(const std::string& scene, const std::vector<StudyVariable
   runs.erase(again.begin(), again.end());
   result.runs = std::move(runs);
   for (const StudyRun& run : result.runs) {
-    result.good += run.verdict == Verdict::Fits;
+    result.good += isGood(run.verdict);
     result.blocked += run.verdict == Verdict::Blocked;
   }
   const auto count = static_cast<double>(result.runs.size());

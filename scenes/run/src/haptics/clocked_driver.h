@@ -3,8 +3,8 @@
 // loop.
 #pragma once
 
-#include "haptics/hand_command.h"
 #include "haptics/haptic_driver.h"
+#include "haptics/sync_events.h"
 #include "vps_device/run_log.h"
 
 namespace vps::scenes {
@@ -27,7 +27,11 @@ class ClockedDriver : public HapticDriver {
   void recentre() final { command(device::SyncEventKind::Recentre); }
   void goOn() final { command(device::SyncEventKind::GoOn); }
 
-  void publish(const device::PhysicsState& state) final;
+  void publish(const device::PhysicsState& state) final {
+    device::PhysicsState numbered = state;
+    numbered.step = ++published_;
+    store(numbered);
+  }
   const CouplingState& proxy() final { return view_.proxy; }
   const device::TickReport& last() final { return view_.report; }
   device::PassivityObserver passivity() final { return view_.passivity; }
@@ -43,9 +47,18 @@ class ClockedDriver : public HapticDriver {
   virtual void store(const device::PhysicsState& state) = 0;
 
   /// As a person does between steps.
-  void rearmIfFaulted();
+  void rearmIfFaulted() {
+    if (view_.safety.fault == device::SafetyFault::None) return;
+    command(device::SyncEventKind::Rearm);
+    view_.safety.fault = device::SafetyFault::None;
+  }
   /// Takes over the loop's state; reports a new safety fault.
-  void setView(const device::HapticState& view);
+  void setView(const device::HapticState& view) {
+    view_ = view;
+    if (view.safety.faults == reported_faults_) return;
+    reported_faults_ = view.safety.faults;
+    report_fault_(toText(view.safety.fault));
+  }
 
   device::LoopSettings settings_;
   device::HapticState view_;  ///< the loop as of the last advance()

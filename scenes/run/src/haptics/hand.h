@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "haptics/recorded_events.h"
+#include "haptics/sync_events.h"
 #include "vps_device/loop.h"
 #include "vps_device/operator.h"
 #include "vps_device/pulled_handle.h"

@@ -7,7 +7,7 @@
 #include <functional>
 #include <vector>
 
-#include "haptics/hand_command.h"
+#include "haptics/sync_events.h"
 #include "vps_device/real_time_loop.h"
 #include "vps_scenes/run/result.h"
 

@@ -7,7 +7,7 @@
 
 #include "vps/errors.h"
 #include "vps/mesh.h"
-#include "vps_scenes/scene/part_mass.h"
+#include "vps_scenes/scene/scene_parts.h"
 
 namespace vps::scenes {
 

@@ -5,12 +5,11 @@
 #include <memory>
 #include <utility>
 
-#include "core/wall_clock.h"
+#include "core/machine.h"
 #include "models/scene_models.h"
 #include "step/step_run.h"
-#include "step/step_verdict.h"
 #include "vps/errors.h"
-#include "vps_scenes/run/put_down.h"
+#include "vps_scenes/run/assemble.h"
 #include "world/assembly_world.h"
 #include "world/drawn_targets.h"
 #include "world/run_trace.h"
@@ -23,7 +22,7 @@ namespace {
 /// for it, and is there for later steps too.
 void refuseAlignment(std::vector<StepResult>& steps, std::string& not_in_place) {
   StepResult& last = steps.back();
-  if (last.verdict == Verdict::Fits) return;
+  if (isGood(last)) return;
   for (StepResult& step : steps) {
     if (step.aligned_by != last.part) continue;
     step.aligned_by.clear();
@@ -117,6 +116,12 @@ AssembleResult runProcedure(Scene& scene, Hand& hand, device::RunLog* log,
   result.haptic_rate_hz = scene.fidelity.haptic_rate_hz;
   result.physics_rate_hz = scene.fidelity.physics_rate_hz;
   return result;
+}
+
+AssembleResult assemble(Scene& scene, const AssembleOptions& options) {
+  requireSteps(scene);
+  const std::unique_ptr<Hand> hand = makeHand(scene, options);
+  return runProcedure(scene, *hand, nullptr, loopSettings(scene, hand->device()), options);
 }
 
 }  // namespace vps::scenes

@@ -11,7 +11,7 @@
 #include "vps/mesh_repair.h"
 #include "vps/model_estimate.h"
 #include "vps_scenes/run/explain.h"
-#include "world/cooked_poses.h"
+#include "world/placed_parts.h"
 
 namespace vps::scenes {
 

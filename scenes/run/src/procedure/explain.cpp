@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/wall_clock.h"
+#include "core/machine.h"
 #include "models/scene_models.h"
 #include "simulation/simulation.h"
-#include "world/cooked_poses.h"
+#include "world/placed_parts.h"
 
 namespace vps::scenes {
 

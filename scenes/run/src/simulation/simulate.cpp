@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "core/wall_clock.h"
+#include "core/machine.h"
 #include "models/scene_models.h"
 #include "simulation/body_overlaps.h"
 #include "simulation/physics_clock.h"

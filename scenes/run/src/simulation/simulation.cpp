@@ -17,7 +17,7 @@
 #include "vps_bullet/shape.h"
 #include "vps_bullet/solver.h"
 #include "vps_bullet/turn.h"
-#include "vps_scenes/scene/part_mass.h"
+#include "vps_scenes/scene/scene_parts.h"
 
 namespace vps::scenes {
 

@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <numbers>
 
-#include "text/length_words.h"
+#include "text/words.h"
 #include "vps_device/operator.h"
 
 namespace vps::scenes {

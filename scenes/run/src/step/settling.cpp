@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "step/settling.h"
+#include "step/step_run.h"
 
 #include <algorithm>
 #include <chrono>
@@ -8,8 +8,8 @@
 #include <thread>
 #include <utility>
 
-#include "core/wall_clock.h"
-#include "text/length_words.h"
+#include "core/machine.h"
+#include "text/words.h"
 #include "vps_device/periodic_thread.h"
 
 namespace vps::scenes {

@@ -8,13 +8,12 @@
 #include <numbers>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "haptics/clutching.h"
-#include "judge/box_motion.h"
-#include "scene/insertion_axis.h"
+#include "judge/body_motion.h"
+#include "scene/steps.h"
 #include "step/screw_motion.h"
-#include "step/settling.h"
-#include "step/step_verdict.h"
 #include "step/way_check.h"
 #include "vps_scenes/run/contact_episodes.h"
 
@@ -136,14 +135,6 @@ bool isHeldAfter(const SceneStep& step, const StepResult& result) {
   return step.is_held || result.press_needed_N > 0;
 }
 
-/// Where the part was when the hand took it to be in place, or gave up. A part that nothing holds falls from
-/// there while the hand opens.
-struct Brought {
-  Pose X_WP;
-  bool is_given_up = false;
-  bool is_faulted = false;  ///< the device had failed, so that no hand held it
-};
-
 /// The hand takes the part, brings it to its target and puts it down. Returns early where the run is stopped.
 std::optional<Brought> work(AssemblyWorld& world, RunTrace& trace, const SceneStep& step,
                             StepResult& result) {
@@ -210,13 +201,6 @@ void rest(AssemblyWorld& world, RunTrace& trace, StepResult& result) {
   }
 }
 
-/// A part that falls into its place while the device exerts no force was not brought there.
-void refuseFaulted(StepResult& result) {
-  result.completed = result.by_contact = false;
-  result.failure_reason = "the device failed on the way, so that no hand held the part" +
-                          (result.failure_reason.empty() ? std::string() : ": " + result.failure_reason);
-}
-
 std::vector<StrategyUse> strategiesOf(std::span<const TraceRow> rows) {
   std::vector<StrategyUse> uses;
   int last = 0;
@@ -264,12 +248,13 @@ StepResult runStep(AssemblyWorld& world, RunTrace& trace, std::size_t index, Ste
   world.reportProgress(0.9);
   // What the hand gave up with may fall far when it is let go, which says nothing of the fit.
   const Pose X_WP_end = brought && brought->is_given_up ? brought->X_WP : world.movingPose();
-  judgeCompletion(world, step, X_WP_end, brought ? brought->X_WP : X_WP_end, result);
-  if (brought && brought->is_faulted) refuseFaulted(result);
+  judgeCompletion(world, step, X_WP_end, brought.value_or(Brought{X_WP_end}), result);
   if (!result.completed || !isFreeToTarget(world, step, X_WP_end, result.penetration_limit_m))
     result.aligned_by.clear();
   settleStep(world, trace.takeSamples(), result);
-  judgeStep(result, world.scene().hand.force_limit_N);
+  Judgement judged = judge(evidenceOf(result, world.scene().hand.force_limit_N));
+  result.verdict = judged.verdict;
+  result.reason = std::move(judged.reason);
   return result;
 }
 

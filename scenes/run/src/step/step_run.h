@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One step of a procedure: take the part, bring it to its target, release it, watch it at rest, judge it.
+// One step of the procedure: the hand brings a part to its target and lets go of it, and the part is judged.
 #pragma once
 
+#include <vector>
+
+#include "judge/overlap_record.h"
 #include "vps_scenes/run/result.h"
 #include "world/assembly_world.h"
 #include "world/run_trace.h"
@@ -11,5 +14,33 @@ namespace vps::scenes {
 /// Runs scene.steps[index]. Throws LoadError as AssemblyWorld::take(). A step that fails is a result.
 /// @param known  what is known of it beforehand: block, stands_on
 StepResult runStep(AssemblyWorld& world, RunTrace& trace, std::size_t index, StepResult known);
+
+// --- completion.cpp: whether the part reached its target, and if not, why
+
+/// Where the part was when the hand reported that it is in place, or gave up. A part that nothing holds falls
+/// from there while the hand opens.
+struct Brought {
+  Pose X_WP;
+  bool is_given_up = false;
+  bool is_faulted = false;  ///< the device had failed, so that no hand held the part
+};
+
+/// The greatest penetration that a step may have: min(10 um, clearance / 4).
+double penetrationLimit_m(const SceneStep& step);
+
+/// Sets final_error_m, final_error_rad, completed, by_contact and failure_reason. The step is completed if
+/// the hand reports that it is done, its device has not failed, and the part, now at rest, is within the
+/// step's tolerances. May widen tolerance_m of a part that nothing stops along its way.
+/// @param X_WP  of the part, after its rest, or where the hand gave up
+void judgeCompletion(AssemblyWorld& world, const SceneStep& step, const Pose& X_WP, const Brought& brought,
+                     StepResult& result);
+
+// --- settling.cpp: the judge measures the released part, and the field of the next step is cooked
+
+/// Judges the step's samples and cooks the field of the next step, on other threads, then fixes the part:
+/// where it lies if the step was completed, else at its target, so that the next step has what it is mounted
+/// on. In lockstep, simulated time stands still meanwhile, so the swap happens at the same physics step in
+/// each run. By the clock, loop and physics go on until both are ready.
+void settleStep(AssemblyWorld& world, std::vector<OverlapSample> samples, StepResult& result);
 
 }  // namespace vps::scenes

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "text/length_words.h"
+#include "text/words.h"
 
 namespace vps::scenes {
 

@@ -9,10 +9,10 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "scene/parts_in_place.h"
+#include "scene/steps.h"
 #include "vps/errors.h"
 #include "vps_device/metronome.h"
-#include "vps_scenes/scene/part_mass.h"
+#include "vps_scenes/scene/scene_parts.h"
 #include "world/loop_settings.h"
 #include "world/run_trace.h"
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scene/insertion_axis.h"
+#include "scene/steps.h"
 
 namespace vps::scenes {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "scene/insertion_axis.h"
+#include "scene/steps.h"
 #include "vps/box.h"
 
 namespace vps::scenes {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The main job: runs an assembly procedure with a device and an operator, in lockstep or in real time.
+// The main job: runs an assembly procedure with a device and an operator, in lockstep or in real time, once
+// or with several seeds of the virtual operator.
 #pragma once
 
 #include "vps_scenes/export.h"
@@ -15,5 +16,19 @@ namespace vps::scenes {
 /// except for wall times. Throws LoadError for a scene that cannot be run (a part that starts inside another,
 /// a mesh that cannot be modelled). A step that does not reach its target is a result, not an error.
 VPS_SCENES_API AssembleResult assemble(Scene& scene, const AssembleOptions& options = {});
+
+struct TrySettings {
+  int tries = 10;        ///< at least 1
+  unsigned threads = 0;  ///< how many run at once; 0: one for each core
+};
+
+/// Runs the procedure with `tries` seeds and returns the run of the first seed that fits, or else of the
+/// first seed, with `tries` and `ease_share` filled in: one success shows that the parts go together, and the
+/// share says how easily. All seeds are run, except where geometry proves a block: then one. The seeds are
+/// scene.hand.seed and from there in steps of the number of scene.steps, since each step of a run takes the
+/// next seed. The same bits for any number of threads, but for wall times. Throws as assemble(), and
+/// LoadError for a run in real time, for a device that a person moves and for fewer tries than one.
+VPS_SCENES_API AssembleResult assembleTries(const Scene& scene, const TrySettings& settings,
+                                            const AssembleOptions& options = {});
 
 }  // namespace vps::scenes

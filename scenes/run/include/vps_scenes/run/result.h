@@ -11,8 +11,8 @@
 
 #include "vps/wrench.h"
 #include "vps_scenes/export.h"
-#include "vps_scenes/fits/verdict.h"
 #include "vps_scenes/run/snapshot.h"
+#include "vps_scenes/run/verdict.h"
 #include "vps_scenes/scene/model_options.h"
 
 namespace vps::scenes {
@@ -83,17 +83,6 @@ struct StepResult {
   std::uint64_t missed_while_cooking = 0;  ///< haptic periods, in real time
 };
 
-/// Greatest late drift of a released part that counts as being at rest: what settles within its clearance has
-/// done so by then.
-inline constexpr double kRestDriftLimit_m = 5e-6;
-
-/// What a verdict is made of.
-inline bool isWithinLimit(const StepResult& step) {
-  return step.max_penetration_m <= step.penetration_limit_m;
-}
-inline bool isAtRest(const StepResult& step) {
-  return step.late_drift_m <= kRestDriftLimit_m;
-}
 /// Guided with less force than this is not guided. Measured (tests/hand): at most 0.01 N over a plate with
 /// nothing beside the part, at least 0.036 N in a bore.
 inline constexpr double kGuideLeast_N = 0.02;
@@ -102,7 +91,37 @@ inline bool isGuided(const StepResult& step) {
 }
 /// Report, table, JSON and exit status show the verdict; nothing else decides whether the parts fit.
 inline bool isGood(const StepResult& step) {
-  return step.verdict == Verdict::Fits;
+  return isGood(step.verdict);
+}
+
+/// @param hand_N  greatest force of the hand
+inline Evidence evidenceOf(const StepResult& step, double hand_N) {
+  return {.blocked = step.blocked_by.empty() ? std::string() : step.reason,
+          .is_in_place = step.completed,
+          .failure = step.failure_reason,
+          .depth_m = step.max_penetration_m,
+          .depth_limit_m = step.penetration_limit_m,
+          .deepest_against = step.deepest_against,
+          .rest_drift_m = step.rest_drift_m,
+          .late_drift_m = step.late_drift_m,
+          .press_needed_N = step.press_needed_N,
+          .hand_N = hand_N,
+          .is_taken_off = step.is_taken_off,
+          .doubt = step.mesh_doubt};
+}
+inline bool isWithinLimit(const StepResult& step) {
+  return evidenceOf(step, 0).isWithinLimit();
+}
+inline bool isAtRest(const StepResult& step) {
+  return evidenceOf(step, 0).isAtRest();
+}
+
+/// Verdict of a run with `planned` steps: the worst of its steps, and at best NotShown if a step was not
+/// tried.
+inline Verdict verdictOf(const std::vector<StepResult>& steps, std::size_t planned) {
+  Verdict worst = steps.size() < planned ? Verdict::NotShown : Verdict::Fits;
+  for (const StepResult& step : steps) worst = worse(worst, step.verdict);
+  return worst;
 }
 
 /// What the hand does with the part.

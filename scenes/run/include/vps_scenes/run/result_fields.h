@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The numbers of a run as JSON and CSV show them: one table for each object, in its order.
-// viewer/cli/README.md is made from them. Figures of the wall clock have tables of their own, since they do
+// viewer/cli/JSON.md is made from them. Figures of the wall clock have tables of their own, since they do
 // not repeat.
 #pragma once
 

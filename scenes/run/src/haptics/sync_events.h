@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the physics thread tells the hand and the haptic loop to do, one thing at a time.
+// How the physics thread and the haptic loop of a run by the clock interact: the commands of the physics
+// thread, and the events of a recorded run.
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
-#include "haptics/hand.h"
 #include "vps_device/loop.h"
+#include "vps_device/operator.h"
 #include "vps_device/run_log.h"
 
 namespace vps::scenes {
+
+class Hand;
 
 struct HandCommand {
   device::SyncEventKind what = device::SyncEventKind::Tick;  ///< from Begin on
@@ -22,5 +26,15 @@ struct HandCommand {
 void prepare(Hand& hand, const HandCommand& command);
 /// On the thread that runs the loop. Never allocates.
 void carryOut(Hand& hand, device::HapticLoop& loop, const HandCommand& command) noexcept;
+
+struct RecordedEvent {
+  device::SyncEvent event;
+  /// As the run logged it between this event of the physics thread and the next one. The loop's samples do
+  /// not tell it: physics may take two steps between two ticks of a loop that is late, and learn of a new
+  /// phase in the second.
+  device::OperatorState hand;
+};
+
+std::vector<RecordedEvent> recordedEvents(const std::vector<device::LogEntry>& entries);
 
 }  // namespace vps::scenes

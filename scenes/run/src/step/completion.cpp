@@ -1,39 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "step/step_verdict.h"
+#include "step/step_run.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <string>
 
-#include "fits/fit_tolerance.h"
-#include "judge/surface_error.h"
-#include "scene/insertion_axis.h"
+#include "fits/fits.h"
+#include "judge/body_motion.h"
+#include "scene/steps.h"
 #include "step/screw_motion.h"
 #include "step/way_check.h"
-#include "text/length_words.h"
-#include "vps_scenes/run/put_down.h"
-#include "world/displaced_mates.h"
+#include "text/words.h"
 #include "world/drawn_targets.h"
-#include "world/lean_in_fits.h"
+#include "world/play_in_fits.h"
 
 namespace vps::scenes {
 
 namespace {
 
 constexpr double kPenetrationLimit_m = 10e-6;
-
-constexpr const char* kHoldsRemedy =
-    "nothing holds it there; if a fixture or the next part will, say holds = true in its [[step]]";
-
-std::string pressReason(const StepResult& step, double hand_N) {
-  char words[240];
-  std::snprintf(words, sizeof words,
-                "the way is free, but pressing it %s takes about %.0f N (by the formula for its declared "
-                "interference), and the hand has %.0f N ([operator] force_limit_N): it needs a press",
-                step.is_taken_off ? "out" : "in", step.press_needed_N, hand_N);
-  return words;
-}
 
 std::string failureReason(const AssemblyWorld& world, const SceneStep& step, const StepResult& result,
                           bool is_done, double brought_error_m) {
@@ -99,13 +84,31 @@ double leanTolerance_m(AssemblyWorld& world) {
   return leanInFits_m(world.scene(), static_cast<std::size_t>(world.state().step)) + kContactOnBothSides_m;
 }
 
+/// Where nothing stops the part along its way, the tolerance of its fit holds only across the way. Where the
+/// fit is short, the part may also lean as far as the fit lets it, since no stop holds it upright.
+/// @param errorAt  surface error of the part at a pose
+template <typename ErrorAt>
+void widenTolerance(AssemblyWorld& world, const SceneStep& step, const Pose& X_WP, const ErrorAt& errorAt,
+                    StepResult& result) {
+  const double along_m = placedAlong_m(world, step, X_WP, result.penetration_limit_m);
+  const Vec3 along_W = along_m * insertionAxis(step, world.state().moving.X_PG);
+  const double across_m = along_m != 0 ? errorAt(Pose(X_WP.R, X_WP.p - along_W)) : 0;
+  const bool is_given = step.tolerance_m > 0 || step.clearance_m > 0;
+  const bool is_open =
+      along_m != 0 && (across_m <= result.tolerance_m || (!is_given && across_m <= leanTolerance_m(world)));
+  if (is_open) result.tolerance_m = kSightTolerance_m;
+  if (!is_open && !is_given && result.stands_on.empty())
+    result.tolerance_m = toleranceOnMates_m(
+        world, result, [&](const Vec3& by_m) { return errorAt(Pose(X_WP.R, X_WP.p - by_m)); });
+}
+
 }  // namespace
 
 double penetrationLimit_m(const SceneStep& step) {
   return step.clearance_m > 0 ? std::min(kPenetrationLimit_m, step.clearance_m / 4) : kPenetrationLimit_m;
 }
 
-void judgeCompletion(AssemblyWorld& world, const SceneStep& step, const Pose& X_WP, const Pose& X_WP_brought,
+void judgeCompletion(AssemblyWorld& world, const SceneStep& step, const Pose& X_WP, const Brought& brought,
                      StepResult& result) {
   const bool is_screw = step.motion == StepMotion::Screw;
   const Pose& X_PG = world.state().moving.X_PG;
@@ -118,74 +121,36 @@ void judgeCompletion(AssemblyWorld& world, const SceneStep& step, const Pose& X_
   };
   const Pose X_judged = judged(X_WP);
   result.final_error_m = errorAt(X_WP);
-  // Where nothing stops the part along its way, the tolerance of its fit holds across it; and where the fit
-  // is short, what it lets the part lean, since no stop holds it upright either.
-  if (result.final_error_m > result.tolerance_m && result.tolerance_m < kSightTolerance_m) {
-    const double along_m = placedAlong_m(world, step, X_WP, result.penetration_limit_m);
-    const Vec3 along_W = along_m * insertionAxis(step, X_PG);
-    const double across_m = along_m != 0 ? errorAt(Pose(X_WP.R, X_WP.p - along_W)) : 0;
-    const bool is_given = step.tolerance_m > 0 || step.clearance_m > 0;
-    const bool is_open =
-        along_m != 0 && (across_m <= result.tolerance_m || (!is_given && across_m <= leanTolerance_m(world)));
-    if (is_open) result.tolerance_m = kSightTolerance_m;
-    if (!is_open && !is_given && result.stands_on.empty())
-      result.tolerance_m = toleranceOnMates_m(
-          world, result, [&](const Vec3& by_m) { return errorAt(Pose(X_WP.R, X_WP.p - by_m)); });
-  }
+  if (result.final_error_m > result.tolerance_m && result.tolerance_m < kSightTolerance_m)
+    widenTolerance(world, step, X_WP, errorAt, result);
   result.final_error_rad = rotationVector(X_judged.R * step.X_WP_target.R.transpose()).norm();
   const bool is_turned = step.tolerance_rad > 0 && result.final_error_rad > step.tolerance_rad;
   const bool is_done = world.driver().phase() == device::OperatorPhase::Done;
-  result.completed = is_done && result.final_error_m <= result.tolerance_m && !is_turned;
+  const bool is_within = result.final_error_m <= result.tolerance_m;
   const std::string fault = is_screw ? threadFault(step, result) : "";
-  result.completed = result.completed && fault.empty();
+  const bool is_there = is_done && is_within && !is_turned;
+  result.completed = is_there && fault.empty() && !brought.is_faulted;
   result.by_contact = result.completed && isGuided(result);
   if (result.completed) return;
-  const bool is_there = is_done && result.final_error_m <= result.tolerance_m && !is_turned;
-  if (is_there && !fault.empty()) {
-    result.failure_reason = "it is at its height, but " + fault;
-    return;
-  }
-  result.failure_reason = failureReason(world, step, result, is_done, errorAt(X_WP_brought));
-  if (is_done && is_turned && result.final_error_m <= result.tolerance_m)
-    result.failure_reason.append("; it is turned by ")
-        .append(degreesInWords(result.final_error_rad))
-        .append(" (tolerance ")
-        .append(degreesInWords(step.tolerance_rad))
-        .append(")");
-  if (!fault.empty()) result.failure_reason.append("; ").append(fault);
-  if (!is_done && !is_screw && !world.isStopped()) result.failure_reason.append(wallOnTheWay(world, step));
-}
 
-void judgeStep(StepResult& result, double hand_N) {
-  if (!result.blocked_by.empty()) {
-    result.verdict = Verdict::Blocked;
-    return;
-  }
-  result.verdict = Verdict::NotShown;
-  if (!result.completed) {
-    result.reason = result.failure_reason;
-  } else if (!isWithinLimit(result)) {
-    result.reason = "on the way it was " + lengthInWords(result.max_penetration_m) + " deep in '" +
-                    result.deepest_against + "', more than the " + lengthInWords(result.penetration_limit_m) +
-                    " that count as contact";
-  } else if (!isAtRest(result)) {
-    result.reason =
-        "it moved by " + lengthInWords(result.rest_drift_m) + " after it was let go: " + kHoldsRemedy;
-  } else if (result.press_needed_N > hand_N) {
-    result.reason = pressReason(result, hand_N);
-  } else if (!result.mesh_doubt.empty()) {
-    result.reason = "the hand brought it home, but " + result.mesh_doubt;
+  std::string& reason = result.failure_reason;
+  if (is_there) {
+    if (!fault.empty()) reason = "it is at its height, but " + fault;
   } else {
-    result.verdict = Verdict::Fits;
+    reason = failureReason(world, step, result, is_done, errorAt(brought.X_WP));
+    if (is_done && is_turned && is_within)
+      reason.append("; it is turned by ")
+          .append(degreesInWords(result.final_error_rad))
+          .append(" (tolerance ")
+          .append(degreesInWords(step.tolerance_rad))
+          .append(")");
+    if (!fault.empty()) reason.append("; ").append(fault);
+    if (!is_done && !is_screw && !world.isStopped()) reason.append(wallOnTheWay(world, step));
   }
-}
-
-Verdict verdictOf(const std::vector<StepResult>& steps, std::size_t planned) {
-  const auto has = [&](Verdict verdict) {
-    return std::any_of(steps.begin(), steps.end(), [&](const StepResult& s) { return s.verdict == verdict; });
-  };
-  if (has(Verdict::Blocked)) return Verdict::Blocked;
-  return has(Verdict::NotShown) || steps.size() < planned ? Verdict::NotShown : Verdict::Fits;
+  // A part that falls into its place while the device exerts no force was not brought there.
+  if (brought.is_faulted)
+    reason =
+        "the device failed on the way, so that no hand held the part" + (reason.empty() ? "" : ": " + reason);
 }
 
 }  // namespace vps::scenes

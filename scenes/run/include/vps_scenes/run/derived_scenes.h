@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Assemblies that begin with what has been put down before: to undo a step and go on from there, and to take
-// parts in hand without a procedure. All are scenes, so that a run of them is judged, recorded and replayed
-// as any other, and the same scene gives the same bits.
+// Scenes made from a scene: its disassembly, what is left of it after some steps, and one part taken in hand
+// without a procedure. A run of them is judged, recorded and replayed like any other, and the same scene
+// gives the same bits.
 #pragma once
 
 #include <cstddef>
@@ -33,7 +33,14 @@ VPS_SCENES_API std::vector<Pose> laidOut(const Scene& scene);
 /// @param X_WP  of each part
 VPS_SCENES_API Scene sceneOfOnePart(const Scene& scene, std::span<const Pose> X_WP, std::size_t part);
 
-/// Of a run with so many planned steps.
-VPS_SCENES_API Verdict verdictOf(const std::vector<StepResult>& steps, std::size_t planned);
+/// The scene with all parts in place and its steps in reverse. Each step takes its part off, along its path
+/// from the target to the start, and puts it away there (SceneStep::takes_off); a screw is unscrewed first.
+/// Nothing guides a part where its path ends, so its tolerance there is kAway_m, or a quarter of a shorter
+/// way; that of the assembly does not apply. Throws LoadError for a scene without a step, for one that is a
+/// disassembly, and where no part is fixed.
+VPS_SCENES_API Scene disassemblyOf(Scene scene);
+
+/// assumed: nearer than this a part that was put away need not be where its way ends
+inline constexpr double kAway_m = 2e-3;
 
 }  // namespace vps::scenes

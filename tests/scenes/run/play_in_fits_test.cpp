@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where a part belongs whose mate is off its own place.
-#include "world/displaced_mates.h"
+// How far a part may lean in its fits, by the formula, and where a part belongs whose mate is displaced.
+#include "world/play_in_fits.h"
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numbers>
 
 #include "scenes/scene_part.h"
@@ -14,8 +15,56 @@ namespace vps::scenes {
 namespace {
 
 constexpr int kFlats = 192;
+constexpr double kShaft_m = 5e-3, kHole_m = 5.025e-3, kOuter_m = 10e-3;
+constexpr double kClearance_m = 2 * (kHole_m - kShaft_m);
 
-Mesh ring(double hole_m, double outer_m, double length_m) {
+DrawnPart drawn(const std::string& name, const Mesh& mesh, const Vec3& p_WP) {
+  DrawnPart part;
+  part.name = name;
+  part.mesh = mesh;
+  part.X_WP = Pose::translation(p_WP);
+  return part;
+}
+
+Mesh ring(double length_m) {
+  return test::lathe({{kHole_m, 0}, {kOuter_m, 0}, {kOuter_m, length_m}, {kHole_m, length_m}}, kFlats);
+}
+
+DrawnPart shaft() {
+  return drawn("shaft", test::lathe({{0, 0}, {kShaft_m, 0}, {kShaft_m, 60e-3}, {0, 60e-3}}, kFlats),
+               Vec3::Zero());
+}
+
+TEST(LeanInFits, AShortRingLeansByItsClearanceOverItsLength) {
+  constexpr double kLength_m = 3e-3;
+  const double reach_m = std::hypot(kOuter_m, kLength_m / 2);
+  const double expected_m = kClearance_m * reach_m / kLength_m;  // 169 um
+  EXPECT_NEAR(leanInFits_m(drawn("ring", ring(kLength_m), {0, 0, 30e-3}), {shaft()}), expected_m,
+              0.02 * expected_m);
+}
+
+TEST(LeanInFits, ALongRingIsOffByHalfItsClearance) {
+  constexpr double kLength_m = 40e-3;
+  const double expected_m = kClearance_m * std::hypot(kOuter_m, kLength_m / 2) / kLength_m;  // 28 um
+  EXPECT_GT(expected_m, kClearance_m / 2);
+  EXPECT_NEAR(leanInFits_m(drawn("ring", ring(kLength_m), {0, 0, 10e-3}), {shaft()}), expected_m,
+              0.02 * expected_m);
+}
+
+// 3 mm each, 30 mm from end to end.
+TEST(LeanInFits, TwoShortFitsHoldAsOneLongOne) {
+  const double alone_m = leanInFits_m(shaft(), {drawn("low", ring(3e-3), {0, 0, 15e-3})});
+  const double both_m = leanInFits_m(
+      shaft(), {drawn("low", ring(3e-3), {0, 0, 15e-3}), drawn("high", ring(3e-3), {0, 0, 42e-3})});
+  EXPECT_NEAR(both_m, kClearance_m * std::hypot(kShaft_m, 30e-3) / 30e-3, 0.02 * both_m);
+  EXPECT_GT(alone_m, 10 * both_m);
+}
+
+TEST(LeanInFits, APartWithoutAFitHasNoLean) {
+  EXPECT_EQ(leanInFits_m(shaft(), {}), 0);
+}
+
+Mesh ringOf(double hole_m, double outer_m, double length_m) {
   return test::lathe({{hole_m, 0}, {outer_m, 0}, {outer_m, length_m}, {hole_m, length_m}}, kFlats);
 }
 
@@ -31,12 +80,12 @@ Scene collarOnAxle() {
   Scene scene;
   scene.file = scene.name = "axle";
   scene.parts = {
-      lying("wall", ring(8.05e-3, 30e-3, 20e-3), 0, true),
+      lying("wall", ringOf(8.05e-3, 30e-3, 20e-3), 0, true),
       lying(
           "axle",
           test::lathe({{0, -6e-3}, {20e-3, -6e-3}, {20e-3, 0}, {8e-3, 0}, {8e-3, 45e-3}, {0, 45e-3}}, kFlats),
           0, false),
-      lying("collar", ring(8.05e-3, 15e-3, 10e-3), 20e-3, false)};
+      lying("collar", ringOf(8.05e-3, 15e-3, 10e-3), 20e-3, false)};
   for (const std::size_t part : {1u, 2u}) {
     SceneStep step;
     step.part = part;

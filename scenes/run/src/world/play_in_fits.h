@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How far a part that its fits alone hold may lean in them: a nut on three millimetres of a bolt.
+// How far the play of the fits lets a part be from its place: it may lean in them, and its mates may be
+// displaced.
 #pragma once
 
 #include <cstddef>
@@ -22,5 +23,12 @@ double leanInFits_m(const DrawnPart& part, const std::vector<DrawnPart>& others)
 
 /// Of the step's part at its target, in what is in place by then.
 double leanInFits_m(const Scene& scene, std::size_t step);
+
+/// How far each part that was moved before, and that this step's part fits, is from its own place at the
+/// middle of their fit; in W. Where one part has several fits, each counts. A shaft holds nothing along its
+/// axis, and a key only across its faces: first comes what the fit passes on, and then, where it differs, the
+/// whole, for a part that stands on its mate's shoulder.
+/// @param X_WP  where the parts are, by part
+std::vector<Vec3> displacedMates_m(const Scene& scene, std::size_t step, const std::vector<Pose>& X_WP);
 
 }  // namespace vps::scenes

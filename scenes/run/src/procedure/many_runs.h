@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Independent runs in parallel: the tries of a procedure and the samples of a tolerance study.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <functional>
+
+namespace vps::scenes {
+
+struct ManyRunsOptions {
+  unsigned threads = 0;                     ///< for the runs; 0: one for each core
+  bool has_one_core_each = false;           ///< a run uses no more than one core for its parallel loops
+  const std::atomic<bool>* stop = nullptr;  ///< set by the user; null: cannot be stopped
+  /// Called on the caller's thread every 50 ms with the number of runs that were begun; may throw. Empty: no
+  /// reports.
+  std::function<void(std::size_t begun)> report{};
+};
+
+/// Calls run(i, stop) for i from 0 to count - 1 in this order, each on one of the threads, and returns when
+/// all calls have returned. After `stop` is set no further run begins. It is set when options.stop is, or
+/// when a run or options.report throws; the first exception is then thrown again. Results are the same for
+/// any number of threads if run(i) depends on i alone.
+void forEachRun(std::size_t count, const ManyRunsOptions& options,
+                const std::function<void(std::size_t i, const std::atomic<bool>& stop)>& run);
+
+}  // namespace vps::scenes

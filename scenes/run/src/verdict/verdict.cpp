@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vps_scenes/run/verdict.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "text/words.h"
+
+namespace vps::scenes {
+
+namespace {
+
+std::string depthReason(const Evidence& e) {
+  return "on the way it was " + lengthInWords(e.depth_m) + " deep in '" + e.deepest_against +
+         "', more than the " + lengthInWords(e.depth_limit_m) + " that count as contact";
+}
+
+std::string driftReason(const Evidence& e) {
+  return "it moved by " + lengthInWords(e.rest_drift_m) + " after it was let go: " + kHoldsRemedy;
+}
+
+std::string pressReason(const Evidence& e) {
+  char words[240];
+  std::snprintf(words, sizeof words,
+                "the way is free, but pressing it %s takes about %.0f N (by the formula for its declared "
+                "interference), and the hand has %.0f N ([operator] force_limit_N): it needs a press",
+                e.is_taken_off ? "out" : "in", e.press_needed_N, e.hand_N);
+  return words;
+}
+
+struct Rule {
+  bool (*isMet)(const Evidence&);
+  Verdict verdict;
+  std::string (*reason)(const Evidence&);
+};
+
+/// In order of precedence: only a proof by geometry makes Blocked, and it needs no run.
+constexpr std::array kRules{
+    Rule{[](const Evidence& e) { return !e.blocked.empty(); }, Verdict::Blocked,
+         [](const Evidence& e) { return e.blocked; }},
+    Rule{[](const Evidence& e) { return !e.is_in_place; }, Verdict::NotShown,
+         [](const Evidence& e) { return e.failure; }},
+    Rule{[](const Evidence& e) { return !e.isWithinLimit(); }, Verdict::NotShown, depthReason},
+    Rule{[](const Evidence& e) { return !e.isAtRest(); }, Verdict::NotShown, driftReason},
+    Rule{[](const Evidence& e) { return e.press_needed_N > e.hand_N; }, Verdict::NotShown, pressReason},
+    Rule{[](const Evidence& e) { return !e.doubt.empty(); }, Verdict::NotShown,
+         [](const Evidence& e) { return "the hand brought it home, but " + e.doubt; }},
+};
+
+}  // namespace
+
+Judgement judge(const Evidence& evidence) {
+  const auto* const rule = std::ranges::find_if(kRules, [&](const Rule& one) { return one.isMet(evidence); });
+  if (rule == kRules.end()) return {};
+  return {rule->verdict, rule->reason(evidence)};
+}
+
+std::string overlapReason(const std::string& other, double depth_m, double error_m, const Vec3& at_W) {
+  return "as drawn, it overlaps '" + other + "' by " + lengthInWords(depth_m) + " (error " +
+         lengthInWords(error_m) + ") at " + placeInWords(at_W);
+}
+
+std::string closedRoomReason(const std::string& other, bool starts_inside) {
+  return std::string(starts_inside ? "it starts" : "it belongs") + " in a closed room inside '" + other +
+         "', into which no way leads";
+}
+
+}  // namespace vps::scenes
