@@ -1,6 +1,6 @@
-// SPDX-License-Identifier: BSD-3-Clause The verdict Blocked is given only where it is proven. The assemblies
-// of these tests can be put together by construction, although they overlap as drawn and a wrong proof would
-// call them blocked; some others cannot.
+// SPDX-License-Identifier: BSD-3-Clause
+// The verdict Blocked is given only where it is proven. The assemblies of these tests can be put together by
+// construction, although they overlap as drawn and a wrong proof would call them blocked; some others cannot.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause Declared interference fits whose sizes are known by construction, and
-// the press force by Lame's formula.
+// SPDX-License-Identifier: BSD-3-Clause
+// Declared interference fits whose sizes are known by construction, and the press force by Lame's formula.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause Threads of screws and nuts whose shape is known by construction, and
-// the motions that take them apart.
+// SPDX-License-Identifier: BSD-3-Clause
+// Threads of screws and nuts whose shape is known by construction, and the motions that take them apart.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
-// SPDX-License-Identifier: BSD-3-Clause CAD import: parts, poses and units agree with the file, and damaged
-// files are refused. The file has more than 400 lines, since it tests all file formats, with files that the
-// tests write themselves.
+// SPDX-License-Identifier: BSD-3-Clause
+// CAD import: parts, poses and units agree with the file, and damaged files are refused. The file has more
+// than 400 lines, since it tests all file formats, with files that the tests write themselves.
 #include "vps_scenes/cad/import.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause The depth and volume of a check are properties of the solids: they do
-// not depend on how faces are divided.
+// SPDX-License-Identifier: BSD-3-Clause
+// The depth and volume of a check are properties of the solids: they do not depend on how faces are divided.
 #include <gtest/gtest.h>
 
 #include <algorithm>

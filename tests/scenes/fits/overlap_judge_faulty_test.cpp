@@ -1,5 +1,6 @@
-// SPDX-License-Identifier: BSD-3-Clause The overlap judge on faulty meshes: its depths agree with the true
-// ones, and with those of the voxmaps within their error.
+// SPDX-License-Identifier: BSD-3-Clause
+// The overlap judge on faulty meshes: its depths agree with the true ones, and with those of the voxmaps
+// within their error.
 #include <gtest/gtest.h>
 
 #include <cctype>

@@ -1,5 +1,6 @@
-// SPDX-License-Identifier: BSD-3-Clause Whether an assembly can be put together, and whether its parts
-// overlap as drawn, on parts with flat faces for which both answers are known by construction.
+// SPDX-License-Identifier: BSD-3-Clause
+// Whether an assembly can be put together, and whether its parts overlap as drawn, on parts with flat faces
+// for which both answers are known by construction.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause Arms and reach with angles that follow from a drawing.
+// SPDX-License-Identifier: BSD-3-Clause
+// Arms and reach with angles that follow from a drawing.
 #include "vps_scenes/uses/ergonomics.h"
 
 #include <gtest/gtest.h>

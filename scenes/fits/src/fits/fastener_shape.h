@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause The kind of fastener that a part has the shape of.
+// SPDX-License-Identifier: BSD-3-Clause
+// The kind of fastener that a part has the shape of.
 #pragma once
 
 #include <optional>

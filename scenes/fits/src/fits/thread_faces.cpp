@@ -1,7 +1,7 @@
-// SPDX-License-Identifier: BSD-3-Clause The normal of a helicoid z = lead phi / 2 pi + f(r) has n_phi / n_z =
-// -lead / (2 pi r), whatever its profile. Each facet of a thread around an axis therefore gives the lead of
-// the thread; facets of one thread agree on the lead, other facets do not. The surface's radius along the
-// helix then confirms the thread.
+// SPDX-License-Identifier: BSD-3-Clause
+// The normal of a helicoid z = lead phi / 2 pi + f(r) has n_phi / n_z = -lead / (2 pi r), whatever its
+// profile. Each facet of a thread around an axis therefore gives the lead of the thread; facets of one thread
+// agree on the lead, other facets do not. The surface's radius along the helix then confirms the thread.
 #include "fits/faces.h"
 
 #include <Eigen/Eigenvalues>

@@ -42,7 +42,8 @@ struct RelativeMotion {
   /// path.
   double sagitta_m = 0;
 };
-/// Bounds the relative motion of two bodies. @param box_A, box_B boxes of the bodies, in their frames
+/// Bounds the relative motion of two bodies.
+/// @param box_A, box_B boxes of the bodies, in their frames
 RelativeMotion relativeMotion(const BodyMotion& a, const Box& box_A, const BodyMotion& b, const Box& box_B);
 
 /// Greatest displacement of any point of a box that moves from X_a to X_b. It is that of a corner, since the

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause A body prepared for exact measures, and the depth or the gap of two
-// bodies.
+// SPDX-License-Identifier: BSD-3-Clause
+// A body prepared for exact measures, and the depth or the gap of two bodies.
 #pragma once
 
 #include <memory>

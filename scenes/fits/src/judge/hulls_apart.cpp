@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause Convex hulls that stay apart: a pair needs no exact measure where one
-// direction separates the hulls.
+// SPDX-License-Identifier: BSD-3-Clause
+// Convex hulls that stay apart: a pair needs no exact measure where one direction separates the hulls.
 #include <algorithm>
 #include <cmath>
 

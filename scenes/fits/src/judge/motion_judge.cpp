@@ -11,12 +11,13 @@ namespace vps::scenes {
 
 namespace {
 
-/// Credit at the start. A passage takes about fifty measures of some ten units each.
+/// Credit at the start. The passage of one body through another takes about fifty measures of some ten units
+/// each.
 constexpr double kFirstCredit = 50e3;
 /// Greatest credit that is saved for later searches.
 constexpr double kMostCredit = 200e3;
 /// A search may spend this share of the credit, or the credit that its steps gave if that is more. The rest
-/// is kept for a passage in a later search.
+/// is kept for later searches, in which a body may pass through another one.
 constexpr double kShareOfCredit = 0.25;
 /// Share of a search's credit for proofs that surfaces do not meet, since such proofs may fail.
 constexpr double kShareOfProofs = 0.25;
@@ -31,11 +32,11 @@ Box unionOf(Box a, const Box& b) {
 
 struct MotionJudge::Stretch {
   std::size_t path;
-  double from, to;      ///< in steps
+  double from, to;      ///< ends of the interval, counted in steps
   double from_m, to_m;  ///< depth at the ends; an upper bound where it was not measured
   bool is_from_measured, is_to_measured;
   double bound_m = 0;                           ///< upper bound of the depth within the interval
-  bool operator<(const Stretch& other) const {  // the deepest first, then the earliest
+  bool operator<(const Stretch& other) const {  // order: the greatest bound first, then the earliest
     if (bound_m != other.bound_m) return bound_m < other.bound_m;
     return path != other.path ? path > other.path : from > other.from;
   }

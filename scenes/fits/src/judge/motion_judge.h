@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause The deepest overlap of bodies along their motion, including the poses
-// between the ends of the steps.
+// SPDX-License-Identifier: BSD-3-Clause
+// The deepest overlap of bodies along their motion, including the poses between the ends of the steps.
 #pragma once
 
 #include <atomic>

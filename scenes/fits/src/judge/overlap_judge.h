@@ -1,5 +1,6 @@
-// SPDX-License-Identifier: BSD-3-Clause The depth of one part in other parts, by exact distance to their
-// triangles. It checks the results of the voxmaps.
+// SPDX-License-Identifier: BSD-3-Clause
+// The depth of one part in other parts, by exact distance to their triangles. It checks the results of the
+// voxmaps.
 #pragma once
 
 #include <memory>

@@ -15,8 +15,8 @@ namespace {
 
 constexpr std::size_t kSuspects = 50;  ///< number of poses with the deepest contacts that are always judged
 
-/// Credit for each passage, in the unit of Overlap::work. The run is over, so a passage can be searched to
-/// its end, which takes about fifty measures of some ten units; the credit is only an upper bound.
+/// Credit for the search between two samples, in the unit of Overlap::work. The run is over, so each search
+/// can run to its end, which takes about fifty measures of some ten units; the credit is only an upper bound.
 constexpr double kCredit = 200e3;
 
 std::vector<MovingBody> bodiesOf(const OverlapJudge& judge, const JudgedBody& moving) {

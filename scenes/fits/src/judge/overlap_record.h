@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause Judges the recorded poses of a part: the deepest penetration by exact
-// distance.
+// SPDX-License-Identifier: BSD-3-Clause
+// Judges the recorded poses of a part: the deepest penetration by exact distance.
 #pragma once
 
 #include <atomic>
@@ -28,8 +28,8 @@ struct OverlapVerdict {
   Penetration worst;
   double time_s = 0;
   std::size_t poses_judged = 0;
-  /// 0 if each passage was searched to its end. Else an upper bound of the depth of passages that were not
-  /// searched to their end.
+  /// 0 if each search between two samples ran to its end. Else an upper bound of the depth that the other
+  /// searches may have missed.
   double unsearched_m = 0;
 };
 

@@ -1,5 +1,6 @@
-// SPDX-License-Identifier: BSD-3-Clause Surfaces that do not meet during a motion: bodies that were apart
-// then stay apart, even where one encloses the other.
+// SPDX-License-Identifier: BSD-3-Clause
+// Surfaces that do not meet during a motion: bodies that were apart then stay apart, even where one encloses
+// the other.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -73,8 +74,8 @@ bool areApart(const Triangle& fixed, const std::array<Triangle, 2>& moving, doub
   });
 }
 
-/// Whether no triangles of the bodies can meet along the chord. @param boxes number of boxes that may still
-/// be tested
+/// Whether no triangles of the bodies can meet along the chord.
+/// @param boxes number of boxes that may still be tested
 bool areApartOn(const Chord& chord, const ExactBody& a, const ExactBody& b, std::size_t& boxes) {
   bool is_apart = true;
   visitPairs(

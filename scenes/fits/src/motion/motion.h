@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause A translation, rotation or screw motion of a part, and how long a
-// plane separates the part from held parts.
+// SPDX-License-Identifier: BSD-3-Clause
+// A translation, rotation or screw motion of a part, and how long a plane separates the part from held parts.
 #pragma once
 
 #include <algorithm>

@@ -105,7 +105,7 @@ Box boxOf(const Triangle& t) {
 PassingFacets::PassingFacets(std::size_t of_held, bool of_moving, std::vector<std::uint8_t> of_facets,
                              const BoxTree& tree)
     : held(of_held), is_of_moving(of_moving), facets(std::move(of_facets)), nodes(tree.nodes().size(), 1) {
-  for (std::size_t n = nodes.size(); n-- > 0;) {  // children follow their parents
+  for (std::size_t n = nodes.size(); n-- > 0;) {  // child nodes follow their parents
     const BoxTree::Node& node = tree.nodes()[n];
     if (!node.isLeaf()) {
       nodes[n] = nodes[n + 1] & nodes[node.right];

@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause How far a part can move until it touches a held part.
+// SPDX-License-Identifier: BSD-3-Clause
+// How far a part can move until it touches a held part.
 #pragma once
 
 #include <array>

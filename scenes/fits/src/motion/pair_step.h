@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause How far a triangle can move before it penetrates another one.
+// SPDX-License-Identifier: BSD-3-Clause
+// How far a triangle can move before it penetrates another one.
 #pragma once
 
 #include <optional>

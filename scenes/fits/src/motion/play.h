@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause Play of a part, and the motions by which it can be removed.
+// SPDX-License-Identifier: BSD-3-Clause
+// Play of a part, and the motions by which it can be removed.
 #pragma once
 
 #include <vector>

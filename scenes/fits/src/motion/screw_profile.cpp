@@ -14,7 +14,7 @@ namespace {
 constexpr double kWholeTurn_rad = 2 * std::numbers::pi;
 constexpr int kBins = 1024;
 /// A triangle that spans a greater angle, or whose radii have a greater ratio, is halved, at most
-/// kMostHalvings times (a triangle on the axis needs more).
+/// kMostHalvings times. Triangles on the axis reach this limit.
 constexpr double kMostTurn_rad = 0.3, kMostRatio = 1.5;
 constexpr int kMostHalvings = 16;
 

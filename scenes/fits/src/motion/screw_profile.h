@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause The facets of a screw that can never touch its nut, however far the
-// screw is turned.
+// SPDX-License-Identifier: BSD-3-Clause
+// The facets of a screw that can never touch its nut, however far the screw is turned.
 #pragma once
 
 #include <cstdint>

@@ -193,7 +193,7 @@ class DepthSearch {
     if (other.out.dot(middle.out) < kOneWay && leaves(next, other.out)) return;
     const Halves halves = divided(next.piece, next.level, X_IO_.R * of_.normal(next.node),
                                   {middle.out, middle.q}, {other.out, other.q});
-    if (!areWhole(halves, next.piece)) return;  // as small as rounding
+    if (!areWhole(halves, next.piece)) return;  // the piece is as small as rounding
     for (const SurfacePiece& half : halves) addPiece(next.node, half, next.level + 1);
   }
 
@@ -371,7 +371,7 @@ class TouchSearch {
     }
     const Halves halves = divided(touch.piece, touch.level, touch.n, {middle.out, middle.q - to_centre},
                                   {other.out, other.q - to_centre});
-    if (!areWhole(halves, touch.piece)) return;  // as small as rounding
+    if (!areWhole(halves, touch.piece)) return;  // the piece is as small as rounding
     for (const SurfacePiece& half : halves)
       waiting_.push_back({half, touch.directions, touch.n, touch.level + 1});
   }

@@ -15,8 +15,9 @@ struct SurfaceGap {
   Vec3 p_A = Vec3::Zero(), p_B = Vec3::Zero();  ///< the nearest points, in the frame of A
 };
 
-/// The least distance over all pairs of triangles, exact to rounding, up to most_m. @param X_AB pose of B in
-/// A. O(log n) typical, more where large areas are equally far.
+/// The least distance over all pairs of triangles, exact to rounding, up to most_m. O(log n) typical, more
+/// where large areas are equally far.
+/// @param X_AB pose of B in A
 SurfaceGap surfaceGap(const PartSurface& a, const PartSurface& b, const Pose& X_AB, double most_m);
 
 /// Balls that lie inside both of two placed solids, in the frame of the first solid. Both solids must outlive
@@ -109,8 +110,8 @@ struct OverlapVolume {
 /// Displacement of B before overlapVolume() measures, so that no two faces coincide.
 inline constexpr double kVolumeShift_m = 1e-9;
 /// Measures the shared volume by the divergence theorem, over the part of each surface that is inside the
-/// other solid; the areas of these parts are exact. @param X_AB pose of B in A.
-/// O(facets near the other part x log facets).
+/// other solid; the areas of these parts are exact. O(facets near the other part x log facets).
+/// @param X_AB pose of B in A
 OverlapVolume overlapVolume(const PartSurface& a, const PartSurface& b, const Pose& X_AB);
 
 /// Measures overlap or clearance of two parts. Empty if the parts are farther from each other than near_m.

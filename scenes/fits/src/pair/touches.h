@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause Contacts of two overlapping parts, as points of one part and planes
-// of the other.
+// SPDX-License-Identifier: BSD-3-Clause
+// Contacts of two overlapping parts, as points of one part and planes of the other.
 #pragma once
 
 #include <cstdint>

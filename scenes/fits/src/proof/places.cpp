@@ -27,7 +27,7 @@ using Six = Eigen::Matrix<double, 6, 1>;
 /// Remaining overlap that the search accepts: a few times the precision of deepestOverlap().
 constexpr double kClear_m = 3 * kOverlapCertain_m;
 static_assert(kClear_m + kOverlapCertain_m < kContactDepth_m);
-constexpr std::size_t kMostBodies = 40;  // that are moved at once; each adds six unknowns
+constexpr std::size_t kMostBodies = 40;  // bodies that are moved at once; each adds six unknowns
 
 /// Limit of the work for one group of clashing parts, in the unit of Overlap::work: half a minute of one
 /// core.
@@ -254,7 +254,8 @@ class PlaceSearch {
     return {Verdict::NotShown, notShownWords(group, most_moved, last)};
   }
 
-  /// The reason why no places were found. @param most_moved  greatest number of parts that a try moved
+  /// The reason why no places were found.
+  /// @param most_moved greatest number of parts that a try moved
   [[nodiscard]] std::string notShownWords(const std::vector<std::size_t>& group, std::size_t most_moved,
                                           const Tried& last) const {
     std::vector<std::string> names;

@@ -59,7 +59,7 @@ AxisExtents::AxisExtents(const PartSurface& part, const Vec3& axis, const Vec3& 
   for (std::uint32_t i = 0; i < triangles.size(); ++i)
     triangles[i] = axisExtent(part.triangle(i), center, axis, u, v);
   const auto& tree = part.tree().nodes();
-  for (std::size_t n = tree.size(); n-- > 0;) {  // children follow their parents
+  for (std::size_t n = tree.size(); n-- > 0;) {  // child nodes follow their parents
     if (!tree[n].isLeaf()) {
       nodes[n].add(nodes[n + 1]);
       nodes[n].add(nodes[tree[n].right]);

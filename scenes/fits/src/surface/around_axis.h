@@ -29,7 +29,8 @@ struct AxisExtent {
   }
 };
 
-/// The extent of a triangle around an axis. @param u, v unit vectors perpendicular to the axis
+/// The extent of a triangle around an axis.
+/// @param u, v unit vectors perpendicular to the axis
 AxisExtent axisExtent(const Triangle& t, const Vec3& center, const Vec3& axis, const Vec3& u, const Vec3& v);
 
 /// The extents of all nodes and triangles of a part around an axis in the part's frame. O(n).

@@ -13,7 +13,7 @@ namespace {
 /// Angle below which facets are coplanar. Rounding bends a flat face at its diagonal by about 1e-8; facets of
 /// curved faces meet at more than 1e-3.
 constexpr double kFlat_rad = 1e-6;
-constexpr double kPartSurfaceParallel = 1e-12;  // 1 - cosine
+constexpr double kPartSurfaceParallel = 1e-12;  // 1 - cosine of parallel normals
 
 double angleBetween(const Vec3& a, const Vec3& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
@@ -93,7 +93,8 @@ void PartSurface::findPlanes() {
 }
 
 void PartSurface::findPatches() {
-  constexpr double kOneWay = 0.9;  // |sum of vector areas| by area, about 25 degrees on average; assumed
+  constexpr double kOneWay =
+      0.9;  // least |sum of vector areas| / area of a patch, about 25 degrees on average; assumed
   patches_.assign(tree_.nodes().size(), Vec3::Zero());
   for (std::size_t node = 0; node < patches_.size(); ++node) {
     const auto [first, end] = std::pair(tree_.nodes()[node].first, tree_.nodes()[node].end);

@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause Convex pieces of facets, and whether such a piece is outside a solid.
+// SPDX-License-Identifier: BSD-3-Clause
+// Convex pieces of facets, and whether such a piece is outside a solid.
 #pragma once
 
 #include <span>

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: BSD-3-Clause The pose of an arm of two links, by the law of cosines, and its RULA
-// score.
+// SPDX-License-Identifier: BSD-3-Clause
+// The pose of an arm of two links, by the law of cosines, and its RULA score.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
