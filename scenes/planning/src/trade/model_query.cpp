@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "simulation/tick_times.h"
-#include "trade/exact_contact.h"
 #include "vps/query.h"
 
 namespace vps::scenes {
