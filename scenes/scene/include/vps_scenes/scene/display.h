@@ -69,7 +69,7 @@ struct Display {
   [[nodiscard]] Vec3 toScene(const Vec3& p_S) const { return X_SW.inverse() * p_S / scale; }
 };
 
-/// Reads a display file (TOML, viewer/README.md). Throws LoadError with file, line, key and remedy; also for
+/// Reads a display file (TOML, viewer/draw/STEREO.md). Throws LoadError with file, line, key and remedy; also for
 /// corners that do not form a rectangle, and for a screen that a viewer has behind the head or sees from
 /// behind, at any time of a record.
 VPS_SCENES_API Display loadDisplay(const std::string& file);
