@@ -167,10 +167,10 @@ std::string planSvg(const PlanResult& plan) {
   const double legend = height + 0.5 * kRow;
   char text[240];
   std::snprintf(text, sizeof text, "<text class='note' x='%.0f' y='%.0f'>", kMargin, legend);
-  body += text + std::string(
-                     "line: the later step has no path if it comes first; dashed: the earlier part carries "
-                     "the later one; "
-                     "grey: free; bold: base; red: blocked</text>\n");
+  body += text +
+          std::string(
+              "line: has to come first, or its path is blocked; dashed: carries the later part; grey: free; "
+              "bold: base; red: blocked</text>\n");
   height += kRow;
   width = std::max(width, 720.0);
   std::snprintf(
