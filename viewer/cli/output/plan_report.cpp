@@ -216,8 +216,8 @@ std::string planTables(const scenes::PlanResult& plan) {
         " straight motions were too long to follow to their end and count as stopped; a greater --deflection "
         "makes them shorter.\n";
   for (const scenes::CheckedPair& pair : plan.uncertain)
-    out += "Whether '" + pair.a + "' and '" + pair.b +
-           "' overlap cannot be told, because a part has no inside there; their surfaces were used.\n";
+    out += "It is not known whether '" + pair.a + "' and '" + pair.b +
+           "' overlap, because a part has no inside there; their surfaces were used.\n";
   return out;
 }
 

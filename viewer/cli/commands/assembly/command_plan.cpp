@@ -31,7 +31,7 @@ int verify(const PlanArguments& given) {
   json.write(toJson(scene.name, faults));
   bar.clear();
   for (const scenes::WayFault& fault : faults) std::printf("%s\n", inWords(fault).c_str());
-  std::printf("%s: %zu steps, %zu at fault\n", scene.name.c_str(), scene.steps.size(), faults.size());
+  std::printf("%s: %zu steps, %zu with faults\n", scene.name.c_str(), scene.steps.size(), faults.size());
   return faults.empty() ? kGood : kBad;
 }
 

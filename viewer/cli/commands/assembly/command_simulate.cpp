@@ -82,7 +82,7 @@ std::string depthInWords(const scenes::SimulateResult& result) {
 
 int runSimulate(const SimulateArguments& given) {
   if (!std::isfinite(given.seconds) || given.seconds <= 0)
-    throw LoadError("", "", "--seconds must be a finite number of more than 0");
+    throw LoadError("", "", "--seconds must be a finite number greater than 0");
   const std::string& file = given.scene.scene;
   OutputFile trace(given.trace, {file}), json(given.json, {file});
   ProgressBar bar;
@@ -117,7 +117,7 @@ int runSimulate(const SimulateArguments& given) {
               fixed(result.step.max_us, 0).c_str());
   if (result.shortened_steps > 0)
     std::printf(
-        "steps shortened: bodies in contact were stopped within a step %zu times, which takes energy\n",
+        "steps shortened: bodies in contact were stopped within a step %zu times, which removes energy\n",
         result.shortened_steps);
   if (!result.fast_turns.empty()) warn(inWords(result.fast_turns, scene.fidelity));
   const bool is_good = !result.overlap || printOverlap(*result.overlap);

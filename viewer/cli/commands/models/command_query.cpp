@@ -111,9 +111,9 @@ Operands loadOperands(const QueryArguments& given) {
   const std::optional<double> unit_m = unitFrom(given.units);
   const OperandKind a = operandKind(given.mesh_a), b = operandKind(given.mesh_b);
   if (a == OperandKind::PointShell)
-    throw LoadError(given.mesh_a, "", "is a pointshell; A gives the voxmap, so name it second, as B");
+    throw LoadError(given.mesh_a, "", "is a pointshell, but A provides the voxmap; give it second, as B");
   if (b == OperandKind::LevelSet)
-    throw LoadError(given.mesh_b, "", "is a level set; B gives the pointshell, so name it first, as A");
+    throw LoadError(given.mesh_b, "", "is a level set, but B provides the pointshell; give it first, as A");
   if (a == OperandKind::LevelSet) {
     requireNotGiven(!given.fidelity.voxel.empty(), "--voxel", given.mesh_a, "voxmap");
     operands.map_a = loadLevelSet(given.mesh_a);

@@ -73,7 +73,7 @@ std::optional<scenes::FidelityWish> wishFrom(const TradeArguments& given) {
   scenes::FidelityWish wish;
   // CLI::Range accepts NaN.
   if (given.budget_hz && !std::isfinite(*given.budget_hz))
-    throw LoadError("", "", "--budget-hz must be a finite number of more than 0");
+    throw LoadError("", "", "--budget-hz must be a finite number greater than 0");
   wish.budget_hz = given.budget_hz;
   if (given.tolerance) {
     wish.tolerance_m = scenes::lengthFromText(*given.tolerance, "--tolerance");
