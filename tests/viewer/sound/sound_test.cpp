@@ -53,7 +53,7 @@ TEST(PartVoice, AStruckBarSoundsAtTheFrequenciesOfItsModes) {
   std::vector<float> heard;
   voice.push(end, 10);
   for (int i = 0; i < kRate_hz / 2; ++i) heard.push_back(static_cast<float>(voice.next()));
-  // The first mode bends along z, so that a stroke along z drives it; a third of a semitone beside it
+  // The first mode bends along z, so that an impact along z drives it; a third of a semitone beside it
   // there is much less.
   const double hz = modes.frequency_hz[0];
   EXPECT_GT(amplitudeAt(heard, hz), 3 * amplitudeAt(heard, 1.05 * hz));
@@ -140,11 +140,11 @@ TEST(RunSound, IsSilentUntilSomethingTouchesAndThenRings) {
   EXPECT_GT(amplitudeAt(after, modes.frequency_hz[0]), 2 * amplitudeAt(after, 0.9 * modes.frequency_hz[0]));
 }
 
-TEST(RunSound, IsTheSameForTheSameRunAndGrowsWithTheStroke) {
+TEST(RunSound, IsTheSameForTheSameRunAndGrowsWithTheImpact) {
   const scenes::Scene scene = barAndPlate();
   const std::vector<float> heard = heardOf(scene, 10, 0);
   EXPECT_EQ(heard, heardOf(scene, 10, 0));
-  // Twice the impulse: about twice the pressure, since a faster stroke is a little shorter.
+  // Twice the impulse: about twice the pressure, since a faster impact is a little shorter.
   EXPECT_NEAR(std::sqrt(energy(heardOf(scene, 20, 0)) / energy(heard)), 2, 0.3);
 }
 

@@ -17,15 +17,14 @@ std::array<std::array<int, 3>, kBrickNodes> makeNodes() {
   return nodes;
 }
 
-/// The axis of the edge whose middle the node is, or -1 for a corner.
+/// Axis of the edge that has the node at its midpoint; -1 for a corner.
 int edgeOf(const std::array<int, 3>& node) {
   for (int k = 0; k < 3; ++k)
     if (node[k] == 1) return k;
   return -1;
 }
 
-/// The powers of x, y and z whose sums the shapes are: those of each corner's product of (1 +- x) with one
-/// coordinate more.
+/// Exponents of x, y and z of the monomials that span the shape functions.
 const std::array<std::array<int, 3>, kBrickNodes>& monomials() {
   static const std::array<std::array<int, 3>, kBrickNodes> kMonomials = [] {
     std::array<std::array<int, 3>, kBrickNodes> all{};
@@ -39,7 +38,8 @@ const std::array<std::array<int, 3>, kBrickNodes>& monomials() {
   return kMonomials;
 }
 
-/// Column i holds the coefficients of shape i: the inverse of the monomials at the nodes.
+/// Column i has the monomial coefficients of shape function i: the inverse of the monomials' values at the
+/// nodes.
 const BrickMass& shapeCoefficients() {
   static const BrickMass kCoefficients = [] {
     BrickMass at_nodes;
@@ -53,8 +53,8 @@ const BrickMass& shapeCoefficients() {
   return kCoefficients;
 }
 
-/// The integral of d m_i / dx_k * d m_j / dx_l over the filling, for all monomials m; of m_i m_j for k = l =
-/// -1.
+/// Integrals of d m_i / dx_k * d m_j / dx_l over the filled region, for all monomials m; for k = l = -1,
+/// integrals of m_i m_j.
 BrickMass integralOf(const BrickFilling& filling, int k, int l) {
   BrickMass integral;
   for (int i = 0; i < kBrickNodes; ++i)
@@ -67,7 +67,7 @@ BrickMass integralOf(const BrickFilling& filling, int k, int l) {
   return integral;
 }
 
-/// From H(k n + i, l n + j), the integral of d shape_i / dx_k * d shape_j / dx_l.
+/// Stiffness matrix from H, where H(k n + i, l n + j) is the integral of d shape_i / dx_k * d shape_j / dx_l.
 BrickStiffness stiffnessFrom(const BrickStiffness& H, const Elasticity& material) {
   const double nu = material.poissons_ratio, shear_Pa = material.youngs_modulus_Pa / (2 * (1 + nu));
   const double lame_Pa = 2 * shear_Pa * nu / (1 - 2 * nu);
@@ -93,7 +93,7 @@ BrickFilling::Powers BrickFilling::powersOf(double x) {
 }
 
 void BrickFilling::addBox(const Vec3& low, const Vec3& high) {
-  std::array<Powers, 3> integral{};  // of each power along each axis, over 2
+  std::array<Powers, 3> integral{};  // integral of each power along each axis, divided by 2
   for (int k = 0; k < 3; ++k)
     for (int i = 0; i < kPowers; ++i)
       integral[k][i] = (std::pow(high[k], i + 1) - std::pow(low[k], i + 1)) / (2 * (i + 1));

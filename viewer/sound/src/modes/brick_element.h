@@ -15,21 +15,22 @@ struct Elasticity {
   double poissons_ratio = 0.3;
 };
 
-/// Eight corners and the middles of twelve edges.
+/// Nodes of a brick: eight corners and the midpoints of twelve edges.
 constexpr int kBrickNodes = 20;
 using BrickStiffness = Eigen::Matrix<double, 3 * kBrickNodes, 3 * kBrickNodes>;
 using BrickMass = Eigen::Matrix<double, kBrickNodes, kBrickNodes>;
 using BrickShapes = Eigen::Matrix<double, kBrickNodes, 1>;
 
-/// The part of a brick that is filled, by the integrals of x^i y^j z^k over it, with i, j, k up to 4; the
-/// brick is [-1, 1]^3, and the integral of 1 is the share that is filled.
+/// The filled region of the brick [-1, 1]^3, described by the integrals of x^i y^j z^k over the region, with
+/// i, j, k up to 4. The integrals are normalised, so that the integral of 1 is the filled share of the brick.
 class BrickFilling {
  public:
   static constexpr int kPowers = 5;
 
-  /// All of the box [low, high].
+  /// Adds the box [low, high] to the region.
   void addBox(const Vec3& low, const Vec3& high);
-  /// Equal shares of the box [low, high], `along` of them along each edge (at most 8): those that are filled.
+  /// Divides the box [low, high] into equal cells, `along` cells along each edge (at most 8), and adds the
+  /// filled cells to the region.
   template <class IsFilled>  // bool(int x, int y, int z)
   void addShares(const Vec3& low, const Vec3& high, int along, const IsFilled& isFilled);
 
@@ -45,32 +46,33 @@ class BrickFilling {
   std::array<double, std::size_t{kPowers} * kPowers * kPowers> moments_{};
 };
 
-/// All of a brick.
+/// The filling of a brick that is filled completely.
 const BrickFilling& wholeBrick();
 
-/// Where a node stands along each edge: 0, 1 (the middle) or 2.
+/// Position of a node along each axis: 0, 1 (the middle) or 2.
 const std::array<int, 3>& brickNode(int node);
 
-/// What a unit displacement of each node moves the point xi by: the 20-node "serendipity" shapes. Source:
+/// Values of the 20 shape functions at the point xi of [-1, 1]^3 (20-node "serendipity" brick). Source:
 /// Zienkiewicz and Taylor, "The Finite Element Method", 2000, volume 1, section 8.8.
 BrickShapes brickShapes(const Vec3& xi);
 
 struct BrickMatrices {
-  BrickStiffness stiffness_N_per_m;  ///< rows 3 i to 3 i + 2 are x, y, z of node i
-  BrickMass mass_share_m3;           ///< the mass matrix over the density; the same along x, y and z
+  BrickStiffness stiffness_N_per_m;  ///< rows 3 i to 3 i + 2: x, y, z of node i
+  BrickMass mass_share_m3;           ///< mass matrix divided by the density; equal for x, y and z
 };
 
-/// Energy is integrated over what is filled, so that a wall across the brick keeps the place and thickness it
-/// has. Quadratic displacements bend such a wall in any direction: a wall of a sixth of a brick comes out as
-/// well as one of a whole brick. Trilinear ones with incompatible modes do not: a wall of half a brick was 20
-/// % too high. Source: Parvizian, Duester and Rank, "Finite cell method", Comput. Mech. 41, 2007.
+/// Stiffness and mass of a brick. Energy is integrated over the filled region only, so that a thin wall
+/// inside a brick keeps its place and thickness. Quadratic displacements can bend such a wall in any
+/// direction: a wall of a sixth of a brick is as accurate as a wall of a whole brick. Trilinear elements with
+/// incompatible modes cannot: with a wall of half a brick, frequencies were 20 % too high. Source: Parvizian,
+/// Duester and Rank, "Finite cell method", Comput. Mech. 41, 2007.
 BrickMatrices brickMatrices(const Vec3& size_m, const Elasticity& material, const BrickFilling& filling);
 
 template <class IsFilled>
 void BrickFilling::addShares(const Vec3& low, const Vec3& high, int along, const IsFilled& isFilled) {
   const Vec3 step = (high - low) / along;
   const double share = step.prod() / 8;
-  std::array<std::array<Powers, 3>, 8> powers;  // of the middle of each share
+  std::array<std::array<Powers, 3>, 8> powers;  // powers of the coordinates of each cell's centre
   for (int i = 0; i < along; ++i)
     for (int k = 0; k < 3; ++k) powers[i][k] = powersOf(low[k] + (i + 0.5) * step[k]);
   for (int z = 0; z < along; ++z) {

@@ -11,14 +11,14 @@ namespace {
 using Place = std::array<int, 3>;
 using IsInside = std::function<bool(const Vec3& p_P)>;
 
-constexpr double kLeastFill = 0.002;  // of a brick; less is left out
-constexpr int kCells = 6;             // along each edge of a brick, and twice as many
-constexpr double kThinFill = 0.1;     // in one that is filled less
-constexpr int kSamples = 4;           // along each edge of a cell that the surface cuts
-// What is empty in a cut brick is as stiff as this share of the material, so that a node far from what is
-// filled is held. A wall of a twentieth of a brick gains 0.004 % by it.
+constexpr double kLeastFill = 0.002;  // share of a brick; bricks with less are left out
+constexpr int kCells = 6;             // cells along each edge of a brick ...
+constexpr double kThinFill = 0.1;     // ... and twice as many in a brick with a smaller filled share
+constexpr int kSamples = 4;           // samples along each edge of a cell that the surface cuts
+// Stiffness of the empty region of a cut brick, as a share of the material's. It holds nodes that are far
+// from the filled region, and makes a wall of a twentieth of a brick 0.004 % stiffer.
 constexpr double kEmptyStiffness = 1e-8;
-// A grid of few bricks in a large box may be divided further; then as many are looked at, at most.
+// A box with few filled bricks is divided further, up to this number of bricks.
 constexpr std::size_t kMostLooked = 8;  // times most_bricks
 
 std::array<int, 3> bricksAlong(const Vec3& box_m, double edge_m) {
@@ -27,7 +27,8 @@ std::array<int, 3> bricksAlong(const Vec3& box_m, double edge_m) {
   return count;
 }
 
-/// Cubes as small as `most` of them in the whole box allow.
+/// Numbers of bricks along the box's edges, for near-cubes that are as small as possible with at most `most`
+/// bricks.
 std::array<int, 3> bricksFor(const Vec3& box_m, double most) {
   double small_m = 1e-4 * box_m.norm(), large_m = box_m.norm();
   for (int i = 0; i < 60; ++i) {
@@ -38,7 +39,8 @@ std::array<int, 3> bricksFor(const Vec3& box_m, double most) {
   return bricksAlong(box_m, large_m);
 }
 
-/// A brick as cells, which are whole, empty or cut by what their corners and middles say.
+/// A brick divided into cells. Samples at their corners and centres tell whether a cell is full, empty or
+/// cut.
 class BrickSampler {
  public:
   BrickSampler(const Vec3& low_P, const Vec3& size_m, int cells, const IsInside& isInside)
@@ -88,7 +90,7 @@ class BrickSampler {
   std::vector<bool> corners_;
 };
 
-/// The bricks that are filled, wholly or in part. Their nodes are not numbered yet.
+/// The bricks that are filled or cut. Their nodes are not numbered yet.
 std::vector<Brick> filledBricks(const Box& box_P, const std::array<int, 3>& count, const IsInside& isInside) {
   constexpr double kAll = 1 - 1e-9;
   std::vector<Brick> bricks;
@@ -128,7 +130,7 @@ BrickGrid makeBrickGrid(const Box& box_P, const IsInside& isInside, std::size_t 
   BrickGrid grid;
   const Vec3 box_m = box_P.size();
   if (!(box_m.minCoeff() > 0) || !box_m.allFinite()) return grid;
-  // The first grid tells how much of the box is filled; where it is little the bricks may be smaller.
+  // The first grid tells the filled share of the box. If this share is small, a finer grid is possible.
   const double most = static_cast<double>(most_bricks);
   std::array<int, 3> count = bricksFor(box_m, most);
   grid.bricks = filledBricks(box_P, count, isInside);
@@ -180,7 +182,7 @@ VibrationMatrices matricesOf(const BrickGrid& grid, double density_kg_m3, const 
 
 PointShapes shapesAt(const BrickGrid& grid, const Vec3& p_P) {
   const Vec3 at = (p_P - grid.low_P).cwiseQuotient(grid.size_m);
-  // On the border of two bricks either may be the one that is there.
+  // On the border of two bricks only one of them may exist.
   PointShapes nearest;
   double nearest_m = std::numeric_limits<double>::infinity();
   for (int i = 0; i < 27; ++i) {

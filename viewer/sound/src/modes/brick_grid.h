@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A body as bricks, with the matrices of its vibration.
+// Finite element model of a body's vibration: a grid of bricks with its stiffness and mass matrices.
 #pragma once
 
 #include <Eigen/SparseCore>
@@ -15,33 +15,35 @@
 namespace vps::viewer {
 
 struct Brick {
-  std::array<int, 3> at{};                  ///< column, row, layer
-  std::array<int, kBrickNodes> nodes{};     ///< as in brickNode()
-  std::shared_ptr<const BrickFilling> cut;  ///< none: the whole brick is filled
+  std::array<int, 3> at{};               ///< column, row, layer
+  std::array<int, kBrickNodes> nodes{};  ///< indices of the nodes, in the order of brickNode()
+  std::shared_ptr<const BrickFilling>
+      cut;  ///< filled region of a brick at the surface; null: the whole brick is filled
 };
 
 struct BrickGrid {
   Vec3 low_P = Vec3::Zero();
-  Vec3 size_m = Vec3::Zero();  ///< of a brick
+  Vec3 size_m = Vec3::Zero();  ///< size of a brick
   std::vector<Brick> bricks;
   std::map<std::array<int, 3>, std::size_t> brick_at;
   std::size_t node_count = 0;
 };
 
-/// Bricks that divide the box, as small as most_bricks filled ones allow; at least one along each edge.
-/// Nothing inside, or a flat box: none. Calls isInside about a thousand times a brick that is looked at, and
-/// looks at no more than eight times as many as it fills.
+/// Divides the box into bricks, as small as possible with at most most_bricks filled ones, and at least one
+/// along each edge. The grid is empty if nothing is inside or the box is flat. Calls isInside about a
+/// thousand times per examined brick, and examines at most 8 most_bricks bricks.
 BrickGrid makeBrickGrid(const Box& box_P, const std::function<bool(const Vec3& p_P)>& isInside,
                         std::size_t most_bricks);
 
-/// Three rows a node: x, y, z.
+/// Stiffness and mass matrix of the grid. Each node has three rows: x, y, z.
 struct VibrationMatrices {
   Eigen::SparseMatrix<double> stiffness, mass;
   double mass_kg = 0;
 };
 VibrationMatrices matricesOf(const BrickGrid& grid, double density_kg_m3, const Elasticity& material);
 
-/// What the nodes of a brick move a point by. Points beside the bricks move as the nearest place of one.
+/// Interpolation of the displacement at a point from the nodes of its brick. A point outside all bricks moves
+/// with the nearest point of a brick.
 struct PointShapes {
   const Brick* brick = nullptr;
   BrickShapes shapes;

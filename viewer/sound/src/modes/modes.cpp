@@ -19,21 +19,22 @@ using Eigen::VectorXd;
 using Sparse = Eigen::SparseMatrix<double>;
 
 constexpr int kRigidModes = 6;
-constexpr double kLeast_hz = 20;  // below are the motions of a rigid body
+constexpr double kLeast_hz = 20;  // modes with lower frequencies are rigid-body motions
 
 struct Eigenpairs {
   VectorXd values;
   MatrixXd vectors;  ///< V^T M V = 1
 };
 
-/// A basis that is orthonormal by M, and grows.
+/// A growing basis of vectors that are orthonormal with respect to M.
 class Basis {
  public:
   Basis(const Sparse& M, Eigen::Index most) : M_(M), V_(M.rows(), most), MV_(M.rows(), most) {}
 
-  /// Adds what of the columns is not in the basis yet. Returns how many were added.
+  /// Adds the components of the columns that are independent of the basis. Returns the number of added
+  /// vectors.
   Eigen::Index add(const MatrixXd& columns) {
-    constexpr double kDependent = 1e-8;  // share of a column that is left where it is nothing but rounding
+    constexpr double kDependent = 1e-8;  // a smaller remaining share of a column is rounding error
     const Eigen::Index before = size_;
     for (Eigen::Index j = 0; j < columns.cols() && size_ < V_.cols(); ++j) {
       VectorXd x = columns.col(j);
@@ -65,7 +66,8 @@ MatrixXd startingVectors(Eigen::Index rows, Eigen::Index columns) {
   return X;
 }
 
-/// Whether the values that are asked for, up to `most` or `wanted` of them, stay as they were before.
+/// Whether the wanted eigenvalues (all up to `most`, or `wanted` of them) have converged since the last
+/// iteration.
 bool areSettled(const VectorXd& values, const VectorXd& before, double most, double shift,
                 Eigen::Index wanted) {
   constexpr double kSettled = 1e-7;  // relative change of w^2
@@ -77,11 +79,11 @@ bool areSettled(const VectorXd& values, const VectorXd& before, double most, dou
   return true;
 }
 
-/// The lowest eigenvalues w^2 of K x = w^2 M x with their vectors, in rising order: all up to `most`, or
-/// `wanted` of them, and some that are not settled. Source: Golub and Van Loan, "Matrix Computations", 2013,
-/// section 10.3.6 (block Lanczos; a block of eight, since symmetric bodies have several modes of one
-/// frequency, six of them at rest), inverted and shifted by a positive amount, since K of a free body is
-/// singular.
+/// The lowest eigenvalues w^2 of K x = w^2 M x with their vectors, sorted: all up to `most`, or `wanted` of
+/// them, and some further ones that have not converged. Block Lanczos with inversion, and with a positive
+/// shift, since K of a free body is singular. The block has eight vectors, since symmetric bodies have
+/// several modes of one frequency, and a free body has six of frequency zero. Source: Golub and Van Loan,
+/// "Matrix Computations", 2013, section 10.3.6.
 Eigenpairs lowest(const Sparse& K, const Sparse& M, double most, Eigen::Index wanted) {
   constexpr double kShift_hz = 300;
   constexpr Eigen::Index kBlock = 8;
@@ -91,7 +93,7 @@ Eigenpairs lowest(const Sparse& K, const Sparse& M, double most, Eigen::Index wa
   if (solver.info() != Eigen::Success) return {};
   const Eigen::Index greatest = std::min(K.rows(), 6 * (wanted + kBlock));
   Basis basis(M, greatest);
-  MatrixXd inverse(greatest, greatest);  // of the shifted K, in the basis
+  MatrixXd inverse(greatest, greatest);  // inverse of the shifted K, projected on the basis
   MatrixXd block = startingVectors(K.rows(), kBlock);
   VectorXd values;
   MatrixXd small_vectors;
@@ -115,13 +117,13 @@ struct SurfacePoint {
   Vec3 p_P, n_P;
 };
 
-/// Each stands for the same area.
+/// Points on the surface, each for the same share of the area.
 std::vector<SurfacePoint> surfacePoints(const Mesh& mesh) {
   constexpr double kPoints = 2000;
   const double each_m2 = std::max(area(mesh) / kPoints, 1e-300);
   device::Random random(2);
   std::vector<SurfacePoint> points;
-  double due_m2 = 0.5 * each_m2;  // the area until the next point
+  double due_m2 = 0.5 * each_m2;  // area until the next point
   for (const auto& [i, j, k] : mesh.triangles) {
     const Vec3 &a = mesh.vertices[i], ab = mesh.vertices[j] - a, ac = mesh.vertices[k] - a;
     const Vec3 twice_m2 = ab.cross(ac);

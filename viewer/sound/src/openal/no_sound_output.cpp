@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Loudspeakers in a build without OpenAL.
+// Sound output in a build without OpenAL.
 #include "sound/live_sound.h"
 
 namespace vps::viewer {
 
 std::unique_ptr<SoundOutput> openSoundOutput(int, std::string& why) {
-  why = "this build is silent; install libopenal-dev and build again";
+  why = "this build has no sound output; install libopenal-dev, then build again";
   return nullptr;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Loudspeakers by OpenAL Soft. The only file that includes OpenAL.
+// Sound output by OpenAL Soft. Only this file includes OpenAL.
 #include <AL/al.h>
 #include <AL/alc.h>
 #include <AL/alext.h>
@@ -24,22 +24,23 @@
 namespace vps::viewer {
 namespace {
 
-constexpr int kMixerPriority = 1;    // as OpenAL's own thread has with askForShortPeriods()
-constexpr double kSlowCard_s = 0.1;  // no period is longer; what a driver says beyond is not believed
+constexpr int kMixerPriority = 1;  // the priority that askForShortPeriods() gives to OpenAL's own thread
+constexpr double kSlowCard_s =
+    0.1;  // upper bound of a period; a longer one reported by a driver is taken as this
 
-/// A source that plays a queue of short buffers. The context is current in all its functions.
+/// A source that plays a queue of short buffers. The OpenAL context must be current in all functions.
 class Queue {
  public:
-  /// @param period_s  of the card, which takes as much at once
+  /// @param period_s  time of the samples that the card takes at once
   Queue(int rate_hz, double period_s) : rate_hz_(rate_hz), level_(rate_hz, period_s) {
     alGenSources(1, &source_);
-    // Directions from the listener; the loudness is in the samples.
+    // The source's position is only a direction from the listener; loudness is in the samples.
     alSourcei(source_, AL_SOURCE_RELATIVE, AL_TRUE);
     alSourcef(source_, AL_ROLLOFF_FACTOR, 0);
   }
   ~Queue() {
     alSourceStop(source_);
-    alDeleteSources(1, &source_);  // and with it what is queued on it
+    alDeleteSources(1, &source_);  // frees its queued buffers, too
     for (const Waiting& waiting : waiting_) free_.push_back(waiting.buffer);
     alDeleteBuffers(static_cast<ALsizei>(free_.size()), free_.data());
   }
@@ -74,8 +75,8 @@ class Queue {
     for (const float x : samples) peak = std::max(peak, std::abs(x));
     return peak;
   }
-  /// Takes back what was played.
-  /// @return samples that the card has not taken yet
+  /// Takes back the buffers that were played.
+  /// @return number of samples that the card has not taken yet
   std::size_t reclaim() {
     ALint done = 0, at = 0;
     alGetSourcei(source_, AL_BUFFERS_PROCESSED, &done);
@@ -130,7 +131,7 @@ class OpenAlOutput final : public SoundOutput {
   OpenAlOutput& operator=(const OpenAlOutput&) = delete;
 
   void write(std::span<const float> parts, std::span<const float> beeps, const Vec3& to_L) override {
-    alcMakeContextCurrent(context_);  // of the process: this program has one
+    alcMakeContextCurrent(context_);  // this sets the context of the whole process, which has only one
     if (to_L.allFinite()) parts_->place(to_L);
     parts_->write(parts);
     beeps_->write(beeps);
@@ -149,7 +150,7 @@ class OpenAlOutput final : public SoundOutput {
   std::unique_ptr<Queue> parts_, beeps_;
 };
 
-/// The card of openSoundLoopback(): a thread that mixes a period each time one would have been played.
+/// The card of openSoundLoopback(): a thread that mixes a period whenever a real card would have played one.
 class LoopbackCard {
  public:
   LoopbackCard(ALCdevice* device, int rate_hz, HeardPeriod heard)
@@ -168,13 +169,15 @@ class LoopbackCard {
  private:
   void play() {
     const double period_s = static_cast<double>(kCardPeriod) / rate_hz_;
-    const double ahead_s = (kCardPeriods - 1) * period_s;  // still to be played, of what was mixed before
+    const double ahead_s =
+        (kCardPeriods - 1) * period_s;  // time of the mixed samples that are still to be played
     std::vector<float> stereo(std::size_t{2} * kCardPeriod), mono(kCardPeriod);
-    device::requestRealTime(kMixerPriority, false);  // refused: as it is
+    device::requestRealTime(kMixerPriority, false);  // without the permission the priority stays normal
     double due_s = device::monotonicSeconds();
     while (!is_ending_) {
       device::monotonicClock().sleepUntil(std::llround(1e9 * due_s));
-      // A card that has nothing left to play stops and begins again.
+      // Like a real card, this card stops when it has nothing left to play, and starts again with the next
+      // samples.
       due_s = std::max(due_s, device::monotonicSeconds() - ahead_s);
       render_(device_, stereo.data(), kCardPeriod);
       for (std::size_t i = 0; i < mono.size(); ++i) mono[i] = 0.5F * (stereo[2 * i] + stereo[2 * i + 1]);
@@ -188,10 +191,10 @@ class LoopbackCard {
   int rate_hz_;
   HeardPeriod heard_;
   std::atomic<bool> is_ending_{false};
-  std::thread thread_;  // last, since it uses the others
+  std::thread thread_;  // declared last, since the thread uses the other members
 };
 
-/// With the card that it plays through.
+/// An OpenAL output together with its simulated card.
 class LoopbackOutput final : public SoundOutput {
  public:
   LoopbackOutput(ALCdevice* device, ALCcontext* context, int rate_hz, HeardPeriod heard)
@@ -205,10 +208,10 @@ class LoopbackOutput final : public SoundOutput {
 
  private:
   OpenAlOutput output_;
-  LoopbackCard card_;  // ends before its device
+  LoopbackCard card_;  // destroyed before its device
 };
 
-/// Whether it is worth asking: without a card ALSA's own library prints ten lines about it.
+/// Whether a sound card may exist. Without one, opening it makes the ALSA library print ten lines of errors.
 bool mayHaveSoundCard() {
 #ifdef __linux__
   for (const char* name : {"ALSOFT_CONF", "ALSOFT_DRIVERS", "PULSE_SERVER"})
@@ -225,8 +228,8 @@ bool mayHaveSoundCard() {
 #endif
 }
 
-/// For headphones: the filters of a head (HRTF). Where OpenAL has none it pans. Null where the device
-/// refuses; it is closed then.
+/// Creates a context with filters of a head (HRTF) for headphones, or with panning if OpenAL has no HRTF. If
+/// the device refuses, closes it and returns null.
 ALCcontext* contextOf(ALCdevice* device, std::vector<ALCint> wishes) {
   if (alcIsExtensionPresent(device, "ALC_SOFT_HRTF") == ALC_TRUE)
     wishes.insert(wishes.end(), {ALC_HRTF_SOFT, ALC_TRUE});
@@ -243,15 +246,17 @@ ALCcontext* contextOf(ALCdevice* device, std::vector<ALCint> wishes) {
 std::unique_ptr<SoundOutput> openSoundOutput(int rate_hz, std::string& why) {
   ALCdevice* device = mayHaveSoundCard() ? alcOpenDevice(nullptr) : nullptr;
   if (device == nullptr) {
-    why = "no sound card answers, so the run is silent; vps assemble --sound writes a file";
+    why = "no sound card was found, so the run is silent; vps assemble --sound writes the sound to a file";
     return nullptr;
   }
   ALCcontext* context = contextOf(device, {ALC_FREQUENCY, rate_hz});
   if (context == nullptr) {
-    why = "the sound card refuses, so the run is silent; vps assemble --sound writes a file";
+    why =
+        "the sound card cannot be used, so the run is silent; vps assemble --sound writes the sound to a "
+        "file";
     return nullptr;
   }
-  ALCint periods_per_s = 0;  // as the card has them, which need not be as asked
+  ALCint periods_per_s = 0;  // the card's periods may differ from the requested ones
   alcGetIntegerv(device, ALC_REFRESH, 1, &periods_per_s);
   const double period_s = periods_per_s > 0 ? 1.0 / periods_per_s : kSlowCard_s;
   return std::make_unique<OpenAlOutput>(device, context, rate_hz, std::min(period_s, kSlowCard_s));

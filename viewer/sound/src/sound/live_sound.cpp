@@ -13,13 +13,13 @@
 namespace vps::viewer {
 namespace {
 
-constexpr double kFullScale_Pa = 0.2;   // 80 dB at the listener: a tool that is put down. assumed
-constexpr float kLiveBeepLevel = 0.1f;  // -20 dB, as in a file
+constexpr double kFullScale_Pa = 0.2;  // 80 dB at the listener. assumed: the sound of a tool that is put down
+constexpr float kLiveBeepLevel = 0.1f;  // -20 dB, as in WAV files
 constexpr std::size_t kMostWaiting =
-    500;  // snapshots: half a second at 1 kHz; older ones are late and dropped
+    500;  // snapshots: half a second at 1 kHz; older snapshots are late and dropped
 
 float loudness(float pressure_Pa) {
-  return std::tanh(pressure_Pa / static_cast<float>(kFullScale_Pa));  // louder ones are rounded, not cut
+  return std::tanh(pressure_Pa / static_cast<float>(kFullScale_Pa));  // louder samples saturate smoothly
 }
 
 }  // namespace
@@ -31,9 +31,9 @@ struct LiveSound::Impl {
   std::condition_variable wake;
   std::vector<scenes::Snapshot> waiting;
   std::vector<device::Beep> beeps;
-  std::string news;  ///< empty: none so far
-  Pose X_WL;         ///< of the listener
-  std::string told;  ///< the last news
+  std::string news;  ///< next message; empty: none
+  Pose X_WL;         ///< listener's pose
+  std::string told;  ///< last message
   bool is_ending = false;
   std::thread thread;
 
@@ -52,7 +52,7 @@ struct LiveSound::Impl {
     std::vector<device::Beep> new_beeps;
     RunSound sound(scene);
     bool is_ready = false;
-    std::optional<Vec3> p_W;  // of the last contact, where parts go on ringing
+    std::optional<Vec3> p_W;  // place of the last contact; parts may still ring after it
     Pose X_WL;
     for (;;) {
       {
@@ -63,7 +63,7 @@ struct LiveSound::Impl {
         new_beeps = std::exchange(beeps, {});
         X_WL = this->X_WL;
       }
-      if (!std::exchange(is_ready, true))  // before anything touches
+      if (!std::exchange(is_ready, true))  // modes are computed before the first contact
         for (std::size_t i = 0; i < scene.parts.size() && !isEnding(); ++i)
           if (scene.parts[i].model) sound.prepare(i);
       for (const device::Beep beep : new_beeps) sound.beep(beep);
@@ -153,9 +153,9 @@ void LastingOutput::write(std::span<const float> parts, std::span<const float> b
   if (!isOpen()) return;
   output_->write(parts, beeps, to_L);
   if (output_->isThere()) return;
-  tell_("the sound card is gone; all else goes on in silence");
+  tell_("the sound card was disconnected; the run continues without sound");
   if (!open_) return;
-  output_.reset();  // first, since a card is opened once
+  output_.reset();  // closed before open_() is called, since a card can be opened only once
   next_s_ = device::monotonicSeconds() + wait_s_;
 }
 

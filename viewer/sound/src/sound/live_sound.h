@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The sound of a run while it goes on, through the machine's loudspeakers, which may be unplugged meanwhile.
+// The sound of a live run through the machine's sound card, which may be unplugged and return.
 #pragma once
 
 #include <functional>
@@ -13,65 +13,69 @@
 
 namespace vps::viewer {
 
-/// Where samples go. All its functions are called by one thread.
+/// A sink of samples, such as a sound card. All functions are called by one thread.
 class SoundOutput {
  public:
   virtual ~SoundOutput() = default;
-  /// Samples between -1 and 1, to be heard after what was written before: of the parts, from a direction, and
-  /// of the device, from everywhere. Equally many. Never waits; what does not fit is dropped.
-  /// @param to_L  the place of the sound from the listener: x right, y up, z back; only its direction counts
+  /// Appends samples between -1 and 1 to those written before. Never waits; samples that do not fit are
+  /// dropped.
+  /// @param parts  sound of the parts, heard from the direction to_L
+  /// @param beeps  beeps of the device, heard from everywhere; as many samples as `parts`
+  /// @param to_L   direction of the sound in the listener's frame: x right, y up, z back; any length
   virtual void write(std::span<const float> parts, std::span<const float> beeps, const Vec3& to_L) = 0;
-  /// False once the sound card is gone.
+  /// Whether the sound card is still connected.
   [[nodiscard]] virtual bool isThere() const = 0;
-  /// Times so far that samples came too late, so that there was nothing to play.
+  /// Number of gaps so far, in which there was nothing to play because samples came too late.
   [[nodiscard]] virtual std::size_t gaps() const { return 0; }
 };
 
-/// The middle of the snapshot's contacts, by their forces; none where nothing touches.
+/// Mean position of the snapshot's contacts, weighted by their forces; none without contact.
 VPS_VIEWER_API std::optional<Vec3> soundPlace(const scenes::Snapshot& shot);
 
-/// The system's default output, for headphones (HRTF) where OpenAL has that. Null where there is none, and
-/// `why` says so in a line.
+/// Opens the system's default output, for headphones (HRTF) if OpenAL supports it. If there is none, returns
+/// null and sets `why` to a line of text.
 VPS_VIEWER_API std::unique_ptr<SoundOutput> openSoundOutput(int rate_hz, std::string& why);
 
-/// Asks OpenAL for cards with short periods, by settings of this process, where the user has none for
-/// periods. Before the first openSoundOutput() and before other threads are there, since it sets an
+/// Configures OpenAL in this process to open cards with short periods, unless the user's settings set
+/// periods. Call it before the first openSoundOutput() and before other threads start, since it sets an
 /// environment variable.
 VPS_VIEWER_API void askForShortPeriods();
-/// True for the value that it gives to ALSOFT_CONF.
+/// Whether `name` is the value that askForShortPeriods() gives to ALSOFT_CONF.
 VPS_VIEWER_API bool isOwnSettings(const std::string& name);
 
-/// What a card is asked for: samples of a period, and periods. While one is mixed, two are still to be
-/// played, so that the mixer may be as late as with two periods of 128 samples, and takes less at once.
+/// Requested samples per period and number of periods of a card. While one period is mixed, two are still to
+/// be played. So the mixer may be as late as with two periods of 128 samples, and takes fewer samples at a
+/// time.
 inline constexpr int kCardPeriod = 64, kCardPeriods = 3;
 
-/// A period of a sound card in the program, mono, and the time at which its first sample is played, by
+/// Receives a period of a simulated sound card, in mono, and the time at which its first sample is played, by
 /// device::monotonicSeconds().
 using HeardPeriod = std::function<void(std::span<const float> samples, double time_s)>;
-/// A sound card that exists only in the program, mixed by OpenAL as a real one: kCardPeriods of kCardPeriod
-/// samples, by the clock. Null in a build without OpenAL, and `why` says so.
+/// Opens a simulated sound card with kCardPeriods periods of kCardPeriod samples, mixed by OpenAL in real
+/// time like a real card. In a build without OpenAL, returns null and sets `why`.
 /// @param heard  called on the card's thread
 VPS_VIEWER_API std::unique_ptr<SoundOutput> openSoundLoopback(int rate_hz, HeardPeriod heard,
                                                               std::string& why);
 
-/// Synthesises on a thread of its own. hear() and beep() only hand over, so that physics does not wait for
-/// modes.
+/// Synthesises and plays the sound of a run on a thread of its own. hear() and beep() only pass data to this
+/// thread, so that physics does not wait.
 class VPS_VIEWER_API LiveSound {
  public:
-  /// The scene outlives it; its models are complete before the first hear().
-  /// @param open    opens the output again once it is gone, or gives null; empty: it stays silent then
-  /// @param wait_s  between attempts
+  /// The scene must outlive the LiveSound, and its models must be complete before the first hear().
+  /// @param open    opens the output again after it was lost, or returns null; empty: it is not opened again
+  /// @param wait_s  time between attempts to open the output again
   LiveSound(const scenes::Scene& scene, std::unique_ptr<SoundOutput> output,
             std::function<std::unique_ptr<SoundOutput>()> open = {}, double wait_s = 2);
   ~LiveSound();
   LiveSound(const LiveSound&) = delete;
   LiveSound& operator=(const LiveSound&) = delete;
 
+  /// Adds the sound up to the snapshot's time.
   void hear(const scenes::Snapshot& shot);
-  /// From now on: the listener's pose in W, x right, y up, z back; as of a camera.
+  /// Sets the listener's pose in W: x right, y up, z back, as a camera's pose.
   void listenAt(const Pose& X_WL);
   void beep(device::Beep beep);
-  /// Once, if the sound card is gone, or is back: a line that says so.
+  /// A message that the sound card was lost or is back; empty: nothing changed since the last call.
   [[nodiscard]] std::string takeNews();
 
  private:
@@ -79,24 +83,24 @@ class VPS_VIEWER_API LiveSound {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Writes to an output for as long as it is there, and opens it again. Used by one thread.
+/// An output that is opened again after its sound card was lost. Used by one thread.
 class LastingOutput {
  public:
-  /// @param open    opens the output again once it is gone, or gives null; empty: it stays silent then
-  /// @param wait_s  between attempts
-  /// @param tell    called when the card is gone, and when it is back, with a line that says so
+  /// @param open    opens the output again after it was lost, or returns null; empty: it is not opened again
+  /// @param wait_s  time between attempts to open the output again
+  /// @param tell    called with a message when the card is lost, and when it is back
   LastingOutput(std::unique_ptr<SoundOutput> output, std::function<std::unique_ptr<SoundOutput>()> open,
                 double wait_s, std::function<void(const std::string&)> tell);
 
-  /// As SoundOutput::write(); nothing while there is no card. Never throws.
+  /// As SoundOutput::write(); does nothing while there is no card. Never throws.
   void write(std::span<const float> parts, std::span<const float> beeps, const Vec3& to_L);
-  /// False while the card is gone. Tries to open it again where its time has come.
+  /// Whether the output is open. Tries to open it again, at most once every wait_s.
   bool isOpen();
 
  private:
-  std::unique_ptr<SoundOutput> output_;  ///< null: gone
+  std::unique_ptr<SoundOutput> output_;  ///< null: lost
   std::function<std::unique_ptr<SoundOutput>()> open_;
-  double wait_s_, next_s_ = 0;  ///< to the next attempt; and when that is, by device::monotonicSeconds()
+  double wait_s_, next_s_ = 0;  ///< next_s_: time of the next attempt, by device::monotonicSeconds()
   std::function<void(const std::string&)> tell_;
 };
 

@@ -7,16 +7,16 @@
 namespace vps::viewer {
 namespace {
 
-// By which a thread may be later than it was of late. It grows with each gap, and goes back by half of what
-// it grew where there was none for a while.
+// Reserve for a thread that is later than in the last seconds. It grows by kGrow_s with each gap, and shrinks
+// by half of its growth after kCalm_s without gaps.
 constexpr double kSpare_s = 1.25e-3, kGrow_s = 1.25e-3, kMostSpare_s = 10e-3, kCalm_s = 3;
-constexpr double kLongPause_s = 0.05;   // assumed: what comes later than that was not late, but paused
-constexpr double kSettle_s = 1;         // a program that begins is late for reasons that do not come back
-constexpr double kHalf_s = 1;           // of the time that is looked back on
-constexpr double kLongBlock_s = 10e-3;  // longer ones were late
-// Less than that is not dropped: of what nobody hears, and of what is heard.
+constexpr double kLongPause_s = 0.05;  // assumed: after a longer time the writer was paused, not late
+constexpr double kSettle_s = 1;  // gaps in this first time do not count, since their causes do not recur
+constexpr double kHalf_s = 1;    // half of the time window of Least
+constexpr double kLongBlock_s = 10e-3;  // a longer block was written late
+// Least time to drop from quiet and from loud samples.
 constexpr double kWorthQuiet_s = 0.25e-3, kWorthLoud_s = 0.5e-3;
-constexpr float kQuiet = 1e-3F;  // of full scale, which is 80 dB: 20 dB, less than a quiet room
+constexpr float kQuiet = 1e-3F;  // share of full scale (80 dB): 20 dB, less than a quiet room
 
 }  // namespace
 
@@ -73,12 +73,12 @@ QueuePlan QueueLevel::plan(bool is_playing, std::size_t waiting, std::size_t cou
     lookBack(now_s);
   }
   const std::size_t spare = samples(spare_s_), period = samples(period_s_), block = block_.get();
-  // What is written late is longer by as much, so that what waits afterwards counts.
+  // A block that is written late is longer by this time, so the limits are for the queue after the write.
   const std::size_t usual = spare + period + block, most = usual + period + block;
   QueuePlan plan;
   if (!is_playing) plan.silence = usual - std::min(waiting + count, usual);
   const std::size_t after = waiting + plan.silence + count;
-  if (after > most && count > 2 * block) {  // after a pause the newest are the ones to be heard
+  if (after > most && count > 2 * block) {  // after a pause, old samples are dropped
     plan.dropped = std::min(count, after - usual);
     return plan;
   }
@@ -87,14 +87,15 @@ QueuePlan QueueLevel::plan(bool is_playing, std::size_t waiting, std::size_t cou
       left_.get() >= spare + samples(peak < kQuiet ? kWorthQuiet_s : kWorthLoud_s))
     too_many = std::max(too_many, left_.get() - spare);
   plan.dropped = std::min(too_many, peak < kQuiet ? count : count / 2);
-  // A card that takes nothing for long: whatever is heard, it is not to be heard later and later.
+  // If the card takes no samples for a long time, also loud samples are dropped, so that the delay stays
+  // bounded.
   const std::size_t limit = most + samples(kMostSpare_s);
   if (after > limit) plan.dropped = std::max(plan.dropped, std::min(count, after - limit));
   left_.lower(plan.dropped);
   return plan;
 }
 
-/// The rest fades into the samples behind it, so that a cut is no click.
+/// The kept samples fade into the samples after the cut, so that the cut does not click.
 std::vector<float> shortened(std::span<const float> samples, std::size_t dropped) {
   const std::size_t count = samples.size() - std::min(dropped, samples.size());
   std::vector<float> rest(samples.begin(), samples.begin() + static_cast<std::ptrdiff_t>(count));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How much sound waits for a card that takes a period at a time, from a thread that may be late.
+// Controls how many samples wait for a sound card that takes a period at a time, from a thread that may be
+// late.
 #pragma once
 
 #include <cstddef>
@@ -10,40 +11,41 @@
 
 namespace vps::viewer {
 
-/// What is to be done with the next samples.
+/// Changes to make to the next samples.
 struct QueuePlan {
-  std::size_t silence = 0;  ///< samples of silence to queue before them
-  std::size_t dropped = 0;  ///< of them, by shortened()
+  std::size_t silence = 0;  ///< samples of silence to queue before the next samples
+  std::size_t dropped = 0;  ///< samples to remove from the next samples by shortened()
 };
 
-/// Keeps as little waiting as the thread's lateness needs: sound is heard later by what waits. The samples
-/// that still wait when the next ones come show how late the thread could have been. Where more of them are
-/// left than needed, over two seconds, some are dropped, rather such as nobody hears; where the card ran out
-/// of samples it begins again with more.
+/// Keeps the queue of waiting samples, which delays the sound, as short as the thread's lateness allows. The
+/// samples that still wait when the next ones are written show how much later the thread could have been. If
+/// more than needed were left over the last two seconds, some samples are dropped, preferably quiet ones. If
+/// the card ran out of samples, the queue starts again with more.
 class VPS_VIEWER_API QueueLevel {
  public:
-  /// @param period_s  of the card, which takes as much at once
+  /// @param period_s  time of the samples that the card takes at once
   QueueLevel(int rate_hz, double period_s);
 
+  /// Plans the next write.
   /// @param is_playing  false: the card has nothing to play
-  /// @param waiting     samples that it has not taken yet
-  /// @param count       of the next samples, > 0
-  /// @param peak        of them, of full scale
-  /// @param now_s       increasing
+  /// @param waiting     number of queued samples that the card has not taken yet
+  /// @param count       number of the next samples, > 0
+  /// @param peak        peak of the next samples, as a share of full scale
+  /// @param now_s       current time; must increase from call to call
   QueuePlan plan(bool is_playing, std::size_t waiting, std::size_t count, float peak, double now_s);
 
-  /// Times that samples came too late.
+  /// Number of times that samples came too late.
   [[nodiscard]] std::size_t gaps() const { return gaps_; }
 
  private:
-  /// The least of two halves of the time that is looked back on.
+  /// Minimum over a sliding time window, kept for two halves of the window.
   class Least {
    public:
     void add(std::size_t value) { now_ = now_ < value ? now_ : value; }
     void turn();
     void lower(std::size_t by);
     void clear();
-    /// Of a whole half at least.
+    /// Whether the values cover at least half of the window.
     [[nodiscard]] bool isKnown() const { return has_before_; }
     [[nodiscard]] std::size_t get() const { return now_ < before_ ? now_ : before_; }
 
@@ -59,12 +61,12 @@ class VPS_VIEWER_API QueueLevel {
   int rate_hz_;
   double period_s_, spare_s_, written_s_ = 0, turned_s_ = 0, begun_s_ = 0, calm_since_s_ = 0;
   bool has_begun_ = false;
-  Least left_;   ///< that waited when others came
-  Least block_;  ///< written at once
+  Least left_;   ///< samples that still waited when the next ones were written
+  Least block_;  ///< samples written at once
   std::size_t gaps_ = 0;
 };
 
-/// The samples with fewer of them, without a step to those before and after.
+/// Shortens the samples by `dropped` samples, without a step to the samples before and after.
 VPS_VIEWER_API std::vector<float> shortened(std::span<const float> samples, std::size_t dropped);
 
 }  // namespace vps::viewer

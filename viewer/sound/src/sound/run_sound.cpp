@@ -16,18 +16,19 @@ namespace vps::viewer {
 namespace {
 
 constexpr double kHalfTurn = std::numbers::pi;
-// A force that rises by less within a step is not a stroke. assumed: the weight of a few grams
+// A smaller rise of the force within a step is no impact. assumed: the weight of a few grams
 constexpr double kLeastRise_N = 0.05;
-// Forces of resting contacts jitter from step to step: a stroke exceeds what there was for this long. assumed
+// Forces of resting contacts vary from step to step, so an impact's force must exceed all forces of this time
+// before. assumed
 constexpr double kMemory_s = 0.01;
-constexpr double kRoughness_m = 0.1e-3;  // length of a wave of the surface's roughness. assumed: milled
-constexpr double kRubShare = 0.1;        // of the normal force that roughness modulates. assumed
-constexpr double kRollShare = 0.01;      // the same of what rolls: 20 dB less. assumed
+constexpr double kRoughness_m = 0.1e-3;  // wavelength of the surface roughness. assumed: a milled surface
+constexpr double kRubShare = 0.1;        // share of the normal force that roughness modulates. assumed
+constexpr double kRollShare = 0.01;      // the same share for rolling contacts: 20 dB less. assumed
 
-/// The contacts of one step as one force.
+/// The contacts of one step, combined to one force.
 struct TotalContact {
   double force_N = 0, slip_m_s = 0;
-  double roll_m_s = 0;  ///< at which the contact moves over both surfaces alike
+  double roll_m_s = 0;  ///< speed at which the contact point moves over both surfaces
   Vec3 p_W = Vec3::Zero(), n_W = Vec3::Zero();
 };
 TotalContact totalOf(const std::vector<scenes::ContactMark>& marks) {
@@ -47,14 +48,14 @@ TotalContact totalOf(const std::vector<scenes::ContactMark>& marks) {
 
 struct Sounding {
   std::optional<PartVoice> voice;
-  std::vector<Stroke> strokes;
+  std::vector<Impact> impacts;
   Touch rubbed;
   double plane_strain_Pa = 1;
-  Vec3 center_P = Vec3::Zero();  ///< of mass
+  Vec3 center_P = Vec3::Zero();  ///< centre of mass
 };
 
-/// The speed of a contact over a part that rolls: its turning about the axes across the normal, as if the
-/// part were round about its centre of mass, as wheels, balls and pins are.
+/// Speed of a contact point over a rolling part: from the part's rotation about axes perpendicular to the
+/// normal, as if the part were round about its centre of mass (wheels, balls and pins are).
 double rollSpeed_m_s(const Pose& X_before, const Pose& X_now, double step_s, const TotalContact& total,
                      const Vec3& center_P) {
   const Vec3 w_W = rotationVector(X_now.R * X_before.R.transpose()) / step_s;
@@ -66,13 +67,13 @@ double rollSpeed_m_s(const Pose& X_before, const Pose& X_now, double step_s, con
 struct RunSound::Impl {
   const scenes::Scene& scene;
   SoundSettings settings;
-  std::map<std::size_t, Sounding> parts;  ///< those that were touched
+  std::map<std::size_t, Sounding> parts;  ///< parts that were touched so far
   Samples samples;
   Beeper beeper;
   device::Random random{1};
-  long now = 0;                                 ///< sample
+  long now = 0;                                 ///< current sample
   std::vector<std::pair<double, double>> past;  ///< time and contact force
-  std::optional<scenes::BodySnapshot> moved;    ///< the moving part as it was last heard of
+  std::optional<scenes::BodySnapshot> moved;    ///< moving part in the last snapshot
   double noise = 0;
 
   explicit Impl(const scenes::Scene& scene, const SoundSettings& settings)
@@ -96,11 +97,11 @@ Sounding& RunSound::Impl::sounding(std::size_t index) {
   return sounding;
 }
 
-/// The part in place whose surface is nearest.
+/// The fixed or mounted part whose surface is nearest to a contact point.
 std::optional<std::size_t> RunSound::Impl::touchedBy(std::size_t moving, const Vec3& p_W,
                                                      const scenes::Snapshot& shot) const {
   std::optional<std::size_t> best;
-  double best_m = 1e-3;  // a contact lies in both surfaces, to the error of the fields
+  double best_m = 1e-3;  // a contact point lies on both surfaces, up to the error of the distance fields
   for (const scenes::BodySnapshot& body : shot.bodies) {
     const std::shared_ptr<const PartModel>& model = scene.parts[body.part].model;
     if (body.part == moving || !model || !model->map || body.role == scenes::BodyRole::Waiting) continue;
@@ -124,13 +125,13 @@ void RunSound::Impl::strike(const TotalContact& total, double rise_N, double ste
                                     body.X_WP.R.transpose() * total.n_W * (body.part == moving ? 1 : -1));
     part.rubbed = touch;
     if (impulse_Ns <= 0) continue;
-    const double length_s = strokeDuration_s(mass_kg, part.plane_strain_Pa, impulse_Ns / mass_kg);
-    part.strokes.push_back({std::move(touch), impulse_Ns, now, std::max(1.0, length_s * settings.rate_hz)});
+    const double length_s = impactDuration_s(mass_kg, part.plane_strain_Pa, impulse_Ns / mass_kg);
+    part.impacts.push_back({std::move(touch), impulse_Ns, now, std::max(1.0, length_s * settings.rate_hz)});
   }
 }
 
 void RunSound::Impl::render(long end, const TotalContact& total) {
-  // Roughness as noise, smoothed to the rate at which its waves pass.
+  // Roughness is noise, low-pass filtered at the rate at which its waves pass the contact.
   const double speed_m_s = total.slip_m_s + total.roll_m_s;
   const double passing_hz = std::min(speed_m_s / kRoughness_m, 0.4 * settings.rate_hz);
   const double keep = std::exp(-2 * kHalfTurn * passing_hz / settings.rate_hz);
@@ -141,10 +142,10 @@ void RunSound::Impl::render(long end, const TotalContact& total) {
     noise = keep * noise + std::sqrt(1 - keep * keep) * (2 * random.uniform() - 1);
     double pressure_Pa = 0;
     for (auto& [index, part] : parts) {
-      for (const Stroke& stroke : part.strokes)
-        part.voice->push(stroke.touch, stroke.force_N(now, settings.rate_hz));
+      for (const Impact& impact : part.impacts)
+        part.voice->push(impact.touch, impact.force_N(now, settings.rate_hz));
       if (friction > 0) part.voice->push(part.rubbed, friction * noise);
-      std::erase_if(part.strokes, [&](const Stroke& stroke) { return stroke.isOver(now + 1); });
+      std::erase_if(part.impacts, [&](const Impact& impact) { return impact.isOver(now + 1); });
       pressure_Pa += part.voice->next();
     }
     samples.pressure_Pa.push_back(static_cast<float>(pressure_Pa));

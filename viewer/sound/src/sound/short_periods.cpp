@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// OpenAL Soft 1.19 ignores the wish of a program for short periods (ALC_REFRESH): a card gets periods of 23
-// ms. Its settings file is heeded, and can be named by an environment variable.
+// Short periods for OpenAL Soft. Version 1.19 ignores the program's request (ALC_REFRESH) and uses periods of
+// 23 ms, but it follows its settings file, whose name an environment variable can set.
 #if defined(__linux__)
 #include <sys/mman.h>
 #include <unistd.h>
@@ -25,7 +25,7 @@ std::string variable(const char* name) {
   return value != nullptr ? value : "";
 }
 
-/// Where OpenAL Soft looks for the settings of machine and user.
+/// The settings files of machine and user that OpenAL Soft reads.
 std::vector<std::filesystem::path> settingsFiles() {
   std::vector<std::filesystem::path> files = {"/etc/openal/alsoft.conf"};
   std::string folders = variable("XDG_CONFIG_DIRS");
@@ -42,7 +42,7 @@ std::vector<std::filesystem::path> settingsFiles() {
   return files;
 }
 
-/// Whether a line of one of these files begins so.
+/// Whether a line of a settings file begins with the key.
 bool isSet(const std::string& key) {
   for (const std::filesystem::path& file : settingsFiles()) {
     std::ifstream in(file);
@@ -54,7 +54,7 @@ bool isSet(const std::string& key) {
   return false;
 }
 
-// Named by the process's own number, so that its children find it too.
+// The path has the number of the process instead of "self", so that child processes find the file, too.
 std::string ownFolder() {
   return "/proc/" + std::to_string(getpid()) + "/fd/";
 }
@@ -77,9 +77,9 @@ void askForShortPeriods() {
   std::string settings = "[general]\nperiod_size = " + std::to_string(kCardPeriod) +
                          "\nperiods = " + std::to_string(kCardPeriods) + "\n";
   if (!isSet("frequency")) settings += "frequency = 48000\n";
-  // The mixer's thread is to go first, too, where the system allows it.
+  // The mixer's thread gets real-time priority, if the system allows it.
   if (!isSet("rt-prio")) settings += "rt-prio = 1\n";
-  const int file = memfd_create("alsoft.conf", MFD_CLOEXEC);  // open until the process ends
+  const int file = memfd_create("alsoft.conf", MFD_CLOEXEC);  // stays open until the process ends
   if (file < 0) return;
   if (write(file, settings.data(), settings.size()) == static_cast<ssize_t>(settings.size()))
     setenv("ALSOFT_CONF", (ownFolder() + std::to_string(file)).c_str(), 1);

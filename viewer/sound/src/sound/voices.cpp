@@ -16,28 +16,31 @@ namespace vps::viewer {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kAir_kg_m3 = 1.204, kSound_m_s = 343.2;  // at 20 degrees
+constexpr double kAir_kg_m3 = 1.204, kSound_m_s = 343.2;  // air at 20 degrees Celsius
 
-// Amplitudes decay as exp(-d t), d = (a + b w^2) / 2. assumed: steel on a bench or in a hand, about a tenth
-// of a second; a part that hangs free rings ten times as long
+// Amplitudes decay as exp(-d t), d = (a + b w^2) / 2. assumed: a steel part on a bench or in a hand rings for
+// about a tenth of a second; a freely suspended part would ring ten times as long.
 constexpr double kDampingLow_per_s = 40, kDampingHigh_s = 3e-8;
 
-/// Share of the power of a flat piston that a body of this size radiates: little where it is small beside the
-/// wave. Source: the pulsating sphere, Kinsler et al., "Fundamentals of Acoustics", 2000, section 7.5.
+/// Radiated power of a body as a share of a flat piston's power. The share is small if the body is small
+/// compared to the wavelength. Source: pulsating sphere, Kinsler et al., "Fundamentals of Acoustics", 2000,
+/// section 7.5.
 double radiated(double omega, double surface_m2) {
   const double ka = omega / kSound_m_s * std::sqrt(surface_m2 / (4 * kPi));
   return ka * ka / (1 + ka * ka);
 }
 
-constexpr double kCurvature_m = 5e-3;  // radius at the place of contact. assumed: edges and rounds of a part
+constexpr double kCurvature_m =
+    5e-3;  // radius of curvature at the contact. assumed: edges and fillets of a part
 
 using IsInside = std::function<bool(const Vec3& p_P)>;
 
-/// By the part's own map. Where it has none, or one of some regions only, by a map for this use: inside is
-/// asked some million times, which takes a solid ten times as long as the map and its making. Walls that are
-/// thin beside such a map's voxels are left to the solid.
+/// Inside test of a part, by the part's voxmap. If it has none, or only one of some regions, a map is built
+/// here: for the millions of tests, a solid takes ten times as long as a map and its construction. Only for
+/// walls that are thin compared to the map's voxels the solid is used.
 IsInside insideOf(const scenes::ScenePart& part, double volume_m3) {
-  constexpr double kVoxelsAcross = 250;  // about as fine as the samples of bricks, of which there are ten
+  constexpr double kVoxelsAcross =
+      250;  // about as fine as the samples of bricks, with ten bricks across a part
   constexpr double kVoxelsInWall = 3;
   if (part.model && part.model->map && !part.is_cropped)
     return [map = part.model->map](const Vec3& p_P) { return map->isInsideCoarse(p_P); };
@@ -69,17 +72,17 @@ PartVoice::PartVoice(BodyModes modes, double volume_m3, double mass_kg, int rate
     Resonator r;
     r.a1 = 2 * std::exp(-d * T) * std::cos(damped * T);
     r.a2 = std::exp(-2 * d * T);
-    r.b = T * std::exp(-d * T) * std::sin(damped * T) / std::max(damped, 1e-9);  // of an impulse f T
-    // The power of a vibrating surface, spread over a sphere around it.
+    r.b = T * std::exp(-d * T) * std::sin(damped * T) / std::max(damped, 1e-9);  // response to an impulse f T
+    // The radiated power is spread over a sphere around the part.
     const double power =
         radiated(w, modes_.surface_m2) * modes_.surface_m2 * std::pow(modes_.normal_rms[i], 2);
     r.gain = kAir_kg_m3 * kSound_m_s * std::sqrt(power / (4 * kPi)) / distance_m;
     resonators_.push_back(r);
   }
-  // A sphere that is accelerated pushes air aside: p = rho a^3 / (2 c r) dA/dt along its way.
-  // Source: Koss and Alfredson, J. Sound Vib. 27, 1973, for a << wave.
+  // An accelerated sphere of radius a displaces air: p = rho a^3 / (2 c r) dA/dt in the direction of its
+  // acceleration A. Source: Koss and Alfredson, J. Sound Vib. 27, 1973, for a << wave.
   click_Pa_s_per_N_ = kAir_kg_m3 * 3 * volume_m3 / (4 * kPi) / (2 * kSound_m_s * distance_m * mass_kg);
-  quiet_after_ = rate_hz;  // assumed: a second after the last force; by then -170 dB
+  quiet_after_ = rate_hz;  // assumed: a second after the last force, when the sound has decayed by 170 dB
   quiet_samples_ = quiet_after_ + 1;
 }
 
@@ -115,12 +118,12 @@ double planeStrain_Pa(const scenes::ScenePart& part) {
   return 0.5 * part.youngs_modulus_Pa / (1 - part.poissons_ratio * part.poissons_ratio);
 }
 
-double strokeDuration_s(double mass_kg, double plane_strain_Pa, double speed_m_s) {
+double impactDuration_s(double mass_kg, double plane_strain_Pa, double speed_m_s) {
   const double v = std::max(speed_m_s, 1e-4);
   return 2.87 * std::pow(mass_kg * mass_kg / (kCurvature_m * plane_strain_Pa * plane_strain_Pa * v), 0.2);
 }
 
-double Stroke::force_N(long sample, double rate_hz) const {
+double Impact::force_N(long sample, double rate_hz) const {
   constexpr double kHalfTurn = std::numbers::pi;
   const double from = static_cast<double>(sample - start), to = std::min(from + 1, length);
   if (from >= length) return 0;
@@ -154,7 +157,7 @@ double Beeper::next() {
     return 0;
   }
   if (t_s >= kBeep_s) return 0;
-  const double ramp = std::clamp(std::min(t_s, kBeep_s - t_s) / kRamp_s, 0.0, 1.0);  // or it would click
+  const double ramp = std::clamp(std::min(t_s, kBeep_s - t_s) / kRamp_s, 0.0, 1.0);  // avoids a click
   return ramp * std::sin(2 * std::numbers::pi * pitch_hz * t_s);
 }
 

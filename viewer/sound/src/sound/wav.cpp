@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Samples as a WAV file. Source: [Microsoft and IBM, "Multimedia Programming Interface", 1991].
+// Writes samples as a WAV file. Source: [Microsoft and IBM, "Multimedia Programming Interface", 1991].
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -22,8 +22,8 @@ std::string header(std::size_t samples, int rate_hz) {
   append(bytes, 36 + data, 4);
   bytes += "WAVEfmt ";
   append(bytes, 16, 4);
-  append(bytes, 1, 2);  // integers
-  append(bytes, 1, 2);  // one channel
+  append(bytes, 1, 2);  // format: integers
+  append(bytes, 1, 2);  // number of channels
   append(bytes, static_cast<std::uint32_t>(rate_hz), 4);
   append(bytes, static_cast<std::uint32_t>(rate_hz * kBytesPerSample), 4);
   append(bytes, kBytesPerSample, 2);

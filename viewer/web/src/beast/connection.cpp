@@ -29,12 +29,12 @@ using ErrorCode = beast::error_code;
 using Request = http::request<http::empty_body>;
 using Response = http::response<http::string_body>;
 
-constexpr std::chrono::seconds kRequestLimit{20};  // for one request and its answer
-constexpr std::chrono::seconds kSilenceLimit{30};  // of a WebSocket, pings included
+constexpr std::chrono::seconds kRequestLimit{20};  // for one request and its response
+constexpr std::chrono::seconds kSilenceLimit{30};  // for a WebSocket, on which pings count
 constexpr std::size_t kLongestHeader = 8192;
-// What waits for a browser that does not read, before it is given up.
+// A browser that does not read is disconnected when this much waits to be sent.
 constexpr std::size_t kMostWaiting = 512, kMostWaitingBytes = 4U << 20U;
-// Beyond this the system keeps nothing for a browser that is slow, so that what it gets is new.
+// Size of the system's send buffer, small so that a slow browser gets recent snapshots.
 constexpr int kSendBuffer = 64 * 1024;
 
 using PlainStream = beast::tcp_stream;
@@ -102,7 +102,7 @@ class WebSocketEnd final : public BrowserEnd, public std::enable_shared_from_thi
                           if (!self->waiting_.empty()) self->write();
                         });
   }
-  /// Ends what is under way; this object goes with the last of it.
+  /// Cancels all operations. The last of them to end deletes this object.
   void close() {
     if (std::exchange(is_closing_, true)) return;
     beast::get_lowest_layer(socket_).cancel();
@@ -112,7 +112,7 @@ class WebSocketEnd final : public BrowserEnd, public std::enable_shared_from_thi
   websocket::stream<Stream> socket_;
   WebShared& shared_;
   beast::flat_buffer buffer_;
-  std::deque<Waiting> waiting_;  ///< the first is being written
+  std::deque<Waiting> waiting_;  ///< messages to send; the first one is being written
   std::size_t waiting_bytes_ = 0;
   bool is_closing_ = false;
   int number_ = 0;
@@ -122,7 +122,7 @@ std::string_view viewOf(beast::string_view text) {
   return {text.data(), text.size()};
 }
 
-/// Requests for files, one after another.
+/// Handles requests for files, one after the other.
 template <typename Stream>
 class HttpEnd : public std::enable_shared_from_this<HttpEnd<Stream>> {
  public:
@@ -167,10 +167,10 @@ class HttpEnd : public std::enable_shared_from_this<HttpEnd<Stream>> {
       case WebAnswer::BadHost:
         return refuse(http::status::forbidden, "open the page by the address that vps prints");
       case WebAnswer::BadOrigin:
-        return refuse(http::status::forbidden, "not from the page of another server");
+        return refuse(http::status::forbidden, "the page of another server may not use this one");
       case WebAnswer::Unauthenticated:
         return refuse(http::status::unauthorized,
-                      "open the page by the address with the token that vps prints");
+                      "open the page by the address that vps prints, with its token");
       case WebAnswer::SetCookie: {
         response_ = make(http::status::see_other, "text/plain", "");
         response_.set(http::field::location, "/");
@@ -187,14 +187,14 @@ class HttpEnd : public std::enable_shared_from_this<HttpEnd<Stream>> {
     else if (const std::shared_ptr<const std::string> part = shared_.hub.partFile(target))
       response_ = make(http::status::ok, "model/gltf-binary", *part);
     else
-      return refuse(http::status::not_found, "there is nothing here");
+      return refuse(http::status::not_found, "there is no such page");
     write();
   }
   void upgrade(const Request& request) {
-    if (viewOf(request.target()) != "/run") return refuse(http::status::not_found, "there is nothing here");
+    if (viewOf(request.target()) != "/run") return refuse(http::status::not_found, "there is no such page");
     if (shared_.hub.browsers() >= shared_.most_browsers)
-      return refuse(http::status::service_unavailable, "too many browsers");
-    lowest().expires_never();  // the WebSocket has limits of its own
+      return refuse(http::status::service_unavailable, "too many browsers watch this run");
+    lowest().expires_never();  // the WebSocket has its own time limits
     std::make_shared<WebSocketEnd<Stream>>(std::move(stream_), shared_)->accept(request);
   }
   void refuse(http::status status, const char* words) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One browser's connections: requests for files, and the WebSocket that one of them becomes.
+// Connections of browsers: requests for files, one of which becomes a WebSocket.
 #pragma once
 
 #include <boost/asio/ip/tcp.hpp>
@@ -12,7 +12,7 @@
 
 namespace vps::viewer {
 
-/// What all connections share; it outlives them.
+/// Data that all connections share. It outlives the connections.
 struct WebShared {
   WebHub& hub;
   const WebPage& page;
@@ -20,13 +20,13 @@ struct WebShared {
   std::size_t most_browsers;
   boost::asio::ssl::context* tls = nullptr;  ///< null: without encryption
   std::size_t connections = 0;
-  bool is_over = false;  ///< the server is being destroyed, and nobody is told anything any more
+  bool is_over = false;  ///< the server is being destroyed, so nothing is sent any more
 };
 
-/// Serves until the browser leaves, is silent for too long, or sends too much.
+/// Serves a connection until the browser closes it, is silent for too long, or sends too much.
 void serveConnection(boost::asio::ip::tcp::socket socket, WebShared& shared);
 
-/// The monotonic clock, for rates.
+/// Time of the monotonic clock, for rate limits.
 double webClock_s();
 
 }  // namespace vps::viewer

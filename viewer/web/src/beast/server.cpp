@@ -60,12 +60,13 @@ std::string tokenOf(const WebOptions& options, bool is_loopback) {
   if (options.token.empty()) return is_loopback ? std::string() : newToken();
   if (isGoodToken(options.token)) return options.token;
   throw LoadError("", "",
-                  "the token is too easily guessed; use at least " + std::to_string(kShortestToken) +
+                  "the token is too easy to guess; use at least " + std::to_string(kShortestToken) +
                       " letters, digits, - and _");
 }
 
 constexpr const char* kHowToMake =
-    "; one for trials is made by: openssl req -x509 -newkey rsa:2048 -nodes -days 30 -subj /CN=localhost "
+    "; to make a certificate for trials: openssl req -x509 -newkey rsa:2048 -nodes -days 30 -subj "
+    "/CN=localhost "
     "-keyout key.pem -out cert.pem";
 
 void requireReadable(const std::string& file) {
@@ -93,9 +94,9 @@ void requireInTime(ssl::context& context, const std::string& file) {
     throw LoadError(file, "", "(--tls) is not valid yet; check the clock of this machine");
 }
 
-/// TLS 1.2 and later with a certificate, the certificates that follow it in the chain, and its key: both
-/// files in PEM form, the key without a passphrase. Throws LoadError where a file is missing or is no such
-/// thing, where the two do not belong together, or where the certificate is not valid today.
+/// Context for TLS 1.2 and later with a certificate, the rest of its chain, and its key. Both files are in
+/// PEM form, the key without a passphrase. Throws LoadError if a file is missing or has other contents, if
+/// the key is not the certificate's, or if the certificate is not valid today.
 std::unique_ptr<ssl::context> tlsContext(const std::string& certificate_file, const std::string& key_file) {
   requireReadable(certificate_file);
   requireReadable(key_file);
@@ -112,16 +113,17 @@ std::unique_ptr<ssl::context> tlsContext(const std::string& certificate_file, co
         "(--tls) has a key or a signature that is too weak for OpenSSL; make one of 2048 bits or more");
   if (failed) throw LoadError(certificate_file, "", "(--tls) holds no certificate in PEM form");
   requireInTime(*context, certificate_file);
-  // OpenSSL compares the key with the certificate here, too; the kind of key may differ as well.
+  // This call also compares the key with the certificate, and fails if the key is of another kind.
   context->use_private_key_file(key_file, ssl::context::pem, failed);
   const bool is_other = failed && ERR_GET_LIB(static_cast<unsigned long>(failed.value())) == ERR_LIB_X509;
   if (is_other || (!failed && SSL_CTX_check_private_key(context->native_handle()) != 1))
     throw LoadError(key_file, "",
-                    "(--tls) is not the key of " + certificate_file + "; give the two that belong together");
+                    "(--tls) is not the key of " + certificate_file +
+                        "; use a certificate and a key that belong together");
   if (failed)
     throw LoadError(key_file, "",
                     "(--tls) holds no private key in PEM form without a passphrase; `openssl pkey -in FILE` "
-                    "removes one");
+                    "removes a passphrase");
   return context;
 }
 
@@ -145,7 +147,7 @@ struct WebServer::Impl {
           "", "", "cannot listen at " + hostText(end) + ": " + failed.message() + "; " + remedyFor(failed));
     access.emplace(hostText(acceptor.local_endpoint()), token, tls != nullptr);
     shared.emplace(WebShared{hub, page, *access, options.most_browsers, tls.get()});
-    hub.poll(webClock_s());  // so that the parts are there for the first request
+    hub.poll(webClock_s());  // so that the first request finds the parts
     accept();
     wait();
   }
@@ -176,7 +178,7 @@ struct WebServer::Impl {
   std::unique_ptr<asio::ssl::context> tls;  ///< null: without encryption
   std::optional<WebAccess> access;
   std::optional<WebShared> shared;
-  asio::io_context io{1};  // destroyed before what its handlers use
+  asio::io_context io{1};  // destroyed before the members that its handlers use
   tcp::acceptor acceptor;
   asio::steady_timer timer;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The web server: HTTP for the page and the parts, a WebSocket for each browser.
+// The web server: HTTP for the page and the parts, and a WebSocket for each browser.
 #pragma once
 
 #include <cstdint>
@@ -13,16 +13,16 @@ namespace vps::viewer {
 /// Used by one thread.
 class VPS_VIEWER_API WebServer {
  public:
-  /// Listens from now on. Throws LoadError as serveSession().
+  /// Begins to listen. Throws LoadError as serveSession() does.
   WebServer(WatchedRun& run, const WebOptions& options);
   ~WebServer();
   WebServer(const WebServer&) = delete;
   WebServer& operator=(const WebServer&) = delete;
 
-  /// What a user opens.
+  /// The address that a user opens.
   [[nodiscard]] std::string address() const;
   [[nodiscard]] std::uint16_t port() const;
-  /// Until options.stop is set.
+  /// Serves until options.stop is set.
   void serve();
 
  private:

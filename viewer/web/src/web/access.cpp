@@ -11,7 +11,8 @@ namespace {
 
 constexpr std::string_view kQuery = "/?token=";
 
-/// Takes as long for every text of one length, so that the time tells nothing of the token.
+/// Compares texts in a time that depends only on their length, so that the time reveals nothing about the
+/// token.
 bool isEqual(std::string_view a, std::string_view b) {
   unsigned difference = a.size() == b.size() ? 0 : 1;
   for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
@@ -45,7 +46,7 @@ bool WebAccess::isOwnHost(std::string_view host) const {
   return isLoopbackAddress(name) && (host == "localhost:" + port_ || host == "127.0.0.1:" + port_);
 }
 
-// Browsers keep cookies by host, whatever the port.
+// The name has the port, since browsers share cookies between the ports of a host.
 std::string WebAccess::cookieName() const {
   return "vps_" + port_;
 }
@@ -53,8 +54,8 @@ std::string WebAccess::cookieName() const {
 WebAnswer WebAccess::judge(const WebRequest& request) const {
   if (request.method != "GET") return WebAnswer::BadMethod;
   if (!isOwnHost(request.host)) return WebAnswer::BadHost;
-  // A browser always names the page that opens a WebSocket. Programs that are no browser may leave it out,
-  // but then they are in nobody's name.
+  // A browser always sends the origin of the page that opens a WebSocket. Other programs may omit it; they do
+  // not act for a user who is logged in.
   const bool names_origin = !request.origin.empty();
   if (names_origin ? request.origin != scheme() + std::string(request.host) : request.is_upgrade)
     return WebAnswer::BadOrigin;

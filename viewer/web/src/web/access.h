@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Who may use the web page, and how much. Nothing here knows sockets.
+// Access to the web page: tokens, the checks of a request, and rate limits. Independent of sockets.
 #pragma once
 
 #include <string>
@@ -9,33 +9,33 @@
 
 namespace vps::viewer {
 
-/// What a request says of itself. Empty: the header is missing.
+/// Headers of a request. Empty: the header is missing.
 struct WebRequest {
   std::string_view method, target, host, origin, cookie;
-  bool is_upgrade = false;  ///< to a WebSocket
+  bool is_upgrade = false;  ///< asks to upgrade to a WebSocket
 };
 
 enum class WebAnswer {
   Good,
-  SetCookie,       ///< the token was right: sets the cookie and sends the browser to "/"
+  SetCookie,       ///< the token was right: set the cookie and redirect the browser to "/"
   BadMethod,       ///< 405
-  BadHost,         ///< 403: the name is not this server's, as after DNS rebinding
-  BadOrigin,       ///< 403: the page of another server asks
+  BadHost,         ///< 403: the host name is not this server's, for example after DNS rebinding
+  BadOrigin,       ///< 403: the request comes from the page of another server
   Unauthenticated  ///< 401
 };
 
-/// A browser proves that it knows the token by opening /?token=TOKEN once; after that by a cookie, which
-/// scripts cannot read and which pages of other servers cannot send.
+/// Checks requests. A browser proves that it knows the token by opening /?token=TOKEN once, and afterwards by
+/// a cookie, which scripts cannot read and pages of other servers cannot send.
 class VPS_VIEWER_API WebAccess {
  public:
-  /// @param host   "127.0.0.1:8080", as a browser writes it
-  /// @param token  empty: none is needed
+  /// @param host   host and port as a browser writes them: "127.0.0.1:8080"
+  /// @param token  empty: no token is needed
   WebAccess(std::string host, std::string token, bool is_encrypted = false);
 
   [[nodiscard]] WebAnswer judge(const WebRequest& request) const;
-  /// Of the header Set-Cookie, after SetCookie.
+  /// Value of the header Set-Cookie in the response to SetCookie.
   [[nodiscard]] std::string setCookie() const;
-  /// What a user opens.
+  /// The address that a user opens.
   [[nodiscard]] std::string address() const;
   /// The page comes by https.
   [[nodiscard]] bool isEncrypted() const { return is_encrypted_; }
@@ -50,21 +50,22 @@ class VPS_VIEWER_API WebAccess {
   bool is_encrypted_;
 };
 
-/// A number that nobody guesses: 128 bits as 32 hexadecimal digits.
+/// A random token: 128 bits as 32 hexadecimal digits.
 VPS_VIEWER_API std::string newToken();
 
-/// Own tokens must have at least this many characters, of letters, digits, '-' and '_'.
+/// Least length of a user's own token, which may have letters, digits, '-' and '_'.
 inline constexpr std::size_t kShortestToken = 16;
 [[nodiscard]] VPS_VIEWER_API bool isGoodToken(std::string_view token);
 
-/// True for addresses that other machines cannot reach.
+/// Whether other machines cannot reach the address.
 [[nodiscard]] VPS_VIEWER_API bool isLoopbackAddress(std::string_view address);
 
-/// How much of something may come: a bucket that fills steadily, and of which each use takes one.
+/// A rate limit (token bucket): the bucket fills at a constant rate up to its capacity, and each use takes
+/// one.
 class VPS_VIEWER_API RateLimit {
  public:
   RateLimit(double per_s, double burst) : per_s_(per_s), burst_(burst), left_(burst) {}
-  /// False: too much.
+  /// Takes one. Returns false if the bucket is empty.
   bool take(double now_s);
 
  private:

@@ -48,7 +48,7 @@ constexpr std::array<std::pair<const char*, BrowserWord>, 4> kAlone = {{{"point"
 std::optional<BrowserMessage> readBrowserMessage(std::string_view text) noexcept {
   try {
     if (text.size() > kLongestBrowserMessage) return {};
-    constexpr int kDeepest = 2;  // the object, and a vector
+    constexpr int kDeepest = 2;  // nesting: the object, and a vector in it
     const auto shallow = [](int depth, nlohmann::json::parse_event_t, nlohmann::json&) {
       return depth <= kDeepest;
     };
@@ -66,7 +66,7 @@ std::optional<BrowserMessage> readBrowserMessage(std::string_view text) noexcept
       for (const auto& [name, word] : kWithVector)
         if (key == name) return BrowserMessage{word, 0, vector};
     return {};
-  } catch (const std::exception&) {  // of memory
+  } catch (const std::exception&) {  // out of memory
     return {};
   }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a browser says. None of it is trusted.
+// Messages from a browser, which are not trusted.
 #pragma once
 
 #include <cstdint>
@@ -12,18 +12,18 @@
 namespace vps::viewer {
 
 enum class BrowserWord {
-  Ack,    ///< `number`: the snapshot that was drawn
-  Ping,   ///< `number`: to be sent back
-  Sound,  ///< `number`: 1, it wants to hear; 0, not
-  Point,  ///< `vector`: a place in W that the others shall see; without one: no longer
-  Take,   ///< the hand
-  Leave,  ///< the hand
-  Grab,   ///< `vector`: the place of the part in hand, in W
-  Move,   ///< `vector`: the way of the grabbed point [m]
+  Ack,    ///< `number`: number of the snapshot that was drawn
+  Ping,   ///< `number`: any number, which the server sends back
+  Sound,  ///< `number`: 1 if the browser plays sound, else 0
+  Point,  ///< `vector`: a place in W to mark for others; none: removes the mark
+  Take,   ///< takes control of the part in hand
+  Leave,  ///< gives up control
+  Grab,   ///< `vector`: grabbed point of the part in hand, in W
+  Move,   ///< `vector`: translation of the grabbed point [m]
   Turn,   ///< `vector`: rotation vector [rad]
-  Drop,   ///< what was grabbed
-  Play,   ///< `number`: 1, a recording goes on; 0, it stands
-  Seek,   ///< `number`: the time of a recording that is shown [s]
+  Drop,   ///< releases the grabbed point
+  Play,   ///< `number`: 1 plays a recording, 0 pauses it
+  Seek,   ///< `number`: time of a recording to show [s]
 };
 
 struct BrowserMessage {
@@ -34,8 +34,8 @@ struct BrowserMessage {
 
 inline constexpr std::size_t kLongestBrowserMessage = 512;  ///< [bytes]
 
-/// A JSON object with one key. Empty: it is none, the key is not known, or a number is not finite or beyond
-/// 1e9. Does not throw.
+/// Reads a message: a JSON object with one key. Empty if the text is no such object, the key is unknown, or a
+/// number is not finite or its magnitude exceeds 1e9. Does not throw.
 VPS_VIEWER_API std::optional<BrowserMessage> readBrowserMessage(std::string_view text) noexcept;
 
 }  // namespace vps::viewer

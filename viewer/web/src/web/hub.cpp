@@ -19,7 +19,8 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kKeptNews = 50;
 constexpr int kMostRefused = 10;
-// Triangles of all parts together, and of a coarse part, which a browser shows until the fine one has come.
+// Triangles of all fine parts together, and of one coarse part, which a browser shows until the fine part has
+// arrived.
 constexpr std::size_t kFineTriangles = 400000, kCoarseTriangles = 10000;
 
 std::string jsonText(const Json& json) {
@@ -61,7 +62,7 @@ Json stepsJson(const scenes::Scene& scene) {
   return steps;
 }
 
-/// Around the fixed parts, and each step's part at its start and target.
+/// Bounds of the fixed parts, and of each step's part at its start and target.
 Box boxAround(const RenderScene& drawn, const scenes::Scene& scene) {
   const std::vector<PartExtent> extents = partExtents(drawn);
   scenes::Snapshot shot;
@@ -71,7 +72,7 @@ Box boxAround(const RenderScene& drawn, const scenes::Scene& scene) {
   return visibleBounds(extents, shot, false, false);
 }
 
-/// "/part/RUN/PART/LEVEL.glb"
+/// Path of a part's file: "/part/RUN/PART/LEVEL.glb".
 struct PartName {
   int run = 0;
   std::size_t part = 0;
@@ -261,7 +262,7 @@ bool WebHub::hear(int number, std::string_view text, double now_s) {
 void WebHub::obey(int number, Browser& browser, const BrowserMessage& message) {
   switch (message.word) {
     case BrowserWord::Ack:
-      // A number that was not sent yet would let the browser be flooded.
+      // A number that was not sent yet is ignored, since the browser would be sent more than it draws.
       if (message.number > browser.drawn && message.number <= browser.coder.number())
         browser.drawn = static_cast<std::uint32_t>(message.number);
       return;
@@ -299,7 +300,7 @@ void WebHub::obeyHand(int number, const BrowserMessage& message) {
     case BrowserWord::Grab:
       return drag->grab(*message.vector, shot_->snapshot);
     case BrowserWord::Move:
-      // The cursor stays near the scene, so that nobody sends the handle to where it does not come back from.
+      // The cursor must stay near the scene, so that nobody moves the handle too far away to bring it back.
       if (drag->isGrabbed() && (drag->cursorPoint() + *message.vector - center_W_).norm() <= 4 * radius_m_)
         drag->move(*message.vector);
       return;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What browsers are told, and what they may do. Nothing here knows sockets.
+// Messages to all browsers, and the effect of their messages. Independent of sockets.
 #pragma once
 
 #include <cstdint>
@@ -19,34 +19,35 @@
 
 namespace vps::viewer {
 
-/// The way to one browser. Neither function waits.
+/// Sends messages to one browser. No function waits.
 class BrowserEnd {
  public:
   virtual ~BrowserEnd() = default;
   virtual void sendText(std::string text) = 0;
   virtual void sendBytes(std::string bytes) = 0;
-  /// Nothing waits to be sent.
+  /// Whether all messages have been sent.
   [[nodiscard]] virtual bool isFree() const = 0;
 };
 
-/// Snapshots are sent to a browser that has drawn those before it, all but this many: one that is slow, or
-/// far away, gets fewer. Of 60 a second three wait for their instant (window/presentation.h).
+/// Greatest number of snapshots that a browser has received but not drawn; a slow or distant browser thus
+/// gets fewer. At 60 a second, three snapshots wait in the browser until they are due (run/presentation.h).
 inline constexpr std::uint32_t kMostUnseen = 8;
 
-/// Used by one thread.
+/// Connects the run with all browsers. Used by one thread.
 class WebHub {
  public:
   WebHub(WatchedRun& run, double rate_hz) : run_(run), period_s_(1 / rate_hz) {}
 
-  /// Returns the browser's number.
+  /// Adds a browser and returns its number.
   int join(BrowserEnd& end);
   void leave(int browser);
-  /// What a browser sent. False: it sends too much, or what is no message; close it.
+  /// Handles a message of a browser. Returns false if the browser sends too many or invalid messages; then
+  /// close it.
   bool hear(int browser, std::string_view text, double now_s);
-  /// Looks for what is new, and tells it. Call it about as often as snapshots may be sent.
+  /// Reads the run's news and sends them to the browsers. Call it about as often as snapshots may be sent.
   void poll(double now_s);
 
-  /// The file of a part at /part/RUN/PART/LEVEL.glb; null: there is none.
+  /// The file of a part, requested as /part/RUN/PART/LEVEL.glb; null: there is none.
   std::shared_ptr<const std::string> partFile(std::string_view target);
   [[nodiscard]] std::size_t browsers() const { return browsers_.size(); }
 
@@ -55,12 +56,12 @@ class WebHub {
     explicit Browser(BrowserEnd& browser_end) : end(&browser_end), coder(Vec3::Zero()) {}
     BrowserEnd* end;
     SnapshotCoder coder;
-    std::uint32_t drawn = 0;  ///< number of the last snapshot that it drew
-    std::uint64_t seen = 0;   ///< shots_ of the last one that it was sent
+    std::uint32_t drawn = 0;  ///< number of the last snapshot that the browser has drawn
+    std::uint64_t seen = 0;   ///< value of shots_ at the last snapshot sent to the browser
     bool has_sound = false;
-    double next_s = 0;         ///< earliest time of the next one
-    int refused = 0;           ///< messages
-    RateLimit rate{200, 400};  ///< assumed: a pointer at 125 Hz, acks at 60 Hz
+    double next_s = 0;         ///< earliest time of the next snapshot
+    int refused = 0;           ///< number of refused messages
+    RateLimit rate{200, 400};  ///< messages per second. assumed: a pointer at 125 Hz, acks at 60 Hz
   };
 
   void greet(int number, Browser& browser);
@@ -82,19 +83,20 @@ class WebHub {
   int last_browser_ = 0;
   int run_number_ = 0;
   bool has_scene_ = false, may_take_ = false;
-  std::string scene_text_;  ///< of the hello
+  std::string scene_text_;  ///< description of the scene in the hello message
   Vec3 center_W_ = Vec3::Zero();
   double radius_m_ = 1;
   std::string doing_;
-  std::deque<std::string> news_;  ///< the last ones, for those who come later
+  std::deque<std::string> news_;  ///< recent messages, for browsers that join later
   std::map<int, std::string> pointers_;
   std::optional<Playback> playback_;
-  int holder_ = 0;  ///< browser that has the hand; 0: none
+  int holder_ = 0;  ///< browser that controls the part in hand; 0: none
   std::optional<WatchedShot> shot_;
-  std::unique_ptr<BlowSounds> sounds_;  ///< null: nobody listens
+  std::unique_ptr<BlowSounds> sounds_;  ///< null: no browser plays sound
   std::uint64_t shots_ = 0;
   std::map<std::size_t, ShadingMesh> meshes_;
-  std::map<std::pair<std::size_t, bool>, std::shared_ptr<const std::string>> files_;  ///< fine or coarse
+  std::map<std::pair<std::size_t, bool>, std::shared_ptr<const std::string>>
+      files_;  ///< by part and level, fine or coarse
 };
 
 }  // namespace vps::viewer

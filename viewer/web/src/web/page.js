@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The page of vps watch --web. Lengths are metres from the middle of the scene, in the group `root`, which is drawn in
-// millimetres on a screen and at the size of a table in a headset. The messages are described in README.md.
+// The page of vps watch --web. Lengths are metres from the centre of the scene, in the group `root`, which is drawn in
+// millimetres on a screen and at the size of a table in a headset. snapshot_coder.h and browser_message.h describe the
+// messages.
 (function () {
   "use strict";
   const $ = function (id) { return document.getElementById(id); };
   const canvas = $("view"), stage = $("stage");
   const kInHand = 0x2f6fde, kForceColor = 0x8a2be2, kScreenScale = 1000;
-  // For tests, and for the curious: what the page has seen.
+  // State of the page, for tests and for inspection.
   const seen = window.vps = { snapshots: 0, drawn: 0, ages_ms: [], shown: [], heardAfter_ms: [], blows: 0, pointers: {}, bodies: {}, hand: null, you: 0 };
 
   // ---- drawing
 
-  // Where a processor draws in place of a graphics card, smooth edges cost two thirds of a picture, and most of the rest
-  // is triangles and light for each pixel: such a browser gets neither, and coarse parts while anything moves.
+  // Without a graphics card, smooth edges take two thirds of the time of a picture, and triangles and lighting per pixel
+  // most of the rest. Such a browser draws neither, and it draws coarse parts while anything moves.
   function isDrawnByProcessor() {
     const probe = document.createElement("canvas").getContext("webgl");
     if (!probe) return false;
@@ -30,7 +31,7 @@
     const context = canvas.getContext("webgl", { alpha: false, antialias: !isSlow, xrCompatible: true });
     renderer = new THREE.WebGLRenderer({ canvas: canvas, context: context, antialias: !isSlow });
   } catch (error) {
-    $("doing").textContent = "This browser shows no three-dimensional view (it has no WebGL).";
+    $("doing").textContent = "This browser cannot show a three-dimensional view, because it has no WebGL.";
     return;
   }
   renderer.setClearColor(0xffffff);
@@ -50,7 +51,7 @@
   world.add(root);
   const controls = new THREE.OrbitControls(camera, canvas);
   let isDue = true;
-  let moved_ms = 0;  // when something in the picture changed last
+  let moved_ms = 0;  // time of the last change of the picture
   function redraw() {
     isDue = true;
     moved_ms = performance.now();
@@ -80,12 +81,12 @@
     camera.updateProjectionMatrix();
     redraw();
   }
-  new ResizeObserver(resize).observe(stage);  // also when a button comes or goes and the tools need another line
+  new ResizeObserver(resize).observe(stage);  // the size also changes when a button appears and the tools need another line
 
   // ---- the scene
 
-  let scene = null;      // of the hello
-  let parts = [];        // by index: group, paint, surface
+  let scene = null;      // description of the scene in the hello message
+  let parts = [];        // by index of the part: group, paint, surface
   let inHand = -1, target = null;
   const lines = new THREE.LineBasicMaterial({ color: 0x222222 });
   const hint = new THREE.Group();
@@ -135,7 +136,7 @@
     look($("looks").value);
   }
 
-  // Colours of faces, light as glTF has it, take the place of the part's, unless it is in hand.
+  // Colours of faces (linear, as in glTF) replace the part's colour, unless the part is in hand.
   function useFaceColors(entry, geometry) {
     const values = geometry.attributes.color.array;
     for (let i = 0; i < values.length; ++i)
@@ -150,7 +151,7 @@
     entry.paint.vertexColors = faceColorsMode(Boolean(entry.hasFaceColors) && !isInHand);
     entry.paint.needsUpdate = true;
   }
-  // THREE.VertexColors before release 114, true since.
+  // three.js before release 114 needs THREE.VertexColors; later releases need true.
   function faceColorsMode(isOn) {
     return Number(THREE.REVISION) < 114 ? (isOn ? THREE.VertexColors : THREE.NoColors) : isOn;
   }
@@ -186,14 +187,14 @@
     loader.load(path + "coarse.glb", function (file) { add(file, "coarse"); fine(); });
   }
 
-  // The fine shape, unless a slow browser shows something that moves.
+  // Shows the fine shapes, or the coarse ones in a slow browser while anything moves.
   let isCoarse = isSlow;
   function useLevel(part) {
     const used = (isCoarse && part.coarse) || part.fine || part.coarse;
     for (const shape of [part.coarse, part.fine]) if (shape) shape.all.visible = shape === used;
     part.surface = used ? used.surface : null;
   }
-  // And what moves in as many pixels as it can draw 30 times a second; the last picture of a motion in all.
+  // A slow browser draws motion with as many pixels as it can draw 30 times a second, and the last picture of a motion in full.
   const kStill_ms = 400, kWanted_ms = 33, kShares = [1, 0.71, 0.5, 0.35];
   const kFramesUntilFewer = 10, kFramesUntilMore = 150;
   let share = 0, between_ms = kWanted_ms, frames = 0, frame_ms = 0;
@@ -209,7 +210,7 @@
     frames = 0;
   }
   function chooseLevel() {
-    const isPresenting = renderer.vr.isPresenting();  // then the headset says how large its pictures are
+    const isPresenting = renderer.vr.isPresenting();  // the headset sets the size of its pictures
     const isMoving = isSlow && !isPresenting && performance.now() - moved_ms < kStill_ms;
     watchFrames(isMoving);
     const ratio = fullRatio * (isMoving ? kShares[share] : 1);
@@ -233,7 +234,7 @@
     place(hint, target.pose);
   }
 
-  // The part in hand stays whole, as in technical drawings.
+  // The section does not cut the part in hand, as in technical drawings.
   function applyCut() {
     const axis = $("cut").value;
     $("cut-at").hidden = !axis;
@@ -262,7 +263,7 @@
   root.add(marks);
   const handArrow = new THREE.ArrowHelper(new THREE.Vector3(0, 0, 1), new THREE.Vector3(), 1, kForceColor);
   handArrow.visible = false;
-  for (const part of [handArrow.line, handArrow.cone]) {  // seen through the parts
+  for (const part of [handArrow.line, handArrow.cone]) {  // visible through the parts
     part.material.depthTest = false;
     part.material.transparent = true;
     part.renderOrder = 2;
@@ -310,11 +311,11 @@
   // ---- snapshots
 
   let socket = null, clockOffset_ms = null;
-  let last = null;  // the newest snapshot that is shown
-  const waiting = [];  // those that came before their instant, which is the same for all who watch
-  let present_ms = 0;  // from the time a snapshot was taken to that instant
+  let last = null;  // the newest shown snapshot
+  const waiting = [];  // snapshots that are not due yet; all watchers show them at the same instant
+  let present_ms = 0;  // time from taking a snapshot to showing it
 
-  // The shortest of the last round trips knows the offset best.
+  // The shortest of the last round trips gives the best estimate of the clock offset.
   const trips = [];
   function hearClock(sent_ms, there_ms) {
     const now_ms = performance.now();
@@ -323,7 +324,7 @@
     clockOffset_ms = trips.reduce(function (a, b) { return b.length_ms < a.length_ms ? b : a; }).offset_ms;
   }
   function serverNow_ms() { return performance.now() + (clockOffset_ms || 0); }
-  // Whoever moves the part sees at once what it does.
+  // A person who moves the part sees its motion without this delay.
   function presentAfter_ms() { return isMine() || clockOffset_ms === null ? 0 : present_ms; }
   function isDueNow(shot) {
     return clockOffset_ms === null || shot.taken_ms + presentAfter_ms() <= serverNow_ms();
@@ -336,7 +337,7 @@
 
   function decode(buffer) {
     const view = new DataView(buffer);
-    let at = 1;  // after the kind
+    let at = 1;  // the first byte is the kind of message
     function u8() { return view.getUint8(at++); }
     function u16() { at += 2; return view.getUint16(at - 2, true); }
     function u32() { at += 4; return view.getUint32(at - 4, true); }
@@ -407,7 +408,7 @@
     $("force").textContent = shot.hand ? force.toFixed(1) + " N on the hand · " + shot.contacts.length + " contacts" : "";
     if (isChanged) redraw();
   }
-  // The arrow of the force and the contacts.
+  // Draws the arrow of the force and the contacts.
   let lastMarks = "";
   function hasNewMarks(shot) {
     const marks = JSON.stringify([shot.hand, shot.contacts, isPressed("forces")]);
@@ -416,7 +417,7 @@
     return isNew;
   }
 
-  // ---- what others do
+  // ---- other browsers
 
   const pointers = {};
   const kPointerColors = [0xd7263d, 0xf46036, 0x1b998b, 0xc5a100, 0x6a0572];
@@ -442,7 +443,7 @@
     button.hidden = !hand.may_take;
     button.disabled = hand.holder !== 0 && !isMine;
     button.setAttribute("aria-pressed", String(isMine));
-    button.textContent = isMine ? "Let go" : hand.holder !== 0 ? "Browser " + hand.holder + " has the part" : "Take the part";
+    button.textContent = isMine ? "Let go" : hand.holder !== 0 ? "Browser " + hand.holder + " holds the part" : "Take the part";
     if (!isMine) endGrab();
   }
 
@@ -475,7 +476,7 @@
   let nextSeek = 0, lateSeek = 0;
   function seek() {
     clearTimeout(lateSeek);
-    if (performance.now() < nextSeek) {  // the last place counts
+    if (performance.now() < nextSeek) {  // only the last place of the slider counts
       lateSeek = setTimeout(seek, 40);
       return;
     }
@@ -491,8 +492,8 @@
     ear = audio.createDynamicsCompressor();
     ear.connect(audio.destination);
   }
-  // An impact as the server synthesised it: f64 time, u32 rate, f32 pressure of the number 32767, i16 samples.
-  // It is heard when its snapshot is seen.
+  // Plays an impact that the server synthesised: f64 time, u32 rate, f32 pressure of the value 32767, i16 samples.
+  // The impact is heard when its snapshot is shown.
   function playBlow(buffer) {
     ++seen.blows;
     if (!audio || audio.state !== "running") return;
@@ -503,7 +504,7 @@
     const wait_s = 1e-3 * (view.getFloat64(1, true) + presentAfter_ms() - serverNow_ms());
     const latency_s = audio.outputLatency || audio.baseLatency || 0;
     const when_s = audio.currentTime + Math.max(0, wait_s - latency_s);
-    // When it is heard, after its snapshot was taken, by the clock of the server.
+    // Time of the sound after its snapshot was taken, by the server's clock.
     seen.heardAfter_ms.push(1e3 * (when_s - audio.currentTime + latency_s - wait_s) + presentAfter_ms());
     const source = audio.createBufferSource();
     source.buffer = samples;
@@ -520,7 +521,7 @@
     hello: function (hello) {
       seen.you = hello.you;
       present_ms = hello.present_ms;
-      waiting.length = 0;  // of the run before
+      waiting.length = 0;  // removes snapshots of the previous run
       if (hello.run) begin(hello);
     },
     doing: function (words) { $("doing").textContent = words; },
@@ -537,7 +538,7 @@
       if (typeof event.data !== "string") {
         if (new Uint8Array(event.data)[0] === kBlowKind) return playBlow(event.data);
         waiting.push(decode(event.data));
-        if (document.hidden) showDue();  // where nothing is drawn
+        if (document.hidden) showDue();  // a hidden page draws no frames
         return;
       }
       const message = JSON.parse(event.data);
@@ -546,7 +547,7 @@
       for (const key in message) if (kHear[key]) kHear[key](message[key]);
     };
     socket.onclose = function () {
-      $("doing").textContent = "the connection is lost";
+      $("doing").textContent = "the connection was lost";
       setTimeout(connect, 1000);
     };
     socket.onopen = function () {
@@ -578,7 +579,7 @@
     if (!isNew) return;
     acked = last.number;
     send({ ack: acked });
-    if (!isDrawn) return;  // nothing in the picture changed
+    if (!isDrawn) return;  // the picture did not change
     ++seen.drawn;
     if (clockOffset_ms === null) return;
     seen.ages_ms.push(serverNow_ms() - last.taken_ms);
@@ -609,16 +610,16 @@
     }
     return null;
   }
-  // From world units to metres in the scene's frame.
+  // Converts world units to metres in the scene's frame.
   function inScene(point) {
     return root.worldToLocal(point.clone()).add(center);
   }
   function vectorInScene(way) {
     return way.clone().applyQuaternion(root.quaternion.clone().inverse()).divideScalar(root.scale.x);
   }
-  // Where a step's part belongs, as seen.bodies has poses.
+  // Target pose of a step's part, in the form of seen.bodies' poses.
   seen.targetOf = function (step) { return centered(scene.steps[step].target); };
-  // Where a part's middle is on the page, in pixels.
+  // Position of a part's centre on the page, in pixels.
   seen.placeOf = function (index) {
     const part = parts[index];
     if (!part || !part.surface) return null;
@@ -629,7 +630,7 @@
     const at = part.surface.localToWorld(middle).project(camera), box = canvas.getBoundingClientRect();
     return [box.left + 0.5 * box.width * (1 + at.x), box.top + 0.5 * box.height * (1 - at.y)];
   };
-  // How many pixels of the page a metre of the scene takes, in the middle of the view.
+  // Pixels of the page per metre of the scene, in the centre of the view.
   seen.pixelsPerMetre = function () {
     const away = camera.position.distanceTo(controls.target);
     return kScreenScale * canvas.getBoundingClientRect().height / (2 * away * Math.tan(0.5 * camera.fov * Math.PI / 180));
@@ -681,7 +682,7 @@
       if (isPressed("point")) pointAt(event);
       return;
     }
-    // Two fingers turn, as the right button does; Shift is depth, or a twist.
+    // Two fingers turn the part, as the right button does; with Shift a drag moves in depth, or twists.
     if (grab.isTurn || count > 1) {
       const angle = Math.PI / stage.clientHeight;
       const turn = event.shiftKey ? new THREE.Vector3(0, 0, -angle * dx) : new THREE.Vector3(angle * dy, angle * dx, 0);
@@ -716,7 +717,7 @@
 
   // ---- a headset
 
-  // On a table before the viewer, 0.6 m wide, upright.
+  // The scene stands on a table in front of the viewer, upright and 0.6 m wide.
   function setForHeadset(isOn) {
     if (isOn) {
       root.scale.setScalar(0.3 / radius_m);
@@ -730,7 +731,7 @@
     applyCut();
     if (!isOn) look($("looks").value);
   }
-  let held = null;  // by a controller: its pose when the part was grabbed last
+  let held = null;  // pose of the controller that holds the part, when it grabbed the part
   const controller = renderer.vr.getController(0);
   controller.add(new THREE.Line(new THREE.BufferGeometry().setFromPoints([new THREE.Vector3(), new THREE.Vector3(0, 0, -3)]),
     new THREE.LineBasicMaterial({ color: kInHand })));
@@ -786,7 +787,7 @@
       renderer.vr.setSession(session);
       headset.textContent = "Leave headset";
       setForHeadset(true);
-    }).catch(function (error) { tell({ text: "the headset does not start: " + error.message }); });
+    }).catch(function (error) { tell({ text: "the headset cannot be used: " + error.message }); });
   });
 
   // ---- tools

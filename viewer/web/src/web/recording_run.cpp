@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A recording as a WatchedRun. All who watch see the same instant, and any of them may play, pause and move
-// it.
+// A recording as a WatchedRun. All watchers see the same instant, and each of them may play, pause and seek.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -26,7 +25,7 @@ class RecordingRun final : public WatchedRun {
         line_(recordedTimeline(scene_, run)),
         begin_s_(line_.time_s.empty() ? 0 : line_.time_s.front()) {
     if (line_.time_s.empty())
-      throw LoadError(run.file, "", "has no trace of a step, so there is nothing to show");
+      throw LoadError(run.file, "", "has no recorded step, so there is nothing to show");
     seek(begin_s_);
     play(true);
   }
@@ -70,7 +69,7 @@ class RecordingRun final : public WatchedRun {
   scenes::Scene scene_;
   Timeline line_;
   double begin_s_;
-  double time_s_ = 0, from_s_ = 0;  ///< shown; where it began to play
+  double time_s_ = 0, from_s_ = 0;  ///< time shown now; time at which playing began
   std::int64_t from_ns_ = 0;
   bool is_playing_ = false, is_new_ = false;
   std::vector<WatchedNews> news_;

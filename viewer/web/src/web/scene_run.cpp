@@ -12,7 +12,7 @@ namespace vps::viewer {
 
 namespace {
 
-constexpr double kBetweenRuns_s = 3;  // assumed: long enough to see how a run ended
+constexpr double kBetweenRuns_s = 3;  // assumed: long enough to see the end of a run
 
 double clock_s() {
   return 1e-9 * static_cast<double>(device::monotonicClock().now_ns());
@@ -69,7 +69,7 @@ class SceneRun final : public WatchedRun {
     over_s_.reset();
     LiveSettings settings;
     settings.models = options_.models;
-    settings.has_sound = false;  // browsers make their own
+    settings.has_sound = false;  // browsers play their own sound
     if (options_.allows_hand) {
       drag_.emplace(scene_.device.scale);
       settings.hand = "mouse";
@@ -84,10 +84,10 @@ class SceneRun final : public WatchedRun {
   std::optional<HandDrag> drag_;
   std::vector<WatchedNews> news_;
   LiveStatus status_;
-  std::size_t told_ = 0;  ///< steps
+  std::size_t told_ = 0;  ///< number of steps whose verdicts were sent
   std::optional<double> over_s_;
   int number_ = 0;
-  std::optional<LiveRun> run_;  // last, since its threads use the others
+  std::optional<LiveRun> run_;  // declared last, since its threads use the other members
 };
 
 }  // namespace

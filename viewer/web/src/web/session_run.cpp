@@ -18,7 +18,7 @@ namespace {
 
 using scenes::SessionWatcher;
 
-/// The device's node of a session, whose device a page moves, on a thread of its own.
+/// The device node of a session, on a thread of its own. The page's user moves its device.
 class PageDevice {
  public:
   PageDevice(const WebOptions& options, double scale) : drag_(scale) {
@@ -26,7 +26,7 @@ class PageDevice {
     node.session = options.session;
     node.network = options.network;
     node.stop = &stop_;
-    node.rearms = true;  // a handle that exists only in the program hurts nobody
+    node.rearms = true;  // re-arming is safe, since a simulated handle cannot hurt anybody
     node.kind = "mouse";
     node.wish = drag_.wish();
     thread_ = std::thread([this, node] { run(node); });
@@ -39,7 +39,7 @@ class PageDevice {
   PageDevice& operator=(const PageDevice&) = delete;
 
   HandDrag* drag() { return is_refused_ ? nullptr : &drag_; }
-  /// Why it could not join, once.
+  /// Why the device node could not join the session; empty: no new reason since the last call.
   std::string takeRefusal() {
     const std::lock_guard lock(mutex_);
     return std::exchange(refusal_, {});
@@ -69,7 +69,7 @@ class SessionRun final : public WatchedRun {
 
   void poll() override {
     if (watcher_ == nullptr) return look();
-    const bool is_over = watcher_->isOver();  // first, so that the last news is read
+    const bool is_over = watcher_->isOver();  // asked first, so that the last news is still read below
     while (const auto news = watcher_->takeNews()) tell(*news);
     if (device_)
       if (std::string refusal = device_->takeRefusal(); !refusal.empty())
@@ -86,7 +86,7 @@ class SessionRun final : public WatchedRun {
   [[nodiscard]] int number() const override { return number_; }
   [[nodiscard]] std::string doing() const override {
     if (watcher_ == nullptr)
-      return "waiting for the session '" + options_.session + "', which vps render starts";
+      return "waiting for the session '" + options_.session + "'; vps render starts it";
     return watcher_->hasDevice() ? "" : "waiting for a device: vps device --session " + options_.session;
   }
   std::optional<WatchedShot> takeShot() override {
@@ -106,7 +106,7 @@ class SessionRun final : public WatchedRun {
   }
 
  private:
-  /// For the session, on another thread, since that may take a second.
+  /// Looks for the session on another thread, since this may take a second.
   void look() {
     if (!joining_.valid()) {
       joining_ = std::async(std::launch::async, [session = options_.session, network = options_.network] {
@@ -133,8 +133,9 @@ class SessionRun final : public WatchedRun {
   void findPointers() {
     try {
       pointers_.emplace(options_.session, options_.network);
-    } catch (const LoadError& refused) {  // certificates of before there were pointers
-      news_.push_back({0, std::string("pointers are not passed on: ") + refused.what(), {}});
+    } catch (const LoadError& refused) {  // certificates made before pointers existed
+      news_.push_back(
+          {0, std::string("the pointers of other people cannot be shown: ") + refused.what(), {}});
     }
   }
   void tell(const scenes::SessionNews& news) {

@@ -102,7 +102,7 @@ std::string SnapshotCoder::encode(const WatchedShot& shot) {
 }
 
 std::string blowBytes(const BlowSound& sound) {
-  double most_Pa = 1e-9;  // the samples are as large as 16 bits hold
+  double most_Pa = 1e-9;  // samples are scaled to the range of 16 bits
   for (const double p : sound.pressure_Pa) most_Pa = std::max(most_Pa, std::abs(p));
   std::string bytes;
   ByteWriter writer(bytes);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the page shows: a session of other nodes, a run of this process, or a recording.
+// The run that the page shows: a session of other nodes, a run of this process, or a recording.
 #pragma once
 
 #include <cstdint>
@@ -20,60 +20,60 @@ namespace vps::viewer {
 
 struct WatchedShot {
   scenes::Snapshot snapshot;
-  std::int64_t taken_ns = 0;  ///< by the monotonic clock of this machine
+  std::int64_t taken_ns = 0;  ///< time of the snapshot by this machine's monotonic clock
 };
 
 struct WatchedNews {
-  double time_s = 0;  ///< simulated
+  double time_s = 0;  ///< simulated time
   std::string text;
-  std::optional<scenes::Verdict> verdict;  ///< of the whole run: it has ended
+  std::optional<scenes::Verdict> verdict;  ///< verdict on the whole run, which has ended
 };
 
-/// Of a recording, which browsers play.
+/// State of playback of a recording.
 struct Playback {
   double begin_s = 0, end_s = 0;
   bool is_playing = false;
   bool operator==(const Playback&) const = default;
 };
 
-/// Used by one thread. Nothing of it waits.
+/// Used by one thread. No function waits.
 class WatchedRun {
  public:
   virtual ~WatchedRun() = default;
 
-  /// Looks for what is new. Call it before the others.
+  /// Reads the run's news. Call it before the functions below.
   virtual void poll() = 0;
-  /// Null: there is none yet. It stays while number() does.
+  /// The scene; null: there is none yet. The pointer stays valid until number() changes.
   [[nodiscard]] virtual const scenes::Scene* scene() const = 0;
-  /// Counts the scenes so far.
+  /// Number of scenes so far.
   [[nodiscard]] virtual int number() const = 0;
-  /// What it waits for or works on, in words; empty: it runs.
+  /// Text that tells what the run waits for or works on; empty: it runs.
   [[nodiscard]] virtual std::string doing() const = 0;
-  /// The newest snapshot, once.
+  /// The newest snapshot; empty if it was taken already.
   virtual std::optional<WatchedShot> takeShot() = 0;
-  /// Each once.
+  /// The news since the last call.
   virtual std::vector<WatchedNews> takeNews() = 0;
-  /// By which the page moves the part in hand; null: it may not. It stays while number() does.
+  /// Moves the part in hand; null: the page may not move it. The pointer stays valid until number() changes.
   [[nodiscard]] virtual HandDrag* drag() = 0;
 
-  /// A person of the page points at a place in W, or no longer: for those who watch elsewhere.
+  /// Tells watchers elsewhere that a person of the page points at a place in W, or at none.
   virtual void point(int, const std::optional<Vec3>&) {}
-  /// What those elsewhere point at, each change once.
+  /// Changes of the pointers of watchers elsewhere since the last call.
   virtual std::vector<scenes::SessionPointer> takePointers() { return {}; }
 
-  /// Empty: a run that goes on by itself.
+  /// State of playback; empty: the run is not a recording.
   [[nodiscard]] virtual std::optional<Playback> playback() const { return {}; }
   virtual void play(bool) {}
-  /// Times outside are the nearest inside.
+  /// Shows another time of a recording; the time is clamped to its range.
   virtual void seek(double) {}
 };
 
-/// Follows the session, and the next one when it has ended. With the right to the hand this process is the
-/// session's device.
+/// Follows the session; after its end, the next session with the same name. If options.allows_hand, this
+/// process is the session's device.
 std::unique_ptr<WatchedRun> watchedSession(const WebOptions& options);
-/// Runs the scene's procedure in this process, again and again if there is nobody's hand to wait for.
+/// Runs the scene's procedure in this process, repeatedly unless a person moves the part.
 std::unique_ptr<WatchedRun> watchedScene(const scenes::Scene& scene, const WebOptions& options);
-/// Plays from its begin. Throws LoadError where nothing of a run is in it.
+/// Plays a recording from its beginning. Throws LoadError if it has no recorded step.
 std::unique_ptr<WatchedRun> watchedRecording(const device::RecordedRun& run);
 
 }  // namespace vps::viewer

@@ -17,16 +17,16 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Numbers of the standard.
+// Component types of the glTF standard.
 enum GlbType : int { kFloat = 5126, kUnsigned = 5125 };
 enum GlbMode : int { kLines = 1, kTriangles = 4 };
 enum GlbTarget : int { kVertices = 34962, kIndices = 34963 };
 constexpr std::uint32_t kMagic = 0x46546C67, kVersion = 2, kJsonChunk = 0x4E4F534A, kBinChunk = 0x004E4942;
 
-/// The buffer of a file, with its views and accessors.
+/// The binary buffer of a glTF file, with its views and accessors.
 class GlbBuffer {
  public:
-  /// Returns the number of the accessor.
+  /// Adds vectors of three floats and returns the index of their accessor.
   int addVectors(const std::vector<float>& values, bool has_bounds) {
     std::string bytes;
     device::ByteWriter writer(bytes);
@@ -63,7 +63,7 @@ class GlbBuffer {
         {{"buffer", 0}, {"byteOffset", bytes_.size()}, {"byteLength", bytes.size()}, {"target", target}});
     accessor["bufferView"] = views_.size() - 1;
     accessors_.push_back(std::move(accessor));
-    bytes_ += bytes;  // all have words of four bytes, so each view stays aligned
+    bytes_ += bytes;  // all data has words of four bytes, so each view stays aligned
     return static_cast<int>(accessors_.size()) - 1;
   }
 
@@ -71,7 +71,8 @@ class GlbBuffer {
   Json views_ = Json::array(), accessors_ = Json::array();
 };
 
-/// The surface's primitive, with the vertices that its triangles use, in the order of their use.
+/// The primitive of the surface. It has only the vertices that its triangles use, in the order of their first
+/// use.
 Json surface(const ShadingMesh& mesh, std::size_t wanted, GlbBuffer& buffer) {
   std::vector<std::uint32_t> triangles = CoarseMesh(mesh).indices(wanted);
   std::vector<std::uint32_t> number(mesh.vertices.size(), UINT32_MAX);

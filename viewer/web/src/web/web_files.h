@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The files that a browser loads: the page (page.html, page.css, page.js), three.js of this machine, and parts as glTF.
+// The files that a browser loads: the page (page.html, page.css, page.js), three.js of this machine, and
+// parts as glTF.
 #pragma once
 
 #include <cstddef>
@@ -16,13 +17,14 @@ struct WebFile {
   std::string bytes;
 };
 
+/// The page's files.
 class WebPage {
  public:
-  /// Reads three.js. Without it missing() says so.
+  /// Reads three.js. If it is not installed, missing() tells so.
   WebPage();
-  /// By the path of a request, such as "/page.js"; null: there is none.
+  /// Finds a file by the path of a request, such as "/page.js"; null: there is none.
   [[nodiscard]] const WebFile* find(std::string_view path) const;
-  /// In words, what this machine lacks; empty: nothing.
+  /// Message about missing files of three.js, with a remedy; empty: none is missing.
   [[nodiscard]] const std::string& missing() const { return missing_; }
 
  private:
@@ -34,11 +36,11 @@ extern const char* const kPageHtml;
 extern const char* const kPageCss;
 extern const char* const kPageScript;
 
-/// The bytes of a .glb file: one node with the surface (positions, normals, triangles) and, as lines, the
-/// sharp edges; in metres and in the part's frame. The node's translation is the mesh's center, so that
-/// floats keep their precision far out.
-/// @param wanted     about as many triangles; a surface with no more stays as it is
-/// @param has_edges  false: without the edges, from which a coarse surface is off
+/// The bytes of a .glb file, in metres and in the part's frame. It has one node with the surface (positions,
+/// normals, triangles) and the sharp edges as lines. The node's translation is the centre of the mesh, so
+/// that floats stay precise far from the origin.
+/// @param wanted     approximate number of triangles; a surface with fewer triangles is not simplified
+/// @param has_edges  false: without edges, which do not lie on a coarse surface
 /// O(triangles). Source: Khronos, "glTF 2.0 Specification".
 std::string partGlb(const ShadingMesh& mesh, std::size_t wanted, bool has_edges = true);
 

@@ -96,14 +96,14 @@ struct BlowSounds::Impl {
     }
   }
   [[nodiscard]] std::vector<double> sound(PartVoice& voice, const Blow& blow) const {
-    const double length_s = strokeDuration_s(voice.mass_kg(), planeStrain_Pa(scene.parts[blow.part]),
+    const double length_s = impactDuration_s(voice.mass_kg(), planeStrain_Pa(scene.parts[blow.part]),
                                              blow.impulse_Ns / std::max(1e-9, voice.mass_kg()));
-    const Stroke stroke{voice.touch(blow.p_P, blow.n_P), blow.impulse_Ns, 0,
+    const Impact impact{voice.touch(blow.p_P, blow.n_P), blow.impulse_Ns, 0,
                         std::max(1.0, length_s * BlowSound::kRate_hz)};
     std::vector<double> pressure_Pa(static_cast<std::size_t>(kLength_s * BlowSound::kRate_hz));
     for (std::size_t i = 0; i < pressure_Pa.size(); ++i) {
       const auto sample = static_cast<long>(i);
-      if (!stroke.isOver(sample)) voice.push(stroke.touch, stroke.force_N(sample, BlowSound::kRate_hz));
+      if (!impact.isOver(sample)) voice.push(impact.touch, impact.force_N(sample, BlowSound::kRate_hz));
       pressure_Pa[i] = voice.next();
     }
     return pressure_Pa;

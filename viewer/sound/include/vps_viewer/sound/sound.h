@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a run sounds like: the parts ring where they are struck and rub, and the device beeps where it warns.
+// The sound of a run: parts ring when they are struck or rubbed, and the device's warnings beep.
 #pragma once
 
 #include <memory>
@@ -15,34 +15,35 @@ namespace vps::viewer {
 
 struct SoundSettings {
   int rate_hz = 48000;
-  double distance_m = 0.5;  ///< of the listener; assumed: arm's length from a bench
-  bool has_rings = true;    ///< false: no part rings, which needs no modes; only clicks, rubbing and beeps
+  double distance_m = 0.5;  ///< distance of the listener; assumed: arm's length from a bench
+  bool has_rings = true;    ///< false: only clicks, rubbing and beeps, so that no modes are computed
 };
 
-/// Modal synthesis of the contacts. A contact force that rises within a physics step strikes its two parts
-/// with its impulse; one that slips rubs them, and one that rolls rubs them less. Each part answers with its
-/// modes (src/sound/modes.h), which are found where it is first struck, and with the click of its
-/// acceleration, which is all of a part too small to ring. Deterministic: the same snapshots give the same
-/// samples. Use it on one thread.
+/// Modal synthesis of contact sound. A contact force that rises within a physics step strikes both parts with
+/// its impulse; a slipping contact rubs them, and a rolling contact rubs them less. Each part responds with
+/// its modes (src/modes/modes.h), which are computed at its first impact, and with the click of its
+/// acceleration, which is the only sound of a part too small to ring. Deterministic: the same snapshots give
+/// the same samples. Used by one thread.
 class VPS_VIEWER_API RunSound {
  public:
-  /// The scene outlives it.
+  /// The scene must outlive the RunSound.
   explicit RunSound(const scenes::Scene& scene, const SoundSettings& settings = {});
   ~RunSound();
   RunSound(RunSound&&) noexcept;
   RunSound& operator=(RunSound&&) noexcept;
 
-  /// Finds the modes of a part before it is struck.
+  /// Computes the modes of a part before its first impact.
   void prepare(std::size_t part);
-  /// Adds the samples up to the snapshot's time. Give one for each physics step.
+  /// Adds the samples up to the snapshot's time. Call it with the snapshot of each physics step.
   void hear(const scenes::Snapshot& shot);
-  /// From now on.
+  /// Adds a beep that begins at the current time.
   void beep(device::Beep beep);
 
-  /// Of what has been heard since the last call: sound pressure at the listener [Pa], and the beeps, -1 to 1.
+  /// Sound pressure at the listener [Pa], and the beeps, from -1 to 1.
   struct Samples {
     std::vector<float> pressure_Pa, beeps;
   };
+  /// The samples since the last call.
   [[nodiscard]] Samples take();
   [[nodiscard]] int rate_hz() const;
 
@@ -51,9 +52,9 @@ class VPS_VIEWER_API RunSound {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The bytes of a WAV file, mono, 16 bits: the pressure so that its greatest value is at -3 dB, and the beeps
-/// at -20 dB. Silence stays silence.
-/// @param full_scale_Pa  if given, receives the pressure that the largest number stands for
+/// The bytes of a WAV file, mono, 16 bits. The pressure is scaled to a peak of -3 dB, and the beeps are at
+/// -20 dB. Silence stays silent.
+/// @param full_scale_Pa  if given, receives the pressure of the largest 16-bit number
 VPS_VIEWER_API std::string wavBytes(const RunSound::Samples& samples, int rate_hz,
                                     double* full_scale_Pa = nullptr);
 
