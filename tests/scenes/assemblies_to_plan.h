@@ -36,7 +36,8 @@ inline Mesh block(const Vec3& min, const Vec3& max) {
   return transformed(makeBox(max - min), Pose::translation(0.5 * (min + max)));
 }
 
-/// A convex polygon of (x, z), counter-clockwise seen from -y, along y from -half to half.
+/// A prism: a convex polygon of (x, z), counter-clockwise as seen from -y, extruded along y from -half to
+/// half.
 inline Mesh prismAlongY(const std::vector<std::array<double, 2>>& polygon, double half_m) {
   Mesh mesh;
   const auto n = static_cast<std::uint32_t>(polygon.size());
@@ -58,7 +59,7 @@ inline Mesh prismAlongY(const std::vector<std::array<double, 2>>& polygon, doubl
 inline Mesh perforatedPlate(int count, double pitch_m, double hole_r_m, double thickness_m) {
   constexpr int kSides = 32;
   Mesh mesh;
-  std::map<std::array<long long, 3>, std::uint32_t> known;  // by place in nanometres
+  std::map<std::array<long long, 3>, std::uint32_t> known;  // vertices by position in nanometres
   const auto vertex = [&](const Vec3& p) {
     const Vec3 nm = 1e9 * p;
     const std::array<long long, 3> key = {std::llround(nm.x()), std::llround(nm.y()), std::llround(nm.z())};
@@ -80,7 +81,7 @@ inline Mesh perforatedPlate(int count, double pitch_m, double hole_r_m, double t
         return Vec3(std::cos(angle), std::sin(angle), 0);
       };
       const Vec3 e = along(k), f = along(k + 1);
-      const auto border = [&](const Vec3& d) {  // on the square around the hole
+      const auto border = [&](const Vec3& d) {  // the point in this direction on the square around the hole
         return Vec3(center + 0.5 * pitch_m / d.cwiseAbs().maxCoeff() * d);
       };
       const Vec3 a = center + hole_r_m * e, b = center + hole_r_m * f, c = border(f), d = border(e);
@@ -96,8 +97,8 @@ inline Mesh perforatedPlate(int count, double pitch_m, double hole_r_m, double t
   return mesh;
 }
 
-/// A cylinder along z whose corners are on it at uneven places, as of a face that was divided to follow
-/// splines: its facets lean both ways.
+/// A cylinder along z whose corners are unevenly spaced, like a face that was divided along splines. Its
+/// facets lean both ways.
 inline Mesh unevenCylinder(double radius_m, double length_m, std::uint32_t columns, std::uint32_t rows) {
   Mesh mesh;
   const double across = 2 * std::numbers::pi / columns, along_m = length_m / rows;
@@ -140,7 +141,7 @@ inline Mesh blindHole() {
                      96);
 }
 
-/// A tail that is wider below, 20 mm long, with 0.1 mm to each side.
+/// A dovetail, wider at the bottom, 20 mm long, with 0.1 mm of clearance on each side.
 inline Mesh dovetailTail() {
   return prismAlongY({{-9.9e-3, 0}, {9.9e-3, 0}, {5.9e-3, 8e-3}, {-5.9e-3, 8e-3}}, 10e-3);
 }
@@ -165,7 +166,7 @@ inline Mesh ring(double radius_m, double thick_m) {
   return test::lathe(profile, 48);
 }
 
-/// A box of 40 x 14 x 15 mm with a roof over x < 20 mm; it is open from there to 35 mm.
+/// A box of 40 x 14 x 15 mm with a roof over x < 20 mm; the box is open at the top from 20 mm to 35 mm.
 inline Mesh roofedBox(double roof_m = 0.02) {
   Mesh mesh = block({-0.002, -0.01, -0.005}, {0.04, 0.01, 0.0005});
   append(mesh, block({-0.002, -0.01, -0.005}, {0, 0.01, 0.015}));
@@ -202,8 +203,8 @@ inline Mesh ringPiece(double inner_m, double outer_m, double low_m, double high_
   return mesh;
 }
 
-/// A plug of 5 mm radius with one lug to x, and a socket with a lip above the lug, which is open for the lug
-/// a quarter of a turn on; stops at both ends of that turn.
+/// A plug of 5 mm radius with one lug along x, and a socket with a lip above the lug. The lip has an opening
+/// for the lug a quarter of a turn away, and stops at both ends of this turn.
 inline Mesh bayonetPlug() {
   Mesh mesh = transformed(makeCylinder(5e-3, 20e-3, 96), Pose::translation({0, 0, 10e-3}));
   append(mesh, ringPiece(4.5e-3, 7e-3, 2e-3, 4e-3, -15, 15));

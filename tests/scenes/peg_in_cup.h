@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A peg and the blind hole it stands in, of chosen radii, for tests of margins and studies.
+// A peg in a blind hole, with given radii, for tests of margins and studies.
 #pragma once
 
 #include "scenes/scene_part.h"
@@ -7,8 +7,8 @@
 
 namespace vps::scenes {
 
-/// Sizes of a peg and its cup [m]. Both have the same number of flats, in line, with their corners on the
-/// radii: 4 make a square key in a square pocket.
+/// Sizes of a peg and its cup [m]. Both have the same number of aligned flats, with corners at the radii; 4
+/// flats make a square key in a square pocket.
 struct PegInCup {
   double bore_m = 4.05e-3, peg_m = 4e-3;
   int flats = 96;

@@ -6,8 +6,6 @@
 #include <functional>
 #include <limits>
 #include <optional>
-#include <string_view>
-#include <unordered_map>
 
 #include <tbb/parallel_for.h>
 
@@ -15,6 +13,7 @@
 #include "pair/pair_measures.h"
 #include "pair/touches.h"
 #include "proof/blocked_proof.h"
+#include "proof/clash_groups.h"
 #include "text/words.h"
 #include "vps/mesh_overlap.h"
 
@@ -27,22 +26,10 @@ using Six = Eigen::Matrix<double, 6, 1>;
 /// Remaining overlap that the search accepts: a few times the precision of deepestOverlap().
 constexpr double kClear_m = 3 * kOverlapCertain_m;
 static_assert(kClear_m + kOverlapCertain_m < kContactDepth_m);
-constexpr std::size_t kMostBodies = 40;  // bodies that are moved at once; each adds six unknowns
 
 /// Limit of the work for one group of clashing parts, in the unit of Overlap::work: half a minute of one
 /// core.
 constexpr std::size_t kMostPlaceWork = 30'000'000;
-
-/// Two parts that are or may come near each other.
-struct NearPair {
-  std::size_t a = 0, b = 0;
-  bool is_clash = false;
-  double drawn_depth_m = 0;
-  double allowed_m = 0;  ///< overlap as drawn of parts in contact, whose facets cross; more is not allowed
-  bool is_uncertain = false;  ///< CheckedPair::is_uncertain, at the drawn places
-  /// Error of the meshes anywhere plus a declared press fit. The error of drawn_depth_m is another one.
-  double error_m = std::numeric_limits<double>::infinity();
-};
 
 constexpr std::size_t kMostNamed = 4;  // parts that are named in a message
 
@@ -72,17 +59,17 @@ class PlaceSearch {
         checked_(checked),
         bodies_(looseBodies(parts, checked)),
         body_of_(bodyOfPart(bodies_, parts.size())),
+        clashes_(parts, checked, bodies_),
         motion_(bodies_.size(), Six::Zero()),
         by_sight_(bodies_) {
     for (const PlacedSurface& part : parts) X_WP_.push_back(part.X_WP);
     for (MovableBody& body : by_sight_)
       if (!body.is_fixed) body.allowed_m = body.loose.most_m = kSightTolerance_m;
-    findPairs();
   }
 
   [[nodiscard]] CheckedPlaces search(const Progress& progress) {
     CheckedPlaces out;
-    const std::vector<std::vector<std::size_t>> groups = clashGroups();
+    const std::vector<std::vector<std::size_t>> groups = clashes_.groups();
     for (std::size_t i = 0; i < groups.size(); ++i) {
       if (progress) progress("searching for places without overlap", double(i) / double(groups.size()));
       const auto [verdict, reason] = freeGroup(groups[i]);
@@ -93,7 +80,7 @@ class PlaceSearch {
       }
       if (verdict == Verdict::Blocked) break;
     }
-    for (const NearPair& pair : tied_) {
+    for (const NearPair& pair : clashes_.tied()) {
       if (out.verdict == Verdict::Blocked) break;
       if (std::string why = provenAlone(pair); !why.empty()) {
         out.verdict = Verdict::Blocked;
@@ -117,119 +104,10 @@ class PlaceSearch {
  private:
   using Answer = std::pair<Verdict, std::string>;
 
-  void findPairs() {
-    std::unordered_map<std::string_view, std::size_t> index_of;
-    for (std::size_t i = 0; i < parts_.size(); ++i) index_of.emplace(parts_[i].name, i);
-    double most_m = 0;
-    for (const MovableBody& body : bodies_) most_m = std::max(most_m, body.allowed_m);
-    std::vector<std::vector<std::pair<std::size_t, const CheckedPair*>>> known(parts_.size());
-    for (const CheckedPair& pair : checked_.pairs) {
-      const auto [a, b] = std::minmax(index_of.at(pair.a), index_of.at(pair.b));
-      known[a].emplace_back(b, &pair);
-    }
-    for (const auto& [a, b] : nearPairs(parts_, 2 * most_m)) {
-      NearPair near{a, b};
-      if (parts_[a].drawn->allow_overlap || parts_[b].drawn->allow_overlap) continue;
-      for (const auto& [other, pair] : known[a]) {
-        if (other != b) continue;
-        near.is_uncertain = pair->is_uncertain;
-        near.is_clash = pair->isClash();
-        near.drawn_depth_m = pair->interference_depth_m;
-        near.allowed_m = near.is_clash ? 0 : pair->interference_depth_m;
-      }
-      near.error_m = meshError_m(parts_[a], parts_[b]) +
-                     std::max(parts_[a].drawn->press_fit_m, parts_[b].drawn->press_fit_m);
-      if (body_of_[a] != body_of_[b])
-        pairs_.push_back(near);
-      else if (near.is_clash)
-        tied_.push_back(near);
-    }
-  }
-
-  /// Groups of bodies that are connected by clashes; each group is in ascending order.
-  [[nodiscard]] std::vector<std::vector<std::size_t>> clashGroups() const {
-    std::vector<std::vector<std::size_t>> groups;
-    std::vector<bool> is_seen(bodies_.size());
-    for (const NearPair& pair : pairs_) {
-      // Fixed parts do not connect the bodies that clash with them.
-      const std::size_t first = body_of_[bodies_[body_of_[pair.a]].is_fixed ? pair.b : pair.a];
-      if (!pair.is_clash || is_seen[first]) continue;
-      groups.push_back(reachable(
-          {first}, [](const NearPair& p) { return p.is_clash; }, bodies_.size()));
-      for (const std::size_t body : groups.back()) is_seen[body] = true;
-    }
-    return groups;
-  }
-
-  /// The bodies and all bodies that are connected to them by pairs for which `joins` is true, found breadth
-  /// first and sorted. A fixed body connects no others.
-  template <class Joins>
-  [[nodiscard]] std::vector<std::size_t> reachable(std::vector<std::size_t> bodies, Joins joins,
-                                                   std::size_t most) const {
-    std::vector<bool> is_in(bodies_.size());
-    for (const std::size_t body : bodies) is_in[body] = true;
-    for (std::size_t next = 0; next < bodies.size(); ++next) {
-      if (bodies_[bodies[next]].is_fixed) continue;
-      for (const NearPair& pair : pairs_) {
-        const std::size_t a = body_of_[pair.a], b = body_of_[pair.b];
-        if ((a != bodies[next] && b != bodies[next]) || !joins(pair)) continue;
-        const std::size_t other = a == bodies[next] ? b : a;
-        if (is_in[other] || bodies.size() >= most) continue;
-        is_in[other] = true;
-        bodies.push_back(other);
-      }
-    }
-    std::ranges::sort(bodies);
-    return bodies;
-  }
-
-  /// Whether the pair is a clash between bodies of the group.
-  [[nodiscard]] bool isOf(const std::vector<std::size_t>& group, const NearPair& pair) const {
-    const std::size_t body = body_of_[bodies_[body_of_[pair.a]].is_fixed ? pair.b : pair.a];
-    return pair.is_clash && std::ranges::binary_search(group, body);
-  }
-
-  [[nodiscard]] double size_m(std::size_t body) const { return bodies_[body].loose.arm_m; }
-
-  /// The bodies that may be moved: all without the fixed ones, or, if none is fixed, all but the largest.
-  [[nodiscard]] std::vector<std::size_t> movable(std::vector<std::size_t> bodies) const {
-    const std::size_t count = bodies.size();
-    std::erase_if(bodies, [&](std::size_t body) { return bodies_[body].is_fixed; });
-    if (bodies.size() == count && count > 1)
-      bodies.erase(std::ranges::max_element(bodies, {}, [&](std::size_t body) { return size_m(body); }));
-    return bodies;
-  }
-
-  /// The sets of bodies that are moved, in the order of the tries.
-  [[nodiscard]] std::vector<std::vector<std::size_t>> tries(const std::vector<std::size_t>& group) const {
-    std::vector<std::vector<std::size_t>> out;
-    std::vector<std::size_t> by_size = group;
-    std::ranges::stable_sort(by_size, {}, [&](std::size_t body) { return size_m(body); });
-    const auto isInAll = [&](std::size_t body) {
-      return std::ranges::all_of(pairs_, [&](const NearPair& pair) {
-        return !isOf(group, pair) || body_of_[pair.a] == body || body_of_[pair.b] == body;
-      });
-    };
-    const auto add = [&](const std::vector<std::size_t>& bodies) {
-      if (!bodies.empty() && std::ranges::find(out, bodies) == out.end()) out.push_back(bodies);
-    };
-    for (const std::size_t body : by_size)
-      if (!bodies_[body].is_fixed && isInAll(body)) add({body});
-    if (group.size() <= kMostBodies) add(movable(group));
-    add(movable(reachable(
-        group, [](const NearPair&) { return true; }, std::max(kMostBodies, group.size()))));
-    // If two bodies overlap by as much as both tolerances together, both must move.
-    std::vector<std::size_t> all = group;
-    std::erase_if(all, [&](std::size_t body) { return bodies_[body].is_fixed; });
-    add(all);
-    std::erase_if(out, [](const auto& bodies) { return bodies.size() > kMostBodies; });
-    return out;
-  }
-
   [[nodiscard]] Answer freeGroup(const std::vector<std::size_t>& group) {
     std::vector<const NearPair*> clashes;
-    for (const NearPair& pair : pairs_)
-      if (isOf(group, pair)) clashes.push_back(&pair);
+    for (const NearPair& pair : clashes_.pairs())
+      if (clashes_.isOf(group, pair)) clashes.push_back(&pair);
     for (const NearPair* pair : clashes)
       if (std::string why = provenAlone(*pair); !why.empty()) return {Verdict::Blocked, std::move(why)};
     for (const NearPair* pair : clashes)
@@ -237,7 +115,7 @@ class PlaceSearch {
     Tried last;
     std::size_t most_moved = 0;
     work_ = 0;
-    for (const std::vector<std::size_t>& moved : tries(group)) {
+    for (const std::vector<std::size_t>& moved : clashes_.tries(group)) {
       if (work_ >= kMostPlaceWork) break;
       Tried tried = move(moved);
       if (tried.is_free) {
@@ -435,7 +313,7 @@ class PlaceSearch {
       return tried.moving.variable[body_of_[part]] != GapRow::kHeld;
     };
     std::vector<NearPair> pairs;
-    for (const NearPair& pair : pairs_)
+    for (const NearPair& pair : clashes_.pairs())
       if (isMoved(pair.a) || isMoved(pair.b)) pairs.push_back(pair);
     double best_m = std::numeric_limits<double>::infinity();
     int stalled = 0;
@@ -501,7 +379,7 @@ class PlaceSearch {
   /// The pairs that contain a moved part.
   [[nodiscard]] std::vector<NearPair> movedPairs() const {
     std::vector<NearPair> out;
-    for (const NearPair& pair : pairs_)
+    for (const NearPair& pair : clashes_.pairs())
       if (!motion_[body_of_[pair.a]].isZero() || !motion_[body_of_[pair.b]].isZero()) out.push_back(pair);
     return out;
   }
@@ -523,8 +401,7 @@ class PlaceSearch {
   const CheckResult& checked_;
   std::vector<MovableBody> bodies_;
   std::vector<std::size_t> body_of_;
-  std::vector<NearPair> pairs_;
-  std::vector<NearPair> tied_;         // clashes between parts of one body
+  ClashGroups clashes_;
   std::vector<Six> motion_;            // by body: motions of the groups that are free so far
   std::vector<Pose> X_WP_;             // by part: poses after these motions
   std::vector<MovableBody> by_sight_;  // the bodies, each allowed to move by kSightTolerance_m; for proofs
