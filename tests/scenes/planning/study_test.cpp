@@ -155,6 +155,21 @@ TEST(Study, AnotherSeedOrAnotherToleranceIsAnotherStudy) {
   EXPECT_EQ(prints.size(), 5U);
 }
 
+// Logs of earlier versions stay valid only if the draws never change.
+TEST(Study, TheDrawsOfASeedRunAndNameAreThoseOfEarlierVersions) {
+  StudyVariable uniform, normal;
+  uniform.name = "a";
+  uniform.distribution = Distribution::Uniform;
+  normal.name = "b";
+  for (StudyVariable* variable : {&uniform, &normal}) {
+    variable->lower = -1;
+    variable->upper = 1;
+  }
+  const std::vector<double> values = sampleStudy({uniform, normal}, 7, 3);
+  EXPECT_EQ(values[0], 0.21670628020008209);
+  EXPECT_NEAR(values[1], -0.22037245646406919, 1e-15);  // rounding of the standard library's log and cos
+}
+
 TEST(Study, UniformDeviationsLieEvenlyWithinTheirLimits) {
   StudyVariable variable;
   variable.name = "x";
