@@ -42,7 +42,7 @@ EglContext::EglContext() : display_(openDisplay()) {
   EGLint count = 0;
   if (!eglChooseConfig(display_, config_wanted, &config, 1, &count) || count == 0)
     config = nullptr;  // EGL_KHR_no_config_context suffices, since framebuffer objects are drawn into
-  // A robust context says when the graphics card was reset; another one may end the program then.
+  // A robust context reports a reset of the graphics card; with other contexts a reset may end the program.
   const EGLint wanted[] = {EGL_CONTEXT_MAJOR_VERSION,
                            4,
                            EGL_CONTEXT_MINOR_VERSION,
@@ -52,7 +52,8 @@ EglContext::EglContext() : display_(openDisplay()) {
                            EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY_KHR,
                            EGL_LOSE_CONTEXT_ON_RESET_KHR,
                            EGL_NONE};
-  std::array<EGLint, 7> plain = {};  // without these two, for drivers that have no robust contexts
+  // the attributes without the last two, for drivers without robust contexts
+  std::array<EGLint, 7> plain = {};
   std::copy_n(wanted, plain.size() - 1, plain.begin());
   plain.back() = EGL_NONE;
   context_ = eglCreateContext(display_, config, EGL_NO_CONTEXT, wanted);

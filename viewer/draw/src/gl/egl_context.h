@@ -16,7 +16,7 @@ class EglContext {
   EglContext& operator=(const EglContext&) = delete;
 
   /// Makes the context current on this thread. The destructor restores the context that was current before,
-  /// so that a renderer can be used in a program with windows.
+  /// so that a program with windows can use a renderer.
   class Current {
    public:
     explicit Current(const EglContext& context);

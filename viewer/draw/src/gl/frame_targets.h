@@ -11,18 +11,19 @@ struct FrameTargets {
   int factor;         ///< supersampling: the colour image is factor times as wide and high
   int samples;        ///< multisampling on top of it
 
-  // Normal and depth of the visible surface, for ambient occlusion, at the size of the finished picture. In a
-  // draft, which has none, they are one pixel.
+  // Normal and depth of the visible surface, for ambient occlusion, at the size of the finished picture. A
+  // draft has no ambient occlusion; there these textures have one pixel.
   gl::Texture geometry;
   gl::Renderbuffer geometry_depth;
   gl::Framebuffer geometry_target;
   gl::Texture occlusion_raw, occlusion;
   gl::Framebuffer occlusion_raw_target, occlusion_target;
-  // Background and the shadow on the floor, in linear colour: they need one sample a pixel only.
+  // Background and the shadow on the floor, in linear colour. Both are smooth, so one sample a pixel is
+  // enough.
   gl::Texture behind;
   gl::Framebuffer behind_target;
-  // Linear colour of all else with its opacity, multisampled with stencil, then laid over `behind` and
-  // converted to sRGB.
+  // Linear colour and opacity of parts, edges and marks, multisampled, with stencil. They are later blended
+  // over `behind` and converted to sRGB.
   gl::Texture color;
   gl::Renderbuffer depth;
   gl::Framebuffer color_target;
@@ -35,7 +36,7 @@ struct FrameTargets {
 /// The render targets whose size does not depend on the picture's.
 struct ShadowTargets {
   static constexpr int kKeySize = 2048, kFloorSize = 256;
-  static constexpr double kFloorRadii = 3;  ///< around the centre that the floor's texture covers
+  static constexpr double kFloorRadii = 3;  ///< half the width of the floor's texture, in radii of the scene
   gl::Texture key;                          ///< depth map of the key light, with comparison on lookup
   gl::Framebuffer key_target;
   gl::Texture floor_a, floor_b;

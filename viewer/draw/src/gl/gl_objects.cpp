@@ -63,7 +63,7 @@ VertexArray makeVertexArray() {
 
 void addAttribute(const VertexArray& array, const Buffer& buffer, GLuint location, int count,
                   std::size_t offset, std::size_t stride, GLuint divisor) {
-  // Each attribute has a binding point of its own; there are fewer than the sixteen that OpenGL guarantees.
+  // Each attribute has a binding point of its own; OpenGL guarantees sixteen, and the renderer needs fewer.
   glVertexArrayVertexBuffer(array.id(), location, buffer.id(), static_cast<GLintptr>(offset),
                             static_cast<GLsizei>(stride));
   glVertexArrayAttribFormat(array.id(), location, count, GL_FLOAT, GL_FALSE, 0);
@@ -86,7 +86,7 @@ Texture makeTexture(GLenum format, int width, int height, GLenum filter) {
 Texture makeMultisampleTexture(GLenum format, int width, int height, int samples) {
   GLuint id = 0;
   glCreateTextures(GL_TEXTURE_2D_MULTISAMPLE, 1, &id);
-  // Fixed sample positions, as those of the renderbuffer that has the depth.
+  // Fixed sample positions, to match the renderbuffer that holds the depth.
   glTextureStorage2DMultisample(id, samples, format, width, height, GL_TRUE);
   return Texture(id);
 }
@@ -117,7 +117,7 @@ Program::Program(const char* name, const std::string& vertex_source, const std::
        {std::pair(GL_VERTEX_SHADER, &vertex_source), std::pair(GL_FRAGMENT_SHADER, &fragment_source)}) {
     const GLuint shader = compile(name, static_cast<GLenum>(stage), *source);
     glAttachShader(program_.id(), shader);
-    glDeleteShader(shader);  // the program keeps it
+    glDeleteShader(shader);  // the linked program keeps the shader
   }
   glLinkProgram(program_.id());
   GLint is_ok = 0;

@@ -11,8 +11,8 @@
 
 namespace vps::viewer::gl {
 
-/// Throws std::runtime_error, which says what helps, where the graphics card was reset or is out of memory
-/// since the last call. What was drawn is then worth nothing.
+/// Throws std::runtime_error, with a remedy, if the graphics card was reset or ran out of memory since the
+/// last call. The picture is then invalid.
 void requireSound();
 
 /// An object's name and the function that deletes it; movable.
@@ -72,7 +72,7 @@ void addAttribute(const VertexArray& array, const Buffer& buffer, GLuint locatio
 
 /// A two-dimensional texture, clamped to its edge.
 Texture makeTexture(GLenum format, int width, int height, GLenum filter);
-/// One that is drawn into and read sample by sample.
+/// A multisample texture that is drawn into and read sample by sample.
 Texture makeMultisampleTexture(GLenum format, int width, int height, int samples);
 Renderbuffer makeRenderbuffer(GLenum format, int width, int height, int samples);
 Framebuffer makeFramebuffer();

@@ -47,9 +47,12 @@ GpuMesh::GpuMesh(const DrawnMesh& part, std::size_t scene_triangles)
 }
 
 void GpuMesh::addLevels(CoarseMesh& coarse) {
-  constexpr std::size_t kFewest = 5000;                           // triangles. assumed: fewer cost little
-  constexpr std::array<double, 5> kCells = {24, 34, 48, 68, 96};  // along the diagonal
-  constexpr double kWorthwhile = 0.7;                             // of the triangles of the level before
+  // A mesh with fewer triangles is cheap to draw and gets no coarser levels (assumed).
+  constexpr std::size_t kFewest = 5000;
+  // Grid cells along the diagonal of the part's box, for each level.
+  constexpr std::array<double, 5> kCells = {24, 34, 48, 68, 96};
+  // A level is kept if it has at most this share of the previous level's triangles.
+  constexpr double kWorthwhile = 0.7;
   std::size_t before = shading.indices.size();
   if (before / 3 < kFewest) return;
   for (auto cells = kCells.rbegin(); cells != kCells.rend(); ++cells) {
@@ -62,7 +65,7 @@ void GpuMesh::addLevels(CoarseMesh& coarse) {
 }
 
 void GpuMesh::drawAt(double px_per_m) const {
-  constexpr double kCell_px = 8;  // a surface then stays within a tenth of a pixel or so, see CoarseMesh
+  constexpr double kCell_px = 8;  // the surface then moves by about a tenth of a pixel, see CoarseMesh
   const auto level =
       std::ranges::find_if(levels_, [&](const Level& each) { return each.cell_m * px_per_m < kCell_px; });
   const Indices& drawn = level == levels_.end() ? of(Detail::Full) : level->indices;

@@ -24,10 +24,10 @@ struct GpuLines {
 /// How many of a mesh's triangles are drawn.
 enum class Detail {
   Full,
-  Shadow,  ///< at most about kShadowTriangles of the whole scene
-  Draft,   ///< at most about kDraftTriangles
+  Shadow,  ///< at most about kShadowTriangles in the whole scene
+  Draft,   ///< at most about kDraftTriangles in the whole scene
 };
-/// Shadows are blurred over more than the error of so many triangles.
+/// The blur of shadows is wider than the error of a scene with this many triangles.
 inline constexpr std::size_t kShadowTriangles = 120000;
 
 struct GpuMesh {
@@ -36,13 +36,13 @@ struct GpuMesh {
   bool has_face_colors = false;
   gl::Buffer vertices, colors;
   GpuLines sharp_edges;
-  /// @param scene_triangles  of all meshes, of which the details are shares
+  /// @param scene_triangles  number of triangles of all meshes, on which the levels of detail depend
   GpuMesh(const DrawnMesh& part, std::size_t scene_triangles);
   void draw(Detail detail) const;
-  /// With as few triangles as a picture shows where the part is at least that far away.
-  /// @param px_per_m  of the picture, there
+  /// Draws the coarsest level whose error is invisible at the given scale.
+  /// @param px_per_m  pixels per metre at the nearest point of the part
   void drawAt(double px_per_m) const;
-  /// Whether that detail has fewer triangles than the mesh.
+  /// Whether the mesh has fewer triangles at the given detail than in full.
   [[nodiscard]] bool isCoarser(Detail detail) const { return of(detail).count < of(Detail::Full).count; }
 
  private:
@@ -60,7 +60,7 @@ struct GpuMesh {
     Indices indices;
   };
   std::array<Indices, 3> details_;  ///< by Detail
-  std::vector<Level> levels_;       ///< smoothed, the coarsest first
+  std::vector<Level> levels_;       ///< levels of smoothed meshes, the coarsest first
 };
 
 /// A part at its pose in one picture.

@@ -29,7 +29,7 @@ void main() {
 // these lights with Schlick's Fresnel term [Schlick 1994].
 inline constexpr const char* kStudio = R"(
 uniform vec3 up_C;
-uniform sampler2D light_reaching;  // of the sky, of the key light: see kOcclusionFragment
+uniform sampler2D light_reaching;  // share of the light of the sky (x) and of the key light (y): see kOcclusionFragment
 uniform vec2 picture_px;
 const vec3 kKey = normalize(vec3(-0.55, 0.75, 0.60));
 const vec3 kFill = normalize(vec3(0.85, 0.10, 0.50));
@@ -69,7 +69,7 @@ void main() {
 }
 )";
 
-// The target: transparent where it faces the viewer and denser towards its rim, so that its shape is visible.
+// The target is transparent where it faces the viewer and denser towards its rim, so that its shape is visible.
 inline constexpr const char* kGhostFragment = R"(
 in vec3 p_C, n_C;
 uniform vec3 color;
@@ -83,7 +83,7 @@ void main() {
 }
 )";
 
-// Cut faces as in a technical drawing: tinted and hatched at 45 degrees, in alternating directions.
+// Cut faces are drawn as in a technical drawing: tinted and hatched at 45 degrees, in alternating directions.
 inline constexpr const char* kCapVertex = R"(
 layout(location = 0) in vec2 corner;
 uniform vec3 origin_C, x_C, y_C;
@@ -111,7 +111,7 @@ void main() {
   float width = fwidth(t);
   float distance_to_line = abs(fract(t) - 0.5);
   float line = 1.0 - smoothstep(0.09 - width, 0.09 + width, distance_to_line);
-  line *= 1.0 - smoothstep(0.3, 0.6, width);  // fades out where lines are too fine for the pixels
+  line *= 1.0 - smoothstep(0.3, 0.6, width);  // the hatch fades out where its lines are too fine for the pixels
   vec3 paper = mix(color, vec3(0.85), 0.25);
   vec3 base = mix(paper, paper * 0.42, line);
   result = vec4(0.55 * base + 0.45 * studio(p_C, normalize(n_C), base), 1);
@@ -132,18 +132,17 @@ inline constexpr const char* kFullScreenVertex = R"(
 out vec2 uv;  // 0 to 1
 void main() {
   uv = vec2(gl_VertexID == 1 ? 2 : 0, gl_VertexID == 2 ? 2 : 0);
-  gl_Position = vec4(2.0 * uv - 1.0, 1, 1);  // as far as a depth test can tell
+  gl_Position = vec4(2.0 * uv - 1.0, 1, 1);  // at the far plane of the depth test
 }
 )";
 
-// Ambient occlusion in screen space: the share of the hemisphere over a pixel that no nearer geometry covers;
-// and the key light's soft shadow. The sample patterns are fixed and differ from pixel to pixel of a square
-// of 4 x 4, which the blur afterwards averages exactly: there a surface gets 160 directions and 64 depths.
+// Computes ambient occlusion in screen space (the share of the hemisphere over a pixel that no nearer geometry covers) and the key light's soft shadow. The sample patterns are fixed and differ from pixel to pixel of a square
+// of 4 x 4, which the blur afterwards averages exactly. Each point of a surface thus gets 160 directions and 64 depths.
 inline constexpr const char* kOcclusionFragment = R"(
 in vec2 uv;
 uniform sampler2D geometry;
 uniform vec2 half_view;  // tan of half the angles of view
-uniform vec2 view_shift;  // of the picture's middle
+uniform vec2 view_shift;  // offset of the picture's middle, as tangents
 uniform float radius_m;
 uniform sampler2DShadow shadow_map;
 uniform mat4 shadow_from_C;
@@ -173,7 +172,7 @@ void main() {
   float lit = keyLight(p, n, tile);
   p += n * radius_m * 0.03;
   float place = (float(((4 * tile.x + tile.y) * 7) & 15) + 0.5) / 16.0;
-  // Each direction is a golden angle on from the last; a rotation costs a processor less than an angle.
+  // Each direction is the previous one turned by the golden angle; multiplying by a rotation is faster than sine and cosine.
   vec2 turn = vec2(cos(6.2831853 * place), sin(6.2831853 * place));
   vec3 t = normalize(abs(n.x) < 0.8 ? cross(n, vec3(1, 0, 0)) : cross(n, vec3(0, 1, 0)));
   vec3 b = cross(n, t);
@@ -216,8 +215,7 @@ void main() {
 }
 )";
 
-// The nearest part above each place of the floor, as seen from below: x decays quickly with its height, y
-// slowly.
+// Marks the nearest part above each place of the floor, seen from below: x decays quickly with the part's height, y slowly.
 inline constexpr const char* kFloorFragment = R"(
 in vec3 p_C, n_C;
 uniform vec3 floor_C, up_C;
@@ -229,8 +227,7 @@ void main() {
 }
 )";
 
-// Its constants kReach and kWeights (of x and y, of texels -kReach to kReach) are put before it. The texels
-// that it reads exist.
+// The program puts the constants kReach and kWeights (for x and y, of texels -kReach to kReach) before this source. All texels that the shader reads exist.
 inline constexpr const char* kFloorBlurFragment = R"(
 uniform sampler2D source;
 uniform ivec2 direction;
@@ -274,8 +271,7 @@ void main() {
 
 // --- lines and marks ---
 
-// A line as a screen-aligned strip, because core profiles guarantee lines of one pixel only. It is moved
-// slightly towards the eye, so that an edge lies in front of its own faces.
+// Draws a line as a screen-aligned strip, because core profiles guarantee lines of one pixel only. The strip is moved slightly towards the eye, so that an edge lies in front of its own faces.
 inline constexpr const char* kLineVertex = R"(
 layout(location = 0) in vec3 a;
 layout(location = 1) in vec3 b;
@@ -307,7 +303,7 @@ out vec4 result;
 void main() { result = color; }
 )";
 
-// One unit arrow or disc along +z per instance.
+// Draws one unit arrow or disc along +z per instance.
 inline constexpr const char* kMarkVertex = R"(
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
@@ -341,15 +337,12 @@ void main() {
 
 // --- the finished picture ---
 
-// Averages samples in linear colour, lays them over the background, compresses highlights instead of clipping
-// them, and encodes as sRGB [IEC 61966-2-1]. Its constants `factor` and `samples` are put before it: a
-// processor takes much longer for loops whose length it does not know. So is `has_parts`: where no part can
-// be, there is the background alone.
+// Averages samples in linear colour, blends them over the background, compresses highlights instead of clipping them, and encodes as sRGB [IEC 61966-2-1]. The program puts the constants `factor`, `samples` and `has_parts` before this source, since llvmpipe runs loops of unknown length much slower. Without `has_parts`, only the background is drawn.
 inline constexpr const char* kFinalFragment = R"(
-uniform sampler2DMS parts;  // colour times opacity, and opacity
+uniform sampler2DMS parts;  // rgb: colour times opacity; a: opacity
 uniform sampler2D behind;
 out vec4 result;
-vec3 shoulder(vec3 c) {  // identity to 0.8, then towards 1
+vec3 shoulder(vec3 c) {  // identity up to 0.8, then asymptotically towards 1
   vec3 over = max(c - 0.8, 0.0);
   return min(c, 0.8) + over / (1.0 + over / 0.2);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How far two images differ, as numbers and as a picture.
+// The difference of two images, as numbers and as a picture.
 #include <algorithm>
 #include <cstdlib>
 #include <stdexcept>
@@ -44,7 +44,7 @@ Image differenceImage(const Image& a, const Image& b, int tolerance) {
     if (difference <= tolerance) {
       std::fill_n(&out.rgb[i], 3, static_cast<std::uint8_t>(grey));
     } else {
-      const int pale = std::max(0, 140 - difference);  // stronger red the further apart
+      const int pale = std::max(0, 140 - difference);  // the red is stronger for larger differences
       out.rgb[i] = static_cast<std::uint8_t>(200 + difference / 5);
       out.rgb[i + 1] = out.rgb[i + 2] = static_cast<std::uint8_t>(pale);
     }

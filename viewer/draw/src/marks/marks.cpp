@@ -36,7 +36,8 @@ MarkList listMarks(const scenes::Snapshot& snapshot, const Pose& X_CW, double si
                    const DrawOptions& options) {
   MarkList marks;
   if (options.show_contacts) {
-    // Deepest first, because more than a few dozen arrows hide each other and the part.
+    // Only the deepest contacts get arrows, because more than a few dozen arrows hide each other and the
+    // part.
     std::vector<std::size_t> order(snapshot.contacts.size());
     std::iota(order.begin(), order.end(), 0);
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {

@@ -10,8 +10,8 @@
 
 namespace vps::viewer {
 
-/// Linear RGB of a contact whose depth is `share` of full scale: from yellow (0) over orange and red to dark
-/// red (1).
+/// Linear RGB of a contact whose depth is the given share of full scale: from yellow (0) over orange and red
+/// to dark red (1).
 Eigen::Vector3f depthColor(double share);
 
 inline const Eigen::Vector3f kForceColor(
@@ -27,7 +27,7 @@ struct Mark {
 struct MarkList {
   std::vector<Mark> arrows, discs;
 };
-/// @param size_m diameter of what the picture shows
+/// @param size_m diameter of the scene in the picture [m]
 MarkList listMarks(const scenes::Snapshot& snapshot, const Pose& X_CW, double size_m,
                    const DrawOptions& options);
 

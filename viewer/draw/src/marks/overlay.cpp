@@ -76,7 +76,7 @@ struct Lettering::Impl {
 };
 
 Lettering::Lettering() : impl_(std::make_unique<Impl>()) {
-  // The folders of Debian's fonts-dejavu-core and of Fedora's and Arch's packages.
+  // Folders of the font in Debian (fonts-dejavu-core), Fedora and Arch.
   static const std::array<const char*, 3> kFolders = {
       "/usr/share/fonts/truetype/dejavu/", "/usr/share/fonts/dejavu-sans-fonts/", "/usr/share/fonts/TTF/"};
   static const std::array<const char*, 2> kFiles = {"DejaVuSans.ttf", "DejaVuSans-Bold.ttf"};

@@ -26,7 +26,7 @@ class Lettering {
   Lettering(Lettering&&) noexcept;
   Lettering& operator=(Lettering&&) noexcept;
   [[nodiscard]] bool isReady() const;
-  /// Width in pixels of one line of UTF-8.
+  /// Width of one line of UTF-8 text [px].
   [[nodiscard]] double width(const std::string& utf8, const TextStyle& style) const;
   /// Draws one line whose baseline begins at (x, y). Returns its width.
   double write(Image& image, double x, double y, const std::string& utf8, const TextStyle& style) const;
@@ -40,6 +40,7 @@ struct LegendColors {
   Eigen::Vector3f hand, target;  ///< linear RGB
 };
 
+/// Draws title, caption and legend over the finished image, for the marks that the snapshot has.
 void drawOverlay(Image& image, const scenes::Snapshot& snapshot, const DrawOptions& options,
                  const LegendColors& colors, const Lettering& lettering);
 

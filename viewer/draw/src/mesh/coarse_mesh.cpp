@@ -19,7 +19,7 @@ std::uint64_t side(const std::array<float, 3>& n) {
   return static_cast<std::uint64_t>(2 * axis + (n[axis] < 0 ? 1 : 0));
 }
 
-/// By vertex: equal for equal colours. Empty for a mesh without.
+/// A number for each vertex, equal for equal colours. Empty for a mesh without colours.
 std::vector<std::uint32_t> colorNumbers(const ShadingMesh& mesh) {
   std::map<std::array<float, 3>, std::uint32_t> known;
   std::vector<std::uint32_t> numbers;
@@ -71,7 +71,8 @@ std::vector<std::uint32_t> CoarseMesh::indices(std::size_t wanted) {
   const float cell = (high - low).maxCoeff() / static_cast<float>(cells);
   if (!(cell > 0)) return mesh_.indices;
 
-  constexpr int kColorBits = 25;  // that a cell and a side leave
+  // bits of the 64-bit key that are left beside three cell numbers and the side
+  constexpr int kColorBits = 25;
   const std::vector<std::uint32_t> color_of = colorNumbers(mesh_);
   std::unordered_map<std::uint64_t, std::uint32_t> first_in_cell;
   std::vector<std::uint32_t> stand_in(mesh_.vertices.size());
@@ -82,7 +83,7 @@ std::vector<std::uint32_t> CoarseMesh::indices(std::size_t wanted) {
       key = key << 12 | static_cast<std::uint64_t>((mesh_.vertices[i].p[k] - low[k]) / cell);
     stand_in[i] = first_in_cell.try_emplace(key, i).first->second;
   };
-  // Vertices on creases come first, so that sharp edges stay where they are.
+  // Vertices on creases come first, so that they represent their cells and sharp edges do not move.
   const std::vector<bool>& is_creased = creased();
   for (const bool wanted_now : {true, false})
     for (std::uint32_t i = 0; i < mesh_.vertices.size(); ++i)
@@ -91,7 +92,7 @@ std::vector<std::uint32_t> CoarseMesh::indices(std::size_t wanted) {
 }
 
 std::vector<std::uint32_t> CoarseMesh::smoothedIndices(double cell) {
-  constexpr float kNormalBins = 12;  // a unit of a normal's coordinate: 5 degrees
+  constexpr float kNormalBins = 12;  // bins per unit of a normal's coordinate: about 5 degrees each
   const std::vector<bool>& is_creased = creased();
   struct Key {
     std::array<std::int32_t, 7> at;

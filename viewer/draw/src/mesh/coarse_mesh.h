@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Coarser versions of a mesh: for drafts (pictures of a view that moves), shadows, and parts that are small
-// in a picture.
+// Coarser versions of a mesh, for drafts (pictures of a moving view), shadows, and parts that are small in a
+// picture.
 #pragma once
 
 #include <cstddef>
@@ -11,21 +11,22 @@
 
 namespace vps::viewer {
 
-/// The coarser versions of one mesh. Its creases are found once, for the first that needs them.
+/// The coarser versions of one mesh. The creases of the mesh are found once, on first use.
 class CoarseMesh {
  public:
-  /// @param mesh  outlives it
+  /// @param mesh  must outlive the CoarseMesh
   explicit CoarseMesh(const ShadingMesh& mesh) : mesh_(mesh) {}
 
-  /// Indices of about `wanted` triangles between some of the mesh's own vertices, or of all where it has no
-  /// more. The vertices of one colour within a cell of a cubic grid whose normals face the same side become
-  /// one of them, and triangles that collapse are dropped; a surface stays within a cell's diagonal of where
-  /// it was. O(triangles). Source: vertex clustering, Rossignac and Borrel 1993.
+  /// Indices of about `wanted` triangles between some of the mesh's own vertices; all triangles if the mesh
+  /// has no more. Vertices of one colour in one cell of a cubic grid whose normals face the same side are
+  /// replaced by one of them, and triangles that collapse are dropped. The surface moves by at most a cell's
+  /// diagonal. O(triangles). Source: vertex clustering, Rossignac and Borrel 1993.
   std::vector<std::uint32_t> indices(std::size_t wanted);
 
-  /// The same surface with fewer triangles where it is smooth: vertices of one colour within a cell whose
-  /// normals differ by less than about a twelfth of a right angle become one. Those on creases and borders
-  /// stay, so nothing opens. A surface stays within a quarter of a cell of where it was. O(triangles).
+  /// The same surface with fewer triangles in smooth regions: vertices of one colour in one cell whose
+  /// normals differ by less than about a twelfth of a right angle are replaced by one of them. Vertices on
+  /// creases and borders stay, so no gap opens. The surface moves by at most a quarter of a cell.
+  /// O(triangles).
   /// @param cell  edge of a cell [m], > 0
   std::vector<std::uint32_t> smoothedIndices(double cell);
 
@@ -34,7 +35,7 @@ class CoarseMesh {
   [[nodiscard]] std::vector<std::uint32_t> withStandIns(const std::vector<std::uint32_t>& stand_in) const;
 
   const ShadingMesh& mesh_;
-  std::vector<bool> is_creased_;  ///< of each vertex; empty until it is needed
+  std::vector<bool> is_creased_;  ///< by vertex; empty until first use
 };
 
 }  // namespace vps::viewer

@@ -58,8 +58,10 @@ struct Cells {
   }
 };
 
-constexpr float kDarker = 0.72f;  // every second cube, so that single ones are seen
-// Share by which faces are smaller than their cube: the renderer gives vertices at one place one tint.
+// factor on the colour of every second cube, so that single cubes are visible
+constexpr float kDarker = 0.72f;
+// Faces are smaller than their cube by this share, because the renderer gives all vertices at one place one
+// tint.
 constexpr double kInset = 1e-3;
 
 void addFace(TintedMesh& voxels, const Cells& cells, const Place& at, int axis, int side) {
@@ -79,7 +81,7 @@ Mesh pointMesh(const PointShell& shell, double size_m) {
   Mesh mesh;
   const std::size_t count = std::min(shell.size(), kModelTriangles / 2);
   if (count == 0) return mesh;
-  // Of an even sampling, the spacing grows as the root of the share that is left out.
+  // If an even sampling is thinned, its spacing grows with the square root of the reduction.
   const double spacing_m = shell.spacing_m * std::sqrt(double(shell.size()) / static_cast<double>(count));
   const double reach_m = 0.5 * (size_m > 0 ? size_m : 0.6 * spacing_m);
   for (std::size_t i = 0; i < count; ++i) {
@@ -95,7 +97,7 @@ Mesh pointMesh(const PointShell& shell, double size_m) {
 TintedMesh voxelMesh(const VoxMap& map, double* cube_m) {
   TintedMesh voxels;
   if (map.bounds().isEmpty() || !(map.voxel_m() > 0)) return voxels;
-  // Cubes as numerous as the budget's faces on the box's surface would need, at least.
+  // Lower bound of the cube's size: the faces on the surface of the box alone must fit the budget.
   const Vec3 size_m = map.bounds().size();
   const double surface_m2 = 2 * (size_m.x() * size_m.y() + size_m.y() * size_m.z() + size_m.z() * size_m.x());
   const double least_m = std::sqrt(surface_m2 / (0.5 * kModelTriangles));

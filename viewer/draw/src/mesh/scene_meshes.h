@@ -11,11 +11,11 @@
 
 namespace vps::viewer {
 
-/// A part's extent and, if it is fixed, its pose. A renderer keeps this after the meshes are uploaded.
+/// A part's extent and, if it is fixed, its pose. A renderer keeps this list after the meshes are uploaded.
 struct PartExtent {
   Box bounds_P;
   bool is_fixed = false;
-  Pose X_WP;  ///< of a fixed part; others stand where the snapshot says
+  Pose X_WP;  ///< pose of a fixed part; the snapshot has the poses of others
 };
 
 std::vector<PartExtent> partExtents(const RenderScene& scene);
@@ -30,7 +30,7 @@ void forEachVisiblePart(
 Box visibleBounds(const std::vector<PartExtent>& parts, const scenes::Snapshot& snapshot, bool show_waiting,
                   bool show_target);
 
-/// Corner i takes the greatest x, y, z where bit 0, 1, 2 of i is set.
+/// The eight corners of a box. Corner i has the greatest x, y, z if bit 0, 1, 2 of i is set.
 inline std::array<Vec3, 8> corners(const Box& box) {
   std::array<Vec3, 8> points;
   for (int i = 0; i < 8; ++i)

@@ -52,7 +52,7 @@ double cornerAngle(const Mesh& mesh, std::uint32_t corner) {
 /// Adds one shading vertex per vertex, smooth group around it, and colour. A corner's normal is the mean over
 /// the faces that meet its own at less than the crease angle. Faces are weighted by their angle at the
 /// vertex, so that the mean does not depend on the triangulation of flat faces.
-/// @param colors  by triangle; none: they have none
+/// @param colors  by triangle; empty: no colours
 void addVertices(const Mesh& mesh, const std::vector<Vec3>& normals, const scenes::FaceColors& colors,
                  double crease_cos, ShadingMesh& out) {
   const Fans fans = buildFans(mesh);
@@ -88,7 +88,7 @@ void addVertices(const Mesh& mesh, const std::vector<Vec3>& normals, const scene
 void addEdges(const Mesh& mesh, const std::vector<Vec3>& normals, double crease_cos, ShadingMesh& out) {
   struct HalfEdge {
     std::uint32_t low, high, face;
-    bool is_upwards;  // from low to high, as its face goes around
+    bool is_upwards;  // whether the face runs along the edge from low to high
     bool operator<(const HalfEdge& o) const {
       return low != o.low ? low < o.low : high != o.high ? high < o.high : face < o.face;
     }

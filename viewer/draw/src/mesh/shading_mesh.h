@@ -38,15 +38,17 @@ struct SmoothEdge {
 };
 
 struct ShadingMesh {
-  Vec3 center = Vec3::Zero();  ///< in the part's frame; separate, so that floats keep their precision far out
+  Vec3 center = Vec3::Zero();  ///< in the part's frame; separate, so that floats stay precise in parts far
+                               ///< from their origin
   std::vector<ShadingVertex> vertices;
-  std::vector<std::uint32_t> sources;        ///< by shading vertex: that of the mesh
+  std::vector<std::uint32_t> sources;        ///< by shading vertex: index of the mesh's vertex
   std::vector<std::array<float, 3>> colors;  ///< linear RGB by shading vertex; empty: none is given
   std::vector<std::uint32_t> indices;
-  std::vector<ShadingEdge> sharp_edges;  ///< dihedral angle beyond the crease angle, and open borders
+  /// Edges whose dihedral angle exceeds the crease angle, and open borders
+  std::vector<ShadingEdge> sharp_edges;
   std::vector<SmoothEdge> smooth_edges;
-  /// Each edge is between two triangles that agree on what is outside: seen from there, only front faces
-  /// show.
+  /// Whether each edge lies between two triangles with consistent orientation. From outside, only front faces
+  /// of a closed mesh are visible.
   bool is_closed = false;
 };
 
@@ -54,9 +56,9 @@ struct ShadingMesh {
 /// to 20).
 inline constexpr double kCreaseAngle_rad = 28 * 3.14159265358979323846 / 180;
 
-/// O(n log n).
+/// Builds the mesh for drawing; O(n log n) in the triangles.
 /// @param crease_rad faces that meet at a smaller angle are shaded as one smooth surface
-/// @param colors     of the mesh's triangles; null, or of another number of them: none
+/// @param colors     colours by triangle of the mesh; null, or a list of another length: no colours
 ShadingMesh buildShadingMesh(const Mesh& mesh, double crease_rad = kCreaseAngle_rad,
                              const scenes::FaceColors* colors = nullptr);
 

@@ -39,8 +39,8 @@ void drawGhostEdges(const DrawnBody& ghost, const Picture& picture) {
 }
 
 void drawGhost(const DrawnBody& ghost, const Picture& picture) {
-  // Only the nearest surface, or the opacities of front and back would add up. It is pushed back a little, so
-  // that the part is visible where it coincides with its target.
+  // Only the nearest surface of the target is drawn, because the opacities of front and back would add up.
+  // The surface is pushed back a little, so that a part that coincides with its target is visible.
   const View& view = picture.view;
   glEnable(GL_POLYGON_OFFSET_FILL);
   glPolygonOffset(2, 8);

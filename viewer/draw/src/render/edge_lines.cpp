@@ -52,7 +52,8 @@ void drawEdges(const Picture& picture) {
   glEnable(GL_CLIP_DISTANCE0);
   glEnable(GL_BLEND);
   for (const DrawnBody& body : picture.bodies) {
-    if (body.mesh->isCoarser(body.detail)) continue;  // its edges are not where its triangles are
+    if (body.mesh->isCoarser(body.detail))
+      continue;  // the edges of the full mesh do not lie on the coarser triangles
     const Vector3f ink = 0.10f * body.color + Vector3f::Constant(0.004f);
     const Vec3 p_eye = -(body.X_CP.R.transpose() * body.X_CP.p);
     std::vector<ShadingEdge> rim;

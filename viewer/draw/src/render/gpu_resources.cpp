@@ -51,7 +51,7 @@ bool GpuResources::resizeFrame(int width, int height, int factor, bool is_draft)
   frame = owner.get();
   if (frame != nullptr && frame->width == width && frame->height == height && frame->factor == factor)
     return false;
-  owner.reset();  // first, so that two sizes are never in memory at once
+  owner.reset();  // free the old targets first, so that two sizes are never in memory at once
   owner = std::make_unique<FrameTargets>(width, height, factor, is_draft);
   frame = owner.get();
   if (!final_.contains(factor))

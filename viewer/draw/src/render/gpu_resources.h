@@ -17,11 +17,11 @@ namespace vps::viewer {
 /// The blur of the floor's shadow [texels of its texture].
 struct FloorBlur {
   static constexpr double kTexels =
-      ShadowTargets::kFloorSize / (2 * ShadowTargets::kFloorRadii);           // of a radius
+      ShadowTargets::kFloorSize / (2 * ShadowTargets::kFloorRadii);  // texels per radius of the scene
   static constexpr double kNarrow = 0.035 * kTexels, kWide = 0.16 * kTexels;  // standard deviations
   static constexpr int kRadius_texel = static_cast<int>(kTexels + 1);
   static constexpr int kReach_texel = static_cast<int>(2.5 * kWide + 1);
-  /// The constants of kFloorBlurFragment.
+  /// GLSL constants for kFloorBlurFragment.
   static std::string constants();
 };
 
@@ -46,18 +46,18 @@ struct ShaderPrograms {
 struct GpuResources {
   ShaderPrograms programs;
   ShadowTargets shadows;
-  FrameTargets* frame = nullptr;                           ///< of the current picture
+  FrameTargets* frame = nullptr;                           ///< targets of the current picture
   std::map<const Mesh*, std::unique_ptr<GpuMesh>> meshes;  ///< equal parts share one
   MarkShape arrow = MarkShape::arrow(), disc = MarkShape::disc();
   gl::Buffer quad_corners;
   gl::VertexArray quad = gl::makeVertexArray(), empty = gl::makeVertexArray();
 
   GpuResources();
-  /// Makes `frame` have this size. Drafts have one of their own, which keeps the last of them.
-  /// @return whether it is a new one, which shows nothing yet
+  /// Makes `frame` have the given size. Drafts have targets of their own, which keep the last draft.
+  /// @return whether the targets are new and hold no picture yet
   bool resizeFrame(int width, int height, int factor, bool is_draft);
-  /// kFinalFragment for `frame`.
-  /// @param has_parts  false: only the background is there
+  /// The program of kFinalFragment for `frame`.
+  /// @param has_parts  false: the picture shows the background only
   [[nodiscard]] const gl::Program& finalProgram(bool has_parts) const {
     return has_parts ? final_.at(frame->factor) : final_background_;
   }

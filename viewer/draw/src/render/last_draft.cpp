@@ -16,7 +16,7 @@ bool isSameMark(const Mark& a, const Mark& b) {
   return a.base_C == b.base_C && a.axis_C == b.axis_C && a.size_m == b.size_m && a.color == b.color;
 }
 
-/// Collects what is in one draft only.
+/// Collects the rectangles of bodies and marks that only one of two drafts has.
 class Changes {
  public:
   Changes(const View& view, int width, int height)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the last draft shows, so that the next one draws only what changed.
+// The contents of the last draft, so that the next draft draws changes only.
 #pragma once
 
 #include <optional>
@@ -14,13 +14,14 @@ namespace vps::viewer {
 struct DraftContents {
   Box box_W;  ///< see coarseBounds()
   Camera camera;
-  DrawOptions options;  ///< without what is drawn on the finished picture
+  DrawOptions options;  ///< without the options that only affect the overlay on the finished picture
   std::vector<DrawnBody> bodies;
   std::optional<DrawnBody> target;
   MarkList marks;
 };
 
-/// Lines reach at most so far beyond a part: they are up to 1.7 px wide at a height of 960 px, in proportion.
+/// Greatest distance of a line's pixels from its part. Lines are up to 1.7 px wide in a picture of 960 px
+/// height, and scale with the height.
 [[nodiscard]] constexpr int lineMargin_px(int height) {
   return 4 + height / 320;
 }
@@ -30,15 +31,16 @@ struct LastDraft {
   Image image;  ///< without title, legend and flash
 };
 
-/// A cube in place of the box around all that is drawn, from which the view of a draft follows: it stays the
-/// same while parts move a little. The view takes in 2.2 half diagonals of it each way.
-/// @param last  the last draft's, which is kept where its half diagonal is within a quarter of the box's and
-///              the middle of the box within 0.7 of it; null: none
+/// A cube that replaces the box around everything that is drawn when the view of a draft is computed. The
+/// cube stays the same while parts move a little. The view covers 2.2 half diagonals of the cube in each
+/// direction.
+/// @param last  cube of the last draft; kept if its half diagonal is within a quarter of the box's and the
+/// middle of the box within 0.7 of the cube's half diagonal; null: no last draft
 Box coarseBounds(const Box& box, const Box* last);
 
-/// The rectangle outside of which both drafts have the same pixels; none: they see from different places, or
-/// in different ways, and have nothing in common. O(bodies and marks).
-/// @param view  of `next`
+/// The rectangle outside of which both drafts have the same pixels; std::nullopt if their cameras or
+/// options differ, so that everything must be drawn. O(bodies and marks).
+/// @param view  view of `next`
 std::optional<PixelRect> changedPixels(const DraftContents& last, const DraftContents& next, const View& view,
                                        int width, int height);
 

@@ -7,7 +7,8 @@ namespace vps::viewer {
 
 namespace {
 
-/// A closed part shows its front faces only, unless it is cut, or the eye, at the origin, may be inside.
+/// Whether only front faces of the part can be visible: the part is closed, not cut, and the eye (the origin)
+/// is outside it.
 bool showsFrontOnly(const DrawnBody& body, const View& view) {
   const double reach_m = 0.5 * body.mesh->bounds_P.size().norm() + view.near_m;
   return body.mesh->shading.is_closed && !body.is_cut && body.X_CP.p.norm() > reach_m;
@@ -25,7 +26,8 @@ void drawMeshes(const gl::Program& program, const std::vector<DrawnBody>& bodies
   program.use();
   program.set("projection", projection);
   for (const DrawnBody& body : bodies) {
-    // Clipping and the faces behind cost as much as what is seen.
+    // Clipping and back faces cost as much as visible faces, so both are switched off where they are not
+    // needed.
     if (body.is_cut) glEnable(GL_CLIP_DISTANCE0);
     if (showsFrontOnly(body, view)) glEnable(GL_CULL_FACE);
     program.set("X_CP", toMatrix(body.X_CP));

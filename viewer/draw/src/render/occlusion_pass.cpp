@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Ambient occlusion in screen space, from the normal and depth of what is seen.
+// Ambient occlusion in screen space, from the normal and depth of the visible surface.
 #include <array>
 #include <cstdint>
 
@@ -19,7 +19,7 @@ void renderGeometry(const Picture& picture) {
 
 namespace {
 
-/// Runs the program where something was drawn, by its depth; all light reaches the background.
+/// Runs the program only on pixels that a part covers, by the depth test; all light reaches the background.
 void drawOnParts(const gl::Framebuffer& target, const gl::Program& program, const GpuResources& gl) {
   glBindFramebuffer(GL_FRAMEBUFFER, target.id());
   glClearColor(1, 1, 1, 1);
@@ -32,7 +32,8 @@ void drawOnParts(const gl::Framebuffer& target, const gl::Program& program, cons
 void renderOcclusion(const Picture& picture) {
   const View& view = picture.view;
   const FrameTargets& frame = *picture.gl.frame;
-  // A processor takes as long for a pixel of the background as for one of a part, unless depth rules it out.
+  // On llvmpipe a pixel of the background costs as much as a pixel of a part, unless the depth test rejects
+  // it.
   glDepthFunc(GL_GREATER);
   glDepthMask(GL_FALSE);
   const auto radius_m = static_cast<float>(0.16 * view.detail_m);

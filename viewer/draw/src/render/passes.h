@@ -20,14 +20,14 @@ struct Picture {
   const View& view;
   const DrawOptions& options;
   const std::vector<DrawnBody>& bodies;
-  PixelRect region;  ///< of the finished picture that is drawn
-  PixelRect parts;   ///< of it, where the colour image can show something; elsewhere is the background
+  PixelRect region;  ///< the part of the finished picture that is drawn
+  PixelRect parts;   ///< the part of `region` that parts or marks can cover; the background fills the rest
 };
 
 // shadow_pass.cpp
 /// The depth map of the key light.
 void renderKeyShadow(const Picture& picture);
-/// How close the nearest part above each place of the floor is, blurred.
+/// A blurred map of the height of the nearest part above each place of the floor.
 void renderFloorShadow(const Picture& picture);
 /// Lays the floor's shadow on the background.
 void drawFloorShadow(const Picture& picture);
@@ -35,26 +35,26 @@ void drawFloorShadow(const Picture& picture);
 // occlusion_pass.cpp
 /// Normal and depth of every pixel, for renderOcclusion().
 void renderGeometry(const Picture& picture);
-/// How much light of the sky and of the key light reaches every pixel.
+/// The share of the light of the sky and of the key light that reaches each pixel.
 void renderOcclusion(const Picture& picture);
-/// Instead of renderOcclusion(): all light reaches every pixel.
+/// Replaces renderOcclusion() in drafts: all light reaches every pixel.
 void lightEverything(const Picture& picture);
 
 // color_pass.cpp
-/// The background and the floor's shadow, which all else is laid over.
+/// The background and the floor's shadow, over which everything else is blended.
 void renderBehind(const Picture& picture);
 /// The colour image: parts, cut faces, edges, marks, target.
 /// @param target the part at its target pose; null: none
 void renderColor(const Picture& picture, const MarkList& marks, const DrawnBody* target);
 /// Averages the samples, converts to sRGB and reads the region into `image`, which has the picture's size.
 void resolvePicture(const Picture& picture, Image& image);
-/// DrawOptions::show_flash: draws the square and reads it back.
+/// Draws the square of DrawOptions::show_flash and reads it back.
 void drawFlash(const GpuResources& gl, bool is_lit, Image& image);
 
-// What several passes use.
+// Functions that several passes use.
 // mesh_drawing.cpp
 /// @param is_shaded whether the program takes a colour
-/// @param detail    null: as much as the view shows
+/// @param detail    null: as many triangles as the view can show
 void drawMeshes(const gl::Program& program, const std::vector<DrawnBody>& bodies, const View& view,
                 const Eigen::Matrix4f& projection, bool is_shaded,
                 std::optional<Detail> detail = std::nullopt);

@@ -45,7 +45,7 @@ struct Renderer::Impl {
       const EglContext::Current current(context);
       gl.reset();
     } catch (const std::exception&) {
-      static_cast<void>(gl.release());  // a lost context; its objects went with it
+      static_cast<void>(gl.release());  // the context was lost, and its objects with it
     }
   }
 
@@ -101,7 +101,7 @@ struct Renderer::Impl {
   }
 
   Image drawInFull(const scenes::Snapshot& snapshot, const Camera& camera, const DrawOptions& options);
-  /// Draws only what changed since the last draft; the pixels are those of a draft that is drawn as a whole.
+  /// Draws only the changes since the last draft; all pixels equal those of a draft of the whole picture.
   Image drawDraft(const scenes::Snapshot& snapshot, const Camera& camera, const DrawOptions& options);
 };
 
@@ -115,7 +115,7 @@ std::string Renderer::description() const {
 
 namespace {
 
-/// As a draft shows it: what is drawn on the finished picture is none of its pixels.
+/// The options that determine the pixels of a draft; options of the overlay are reset.
 DrawOptions withoutOverlay(DrawOptions options) {
   options.title.clear();
   options.caption.clear();
@@ -123,7 +123,7 @@ DrawOptions withoutOverlay(DrawOptions options) {
   return options;
 }
 
-/// Where the colour image can show something: a processor takes as long for a pixel without.
+/// The rectangle that parts and marks can cover. On llvmpipe other pixels would cost as much.
 PixelRect partsOnScreen(const std::vector<DrawnBody>& bodies, const DrawnBody* target, const MarkList& marks,
                         const View& view, const DrawOptions& options) {
   PixelRect rect;
@@ -151,7 +151,7 @@ Image Renderer::render(const scenes::Snapshot& snapshot, const Camera& camera, c
     impl.last_draft.reset();
 
   glEnable(GL_DEPTH_TEST);
-  // Opacity adds up as that of layers, because the picture is laid over its background at the end.
+  // Opacities combine as those of layers, because the picture is blended over its background at the end.
   glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
   glClearStencil(0);
   Image image = clamped.is_draft ? impl.drawDraft(snapshot, camera, clamped)
@@ -205,7 +205,7 @@ Image Renderer::Impl::drawDraft(const scenes::Snapshot& snapshot, const Camera& 
   if (last_draft) changed = changedPixels(last_draft->contents, next, view, options.width, options.height);
   drew_whole = !changed;
   Image image = last_draft ? std::move(last_draft->image) : Image(options.width, options.height);
-  last_draft.reset();  // until this one is drawn
+  last_draft.reset();  // no valid draft until this picture is drawn
   std::vector<DrawnBody> shown = next.bodies;
   if (changed)
     std::erase_if(shown, [&](const DrawnBody& body) {

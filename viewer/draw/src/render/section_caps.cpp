@@ -36,8 +36,8 @@ void setPlane(const gl::Program& program, const View& view) {
   program.set("half_size_m", static_cast<float>(2 * view.radius_m));
 }
 
-/// Sets the stencil where the plane passes through the solid: along a pixel's ray behind the plane, back
-/// faces minus front faces is 1 where the ray starts inside the solid.
+/// Sets the stencil where the plane passes through the solid. Along a pixel's ray behind the plane, the
+/// number of back faces minus front faces is 1 if the ray starts inside the solid.
 void markInside(const DrawnBody& body, const Picture& picture) {
   glClear(GL_STENCIL_BUFFER_BIT);
   glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
@@ -66,7 +66,7 @@ void drawCaps(const gl::Program& program, const Picture& picture) {
   const View& view = picture.view;
   if (!view.has_caps) return;
   setPlane(program, view);
-  // The cost of stencil and caps is per pixel, so each part gets a scissor of its own within the pass's.
+  // Stencil and caps cost time per pixel, so each part gets a scissor of its own within the pass's scissor.
   GLint pass[4], viewport[4];
   glGetIntegerv(GL_SCISSOR_BOX, pass);
   glGetIntegerv(GL_VIEWPORT, viewport);

@@ -11,7 +11,7 @@ namespace {
 using Eigen::Vector2i;
 using Eigen::Vector3f;
 
-/// An axis in the floor, the same for rendering its texture and for laying it down.
+/// An axis in the floor, used both for rendering the floor's texture and for drawing it.
 Vec3 floorAxis(const Vec3& up) {
   return std::abs(up.x()) < 0.8 ? Vec3(up.cross(Vec3::UnitX())).normalized()
                                 : up.cross(Vec3::UnitY()).normalized();
@@ -45,12 +45,14 @@ void renderFloorShadow(const Picture& picture) {
   floor.set("floor_C", Vector3f(view.floor_C.cast<float>()));
   floor.set("up_C", view.up_C);
   floor.set("size_m", static_cast<float>(2 * view.radius_m));
-  drawMeshes(floor, picture.bodies, view, parallelProjection(view.floor_C, half_m, -up, floorAxis(up)), false,
-             Detail::Draft);  // blurred over a sixth of its width
+  drawMeshes(
+      floor, picture.bodies, view, parallelProjection(view.floor_C, half_m, -up, floorAxis(up)), false,
+      Detail::Draft);  // the shadow is blurred over a sixth of its width, so a draft's triangles suffice
 
   glDisable(GL_DEPTH_TEST);
   const gl::Program& blur = picture.gl.programs.floor_blur;
-  // All parts are within a radius, so that there is no shadow farther out than that and what it is blurred.
+  // All parts lie within one radius of the centre, so no shadow lies farther out than the radius plus the
+  // blur.
   constexpr int kHalf = FloorBlur::kRadius_texel + FloorBlur::kReach_texel + 1;
   static_assert(kHalf + FloorBlur::kReach_texel <= ShadowTargets::kFloorSize / 2);
   glBindFramebuffer(GL_FRAMEBUFFER, shadows.floor_b_target.id());

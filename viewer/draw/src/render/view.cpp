@@ -26,7 +26,7 @@ Matrix4f perspectiveProjection(const Vector2f& half_view, const Vector2f& shift,
   return m;
 }
 
-/// From [-1, 1] to [0, 1], for texture lookups.
+/// Maps [-1, 1] to [0, 1], for texture lookups.
 Matrix4f clipToTexture() {
   Matrix4f m = Matrix4f::Identity() * 0.5f;
   m.topRightCorner<3, 1>().setConstant(0.5f);
@@ -96,7 +96,7 @@ View makeView(const Box& drawn_W, const Camera& camera, const DrawOptions& optio
 
 namespace {
 
-/// Around the points; all of the picture where one of them is behind the near plane.
+/// The rectangle around the points; the whole picture if one of them is behind the near plane.
 PixelRect around(std::span<const Vec3> points_C, const View& view, int width, int height, int margin_px) {
   const PixelRect whole = {0, 0, width, height};
   Eigen::Array2d low(1, 1), high(-1, -1);

@@ -21,9 +21,10 @@ Mat3 srgbToXyz() {
   return M;
 }
 
-// The bands' middles, by eye: red 629 and 615, green 532 and 518, blue 446 and 432 nm, as published for
-// interference filters [Jorke and Fritz, "Infitec: a new stereoscopic visualisation tool", 2003]. Their
-// colours: the CIE 1931 observer there, interpolated between the 5 nm of its table; rows red, green, blue.
+// The middles of the bands for the left and right eye: red 629 and 615, green 532 and 518, blue 446 and 432
+// nm, as published for interference filters [Jorke and Fritz, "Infitec: a new stereoscopic visualisation
+// tool", 2003]. Each row has the values of the CIE 1931 observer at one band (red, green, blue), interpolated
+// between the table's steps of 5 nm.
 Mat3 bands(bool is_left) {
   Mat3 rows;
   if (is_left)
@@ -33,7 +34,8 @@ Mat3 bands(bool is_left) {
   return rows.transpose();
 }
 
-/// From linear sRGB to the bands, with their strengths such that all of them together are sRGB's white.
+/// The matrix from linear sRGB to the bands. The strengths of the bands are chosen so that all bands together
+/// give sRGB's white.
 Mat3 conversion(bool is_left) {
   const Mat3 primaries = bands(is_left);
   const Vec3 white = srgbToXyz() * Vec3::Ones();
@@ -57,10 +59,10 @@ Image throughSpectralFilter(const Image& image, bool is_left) {
 }
 
 /// The camera of an eye in front of a rectangle; all in one frame.
-/// @param R  columns: to the right, up, and to the eye's side
+/// @param R  columns: to the right, up, and towards the eye
 Camera behindRectangle(const Vec3& eye, const Vec3& lower_left, double width_m, double height_m,
                        const Mat3& R) {
-  const Vec3 from = R.transpose() * (lower_left - eye);  // of the eye, to the corner
+  const Vec3 from = R.transpose() * (lower_left - eye);  // from the eye to the corner
   const double distance_m = -from.z();
   Camera camera;
   camera.eye_W = eye;
@@ -73,7 +75,8 @@ Camera behindRectangle(const Vec3& eye, const Vec3& lower_left, double width_m, 
   return camera;
 }
 
-/// Stretched without mixing rows or columns, since a mixture of rows would show each eye the other's picture.
+/// Stretches both pictures by repeating rows and columns. Interpolated rows would show each eye the other
+/// eye's picture.
 Image interleaved(const Image& left, const Image& right, const ScreenRows& rows) {
   Image both(rows.width > 0 ? rows.width : left.width, rows.height > 0 ? rows.height : left.height);
   for (int y = 0; y < both.height; ++y) {
@@ -86,7 +89,7 @@ Image interleaved(const Image& left, const Image& right, const ScreenRows& rows)
   return both;
 }
 
-/// Red is the left eye's brightness, so that a part of one colour is not seen by one eye alone.
+/// Red is the left eye's brightness, so that both eyes see parts of every colour.
 Image anaglyph(const Image& left, const Image& right) {
   Image both = right;
   for (std::size_t i = 0; i + 2 < both.rgb.size(); i += 3)  // luma: Rec. ITU-R BT.601
@@ -154,7 +157,7 @@ EyePair eyesOf(const scenes::Display& display, const scenes::DisplayScreen& scre
 }
 
 Camera middleEye(const EyePair& eyes) {
-  Camera middle = eyes.left;  // both frusta end at one screen, so the one between them is their mean
+  Camera middle = eyes.left;  // both frusta end at one screen, so the middle frustum is their mean
   middle.eye_W = 0.5 * (eyes.left.eye_W + eyes.right.eye_W);
   middle.target_W = 0.5 * (eyes.left.target_W + eyes.right.target_W);
   middle.shift_x = 0.5 * (eyes.left.shift_x + eyes.right.shift_x);
@@ -222,7 +225,7 @@ std::vector<ScreenPicture> renderDisplay(Renderer& renderer, const scenes::Snaps
       DrawOptions sized = options;
       sized.width = screen.width;
       sized.height = screen.height;
-      sized.show_ground = false;  // the floor is the room's
+      sized.show_ground = false;  // the room has a floor of its own
       const EyePair eyes = eyesOf(display, screen, viewer);
       const std::string name = display.viewers.size() > 1 ? screen.name + "_" + viewer.name : screen.name;
       std::vector<Image> images = renderStereo(renderer, snapshot, eyes, sized, mode);

@@ -15,15 +15,16 @@ struct VPS_VIEWER_API Camera {
   Vec3 target_W = Vec3::Zero();
   Vec3 up_W = Vec3::UnitZ();
   double fov_rad = 0.5;  ///< vertical angle of view; 0.5 is a short telephoto lens, which keeps proportions
-  /// Of an off-axis frustum: where the picture's middle is, as tangents to the right of and above the line
-  /// from eye to target, which stays perpendicular to the picture. fov_rad is then 2 atan(half its height /
-  /// distance).
+  /// Off-axis frustum: position of the picture's middle, as tangents to the right of and above the line from
+  /// eye to target. The line stays perpendicular to the picture; fov_rad is then 2 atan(half the picture's
+  /// height / distance).
   double shift_x = 0, shift_y = 0;
-  double aspect = 0;  ///< width over height of what is seen; 0: that of the picture's pixels
+  double aspect = 0;  ///< width over height of the frustum; 0: as the picture's pixels
 
   /// Pose of the camera frame C in W: x right, y up, z towards the viewer.
   [[nodiscard]] Pose pose() const;
-  /// Tangents of half the angles of view, across and up, in a picture of that size.
+  /// Tangents of half the horizontal and half the vertical angle of view, in a picture of the given size
+  /// [px].
   [[nodiscard]] std::array<double, 2> halfView(int width, int height) const;
   /// Pixel (x right, y down, pixel centres at half integers) of a point in front of the camera.
   [[nodiscard]] std::array<double, 2> project(const Vec3& p_W, int width, int height) const;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Images in memory and as PNG files, and how far two of them differ.
+// Images in memory and as PNG files, and the difference of two images.
 #pragma once
 
 #include <cstdint>
@@ -23,8 +23,8 @@ struct VPS_VIEWER_API Image {
   [[nodiscard]] std::uint8_t* at(int x, int y) { return &rgb[3 * (std::size_t(y) * width + x)]; }
 };
 
-/// The image as a PNG file has it; the same image gives the same bytes. Throws std::runtime_error when rgb
-/// has the wrong size.
+/// The bytes of a PNG file of the image; the same image gives the same bytes. Throws std::runtime_error when
+/// rgb has the wrong size.
 VPS_VIEWER_API std::string pngBytes(const Image& image);
 
 /// Writes a PNG file, whole or not at all. The same image gives the same bytes (no time stamp). The folder
@@ -50,7 +50,7 @@ VPS_VIEWER_API ImageDifference compare(const Image& a, const Image& b, int toler
 /// the difference. Throws std::invalid_argument unless the sizes agree.
 VPS_VIEWER_API Image differenceImage(const Image& a, const Image& b, int tolerance);
 
-/// savePng(differenceImage(...)).
+/// Writes differenceImage() as a PNG file. Throws as differenceImage() and savePng().
 VPS_VIEWER_API void writeDifference(const Image& a, const Image& b, int tolerance, const std::string& file);
 
 }  // namespace vps::viewer

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a picture shows: meshes, sections, and the options of drawing.
+// The contents of a picture: meshes, sections, and the options of drawing.
 #pragma once
 
 #include <algorithm>
@@ -15,16 +15,16 @@
 
 namespace vps::viewer {
 
-/// One thing that can be drawn; BodySnapshot::part counts these.
+/// One mesh that can be drawn; BodySnapshot::part is an index into the list of them.
 struct DrawnMesh {
   const Mesh* mesh = nullptr;  ///< must live as long as the constructor of Renderer runs
   std::array<float, 3> color = {0.7f, 0.72f, 0.75f};  ///< linear RGB
   bool is_fixed = false;                              ///< drawn at X_WP even if the snapshot does not list it
   Pose X_WP = {};
-  /// Linear RGB by vertex, by which `color` is multiplied; null: white. Lives as long as the mesh.
+  /// Linear RGB by vertex, multiplied with `color`; null: white. Must live as long as the mesh.
   const std::vector<std::array<float, 3>>* vertex_colors = nullptr;
-  /// Of the faces of a part that is not in hand, in place of `color`; null or none: they have none. Lives as
-  /// long as the mesh.
+  /// Colours of the faces, used in place of `color` while the part is not in hand; null or empty: no face has
+  /// a colour of its own. Must live as long as the mesh.
   const scenes::FaceColors* face_colors = nullptr;
 };
 using RenderScene = std::vector<DrawnMesh>;
@@ -37,14 +37,14 @@ VPS_VIEWER_API RenderScene drawnMeshes(const scenes::Scene& scene);
 struct CutPlane {
   Vec3 p_W = Vec3::Zero();
   Vec3 n_W = Vec3::UnitY();
-  bool cuts_hand =
-      false;  ///< false as in technical drawings: the inserted part (shaft, pin, screw) stays whole
+  /// False as in technical drawings: the inserted part (shaft, pin, screw) stays whole
+  bool cuts_hand = false;
 
   bool operator==(const CutPlane&) const = default;
 };
 
-/// About as many triangles a draft has at most. Measured with llvmpipe, 491,520 triangles and a draft of a
-/// third of 1280 x 720: 33 ms of processor time with 40,000, 60 ms with 100,000.
+/// Approximate greatest number of triangles in a draft. Measured with llvmpipe, 491,520 triangles and a draft
+/// of a third of 1280 x 720: 33 ms of processor time with 40,000, 60 ms with 100,000.
 inline constexpr std::size_t kDraftTriangles = 40000;
 
 struct DrawOptions {
@@ -59,35 +59,35 @@ struct DrawOptions {
   bool is_dark = false;           ///< the background
   bool highlight_hand = true;     ///< the part in hand is blue instead of its own colour
   bool show_legend = true;
-  /// A square in the lower left corner, white while something touches and black otherwise: for a light sensor
-  /// that measures how late pictures are.
+  /// Draws a square in the lower left corner, white during contact and black otherwise, for a light sensor
+  /// that measures the latency of pictures.
   bool show_flash = false;
   std::optional<CutPlane> cut;
   std::string title;                    ///< first line, top left; UTF-8
   std::string caption;                  ///< smaller lines under the title, separated by '\n'
-  double contact_full_scale_m = 20e-6;  ///< depth at the red end of the colour scale
+  double contact_full_scale_m = 20e-6;  ///< contact depth at the red end of the colour scale
   double force_full_scale_N = 15;       ///< force whose arrow has a sixth of the picture's size
   int supersampling = 2;  ///< n x n samples per pixel besides multisampling: 1 fast, 2 for print
-  /// For a view that moves: without shadows, ambient occlusion and outlines, and scenes of more than
-  /// kDraftTriangles are coarser. Where only parts and marks moved since the last draft, only the rectangle
-  /// around them is drawn again, with the same bits.
+  /// For a moving view: no shadows, ambient occlusion or outlines, and coarser meshes in scenes of more than
+  /// kDraftTriangles. If only parts and marks moved since the last draft, only the rectangle around them is
+  /// drawn again, with the same bits.
   bool is_draft = false;
 
   bool operator==(const DrawOptions&) const = default;
 };
 
-/// Pictures are at least one pixel and at most this wide and high; other sizes become the nearest of these.
+/// Greatest width and height of a picture. pictureLength_px() clamps other sizes to 1 and this.
 inline constexpr int kGreatestPicture_px = 8192;
 [[nodiscard]] constexpr int pictureLength_px(int wanted) {
   return std::clamp(wanted, 1, kGreatestPicture_px);
 }
 
-/// Edge of DrawOptions::show_flash's square.
+/// Edge of the square of DrawOptions::show_flash [px].
 [[nodiscard]] constexpr int flashSize_px(int height) {
   return std::max(4, height / 18);
 }
 
-/// The box in W around all that the snapshot shows, with show_waiting also around waiting parts.
+/// The box in W around everything that the snapshot shows. With show_waiting it includes waiting parts.
 VPS_VIEWER_API Box snapshotBounds(const RenderScene& scene, const scenes::Snapshot& snapshot,
                                   bool show_waiting = false);
 

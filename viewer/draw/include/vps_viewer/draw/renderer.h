@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Pictures of a Snapshot by OpenGL 4.5 without a display, through EGL on Mesa's surfaceless platform.
 //
-// Light comes from a key light, a fill light, a rim light and a sky, with ambient occlusion and a soft shadow
-// on an invisible floor. Sharp edges are thin dark lines. The part in hand is blue; its target is transparent
-// in the same blue. Light is summed in linear colour and converted to sRGB. The same input gives the same
-// bits on one machine; other CPUs round a few pixels differently by 1/255, so compare images with a
+// The scene is lit by a key light, a fill light, a rim light and a sky, with ambient occlusion and a soft
+// shadow on an invisible floor. Sharp edges are thin dark lines. The part in hand is blue; its target is
+// transparent in the same blue. Light is summed in linear colour and converted to sRGB. The same input gives
+// the same bits on one machine; other CPUs round a few pixels differently by 1/255, so compare images with a
 // tolerance.
 #pragma once
 
@@ -19,8 +19,8 @@
 
 namespace vps::viewer {
 
-/// Owns an OpenGL context and a scene's buffers. Use it on the thread that made it; several may exist at
-/// once.
+/// Owns an OpenGL context and a scene's buffers. Use a renderer on the thread that made it; several may exist
+/// at once.
 class VPS_VIEWER_API Renderer {
  public:
   /// Uploads the meshes; faces that meet at more than 28 degrees get separate normals. Throws
@@ -31,14 +31,14 @@ class VPS_VIEWER_API Renderer {
   Renderer& operator=(Renderer&&) noexcept;
 
   /// Draws one picture. Half a million triangles at 1280x720 take 0.34 s of processor time with llvmpipe.
-  /// Throws std::runtime_error, which says what helps, where OpenGL is out of memory or the graphics card was
-  /// reset; then only a new Renderer draws again.
+  /// Throws std::runtime_error, with a remedy, if OpenGL is out of memory or the graphics card was reset;
+  /// afterwards only a new Renderer can draw.
   Image render(const scenes::Snapshot& snapshot, const Camera& camera, const DrawOptions& options = {});
 
-  /// Whether the last picture was drawn as a whole: false for a draft in which only parts and marks moved.
+  /// Whether the whole last picture was drawn: false for a draft in which only parts and marks moved.
   [[nodiscard]] bool drewWhole() const;
 
-  /// "llvmpipe (LLVM 15.0.6, 256 bits), OpenGL 4.5, 4 samples".
+  /// The driver and its settings: "llvmpipe (LLVM 15.0.6, 256 bits), OpenGL 4.5, 4 samples".
   [[nodiscard]] std::string description() const;
 
   struct Impl;
