@@ -23,6 +23,11 @@ EdgeTree::EdgeTree(std::vector<Line> lines) : lines_(std::move(lines)) {
   });
   copyLinks(tree, nodes_);
   order_ = std::move(tree.order);
+  balls_.reserve(nodes_.size());
+  for (std::uint32_t n = 0; n < nodes_.size(); ++n) {
+    const Node& node = nodes_[n];
+    balls_.push_back({node.center, node.radius_m, node.skip - n, node.isLeaf() ? edge(node) : kNoEdge});
+  }
 }
 
 // The bounds of some edges: a sphere, the mean direction, and the line along it that the edges are near to.
