@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Natural frequencies against the formulas of bar, plate and ring, and the theory of thin shells for tube and
-// bell. 3 %: below what an ear tells apart as another note (a semitone is 6 %).
+// Natural frequencies against formulas for bar, plate and ring, and against thin-shell theory for tube and
+// bell. The tolerance of 3 % is below the difference of two notes (a semitone is 6 %).
 #include "modes/modes.h"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ BodyModes modesOf(const Vec3& size_m, ModeSettings settings = {}) {
   return findModes(
       makeBox(size_m), [](const Vec3&) { return true; }, kDensity_kg_m3, kSteel, settings);
 }
-/// The share by which the nearest of the modes differs.
+/// Relative difference between a frequency and that of the nearest mode.
 double missed(const BodyModes& body, double hz) {
   double best = 1e9;
   for (const double f : body.frequency_hz) best = std::min(best, std::abs(f / hz - 1));
@@ -48,7 +48,7 @@ TEST(Modes, OfASlenderBarAreThoseOfTheFormulas) {
   }
   EXPECT_NEAR(body.frequency_hz[0], bendingHz(4.730041, length_m, high_m), kBar * body.frequency_hz[0])
       << "and there is none below the first";
-  // Lengthwise: half a wave in the bar.
+  // The first longitudinal mode has half a wave in the bar.
   EXPECT_LT(missed(body, std::sqrt(kSteel.youngs_modulus_Pa / kDensity_kg_m3) / (2 * length_m)), kBar);
   // Torsion of a rectangle: Roark's formula for the torsion constant.
   const double a = wide_m / 2, b = high_m / 2;
@@ -79,15 +79,15 @@ TEST(Modes, AShapeIsOrthogonalAndHasMassOne) {
   const double end = moved(-0.1), middle = moved(0);
   EXPECT_GT(end, middle);
   EXPECT_GT(middle, 0);
-  // The first bending of a slender free bar moves its ends by 2 / sqrt(mass), its middle by 1.216 /
-  // sqrt(mass) (Rao, section 8.5). This one is thick: shear makes it less bent.
+  // The first bending mode of a slender free bar moves its ends by 2 / sqrt(mass) and its middle by 1.216 /
+  // sqrt(mass) (Rao, section 8.5). This bar is thick, and shear reduces its bending.
   EXPECT_NEAR(end * std::sqrt(body.mass_kg), 2, 0.1);
   EXPECT_NEAR(middle * std::sqrt(body.mass_kg), 1.216, 0.1);
-  // Of that along the normal: all of it on the two faces that the bar bends across, nearly none on the
-  // others.
+  // The motion is along the normal on the two faces perpendicular to the bending, and nearly tangential on
+  // the other faces.
   const double bent_share = 0.04 / (0.04 + 0.03 + 0.04 * 0.03 / 0.2);
   EXPECT_NEAR(body.normal_rms[0] * std::sqrt(body.mass_kg), std::sqrt(bent_share), 0.06);
-  // A point beside the body moves as the nearest place of it.
+  // A point outside the body moves with the body's nearest point.
   EXPECT_EQ(body.shapesAt({0.1, 0, 0.0151})[0], body.shapesAt({0.1, 0, 0.015})[0]);
 }
 
@@ -101,16 +101,17 @@ TEST(Modes, ARoundBarIsFoundOnASquareGrid) {
   EXPECT_LT(missed(body, hz), kBar);
 }
 
-/// A ring of rectangular section about z: bending in its plane, in n waves around it. Rayleigh, "The Theory
-/// of Sound", 1894, section 233. Of a thin ring: shear and rotary inertia, which it leaves out, lower n = 2
-/// and 3 by about (n h / R)^2 / 12, here 1 and 2 %.
+/// In-plane bending of a thin ring of rectangular section, with n waves around it. The formula neglects shear
+/// and rotary inertia, which lower the frequencies of n = 2 and 3 by about (n h / R)^2 / 12, here 1 and 2 %.
+/// Source: Rayleigh, "The Theory of Sound", 1894, section 233.
 double ringHz(int n, double radius_m, double thick_m) {
-  const double second_moment_m2 = thick_m * thick_m / 12;  // of the section, over its area
+  const double second_moment_m2 =
+      thick_m * thick_m / 12;  // second moment of the section, divided by its area
   return n * (n * n - 1) / std::sqrt(n * n + 1.0) / (2 * kPi * radius_m * radius_m) *
          std::sqrt(kSteel.youngs_modulus_Pa * second_moment_m2 / kDensity_kg_m3);
 }
 
-/// Of a tube about z with its middle at 0.
+/// Modes of a tube about z with its centre at the origin.
 BodyModes modesOfTube(double radius_m, double thick_m, double high_m) {
   return findModes(
       makeTube(radius_m + thick_m / 2, radius_m - thick_m / 2, high_m, 96),
@@ -133,9 +134,10 @@ test::ThinShell bowlShell(double radius_m, double thick_m) {
           kPi / 2 * radius_m, true, thick_m};
 }
 
-/// A hemispherical bowl that bends without stretching, in n waves around its rim. Displacements along, around
-/// and across: sin t, sin t and n + cos t, times tan(t / 2)^n; both curvatures and the twist change by
-/// (n^3 - n) tan(t / 2)^n / (a sin t)^2. Rayleigh, "The Theory of Sound", 1894, section 235 d.
+/// A hemispherical bowl that bends without stretching, with n waves around its rim. Its displacements along
+/// the meridian, around it and normal to the surface are sin t, sin t and n + cos t, times tan(t / 2)^n;
+/// curvatures and twist change by (n^3 - n) tan(t / 2)^n / (a sin t)^2. Source: Rayleigh, "The Theory of
+/// Sound", 1894, section 235 d.
 double rayleighsBowlHz(int n, double radius_m, double thick_m) {
   constexpr int kSteps = 2000;
   double bending = 0, motion = 0;
@@ -154,15 +156,15 @@ double rayleighsBowlHz(int n, double radius_m, double thick_m) {
 TEST(Modes, TheTheoryOfThinShellsHasRayleighsFrequenciesOfAThinBowlAndOfATube) {
   const double a_m = 0.05, h_m = 5e-6;
   EXPECT_NEAR(rayleighsBowlHz(3, a_m, h_m) / rayleighsBowlHz(2, a_m, h_m), 2.8102, 1e-4)
-      << "as he printed it";
+      << "the value that Rayleigh printed";
   EXPECT_NEAR(rayleighsBowlHz(4, a_m, h_m) / rayleighsBowlHz(2, a_m, h_m), 5.4316, 1e-4);
-  // A free edge lets go of a share that goes as the root of h / a: of 0.4 % here, and of 7 % at 2 mm.
+  // A free edge lowers frequencies by a share that is proportional to sqrt(h / a): 0.4 % here, 7 % at 2 mm.
   for (const int n : {2, 3, 4}) {
     const double hz = test::shellFrequencies(bowlShell(a_m, h_m), n)[0];
     EXPECT_NEAR(hz / rayleighsBowlHz(n, a_m, h_m), 0.99, 0.015) << n;
   }
-  // A tube whose wall bends around only: Rayleigh's ring, with a plate's stiffness in place of a bar's. Free
-  // ends let go of a little of that.
+  // If the wall of a tube bends around the axis only, it is Rayleigh's ring with a plate's stiffness in place
+  // of a bar's. Free ends are slightly softer.
   const double nu = kSteel.poissons_ratio;
   const test::ThinShell tube = {[=](double) { return test::Meridian{a_m, 0, 0, 1 / a_m}; }, 0.5, false, 2e-3};
   for (const int n : {2, 3})
@@ -173,14 +175,16 @@ TEST(Modes, TheTheoryOfThinShellsHasRayleighsFrequenciesOfAThinBowlAndOfATube) {
 
 TEST(Modes, ATubesAreThoseOfThinShells) {
   const double radius_m = 0.05, high_m = 0.08;
-  for (const double thick_m : {5e-3, 2e-3}) {  // of bricks of 11.5 mm
+  for (const double thick_m : {5e-3, 2e-3}) {  // wall thickness, with bricks of 11.5 mm
     const BodyModes body = modesOfTube(radius_m, thick_m, high_m);
-    EXPECT_LT(*std::ranges::max_element(body.grid.size_m), 0.013) << "as many bricks as there may be";
+    EXPECT_LT(*std::ranges::max_element(body.grid.size_m), 0.013)
+        << "the grid has as many bricks as are allowed";
     const test::ThinShell shell = {[=](double) {
                                      return test::Meridian{radius_m, 0, 0, 1 / radius_m};
                                    },
                                    high_m, false, thick_m};
-    // The first of each number of waves is the same along the tube, the second turns over in its middle.
+    // For each number of waves, the first mode is uniform along the tube, and the second changes sign in its
+    // middle.
     for (const int n : {2, 3, 4})
       for (const int i : {0, 1}) {
         const double hz = test::shellFrequencies(shell, n)[i];
@@ -191,7 +195,7 @@ TEST(Modes, ATubesAreThoseOfThinShells) {
 
 TEST(Modes, ABellsAreThoseOfThinShells) {
   const double radius_m = 0.05;
-  for (const double thick_m : {5e-3, 3e-3, 2e-3}) {  // of bricks of 10.5 mm
+  for (const double thick_m : {5e-3, 3e-3, 2e-3}) {  // wall thickness, with bricks of 10.5 mm
     constexpr int kFlats = 24;
     std::vector<std::array<double, 2>> profile;
     for (const bool outside : {true, false})
@@ -210,7 +214,7 @@ TEST(Modes, ABellsAreThoseOfThinShells) {
     for (const int n : {2, 3, 4}) {
       const double hz = test::shellFrequencies(bowlShell(radius_m, thick_m), n)[0];
       EXPECT_LT(missed(body, hz), kBar) << thick_m << ' ' << n << ' ' << hz;
-      // Two of each: one is the other, turned by a quarter of a wave.
+      // Modes come in pairs: one is the other, rotated by a quarter of a wave.
       EXPECT_LT(std::abs(body.frequency_hz[2 * n - 3] / body.frequency_hz[2 * n - 4] - 1), 0.01) << n;
     }
     EXPECT_LT(std::abs(body.frequency_hz[0] / test::shellFrequencies(bowlShell(radius_m, thick_m), 2)[0] - 1),
@@ -220,7 +224,8 @@ TEST(Modes, ABellsAreThoseOfThinShells) {
 }
 
 TEST(Modes, ACutBrickIsAsStiffAndHeavyAsWhatFillsIt) {
-  // The lower half of a brick: stretched along x it resists with half the whole brick's force.
+  // Only the lower half of the brick is filled. Stretched along x, it resists with half the force of a whole
+  // brick.
   const Vec3 size_m(2e-3, 3e-3, 4e-3);
   BrickFilling half;
   half.addShares(-Vec3::Ones(), Vec3::Ones(), 8, [](int, int, int z) { return z < 4; });
@@ -244,8 +249,8 @@ TEST(Modes, ACutBrickIsAsStiffAndHeavyAsWhatFillsIt) {
 }
 
 TEST(Modes, AWallWithinABrickBendsAsAPlateDoes) {
-  // Bent to the curvature 1 about y, with the saddle that goes with it, a wall stores E I / 2 for each
-  // length.
+  // A wall that is bent to curvature 1 about y, with the anticlastic curvature of free edges, stores the
+  // energy E I / 2 per length.
   const Vec3 size_m(10e-3, 10e-3, 10e-3);
   const auto energy_J = [&](int from, int to) {
     BrickFilling wall;
@@ -269,7 +274,8 @@ TEST(Modes, AWallWithinABrickBendsAsAPlateDoes) {
 }
 
 TEST(Modes, WhatIsSmallOrEmptyHasNone) {
-  EXPECT_TRUE(modesOf({8e-3, 8e-3, 12e-3}).frequency_hz.empty()) << "a small peg rings beyond hearing";
+  EXPECT_TRUE(modesOf({8e-3, 8e-3, 12e-3}).frequency_hz.empty())
+      << "the frequencies of a small peg are above the limit of hearing";
   EXPECT_TRUE(modesOf({0, 1, 1}).frequency_hz.empty());
   EXPECT_TRUE(findModes(
                   makeBox({1, 1, 1}), [](const Vec3&) { return false; }, 1, kSteel)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How much sound waits for the card, by a card and a thread in simulated time.
+// The length of the sound queue, with a simulated card and a writing thread in simulated time.
 #include "sound/queue_level.h"
 
 #include <gtest/gtest.h>
@@ -14,15 +14,15 @@ namespace vps::viewer {
 namespace {
 
 constexpr int kRate_hz = 48000;
-constexpr std::size_t kPeriod = 64, kBlock = 48;  // samples: of the card; of a step of 1 ms
+constexpr std::size_t kPeriod = 64, kBlock = 48;  // samples of the card's period, and of a step of 1 ms
 constexpr double kPeriod_s = double{kPeriod} / kRate_hz, kSpare_s = 1.25e-3;
 
-/// A card that takes a period at a time, and a thread that brings samples.
+/// A card that takes a period at a time, and a thread that writes samples.
 class Simulated {
  public:
   explicit Simulated(double phase_s = 0) : next_pull_s_(phase_s) {}
 
-  /// Samples of that time come now. What is written last is heard after wait_s().
+  /// Writes samples at a time. The last sample is heard after wait_s().
   void write(double time_s, std::size_t count, float peak = 0) {
     pullUntil(time_s);
     const QueuePlan plan = level_.plan(is_playing_, waiting_, count, peak, time_s);
@@ -35,7 +35,7 @@ class Simulated {
   }
   /// The card takes nothing for a while.
   void stall(double time_s) { next_pull_s_ += time_s; }
-  /// Until the last of what was written is mixed, if nothing more comes.
+  /// Time until the last written sample is mixed, if no more samples are written.
   [[nodiscard]] double wait_s() const {
     return next_pull_s_ - time_s_ + kPeriod_s * std::ceil(double(waiting_) / kPeriod - 1);
   }
@@ -66,15 +66,17 @@ TEST(QueueLevel, APunctualThreadKeepsLittleWaitingAndHasNoGap) {
       most = std::max(most, card.waiting());
     }
     EXPECT_EQ(card.gaps(), 0U);
-    EXPECT_LE(card.dropped(), kPeriod) << "at the start, where the first pull came late";
-    // Spare time, two periods (the first pull may come just before or after the start), a block.
+    EXPECT_LE(card.dropped(), kPeriod) << "at the start, when the card's first period was late";
+    // The bound is the reserve, two periods (the card may take the first just before or after the start), and
+    // a block.
     EXPECT_LE(most, std::size_t(kSpare_s * kRate_hz) + 2 * kPeriod + kBlock);
   }
 }
 
 TEST(QueueLevel, WhatIsNotNeededIsDroppedWhereNobodyHearsIt) {
   Simulated loud, quiet;
-  // A thread that was 8 ms late once, then is punctual: it has a gap, and more waits than needed.
+  // A thread is late once by 8 ms and punctual afterwards: there is a gap, and then more samples wait than
+  // needed.
   for (Simulated* card : {&loud, &quiet})
     for (int i = 0, late = 0; i < 20000; ++i) {
       if (i >= 2000 && i < 2008) {
@@ -86,14 +88,14 @@ TEST(QueueLevel, WhatIsNotNeededIsDroppedWhereNobodyHearsIt) {
   EXPECT_EQ(loud.gaps(), 1U);
   EXPECT_EQ(quiet.gaps(), 1U);
   EXPECT_GT(quiet.dropped(), 0U);
-  // Spare time with half of what it grew, and a quarter of a millisecond that is not worth it.
+  // The bound is the reserve with half of its growth, and the 0.25 ms that are too short to drop.
   const auto bound = std::size_t((kSpare_s + 0.625e-3 + 0.25e-3) * kRate_hz) + kPeriod + kBlock;
   EXPECT_LE(quiet.waiting(), bound);
   EXPECT_LT(quiet.waiting(), loud.waiting());
 }
 
 TEST(QueueLevel, AThreadThatIsOftenLateHasFewGaps) {
-  // Late by 4 ms five times a second, for 20 s: without a memory of it, 100 gaps.
+  // A thread is late by 4 ms five times a second, for 20 s. Without memory there would be 100 gaps.
   Simulated card;
   int late = 0;
   for (int i = 0; i < 20000; ++i) {
@@ -103,23 +105,23 @@ TEST(QueueLevel, AThreadThatIsOftenLateHasFewGaps) {
     }
     card.write(1e-3 * i, kBlock * std::size_t(1 + std::exchange(late, 0)));
   }
-  // Five in the first second, when a program that begins is late. Then it grows by 1.25 ms with each, and
-  // once or twice again where it went back.
+  // There are five gaps in the first second, in which gaps do not count. Then each gap makes the reserve 1.25
+  // ms longer, and once or twice it has shrunk too far.
   EXPECT_GE(card.gaps(), 1U);
   EXPECT_LE(card.gaps(), 10U);
 }
 
 TEST(QueueLevel, LongBlocksAreNotTakenForLateOnes) {
-  Simulated card;  // 10 ms each, as one who watches a session brings them
+  Simulated card;  // blocks of 10 ms, as a watcher of a session writes them
   for (int i = 0; i < 1000; ++i) card.write(10e-3 * i, 480, 0.5F);
-  EXPECT_LE(card.dropped(), kPeriod) << "as above";
+  EXPECT_LE(card.dropped(), kPeriod) << "at the start, when the card's first period was late";
   EXPECT_EQ(card.gaps(), 0U);
 }
 
 TEST(QueueLevel, OfABurstTheNewestAreHeard) {
   Simulated card;
   for (int i = 0; i < 1000; ++i) card.write(1e-3 * i, kBlock, 0.5F);
-  card.write(0.9995, 12000, 0.5F);  // a quarter of a second at once
+  card.write(0.9995, 12000, 0.5F);  // 0.25 s of samples at once
   EXPECT_LE(card.waiting(), std::size_t(kSpare_s * kRate_hz) + 2 * kPeriod + 2 * kBlock);
   EXPECT_LT(card.wait_s(), 6e-3);
 }
@@ -137,8 +139,7 @@ TEST(QueueLevel, ACardThatTakesNothingForSecondsIsNotHeardSecondsLater) {
   for (int i = 0; i < 1000; ++i) card.write(1e-3 * i, kBlock, 0.5F);
   card.stall(5);
   for (int i = 1000; i < 6000; ++i) card.write(1e-3 * i, kBlock, 0.5F);
-  constexpr double kMost_s =
-      10e-3 + 10e-3;  // what a thread may be late, once as it is and once as it may become
+  constexpr double kMost_s = 10e-3 + 10e-3;  // the greatest reserve, and the greatest block
   EXPECT_LE(card.waiting(), std::size_t(kMost_s * kRate_hz) + 2 * kPeriod + 3 * kBlock);
 }
 
@@ -150,8 +151,8 @@ TEST(QueueLevel, ACutHasNoStep) {
   EXPECT_TRUE(shortened(wave, 1000).empty());
   const std::vector<float> rest = shortened(wave, 40);
   ASSERT_EQ(rest.size(), 56U);
-  // From one sample to the next the wave goes by 0.05 at most, and fading by 1/56 of what both differ, 2 at
-  // most.
+  // Between two samples the wave changes by at most 0.05, and the fade by 1/56 of the difference of both
+  // waves, which is at most 2.
   for (std::size_t i = 1; i < rest.size(); ++i) EXPECT_LT(std::abs(rest[i] - rest[i - 1]), 0.05F + 2.0F / 56);
   EXPECT_NEAR(rest.front(), wave.front(), 0.05F + 2.0F / 56);
   EXPECT_EQ(rest.back(), wave.back());

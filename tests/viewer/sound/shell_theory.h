@@ -10,9 +10,9 @@
 
 namespace vps::test {
 
-/// A place of the middle surface's meridian.
+/// A point of the meridian of the middle surface.
 struct Meridian {
-  double radius_m = 0;     ///< from the axis
+  double radius_m = 0;     ///< distance from the axis
   double slope = 0;        ///< d radius / d s
   double along_per_m = 0;  ///< curvature along the meridian
   double around_per_m = 0;
@@ -20,23 +20,25 @@ struct Meridian {
 
 struct ThinShell {
   std::function<Meridian(double s_m)> meridian;
-  double length_m = 0;  ///< of the meridian, from s = 0
-  /// Whether s = 0 lies on the axis; then `along_per_m` has to be the same everywhere.
+  double length_m = 0;  ///< length of the meridian, from s = 0
+  /// Whether s = 0 is on the axis; if so, `along_per_m` must be constant.
   bool has_pole = false;
   double thick_m = 0, youngs_modulus_Pa = 210e9, poissons_ratio = 0.3, density_kg_m3 = 7850;
 };
 
-/// With n >= 2 waves around and free edges, rising. Displacements u along and w across the middle surface go
-/// as cos(n phi), v around it as sin(n phi); along s they are polynomials, times a power of the radius at a
-/// pole (Ritz's method). Strains and changes of curvature of a thin shell: Sanders, NASA TR R-24, 1959;
-/// Leissa, "Vibration of Shells", NASA SP-288, 1973, section 1.3. Shear and rotary inertia are left out, so
-/// that walls that are thick beside the waves come out too high.
+/// Natural frequencies with n >= 2 waves around the axis and free edges, sorted. Ritz's method: displacements
+/// u along the meridian and w normal to the surface are proportional to cos(n phi), v around the axis to
+/// sin(n phi); along s they are polynomials, times a power of the radius at a pole. Shear and rotary inertia
+/// are neglected, so the frequencies are too high if the wall is thick compared to the waves. Source of
+/// strains and changes of curvature: Sanders, NASA TR R-24, 1959; Leissa, "Vibration of Shells", NASA SP-288,
+/// 1973, section 1.3.
 inline std::vector<double> shellFrequencies(const ThinShell& shell, int n) {
   using Eigen::MatrixXd, Eigen::VectorXd;
-  constexpr int kTerms = 15, kSteps = 800;  // with 11 and 19 terms the same to 0.1 %
+  constexpr int kTerms = 15, kSteps = 800;  // 11 and 19 terms give the same to 0.1 %
   const double nu = shell.poissons_ratio, h = shell.thick_m;
   const double B = shell.youngs_modulus_Pa * h / (1 - nu * nu), D = B * h * h / 12;
-  MatrixXd elastic = MatrixXd::Zero(6, 6);  // of membrane strains, then of curvatures: along, around, twist
+  MatrixXd elastic =
+      MatrixXd::Zero(6, 6);  // elasticity of membrane strains, then of curvatures: along, around, twist
   for (const int i : {0, 3}) {
     elastic.block(i, i, 2, 2) << 1, nu, nu, 1;
     elastic(i + 2, i + 2) = (1 - nu) / 2;
@@ -46,7 +48,7 @@ inline std::vector<double> shellFrequencies(const ThinShell& shell, int n) {
   for (int step = 0; step < kSteps; ++step) {
     const double s = (step + 0.5) / kSteps * shell.length_m, x = 2 * s / shell.length_m - 1;
     const Meridian at = shell.meridian(s);
-    // Chebyshev's polynomials with their derivatives by s.
+    // Chebyshev polynomials and their derivatives with respect to s.
     VectorXd T = VectorXd::Zero(kTerms), dT = T, ddT = T;
     T[0] = 1;
     T[1] = x;
@@ -69,7 +71,8 @@ inline std::vector<double> shellFrequencies(const ThinShell& shell, int n) {
     const auto [u, du, ddu] = timesRadius(n - 1);
     const auto [w, dw, ddw] = timesRadius(n);
     const double c = at.slope / at.radius_m, m = n / at.radius_m, k1 = at.along_per_m, k2 = at.around_per_m;
-    // Rows: the six strains; columns: u, v, w. The normal turns by k1 u - dw along and by k2 v + m w around.
+    // Rows are the six strains, columns are u, v, w. The normal turns by k1 u - dw along the meridian and by
+    // k2 v + m w around the axis.
     MatrixXd strain = MatrixXd::Zero(6, 3 * kTerms);
     strain.row(0) << du, 0 * u, k1 * w;
     strain.row(1) << c * u, m * u, k2 * w;

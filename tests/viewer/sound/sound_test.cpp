@@ -16,8 +16,8 @@
 #include <sstream>
 #include <thread>
 
-#include "sound/voices.h"
 #include "sound/live_sound.h"
+#include "sound/voices.h"
 #include "support/temporary_folder.h"
 #include "vps_device/metronome.h"
 
@@ -53,12 +53,12 @@ TEST(PartVoice, AStruckBarSoundsAtTheFrequenciesOfItsModes) {
   std::vector<float> heard;
   voice.push(end, 10);
   for (int i = 0; i < kRate_hz / 2; ++i) heard.push_back(static_cast<float>(voice.next()));
-  // The first mode bends along z, so that an impact along z drives it; a third of a semitone beside it
-  // there is much less.
+  // The first mode bends along z, so that an impact along z drives it. A third of a semitone away, the
+  // amplitude is much smaller.
   const double hz = modes.frequency_hz[0];
   EXPECT_GT(amplitudeAt(heard, hz), 3 * amplitudeAt(heard, 1.05 * hz));
   EXPECT_GT(amplitudeAt(heard, hz), 3 * amplitudeAt(heard, hz / 1.05));
-  // It decays as its damping says: exp(-2 d t) of the energy; 40 / 2 and a little per second.
+  // The energy decays as exp(-2 d t), with d slightly above 40 / 2 per second.
   const std::vector<float> early(heard.begin() + 2400, heard.begin() + 4800),
       late(heard.begin() + 12000, heard.begin() + 14400);
   const double decay = std::sqrt(amplitudeAt(late, hz) / amplitudeAt(early, hz));
@@ -71,7 +71,8 @@ TEST(PartVoice, AStrokeWhereAModeStandsStillDoesNotSoundIt) {
   // The first bending mode has its nodes at 22.4 % of the length from each end.
   const Touch node = voice.touch({-0.15 + 0.224 * 0.3, 0, 4e-3}, Vec3::UnitZ());
   const Touch end = voice.touch({-0.15, 0, 4e-3}, Vec3::UnitZ());
-  // A brick is 2 % of the length: that far from the node the mode moves by a tenth of the end at most.
+  // A brick has 2 % of the length. At this distance from the node, the mode moves by at most a tenth of the
+  // motion of the end.
   EXPECT_LT(std::abs(node.drive[0]), 0.15 * std::abs(end.drive[0]));
 }
 
@@ -82,7 +83,7 @@ TEST(PartVoice, ASmallPartClicksAsLongAsItIsStruck) {
   EXPECT_GT(up, 0);
   EXPECT_EQ(down, -up);
   EXPECT_EQ(after, 0);
-  // rho a^3 / (2 c r m) dF/dt
+  // The click's pressure is rho a^3 / (2 c r m) dF/dt.
   const double a3 = 3e-6 / (4 * std::numbers::pi);
   EXPECT_NEAR(up, 1.204 * a3 / (2 * 343.2 * 0.5 * 8e-3) * 5 * kRate_hz, 1e-12);
 }
@@ -104,7 +105,7 @@ TEST(Beeper, CountsItsBeepsAtTheirPitch) {
   EXPECT_LE(*std::max_element(heard.begin(), heard.end()), 1);
 }
 
-/// A bar that meets a plate.
+/// A scene with a bar that touches a plate.
 scenes::Scene barAndPlate() {
   scenes::Scene scene;
   scene.parts.resize(2);
@@ -113,7 +114,7 @@ scenes::Scene barAndPlate() {
   scene.parts[1].part = {"bar", makeBox({0.3, 12e-3, 8e-3}), {}, {}};
   return scene;
 }
-/// 0.3 s at 1 kHz; from 0.1 s on the bar presses on the plate with force_N and slips.
+/// Sound of 0.3 s at 1 kHz; from 0.1 s on, the bar presses on the plate with force_N and slips.
 std::vector<float> heardOf(const scenes::Scene& scene, double force_N, double slip_m_s) {
   RunSound sound(scene);
   for (int step = 1; step <= 300; ++step) {
@@ -144,7 +145,7 @@ TEST(RunSound, IsTheSameForTheSameRunAndGrowsWithTheImpact) {
   const scenes::Scene scene = barAndPlate();
   const std::vector<float> heard = heardOf(scene, 10, 0);
   EXPECT_EQ(heard, heardOf(scene, 10, 0));
-  // Twice the impulse: about twice the pressure, since a faster impact is a little shorter.
+  // Twice the impulse gives about twice the pressure; not exactly, since a faster impact is slightly shorter.
   EXPECT_NEAR(std::sqrt(energy(heardOf(scene, 20, 0)) / energy(heard)), 2, 0.3);
 }
 
@@ -157,7 +158,7 @@ TEST(RunSound, AContactThatSlipsIsHeardAsLongAsItSlips) {
   EXPECT_GT(tail(0.1), 10 * tail(0));
 }
 
-/// 0.3 s at 1 kHz: a wheel of 20 mm radius that rolls along x on a plate that ends at z = 0.
+/// Sound of 0.3 s at 1 kHz of a wheel of 20 mm radius that rolls along x on a plate whose top is z = 0.
 std::vector<float> heardOfWheel(double speed_m_s, bool turns) {
   scenes::Scene scene;
   scene.parts.resize(2);
@@ -184,12 +185,13 @@ TEST(RunSound, AWheelIsHeardAsLongAsItRolls) {
     const std::vector<float> heard = heardOfWheel(speed_m_s, turns);
     return energy({heard.end() - 48 * 100, heard.end()});
   };
-  EXPECT_GT(tail(0.5, true), 10 * tail(0.5, false)) << "what moves with its contact does not roll";
+  EXPECT_GT(tail(0.5, true), 10 * tail(0.5, false))
+      << "a part that moves together with its contact does not roll";
   EXPECT_EQ(tail(0, true), tail(0, false));
-  EXPECT_GT(tail(0.5, true), tail(0.05, true)) << "faster is louder";
+  EXPECT_GT(tail(0.5, true), tail(0.05, true)) << "faster rolling is louder";
 }
 
-/// The greatest spectral line of 16-bit samples between two frequencies, by their transform.
+/// Frequency of the greatest spectral line of 16-bit samples between two frequencies.
 double loudestHz(const std::string& wav, double from_hz, double to_hz) {
   std::vector<float> samples;
   for (std::size_t at = 44; at + 1 < wav.size(); at += 2)
@@ -216,8 +218,9 @@ TEST(Wav, ABarThatIsStruckHasTheLinesOfItsBendingInTheSpectrumOfTheFile) {
     sound.hear(shot);
   }
   const std::string wav = wavBytes(sound.take(), kRate_hz);
-  // Free-free bending along z of 300 x 12 x 8 mm of steel: cos(x) cosh(x) = 1 (modes_test.cpp). The modes are
-  // within 3 % of it, a line of a second is 1 Hz wide, and decay widens it by 40 / (4 pi) Hz.
+  // Free-free bending along z of a steel bar of 300 x 12 x 8 mm: cos(x) cosh(x) = 1 (modes_test.cpp). The
+  // modes are accurate to 3 %, the spectrum of one second has lines of 1 Hz, and decay widens a line by 40 /
+  // (4 pi) Hz.
   for (const double x : {4.730041, 7.853205}) {
     const double hz =
         x * x / (2 * std::numbers::pi * 0.3 * 0.3) * 8e-3 / std::sqrt(12.0) * std::sqrt(210e9 / 7850);
@@ -225,7 +228,7 @@ TEST(Wav, ABarThatIsStruckHasTheLinesOfItsBendingInTheSpectrumOfTheFile) {
   }
 }
 
-/// Keeps what it is given, and says that it is gone after a while.
+/// An output that stores its samples, and reports after a while that its card was disconnected.
 class KeptOutput final : public SoundOutput {
  public:
   explicit KeptOutput(std::atomic<std::size_t>& count) : count_(count) {}
@@ -259,7 +262,7 @@ TEST(LiveSound, PlaysWhatIsHeardAndSaysOnceThatTheSoundCardIsGone) {
   }
   EXPECT_EQ(count, 14400u) << "48 kHz for 0.3 s";
   EXPECT_NE(news.find("silence"), std::string::npos);
-  EXPECT_EQ(sound.takeNews(), "") << "once is enough";
+  EXPECT_EQ(sound.takeNews(), "") << "a message is reported only once";
 }
 
 TEST(LiveSound, PlaysAgainOnceTheSoundCardIsBack) {
@@ -286,7 +289,7 @@ TEST(LiveSound, PlaysAgainOnceTheSoundCardIsBack) {
     }
     return is_true();
   };
-  EXPECT_TRUE(hearUntil([&] { return told.find("is gone") != std::string::npos; }));
+  EXPECT_TRUE(hearUntil([&] { return told.find("was disconnected") != std::string::npos; }));
   EXPECT_TRUE(hearUntil([&] { return attempts >= 3; }));
   EXPECT_EQ(after, 0u);
   is_back = true;
@@ -307,7 +310,7 @@ TEST(LiveSound, SoundsComeFromTheMiddleOfTheContactsByTheirForces) {
   EXPECT_LT((soundPlace(shot).value() - Vec3(2, 0, 0)).norm(), 1e-12);
 }
 
-/// OpenAL reads its settings once in a process: it writes a file in place of a sound card.
+/// File that OpenAL writes in place of a sound card. OpenAL reads this setting once in a process.
 const std::string& heardFile() {
   static const test::TemporaryFolder folder;
   static const std::string file = [] {
@@ -321,14 +324,14 @@ const std::string& heardFile() {
   return file;
 }
 
-/// What a noise from that direction is at the ears: the energies of left and right.
+/// Energies of a noise from a direction at the left and right ear.
 std::array<double, 2> earsOf(const Vec3& to_L) {
   const std::string& file = heardFile();
   std::string why;
   std::unique_ptr<SoundOutput> output = openSoundOutput(kRate_hz, why);
   if (!output) return {0, 0};
   unsigned state = 1;
-  for (int i = 0; i < 60; ++i) {  // 0.6 s in real time, as the writer takes it
+  for (int i = 0; i < 60; ++i) {  // 0.6 s, in real time, since the file writer takes samples in real time
     std::vector<float> noise(480), silence(480, 0.0f);
     for (float& x : noise)
       x = 0.5f * (static_cast<float>((state = state * 1664525u + 1013904223u) >> 8) / 8388608.0f - 1);
@@ -356,14 +359,14 @@ TEST(LiveSound, ASoundFromTheRightIsLouderAtTheRightEar) {
   if (openSoundOutput(kRate_hz, why) == nullptr) GTEST_SKIP() << why;
   const std::array<double, 2> right = earsOf({1, 0, 0}), left = earsOf({-1, 0, 0}),
                               ahead = earsOf({0, 0, -1});
-  EXPECT_GT(right[1], 2 * right[0]) << "a head's shadow is 3 dB at least, over all frequencies";
+  EXPECT_GT(right[1], 2 * right[0]) << "the head's shadow is at least 3 dB, over all frequencies";
   EXPECT_GT(left[0], 2 * left[1]);
   EXPECT_GT(ahead[0], 0);
   EXPECT_LT(std::abs(std::log(ahead[0] / ahead[1])), std::log(1.5));
 }
 
 #ifdef __linux__
-/// An environment variable, which is as before once this is gone.
+/// Sets an environment variable, and restores it at destruction.
 class Variable {
  public:
   explicit Variable(const char* name) : name_(name) {
@@ -424,9 +427,10 @@ TEST(LiveSound, WhatALateThreadBringsAtOnceDoesNotDelayWhatFollows) {
       why);
   if (!output) GTEST_SKIP() << why;
   const std::vector<float> late(kRate_hz / 4), click(kRate_hz / 100, 0.5f), silence(kRate_hz / 4);
-  // Of the first 250 ms at most 13 wait: 10 ms, which is the longest block that is no burst, what a late
-  // thread needs, and a period. Then the card has three periods of 1.3 ms; the rest is for a late thread of
-  // the card. A queue of 40 ms makes it 50, each time; a busy machine only some times.
+  // Of the first 250 ms, at most 13 ms wait: 10 ms (the longest block that is no burst), the reserve for a
+  // late thread, and a period. The card has three periods of 1.3 ms, and the rest of the bound is for a late
+  // thread of the card. A queue of 40 ms would always give 50 ms; a busy machine exceeds the bound only
+  // sometimes.
   constexpr double kBound_s = 0.035;
   double least_s = 1e9;
   for (int attempt = 0; attempt < 20 && least_s > kBound_s; ++attempt) {
@@ -434,7 +438,7 @@ TEST(LiveSound, WhatALateThreadBringsAtOnceDoesNotDelayWhatFollows) {
     output->write(late, late, -Vec3::UnitZ());
     const double written_s = device::monotonicSeconds();
     output->write(click, std::span(silence).first(click.size()), -Vec3::UnitZ());
-    for (int i = 0; i < 200; ++i) {  // until the click is over, too
+    for (int i = 0; i < 200; ++i) {  // until the click has ended
       std::this_thread::sleep_for(std::chrono::milliseconds(2));
       const std::span<const float> pause = std::span(silence).first(kRate_hz / 500);
       output->write(pause, pause, -Vec3::UnitZ());

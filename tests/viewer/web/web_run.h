@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A run for the web page that a test moves.
+// A run for the web page whose parts a test moves.
 #pragma once
 
 #include <optional>
@@ -32,7 +32,7 @@ class FakeRun final : public WatchedRun {
   void play(bool on) override { playing->is_playing = on; }
   void seek(double to_s) override { sought_s = to_s; }
 
-  /// A snapshot with the peg at a height, in hand; with a contact below it.
+  /// Shows a snapshot with the peg in hand at height z_m, optionally with a contact below the peg.
   void show(double z_m, bool has_contact = false) {
     scenes::Snapshot shot;
     shot.time_s = time_s += 1.0 / 60;
@@ -52,9 +52,10 @@ class FakeRun final : public WatchedRun {
   std::string doing_now;
   std::optional<WatchedShot> next;
   std::vector<WatchedNews> news;
-  std::optional<Playback> playing;  ///< empty: no recording
+  std::optional<Playback> playing;  ///< state of playback; empty: no recording
   double sought_s = 0;
-  std::vector<scenes::SessionPointer> pointed, elsewhere;  ///< by browsers, and by others
+  std::vector<scenes::SessionPointer> pointed,
+      elsewhere;  ///< pointers of browsers, and of watchers elsewhere
 
  private:
   scenes::Scene scene_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Runs and recordings in a browser: a part that is brought home by mouse and by finger, and a recording that
-// is played, stopped and scrubbed.
+// Runs and recordings in a browser: a part is moved to its target by mouse and by finger, and a recording is
+// played, paused and scrubbed.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -53,7 +53,7 @@ class WebRunInBrowser : public testing::Test {
     for (const std::string& line : browser_->console()) text += line + "\n";
     return text;
   }
-  /// How the page lays it out; "none": not at all.
+  /// CSS display value of an element; "none": it is hidden.
   std::string shownAs(const std::string& id) {
     return browser_->evaluate("getComputedStyle(document.getElementById('" + id + "')).display")
         .get<std::string>();
@@ -63,10 +63,11 @@ class WebRunInBrowser : public testing::Test {
     return browser_->waitFor("vps.bodies[1] && vps.bodies[1].role === 'mounted'", limit_s);
   }
 
-  /// The page's person takes the peg, looks from the front, and leads it down into its hole; in the mouth it
-  /// is pushed aside by half a millimetre too, so that the wall guides it. Before the bottom the hand relaxes
-  /// sideways, since a peg that is pressed against the wall moves within its clearance when it is let go.
-  /// @param press, move, lift  at a place of the page
+  /// The user of the page takes the peg, looks from the front, and moves the peg down into its hole. In the
+  /// mouth of the hole the user also pushes it sideways by 0.5 mm, so that the wall guides it. Before the
+  /// bottom the sideways force ends, since a peg that is pressed against the wall would move within its
+  /// clearance when it is released.
+  /// @param press, move, lift  mouse or finger events at a place of the page
   void bringHome(const std::function<void(double x, double y)>& press,
                  const std::function<void(double x, double y)>& move,
                  const std::function<void(double x, double y)>& lift) {
@@ -124,12 +125,12 @@ TEST_F(WebRunInBrowser, APegIsBroughtHomeByAFinger) {
   EXPECT_EQ(printed(), "");
 }
 
-// Who has not taken the part turns the view with the same motion, and moves nothing.
+// For a user who has not taken the part, the same motion turns the view and moves no part.
 TEST_F(WebRunInBrowser, WhoHasNotTheRightToThePartMovesNothing) {
   servePegInHole();
   ASSERT_TRUE(browser_->waitFor("vps.bodies[1] && vps.bodies[1].role === 'in hand' && vps.placeOf(1)", 120))
       << printed();
-  EXPECT_EQ(shownAs("player"), "none");                  // of recordings only
+  EXPECT_EQ(shownAs("player"), "none");                  // only recordings have a player
   std::this_thread::sleep_for(std::chrono::seconds(1));  // the part comes to rest in the hand
   const auto at = browser_->evaluate("vps.placeOf(1)");
   const double x = at[0], y = at[1], before_m = number("vps.bodies[1].pose[2]");
@@ -137,14 +138,15 @@ TEST_F(WebRunInBrowser, WhoHasNotTheRightToThePartMovesNothing) {
   for (int i = 1; i <= 20; ++i) browser_->mouse("mouseMoved", x, y + 5 * i);
   browser_->mouse("mouseReleased", x, y + 100);
   std::this_thread::sleep_for(std::chrono::milliseconds(500));
-  EXPECT_NEAR(number("vps.bodies[1].pose[2]"), before_m, 1e-4);  // drawn at 60 Hz, the hand still settles
+  EXPECT_NEAR(number("vps.bodies[1].pose[2]"), before_m,
+              1e-4);  // the page draws at 60 Hz, and the hand still settles
 }
 
 TEST_F(WebRunInBrowser, ARecordingPausesGoesOnAndIsScrubbed) {
   const device::RecordedRun recorded =
       device::loadRecording(VPS_SOURCE_DIR "/tests/scenes/recorded/peg_in_hole.mcap");
   serve(watchedRecording(recorded), {});
-  // On a busy machine the browser comes when the recording has been played to its end.
+  // On a busy machine the recording may have ended before the browser connects.
   ASSERT_TRUE(browser_->waitFor("vps.playback", 60)) << printed();
   browser_->evaluate("vps.playback.is_playing || document.getElementById('play').click()");
   ASSERT_TRUE(browser_->waitFor("vps.playback.is_playing && vps.snapshots > 5", 60))
@@ -156,7 +158,7 @@ TEST_F(WebRunInBrowser, ARecordingPausesGoesOnAndIsScrubbed) {
   click();
   ASSERT_TRUE(browser_->waitFor("!vps.playback.is_playing"));
   EXPECT_EQ(text(), "Play");
-  std::this_thread::sleep_for(std::chrono::milliseconds(500));  // what was on its way
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));  // messages that are still in transit
   const double stopped_s = number("vps.time_s");
   std::this_thread::sleep_for(std::chrono::seconds(1));
   EXPECT_EQ(number("vps.time_s"), stopped_s);

@@ -38,7 +38,7 @@ using nlohmann::json;
 using test::FakeRun;
 using vps::test::Chromium;
 
-/// A run whose peg goes up and down for ever, 60 times a second.
+/// A run whose peg moves up and down without end, with 60 snapshots a second.
 class MovingRun final : public WatchedRun {
  public:
   explicit MovingRun(bool allows_hand) : run_(allows_hand) {}
@@ -110,7 +110,7 @@ class WebServerTest : public testing::Test {
             std::string(response[http::field::set_cookie]), std::string(response[http::field::location])};
   }
 
-  /// A browser's WebSocket. Throws where it is refused.
+  /// The WebSocket of a browser. Throws if the server refuses it.
   struct Socket {
     Socket(boost::asio::io_context& io, const tcp::endpoint& end, const std::string& host,
            const std::string& origin)
@@ -130,7 +130,7 @@ class WebServerTest : public testing::Test {
       stream.text(true);
       stream.write(boost::asio::buffer(text));
     }
-    /// The next snapshot's number; it is acknowledged.
+    /// Receives and acknowledges the next snapshot. Returns its number.
     std::uint32_t nextShot() {
       for (;;) {
         const std::string bytes = read();
@@ -244,7 +244,7 @@ TEST_F(WebServerTest, GarbageAndHugeRequestsCloseTheirConnectionOnly) {
   EXPECT_GT(good->nextShot(), 0u);
 }
 
-// Ten browsers that never read, and one that does.
+// Ten browsers never read, and one reads.
 TEST_F(WebServerTest, BrowsersThatDoNotReadSlowNobodyDown) {
   begin();
   std::vector<std::unique_ptr<Socket>> idle;
@@ -258,7 +258,7 @@ TEST_F(WebServerTest, BrowsersThatDoNotReadSlowNobodyDown) {
     ++shots;
   }
   RecordProperty("shots_per_s", shots / 2);
-  EXPECT_GE(shots, 60);  // the bar: 30 a second; 120 come on a machine that is idle
+  EXPECT_GE(shots, 60);  // at least 30 a second; an idle machine receives 120
 }
 
 TEST_F(WebServerTest, MoreBrowsersThanAllowedAreRefused) {
@@ -286,7 +286,7 @@ std::string joined(const std::vector<std::string>& lines) {
   return text;
 }
 
-/// How many pixels are as blue as the part in hand.
+/// Number of pixels with the blue of the part in hand.
 int bluePixels(const std::string& file) {
   const Image image = loadPng(file);
   int blue = 0;
@@ -308,7 +308,7 @@ TEST_F(WebInBrowser, ARunIsDrawnAndTwoBrowsersSeeEachOthersPointer) {
   a.evaluate("document.getElementById('point').click()");
   const std::string a_number = a.evaluate("String(vps.you)");
   bool is_seen = false;
-  for (int i = 0; i < 3 && !is_seen; ++i) {  // a slow browser may not have the shape there at first
+  for (int i = 0; i < 3 && !is_seen; ++i) {  // a slow browser may need some time to show the shape
     a.mouse("mousePressed", 500, 350);
     a.mouse("mouseReleased", 500, 350);
     is_seen = b.waitFor("vps.pointers[" + a_number + "]", 20);
@@ -329,7 +329,7 @@ TEST_F(WebInBrowser, ARunIsDrawnAndTwoBrowsersSeeEachOthersPointer) {
       "%.1f pictures a second in Chromium (of two); from physics to picture %.0f and %.0f ms (median), "
       "%.0f and %.0f (p90)\n",
       (after - before) / 2, age_ms(a, 0.5), age_ms(b, 0.5), age_ms(a, 0.9), age_ms(b, 0.9));
-  std::vector<double> apart_ms;  // where both show the same snapshot
+  std::vector<double> apart_ms;  // time between both browsers showing the same snapshot
   const auto shown_a = a.evaluate("JSON.stringify(vps.shown)"),
              shown_b = b.evaluate("JSON.stringify(vps.shown)");
   std::map<double, double> of_a;
@@ -341,18 +341,20 @@ TEST_F(WebInBrowser, ARunIsDrawnAndTwoBrowsersSeeEachOthersPointer) {
   std::sort(apart_ms.begin(), apart_ms.end());
   std::printf("both show %zu snapshots, apart by %.0f ms (median), %.0f (p90)\n", apart_ms.size(),
               apart_ms[apart_ms.size() / 2], apart_ms[apart_ms.size() * 9 / 10]);
-  // No snapshot is seen before its instant, in neither browser.
+  // Neither browser shows a snapshot before it is due.
   const double present_ms = 1e-6 * static_cast<double>(kPresentAfter_ns);
-  for (Chromium* browser : {&a, &b}) EXPECT_GE(age_ms(*browser, 0), present_ms - 1);  // 1 ms of their clocks
+  for (Chromium* browser : {&a, &b})
+    EXPECT_GE(age_ms(*browser, 0), present_ms - 1);  // the browsers' clocks have a resolution of 1 ms
 }
 
-// Snapshots go on, and are acknowledged, since the server sends no more than some that are not.
+// The page acknowledges snapshots without drawing, since the server limits the number of unacknowledged
+// snapshots.
 TEST_F(WebInBrowser, ARunInWhichNothingMovesIsNotDrawnAgain) {
   begin();
   run_->is_still = true;
   Chromium browser(test::freshFolder("web_still") + "/a", 800, 600, page());
   ASSERT_TRUE(browser.waitFor("vps.snapshots > 5 && vps.bodies[1]")) << joined(browser.console());
-  std::this_thread::sleep_for(std::chrono::seconds(2));  // until parts and level have come
+  std::this_thread::sleep_for(std::chrono::seconds(2));  // until parts and their level of detail have arrived
   const auto count = [&](const char* what) { return browser.evaluate(what).get<int>(); };
   const int drawn = count("vps.drawn"), snapshots = count("vps.snapshots");
   std::this_thread::sleep_for(std::chrono::seconds(1));
@@ -381,7 +383,7 @@ TEST_F(WebInBrowser, ThePartIsTakenByMouseAndByFinger) {
   browser.evaluate("new Promise(done => setTimeout(done, 300))");
   const Vec3 by_mouse = wish->read().p;
   EXPECT_GT(by_mouse.x(), 1e-4);
-  EXPECT_LT(std::abs(by_mouse.y()), 1e-9);  // across the screen of a view from the front
+  EXPECT_LT(std::abs(by_mouse.y()), 1e-9);  // the view is from the front, so y is across the screen
   browser.screenshot(folder + "/hand.png");
   browser.mouse("mouseReleased", x + 50, y);
   browser.evaluate("new Promise(done => setTimeout(done, 300))");
@@ -394,7 +396,7 @@ TEST_F(WebInBrowser, ThePartIsTakenByMouseAndByFinger) {
   EXPECT_EQ(joined(browser.console()), "");
 }
 
-// A headset with two views side by side, as a browser presents one.
+// An emulated headset with two views side by side.
 constexpr const char* kHeadset = R"js(
 class FakeLayer { constructor(session, gl) { this.framebuffer = null; this.gl = gl; }
   getViewport(view) { const w = this.gl.drawingBufferWidth / 2, h = this.gl.drawingBufferHeight;
@@ -440,7 +442,7 @@ TEST_F(WebInBrowser, AHeadsetShowsTheRunToBothEyes) {
   EXPECT_GT(right, 100);
   browser.evaluate("document.getElementById('headset').click()");
   EXPECT_TRUE(browser.waitFor("document.getElementById('headset').textContent === 'Headset'"));
-  for (const std::string& line : browser.console())  // three.js says that it draws the eyes one by one
+  for (const std::string& line : browser.console())  // three.js reports that it draws the eyes separately
     EXPECT_NE(line.find("OVR_multiview2"), std::string::npos) << line;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The web page's server without sockets: who may come in, what is sent, what a browser may do.
+// The web server without sockets: access, messages to browsers, and messages from browsers.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -16,8 +16,8 @@
 #include "web/access.h"
 #include "web/browser_message.h"
 #include "web/hub.h"
-#include "web/web_files.h"
 #include "web/snapshot_coder.h"
+#include "web/web_files.h"
 
 namespace vps::viewer {
 namespace {
@@ -47,7 +47,7 @@ TEST(WebAccess, WithoutATokenNothingIsGiven) {
   socket.is_upgrade = true;
   socket.origin = "http://192.168.1.20:8080";
   EXPECT_EQ(access.judge(socket), WebAnswer::Unauthenticated);
-  socket.target = "/?token=0123456789abcdef";  // a token in an address is for the page only
+  socket.target = "/?token=0123456789abcdef";  // only the page may be opened with a token in its address
   EXPECT_EQ(access.judge(socket), WebAnswer::Unauthenticated);
 }
 
@@ -58,7 +58,7 @@ TEST(WebAccess, TheTokenGivesACookieAndTheCookieGivesAll) {
   WebRequest with = request("/page.js");
   with.cookie = "other=1; vps_8080=0123456789abcdef";
   EXPECT_EQ(access.judge(with), WebAnswer::Good);
-  with.cookie = "vps_8081=0123456789abcdef";  // of another server of this machine
+  with.cookie = "vps_8081=0123456789abcdef";  // cookie of another server of this machine
   EXPECT_EQ(access.judge(with), WebAnswer::Unauthenticated);
   with.cookie = "vps_8080=0123456789abcdef0";
   EXPECT_EQ(access.judge(with), WebAnswer::Unauthenticated);
@@ -70,14 +70,14 @@ TEST(WebAccess, OtherPagesAndOtherNamesOfTheServerAreRefused) {
   WebRequest r = request("/run");
   r.host = "127.0.0.1:8080";
   r.is_upgrade = true;
-  EXPECT_EQ(access.judge(r), WebAnswer::BadOrigin);  // a browser says where its page is from
+  EXPECT_EQ(access.judge(r), WebAnswer::BadOrigin);  // a browser sends the origin of its page
   r.origin = "http://evil.example";
   EXPECT_EQ(access.judge(r), WebAnswer::BadOrigin);
   r.origin = "http://127.0.0.1:8081";
   EXPECT_EQ(access.judge(r), WebAnswer::BadOrigin);
   r.origin = "http://127.0.0.1:8080";
   EXPECT_EQ(access.judge(r), WebAnswer::Good);
-  r.host = "evil.example:8080";  // a name that was made to lead here
+  r.host = "evil.example:8080";  // a foreign name that resolves to this machine
   r.origin = "http://evil.example:8080";
   EXPECT_EQ(access.judge(r), WebAnswer::BadHost);
   r.host = "localhost:8080";
@@ -143,7 +143,7 @@ TEST(PartGlb, HasThePartInMetresAsTheStandardAsks) {
   for (std::size_t k = 0; k < 3; ++k) {
     const auto axis = static_cast<Eigen::Index>(k);
     const double middle = head["nodes"][0]["translation"][k];
-    EXPECT_NEAR(middle + place["max"][k].get<double>(), box.max[axis], 1e-8);  // of floats
+    EXPECT_NEAR(middle + place["max"][k].get<double>(), box.max[axis], 1e-8);  // rounding of floats
     EXPECT_NEAR(middle + place["min"][k].get<double>(), box.min[axis], 1e-8);
   }
 }
@@ -169,16 +169,17 @@ TEST(PartGlb, HasTheColorsOfFaces) {
     for (float& channel : color) channel = reader.getFloat();
     ++vertices[color];
   }
-  // Two of the six faces with four corners each, and four.
+  // Two of the six faces have a colour of their own, with four corners each, and four faces have the other
+  // colour.
   EXPECT_EQ(vertices, (std::map<std::array<float, 3>, int>{{{0, 0.5f, 1}, 8}, {{1, 0, 0}, 16}}));
 }
 
-/// What a browser knows after some messages, decoded as page.js does.
+/// State of a browser after some messages, decoded as in page.js.
 struct Decoded {
   std::uint32_t number = 0;
   double time_s = 0;
   int step = -1;
-  std::map<int, std::pair<int, Vec3>> bodies;  ///< role and place
+  std::map<int, std::pair<int, Vec3>> bodies;  ///< role and position, by part
   Vec3 force = Vec3::Zero();
   std::size_t contacts = 0, bodies_in_message = 0;
 
@@ -247,7 +248,7 @@ TEST(SnapshotCoder, ABrowserThatReadsAllKnowsEveryBody) {
   for (const scenes::BodySnapshot& body : bodies) {
     const auto& [role, p] = browser.bodies.at(static_cast<int>(body.part));
     EXPECT_EQ(role, static_cast<int>(body.role));
-    EXPECT_LT((center + p - body.X_WP.p).norm(), 0.11 * 1.2e-7);  // rounding to floats, of 0.1 m
+    EXPECT_LT((center + p - body.X_WP.p).norm(), 0.11 * 1.2e-7);  // rounding of 0.1 m to floats
   }
 }
 
@@ -277,7 +278,7 @@ TEST(BrowserMessage, WhatIsSaidIsReadAndAllElseIsRefused) {
   EXPECT_FALSE(readBrowserMessage(R"({"ack":)" + std::string(600, '1') + "}").has_value());
 }
 
-/// Every cut and every changed byte of a message is read, or refused; nothing else happens.
+/// A message that is cut or has a changed byte is read or refused, without other effects.
 TEST(BrowserMessage, ChangedBytesDoNoHarm) {
   const std::string good = R"({"grab":[0.1,-2.5e-3,3]})";
   for (std::size_t i = 0; i < good.size(); ++i) {
@@ -291,7 +292,7 @@ TEST(BrowserMessage, ChangedBytesDoNoHarm) {
   }
 }
 
-/// A browser of the hub.
+/// A browser that is connected to the hub.
 class FakeBrowser final : public BrowserEnd {
  public:
   void sendText(std::string text) override { texts.push_back(json::parse(text)); }
@@ -305,7 +306,7 @@ class FakeBrowser final : public BrowserEnd {
   }
   [[nodiscard]] bool isFree() const override { return is_free; }
 
-  /// The last one with a key; null: none.
+  /// The last message with a key; null: there is none.
   [[nodiscard]] json last(const char* key) const {
     for (std::size_t i = texts.size(); i-- > 0;)
       if (texts[i].contains(key)) return texts[i][key];
@@ -318,7 +319,7 @@ class FakeBrowser final : public BrowserEnd {
   bool is_free = true;
 };
 
-/// A hub at 60 Hz, and the clock.
+/// A hub at 60 Hz, with a simulated clock.
 class WebHubTest : public testing::Test {
  protected:
   void turn(double z_m, bool has_contact = false) {
@@ -355,7 +356,8 @@ TEST_F(WebHubTest, EachBrowserLearnsTheSceneAndWhatHappenedBefore) {
   EXPECT_EQ(a_.known.number, 1u);
 }
 
-// Snapshots that a browser has not drawn are bounded, and it misses those between, not the newest.
+// The number of snapshots that a browser has not drawn is bounded. The browser misses older snapshots, but
+// not the newest.
 TEST_F(WebHubTest, ASlowBrowserGetsFewerSnapshotsAndTheOthersAll) {
   hub_.join(a_);
   const int b = hub_.join(b_);
@@ -437,7 +439,7 @@ TEST_F(WebHubTest, OneBrowserAtATimeHasTheHand) {
   EXPECT_EQ(wish->read().p, Vec3(0, 0, -0.01));
   say(a, R"({"turn":[0,0,0.5]})");
   EXPECT_NEAR(rotationVector(wish->read().R).z(), 0.5, 1e-12);
-  say(a, R"({"move":[0,0,-1e6]})");  // beyond all reason
+  say(a, R"({"move":[0,0,-1e6]})");  // far beyond the scene
   EXPECT_EQ(wish->read().p, Vec3(0, 0, -0.01));
   hub_.leave(a);
   EXPECT_FALSE(run_.drag()->isGrabbed());
@@ -479,11 +481,11 @@ TEST_F(WebHubTest, AFloodAndGarbageEndTheConnection) {
   const int a = hub_.join(a_), b = hub_.join(b_);
   int heard = 0;
   while (heard < 10000 && say(a, R"({"ping":1})")) ++heard;
-  EXPECT_EQ(heard, 400);  // the burst
+  EXPECT_EQ(heard, 400);  // capacity of the rate limit
   heard = 0;
   while (heard < 10000 && say(b, "garbage")) ++heard;
   EXPECT_EQ(heard, 10);
-  EXPECT_FALSE(hub_.hear(77, R"({"ping":1})", now_s_));  // nobody
+  EXPECT_FALSE(hub_.hear(77, R"({"ping":1})", now_s_));  // there is no such browser
 }
 
 TEST_F(WebHubTest, AnAckOfWhatWasNotSentIsIgnored) {
@@ -509,7 +511,7 @@ TEST_F(WebHubTest, AnImpactIsHeardByThoseWhoListen) {
   say(a, R"({"sound":1})");
   turn(0.05);
   for (int i = 1; i <= 5; ++i) turn(0.05 - 1e-3 * i);
-  turn(0.045, true);  // at 60 mm/s, and then it stands still
+  turn(0.045, true);  // the part arrives at 60 mm/s and stops
   for (int i = 0; i < 1000 && a_.sounds == 0; ++i) {
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
     turn(0.045, true);
@@ -532,7 +534,7 @@ TEST(BlowSense, AnImpactIsTheMassTimesTheSpeedThatContactTakesAway) {
   ASSERT_TRUE(blow.has_value());
   EXPECT_EQ(blow->part, 1u);
   EXPECT_NEAR(blow->impulse_Ns, 0.2 * 1e-3 * 60, 1e-9);
-  EXPECT_FALSE(hear(0.048, true));  // it slides on
+  EXPECT_FALSE(hear(0.048, true));  // the part slides on
 }
 
 }  // namespace

@@ -62,7 +62,7 @@ class WebTls : public testing::Test {
     run_.show(0.05);
     thread_ = std::thread([this] { server_->serve(); });
   }
-  /// A connection that knows the certificate. Throws where the server does not prove itself.
+  /// Connects as a client that trusts the certificate. Throws if the server cannot prove its identity.
   TlsStream connect() {
     TlsStream stream(io_, context_);
     stream.next_layer().connect({boost::asio::ip::address_v4::loopback(), server_->port()});
@@ -75,7 +75,7 @@ class WebTls : public testing::Test {
     context_.set_verify_callback(ssl::host_name_verification("localhost"));
   }
   [[nodiscard]] std::string host() const { return "127.0.0.1:" + std::to_string(server_->port()); }
-  /// What is said where the server cannot be made.
+  /// Error message of a server that cannot be started.
   std::string refusal(const std::string& certificate, const std::string& key) {
     try {
       const WebServer server(run_, options(certificate, key));
@@ -137,7 +137,7 @@ TEST_F(WebTls, WithoutEncryptionNothingIsServed) {
   EXPECT_EQ(answer.find("canvas"), std::string::npos);
   EXPECT_TRUE(over);
   trust("good.pem");
-  EXPECT_NO_THROW(connect());  // others are served still
+  EXPECT_NO_THROW(connect());  // other clients are still served
 }
 
 TEST_F(WebTls, FilesThatAreMissingOrWrongAreNamedInPlainWords) {
