@@ -25,8 +25,9 @@ double offPlane(const FlatFace& face, const PartSurface& surface, std::uint32_t 
 /// of curved faces cost little: O(kJoined^2).
 void joinPieces(const PartSurface& surface, double tolerance_m, std::vector<FlatFace>& faces) {
   constexpr std::size_t kJoined = 2000;
-  constexpr double kMostGap =
-      0.05;  // share of the smaller piece's size. assumed: slots are wider, cracks narrower
+  // Greatest gap between joined pieces, as a share of the smaller piece's size. assumed: slots are wider,
+  // cracks narrower.
+  constexpr double kMostGap = 0.05;
   const std::size_t count = std::min(kJoined, faces.size());
   std::vector<Box> boxes(count);
   for (std::size_t i = 0; i < count; ++i)

@@ -15,9 +15,9 @@ struct MetricThread {
 
 /// The thread of ISO 262 whose pitch differs from the lead by at most 1 % and whose tolerance 8g to h
 /// contains the diameter. The name is empty if there is no such thread.
-/// @param major_m  greatest diameter of the screw
-/// @param lead_m lead of a thread with one start; negative: left-hand Source: ISO 262:1998 (selected sizes),
-/// ISO 965-1:2013 (deviations of the major diameter).
+/// Source: ISO 262:1998 (selected sizes), ISO 965-1:2013 (deviations of the major diameter).
+/// @param major_m greatest diameter of the screw
+/// @param lead_m lead of a thread with one start; negative: left-hand
 MetricThread metricThread(double major_m, double lead_m);
 
 /// The size ("M8") of a thread that is drawn as a plain cylinder: the nominal diameter within whose tolerance

@@ -143,8 +143,8 @@ std::vector<Contact> contacts(const FittedPart& key, const FittedPart& slot, dou
 /// The direction, in the plane of a face, of the smallest rectangle around the face. One side of this
 /// rectangle is parallel to an edge of the face.
 Vec3 alongOf(const Seen& of) {
-  constexpr std::size_t kFacets =
-      64;  // a face with more facets has a curved outline, for which any direction serves
+  // A face with more facets has a curved outline, for which any direction serves.
+  constexpr std::size_t kFacets = 64;
   Vec3 best = of.n_W.unitOrthogonal();
   double least_m2 = 1e300;
   const auto& facets = of.face->facets;

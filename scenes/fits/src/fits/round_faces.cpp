@@ -209,8 +209,9 @@ class Finder {
   const Mesh& mesh_;
   double tolerance_m_ = 0;
   std::vector<bool> is_taken_;
-  std::vector<bool>
-      is_tried_;  // by facet: on a cylinder of which too small a share exists, as a thread's crest
+  // By facet: whether it lies on a cylinder that covers too small a share of a turn, as a thread's crest
+  // does.
+  std::vector<bool> is_tried_;
   std::vector<bool> is_corner_;  // by vertex: lies on an edge between two facets of a curved face
   std::vector<std::uint32_t> seen_;
   std::uint32_t round_ = 0;

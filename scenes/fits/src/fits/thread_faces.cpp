@@ -33,8 +33,8 @@ struct Flank {
   double area_m2 = 0;
 };
 
-constexpr double kLeastSlope =
-    0.15;  // least |n . axis|: a flank's normal is at most 81 degrees from the axis
+// Least |n . axis| of a flank's normal, which is at most 81 degrees from the axis.
+constexpr double kLeastSlope = 0.15;
 constexpr double kLeastFacing = 0.05;  // least radial part of a flank's normal
 
 /// A facet, independent of an axis.

@@ -11,9 +11,9 @@ namespace {
 
 constexpr double kSameLead = 0.03;      // greatest relative difference of the leads
 constexpr double kLeastTurns = 0.5;     // least length of engagement in pitches
-constexpr double kMostCrestGap = 0.25;  // between the major diameters, relative; assumed
-constexpr double kThreadOffset =
-    0.05;  // between the axes, divided by the diameter: a loose nut hangs on its bolt
+constexpr double kMostCrestGap = 0.25;  // greatest relative gap of the major diameters; assumed
+// Greatest distance between the axes, divided by the diameter, since a loose nut hangs on its bolt.
+constexpr double kThreadOffset = 0.05;
 
 ThreadFace threadInWorld(const ThreadFace& face, const Pose& X_WP) {
   ThreadFace out = face;

@@ -49,7 +49,7 @@ struct DeepestOverlap {
 /// credit is spent enter bound_m(). The same input gives the same bits.
 class MotionJudge {
  public:
-  using Pair = std::pair<std::size_t, std::size_t>;  ///< the lower number first
+  using Pair = std::pair<std::size_t, std::size_t>;  ///< numbers of two bodies in ascending order
 
   /// @param X_WP pose of each body at the start
   MotionJudge(std::vector<MovingBody> bodies, const std::vector<Pose>& X_WP, double time_s);
@@ -80,9 +80,8 @@ class MotionJudge {
   /// The exact model of a body; it is made on first use.
   [[nodiscard]] const ExactBody& body(std::size_t number);
 
-  [[nodiscard]] const DeepestOverlap& deepest() const {
-    return deepest_;
-  }  ///< deepest overlap that is not allowed
+  /// The deepest overlap that is not allowed.
+  [[nodiscard]] const DeepestOverlap& deepest() const { return deepest_; }
   [[nodiscard]] const DeepestOverlap& deepestOfAll() const { return deepest_of_all_; }
   /// Upper bound of the depth along all steps that were searched.
   [[nodiscard]] double bound_m() const;
@@ -118,19 +117,19 @@ class MotionJudge {
   void searchPaths(std::vector<PairPath>& paths, const std::atomic<bool>* stop);
 
   std::vector<MovingBody> bodies_;
-  std::vector<std::shared_ptr<const ExactBody>> exact_;  ///< by body; null: not needed so far
-  std::vector<std::vector<Pose>> X_WP_;                  ///< by body, at the ends of the steps; fixed: one
+  std::vector<std::shared_ptr<const ExactBody>> exact_;  ///< by body; null until it is needed
+  std::vector<std::vector<Pose>> X_WP_;  ///< by body, at the ends of the steps; one pose for a fixed body
   std::vector<double> time_s_;
   std::map<Pair, double> depth_m_;  ///< pairs that are near: upper bound of the depth at the last moment
-  std::map<Pair, Vec3>
-      direction_A_;  ///< direction that separated the hulls last, in the frame of PairPath::a
+  /// Direction that separated the hulls last, in the frame of PairPath::a.
+  std::map<Pair, Vec3> direction_A_;
   std::map<Pair, double> allowed_m_;
   DeepestOverlap deepest_, deepest_of_all_;
   double least_m_ = 0, most_allowed_m_ = 0;
   double left_m_ = 0;  ///< greatest bound of an interval that was left undivided
-  double credit_, income_ = 0,
-                  may_spend_ = 0;  ///< work: in total, from steps not yet searched, for this search
-  double may_prove_ = 0;           ///< share of may_spend_ for areSurfacesApart()
+  /// Work that may be spent: in total, for steps not yet searched, and in the current search.
+  double credit_, income_ = 0, may_spend_ = 0;
+  double may_prove_ = 0;  ///< share of may_spend_ for areSurfacesApart()
   std::size_t measured_ = 0;
 };
 

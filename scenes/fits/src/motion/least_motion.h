@@ -23,11 +23,11 @@ struct LooseBody {
 /// A point of one body and a plane of another one. The point should stay above the plane.
 struct GapRow {
   static constexpr std::size_t kHeld = std::numeric_limits<std::size_t>::max();
-  std::size_t of = kHeld,
-              above = kHeld;  ///< indices of the bodies of point and plane; kHeld: that body does not move
-  Vec3 p_W = Vec3::Zero();    ///< the point
-  Vec3 n_W = Vec3::UnitZ();   ///< outward normal of the plane, unit
-  double gap_m = 0;           ///< height of the point above the plane; negative below
+  /// Indices of the bodies of point and plane; kHeld: that body does not move.
+  std::size_t of = kHeld, above = kHeld;
+  Vec3 p_W = Vec3::Zero();   ///< the point
+  Vec3 n_W = Vec3::UnitZ();  ///< outward normal of the plane, unit
+  double gap_m = 0;          ///< height of the point above the plane; negative below
 };
 
 /// Six numbers for each body: the displacement of its middle [m], and its rotation vector [rad] times arm_m
@@ -43,10 +43,9 @@ inline constexpr double kSearchMotionCost = 1e-6;
 /// most_m counts as a negative gap.
 ///
 /// Minimises e |x|^2 / 2 + sum min(0, gap)^2 / 2 by Newton's method on the negative gaps, which ends after
-/// finitely many steps. A gap stays negative by about e times the motion.
+/// finitely many steps. A gap stays negative by about e times the motion. O(rows + bodies^3) for each step.
 /// @param from motions at which the gaps of the rows were measured
-/// @param closed_m receives for each row the amount by which its gap stays negative, else 0 O(rows +
-/// bodies^3) for each step.
+/// @param closed_m receives for each row the amount by which its gap stays negative, else 0
 Motions leastMotion(std::span<const GapRow> rows, std::span<const LooseBody> bodies, const Motions& from,
                     double e, std::vector<double>& closed_m);
 

@@ -25,8 +25,8 @@ struct Blocker {
 struct Reach {
   double s = 0;  ///< parameter of the motion that was reached, at most the one asked for
   bool is_stopped = false;
-  bool is_given_up =
-      false;  ///< with is_stopped: the search ended after too many steps; the part may reach farther
+  /// With is_stopped: the search ended after too many steps; the part may reach farther.
+  bool is_given_up = false;
   Blocker by;
   double rate = 1;  ///< contactRate() of the two facets that stopped the motion
 };
@@ -43,8 +43,8 @@ struct StandingParts {
 struct PassingFacets {
   std::size_t held = 0;  ///< index in MotionSearch's list
   bool is_of_moving = false;
-  std::vector<std::uint8_t> facets, nodes;  ///< by facet and by node of the part's tree: 1 if the facet, or
-                                            ///< all facets of the node, can be skipped
+  /// By facet and by node of the part's tree: 1 if the facet, or all facets of the node, can be skipped.
+  std::vector<std::uint8_t> facets, nodes;
 
   PassingFacets(std::size_t held, bool is_of_moving, std::vector<std::uint8_t> facets, const BoxTree& tree);
 };
@@ -120,8 +120,8 @@ class MotionSearch {
     Motion motion_H;
     Pose X_HM;
     double most = 0, least = 0;  ///< length of the piece; step that counts as zero
-    std::array<double, 2> along_m =
-        {};  ///< range of a screw's advance along Turning::axis_W, from the drawn pose
+    /// Range of a screw's advance along Turning::axis_W, from the drawn pose.
+    std::array<double, 2> along_m = {};
   };
   [[nodiscard]] Held heldAt(std::size_t index) const;
   [[nodiscard]] std::optional<Turning> turningOf(const Motion& motion) const;

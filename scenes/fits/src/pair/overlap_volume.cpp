@@ -132,8 +132,8 @@ double holeArea(const PartSurface& part) {
   if (!part.solid().isByWinding()) return 0;
   const Mesh& mesh = part.mesh();
   std::vector<std::array<std::uint32_t, 2>> open;
-  std::vector<std::uint32_t> group(
-      mesh.vertices.size());  // union-find: each vertex leads to one of its group
+  // The groups are a union-find structure: each vertex leads to another vertex of its group.
+  std::vector<std::uint32_t> group(mesh.vertices.size());
   std::iota(group.begin(), group.end(), 0U);
   const auto groupOf = [&](std::uint32_t v) {
     while (group[v] != v) v = group[v] = group[group[v]];

@@ -37,7 +37,7 @@ std::vector<double> greatestGaps_m(const std::vector<PlacedSurface>& parts, cons
 /// / 2 for a rotation. With the weights of the least-squares solution, the forces along n are in balance on
 /// each body, so the linear part of the mean vanishes up to rounding. The remainder of the linear part is
 /// bounded over all motions within the tolerances. Source: Farkas' lemma, with remainders.
-/// @param moved_m  by body: how far its farthest corner is from where it is drawn
+/// @param moved_m by body: greatest displacement of a corner from its drawn place
 double provenOverlap_m(const std::vector<PlacedSurface>& parts, const std::vector<Pose>& X_WP,
                        std::span<const PressedTouch> touches, const std::vector<MovableBody>& bodies,
                        const std::vector<double>& moved_m);

@@ -37,9 +37,9 @@ std::vector<std::array<std::uint32_t, 3>> neighboursOf(const Mesh& mesh) {
 
 std::vector<Crack> cracksOf(const Mesh& mesh, const std::vector<std::array<std::uint32_t, 3>>& neighbours,
                             const BoxTree& tree) {
-  constexpr double kNarrow = 0.25,
-                   kWidest = 4e-3;  // greatest width: share of an edge, share of the part's size; assumed
-  constexpr double kWedge = 0.99;   // least cosine between the sides of a crack that ends in a corner
+  // Greatest width of a crack, as a share of an edge and as a share of the part's size; assumed.
+  constexpr double kNarrow = 0.25, kWidest = 4e-3;
+  constexpr double kWedge = 0.99;  // least cosine between the sides of a crack that ends in a corner
   struct OpenEdge {
     std::uint32_t from, to;
   };

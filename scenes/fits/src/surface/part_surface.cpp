@@ -93,8 +93,8 @@ void PartSurface::findPlanes() {
 }
 
 void PartSurface::findPatches() {
-  constexpr double kOneWay =
-      0.9;  // least |sum of vector areas| / area of a patch, about 25 degrees on average; assumed
+  // Least |sum of vector areas| / area of a patch, about 25 degrees on average; assumed.
+  constexpr double kOneWay = 0.9;
   patches_.assign(tree_.nodes().size(), Vec3::Zero());
   for (std::size_t node = 0; node < patches_.size(); ++node) {
     const auto [first, end] = std::pair(tree_.nodes()[node].first, tree_.nodes()[node].end);

@@ -87,8 +87,8 @@ struct CheckedPair {
   double interference_depth_m = 0;
   double interference_volume_m3 = 0;
   double volume_error_m3 = 0;
-  double error_m =
-      0;  ///< bound of the error of clearance and depth; larger where a search ended at its limit of work
+  /// Bound of the error of clearance and depth; larger where a search ended at its limit of work.
+  double error_m = 0;
   Vec3 at_W = Vec3::Zero();  ///< the deepest point of the overlap, or the middle between the nearest points
   bool is_allowed = false;   ///< the scene allows the overlap
   /// True where the check cannot decide whether the parts overlap, because one of them has a surface without
@@ -128,9 +128,10 @@ struct CheckedFit {
   Vec3 axis_W = Vec3::UnitZ();     ///< axis of the cylinders, or normal of a key's faces; unit
   Vec3 at_W = Vec3::Zero();        ///< on the axis, in the middle of the length
   double shaft_m = 0, bore_m = 0;  ///< diameters (major diameters of a thread) or widths, as drawn
-  Vec3 along_W = Vec3::UnitZ();  ///< direction of the length: a shaft's axis, or the longer side of the area
-                                 ///< in which a key's faces cover each other; unit
-  double length_m = 0;           ///< length of the fit along `along_W`
+  /// Direction of the length: a shaft's axis, or the longer side of the area in which a key's faces cover
+  /// each other; unit.
+  Vec3 along_W = Vec3::UnitZ();
+  double length_m = 0;               ///< length of the fit along `along_W`
   double diametral_clearance_m = 0;  ///< negative: interference
   double offset_m = 0;               ///< greatest distance of the axes over the length; 0 for a key
   double error_m = 0;                ///< bound of the clearance's error
@@ -176,8 +177,8 @@ struct CheckedPart {
   std::optional<Play> play;  ///< empty for a part that clashes or is pressed in, or without has_play
   Mat3 play_axes_W = Mat3::Identity();  ///< columns: the axes of `play`
   Vec3 play_center_W = Vec3::Zero();    ///< point through which the axes of rotation pass
-  double play_error_m = 0,
-         play_error_rad = 0;     ///< for contacts at right angles to the motion; else Play::error_m
+  /// Bounds of the play's error for contacts at right angles to the motion; other contacts: Play::error_m.
+  double play_error_m = 0, play_error_rad = 0;
   std::vector<Vec3> ways_out_W;  ///< unit directions in which the part can be removed in a straight line
   std::vector<ScrewWay> screw_ways_out;  ///< screw motions by which the part can be removed
   /// False where a shaft and its bore have the same size, where facets cross as drawn by no more than the
@@ -212,8 +213,8 @@ struct CheckedSection {
 struct ClearanceMap {
   std::string part;
   Mesh mesh_W;
-  std::vector<double> distance_m;  ///< for each vertex: distance to the nearest other part, at most near_m;
-                                   ///< negative inside that part
+  /// For each vertex: distance to the nearest other part, at most near_m; negative inside that part.
+  std::vector<double> distance_m;
 };
 
 /// A part that is moved from the place where it is drawn.
@@ -222,8 +223,8 @@ struct MovedPart {
   Vec3 by_W = Vec3::Zero();    ///< displacement of the middle of the part's box [m]
   Vec3 turn_W = Vec3::Zero();  ///< rotation vector about the middle of the box [rad]
   double most_m = 0;           ///< greatest displacement of a corner of the part's box
-  double allowed_m =
-      0;      ///< limit of most_m: tolerance of the part's tightest fit, or kSightTolerance_m without a fit
+  /// Limit of most_m: tolerance of the part's tightest fit, or kSightTolerance_m without a fit.
+  double allowed_m = 0;
   Pose X_WP;  ///< pose after the motion
 };
 
@@ -250,11 +251,11 @@ struct CheckResult {
   /// assembly has one part only.
   std::vector<std::string> alone;
   CheckedPlaces places;  ///< NotShown if parts clash and places were not searched for
-  std::vector<CheckedSection>
-      sections;       ///< with has_sections: one section for each fit and each overlap, up to 60
+  /// With has_sections: one section for each fit and each overlap, up to 60.
+  std::vector<CheckedSection> sections;
   double near_m = 0;  ///< as in CheckSettings
-  std::vector<ClearanceMap>
-      maps;  ///< with has_maps: one map for each part that is near another one, up to 24
+  /// With has_maps: one map for each part that is near another one, up to 24.
+  std::vector<ClearanceMap> maps;
   double prepare_wall_s = 0, pairs_wall_s = 0, fits_wall_s = 0, pictures_wall_s = 0, play_wall_s = 0,
          places_wall_s = 0;
   [[nodiscard]] std::size_t clashes() const;

@@ -48,8 +48,8 @@ struct ArmPose {
   double reach_share = 0;  ///< distance of the hand from the shoulder, divided by the arm's length
   double raised_rad = 0;   ///< angle of the upper arm from hanging down
   double elbow_rad = 0;    ///< flexion of the elbow; 0: stretched
-  bool is_reached =
-      false;  ///< false: the point is too far; the angles are then those of an arm stretched towards it
+  /// False if the point is too far. The angles are then those of an arm that is stretched towards the point.
+  bool is_reached = false;
 };
 /// @param p_SH  hand from the shoulder; z is up
 VPS_SCENES_API ArmPose armTo(const Body& body, const Vec3& p_SH);
@@ -64,8 +64,8 @@ inline constexpr int kBestRula = 2, kWorstRula = 6;
 struct StepErgonomics {
   std::string part, body;
   Posture posture = Posture::Seated;
-  std::string
-      hand;  ///< "left" or "right": the hand that reaches the part for a longer time, or with less strain
+  /// "left" or "right": the hand that reaches the part for a longer time, or with less strain.
+  std::string hand;
   double greatest_reach = 0;      ///< greatest distance from the shoulder, as a share of the arm's length
   double out_of_reach_share = 0;  ///< share of the time in hand
   double raised_rad = 0;          ///< greatest angle of the upper arm
