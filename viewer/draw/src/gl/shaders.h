@@ -69,7 +69,8 @@ void main() {
 }
 )";
 
-// The target is transparent where it faces the viewer and denser towards its rim, so that its shape is visible.
+// The target is transparent where it faces the viewer and denser towards its rim, so that its shape is
+// visible.
 inline constexpr const char* kGhostFragment = R"(
 in vec3 p_C, n_C;
 uniform vec3 color;
@@ -136,8 +137,10 @@ void main() {
 }
 )";
 
-// Computes ambient occlusion in screen space (the share of the hemisphere over a pixel that no nearer geometry covers) and the key light's soft shadow. The sample patterns are fixed and differ from pixel to pixel of a square
-// of 4 x 4, which the blur afterwards averages exactly. Each point of a surface thus gets 160 directions and 64 depths.
+// Computes ambient occlusion in screen space (the share of the hemisphere over a pixel that no nearer
+// geometry covers) and the key light's soft shadow. The sample patterns are fixed and differ from pixel to
+// pixel of a square of 4 x 4, which the blur afterwards averages exactly. Each point of a surface thus gets
+// 160 directions and 64 depths.
 inline constexpr const char* kOcclusionFragment = R"(
 in vec2 uv;
 uniform sampler2D geometry;
@@ -215,7 +218,8 @@ void main() {
 }
 )";
 
-// Marks the nearest part above each place of the floor, seen from below: x decays quickly with the part's height, y slowly.
+// Marks the nearest part above each place of the floor, seen from below: x decays quickly with the part's
+// height, y slowly.
 inline constexpr const char* kFloorFragment = R"(
 in vec3 p_C, n_C;
 uniform vec3 floor_C, up_C;
@@ -227,7 +231,8 @@ void main() {
 }
 )";
 
-// The program puts the constants kReach and kWeights (for x and y, of texels -kReach to kReach) before this source. All texels that the shader reads exist.
+// The program puts the constants kReach and kWeights (for x and y, of texels -kReach to kReach) before this
+// source. All texels that the shader reads exist.
 inline constexpr const char* kFloorBlurFragment = R"(
 uniform sampler2D source;
 uniform ivec2 direction;
@@ -271,7 +276,8 @@ void main() {
 
 // --- lines and marks ---
 
-// Draws a line as a screen-aligned strip, because core profiles guarantee lines of one pixel only. The strip is moved slightly towards the eye, so that an edge lies in front of its own faces.
+// Draws a line as a screen-aligned strip, because core profiles guarantee lines of one pixel only. The strip
+// is moved slightly towards the eye, so that an edge lies in front of its own faces.
 inline constexpr const char* kLineVertex = R"(
 layout(location = 0) in vec3 a;
 layout(location = 1) in vec3 b;
@@ -337,7 +343,10 @@ void main() {
 
 // --- the finished picture ---
 
-// Averages samples in linear colour, blends them over the background, compresses highlights instead of clipping them, and encodes as sRGB [IEC 61966-2-1]. The program puts the constants `factor`, `samples` and `has_parts` before this source, since llvmpipe runs loops of unknown length much slower. Without `has_parts`, only the background is drawn.
+// Averages samples in linear colour, blends them over the background, compresses highlights instead of
+// clipping them, and encodes as sRGB [IEC 61966-2-1]. The program puts the constants `factor`, `samples` and
+// `has_parts` before this source, since llvmpipe runs loops of unknown length much slower. Without
+// `has_parts`, only the background is drawn.
 inline constexpr const char* kFinalFragment = R"(
 uniform sampler2DMS parts;  // rgb: colour times opacity; a: opacity
 uniform sampler2D behind;

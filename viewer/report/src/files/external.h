@@ -7,20 +7,20 @@
 
 namespace vps::viewer {
 
-/// Runs a program that is found by PATH, without a shell. Returns nothing on success, and otherwise the
-/// reason: `missing` where there is no such program, else with the start of what it printed.
-/// @param words  its name and arguments
-/// @param input  what it reads on stdin
+/// Runs a program that PATH finds, without a shell. Returns an empty text on success, `missing` if there is
+/// no such program, and otherwise the start of the program's output.
+/// @param words  the program's name and arguments
+/// @param input  the program's standard input
 std::string runProgram(const std::vector<std::string>& words, const std::string& input,
                        const std::string& missing);
 
-/// Whether PATH has it.
+/// Whether PATH finds a program of this name.
 bool hasProgram(const std::string& name);
 
-/// Its bytes; empty where it cannot be read.
+/// The bytes of a file; empty if it cannot be read.
 std::string textOf(const std::string& file);
 
-inline constexpr const char* kThreeFolder =
-    "/usr/share/javascript/three/";  // of Debian's package libjs-three
+/// Folder of three.js, which draws in browsers, in Debian's package libjs-three.
+inline constexpr const char* kThreeFolder = "/usr/share/javascript/three/";
 
 }  // namespace vps::viewer

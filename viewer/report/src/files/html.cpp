@@ -80,7 +80,7 @@ std::string attribute(const std::string& css_class) {
   return css_class.empty() ? std::string() : " class=\"" + escapeHtml(css_class) + "\"";
 }
 
-/// The body with the pictures that are in the folder instead of their names.
+/// The body with the pictures from the folder embedded in place of their names.
 std::string withPictures(const std::string& body, const std::string& folder) {
   static const std::string kSource = "<img src=\"";
   std::string out;
@@ -96,11 +96,11 @@ std::string withPictures(const std::string& body, const std::string& folder) {
   return out.append(body, done);
 }
 
-/// Files of the folder, to which the body links, as part of the page: a click saves them. A file that is too
-/// large for mail, or missing, is named without a link. Links to pages and to places in this one stay.
+/// Embeds files of the folder to which the body links; a click saves them. A file that is missing or too
+/// large for mail is named without a link. Links to other pages and within this page stay.
 std::string withLinkedFiles(const std::string& body, const std::string& folder) {
   static const std::string kLink = "<a href=\"";
-  constexpr std::uintmax_t kMost_bytes = 4'000'000;  // common mail servers take 10 MB, of which text is 3/4
+  constexpr std::uintmax_t kMost_bytes = 4'000'000;  // common mail servers accept 10 MB; base64 adds a third
   std::string out;
   std::size_t done = 0;
   for (std::size_t at = body.find(kLink); at != std::string::npos; at = body.find(kLink, done)) {

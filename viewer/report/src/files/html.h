@@ -32,26 +32,26 @@ std::string table(const std::vector<std::string>& header, const std::vector<std:
 /// A two-column table: name, value.
 std::string facts(const std::vector<std::pair<std::string, std::string>>& rows);
 
-/// A picture, which links to `link` if there is one. Both are relative to the page.
+/// A picture with a caption. It links to `link` if that is not empty; both paths are relative to the page.
 std::string figure(const std::string& file, const std::string& caption_html, const std::string& link = {});
 
-/// The page around a body. Pictures (PNG) that it shows from `folder`, and tables and drawings (CSV, SVG)
-/// that it links to, are written into it, so that it can be sent on without the folder.
+/// A whole page with the given body. Pictures (PNG) from `folder` that the page shows, and tables and
+/// drawings (CSV, SVG) that it links to, are embedded, so that the page can be sent without the folder.
 std::string page(const std::string& title, const std::string& body, const std::string& folder = {});
 
 }  // namespace html
 
-/// RFC 4648, section 4, with padding.
+/// Bytes as base64 text: RFC 4648, section 4, with padding.
 std::string base64(std::span<const std::byte> bytes);
 /// The bytes of a PNG file as a data URL (RFC 2397), for a picture inside a page.
 std::string pngInText(std::string_view bytes);
 
-/// The number of micrometres, without unit: "12.34".
+/// A length in micrometres, without unit: "12.34".
 inline std::string micrometres(double length_m, const char* form = "%.2f") {
   return html::format(1e6 * length_m, form);
 }
 
-/// Of round lengths, with the unit that suits them: "5 mm", "200 µm".
+/// A round length with a suitable unit: "5 mm", "200 µm".
 inline std::string lengthText(double length_m) {
   if (length_m >= 1) return html::format(length_m, "%g m");
   if (length_m >= 1e-3) return html::format(1e3 * length_m, "%g mm");

@@ -41,11 +41,9 @@ std::string pairs(const scenes::CheckResult& result) {
                     {place(pair.at_W), "n"}});
   }
   return std::string(
-             "<h2>Pairs near each other</h2>\n<p>As drawn. Surfaces that meet to within the error are in "
-             "contact, "
-             "which is no clash. The error holds the distance of the meshes from the curved faces that they "
-             "stand "
-             "for; ")
+             "<h2>Pairs near each other</h2>\n<p>As drawn. Surfaces that touch to within the error are in "
+             "contact, which is no clash. The error includes the distance between the meshes and the curved "
+             "faces that they approximate; ")
              .append(kOverlapMeaning)
              .append(".</p>\n") +
          html::table({"part", "and", "state", "clearance [µm]", "overlap [µm]", "volume [mm³]", "error [µm]",
@@ -70,9 +68,9 @@ std::string fits(const scenes::CheckResult& result) {
                     {micrometres(fit.error_m), "n"},
                     {format(1e3 * fit.length_m, "%.2f"), "n"},
                     {escapeHtml(standardOf(fit)), ""}});
-  return "<h2>Fits</h2>\n<p>Found on the meshes, whose corners lie on the true faces. Of a thread the sizes "
-         "are its "
-         "major diameters, and the play along the axis says how loose its flanks are. The last column names "
+  return "<h2>Fits</h2>\n<p>Fits are found on the meshes, whose corners lie on the true faces. The sizes of "
+         "a thread are its major diameters; its play along the axis measures the clearance of its flanks. "
+         "The last column names "
          "a "
          "common fit of ISO 286 in whose zones both sizes lie, or a thread of ISO 262.</p>\n" +
          html::table({"kind", "inner part", "outer part", "inner [mm]", "outer [mm]", "clearance [µm]",
@@ -117,7 +115,7 @@ std::string pressFits(const scenes::CheckResult& result) {
                      rows);
 }
 
-/// Both ways along one axis.
+/// The play in both directions along one axis.
 std::string both(const std::array<double, 6>& way, const std::array<double, 6>& error, std::size_t i,
                  double usual, double scale, const char* form) {
   return escapeHtml("+" + playWords(way[i], error[i], usual, scale, form) + " / −" +
@@ -142,7 +140,7 @@ std::string play(const scenes::CheckResult& result) {
       else
         row.push_back({both(part.play->m, part.play->error_m, i, part.play_error_m, 1e6, "%.1f"), "n"});
     }
-    std::string ways = part.play ? "" : "it overlaps another part";
+    std::string ways = part.play ? "" : "the part overlaps another part";
     for (const Vec3& way : part.ways_out_W) ways += (ways.empty() ? "(" : ", (") + coordinates(way) + ")";
     for (const scenes::ScrewWay& way : part.screw_ways_out)
       ways += (ways.empty() ? "by screw along (" : "; by screw along (") + coordinates(way.axis_W) + "), " +
@@ -152,11 +150,10 @@ std::string play(const scenes::CheckResult& result) {
     row.push_back({ways, ""});
     rows.push_back(row);
   }
-  return "<h2>Play</h2>\n<p>How far each part moves along and turns about its axes before it touches, the "
-         "other "
-         "parts held; free: it moves away, or turns a whole turn. Ways out are directions in which it leaves "
-         "on a "
-         "straight line, or by a screw.</p>\n" +
+  return "<h2>Play</h2>\n<p>How far each part moves along and turns about its axes before it touches, with "
+         "the other parts fixed; free: the part moves away, or makes a whole turn. Ways out are directions "
+         "in which the part leaves on a straight line, or axes about which it leaves by a screw "
+         "motion.</p>\n" +
          html::table({"part", "x [µm]", "y [µm]", "z [µm]", "about x [mrad]", "about y [mrad]",
                       "about z [mrad]", "ways out"},
                      rows);

@@ -21,7 +21,7 @@ using html::format;
 
 constexpr std::array kAxisNames = {"x [mm]", "y [mm]", "z [mm]"};
 
-/// The two axes along which both paths reach farthest, in order.
+/// The two axes with the greatest extents of both paths, in ascending order of axis.
 std::pair<int, int> widestAxes(const scenes::ComparedStep& step) {
   Box box;
   for (const auto* samples : {&step.expert_samples, &step.trainee_samples})
@@ -88,10 +88,10 @@ std::string scoreChart(const scenes::RunComparison& result) {
   for (const scenes::ComparedStep& step : result.steps)
     bars.push_back({step.part, step.score, step.is_done ? format(step.score, "%.0f") : "not done",
                     step.is_done ? "#3b6ea5" : "#b00020"});
-  return barChart(bars, "Score of each step; 100 is as quick, as short and as gentle as the expert.");
+  return barChart(bars, "Score of each step; 100: as quick, as short and as gentle as the expert.");
 }
 
-/// The figures of a step whose plots were drawn.
+/// The figures of a step. Draws the plots and adds a note if gnuplot fails.
 std::string figures(const scenes::ComparedStep& step, std::size_t number, const std::string& dir,
                     std::vector<std::string>& notes) {
   const std::string end = "_" + std::to_string(number);
@@ -121,12 +121,13 @@ std::vector<std::string> writeComparePage(const scenes::RunComparison& result, c
                      " of 100.</p>\n<p>" + escapeHtml(result.trainee) + " against the expert's " +
                      escapeHtml(result.expert) + ".</p>\n";
   for (const std::string& note : notes) body += "<p class=\"note\">" + escapeHtml(note) + "</p>\n";
-  body += scoreChart(result) + "<h2>Steps</h2>\n" + stepTable(result) +
-          "<p class=\"quiet\">Where a cell has two numbers, the expert's comes first. The score of a step is "
-          "the mean of three shares with equal weights (<i>assumed</i>): time, path and peak force, each the "
-          "expert's by the trainee's and at most 1; a force below 1 N counts as 1 N. A step that is not done "
-          "has none. Motions of less than half a millimetre are not counted as path.</p>\n" +
-          steps;
+  body +=
+      scoreChart(result) + "<h2>Steps</h2>\n" + stepTable(result) +
+      "<p class=\"quiet\">Where a cell has two numbers, the expert's comes first. The score of a step is "
+      "the mean of three shares with equal weights (<i>assumed</i>): time, path and peak force, each the "
+      "expert's value divided by the trainee's and at most 1; a force below 1 N counts as 1 N. A step that "
+      "is not done has no score. Motions of less than half a millimetre are not counted as path.</p>\n" +
+      steps;
   writeWholeFile(dir + "/compare.html", html::page("Training", body, dir));
   return notes;
 }

@@ -14,9 +14,9 @@ namespace {
 
 using html::format;
 
-constexpr double kPathRate_hz = 25;                                         // of the drawn path
-constexpr double kViewWidth_px = 440, kViewHeight_px = 330, kPxPerM = 190;  // of a side view
-constexpr double kGround_px = 315, kShoulders_px = 120;                     // places in it
+constexpr double kPathRate_hz = 25;                                         // rate at which the path is drawn
+constexpr double kViewWidth_px = 440, kViewHeight_px = 330, kPxPerM = 190;  // size and scale of a side view
+constexpr double kGround_px = 315, kShoulders_px = 120;  // heights of the floor and the shoulders in it
 
 std::string inWholeDegrees(double rad) {
   return format(rad * 180 / std::numbers::pi, "%.0f");
@@ -40,7 +40,7 @@ std::string personTable(const scenes::Ergonomics& measured) {
       rows);
 }
 
-/// A view along -x: y to the right, z up; the floor is at the bottom.
+/// Draws a view along -x: y to the right, z up, the floor at the bottom.
 class SideView {
  public:
   SideView(const scenes::Ergonomics& measured, scenes::Posture posture)
@@ -63,7 +63,7 @@ class SideView {
            (posture_ == scenes::Posture::Seated ? "Seated" : "Standing") +
            ", from the side: path of the part in hand (red), the arms of a small woman and a large man at "
            "its "
-           "farthest place, and what their arms reach.</figcaption></figure>\n";
+           "farthest place, and the reach of their arms.</figcaption></figure>\n";
   }
 
  private:
@@ -77,7 +77,8 @@ class SideView {
            "\" stroke-width=\"" + format(width, "%.1f") + "\"/>\n";
   }
 
-  /// In the plane of the picture, so that an arm that reaches aside looks shorter than it is bent here.
+  /// Draws the arm in the plane of the picture. An arm that reaches sideways therefore looks more bent than
+  /// it is.
   [[nodiscard]] std::string person(const scenes::Body& body, const std::vector<Vec3>& path_W) const {
     const double shoulder_m = body.shoulderHeight_m(posture_);
     const double arm_m = body.upperArm_m() + body.forearm_m();
@@ -131,9 +132,9 @@ std::string ergonomicsSection(const scenes::Scene& scene, const scenes::Assemble
          "of "
          "men), 18 to 65 years (DIN 33402-2:2005); lengths of the body as shares of the stature (Drillis and "
          "Contini 1966); a bench of 0.74 m to sit and of 1.05 m to stand at (EN 527-1:2011), on which the "
-         "lowest part stands; the shoulders 0.20 m before the nearest part or place of the path, on the side "
-         "of "
-         "the least y. The hand is at the centre of mass of the part, the elbow hangs below the line from "
+         "lowest part stands; the shoulders 0.20 m in front of the nearest part or place of the path, on the "
+         "side of the least y. The hand is at the centre of mass of the part, the elbow hangs below the line "
+         "from "
          "shoulder to hand. RULA scores of upper arm and lower arm after McAtamney and Corlett (1993), "
          "without "
          "wrist, neck, trunk and load.</p>\n";

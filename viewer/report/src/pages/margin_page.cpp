@@ -24,11 +24,11 @@ std::string growthChart(const scenes::MarginResult& result) {
   std::vector<Bar> bars;
   for (const scenes::StepMargin& step : result.steps)
     bars.push_back({nameOf(step), step.growth_m,
-                    !step.goes            ? "does not go as drawn"
+                    !step.goes            ? "does not go in as drawn"
                     : step.growth_fails_m ? micrometres(step.growth_m) + " µm"
                                           : "more than " + micrometres(step.growth_m) + " µm",
                     colorOf(step)});
-  return barChart(bars, "Growth of every face of the step's part with which it still goes.");
+  return barChart(bars, "Greatest growth of every face of the step's part with which it still goes in.");
 }
 
 std::string positionChart(const scenes::MarginResult& result) {
@@ -70,7 +70,7 @@ std::string answer(const scenes::MarginResult& result) {
   const scenes::StepMargin& worst = result.steps.front();
   if (!worst.goes)
     return "<p class=\"verdict bad\">As drawn, " + escapeHtml(worst.part) +
-           " does not go: " + escapeHtml(worst.fails_why) + "</p>\n";
+           " does not go in: " + escapeHtml(worst.fails_why) + "</p>\n";
   return "<p class=\"verdict good\">The tightest step is " + escapeHtml(worst.part) +
          ": every face may grow by " + micrometres(worst.growth_m) + " µm.</p>\n";
 }
@@ -81,15 +81,15 @@ std::string marginPage(const scenes::MarginResult& result) {
   return html::page(
       "Margins of " + result.scene,
       "<h1>Margins of " + escapeHtml(result.scene) + "</h1>\n" + answer(result) +
-          "<p>The part of each step was made larger by moving all its faces outwards, with the other parts "
-          "as "
-          "drawn; a diameter grows by twice the number. " +
+          "<p>The part of each step was made larger by moving all its faces outwards, while the other parts "
+          "stayed as drawn. A diameter grows by twice the number. " +
           (result.has_contact
-               ? "The growth is what the virtual operator still brought home, with one seed; "
+               ? "The growth is the greatest one with which the virtual operator still brought the part "
+                 "home, with one seed; "
                  "by geometry alone it may be larger."
                : "The growth is by geometry alone, without a run of the hand: an upper bound.") +
           " Resolution " + micrometres(result.resolution_m) +
-          " µm. Position and angle are measured with the part off its seat by a hundredth of its "
+          " µm. Position and angle are measured with the part lifted off its seat by a hundredth of its "
           "size.</p>\n" +
           growthChart(result) + positionChart(result) + angleChart(result) + stepTable(result));
 }

@@ -17,14 +17,15 @@ namespace fs = std::filesystem;
 
 constexpr const char* kNoChromium = "needs Chromium (Debian: apt install chromium)";
 
-/// Of Debian, of other distributions, and Google's.
+/// The browser's program: Debian's name, the name in other distributions, or Google's; empty if none is
+/// installed.
 std::string browser() {
   for (const char* name : {"chromium", "chromium-browser", "google-chrome"})
     if (hasProgram(name)) return name;
   return {};
 }
 
-/// A folder for the browser's own files, which go with it.
+/// A temporary folder for the browser's own files, removed on destruction.
 class ProfileFolder {
  public:
   ProfileFolder() {
@@ -40,7 +41,7 @@ class ProfileFolder {
   [[nodiscard]] const std::string& path() const { return path_; }
 
  private:
-  std::string path_;  ///< empty: it could not be made
+  std::string path_;  ///< empty if the folder could not be made
 };
 
 bool isPdf(const std::string& file) {
@@ -68,10 +69,11 @@ std::string print(const ProfileFolder& profile, const std::string& page, const s
                                     "--no-pdf-header-footer",
                                     "--user-data-dir=" + profile.path() + "/profile",
                                     "--print-to-pdf=" + printed};
-  if (geteuid() == 0) words.emplace_back("--no-sandbox");  // as root it refuses to run with one
+  if (geteuid() == 0) words.emplace_back("--no-sandbox");  // as root Chromium refuses to run with a sandbox
   words.push_back("file://" + fs::absolute(page).string());
   if (std::string failure = runProgram(words, "", kNoChromium); !failure.empty()) return failure;
-  if (!isPdf(printed)) return program + " printed nothing";  // it ends in good order where it could not
+  if (!isPdf(printed))
+    return program + " printed nothing";  // Chromium's exit status is 0 even if it printed nothing
   std::error_code error;
   fs::copy_file(printed, pdf, fs::copy_options::overwrite_existing, error);
   return error ? "cannot be written: " + error.message() : "";

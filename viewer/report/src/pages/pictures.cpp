@@ -16,7 +16,7 @@ namespace {
 
 using html::format;
 
-const Vec3 kToViewer(0.75, -1.25, 0.85);  // from the front, the right and above, as assembly drawings are
+const Vec3 kToViewer(0.75, -1.25, 0.85);  // from the front, right and above, as in assembly drawings
 
 class PictureSet {
  public:
@@ -36,7 +36,7 @@ class PictureSet {
     DrawOptions options = baseOptions();
     options.show_target = options.show_contacts = options.show_force = options.show_legend = false;
     options.title = result_.scene.empty() ? scene_.name : result_.scene;
-    options.caption = result_.verdict == scenes::Verdict::Fits ? "as assembled" : "as the run left it";
+    options.caption = result_.verdict == scenes::Verdict::Fits ? "as assembled" : "at the end of the run";
     const Camera camera = frame(snapshotBounds(drawn_, result_.finished));
     pictures.overview = save("overview.png", result_.finished, camera, options);
     options.caption += ", cut through the middle";
@@ -87,7 +87,8 @@ class PictureSet {
             close_W.add(part_W.max);
           }
       if (i < result_.contact.size() &&
-          result_.contact[i].has_hand) {  // the arrow of the force starts at the hand
+          result_.contact[i]
+              .has_hand) {  // the arrow of the force starts at the hand, so the hand must be in the picture
         const Vec3& p_hand_W = result_.contact[i].X_W_Proxy.p;
         if ((p_hand_W - close_W.center()).norm() < close_W.size().norm()) close_W.add(p_hand_W);
       }
@@ -219,9 +220,9 @@ std::string pictures(const scenes::CheckResult& result) {
     out +=
         "<figure class=\"section\">" + picture(renderer, i, box_W, Vec3(0.75, -1.25, 0.85)) +
         picture(renderer, i, box_W, Vec3(-0.75, 1.25, -0.85)) + "<figcaption><b>" + escapeHtml(map.part) +
-        "</b>, from the front, right and above, and from the other side. At the points that were measured " +
-        (least_m < 0 ? "it is up to " + format(-1e6 * least_m, "%.2f µm") + " in another part."
-                     : "it is nearest to another part by " + format(1e6 * least_m, "%.2f µm") + ".") +
+        "</b>, from the front, right and above, and from the opposite side. At the measured points " +
+        (least_m < 0 ? "it reaches up to " + format(-1e6 * least_m, "%.2f µm") + " into another part."
+                     : "its least distance from another part is " + format(1e6 * least_m, "%.2f µm") + ".") +
         "</figcaption></figure>\n";
   }
   return out;
@@ -230,7 +231,7 @@ std::string pictures(const scenes::CheckResult& result) {
 }  // namespace
 
 std::array<double, 3> clearanceColor(double distance_m, double near_m) {
-  // The sign of a point on a common face is that of rounding.
+  // At a point on a common face the sign of the distance is rounding error.
   if (distance_m < -1e-5 * near_m) return kOverlap;
   if (distance_m >= near_m) return kFar;
   const double share = std::clamp(1 + std::log10(std::max(distance_m, 1e-300) / near_m) / kDecades, 0.0, 1.0);
@@ -245,8 +246,8 @@ std::array<double, 3> clearanceColor(double distance_m, double near_m) {
 std::string clearancePictures(const scenes::CheckResult& result) {
   if (result.maps.empty()) return "";
   std::string out =
-      "<h2>Clearance on the surfaces</h2>\n<p>The distance of each point of a part's surface from "
-      "the nearest other part, which is not drawn.</p>\n" +
+      "<h2>Clearance on the surfaces</h2>\n<p>The distance of each point of a part's surface from the "
+      "nearest other part. The other part is not drawn.</p>\n" +
       legend(result.near_m);
   try {
     return out + pictures(result);

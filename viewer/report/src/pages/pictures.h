@@ -11,7 +11,7 @@
 
 namespace vps::viewer {
 
-/// File names relative to the report; empty where there is no picture.
+/// File names relative to the report; empty for a missing picture.
 struct StepPictures {
   std::string start, contact, end;
 };
@@ -21,14 +21,16 @@ struct ReportPictures {
   std::string failure_reason;  ///< set when no picture could be made
 };
 
+/// Draws the pictures of a run into dir/pictures. Does not throw for a missing OpenGL.
 ReportPictures drawPictures(const scenes::Scene& scene, const scenes::AssembleResult& result,
                             const std::string& dir, const ReportOptions& options);
 
-/// sRGB, 0 to 1: magenta for an overlap, then from red over yellow and green to blue, by the logarithm of the
-/// distance from a thousandth of near_m to near_m; light grey from there on.
+/// sRGB, 0 to 1: magenta for an overlap; from red over yellow and green to blue for distances from near_m /
+/// 1000 to near_m, on a logarithmic scale; light grey beyond near_m.
 std::array<double, 3> clearanceColor(double distance_m, double near_m);
 
-/// A section of a page: each part from two sides, with the legend. Says what is missing where OpenGL is.
+/// A section of the page of a check: each part from two sides, with colours of clearance and a legend.
+/// Without OpenGL the section has a note instead.
 std::string clearancePictures(const scenes::CheckResult& result);
 
 }  // namespace vps::viewer

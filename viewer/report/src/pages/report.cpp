@@ -57,7 +57,7 @@ std::string stepTable(const scenes::AssembleResult& result) {
       rows);
 }
 
-/// "approach 1.2 s, touch 0.4 s": in order, with spaces in the names.
+/// The strategies in order, with spaces in their names: "approach 1.2 s, touch 0.4 s".
 std::string strategiesInWords(const std::vector<scenes::StrategyUse>& uses) {
   std::string words;
   for (const scenes::StrategyUse& use : uses) {
@@ -117,7 +117,7 @@ std::string plotFigure(const std::string& name, const std::string& caption) {
   return html::figure("plots/" + name + ".png", caption + " (<a href=\"plots/" + name + ".svg\">SVG</a>)");
 }
 
-/// A plot of the whole run, and which steps have one of their own.
+/// A plot of the whole run, and the steps that have a plot of their own.
 struct WrittenPlot {
   RunPlot plot;
   std::vector<bool> has_step;
@@ -157,8 +157,10 @@ std::string stepSection(std::size_t i, const scenes::StepResult& step, const Ste
   if (!pictures.start.empty() || !pictures.contact.empty() || !pictures.end.empty()) {
     out += "<div class=\"pictures\">\n";
     if (!pictures.start.empty())
-      out += html::figure(pictures.start, step.is_taken_off ? "In place; where it is put away is transparent."
-                                                            : "Start; the target is transparent.");
+      out += html::figure(pictures.start,
+                          step.is_taken_off
+                              ? "In place; the part at the place where it is put down is transparent."
+                              : "Start; the target is transparent.");
     if (!pictures.contact.empty()) out += html::figure(pictures.contact, "In contact, in section.");
     if (!pictures.end.empty()) out += html::figure(pictures.end, "End, in section.");
     out += "</div>\n";
@@ -220,7 +222,7 @@ bool isHandSimulated(const scenes::Scene& scene) {
 }
 
 std::string handText(const scenes::Scene& scene) {
-  if (!isHandSimulated(scene)) return "<li>A person moved the parts.</li>\n";
+  if (!isHandSimulated(scene)) return "<li>A person moved the parts by hand.</li>\n";
   return "<li>The hand is simulated (<i>assumed</i> parameters): it aims with a standard deviation of " +
          micrometres(scene.hand.aim_error_m, "%.0f") + " µm and " +
          format(1e3 * scene.hand.aim_error_rad, "%.1f") + " mrad, moves at " +
@@ -253,9 +255,8 @@ std::string method(const scenes::Scene& scene, const scenes::AssembleResult& res
          "to the deflection of the tessellation.</li>\n"
          "<li>Overlap is measured as the exact distance between those meshes, during the step and the rest "
          "after "
-         "it. The limit is 10 µm or a quarter of the fit's clearance, whichever is less. As drawn, parts "
-         "overlap "
-         "where they are in each other by more than the error of their meshes and 0.5 µm.</li>\n" +
+         "it. The limit is 10 µm or a quarter of the fit's clearance, whichever is less. Parts overlap as "
+         "drawn if one reaches into the other by more than the error of their meshes plus 0.5 µm.</li>\n" +
          handText(scene) + "<li>The device is " +
          escapeHtml(scene.device.kind == "dual_arm" ? "the simulated dual arm" : scene.device.kind) +
          ", at " + format(scene.device.scale, "%g") +
@@ -277,11 +278,11 @@ std::string tryTable(const scenes::AssembleResult& result) {
                     {format(one.simulated_s, "%.1f"), "n"},
                     {escapeHtml(one.reason), ""}});
   return "<h2>Tries</h2>\n<p>" + escapeHtml(easeWords(result)) +
-         " This report shows the first that fits, or else the first.</p>\n" +
+         " This report shows the first try that fits, or the first try if none fits.</p>\n" +
          html::table({"seed of the hand", "verdict", "time [s]", "why"}, rows);
 }
 
-/// The answer, with the reasons for the steps that failed and for what is missing in the report.
+/// The answer, with the reasons for failed steps and for missing parts of the report.
 std::string summary(const scenes::AssembleResult& result, const std::vector<std::string>& notes) {
   std::string out = headline(result);
   const auto note = [&out](const std::string& text) {
@@ -294,17 +295,18 @@ std::string summary(const scenes::AssembleResult& result, const std::vector<std:
     if (step.completed && !step.by_contact && !step.is_taken_off)
       note(name + "by contact: " + contactWords(step) + ".");
     if (!step.stands_on.empty())
-      note(name + "tried with '" + step.stands_on + "' put at its target, which it had not reached.");
+      note(name + "tried with '" + step.stands_on +
+           "' placed at its target, although that part had not reached it.");
     if (!step.aligned_by.empty())
-      note(name + "it lies within its tolerance; from here on it is where it belongs, since '" +
-           step.aligned_by + "' takes it there.");
+      note(name + "the part lies within its tolerance; later steps use it at its exact target, since '" +
+           step.aligned_by + "' aligns it.");
   }
   for (const std::string& text : notes) note(text);
   return out + tryTable(result);
 }
 
-/// The settings as they were in force, whatever file or command line they came from. Reports are sent by
-/// mail, so files are named without the folders of whoever ran it.
+/// The settings of the run, from the scene file and the command line. Reports are sent by mail, so files are
+/// named without their folders.
 std::string exactSettings(const scenes::Scene& scene) {
   namespace fs = std::filesystem;
   std::vector<std::string> files;
@@ -360,7 +362,7 @@ ReportOutcome writeReport(const scenes::Scene& scene, const scenes::AssembleResu
   body += view.html;
   if (!pictures.overview.empty())
     body += "<div class=\"pictures two\">\n" + html::figure(pictures.overview, "The assembly.") +
-            html::figure(pictures.section, "The same in section.") + "</div>\n";
+            html::figure(pictures.section, "The assembly in section.") + "</div>\n";
   body += "<h2>Steps</h2>\n" + stepTable(result);
   for (const WrittenPlot& written : plots)
     body += "<h2>" + escapeHtml(written.plot.heading) + "</h2>\n" +

@@ -22,7 +22,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// The notice that its licence asks for.
+// The copyright notice of three.js, which its licence requires.
 constexpr const char* kThreeNotice = R"(<!--
 three.js is part of this page. Copyright 2010-2019 three.js authors. Its licence, MIT:
 Permission is hereby granted, free of charge, to any person obtaining a copy of this software and associated documentation
@@ -49,7 +49,7 @@ std::string scriptElement(const std::string& attributes, const std::string& text
   return std::string("<script").append(attributes).append(">").append(text).append("</script>\n");
 }
 
-/// Without "<", so that a part's name cannot end the element that it stands in.
+/// JSON without "<", so that a part's name cannot end the HTML element around it.
 std::string textOf(const Json& data) {
   std::string text = data.dump(-1, ' ', true, Json::error_handler_t::replace);
   for (std::size_t at = text.find('<'); at != std::string::npos; at = text.find('<', at + 1))
@@ -66,7 +66,7 @@ double rounded(double value, double unit) {
   return std::isfinite(value) ? std::round(value / unit) * unit : 0;
 }
 
-/// Appends a pose in mm: to 0.1 um, and to a turn that moves a metre by as much.
+/// Appends a pose in mm. Positions are rounded to 0.1 um, rotations to what moves a point at 1 m by 0.1 um.
 void addPose(Json& to, const Pose& X) {
   for (int k = 0; k < 3; ++k) to.push_back(rounded(1e3 * X.p[k], 1e-4));
   const Eigen::Quaterniond q(X.R);
@@ -96,7 +96,7 @@ Json partData(const DrawnMesh& part, std::size_t wanted) {
   std::vector<float> places, edges;
   std::vector<std::int8_t> normals;
   std::vector<std::uint8_t> colors;
-  // Only the vertices that the coarser mesh uses, in the order of their use.
+  // Only vertices that the coarser mesh uses are written, in the order of first use.
   std::vector<std::uint32_t> triangles = CoarseMesh(mesh).indices(wanted);
   std::vector<std::uint32_t> number(mesh.vertices.size(), UINT32_MAX);
   std::uint32_t count = 0;
@@ -135,7 +135,7 @@ Json partsData(const RenderScene& drawn) {
   return parts;
 }
 
-/// [part, pose ...] of each body that is there.
+/// [part, pose ...] for each body of the snapshot.
 Json bodiesOf(const std::vector<PartExtent>& extents, const scenes::Snapshot& snapshot) {
   Json bodies = Json::array();
   forEachVisiblePart(extents, snapshot, false, [&](std::size_t part, const Pose& X_WP, scenes::BodyRole) {
@@ -157,7 +157,7 @@ Json stepsData(const std::vector<PartExtent>& extents, const scenes::Scene& scen
   return steps;
 }
 
-/// [time, step, pose ..., force, depth, contacts], at even times; and the last of the run.
+/// [time, step, pose ..., force, depth, contacts] at equal intervals, and the last row of the run.
 Json framesData(const scenes::AssembleResult& result, std::size_t steps) {
   Json frames = Json::array();
   std::vector<scenes::TraceRow> rows = thinned(result.trace, kRunViewRate_hz);
@@ -174,7 +174,7 @@ Json framesData(const scenes::AssembleResult& result, std::size_t steps) {
   return frames;
 }
 
-/// In mm.
+/// A vector in mm.
 Json boxOf(const Box& box) {
   const Vec3 min_mm = 1e3 * box.min, max_mm = 1e3 * box.max;
   return {{"min", {min_mm.x(), min_mm.y(), min_mm.z()}}, {"max", {max_mm.x(), max_mm.y(), max_mm.z()}}};

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The three-dimensional view of a run in the report. Reads what run_view.cpp wrote: lengths in mm, poses as
-// [x, y, z, qw, qx, qy, qz], arrays as base64.
+// The three-dimensional view of a run in the report. It reads the data that run_view.cpp wrote: lengths in mm, poses as [x, y, z, qw, qx, qy, qz], arrays as base64.
 (function () {
   "use strict";
   const run = JSON.parse(document.getElementById("run-data").textContent);
@@ -43,14 +42,14 @@
   const lamp = new THREE.DirectionalLight(0xffffff, 0.55);
   scene.add(lamp);
 
-  // The run is all that is seen in it, the assembly what it leaves.
+  // `run` is the box around everything during the run, `assembly` the box around its end.
   function boxOf(data) {
     return new THREE.Box3(new THREE.Vector3().fromArray(data.min), new THREE.Vector3().fromArray(data.max));
   }
   const wholeRun = boxOf(run.run), assembly = boxOf(run.assembly);
   const ball = wholeRun.getBoundingSphere(new THREE.Sphere());
 
-  // A soft shadow on the floor below, from a lamp above that lights nothing else much.
+  // A weak lamp above casts a soft shadow on the floor.
   const sun = new THREE.DirectionalLight(0xffffff, 0.2);
   sun.position.set(-0.35, -0.3, 1).normalize().multiplyScalar(3 * ball.radius).add(ball.center);
   sun.target.position.copy(ball.center);
@@ -105,7 +104,7 @@
     if (isInHand) part.paint.color.set(kInHand);
     else if (showsFaces) part.paint.color.set(0xffffff);
     else part.paint.color.copy(part.color);
-    // THREE.VertexColors before release 114, true since.
+    // The value is THREE.VertexColors before release 114 of three.js, and `true` from then on.
     const mode = Number(THREE.REVISION) < 114 ? (showsFaces ? THREE.VertexColors : THREE.NoColors) : showsFaces;
     if (part.paint.vertexColors === mode) return;
     part.paint.vertexColors = mode;
@@ -117,8 +116,8 @@
   hint.visible = false;
   scene.add(hint);
 
-  let box3 = assembly;  // what the camera shows
-  let isTurned = false;   // by the reader; then the camera stays
+  let box3 = assembly;  // the box that the camera shows
+  let isTurned = false;   // whether the reader has turned the view; the camera then stays
   const kViews = {
     corner: [0.75, -1.25, 0.85], front: [0, -1, 0], right: [1, 0, 0], back: [0, 1, 0], left: [-1, 0, 0],
     top: [0, -0.001, 1]
@@ -127,7 +126,7 @@
   controls.addEventListener("change", draw);
   controls.addEventListener("start", function () { isTurned = true; });
 
-  // Where the box's corners are in the picture: from -1 to 1 across and up.
+  // The range of the box's corners in the picture, from -1 to 1 in both directions.
   function cornersSeen() {
     camera.updateMatrixWorld();
     const seen = new THREE.Box2();
@@ -139,8 +138,7 @@
     return seen;
   }
 
-  // Its middle in the middle of the picture and as near as it fits: near parts look larger, so that both are
-  // found by turns.
+  // Centres the box and moves the camera as near as the box fits. Near parts look larger, so centre and distance are found alternately.
   function look(name) {
     const kFilled = 0.86;
     const target = box3.getCenter(new THREE.Vector3());
@@ -165,7 +163,7 @@
     draw();
   }
 
-  // As near as what is shown allows: the assembly once it is done, else all that the run comes to.
+  // Moves the camera as near as possible: to the assembly once the run has ended, otherwise to everything that the run reaches.
   function frameFor(index) {
     const wanted = index + 1 >= run.frames.length ? assembly : wholeRun;
     if (wanted === box3 || isTurned) return;
@@ -173,7 +171,7 @@
     look(views.value);
   }
 
-  // The bodies of the step's beginning, and then the part in hand where it is now.
+  // Places the bodies as at the beginning of the step, and then the part in hand at its current pose.
   function show(index) {
     frameFor(index);
     const frame = run.frames[index];
@@ -190,7 +188,7 @@
     }
     hint.visible = Boolean(step) && !isLast;
     if (!hint.visible) {
-      label.textContent = "the assembly as the run left it";
+      label.textContent = "the assembly at the end of the run";
       return;
     }
     const held = parts[step.part];
@@ -222,7 +220,7 @@
     draw();
   }
 
-  let from = null;  // when playing: wall clock and time of the run at which it began
+  let from = null;  // while playing: wall-clock time and time of the run when play began; null: paused
   function play(now) {
     if (!from) return;
     const time = from.run + 1e-3 * (now - from.wall);

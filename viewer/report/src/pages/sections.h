@@ -12,14 +12,14 @@
 namespace vps::viewer {
 
 struct RunView {
-  std::string html;     ///< empty if it could not be made
-  std::string missing;  ///< why, with the remedy
+  std::string html;     ///< empty if the view could not be made
+  std::string missing;  ///< the reason, with a remedy
 };
 
-/// A view that turns under the mouse or a finger, and plays and scrubs the run. It needs nothing beside the
-/// page: three.js is written into it, so it opens by mail, in any browser with WebGL; elsewhere it says that
-/// the browser has none. Parts are drawn with at most kRunViewTriangles in all, and kRunViewRate_hz places a
-/// second. Without three.js on this machine there is no view. O(triangles log triangles + rows).
+/// A view that turns under the mouse or a finger, and plays and scrubs the run. The page embeds three.js and
+/// needs no other file, so it works by mail, in any browser with WebGL; other browsers show a message. All
+/// parts together have at most kRunViewTriangles, and the view has kRunViewRate_hz poses a second. Without
+/// three.js on this machine there is no view. O(triangles log triangles + rows).
 RunView runView(const scenes::Scene& scene, const scenes::AssembleResult& result);
 
 inline constexpr std::size_t kRunViewTriangles = 150000;
@@ -27,11 +27,11 @@ inline constexpr double kRunViewRate_hz = 25;
 
 extern const char* const kRunViewScript;
 
-/// A table, and a side view for each posture with the path, both persons' arms at the path's farthest place
-/// and what they reach. Empty where nothing was measured.
+/// Reach and joint comfort of persons at a bench: a table, and a side view for each posture with the path,
+/// both persons' arms at the path's farthest place and their reach. Empty if nothing was measured.
 std::string ergonomicsSection(const scenes::Scene& scene, const scenes::AssembleResult& result);
 
-/// The first row of every period 1 / rate_hz.
+/// The time series at a lower rate: the first row of every period 1 / rate_hz.
 std::vector<scenes::TraceRow> thinned(const std::vector<scenes::TraceRow>& trace, double rate_hz);
 
 }  // namespace vps::viewer

@@ -16,7 +16,8 @@ namespace {
 using html::format;
 
 constexpr std::size_t kColumns = 30;
-constexpr double kBeyond = 1.2;  // the axis ends here, in half tolerances: a normal deviation may pass them
+// end of the axis in half tolerances; normally distributed deviations may exceed 1
+constexpr double kBeyond = 1.2;
 
 std::string percent(double share) {
   return format(100 * share, "%.2f %%");
@@ -35,7 +36,7 @@ std::string gainChart(const scenes::StudyResult& result) {
                     format(100 * effect.gain, "%+.2f") + format(100 * effect.gain_error, " ± %.2f points")});
   return barChart(bars,
                   "Change of the yield if this tolerance alone were half as wide, in percentage points, "
-                  "estimated from the same runs; ± is its interval of 95 %.");
+                  "estimated from the same runs; ± is the 95 % confidence interval.");
 }
 
 std::string effectTable(const scenes::StudyResult& result) {
@@ -63,7 +64,7 @@ std::string histogramOf(const scenes::StudyResult& result, const scenes::StudyEf
     (run.verdict == scenes::Verdict::Fits ? column.lower : column.upper) += 1;
   }
   return histogram(columns, deviationText(variable, low), deviationText(variable, low + 2 * half),
-                   escapeHtml(variable.name) + ": runs that fit (green) and that do not (red).");
+                   escapeHtml(variable.name) + ": runs that fit (green) and runs that do not fit (red).");
 }
 
 std::string reasons(const scenes::StudyResult& result) {
@@ -90,13 +91,12 @@ std::string studyPage(const scenes::StudyResult& result) {
   std::string body = "<h1>Study of " + escapeHtml(result.scene) + "</h1>\n<p class=\"verdict " +
                      (result.good == result.runs.size() ? "good" : "unsure") + "\">" + yieldSentence(result) +
                      "</p>\n<p>";
-  body +=
-      result.settings.has_contact
-          ? "Each run draws all deviations and a seed of the hand; what exact distances rule out is blocked, "
-            "and the rest is assembled by contact."
-          : "Each run draws all deviations and is judged by exact distances alone, without the hand.";
-  body += " The interval is Wilson's. Sizes are deviations of diameter or width from what is drawn.</p>\n";
-  body += "<h2>What costs yield</h2>\n" + gainChart(result) + effectTable(result);
+  body += result.settings.has_contact
+              ? "Each run draws all deviations and a seed of the hand. Runs that exact distances rule out "
+                "are blocked; all others are assembled by contact."
+              : "Each run draws all deviations and is judged by exact distances alone, without the hand.";
+  body += " The interval is Wilson's. Sizes are deviations of diameter or width from the drawing.</p>\n";
+  body += "<h2>Loss of yield by tolerance</h2>\n" + gainChart(result) + effectTable(result);
   body += reasons(result);
   body += "<h2>Deviations</h2>\n";
   for (const scenes::StudyEffect& effect : result.effects) body += histogramOf(result, effect);

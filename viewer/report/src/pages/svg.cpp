@@ -80,7 +80,7 @@ using Chain = std::vector<Point>;
 
 constexpr double kSide = 440, kGap = 30, kTop = 6, kFoot = 34;  // [px]
 
-/// One of the two pictures.
+/// One of the two pictures of a section.
 struct Window {
   Point middle_m{};
   double half_m = 0, left = 0;
@@ -91,13 +91,13 @@ struct Window {
   }
 };
 
-/// Points nearer than a third of a pixel to the one before are left out.
+/// An outline as an SVG path. Points nearer than a third of a pixel to the previous point are left out.
 std::string pathOf(const scenes::SectionOutline& outline, const Window& window) {
   std::string out;
   for (const Chain& chain : outline.chains) {
     Point last{-1e9, -1e9};
     bool is_first = true;
-    // A little beyond the window, so that numbers stay small.
+    // Outlines are clipped a little beyond the window, so that coordinates stay small.
     for (const Point& p : scenes::clippedToSquare(chain, window.middle_m, 1.1 * window.half_m)) {
       const Point at = window.toPixel(p);
       if (!is_first && std::hypot(at[0] - last[0], at[1] - last[1]) < 0.3) continue;
@@ -110,7 +110,7 @@ std::string pathOf(const scenes::SectionOutline& outline, const Window& window) 
   return out;
 }
 
-/// 1, 2 or 5 times a power of ten, at most a third of the window.
+/// Length of the scale bar: 1, 2 or 5 times a power of ten, at most a third of the window.
 double barLength(double half_m) {
   const double most_m = 2 * half_m / 3, power = std::pow(10, std::floor(std::log10(most_m)));
   for (const double of : {5.0, 2.0})
@@ -153,7 +153,7 @@ std::string drawn(const scenes::CheckedSection& section, const Window& window, c
       out += filled(path, i % 2 == 0 ? "#e3e3e3" : "#cfd3cf",
                     "data-part=\"" + escapeHtml(section.parts[i].part) + "\"");
   }
-  // The outer part first, so that a shaft is not hidden by it.
+  // The outer part is drawn first, so that it does not hide a shaft.
   const std::array<std::string, 2> paths = {pathOf(section.parts[0], window),
                                             pathOf(section.parts[1], window)};
   for (const std::size_t i : {1U, 0U})
@@ -205,7 +205,7 @@ std::string sectionSvg(const scenes::CheckResult& result, const scenes::CheckedS
                     format(height, "%.0f") + "\" font-family=\"DejaVu Sans, sans-serif\" font-size=\"12\">\n";
   const std::string name = std::to_string(id);
   out += drawn(section, whole, name + "a") + drawn(section, near, name + "b");
-  // Where the right picture is.
+  // A frame in the left picture marks the region of the right one.
   const Point middle = whole.toPixel(section.near_m);
   const double half = std::max(5.0, section.near_half_m * whole.scale());
   out += rectangle(middle[0] - half, middle[1] - half, 2 * half, 2 * half,

@@ -17,26 +17,27 @@ struct Bar {
   std::string color = "#3b6ea5";
 };
 
-/// A bar below the other, from a common zero; the longest fills the chart. A caption stands below.
+/// Bars one below the other, from a common zero; the longest fills the chart. The caption is below the chart.
 std::string barChart(const std::vector<Bar>& bars, const std::string& caption_html);
 
 /// One column of a histogram: two counts, one on top of the other.
 struct Column {
-  double low = 0, high = 0;  ///< of the horizontal axis
+  double low = 0, high = 0;  ///< range on the horizontal axis
   double lower = 0, upper = 0;
 };
 
-/// Columns side by side; the ends of the axis and the caption are text that the caller formats. All columns
-/// have the same width. Lower counts are green, upper ones red.
+/// Columns of equal width side by side. The caller formats the ends of the axis and the caption. Lower counts
+/// are green, upper counts red.
 std::string histogram(const std::vector<Column>& columns, const std::string& left_text,
                       const std::string& right_text, const std::string& caption_html);
 
-/// Two pictures beside each other: the whole, and what is near the place, each with a scale bar. Inner part
-/// blue, outer part tan, their overlap red, others grey. `id` makes names unique within a page.
+/// Two pictures side by side: the whole section, and a close-up of the place, each with a scale bar. The
+/// inner part is blue, the outer part tan, their overlap red, other parts grey. `id` makes names unique
+/// within a page.
 std::string sectionSvg(const scenes::CheckResult& result, const scenes::CheckedSection& section,
                        std::size_t id);
 
-/// All sections, with captions.
+/// The pictures of all sections of a check, with captions.
 std::string sectionPictures(const scenes::CheckResult& result);
 
 }  // namespace vps::viewer

@@ -27,11 +27,11 @@ const char* words(scenes::Verdict verdict) {
 
 std::string contactWords(const scenes::StepResult& step) {
   if (!step.completed)
-    return step.is_taken_off ? "no: it did not come off" : "no: it did not reach its target";
+    return step.is_taken_off ? "no: the part did not come off" : "no: the part did not reach its target";
   if (step.by_contact) return "yes";
-  if (step.is_taken_off) return "no: nothing beside its path guided it";
-  return "no: nothing beside its path guided it; the hand placed it by sight alone, so that nothing but the "
-         "tolerance says where it is";
+  if (step.is_taken_off) return "no: no other part guided it on its path";
+  return "no: no other part guided it; the hand placed it by sight alone, so only the tolerance tells where "
+         "it is";
 }
 
 std::string easeWords(const scenes::AssembleResult& result) {
@@ -77,7 +77,7 @@ std::string verdictLine(const scenes::AssembleResult& result) {
     return "Not shown: " + parts + " was brought home, but that does not show that it fits; " + count;
   return "Not shown: " + (parts.empty() ? std::string("the run ended before its last step") : parts) +
          (is_apart ? " was not taken off" : " was not brought home") +
-         ", and nothing proves that it cannot be; " + count;
+         ", and nothing proves that this is impossible; " + count;
 }
 
 namespace {
@@ -97,13 +97,14 @@ std::string directionWords(const Vec3& d) {
 
 /// "'bolt' moves by 0.050 mm along +x and turns by 0.010 degrees about (1.00, 0.00, 0.00)"
 std::string motionWords(const scenes::MovedPart& part) {
-  constexpr double kNone = 0.01;  // a share of the whole motion that is not worth a word
+  constexpr double kNone =
+      0.01;  // a translation or rotation below this share of the whole motion is not mentioned
   const double by_m = part.by_W.norm(), turn_rad = part.turn_W.norm();
   std::string out = "'" + part.name + "'";
   const bool is_moved = by_m > kNone * part.most_m;
   if (is_moved)
     out += " moves by " + html::format(1e3 * by_m, "%.4f") + " mm along " + directionWords(part.by_W / by_m);
-  // What a turn adds to the way of the farthest corner.
+  // The farthest corner moves farther than by_m only if the part rotates.
   if (part.most_m - by_m <= kNone * part.most_m) return out;
   return out + (is_moved ? " and" : "") + " turns by " +
          html::format(turn_rad * 180 / std::numbers::pi, "%.4f") + " degrees about " +
@@ -129,8 +130,8 @@ std::string uncertainWords(const scenes::CheckResult& result) {
   const std::size_t others = result.uncertain() - 1;
   return "it cannot be told whether " + first.a + " and " + first.b + " overlap, " + why +
          (others == 0   ? ""
-          : others == 1 ? "; so is 1 other pair"
-                        : "; so are " + std::to_string(others) + " other pairs");
+          : others == 1 ? "; 1 other pair is uncertain, too"
+                        : "; " + std::to_string(others) + " other pairs are uncertain, too");
 }
 
 /// "free if 'bolt' moves by 0.050 mm along +x"; empty: nothing is moved.
@@ -161,7 +162,8 @@ std::string assemblyWords(const scenes::CheckResult& result) {
     doubt = uncertainWords(result);
   else if (!result.alone.empty())
     doubt = aloneWords(result.alone);
-  if (!doubt.empty()) return "not shown: " + doubt + (freed.empty() ? "" : "; what overlaps is " + freed);
+  if (!doubt.empty())
+    return "not shown: " + doubt + (freed.empty() ? "" : "; the overlapping parts are " + freed);
   return freed.empty() ? freed : "can be assembled: " + freed;
 }
 
@@ -181,7 +183,7 @@ std::string playWords(double way, double error, double usual, double scale, cons
 
 std::string playDoubt(const scenes::CheckedPart& part, const scenes::CheckResult& result) {
   if (!part.play || part.is_play_certain) return {};
-  constexpr double kEqual_m = 0.1e-6;  // as the check takes sizes for equal
+  constexpr double kEqual_m = 0.1e-6;  // sizes within this difference count as equal, as in the check
   const bool has_equal = std::ranges::any_of(result.fits, [&](const scenes::CheckedFit& fit) {
     return fit.kind == scenes::FitKind::Shaft && (fit.shaft == part.name || fit.bore == part.name) &&
            std::abs(fit.diametral_clearance_m) <= fit.error_m + kEqual_m;
@@ -191,7 +193,7 @@ std::string playDoubt(const scenes::CheckedPart& part, const scenes::CheckResult
       .append(html::format(1e6 * part.play_error_m, "%.1f"))
       .append(" um and ")
       .append(html::format(1e3 * part.play_error_rad, "%.2g"))
-      .append(" mrad, and is more where meshes stop what the faces allow");
+      .append(" mrad, and larger where facets of the meshes block motions that the true faces allow");
 }
 
 }  // namespace vps::viewer

@@ -16,11 +16,12 @@ using gnuplot::number;
 constexpr std::array<const char*, 4> kPhaseNames = {"reach", "insert", "press", "rest"};
 constexpr std::array<const char*, 4> kPhaseColors = {"#FFFFFF", "#E3EEF8", "#FBEBD9", "#EEEEEE"};
 
-// A pale band under the components: where one of them is all there is, both are seen.
+// The magnitude is a pale band under the components, so that it is visible where a single component equals
+// it.
 constexpr const char* kSum = "#B4B4B4";
 constexpr double kSumWidth = 4;
 
-/// The legend to the right of a panel; the same distance for all panels.
+/// Places the legend to the right of a panel, at the same distance for all panels.
 std::string keyAt(double top) {
   return "set key at screen 0.845, screen " + number(top) + " left top\n";
 }
@@ -52,7 +53,7 @@ std::string shadePhases(const std::vector<scenes::TraceRow>& trace) {
   return out;
 }
 
-/// Step names over the first panel, cut to a number where there is no room, and a thin line between steps.
+/// Step names over the first panel, replaced by a number if there is no room, and a thin line between steps.
 std::string nameSteps(const std::vector<scenes::TraceRow>& trace, const std::vector<std::string>& names,
                       bool is_panel_top) {
   const double duration_s = std::max(1e-9, trace.back().time_s - trace.front().time_s);

@@ -17,7 +17,7 @@ constexpr const char* kMissing = "gnuplot is not installed (Debian: apt install 
 
 /// Runs gnuplot on a script. Returns nothing on success, and otherwise the reason of the failure.
 std::string run(const std::string& script) {
-  // From its standard input gnuplot reads one byte at a time; from a file that it opens itself, blocks.
+  // gnuplot reads its standard input byte by byte, but a file that it opens itself in blocks.
   return runProgram({"gnuplot", "/dev/stdin"}, script, kMissing);
 }
 
@@ -100,7 +100,7 @@ namespace {
 
 using gnuplot::number;
 
-constexpr std::size_t kBuckets = 1500;  // about one for each pixel of the plot's width
+constexpr std::size_t kBuckets = 1500;  // about one bucket per pixel of the plot's width
 
 }  // namespace
 

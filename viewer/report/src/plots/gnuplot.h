@@ -18,11 +18,11 @@ std::string quoted(const std::string& text);
 /// Independent of the locale.
 std::string number(double value);
 
-/// A named block of columns.
+/// A named data block of gnuplot with the given rows.
 std::string dataBlock(const std::string& name, const std::vector<std::vector<double>>& rows);
 
-/// Reduces a curve to about 2 * bucket_count points: the least and greatest of each bucket, so that peaks
-/// stay.
+/// Reduces a curve to about 2 * bucket_count points: the points with the least and greatest value of each
+/// bucket, so that peaks stay.
 std::vector<std::pair<double, double>> thinned(const std::vector<std::pair<double, double>>& points,
                                                std::size_t bucket_count);
 
@@ -41,19 +41,19 @@ inline constexpr const char* kGreen = "#009E73";
 inline constexpr const char* kBlue = "#0072B2";
 inline constexpr const char* kInk = "#333333";
 
-/// Sets border, tics, grid and key.
+/// Commands that set border, tics, grid and key.
 std::string plotStyle();
 
 /// Appends a data block of that name, thinned to the plot's resolution.
 void addPoints(std::string& script, const std::string& name, const Curve& curve);
 
-/// A curve of a data block.
+/// A curve from a data block.
 struct Line {
   std::string name, title, color;
   double width = 1.3;
 };
 
-/// A plot command for the lines, followed by what `more` holds (ended by ", \\\n" or empty).
+/// A plot command for the lines, followed by the plot elements in `more` (empty, or ended by ", \\\n").
 std::string plotLines(const std::vector<Line>& lines, const std::string& more = {});
 
 }  // namespace vps::viewer

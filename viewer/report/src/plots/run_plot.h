@@ -12,10 +12,10 @@
 namespace vps::viewer {
 
 struct RunPlot {
-  std::string name;          ///< of its files: plots/NAME.png and .svg
-  std::string heading;       ///< of its section in the report
-  std::string caption;       ///< of the plot of the whole run
-  std::string step_caption;  ///< of the plot of one step; empty: no plots of steps
+  std::string name;          ///< name of the files plots/NAME.png and .svg
+  std::string heading;       ///< heading of the section in the report
+  std::string caption;       ///< caption of the plot of the whole run
+  std::string step_caption;  ///< caption of the plot of one step; empty: no plots of steps
   /// Writes file + ".png" and file + ".svg". @param step index; -1: the whole run
   std::function<PlotOutcome(const scenes::AssembleResult& result, const std::vector<std::string>& step_names,
                             int step, const std::string& file)>

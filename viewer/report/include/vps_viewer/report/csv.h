@@ -13,13 +13,13 @@
 
 namespace vps::viewer {
 
-/// One line, with its line end; a cell stands in quotes where it must.
+/// One line of CSV with its line end. Cells with commas, quotes or line breaks are quoted.
 VPS_VIEWER_API std::string csvLine(const std::vector<std::string>& cells);
-/// The shortest text that reads back as the same value; "NaN" if it is not finite.
+/// The shortest text that reads back as the same value; "NaN" for a value that is not finite.
 VPS_VIEWER_API std::string csvNumber(double value);
 
-// --- Columns of one value. A vector's are "force_x_N", "force_y_N", "force_z_N" for the key "force_N"; those
-// of a pose "part_x_m" to "part_z_m" and "part_qx" to "part_qw" for the key "part".
+// --- Columns of one value. A vector with the key "force_N" has the columns "force_x_N", "force_y_N",
+// "force_z_N"; a pose with the key "part" has "part_x_m" to "part_z_m" and "part_qx" to "part_qw".
 
 VPS_VIEWER_API void addColumns(std::vector<std::string>& columns, const std::string& key, const Vec3*);
 VPS_VIEWER_API void addColumns(std::vector<std::string>& columns, const std::string& key, const Pose*);
@@ -40,7 +40,8 @@ void addCells(std::vector<std::string>& cells, const T& x) {
     cells.push_back(std::to_string(x));  // a bool is 0 or 1
 }
 
-// --- Field tables: columns of a nested object have its key before theirs, as "probe_force_error"
+// --- Field tables: the columns of a nested object have the object's key as prefix, as in
+// "probe_force_error".
 
 template <class Struct, class Get>
 void addRowColumns(std::vector<std::string>& columns, const std::string& prefix,
@@ -70,7 +71,7 @@ template <class Struct, class Get>
 void addRowCells(std::vector<std::string>& cells, const Struct& of, const scenes::Field<Get>& row) {
   addCells(cells, std::invoke(row.get, of));
 }
-/// The cells of a group that is left out are empty.
+/// The cells of a group. If the group is absent, all its cells are empty.
 template <class Struct, class Get, class Rows>
 void addRowCells(std::vector<std::string>& cells, const Struct& of, const scenes::Group<Get, Rows>& group) {
   const auto* inner = scenes::pointerTo(std::invoke(group.get, of));
@@ -81,7 +82,7 @@ void addRowCells(std::vector<std::string>& cells, const Struct& of, const scenes
     scenes::forEachRow(group.rows, [&](const auto& row) { addRowCells(cells, *inner, row); });
 }
 
-/// A header line, and a line for each struct.
+/// A table as CSV: a header line, and a line for each struct.
 template <class Struct, class Rows>
 std::string toCsv(const std::vector<Struct>& structs, const Rows& rows) {
   std::string out = csvLine(csvColumns<Struct>(rows));

@@ -18,13 +18,14 @@ namespace vps::viewer {
 VPS_VIEWER_API std::string checkTablesOfRun(const scenes::CheckResult& result);
 /// Tables of pairs, fits and play, for a page that has other sections.
 VPS_VIEWER_API std::string checkSection(const scenes::CheckResult& result);
-/// A page of its own, with the answer first.
+/// A whole page of a check, with the answer first.
 VPS_VIEWER_API std::string checkPage(const scenes::CheckResult& result);
 
-/// A page with the answer, a bar for each step (the tightest first) and a table.
+/// A page of margins: the answer, a bar for each step (the tightest first) and a table.
 VPS_VIEWER_API std::string marginPage(const scenes::MarginResult& result);
 
-/// A page with the yield first, then what each tolerance costs and a histogram of each deviation.
+/// A page of a study: the yield, the loss of yield that each tolerance causes, and a histogram of each
+/// deviation.
 VPS_VIEWER_API std::string studyPage(const scenes::StudyResult& result);
 
 /// A deviation with its unit: "-3.20 µm", "0.150 mrad", "0.020".
@@ -35,13 +36,13 @@ VPS_VIEWER_API std::string deviationText(const scenes::StudyVariable& variable, 
 VPS_VIEWER_API std::vector<std::string> writeComparePage(const scenes::RunComparison& result,
                                                          const std::string& dir);
 
-/// What is missing to print here, in words with its remedy; empty: nothing.
+/// The reason why this machine cannot print PDF, with a remedy; empty if it can.
 VPS_VIEWER_API std::string missingForPdf();
 
-/// Prints an HTML file. Returns nothing on success, and otherwise the reason in words. It takes a few
+/// Prints an HTML file as PDF. Returns an empty text on success, otherwise the reason. Printing takes a few
 /// seconds.
 VPS_VIEWER_API std::string printPdf(const std::string& page, const std::string& pdf);
-/// The same for the text of a page that shows nothing from other files.
+/// Prints the text of a page that shows nothing from other files. Returns as printPdf().
 VPS_VIEWER_API std::string printPdfOf(const std::string& html, const std::string& pdf);
 
 }  // namespace vps::viewer

@@ -43,12 +43,13 @@ VPS_VIEWER_API bool hasGnuplot();
 VPS_VIEWER_API PlotOutcome plotForces(const std::vector<scenes::TraceRow>& trace, const std::string& file,
                                       const std::vector<std::string>& step_names = {}, int step = -1);
 
-/// Plots curves over a common axis. Writes file + ".png" and file + ".svg".
+/// Plots curves over a common horizontal axis. Writes file + ".png" and file + ".svg".
 VPS_VIEWER_API PlotOutcome plotSeries(const Plot& plot, const std::string& file);
 
-/// Left: the least force over each column of the workspace, as surfaces over x and y. Right: the least over x
-/// and z, along y, with the paper's 5 N and 12 N. Writes file + ".png" and file + ".svg"; the same input
-/// gives the same bytes.
+/// Plots figure 5 of the paper, the greatest vertical force of left arm, right arm and pair, for the dual arm
+/// of this program. The left diagram shows the least force in each column of the workspace, as surfaces over
+/// x and y. The right diagram shows the least force over x and z, along y, with the paper's 5 N and 12 N.
+/// Writes file + ".png" and file + ".svg"; the same input gives the same bytes.
 VPS_VIEWER_API PlotOutcome plotVerticalForces(const std::vector<device::VerticalForceAt>& forces,
                                               const std::string& file);
 

@@ -13,20 +13,20 @@
 namespace vps::viewer {
 
 struct ReportOptions {
-  std::string command;       ///< repeats the run: "vps assemble scene.toml --out out"
+  std::string command;       ///< command that repeats the run: "vps assemble scene.toml --out out"
   Progress progress;         ///< may be empty
-  bool has_pictures = true;  ///< false: no OpenGL, tables and plots only
+  bool has_pictures = true;  ///< false: tables and plots only, without OpenGL
   int width = 1280, height = 960;
 };
 
 struct ReportOutcome {
   std::string file;                ///< the page
-  std::vector<std::string> notes;  ///< what is missing (EGL, gnuplot) and how to install it
+  std::vector<std::string> notes;  ///< missing programs or libraries (EGL, gnuplot) and how to install them
 };
 
 /// Writes report.html, trace.csv, plots/ (of the run and of each step) and pictures/ into dir, which is made
 /// if it does not exist. The page and the result list pictures and plots that could not be made. The same
-/// input gives the same bytes, except for what the page marks as wall-clock times. Throws LoadError when dir
+/// input gives the same bytes, except for the section of wall-clock times. Throws LoadError when dir
 /// cannot be written.
 VPS_VIEWER_API ReportOutcome writeReport(const scenes::Scene& scene, const scenes::AssembleResult& result,
                                          const std::string& dir, const ReportOptions& options = {});

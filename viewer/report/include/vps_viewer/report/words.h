@@ -10,43 +10,46 @@
 
 namespace vps::viewer {
 
-/// "fits", "blocked", "not shown"
+/// The words of a verdict: "fits", "blocked", "not shown".
 VPS_VIEWER_API const char* words(scenes::Verdict verdict);
 
-/// Whether a step's part was brought home by contact: "yes", or "no: " and why not.
+/// Whether contact brought a step's part to its target: "yes", or "no: " and the reason.
 VPS_VIEWER_API std::string contactWords(const scenes::StepResult& step);
 
-/// "Ease of assembly: 7 of 10 tries succeeded"; empty for a single run.
+/// The result of several tries: "Ease of assembly: 7 of 10 tries brought every part home."; empty for a
+/// single run.
 VPS_VIEWER_API std::string easeWords(const scenes::AssembleResult& result);
 
-/// The run took parts off (vps assemble --disassemble).
+/// Whether the run took parts off (vps assemble --disassemble).
 VPS_VIEWER_API bool isDisassembly(const scenes::AssembleResult& result);
 
-/// One sentence: "Yes, the parts go together: all 3 steps fit."
+/// The verdict in one sentence: "Yes, the parts go together: 3 of 3 steps fit."
 VPS_VIEWER_API std::string verdictLine(const scenes::AssembleResult& result);
 
-/// How the overlap in the tables is meant.
+/// The definition of the overlap in the tables.
 inline constexpr const char* kOverlapMeaning =
     "overlap: greatest depth of a point of one part's surface below the other's, or thickness of what both "
     "share (diameter of the greatest ball in it) if more; up to 0.5 um beyond its error it counts as contact";
 static_assert(scenes::kContactDepth_m == 0.5e-6);
 
-/// The volume that two parts share, in cubic millimetres: "7.9840"; "<= 12.3" where its error is as large;
-/// "not known" where no piece of its surface was found.
+/// The volume that two parts share, in cubic millimetres: "7.9840"; "<= 12.3" if the error is as large as the
+/// volume; "not known" if no piece of the volume's surface was found.
 VPS_VIEWER_API std::string volumeWords(const scenes::CheckedPair& pair);
 
-/// How far a part moves one way: "free", "1009.0"; "1009.0 (+- 962.4)" where its error is more than twice
-/// that of the part's play, as in a taper; ">= 909.7" where the search ended before.
-/// @param usual  CheckedPart::play_error_m, or of a turn play_error_rad
-/// @param form   of a number, as "%.1f"
+/// The free travel of a part in one direction: "free", "1009.0"; "1009.0 (+- 962.4)" if the error is more
+/// than twice the usual error of the part's play, as in a taper; ">= 909.7" if the search ended before the
+/// part touched.
+/// @param usual  CheckedPart::play_error_m, or play_error_rad for a rotation
+/// @param form   printf format of a number, as "%.1f"
 VPS_VIEWER_API std::string playWords(double way, double error, double usual, double scale, const char* form);
 
-/// Why the play of a part is not certain, and by how much: "facets cross others as drawn; ..."; empty if
-/// it is.
+/// Why the play of a part is uncertain, and by how much: "facets cross others as drawn; ..."; empty if the
+/// play is certain.
 VPS_VIEWER_API std::string playDoubt(const scenes::CheckedPart& part, const scenes::CheckResult& result);
 
-/// The answer to "do the parts go together?" where it is not yes as drawn: "can be assembled: free if 'bolt'
-/// moves by 0.050 mm along +x", "cannot be assembled: ...", "not shown: ..."; empty for yes as drawn.
+/// The answer to "do the parts go together?", unless it is yes for the parts as drawn: "can be assembled:
+/// free if 'bolt' moves by 0.050 mm along +x", "cannot be assembled: ...", "not shown: ..."; empty if the
+/// parts go together as drawn.
 VPS_VIEWER_API std::string assemblyWords(const scenes::CheckResult& result);
 
 }  // namespace vps::viewer
