@@ -96,7 +96,7 @@ TEST_F(AskProgram, PartsAreTakenAndReleasedOnRequest) {
   EXPECT_NE(who_.find("150 N/m"), std::string::npos) << who_;
   EXPECT_EQ(ask("release").status, 0);
   const int status = render_.wait();
-  EXPECT_NE(slurp(folder_ / "render.txt").find("let go of on request"), std::string::npos) << texts();
+  EXPECT_NE(slurp(folder_ / "render.txt").find("released on request"), std::string::npos) << texts();
   EXPECT_EQ(status, 3) << texts();  // not shown
 }
 

@@ -474,7 +474,7 @@ TEST_F(RequestServerTest, APartThatIsReleasedEndsItsStepAndTheRunReplaysBitForBi
   join();
   ASSERT_EQ(result_.steps.size(), 2u);
   EXPECT_FALSE(result_.steps[0].completed);
-  EXPECT_NE(result_.steps[0].failure_reason.find("let go of on request"), std::string::npos)
+  EXPECT_NE(result_.steps[0].failure_reason.find("released on request"), std::string::npos)
       << result_.steps[0].failure_reason;
   const device::RecordedRun run = device::loadRecording(file);
   const ReplayResult replayed = replay(run);

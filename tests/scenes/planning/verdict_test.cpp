@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whether the verdict of an assembly is right, on scenes whose answer is known by construction.
+// Verdicts of assemblies, on scenes whose correct verdict is known by construction.
 #include <gtest/gtest.h>
 
 #include <numbers>
 
-#include "judge/overlap_judge.h"
 #include "judge/body_motion.h"
+#include "judge/overlap_judge.h"
 #include "scenes/scene_part.h"
 #include "step/way_check.h"
 #include "support/lathe.h"
@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kMm = 1e-3;
 
-/// The parts, of which the last is brought straight down to its place. The low rates keep a run below a few
+/// The parts; the last one is moved straight down to its target. The low rates keep a run below a few
 /// seconds.
 Scene sceneOf(std::vector<ScenePart> parts, double from_m) {
   Scene scene;
@@ -43,7 +43,7 @@ Scene sceneOf(std::vector<ScenePart> parts, double from_m) {
 constexpr int kFlats = 96;
 constexpr double kRadius_m = 4 * kMm, kBore_m = 4.05 * kMm, kDepth_m = 10 * kMm, kChamfer_m = 0.5 * kMm;
 
-/// 20 mm high from z = -14 mm, with a bore of 10 mm from above.
+/// A cup of 20 mm height from z = -14 mm, with a bore of 10 mm that is open at the top.
 Mesh cup() {
   return test::lathe({{0, -14 * kMm},
                       {9 * kMm, -14 * kMm},
@@ -55,7 +55,7 @@ Mesh cup() {
                      kFlats);
 }
 
-/// Its end is at z = 0.
+/// A peg whose lower end is at z = 0.
 Mesh peg(double length_m, double longer_m = 0) {
   return test::lathe({{0, -longer_m},
                       {kRadius_m - kChamfer_m, -longer_m},
@@ -75,7 +75,7 @@ TEST(Verdict, APegFitsItsHoleWithATolerancesTakenFromTheFit) {
   Scene scene = pegInCup();
   const AssembleResult result = assemble(scene);
   EXPECT_EQ(result.verdict, Verdict::Fits) << result.steps[0].reason;
-  // 0.1 mm of diametral clearance and 20 um exceed the greatest tolerance that is given without asking.
+  // 0.1 mm of diametral clearance plus 20 um exceed the greatest default tolerance.
   EXPECT_DOUBLE_EQ(result.steps[0].tolerance_m, 0.1 * kMm);
   EXPECT_LE(result.steps[0].final_error_m, 0.1 * kMm);
 }
@@ -89,7 +89,7 @@ TEST(Verdict, TheToleranceIsStatedOrTheClearancePlusTwentyMicrometres) {
   EXPECT_DOUBLE_EQ(assemble(scene).steps[0].tolerance_m, 33e-6);
 }
 
-// The clearance is 0.1 mm in diameter, so that a mesh may be half of it off.
+// The diametral clearance is 0.1 mm, so that a mesh may deviate by half of it.
 TEST(Verdict, AMeshThatIsFartherOffItsFacesThanTheClearanceShowsNothing) {
   Scene scene = pegInCup();
   scene.parts[0].deflection_m = 49e-6;
@@ -102,13 +102,13 @@ TEST(Verdict, AMeshThatIsFartherOffItsFacesThanTheClearanceShowsNothing) {
   EXPECT_TRUE(far.steps[0].completed);
   EXPECT_NE(far.steps[0].reason.find("the mesh of 'cup' is known to be up to"), std::string::npos)
       << far.steps[0].reason;
-  // Rounding of the file counts as the same.
+  // Deviations from the rounding of the file do not change the verdict.
   scene.parts[0].deflection_m = 0;
   scene.parts[1].rounding_m = 51e-6;
   EXPECT_EQ(assemble(scene).verdict, Verdict::NotShown);
 }
 
-// 60 um between flat faces that no fit holds: meshes that are less off than that cannot touch, however small
+// The gap is 60 um between flat faces without a fit: meshes with a smaller error cannot touch, however small
 // the tolerance.
 TEST(Verdict, AMeshIsDoubtedWithoutAFitOnlyWhereItsErrorReachesTheOtherPart) {
   constexpr double kGap_m = 60e-6;
@@ -125,7 +125,8 @@ TEST(Verdict, AMeshIsDoubtedWithoutAFitOnlyWhereItsErrorReachesTheOtherPart) {
   EXPECT_NE(doubt.find("the mesh of 'wall' is known to be up to"), std::string::npos) << doubt;
 }
 
-// Let go beside the cup it falls 20 m in two seconds, which is not how far the hand was from its target.
+// Released next to the cup, the peg falls 20 m in two seconds; the reported error is the one at the moment
+// when the hand gave up.
 TEST(Verdict, AStepThatTheHandGaveUpHasTheErrorOfThatMoment) {
   Scene scene = pegInCup();
   scene.steps[0].X_WP_start.p.x() += 30 * kMm;
@@ -148,7 +149,8 @@ TEST(Verdict, APegDrawnTooLongForItsBlindHoleIsBlockedByTheBottom) {
   EXPECT_NEAR(step.blocked_at_W.z(), -kDepth_m, 0.1 * kMm);
 }
 
-// Parts that are laid out beside each other, as for printing, are brought there and show nothing.
+// Parts that are laid out next to each other, as for printing, reach their targets, but the run proves
+// nothing.
 TEST(Verdict, APartThatBelongsNowhereNearAnotherIsNotShownToFit) {
   const auto scene = [](double gap_m) {
     return sceneOf({scenePart("plate", makeBox({30 * kMm, 30 * kMm, 4 * kMm}), Vec3::Zero(), true),
@@ -172,7 +174,7 @@ TEST(Verdict, ABlockDrawnInsideAPlateIsBlockedUnlessTheSceneAllowsIt) {
   EXPECT_EQ(result.verdict, Verdict::Blocked);
   EXPECT_EQ(result.steps[0].blocked_by, "plate");
   EXPECT_NEAR(result.steps[0].blocked_depth_m, 90e-6, 0.3e-6);
-  // A plane face has no chord error, so that even a little overlap is proven.
+  // A flat face has no chord error, so that even a small overlap is proven.
   Scene shallow = scene(2e-6);
   EXPECT_EQ(assemble(shallow).verdict, Verdict::Blocked);
   Scene touching = scene(0);
@@ -199,13 +201,13 @@ TEST(Verdict, NothingGetsIntoASealedBox) {
   const AssembleResult result = assemble(inside);
   EXPECT_EQ(result.verdict, Verdict::Blocked);
   EXPECT_EQ(result.steps[0].blocked_by, "box");
-  EXPECT_NE(result.steps[0].reason.find("starts in a closed room"), std::string::npos);
+  EXPECT_NE(result.steps[0].reason.find("starts in a cavity"), std::string::npos);
   Scene outside = scene();
   outside.steps[0].X_WP_start = Pose::translation({0, 0, 20 * kMm});
   outside.steps[0].timeout_s = 1;
   const AssembleResult from_outside = assemble(outside);
   EXPECT_EQ(from_outside.verdict, Verdict::Blocked);
-  EXPECT_NE(from_outside.steps[0].reason.find("belongs in a closed room"), std::string::npos);
+  EXPECT_NE(from_outside.steps[0].reason.find("target is in a cavity"), std::string::npos);
 }
 
 Scene pegThroughPlate() {
@@ -261,7 +263,7 @@ TEST(Verdict, LaterStepsSayThatTheyStandOnAPartThatDidNotArrive) {
   EXPECT_EQ(told, (std::vector<std::size_t>{1, 2}));
 }
 
-/// A collar is laid on the cup by sight, with the same bore; then the peg goes through both.
+/// A collar with the cup's bore is placed on the cup by sight; then the peg goes through both.
 Scene pegThroughCollar() {
   Scene scene = pegInCup();
   scene.parts.insert(scene.parts.begin() + 1, scenePart("collar", makeTube(9 * kMm, kBore_m, 5 * kMm, kFlats),
@@ -282,7 +284,7 @@ TEST(Verdict, APartLaidDownBySightIsAlignedByThePegThatGoesThroughIt) {
   Scene scene = pegThroughCollar();
   const AssembleResult result = assemble(scene);
   const StepResult& laid = result.steps[0];
-  // More than the clearance of the peg, which could not pass both bores.
+  // The collar's offset exceeds the clearance of the peg, which could not pass both bores.
   ASSERT_GT(laid.final_error_m, 0.1 * kMm);
   EXPECT_EQ(laid.aligned_by, "peg");
   ASSERT_EQ(result.steps.size(), 2U);
@@ -300,7 +302,8 @@ TEST(Verdict, APartIsNotAlignedByOneThatDoesNotArrive) {
   EXPECT_EQ(result.steps[1].stands_on, "collar");
 }
 
-// A ring around a post lies within sight's error of its place, with the post on the wrong side of its wall.
+// A ring around a post is placed within the error of sight, with the post on the wrong side of the ring's
+// wall.
 TEST(Verdict, APartIsNotAlignedThroughAWall) {
   const auto bodyOf = [](const std::string& name, const Mesh& mesh) {
     VoxMapSettings voxels;
@@ -339,7 +342,7 @@ TEST(SurfaceError, ATurnOfARoundPartAboutItsAxisIsNone) {
   const double chord_m = kRadius_m * (1 - std::cos(std::numbers::pi / kFlats));
   const Pose turned(rotationFromVector({0, 0, 0.7}), Vec3::Zero());
   EXPECT_LE(surfaceError_m(solid, turned), chord_m);
-  // Along its axis every point of the ends moves by as much; the walls lie in themselves.
+  // Along its axis every point of the end faces moves by the same distance; the walls move within themselves.
   EXPECT_NEAR(surfaceError_m(solid, Pose::translation({0, 0, 30e-6})), 30e-6, 1e-9);
   EXPECT_NEAR(surfaceError_m(solid, Pose::translation({30e-6, 0, 0})), 30e-6, chord_m);
 }

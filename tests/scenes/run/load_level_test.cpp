@@ -124,7 +124,7 @@ TEST(LoadLevel, AfterTheLoadEndsAllLevelsAreRestoredInReverseOrder) {
   expectInOrder(load_changes);
   ASSERT_FALSE(load_changes.empty());
   EXPECT_EQ(load_changes.back().to, 0) << load_changes.back().is;
-  EXPECT_EQ(load_changes.back().cost, "nothing is given up any more");
+  EXPECT_EQ(load_changes.back().cost, "the scene's own settings apply again");
   EXPECT_EQ(load_changes.back().k_N_per_m, load_changes.front().k_N_per_m)
       << "the coupling is as stiff as before";
   EXPECT_GT(result.steps[0].duration_s, 3) << result.steps[0].failure_reason << result.steps[0].final_error_m

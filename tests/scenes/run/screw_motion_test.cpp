@@ -81,11 +81,11 @@ TEST(ScrewMotion, APartThatLeansIsCrossedWhateverItsAdvance) {
 
 TEST(ScrewMotion, HalfATurnIsNeededToTell) {
   EXPECT_EQ(faultOf({.turns = 0.51}), "");
-  EXPECT_NE(faultOf({.turns = 0.49}).find("could not be turned on"), std::string::npos);
+  EXPECT_NE(faultOf({.turns = 0.49}).find("could not be screwed on"), std::string::npos);
   StepResult never;
   EXPECT_EQ(threadFault(nutStep(), never), "");  // a person moved it
   never.strategies.push_back({"place_by_sight"});
-  EXPECT_NE(threadFault(nutStep(), never).find("never turned on"), std::string::npos);
+  EXPECT_NE(threadFault(nutStep(), never).find("never screwed on"), std::string::npos);
 }
 
 TEST(ScrewMotion, ALeftHandThreadCountsTheOtherTurn) {

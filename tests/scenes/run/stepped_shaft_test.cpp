@@ -62,7 +62,7 @@ TEST(SteppedShaft, TakesARingOverItsFirstLandToItsSecond) {
       said << span.strategy << ' ' << span.start_s << '+' << span.duration_s << "; ";
     const auto isSaid = [&](const char* words) { return step.reason.find(words) != std::string::npos; };
     EXPECT_TRUE(isSaid("gave up after its time was over") ||
-                isSaid("its time (timeout_s) was over before the hand had pressed it home"))
+                isSaid("its time (timeout_s) was over before the hand had pressed it to its target"))
         << said.str();
     ++late;
   }

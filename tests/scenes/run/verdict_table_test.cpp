@@ -36,12 +36,12 @@ std::vector<VerdictCase> cases() {
       {"ClosedRoomAtTheStart",
        {.blocked = closedRoomReason("box", true)},
        Verdict::Blocked,
-       "it starts in a closed room inside 'box', into which no way leads",
+       "it starts in a cavity of 'box' that has no opening",
        1},
       {"ClosedRoomAtTheTarget",
        {.blocked = closedRoomReason("box", false)},
        Verdict::Blocked,
-       "it belongs in a closed room inside 'box', into which no way leads",
+       "its target is in a cavity of 'box' that has no opening",
        1},
       {"ProofCountsMoreThanARunThatSucceeded",
        {.blocked = "proof", .is_in_place = true},
@@ -63,7 +63,7 @@ std::vector<VerdictCase> cases() {
       {"JustTooDeep",
        {.depth_m = std::nextafter(10 * kUm, 1), .depth_limit_m = 10 * kUm, .deepest_against = "plate"},
        Verdict::NotShown,
-       "on the way it was 10.0 um deep in 'plate', more than the 10.0 um that count as contact",
+       "on its path it was 10.0 um deep inside 'plate', more than the 10.0 um that count as contact",
        3},
       {"DepthThatIsNoNumber",
        {.depth_m = std::numeric_limits<double>::quiet_NaN(), .depth_limit_m = 10 * kUm},
@@ -74,32 +74,33 @@ std::vector<VerdictCase> cases() {
       {"JustNotAtRest",
        {.rest_drift_m = 100 * kUm, .late_drift_m = more_drift_m},
        Verdict::NotShown,
-       std::string("it moved by 100.0 um after it was let go: ") + kHoldsRemedy,
+       std::string("it moved by 100.0 um after its release: ") + kHoldsRemedy,
        3},
       {"DepthCountsMoreThanDrift",
        {.depth_m = 20 * kUm, .depth_limit_m = 10 * kUm, .deepest_against = "plate", .late_drift_m = 1},
        Verdict::NotShown,
-       "on the way it was 20.0 um deep in 'plate', more than the 10.0 um that count as contact",
+       "on its path it was 20.0 um deep inside 'plate', more than the 10.0 um that count as contact",
        3},
       {"AsMuchForceAsNeeded", {.press_needed_N = 60, .hand_N = 60}, Verdict::Fits, "", 0},
       {"PressIn",
        {.press_needed_N = 61, .hand_N = 60},
        Verdict::NotShown,
-       "the way is free, but pressing it in takes about 61 N (by the formula for its declared interference), "
+       "its path is free, but pressing it in takes about 61 N (by the formula for its declared "
+       "interference), "
        "and "
-       "the hand has 60 N ([operator] force_limit_N): it needs a press",
+       "the hand has 60 N ([operator] force_limit_N); use a press",
        3},
       {"PressOut",
        {.press_needed_N = 61, .hand_N = 60, .is_taken_off = true},
        Verdict::NotShown,
-       "the way is free, but pressing it out takes about 61 N (by the formula for its declared "
+       "its path is free, but pressing it out takes about 61 N (by the formula for its declared "
        "interference), and "
-       "the hand has 60 N ([operator] force_limit_N): it needs a press",
+       "the hand has 60 N ([operator] force_limit_N); use a press",
        3},
       {"Doubt",
        {.doubt = "the mesh is coarse"},
        Verdict::NotShown,
-       "the hand brought it home, but the mesh is coarse",
+       "the hand brought it to its target, but the mesh is coarse",
        3},
       {"PressCountsMoreThanDoubt",
        {.press_needed_N = 61, .hand_N = 60, .doubt = "the mesh is coarse"},
@@ -176,11 +177,11 @@ TEST(Verdicts, AStepsResultIsItsEvidence) {
   EXPECT_EQ(judge(evidenceOf(step, 60)).verdict, Verdict::Fits);
   step.max_penetration_m = 11 * kUm;
   EXPECT_FALSE(isWithinLimit(step));
-  EXPECT_NE(judge(evidenceOf(step, 60)).reason.find("deep in"), std::string::npos);
+  EXPECT_NE(judge(evidenceOf(step, 60)).reason.find("deep inside"), std::string::npos);
   step.max_penetration_m = 0;
   step.late_drift_m = 2 * kRestDriftLimit_m;
   EXPECT_FALSE(isAtRest(step));
-  EXPECT_NE(judge(evidenceOf(step, 60)).reason.find("let go"), std::string::npos);
+  EXPECT_NE(judge(evidenceOf(step, 60)).reason.find("release"), std::string::npos);
   step.late_drift_m = 0;
   step.press_needed_N = 100;
   EXPECT_NE(judge(evidenceOf(step, 60)).reason.find("a press"), std::string::npos);

@@ -9,8 +9,8 @@
 
 namespace vps::scenes {
 
-/// The physics thread reads the loop's state once per step, in advance(), and gives one command at a time. So
-/// the whole interaction of the two threads is a list of SyncEvents, and a replay can repeat it.
+/// The physics thread reads the loop's state once per step, in advance(), and gives one command at a time.
+/// The whole interaction of the two threads is therefore a list of SyncEvents, which a replay can repeat.
 class ClockedDriver : public HapticDriver {
  public:
   [[nodiscard]] const device::LoopSettings& settings() const final { return settings_; }
@@ -46,7 +46,7 @@ class ClockedDriver : public HapticDriver {
   /// Passes a state with its step number on to the loop.
   virtual void store(const device::PhysicsState& state) = 0;
 
-  /// As a person does between steps.
+  /// Clears a safety fault, as a person does between steps.
   void rearmIfFaulted() {
     if (view_.safety.fault == device::SafetyFault::None) return;
     command(device::SyncEventKind::Rearm);

@@ -7,11 +7,11 @@ namespace vps::scenes {
 
 namespace {
 
-/// Where safety keeps the clutch from moving, the run goes on after this multiple of the clutch's time.
+/// If safety keeps the clutch from moving, the run continues after this multiple of the clutch's time.
 /// assumed.
 constexpr double kWaitLimit = 10;
 
-/// Share of a step that may be left over by rounding.
+/// Share of a step that rounding may leave over.
 constexpr double kRounding = 1e-6;
 
 }  // namespace

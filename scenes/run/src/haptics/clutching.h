@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The clutch work of a run: handing a part over at the start and end of a step, and indexing on the way.
+// Use of the clutch in a run: handing a part over at the start and end of a step, and indexing along the
+// path.
 #pragma once
 
 #include <functional>
@@ -13,8 +14,8 @@ namespace vps::scenes {
 /// (the run cannot go on). Meanwhile the part stands still, held by the proxy.
 class ClutchWork {
  public:
-  /// driver outlives it.
-  /// @param step_s  duration of the coming physics step in the hand's time, which is the clock's
+  /// `driver` must outlive this object.
+  /// @param step_s  duration of the coming physics step in real time, the time of the hand
   ClutchWork(HapticDriver& driver, std::function<double()> step_s)
       : driver_(driver), step_s_(std::move(step_s)) {}
 
@@ -24,9 +25,10 @@ class ClutchWork {
   bool comeFree(const std::function<bool()>& advance) const;
   /// Fades out the coupling gains over the clutch's time, so that the spring's energy is released gradually
   /// and the part comes to rest on its seat before it is released.
-  /// @param advance  gets the share of the gains that is left, down to 0
+  /// @param advance  receives the remaining share of the gains, down to 0
   bool setDown(const std::function<bool(double share)>& advance) const;
-  /// Opens the clutch, recentres the handle at the start of the next segment, closes the clutch and goes on.
+  /// Opens the clutch, recentres the handle at the start of the next segment, closes the clutch and
+  /// continues.
   bool index(const std::function<bool()>& advance) const;
 
  private:

@@ -19,7 +19,8 @@ namespace {
 
 device::OperatorHabits habitsOf(const OperatorSettings& hand, std::size_t step) {
   device::OperatorHabits habits;
-  habits.seed = hand.seed + step;  // a new aim error for each step, whatever the step before took
+  habits.seed = hand.seed +
+                step;  // each step has an aim error of its own, independent of the duration of earlier steps
   habits.aim_error_m = hand.aim_error_m;
   habits.aim_error_rad = hand.aim_error_rad;
   habits.aim_turn_rad = hand.aim_turn_rad;
@@ -50,7 +51,7 @@ Workspace workspaceOf(const device::DeviceLimits& limits) {
   return {limits.workspace_max_D - limits.workspace_min_D, limits.workspace_rad};
 }
 
-/// Refuses a push that the device cannot give to the hand.
+/// Refuses forces of the operator that the device cannot exert.
 void requireForces(const Scene& scene, const device::DeviceLimits& limits) {
   const auto require = [&](const char* key, double wanted_N) {
     if (limits.peak_force_N <= 0 || wanted_N <= limits.peak_force_N) return;
@@ -64,7 +65,7 @@ void requireForces(const Scene& scene, const device::DeviceLimits& limits) {
   require("force_limit_N", scene.hand.force_limit_N);
 }
 
-/// Refuses a screw that device and hand cannot turn.
+/// Refuses a screw that the device and the hand cannot turn.
 void requireTurns(const Scene& scene, const SceneStep& step, const device::DeviceLimits& limits) {
   if (step.motion != StepMotion::Screw) return;
   const auto refuse = [&](const std::string& words) {
@@ -72,7 +73,7 @@ void requireTurns(const Scene& scene, const SceneStep& step, const device::Devic
   };
   if (!scene.device.has_indexing && limits.workspace_rad > 0)
     refuse(
-        "is screwed on, which takes more turns than the device's handle has; let the hand re-grasp it "
+        "is a screw, which needs more turns than the device's handle has; let the hand re-grasp it "
         "([device] indexing = true)");
   const double most_Nm =
       std::min(device::OperatorHabits{}.torque_limit_Nm,
@@ -95,7 +96,7 @@ std::vector<PathSegments> allSegments(const Scene& scene, const device::DeviceLi
   return all;
 }
 
-/// The handle starts where the first segment does.
+/// Places the handle at the start of the first segment.
 device::DeviceOptions startingAt(device::DeviceOptions options, const std::vector<PathSegments>& segments) {
   options.X_DH_start = segments.front().X_DH_start.front();
   return options;
@@ -179,12 +180,12 @@ class SimulatedHand final : public Hand {
     view.F_hand_W = loop.last().F_hand_W;
     time_s_ += dt_s;
     device::HandForce hand = operator_.step(view, dt_s);
-    hand.F = hand.F * loop.clutch().ratio();  // the open clutch carries the rest
+    hand.F = hand.F * loop.clutch().ratio();  // the clutch carries the rest of the weight
     return loop.toDevice(hand);
   }
 
-  /// On its way back, or arrived. With a part in hand it carries the share of the weight that the clutch
-  /// passes.
+  /// Force of the hand while it returns or has arrived. With a part in hand, the hand carries the share of
+  /// the weight that the clutch passes on.
   device::HandForce returning(const device::HeldPart& part, const device::HapticLoop& loop, double dt_s) {
     time_s_ += dt_s;
     back_s_ += dt_s;
@@ -203,8 +204,8 @@ class SimulatedHand final : public Hand {
   device::VirtualOperator operator_, next_;
   double next_s_ = 0;
   std::size_t next_step_ = 0, step_ = 0, next_segment_ = 0, segment_ = 0;
-  double time_s_ = 0;              ///< of the run
-  double back_s_ = kHandReturn_s;  ///< since the way back began
+  double time_s_ = 0;              ///< time of the run
+  double back_s_ = kHandReturn_s;  ///< time since the hand began to return
   bool is_at_work_ = false;
   Pose X_DH_from_, X_DH_back_;
   Vec3 turn_rad_ = Vec3::Zero();
@@ -221,7 +222,7 @@ class PersonHand final : public Hand {
     step_s_ = at_target_s_ = 0;
     phase_ = device::OperatorPhase::Reach;
   }
-  // The person moves the hand.
+  // The person moves the hand, so these functions do nothing.
   void goBack(std::size_t) override {}
   void recentre() override {}
   void goOn() override {}
@@ -241,10 +242,11 @@ class PersonHand final : public Hand {
   [[nodiscard]] bool canGoOn(int) const override { return true; }
 
  private:
-  // assumed: longer than a pause within a motion, shorter than a person likes to wait
+  // Time at the target after which a step is done. assumed: longer than a pause within a motion, shorter than
+  // a person likes to wait
   static constexpr double kDone_s = 0.5;
-  // Slower than this a handle counts as at rest. assumed: OperatorHabits::rest_m_s, and that at a lever of
-  // 0.1 m
+  // A handle that is slower than this counts as at rest. assumed: OperatorHabits::rest_m_s, and the rotation
+  // that gives this speed at a lever of 0.1 m
   static constexpr double kRest_m_s = 1e-3, kRest_rad_s = 1e-2;
 
   [[nodiscard]] bool isAtTarget(const Pose& X_WP) const {
@@ -259,10 +261,11 @@ class PersonHand final : public Hand {
   double step_s_ = 0, at_target_s_ = 0;
 };
 
-constexpr std::chrono::seconds kConnect{3};  // assumed: SDL and spacenavd answer within one
+constexpr std::chrono::seconds kConnect{3};  // assumed: SDL and spacenavd answer within one second
 constexpr std::chrono::milliseconds kConnectPoll{10};
 
-/// The range of a handle under rate control can be chosen: four times the length of all paths.
+/// Options of a device that a person moves. The range of a handle under rate control can be chosen: four
+/// times the length of all paths.
 device::DeviceOptions personOptions(const Scene& scene) {
   double path_m = 0;
   for (const SceneStep& step : scene.steps) {
@@ -336,7 +339,7 @@ std::unique_ptr<Hand> makeHand(const Scene& scene, bool is_real_time,
   if (!is_real_time)
     throw LoadError(scene.file, "",
                     "device '" + scene.device.kind +
-                        "' is moved by a person, which simulated time cannot wait for; add --real-time");
+                        "' is moved by a person, so it cannot be used in simulated time; add --real-time");
   device::DeviceOptions options = personOptions(scene);
   options.wish = std::move(wish);
   return connectedPerson(scene, kind, options);

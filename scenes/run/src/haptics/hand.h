@@ -20,50 +20,49 @@ namespace vps::scenes {
 
 class HapticDriver;
 
-/// Receives each safety fault, in words.
+/// Receives a description of each safety fault.
 using ReportFault = std::function<void(const std::string&)>;
 
-/// Device and hand together.
+/// A device together with the hand that moves it.
 class Hand {
  public:
   virtual ~Hand() = default;
-  /// For a hand whose loop is in another process: the driver that reaches it. Null for all others. Arguments
-  /// as of makeRealTimeDriver().
+  /// The driver that reaches the haptic loop in another process; null if the loop runs in this process.
+  /// Arguments as for makeRealTimeDriver().
   virtual std::unique_ptr<HapticDriver> makeDriver(const device::LoopSettings& settings, double physics_s,
                                                    const ReportFault& report, device::RunLog* log);
   virtual device::Device& device() = 0;
-  /// Plans a step that starts at time now_s. The task's way points are those of the scene's step that are
-  /// still ahead of the part. May allocate; may run concurrently with step(), on another
-  /// thread.
+  /// Plans a step that starts at time now_s. The task has only the way points of the scene's step that the
+  /// part has not yet passed. May allocate; may run concurrently with step(), on another thread.
   virtual void prepare(const device::OperatorTask& task, std::size_t step, double now_s) = 0;
-  /// Starts what was prepared. As step(), never allocates.
+  /// Starts the step that prepare() planned. Never allocates.
   virtual void begin() = 0;
-  /// The empty hand returns to where that step starts, in kHandReturn_s; beyond the last step to the middle
+  /// The empty hand returns to the start of step `next` in kHandReturn_s; after the last step, to the middle
   /// of the workspace. Never allocates.
   virtual void goBack(std::size_t next) = 0;
-  /// In OperatorPhase::Regrasp, with the clutch open: moves to where the next segment starts, in
-  /// kHandReturn_s, and stays there until goOn(). Neither function allocates.
+  /// In OperatorPhase::Regrasp, with the clutch open: moves to the start of the next segment in kHandReturn_s
+  /// and stays there until goOn(). recentre() and goOn() never allocate.
   virtual void recentre() = 0;
-  /// The clutch is closed again: continues the step.
+  /// Continues the step after the clutch has closed again.
   virtual void goOn() = 0;
-  /// One tick of the hand, after the loop's own.
+  /// Advances the hand by one tick, after the tick of the loop.
   virtual void step(const device::HeldPart& part, const device::HapticLoop& loop, double dt_s) = 0;
   [[nodiscard]] virtual device::OperatorPhase phase() const = 0;
-  /// None where the hand is a person's.
+  /// The operator's strategy; None if a person moves the hand.
   [[nodiscard]] virtual device::OperatorStrategy strategy() const { return device::OperatorStrategy::None; }
   [[nodiscard]] device::OperatorState state() const { return {phase(), strategy()}; }
   /// The recorded events of a real-time run that is replayed; empty otherwise.
   [[nodiscard]] virtual std::vector<RecordedEvent> events() const { return {}; }
-  /// Whether this many ticks are left.
+  /// Whether at least `ticks` ticks are left (a recording ends).
   [[nodiscard]] virtual bool canGoOn(int ticks) const = 0;
 };
 
-inline constexpr double kHandReturn_s = 1.5;  ///< duration of the hand's way back to the next part
+inline constexpr double kHandReturn_s = 1.5;  ///< time that the hand takes to return to the next part
 
 /// The hand for the scene's [device] kind. Throws LoadError for an unknown kind, a path that a simulated
 /// device cannot reach, and a device that a person moves where the run is not in real time or the device does
 /// not answer within 3 s.
-/// @param wish  of the mouse; null: there is none
+/// @param wish  handle pose that the mouse asks for; null: there is no mouse
 std::unique_ptr<Hand> makeHand(const Scene& scene, bool is_real_time,
                                std::shared_ptr<device::HandleWish> wish = nullptr);
 
@@ -71,10 +70,10 @@ std::unique_ptr<Hand> makeHand(const Scene& scene, bool is_real_time,
 std::unique_ptr<Hand> simulatedHand(const Scene& scene);
 
 /// A person at a device. A step is done once the part has been within its tolerance, and the handle at rest,
-/// for half a second: the person releases the cap or stick. It fails at its timeout.
+/// for half a second: the person releases the cap or stick. The step fails at its timeout.
 std::unique_ptr<Hand> personHand(std::unique_ptr<device::Device> device);
 
-/// A recording of any device and hand; it outlives the hand.
+/// The hand of a recording of any device. `recording` must outlive the hand.
 std::unique_ptr<Hand> recordedHand(device::Recording& recording);
 
 }  // namespace vps::scenes

@@ -17,8 +17,9 @@
 
 namespace vps::scenes {
 
-/// Commands and state exchange of a procedure, called from the physics thread. In lockstep the haptic loop
-/// runs inside advance(); in real time it runs from resume() to pause(), also while commands are given.
+/// Commands and state exchange between a procedure and its haptic loop, called from the physics thread. In
+/// lockstep the haptic loop runs inside advance(); in real time it runs from resume() to pause(), also while
+/// commands are given.
 class HapticDriver {
  public:
   virtual ~HapticDriver() = default;
@@ -30,63 +31,66 @@ class HapticDriver {
   /// Hands over the part whose grasp frame is at X_WG now; the clutch begins to close. No force flows before
   /// a coupled part is published.
   virtual void handOver(const Pose& X_WG) = 0;
-  /// Begin to open or close the clutch; last().clutch_ratio tells the progress.
+  /// Start to open or close the clutch; last().clutch_ratio shows the progress.
   virtual void openClutch() = 0;
   virtual void closeClutch() = 0;
-  /// The hand begins a step; when this returns, phase() is that of the step.
+  /// The hand begins a step; when this returns, phase() is already the phase of that step.
   virtual void begin(const device::OperatorTask& task, std::size_t step, double now_s) = 0;
   virtual void letGo() = 0;
-  /// Moves the free hand, as the functions of Hand; when one returns, the motion has begun.
+  /// Move the free hand, as the functions of Hand of the same names; the motion has begun when the function
+  /// returns.
   virtual void goBack(std::size_t next) = 0;
   virtual void recentre() = 0;
   virtual void goOn() = 0;
 
   /// Proceeds until the next physics step is due: lockstep runs that step's ticks, real time waits. False,
-  /// and nothing done, where the hand cannot go on.
+  /// and nothing happens, if the hand cannot continue.
   [[nodiscard]] virtual bool advance() = 0;
   /// The proxy after advance(), for the physics step.
   virtual const CouplingState& proxy() = 0;
-  /// Publishes the state after that step. state.step is set here. state.stored_J is given while a part is
-  /// held.
+  /// Publishes the state after the physics step. This function sets state.step. state.stored_J is set while a
+  /// part is held.
   virtual void publish(const device::PhysicsState& state) = 0;
-  /// Whether background work is ready: as the caller says, or as recorded in a run that is replayed.
+  /// Whether background work is ready: `is_ready`, or in a replay as recorded.
   virtual bool hasSettled(bool is_ready) { return is_ready; }
-  /// Whether axis snap acts in the coming physics step, after advance(): as the caller says, or as recorded.
+  /// Called after advance(): whether axis snap acts in the coming physics step: `is_wanted`, or in a replay
+  /// as recorded.
   virtual bool snaps(bool is_wanted) { return is_wanted; }
-  /// Whether the part is let go of on request, after advance(): as the caller says, or as recorded.
+  /// Called after advance(): whether the part is released on request: `is_wanted`, or in a replay as
+  /// recorded.
   virtual bool givesUp(bool is_wanted) { return is_wanted; }
-  /// Gains from the next part on that is handed over, also in settings(). Not in a run that is recorded.
+  /// Sets the gains from the next part on, also in settings(). Not allowed in a run that is recorded.
   virtual void setGains(const CouplingGains& /*gains*/) {}
   /// Time the caller spent between the last two calls of advance(); 0 in lockstep.
   [[nodiscard]] virtual double busy_s() const { return 0; }
-  /// In real time, from the next advance() on: steps of step_s of simulated time, one each period_s of the
-  /// clock, and other gains. settings() stays as given.
+  /// In real time, from the next advance() on: physics steps of step_s of simulated time, one in each
+  /// period_s of real time, and other gains. settings() does not change.
   virtual void setLoadLevel(double /*step_s*/, double /*period_s*/, const CouplingGains& /*gains*/) {}
 
-  /// Of the hand.
+  /// State of the hand.
   [[nodiscard]] virtual device::OperatorState state() = 0;
   [[nodiscard]] device::OperatorPhase phase() { return state().phase; }
-  /// As of the last tick.
+  /// Report of the last tick.
   [[nodiscard]] virtual const device::TickReport& last() = 0;
   /// Haptic periods without a tick so far; 0 in lockstep.
   [[nodiscard]] virtual std::uint64_t missed() = 0;
-  /// Whether time goes on while the physics thread does other work.
+  /// Whether time advances while the physics thread does other work (real time).
   [[nodiscard]] virtual bool isByClock() const = 0;
   [[nodiscard]] virtual device::PassivityObserver passivity() = 0;
   [[nodiscard]] virtual TickTimes times() = 0;
-  /// Passes on, by the physics thread, what the loop reported since the last call.
+  /// Passes on the events that the loop reported since the last call; called by the physics thread.
   virtual void passEvents(const std::function<void(const device::DeviceEvent&)>& /*to*/) {}
-  /// Figures that exist only in real time.
+  /// Timing results; only in real time.
   [[nodiscard]] virtual std::optional<RealTimeResult> realTime() = 0;
 };
 
-/// @param device  the hand's own, or a tap on it; all arguments outlive the driver
+/// @param device  the hand's device, or a tap on it; all arguments must outlive the driver
 std::unique_ptr<HapticDriver> makeLockstepDriver(Hand& hand, device::Device& device,
                                                  device::CouplingPort& port,
                                                  const device::LoopSettings& settings, int ticks_per_step,
                                                  const ReportFault& report);
 /// @param physics_s  period of physics
-/// @param log        may be null; receives, from the physics thread, what a replay needs
+/// @param log        may be null; receives from the physics thread the entries that a replay needs
 std::unique_ptr<HapticDriver> makeRealTimeDriver(Hand& hand, device::CouplingPort& port,
                                                  const device::LoopSettings& settings, double physics_s,
                                                  const ReportFault& report, device::RunLog* log);
@@ -98,7 +102,7 @@ std::unique_ptr<HapticDriver> makeReplayedDriver(Hand& hand, std::vector<Recorde
                                                  device::Device& device, device::CouplingPort& port,
                                                  const device::LoopSettings& settings,
                                                  const ReportFault& report, device::RunLog& log);
-/// In real time: how old a physics state may be.
+/// Greatest age of a physics state in real time.
 double physicsLimit_s(double physics_s);
 
 }  // namespace vps::scenes

@@ -10,20 +10,20 @@
 namespace vps::scenes {
 
 /// The haptic thread adds entries without waiting or allocating. The physics thread passes them on to the
-/// run's log in the order in which they happened, up to the point that it has reached. So the log has one
-/// writer, and its order is that of a replay.
+/// run's log in the order in which they happened, up to the tick that it has reached. The log therefore has
+/// one writer, and the order of a replay.
 class HapticLog final : public device::RunLog {
  public:
   /// @param log  null: entries are discarded
   explicit HapticLog(device::RunLog* log) : log_(log), ring_(log != nullptr ? kEntries : 1) {}
 
-  /// Haptic thread.
+  /// Called by the haptic thread.
   void add(const device::LogEntry& entry) noexcept override {
     if (log_ != nullptr)
       ring_.push(number_++, entry);  // an entry that finds no room leaves a gap in the numbers
   }
 
-  /// Physics thread: passes on all entries of the ticks up to this one.
+  /// Called by the physics thread: passes on all entries of the ticks up to `tick`.
   void passUpTo(std::int32_t tick) {
     pass(
         [tick](const device::SyncEvent* event) {
@@ -31,12 +31,12 @@ class HapticLog final : public device::RunLog {
         },
         [](const device::SyncEvent*) { return false; });
   }
-  /// Physics thread: passes on all entries up to and including the next SyncEvent of a kind.
+  /// Called by the physics thread: passes on all entries up to and including the next SyncEvent of a kind.
   void passUntil(device::SyncEventKind kind) {
     pass([](const device::SyncEvent*) { return false; },
          [kind](const device::SyncEvent* event) { return event != nullptr && event->kind == kind; });
   }
-  /// Physics thread: adds an event of its own.
+  /// Called by the physics thread: adds an event of the physics thread.
   void addFromPhysics(const device::SyncEvent& event) {
     if (log_ != nullptr) log_->add(event);
   }
@@ -62,8 +62,8 @@ class HapticLog final : public device::RunLog {
 
   device::RunLog* log_;
   device::EntryRing ring_;
-  std::uint32_t number_ = 0;  ///< haptic thread's
-  std::uint32_t passed_ = 0;  ///< physics thread's
+  std::uint32_t number_ = 0;  ///< used by the haptic thread
+  std::uint32_t passed_ = 0;  ///< used by the physics thread
 };
 
 }  // namespace vps::scenes

@@ -12,9 +12,9 @@ namespace vps::scenes {
 
 namespace {
 
-// The most time of missed periods that a simulated device makes up for; beyond that its time stands still.
-// Half of the time after which the dual arm's watchdog trips (20 ms without a command): a pause of this
-// program must not trip it.
+// Greatest time of missed periods that a simulated device makes up for; time beyond it is skipped. Half of
+// the time after which the dual arm's watchdog trips (20 ms without a command), so that a pause of this
+// program does not trip it.
 constexpr double kCatchUp_s = 10e-3;
 
 constexpr std::chrono::microseconds kCommandPoll{200};  // assumed: well below a haptic period
@@ -73,7 +73,7 @@ bool HapticSide::stop() {
 void HapticSide::carryOut(const HandCommand& command) {
   prepare(hand_, command);
   command_ = command;
-  loop_.call(0);  // one at a time: the ring has room
+  loop_.call(0);  // commands come one at a time, so the ring has room
   while (loop_.hasOpenRequests() && loop_.isRunning()) std::this_thread::sleep_for(kCommandPoll);
   if (!loop_.isRunning()) loop_.handleRequests();
 }
@@ -94,7 +94,7 @@ void HapticSide::logTick(const device::HapticLoop& loop, std::int64_t periods) {
                              loop.received().step, device::SyncEventKind::Tick});
 }
 
-// While nothing is held, no force is there to be taken away, as with physics that stalls.
+// While no part is held there is no force that a fault would have to remove, as with stalled physics.
 void HapticSide::watchPhysics(device::HapticLoop& loop) {
   if (!is_silent_ || !loop.isHolding() || !loop.received().part.is_coupled) return;
   if (loop.state().safety.fault != device::SafetyFault::None || !is_silent_()) return;
@@ -102,7 +102,7 @@ void HapticSide::watchPhysics(device::HapticLoop& loop) {
   loop.latchFault(device::SafetyFault::PhysicsStalled);
 }
 
-// The simulated device and hand advance by the elapsed time, in steps of the period they are made for.
+// The simulated device and hand advance by the elapsed time, in steps of their own period.
 void HapticSide::moveHand(device::HapticLoop& loop, double dt_s) {
   const double period_s = loop.settings().period_s;
   const double most = std::max(1.0, std::floor(kCatchUp_s / period_s));

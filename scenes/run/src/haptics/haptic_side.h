@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The haptic half of a run by the clock: device, hand and loop, on a thread of their own. Physics is in the
+// The haptic half of a run in real time: device, hand and loop, on a thread of their own. Physics runs in the
 // same process (real_time_driver.cpp) or in another one (network/device_node.cpp).
 #pragma once
 
@@ -14,48 +14,49 @@
 namespace vps::scenes {
 
 struct HapticTiming {
-  double stale_s = 2e-3;         ///< ticks with an older physics state are counted
-  double physics_limit_s = 0.1;  ///< device::LoopSettings
-  /// Whether the process that computes physics shows no sign of life; called in each tick. Empty: it is this
-  /// one. A physics step may take longer than such a process may be silent.
+  double stale_s = 2e-3;         ///< ticks with an older physics state are counted as stale
+  double physics_limit_s = 0.1;  ///< see device::LoopSettings
+  /// Whether the other process that computes physics is silent; called in each tick. Empty: physics runs in
+  /// this process. The limit for silence may be shorter than a physics step.
   std::function<bool()> is_silent = nullptr;
 };
 
-/// Used by one thread, apart from state().
+/// Used by one thread, except for the functions that allow any thread.
 class HapticSide {
  public:
-  /// All arguments outlive it.
-  /// @param log  gets what a replay needs, on the haptic thread
+  /// All arguments must outlive this object.
+  /// @param log  receives the entries that a replay needs, on the haptic thread
   HapticSide(Hand& hand, device::CouplingPort& port, const device::LoopSettings& settings,
              const HapticTiming& timing, device::RunLog& log);
   ~HapticSide() { stop(); }
 
   [[nodiscard]] bool isRunning() const { return loop_.isRunning(); }
   void start();
-  /// Stops the thread and logs that. False: it did not run.
+  /// Stops the thread and logs the stop. Returns false if the thread did not run.
   bool stop();
 
   /// Returns when the command has been carried out.
   void carryOut(const HandCommand& command);
   void setGains(const CouplingGains& gains);
 
-  /// What the hand does, as of the last tick. Any thread.
+  /// State of the hand at the last tick. Any thread may call.
   [[nodiscard]] device::OperatorState state() const {
     return device::stateFromByte(state_.load(std::memory_order_acquire));
   }
-  /// The tick of that state(), or a later one if this is read after it. Any thread.
+  /// Number of the tick of state(), or of a later tick if this is read after state(). Any thread may call.
   [[nodiscard]] std::int32_t tick() const { return tick_.load(std::memory_order_acquire); }
   [[nodiscard]] const std::atomic<std::uint8_t>& stateByte() const { return state_; }
-  /// The loop's state while it does not run.
+  /// State of the loop; only while the loop does not run.
   [[nodiscard]] device::HapticState loopState() { return loop_.loop().state(); }
 
-  /// Takes the loop's events out of their queue; they wait for passEvents(), as many as the queue holds.
+  /// Takes the loop's events out of their queue and counts faults. Keeps events for passEvents(), at most as
+  /// many as the queue holds.
   void countFaults();
-  /// Passes on what was taken since the last call.
+  /// Passes on the events that countFaults() took since the last call.
   void passEvents(const std::function<void(const device::DeviceEvent&)>& to);
   [[nodiscard]] std::uint64_t missed() const { return loop_.statistics().summary().missed; }
   [[nodiscard]] TickTimes times() const;
-  /// What the haptic side knows of it.
+  /// Timing results of the haptic thread; those of physics are left at their defaults.
   [[nodiscard]] RealTimeResult realTime();
 
  private:
@@ -71,12 +72,12 @@ class HapticSide {
   device::RunLog& log_;
   std::function<bool()> is_silent_;
   device::DeviceEventQueue events_;
-  std::vector<device::DeviceEvent> reported_;  ///< taken, and not passed on yet
+  std::vector<device::DeviceEvent> reported_;  ///< taken from the queue and not yet passed on
   device::TappedDevice tapped_;
-  std::atomic<std::uint8_t> state_{device::toByte({})};  ///< of the hand, by its thread
+  std::atomic<std::uint8_t> state_{device::toByte({})};  ///< state of the hand, written by the haptic thread
   static_assert(std::atomic<std::uint8_t>::is_always_lock_free, "the haptic thread must not wait for a lock");
   std::atomic<std::int32_t> tick_{0};  ///< written before state_
-  HandCommand command_;                ///< the one being carried out
+  HandCommand command_;                ///< the command that is being carried out
   RealTimeResult result_;
   device::RealTimeLoop loop_;
 };

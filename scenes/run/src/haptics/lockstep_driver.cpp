@@ -53,7 +53,7 @@ class LockstepDriver final : public HapticDriver {
     device::PhysicsState numbered = state;
     numbered.step = ++published_;
     port_.physics.write(numbered);
-    loop_.receivePart();  // now rather than with the next tick: a run may end before one
+    loop_.receivePart();  // here and not in the next tick, since a run may end before that
   }
   device::OperatorState state() override { return hand_.state(); }
   const device::TickReport& last() override { return loop_.last(); }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Puts what physics logs and what the haptic loop of another process logs in the order of a replay.
+// Merges the log entries of physics and of a haptic loop in another process into the order of a replay.
 #pragma once
 
 #include <cstdint>
@@ -10,26 +10,27 @@
 
 namespace vps::scenes {
 
-/// Entries of the loop come later than the states and replies that physics works with, the later the longer
-/// the way. So what physics logs waits here until the entries that precede it have come. Used by the physics
-/// thread; it allocates.
+/// Entries of the loop arrive later than the states and replies that physics uses, by the delay of the
+/// network. The entries of physics wait here until the loop's entries that precede them have arrived. Used by
+/// the physics thread; it allocates.
 class MergedLog final : public device::RunLog {
  public:
   /// @param log  outlives this object
   explicit MergedLog(device::RunLog& log) : log_(log) {}
 
-  /// Once something was lost, nothing is added any more.
+  /// Reports lost entries; nothing is added afterwards.
   void lose(std::uint64_t count) noexcept override;
-  /// Of physics: follows what was asked for by waitForTick() and waitForEvent() before.
+  /// Adds an entry of physics, after the entries that waitForTick() and waitForEvent() asked for.
   void add(const device::LogEntry& entry) noexcept override;
-  /// Of the loop, in their order. Numbers that are missing were lost.
+  /// Adds an entry of the loop. Entries come in the order of their numbers; a missing number means a lost
+  /// entry.
   void addFromLoop(std::uint32_t number, const device::LogEntry& entry);
 
-  /// What is added from now on follows the loop's entries of the ticks up to this one.
+  /// Later entries of physics follow the loop's entries of all ticks up to `tick`.
   void waitForTick(std::int32_t tick) { wait(Tick{tick}); }
-  /// The same for the loop's next SyncEvent of a kind, which is no Tick.
+  /// Later entries of physics follow the loop's next SyncEvent of this kind, which must not be Tick.
   void waitForEvent(device::SyncEventKind kind) { wait(Event{kind}); }
-  /// Entries of the loop are still to come.
+  /// Whether entries of the loop are still missing.
   [[nodiscard]] bool isWaiting() const { return !waiting_.empty(); }
 
  private:
@@ -47,7 +48,7 @@ class MergedLog final : public device::RunLog {
     pass();
   }
   void pass();
-  /// False: entries of the loop that come first are missing.
+  /// False: entries of the loop that must come first are missing.
   bool passUntil(const device::LogEntry& entry);
   bool passUntil(const Tick& until);
   bool passUntil(const Event& until);
@@ -56,9 +57,11 @@ class MergedLog final : public device::RunLog {
   device::RunLog& log_;
   std::deque<Waiting> waiting_;
   std::deque<device::LogEntry> loop_;
-  std::uint32_t next_ = 0;                   ///< number of the loop's next entry
-  std::int32_t ticking_ = 0, complete_ = 0;  ///< the last tick that was passed on, as a whole
-  bool is_over_ = false;                     ///< something was lost, so a replay ends there
+  std::uint32_t next_ = 0;  ///< number of the loop's next entry
+  std::int32_t ticking_ = 0,
+               complete_ =
+                   0;     ///< the last tick that was passed on, and the last that was passed on completely
+  bool is_over_ = false;  ///< entries were lost, so a replay ends there
 };
 
 }  // namespace vps::scenes

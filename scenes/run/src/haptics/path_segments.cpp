@@ -13,11 +13,12 @@ namespace vps::scenes {
 
 namespace {
 
-/// Left free on each side of a segment, at the device, for aim errors and the search for a hole. assumed.
+/// Margin of the device's workspace on each side of a segment, for aim errors and the search for a hole.
+/// assumed.
 constexpr double kMargin_m = 20e-3, kMargin_rad = 0.1;
-/// Two poses this close to half a turn apart could be joined either way round.
+/// Poses whose rotations differ by half a turn, within this margin, could be joined in either direction.
 constexpr double kHalfTurnMargin_rad = 1e-3;
-/// Smaller shares of a leg are no segment of their own.
+/// A smaller share of a leg does not become a segment of its own.
 constexpr double kLeastShare = 1e-6;
 constexpr int kBisections = 40;
 
@@ -25,7 +26,8 @@ Vec3 turnBetween(const Mat3& R_from, const Mat3& R_to) {
   return rotationVector(R_to * R_from.transpose());
 }
 
-/// The share of the line from a to b that fits into a box of this size together with `box`, which contains a.
+/// The share of the line from a to b that fits into a box of size size_m together with `box`, which contains
+/// a.
 double reachOf(const Box& box, const Vec3& size_m, const Vec3& a, const Vec3& b) {
   double share = 1;
   for (int i = 0; i < 3; ++i) {
@@ -36,9 +38,9 @@ double reachOf(const Box& box, const Vec3& size_m, const Vec3& a, const Vec3& b)
   return std::clamp(share, 0.0, 1.0);
 }
 
-/// Rotations of a segment. Around its middle, which is halfway between the two that are farthest apart, all
-/// lie within radius_rad(): rotations between two of them too, since a ball of less than a quarter turn is
-/// convex.
+/// Rotations of a segment. The middle is halfway between the two rotations that are farthest apart. All
+/// rotations lie within radius_rad() of the middle, and so do rotations between two of them, since a ball of
+/// less than a quarter turn is convex.
 class Turns {
  public:
   void add(const Mat3& R) {
@@ -55,14 +57,15 @@ class Turns {
       for (const Mat3& R : all_) radius_rad = std::max(radius_rad, turnBetween(middle_, R).norm());
     return radius_rad;
   }
-  /// The handle's rotation at a pose of the grasp frame, if it has the identity at the middle.
+  /// The handle's rotation when the grasp frame has rotation R, if the handle's rotation is the identity at
+  /// the middle.
   [[nodiscard]] Mat3 handleAt(const Mat3& R) const {
     return apart_rad_ > kRounding_rad ? Mat3(R * middle_.transpose()) : Mat3(Mat3::Identity());
   }
 
  private:
   std::vector<Mat3> all_;
-  static constexpr double kRounding_rad = 1e-9;  // equal rotations
+  static constexpr double kRounding_rad = 1e-9;  // closer rotations are equal
   double apart_rad_ = kRounding_rad;
   Mat3 middle_ = Mat3::Identity();
 };
@@ -83,7 +86,7 @@ double turnReachOf(const Turns& turns, double limit_rad, const Pose& X_from, con
   return least;
 }
 
-/// What one segment covers.
+/// Positions and rotations of one segment.
 struct Covered {
   Box box;
   Turns turns;
@@ -93,13 +96,14 @@ struct Covered {
   }
 };
 
-/// The path of the grasp frame G, which the handle follows; at the device it is shorter by the scale.
+/// The path of the grasp frame G, which the handle follows. The handle's path is shorter by the device's
+/// scale.
 struct GraspPath {
   std::vector<Pose> X_WG;
   std::vector<bool> is_index_point;
 };
 
-/// Splits from the target backwards, each segment as long as possible.
+/// Splits the path from the target backwards, each segment as long as possible.
 GraspPath inSegments(const std::vector<Pose>& X_WG, const Workspace& workspace_W) {
   GraspPath path{{X_WG.back()}, {false}};  // in reverse order until the end
   Covered covered;
@@ -160,7 +164,7 @@ constexpr double inDegrees(double rad) {
   refuse(scene, step, words);
 }
 
-/// The direction of half a turn between two poses is not defined.
+/// Refuses two poses half a turn apart, since the direction of the turn is not defined.
 void requireDirections(const Scene& scene, const SceneStep& step, const std::vector<Pose>& X_WG) {
   for (std::size_t i = 1; i < X_WG.size(); ++i)
     if (turnBetween(X_WG[i - 1].R, X_WG[i].R).norm() > std::numbers::pi - kHalfTurnMargin_rad)
@@ -194,7 +198,7 @@ PathSegments withHandle(const GraspPath& path, const Pose& X_GP, double scale) {
   return segments;
 }
 
-/// The device's axes are those of the step's poses.
+/// splitPath() for a device whose axes are parallel to the world's.
 PathSegments splitAlongAxes(const Scene& scene, const SceneStep& step, const Workspace& workspace) {
   const double scale = scene.device.scale;
   const Pose X_PG = Pose::translation(partMass(scene.parts[step.part]).com);
@@ -217,7 +221,7 @@ PathSegments splitAlongAxes(const Scene& scene, const SceneStep& step, const Wor
     return withHandle(inSegments(X_WG, inner_W), X_PG.inverse(), scale);
   }
   PathSegments one = withHandle({X_WG, std::vector<bool>(X_WG.size(), false)}, X_PG.inverse(), scale);
-  one.way_points = step.way_points;  // the same bits
+  one.way_points = step.way_points;  // unchanged to the bit
   return one;
 }
 
@@ -229,7 +233,7 @@ double turnRange_rad(double handle_rad) {
 
 PathSegments splitPath(const Scene& scene, const SceneStep& step, const Workspace& workspace) {
   if (!scene.device.placement) return splitAlongAxes(scene, step, workspace);
-  // In the device's axes, where its workspace is a box.
+  // The path is split in the device's axes, in which the workspace is a box.
   const Pose X_DW(Mat3(scene.device.placement->R.transpose()), Vec3(Vec3::Zero()));
   SceneStep turned = step;
   for (Pose* X : {&turned.X_WP_start, &turned.X_WP_target}) *X = X_DW * *X;

@@ -17,13 +17,13 @@ namespace vps::scenes {
 ///                            |---------------|         each segment fits into the workspace
 struct PathSegments {
   std::vector<Pose> way_points;           ///< X_WP: the step's own way points and the index points, in order
-  std::vector<std::size_t> index_points;  ///< which of way_points are index points
-  std::vector<Pose> X_DH_start;  ///< of the handle at each segment's start; one more than index_points
+  std::vector<std::size_t> index_points;  ///< indices of the way points that are index points
+  std::vector<Pose> X_DH_start;  ///< pose of the handle at each segment's start; one more than index_points
 };
 
-/// What a device's handle can reach.
+/// Positions and rotations that a device's handle can reach.
 struct Workspace {
-  Vec3 size_m = Vec3::Zero();  ///< box of its positions
+  Vec3 size_m = Vec3::Zero();  ///< size of the box of positions
   double turn_rad = 0;         ///< greatest rotation from the identity, about any axis; 0: any
 };
 
@@ -33,10 +33,10 @@ struct Workspace {
 /// turn apart, since the direction in which the hand turns is then not defined.
 PathSegments splitPath(const Scene& scene, const SceneStep& step, const Workspace& workspace);
 
-/// The segments that are left once the part has passed this many of the step's own way points.
+/// The segments that remain after the part has passed `passed` of the step's own way points.
 PathSegments withoutPassed(const PathSegments& segments, std::size_t passed);
 
-/// How far a handle that turns by handle_rad to each side is turned before it is grasped again.
+/// Rotation after which a handle that turns by handle_rad to each side is grasped again.
 double turnRange_rad(double handle_rad);
 
 }  // namespace vps::scenes

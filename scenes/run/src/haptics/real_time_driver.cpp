@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A run in real time: the haptic loop on a thread of its own, physics by the clock.
+// A run in real time: the haptic loop runs on a thread of its own, and physics steps when they are due.
 #include <algorithm>
 
 #include "haptics/clocked_driver.h"
@@ -97,7 +97,7 @@ class RealTimeDriver final : public ClockedDriver {
  private:
   device::CouplingPort& port_;
   HapticLog haptic_log_;
-  /// As of the last advance() or command, so that it stays the same within a physics step.
+  /// State of the hand at the last advance() or command, so that it stays the same within a physics step.
   device::OperatorState known_state_;
   bool has_priority_ = false, snaps_ = false;
   HapticSide side_;

@@ -39,8 +39,8 @@ class ReplayedDriver final : public ClockedDriver {
   }
 
   bool advance() override {
-    // A loop in another process was re-armed while physics went on. After a departure from the recording,
-    // events that do not fit are skipped.
+    // A loop in another process may have been re-armed while physics continued. After a departure from the
+    // recording, events that do not fit are skipped.
     while (next_ < events_.size() && !tickUntil(device::SyncEventKind::Step)) {
       if (isAt(device::SyncEventKind::Rearm))
         command({device::SyncEventKind::Rearm, {}, 0, 0, {}});
@@ -49,7 +49,7 @@ class ReplayedDriver final : public ClockedDriver {
     }
     if (!isAt(device::SyncEventKind::Step)) return false;
     logEvent(device::SyncEventKind::Step);
-    setView(port_.haptic.read());  // as the last tick left it, without the commands since
+    setView(port_.haptic.read());  // the state after the last tick, without the commands since then
     return true;
   }
   bool hasSettled(bool) override {
@@ -89,8 +89,8 @@ class ReplayedDriver final : public ClockedDriver {
     return next_ < events_.size() && events_[next_].event.kind == kind;
   }
 
-  /// Runs the ticks before the next event of the physics thread. True if that event is of this kind. A
-  /// recording that was cut has no samples left to tick with.
+  /// Runs the ticks before the next event of the physics thread. True if that event has kind `kind`. A cut
+  /// recording has no samples left for further ticks.
   bool tickUntil(device::SyncEventKind kind) {
     while (isAt(device::SyncEventKind::Tick) || isAt(device::SyncEventKind::Silent)) {
       if (isAt(device::SyncEventKind::Silent)) {
@@ -117,7 +117,7 @@ class ReplayedDriver final : public ClockedDriver {
     clock_.stop();
   }
 
-  /// Logs the next recorded event, as this run has it.
+  /// Logs the next recorded event with the numbers of this run.
   void logEvent(device::SyncEventKind kind) {
     hand_state_ = events_[next_].hand;
     const device::SyncEvent& event = events_[next_++].event;
@@ -133,9 +133,9 @@ class ReplayedDriver final : public ClockedDriver {
   std::vector<RecordedEvent> events_;
   std::size_t next_ = 0;
   device::RunLog& log_;
-  std::deque<device::PhysicsState> states_;  ///< published, not yet used by a tick
+  std::deque<device::PhysicsState> states_;  ///< published and not yet used by a tick
   TickClock clock_;
-  device::OperatorState hand_state_;  ///< as of the last event
+  device::OperatorState hand_state_;  ///< state at the last event
   bool is_running_ = false, snaps_ = false;
 };
 

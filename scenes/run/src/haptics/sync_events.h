@@ -15,23 +15,23 @@ namespace vps::scenes {
 class Hand;
 
 struct HandCommand {
-  device::SyncEventKind what = device::SyncEventKind::Tick;  ///< from Begin on
-  Pose X_WG;                                                 ///< of HandOver
-  std::size_t step = 0;                                      ///< of Begin, and of GoBack: the next one
-  double now_s = 0;                                          ///< of Begin
-  device::OperatorTask task;                                 ///< of Begin
+  device::SyncEventKind what = device::SyncEventKind::Tick;  ///< a kind from Begin on
+  Pose X_WG;                                                 ///< argument of HandOver
+  std::size_t step = 0;       ///< argument of Begin, and of GoBack: the next step
+  double now_s = 0;           ///< argument of Begin
+  device::OperatorTask task;  ///< argument of Begin
 };
 
 /// Allocates what a command needs, on any thread, before carryOut().
 void prepare(Hand& hand, const HandCommand& command);
-/// On the thread that runs the loop. Never allocates.
+/// Carries out the command, on the thread that runs the loop. Never allocates.
 void carryOut(Hand& hand, device::HapticLoop& loop, const HandCommand& command) noexcept;
 
 struct RecordedEvent {
   device::SyncEvent event;
-  /// As the run logged it between this event of the physics thread and the next one. The loop's samples do
-  /// not tell it: physics may take two steps between two ticks of a loop that is late, and learn of a new
-  /// phase in the second.
+  /// The hand's state that the run logged between this event of the physics thread and the next one. The
+  /// loop's samples do not contain it: physics may take two steps between two ticks of a late loop, and learn
+  /// of a new phase in the second step.
   device::OperatorState hand;
 };
 

@@ -11,7 +11,8 @@ namespace vps::scenes {
 
 namespace {
 
-constexpr double kMostPeriods = 1e6;  ///< of one step: a jump of the clock must not overflow the sums
+constexpr double kMostPeriods =
+    1e6;  ///< limit of a step's duration, so that a jump of the clock does not overflow the sums
 
 }  // namespace
 
@@ -51,7 +52,7 @@ bool LoadGovernor::isOverloaded() const noexcept {
   return last_.late >= settings_.late_limit && last_.lostShare() > settings_.lost_limit;
 }
 
-/// True if simulated time would run faster one level down, did that level lose nothing.
+/// True if simulated time would run faster one level down, provided that level loses no time.
 bool LoadGovernor::isFasterBelow() const noexcept {
   const auto level = static_cast<std::size_t>(level_);
   return (1 - last_.lostShare()) * speeds_[level] < speeds_[level + 1];

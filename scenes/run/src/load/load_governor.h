@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Decides when a run that cannot hold its rate goes to a cheaper load level, and when it comes back. It uses
-// neither a clock nor models: it gets the duration of each step and returns a level.
+// Decides when a run that cannot hold its rate changes to a cheaper load level, and when it changes back. The
+// governor uses neither a clock nor models: it receives the duration of each step and returns a level.
 #pragma once
 
 #include <vector>
@@ -8,15 +8,18 @@
 namespace vps::scenes {
 
 struct GovernorSettings {
-  double window_s = 0.25;    ///< time that one decision is based on. assumed: the delay a person accepts
+  double window_s =
+      0.25;  ///< length of the window that a decision is based on. assumed: a delay that a person accepts
   double lost_limit = 0.05;  ///< share of a window's time that may be lost. assumed: the part is 5 % too slow
-  int late_limit = 5;  ///< fewer steps that lose time in a window are a stall, which no level cures. assumed
-  int calm_windows = 8;         ///< calm windows before it goes up. assumed: 2 s, longer than a brief contact
-  int most_calm_windows = 256;  ///< limit of that number, which doubles after each relapse. assumed: 64 s
+  int late_limit =
+      5;  ///< fewer steps that lose time in a window count as a stall, which no level prevents. assumed
+  int calm_windows =
+      8;  ///< calm windows before the level changes upwards. assumed: 2 s, longer than a brief contact
+  int most_calm_windows = 256;  ///< limit of calm_windows, which doubles after each relapse. assumed: 64 s
 };
 
-/// Level 0 is the scene's own; each further level is cheaper. Not thread-safe. Allocates only in its
-/// constructor.
+/// Level 0 has the scene's own settings; each further level is cheaper. Not thread-safe. Allocates only in
+/// its constructor.
 ///
 /// Steps that take longer than their period make those after them late, which then follow at once. Periods
 /// are lost where a step would begin later than mostLate_s() of physics_clock.h.
@@ -24,47 +27,49 @@ struct GovernorSettings {
 ///   level that slows time down must lose less of it than is lost now: at half speed half of the time is
 ///   lost.
 /// - Up one level: after the required number of calm windows in a row. A window is calm when no more than
-///   half of lost_limit would have been lost, stalls not counted, had every step taken as much longer as it
-///   may on the level above.
-/// The gap between the two conditions is the hysteresis: neither a single late step nor a load near the limit
-/// changes the level, and a load that comes and goes changes it less and less often.
+/// half of lost_limit would have been lost (without stalls) if every step had taken as much longer as it may
+/// on the level above. The gap between the two conditions is the hysteresis: neither a single late step nor a
+/// load near the limit changes the level, and a load that comes and goes changes it less and less often.
 class LoadGovernor {
  public:
   /// @param cost_ratios  for each level but 0, >= 1: the greatest ratio of the share of its period that a
   ///                     step takes one level up to the share at this level
-  /// @param speeds  for each level, 0 included: simulated time by the clock's, at most 1; empty: 1
+  /// @param speeds  for each level, including level 0: simulated time divided by real time, at most 1; empty:
+  /// 1
   explicit LoadGovernor(std::vector<double> cost_ratios, const GovernorSettings& settings = {},
                         std::vector<double> speeds = {});
 
-  /// Adds one step.
-  /// @param busy_s    its duration; a value that is not a number or below 0 counts as 0
-  /// @param period_s  its period, > 0
-  /// @param may_rise  false: the level above is not possible now; the governor goes up once it is
-  /// @return the level from now on, at most one from the one before. O(1).
+  /// Adds one step to the window.
+  /// @param busy_s    duration of the step; NaN or a negative value counts as 0
+  /// @param period_s  period of the step, > 0
+  /// @param may_rise  false: the level above is not possible now; the governor changes upwards once it is
+  /// possible
+  /// @return the level from now on, which differs from the last level by at most one. O(1).
   int add(double busy_s, double period_s, bool may_rise = true) noexcept;
-  /// The last change upwards failed: stays at `level`, and waits longer before it tries again.
+  /// Reports that the last change upwards failed. The governor stays at `level` and waits longer before it
+  /// tries again.
   void stayAt(int level) noexcept;
   [[nodiscard]] int level() const noexcept { return level_; }
   [[nodiscard]] int lastLevel() const noexcept { return static_cast<int>(cost_ratios_.size()); }
 
   struct Window {
-    double elapsed_s = 0;  ///< all periods that began in it
-    double lost_s = 0;     ///< those of them without a step of their own
+    double elapsed_s = 0;  ///< length of all periods that began in the window
+    double lost_s = 0;     ///< length of the periods among them that had no step
     double busy_s = 0;     ///< mean duration of a step
     int late = 0;          ///< steps after which periods were lost
     [[nodiscard]] double lostShare() const noexcept { return elapsed_s > 0 ? lost_s / elapsed_s : 0; }
   };
-  /// The last whole window.
+  /// The last complete window.
   [[nodiscard]] const Window& last() const noexcept { return last_; }
-  /// True if too much was lost in the last whole window.
+  /// True if too much time was lost in the last complete window.
   [[nodiscard]] bool isOverloaded() const noexcept;
 
  private:
-  /// What a window would be at one cost of the steps.
+  /// Sums of a window for one cost of the steps.
   struct Course {
     double elapsed_s = 0, lost_s = 0;
     int late = 0;
-    double behind_s = 0;  ///< by how much the next step is late; goes on from window to window
+    double behind_s = 0;  ///< lateness of the next step; kept from window to window
     void add(double busy_s, double period_s) noexcept;
     void beginWindow() noexcept { *this = {0, 0, 0, behind_s}; }
   };
@@ -75,14 +80,14 @@ class LoadGovernor {
 
   std::vector<double> cost_ratios_, speeds_;
   GovernorSettings settings_;
-  Course now_, above_;  ///< above_: as if each step had the cost of one level up
+  Course now_, above_;  ///< now_: as measured; above_: as if each step had the cost of one level up
   double busy_s_ = 0;
   int steps_ = 0;
   Window last_;
   int level_ = 0;
   int calm_ = 0;            ///< calm windows in a row
   int wait_;                ///< calm windows required
-  bool has_risen_ = false;  ///< a change downwards would now be a relapse
+  bool has_risen_ = false;  ///< the last change was upwards, so that a change downwards is a relapse
 };
 
 }  // namespace vps::scenes

@@ -17,7 +17,8 @@ namespace {
 
 /// The cost ratio of each level that this run may take.
 std::vector<double> costRatios(double physics_s, const LoadLimits& limits) {
-  constexpr double kLate = 1.5;  // share of its period that a step may take without being stalled. assumed
+  constexpr double kLate =
+      1.5;  // share of its period that a step may take before it counts as stalled. assumed
   std::vector<double> ratios;
   for (std::size_t level = 1; level < kLoadLevels.size(); ++level) {
     const LoadLevel& load = kLoadLevels[level];
@@ -49,7 +50,7 @@ CouplingGains softer(const CouplingGains& a, const CouplingGains& b) {
 std::string describeOverload(const LoadGovernor::Window& window) {
   char text[160];
   std::snprintf(text, sizeof text,
-                "%.0f %% of %.2f s had no step of their own: a step took %.2g ms, %d were late",
+                "%.0f %% of the periods in %.2f s had no step: a step took %.2g ms, and %d were late",
                 100 * window.lostShare(), window.elapsed_s, 1e3 * window.busy_s, window.late);
   return text;
 }
@@ -61,15 +62,15 @@ std::string describeReserve(const LoadGovernor::Window& window) {
   return text;
 }
 
-/// The cost of a level, as far as it is known beforehand.
+/// The cost of a level, as far as it is known in advance.
 std::string describeBound(const LoadLevelChange& change, const CouplingGains& own, const LoadLevel& level,
                           const Fidelity& f) {
-  if (change.to == 0) return "nothing is given up any more";
+  if (change.to == 0) return "the scene's own settings apply again";
   char text[300];
-  std::snprintf(
-      text, sizeof text,
-      "a contact up to %.3g mm deep can go undetected, the greatest distance of any place from a point",
-      1e3 * change.unseen_bound_m);
+  std::snprintf(text, sizeof text,
+                "a contact up to %.3g mm deep can go undetected, which is the greatest distance of any place "
+                "from a point",
+                1e3 * change.unseen_bound_m);
   std::string cost = text;
   if (level.periods() > 1) {
     std::snprintf(text, sizeof text,
@@ -189,7 +190,7 @@ void LoadShedder::finish(double time_s) {
     simulation_.setShells(std::move(resampled.shells));
   } catch (const std::exception& error) {
     change.is_done = false;
-    change.why += std::string("; but other points could not be made: ") + error.what();
+    change.why += std::string("; but the points could not be made:  ") + error.what();
   }
   // After a failure downwards, the next level is still tried; after one upwards, this level is tried again
   // later.

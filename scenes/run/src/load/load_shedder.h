@@ -18,46 +18,46 @@
 namespace vps::scenes {
 
 struct LoadLimits {
-  bool may_slow = true;                     ///< simulated time may run slower than the clock's
+  bool may_slow = true;                     ///< simulated time may run slower than real time
   const std::atomic<bool>* stop = nullptr;  ///< may be null; when set, resampling ends early
 };
 
-/// Used by the physics thread. Other shells are made on a thread of their own and put in place between two
-/// steps when they are ready; until then no further decision is made. Rates go down at once. They go up only
-/// while no part is held, because a coupling that becomes stiffer would push the hand. A lower rate takes
-/// gains that are passive at that rate. No level is taken at which the watchdog would see physics as stalled.
+/// Used by the physics thread. New shells are made on another thread and put in place between two steps when
+/// they are ready; until then no further decision is made. Rates decrease at once. They increase only while
+/// no part is held, because a coupling that becomes stiffer would push the hand. A lower rate takes gains
+/// that are passive at that rate. No level is taken at which the watchdog would see physics as stalled.
 class LoadShedder {
  public:
-  /// The gains that are passive at a physics rate [Hz].
+  /// Returns the gains that are passive at a physics rate [Hz].
   using GainsAt = std::function<CouplingGains(double rate_hz)>;
-  /// Puts a field in place of the one before.
+  /// Replaces the fixed field.
   using SetField = std::function<void(CookedField field)>;
 
-  /// Scene, plan, simulation and driver outlive it.
+  /// Scene, plan, simulation and driver must outlive this object.
   LoadShedder(const Scene& scene, const ModelPlan& plan, Simulation& simulation, HapticDriver& driver,
               const LoadLimits& limits, GainsAt gains_at, SetField set_field);
 
-  /// After each step.
+  /// To be called after each step.
   /// @param busy_s      time that the physics thread was busy since the last step
   /// @param part        the body that moves
   /// @param is_holding  the part is coupled to the hand
   void update(double busy_s, double time_s, std::size_t part, bool is_holding);
-  /// Waits for resampling that is under way and puts its result in place. To be called before the fixed field
-  /// or the moving body changes.
+  /// Waits for resampling that is in progress and puts its result in place. To be called before the fixed
+  /// field or the moving body changes.
   void finish(double time_s);
-  /// False while resampling is under way.
+  /// False while resampling is in progress.
   [[nodiscard]] bool isReady() const;
   /// To be called before and after the scene's models are replaced: shells made from the old models are
-  /// discarded, and made again from the new ones where the level needs them.
+  /// discarded, and shells of the new models are made if the level needs them.
   void beforeNewModels(double time_s);
   void afterNewModels(double time_s, std::size_t part);
 
   /// Duration of a physics step in simulated time.
   [[nodiscard]] double dt_s() const { return dt_s_; }
-  /// The clock's time by simulated time: speeds in simulated time are greater by this factor.
+  /// Real time divided by simulated time: speeds in simulated time are greater by this factor.
   [[nodiscard]] double timeDivisor() const;
   [[nodiscard]] const CouplingGains& gains() const { return gains_; }
-  /// The driver's gains have changed to these; nothing is held.
+  /// Reports that the driver's gains have changed to `own`. No part may be held.
   void setOwnGains(const CouplingGains& own);
   [[nodiscard]] const std::vector<LoadLevelChange>& changes() const { return changes_; }
 
@@ -83,8 +83,9 @@ class LoadShedder {
   LoadGovernor governor_;
   double dt_s_;
   CouplingGains gains_;
-  int level_ = 0;                                             ///< in effect
-  std::map<double, std::shared_ptr<const ShellSet>> shells_;  ///< made so far, by LoadLevel::spacing_factor
+  int level_ = 0;  ///< level in effect
+  std::map<double, std::shared_ptr<const ShellSet>>
+      shells_;  ///< shells that exist, by LoadLevel::spacing_factor
   std::future<Resampled> resampling_;
   LoadLevelChange pending_;  ///< the change that resampling_ is for
   bool has_reported_last_level_ = false;

@@ -18,8 +18,8 @@ namespace vps::scenes {
 
 namespace {
 
-/// A part that did not go to its place takes no other one along. What it was to align was put at its target
-/// for it, and is there for later steps too.
+/// A part that did not reach its target aligns no other part. The part that it should have aligned was put at
+/// its target for this step and stays there for later steps, so these are marked as depending on it.
 void refuseAlignment(std::vector<StepResult>& steps, std::string& not_in_place) {
   StepResult& last = steps.back();
   if (isGood(last)) return;

@@ -13,16 +13,16 @@ namespace vps::scenes {
 /// Throws LoadError for a scene without a step, or with a part that is neither fixed, nor moved, nor scenery.
 void requireSteps(const Scene& scene);
 
-/// The scene's, or that of options.device. Throws LoadError as the other makeHand().
+/// The hand of the scene, or of options.device. Throws LoadError as the other makeHand().
 std::unique_ptr<Hand> makeHand(const Scene& scene, const AssembleOptions& options);
 
-/// Builds the models that the scene lacks and runs every step. A hand that cannot go on (the end of a
+/// Builds the models that the scene lacks and runs every step. A hand that cannot continue (the end of a
 /// recording) ends the run. Throws as assemble().
 /// @param log  may be null; receives the device's samples and wrenches, the operator's phases, and a trace at
 ///             the scene's csv_rate_hz
 AssembleResult runProcedure(Scene& scene, Hand& hand, device::RunLog* log,
                             const device::LoopSettings& settings, const AssembleOptions& options);
-/// With what checkDrawnTargets() has found already.
+/// As above, with the result of checkDrawnTargets().
 AssembleResult runProcedure(Scene& scene, Hand& hand, device::RunLog* log,
                             const device::LoopSettings& settings, const AssembleOptions& options,
                             const std::vector<StepResult>& drawn);

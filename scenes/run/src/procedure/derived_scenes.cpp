@@ -17,7 +17,7 @@ namespace vps::scenes {
 
 namespace {
 
-/// Moves `box` along x until it overlaps none of the others, at least by a tenth of its length.
+/// Distance along x at which `box` overlaps none of the others, with a gap of a tenth of its length.
 double wayAside_m(const Box& box, const std::vector<Box>& others) {
   double way_m = 0;
   const auto at = [&](double x_m) {
@@ -32,12 +32,13 @@ double wayAside_m(const Box& box, const std::vector<Box>& others) {
   return way_m;
 }
 
-/// The hand turns the part by this at a time: far below half a turn, whose direction would be ambiguous.
+/// Rotation from one way point to the next: far below half a turn, whose direction would be ambiguous.
 constexpr double kUnscrewTurn_rad = 0.5 * std::numbers::pi;
-/// Of the time that the turns take. assumed: re-grasping takes as long again
+/// Time limit of unscrewing as a multiple of the time that the turns take. assumed: re-grasping takes as long
+/// as turning, with a margin
 constexpr double kSpareTime = 3;
 
-/// The way out of a thread, from the target on, as far as the last leg led into it.
+/// The path out of a thread, from the target to the start of the last leg.
 std::vector<Pose> unscrewed(const SceneStep& step, const Pose& X_PG) {
   const Vec3 axis_W = insertionAxis(step, X_PG), target_W = step.X_WP_target * X_PG.p;
   const Pose& X_before = step.way_points.empty() ? step.X_WP_start : step.way_points.back();
@@ -61,12 +62,13 @@ std::vector<Pose> restOfTheWay(const SceneStep& step) {
   return poses;
 }
 
-/// What was unscrewed keeps the turn with which it left the thread.
+/// The whole path of a screw that is taken off. Beyond the thread the part keeps the rotation with which it
+/// left the thread.
 std::vector<Pose> wayOutOfThread(const SceneStep& step, const Pose& X_PG) {
   std::vector<Pose> way = unscrewed(step, X_PG);
   const Mat3 turn = way.back().R * step.X_WP_target.R.transpose();
   const std::vector<Pose> rest = restOfTheWay(step);
-  for (std::size_t i = 1; i < rest.size(); ++i) {  // the first is where the thread ends
+  for (std::size_t i = 1; i < rest.size(); ++i) {  // the first pose is where the thread ends
     const Mat3 R = turn * rest[i].R;
     way.emplace_back(R, Vec3(rest[i] * X_PG.p - R * X_PG.p));
   }
@@ -80,7 +82,7 @@ SceneStep takenOff(const SceneStep& step, const Mesh& mesh) {
   SceneStep off;
   off.part = step.part;
   off.takes_off = true;
-  off.is_held = true;  // where it was put away
+  off.is_held = true;  // held where it was put away
   off.X_WP_start = step.X_WP_target;
   off.X_WP_target = way.back();
   way.pop_back();
@@ -118,7 +120,7 @@ std::vector<Pose> laidOut(const Scene& scene) {
     if (!has_step[i] && !scene.parts[i].is_scenery)
       taken.push_back(moved(bounds(scene.parts[i].part.mesh), X_WP[i]));
   for (const SceneStep& step : scene.steps) {
-    if (!has_step[step.part]) continue;  // laid out already, by an earlier step
+    if (!has_step[step.part]) continue;  // an earlier step of the same part has laid it out
     has_step[step.part] = false;
     X_WP[step.part] = step.X_WP_start;
     const Box box_W = moved(bounds(scene.parts[step.part].part.mesh), step.X_WP_start);
@@ -137,7 +139,7 @@ Scene sceneOfOnePart(const Scene& scene, std::span<const Pose> X_WP, std::size_t
   for (const SceneStep& step : scene.steps)
     if (step.part == part) only.X_WP_target = step.X_WP_target;
   only.X_WP_start = X_WP[part];
-  only.tolerance_m = 1e-12;  // so that it is never taken to have arrived
+  only.tolerance_m = 1e-12;  // so small that the part never counts as arrived
   only.timeout_s = 1e3 * kPersonTimeout_s;
   only.is_held = true;
   free.steps = {only};
@@ -145,20 +147,21 @@ Scene sceneOfOnePart(const Scene& scene, std::span<const Pose> X_WP, std::size_t
     free.parts[i].X_WP = X_WP[i];
     free.parts[i].is_fixed = i != part && !free.parts[i].is_scenery;
   }
-  free.parts[part].allow_overlap = true;  // it may lie pressed against another
+  free.parts[part].allow_overlap = true;  // the part may lie pressed against another one
   free.parts[part].is_scenery = false;
   return free;
 }
 
 Scene disassemblyOf(Scene scene) {
   if (scene.steps.empty())
-    throw LoadError(scene.file, "", "has no [[step]], so there is no way along which a part could leave");
+    throw LoadError(scene.file, "",
+                    "has no [[step]], so there is no path along which a part could be taken off");
   if (std::ranges::any_of(scene.steps, &SceneStep::takes_off))
     throw LoadError(scene.file, "", "is a disassembly already");
   if (std::ranges::none_of(scene.parts, &ScenePart::is_fixed))
     throw LoadError(scene.file, "",
-                    "has no fixed part from which the others could be taken; say fixed = true in the "
-                    "[[part]] that stands still");
+                    "has no fixed part from which the others could be taken; set fixed = true in the "
+                    "[[part]] that does not move");
   std::vector<SceneStep> steps;
   for (const SceneStep& step : scene.steps) steps.push_back(takenOff(step, scene.parts[step.part].part.mesh));
   std::ranges::reverse(steps);

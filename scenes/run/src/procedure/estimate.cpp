@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// estimate(): what explain() measures, from areas and edges alone.
+// estimate(): the figures that explain() measures, estimated from areas and edges alone.
 #include <tbb/parallel_for.h>
 
 #include <cmath>
@@ -40,7 +40,7 @@ class Estimator {
           out_.plan.steps, [i](const FieldPlan& step) { return std::ranges::count(step.cooked, i) > 0; });
     };
     for (const ScenePart& part : scene_.parts) requireUsable(part.part.mesh, part.file, part.part.name);
-    // Only estimates of cropped models need pieces of the surface, and those of 10,000 parts take 3 GB.
+    // Only estimates of cropped models need pieces of the surface; the pieces of 10,000 parts take 3 GB.
     const bool is_cropped =
         std::ranges::any_of(out_.plan.parts,
                             [](const PartModelPlan& part) { return !part.kept_P.empty(); }) ||
@@ -111,8 +111,8 @@ class Estimator {
     most.field_points = field_points_;
   }
 
-  /// The field's points lie in its region. Its map holds the parts' own, except that of the first, which it
-  /// shares where that part's frame is W's.
+  /// Estimates the field in place. Its points lie in its region. Its map contains the maps of its parts,
+  /// except for that of the first part, which is shared if that part's frame is W.
   void cookField(const FieldPlan& step) {
     double map_bytes = 0, points = 0;
     for (std::size_t k = 0; k < in_place_.size(); ++k) {
@@ -131,11 +131,12 @@ class Estimator {
 
   const Scene& scene_;
   ExplainedModels out_;
-  std::vector<std::optional<ModelEstimate>> estimates_;  ///< by part; none for one that shares another's
-  std::vector<FixedPart> in_place_;                      ///< in the field
+  std::vector<std::optional<ModelEstimate>>
+      estimates_;                    ///< by part; empty for a part that shares the models of another part
+  std::vector<FixedPart> in_place_;  ///< parts of the field
   std::optional<Box> region_W_;
   std::size_t field_bytes_ = 0, field_points_ = 0;
-  ModelledCost own_;  ///< of the parts alone
+  ModelledCost own_;  ///< cost of the parts alone
 };
 
 }  // namespace

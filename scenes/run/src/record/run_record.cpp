@@ -36,8 +36,8 @@ void describe(const Struct& settings, const Rows& rows, const std::string& prefi
              [&](const auto& row) { about[prefix + siKey(row)] = inFull(std::invoke(row.get, settings)); });
 }
 
-/// For people and tools; the replay takes everything from the scene.
-/// @param scene  with the coupling gains that were chosen
+/// Information for people and tools; the replay takes everything from the scene.
+/// @param scene  has the coupling gains that the run used
 std::map<std::string, std::string> aboutRun(const Scene& scene, const std::string& scene_bytes,
                                             const AssembleOptions& options) {
   std::map<std::string, std::string> about = {
@@ -103,7 +103,7 @@ std::string programVersion() {
 #else
   const char* precision = "float";
 #endif
-  // Not with +: GCC 12 takes that for an overflow.
+  // GCC 12 reports a false overflow for operator+ here.
   std::string words(VPS_VERSION_STRING);
   return words.append(", compiler " __VERSION__ ", Bullet ").append(precision);
 }

@@ -15,18 +15,19 @@ namespace vps::scenes {
 
 /// Name of the attachment that holds the scene.
 inline constexpr const char* kSceneAttachment = "scene.vps";
-/// Of the head: device::LoopSettings::physics_limit_s, where it was not the default of a run by the clock.
+/// Key in the recording's head for device::LoopSettings::physics_limit_s, present if it was not the default
+/// of a run in real time.
 inline constexpr const char* kPhysicsLimit = "physics_limit_s";
 
-/// When the recorder's ring is full, a run in simulated time waits. A run in real time does not: the
-/// recording then states that it ends there.
+/// When the recorder's ring is full, a run in simulated time waits. A run in real time does not wait: the
+/// recording then ends there and says so.
 class RunRecord final : public device::RunLog {
  public:
-  /// The head states program, scene, seeds, fidelity and choices. Its scene prescribes the coupling gains
-  /// that were chosen, so that a replay does not choose again. Throws as Recorder.
+  /// The head states program, scene, seeds, fidelity and chosen settings. The recorded scene states the
+  /// coupling gains that the run used, so that a replay uses the same gains. Throws as Recorder.
   RunRecord(const std::string& file, const Scene& scene, const device::Device& device,
             const device::LoopSettings& settings, const AssembleOptions& options);
-  /// Without finish(): reports through options.warn where the unfinished recording is.
+  /// If finish() was not called, reports through options.warn where the unfinished recording is.
   ~RunRecord() override;
 
   void add(const device::LogEntry& entry) noexcept override;
@@ -39,8 +40,8 @@ class RunRecord final : public device::RunLog {
   bool waits_, has_read_ = false, is_finished_ = false;
 };
 
-/// Version, compiler and precision of this program: "0.1.0, compiler 12.2.0, Bullet double". Recordings hold
-/// it.
+/// Version, compiler and precision of this program: "0.1.0, compiler 12.2.0, Bullet double". Recordings
+/// contain it.
 std::string programVersion();
 
 }  // namespace vps::scenes

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Version n of the format holds the fields that came with version 1, then those of version 2, and so on to n,
-// each time in the order of the field tables (FieldTraits::since). A new setting is thus one row of a table,
-// and every older recording stays readable. Structs without a table are taken apart into as many names as
-// they have members, so that a member that is added and forgotten here does not compile.
+// Version n of the format contains the fields that version 1 introduced, then those of version 2, and so on
+// to n, each in the order of the field tables (FieldTraits::since). A new setting is therefore one row of a
+// table, and every older recording stays readable. Structs without a table are decomposed into as many names
+// as they have members, so that the program does not compile if a new member is forgotten here.
 #include "record/scene_archive.h"
 
 #define XXH_INLINE_ALL
@@ -28,7 +28,7 @@ std::string magicOf(int version) {
   return "vps-scene-" + std::to_string(version) + "\n";
 }
 
-/// The greatest `since` of all settings, and of what has no table (laterFields()).
+/// The greatest `since` of all settings, and of the fields without a table (laterFields()).
 constexpr int latestVersion() {
   int latest = 7;
   const auto look = [&](const auto& row) {
@@ -207,31 +207,31 @@ void fields(Archive& archive, T& x) {
   archive(release_s);
 }
 
-/// What a part got with version 4, and what has no table.
+/// Fields of a part that version 4 introduced and that have no table.
 template <typename Archive, Either<ScenePart> T>
 void partFields4(Archive& archive, T& part) {
   archive(part.is_scenery, part.press_fit_m, part.deflection_m);
 }
 
-/// What a part got with version 5: the force of a press fit decides what the hand can do.
+/// Fields of a part that version 5 introduced for the force of a press fit.
 template <typename Archive, Either<ScenePart> T>
 void partFields5(Archive& archive, T& part) {
   archive(part.youngs_modulus_Pa, part.poissons_ratio);
 }
 
-/// What a part got with version 7, and what has no table.
+/// Fields of a part that version 7 introduced and that have no table.
 template <typename Archive, Either<ScenePart> T>
 void partFields7(Archive& archive, T& part) {
   archive(part.part.face_colors.palette, part.part.face_colors.of_triangle);
 }
 
-/// What a step got with version 6, and what has no table.
+/// Fields of a step that version 6 introduced and that have no table.
 template <typename Archive, Either<SceneStep> T>
 void stepFields6(Archive& archive, T& step) {
   archive(step.takes_off);
 }
 
-/// What the device got with version 6, and what has no row.
+/// Field of the device that version 6 introduced and that has no row.
 template <typename Archive, Either<DeviceSettings> T>
 void devicePlacement(Archive& archive, T& device) {
   bool has_placement = device.placement.has_value();
@@ -241,7 +241,7 @@ void devicePlacement(Archive& archive, T& device) {
     if (has_placement) device.placement = placement;
 }
 
-/// What came with a version after the first.
+/// All fields that a version after the first introduced.
 template <typename Archive, Either<Scene> T>
 void laterFields(Archive& archive, T& x, int version) {
   for (auto& part : x.parts) settings(archive, part.part.material, kMaterialFields, version);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A whole scene with its meshes as bytes, so that a recording is complete.
+// Serialises a whole scene with its meshes, so that a recording is complete.
 #pragma once
 
 #include <string>
@@ -9,12 +9,12 @@
 
 namespace vps::scenes {
 
-/// The scene without its models, which follow from the rest; numbers to the bit. Of file names only the last
-/// component is kept, since folders may be private.
+/// Bytes of the scene, with all numbers to the bit. Models are left out, since they follow from the rest.
+/// Only the last component of file names is kept, since folders may be private.
 std::string sceneToBytes(const Scene& scene);
 
-/// Reads this version's format and every earlier one. Throws LoadError naming `file` where the bytes are no
-/// such scene. Needs memory of a few times the bytes at most.
+/// Reads this version's format and every earlier one. Throws LoadError naming `file` if the bytes are not a
+/// valid scene. Needs at most a few times as much memory as the bytes.
 Scene sceneFromBytes(std::string_view bytes, const std::string& file);
 
 /// Hash (XXH3, 128 bits) of a mesh, and of the bytes of a scene, in hexadecimal.

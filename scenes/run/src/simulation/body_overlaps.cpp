@@ -7,7 +7,7 @@ namespace vps::scenes {
 
 namespace {
 
-constexpr double kLimit_m = 10e-6;  // as for steps of a procedure
+constexpr double kLimit_m = 10e-6;  // limit of overlap, as for steps of a procedure
 
 double limitOf(const Scene& scene, double scale) {
   double limit_m = kLimit_m * scale;
@@ -63,7 +63,7 @@ void BodyOverlaps::forEachOverlap(Visit visit) {
       if (!overlap(boxes_W[a], boxes_W[b])) continue;
       const Overlap found =
           deepestOverlap(motions_.body(a).overlap(), X_WP_[a], motions_.body(b).overlap(), X_WP_[b], true);
-      if (found.depth_m > 0) visit(Pair{a, b}, found);  // which may allow this depth
+      if (found.depth_m > 0) visit(Pair{a, b}, found);  // visit() may allow this depth
       motions_.setDepth({a, b}, found.depth_m, found.p_W);
     }
 }

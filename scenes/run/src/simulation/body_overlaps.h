@@ -13,26 +13,28 @@
 
 namespace vps::scenes {
 
-/// Measures pairs of which one part can move and whose boxes overlap: at single instants, and along the steps
+/// Measures pairs with at least one movable part whose boxes overlap, at single instants and along the steps
 /// between them.
 class BodyOverlaps {
  public:
-  /// Takes the parts at their designed poses. A part's surface is prepared when another one comes near.
+  /// Starts with the parts at their designed poses. A part's surface is prepared when another part comes
+  /// near.
   /// @param centers_P  centres of mass, by part; empty: the middles of the parts' boxes
-  /// @param scale  lengths of the scene, by those of the person who asks: the limit is one in the latter
+  /// @param scale  lengths of the scene divided by the lengths as drawn; the limit of overlap applies to
+  /// lengths as drawn
   explicit BodyOverlaps(const Scene& scene, const std::vector<Vec3>& centers_P = {}, double scale = 1);
   void move(std::size_t part, const Pose& X_WP) { X_WP_[part] = X_WP; }
   /// Records the pairs that overlap by more than the limit.
   void judgeStart();
-  /// The parts are where a step has brought them.
+  /// Ends a step: move() has set the poses that the step led to.
   /// @param credit  see MotionJudge::addStep()
   void endStep(double time_s, double credit, const std::atomic<bool>* stop = nullptr) {
     motions_.addStep(time_s, X_WP_, credit, stop);
   }
-  /// Judges all pairs where they are, and the steps that have ended since the last time.
+  /// Judges all pairs at their present poses, and the steps that have ended since the last call.
   void judge(double time_s);
   [[nodiscard]] JudgedOverlap result() const;
-  /// Of all pairs and instants, also of those that overlapped at the start.
+  /// Deepest overlap of all pairs and instants, including pairs that overlapped at the start.
   [[nodiscard]] JudgedDepth deepest() const;
 
  private:

@@ -63,7 +63,7 @@ std::vector<PartTouch> PartGaps::touches(const Snapshot& shot) const {
       double distance_m = 0;
     };
     const double most_m = kContactNear_m + mark.depth_m;
-    std::array<Near, 2> nearest = {Near{0, most_m}, Near{0, most_m}};  // the nearer first
+    std::array<Near, 2> nearest = {Near{0, most_m}, Near{0, most_m}};  // sorted by distance
     for (const BodySnapshot& body : shot.bodies) {
       if (body.part >= surfaces_.size() || body.role == BodyRole::Waiting || !body.X_WP.isFinite()) continue;
       const MeshDistance::Closest found =

@@ -9,7 +9,7 @@ namespace vps::scenes {
 
 namespace {
 
-constexpr int kPriority = 70;  // assumed: below the haptic loop's 80
+constexpr int kPriority = 70;  // priority of the physics thread. assumed: below the haptic loop's 80
 
 device::Metronome metronomeOf(double period_s) {
   return {std::llround(1e9 * period_s), device::monotonicClock(), std::llround(1e9 * mostLate_s(period_s))};

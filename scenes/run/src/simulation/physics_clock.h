@@ -11,21 +11,21 @@
 
 namespace vps::scenes {
 
-/// How late a step may begin and still be made up for; what is later than that is lost. The steps after a
-/// long one follow at once until the clock is reached again: a part that slides into its bore takes a step of
-/// 4 ms here and there, and 0.2 ms in between. assumed: 20 ms, well below what a person sees as a delay
-/// between hand and picture (some 50 ms); two periods where these are longer.
+/// Greatest delay of a step that is made up for; a greater delay is lost. After a long step, the next steps
+/// follow at once until the delay is zero: while a part slides into its bore, single steps take 4 ms, and 0.2
+/// ms in between. assumed: 20 ms, well below what a person sees as a delay between hand and picture (some 50
+/// ms); two periods where these are longer.
 inline double mostLate_s(double period_s) {
   constexpr double kMostLate_s = 0.02;
   return std::max(kMostLate_s, 2 * period_s);
 }
 
-/// Used by the thread that steps physics, whose priority it raises.
+/// Used by the physics thread; start() raises the priority of that thread.
 class PhysicsClock {
  public:
   explicit PhysicsClock(double period_s);
 
-  /// The first step is due a period from now.
+  /// Starts the clock; the first step is due one period from now.
   /// @param locks_memory  whether to request locked memory
   /// @return what the system granted and refused
   device::RealTimeReport start(bool locks_memory);
@@ -33,14 +33,14 @@ class PhysicsClock {
   device::Beat wait() noexcept;
   /// Returns the thread to normal priority.
   void stop() noexcept;
-  /// From the next wait() on: steps of step_s of simulated time, one each period_s of the clock.
+  /// From the next wait() on: steps of step_s of simulated time, one in each period_s of real time.
   void setLoadLevel(double step_s, double period_s);
 
   /// Missed periods, in units of the first period.
   [[nodiscard]] std::uint64_t missed() const noexcept { return missed_; }
-  /// Lag of simulated time behind the clock, without what the last steps are late.
+  /// Lag of simulated time behind real time, without the delay that is still made up for.
   [[nodiscard]] double behind_s() const noexcept { return behind_s_; }
-  /// From a step's due time to its begin.
+  /// Delays from a step's due time to its start.
   [[nodiscard]] TickTimes late() const;
   /// Time the caller spent between the last two waits.
   [[nodiscard]] double busy_s() const noexcept { return busy_s_; }

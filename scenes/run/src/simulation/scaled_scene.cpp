@@ -58,7 +58,8 @@ Scene scaledScene(const Scene& scene, double factor) {
     part.press_fit_m *= factor;
     part.voxel_m *= factor;
     part.spacing_m *= factor;
-    // A pressure is stiffness times depth; forces go with the fourth power, areas with the square.
+    // Stiffness is pressure per depth. Forces scale with the fourth power of the factor, areas with the
+    // square.
     part.part.material.stiffness_N_per_m3 *= factor;
     part.model.reset();
     part.is_cropped = false;
@@ -86,7 +87,7 @@ SimulateResult scaledBack(SimulateResult result, double factor) {
   result.contact_depth_m /= factor;
   result.exact = scaledBack(result.exact, factor);
   if (result.overlap) result.overlap = scaledBack(*result.overlap, factor);
-  result.kinetic_energy_J /= std::pow(factor, 5);  // a mass times the square of a velocity
+  result.kinetic_energy_J /= std::pow(factor, 5);  // energy is a mass times the square of a velocity
   return result;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A simulation of small parts in larger lengths.
+// Simulation of small parts with scaled lengths.
 #pragma once
 
 #include "vps_scenes/run/simulate.h"
@@ -7,18 +7,18 @@
 
 namespace vps::scenes {
 
-/// Contact has lengths and speeds of its own (a rest gap of 0.1 um, a margin of 20 um, ...: vps_bullet),
-/// which are right for parts of millimetres and more. A scene whose smallest moving part is less than
-/// kLeastAcross_m across is therefore simulated in lengths that are larger by this factor, a power of two, so
-/// that nothing is rounded; times stay. 1 for all other scenes.
+/// Factor by which lengths are scaled. Contact has constant lengths and speeds (a rest gap of 0.1 um, a
+/// margin of 20 um, ...: vps_bullet), which suit parts of millimetres and more. A scene whose smallest moving
+/// part is less than kLeastAcross_m across is therefore simulated with scaled lengths; times are unchanged.
+/// The factor is a power of two, so that scaling rounds no number, and 1 for all other scenes.
 inline constexpr double kLeastAcross_m = 1e-3;
 double simulationScale(const Scene& scene);
 
-/// The similar scene: all lengths, velocities and gravity times `factor`. Densities stay, so that masses go
-/// with its cube. Without models.
+/// The similar scene: all lengths, velocities and gravity times `factor`. Densities are unchanged, so that
+/// masses scale with the cube of `factor`. The scene has no models.
 Scene scaledScene(const Scene& scene, double factor);
 
-/// What a simulation of the similar scene says about the scene.
+/// Converts results of the scaled scene to the scene's own lengths.
 SimulateResult scaledBack(SimulateResult result, double factor);
 std::vector<BodyState> scaledBack(std::vector<BodyState> bodies, double factor);
 

@@ -19,7 +19,7 @@ namespace vps::scenes {
 
 namespace {
 
-/// Cooks all fixed parts at once, or one after the other where everything is modelled.
+/// Cooks all fixed parts at once, or one after the other if everything is modelled.
 void cookFixed(const Scene& scene, const ModelPlan& plan, Simulation& simulation) {
   const FieldPlan& step = plan.steps.front();
   std::vector<FixedPart> fixed;
@@ -30,7 +30,7 @@ void cookFixed(const Scene& scene, const ModelPlan& plan, Simulation& simulation
   }
 }
 
-/// Of the moving parts; zero for the others.
+/// Centres of mass of the moving parts; zero for the other parts.
 std::vector<Vec3> centersOfMass(const Scene& scene, const Simulation& simulation) {
   std::vector<Vec3> centers_P(scene.parts.size(), Vec3::Zero());
   for (std::size_t i = 0; i < scene.parts.size(); ++i)
@@ -38,8 +38,8 @@ std::vector<Vec3> centersOfMass(const Scene& scene, const Simulation& simulation
   return centers_P;
 }
 
-/// What the judge may spend on a step, in half microseconds: about a third of what a step costs that has so
-/// many contacts (measured), and ten times as much where it was asked for.
+/// Budget of the judge for a step, in units of half a microsecond: about a third of the cost of a step with
+/// this number of contacts (measured), and ten times as much if the user asked for judging.
 double creditOf(const TouchState& touch, const SimulateOptions& options) {
   constexpr double kStep = 10, kContact = 12, kAsked = 10;
   return (kStep + kContact * touch.contacts) * (options.judge_every > 0 ? kAsked : 1);
@@ -49,14 +49,14 @@ double microsecondsSince(std::chrono::steady_clock::time_point begun) {
   return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begun).count();
 }
 
-/// Warnings of meshes state widths of cracks.
+/// Adds the scale to a warning about a mesh, which states widths of cracks.
 std::string inLengthsOf(double factor) {
   char words[100];
   std::snprintf(words, sizeof words, " (lengths here are %.0f times those drawn)", factor);
   return words;
 }
 
-/// In real time, waits for each step to be due; else does nothing.
+/// In real time, waits until each step is due; otherwise does nothing.
 class StepPacer {
  public:
   StepPacer(double period_s, bool is_real_time) : clock_(period_s), begun_s_(wallSeconds()) {
@@ -86,14 +86,14 @@ class StepPacer {
   std::optional<SimulateResult::RealTime> real_time_;
 };
 
-/// What the judge sees of a step or part of one.
+/// Data for the judge about the end of a step or substep.
 struct StepEnd {
   double time_s = 0;
   double credit = 0;  ///< see BodyOverlaps::endStep()
   std::vector<Pose> X_WP;
 };
 
-/// @param scale  of the scene's lengths, by those that were drawn
+/// @param scale  the scene's lengths divided by the lengths as drawn
 SimulateResult simulateAsGiven(Scene& scene, double seconds, const SimulateOptions& options, double scale) {
   const double begun_s = wallSeconds();
   const ModelPlan plan = makeModelPlan(scene, ModelPurpose::Simulate, options.models_everything);
@@ -125,10 +125,10 @@ SimulateResult simulateAsGiven(Scene& scene, double seconds, const SimulateOptio
     for (std::size_t k = 0; k < moving.size(); ++k) overlaps.move(moving[k], end.X_WP[k]);
     overlaps.endStep(end.time_s, end.credit, options.stop);
   };
-  std::vector<StepEnd> left;  // to be judged after the run
+  std::vector<StepEnd> left;  // step ends to be judged after the run
   if (options.is_real_time) left.reserve(static_cast<std::size_t>(std::clamp(steps, 0L, 1000000L)));
   long i = 0;
-  double judged_us = 0;  // of the step
+  double judged_us = 0;  // time that judging the step took
   const Simulation::AfterPart after_part = [&](int number, int parts) {
     const auto begun = std::chrono::steady_clock::now();
     const TouchState touch = simulation.touch();
@@ -185,7 +185,9 @@ SimulateResult simulate(Scene& scene, double seconds, const SimulateOptions& opt
   if (!(seconds > 0) || !std::isfinite(seconds))
     throw LoadError(scene.file, "", "the time to simulate must be a positive number of seconds");
   if (options.judge_every > 0 && options.is_real_time)
-    throw LoadError(scene.file, "", "overlap is measured between the steps, which real time has no time for");
+    throw LoadError(scene.file, "",
+                    "overlap is measured between the steps, which takes too long for real time; leave out "
+                    "--real-time or the measurement");
   const double factor = simulationScale(scene);
   if (factor == 1) return simulateAsGiven(scene, seconds, options, 1);
   requireModelsFit(scene, makeModelPlan(scene, ModelPurpose::Simulate, options.models_everything), options);

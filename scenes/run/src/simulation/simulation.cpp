@@ -46,10 +46,10 @@ bullet::SolverSettings solverSettings(const Fidelity& fidelity) {
   return settings;
 }
 
-/// The greatest turns of bodies that turn too far in a step.
+/// Collects the greatest rotations of bodies that turn too far in a step.
 class Turns {
  public:
-  /// @param dt_s  of the step
+  /// @param dt_s  duration of the step
   void add(const bullet::BodyTurn& turn, double dt_s) {
     const auto part = static_cast<std::size_t>(turn.body->getUserIndex());
     if (lasts(part, turn.is_in_contact && isTooFar(turn, dt_s) &&
@@ -62,13 +62,14 @@ class Turns {
 
  private:
   static bool isTooFar(const bullet::BodyTurn& turn, double dt_s) {
-    constexpr double kRounding = 1e-9;  // of a step that was divided so that the limit is met
+    constexpr double kRounding =
+        1e-9;  // tolerance for a step that was divided so that the limit is met exactly
     return turn.w_rad_s * dt_s > turn.limit_rad() * (1 + kRounding);
   }
 
-  /// Teeth that skip are in contact in some steps only. So a step in which they are counts as one of those in
-  /// a row (bullet::kTurnsInRow), and each step without takes a quarter of one away: what is in contact in
-  /// more than a fifth of the steps is reported, and blows of a part that tumbles are not.
+  /// Teeth that skip are in contact in only some steps. A step with contact therefore counts as one of the
+  /// steps in a row (bullet::kTurnsInRow), and each step without contact subtracts a quarter of one: contact
+  /// in more than a fifth of the steps is reported, and impacts of a tumbling part are not.
   bool lasts(std::size_t part, bool is_now) {
     constexpr int kOne = 4;
     const auto known = quarters_.find(part);
@@ -88,7 +89,7 @@ class Turns {
   }
 
   std::map<std::size_t, FastTurn> by_part_;
-  std::map<std::size_t, int> quarters_;  // by part
+  std::map<std::size_t, int> quarters_;  // number of steps in a row, in quarters, by part
 };
 
 void setMaterial(btRigidBody& body, const Material& material) {
@@ -108,8 +109,8 @@ struct Simulation::World {
   btDiscreteDynamicsWorld world{&dispatcher, &broadphase, &solver, &configuration};
 
   std::map<std::size_t, DynamicBody> bodies;
-  std::shared_ptr<const ShellSet> shells;  // these replace the parts' own; null: none
-  double dt_s;                             // of the last step, or part of one
+  std::shared_ptr<const ShellSet> shells;  // shells that replace the parts' own; null: none
+  double dt_s;                             // duration of the last step or substep
   Turns turns;
   std::vector<bullet::BodyTurn> body_turns;  // scratch
   int most_substeps = 1;
@@ -118,9 +119,9 @@ struct Simulation::World {
   std::unique_ptr<bullet::CouplingConstraint> coupling;
   std::size_t grasped = 0;
   Pose X_PG;
-  std::optional<CouplingState> target;       // of the proxy, at the end of the last step
-  std::optional<CouplingState> next_target;  // and of the coming one
-  Wrench push_G_W;                           // for the coming step
+  std::optional<CouplingState> target;       // the proxy's state at the end of the last step
+  std::optional<CouplingState> next_target;  // and at the end of the coming step
+  Wrench push_G_W;                           // wrench of push() for the coming step
 
   World(const Scene& s, const ModelPlan& p)
       : scene(s), plan(p), solver(solverSettings(s.fidelity)), dt_s(1 / s.fidelity.physics_rate_hz) {
@@ -150,8 +151,9 @@ struct Simulation::World {
     coupling.reset();
   }
 
-  /// The coupling's target at the end of the next part of a step; the proxy moves evenly.
-  /// @param share  of the step at that part's end
+  /// The coupling's target at the end of the next substep; the proxy moves by the same amount in each
+  /// substep.
+  /// @param share  share of the step that has passed at the end of the substep
   void aimCoupling(double share) {
     if (!coupling || !next_target) return;
     CouplingState at = *next_target;
@@ -159,7 +161,7 @@ struct Simulation::World {
     coupling->setTarget(at);
   }
 
-  /// Bullet forgets forces after each of its steps.
+  /// Applies forces again, since Bullet clears them after each of its steps.
   void applyPush() {
     if (!coupling || (push_G_W.f.isZero(0) && push_G_W.tau.isZero(0))) return;
     const DynamicBody& held = bodies.at(grasped);
@@ -179,7 +181,7 @@ struct Simulation::World {
     for (const auto& [part, b] : bodies)
       if (!bullet::fromBt(b.body->getWorldTransform()).isFinite())
         throw LoadError(scene.file, scene.parts[part].part.name,
-                        "its pose is not finite any more; check its mass and size, or choose a finer "
+                        "its pose is no longer finite; check its mass and size, or choose a finer  "
                         "fidelity");
   }
 
@@ -233,7 +235,7 @@ void Simulation::setField(CookedField field) {
   w.field = std::move(field);
   w.fixed_body = std::make_unique<btRigidBody>(
       btRigidBody::btRigidBodyConstructionInfo(0, nullptr, w.field.shape.get()));
-  // Contacts have the material of the surface that they touch; this is for what has none.
+  // Contacts have the material of the surface that they touch; this material is for surfaces without one.
   if (!w.field.parts.empty())
     setMaterial(*w.fixed_body, w.scene.parts[w.field.parts.front().part].part.material);
   w.world.addRigidBody(w.fixed_body.get());
@@ -300,7 +302,7 @@ double Simulation::addBody(std::size_t part, const Pose& X_WP, double most_kg) {
   added.body = std::make_unique<btRigidBody>(
       btRigidBody::btRigidBodyConstructionInfo(static_cast<btScalar>(added.frame.mass_kg), nullptr,
                                                added.shape.get(), bullet::toBt(added.frame.inertia_kg_m2)));
-  // Sets the interpolation's pose too, and the inertia about W's axes.
+  // Also sets the interpolated pose, and the inertia about W's axes.
   added.body->setCenterOfMassTransform(bullet::toBt(X_WP * added.frame.X_PB));
   setMaterial(*added.body, scene_part.part.material);
   added.body->setActivationState(DISABLE_DEACTIVATION);
@@ -365,7 +367,7 @@ CouplingState Simulation::graspState() const {
 
 void Simulation::step(double dt_s, const AfterPart& after) {
   World& w = *world_;
-  constexpr int kMost = 10'000;  // as of the setting
+  constexpr int kMost = 10'000;  // as for the setting `substeps`
   const int set = w.scene.fidelity.substeps;
   const int parts = set > 0 ? set : bullet::substepsFor(w.world, dt_s, kMost);
   w.most_substeps = std::max(w.most_substeps, parts);
@@ -374,7 +376,7 @@ void Simulation::step(double dt_s, const AfterPart& after) {
     w.aimCoupling(static_cast<double>(k) / parts);
     w.applyPush();
     if (set == 0) w.noteTurns();
-    // No sub-steps of Bullet's: each call is exactly one step, so that a run is a fixed sequence.
+    // Bullet makes no substeps of its own: each call is exactly one step, so that a run is a fixed sequence.
     w.world.stepSimulation(static_cast<btScalar>(w.dt_s), 0);
     if (set > 0) w.noteTurns();
     w.requireFinite();
@@ -461,7 +463,7 @@ void forEachContact(btCollisionDispatcher& dispatcher, const Visit& visit) {
                        [&](const btManifoldPoint& point, const btPersistentManifold&) { visit(point); });
 }
 
-/// Velocity of the body's material at p_W.
+/// Velocity of the body at p_W.
 Vec3 velocityAt(const btCollisionObject& object, const btVector3& p_W) {
   const btRigidBody* body = btRigidBody::upcast(&object);
   if (body == nullptr) return Vec3::Zero();

@@ -24,20 +24,20 @@ struct TouchState {
   double force_N = 0;  ///< sum of contact force magnitudes
 };
 
-/// Joins plugin, bridge and coupling; knows no device and no procedure. Not thread-safe. Bullet's types stay
-/// behind a pointer.
+/// Combines plugin, Bullet bridge and coupling, without device and procedure. Not thread-safe. Bullet's types
+/// are hidden behind a pointer.
 class Simulation {
  public:
-  /// The parts have the models that the plan says (buildModels()). Bodies are added one by one. Both
-  /// arguments outlive it.
+  /// The parts must have the models of the plan (buildModels()). Bodies are added one by one. Both arguments
+  /// must outlive this object.
   Simulation(const Scene& scene, const ModelPlan& plan);
   ~Simulation();
 
-  /// False if the field in place serves a step with these parts. Of the parts in place, those that are among
-  /// them come first.
+  /// False if the field in place serves a step with these parts. Parts of the field in place must come first
+  /// in `parts`.
   [[nodiscard]] bool needsField(const std::vector<FixedPart>& parts, const FieldPlan& step) const;
-  /// What cookField() reads to make a field of these parts, on any thread. If the field in place holds the
-  /// first of them, in this order, and nothing else, the new map is built on its map, unless `rebuilds`.
+  /// Input for cookField(), which makes a field of these parts on any thread. If the field in place consists
+  /// of the first of `parts`, in this order, the new map is built on its map, unless `rebuilds`.
   FieldOrder orderField(const std::vector<FixedPart>& parts, const FieldPlan& step, bool rebuilds = false);
   /// Replaces the field between two steps. The field's parts are no longer bodies of their own. O(1) except
   /// for freeing. The field is one Bullet body; contacts with it have the material of the part that they
@@ -49,7 +49,7 @@ class Simulation {
   [[nodiscard]] const CookedField& field() const;
   [[nodiscard]] bool hasFixed() const;
 
-  /// What resampleShells() reads to make this body and the field in place again, on any thread.
+  /// Input for resampleShells(), which makes this body's shell and that of the field again, on any thread.
   [[nodiscard]] ResampleOrder orderResampling(std::size_t part);
   /// Replaces the body's shape between two steps. Bodies and fields that are made later take the same shells.
   /// The field itself goes to setField(). Without a shape, only later bodies and fields are affected. O(1)
@@ -65,9 +65,9 @@ class Simulation {
   double addBody(std::size_t part, const Pose& X_WP,
                  double most_kg = std::numeric_limits<double>::infinity());
   void removeBody(std::size_t part);
-  /// From now on the body stays where it is, whatever touches it.
+  /// From now on the body is fixed, whatever touches it.
   void hold(std::size_t part);
-  /// Velocity of the part's origin, in W.
+  /// Sets the velocity of the part's origin, in W.
   void setTwist(std::size_t part, const Twist& V_WP_W);
 
   /// Couples the proxy to the part at grasp frame G; one part at a time.
@@ -75,17 +75,17 @@ class Simulation {
   /// Gains of the coupling from the next step on.
   void setGains(const CouplingGains& gains);
   void release();
-  /// A wrench on the part in hand at its grasp frame, in W, for the coming step only.
+  /// Applies a wrench to the part in hand at its grasp frame, in W, in the coming step only.
   void push(const Wrench& F_G_W);
-  /// Pose of the proxy at the end of the coming step.
+  /// Sets the proxy's state at the end of the coming step.
   void setProxy(const CouplingState& proxy);
-  /// The part's grasp frame now, to which the haptic loop couples.
+  /// Present state of the part's grasp frame, to which the haptic loop couples.
   [[nodiscard]] CouplingState graspState() const;
 
-  /// Called after each part of a step, with its number from 1 on and how many there are.
+  /// Called after each substep, with its number from 1 on and the number of substeps.
   using AfterPart = std::function<void(int number, int parts)>;
-  /// In as many parts of equal length as Fidelity::substeps says. The proxy moves evenly from part to part.
-  /// Throws LoadError naming the part whose pose is not finite any more.
+  /// Makes one step, in as many equal substeps as Fidelity::substeps states. The proxy moves by the same
+  /// amount in each substep. Throws LoadError naming the part whose pose is no longer finite.
   void step(double dt_s, const AfterPart& after = {});
 
   [[nodiscard]] Pose pose(std::size_t part) const;
@@ -95,11 +95,11 @@ class Simulation {
   /// Kinetic and potential energy of all dynamic bodies; its zero is arbitrary but fixed for a set of bodies.
   [[nodiscard]] double mechanicalEnergy() const;
   [[nodiscard]] double mass(std::size_t part) const;
-  /// About the centre of mass, in the part's frame [kg m^2].
+  /// Inertia about the centre of mass, in the part's frame [kg m^2].
   [[nodiscard]] Mat3 inertia(std::size_t part) const;
-  /// Of contacts between the part and each part of the field, in the field's order.
+  /// Material of contacts between the part and each part of the field, in the field's order.
   struct FieldContact {
-    double friction = 0;  ///< coefficient
+    double friction = 0;  ///< coefficient of friction
     double stiffness_N_per_m3 = 0;
   };
   [[nodiscard]] std::vector<FieldContact> fieldContacts(std::size_t part) const;
@@ -108,22 +108,22 @@ class Simulation {
   /// Centre of mass in the part's frame.
   [[nodiscard]] Vec3 centreOfMass(std::size_t part) const;
   [[nodiscard]] TouchState touch() const;
-  /// Sum of the forces of contacts from the sides, which guide a part along a unit axis: whose normal is more
-  /// than 30 degrees off it (of all contacts where it is zero). Without friction.
+  /// Sum of the normal forces of the contacts that guide a part along the unit vector axis_W: those whose
+  /// normal is more than 30 degrees off it (of all contacts if axis_W is zero). Without friction.
   [[nodiscard]] double forceAcross_N(const Vec3& axis_W) const;
   void contactMarks(std::vector<ContactMark>& marks) const;
   /// Number of near points so far that exceeded a query's contact limit.
   [[nodiscard]] std::size_t contactsLeftOut() const;
-  /// How often bodies were stopped within a step so far, see bullet::Solver.
+  /// Number of times that bodies were stopped within a step so far, see bullet::Solver.
   [[nodiscard]] std::size_t shortenedSteps() const;
-  /// Parts that turned farther in a step, or part of one, than it can hold; one entry for each, by part. Of
-  /// bodies in contact only where that lasts and the contact leaves its plane by more than
-  /// bullet::kContactSagitta_m. Where Fidelity::substeps is "auto" speeds at the start of each part count:
-  /// those at its end are what the next step is divided by.
+  /// Parts that turned in a step or substep by more than its limit; one entry for each part, ordered by part.
+  /// Bodies in contact count only if the rotation lasts and the contact leaves its plane by more than
+  /// bullet::kContactSagitta_m. If Fidelity::substeps is "auto", the speeds at the start of each substep
+  /// count, since the speeds at its end set the number of substeps of the next step.
   [[nodiscard]] std::vector<FastTurn> fastTurns() const;
-  /// Greatest number of parts of a step so far.
+  /// Greatest number of substeps of a step so far.
   [[nodiscard]] int mostSubsteps() const;
-  /// Adds the field's map and points, without what it shares with the parts' own models.
+  /// Adds the cost of the field's map and points, without models that it shares with its parts.
   void addField(ModelledCost& cost) const;
 
  private:

@@ -11,11 +11,10 @@
 
 namespace vps::scenes {
 
-/// The percentiles of a histogram; neither mean nor processor time.
+/// The percentiles of a histogram, without mean and processor time.
 TickTimes timesOf(const device::TickHistogram::Summary& all, std::uint64_t missed);
 
-/// Collects durations in histograms, which do not grow, however long a run takes. Not part of any result that
-/// must repeat.
+/// Collects durations in histograms of constant size. Durations are not part of any result that must repeat.
 class TickClock {
  public:
   explicit TickClock(double period_s = 0) : period_us_(period_s * 1e6) {}

@@ -25,14 +25,15 @@ std::string failureReason(const AssemblyWorld& world, const SceneStep& step, con
   if (world.hasEnded()) return "the recording ends here";
   if (world.isStopped()) return "stopped";
   const std::string tolerance = " (tolerance " + lengthInWords(result.tolerance_m) + ")";
-  const std::string where =
-      "its surface was up to " + lengthInWords(result.final_error_m) + " from where it belongs" + tolerance;
+  const std::string where = "its surface was up to " + lengthInWords(result.final_error_m) +
+                            " from its place at the target" + tolerance;
   if (is_done) {
     const bool was_there = brought_error_m <= result.tolerance_m;
-    std::string words = was_there ? "the hand brought it to within " + lengthInWords(brought_error_m) +
-                                        " of where it belongs" + tolerance + " and let go"
-                                  : "the hand took it to be in place and let go, but its surface was up to " +
-                                        lengthInWords(brought_error_m) + " from where it belongs" + tolerance;
+    std::string words =
+        was_there ? "the hand brought it to within " + lengthInWords(brought_error_m) + " of its target" +
+                        tolerance + " and released it"
+                  : "the hand took it to be in place and released it, but its surface was up to " +
+                        lengthInWords(brought_error_m) + " from its place at the target" + tolerance;
     const bool has_left =
         result.final_error_m > result.tolerance_m && (was_there || result.rest_drift_m > result.tolerance_m);
     if (!isAtRest(result) || has_left)
@@ -42,12 +43,12 @@ std::string failureReason(const AssemblyWorld& world, const SceneStep& step, con
           .append(kHoldsRemedy);
     return words;
   }
-  if (world.state().gives_up) return "it was let go of on request: " + where;
+  if (world.state().gives_up) return "it was released on request:  " + where;
   const bool is_late = world.state().time_s - result.start_s > step.timeout_s;
   if (!step.takes_off && is_late && result.final_error_m <= result.tolerance_m)
-    return "its time (timeout_s) was over before the hand had pressed it home, so it is not shown to be in "
-           "place: " +
-           where + "; give it more time";
+    return "its time (timeout_s) was over before the hand had pressed it to its target, so it is not shown "
+           "to be in place:  " +
+           where + "; increase timeout_s";
   std::string reason = std::string("the hand gave up") + (step.takes_off ? " taking it off" : "") +
                        (is_late ? " after its time was over: " : ": ");
   reason.append(where);
@@ -59,7 +60,8 @@ std::string failureReason(const AssemblyWorld& world, const SceneStep& step, con
   return reason;
 }
 
-/// How far beyond its target sight left a part that nothing stops there; 0 where more than sight's error.
+/// Error along the insertion axis of a part that nothing stops at its target; 0 if the error exceeds
+/// kSightTolerance_m.
 double placedAlong_m(AssemblyWorld& world, const SceneStep& step, const Pose& X_WP, double limit_m) {
   const Pose& X_PG = world.state().moving.X_PG;
   const Vec3 axis_W = insertionAxis(step, X_PG);
@@ -69,8 +71,9 @@ double placedAlong_m(AssemblyWorld& world, const SceneStep& step, const Pose& X_
   return isFreeBeyondTarget(world, step, axis_W, kSightTolerance_m, limit_m) ? along_m : 0;
 }
 
-/// The tolerance of a part that is where it belongs on a part that is off its own place, within the tolerance
-/// of that one: more by as much. Else as it was.
+/// The tolerance of a part whose mate is displaced within the mate's own tolerance: if the part is at its
+/// place relative to the mate, its tolerance is greater by the mate's displacement. Otherwise the tolerance
+/// is unchanged.
 template <typename ErrorWithout>
 double toleranceOnMates_m(AssemblyWorld& world, const StepResult& result, const ErrorWithout& errorWithout) {
   const auto step = static_cast<std::size_t>(world.state().step);

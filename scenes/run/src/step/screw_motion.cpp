@@ -14,7 +14,7 @@ namespace vps::scenes {
 namespace {
 
 constexpr double kTurn_rad = 2 * std::numbers::pi;
-/// Fewer turns tell no pitch: the play of a loose thread is a quarter of it.
+/// With fewer turns no pitch can be measured: the play of a loose thread is a quarter of its pitch.
 constexpr double kLeastTurns = 0.5;
 bool isScrewing(const TraceRow& row) {
   return row.strategy == static_cast<int>(device::OperatorStrategy::ScrewOn);
@@ -49,13 +49,13 @@ void measureScrew(std::span<const TraceRow> rows, const SceneStep& step, const V
 
 std::string threadFault(const SceneStep& step, const StepResult& result) {
   const double pitch_m = std::abs(step.pitch_m);
-  if (result.strategies.empty()) return {};  // a person turned it
-  if (result.turns == 0) return "it was never turned on, since nothing like a thread stopped it";
+  if (result.strategies.empty()) return {};  // a person turned the part
+  if (result.turns == 0) return "it was never screwed on, since no contact like that of a thread stopped it";
   const std::string figures =
-      "in " + turnsInWords(result.turns) + " it moved on by " + lengthInWords(result.advance_per_turn_m) +
+      "in " + turnsInWords(result.turns) + " it advanced by  " + lengthInWords(result.advance_per_turn_m) +
       " a turn (pitch " + lengthInWords(pitch_m) + ") and leaned by up to " + degreesInWords(result.lean_rad);
   if (result.lean_rad > device::ScrewTask::kCrossedLean_rad) return "the thread is crossed: " + figures;
-  if (result.turns < kLeastTurns) return "it could not be turned on: " + figures;
+  if (result.turns < kLeastTurns) return "it could not be screwed on:  " + figures;
   const double off = result.advance_per_turn_m / pitch_m - 1;
   if (std::abs(off) <= device::ScrewTask::kOffPitch) return {};
   return (off < 0 ? "the threads did not catch: " : "the thread is skipped: ") + figures;

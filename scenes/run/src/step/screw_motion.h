@@ -11,16 +11,17 @@
 namespace vps::scenes {
 
 /// Sets turns, advance_per_turn_m and lean_rad from the last time that the part was screwed on.
-/// @param axis_W  of insertion
+/// @param axis_W  insertion axis
 /// @param X_PG    the axis leads through G
 void measureScrew(std::span<const TraceRow> rows, const SceneStep& step, const Vec3& axis_W, const Pose& X_PG,
                   StepResult& result);
 
-/// Why the part is not on its thread, by these figures; empty if it followed the thread, or a
-/// person moved it.
+/// Why the part is not on its thread, by turns, advance_per_turn_m and lean_rad; empty if it followed the
+/// thread, or if a person moved it.
 std::string threadFault(const SceneStep& step, const StepResult& result);
 
-/// The pose without its turn about the axis through G: a screw belongs at a height, not at an angle.
+/// The pose without its rotation about the axis through G, since the target of a screw is a height, not an
+/// angle.
 Pose turnedBack(const Pose& X_WP, const SceneStep& step, const Vec3& axis_W, const Pose& X_PG);
 
 }  // namespace vps::scenes

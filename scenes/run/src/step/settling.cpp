@@ -23,7 +23,8 @@ bool isReady(const std::future<T>& future) {
   return !future.valid() || future.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
 }
 
-/// The placed parts must not be changed before it is ready, except for PlacedParts::add().
+/// Judges the samples on another thread. Until the result is ready, the placed parts must not be changed
+/// except by PlacedParts::add().
 std::future<OverlapVerdict> judgeAsync(AssemblyWorld& world, std::vector<OverlapSample> samples) {
   const double time_s = world.state().time_s;
   const bool follows = !samples.empty() && time_s - samples.back().time_s < 1.5 * world.dt_s();
@@ -34,8 +35,8 @@ std::future<OverlapVerdict> judgeAsync(AssemblyWorld& world, std::vector<Overlap
   return std::async(std::launch::async, [&body, &judge, &options = world.options(), is_one_sided,
                                          samples = std::move(samples)]() mutable {
     device::leaveRealTime();  // a thread inherits the priority of the one that starts it
-    // One-sided contacts miss the edges of the side without points, so they do not show when the part was
-    // deepest.
+    // One-sided contacts miss the edges of the side without points, so their depths do not show when the part
+    // was deepest.
     if (is_one_sided)
       for (OverlapSample& sample : samples)
         sample.depth_m = std::max(sample.depth_m, judge.fieldDepth_m(body, sample.X_WP));
@@ -43,7 +44,7 @@ std::future<OverlapVerdict> judgeAsync(AssemblyWorld& world, std::vector<Overlap
   });
 }
 
-/// Not valid where the next step needs no other field.
+/// Cooks the next field on another thread. The future is not valid if the next step needs no other field.
 std::future<CookedField> cookAsync(AssemblyWorld& world) {
   auto order = world.placed().orderFor(static_cast<std::size_t>(world.state().step) + 1);
   if (!order) return {};
@@ -67,12 +68,12 @@ void reportVerdict(const OverlapVerdict& verdict, const OverlapJudge& judge, Ste
   if (!isWithinLimit(result) || verdict.unsearched_m <= result.penetration_limit_m) return;
   if (!result.mesh_doubt.empty()) result.mesh_doubt += "; and ";
   result.mesh_doubt +=
-      "a passage on the way, between the poses of two steps, was not searched to its end: it "
-      "may be up to " +
+      "a motion between the poses of two physics steps was not searched to its end: its penetration may be "
+      "up to " +
       lengthInWords(verdict.unsearched_m) + " deep";
 }
 
-/// What is in place for the next step.
+/// Changes the parts in place to those of the next step.
 void changePlaced(AssemblyWorld& world, const Pose& X_WP) {
   const auto& steps = world.scene().steps;
   const auto step = static_cast<std::size_t>(world.state().step);
@@ -93,7 +94,7 @@ void settleStep(AssemblyWorld& world, std::vector<OverlapSample> samples, StepRe
   HapticDriver& driver = world.driver();
   LoadShedder& shedder = world.shedder();
   if (driver.isByClock()) advanceUntil(world, [&] { return shedder.isReady(); });
-  shedder.finish(world.state().time_s);  // what is under way is for the part that is now fixed
+  shedder.finish(world.state().time_s);  // resampling in progress is for the part that is now fixed
   std::future<OverlapVerdict> verdict = judgeAsync(world, std::move(samples));
   const bool stays = result.completed && result.aligned_by.empty();
   const Pose X_WP = stays ? world.movingPose() : world.state().moving.X_WP_target;
@@ -105,7 +106,7 @@ void settleStep(AssemblyWorld& world, std::vector<OverlapSample> samples, StepRe
         world, [&] { return driver.hasSettled(isReady(verdict) && isReady(field) && world.mayTakeNext()); });
   while (!isReady(verdict) || !isReady(field)) {
     std::this_thread::sleep_for(kPoll);
-    world.reportProgress(0.95);  // its receiver may stop the run
+    world.reportProgress(0.95);  // the callback may stop the run
   }
   result.missed_while_cooking = driver.missed() - missed_before;
   reportVerdict(verdict.get(), world.placed().judge(), result);

@@ -21,12 +21,12 @@ namespace vps::scenes {
 
 namespace {
 
-/// Of the part's end that goes in first, the vertex that is farthest from the axis of insertion through G; in
-/// P. Zero where the path has no last leg.
+/// The vertex of the leading end that is farthest from the insertion axis through G, in P. Zero if the path
+/// has no last leg.
 Vec3 tipOf(const Scene& scene, const SceneStep& step, const Pose& X_PG) {
   const Vec3 axis_P = step.X_WP_target.R.transpose() * insertionAxis(step, X_PG);
   if (axis_P.isZero()) return Vec3::Zero();
-  constexpr double kEnd_m = 10e-6;  // facets of one end lie within this
+  constexpr double kEnd_m = 10e-6;  // vertices of one end lie within this distance
   double lead_m = -std::numeric_limits<double>::infinity(), farthest_m = -1;
   const auto& vertices = scene.parts[step.part].part.mesh.vertices;
   for (const Vec3& p : vertices) lead_m = std::max(lead_m, axis_P.dot(p));
@@ -41,11 +41,12 @@ Vec3 tipOf(const Scene& scene, const SceneStep& step, const Pose& X_PG) {
   return tip_P;
 }
 
-/// False if the end that goes in first is round about the axis through G: points of its rim lie all around.
+/// False if the leading end is round about the insertion axis through G, with vertices of its rim in all
+/// directions.
 bool hasCorners(const Scene& scene, const SceneStep& step, const Pose& X_PG, const Vec3& tip_P) {
   const Vec3 axis_P = step.X_WP_target.R.transpose() * insertionAxis(step, X_PG);
   if (axis_P.isZero() || tip_P.isZero()) return false;
-  constexpr double kEnd_m = 10e-6, kRim = 0.97;  // of the radius: within the chord of 12 flats
+  constexpr double kEnd_m = 10e-6, kRim = 0.97;  // kRim: share of the radius, within the chord of 12 flats
   constexpr int kSectors = 12;
   const Vec3 x = axis_P.unitOrthogonal(), y = axis_P.cross(x), tip = tip_P - X_PG.p;
   const double radius_m = std::hypot(tip.dot(x), tip.dot(y)), lead_m = axis_P.dot(tip_P);
@@ -101,8 +102,8 @@ void startHaptics(AssemblyWorld& world) {
   world.driver().resume();
 }
 
-/// What guides a part that is taken off touches it as well; what holds it back has the greatest force along
-/// its way.
+/// Keeps only the contact that holds the part back: the one with the greatest force along the path. Other
+/// contacts may only guide the part that is taken off.
 void keepWhatHoldsBack(const Vec3& axis_W, std::vector<ContactMark>& marks) {
   const auto along_N = [&](const ContactMark& mark) { return mark.force_N * std::abs(mark.n_W.dot(axis_W)); };
   const auto most = std::max_element(marks.begin(), marks.end(),
@@ -110,7 +111,8 @@ void keepWhatHoldsBack(const Vec3& axis_W, std::vector<ContactMark>& marks) {
   if (most != marks.end() && along_N(*most) > 0) marks = {ContactMark(*most)};
 }
 
-/// The part in place that the moving part touches, at the contact that is nearest to a part's surface.
+/// Sets stuck_against and stuck_at_W: the part in place that the moving part touches, at the contact that is
+/// nearest to a part's surface.
 void noteContact(AssemblyWorld& world, const SceneStep& step, StepResult& result) {
   std::vector<ContactMark> marks;
   world.simulation().contactMarks(marks);
@@ -130,12 +132,12 @@ void noteContact(AssemblyWorld& world, const SceneStep& step, StepResult& result
     }
 }
 
-/// By what the scene says, or by its press fit.
+/// Whether the part is held after the step, by the scene's setting or by its press fit.
 bool isHeldAfter(const SceneStep& step, const StepResult& result) {
   return step.is_held || result.press_needed_N > 0;
 }
 
-/// The hand takes the part, brings it to its target and puts it down. Returns early where the run is stopped.
+/// The hand takes the part, brings it to its target and puts it down. Returns nullopt if the run is stopped.
 std::optional<Brought> work(AssemblyWorld& world, RunTrace& trace, const SceneStep& step,
                             StepResult& result) {
   startHaptics(world);
@@ -172,7 +174,8 @@ std::optional<Brought> work(AssemblyWorld& world, RunTrace& trace, const SceneSt
                         driver.last().status == Status::Fault};
   if (brought.is_given_up) noteContact(world, step, result);
   if (!clutch.comeFree(press)) return brought;
-  if (isHeldAfter(step, result)) return brought;  // what holds it has it before the hand lets go
+  if (isHeldAfter(step, result))
+    return brought;  // the part is held by something else before the hand lets go
   clutch.setDown([&](double share) {
     world.setGrip(share);
     return press();
@@ -180,8 +183,8 @@ std::optional<Brought> work(AssemblyWorld& world, RunTrace& trace, const SceneSt
   return brought;
 }
 
-/// The released part is watched for scene.release_s unless its step says that it is held, at least until the
-/// empty hand is back where the next part's path lies around the middle of the workspace.
+/// Watches the released part for scene.release_s, and at least until the empty hand has returned to the start
+/// of the next part's path.
 void rest(AssemblyWorld& world, RunTrace& trace, StepResult& result) {
   const Box& box_P = world.state().moving.box_P;
   const Pose X_WP_released = world.movingPose();
@@ -220,7 +223,7 @@ StepResult runStep(AssemblyWorld& world, RunTrace& trace, std::size_t index, Ste
   const SceneStep& step = world.scene().steps[index];
   result.part = world.scene().parts[step.part].part.name;
   result.start_s = world.state().time_s;
-  result.penetration_limit_m += penetrationLimit_m(step);  // beyond what is drawn
+  result.penetration_limit_m += penetrationLimit_m(step);  // in addition to the overlap as drawn
 
   RunRequests* requests = world.options().requests;
   if (requests != nullptr) requests->beginStep(static_cast<int>(index));
@@ -246,7 +249,7 @@ StepResult runStep(AssemblyWorld& world, RunTrace& trace, std::size_t index, Ste
   trace.logEvent(world, device::RunEventKind::LetGo, "lets go of '" + result.part + "'");
   rest(world, trace, result);
   world.reportProgress(0.9);
-  // What the hand gave up with may fall far when it is let go, which says nothing of the fit.
+  // A part with which the hand gave up may fall far when it is released, which is no evidence about the fit.
   const Pose X_WP_end = brought && brought->is_given_up ? brought->X_WP : world.movingPose();
   judgeCompletion(world, step, X_WP_end, brought.value_or(Brought{X_WP_end}), result);
   if (!result.completed || !isFreeToTarget(world, step, X_WP_end, result.penetration_limit_m))

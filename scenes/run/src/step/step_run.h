@@ -12,7 +12,7 @@
 namespace vps::scenes {
 
 /// Runs scene.steps[index]. Throws LoadError as AssemblyWorld::take(). A step that fails is a result.
-/// @param known  what is known of it beforehand: block, stands_on
+/// @param known  results of the step that are known in advance: checkDrawnTargets() and stands_on
 StepResult runStep(AssemblyWorld& world, RunTrace& trace, std::size_t index, StepResult known);
 
 // --- completion.cpp: whether the part reached its target, and if not, why
@@ -31,16 +31,16 @@ double penetrationLimit_m(const SceneStep& step);
 /// Sets final_error_m, final_error_rad, completed, by_contact and failure_reason. The step is completed if
 /// the hand reports that it is done, its device has not failed, and the part, now at rest, is within the
 /// step's tolerances. May widen tolerance_m of a part that nothing stops along its way.
-/// @param X_WP  of the part, after its rest, or where the hand gave up
+/// @param X_WP  pose of the part after its rest, or where the hand gave up
 void judgeCompletion(AssemblyWorld& world, const SceneStep& step, const Pose& X_WP, const Brought& brought,
                      StepResult& result);
 
 // --- settling.cpp: the judge measures the released part, and the field of the next step is cooked
 
 /// Judges the step's samples and cooks the field of the next step, on other threads, then fixes the part:
-/// where it lies if the step was completed, else at its target, so that the next step has what it is mounted
-/// on. In lockstep, simulated time stands still meanwhile, so the swap happens at the same physics step in
-/// each run. By the clock, loop and physics go on until both are ready.
+/// where it lies if the step was completed, else at its target, so that the next step finds it in place. In
+/// lockstep, simulated time does not advance meanwhile, so the swap happens at the same physics step in each
+/// run. In real time, loop and physics continue until both results are ready.
 void settleStep(AssemblyWorld& world, std::vector<OverlapSample> samples, StepResult& result);
 
 }  // namespace vps::scenes

@@ -10,10 +10,10 @@ namespace vps::scenes {
 namespace {
 
 constexpr int kPosesPerLeg = 24;
-// A hand's aim is off by more than this, so that a shallower touch does not stop it. assumed
+// The error of a hand's aim is greater than this, so that a shallower contact does not stop it. assumed
 constexpr double kShallow_m = 0.1e-3;
 
-/// The centre of mass moves on a straight line, and the part turns evenly.
+/// Interpolates a pose: the centre of mass moves on a straight line, and the part turns at a constant rate.
 Pose between(const Pose& a, const Pose& b, const Vec3& center_P, double share) {
   const Vec3 turn = share * rotationVector(b.R * a.R.transpose());
   Pose X(Mat3(rotationFromVector(turn) * a.R), Vec3::Zero());
@@ -21,7 +21,7 @@ Pose between(const Pose& a, const Pose& b, const Vec3& center_P, double share) {
   return X;
 }
 
-/// Of the poses from the first on, without the last.
+/// Deepest penetration at kPosesPerLeg poses from `from` on, without `to`.
 Penetration deepestBetween(const OverlapJudge& judge, const JudgedBody& body, const Vec3& center_P,
                            const Pose& from, const Pose& to) {
   Penetration deepest;
@@ -47,9 +47,9 @@ std::string wallOnTheWay(AssemblyWorld& world, const SceneStep& step) {
     if (here.depth_m > deepest.depth_m) deepest = here;
   }
   if (deepest.depth_m < kShallow_m) return {};
-  return "; the way that it was given leads through '" + judge.name(deepest.against) + "', up to " +
+  return "; its path leads through '" + judge.name(deepest.against) + "', up to " +
          lengthInWords(deepest.depth_m) + " deep at " + placeInWords(deepest.p_W) +
-         ": give start or way_points that lead around it";
+         ": set start or way_points that lead around it";
 }
 
 bool isFreeBetween(const OverlapJudge& judge, const JudgedBody& body, const Vec3& center_P, const Pose& from,

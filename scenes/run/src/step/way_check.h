@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whether a way is free of the parts in place, as drawn: why a hand could not follow it.
+// Whether a path is free of the parts in place, as drawn, which explains why a hand could not follow it.
 #pragma once
 
 #include <string>
@@ -9,21 +9,21 @@
 
 namespace vps::scenes {
 
-/// "; the way that it was given leads through 'wall', up to 3.20 mm deep at ...", or nothing if all poses
-/// that were tried are free. 24 exact measurements of overlap for each leg of the way.
+/// "; its path leads through 'wall', up to 3.20 mm deep at ...", or empty if all tested
+/// poses are free. Makes 24 exact measurements of overlap for each leg of the path.
 std::string wallOnTheWay(AssemblyWorld& world, const SceneStep& step);
 
-/// Whether a body is nowhere on a straight motion deeper in others than so much, but for its end.
-/// @param center_P  moves on a straight line, while the body turns evenly
+/// Whether a body on a straight motion, without its end pose, is nowhere deeper in other bodies than limit_m.
+/// @param center_P  point that moves on a straight line, while the body turns at a constant rate
 bool isFreeBetween(const OverlapJudge& judge, const JudgedBody& body, const Vec3& center_P, const Pose& from,
                    const Pose& to, double limit_m);
 
-/// Whether a straight motion takes the part in hand from a pose to its target, and it is nowhere deeper in
-/// others than at one of its ends or `limit_m`. As many measurements as for one leg.
+/// Whether the straight motion of the part in hand from X_WP to its target is free: nowhere deeper in other
+/// bodies than limit_m or than at one of its ends. Makes as many measurements as for one leg.
 bool isFreeToTarget(AssemblyWorld& world, const SceneStep& step, const Pose& X_WP, double limit_m);
 
-/// Whether the part could go on beyond its target along the unit vector, as drawn, by so much and to the same
-/// limit: then nothing but sight tells the hand where to stop.
+/// Whether the part, as drawn, could move beyond its target by by_m along the unit vector axis_W within
+/// limit_m: then only sight tells the hand where to stop.
 bool isFreeBeyondTarget(AssemblyWorld& world, const SceneStep& step, const Vec3& axis_W, double by_m,
                         double limit_m);
 

@@ -20,14 +20,16 @@ namespace vps::scenes {
 
 namespace {
 
-constexpr double kSnapFade_s = 0.2;  ///< assumed: a force that comes, not a blow
-/// Share of the coupling's greatest force that may be weight. A heavier part hangs on a hoist, which carries
-/// the rest: it is simulated with as little mass. Where a part goes, and whether it rests, depends on
-/// neither, as contact and friction are in proportion; a heavy one would swing on the coupling's spring.
+constexpr double kSnapFade_s =
+    0.2;  ///< fade time of axis snap. assumed: slow enough not to feel like an impact
+/// Share of the coupling's greatest force that may be weight. A heavier part hangs on a hoist that carries
+/// the rest, and is simulated with the mass of the share in hand. Path and rest of a part do not depend on
+/// its mass, since contact and friction are proportional to it; a heavy part would swing on the coupling's
+/// spring.
 constexpr double kMostCarried = 0.5;
 constexpr double kStartOverlap_m = 10e-6;  ///< a part that starts deeper than this is refused
 
-/// A grip of this share, with the same limits.
+/// The gains times `share`, with the same limits.
 CouplingGains scaled(CouplingGains gains, double share) {
   gains.k_N_per_m *= share;
   gains.b_Ns_per_m *= share;
@@ -49,7 +51,7 @@ std::string newtons(double force_N) {
 LoadLimits loadLimits(const AssembleOptions& options) {
   LoadLimits limits;
   limits.stop = options.stop;
-  // Local contact predicts the part's motion by the clock, so simulated time must not run slower.
+  // Local contact predicts the part's motion in real time, so simulated time must not run slower.
   limits.may_slow = !options.has_local_contact;
   return limits;
 }
@@ -143,7 +145,8 @@ void AssemblyWorld::take(std::size_t index) {
   if (options_.has_local_contact) startLocalContact();
 }
 
-// With the spring to the part stretched by its weight, so that a heavy part does not fall when it is taken.
+// The coupling's spring is stretched by the part's weight, so that a heavy part does not fall when it is
+// taken.
 Pose AssemblyWorld::handAt(const Pose& X_WP) const {
   Pose X_WG = X_WP * state_.moving.X_PG;
   const double k_N_per_m = driver_->settings().gains.k_N_per_m;
@@ -176,25 +179,25 @@ Pose AssemblyWorld::startOf(const SceneStep& step) {
       break;
     }
     if (driver_->last().status != Status::Ok) continue;
-    X_WP.p = driver_->last().X_WG.p - X_WP.R * p_PG;  // nothing is held, so this is the handle
+    X_WP.p = driver_->last().X_WG.p - X_WP.R * p_PG;  // no part is held, so this is the handle's pose
     if (scene_.parts[step.part].allow_overlap || overlapAt(step, X_WP).depth_m <= kStartOverlap_m) break;
     if (!std::exchange(is_told, true) && options_.warn)
-      options_.warn("the hand is inside a part; move it to where '" + scene_.parts[step.part].part.name +
-                    "' has room");
+      options_.warn("the hand is inside a part; move the hand to where '" +
+                    scene_.parts[step.part].part.name + "' has room");
   }
   return X_WP;
 }
 
 void AssemblyWorld::requireFreeStart(const SceneStep& step) {
   const ScenePart& part = scene_.parts[step.part];
-  // Of a part in place the drawing says whether it overlaps another (checkDrawnTargets()).
+  // checkDrawnTargets() has found whether a part in place overlaps another part as drawn.
   if (part.allow_overlap || step.takes_off || isStopped()) return;
   const Penetration overlap = overlapAt(step, state_.X_WP[step.part]);
   if (overlap.depth_m > kStartOverlap_m)
     throw LoadError(scene_.file, part.part.name,
                     "starts " + std::to_string(std::lround(overlap.depth_m * 1e6)) + " um inside '" +
                         placed_.judge().name(overlap.against) +
-                        "'; move its start, or say allow_overlap = true");
+                        "'; move its start, or set allow_overlap = true");
 }
 
 void AssemblyWorld::startLocalContact() {
@@ -218,7 +221,7 @@ void AssemblyWorld::pauseLocalContact() {
 }
 
 void AssemblyWorld::release(bool is_held) {
-  // On release the energy in the coupling's springs is dropped: it does not enter the energy balance.
+  // On release, the energy in the coupling's springs is discarded and does not enter the energy balance.
   stored_before_J_ += simulation_.mechanicalEnergy() - state_.moving.energy_at_grasp_J;
   simulation_.release();
   if (is_held) simulation_.hold(state_.moving.part);
@@ -271,7 +274,7 @@ void AssemblyWorld::giveSnapshot() {
     shot.sample_s = driver_->last().time_s;
     shot.clock_s = device::monotonicSeconds();
   }
-  constexpr double kFiguresAge_s = 0.05;  // a summary reads some thousand counters
+  constexpr double kFiguresAge_s = 0.05;  // a new summary reads some thousand counters
   if (!figures_ || state_.time_s - figures_time_s_ >= kFiguresAge_s) {
     const TickTimes haptic = driver_->times(), physics = physics_clock_.summary();
     const device::PassivityObserver energy = driver_->passivity();
@@ -297,7 +300,7 @@ void AssemblyWorld::snap() {
   if (!state_.is_holding || !snap_) return;
   const double share = std::clamp(snap_share_ + (snaps ? dt_s_ : -dt_s_) / kSnapFade_s, 0.0, 1.0);
   if (share == 0 && snap_share_ == 0) return;
-  // Fading stretches the spring without the hand's work.
+  // Fading changes the spring's energy without work of the hand.
   stored_before_J_ -= (share - snap_share_) * snap_->energy_J(movingPose());
   snap_share_ = share;
   simulation_.push(snap_->wrench(movingPose()) * share);
@@ -319,7 +322,7 @@ void AssemblyWorld::step() {
   part.is_coupled = state_.is_holding;
   part.V_W = scaled(part.V_W, 1 / shedder_->timeDivisor());
   std::optional<double> stored_J;
-  // Without a force on the hand, its work is not known, and energy cannot be balanced against it.
+  // For a device without force output the hand's work is not known, so there is no energy balance.
   const bool is_balanced = driver_->settings().safety.force_N > 0;
   if (state_.is_holding && is_balanced) {
     const bool is_coupled = proxy.is_coupled && part.is_coupled;
@@ -335,13 +338,11 @@ void AssemblyWorld::keepCovered() {
   const std::size_t part = state_.moving.part;
   if (placed_.isCovered(step, state_.moving.box_P, movingPose(), simulation_.twist(part), dt_s_)) return;
   if (options_.warn)
-    options_.warn(
-        "'" + scene_.parts[part].part.name +
-        "' came near the edge of the space around its planned path, the only one in which contact was "
-        "modelled; "
-        "more of the parts around it is modelled now");
-  // Physics stands still for as long as modelling takes. By the clock that would be a safety fault, so the
-  // loop is paused.
+    options_.warn("'" + scene_.parts[part].part.name +
+                  "' came near the edge of the space around its planned path, outside of which contact was "
+                  "not modelled; more of the surrounding parts is modelled now");
+  // Physics stops while the parts are modelled. In real time that would be a safety fault, so the loop is
+  // paused.
   const bool pauses = options_.has_local_contact || driver_->isByClock();
   if (pauses) driver_->pause();
   shedder_->beforeNewModels(state_.time_s);

@@ -26,11 +26,11 @@ struct StepPart {
   Pose X_WP_target;
   Box box_P;
   Vec3 weight_W = Vec3::Zero();
-  double hoist_N = 0;            ///< of its whole weight, what is not in weight_W
+  double hoist_N = 0;            ///< share of the weight that a hoist carries, not in weight_W [N]
   double energy_at_grasp_J = 0;  ///< mechanical energy when it was taken
 };
 
-/// What a run knows of one instant.
+/// State of a run at one instant.
 struct AssemblyState {
   double time_s = 0;
   int step = -1;  ///< index into Scene::steps; -1 before the first step and after the last
@@ -38,41 +38,41 @@ struct AssemblyState {
   std::vector<BodyRole> roles;
   StepPart moving;
   bool is_holding = false;  ///< the hand holds the moving part
-  bool gives_up = false;    ///< the part was let go of on request
-  Pose X_WP_before;         ///< of the moving part at the start of the last physics step
+  bool gives_up = false;    ///< the part was released on request
+  Pose X_WP_before;         ///< pose of the moving part at the start of the last physics step
 };
 
 class AssemblyWorld {
  public:
-  /// Scene, hand, log and options outlive it. The scene has the models that the plan says; its fixed parts
-  /// are put in place.
-  /// @param log  may be null; gets what the device reads and is given
+  /// Scene, hand, log and options must outlive this object. The scene has the models of the plan; its fixed
+  /// parts are put in place.
+  /// @param log  may be null; receives the device's samples and wrenches
   AssemblyWorld(Scene& scene, const ModelPlan& plan, Hand& hand, device::RunLog* log,
                 const device::LoopSettings& settings, const AssembleOptions& options,
                 const ReportFault& on_fault);
 
-  /// Puts the step's part at its start and couples it to the hand; where the device's place is known and a
-  /// person moves it, the part starts where the hand is. Throws LoadError where it starts inside another
+  /// Puts the step's part at its start and couples it to the hand; if the device's placement is known and a
+  /// person moves it, the part starts at the hand. Throws LoadError for a part that starts inside another
   /// part.
   void take(std::size_t step);
   /// Uncouples the part, which stays a dynamic body.
-  /// @param is_held  something else holds it from here on
+  /// @param is_held  something else, such as a fixture, holds the part from now on
   void release(bool is_held);
-  /// Fixes the part at a pose: it is no dynamic body any more. The judge measures against it, unless the step
-  /// took it off, and no more against a part that the next step takes off.
+  /// Fixes the part at a pose, so that it is no longer a dynamic body. The judge then measures against it,
+  /// unless the step took it off, and no longer against a part that the next step takes off.
   void mount(const Pose& X_WP);
   /// Sets the share of the coupling gains that holds the part in hand.
   void setGrip(double share);
-  /// Between two steps a loop with local contact has to be stopped: its models change.
+  /// Stops a loop with local contact between two steps, because its models change.
   void pauseLocalContact();
-  /// One physics step with its haptic ticks. False, and nothing done, where the hand cannot go on (end of a
-  /// recording).
-  /// @param is_settling  the step is judged and the next one's field cooked: the part's motion does not count
-  ///                     any more, and neither regions nor load are watched
+  /// Runs one physics step with its haptic ticks. False, and nothing happens, if the hand cannot continue
+  /// (end of a recording).
+  /// @param is_settling  the step is being judged and the next field cooked: the part's motion no longer
+  /// counts, and neither regions nor load are monitored
   [[nodiscard]] bool advance(bool is_settling = false);
   /// The moving part as the hand and the haptic loop see it.
   [[nodiscard]] device::HeldPart heldPart() const;
-  /// After the last step: state().step becomes -1 and the hand stops.
+  /// Ends the run after the last step: state().step becomes -1 and the hand stops.
   void finish();
 
   [[nodiscard]] const Scene& scene() const { return scene_; }
@@ -85,30 +85,30 @@ class AssemblyWorld {
   [[nodiscard]] LoadShedder& shedder() { return *shedder_; }
   /// Duration of a physics step in simulated time.
   [[nodiscard]] double dt_s() const { return dt_s_; }
-  /// Duration of a physics step in the hand's time, which is the clock's.
+  /// Duration of a physics step in real time, the time of the hand.
   [[nodiscard]] double handStep_s() const { return shedder_->dt_s() * shedder_->timeDivisor(); }
-  /// False while the next part waits to be asked for.
+  /// False while the next part waits for a request.
   [[nodiscard]] bool mayTakeNext() const {
     const bool is_last = static_cast<std::size_t>(state_.step) + 1 >= scene_.steps.size();
     return options_.requests == nullptr || is_last || options_.requests->mayTake();
   }
-  /// After advance(), while the hand works: others ask for the part to be let go of.
+  /// Whether the part is to be released on request. To be called after advance(), while the hand works.
   [[nodiscard]] bool givesUp() {
     state_.gives_up = driver_->givesUp(options_.requests != nullptr && options_.requests->isReleaseWanted());
     return state_.gives_up;
   }
-  /// The hand cannot go on.
+  /// Whether the hand cannot continue.
   [[nodiscard]] bool hasEnded() const { return has_ended_; }
-  /// Ended, or stopped by the caller.
+  /// Whether the run has ended or was stopped by the caller.
   [[nodiscard]] bool isStopped() const {
     return has_ended_ || (options_.stop != nullptr && options_.stop->load());
   }
   void reportProgress(double share_of_step) const;
-  /// Fills what the result says of the whole run: times, energy, memory.
+  /// Sets the totals of the run in the result: times, energy, memory.
   void summarise(AssembleResult& result) const;
 
  private:
-  /// Where no log is wanted.
+  /// Discards all entries, for runs without a log.
   class NullLog final : public device::RunLog {
     void add(const device::LogEntry&) noexcept override {}
   };
@@ -116,7 +116,7 @@ class AssemblyWorld {
   std::unique_ptr<HapticDriver> makeDriver(Hand& hand, device::LoopSettings settings,
                                            const ReportFault& on_fault);
   void mountFixed();
-  /// Where the part starts.
+  /// Pose at which the step's part starts.
   Pose startOf(const SceneStep& step);
   [[nodiscard]] Penetration overlapAt(const SceneStep& step, const Pose& X_WP);
   void requireFreeStart(const SceneStep& step);
@@ -126,10 +126,11 @@ class AssemblyWorld {
   void giveSnapshot();
   void passEvents();
   void shedLoad();
-  /// Gains that others wish, while nothing is held.
+  /// Pose of the hand that takes the part at X_WP.
   [[nodiscard]] Pose handAt(const Pose& X_WP) const;
+  /// Takes over requested gains; called while no part is held.
   void changeGains();
-  /// Axis snap on the part in hand, for the coming step.
+  /// Applies axis snap to the part in hand, for the coming step.
   void snap();
   void step();
 
@@ -144,16 +145,16 @@ class AssemblyWorld {
   device::LocalContact local_;
   std::unique_ptr<HapticDriver> driver_;
   PlacedParts placed_;
-  std::optional<LoadShedder> shedder_;  ///< of driver_
+  std::optional<LoadShedder> shedder_;  ///< uses driver_
   AssemblyState state_;
   double dt_s_;
   double grip_ = 1;
-  std::optional<AxisSnap> snap_;  ///< of the step
-  double snap_share_ = 0;         ///< of its springs; changes over kSnapFade_s
-  double stored_before_J_ = 0;    ///< energy stored in parts that were released before
+  std::optional<AxisSnap> snap_;  ///< spring of the current step
+  double snap_share_ = 0;         ///< share of the springs' force; changes over kSnapFade_s
+  double stored_before_J_ = 0;    ///< energy stored in parts that were released earlier
   bool has_ended_ = false;
   TickClock physics_clock_;
-  std::optional<RunFigures> figures_;  ///< as last given to the tap, and when
+  std::optional<RunFigures> figures_;  ///< the last figures that the tap received, and their time
   double figures_time_s_ = 0;
 };
 

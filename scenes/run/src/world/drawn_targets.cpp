@@ -27,7 +27,7 @@ std::uint32_t rootOf(std::vector<std::uint32_t>& parent, std::uint32_t v) {
   return v;
 }
 
-/// By vertex: a vertex that stands for all that facets connect to it.
+/// For each vertex, one representative of all vertices that facets connect to it.
 std::vector<std::uint32_t> shellOfVertices(const Mesh& mesh) {
   std::vector<std::uint32_t> parent(mesh.vertices.size());
   std::iota(parent.begin(), parent.end(), 0U);
@@ -37,13 +37,13 @@ std::vector<std::uint32_t> shellOfVertices(const Mesh& mesh) {
   return parent;
 }
 
-/// Signed, of the triangle seen from the origin (van Oosterom and Strackee 1983).
+/// Signed solid angle of the triangle seen from the origin (van Oosterom and Strackee 1983).
 double solidAngle(const Vec3& a, const Vec3& b, const Vec3& c) {
   const double la = a.norm(), lb = b.norm(), lc = c.norm();
   return 2 * std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
 }
 
-/// Shells with an edge that does not have exactly two facets.
+/// Marks shells with an edge that does not have exactly two facets.
 std::vector<bool> openShells(const Mesh& mesh, const std::vector<std::uint32_t>& shell) {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
   for (const auto& t : mesh.triangles)
@@ -59,7 +59,7 @@ std::vector<bool> openShells(const Mesh& mesh, const std::vector<std::uint32_t>&
   return is_open;
 }
 
-/// How often the surface of each shell turns around p: a shell that faces in by -1 around what it holds.
+/// Winding number of each shell around p: -1 for a shell that faces inwards and encloses p.
 std::vector<double> turnsAround(const Vec3& p, const Mesh& mesh, const std::vector<std::uint32_t>& shell) {
   std::vector<double> turns(mesh.vertices.size(), 0);
   for (const auto& t : mesh.triangles)
@@ -69,10 +69,11 @@ std::vector<double> turnsAround(const Vec3& p, const Mesh& mesh, const std::vect
   return turns;
 }
 
-/// True if a part lies in a cavity of another, behind a closed shell that faces in. Parts that close a room
-/// together are not seen, and neither is a room of which the part touches the wall with all of 32 vertices.
-/// O(n log n) and the other's triangles for each of these vertices.
-/// @param X_OP  of the part in the other part's frame
+/// True if a part lies in a cavity of another part, that is, inside a closed shell that faces inwards. The
+/// test takes up to 32 vertices of the part; it does not detect a cavity that several parts form, or a cavity
+/// whose wall all of these vertices touch. O(n log n), plus the other part's triangles for each of these
+/// vertices.
+/// @param X_OP  pose of the part in the other part's frame
 bool isInClosedRoom(const Mesh& part, const Mesh& other, const Pose& X_OP) {
   if (!isWithin(moved(bounds(part), X_OP), bounds(other))) return false;
   const Mesh solid = repairMesh(welded(other)).solid;
@@ -104,7 +105,7 @@ bool contains(const std::vector<InPlace>& parts, const std::string& name) {
   return std::any_of(parts.begin(), parts.end(), [&](const InPlace& p) { return p.part->part.name == name; });
 }
 
-/// The other part of a pair or fit, if the pair is of this part and one in place; else null.
+/// The other part of a pair or fit, if the pair consists of `part` and a part in place; else null.
 const std::string* otherOf(const std::string& part, const std::string& a, const std::string& b,
                            const std::vector<InPlace>& in_place) {
   if (a != part && b != part) return nullptr;
@@ -116,7 +117,7 @@ void findOverlap(const CheckResult& checked, const std::vector<InPlace>& in_plac
   for (const CheckedPair& pair : checked.pairs) {
     const std::string* other = otherOf(step.part, pair.a, pair.b, in_place);
     if (other == nullptr) continue;
-    // A part that is in place already overlaps as drawn, within the error of the meshes.
+    // A part that is taken off overlaps other parts as drawn, within the error of the meshes.
     if (step.is_taken_off && !pair.isClash())
       step.penetration_limit_m = std::max(step.penetration_limit_m, pair.interference_depth_m);
     if (!pair.isClash() || pair.interference_depth_m <= step.blocked_depth_m) continue;
@@ -130,7 +131,7 @@ void findOverlap(const CheckResult& checked, const std::vector<InPlace>& in_plac
         overlapReason(step.blocked_by, step.blocked_depth_m, step.blocked_error_m, step.blocked_at_W);
 }
 
-/// What it takes to press a part in.
+/// Adds up the forces that press the part in.
 void findPressFit(const CheckResult& checked, const std::vector<InPlace>& in_place, StepResult& step) {
   for (const CheckedFit& fit : checked.fits)
     if (fit.press && otherOf(step.part, fit.shaft, fit.bore, in_place) != nullptr)
@@ -153,8 +154,9 @@ void findClosedRoom(const Scene& scene, const SceneStep& planned, const std::vec
   }
 }
 
-/// A part that no fit with parts in place holds lies where sight has put it. What fits into it later takes it
-/// along: a bolt through a bracket that lies on a plate finds the plate's hole, and the bracket with it.
+/// The later part that aligns this part; empty if there is none. A part without a fit with the parts in place
+/// is put down by sight. A later part that fits into it moves it to its place: a bolt through a bracket that
+/// lies on a plate finds the plate's hole, and moves the bracket.
 std::string alignedBy(const CheckResult& checked, const Scene& scene, std::size_t step,
                       const std::vector<InPlace>& in_place, const std::string& part) {
   const auto fits = [&](const std::string& other) {
@@ -173,9 +175,10 @@ double knownError_m(const ScenePart& part) {
   return part.deflection_m.value_or(0) + part.rounding_m;
 }
 
-/// Whether the meshes are farther off the faces that they stand for than the parts are from each other. What
-/// counts as contact (10 um) is less than that. Flat faces are exact wherever import is as asked for, so a
-/// part without a fit is doubted only where the error is more than its tolerance.
+/// Reason for doubt where the meshes differ from the exact faces by more than the clearance of the parts;
+/// empty if there is none. Penetrations up to 10 um count as contact, so smaller clearances are not doubted.
+/// Flat faces are exact after an import with the requested accuracy, so a part without a fit is doubted only
+/// where the error exceeds its tolerance.
 std::string meshDoubt(const Scene& scene, const CheckResult& checked, const std::vector<InPlace>& in_place,
                       const SceneStep& planned, const StepResult& step) {
   constexpr double kContact_m = 10e-6;
@@ -192,12 +195,11 @@ std::string meshDoubt(const Scene& scene, const CheckResult& checked, const std:
     const ScenePart& other = partOf(mate);
     const ScenePart& worse = knownError_m(own) >= knownError_m(other) ? own : other;
     const double error_m = errorWith(mate);
-    // On both sides: a clearance is that of the diameter.
+    // Twice, for both sides, since a clearance is a difference of diameters.
     if (2 * error_m <= std::max(clearance_m, kContact_m) || error_m <= most_m) return;
     most_m = error_m;
-    doubt = "the mesh of '" + worse.part.name + "' is known to be up to " +
-            lengthInWords(knownError_m(worse)) + " off its exact faces, which its " + what + " '" + mate +
-            "' (" + lengthInWords(clearance_m) +
+    doubt = "the mesh of '" + worse.part.name + "' differs by up to " + lengthInWords(knownError_m(worse)) +
+            " from its exact faces, which its " + what + " '" + mate + "' (" + lengthInWords(clearance_m) +
             ") does not allow; give a finer --deflection, or a better file of that part";
   };
   bool has_fit = false;
@@ -211,20 +213,19 @@ std::string meshDoubt(const Scene& scene, const CheckResult& checked, const std:
   if (has_fit) return doubt;
   for (const CheckedPair& pair : checked.pairs) {
     const std::string* mate = otherOf(step.part, pair.a, pair.b, in_place);
-    // Faces that are farther apart than both meshes are off cannot touch.
+    // Faces cannot touch if they are farther apart than the errors of both meshes.
     if (mate == nullptr || pair.clearance_m > errorWith(*mate)) continue;
     consider(*mate, planned.clearance_m > 0 ? planned.clearance_m : 2 * step.tolerance_m, "place at");
   }
   return doubt;
 }
 
-/// Why a part that is brought home has not been shown to fit: nothing is there that it could fit.
+/// Reason for doubt where no other part is near the target that the part could fit.
 std::string aloneDoubt(const CheckResult& checked, const StepResult& step) {
   const bool is_alone = std::ranges::find(checked.alone, step.part) != checked.alone.end();
   if (!is_alone || step.is_taken_off) return {};
-  return "where it belongs it is nowhere near another part, so that nothing shows that it fits: are the "
-         "parts "
-         "laid out, or each in a frame of its own?";
+  return "at its target it is nowhere near another part, so that nothing shows that it fits; check whether "
+         "the parts are laid out side by side, or each in a frame of its own";
 }
 
 double toleranceOf(const CheckResult& checked, const std::vector<InPlace>& in_place, const SceneStep& planned,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the drawing alone says of each step: what blocks its part, and how exactly the part is held where it
-// belongs.
+// Results of the drawing for each step: which part blocks the step's part, and how exactly the part is held
+// at its target.
 #pragma once
 
 #include <memory>
@@ -12,11 +12,11 @@
 
 namespace vps::scenes {
 
-/// A result for each step with tolerance_m, aligned_by, mesh_doubt and press_needed_N, and with reason and
-/// blocked_... where geometry proves that the part cannot be there: at its target it overlaps what is in
-/// place by then, by more than the error of the meshes (and the scene does not allow it), or it starts or
-/// ends in a room without a way in. Exact distances, on all cores.
-/// @param checked  receives what the steps' results were made from; may be null
+/// A result for each step with tolerance_m, aligned_by, mesh_doubt and press_needed_N. If geometry proves
+/// that the part cannot reach its target, verdict, reason and blocked_... are set too: at its target the part
+/// overlaps a part in place by more than the error of the meshes (and the scene does not allow it), or its
+/// start or target lies in a cavity without an opening. Uses exact distances, on all cores.
+/// @param checked  receives the check that the results come from; may be null
 std::vector<StepResult> checkDrawnTargets(const Scene& scene, const Progress& progress,
                                           std::shared_ptr<const CheckResult>* checked = nullptr);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The settings of the haptic loop that follow from a scene and a device.
+// Settings of the haptic loop for a scene and a device.
 #pragma once
 
 #include "vps_device/device.h"
@@ -8,11 +8,12 @@
 
 namespace vps::scenes {
 
-/// Gains from deriveGains(), except those that the scene states. Safety limits are the device's peaks.
-/// @param delay_s  from a state of the proxy to the answer to it, beyond the physics step: of a network
+/// Settings with the gains of deriveGains(), except for gains that the scene states. Safety limits are the
+/// device's peaks.
+/// @param delay_s  delay of a network, from a state of the proxy to the answer, without the physics step
 device::LoopSettings loopSettings(const Scene& scene, const device::Device& device, double delay_s = 0);
 
-/// The gains at which a device is passive in a scene, at this physics rate.
+/// The gains at which a device is passive in a scene, at physics rate physics_rate_hz.
 CouplingGains passiveGains(const Scene& scene, const device::DeviceLimits& limits, double physics_rate_hz,
                            double delay_s = 0);
 

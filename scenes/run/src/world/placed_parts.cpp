@@ -100,12 +100,12 @@ std::vector<std::size_t> PlacedParts::widenTo(std::size_t step, const Box& regio
 }
 
 void PlacedParts::widen(std::size_t step, const Box& box_P, const Pose& X_WP) {
-  constexpr int kMostInStep = 4;  // a part that falls goes 15 times its size
+  constexpr int kMostInStep = 4;  // with four regions, a falling part may move by 15 times its size
   ++widened_;
   widened_in_step_ = widened_step_ == step ? widened_in_step_ + 1 : 1;
   widened_step_ = step;
   ModelOptions options;
-  options.cache = options_.cache;  // no progress and no warnings: both were given at loading
+  options.cache = options_.cache;  // without progress and warnings, which the caller received at loading
   bool has_changed = true;
   if (widened_in_step_ > kMostInStep) {
     buildWhole(scene_, plan_, options);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The parts in place during a run, fixed or mounted: as the overlap judge measures against them, and as the
-// fixed field that is cooked from them.
+// The parts in place during a run, fixed or mounted, in two forms: for the overlap judge, which measures
+// against them, and as the fixed field that is cooked from them.
 #pragma once
 
 #include <algorithm>
@@ -20,35 +20,37 @@ namespace vps::scenes {
 /// is called.
 class PlacedParts {
  public:
-  /// All arguments outlive it. widen() enlarges regions of the plan, or removes them.
+  /// All arguments must outlive this object. widen() enlarges or removes regions of the plan.
   PlacedParts(Scene& scene, ModelPlan& plan, Simulation& simulation, const ModelOptions& options);
 
   /// Adds a part to the fields of later steps.
   void add(std::size_t part, const Pose& X_WP) { placed_.push_back({part, X_WP}); }
   /// Leaves a part out of the fields of later steps.
   void leaveOut(std::size_t part);
-  /// From now on the judge measures against the parts that add() and leaveOut() have left, and no others.
+  /// From now on the judge measures against exactly the parts that are in place after add() and leaveOut().
   void renewJudge();
-  /// From now on the judge measures against this part, if it is modelled. It was added before.
+  /// From now on the judge also measures against this part, if it is modelled. add() must have added the
+  /// part.
   void addToJudge(std::size_t part);
   [[nodiscard]] const OverlapJudge& judge() const { return judge_; }
-  /// Made at the first call. The reference stays valid until widen().
+  /// The part for the judge, made at the first call. The reference stays valid until widen().
   const JudgedBody& judgedBody(std::size_t part);
 
-  /// What to cook for a step's region; nothing if the field in place serves it, or after the last step.
+  /// Order for the field of a step's region; empty if the field in place serves the step, or after the last
+  /// step.
   [[nodiscard]] std::optional<FieldOrder> orderFor(std::size_t step);
-  /// @param field  without a shape: nothing is in place
+  /// @param field  a field without a shape means that no part is in place
   void setField(CookedField field);
 
-  /// False when a moving part, with all that it may reach within the coming physics step, is not inside the
-  /// step's region.
-  /// @param V_W   of the part's origin
+  /// Whether a moving part stays inside the step's region, with everything that it may reach in the coming
+  /// physics step.
+  /// @param V_W   velocity of the part's origin
   /// @param dt_s  physics step
   [[nodiscard]] bool isCovered(std::size_t step, const Box& box_P, const Pose& X_WP, const Twist& V_W,
                                double dt_s) const;
   /// Enlarges the step's region around the part, by its own size and at each later call for the step by twice
-  /// as much; models the fixed parts in it, and cooks what is in place there. A part that leaves four such
-  /// regions is no longer on its way: then all fixed parts are modelled everywhere, for all steps. Takes as
+  /// as much; models the fixed parts in it, and cooks the parts in place there. A part that leaves four such
+  /// regions is no longer on its path: then all fixed parts are modelled everywhere, for all steps. Takes as
   /// long as loading those parts.
   void widen(std::size_t step, const Box& box_P, const Pose& X_WP);
 
@@ -75,8 +77,8 @@ class PlacedParts {
   int widened_in_step_ = 0;
 };
 
-/// The poses at which the parts are cooked: fixed parts as designed, others where their steps have them in
-/// place.
+/// Poses at which parts are cooked in a plan that has not run: fixed parts at their designed poses, other
+/// parts where their steps put them.
 class CookedPoses {
  public:
   explicit CookedPoses(const Scene& scene) {

@@ -15,12 +15,12 @@ namespace vps::scenes {
 
 namespace {
 
-/// Fits of one direction.
+/// All fits of a part with the same direction.
 struct Guide {
   Vec3 axis_W = Vec3::UnitZ();
-  double from_m = 0, to_m = 0;  ///< along the axis
-  double clearance_m = 0;       ///< least
-  Vec3 at_W = Vec3::Zero();     ///< of the first fit
+  double from_m = 0, to_m = 0;  ///< ends along the axis, from at_W
+  double clearance_m = 0;       ///< least clearance of the fits
+  Vec3 at_W = Vec3::Zero();     ///< middle of the first fit
 };
 
 std::vector<Guide> guidesOf(const std::vector<CheckedFit>& fits, const std::string& part) {
@@ -41,10 +41,10 @@ std::vector<Guide> guidesOf(const std::vector<CheckedFit>& fits, const std::stri
   return guides;
 }
 
-constexpr double kSame_m = 1e-9;  // far below what a part's place is known to
+constexpr double kSame_m = 1e-9;  // far below the accuracy of a part's pose
 
-/// The part of a mate's displacement that a fit passes on: a shaft none along its axis, a key only across its
-/// faces.
+/// The share of a mate's displacement that a fit passes on: a shaft passes on none along its axis, and a key
+/// passes on only the component across its faces.
 Vec3 passedOn(const CheckedFit& fit, const Vec3& by_m) {
   const Vec3 along_axis_m = fit.axis_W * fit.axis_W.dot(by_m);
   if (fit.kind == FitKind::Shaft) return by_m - along_axis_m;

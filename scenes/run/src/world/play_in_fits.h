@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How far the play of the fits lets a part be from its place: it may lean in them, and its mates may be
-// displaced.
+// Errors that the play of fits allows: a part may lean in its fits, and its mates may be displaced in theirs.
 #pragma once
 
 #include <cstddef>
@@ -17,18 +16,19 @@ namespace vps::scenes {
 /// most: c / 2 without a lean, c r / L without a displacement, and between these in between. Parallel fits
 /// have the length from the first to the last of them, since the part leans in all at once; fits of other
 /// directions each hold it. 0 without a fit.
-/// @param part    as drawn, at home
-/// @param others  those that hold it
+/// @param part    the part as drawn, at its target
+/// @param others  the parts that hold it
 double leanInFits_m(const DrawnPart& part, const std::vector<DrawnPart>& others);
 
-/// Of the step's part at its target, in what is in place by then.
+/// Greatest displacement of the step's part at its target, in the parts that are in place before the step.
 double leanInFits_m(const Scene& scene, std::size_t step);
 
-/// How far each part that was moved before, and that this step's part fits, is from its own place at the
-/// middle of their fit; in W. Where one part has several fits, each counts. A shaft holds nothing along its
-/// axis, and a key only across its faces: first comes what the fit passes on, and then, where it differs, the
-/// whole, for a part that stands on its mate's shoulder.
-/// @param X_WP  where the parts are, by part
+/// Displacements of the mates of this step's part that earlier steps moved: the distance of each mate from
+/// its own target, at the middle of the fit, in W. A part with several fits has one entry for each. A shaft
+/// holds nothing along its axis, and a key holds only across its faces. Each entry is the share of the
+/// displacement that the fit passes on; if that differs from the whole displacement, the whole follows as a
+/// second entry, for a part that stands on its mate's shoulder.
+/// @param X_WP  actual poses of the parts, by part
 std::vector<Vec3> displacedMates_m(const Scene& scene, std::size_t step, const std::vector<Pose>& X_WP);
 
 }  // namespace vps::scenes

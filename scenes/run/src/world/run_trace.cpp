@@ -12,7 +12,8 @@ namespace vps::scenes {
 
 namespace {
 
-constexpr double kGuide_s = 0.02;  ///< what pushes across for less than this is a blow and does not guide
+constexpr double kGuide_s =
+    0.02;  ///< averaging time: a force across the axis that lasts less is an impact and does not guide
 
 device::RunTrace logEntry(const TraceRow& row) {
   device::RunTrace entry;

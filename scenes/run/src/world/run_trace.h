@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a run keeps of its course: trace rows, samples for the judge, pictures, and entries of the run's log.
+// Record of a run: trace rows, samples for the judge, snapshots for pictures, and entries of the run's log.
 #pragma once
 
 #include <optional>
@@ -17,14 +17,14 @@ namespace vps::scenes {
 
 class RunTrace {
  public:
-  /// @param log  may be null; gets events, and trace rows at scene.record.csv_rate_hz
+  /// @param log  may be null; receives events, and trace rows at scene.record.csv_rate_hz
   RunTrace(const Scene& scene, device::RunLog* log);
 
-  /// After the step's part was taken.
+  /// To be called after the step's part was taken.
   void beginStep(const AssemblyWorld& world);
-  /// Keeps the last physics step, and updates the step's peaks.
+  /// Records the last physics step, and updates the peaks in the step's result.
   void add(const AssemblyWorld& world, TracePhase phase, StepResult& result);
-  /// Before the step's part is released.
+  /// To be called before the step's part is released.
   void endStep(const AssemblyWorld& world);
   /// The rows of the current step.
   [[nodiscard]] std::span<const TraceRow> stepRows() const { return rows_.rows(); }
@@ -35,7 +35,7 @@ class RunTrace {
   void logEvent(const AssemblyWorld& world, device::RunEventKind kind, const std::string& text) const;
   /// Logs the operator's phase and strategy if they have changed.
   void logPhase(const AssemblyWorld& world);
-  /// The next phase is logged even if it is the same.
+  /// logPhase() then logs the next phase even if it is the same.
   void forgetPhase() { logged_state_.reset(); }
 
   /// Moves rows and pictures into the result.
@@ -43,17 +43,17 @@ class RunTrace {
 
  private:
   device::RunLog* log_;
-  long log_stride_;  ///< physics steps from one logged row to the next
+  long log_stride_;  ///< number of physics steps from one logged row to the next
   StepRows rows_;
   long added_ = 0;                               ///< physics steps so far
   std::vector<Snapshot> start_, contact_, end_;  ///< one for each step
-  double peak_contact_N_ = 0;                    ///< of the current step
-  Vec3 axis_W_ = Vec3::Zero();                   ///< of insertion
-  double guide_N_ = 0;                           ///< across it, over the last moments
+  double peak_contact_N_ = 0;                    ///< greatest contact force of the current step
+  Vec3 axis_W_ = Vec3::Zero();                   ///< insertion axis
+  double guide_N_ = 0;                           ///< force across the axis, averaged over kGuide_s
   std::optional<device::OperatorState> logged_state_;
 };
 
-/// What a viewer needs of this instant.
+/// The state of this instant for viewers.
 Snapshot snapshotOf(const AssemblyWorld& world);
 
 }  // namespace vps::scenes

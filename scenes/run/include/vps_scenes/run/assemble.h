@@ -19,15 +19,16 @@ VPS_SCENES_API AssembleResult assemble(Scene& scene, const AssembleOptions& opti
 
 struct TrySettings {
   int tries = 10;        ///< at least 1
-  unsigned threads = 0;  ///< how many run at once; 0: one for each core
+  unsigned threads = 0;  ///< number of tries that run at the same time; 0: one for each core
 };
 
-/// Runs the procedure with `tries` seeds and returns the run of the first seed that fits, or else of the
+/// Runs the procedure with `tries` seeds. Returns the result of the first seed whose run fits, or else of the
 /// first seed, with `tries` and `ease_share` filled in: one success shows that the parts go together, and the
-/// share says how easily. All seeds are run, except where geometry proves a block: then one. The seeds are
-/// scene.hand.seed and from there in steps of the number of scene.steps, since each step of a run takes the
-/// next seed. The same bits for any number of threads, but for wall times. Throws as assemble(), and
-/// LoadError for a run in real time, for a device that a person moves and for fewer tries than one.
+/// share of successes shows how easily. Where geometry proves that a part is blocked, only the first seed is
+/// run. Seeds start at scene.hand.seed and increase by scene.steps.size(), since each step of a run takes the
+/// next seed. Results have the same bits for any number of threads, except for wall times. Throws as
+/// assemble(), and LoadError for a run in real time, for a device that a person moves and for fewer tries
+/// than one.
 VPS_SCENES_API AssembleResult assembleTries(const Scene& scene, const TrySettings& settings,
                                             const AssembleOptions& options = {});
 

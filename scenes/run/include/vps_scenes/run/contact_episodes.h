@@ -20,7 +20,7 @@ struct ContactEpisode {
 /// Contacts separated by less than this belong to one episode: a part that chatters on a surface has hit it
 /// once. assumed: shorter than what a hand feels as two events (about 30 ms between taps).
 inline constexpr double kEpisodeBridge_s = 0.02;
-/// assumed: well above the travel of a bounce.
+/// Least travel of a slide. assumed: well above the travel of a bounce.
 inline constexpr double kSlideTravel_m = 1e-3;
 
 /// The episodes of a trace in order of time, without TracePhase::Rest. O(rows).

@@ -10,13 +10,13 @@
 
 namespace vps::scenes {
 
-/// One part's own models; 0 where it has none, or shares those of another part.
+/// Cost of one part's own models; 0 if the part has none or shares those of another part.
 struct PartCost {
   std::size_t map_bytes = 0, shell_bytes = 0, points = 0;
   double map_wall_s = 0, shell_wall_s = 0;  ///< to build, or to read from the cache; 0 in an estimate
 };
 
-/// The fixed field of one step, without what it shares with the parts' own models.
+/// Cost of the fixed field of one step, without the models that it shares with its parts.
 struct StepCost {
   std::size_t bytes = 0, points = 0;
   bool is_cooked = false;  ///< false: the field of the step before serves this one as well
@@ -28,7 +28,7 @@ struct ModelPlanCost {
   std::vector<StepCost> steps;
   ModelledCost most;  ///< the parts' models and the largest field
   double build_wall_s = 0, cook_wall_s = 0;
-  bool is_estimated = false;  ///< from area and edges, nothing was built; then there are no times
+  bool is_estimated = false;  ///< estimated from areas and edges: nothing was built, and times are 0
 };
 
 struct ExplainedModels {
@@ -36,16 +36,16 @@ struct ExplainedModels {
   ModelPlanCost cost;
 };
 
-/// Builds the plan's models, and cooks each step's field with the parts of earlier steps at their targets. In
-/// a run those parts lie where contact left them. Throws LoadError as assemble().
+/// Builds the plan's models, and cooks each step's field with the parts of earlier steps at their targets.
+/// (In a run, those parts lie where contact left them.) Throws LoadError as assemble().
 VPS_SCENES_API ExplainedModels explain(Scene scene, ModelPurpose purpose, const ModelOptions& options);
 
-/// The same, estimated from areas and edges (vps/model_estimate.h): bytes and counts are rough, and times are
-/// not known. O(triangles), in parallel. Throws LoadError for a mesh that cannot be modelled.
+/// As explain(), but estimated from areas and edges (vps/model_estimate.h): bytes and counts are rough, and
+/// times are not known. O(triangles), in parallel. Throws LoadError for a mesh that cannot be modelled.
 VPS_SCENES_API ExplainedModels estimate(const Scene& scene, ModelPurpose purpose,
                                         const ModelOptions& options);
 
-/// How a part takes part in a step.
+/// Role of a part in a step.
 enum class PartUse {
   Absent,   ///< not yet in place, or only drawn
   Moves,    ///< in the hand, or free

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How far a part is from the others at the poses of a snapshot: exact, for whoever watches a run.
+// Exact distances of a part from the other parts at the poses of a snapshot, for viewers of a run.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@ namespace vps::scenes {
 struct PartGap {
   std::size_t other = 0;    ///< index into Scene::parts
   double distance_m = 0;    ///< least distance of the two meshes; 0 where they touch or cross
-  Vec3 p_W = Vec3::Zero();  ///< in the middle between their nearest points
+  Vec3 p_W = Vec3::Zero();  ///< midpoint between the nearest points of the two parts
 };
 
 /// Two parts that push each other.
@@ -32,15 +32,15 @@ class VPS_SCENES_API PartGaps {
   PartGaps(const PartGaps&) = delete;
   PartGaps& operator=(const PartGaps&) = delete;
 
-  /// To each other part of the snapshot that is nearer than most_m, the nearest first; parts that wait for
-  /// their step are left out. Exact to rounding. Empty where the snapshot does not have the part.
+  /// Distances to each other part of the snapshot that is nearer than most_m, the nearest first. Parts that
+  /// wait for their step are left out. Exact to rounding. Empty if the snapshot does not have the part.
   /// Thread-safe.
   [[nodiscard]] std::vector<PartGap> of(std::size_t part, const Snapshot& shot, double most_m) const;
 
-  /// The contacts of the snapshot by the parts between which they are: the two whose surfaces are nearest to
-  /// the contact, which itself names none, and nearer than kContactNear_m beside its depth. Ordered by a, b.
+  /// The contacts of the snapshot, assigned to pairs of parts. A contact does not name its parts; they are
+  /// the two whose surfaces are nearest to it, and within kContactNear_m plus its depth. Ordered by a, b.
   [[nodiscard]] std::vector<PartTouch> touches(const Snapshot& shot) const;
-  /// assumed: coarser than the voxmaps of parts of some millimetres are exact
+  /// assumed: greater than the error of the voxmaps of parts of some millimetres
   static constexpr double kContactNear_m = 100e-6;
 
  private:

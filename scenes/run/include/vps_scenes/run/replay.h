@@ -27,8 +27,8 @@ struct ReplayOptions : ModelOptions {
   SnapshotTap* tap = nullptr;               ///< as in AssembleOptions
   /// As in AssembleOptions.
   std::function<void(const device::DeviceEvent&)> on_device_event;
-  /// Called with the scene before it is run, and before its models are built. It stays where it is until
-  /// replay() returns. May be empty.
+  /// Called with the scene before its models are built. The reference stays valid until replay() returns. May
+  /// be empty.
   std::function<void(const Scene&)> on_scene;
 };
 
@@ -41,12 +41,13 @@ struct ReplayResult {
   std::size_t equal = 0;      ///< entries that agree
 };
 
-/// The scene of a recorded run. Throws LoadError if the recording has none, as that of a device alone.
+/// The scene of a recorded run. Throws LoadError if the recording has no scene, such as the recording of a
+/// device alone.
 VPS_SCENES_API Scene recordedScene(const device::RecordedRun& run);
 
-/// Takes the device's samples from the recording, computes everything else again and compares it. After a
-/// difference the run continues to its end. A cut recording ends the run at the cut. Throws as
-/// recordedScene() and assemble().
+/// Takes the device's samples from the recording, computes everything else again and compares the results
+/// with the recording. After a difference the run continues to its end. If the recording is cut, the run ends
+/// at the cut. Throws as recordedScene() and assemble().
 VPS_SCENES_API ReplayResult replay(const device::RecordedRun& run, const ReplayOptions& options = {});
 
 }  // namespace vps::scenes

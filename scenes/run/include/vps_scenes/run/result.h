@@ -20,9 +20,9 @@ namespace vps::scenes {
 /// Wall-clock statistics of a repeated task [microseconds].
 struct TickTimes {
   std::uint64_t count = 0;
-  std::uint64_t missed = 0;  ///< took longer than the period
+  std::uint64_t missed = 0;  ///< ticks that took longer than the period
   double p50_us = 0, p99_us = 0, p999_us = 0, max_us = 0, mean_us = 0;
-  /// Processor time of the thread, without the time that other programs took. 0: not measured.
+  /// Processor time of the thread, which excludes the time of other programs. 0: not measured.
   double cpu_p50_us = 0, cpu_p99_us = 0;
 };
 
@@ -35,28 +35,30 @@ struct StrategyUse {
 struct StepResult {
   std::string part;
   Verdict verdict = Verdict::NotShown;
-  std::string reason;      ///< of the verdict, in words; empty when it fits
-  std::string blocked_by;  ///< the part whose geometry proves that it cannot be there; empty: none
+  std::string reason;  ///< reason of the verdict; empty when the part fits
+  std::string
+      blocked_by;  ///< the part whose geometry proves that this part cannot be at its target; empty: none
   Vec3 blocked_at_W = Vec3::Zero();
   double blocked_depth_m = 0, blocked_error_m = 0;
-  std::string stuck_against;  ///< the part that it touched when the hand gave up; empty: none, or it did not
+  std::string stuck_against;  ///< the part that this part touched when the hand gave up; empty: none, or the
+                              ///< hand did not give up
   Vec3 stuck_at_W = Vec3::Zero();
-  std::string stands_on;  ///< an earlier part that is not where it belongs and was put there; empty: none
-  /// A later part that fits into it and takes it from where the hand left it to where it belongs; empty:
-  /// none, or it cannot be moved there.
+  std::string stands_on;  ///< an earlier part that did not reach its target and was put there for this step;
+                          ///< empty: none
+  /// A later part that fits into this part and moves it from where the hand left it to its target; empty:
+  /// none, or the path to the target is not free.
   std::string aligned_by;
-  /// Why the drawing cannot show that it fits: the error that is known of its meshes is more than its
-  /// clearance, or nothing is near where it belongs; empty: it can.
+  /// Why a run cannot show that the part fits: the known error of the meshes exceeds its clearance, or no
+  /// other part is near its target; empty: a run can show it.
   std::string mesh_doubt;
   bool is_taken_off = false;  ///< the step took the part off, and its target is where it was put away
   bool completed = false;     ///< the part reached its target, whatever else is wrong
-  bool by_contact = false;    ///< completed, and other parts guided it there: isGuided()
-  /// Greatest force from the sides, against the last leg of its path, while it was in hand: of what guides
-  /// it.
+  bool by_contact = false;    ///< completed, and other parts guided the part there: isGuided()
+  /// Greatest force across the last leg of the part's path while it was in hand: the force that guides it.
   double guide_force_N = 0;
   std::string failure_reason;  ///< empty when completed
   double start_s = 0, duration_s = 0;
-  double max_penetration_m = 0;  ///< by exact mesh distance, during the step and the rest after it
+  double max_penetration_m = 0;  ///< by exact mesh distance, during the step and the time after release
   std::string deepest_against;
   Vec3 deepest_at_W = Vec3::Zero();
   double deepest_time_s = 0;
@@ -64,32 +66,35 @@ struct StepResult {
   double field_penetration_m = 0;               ///< deepest penetration by the voxmap, for comparison
   double peak_force_N = 0, peak_torque_Nm = 0;  ///< on the hand
   int impacts = 0, slides = 0;
-  int index_count = 0;                  ///< times the device was clutched and recentred on its path
-  std::vector<StrategyUse> strategies;  ///< in order of time; empty where a person moves the part
-  double turns = 0;                     ///< of a screw, the last time it was screwed on
-  double advance_per_turn_m = 0;        ///< its way along the axis in these turns, for one turn
-  double lean_rad = 0;                  ///< greatest angle between its axis and that of its target meanwhile
-  /// To press it in, by Lame's formula for the declared interference; 0: no press fit that check finds.
+  int index_count = 0;                  ///< number of times that the device was clutched and recentred
+  std::vector<StrategyUse> strategies;  ///< in order of time; empty if a person moves the part
+  double turns = 0;                     ///< turns of a screw the last time it was screwed on
+  double advance_per_turn_m = 0;        ///< travel along the axis in these turns, divided by their number
+  double lean_rad = 0;  ///< greatest angle between the screw's axis and that of its target during these turns
+  /// Force that presses the part in, by Lame's formula for the declared interference; 0: check finds no press
+  /// fit.
   double press_needed_N = 0;
-  double hoist_N = 0;        ///< of its weight, what a hoist carries, since the hand may not; 0: no hoist
-  double tolerance_m = 0;    ///< of final_error_m, as stated or from the fit
-  double final_error_m = 0;  ///< greatest distance of its surface from where it belongs
+  double hoist_N =
+      0;  ///< share of the part's weight that a hoist carries [N], since the hand may not; 0: no hoist
+  double tolerance_m = 0;    ///< tolerance of final_error_m, as stated or from the fit
+  double final_error_m = 0;  ///< greatest distance of the part's surface from its place at the target
   double final_error_rad = 0;
   double rest_drift_m = 0;  ///< greatest displacement of any point of the part in rest_s after release
-  double late_drift_m = 0;  ///< the same in the second half of that time, from where it was in the middle
+  double late_drift_m = 0;  ///< the same in the second half of that time, relative to the pose in the middle
   double rest_s = 0;
   double cook_wall_s = 0;  ///< time to build the fixed field of the next step, on its own thread
   double swap_wall_s = 0;  ///< time to put it in place, between two physics steps
-  std::uint64_t missed_while_cooking = 0;  ///< haptic periods, in real time
+  std::uint64_t missed_while_cooking = 0;  ///< haptic periods missed during cooking, in real time
 };
 
-/// Guided with less force than this is not guided. Measured (tests/hand): at most 0.01 N over a plate with
-/// nothing beside the part, at least 0.036 N in a bore.
+/// Least guide_force_N of a part that other parts guided. Measured (tests/hand): at most 0.01 N over a plate
+/// with nothing beside the part, at least 0.036 N in a bore.
 inline constexpr double kGuideLeast_N = 0.02;
 inline bool isGuided(const StepResult& step) {
   return step.guide_force_N >= kGuideLeast_N;
 }
-/// Report, table, JSON and exit status show the verdict; nothing else decides whether the parts fit.
+/// Report, table, JSON and exit status all show the verdict; no other criterion decides whether the parts
+/// fit.
 inline bool isGood(const StepResult& step) {
   return isGood(step.verdict);
 }
@@ -124,7 +129,7 @@ inline Verdict verdictOf(const std::vector<StepResult>& steps, std::size_t plann
   return worst;
 }
 
-/// What the hand does with the part.
+/// Phase of the hand's work on the part.
 enum class TracePhase { Reach, Insert, Press, Rest };
 
 /// One row of the time series (figure 9 of the paper).
@@ -146,16 +151,17 @@ struct EnergyLedger {
   double quantisation_error_bound_J = 0;  ///< of injected_J, by the encoders' resolution
 };
 
-/// A part that turned farther in a step than the step can hold: contacts that turn by more than 0.1 rad
-/// against each other miss teeth and corners, and above 45 degrees Bullet turns a body by less than its
-/// speed.
+/// A part that turned in one physics step by more than the limit. Contacts between bodies that turn by more
+/// than 0.1 rad relative to each other miss teeth and corners, and above 45 degrees Bullet turns a body by
+/// less than its speed requires.
 struct FastTurn {
   std::string part;
-  bool is_in_contact = false;  ///< the rotation is that against what it touches
-  double w_rad_s = 0;          ///< the greatest of the run, by what it needs
-  double turn_rad = 0;         ///< at that speed in a step, or in a part of a step (Fidelity::substeps)
-  double limit_rad = 0;        ///< greatest turn that is held
-  double needed_hz = 0;        ///< Fidelity::physics_rate_hz that would hold it, without substeps
+  bool is_in_contact = false;  ///< the rotation is relative to the part that it touches
+  double w_rad_s = 0;          ///< angular velocity at which the part needs the highest physics rate
+  double turn_rad = 0;         ///< rotation at that speed in one step, or one substep (Fidelity::substeps)
+  double limit_rad = 0;        ///< greatest rotation in one step that is simulated correctly
+  double needed_hz =
+      0;  ///< Fidelity::physics_rate_hz at which the rotation stays within the limit, without substeps
 };
 /// "'shaft' turns with 10000 rpm, ...", with the remedy.
 VPS_SCENES_API std::string inWords(const FastTurn& turn);
@@ -166,43 +172,43 @@ struct LoadLevelChange {
   int from = 0, to = 0;   ///< indices of kLoadLevels
   std::string was, is;    ///< both levels in words
   std::string why;        ///< the measurement that caused it
-  std::string cost;       ///< its cost in error, or what it restores
-  double lost_share = 0;  ///< share of the last quarter of a second without a step of its own
-  /// Greatest distance from any place of the surface to the nearest point that is tested: no contact can be
-  /// deeper without being detected.
+  std::string cost;       ///< the error that it causes, or what it restores
+  double lost_share = 0;  ///< share of the physics periods of the last quarter of a second that had no step
+  /// Greatest distance from any place of the surface to the nearest tested point: a deeper contact is always
+  /// detected.
   double unseen_bound_m = 0;
-  /// Least distance by the new points less that by the old, at the part's pose; none if it was beyond the
-  /// map's band.
+  /// Least distance measured with the new points minus that measured with the old ones, at the part's pose;
+  /// none if the distance was beyond the map's band.
   std::optional<double> misread_m;
   double k_N_per_m = 0;     ///< coupling stiffness from here on
-  double build_wall_s = 0;  ///< for new points: from the decision to their use
-  bool is_done = true;      ///< false: it failed, and `why` gives the reason
+  double build_wall_s = 0;  ///< for new points: time from the decision to their use
+  bool is_done = true;      ///< false: the change failed, and `why` gives the reason
 };
 
 /// Timing of a run in real time.
 struct RealTimeResult {
   bool has_priority = false, has_locked_memory = false;
-  std::vector<std::string> warnings;                             ///< what the system refused, with the remedy
-  TickTimes late;                                                ///< from a tick's due time to its start
-  TickTimes response;                                            ///< from a tick's due time to its wrench
+  std::vector<std::string> warnings;  ///< what the system refused, with the remedy
+  TickTimes late;                     ///< times from a tick's due time to its start
+  TickTimes response;                 ///< times from a tick's due time to its wrench
   std::vector<std::pair<std::string, std::uint64_t>> missed_by;  ///< missed haptic periods by cause
   std::uint64_t stale_ticks = 0;  ///< ticks whose part was older than two physics steps
   std::uint64_t worst_tick = 0;   ///< the longest response
   double worst_us = 0;
   std::string worst_cause;
-  TickTimes physics_late;            ///< from a physics step's due time to its begin
-  std::uint64_t physics_missed = 0;  ///< periods of the scene's physics rate without a step of their own
-  double behind_s = 0;               ///< by how much simulated time fell behind the clock while physics ran
+  TickTimes physics_late;                     ///< times from a physics step's due time to its start
+  std::uint64_t physics_missed = 0;           ///< periods of the scene's physics rate without a physics step
+  double behind_s = 0;                        ///< lag of simulated time behind real time while physics ran
   std::vector<LoadLevelChange> load_changes;  ///< in order of time
   std::uint64_t faults = 0;                   ///< safety faults
 };
 
-/// One of several runs of the same procedure (assembleTries()).
+/// Result of one of several runs of the same procedure (assembleTries()).
 struct TryResult {
   std::uint64_t seed = 0;  ///< of the virtual operator
   Verdict verdict = Verdict::NotShown;
   double simulated_s = 0;
-  std::string reason;  ///< "part: why", of the first step that does not fit; empty when all fit
+  std::string reason;  ///< "part: reason" of the first step that does not fit; empty when all fit
 };
 
 struct CheckResult;
@@ -210,30 +216,31 @@ struct CheckResult;
 struct AssembleResult {
   std::string scene;
   Verdict verdict =
-      Verdict::NotShown;  ///< Blocked if a step is; else NotShown if a step is, or was not tried
+      Verdict::NotShown;  ///< verdictOf(): Blocked if a step is; else NotShown if a step is, or was not tried
   bool completed = false;
   std::vector<StepResult> steps;
   std::vector<TryResult> tries;  ///< in order of their seeds; empty for a single run
-  /// Ease of assembly: the share of the tries in which every part was brought home.
+  /// Ease of assembly: share of the tries in which every part reached its target.
   std::optional<double> ease_share;
   std::vector<TraceRow> trace;
   std::vector<Snapshot> start, contact, end;  ///< one for each step, for pictures
   Snapshot finished;
   double haptic_rate_hz = 0, physics_rate_hz = 0;
-  /// What the drawing alone says (check.h), without play: the run measures it before its first step. Null: it
-  /// did not.
+  /// Result of the check of the drawn parts (check.h), without play, which the run makes before its first
+  /// step. Null: no check was made.
   std::shared_ptr<const CheckResult> checked;
   TickTimes haptic, physics;
-  std::optional<RealTimeResult> real_time;  ///< of a run in real time
+  std::optional<RealTimeResult> real_time;  ///< set in a run in real time
   struct {
-    std::uint64_t held = 0;                  ///< ticks in which the last snapshot was used unchanged
+    std::uint64_t held = 0;                  ///< number of ticks that used the last snapshot unchanged
     double jump_J = 0, greatest_jump_m = 0;  ///< caused by new snapshots
   } local_contact;
   EnergyLedger energy;
-  ModelledCost modelled;              ///< at its maximum, with the fixed field
-  int widened = 0;                    ///< times a part left its region, so that more was modelled
-  std::vector<FastTurn> fast_turns;   ///< one for each part that turned too fast for its steps
-  std::size_t contacts_left_out = 0;  ///< near points beyond a query's limit; 0 unless a limit was set
+  ModelledCost modelled;  ///< greatest cost during the run, with the fixed field
+  int widened = 0;        ///< number of times that a part left its region, so that more was modelled
+  std::vector<FastTurn> fast_turns;  ///< one for each part that turned too fast for its steps
+  std::size_t contacts_left_out =
+      0;  ///< number of near points beyond a query's limit; 0 unless a limit was set
   double simulated_s = 0, build_wall_s = 0, run_wall_s = 0;
 };
 

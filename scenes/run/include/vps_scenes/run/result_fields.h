@@ -35,45 +35,43 @@ inline constexpr auto kLoopTimes =
 inline constexpr auto kStepFields = std::make_tuple(
     field("part", &StepResult::part, "name of the part"),
     field("verdict", &StepResult::verdict, "`fits`, `blocked` or `not_shown`"),
-    field("reason", &StepResult::reason, "of the verdict, in words; empty when it fits"),
+    field("reason", &StepResult::reason, "reason of the verdict; empty when it fits"),
     field("blocked_by", &StepResult::blocked_by,
           "the part that it overlaps at its target, as drawn, or that shuts it in or out; empty if none"),
-    field("blocked_at_m", &StepResult::blocked_at_W, "where, in the world"),
+    field("blocked_at_m", &StepResult::blocked_at_W, "where the overlap is, in the world"),
     field("blocked_depth_m", &StepResult::blocked_depth_m, "depth of that overlap"),
     field("blocked_error_m", &StepResult::blocked_error_m,
-          "error of that depth, by the meshes' distance from the faces that they stand for"),
+          "error of that depth: the distance of the meshes from the exact faces"),
     field("stuck_against", &StepResult::stuck_against,
-          "the part that it touched when the hand gave up; empty if none, or if the hand did not"),
+          "the part that it touched when the hand gave up; empty if none, or if the hand did not give up"),
     field("stuck_at_m", &StepResult::stuck_at_W, "where they touched, in the world"),
     field("stands_on", &StepResult::stands_on,
           "an earlier part that did not reach its target and was put there for this step; empty if none"),
-    field(
-        "mesh_doubt", &StepResult::mesh_doubt,
-        "why it is not shown that it fits, though the hand brought it home: the known error of the meshes is "
-        "more than its clearance, it belongs nowhere near another part, or a passage on the way was not "
-        "searched "
-        "to its end; empty: nothing"),
+    field("mesh_doubt", &StepResult::mesh_doubt,
+          "why it is not shown that the part fits, although the hand brought it to its target: the known "
+          "error of the meshes exceeds its clearance, no other part is near its target, or a motion between "
+          "two steps was not searched to its end; empty: no doubt"),
     field("aligned_by", &StepResult::aligned_by,
-          "a later part that fits into it and takes it from where the hand left it to where it belongs; "
-          "empty if none"),
+          "a later part that fits into it and moves it from where the hand left it to its target; empty if "
+          "none"),
     field("taken_off", &StepResult::is_taken_off,
           "the step took the part off (`--disassemble`); its target is where it was put away"),
     field("completed", &StepResult::completed, "the part reached its target within tolerance"),
     field("by_contact", &StepResult::by_contact,
-          "completed, and other parts guided it across its path; false: by sight alone"),
+          "completed, and other parts guided the part across its path; false: placed by sight alone"),
     field("guide_force_N", &StepResult::guide_force_N,
-          "greatest force from the sides, against the last leg of its path, while it was in hand"),
-    field("failure_reason", &StepResult::failure_reason, "empty when completed"),
+          "greatest force across the last leg of its path while it was in hand"),
+    field("failure_reason", &StepResult::failure_reason,
+          "why the part did not reach its target; empty when completed"),
     field("start_s", &StepResult::start_s, "simulated time at which the step began"),
-    field("duration_s", &StepResult::duration_s, "simulated time that it took"),
+    field("duration_s", &StepResult::duration_s, "simulated time that the step took"),
     field("max_penetration_m", &StepResult::max_penetration_m,
-          "deepest penetration over the step and the rest after it, by exact distance along all sharp edges, "
-          "at the vertices of curved faces and at the shells' points on faces, at every 200th pose and the "
-          "fifty with the deepest contacts; also of passages between the poses of two physics steps that are "
-          "more "
-          "than 0.1 mm apart"),
+          "deepest penetration during the step and the time after release, by exact distance along all sharp "
+          "edges, at the vertices of curved faces and at the shells' points on faces, at every 200th pose "
+          "and the fifty with the deepest contacts, and on motions between the poses of two physics steps "
+          "that are more than 0.1 mm apart"),
     field("penetration_limit_m", &StepResult::penetration_limit_m,
-          "min(10 um, clearance / 4); of a part that is taken off, beyond the overlap as drawn"),
+          "min(10 um, clearance / 4); for a part that is taken off, in addition to the overlap as drawn"),
     field("deepest_against", &StepResult::deepest_against, "name of the part that was penetrated deepest"),
     field("deepest_at_m", &StepResult::deepest_at_W, "place of the deepest penetration, in the world"),
     field("deepest_time_s", &StepResult::deepest_time_s, "simulated time of the deepest penetration"),
@@ -84,33 +82,33 @@ inline constexpr auto kStepFields = std::make_tuple(
     field("impacts", &StepResult::impacts, "number of impacts"),
     field("slides", &StepResult::slides, "number of contacts that slide"),
     field("index_count", &StepResult::index_count,
-          "how often the device was clutched and recentred, on a path longer than its workspace or a turn "
-          "beyond it"),
-    field("turns", &StepResult::turns, "of a screw: turns, the last time that it was screwed on"),
+          "number of times that the device was clutched and recentred, on a path longer than its workspace "
+          "or a rotation beyond its range"),
+    field("turns", &StepResult::turns, "of a screw: number of turns, the last time that it was screwed on"),
     field("advance_per_turn_m", &StepResult::advance_per_turn_m,
-          "of a screw: its way along the axis in these turns, for one turn"),
+          "of a screw: travel along the axis in these turns, divided by their number"),
     field("lean_rad", &StepResult::lean_rad,
-          "of a screw: greatest angle between its axis and that of its target meanwhile"),
+          "of a screw: greatest angle between its axis and that of its target during these turns"),
     field("press_needed_N", &StepResult::press_needed_N,
           "force that presses it in, by Lamé's formula for the declared interference; 0: not a press fit"),
     field("hoist_N", &StepResult::hoist_N,
-          "what a hoist carries of its weight, which is more than half of the coupling's greatest force, so "
-          "that forces on the hand are those of a lighter part; 0: no hoist"),
+          "share of the weight that a hoist carries, since the weight exceeds half of the coupling's "
+          "greatest force; forces on the hand are then those of a lighter part; 0: no hoist"),
     field("tolerance_m", &StepResult::tolerance_m, "tolerance of `final_error_m`, as stated or from the fit"),
     field("final_error_m", &StepResult::final_error_m,
-          "greatest distance of the part's surface from where it belongs"),
+          "greatest distance of the part's surface from its place at the target"),
     field("final_error_rad", &StepResult::final_error_rad, "rotation from the target"),
     field("rest_drift_m", &StepResult::rest_drift_m,
           "greatest displacement of any point of the part in `rest_s` after release"),
     field("late_drift_m", &StepResult::late_drift_m,
-          "the same in the second half of that time; more than 5 um: it is not at rest"),
+          "the same in the second half of that time; more than 5 um: the part is not at rest"),
     field("rest_s", &StepResult::rest_s, "simulated time that the part was watched after release"));
 
 inline constexpr auto kStrategyFields =
     std::make_tuple(field("strategy", &StrategyUse::strategy,
                           "strategy of the virtual operator: device/VIRTUAL_OPERATOR.md lists them"),
                     field("start_s", &StrategyUse::start_s, "simulated time at which it began"),
-                    field("duration_s", &StrategyUse::duration_s, "how long it took"));
+                    field("duration_s", &StrategyUse::duration_s, "duration of its use"));
 static_assert(coversAllMembers<StrategyUse>(kStrategyFields));
 
 /// Lists, which a table of steps has no column for.
@@ -122,29 +120,32 @@ inline constexpr auto kStepWallFields = std::make_tuple(
           "time to build the fixed field of the next step, on its own thread"),
     field("swap_s", &StepResult::swap_wall_s, "time to put that field in place, between two physics steps"),
     field("missed_while_cooking", &StepResult::missed_while_cooking,
-          "haptic periods missed meanwhile, in real time"));
+          "haptic periods missed while the field was built, in real time"));
 static_assert(coversAllMembers<StepResult>(kStepFields, kStepLists, kStepWallFields));
 
 // --- Parts of the result of a run
 
-inline constexpr auto kEnergyFields = std::make_tuple(
-    field("to_hand_J", &EnergyLedger::to_hand_J, "work done on the hand"),
-    field("from_hand_J", &EnergyLedger::from_hand_J, "work done by the hand"),
-    field("injected_J", &EnergyLedger::injected_J,
-          "greatest rise of energy that the simulation added, by the positions that the encoders show"),
-    field("quantisation_error_bound_J", &EnergyLedger::quantisation_error_bound_J,
-          "bound of the error of `injected_J` by the encoders' resolution"));
+inline constexpr auto kEnergyFields =
+    std::make_tuple(field("to_hand_J", &EnergyLedger::to_hand_J, "work done on the hand"),
+                    field("from_hand_J", &EnergyLedger::from_hand_J, "work done by the hand"),
+                    field("injected_J", &EnergyLedger::injected_J,
+                          "greatest energy that the simulation added, by the positions of the encoders"),
+                    field("quantisation_error_bound_J", &EnergyLedger::quantisation_error_bound_J,
+                          "bound of the error of `injected_J` by the encoders' resolution"));
 static_assert(coversAllMembers<EnergyLedger>(kEnergyFields));
 
 /// Of a part that turned farther in a step than the step can hold.
 inline constexpr auto kFastTurnFields = std::make_tuple(
     field("part", &FastTurn::part, "name of the part"),
-    field("in_contact", &FastTurn::is_in_contact, "the rotation is that against what it touches"),
-    field("angular_velocity_rad_s", &FastTurn::w_rad_s, "its rotation where it needs the shortest step"),
-    field("turn_rad", &FastTurn::turn_rad, "its turn in a step, or in a part of one (`substeps`)"),
+    field("in_contact", &FastTurn::is_in_contact, "the rotation is relative to the part that it touches"),
+    field("angular_velocity_rad_s", &FastTurn::w_rad_s,
+          "angular velocity at which the part needs the shortest step"),
+    field("turn_rad", &FastTurn::turn_rad, "its rotation in a step or substep (`substeps`)"),
     field("limit_rad", &FastTurn::limit_rad,
-          "greatest turn that is held: 0.1 between bodies in contact, else that of Bullet"),
-    field("needed_hz", &FastTurn::needed_hz, "`physics_rate_hz` that would hold it, without `substeps`"));
+          "greatest rotation that is simulated correctly: 0.1 between bodies in contact, else the limit of "
+          "Bullet"),
+    field("needed_hz", &FastTurn::needed_hz,
+          "`physics_rate_hz` that keeps the rotation within the limit, without `substeps`"));
 static_assert(coversAllMembers<FastTurn>(kFastTurnFields));
 
 inline constexpr auto kModelledFields =
@@ -161,27 +162,30 @@ inline constexpr auto kLoadChangeFields = std::make_tuple(
                                    field("words", &LoadLevelChange::was, "that level in words"))),
     object("to", std::make_tuple(field("level", &LoadLevelChange::to, "load level after"),
                                  field("words", &LoadLevelChange::is, "that level in words"))),
-    field("is_done", &LoadLevelChange::is_done, "false: the change was not possible, and `why` says why"),
+    field("is_done", &LoadLevelChange::is_done,
+          "false: the change was not possible, and `why` gives the reason"),
     field("why", &LoadLevelChange::why, "reason for the change"),
     field("lost_share", &LoadLevelChange::lost_share,
-          "share of the last quarter of a second whose physics steps were missing"),
+          "share of the physics periods of the last quarter of a second that had no step"),
     field("cost", &LoadLevelChange::cost, "effect on accuracy, in words"),
     field("unseen_bound_m", &LoadLevelChange::unseen_bound_m,
-          "bound of the depth of a contact between the points"),
+          "greatest depth of a contact between the points that can go undetected"),
     field("misread_m", &LoadLevelChange::misread_m,
-          "least distance by the new points less that by the old; null beyond the band"),
+          "least distance measured with the new points minus that measured with the old ones; null beyond "
+          "the band"),
     field("k_N_per_m", &LoadLevelChange::k_N_per_m, "stiffness of the coupling from here on"),
     field("build_s", &LoadLevelChange::build_wall_s, "time from the decision to its effect"));
 static_assert(coversAllMembers<LoadLevelChange>(kLoadChangeFields));
 
 inline constexpr auto kRealTimeHapticFields = std::make_tuple(
     field("missed_by", &RealTimeResult::missed_by, "missed periods by cause"),
-    group("late_us", &RealTimeResult::late, kPercentiles, "from a tick's due time to its start"),
-    group("response_us", &RealTimeResult::response, kPercentiles, "from a tick's due time to its wrench"),
-    object("worst",
-           std::make_tuple(field("tick", &RealTimeResult::worst_tick, "number of the slowest tick"),
-                           field("response_us", &RealTimeResult::worst_us, "from its due time to its wrench"),
-                           field("cause", &RealTimeResult::worst_cause, "cause of its delay"))),
+    group("late_us", &RealTimeResult::late, kPercentiles, "time from a tick's due time to its start"),
+    group("response_us", &RealTimeResult::response, kPercentiles,
+          "time from a tick's due time to its wrench"),
+    object("worst", std::make_tuple(field("tick", &RealTimeResult::worst_tick, "number of the slowest tick"),
+                                    field("response_us", &RealTimeResult::worst_us,
+                                          "time from its due time to its wrench"),
+                                    field("cause", &RealTimeResult::worst_cause, "cause of its delay"))),
     field("stale_ticks", &RealTimeResult::stale_ticks, "ticks whose part was older than two physics steps"),
     field("faults", &RealTimeResult::faults, "faults of the safety chain"),
     field("has_priority", &RealTimeResult::has_priority, "the thread has real-time priority"),
@@ -189,9 +193,9 @@ inline constexpr auto kRealTimeHapticFields = std::make_tuple(
     field("warnings", &RealTimeResult::warnings, "what the system refused, with the remedy"));
 
 inline constexpr auto kRealTimePhysicsFields = std::make_tuple(
-    group("late_us", &RealTimeResult::physics_late, kPercentiles, "from a step's due time to its begin"),
-    field("missed_periods", &RealTimeResult::physics_missed, "physics periods without a step of their own"),
-    field("behind_s", &RealTimeResult::behind_s, "how far simulated time fell behind the clock"),
+    group("late_us", &RealTimeResult::physics_late, kPercentiles, "time from a step's due time to its start"),
+    field("missed_periods", &RealTimeResult::physics_missed, "physics periods without a physics step"),
+    field("behind_s", &RealTimeResult::behind_s, "lag of simulated time behind real time"),
     list("load_changes", &RealTimeResult::load_changes, kLoadChangeFields));
 static_assert(coversAllMembers<RealTimeResult>(kRealTimeHapticFields, kRealTimePhysicsFields));
 
@@ -203,7 +207,7 @@ inline constexpr auto kTryFields = std::make_tuple(
     field("seed", &TryResult::seed, "seed of the virtual operator"),
     field("verdict", &TryResult::verdict, "`fits`, `blocked` or `not_shown`"),
     field("simulated_s", &TryResult::simulated_s, "simulated time"),
-    field("reason", &TryResult::reason, "of the first step that does not fit; empty when all fit"));
+    field("reason", &TryResult::reason, "reason of the first step that does not fit; empty when all fit"));
 static_assert(coversAllMembers<TryResult>(kTryFields));
 
 inline constexpr auto kAssembleFields = std::make_tuple(
@@ -217,7 +221,7 @@ inline constexpr auto kAssembleFields = std::make_tuple(
     list("fast_turns", &AssembleResult::fast_turns, kFastTurnFields),
     list("tries", &AssembleResult::tries, kTryFields),
     field("ease_of_assembly", &AssembleResult::ease_share,
-          "share of the tries in which every part was brought home; null for a single run"),
+          "share of the tries in which every part reached its target; null for a single run"),
     object("haptic",
            std::make_tuple(
                field("rate_hz", &AssembleResult::haptic_rate_hz, "rate of the haptic loop"),
@@ -232,7 +236,7 @@ inline constexpr auto kAssembleFields = std::make_tuple(
               field("jump_J", &LocalContact::jump_J, "energy of the jumps at new snapshots"),
               field("greatest_jump_m", &LocalContact::greatest_jump_m, "greatest of these jumps"))),
     field("widened", &AssembleResult::widened,
-          "how often a part reached the border of its region, so that more was modelled"),
+          "number of times that a part reached the border of its region, so that more was modelled"),
     group("modelled", &AssembleResult::modelled, kModelledFields));
 
 inline constexpr auto kAssembleWallFields = std::make_tuple(

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What others ask of a run by the clock while it goes on.
+// Requests to a run in real time: to take the next part, to release the part in hand, to change gains.
 #pragma once
 
 #include <atomic>
@@ -14,23 +14,23 @@ namespace vps::scenes {
 enum class RunPhase {
   Preparing,  ///< no step has begun
   InHand,     ///< the hand works on the part of the step
-  Settling,   ///< the part was let go of and is judged; the next one is taken then
+  Settling,   ///< the part was released and is being judged; afterwards the next part is taken
 };
 
-/// Written by any thread, read by the physics thread, and phase and step the other way round. A run that is
-/// recorded holds what was carried out, so that it replays bit for bit.
+/// Any thread writes requests and reads phase and step; the physics thread reads requests and writes phase
+/// and step. A recording holds the requests that were carried out, so that it replays bit for bit.
 class RunRequests {
  public:
-  /// Without waiting, each step is followed by the next one.
+  /// True: each step waits for take(). False: each step is followed by the next one at once.
   void setWaiting(bool waits) { waits_ = waits; }
   [[nodiscard]] bool isWaiting() const { return waits_; }
   /// Lets one step begin.
   void take() { may_take_ = true; }
   [[nodiscard]] bool mayTake() const { return !waits_ || may_take_; }
-  /// The hand lets go of the part where it is, and the step ends there.
+  /// Releases the part where it is and ends the step.
   void release() { releases_ = true; }
   [[nodiscard]] bool isReleaseWanted() const { return releases_; }
-  /// From the next part on that the hand takes: nothing is held then, so that no force steps.
+  /// Sets the gains from the next part on. No part is held at that moment, so that the force does not jump.
   void setGains(const CouplingGains& gains) {
     const std::lock_guard lock(mutex_);
     gains_ = gains;
@@ -41,10 +41,10 @@ class RunRequests {
   [[nodiscard]] bool isFaulted() const { return is_faulted_; }
 
   [[nodiscard]] RunPhase phase() const { return phase_; }
-  /// Of the procedure, the one that is or was worked on; -1: none yet.
+  /// Index of the step that is in progress or was last; -1: no step has begun.
   [[nodiscard]] int step() const { return step_; }
 
-  // By the run.
+  // Called by the run.
   void beginRun() {
     phase_ = RunPhase::Preparing;
     step_ = -1;
@@ -59,7 +59,7 @@ class RunRequests {
   bool takeRearm() { return rearms_.exchange(false); }
   void setFaulted(bool is_faulted) { is_faulted_ = is_faulted; }
   void endWork() { phase_ = RunPhase::Settling; }
-  /// Each once.
+  /// Returns each setGains() once.
   std::optional<CouplingGains> takeGains() {
     const std::lock_guard lock(mutex_);
     return std::exchange(gains_, std::nullopt);
@@ -69,7 +69,7 @@ class RunRequests {
   std::atomic<bool> waits_{false}, may_take_{false}, releases_{false}, rearms_{false}, is_faulted_{false};
   std::atomic<RunPhase> phase_{RunPhase::Preparing};
   std::atomic<int> step_{-1};
-  std::mutex mutex_;  ///< of the gains; the physics thread takes it once in a step of the procedure
+  std::mutex mutex_;  ///< protects gains_; the physics thread locks it once in a step of the procedure
   std::optional<CouplingGains> gains_;
 };
 

@@ -32,19 +32,19 @@ struct PairOverlap {
 /// Two bodies that overlapped at the start by more than the limit.
 struct OverlappingStart {
   PairOverlap start;
-  std::optional<double> apart_s;  ///< when they first overlapped by the limit or less; empty: never
-  double end_depth_m = 0;         ///< when they were judged last
+  std::optional<double> apart_s;  ///< first time at which they overlapped by the limit or less; empty: never
+  double end_depth_m = 0;         ///< overlap at the last time they were judged
 };
 
 struct JudgedOverlap {
   double limit_m = 0;
   std::size_t poses_judged = 0;
-  /// Of all pairs and steps, between their ends too, but for pairs that overlapped at the start: as long as
-  /// they have not come apart, they count only where they are deeper than then, by the limit or more. The
-  /// part that moves is named first.
+  /// Deepest overlap of all pairs, at the steps' poses and between them. A pair that overlapped at the start
+  /// and has not come apart counts only where it is deeper than at the start by the limit or more. The part
+  /// that moves is named first.
   PairOverlap deepest;
   std::vector<OverlappingStart> at_start;
-  /// Pairs that overlapped at the start and have not come apart since. They overlap by more than the limit.
+  /// Number of pairs that have overlapped by more than the limit since the start.
   [[nodiscard]] std::size_t neverApart() const {
     std::size_t count = 0;
     for (const OverlappingStart& start : at_start) count += !start.apart_s;
@@ -56,20 +56,21 @@ struct JudgedOverlap {
 /// The deepest overlap of a run by exact distance, at the start, the end and along all steps.
 struct JudgedDepth {
   PairOverlap deepest;       ///< depth 0: nothing overlapped
-  double bound_m = 0;        ///< no overlap was deeper at any time, between the steps' poses too
-  std::size_t measures = 0;  ///< of single pairs between start and end
-  /// False: bound_m is that of a stretch of time that was left, since searching it would have cost too much.
-  /// Where it is true, bound_m may exceed the deepest by what parts that start in each other may overlap.
+  double bound_m = 0;        ///< upper bound of the overlap at any time, also between the steps' poses
+  std::size_t measures = 0;  ///< number of single pairs that were measured between start and end
+  /// False: bound_m comes from an interval of time that was not searched, since the search would have taken
+  /// too long. True: bound_m may still exceed the deepest overlap, by the overlap that is allowed to parts
+  /// that start inside each other.
   bool is_searched = true;
 };
 
 struct SimulateOptions : ModelOptions {
-  /// Measures the overlap of all pairs of bodies at the start, after every so many steps and at the end; 0:
-  /// never. Not together with is_real_time.
+  /// Measures the overlap of all pairs of bodies at the start, after every `judge_every` steps and at the
+  /// end; 0: never. Cannot be combined with is_real_time.
   int judge_every = 0;
-  /// By the system's clock: each step begins when it is due. The steps and their results stay the same.
+  /// Runs in real time: each step begins when it is due. The steps and their results stay the same.
   bool is_real_time = false;
-  const std::atomic<bool>* stop = nullptr;  ///< set it to end early
+  const std::atomic<bool>* stop = nullptr;  ///< set it to end the simulation early
   /// Called after every step. May be empty.
   std::function<void(double time_s, const std::vector<BodyState>& bodies, double max_depth_m)> trace;
 };
@@ -79,15 +80,15 @@ struct SimulateResult {
   /// Deepest overlap of the run: exact.deepest.depth_m.
   double max_penetration_m = 0;
   double contact_depth_m = 0;  ///< deepest contact of the run as the solver saw it
-  JudgedDepth exact;           ///< a run in real time is judged after it
+  JudgedDepth exact;           ///< judged during the run, or after a run in real time
   std::optional<JudgedOverlap> overlap;
   double kinetic_energy_J = 0;  ///< at the end
-  /// How often bodies in contact were stopped within a step, because no contact force was found that keeps
-  /// their sharp edges and corners apart for the whole step. Each takes energy.
+  /// Number of times that bodies in contact were stopped within a step, because no contact force was found
+  /// that keeps their sharp edges and corners apart for the whole step. Each stop takes energy.
   std::size_t shortened_steps = 0;
   std::vector<FastTurn> fast_turns;  ///< one for each part that turned too fast for its steps
   int most_substeps = 1;             ///< greatest number of parts of a step
-  TickTimes step, contact_step;      ///< of all steps; of those with contact
+  TickTimes step, contact_step;      ///< duration of all steps, and of the steps with contact
   ModelledCost modelled;
   double build_wall_s = 0;
   struct RealTime {
@@ -99,8 +100,8 @@ struct SimulateResult {
   std::optional<RealTime> real_time;  ///< of a run in real time
 };
 
-/// The part that turns fastest, by what it needs, with the remedy, and how many others there are. Empty for
-/// none.
+/// Names the part that needs the highest physics rate, with the remedy and the number of other parts that
+/// turn too fast. Empty if there is none.
 VPS_SCENES_API std::string inWords(const std::vector<FastTurn>& turns, const Fidelity& fidelity);
 
 /// Every part that is not fixed is a dynamic body at its designed pose. The limit of overlap is 10 um, or a
