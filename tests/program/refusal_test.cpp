@@ -124,7 +124,7 @@ TEST_F(Program, APartTooFarFromTheOriginIsRefused) {
   write("far.stl", far + "endsolid far\n");
   const Ran ran = run("query far.stl pin.stl --units m --voxel 0.25mm");
   EXPECT_EQ(ran.status, 2);
-  EXPECT_NE(ran.err.find("far.stl': lies 1e+09 m from the origin, too far for 0.25 mm voxels"),
+  EXPECT_NE(ran.err.find("far.stl': the part lies 1e+09 m from the origin, too far for 0.25 mm voxels"),
             std::string::npos)
       << ran.err;
 }

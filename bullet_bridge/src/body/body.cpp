@@ -36,10 +36,11 @@ void say(const Mesh& mesh, const PartModel& part, const Resolution& chosen, cons
 
 void sayIfSheet(const PartModel& part) {
   if (part.solid->isSheet())
-    report(LogLevel::Info, part.name +
-                               " has holes wider than the spacing of its points: it collides as the surface "
-                               "that is drawn, from both sides; BodySettings::open_mesh = OpenMesh::Solid "
-                               "closes them");
+    report(LogLevel::Info,
+           part.name +
+               " has holes wider than the spacing of its points, so it is a sheet: it collides from both "
+               "sides and has no inside. If facets are missing, BodySettings::open_mesh = "
+               "OpenMesh::Solid closes the holes");
 }
 
 void requireUsable(const Material& material) {
@@ -58,7 +59,7 @@ void requireUsable(const BodySettings& settings) {
   if (!settings.X_WP.isFinite() || !((R.transpose() * R - Mat3::Identity()).norm() < kRounding) ||
       R.determinant() < 0)
     throw std::invalid_argument("makeBody: X_WP of '" + settings.name +
-                                "' is not a finite position with a rotation");
+                                "' must be finite and have a rotation matrix");
 }
 
 /// Mass properties of the part with flat lids over the holes of an open mesh. Without its lid a box would
@@ -68,7 +69,8 @@ MassProperties massWithLids(const PartModel& part, const std::string& name) {
   const MassProperties whole = has_inside ? part.solid->mass() : solidMass(*part.mesh, name);
   if (lidsOf(welded(*part.mesh)).triangles.empty()) return whole;
   if (std::abs(whole.volume_m3 - massProperties(*part.mesh).volume_m3) > 1e-3 * std::abs(whole.volume_m3))
-    report(LogLevel::Warning, name + " has an open mesh: its mass is that of the part with flat lids");
+    report(LogLevel::Warning,
+           name + " has an open mesh: its mass is that of the part with flat lids on the holes");
   return whole;
 }
 
@@ -84,7 +86,9 @@ BodyFrame frameOf(const PartModel& part, const BodySettings& settings) {
 }  // namespace
 
 Resolution resolutionFor(const Mesh& mesh, std::size_t point_budget) {
-  if (point_budget < 100) throw std::invalid_argument("resolutionFor: a budget below 100 points");
+  if (point_budget < 100)
+    throw std::invalid_argument("resolutionFor: point_budget must be at least 100, not " +
+                                std::to_string(point_budget));
   double area_m2 = 0;
   for (const auto& t : mesh.triangles) {
     const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];

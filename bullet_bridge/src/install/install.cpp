@@ -101,7 +101,7 @@ struct CreateFunction : ContactCreateFunction {
     const Shape* vps = shapeOf(*bodies[1 - side]);
     if (!vps)
       throw std::invalid_argument(
-          std::string(shape.getName()) +
+          "a shape named " + std::string(shape.getName()) +
           " uses the shape type of bullet::Shape, which is reserved; it does not collide");
     const bool is_smooth = isPrimitive(shape) && !hasCorners(shape);
     requireContact(vps->models().shell || (!is_smooth && hasSurface(*vps)));
@@ -340,7 +340,8 @@ void uninstall(btCollisionDispatcher& dispatcher) {
       2;  // references held by the installation and its create function; all others belong to pairs
   if (installation && installation->context.use_count() > kOurs)
     report(LogLevel::Warning,
-           "uninstalled while pairs of bodies with a bullet::Shape exist; they keep VPS contact");
+           "uninstall() was called while pairs of bodies with a bullet::Shape exist; these pairs keep VPS "
+           "contact");
   if (installation && dispatcher.getNearCallback() == &nearCallback)
     dispatcher.setNearCallback(installation->create.next_near_callback);
   if (installation)

@@ -60,7 +60,7 @@ std::shared_ptr<const VoxMap> scaled(const VoxMap& map, const ShapeModels& large
   const std::vector<Surface>& parts = larger.surfaces;
   if (parts.empty() && !larger.mesh)
     throw std::invalid_argument(
-        "Shape: a map cannot be scaled without the mesh it was built from; give its models a mesh");
+        "Shape: a map cannot be scaled without the mesh it was built from; set ShapeModels::mesh");
   if (parts.size() == 1 && parts[0].X_MP.R.isIdentity(0) && parts[0].X_MP.p.isZero(0))
     return std::make_shared<const VoxMap>(buildVoxMap(*parts[0].distance, settings));
   if (parts.empty()) return std::make_shared<const VoxMap>(buildVoxMap(*larger.mesh, settings));

@@ -51,7 +51,7 @@ void requireUsable(const SurfaceMaterial& m) {
 
 void requireModels(const ShapeModels& models) {
   if (!models.map && !models.shell && !models.mesh)
-    throw std::invalid_argument("Shape: it has no models; give it a map, a shell or a mesh (makeModels)");
+    throw std::invalid_argument("Shape: there are no models; give a map, a shell or a mesh (makeModels)");
   for (const Surface& surface : models.surfaces) requireUsable(surface.material);
 }
 
@@ -151,9 +151,11 @@ FeatureSet featuresOf(const std::vector<Surface>& surfaces) {
 
 BodyFrame makeBodyFrame(const MassProperties& unit_density, double density_kg_m3) {
   if (!(unit_density.volume_m3 > 0))
-    throw LoadError("", "", "its volume is not positive; the mesh is open or inside out");
+    throw LoadError("", "", "the part's volume is not positive: its mesh is open or inside out");
   if (!(density_kg_m3 > 0) || !std::isfinite(density_kg_m3))
-    throw LoadError("", "", "its density is not positive and finite");
+    throw LoadError(
+        "", "",
+        "the part's density must be positive and finite, not " + std::to_string(density_kg_m3) + " kg/m^3");
   const Eigen::SelfAdjointEigenSolver<Mat3> eigen(inertiaAboutCom(unit_density, density_kg_m3));
   BodyFrame frame;
   frame.mass_kg = unit_density.volume_m3 * density_kg_m3;
@@ -256,8 +258,8 @@ void Shape::getAabb(const btTransform& X_WS, btVector3& min, btVector3& max) con
 
 void Shape::calculateLocalInertia(btScalar mass, btVector3& inertia) const {
   if (!(mass >= 0) || !std::isfinite(mass))
-    throw std::invalid_argument("Shape: a mass of " + std::to_string(mass) +
-                                " kg; give a positive one, or 0 for a fixed body");
+    throw std::invalid_argument("Shape: the mass must be positive, or 0 for a fixed body, not " +
+                                std::to_string(mass) + " kg");
   if (models_.mesh) {
     const MassProperties unit = solidMass(models_);
     if (unit.volume_m3 > 0) {
@@ -295,10 +297,13 @@ void Shape::setLocalScaling(const btVector3& scaling) {
 }
 
 void Shape::setMargin(btScalar margin) {
-  if (!(margin >= 0)) throw std::invalid_argument("Shape: a margin must not be negative; it is always 0");
+  if (!(margin >= 0))
+    throw std::invalid_argument(
+        "Shape: setMargin() must not get a negative margin; it has no effect in any case");
   static std::atomic_flag was_reported;
   if (margin != 0)
-    warnOnce(was_reported, "Shape has no margin: its contact distance is that of the part's surface");
+    warnOnce(was_reported,
+             "setMargin() has no effect on a bullet::Shape: contact is always at the part's surface");
 }
 
 }  // namespace vps::bullet

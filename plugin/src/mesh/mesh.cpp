@@ -118,7 +118,8 @@ MeshReport checkMesh(const Mesh& mesh, const std::vector<HalfEdge>& edges,
 }
 
 void requireUsable(const Mesh& mesh, const std::string& file, const std::string& part) {
-  if (mesh.triangles.empty()) throw LoadError(file, part, "has no triangles; export it as a triangle mesh");
+  if (mesh.triangles.empty())
+    throw LoadError(file, part, "the mesh has no triangles; export it as a triangle mesh");
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
     if (!mesh.vertices[i].allFinite())
       throw LoadError(file, part,
@@ -133,9 +134,9 @@ void requireUsable(const Mesh& mesh, const std::string& file, const std::string&
                             std::to_string(mesh.vertices.size()) + "; export it again");
   const double area_m2 = area(mesh);
   if (!std::isfinite(area_m2))
-    throw LoadError(file, part, "is too large for its area to be a number; check its unit");
+    throw LoadError(file, part, "the mesh is too large for its area to be computed; check its unit");
   if (!(area_m2 > 0))
-    throw LoadError(file, part, "has zero area: all triangles are points or lines; export it again");
+    throw LoadError(file, part, "the mesh has zero area: all triangles are points or lines; export it again");
 }
 
 namespace {

@@ -65,7 +65,7 @@ std::optional<std::string> ByteCache::find(std::string_view made_from) const {
   if (bytes)
     CacheFolder::touch(file);
   else
-    folder_->warn(file, why + "; made again");
+    folder_->warn(file, why + "; the result is made again");
   return bytes;
 }
 

@@ -160,7 +160,7 @@ What readOrMake(CacheFolder& folder, const fs::path& file, Read read, Make make,
       CacheFolder::touch(file);
       return std::move(*kept);
     }
-    folder.warn(file, why + "; built again");
+    folder.warn(file, why + "; the model is built again");
   }
   What made = make();
   folder.keep(file, [&](const fs::path& to) { return write(made, to); });

@@ -118,7 +118,7 @@ class PlyReader {
       total_m2 += row[6];
     }
     if (!header_.is_more_after && rest_.find_first_not_of(" \r\n") != std::string_view::npos)
-      fail("has bytes after its last point; write it again");
+      fail("the file has bytes after its last point; write it again");
     shell.spacing_m =
         header_.spacing_m > 0 ? header_.spacing_m : std::sqrt(total_m2 / static_cast<double>(header_.count));
     return shell;
@@ -132,7 +132,7 @@ class PlyReader {
   /// The next line without its end. A line without an end means that the file is cut.
   std::string_view line() {
     const std::size_t end = rest_.find('\n');
-    if (end == std::string_view::npos) fail("ends early; the file is cut, write it again");
+    if (end == std::string_view::npos) fail("the file ends early, before its last point; write it again");
     std::string_view text = rest_.substr(0, end);
     rest_.remove_prefix(end + 1);
     if (text.ends_with('\r')) text.remove_suffix(1);
@@ -140,7 +140,7 @@ class PlyReader {
   }
 
   void readHeader() {
-    if (line() != "ply") fail("is not a PLY file");
+    if (line() != "ply") fail("the file is not a PLY file");
     bool has_format = false, is_in_vertex = false, has_vertex = false;
     for (std::string_view text = line(); text != "end_header"; text = line()) {
       std::istringstream words{std::string(text)};
@@ -155,18 +155,19 @@ class PlyReader {
         has_format = true;
       } else if (word == "element") {
         words >> word;
-        if (word == "vertex" && has_vertex) fail("has two elements 'vertex'");
-        if (word != "vertex" && !has_vertex) fail("must begin with the element 'vertex', not '" + word + "'");
+        if (word == "vertex" && has_vertex) fail("the file has two elements 'vertex'");
+        if (word != "vertex" && !has_vertex)
+          fail("the file must begin with the element 'vertex', not '" + word + "'");
         is_in_vertex = word == "vertex";
         header_.is_more_after = !is_in_vertex;
-        if (is_in_vertex && !(words >> header_.count)) fail("does not say how many points it has");
+        if (is_in_vertex && !(words >> header_.count)) fail("the file does not state its number of points");
         has_vertex = true;
       } else if (word == "property" && is_in_vertex) {
         readProperty(words);
       }  // comments and other elements are ignored
     }
-    if (!has_format) fail("does not state its format");
-    if (header_.count == 0) fail("has no points");
+    if (!has_format) fail("the file does not state its format");
+    if (header_.count == 0) fail("the file has no points");
     requireColumns();
     requireSize();
   }
@@ -175,7 +176,7 @@ class PlyReader {
     std::string format;
     words >> format;
     if (format != "ascii" && format != "binary_little_endian")
-      fail("has format '" + format + "'; export it as ascii or binary_little_endian");
+      fail("the file has format '" + format + "'; export it as ascii or binary_little_endian");
     header_.is_binary = format != "ascii";
   }
 
@@ -199,7 +200,7 @@ class PlyReader {
       int times = 0;
       for (const Property& property : header_.properties) times += property.column == static_cast<int>(c);
       if (times != 1)
-        fail("has property '" + std::string(kNames[c]) + "' " + std::to_string(times) +
+        fail("the file has property '" + std::string(kNames[c]) + "' " + std::to_string(times) +
              " times instead of once; a pointshell needs x y z nx ny nz area");
     }
   }
@@ -208,9 +209,9 @@ class PlyReader {
   void requireSize() const {
     const std::size_t least_bytes = header_.is_binary ? row_bytes_ : 2 * header_.properties.size();
     if (header_.count > rest_.size() / least_bytes)
-      fail("promises " + std::to_string(header_.count) + " points but ends early; write it again");
+      fail("the file states " + std::to_string(header_.count) + " points but ends early; write it again");
     if (header_.count > std::numeric_limits<std::uint32_t>::max())
-      fail("has more points than ids can number");
+      fail("the file has more points than can be numbered with 32 bits");
   }
 
   Row binaryRow() {
@@ -243,7 +244,7 @@ class PlyReader {
     double value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc() || end != text.data() + text.size())
-      fail("holds a word that is not a number: " + std::string(text.substr(0, 40)));
+      fail("the file holds a word that is not a number: " + std::string(text.substr(0, 40)));
     return value;
   }
 
@@ -298,9 +299,9 @@ void savePly(const PointShell& shell, const std::string& file) {
 
 PointShell loadPly(const std::string& file) {
   std::ifstream in(file, std::ios::binary);
-  if (!in) throw LoadError(file, "", "cannot be opened; check the name");
+  if (!in) throw LoadError(file, "", "the file cannot be opened; check the name");
   const std::string content{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-  if (in.bad()) throw LoadError(file, "", "cannot be read");
+  if (in.bad()) throw LoadError(file, "", "the file cannot be read");
   PlyReader reader(content, file);
   PointShell shell = reader.read();
   if (!reader.isSorted()) sortPoints(shell);

@@ -36,14 +36,14 @@ void requireSettings(const Mesh& mesh, const PointShellSettings& settings, const
   if (!(std::isfinite(settings.spacing_m) && settings.spacing_m > 0))
     throw LoadError(
         "", part,
-        "point spacing must be a positive length, not " + std::to_string(settings.spacing_m) + " m");
+        "the point spacing must be a positive length, not " + std::to_string(settings.spacing_m) + " m");
   if (!(settings.edge_angle_rad > 0 && settings.edge_angle_rad <= std::numbers::pi))
-    throw LoadError("", part,
-                    "edge angle must lie between 0 and pi, not " + std::to_string(settings.edge_angle_rad));
+    throw LoadError(
+        "", part, "the edge angle must lie between 0 and pi, not " + std::to_string(settings.edge_angle_rad));
   if (const double enough_m = fittingSpacing_m(mesh, settings.spacing_m); enough_m > settings.spacing_m)
     throw LoadError("", part,
                     "a point spacing of " + microns(settings.spacing_m) + " gives too many points; " +
-                        microns(std::ceil(enough_m * 1e6) * 1e-6) + " would do, or check the units");
+                        microns(std::ceil(enough_m * 1e6) * 1e-6) + " is enough, or check the units");
 }
 
 PointShell laidOut(const std::vector<ShellSample>& samples, double spacing_m) {

@@ -58,25 +58,25 @@ const Entry* onlyOf(const std::vector<Entry>& entries, openvdb::GridClass wanted
   std::vector<Entry> found;
   for (const Entry& entry : entries)
     if (objection(entry).empty() && entry.grid->getGridClass() == wanted) found.push_back(entry);
-  if (found.size() > 1) refuseVdb(file, "holds several level sets; name one of " + namesOf(found));
+  if (found.size() > 1) refuseVdb(file, "the file holds several level sets; name one of " + namesOf(found));
   if (found.empty()) return nullptr;
   return &*std::find_if(entries.begin(), entries.end(),
                         [&](const Entry& entry) { return entry.grid == found.front().grid; });
 }
 
 const Entry& choose(const std::vector<Entry>& entries, const std::string& file, const std::string& name) {
-  if (entries.empty()) refuseVdb(file, "holds no grids; export the part again");
+  if (entries.empty()) refuseVdb(file, "the file holds no grids; export the part again");
   if (!name.empty()) {
     for (const Entry& entry : entries) {
       if (entry.name() != name) continue;
       if (!objection(entry).empty()) refuseVdb(file, objection(entry));
       return entry;
     }
-    refuseVdb(file, "holds no grid '" + name + "'; it holds " + namesOf(entries));
+    refuseVdb(file, "the file holds no grid '" + name + "'; it holds " + namesOf(entries));
   }
   for (const openvdb::GridClass wanted : {openvdb::GRID_LEVEL_SET, openvdb::GRID_UNKNOWN})
     if (const Entry* entry = onlyOf(entries, wanted, file)) return *entry;
-  refuseVdb(file, "holds no level set: " + objection(entries.front()));
+  refuseVdb(file, "the file holds no level set: " + objection(entries.front()));
 }
 
 FloatGrid::Ptr asFloats(const openvdb::GridBase::Ptr& grid) {
@@ -95,23 +95,26 @@ void findLattice(const std::string& file, LevelSet& out) {
   const openvdb::math::Transform& transform = out.grid->transform();
   const auto affine = transform.isLinear() ? transform.baseMap()->getAffineMap() : nullptr;
   if (affine == nullptr)
-    refuseVdb(file, "has voxels that widen with depth (a frustum); resample it to cubes");
+    refuseVdb(file, "the file has voxels that widen with depth (a frustum); resample it to cubes");
   const openvdb::Mat4R m = affine->getMat4();
   Mat3 steps;  // columns: a step along each axis of the lattice
   for (int axis = 0; axis < 3; ++axis)
     for (int k = 0; k < 3; ++k) steps(k, axis) = m(axis, k);
   const Vec3 lengths = steps.colwise().norm();
   const double h = lengths.x();
-  if (!(h > 0) || !steps.allFinite()) refuseVdb(file, "has voxels of no size; resample it");
+  if (!(h > 0) || !steps.allFinite())
+    refuseVdb(file, "the file has voxels whose size is not a positive number; resample it");
   if (!((lengths.array() - h).abs() <= kSameLength * h).all())
-    refuseVdb(file, "has voxels of " + digits(1e3 * lengths.x()) + " x " + digits(1e3 * lengths.y()) + " x " +
-                        digits(1e3 * lengths.z()) + " mm; resample it to cubes (Houdini: VDB Resample)");
+    refuseVdb(file, "the file has voxels of " + digits(1e3 * lengths.x()) + " x " +
+                        digits(1e3 * lengths.y()) + " x " + digits(1e3 * lengths.z()) +
+                        " mm; resample it to cubes (Houdini: VDB Resample)");
   const Mat3 R = steps / h;
   if (!((R.transpose() * R - Mat3::Identity()).cwiseAbs().maxCoeff() <= 4 * kSameLength))
-    refuseVdb(file, "has voxels that are sheared; resample it to cubes (Houdini: VDB Resample)");
-  if (R.determinant() < 0) refuseVdb(file, "has a mirrored grid; resample it (Houdini: VDB Resample)");
+    refuseVdb(file, "the file has voxels that are sheared; resample it to cubes (Houdini: VDB Resample)");
+  if (R.determinant() < 0)
+    refuseVdb(file, "the file has a mirrored grid; resample it (Houdini: VDB Resample)");
   const Vec3 p(m(3, 0), m(3, 1), m(3, 2));
-  if (!p.allFinite()) refuseVdb(file, "has a grid that lies nowhere; set its transform");
+  if (!p.allFinite()) refuseVdb(file, "the file has a grid whose position is not finite; set its transform");
   out.voxel_m = h;
   // Deviations within rounding error do not justify a resampling.
   const bool is_straight = (R - Mat3::Identity()).cwiseAbs().maxCoeff() <= 1e-9;
@@ -125,7 +128,7 @@ void findLattice(const std::string& file, LevelSet& out) {
 constexpr double kMinBand = 3, kMaxBand = 32;  // voxels; at kMaxBand half a quantum is 1/2000 voxel
 
 [[noreturn]] void refuseNan(const std::string& file) {
-  refuseVdb(file, "holds values that are not numbers; export it again");
+  refuseVdb(file, "the file holds values that are not numbers; export it again");
 }
 
 /// Tests the values of tiles, which cover many voxels. Values of leaves are tested one by one elsewhere.
@@ -138,11 +141,12 @@ void requireTiles(const std::string& file, const FloatGrid& grid) {
 
 void requireValues(const std::string& file, const FloatGrid& grid) {
   const double background = static_cast<double>(grid.background());
-  if (grid.tree().leafCount() == 0) refuseVdb(file, "is empty: no value lies within a band; export it again");
-  if (background < 0) refuseVdb(file, "is inside out: its background is negative; turn its sign");
+  if (grid.tree().leafCount() == 0)
+    refuseVdb(file, "the file is empty: no value lies within a band; export it again");
+  if (background < 0) refuseVdb(file, "the file is inside out: its background is negative; turn its sign");
   if (!(background > 0))
-    refuseVdb(file, "looks like a fog volume: its background is 0; convert it to a level set");
-  if (!std::isfinite(background)) refuseVdb(file, "has no band: its background is not a number");
+    refuseVdb(file, "the file looks like a fog volume: its background is 0; convert it to a level set");
+  if (!std::isfinite(background)) refuseVdb(file, "the file has no band: its background is not a number");
   requireTiles(file, grid);
   bool has_inside = false, has_outside = false;
   for (auto leaf = grid.tree().cbeginLeaf(); leaf; ++leaf)
@@ -153,7 +157,8 @@ void requireValues(const std::string& file, const FloatGrid& grid) {
       has_outside = has_outside || d >= 0;
     }
   if (!has_inside || !has_outside)
-    refuseVdb(file, std::string("has no surface: no value is ") + (has_inside ? "positive" : "negative") +
+    refuseVdb(file, std::string("the file has no surface: no value is ") +
+                        (has_inside ? "positive" : "negative") +
                         "; a fog volume or a distance without sign must be converted to a level set");
 }
 
@@ -167,7 +172,7 @@ void signInside(FloatGrid& grid) {
 void widenBand(const std::string& file, LevelSet& level_set) {
   const double band = static_cast<double>(level_set.grid->background()) / level_set.voxel_m;
   if (band < 1 - 1e-6)
-    refuseVdb(file, "has a band of " + digits(band) +
+    refuseVdb(file, "the file has a band of " + digits(band) +
                         " voxels; at least 1 is needed, 3 would do (Houdini: VDB " +
                         "Renormalize or VDB Rebuild)");
   const int missing = static_cast<int>(std::ceil(kMinBand - band + 1e-3));

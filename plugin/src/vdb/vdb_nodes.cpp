@@ -42,7 +42,8 @@ class Bricks {
 
  private:
   void checkSize() const {
-    if (layout_.size.minCoeff() <= 0) throw LoadError(file_, "", "is damaged or cut short; build it again");
+    if (layout_.size.minCoeff() <= 0)
+      throw LoadError(file_, "", "the file is damaged or cut short; build it again");
     requireDirectory(layout_.size.cast<double>(), file_);
   }
 
@@ -155,7 +156,7 @@ void layOut(const openvdb::FloatTree& tree, double quantum_m, const std::string&
   }
   constexpr int kMaxIndex = std::numeric_limits<int>::max() / 4;
   if (fromVdb(box.min()).minCoeff() < -kMaxIndex || fromVdb(box.max()).maxCoeff() > kMaxIndex)
-    throw LoadError(file, "", "lies too many voxels from its own origin; resample it");
+    throw LoadError(file, "", "the grid lies too many voxels from its own origin; resample it");
   const auto cellOf = [](int node) { return node >= 0 ? node / kBrick : -((kBrick - 1 - node) / kBrick); };
   const Index3 low = fromVdb(box.min()).unaryExpr(cellOf), high = fromVdb(box.max()).unaryExpr(cellOf);
   layout.low = low - Index3::Constant(2);

@@ -18,16 +18,16 @@ namespace vps {
 namespace {
 
 [[noreturn]] void refuseDamaged(const std::string& file) {
-  refuseVdb(file, "is damaged or cut short; build it again");
+  refuseVdb(file, "the file is damaged or cut short; build it again");
 }
 
 std::string bytesOf(const std::string& file) {
   std::error_code unknown;
   const std::uintmax_t size = std::filesystem::file_size(file, unknown);
   if (!unknown && static_cast<double>(size) > kMemoryLimit_bytes)
-    refuseVdb(file, "is larger than the 4 GiB that are read; resample it with larger voxels");
+    refuseVdb(file, "the file is larger than the 4 GiB that are read; resample it with larger voxels");
   std::ifstream in(file, std::ios::binary);
-  if (!in) refuseVdb(file, "cannot be read; is the name right?");
+  if (!in) refuseVdb(file, "the file cannot be read; check its name");
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
@@ -127,7 +127,8 @@ PlacedVdb readOthers(const std::string& file, VdbArchive& archive, const std::st
   layOut(level_set.grid->tree(), quantum_m, file, *layout);
   readNodes(level_set.grid->tree(), quantum_m, file, *layout);
   const Box bounds = proveField(*layout, level_set.voxel_m, quantum_m);
-  if (bounds.isEmpty()) refuseVdb(file, "has no surface: its values change sign nowhere; export it again");
+  if (bounds.isEmpty())
+    refuseVdb(file, "the file has no surface: its values change sign nowhere; export it again");
   markFarCells(*layout);
   return {VoxMapAccess::make(layout, level_set.voxel_m, level_set.band_m, bounds), level_set.X_FM};
 }
@@ -138,7 +139,8 @@ PlacedVdb read(const std::string& file, const std::string& name) {
     const Origin origin = originOf(bytes);
     if (origin == Origin::Changed)
       refuseVdb(file,
-                "is damaged or cut short, or another program changed it and left our metadata 'vps_...' in; "
+                "the file is damaged or cut short, or another program changed it and left our metadata "
+                "'vps_...' in; "
                 "build it again, or remove them");
     VdbArchive archive(std::move(bytes), kMemoryLimit_bytes);
     if (origin == Origin::Ours) return {OwnFile(file, archive).read(), Pose()};
@@ -146,14 +148,16 @@ PlacedVdb read(const std::string& file, const std::string& name) {
   } catch (const LoadError&) {
     throw;
   } catch (const openvdb::LookupError&) {
-    refuseVdb(file, "holds a grid of a type that is not known here; export the level set alone, as floats");
-  } catch (const std::bad_alloc&) {
     refuseVdb(
         file,
-        "needs more memory than is free; resample it with larger voxels, or, if the file is small, export "
-        "it again: it is damaged");
+        "the file holds a grid of a type that is not known here; export the level set alone, as floats");
+  } catch (const std::bad_alloc&) {
+    refuseVdb(file,
+              "the file needs more memory than is free; resample it with larger voxels, or, if the file is "
+              "small, export "
+              "it again: it is damaged");
   } catch (const std::exception&) {
-    refuseVdb(file, "is not a whole OpenVDB file; build it again");
+    refuseVdb(file, "the file is not a whole OpenVDB file; build it again");
   }
 }
 

@@ -110,7 +110,7 @@ void writeGrids(const openvdb::GridPtrVec& grids, const std::string& file) {
     bytes = std::move(stream).str();
     bytes += endOf(bytes);
   } catch (const std::exception&) {
-    throw LoadError(file, "", "could not be written; is there enough memory?");
+    throw LoadError(file, "", "the file could not be written; is there enough memory?");
   }
   writeWholeFile(file, bytes);
 }
@@ -119,7 +119,9 @@ void writeGrids(const openvdb::GridPtrVec& grids, const std::string& file) {
 
 void saveVdb(const VoxMap& map, const std::string& file) {
   const VoxLayout& layout = *VoxMapAccess::layout(map);
-  if (layout.bricks.empty()) throw LoadError(file, "", "would be an empty voxmap; build one first");
+  if (layout.bricks.empty())
+    throw LoadError(file, "",
+                    "the file was not written, because the voxmap is empty; build the voxmap first");
   initializeOpenVdb();
   const auto surface = surfaceGrid(layout, map.voxel_m(), map.band_m(), map.quantum_m());
   addExactData(layout, map.band_m(), map.bounds(), *surface);

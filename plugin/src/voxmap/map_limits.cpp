@@ -17,26 +17,27 @@ static_assert(kMemoryLimit_bytes / VoxPool::kBytes < VoxPool::kMaxBricks, "all b
 
 void requireSettings(const VoxMapSettings& settings, const std::string& part) {
   if (!(settings.voxel_m > 0) || !std::isfinite(settings.voxel_m))
-    throw LoadError("", part, "voxel size must be above 0; 0.25 mm suits fits of 20 um and more");
+    throw LoadError("", part, "the voxel size must be above 0; 0.25 mm suits fits of 20 um and more");
   // Distances are floats. No part comes near these limits, but the values of a damaged file may.
   if (!(settings.voxel_m > 1e-30) || !(settings.voxel_m < 1e30))
-    throw LoadError("", part, "voxel size must lie between 1e-30 and 1e30 m; is the unit right?");
+    throw LoadError("", part, "the voxel size must lie between 1e-30 and 1e30 m; is the unit right?");
   // A band read from a map is rounded, see quantumOf().
   if (!(settings.band_voxels >= 3 * (1 - 1e-6)) || !(settings.band_voxels <= 64 * (1 + 1e-6)))
-    throw LoadError("", part, "band must be 3 to 64 voxels wide on each side; 4 is usual");
+    throw LoadError("", part, "the band must be 3 to 64 voxels wide on each side; 4 is usual");
 }
 
 void requirePose(const Pose& X_MP) {
   if (!X_MP.isFinite())
-    throw LoadError("", "", "the pose of a part to be placed is not finite; place it again");
+    throw LoadError("", "", "the pose of the part to be mounted is not finite; give finite numbers");
 }
 
 void requireNear(const Box& bounds_M, double voxel_m, const std::string& part) {
   const double away_m = bounds_M.center().cwiseAbs().maxCoeff();
   if (away_m / voxel_m < 1e9) return;
   char text[160];
-  std::snprintf(text, sizeof text, "lies %.3g m from the origin, too far for %.3g mm voxels; move it nearer",
-                away_m, voxel_m * 1e3);
+  std::snprintf(text, sizeof text,
+                "the part lies %.3g m from the origin, too far for %.3g mm voxels; move it nearer", away_m,
+                voxel_m * 1e3);
   throw LoadError("", part, text);
 }
 

@@ -114,8 +114,9 @@ void moveToNewPool(VoxLayout& layout, std::size_t room) {
   const Named named = namedBy(layout);
   if (named.count + room > VoxPool::kMaxBricks)
     throw LoadError("", "",
-                    "needs " + std::to_string(named.count + room) + " bricks of 8 voxels, and a voxmap has " +
-                        std::to_string(VoxPool::kMaxBricks) + " at most; larger voxels would do");
+                    "the voxmap needs " + std::to_string(named.count + room) +
+                        " bricks of 8 x 8 x 8 voxels, and " + std::to_string(VoxPool::kMaxBricks) +
+                        " is the most that one can have; use larger voxels");
   const std::shared_ptr<const VoxPool> from = layout.pool;
   auto to = std::make_shared<VoxPool>(named.count + room);
   auto owners = std::make_shared<std::vector<NodeOwners>>();

@@ -160,9 +160,9 @@ class ResampledField final : public AddedField {
 void requireBand(const VoxMap& map, double band_m) {
   if (map.band_m() < band_m * (1 - 1e-6))
     throw LoadError("", "",
-                    "the voxmap to be placed knows distances up to " + std::to_string(map.band_m() * 1e3) +
-                        " mm, and " + std::to_string(band_m * 1e3) +
-                        " mm are asked for; build it with a wider band");
+                    "the voxmap to be mounted stores distances up to " + std::to_string(map.band_m() * 1e3) +
+                        " mm, but " + std::to_string(band_m * 1e3) +
+                        " mm are required; build it with a wider band");
 }
 
 }  // namespace
@@ -174,7 +174,9 @@ VoxMap resampledVoxMap(const PlacedMap& part, const VoxMapSettings& settings) {
 
 VoxMap mountVoxMap(const VoxMap& cooked, const PlacedMap& part) {
   if (!(cooked.voxel_m() > 0))
-    throw LoadError("", "", "there is no voxmap to mount on, an empty one has no grid; cook one first");
+    throw LoadError("", "",
+                    "there is no voxmap to mount on: the given voxmap is empty and has no grid; cook one "
+                    "first (cookVoxMap)");
   requirePose(part.X_MP);
   requireBand(*part.map, cooked.band_m());
   const ResampledField field(part, cooked.voxel_m(), cooked.band_m(), cooked.quantum_m());

@@ -26,7 +26,7 @@ std::string refusal(const Mesh& mesh, const VoxMapSettings& settings) {
 
 TEST(BadInput, InvalidMeshesAreRefusedWithAReason) {
   const VoxMapSettings settings = {0.5e-3, 4};
-  EXPECT_EQ(refusal(Mesh{}, settings), "part 'hub': has no triangles; export it as a triangle mesh");
+  EXPECT_EQ(refusal(Mesh{}, settings), "part 'hub': the mesh has no triangles; export it as a triangle mesh");
   for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
                            -std::numeric_limits<double>::infinity()}) {
     Mesh mesh = makeBox({0.01, 0.01, 0.01});

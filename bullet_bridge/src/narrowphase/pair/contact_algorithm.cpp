@@ -97,9 +97,10 @@ void reportClosestPoints(const PairView& pair, Context& context, btManifoldResul
 void warnWithoutSolver() {
   static std::atomic_flag was_reported;
   if (!was_reported.test_and_set())
-    report(LogLevel::Warning,
-           "contact_method is Penalty, but the world is not solved by bullet::Solver: its contacts are taken "
-           "as rigid");
+    report(
+        LogLevel::Warning,
+        "Settings::contact_method is Penalty, but the world's solver is not bullet::Solver, so all contacts "
+        "are rigid");
 }
 
 // Greatest distance by which a touching point leaves its plane in the step; zero for bodies that roll on each
