@@ -67,7 +67,7 @@ inline constexpr auto kStepFields = std::make_tuple(
     field("duration_s", &StepResult::duration_s, "simulated time that the step took"),
     field("max_penetration_m", &StepResult::max_penetration_m,
           "deepest penetration during the step and the time after release, by exact distance along all sharp "
-          "edges, at the vertices of curved faces and at the shells' points on faces, at every 200th pose "
+          "edges, at the vertices of curved faces and at the shells' points on faces, at every 20th pose "
           "and the fifty with the deepest contacts, and on motions between the poses of two physics steps "
           "that are more than 0.1 mm apart"),
     field("penetration_limit_m", &StepResult::penetration_limit_m,
