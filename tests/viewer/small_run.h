@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A run of one peg and one hole, made up, for reports.
+// A made-up run of one peg and one hole, for tests of reports.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ inline std::string textOf(const std::string& file) {
   return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
 }
 
-/// One second: two taps of 5 ms, then contact over 10 mm of travel.
+/// The trace of one second: two taps of 5 ms, then contact over 10 mm of travel.
 inline std::vector<scenes::TraceRow> tapTapSlide() {
   std::vector<scenes::TraceRow> trace;
   for (int i = 0; i < 1000; ++i) {

@@ -65,7 +65,7 @@ TEST(CoarseMesh, ASmoothedBallHasFewerTrianglesAndStaysWithinAQuarterOfACell) {
     volume_m3 += p[0].dot(p[1].cross(p[2])) / 6;
   }
   EXPECT_LT(deepest_m, 0.25 * cell_m);
-  // Nothing opens: the volume of a closed surface that lies at most that much deeper.
+  // No gap opens: the volume is that of a closed surface that lies at most a quarter of a cell deeper.
   const double ball_m3 = 4.0 / 3 * std::numbers::pi * std::pow(kRadius_m, 3);
   EXPECT_GT(volume_m3, ball_m3 * std::pow(1 - 0.25 * cell_m / kRadius_m, 3));
   EXPECT_LT(volume_m3, ball_m3);
@@ -73,7 +73,8 @@ TEST(CoarseMesh, ASmoothedBallHasFewerTrianglesAndStaysWithinAQuarterOfACell) {
 
 TEST(CoarseMesh, ColorsStayApart) {
   const Mesh mesh = ball(120);
-  scenes::FaceColors colors{{{1, 0, 0}, {0, 0, 1}}, {}};  // in stripes of a tenth of the radius
+  scenes::FaceColors colors{{{1, 0, 0}, {0, 0, 1}},
+                            {}};  // the colours alternate in stripes of a tenth of the radius
   for (const auto& t : mesh.triangles) {
     const double z = (mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]).z() / 3;
     colors.of_triangle.push_back(static_cast<std::uint32_t>(std::lround(10 * z / kRadius_m + 20)) % 2);

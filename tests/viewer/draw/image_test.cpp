@@ -84,9 +84,9 @@ TEST(Png, AnUnwritablePlaceIsALoadErrorThatNamesIt) {
 
 TEST(Compare, CountsPixelsBeyondTheToleranceOnly) {
   Image a(10, 10, 100), b = a;
-  b.at(3, 4)[1] = 103;  // within
-  b.at(5, 5)[0] = 140;  // beyond
-  b.at(5, 5)[2] = 90;   // the same pixel: its greatest channel counts
+  b.at(3, 4)[1] = 103;  // within the tolerance
+  b.at(5, 5)[0] = 140;  // beyond the tolerance
+  b.at(5, 5)[2] = 90;   // the same pixel, of which the channel with the greatest difference counts
   const ImageDifference d = compare(a, b, 3);
   EXPECT_TRUE(d.is_same_size);
   EXPECT_DOUBLE_EQ(d.share_beyond, 1 / 100.0);

@@ -7,7 +7,7 @@ namespace vps::viewer {
 namespace {
 
 TEST(ModelMeshes, ACubesVoxelsAreItsGrid) {
-  // 4 mm with voxels of 1 mm: 4 x 4 faces on each of six sides, two triangles each.
+  // A cube of 4 mm with voxels of 1 mm has 4 x 4 faces on each of six sides, with two triangles each.
   const VoxMap map = buildVoxMap(makeBox({4e-3, 4e-3, 4e-3}), {.voxel_m = 1e-3});
   double cube_m = 0;
   const TintedMesh voxels = voxelMesh(map, &cube_m);
@@ -16,7 +16,7 @@ TEST(ModelMeshes, ACubesVoxelsAreItsGrid) {
   EXPECT_EQ(mesh.triangles.size(), 6u * 16 * 2);
   EXPECT_LT((bounds(mesh).size() - Vec3::Constant(4e-3)).norm(), 1e-12);
   EXPECT_EQ(voxels.tints.size(), mesh.vertices.size());
-  // Faces look out: each is farther from the middle along its normal than its own middle.
+  // Faces point outwards: a step from a face's middle along its normal leads away from the cube's middle.
   for (const auto& t : mesh.triangles) {
     const Vec3 n =
         (mesh.vertices[t[1]] - mesh.vertices[t[0]]).cross(mesh.vertices[t[2]] - mesh.vertices[t[0]]);

@@ -22,7 +22,7 @@ scenes::BodySnapshot mounted(std::size_t part, const Vec3& p_W) {
   return {part, Pose::translation(p_W), scenes::BodyRole::Mounted};
 }
 
-/// Surfaces alone, so that no lines, shadows or text cover the measured pixels.
+/// Options that draw surfaces only, so that no lines, shadows or text cover the measured pixels.
 DrawOptions plain() {
   DrawOptions options;
   options.width = 320;
@@ -62,15 +62,15 @@ TEST(RendererTest, ARedBoxIsRedInTheMiddleAndAsLargeAsItsProjection) {
         top = std::min(top, y);
         bottom = std::max(bottom, y);
       }
-  // Seen from above, the upper face is the outline. A pixel belongs to it if any of its samples does:
-  // within 1.
+  // Seen from above, the upper face is the outline. A pixel belongs to the face if any of its samples does,
+  // so sizes agree within 1.
   const auto [x0, y0] = camera.project(Vec3(-0.04, 0.025, 0.01), 320, 240);
   const auto [x1, y1] = camera.project(Vec3(0.04, -0.025, 0.01), 320, 240);
   EXPECT_NEAR(left, x0, 1);
   EXPECT_NEAR(right + 1, x1, 1);
   EXPECT_NEAR(top, y0, 1);
   EXPECT_NEAR(bottom + 1, y1, 1);
-  // The formula itself: 240 px are 2 tan(fov / 2) high at distance 1.
+  // Check of the formula: at distance 1 the 240 px of the picture are 2 tan(fov / 2) high.
   EXPECT_NEAR(x1 - x0, 0.08 / 0.49 * 240 / (2 * std::tan(0.25)), 1e-9);
 }
 
@@ -105,7 +105,7 @@ TEST(RendererTest, TheTargetIsHiddenBehindPartsAndTintsWhatIsBehindIt) {
   const auto without = renderWithTarget({}), before = renderWithTarget(0.05),
              behind = renderWithTarget(-0.05);
   // Behind the plate the target is hidden; the light may change by rounding, because the shadow map covers
-  // more. In front of it the plate's yellow becomes bluer, but not the target's full blue.
+  // more. In front of the plate, the plate's yellow becomes bluer, but not as blue as the target.
   for (int k = 0; k < 3; ++k) EXPECT_NEAR(behind[k], without[k], 3) << k;
   EXPECT_GT(before[2], without[2] + 15);
   EXPECT_GT(before[0], 60);
@@ -124,11 +124,12 @@ TEST(RendererTest, ASectionShowsHatchedCutFacesAndASmoothBore) {
   const Image whole = renderer.render(snapshot, camera, options);
   options.cut = CutPlane{Vec3::Zero(), -Vec3::UnitY()};
   const Image cut = renderer.render(snapshot, camera, options);
-  options.cut->n_W = Vec3::UnitY();  // keeps the side of the eye: the front half of the tube looks the same
+  options.cut->n_W = Vec3::UnitY();  // the section keeps the half on the side of the eye, so the front half
+                                     // of the tube looks the same
   const Image from_behind = renderer.render(snapshot, camera, options);
 
-  // Contrast along 24 pixels, which is more than two hatch lines. Only a hatched face changes that fast; the
-  // mantle and the bore are straight along z and change little.
+  // Contrast along 24 pixels, which is more than two hatch lines. Only a hatched face has such contrast;
+  // mantle and bore are straight along z and change little.
   const auto contrast = [&](const Image& image, double x_m) {
     int least = 255, greatest = 0;
     const auto [x, y] = camera.project(Vec3(x_m, 0, 0), 640, 480);
@@ -176,13 +177,13 @@ TEST(RendererTest, ADarkBackgroundChangesNoPixelOfAPart) {
   const Image light = renderer.render(shot, camera, options);
   options.is_dark = true;
   const Image dark = renderer.render(shot, camera, options);
-  // Its face is the middle half of the picture at least.
+  // The part's face covers at least the middle half of the picture.
   for (const int x : {120, 160, 200})
     for (int k = 0; k < 3; ++k) EXPECT_EQ(dark.at(x, 120)[k], light.at(x, 120)[k]);
   for (const int y : {2, 120, 237})
     for (int k = 0; k < 3; ++k) {
       EXPECT_GT(light.at(3, y)[k], 200);
-      EXPECT_LT(dark.at(3, y)[k], 80);  // as dark as the panels, whose text is white
+      EXPECT_LT(dark.at(3, y)[k], 80);  // dark enough for the white text of the panels
     }
 }
 
@@ -222,7 +223,7 @@ struct PegBeforeTube {
     if (force_N > 0)
       snapshot.contacts.push_back({snapshot.bodies[2].X_WP * Vec3(0, 0, -0.03), Vec3::UnitZ(), 1e-5});
   }
-  /// Draws the same with a renderer that has drawn nothing before.
+  /// Draws the same picture with a renderer that has drawn nothing before.
   [[nodiscard]] Image afresh() const { return Renderer(drawn).render(snapshot, camera, options); }
 };
 
@@ -237,9 +238,9 @@ TEST_P(Drafts, WhereAPartMovedHaveTheBitsOfDraftsThatAreDrawnAsAWhole) {
   Image last = renderer.render(shown.snapshot, shown.camera, shown.options);
   EXPECT_TRUE(renderer.drewWhole());
   EXPECT_EQ(last.rgb, shown.afresh().rgb);
-  // It moves, touches, slides on, and lets go.
+  // The peg moves, touches, slides on, and loses contact.
   for (const double force_N : {0.0, 5.0, 8.0, 0.0}) {
-    shown.move(Vec3(8e-3, -4e-3, -3e-3), force_N);  // farther than the margin around what moves
+    shown.move(Vec3(8e-3, -4e-3, -3e-3), force_N);  // farther than the margin around moved parts
     const Image image = renderer.render(shown.snapshot, shown.camera, shown.options);
     EXPECT_FALSE(renderer.drewWhole());
     EXPECT_NE(image.rgb, last.rgb);
@@ -261,14 +262,14 @@ TEST(DraftsOfAnotherView, AreDrawnAsAWhole) {
   static_cast<void>(renderer.render(shown.snapshot, shown.camera, shown.options));
   EXPECT_TRUE(renderer.drewWhole());
   shown.options.is_draft = true;
-  shown.snapshot.bodies.pop_back();  // a part goes, after a picture in full
+  shown.snapshot.bodies.pop_back();  // a part disappears, after a picture in full
   EXPECT_EQ(renderer.render(shown.snapshot, shown.camera, shown.options).rgb, shown.afresh().rgb);
 }
 
 TEST(Camera, FrameSceneShowsTheWholeBoxAndTouchesTheMargin) {
   const Box box = {Vec3(-0.1, 0.2, 0), Vec3(0.3, 0.25, 0.9)};
   const Camera camera = frameScene(box, Vec3(1, -2, 0.7), 0.5, 4.0 / 3, 0.1);
-  double reach = 0;  // greatest distance from the middle, as a share of half the picture
+  double reach = 0;  // greatest distance of a corner from the middle, as a share of half the picture
   for (int i = 0; i < 8; ++i) {
     const Vec3 p((i & 1) ? box.max.x() : box.min.x(), (i & 2) ? box.max.y() : box.min.y(),
                  (i & 4) ? box.max.z() : box.min.z());
@@ -283,7 +284,7 @@ TEST(RendererTest, FacesHaveTheirColorsUnlessThePartIsInHand) {
   scenes::FaceColors colors{{{0.8f, 0.05f, 0.05f}, {0.05f, 0.8f, 0.05f}}, {}};
   for (const auto& t : box.triangles) {
     const Vec3 n = (box.vertices[t[1]] - box.vertices[t[0]]).cross(box.vertices[t[2]] - box.vertices[t[0]]);
-    colors.of_triangle.push_back(n.z() > 0 ? 1 : 0);  // green from above, else red
+    colors.of_triangle.push_back(n.z() > 0 ? 1 : 0);  // faces that point upwards are green, all others red
   }
   RenderScene scene = {{&box, {0.5f, 0.5f, 0.5f}}};
   scene[0].face_colors = &colors;
@@ -316,7 +317,7 @@ TEST(ShadingMesh, ABoxHasTwelveSharpEdgesAndFlatFaces) {
   const ShadingMesh mesh = buildShadingMesh(makeBox(Vec3(1, 2, 3)));
   EXPECT_EQ(mesh.sharp_edges.size(), 12u);
   EXPECT_TRUE(mesh.smooth_edges.empty());
-  EXPECT_EQ(mesh.vertices.size(), 24u);  // each corner once for each of its three faces
+  EXPECT_EQ(mesh.vertices.size(), 24u);  // each corner occurs once for each of its three faces
 }
 
 TEST(ShadingMesh, ACylinderIsRoundWithTwoSharpCircles) {
@@ -325,7 +326,7 @@ TEST(ShadingMesh, ACylinderIsRoundWithTwoSharpCircles) {
   EXPECT_EQ(mesh.sharp_edges.size(), 2u * kSegments);
   for (const ShadingVertex& v : mesh.vertices) {
     if (std::abs(v.n[2]) > 0.5f) continue;
-    // On the mantle the normal is radial: the symmetric facets' mean, in single precision.
+    // On the mantle the normal is radial to single precision, as the mean of symmetric facets.
     EXPECT_NEAR(v.n[0] * v.p[1] - v.n[1] * v.p[0], 0, 1e-6);
   }
 }

@@ -13,7 +13,8 @@
 namespace vps::viewer {
 namespace {
 
-constexpr double kParallax_px = 0.1;  // the bar; an edge that is averaged over 3 x 3 samples is found to 0.02
+constexpr double kParallax_px =
+    0.1;  // tolerance; an edge that is averaged over 3 x 3 samples is found to 0.02 px
 
 Mesh ball(double radius_m) {
   return makeSphere(radius_m, 6);
@@ -28,7 +29,8 @@ DrawOptions plain(int width, int height) {
   return options;
 }
 
-/// Centre and area of what differs between two pictures, in one channel and every n-th row from the first.
+/// Centre and area of the pixels that differ between two pictures, in one channel and every n-th row from the
+/// first.
 struct Blob {
   double x = 0, y = 0, area_px = 0;
 };
@@ -42,7 +44,7 @@ Blob blobOf(const Image& with, const Image& without, int channel, int first_row 
   Blob blob;
   for (int y = first_row; y < with.height; y += every)
     for (int x = 0; x < with.width; ++x) {
-      // An edge covers a share of its pixel. The dark ball's own shades are all counted as covered.
+      // An edge covers a share of its pixel. All shades of the dark ball itself count as fully covered.
       const double share = std::min(1.0, change[static_cast<std::size_t>(y) * with.width + x] / (0.6 * most));
       blob.area_px += share;
       blob.x += share * (x + 0.5);
@@ -123,7 +125,8 @@ TEST_P(Stereo, AKnownPointHasItsParallaxToATenthOfAPixel) {
       x_px[side] = 480 + 720 / height_m * (eye + t * (p_W.x() - eye));
       const double y_px = 360 - 720 / height_m * t * p_W.y();
       EXPECT_NEAR(blobs[side].x, x_px[side], kParallax_px) << side << " at " << p_W.transpose();
-      // Of two rows by turns one sees every second: the middle of a round blob is as exact as its rows.
+      // An eye sees every second row, so the vertical position of a round blob is as exact as the spacing of
+      // its rows.
       EXPECT_NEAR(blobs[side].y, y_px, GetParam() == StereoMode::Interleaved ? 1 : 2 * kParallax_px);
     }
     EXPECT_NEAR(blobs[1].x - blobs[0].x, x_px[1] - x_px[0], kParallax_px);
@@ -135,7 +138,8 @@ TEST_P(Stereo, AKnownPointHasItsParallaxToATenthOfAPixel) {
 
 TEST_P(Stereo, AScreenInTheRoomShowsAPointWhereTheLineFromTheEyeMeetsIt) {
   scenes::Display room;
-  room.scale = 4;  // the ball is as large as a tennis ball: larger ones are seen off their middle
+  room.scale = 4;  // the ball is as large as a tennis ball; the outline of a larger ball would not be centred
+                   // on its middle
   room.X_SW = Pose(rotationFromVector(Vec3(0.2, -0.1, 0.4)), Vec3(0.3, 1.5, 1.4));
   scenes::DisplayScreen wall;  // 2.4 m x 1.5 m, slanted
   const Mat3 R =
@@ -181,13 +185,13 @@ TEST_F(OneBall, ADiscCoversItsAreaToOnePercent) {
   const DrawOptions options = plain(800, 600);
   const Blob blob =
       blobOf(renderer_.render(at(Vec3::Zero()), camera, options), renderer_.render({}, camera, options), 1);
-  // A ball is seen under the angle asin(r / d).
+  // A ball of radius r at distance d appears under the half angle asin(r / d).
   const double radius_px = 300 / std::tan(0.25) * std::tan(std::asin(kRadius_m / 0.05));
   EXPECT_NEAR(blob.area_px / (std::numbers::pi * radius_px * radius_px), 1, 0.01);
 }
 
 TEST(Spectral, WhiteStaysWhiteForBothEyesAndColoursStayApart) {
-  // The renderer is not needed: two cameras that see nothing differ only in the filter.
+  // Two cameras that see only the background give pictures that differ in the filter alone.
   Mesh mesh = ball(1e-3);
   Renderer renderer({{&mesh, {0.5f, 0.02f, 0.02f}}});
   Camera camera;
@@ -218,7 +222,7 @@ TEST_P(Stereo, PicturesOfAFewPixelsAreAsLargeAsWasAskedForAndShowBothEyes) {
          renderStereo(renderer_, at(Vec3::Zero()), eyes, plain(width, height), GetParam())) {
       EXPECT_EQ(image.width, width);
       EXPECT_EQ(image.height, height);
-      // The ball, dark on a background of 241, covers more than half of a pixel in the middle of each eye's
+      // The dark ball on a background of 241 covers more than half of a pixel in the middle of each eye's
       // picture.
       const int x = GetParam() == StereoMode::SideBySide ? width / 2 + width / 4 : width / 2;
       const int y = GetParam() == StereoMode::TopBottom ? height / 2 + height / 4 : height / 2;

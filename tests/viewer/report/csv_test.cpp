@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// CSV of field tables: columns, and cells of what was not measured.
+// CSV of field tables: columns, and the empty cells of values that were not measured.
 #include "vps_viewer/report/csv.h"
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ TEST(Csv, NumbersReadBackAsTheSameValue) {
 TEST(Csv, VectorsAndPosesHaveAColumnForEachNumber) {
   const auto columns = csvColumns<scenes::TraceRow>(scenes::kTraceFields);
   const std::string header = csvLine(columns);
-  // The columns that other programs read since the first version; later ones stand at the end.
+  // Columns that other programs have read since the first version; newer columns are at the end.
   EXPECT_EQ(header,
             "time_s,step,phase,force_x_N,force_y_N,force_z_N,torque_x_Nm,torque_y_Nm,torque_z_Nm,"
             "part_x_m,part_y_m,part_z_m,part_qx,part_qy,part_qz,part_qw,"

@@ -45,7 +45,7 @@ TEST(Report, GivesTheVerdictWithItsReasonAndHoldsItsPictures) {
   const std::string page = textOf(outcome.file);
   EXPECT_NE(page.find("Not shown: "), std::string::npos);
   EXPECT_NE(page.find("stuck at &quot;3 mm&quot; &amp; &lt;up&gt;"), std::string::npos);
-  EXPECT_NE(page.find("12.50"), std::string::npos);  // deepest [um]
+  EXPECT_NE(page.find("12.50"), std::string::npos);  // greatest overlap [um]
   EXPECT_NE(page.find("a&amp;b.toml"), std::string::npos);
   EXPECT_EQ(page.find("<hole>"), std::string::npos);
   std::size_t count = 0;
@@ -53,7 +53,7 @@ TEST(Report, GivesTheVerdictWithItsReasonAndHoldsItsPictures) {
        at = page.find("<img src=\"", at + 1), ++count)
     EXPECT_EQ(page.substr(at + 10, 22), "data:image/png;base64,");
   EXPECT_TRUE(fs::exists(dir + "/pictures/overview.png"));
-  // Two pictures of the assembly and three of the step; the plot needs gnuplot.
+  // The page has two pictures of the assembly and three of the step; the plot needs gnuplot.
   EXPECT_EQ(count, 2u + 3u + (hasGnuplot() ? 1u : 0u));
   EXPECT_EQ(outcome.notes.size(), (hasGnuplot() ? 0u : 1u) + (hasThree() ? 0u : 1u));
 }
@@ -86,7 +86,7 @@ TEST(Report, HoldsWhatItLinksToSoThatNoLinkIsDeadWhenItIsMailed) {
 TEST(Report, ATableThatIsTooLargeForMailIsNamedWithoutALink) {
   scenes::AssembleResult result = smallResult();
   result.trace = tapTapSlide();
-  while (result.trace.size() < 60000) {  // of more than 100 bytes each
+  while (result.trace.size() < 60000) {  // each row has more than 100 bytes
     scenes::TraceRow row = result.trace.back();
     row.time_s += 1e-3;
     result.trace.push_back(row);

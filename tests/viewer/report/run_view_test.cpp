@@ -52,11 +52,12 @@ TEST(RunView, HasThePartsAndTheirPlacesInTheRun) {
   EXPECT_TRUE(data["parts"][0]["fixed"]);
   EXPECT_EQ(data["steps"][0]["part"], 1);
   EXPECT_EQ(data["steps"][0]["name"], "1. </script><!--<script>");
-  // A second at 25 Hz, and the last sample.
+  // The run lasts one second: 25 rows, and the last sample.
   const nlohmann::json& frames = data["frames"];
   ASSERT_EQ(frames.size(), 26u);
   EXPECT_EQ(frames.back()[0], 0.999);
-  // [time, step, place in mm, turn, force, depth in um, contacts]: at 0.64 s it has slid for 40 ms.
+  // Row: [time, step, position in mm, quaternion, force, depth in um, contacts]. At 0.64 s the peg has slid
+  // for 40 ms.
   EXPECT_EQ(frames[16], nlohmann::json::parse("[0.64, 0, 2, 0, 0, 1, 0, 0, 0, 3, 3, 3]"));
   // The hole is 40 mm wide, and 30 mm high about the origin; the peg ends at 35 mm.
   EXPECT_NEAR(data["run"]["min"][2].get<double>(), -15, 1e-6);
@@ -75,7 +76,7 @@ TEST(RunView, APartOfManyFacetsIsDrawnWithFewer) {
   EXPECT_GT(bytes, 12 * kRunViewTriangles / 4);
 }
 
-/// What a browser without a display prints on its console, with a picture of the page.
+/// The console output of a browser without a display, which also saves a picture of the page.
 std::string browse(const std::string& page, int width, int height, const std::string& picture) {
   const std::string command =
       "timeout 120 chromium --headless=new --no-sandbox --use-angle=swiftshader --enable-unsafe-swiftshader "
@@ -97,13 +98,14 @@ TEST(RunView, ABrowserDrawsItAtTheWidthOfADeskAndOfAPhone) {
   const std::string dir = freshFolder("browser");
   scenes::AssembleResult result = smallResult();
   writeReport(smallScene(), result, dir, {.command = {}, .progress = {}, .width = 160, .height = 120});
-  // The page without all that follows the view.
+  // The page without the sections after the view.
   for (const int width : {1280, 400}) {
     const std::string picture = dir + "/browser_" + std::to_string(width) + ".png";
     EXPECT_EQ(browse(dir + "/report.html", width, 1000, picture), "");
     const Image image = loadPng(picture);
     ASSERT_EQ(image.width, width);
-    // The hole is muted steel, lit: grey, neither white nor a line. It covers some percent of the view.
+    // The part with the hole has the colour of lit steel: grey, neither white nor as dark as a line. It
+    // covers some percent of the view.
     int grey = 0;
     for (std::size_t i = 0; i + 2 < image.rgb.size(); i += 3) {
       const int r = image.rgb[i], g = image.rgb[i + 1], b = image.rgb[i + 2];
@@ -127,8 +129,8 @@ TEST(RunView, ARealRunIsReadAndPlayedAtBothWidths) {
                                 "file://" + dir + "/report.html");
     ASSERT_TRUE(
         browser.waitFor("document.readyState === 'complete' && document.querySelector('#run-view canvas')"));
-    // Nothing makes the page itself wider than the screen; a table that is wider scrolls in its own box, with
-    // its text in full and large enough to read.
+    // No element makes the page wider than the screen. A wider table scrolls in its own box, with its whole
+    // text large enough to read.
     EXPECT_LE(browser.evaluate("document.documentElement.scrollWidth").get<int>(), width);
     EXPECT_GE(browser.evaluate("document.querySelectorAll('table').length").get<int>(), 4);
     EXPECT_EQ(
@@ -140,7 +142,7 @@ TEST(RunView, ARealRunIsReadAndPlayedAtBothWidths) {
                   " parseFloat(getComputedStyle(c).fontSize) < 12).length"),
               0);
     EXPECT_EQ(browser.evaluate("[...document.images].filter(i => i.complete && !i.naturalWidth).length"), 0);
-    // The part is somewhere else at another time.
+    // At another time the part is at another place.
     browser.evaluate("document.querySelector('#run-view').scrollIntoView()");
     const auto at = [&](double share) {
       browser.evaluate("(() => { const s = document.querySelector('#run-view input'); s.value = " +
@@ -151,10 +153,10 @@ TEST(RunView, ARealRunIsReadAndPlayedAtBothWidths) {
       return loadPng(file);
     };
     const Image begun = at(0), ended = at(1), again = at(0);
-    // A peg of 8 mm moves by its length in a view of the whole scene: more than its slider, of about 20 x 20
-    // pixels.
+    // A peg of 8 mm moves by its length in a view of the whole scene, which changes more pixels than the
+    // slider of about 20 x 20 pixels.
     EXPECT_GT(compare(begun, ended, 30).share_beyond * width * 1000, 1500);
-    EXPECT_EQ(compare(begun, again, 2).share_beyond, 0) << "the same time is the same picture";
+    EXPECT_EQ(compare(begun, again, 2).share_beyond, 0) << "the same time gives the same picture";
     EXPECT_TRUE(browser.console().empty()) << browser.console().front();
   }
 }
