@@ -11,7 +11,7 @@
 namespace vps::scenes {
 
 /// Each function waits in physics steps by calling `advance`, and returns false as soon as `advance` does
-/// (the run cannot go on). Meanwhile the part stands still, held by the proxy.
+/// (the run cannot continue). Meanwhile the proxy holds the part at rest.
 class ClutchWork {
  public:
   /// `driver` must outlive this object.

@@ -56,7 +56,7 @@ class HapticSide {
   void passEvents(const std::function<void(const device::DeviceEvent&)>& to);
   [[nodiscard]] std::uint64_t missed() const { return loop_.statistics().summary().missed; }
   [[nodiscard]] TickTimes times() const;
-  /// Timing results of the haptic thread; those of physics are left at their defaults.
+  /// Timing results of the haptic thread; the results of physics keep their default values.
   [[nodiscard]] RealTimeResult realTime();
 
  private:

@@ -137,7 +137,7 @@ GraspPath inSegments(const std::vector<Pose>& X_WG, const Workspace& workspace_W
   throw LoadError(scene.file, scene.parts[step.part].part.name, words);
 }
 
-constexpr const char* kIndexingRemedy = "let the hand re-grasp it on the way ([device] indexing = true)";
+constexpr const char* kIndexingRemedy = "let the hand re-grasp it along the path ([device] indexing = true)";
 
 [[noreturn]] void refuseLength(const Scene& scene, const SceneStep& step, const Vec3& needed_m,
                                const Vec3& workspace_m) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How the physics thread and the haptic loop of a run by the clock interact: the commands of the physics
+// How the physics thread and the haptic loop of a run in real time interact: the commands of the physics
 // thread, and the events of a recorded run.
 #pragma once
 

@@ -111,8 +111,8 @@ class Estimator {
     most.field_points = field_points_;
   }
 
-  /// Estimates the field in place. Its points lie in its region. Its map contains the maps of its parts,
-  /// except for that of the first part, which is shared if that part's frame is W.
+  /// Estimates the field in place. The field's points lie in the region. The field's map contains the maps of
+  /// the parts, except for the first part's map, which is shared if that part's frame is W.
   void cookField(const FieldPlan& step) {
     double map_bytes = 0, points = 0;
     for (std::size_t k = 0; k < in_place_.size(); ++k) {

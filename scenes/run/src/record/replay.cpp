@@ -68,7 +68,8 @@ ReplayResult replay(const device::RecordedRun& run, const ReplayOptions& options
   replayed.equal = check.equal();
   const bool ended_early = replayed.departure.empty() && run.damage.empty() && check.left() > 0;
   if (ended_early && (options.stop == nullptr || !options.stop->load()))
-    replayed.departure = "at its end: the recording goes on for " + std::to_string(check.left()) + " entries";
+    replayed.departure =
+        "at its end: the recording continues for " + std::to_string(check.left()) + " entries";
   return replayed;
 }
 

@@ -87,8 +87,9 @@ double leanTolerance_m(AssemblyWorld& world) {
   return leanInFits_m(world.scene(), static_cast<std::size_t>(world.state().step)) + kContactOnBothSides_m;
 }
 
-/// Where nothing stops the part along its way, the tolerance of its fit holds only across the way. Where the
-/// fit is short, the part may also lean as far as the fit lets it, since no stop holds it upright.
+/// Widens tolerance_m of a part that nothing stops along its path: the tolerance of its fit then applies only
+/// across the path. In a short fit the part may also lean as far as the fit allows, since no stop holds it
+/// upright.
 /// @param errorAt  surface error of the part at a pose
 template <typename ErrorAt>
 void widenTolerance(AssemblyWorld& world, const SceneStep& step, const Pose& X_WP, const ErrorAt& errorAt,
@@ -152,8 +153,8 @@ void judgeCompletion(AssemblyWorld& world, const SceneStep& step, const Pose& X_
   }
   // A part that falls into its place while the device exerts no force was not brought there.
   if (brought.is_faulted)
-    reason =
-        "the device failed on the way, so that no hand held the part" + (reason.empty() ? "" : ": " + reason);
+    reason = "the device failed during the step, so that no hand held the part" +
+             (reason.empty() ? "" : ": " + reason);
 }
 
 }  // namespace vps::scenes

@@ -17,8 +17,8 @@ StepResult runStep(AssemblyWorld& world, RunTrace& trace, std::size_t index, Ste
 
 // --- completion.cpp: whether the part reached its target, and if not, why
 
-/// Where the part was when the hand reported that it is in place, or gave up. A part that nothing holds falls
-/// from there while the hand opens.
+/// Pose of the part when the hand reported that the part is in place, or gave up. A part that nothing holds
+/// falls from there while the hand opens.
 struct Brought {
   Pose X_WP;
   bool is_given_up = false;

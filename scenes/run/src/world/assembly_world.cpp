@@ -125,7 +125,7 @@ void AssemblyWorld::take(std::size_t index) {
   if (hoist_N > 0 && options_.warn)
     options_.warn("'" + scene_.parts[step.part].part.name + "' weighs " + newtons(own_kg * g_m_s2) +
                   ", and the hand carries " + newtons(most_kg * g_m_s2) +
-                  " of it; a hoist carries the rest, so that forces on the hand are those of a lighter part");
+                  " of it; a hoist carries the rest, so forces on the hand are as for a lighter part");
   state_.roles[step.part] = BodyRole::InHand;
   state_.moving = {step.part,
                    Pose::translation(simulation_.centreOfMass(step.part)),

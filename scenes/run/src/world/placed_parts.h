@@ -85,7 +85,7 @@ class CookedPoses {
     for (const ScenePart& part : scene.parts) X_WP_.push_back(part.X_WP);
     for (const SceneStep& step : scene.steps) X_WP_[step.part] = placeOf(step);
   }
-  /// The parts of the field in place, followed by those that the step adds.
+  /// Returns `parts`, the parts of the field in place, followed by the parts that the step adds.
   [[nodiscard]] std::vector<FixedPart> add(std::vector<FixedPart> parts, const FieldPlan& step) const {
     for (const std::size_t i : step.cooked)
       if (std::ranges::none_of(parts, [i](const FixedPart& placed) { return placed.part == i; }))

@@ -26,8 +26,8 @@ double leanInFits_m(const Scene& scene, std::size_t step);
 /// Displacements of the mates of this step's part that earlier steps moved: the distance of each mate from
 /// its own target, at the middle of the fit, in W. A part with several fits has one entry for each. A shaft
 /// holds nothing along its axis, and a key holds only across its faces. Each entry is the share of the
-/// displacement that the fit passes on; if that differs from the whole displacement, the whole follows as a
-/// second entry, for a part that stands on its mate's shoulder.
+/// displacement that the fit passes on. If this share differs from the whole displacement, the whole
+/// displacement is a second entry, for a part that rests on a shoulder of its mate.
 /// @param X_WP  actual poses of the parts, by part
 std::vector<Vec3> displacedMates_m(const Scene& scene, std::size_t step, const std::vector<Pose>& X_WP);
 

@@ -134,7 +134,7 @@ inline constexpr auto kEnergyFields =
                           "bound of the error of `injected_J` by the encoders' resolution"));
 static_assert(coversAllMembers<EnergyLedger>(kEnergyFields));
 
-/// Of a part that turned farther in a step than the step can hold.
+/// A part that turned in one step by more than the limit.
 inline constexpr auto kFastTurnFields = std::make_tuple(
     field("part", &FastTurn::part, "name of the part"),
     field("in_contact", &FastTurn::is_in_contact, "the rotation is relative to the part that it touches"),

@@ -41,13 +41,13 @@ constexpr bool isGood(Verdict verdict) {
 /// clearance has done so by then.
 inline constexpr double kRestDriftLimit_m = 5e-6;
 
-/// What is known about a part and its place. The default values describe a part that fits. ({}: so that GCC
+/// Evidence about a part and its place. The default values describe a part that fits. ({}: so that GCC
 /// does not warn where an initializer names only some members.)
 struct Evidence {
   std::string blocked{};    ///< proof by geometry that the part cannot be there; empty: there is no proof
   bool is_in_place = true;  ///< the hand brought the part to its target, or took it off
   std::string failure{};    ///< why the part is not in place
-  double depth_m = 0, depth_limit_m = 0;  ///< deepest penetration on the way, and its limit
+  double depth_m = 0, depth_limit_m = 0;  ///< deepest penetration on its path, and its limit
   std::string deepest_against{};          ///< the other part at the deepest penetration
   double rest_drift_m = 0;  ///< greatest displacement after release; see StepResult for both drifts
   double late_drift_m = 0;
