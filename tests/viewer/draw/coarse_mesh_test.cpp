@@ -73,8 +73,8 @@ TEST(CoarseMesh, ASmoothedBallHasFewerTrianglesAndStaysWithinAQuarterOfACell) {
 
 TEST(CoarseMesh, ColorsStayApart) {
   const Mesh mesh = ball(120);
-  scenes::FaceColors colors{{{1, 0, 0}, {0, 0, 1}},
-                            {}};  // the colours alternate in stripes of a tenth of the radius
+  // The colours alternate in stripes of a tenth of the radius.
+  scenes::FaceColors colors{{{1, 0, 0}, {0, 0, 1}}, {}};
   for (const auto& t : mesh.triangles) {
     const double z = (mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]).z() / 3;
     colors.of_triangle.push_back(static_cast<std::uint32_t>(std::lround(10 * z / kRadius_m + 20)) % 2);

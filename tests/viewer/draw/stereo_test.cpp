@@ -13,8 +13,8 @@
 namespace vps::viewer {
 namespace {
 
-constexpr double kParallax_px =
-    0.1;  // tolerance; an edge that is averaged over 3 x 3 samples is found to 0.02 px
+// Tolerance. An edge that is averaged over 3 x 3 samples is found to 0.02 px.
+constexpr double kParallax_px = 0.1;
 
 Mesh ball(double radius_m) {
   return makeSphere(radius_m, 6);

@@ -10,7 +10,7 @@ namespace vps::viewer {
 namespace {
 
 constexpr PictureSize kSize = {800, 600};
-constexpr double kRounding = 1e-9;  // of a few dozen operations on lengths of about 1 m
+constexpr double kRounding = 1e-9;  // rounding error of a few dozen operations on lengths of about 1 m
 
 Camera someCamera() {
   Camera camera;
@@ -44,10 +44,10 @@ TEST(CameraMotionTest, ADragDownLooksFromFurtherAboveAndStopsShortOfThePole) {
   EXPECT_NEAR(camera.eye_W.z(), 2 * std::sin(std::numbers::pi / 6), kRounding);
   orbit(camera, {0, 10000}, kSize);
   EXPECT_GT(camera.eye_W.z(), 1.99);
-  EXPECT_LT(camera.eye_W.y(), 0) << "it has passed the pole";
+  EXPECT_LT(camera.eye_W.y(), 0) << "the camera has passed the pole";
   orbit(camera, {0, -20000}, kSize);
   EXPECT_LT(camera.eye_W.z(), -1.99);
-  EXPECT_LT(camera.eye_W.y(), 0) << "it has passed the pole";
+  EXPECT_LT(camera.eye_W.y(), 0) << "the camera has passed the pole";
 }
 
 TEST(CameraMotionTest, PanningMovesWhatIsAtTheTargetsDepthWithTheCursor) {

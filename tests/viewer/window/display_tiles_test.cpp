@@ -47,7 +47,7 @@ TEST(DisplayTiles, KeepTheirProportionsAndDoNotOverlap) {
     ASSERT_EQ(places.size(), 8u);
     for (std::size_t i = 0; i < places.size(); ++i) {
       const TilePlace& a = places[i];
-      // Both lengths are whole pixels.
+      // Both lengths are rounded to whole pixels.
       EXPECT_NEAR(a.width, outputs[i].aspect * a.height, 2.5);
       EXPECT_GE(a.x, 0);
       EXPECT_GE(a.y, 0);
@@ -67,7 +67,7 @@ TEST(DisplayTiles, OneAloneFillsTheWindowAndSeveralAreAsLargeAsTheyCanBe) {
   std::vector<DisplayOutput> outputs = outputsOf(cave(), StereoMode::Mono);
   EXPECT_EQ(tilePlaces(std::span(outputs).first(1), {950, 656}), (std::vector<TilePlace>{{0, 0, 950, 656}}));
   EXPECT_TRUE(tilePlaces({}, {950, 656}).empty());
-  // Two wide ones are above each other in a square, beside each other in a strip.
+  // Two wide pictures are placed one above the other in a square window, and side by side in a wide one.
   const std::vector<TilePlace> square = tilePlaces(std::span(outputs).first(2), {400, 404});
   EXPECT_EQ(square[0], (TilePlace{0, 0, 400, 200}));
   EXPECT_EQ(square[1], (TilePlace{0, 204, 400, 200}));
@@ -106,13 +106,13 @@ TEST(DisplayTiles, APictureOfSeveralHoldsWhatEachShowsAlone) {
       DrawOptions alone = wanted.options;
       alone.width = tile.place.width;
       alone.height = tile.place.height;
-      // Rows go by turns over the whole picture.
+      // Rows alternate over the whole picture.
       const ScreenRows rows{alone.width, alone.height, tile.place.y};
       EXPECT_TRUE(shows(whole, tile.place,
                         renderStereo(renderer, wanted.snapshot, tile.eyes, alone, mode, rows).front()))
           << toText(mode);
     }
-    EXPECT_EQ(whole.at(299, 199)[0], 0) << "what no output has is black";
+    EXPECT_EQ(whole.at(299, 199)[0], 0) << "pixels outside all outputs are black";
   }
   wanted.stereo = StereoMode::Spectral;
   wanted.tiles.clear();
@@ -126,7 +126,7 @@ TEST(DisplayTiles, APictureOfSeveralHoldsWhatEachShowsAlone) {
       renderStereo(renderer, wanted.snapshot, wanted.tiles[0].eyes, alone, StereoMode::Spectral);
   EXPECT_TRUE(shows(whole, wanted.tiles[0].place, both[0]));
   EXPECT_TRUE(shows(whole, wanted.tiles[1].place, both[1]));
-  // A draft with half of the pixels has them at half of the places.
+  // In a draft with half the pixels, the outputs lie at half the coordinates.
   EXPECT_EQ(drawDraft(renderer, wanted, 2).width, 150);
 }
 

@@ -30,7 +30,7 @@ scenes::Snapshot cubeAt(double height_m, double time_s) {
   return shot;
 }
 
-/// The measurement of that snapshot, for a minute at most.
+/// Waits for the measurement of the given snapshot, for at most a minute.
 MeasuredGaps measuredAt(const GapWatch& watch, std::size_t part, double time_s) {
   const auto end = std::chrono::steady_clock::now() + 60s;
   while (std::chrono::steady_clock::now() < end) {

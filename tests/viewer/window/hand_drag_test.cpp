@@ -11,7 +11,7 @@ namespace {
 
 constexpr PictureSize kSize = {800, 600};
 
-/// A part of which the hand holds the middle, 0.2 m in front of a camera that looks along +y.
+/// A part that the hand holds at its middle, 0.2 m in front of a camera that looks along +y.
 scenes::Snapshot held(const Vec3& p_W) {
   scenes::Snapshot shot;
   shot.step = 0;
@@ -40,7 +40,7 @@ TEST(HandDrag, TheGrabbedPointStaysUnderTheCursor) {
     const bool is_across = motion == HandMotion::Across;
     EXPECT_NEAR(after[0], before[0] + (is_across ? 70 : 0), 1e-9);
     EXPECT_NEAR(after[1], before[1] + (is_across ? -40 : 0), 1e-9);
-    // The handle moves as the point does.
+    // The handle moves by the same displacement as the grabbed point.
     EXPECT_LT((drag.wish()->read().p - (drag.cursorPoint() - p_W)).norm(), 1e-15);
     const double farther_m = (drag.cursorPoint() - camera().eye_W).norm() - (p_W - camera().eye_W).norm();
     EXPECT_TRUE(is_across || farther_m > 0);
@@ -53,7 +53,7 @@ TEST(HandDrag, AHandleThatIsScaledMovesByLess) {
   drag.watch(shot);
   drag.grab(Vec3::Zero(), shot);
   drag.drag(camera(), {0, -300}, kSize, HandMotion::Across);
-  // Half the picture's height up, at the depth of the point.
+  // The drag goes up by half the picture's height, at the depth of the point.
   EXPECT_NEAR(drag.wish()->read().p.z(), 0.2 * std::tan(0.25) / 4, 1e-15);
 }
 
@@ -67,12 +67,13 @@ TEST(HandDrag, TurnsAboutTheScreensAxesAndTheLineOfSight) {
     EXPECT_EQ(drag.wish()->read().p.norm(), 0);
     return rotationVector(drag.wish()->read().R);
   };
-  // The camera's right is +x, its up +z, and it looks along +y. The picture's height is half a turn.
+  // The camera looks along +y, with +x to the right and +z up. A drag over the picture's height is half a
+  // turn.
   const double quarter_rad = std::numbers::pi / 2;
   EXPECT_LT((turned({300, 0}, HandMotion::Turn) - Vec3(0, 0, quarter_rad)).norm(), 1e-12);
   EXPECT_LT((turned({0, 300}, HandMotion::Turn) - Vec3(quarter_rad, 0, 0)).norm(), 1e-12);
   EXPECT_LT((turned({300, 0}, HandMotion::Twist) - Vec3(0, quarter_rad, 0)).norm(), 1e-12)
-      << "to the right: clockwise as seen, which is right-handed about the line of sight";
+      << "a drag to the right turns clockwise for the viewer, which is right-handed about the line of sight";
 }
 
 TEST(HandDrag, LettingGoBringsTheHandleToThePart) {
@@ -82,7 +83,7 @@ TEST(HandDrag, LettingGoBringsTheHandleToThePart) {
   drag.grab(Vec3::Zero(), shot);
   drag.drag(camera(), {0, 500}, kSize, HandMotion::Across);
   drag.drag(camera(), {100, 0}, kSize, HandMotion::Turn);
-  // A wall stopped the part after 3 mm and a little turn.
+  // A wall stopped the part after 3 mm and a small rotation.
   const Vec3 turn_rad(0, 0, 0.1);
   shot.bodies[0].X_WP = Pose(rotationFromVector(turn_rad), Vec3(0, 0, -3e-3));
   shot.X_W_Proxy.p.z() = -5e-3;

@@ -95,7 +95,7 @@ TEST(PlannedPath, GoesFromStartByTheWayPointsToTheTarget) {
   EXPECT_TRUE(plannedPath(scene, shot).points_W.empty());
   shot.step = 1;
   const PlannedPath path = plannedPath(scene, shot);
-  ASSERT_EQ(path.points_W.size(), 3u);  // the pin's centre of mass is its origin
+  ASSERT_EQ(path.points_W.size(), 3u);  // the path is that of the pin's centre of mass, which is its origin
   EXPECT_LT((path.points_W[0] - scene.steps[1].X_WP_start.p).norm(), 1e-15);
   EXPECT_LT((path.points_W[1] - Vec3(0.02, 0, 0.01)).norm(), 1e-15);
   EXPECT_LT((path.points_W[2] - scene.steps[1].X_WP_target.p).norm(), 1e-15);

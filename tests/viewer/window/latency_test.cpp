@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How late picture, sound and force of a contact are: what is found in a made-up measurement, and its parts.
+// Latency of picture, sound and force of a contact: the evaluation of a made-up measurement, and the parts of
+// a real one.
 #include "vps_viewer/window/latency.h"
 
 #include <gtest/gtest.h>
@@ -18,10 +19,11 @@
 namespace vps::viewer {
 namespace {
 
-constexpr double kTick_s = 1e-3, kCard_s = kCardPeriod / 48000.0;  // a period of the card
+constexpr double kTick_s = 1e-3, kCard_s = kCardPeriod / 48000.0;  // a period of the sound card
 
-/// Ticks, steps and periods of two seconds, with a contact that is read at `read_s`, found 2 ms later, felt
-/// after 3 ms, given to the card after 4, heard after 11 and seen after 20.
+/// A log of ticks, steps and periods over two seconds, with a contact. The handle is read at `read_s`; the
+/// contact is found 2 ms later, felt after 3 ms, given to the sound card after 4 ms, heard after 11 ms and
+/// seen after 20 ms.
 LatencyLog madeUp(double read_s) {
   LatencyLog log;
   for (int i = 0; i < 2000; ++i) {
@@ -46,7 +48,7 @@ LatencyLog madeUp(double read_s) {
 TEST(ContactTimes, EachOfTheThreeIsFoundWhereItBegins) {
   const std::vector<ContactTimes> found = findContacts(madeUp(1), 0.5);
   ASSERT_EQ(found.size(), 1U);
-  // To a rounding of seconds; the click to a sample.
+  // Tolerances: rounding of times in seconds, and one sample for the click.
   EXPECT_NEAR(found[0].found_s, 2e-3, 1e-9);
   EXPECT_NEAR(found[0].force_s, 3e-3 + 1e-4, 1e-9);
   EXPECT_NEAR(found[0].sound_written_s, 4e-3, 1e-9);
@@ -54,14 +56,15 @@ TEST(ContactTimes, EachOfTheThreeIsFoundWhereItBegins) {
   EXPECT_NEAR(found[0].drawing_s, 10e-3, 1e-9);
   EXPECT_NEAR(found[0].picture_s, 20e-3, 1e-9);
   EXPECT_NEAR(found[0].apart_s(true), 16.9e-3, 1e-9);
-  EXPECT_TRUE(findContacts(madeUp(1), 1.5).empty()) << "it began before";
+  EXPECT_TRUE(findContacts(madeUp(1), 1.5).empty()) << "the contact began before the start of the evaluation";
 }
 
 TEST(ContactTimes, GapsOfTheSoundAreCountedFromWhereTapsCount) {
   LatencyLog log = madeUp(1);
   EXPECT_EQ(lateSamples(log, 0.5) + lateMixes(log, 0.5), 0U);
   for (LatencyLog::Heard& heard : log.heard) {
-    if (heard.time_s > 0.25) heard.time_s += 1e-3;  // mixed too late, before and after
+    if (heard.time_s > 0.25)
+      heard.time_s += 1e-3;  // mixed too late, both before and after the start of the evaluation
     if (heard.time_s > 1.5) heard.time_s += 1e-3;
   }
   EXPECT_EQ(lateMixes(log, 0.5), 1U);
@@ -69,7 +72,7 @@ TEST(ContactTimes, GapsOfTheSoundAreCountedFromWhereTapsCount) {
   for (LatencyLog::Written& written : log.written)
     written.gaps = written.time_s < 0.25 ? 1 : written.time_s < 1.2 ? 2 : 4;
   EXPECT_EQ(lateSamples(log, 0.5), 2U);
-  EXPECT_EQ(lateSamples(log, 0), 4U) << "from the start, when there was none";
+  EXPECT_EQ(lateSamples(log, 0), 4U) << "from the start of the log";
   EXPECT_EQ(lateSamples({}, 0.5) + lateMixes({}, 0.5), 0U);
 }
 
@@ -90,7 +93,7 @@ TEST(ContactTimes, WhatIsNotSeenIsNotGood) {
 TEST(ContactTimes, TheBoundIsMetOnBothSidesOfItsEdge) {
   LatencyResult result;
   result.contacts.resize(100, {2e-3, 3e-3, 4e-3, 5e-3, 10e-3, 20e-3});
-  result.contacts[0].picture_s = 1;  // one of 100 may be late
+  result.contacts[0].picture_s = 1;  // one of 100 contacts may be late
   EXPECT_TRUE(result.isGood());
   result.contacts[1].picture_s = 3e-3 + kApart_s + 1e-6;
   EXPECT_FALSE(result.isGood());
@@ -109,15 +112,16 @@ TEST(TappingHandle, TapsAgainstAWallAndIsPressedByItOnly) {
     const double depth_m = -p.z() - kWall_m;
     deepest_m = std::max(deepest_m, depth_m);
     Wrench F;
-    F.f = Vec3(0, 0, 0.3 + std::max(0.0, kStiffness * depth_m));  // 0.3 N: a weight
+    F.f = Vec3(0, 0, 0.3 + std::max(0.0, kStiffness * depth_m));  // 0.3 N: the weight of the part
     handle.writeAt(F, i * kTick_s + 1e-4);
   }
-  EXPECT_GT(handle.taps(), 15U);  // in 10 s, of 0.4 s each, less the start
+  EXPECT_GT(handle.taps(), 15U);  // taps in 10 s; each takes 0.4 s, and the start costs some
   EXPECT_FALSE(handle.hasFoundNothing());
   EXPECT_EQ(handle.ticks().size(), 10000U);
   EXPECT_DOUBLE_EQ(handle.ticks()[5000].written_s - handle.ticks()[5000].read_s, 5.0001 - 5);
-  // It goes on until the force is felt, and a tick farther. Up to half of that force is averaged as if
-  // nothing touched: force grows by k v, so the mean over T takes press^2 / (8 k v T) of it.
+  // The handle advances until it feels the force, and one tick farther. Up to half of that force goes into
+  // the average of the free motion: the force grows by k v, so the mean over T takes press^2 / (8 k v T) of
+  // it.
   constexpr double kMean_s = 0.05, kRounding_m = 1e-9;
   const double averaged_N = plan.press_N * plan.press_N / (8 * kStiffness * plan.speed_m_s * kMean_s);
   EXPECT_LE(deepest_m, (plan.press_N + averaged_N) / kStiffness + 2 * plan.speed_m_s * kTick_s + kRounding_m);
@@ -150,7 +154,7 @@ TEST(SoundLoopback, WhatIsWrittenIsHeardLaterAndOnce) {
     for (std::size_t i = 0; i < 20; ++i) samples[i] = 0.5F;
     return samples;
   }();
-  for (int i = 0; i < 20; ++i) {  // as fast as it is played: what is late is dropped
+  for (int i = 0; i < 20; ++i) {  // written at the rate of playback, since late samples are dropped
     card->write(silence, silence, -Vec3::UnitZ());
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
@@ -173,7 +177,7 @@ TEST(SoundLoopback, WhatIsWrittenIsHeardLaterAndOnce) {
     }
   }
   EXPECT_GT(first_s, clicked_s);
-  // 0.4 ms of samples, and the ringing of a head's filters, which are about 5 ms long.
+  // Bound: 0.4 ms of samples, and the ringing of the HRTF filters, which are about 5 ms long.
   EXPECT_LT(last_s - first_s, 10e-3);
 }
 

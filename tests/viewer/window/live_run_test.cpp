@@ -15,7 +15,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// A handle that rests, and can be unplugged.
+/// A handle that does not move, and can be unplugged.
 class Unpluggable final : public device::Device {
  public:
   explicit Unpluggable(const std::atomic<bool>& is_unplugged) : is_unplugged_(is_unplugged) {}
@@ -34,7 +34,7 @@ class Unpluggable final : public device::Device {
   int reads_ = 0;
 };
 
-/// Waits for a minute at most.
+/// Waits until the condition holds, for at most a minute.
 template <class Condition>
 bool soon(Condition is_true) {
   const auto end = std::chrono::steady_clock::now() + 60s;
@@ -75,7 +75,7 @@ TEST(LiveRunTest, SnapshotsOfARunHaveItsFiguresSoFar) {
   LiveRun run(scenes::loadScene(VPS_SOURCE_DIR "/scenes/peg_in_hole/scene.toml"), settings, [] {});
   std::optional<scenes::Snapshot> shot;
   run.ask();
-  // Older than the first figures, which are renewed every 50 ms of simulated time.
+  // Snapshots have figures from 50 ms of simulated time on; wait for 0.2 s.
   ASSERT_TRUE(soon([&] {
     if (std::optional<scenes::Snapshot> newer = run.take()) {
       shot = std::move(newer);

@@ -9,7 +9,7 @@ namespace vps::viewer {
 namespace {
 
 constexpr PictureSize kSize = {800, 600};
-constexpr double kRounding = 1e-12;  // of a few dozen operations on lengths of about 1 m
+constexpr double kRounding = 1e-12;  // rounding error of a few dozen operations on lengths of about 1 m
 
 /// Two boxes of 0.1 m, one 0.3 m above the other, seen from above.
 class PickingTest : public testing::Test {
@@ -65,7 +65,7 @@ TEST(SectionDragTest, ADragMovesThePlaneByWhatItMovesOnTheScreen) {
   EXPECT_NEAR(after[1] - before[1], -50, 1e-9);
   EXPECT_NEAR(cut.p_W.x(), 0, kRounding);
   dragSection(cut, camera, {0, -1e6}, kSize, box);
-  EXPECT_NEAR(cut.p_W.z(), 1, kRounding) << "it stays within the box";
+  EXPECT_NEAR(cut.p_W.z(), 1, kRounding) << "the plane stays within the box";
 }
 
 TEST(SectionDragTest, APlaneThatFacesTheEyeMovesAwayWhenDraggedUp) {

@@ -52,7 +52,7 @@ TEST_F(PictureWorkerTest, TheSameRequestDrawsNothingAndAnotherDoes) {
   while (next(worker).is_draft) continue;
   const std::size_t drawn = worker.count();
   worker.request(wanted_);
-  std::this_thread::sleep_for(300ms);  // twice the time after which a draft would be drawn in full
+  std::this_thread::sleep_for(300ms);  // twice the time after which the worker draws a resting view in full
   EXPECT_EQ(worker.count(), drawn);
   wanted_.snapshot.bodies[0].X_WP.p.x() += 1e-3;
   worker.request(wanted_);
@@ -165,7 +165,7 @@ TEST_F(FailingRenderer, AWorkerThatNeverDrawsEndsCleanly) {
 
 TEST_F(PictureWorkerTest, ADraftForInterleavedRowsHasAllRowsAndKeepsTheEyesApart) {
   Renderer renderer(scene_);
-  wanted_.options.width = 161;  // not a multiple of what drafts are divided by
+  wanted_.options.width = 161;  // not a multiple of the divisor of drafts
   wanted_.options.height = 121;
   wanted_.stereo = StereoMode::Interleaved;
   Camera left = wanted_.camera, right = wanted_.camera;
@@ -179,9 +179,9 @@ TEST_F(PictureWorkerTest, ADraftForInterleavedRowsHasAllRowsAndKeepsTheEyesApart
       ASSERT_EQ(draft.height, 121);
       for (int y = 0; y < draft.height; ++y) {
         const bool is_left = (first + y) % 2 == 0;
-        bool has_box = false;  // against the background, which is light
+        bool has_box = false;  // whether the row shows the dark box on the light background
         for (int x = 0; x < draft.width; ++x) has_box |= draft.at(x, y)[0] < 150;
-        if (!is_left && std::abs(y - 60) >= 20) continue;  // the box has its rows in the middle
+        if (!is_left && std::abs(y - 60) >= 20) continue;  // the box covers rows in the middle only
         EXPECT_EQ(has_box, !is_left) << "row " << y << " of a draft with 1/" << shrink;
       }
     }

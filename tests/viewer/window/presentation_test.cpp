@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Those who watch show a snapshot at the same instant, however different their ways are.
+// All watchers show a snapshot at the same instant, however different the delays of their connections are.
 #include "run/presentation.h"
 
 #include <gtest/gtest.h>
@@ -43,7 +43,7 @@ TEST(Presentation, OneThatComesLateIsShownAtOnceAndCounted) {
   EXPECT_EQ(dueAt(presentation, 151 * kMs), std::vector<int>{1});
 }
 
-// A clock that is an hour ahead holds nothing up, and no crowd of snapshots waits for it.
+// A clock that is an hour ahead delays no snapshot and lets no queue grow.
 TEST(Presentation, TimesThatCannotBeHoldNothingUp) {
   Presentation presentation(50 * kMs);
   presentation.add(shotOf(1), 3'600'000 * kMs, 100 * kMs);
@@ -53,12 +53,13 @@ TEST(Presentation, TimesThatCannotBeHoldNothingUp) {
   EXPECT_EQ(dueAt(presentation, 1000 * kMs).size(), 64u);
 }
 
-/// When a watcher shows each snapshot: they come by ways of random length, and it looks at even times.
+/// The time at which a watcher shows each snapshot. Snapshots arrive with random delays, and the watcher
+/// polls at equal intervals.
 std::map<int, std::int64_t> shownBy(std::int64_t after_ns, std::int64_t look_ns, std::int64_t least_way_ns,
                                     std::int64_t most_way_ns, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_int_distribution<std::int64_t> way_ns(least_way_ns, most_way_ns);
-  std::map<std::int64_t, int> comes;  // what comes when, the newest counts
+  std::map<std::int64_t, int> comes;  // snapshots by time of arrival; the newest one counts
   for (int i = 0; i < 600; ++i) comes[(i * 50 * kMs) / 3 + way_ns(random)] = i;
   Presentation presentation(after_ns);
   std::map<int, std::int64_t> shown;
@@ -75,7 +76,7 @@ std::map<int, std::int64_t> shownBy(std::int64_t after_ns, std::int64_t look_ns,
   return shown;
 }
 
-/// The greatest difference between two who show the same snapshot.
+/// The greatest difference between the times at which two watchers show the same snapshot.
 std::int64_t apart(const std::map<int, std::int64_t>& a, const std::map<int, std::int64_t>& b) {
   std::int64_t most_ns = 0;
   for (const auto& [step, at_ns] : a)
@@ -84,8 +85,8 @@ std::int64_t apart(const std::map<int, std::int64_t>& a, const std::map<int, std
   return most_ns;
 }
 
-// One in the machine that looks 60 times a second, and one behind 20 ms and a jitter of 5 that looks 50
-// times: what differs is when they look, by no more than the longer of their periods.
+// One watcher on the same machine polls 60 times a second; the other, with a delay of 20 ms and a jitter of 5
+// ms, polls 50 times. Their times differ by the polling only, so by no more than the longer of their periods.
 TEST(Presentation, TwoWatchersAreApartByNoMoreThanTheirLooks) {
   const std::int64_t after_ns = kPresentAfter_ns;
   EXPECT_LE(apart(shownBy(after_ns, 16 * kMs, 0, kMs, 1), shownBy(after_ns, 20 * kMs, 20 * kMs, 25 * kMs, 2)),

@@ -16,17 +16,18 @@ Box boxOf(const Vec3& min, const Vec3& max) {
 }
 
 TEST(TableRoom, TheSceneStandsBeforeAndBelowTheHeadSixtyCentimetresWide) {
-  const Box box_W = boxOf(Vec3(0.1, 0.2, 0.3), Vec3(0.3, 0.24, 0.35));  // 0.2 m at most
+  const Box box_W = boxOf(Vec3(0.1, 0.2, 0.3), Vec3(0.3, 0.24, 0.35));  // the largest size is 0.2 m
   const TableRoom room = onTable(box_W);
   EXPECT_NEAR(room.scale, 3, 1e-12);
   EXPECT_TRUE(room.toRoom(Vec3(0.2, 0.22, 0.3)).isApprox(Vec3(0, -0.45, -0.6), 1e-12))
       << "middle of the floor";
-  // To the right is to the right, up is up, and what lies behind in the front view is farther away.
+  // Right stays right, up stays up, and parts that lie behind in the front view are farther away.
   EXPECT_TRUE(room.toRoom(Vec3(0.3, 0.22, 0.3)).isApprox(Vec3(0.3, -0.45, -0.6), 1e-12));
   EXPECT_TRUE(room.toRoom(Vec3(0.2, 0.22, 0.35)).isApprox(Vec3(0, -0.3, -0.6), 1e-12));
   EXPECT_TRUE(room.toRoom(Vec3(0.2, 0.24, 0.3)).isApprox(Vec3(0, -0.45, -0.66), 1e-12));
   EXPECT_TRUE(room.toScene(room.toRoom(Vec3(1, 2, 3))).isApprox(Vec3(1, 2, 3), 1e-12));
-  EXPECT_NEAR(onTable(boxOf(Vec3::Zero(), Vec3(0.01, 0.01, 0.2))).scale, 2, 1e-12) << "a tower is 0.4 m high";
+  EXPECT_NEAR(onTable(boxOf(Vec3::Zero(), Vec3(0.01, 0.01, 0.2))).scale, 2, 1e-12)
+      << "a tower is scaled to a height of 0.4 m";
   EXPECT_NEAR(room.toScene(Pose()).R.determinant(), 1, 1e-12);
 }
 

@@ -11,7 +11,8 @@
 namespace vps::viewer {
 namespace {
 
-/// A fixed plate and two pins that come down from 0.1 m above; the second by way of a point at its side.
+/// A fixed plate and two pins that move down from 0.1 m above it; the second one passes a way point at its
+/// side.
 scenes::Scene twoPins() {
   scenes::Scene scene;
   for (const char* name : {"plate", "left", "right"}) {
@@ -84,7 +85,8 @@ TEST(TimelineTest, ARecordingShowsThePartsWhereItsTraceHasThem) {
   EXPECT_EQ(line.chapterAt(0.49), 0U);
   EXPECT_EQ(line.chapterAt(0.5), 1U);
 
-  EXPECT_EQ(line.at(0).bodies[1].X_WP.p.z(), 0.09) << "before the first row it is as in that row";
+  EXPECT_EQ(line.at(0).bodies[1].X_WP.p.z(), 0.09)
+      << "before the first row the pose is that of the first row";
   EXPECT_EQ(line.at(0.35).bodies[1].role, scenes::BodyRole::Released);
   const scenes::Snapshot end = line.at(0.5);
   EXPECT_EQ(end.bodies[0].role, scenes::BodyRole::Mounted);
@@ -117,7 +119,7 @@ TEST(ExplodedTest, PartsMoveBackAlongTheirLastLegAndLaterOnesFarther) {
   const scenes::Snapshot whole = sceneTour(scene).at(0);
   const scenes::Snapshot apart = exploded(scene, whole, 0.5, 0.2);
   EXPECT_EQ(apart.bodies[0].X_WP.p, whole.bodies[0].X_WP.p) << "fixed";
-  // Half of the size times half, since it is the first of two steps: 0.05 m up.
+  // Half of the size, times one half for the first of two steps: 0.05 m up.
   EXPECT_NEAR((apart.bodies[1].X_WP.p - whole.bodies[1].X_WP.p - Vec3(0, 0, 0.05)).norm(), 0, 1e-15);
   const Vec3 way = apart.bodies[2].X_WP.p - whole.bodies[2].X_WP.p;
   EXPECT_NEAR(way.norm(), 0.1, 1e-15);
@@ -135,7 +137,7 @@ TEST(ViewStateTest, KeysPlayAndMoveAlongTheSteps) {
   apply(Action::Forward, view, tour, box);
   apply(Action::Forward, view, tour, box);
   apply(Action::LastStep, view, tour, box);
-  EXPECT_EQ(view.time_s, tour.chapters[1].start_s) << "the start of the same step";
+  EXPECT_EQ(view.time_s, tour.chapters[1].start_s) << "the key goes to the start of the same step";
   apply(Action::LastStep, view, tour, box);
   EXPECT_EQ(view.time_s, 0);
   apply(Action::PlayPause, view, tour, box);
@@ -159,7 +161,7 @@ TEST(ViewStateTest, WhatIsShownAloneStaysSoInEachStereoMode) {
       EXPECT_EQ(view.output, 2U) << toText(view.stereo);
       apply(Action::Stereo, view, line, box);
     }
-    EXPECT_EQ(view.output, 4U) << "its left eye";
+    EXPECT_EQ(view.output, 4U) << "the left eye of the selected output";
     *view.output += eye;
     apply(Action::Stereo, view, line, box);
     EXPECT_EQ(view.output, 2U);
@@ -238,7 +240,7 @@ TEST(LiveChapters, WhoJoinsAtTheThirdStepGetsAChapterForEachOnce) {
     EXPECT_EQ(line.chapters[i].name, std::to_string(i));
     EXPECT_EQ(line.chapters[i].start_s, i < 4 ? 7 : 9);
   }
-  EXPECT_EQ(line.chapterAt(8), 3u) << "the step under way";
+  EXPECT_EQ(line.chapterAt(8), 3u) << "the current step";
 }
 
 TEST(LiveCurves, RatesAreThoseSinceTheFiguresBefore) {

@@ -52,7 +52,7 @@ EglContext::EglContext() : display_(openDisplay()) {
                            EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY_KHR,
                            EGL_LOSE_CONTEXT_ON_RESET_KHR,
                            EGL_NONE};
-  // the attributes without the last two, for drivers without robust contexts
+  // The attributes without the last two, for drivers without robust contexts.
   std::array<EGLint, 7> plain = {};
   std::copy_n(wanted, plain.size() - 1, plain.begin());
   plain.back() = EGL_NONE;

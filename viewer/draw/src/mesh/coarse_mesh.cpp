@@ -71,7 +71,7 @@ std::vector<std::uint32_t> CoarseMesh::indices(std::size_t wanted) {
   const float cell = (high - low).maxCoeff() / static_cast<float>(cells);
   if (!(cell > 0)) return mesh_.indices;
 
-  // bits of the 64-bit key that are left beside three cell numbers and the side
+  // Bits of the 64-bit key that three cell numbers and the side leave free.
   constexpr int kColorBits = 25;
   const std::vector<std::uint32_t> color_of = colorNumbers(mesh_);
   std::unordered_map<std::uint64_t, std::uint32_t> first_in_cell;

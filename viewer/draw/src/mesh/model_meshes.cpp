@@ -58,7 +58,7 @@ struct Cells {
   }
 };
 
-// factor on the colour of every second cube, so that single cubes are visible
+// Factor on the colour of every second cube, so that single cubes are visible.
 constexpr float kDarker = 0.72f;
 // Faces are smaller than their cube by this share, because the renderer gives all vertices at one place one
 // tint.

@@ -30,8 +30,8 @@ struct ShadingEdge {
   std::array<float, 3> a, b;
 };
 
-/// An edge inside a smooth surface. It is part of the outline when one of its faces is seen from the front
-/// and the other from behind.
+/// An edge inside a smooth surface. The edge is part of the outline if one of its faces is seen from the
+/// front and the other from behind.
 struct SmoothEdge {
   ShadingEdge edge;
   std::array<float, 3> n_left, n_right;

@@ -12,7 +12,7 @@ Pose Camera::pose() const {
   const Vec3 z = (eye_W - target_W).normalized();
   Vec3 x = up_W.cross(z);
   if (x.norm() < 1e-6)
-    x = z.unitOrthogonal();  // straight down: any horizontal axis serves, as long as it is always the same
+    x = z.unitOrthogonal();  // the view is straight down or up: any fixed horizontal axis is suitable
   x.normalize();
   Mat3 R;
   R << x, z.cross(x), z;

@@ -29,7 +29,7 @@ void drawGhostEdges(const DrawnBody& ghost, const Picture& picture) {
   const Vector4f ink(0.2f * ghost.color.x(), 0.35f * ghost.color.y(), 0.6f * ghost.color.z(), 0.55f);
   drawLines(ghost.mesh->sharp_edges, ghost, picture, 1.1f, ink);
   drawLines(GpuLines(rim), ghost, picture, 1.1f, ink);
-  // Where other parts hide the target, its edges are faint.
+  // Edges of the target are faint behind other parts.
   glDepthFunc(GL_GREATER);
   glDepthMask(GL_FALSE);
   drawLines(ghost.mesh->sharp_edges, ghost, picture, 1.0f, {ink.x(), ink.y(), ink.z(), 0.16f});

@@ -10,7 +10,7 @@
 
 namespace vps::viewer {
 
-/// Everything that a draft depends on, besides the meshes.
+/// The quantities that determine a draft, apart from the meshes.
 struct DraftContents {
   Box box_W;  ///< see coarseBounds()
   Camera camera;

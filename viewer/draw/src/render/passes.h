@@ -14,7 +14,7 @@
 
 namespace vps::viewer {
 
-/// What the passes of one picture read.
+/// The input of all passes of one picture.
 struct Picture {
   const GpuResources& gl;
   const View& view;

@@ -22,8 +22,8 @@ bool meetsPlane(const DrawnBody& body, const View& view) {
   return is_near_side && is_far_side;
 }
 
-/// A square in the section's plane, large enough for everything. Its axes are fixed in the plane, so that the
-/// hatch does not move with the camera.
+/// A square in the section's plane, large enough for everything. The axes of the square are fixed in the
+/// plane, so that the hatch does not move with the camera.
 void setPlane(const gl::Program& program, const View& view) {
   const Vec3 n = view.cut_C.head<3>().cast<double>();
   const Vec3 up = view.up_C.cast<double>();

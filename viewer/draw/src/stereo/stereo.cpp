@@ -43,8 +43,8 @@ Mat3 conversion(bool is_left) {
   return (primaries * strengths.asDiagonal()).inverse() * srgbToXyz();
 }
 
-/// The same colours, mixed from the primaries of that eye's filter, for a viewer who wears the glasses.
-/// Colours that the primaries cannot mix are clamped; white stays white.
+/// Converts a picture to the primaries of one eye's filter, so that a viewer with the glasses sees its
+/// colours. Colours that the primaries cannot mix are clamped; white stays white.
 Image throughSpectralFilter(const Image& image, bool is_left) {
   const Mat3 M = conversion(is_left);
   std::array<double, 256> levels{};

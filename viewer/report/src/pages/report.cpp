@@ -109,7 +109,7 @@ std::string stepFacts(const scenes::StepResult& s) {
     facts.emplace_back("Hangs on a hoist",
                        "which carries " + format(s.hoist_N, "%.1f") +
                            " N of its weight, as the hand may carry no more than the rest; "
-                           "forces on the hand are those of the lighter part");
+                           "forces on the hand are those of a part that is lighter by this weight");
   return html::facts(facts);
 }
 

@@ -228,7 +228,8 @@ std::string sectionPictures(const scenes::CheckResult& result) {
   if (wanted > result.sections.size())
     out += format(static_cast<double>(result.sections.size()), ": the first %.0f") +
            format(static_cast<double>(wanted), " of %.0f, the deepest and tightest");
-  out += ". The facets are shown as they are; the numbers of a fit are those of the true cylinders.</p>\n";
+  out +=
+      ". The pictures show the facets of the meshes; the numbers of a fit describe the true cylinders.</p>\n";
   for (std::size_t i = 0; i < result.sections.size(); ++i)
     out += "<figure class=\"section\">" + sectionSvg(result, result.sections[i], i) + "<figcaption>" +
            captionOf(result, result.sections[i]) + "</figcaption></figure>\n";
