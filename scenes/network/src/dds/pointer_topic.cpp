@@ -11,7 +11,7 @@ namespace vps::scenes {
 
 namespace {
 
-constexpr std::size_t kMostWaiting = 256;  // 8 processes that point 30 times a second fill this in a second
+constexpr std::size_t kMostPointers = 256;  // 8 processes that point 30 times a second fill this in a second
 
 class DdsPointerTopic final : public PointerTopic {
  public:
@@ -33,7 +33,7 @@ class DdsPointerTopic final : public PointerTopic {
  private:
   void hear(std::string_view bytes) {
     const std::lock_guard lock(mutex_);
-    if (waiting_.size() >= kMostWaiting) waiting_.pop_front();
+    if (waiting_.size() >= kMostPointers) waiting_.pop_front();
     waiting_.emplace_back(bytes);
   }
 
