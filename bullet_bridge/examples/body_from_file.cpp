@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A body from a CAD or mesh file (STEP, STL, OBJ, glTF, ...): it lies down on a plane.
+// Makes a body from a CAD or mesh file (STEP, STL, OBJ, glTF, ...) and lets it fall on a plane.
 // Files are read by vps::scenes, since this library and the plugin depend on no reader:
 // find_package(vps COMPONENTS bullet scenes). A host with a reader of its own passes its triangles to
 // makeBody().

@@ -24,7 +24,8 @@ void onEnded(btPersistentManifold* const&) {
   std::printf("contact ends\n");
 }
 
-/// Sum over all manifolds of a pair: a part has as many as its contacts need, with four contacts in each.
+/// Contact force on a body: the sum over all its manifolds. A pair has as many manifolds as its contacts
+/// need, with up to four contacts in each.
 double forceOn(const btCollisionObject& body, btCollisionDispatcher& dispatcher, double dt_s) {
   double impulse_Ns = 0;
   for (int m = 0; m < dispatcher.getNumManifolds(); ++m) {

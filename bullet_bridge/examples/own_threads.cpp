@@ -16,7 +16,7 @@ using vps::bullet::toBt;
 
 namespace {
 
-/// Where a ring of a thread's own is after it has fallen on the shared plate.
+/// Lets a ring fall on the shared plate in a world of its own. Returns where the ring comes to rest.
 btTransform drop(vps::bullet::Shape& plate, double tilt_rad, int threads) {
   btDefaultCollisionConfiguration config;
   vps::bullet::Dispatcher dispatcher(&config, threads);  // 1: all work stays in the calling thread
@@ -52,7 +52,7 @@ int main() {
 
   constexpr int kWorlds = 4;
   std::vector<btTransform> together(kWorlds);
-  std::vector<std::thread> pool;  // stands for the host's own
+  std::vector<std::thread> pool;  // stands for the host's own threads
   for (int i = 0; i < kWorlds; ++i)
     pool.emplace_back([&, i] { together[i] = drop(*plate.shape, 0.1 * i, 1); });
   for (std::thread& thread : pool) thread.join();

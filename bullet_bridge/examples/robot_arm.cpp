@@ -26,21 +26,22 @@ int main() {
   vps::bullet::install(dispatcher);
 
   vps::bullet::BodySettings fixed;
-  fixed.is_fixed = true;  // its top is at z = 5 mm
+  fixed.is_fixed = true;  // the plate's top is at z = 5 mm
   const vps::bullet::Body plate = vps::bullet::makeBody(vps::makeBox({0.06, 0.06, 0.01}), fixed);
   world.addRigidBody(plate.rigid.get());
 
   // makeBody() gives shape, mass and inertia; the link takes these, and its rigid body is not used.
   const vps::bullet::Body ring = vps::bullet::makeBody(vps::makeTube(0.012, 0.006, 0.01, 64));
 
-  // A fixed base beside the plate, a slide that goes down, and an arm of 0.1 m whose hinge swings the ring
-  // in.
+  // The robot has a fixed base next to the plate, a slide that moves down, and an arm of 0.1 m whose hinge
+  // swings the ring over the plate.
   btMultiBody arm(2, 0, btVector3(0, 0, 0), true, false);
   arm.setBaseWorldTransform(toBt(vps::Pose::translation({-0.1, 0, 0.03})));
   const btQuaternion straight(0, 0, 0, 1);
   const btVector3 light(toBt(1e-5), toBt(1e-5), toBt(1e-5)), none(0, 0, 0);
   arm.setupPrismatic(0, toBt(0.1), light, -1, straight, btVector3(0, 0, 1), none, none, true);
-  // Its frame is that of the ring's principal axes, as the shape's; the ring's own is turned against it.
+  // The link's frame, like the shape's, has the ring's principal axes; the frame of the ring's mesh is turned
+  // against it.
   const vps::Mat3 R_BP = ring.frame.X_PB.R.transpose();
   const btQuaternion into_body = toBt(vps::Pose(R_BP, {0, 0, 0})).getRotation();
   arm.setupRevolute(1, toBt(ring.frame.mass_kg), toBt(ring.frame.inertia_kg_m2), 0, into_body,

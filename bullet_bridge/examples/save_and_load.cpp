@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A world with a part is saved in Bullet's own format, loaded again, and goes on.
+// Saves a world with a part in Bullet's own format, loads it again, and continues the simulation.
 #include <btBulletDynamicsCommon.h>
 #include <vps_bullet/body.h>
 #include <vps_bullet/convert.h>

@@ -24,7 +24,7 @@ set(DOXYGEN_EXPAND_ONLY_PREDEF YES)
 set(DOXYGEN_EXTRACT_ALL YES)
 set(DOXYGEN_HAVE_DOT NO)
 set(DOXYGEN_QUIET YES)
-# Not every parameter needs a sentence: @param is for those that their name does not explain.
+# Not every parameter needs a sentence: @param describes parameters that their names do not explain.
 set(DOXYGEN_WARN_IF_INCOMPLETE_DOC NO)
 set(DOXYGEN_WARN_AS_ERROR FAIL_ON_WARNINGS)
 doxygen_add_docs(documentation ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/INSTALL.md ${documented_texts} ${documented_folders}

@@ -223,7 +223,7 @@ function(vps_compile_options target)
 endfunction()
 
 # vps_optional_library(TARGET NAME HEADER file [SUFFIX folder] LIBRARY name SOURCE file WITHOUT file MISSING words)
-# A library that need not be there: SOURCE uses it, WITHOUT stands in its place. Both are of the caller's folder.
+# A library that need not be there: SOURCE uses it, WITHOUT stands in its place. Both paths are relative to the caller's folder.
 #   NAME     in messages, and in the cache as VPS_<NAME>_INCLUDE and VPS_<NAME>_LIBRARY
 #   MISSING  what is lost without it, and the package that has it
 function(vps_optional_library target name)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What most of our sources include and what is slow to compile. It is compiled once for each library. A
-// source still includes what it uses: every header has to compile without this one (see tests/README.md).
+// Headers that most of our sources include and that are slow to compile. It is compiled once for each
+// library. A source still includes what it uses: every header has to compile without this one (see
+// tests/README.md).
 #pragma once
 
 #include <Eigen/Dense>

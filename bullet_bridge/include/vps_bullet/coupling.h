@@ -16,8 +16,9 @@ namespace vps::bullet {
 
 /// A 6-DOF spring-damper between a target (the device's proxy at the end of the step) and a point of a
 /// dynamic body. Implicit: the wrench is that of the coupling law at the end of the step, solved together
-/// with the contact impulses. So the coupling is stable for any gains, and on a part at rest its wrench
-/// equals couplingWrench(). The spring's force and torque are limited separately, keeping their directions.
+/// with the contact impulses. The coupling is therefore stable for any gains, and on a part at rest its
+/// wrench equals couplingWrench(). The spring's force and torque are limited separately, keeping their
+/// directions.
 ///
 /// It has no solver rows; the 6x6 block is solved in solveConstraintObsolete, once per iteration. Add it with
 /// world.addConstraint(&coupling, true): with `true` the contact query includes the coupling's pull in its

@@ -19,9 +19,9 @@ namespace vps::bullet {
 /// with several threads.
 VPS_BULLET_API void install(btCollisionDispatcher& dispatcher, const Settings& settings = {});
 
-/// Restores the functions that were registered before install(), except those that have been replaced since.
-/// Existing pairs keep VPS contact until their bodies separate or are removed; a message (log.h) says so.
-/// Does nothing without an installation. A dispatcher may also be destroyed without this call; another
+/// Restores the functions that were registered before install(), except functions that have been replaced
+/// since. Existing pairs keep VPS contact until their bodies separate or are removed; a message (log.h) says
+/// so. Does nothing without an installation. A dispatcher may also be destroyed without this call; another
 /// dispatcher created later at the same address starts without an installation.
 VPS_BULLET_API void uninstall(btCollisionDispatcher& dispatcher);
 

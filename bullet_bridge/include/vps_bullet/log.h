@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where the messages of this library go.
+// The log hook: where the messages of this library go.
 #pragma once
 
 #include <functional>

@@ -35,7 +35,7 @@ struct WorldTuning {
 /// Throws std::invalid_argument for fewer than one iteration.
 VPS_BULLET_API WorldTuning tuneWorld(btDiscreteDynamicsWorld& world, int solver_iterations = 100);
 
-/// Restores the values that tuneWorld() changed, except those that have been changed again since.
+/// Restores the values that tuneWorld() changed, except values that have been changed again since.
 VPS_BULLET_API void restoreWorld(btDiscreteDynamicsWorld& world, const WorldTuning& tuning);
 
 /// A body that stays below both speeds for two seconds (Bullet's gDeactivationTime) may fall asleep. Bullet's

@@ -22,7 +22,7 @@ namespace vps::bullet {
 /// 0.17 rad on (tests/families, D_gears).
 inline constexpr double kContactTurn_rad = 0.1;
 /// If bodies turn farther than kContactTurn_rad: greatest distance by which a contact point may leave its
-/// plane within a step without a report [m]. It is the overlap that is allowed between parts (10 um, also in
+/// plane within a step without a report [m]: the overlap that is allowed between parts (10 um, also in
 /// scenes). A point at distance r from the axis of the relative motion leaves its plane by r turn^2 / 2; for
 /// rolling contact r is 0.
 inline constexpr double kContactSagitta_m = 10e-6;

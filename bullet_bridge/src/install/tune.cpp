@@ -43,7 +43,7 @@ void forEachParameter(btDiscreteDynamicsWorld& world, int solver_iterations, con
   visit(info.m_splitImpulseTurnErp, btScalar(1), "split impulse turn erp");
   // Share of an overlap that is corrected in one step; this is Bullet's own value.
   visit(info.m_erp2, btScalar(0.2), "contact erp");
-  // Both a tolerated overlap and a compliance of contacts let a part sink by that much.
+  // A tolerated overlap and a compliance of contacts each let a part sink.
   visit(info.m_linearSlop, btScalar(0), "linear slop [m]");
   visit(info.m_globalCfm, btScalar(0), "global cfm");
   // Contacts keep their ids, so last step's impulses are close to this step's (Bullet: 0.85).

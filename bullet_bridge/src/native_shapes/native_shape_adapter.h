@@ -13,7 +13,7 @@
 namespace vps::bullet {
 
 /// A native shape's surface as models without a map: the exact distance of its triangles, and its corners as
-/// a shell. So the points of each side are queried in the other side: the Shape's points on the native
+/// a shell. The points of each side are queried in the other side: the Shape's points on the native
 /// surface, the corners in the Shape's map. For a primitive with corners only the corners are used, since
 /// primitiveDistance() measures the surface. Refers to the native shape, but keeps the geometry that it had
 /// at construction.

@@ -148,9 +148,9 @@ std::vector<Vec3> cloudPoints(const btConvexPointCloudShape& shape) {
   return points;
 }
 
-// Points of a shape of which only the support function is known: its values in 10,242 directions. One of the
-// directions lies within 2.6 degrees of any direction that a rounding of radius r supports, so the hull cuts
-// the rounding by at most r (1 - cos 2.6 deg) = 1.03e-3 r.
+// Points of a shape of which only the support function is known: its values in 10,242 directions. Any
+// direction that a rounding of radius r supports lies within 2.6 degrees of one of these directions, so the
+// hull cuts the rounding by at most r (1 - cos 2.6 deg) = 1.03e-3 r.
 std::vector<Vec3> supportPoints(const btConvexShape& shape) {
   std::vector<Vec3> points;
   for (const Vec3& direction : makeSphere(1, 5).vertices)

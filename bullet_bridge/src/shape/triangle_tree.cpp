@@ -43,7 +43,7 @@ void Shape::TriangleTree::visit(const Box& box, btTriangleCallback& callback) co
 }
 
 bool Shape::TriangleTree::visitCast(const Box& box, btTriangleCallback& callback) const {
-  // Bullet adds a margin for rounding to the box of the path. It is more than 1e-6 of the box's size.
+  // Bullet adds a margin for rounding to the box of the path. The margin is more than 1e-6 of the box's size.
   const double rounding_m = 1e-6 * box.size().norm();
   if (auto* ray = dynamic_cast<btTriangleRaycastCallback*>(&callback)) {
     const Vec3 from = fromBt(ray->m_from);

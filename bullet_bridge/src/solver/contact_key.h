@@ -16,16 +16,16 @@ constexpr std::uint64_t contactKey(std::uint8_t side, std::uint32_t crossed, std
   return (std::uint64_t(side) << 63) | (std::uint64_t(crossed) << 32) | id;
 }
 
-/// Sets the rest gap that bullet::Solver keeps at a contact of sharp features. It is stored in m_contactCFM,
-/// since Bullet has no member for it; contacts with their own softness get no rest gap.
+/// Sets the rest gap that bullet::Solver keeps at a contact of sharp features. The gap is stored in
+/// m_contactCFM, since Bullet has no member for it; contacts with their own softness get no rest gap.
 void setRestGap(btManifoldPoint& point, double rest_m);
-/// The rest gap; 0 without one.
+/// Returns the rest gap of a contact; 0 if none was set.
 double restGap_m(const btManifoldPoint& point);
 
-/// Sets the area of a touching face that the contact represents. It is stored in m_contactERP; contacts with
-/// their own softness get none.
+/// Sets the area of a touching face that the contact represents. The area is stored in m_contactERP; contacts
+/// with their own softness get none.
 void setArea(btManifoldPoint& point, double area_m2);
-/// The area; 0 without one.
+/// Returns the area that a contact represents; 0 if none was set.
 double area_m2(const btManifoldPoint& point);
 
 /// Marks a contact at which the bodies will bounce within the step, and sets its distance to 0. Bullet's

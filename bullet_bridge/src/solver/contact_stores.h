@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the pairs of one installation share with the solver, found through the dispatcher.
+// Stores that the pairs of one installation share with the solver, which finds them through the dispatcher.
 //
 // Bullet passes the dispatcher to solveGroup() but has no user pointer in manifolds or dispatchers. The
 // create function that install() registers for pairs of Shapes is in the dispatcher's own table, so it holds

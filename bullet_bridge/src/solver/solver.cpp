@@ -206,7 +206,7 @@ SolveOutcome Solver::Work::solveWithLaws(const SolverSettings& settings) {
     most_steps = std::max(most_steps, last.steps);
     if (is_penalty) left.iteration_limit -= last.steps;  // each evaluates thousands of points
     if (round == rounds - 1 || left.iteration_limit <= 0)
-      break;  // not converged: laws and limits stay those of the last solution
+      break;  // not converged: laws and limits of the last solution remain
     const bool has_settled_friction = !is_penalty || penalty.updateLimits() < kSettledShare;
     if (updateLaws() && has_settled_friction) break;
   }

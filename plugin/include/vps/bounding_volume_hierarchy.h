@@ -33,11 +33,11 @@ struct Hierarchy {
 
 /// Builds a hierarchy from the root down. Cost: O(n log n) if divide() is linear and its parts are balanced.
 /// @param divide  called once for each node, in the order of the nodes, as divide(std::span<std::uint32_t>)
-///                with the indices of the node's items (for the root in ascending order). It reorders them
-///                and returns how many of them, counted from the first, form the left child; 0 makes a leaf.
-///                Here a user chooses the size of leaves and the criterion of the order, and may compute
-///                bounds of the node. divideByKey() and divideByPoint() reorder alike with every standard
-///                library.
+///                with the indices of the node's items (for the root in ascending order). divide() reorders
+///                the indices and returns how many of them, counted from the first, form the left child; 0
+///                makes a leaf. Here a user chooses the size of leaves and the criterion of the order, and
+///                may compute bounds of the node. divideByKey() and divideByPoint() reorder alike with every
+///                standard library.
 template <typename Divide>
 [[nodiscard]] Hierarchy buildHierarchy(std::size_t item_count, Divide divide) {
   Hierarchy tree;
@@ -116,7 +116,7 @@ class VPS_API BoxTree {
     OfBoxes,    ///< along the longest side of the box around its items' boxes
   };
 
-  /// O(n log n). The same tree with every standard library.
+  /// Builds the same tree with every standard library. O(n log n).
   /// @param most_in_leaf  a node with more boxes than this has children: fewer where a test of an item is
   /// costly
   explicit BoxTree(std::span<const Box> boxes, std::uint32_t most_in_leaf = 4, Axis axis = Axis::OfCenters);

@@ -6,7 +6,7 @@
 
 namespace vps {
 
-/// An axis-aligned box [m]. Its faces belong to it. A new box is empty.
+/// An axis-aligned box [m], including its faces. A new box is empty.
 struct Box {
   Vec3 min = Vec3::Constant(1e300);
   Vec3 max = Vec3::Constant(-1e300);

@@ -18,7 +18,8 @@ class CacheFolder;
 
 /// A cache of byte strings that can be computed again. Each is kept in a file whose name is the 128-bit hash
 /// (XXH3) of its inputs. Damage, sharing between programs, the size limit and read-only disks are handled as
-/// in VoxMapCache. Both caches may use one folder; the limit then applies to the files of both together.
+/// in VoxMapCache. VoxMapCache and ByteCache may use one folder; the limit then applies to the files of both
+/// together.
 class VPS_API ByteCache {
  public:
   using Warn = std::function<void(const std::string&)>;

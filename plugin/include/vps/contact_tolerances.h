@@ -103,34 +103,31 @@ inline constexpr double kSameGap_m = 1e-7;
 /// Upper bound of the seam between parts that are mounted on each other [m].
 /// Assumed; no test pins it.
 inline constexpr double kSeam_m = 10e-6;
-/// Of the contact margin: smaller overlaps are left to the solver's push. 1 um of 20 um, far above the
-/// solver's remaining error.
-/// Test: Replay.
+/// Overlaps below this share of the contact margin are left to the solver's push: 1 um of 20 um, far above
+/// the solver's remaining error. Test: Replay.
 inline constexpr double kToleratedShare = 0.05;
-/// Of the tolerated overlap: an older overlap may grow by this much in a step, because it is rounded.
+/// An older overlap may grow in a step by this share of the tolerated overlap, because it is rounded.
 /// Assumed; no test pins it.
 inline constexpr double kGrowthShare = 0.1;
-/// Of the contact margin: a step whose rounds did not converge continues as long as no point is deeper. With
-/// the growth of one step this is 10 um of 20, the depth that an impact may leave; with a smaller value steps
-/// would end early because of overlaps that the push removes.
-/// Assumed; no test pins it.
+/// A step whose rounds did not converge continues as long as no point is deeper than this share of the
+/// contact margin. With the growth of one step the limit is 10 um of 20, the depth that an impact may leave;
+/// with a smaller value steps would end early because of overlaps that the push removes. Assumed; no test
+/// pins it.
 inline constexpr double kUnsolvedShare = 0.5 / (1 + kGrowthShare);
-/// Of the contact margin: at the end of a step a contact that carries load has at most this gap. Half of the
-/// gap at which edges rest; with a tenth, some polygons roll better and others worse, and a nut's step takes
-/// longer.
-/// Assumed; no test pins it.
+/// At the end of a step a contact that carries load has at most this share of the contact margin as its gap.
+/// The value is half of the gap at which edges rest; with a tenth of that gap, some polygons roll better and
+/// others worse, and a nut's step takes longer. Assumed; no test pins it.
 inline constexpr double kApartShare = 0.0025;
-/// Of the contact margin: a vertex that stands out from the middle of its facet by less is no feature. At a
-/// margin of 20 um, facets of 1 mm on a ball of 14 mm have vertices 14 um high, which are features; facets of
-/// 0.2 mm on a ball of 5 mm have vertices 1 um high, which are not. The families C_balls and G_impact need
-/// it. Test: C_balls.
+/// A vertex that stands out from the middle of its facet by less than this share of the contact margin is no
+/// feature. At a margin of 20 um, facets of 1 mm on a ball of 14 mm have vertices 14 um high, which are
+/// features; facets of 0.2 mm on a ball of 5 mm have vertices 1 um high, which are not. The families C_balls
+/// and G_impact need it. Test: C_balls.
 inline constexpr double kFacetCornerShare = 0.25;
-/// Of the query range, and of the cutoff: greatest overlap of two edges that counts as a crossing. At greater
-/// depth shell points lie inside the other part and carry the contact.
-/// Assumed; no test pins it.
+/// Greatest overlap of two edges that counts as a crossing, as a share of the query range and of the cutoff.
+/// At greater depth shell points lie inside the other part and carry the contact. Assumed; no test pins it.
 inline constexpr double kEdgeDepthShare = 0.25;
-/// Of the rest gap: features that start with a smaller gap get a contact even if they do not approach.
-/// Test: I_flush.
+/// Features that start with a gap below this share of the rest gap get a contact even if they do not
+/// approach. Test: I_flush.
 inline constexpr double kHeldShare = 0.2;
 /// Error of the field's distance at sharp edges, in voxels. Measured: 0.40 at a point of an edge that lies
 /// beside another edge.
@@ -139,74 +136,71 @@ inline constexpr double kEdgeError_voxels = 0.45;
 /// Error of the field's distance away from edges, in voxels.
 /// Test: I_flush.
 inline constexpr double kFaceError_voxels = 0.05;
-/// Of the shell's spacing: points that are farther than the nearest one by at most this are reported too,
-/// such as the points of a face that lies opposite to a face. Assumed; no test pins it.
+/// Points that are farther than the nearest one by at most this share of the shell's spacing are reported
+/// too, such as the points of a face that lies opposite to a face. Assumed; no test pins it.
 inline constexpr double kBeyondShare = 0.1;
-/// Of the shell's spacing: accuracy to which the nearest point of a curved face is found; normals then differ
-/// by less than a thousandth.
-/// Test: Replay.
+/// Accuracy to which the nearest point of a curved face is found, as a share of the shell's spacing; normals
+/// then differ by less than a thousandth. Test: Replay.
 inline constexpr double kNearestShare = 5e-3;
 
 // --- Motion within a step ----------------------------------------------------------------------------------
 
-/// Of the way to the place of contact: how far a step that ends early goes. A body that has less than the
-/// rest of its way left stands still; an overlap that remains is removed by moving the other body. Assumed;
-/// no test pins it.
+/// A step that ends early covers this share of the path to the place of contact. A body that has less than
+/// the remaining share of its path left stands still; an overlap that remains is removed by moving the other
+/// body. Assumed; no test pins it.
 inline constexpr double kShortShare = 0.9;
 /// Greatest velocity at which bodies that start inside each other are separated [m/s].
 /// Assumed; no test pins it.
 inline constexpr double kSeparation_m_s = 0.05;
-/// Slip below this speed has no direction. Far above the jitter of a part at rest [m/s].
+/// Slip below this speed has no direction [m/s]. The value is far above the jitter of a part at rest.
 /// Test: Replay.
 inline constexpr double kSliding_m_s = 1e-4;
 
 // --- Convergence of the solver -----------------------------------------------------------------------------
 
-/// Of the greatest friction limit, and of a coupling's force: a smaller change counts as converged.
+/// A change below this share of the greatest friction limit, or of a coupling's force, counts as converged.
 /// Assumed; no test pins it.
 inline constexpr double kSettledShare = 1e-6;
-/// Of the fastest speed in the island: the solver's error. It is a micrometre on a path of a decimetre.
-/// Test: I_flush.
+/// Allowed error of the solver, as a share of the fastest speed in the island: a micrometre on a path of a
+/// decimetre. Test: I_flush.
 inline constexpr double kSpeedErrorShare = 1e-5;
-/// A tenth, for three tests of progress. Of the residual: how accurately a contact's law is solved (solved
-/// only to the whole residual, a nut turned by 2 %, since the error has the same sign from step to step). Of
-/// the slope: when a line search ends. Of the last round's error: how much a round must gain for the contacts
-/// not to become stiffer, and how much softer they become after a round that did not converge
-/// [Bertsekas 1982, ch. 2].
-/// Test: B_mass_ratio_turns.
+/// A tenth, used in three tests of progress. A contact's law is solved to this share of the residual (solved
+/// only to the whole residual, a nut turned by 2 %, since the error has the same sign from step to step). A
+/// line search ends at this share of the slope. A round must reduce the error to this share of the last
+/// round's error, or the contacts become stiffer; after a round that did not converge they become softer by
+/// this factor [Bertsekas 1982, ch. 2]. Test: B_mass_ratio_turns.
 inline constexpr double kAccuracyShare = 0.1;
 /// Error to which the first round is solved [m/s].
 /// Test: Replay.
 inline constexpr double kFirstError_m_s = 1e-2;
-/// Of the compliance of a free body: a contact's compliance in the first round. A stiff contact leaves little
+/// A contact's compliance in the first round, as a share of a free body's. A stiff contact leaves little
 /// error in a round, but Newton's method then needs many steps from a distant start; with a compliant contact
 /// it is the reverse.
 /// Test: B_mass_ratio_turns.
 inline constexpr double kFirstCompliance = 0.1;
-/// Of the compliance of a free body: a contact's least compliance.
+/// A contact's least compliance, as a share of a free body's.
 /// Test: Replay and B_mass_ratio_turns, at ten times.
 inline constexpr double kLeastCompliance = 1e-7;
-/// From one round to the next: factor of the contacts' compliance and of the error to which the round is
+/// Factor, from one round to the next, of the contacts' compliance and of the error to which the round is
 /// solved. With a tenth, a third of the problems of a pile have a round that does not converge; with 0.8
 /// there are too many rounds. Test: ContactNewton.SettlesTheFrictionOfAHeapInFewSteps.
 inline constexpr double kRoundShare = 0.5;
-/// Of a face's load: contacts whose shares are equal to within this are left unchanged, so that a body at
-/// rest needs no new solution in each step. Test: EvenPressure.LeavesWhatIsEvenAndWhatIsHeldInOneWay, and
+/// Contacts whose loads are equal to within this share of the face's load are left unchanged, so that a body
+/// at rest needs no new solution in each step. Test: EvenPressure.LeavesWhatIsEvenAndWhatIsHeldInOneWay, and
 /// piles at rest.
 inline constexpr double kEvenShare = 0.05;
-/// Of a face's load: what evening out the pressure may leave to the solver. Contacts of a thread, whose
+/// Share of a face's load that evening out the pressure may leave to the solver. Contacts of a thread, whose
 /// normals all lean alike, carry some moments only by great impulses against each other. Test:
 /// EvenPressure.KeepsForceAndMomentOfAnyLoadAndNothingPulls, M_torque.
 inline constexpr double kUnspreadShare = 1e-4;
-/// Of a free body: stiffness of a joint, and mass of a body in the directions in which it is held. So joints
-/// are springs that miss their target by a millionth. They have no multipliers, because rows of joints often
-/// contradict each other.
-/// Assumed; no test pins it.
+/// Stiffness of a joint relative to a free body, and relative mass of a body in the directions in which it is
+/// held. A joint is therefore a spring that misses its target by a millionth. Joints have no multipliers,
+/// because rows of joints often contradict each other. Assumed; no test pins it.
 inline constexpr double kRigidRatio = 1e6;
 /// Factor of stiffness by which the push that separates overlapping bodies is softer.
 /// Test: I_flush.
 inline constexpr double kPushSoftness = 0.1;
-/// Of the fastest approach velocity: a slower approach is stopped without an impact of its own. Contacts of
+/// An approach slower than this share of the fastest one is stopped without an impact of its own. Contacts of
 /// flush faces that rest on each other would otherwise be reflected or not depending on the sign of their
 /// rounding error, and the bodies would turn. The rule costs at most the square of this in energy.
 /// Assumed; no test pins it.

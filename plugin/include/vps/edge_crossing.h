@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The convex sharp edges of parts, and where those of two parts cross.
+// The convex sharp edges of parts, and the crossings between the edges of two parts.
 //
 // Two parts touch where a point meets a face, or where an edge crosses an edge. Pointshells do not sample
 // crossings of edges: the nearest points on both edges may be half their spacing away from the crossing.

@@ -65,8 +65,8 @@ class VPS_API EdgeTree {
     std::uint32_t skip;  ///< number of nodes from this one to HierarchyNode::skip
     std::uint32_t edge;  ///< of a leaf; kNoEdge for an inner node
   };
-  /// The same as sqrt(distance2) > limit, to the bit. Rounding changes squares by less than 1e-15 of them, so
-  /// only values that are nearly equal need the root.
+  /// Returns the same as sqrt(distance2) > limit, to the bit. Rounding changes squares by less than 1e-15 of
+  /// them, so only values that are nearly equal need the root.
   [[nodiscard]] static bool isBeyond(double distance2, double limit) noexcept {
     const double limit2 = limit * limit;
     if (distance2 > limit2 * (1 + 1e-15)) return true;

@@ -71,8 +71,8 @@ class VPS_API FeatureMotion {
   /// until about a hundred contacts are found; the same features may be found in several segments.
   ///
   /// Edges that cross at the end, but not at the start, are reported as well if they approach by more than
-  /// the deviation of the motion and of curved edges from straight lines. So an edge that slides past the end
-  /// of another edge is held by the next one.
+  /// the deviation of the motion and of curved edges from straight lines. An edge that slides past the end of
+  /// another edge is therefore held by the next edge.
   ///
   /// Features that intersect at the start are not detected. Features of curved surfaces that lie flush in
   /// each other, as a thread in its nut, are not detected either: pointshells find these contacts, with the

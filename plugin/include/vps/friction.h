@@ -44,7 +44,8 @@ inline void limitToCone(double& t1, double& t2, double limit) {
 }
 
 /// Force of a bristle: a tangential spring between two bodies that slips where its force would exceed the
-/// limit. It holds a part at rest without creep, because its force follows displacement and not velocity.
+/// limit. A bristle holds a part at rest without creep, because its force follows displacement and not
+/// velocity.
 struct BristleForce {
   Vec3 f_N = Vec3::Zero();        ///< along the bend
   double slip_m = 0;              ///< length of the bend if nothing had slipped; 0: the bristle sticks

@@ -47,10 +47,10 @@ class VPS_API MeshDistance {
   /// Outward unit pseudonormal of a triangle's feature (numbered as in TrianglePoint).
   [[nodiscard]] Vec3 featureNormal(std::uint32_t triangle, int feature) const noexcept;
 
-  /// Outward unit normal, at point q of a triangle, of the curved surface that the facets approximate. It is
-  /// interpolated between the normals of the triangle's corners (Phong 1975). A corner's normal is the mean
-  /// of the faces around it that are within 20 degrees of this triangle. On a flat face it is the face's
-  /// normal.
+  /// Outward unit normal, at point q of a triangle, of the curved surface that the facets approximate. The
+  /// normal is interpolated between the normals of the triangle's corners (Phong 1975). A corner's normal is
+  /// the mean of the faces around it that are within 20 degrees of this triangle. On a flat face it is the
+  /// face's normal.
   [[nodiscard]] Vec3 smoothNormal(std::uint32_t triangle, const Vec3& q) const noexcept;
   /// Derivative S of smoothNormal() along a triangle [1/m]: dn = S dx, symmetric, zero across the triangle. A
   /// ball of radius r has 1/r in both directions, a hollow of radius r has -1/r. Zero for a flat face and for
@@ -95,6 +95,13 @@ class VPS_API MeshDistance {
     std::uint32_t child[kLanes] = {};  ///< a node, or a triangle and kTriangle
   };
   static constexpr std::uint32_t kTriangle = 1U << 31;
+  /// Nodes on these levels divide their triangles by area, which may take off few at a time; nodes below, by
+  /// count, so that each of the eight children has an eighth of their triangles, up to eight.
+  static constexpr int kLevelsByArea = 20;
+  /// Greatest number of levels: by count, ten for the 2^28 groups of eight triangles that there can be, and
+  /// one whose children are triangles.
+  static constexpr int kMostLevels = kLevelsByArea + 11;
+
   Mesh mesh_;
   Vec3 center_ = Vec3::Zero();
   std::vector<Node> nodes_;

@@ -59,7 +59,8 @@ inline constexpr double kOverlapCertain_m = 0.1e-6;
 /// edges; it is a lower bound, as is the depth of two equal bodies at one place. O(edges near the other mesh
 /// x log triangles). Allocates. Thread-safe.
 /// @param with_sheets  also measures sheets, which have no inside: the depth of their points in the other
-///                     mesh. It may be a sixteenth too small, or smaller if 80 probes of a facet find less.
+///                     mesh. That depth may be a sixteenth too small, or smaller if 80 probes of a facet find
+///                     less.
 VPS_API Overlap deepestOverlap(const OverlapMesh& a, const Pose& X_WA, const OverlapMesh& b, const Pose& X_WB,
                                bool with_sheets = false);
 

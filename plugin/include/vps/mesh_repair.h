@@ -27,8 +27,9 @@ enum class Crossing { Unknown, Seen };
 /// Surveys a mesh with shared vertices (see welded()) that requireUsable() accepts, and repairs it:
 /// - Corners on both sides of a crack narrower than 2 um and a ten-thousandth of the mesh's size are joined.
 ///   Wider cracks stay; the items below treat only these.
-/// - Of triangles with the same corners, or with cracks between them, one is kept. Of a back-to-back pair
-///   none is kept if it is a wall between two solids, and one if it is the only surface there (a surface
+/// - Of triangles with the same corners, or with cracks between them, one is kept. Of a back-to-back pair no
+/// facet is kept if the pair is a wall between two solids, and one facet if the pair is the only surface
+/// there (a surface
 ///   exported for both sides, or given twice and turned once).
 /// - Facets are turned to agree across edges of two facets, and across cracks and T-junctions; the minority
 /// is
@@ -45,7 +46,8 @@ enum class Crossing { Unknown, Seen };
 ///   says so.
 /// - Facets (of closed shells) with a winding number above 0.5 on both sides (or neither) leave the surface:
 ///   solid within solid adds nothing, nor does a void within a void, since voids unite as solids do, crossing
-///   or nested. So within a cavity a shell that faces out is a solid, and a shell that faces in is ignored.
+///   or nested. Within a cavity a shell that faces out is therefore a solid, and a shell that faces in is
+///   ignored.
 /// A sound mesh is returned unchanged: O(n). Others need about two winding numbers a triangle.
 /// `surface` is never empty.
 VPS_API RepairedMesh repairMesh(Mesh mesh, Crossing crossing = Crossing::Unknown);

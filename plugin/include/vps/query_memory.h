@@ -18,7 +18,7 @@ namespace vps {
 /// points. A leaf is skipped until the odometer has passed that distance. Proof: the interpolated field I
 /// fulfils |I(p') - I(p)| <= s |p' - p| with s the steepest slope of its nodes times sqrt 3; the distance
 /// between two poses is at most the sum of the distances between the poses in between (triangle inequality);
-/// and rounding always increases the odometer. So no touching point is missed: the answer equals the
+/// and rounding always increases the odometer. No touching point is missed: the answer equals the
 /// exhaustive one for every motion, jumps included.
 ///
 /// One memory serves one pair and one thread at a time. Queries may have different cutoffs; a cutoff larger

@@ -8,9 +8,9 @@
 
 namespace vps {
 
-/// Two parts of which one turns: a shaft in its bore, a wheel beside its fork. Points of the turning part
-/// move far without approaching the other part. As long as its axis stays in place, the part stays within the
-/// volume that it sweeps in a whole turn.
+/// Clearance between two parts of which one turns: a shaft in its bore, a wheel next to its fork. Points of
+/// the turning part move far without approaching the other part. As long as its axis stays in place, the part
+/// stays within the volume that it sweeps in a whole turn.
 class VPS_API SpinClearance {
  public:
   /// Returns true if the surfaces of the parts are known to stay farther apart than least_m >= 0 between two

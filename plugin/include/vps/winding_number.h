@@ -13,10 +13,10 @@
 
 namespace vps {
 
-/// The solid angle of all triangles as seen from a point, over 4 pi: how often they wind around it. It is 1
-/// inside and 0 outside of a closed mesh that faces out. Over a hole it falls smoothly from 1 to 0, so that
-/// `> 0.5` defines the inside of an open mesh too. It jumps by 1 across a triangle and is continuous
-/// elsewhere.
+/// The solid angle of all triangles as seen from a point, over 4 pi: how often they wind around it. The
+/// winding number is 1 inside and 0 outside of a closed mesh that faces out. Over a hole it falls smoothly
+/// from 1 to 0, so that `> 0.5` defines the inside of an open mesh too. The winding number jumps by 1 across
+/// a triangle and is continuous elsewhere.
 ///
 /// Distant clusters of triangles are replaced by their first three moments, where the rest of the series is
 /// provably at most `cluster_error`. Sources: Jacobson et al., Robust inside-outside segmentation using

@@ -7,7 +7,6 @@
 #include <numbers>
 #include <span>
 
-#include "mesh/mesh_distance_tree.h"
 #include "mesh/mesh_edges.h"
 #include "mesh/normals.h"
 #include "mesh/triangle_distance.h"
@@ -18,9 +17,9 @@ namespace {
 /// The distance that counts as contact, relative to the size of the mesh; greater than the height of a thin
 /// triangle.
 constexpr double kTouch = 1e-9;
-/// On each level of the tree seven children may wait, and the eighth is being visited.
+/// Size of the stack of a search: on each level of the tree seven children may wait while the eighth is
+/// visited.
 constexpr int kStack = 256;
-static_assert(7 * kTreeLevels + 1 <= kStack);
 
 Vec3 normalOrZero(const Vec3& a, const Vec3& b, const Vec3& c) {
   return hasArea(a, b, c) ? unitOrZero((b - a).cross(c - a)) : Vec3(Vec3::Zero());
@@ -191,6 +190,7 @@ double MeshDistance::search(const Vec3& p, double max_m, double box_weight, Visi
     float distance2;
   };
   const Eigen::Vector3f from_center = (p - center_).cast<float>();
+  static_assert(7 * kMostLevels + 1 <= kStack);
   Waiting stack[kStack];
   int waiting = 0;
   stack[waiting++] = {0, 0};

@@ -10,7 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "mesh/mesh_distance_tree.h"
 #include "vps/bounding_volume_hierarchy.h"
 #include "vps/mesh_distance.h"
 
@@ -163,7 +162,7 @@ void MeshDistance::buildTree() {
       Box box;
       double size;
     };
-    const bool by_area = next.level < kTreeLevelsByArea;
+    const bool by_area = next.level < kLevelsByArea;
     const auto partOf = [&](Range range) {
       const Box box = divider.around(range);
       const double size = by_area ? halfArea(box) : static_cast<double>(range.size());

@@ -26,8 +26,8 @@ struct Corner {
 };
 
 /// The unit direction of a smooth rim, at which a curved surface ends, at a vertex: that of the parabola
-/// through the vertex and its neighbours on the rim. Nothing if the surface continues around the vertex, or
-/// if the rim has a corner there.
+/// through the vertex and its neighbours on the rim. Returns nothing if the surface continues around the
+/// vertex, or if the rim has a corner there.
 std::optional<Vec3> rimDirection(std::span<const Corner* const> fan, const std::vector<Vec3>& vertices,
                                  const Vec3& at) {
   std::uint32_t ends[2] = {0, 0};

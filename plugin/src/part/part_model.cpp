@@ -88,8 +88,8 @@ bool isSolidBesideSheets(const Mesh& once, const JoinedFacets& joined) {
 /// True if a mesh has a hole wider than wider_than_m, and so is a surface that other parts touch from both
 /// sides. The width is four times the area of the hole's lid (see lidsOf()) over the length of its border:
 /// the diameter of a round hole. Cracks and T-junctions count as closed, as in repairMesh(), and a hole of
-/// three edges of different facets counts as a missing facet. False also for a solid with free sheets beside
-/// it, which repairMesh() recognises. Expects a mesh that requireUsable() accepts. O(n log n).
+/// three edges of different facets counts as a missing facet. The result is also false for a solid with free
+/// sheets next to it, which repairMesh() recognises. Expects a mesh that requireUsable() accepts. O(n log n).
 bool isOpenSurface(const Mesh& mesh, double wider_than_m) {
   const Mesh once = joinedOnce(mesh);
   const JoinedFacets joined = joinFacets(once, sortedHalfEdges(once), kWidestCrack);

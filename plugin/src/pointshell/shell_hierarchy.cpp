@@ -177,7 +177,7 @@ void layOutBlocks(PointShell& shell) {
 
 namespace {
 
-// Keeps those that are within the radius of a waiting point, in their order.
+// Keeps the points that are within the radius of a waiting point, in their order.
 void keepNear(std::span<const Vec3> points, const std::vector<std::uint32_t>& waiting, double radius_m,
               std::vector<std::uint32_t>& joined) {
   PointGrid grid(2 * radius_m, waiting.size());
@@ -200,7 +200,7 @@ std::vector<std::uint32_t> progressiveOrder(std::span<const Vec3> points) {
   double radius_m = points.empty() ? 0 : box.size().norm();
   constexpr int kLevels = 32;  // from metres to below a nanometre; remaining points are duplicates
   constexpr std::size_t kFew = 8;
-  std::vector<std::uint32_t> joined;  // those that a waiting point may be near
+  std::vector<std::uint32_t> joined;  // points that a waiting point may be near
   std::size_t taken = 0;              // of order, into `joined`
   for (int level = 0; level < kLevels && !waiting.empty() && radius_m > 0; ++level, radius_m /= 2) {
     joined.insert(joined.end(), order.begin() + static_cast<std::ptrdiff_t>(taken), order.end());

@@ -44,9 +44,9 @@ std::vector<ShellSample> sampleFeatures(const Mesh& mesh, const std::vector<Vec3
 void sampleFaces(const Mesh& mesh, const std::vector<Vec3>& normals, double spacing_m,
                  std::vector<ShellSample>& samples);
 
-/// For a sheet: adds a copy of each sample that faces the other way, and samples of the border. These are at
-/// most step_m apart and face away from the sheet in its plane. Where sheets meet, coincident edges of one
-/// facet each are no border.
+/// For a sheet: adds a copy of each sample that faces the other way, and samples of the border. The samples
+/// are at most step_m apart and face away from the sheet in its plane. Where sheets meet, coincident edges of
+/// one facet each are no border.
 void addOtherSides(const Mesh& mesh, double step_m, std::vector<ShellSample>& samples);
 
 }  // namespace vps

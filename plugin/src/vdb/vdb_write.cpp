@@ -82,7 +82,7 @@ openvdb::Int32Grid::Ptr ownerGrid(const VoxLayout& layout, double voxel_m) {
   return grid;
 }
 
-/// The data besides the nodes that a reload needs for the same bits.
+/// Data that, in addition to the nodes, a reload needs for the same bits.
 void addExactData(const VoxLayout& layout, double band_m, const Box& bounds, openvdb::MetaMap& out) {
   out.insertMeta("vps_band", openvdb::DoubleMetadata(band_m));
   out.insertMeta("vps_low", openvdb::Vec3IMetadata(toVdb(layout.low)));

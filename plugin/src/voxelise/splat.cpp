@@ -7,8 +7,8 @@
 namespace vps {
 namespace {
 
-/// Margin around a region in which its feature is still used. It is more than rounding moves a border, so
-/// that no node falls between two regions, and less than a float distance can resolve.
+/// Margin around a region in which its feature is still used. The margin is more than rounding moves a
+/// border, so that no node falls between two regions, and less than a float distance can resolve.
 constexpr double kBorder = 1e-7;
 /// If the faces at an edge turn by less than this, the edge has no region: within the band the region is
 /// narrower than kBorder.

@@ -18,8 +18,8 @@ struct SplatRow {
 inline constexpr int kMaxRows = kTileNodes * kTileNodes;
 
 /// A region: planes, each solved for z, within a box of nodes. A plane that bounds z from below has lift 0
-/// and drop +kNoBound; a plane that bounds z from above has lift -kNoBound and drop 0. So both are evaluated
-/// by the same operations, without a branch.
+/// and drop +kNoBound; a plane that bounds z from above has lift -kNoBound and drop 0. Both cases are
+/// therefore evaluated by the same operations, without a branch.
 struct SplatRegion {
   static constexpr int kMaxPlanes = 8;
   static constexpr float kNoBound = 1e30F;

@@ -6,8 +6,8 @@
 //   face:   p lies above or below the triangle, within its three sides;
 //   edge:   p lies between the edge's two ends, and beyond the edge from every face that meets there;
 //   vertex: p lies beyond the vertex along every edge that meets there.
-// So every point is in the region of its own nearest feature, for any mesh, closed or not, with any number of
-// faces at an edge. Where the surface is smooth the regions of edges and vertices are thin.
+// Every point is therefore in the region of its own nearest feature, for any mesh, closed or not, with any
+// number of faces at an edge. Where the surface is smooth the regions of edges and vertices are thin.
 #pragma once
 
 #include <array>

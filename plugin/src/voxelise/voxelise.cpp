@@ -113,8 +113,8 @@ void Voxeliser::layOutDirectory() {
   layout_->parts = {{box_, layout_->low, layout_->low + layout_->size}};
 }
 
-/// Halves the range of tiles until one is left, and drops halves that the feature cannot reach. So the cost
-/// of a large oblique triangle is proportional to its surface, not to its box.
+/// Halves the range of tiles until one is left, and drops halves that the feature cannot reach. The cost of a
+/// large oblique triangle is proportional to its surface, not to its box.
 void Voxeliser::gatherRange(const Splatter& splatter, std::uint32_t feature, const Index3& low,
                             const Index3& size, std::vector<Reached>& out) const {
   const Vec3 half = 0.5 * kTile * size.cast<double>();

@@ -11,8 +11,9 @@
 namespace vps {
 
 /// Signs nodes as an Interior does. Between neighbouring nodes that are farther from the surface than the
-/// distance between them, the winding number changes at most by its slope. So one value serves many nodes: in
-/// a brick all nodes on one side of a closed surface. Near a border every node needs a value of its own.
+/// distance between them, the winding number changes at most by its slope. One value therefore serves many
+/// nodes: in a brick all nodes on one side of a closed surface. Near a border every node needs a value of its
+/// own.
 class WindingSigner {
  public:
   explicit WindingSigner(const Interior& interior) : interior_(interior) {}
@@ -25,7 +26,7 @@ class WindingSigner {
   /// corners of a cell disagree; these cells become bricks with a sign for each node. Does nothing for a
   /// closed mesh.
   void signEmptyCells(VoxLayout& layout, double voxel_m, double quantum_m);
-  /// Of the nodes in the band signed so far, the fraction whose winding number is more than 0.25 from 0.5.
+  /// Fraction of the nodes signed so far, of the band, whose winding number is more than 0.25 from 0.5.
   [[nodiscard]] double certainShare() const noexcept;
 
  private:

@@ -16,7 +16,7 @@ namespace {
 /// sqrt 2)|.
 constexpr double kLattice = 1.1281;
 
-/// Measurements over bricks. They are minima and maxima only, so that their order does not matter.
+/// Measurements over bricks. These bounds are minima and maxima only, so that their order does not matter.
 struct Measure {
   int along = 0, across = 0, diagonal = 0;  ///< differences on a cell's edges, faces, and diagonals [quanta]
   Box surface;                              ///< of the field's zeros on edges [voxels]

@@ -73,7 +73,7 @@ using NodeOwners = std::array<std::uint16_t, kBrickNodes>;
 /// systems that allocate pages at the first access.
 class VPS_API VoxPool {
  public:
-  /// The most bricks that can have a name, besides the two constant ones.
+  /// Greatest number of bricks that can have a name, in addition to the two constant bricks.
   static constexpr std::size_t kMaxBricks = UINT32_MAX / kBrickStride - 2;
 
   /// Reserves memory for `capacity` bricks, for as many again to be mounted, and for the two constant bricks,

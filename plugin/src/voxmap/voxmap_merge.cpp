@@ -34,7 +34,7 @@ float boxBound(const std::vector<VoxPartRange>& parts, const Index3& cell, doubl
   return static_cast<float>(least_m * (1 - 2e-7));
 }
 
-/// Merges the cells of a map with those of an added field.
+/// Merges the cells of a map with the cells of an added field.
 class Merger {
  public:
   Merger(const VoxLayout& a, const AddedField& b, double voxel_m)

@@ -19,7 +19,7 @@ class btCollisionShape;
 
 namespace vps::bullet {
 
-/// Gap of a contact that does not act. It is larger than the motion of any step.
+/// Gap of a contact that does not act, larger than the motion of any step.
 inline constexpr double kOutOfReach_m = 1;
 
 /// A point that can touch within the step: a point of one side's shell, or a crossing of an edge of body 0
@@ -108,9 +108,9 @@ struct QueryState {
 
 /// Up to this number of near points of one side, every near point is examined.
 std::size_t smallQueryLimit(const Settings& settings);
-/// About this number of candidates is refined by the exact surfaces. It allows for candidates that turn out
-/// to be out of reach. With half as many, most steps of a shaft in its bushings had to be solved again, which
-/// cost more.
+/// Approximate number of candidates that are refined by the exact surfaces, including candidates that turn
+/// out to be out of reach. With half as many, most steps of a shaft in its bushings had to be solved again,
+/// which cost more.
 std::size_t refinedLimit(const Settings& settings);
 /// True if representative points are to be used for this number of near points.
 bool needsLeading(std::size_t near_points, const PointShell& shell, const Settings& settings);

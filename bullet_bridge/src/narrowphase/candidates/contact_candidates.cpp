@@ -107,9 +107,9 @@ bool RelativeMotion::canTouch(Candidate& c) const {
   const double approach_m = -c.n_W.dot(velocityAt(c.p_W)) * dt_s;
   c.predicted_m = c.distance_m - approach_m;
   // Contact changes the free motion: a part that lands on one edge swings its other edge faster than it fell.
-  // So half of the greatest speed is assumed in every direction, which covers a rod struck at one end. The
-  // pull of couplings is not included: it is large on a part that is pressed against its seat, and contact
-  // balances it.
+  // Half of the greatest speed is therefore assumed in every direction, which covers a rod struck at one end.
+  // The pull of couplings is not included: it is large on a part that is pressed against its seat, and
+  // contact balances it.
   return c.distance_m <= contact_margin_m + std::max(approach_m, anyWay_m());
 }
 

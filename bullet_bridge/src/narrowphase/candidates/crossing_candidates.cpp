@@ -47,7 +47,7 @@ Vec3 directionAt(const EdgeSet& edges, const EdgeSegment& s, int end) {
   edges.tree().forEachNear(joint, kRounding_m, [&](std::uint32_t i) {
     const EdgeSegment& other = edges.segments()[i];
     if (&other == &s) return;
-    // The other segment, in the direction of this one.
+    // The other segment, turned so that it runs in the direction of this one.
     const bool is_reversed = ((end == 0 ? other.from : other.to) - joint).norm() <= kRounding_m;
     const Vec3 goes_on = is_reversed ? Vec3(other.from - other.to) : Vec3(other.to - other.from);
     const double cos = way.dot(goes_on) / (way.norm() * goes_on.norm());

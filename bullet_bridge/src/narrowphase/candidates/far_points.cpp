@@ -66,7 +66,7 @@ struct Waiting {
 };
 
 /// The least distance between a point of one body and the surface of the other, by branch and bound over the
-/// spheres around the points, nearest first. Nothing if the distance is greater than most_m.
+/// spheres around the points, nearest first. Returns no value if the distance is greater than most_m.
 std::optional<double> leastDistance(const PairView& pair, double most_m, Context& context) {
   std::optional<FarSide> sides[2];
   std::vector<Waiting> waiting;

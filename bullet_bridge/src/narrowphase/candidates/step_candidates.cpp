@@ -21,8 +21,8 @@ void useOwnNormalsForPenalty(const PairView& pair, const Settings& settings,
 }
 
 // Edges that come to overlap in a step are found by the check of its solution, which cannot measure edges
-// that overlap already. So crossings are candidates only where edges may overlap by more than an impact may
-// leave (as in PairCheck), and with solvers whose check does not know joints and other bodies.
+// that overlap already. Crossings are therefore candidates only where edges may overlap by more than an
+// impact may leave (as in PairCheck), and with solvers whose check does not know joints and other bodies.
 using Find = void (*)(const PairView&, double cutoff_m, Context&, std::vector<Candidate>&, PairState*,
                       const RelativeMotion*);
 Find findingFor(const PairView& pair, const PairState& state) {

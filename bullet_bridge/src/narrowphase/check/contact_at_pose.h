@@ -24,7 +24,7 @@ struct Displacement {
 /// them.
 bool crossAt(Candidate& c, const SideView& body0, const SideView& body1);
 
-/// Overlap of a contact at the pair's poses, as a distance <= 0. It is 0 for edges that do not cross at these
+/// Overlap of a contact at the pair's poses, as a distance <= 0; 0 for edges that do not cross at these
 /// poses.
 double overlapOf(Candidate c, const PairView& pair);
 

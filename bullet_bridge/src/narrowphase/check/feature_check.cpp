@@ -121,8 +121,8 @@ struct FeaturePlacer {
   }
 };
 
-// Finds a shell point or edge crossing at the same place of the same plane. Its point may lie on the other
-// body, across the gap. Returns null if there is none.
+// Finds a shell point or edge crossing at the same place of the same plane. The contact's point may lie on
+// the other body, across the gap. Returns null if there is none.
 Candidate* findAt(std::vector<Candidate>& contacts, const Candidate& at) {
   const auto found = std::find_if(contacts.begin(), contacts.end(), [&](const Candidate& c) {
     const Vec3 to = c.p_W - at.p_W;

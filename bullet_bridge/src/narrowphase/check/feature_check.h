@@ -25,9 +25,9 @@ void addMissedFeatures(const PairView& pair, const Settings& settings, PairState
                        std::vector<Candidate>& contacts);
 
 /// Sets the rest gap of contacts of sharp features and of flat faces. If the contacts of a face lay deeper
-/// than those of its edges, the edges would carry the load alone. Bullet's own solvers keep the friction of
-/// contacts that lose their load while they iterate. With these solvers all contacts except flush ones on
-/// curved faces get the rest gap, so that none lies deeper.
+/// than the contacts of its edges, the edges would carry the load alone. Bullet's own solvers keep the
+/// friction of contacts that lose their load while they iterate. With these solvers all contacts except flush
+/// ones on curved faces get the rest gap, so that none lies deeper.
 /// @param is_own  true if bullet::Solver solves the pair, false for one of Bullet's solvers
 void markSharp(const PairView& pair, const Settings& settings, bool is_own, std::vector<Candidate>& contacts);
 

@@ -17,8 +17,8 @@ bool PairCheck::mayMissPoints(const Motion& m, const PairView& at_start) const {
   const double margin_m = state_.context->settings.contact_margin_m;
   const bool is_in_reach = !state_.selection.is_of_path &&
                            (m.deviation_m <= margin_m || m.travel_m <= margin_m + state_.selection.any_way_m);
-  // Of neighbouring points, those nearest now and at the predicted end were selected. Another point becomes
-  // nearer if the part turns differently.
+  // Of neighbouring points, the point nearest now and the point nearest at the predicted end were selected.
+  // Another point becomes nearer if the part turns differently.
   const double sampling_m = state_.selection.sampling_m * std::min(m.turn_rad, m.turn_deviation_rad);
   if (!is_in_reach || sampling_m > m.tolerated_m) return true;
   if (std::any_of(state_.selection.refined.begin(), state_.selection.refined.end(),

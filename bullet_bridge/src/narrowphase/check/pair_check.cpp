@@ -106,7 +106,7 @@ void PairCheck::findOnWay(Motion& m, const Placed& at_start, CheckRound round,
     addFeatureContacts(at_start.pair, {{m.end[0], m.end[1]}, m.path, m.turnsFar(0)}, round, state_, out);
   if (m.travel_m <= m.tolerated_m) return;
   // In a step with so much rotation many facets of round parts pass each other, and contacts that follow each
-  // facet would brake a shaft in its bore. So the height of a facet's corners is tolerated.
+  // facet would brake a shaft in its bore. The height of a facet's corners is therefore tolerated.
   if (m.turnsFar(0)) m.tolerated_m = kFacetCornerShare * state_.context->settings.contact_margin_m;
   thread_local std::vector<Candidate> missed;
   missed.clear();
@@ -150,7 +150,7 @@ void PairCheck::findMissed(const Pose (&X_WB_end)[2], CheckRound round, std::vec
 // a frictionless bolt loses 2.2 % of its acceleration; with rows of the next facet a peg does not enter a
 // bore of 10 um clearance.
 //
-// Appends the rows of the step's contacts as they are at the end of a motion. Before the step is solved: the
+// Appends the rows of the step's contacts, taken at the end of a motion. Before the step is solved: the
 // contacts whose row depends on the time at which it is taken. After it: contacts that carry load and end the
 // step apart (under a rolling body, contacts in front of it that do not arrive, and contacts that it leaves),
 // and contacts that would get their load.

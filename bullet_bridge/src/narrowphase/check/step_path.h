@@ -23,10 +23,10 @@ namespace vps::bullet {
 /// would drive a body that turns about a corner.
 ///
 /// A tau above 1 occurs for a corner that lands within the step after another corner carried the load; the
-/// effective lever lies between both corners. It is used only if the bodies approach each other by less than
-/// their weight moves them in a step, since a faster approach is an impact, which acts at the corner; and
-/// only as far as the row still closes half of a gap, so that the rounds of the solver end. Points of faces
-/// never use it: the differences of their gaps from facet to facet would drive a screw.
+/// effective lever lies between both corners. Such a tau is used only if the bodies approach each other by
+/// less than their weight moves them in a step, since a faster approach is an impact, which acts at the
+/// corner; and only as far as the row still closes half of a gap, so that the rounds of the solver end.
+/// Points of faces never use it: the differences of their gaps from facet to facet would drive a screw.
 ///
 /// Both bodies' levers pass through one point of the world, so that angular momentum is conserved. The point
 /// moves with the body that turns more easily, whose lever is then exact.

@@ -46,8 +46,8 @@ void resetIfModelsChanged(PairState& state, const PairView& pair) {
   }
 }
 
-// Counts, and reports once, bodies that overlap at their first query by more than their motion explains. They
-// were placed into each other, usually by mistake.
+// Counts, and reports once, bodies that overlap at their first query by more than their motion explains. Such
+// bodies were placed into each other, usually by mistake.
 void countInitialOverlap(const PairView& pair, PairState& state) {
   if (std::exchange(state.was_queried, true)) return;
   double overlap_m = 0;

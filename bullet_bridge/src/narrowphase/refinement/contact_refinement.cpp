@@ -57,9 +57,10 @@ bool slidesOnto(const Exact& end, const Exact& now, const Vec3& way_W) {
 }
 
 // The line between two edges turns fast as they pass each other, and would stop a point that is about to pass
-// without contact. So the contact is taken from the surface that the point faces at the end of the step,
-// unless the point overlaps it there. The plane of that surface may lie beyond the point's present position
-// by the free motion of the step. It must not push, so the contact is no deeper than it is now.
+// without contact. The contact is therefore taken from the surface that the point faces at the end of the
+// step, unless the point overlaps it there. The plane of that surface may lie beyond the point's present
+// position by the free motion of the step. That surface must not push, so the contact is no deeper than it is
+// now.
 Exact atEndOfStep(const Exact& now, const Refiner& refiner, const OwnPoint& own, const Vec3& way_W,
                   double max_m) {
   Exact end = refiner.at(own.movedTo(own.p_W + way_W), max_m + way_W.norm());

@@ -23,8 +23,8 @@ namespace {
 
 using Point = std::optional<Vec3>;
 
-// The extreme point in a direction on the circle of radius r about the axis at height h. Nothing for a
-// direction along the axis.
+// The extreme point in a direction on the circle of radius r about the axis at height h. Returns no point for
+// a direction along the axis.
 Point onCircle(int axis, double radius_m, double height_m, const Vec3& direction) {
   Vec3 radial = direction;
   radial[axis] = 0;

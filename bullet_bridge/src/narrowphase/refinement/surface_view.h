@@ -10,7 +10,7 @@
 namespace vps::bullet {
 
 /// Distances of points of `side` (in its models' frame M) from the surfaces of `other` (in its frame N). Both
-/// must outlive it.
+/// sides must outlive the view.
 class SurfaceView {
  public:
   SurfaceView(const SideView& side, const SideView& other);

@@ -60,8 +60,8 @@ std::size_t nearestOf(const std::vector<Candidate>& chosen, const Vec3& p_W, con
   return nearest;
 }
 
-// Side whose touching points have the smaller area. The points of both sides cover the contact area; those of
-// the larger face also cover its surroundings.
+// Side whose touching points have the smaller area. The points of both sides cover the contact area; points
+// of the larger face also cover its surroundings.
 std::uint8_t sideOfLess(const std::vector<Candidate>& all) {
   double area_m2[2] = {0, 0};
   for (const Candidate& c : all)

@@ -18,8 +18,8 @@ constexpr std::uint64_t kEmpty = ~std::uint64_t{0};
 
 // Two measures of urgency are needed. The gap at the end of free motion finds the points that are about to
 // touch. But contact changes that motion: a light part on a stiff coupling, turned by its contacts against
-// the coupling's pull, sank 25 um at points that free motion would have lifted. So the present gap counts
-// equally.
+// the coupling's pull, sank 25 um at points that free motion would have lifted. The present gap therefore
+// counts equally.
 enum class Measure { Now, EndOfStep };
 
 double urgency(const Candidate& c, Measure measure) {
@@ -48,7 +48,7 @@ struct Brief {
     const double own = urgency[static_cast<int>(measure)], theirs = other.urgency[static_cast<int>(measure)];
     return own != theirs ? own < theirs : key < other.key;
   }
-  /// Cells of each level are twice as large as those of the level before.
+  /// Cells of each level are twice as large as cells of the level before.
   [[nodiscard]] std::uint64_t cell(int level) const {
     const auto of = [&](int axis) {
       return static_cast<std::uint64_t>(static_cast<std::uint32_t>(at[axis] >> level) & 0xFFFF);

@@ -26,8 +26,8 @@ double edgeDepth_m(const PairView& pair, double cutoff_m) {
                                           : cutoff_m;
 }
 
-// Edges do not come to overlap by more than the cutoff within a step. They can be deep only where contacts
-// were found to overlap, or in a pair's first step.
+// Edges do not come to overlap by more than the cutoff within a step. Crossings can be deep only where
+// contacts were found to overlap, or in a pair's first step.
 double edgeDepth_m(const PairView& pair, const Selection& last, double cutoff_m) {
   return mayOverlap(last, kEdgeDepthShare * cutoff_m) ? edgeDepth_m(pair, cutoff_m) : cutoff_m;
 }

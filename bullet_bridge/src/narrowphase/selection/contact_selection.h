@@ -13,8 +13,8 @@ namespace vps::bullet {
 
 // Functions of both contact methods.
 
-/// Appends the points that are nearer to the other side than the cutoff, of both sides if the settings say
-/// so. A pair's state makes repeated queries cheaper; points beyond the cutoff may then be included, and
+/// Appends the points that are nearer to the other side than the cutoff, of both sides if Settings::sides is
+/// Both. A pair's state makes repeated queries cheaper; points beyond the cutoff may then be included, and
 /// where many points are near only the most urgent of each place is.
 /// @param motion  with a state: the bodies' motion from their present poses
 void findPointCandidates(const PairView& pair, double cutoff_m, Context& context, std::vector<Candidate>& out,
@@ -28,10 +28,10 @@ void findCandidates(const PairView& pair, double cutoff_m, Context& context, std
                     PairState* state = nullptr, const RelativeMotion* motion = nullptr);
 
 /// Appends the candidates of the step. A body that moves less than the query range is queried once, at its
-/// present pose. So is a body that is fast only because it turns in place (turnsInPlace()); the check of the
-/// solved step finds the contacts that this query lacks. Any other fast body is queried at several places
-/// along its path, so that it cannot tunnel; the plane that a point meets first then holds for the whole
-/// step.
+/// present pose. The same holds for a body that is fast only because it turns in place (turnsInPlace()); the
+/// check of the solved step finds the contacts that this query lacks. Any other fast body is queried at
+/// several places along its path, so that it cannot tunnel; the plane that a point meets first then holds for
+/// the whole step.
 void findStepCandidates(const PairView& pair, const RelativeMotion& motion, PairState& state,
                         std::vector<Candidate>& out);
 
@@ -42,7 +42,7 @@ bool isQueriedOnce(const PairView& pair, const RelativeMotion& motion);
 /// and the solved step is checked.
 bool turnsInPlace(const PairView& pair, const RelativeMotion& motion);
 
-/// Refines the candidates by the exact surfaces, if the settings say so.
+/// Refines the candidates by the exact surfaces, if Settings::use_surfaces is set.
 void refineAll(const PairView& pair, const RelativeMotion& motion, const Settings& settings,
                std::vector<Candidate>& candidates);
 

@@ -33,9 +33,9 @@ struct ImpactRow {
 /// pushes, J v <= 0 for one that pulls, J v = 0 for one with two sides (J v with the fixed velocity).
 ///
 /// Uses the dual active set method: violated rows join the active set one by one, and rows that would have to
-/// pull leave it. It ends after a finite number of rows with the exact solution. On flush faces with dozens
-/// of redundant contacts Gauss-Seidel sweeps would need thousands of iterations, and a reflection doubles the
-/// rotation that they leave. Source: Goldfarb and Idnani 1983.
+/// pull leave it. The method ends after a finite number of rows with the exact solution. On flush faces with
+/// dozens of redundant contacts Gauss-Seidel sweeps would need thousands of iterations, and a reflection
+/// doubles the rotation that they leave. Source: Goldfarb and Idnani 1983.
 ///
 /// A light body between heavy ones bounces between them thousands of times. So the last few active sets are
 /// tried first, each for the same chosen rows: if all impulses push and no other row is violated, the set is

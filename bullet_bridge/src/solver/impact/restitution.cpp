@@ -83,8 +83,9 @@ void Restitution::connect(std::span<RigidContact> contacts, const StepSolution& 
   }
 }
 
-// Place at which a contact acts at the end of the step. It moves with the body that turns more easily. In a
-// shortened step it moves with the heavier body, since a light body between others may be anywhere.
+// Place at which a contact acts at the end of the step. The place moves with the body that turns more
+// easily. In a shortened step it moves with the heavier body, since a light body between others may be
+// anywhere.
 Vec3 Restitution::placeOf(const RigidContact& c, const StepSolution& solution,
                           std::span<const BodyEnd> ends) const {
   const Vec3 x_W = c.position_W();

@@ -86,8 +86,8 @@ double Restitution::kickAlong(std::size_t row) const {
   return group_.rows[row].velocity(group_.kick) - group_.rows[row].fixed_velocity;
 }
 
-// The rest of the kick after the impact, without the part that would change the velocities of contacts that
-// were hit. The contacts' impulses for that are added to those of the bounce.
+// The part of the kick that acts after the impact, without the share that would change the velocities of
+// contacts that were hit. The contacts' impulses for this correction are added to the impulses of the bounce.
 std::vector<Vec6> Restitution::restOfKick(double share) {
   std::vector<Vec6> rest = group_.kick;
   for (Vec6& v : rest) v *= 1 - share;

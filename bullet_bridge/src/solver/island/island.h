@@ -5,8 +5,8 @@
 //
 // 1. The displacement: by the push (which removes overlap) and then by the velocity u of the solve, which
 //    depends on no restitution. All checks of the end pose use this displacement.
-// 2. The end velocity: after rotation and restitution. It is u, except where a body's inertia turns with it
-//    (a free body keeps its angular momentum, not its angular velocity) or where bodies bounce.
+// 2. The end velocity: after rotation and restitution. The end velocity is u, except where a body's inertia
+//    turns with it (a free body keeps its angular momentum, not its angular velocity) or where bodies bounce.
 //
 // Bullet has one velocity, by which it moves the body after the solver. If the end velocity differs from the
 // displacement's, finish() places the body so that Bullet's motion at the end velocity leads exactly to the
@@ -42,8 +42,8 @@ inline double sumOfProducts(std::span<const Vec6> a, std::span<const Vec6> b) {
   return sum;
 }
 
-/// A dynamic body. Twists are about its centre of mass. Its velocity u solves effective_mass u = momentum +
-/// coupling_impulse + the contacts' impulses.
+/// A dynamic body. Twists are about its centre of mass. The body's velocity u solves effective_mass u =
+/// momentum + coupling_impulse + the contacts' impulses.
 struct IslandBody {
   btRigidBody* rigid = nullptr;
   double reach_m = 0;         ///< greatest distance of the body's points from its centre

@@ -20,7 +20,7 @@ namespace vps::bullet {
 /// are eliminated later.
 class IslandMatrix {
  public:
-  /// Sets which blocks exist: the diagonal, and those of `pairs` (any order, repeats allowed).
+  /// Sets which blocks exist: the diagonal, and one for each of `pairs` (any order, repeats allowed).
   void setPattern(std::size_t body_count, std::span<const std::pair<int, int>> pairs);
   void setZero();
   /// Adds a matrix to the block of two bodies.

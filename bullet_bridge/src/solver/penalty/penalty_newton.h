@@ -31,7 +31,7 @@ class PenaltyNewton {
     patch_count_ = 0;
     dt_s_ = dt_s;
   }
-  /// Adds a pair, which must outlive finish(). The initial limits of friction are those of last step's
+  /// Adds a pair, which must outlive finish(). The initial limits of friction follow from the last step's
   /// forces.
   /// @param level  level of groupPoints()
   /// @param follows_rotation  points of a rotating body move along circles instead of tangents

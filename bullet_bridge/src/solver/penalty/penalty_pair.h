@@ -15,7 +15,7 @@ class btPersistentManifold;
 namespace vps::bullet {
 
 /// A point of one side near the other's surface: a spring along the normal and a bristle in the tangent plane
-/// (vps/friction.h). Both are fixed to the point, so friction holds without creep.
+/// (vps/friction.h). Spring and bristle are fixed to the point, so friction holds without creep.
 struct PenaltyPoint {
   std::uint64_t key = 0;       ///< contactKey() of the point
   Vec3 p_W = Vec3::Zero();     ///< now

@@ -29,7 +29,7 @@ SolveOutcome ContactLoop::solveContacts(const SolverSettings& settings) {
   const SolveOutcome solved = newton_.solve(contacts.contacts(), near_m_s, newton_limit);
   outcome.steps += kSweepsPerNewtonStep * solved.steps;
   outcome.is_converged = solved.is_converged;
-  contacts.applyImpulses();  // even without convergence, velocities are those of the impulses
+  contacts.applyImpulses();  // even without convergence, velocities follow from the impulses
   if (solved.is_converged) return outcome;
   const SolveOutcome end =
       contacts.sweep(settings.residual_m_s, std::max(kSweepsFirst, settings.iteration_limit - outcome.steps));

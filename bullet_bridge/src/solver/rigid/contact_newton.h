@@ -7,15 +7,15 @@
 //
 // where v is a contact's relative velocity, p the impulse found so far, t the least normal velocity, s the
 // contact's compliance [m/s per N s] and P the projection onto Coulomb's cone |x_t| <= mu x_n. The impulses
-// at the solution are the p of the next round. So the compliance is only the weight of a proximal step
+// at the solution are the p of the next round. The compliance is only the weight of a proximal step
 // (method of multipliers) and leaves no error. Rounds begin soft, where Newton's method converges well, and
 // become stiffer. Sticking and slipping need no separate cases.
 //
 // The term mu |v_t| is De Saxce's. Without it a sliding contact would separate at that speed. The term makes
-// the matrix of Newton's method unsymmetric, and the equation is not the condition of a minimum. So a step,
-// or a share of it, is accepted if it reduces the missing momentum. If no share does, a step of the convex
-// problem with the present value of the term is taken instead; its exact line search makes progress from any
-// point. A round that still does not converge is repeated with more compliance.
+// the matrix of Newton's method unsymmetric, and the equation is not the condition of a minimum. A step, or a
+// share of it, is therefore accepted if it reduces the missing momentum. If no share does, a step of the
+// convex problem with the present value of the term is taken instead; its exact line search makes progress
+// from any point. A round that still does not converge is repeated with more compliance.
 //
 // If the term were taken from the previous round, the rounds would converge linearly only: of 47 problems of
 // ten brackets that lie on each other, 30 were solved in 60 steps, instead of 46.

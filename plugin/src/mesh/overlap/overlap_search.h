@@ -19,7 +19,8 @@ struct Deepest {
   bool is_between_edges = false;  ///< found by searchFacets() or searchBelow()
 };
 
-/// A point of a facet that lies in both surfaces. Both face the same way there, so both solids are below it.
+/// A point of a facet that lies in both surfaces. Both surfaces face the same way there, so both solids are
+/// below the facet.
 struct FlushPoint {
   Vec3 p_S, normal_S;
 };

@@ -74,8 +74,8 @@ std::vector<std::uint8_t> findDuplicates(const std::vector<std::array<std::uint3
 void surveyOpenEdges(const Mesh& mesh, const std::vector<HalfEdge>& edges, MeshReport& report);
 
 /// The mesh without facets of no area. The facet across the longest side of each such facet is split at its
-/// middle corner, so that a closed mesh stays closed. Vertices stay. Nothing if some facet could not be left
-/// out. O(n log n).
+/// middle corner, so that a closed mesh stays closed. Vertices stay. Returns no value if some facet could not
+/// be left out. O(n log n).
 std::optional<Mesh> withoutFlatFacets(Mesh mesh);
 
 }  // namespace vps

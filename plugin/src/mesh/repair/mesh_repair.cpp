@@ -526,7 +526,8 @@ class Repairer {
       if (!patches_[i].is_closed && mean[i] < 0.5 - kClearly - 0.25) flip(patches_[i]);
   }
 
-  /// What a ray hits first: 1 (outside) for nothing or a front, -1 (inside) for a back, 0 for its own patch.
+  /// Result of the first hit of a ray: 1 (outside) for nothing or a front, -1 (inside) for a back, 0 for its
+  /// own patch.
   int sideSeen(const MeshDistance& all, const Facet& from, const Vec3& way, std::uint32_t own,
                double size_m) {
     Vec3 p = from.center + 1e-3 * std::sqrt(from.area_m2) * way;

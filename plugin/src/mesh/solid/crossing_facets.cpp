@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Two triangles that cross do so along a segment. Its ends lie on an edge of one triangle and in the other.
-// So it is enough to test edges against triangles.
+// It is therefore enough to test edges against triangles.
 #include "mesh/solid/interior.h"
 
 #include <tbb/blocked_range.h>

@@ -31,7 +31,8 @@ struct DirectionCone {
   }
 };
 
-/// A cone that contains all given cones; everywhere() if there are none. Its axis is the mean of their axes.
+/// A cone that contains all given cones; everywhere() if there are none. The axis of the result is the mean
+/// of the cones' axes.
 inline DirectionCone coneOver(std::span<const DirectionCone> cones) {
   Vec3 sum = Vec3::Zero();
   for (const DirectionCone& c : cones) sum += c.axis;

@@ -46,7 +46,7 @@ bool isFlushOn(const CornerAndFacet& pair, std::uint32_t facet) {
 }
 
 // True if curved surfaces lie flush in each other beside two edges, and the edges meet across these surfaces.
-// Both edges must be curved, or lie within a curved surface. Where a round peg's rim comes down on the rim of
+// Each edge must be curved, or lie within a curved surface. Where a round peg's rim comes down on the rim of
 // its hole, the walls are opposite too, but the edges meet along the walls.
 // @param n_1  direction between the edges, in the frame of part 1
 bool isFlush(const FeatureEdge& edge0, const FeatureEdge& edge1, const Mat3& R_10, const Vec3& n_1) {

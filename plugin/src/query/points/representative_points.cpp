@@ -254,8 +254,8 @@ QueryResult RepresentativePoints::find(const VoxMap& map, const Pose& X_MP, cons
   search.finish();
   merge(request);
 
-  // The chosen points are in few leaves. These are read again, because a batch keeps its readings only until
-  // the next.
+  // The chosen points are in few leaves, which are read again, because a batch keeps its
+  // readings only until the next batch.
   ContactCollector collector(map, reading, X_MP, options, cutoff_m, out);
   auto next = chosen_.begin();
   const auto takeChosen = [&](const ReadLeaf& leaf) {

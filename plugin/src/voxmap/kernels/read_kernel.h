@@ -110,8 +110,8 @@ struct ReadKernels {
   void (*bound)(const FieldView&, const GridPose&, const ShellBlock&, float cutoff, SphereBounds&);
   /// Adds the touching points of one block of a batch that has been read. Each point was rounded to a step,
   /// so its depth is extrapolated along the slope to its exact position; otherwise a stiff contact would show
-  /// steps of 15 nm (at 0.25 mm voxels). Normals are those of the trilinear distance. Returns the lanes
-  /// without a normal as bits; the caller adds these.
+  /// steps of 15 nm (at 0.25 mm voxels). Normals are the gradients of the trilinear distance. Returns the
+  /// lanes without a normal as bits; the caller adds these.
   std::uint32_t (*touch)(const GridPose&, const ReadBatch&, int slot, const ShellBlock&,
                          const std::int32_t* reference, RowSums&);
   void (*addRow)(const RowSums&, TouchSums&);
