@@ -5,9 +5,13 @@
 #include <tbb/global_control.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "scenes/scene_part.h"
+#include "support/lathe.h"
+#include "vps/box.h"
 #include "vps/errors.h"
+#include "vps_scenes/scene/model_options.h"
 
 namespace vps::scenes {
 namespace {
@@ -86,6 +90,48 @@ TEST(SceneModels, ProgressGrowsAndStopsTheBuildByThrowing) {
   options.progress = [](std::string_view, double) { throw std::runtime_error("stopped"); };
   EXPECT_THROW(buildModels(again, options), std::runtime_error);
   for (const ScenePart& part : again.parts) EXPECT_EQ(part.model, nullptr);
+}
+
+TEST(ShrunkMesh, EachFaceIsMovedInwards) {
+  const double by_m = 10e-6;
+  const Mesh box = makeBox(Vec3(1e-3, 2e-3, 3e-3));
+  const Mesh small = shrunkMesh(box, by_m);
+  EXPECT_LT((bounds(small).size() - (bounds(box).size() - Vec3::Constant(2 * by_m))).norm(), 1e-12);
+  const Mesh rod = test::lathe({{0, 0}, {4e-3, 0}, {4e-3, 9e-3}, {0, 9e-3}}, 128);
+  // The volume within a prism of 128 sides.
+  const double flat = std::cos(std::numbers::pi / 128), face_m = 4e-3 * flat - by_m,
+               area = 128 * std::tan(std::numbers::pi / 128);
+  EXPECT_NEAR(massProperties(shrunkMesh(rod, by_m)).volume_m3, area * face_m * face_m * (9e-3 - 2 * by_m),
+              1e-15);
+}
+
+// Warnings of meshes whose inside may be uncertain.
+MeshReport ofTwoShells() {
+  MeshReport report;
+  report.shells = 2;
+  report.signed_by_winding = true;
+  return report;
+}
+
+TEST(MeshWarning, AClosedBlockWithAVoidGivesNone) {
+  EXPECT_EQ(meshWarning(ofTwoShells()), "");
+}
+
+TEST(MeshWarning, AHoleIsNamedWithWhatItLeavesUncertain) {
+  MeshReport report = ofTwoShells();
+  report.open_edges = 4;
+  report.certain_share = 0.91229;
+  const std::string words = meshWarning(report);
+  EXPECT_EQ(words.find("is not a closed surface: 2 shells, 4 open edges"), 0U) << words;
+  EXPECT_NE(words.find("certain for 91.22 % of the space near it"), std::string::npos) << words;
+}
+
+TEST(MeshWarning, OverlappingShellsAreNotCalledOpen) {
+  MeshReport report = ofTwoShells();
+  report.overlapping_shells = 2;
+  const std::string words = meshWarning(report);
+  EXPECT_EQ(words.find("is repaired: "), 0U) << words;
+  EXPECT_NE(words.find("2 overlapping shells"), std::string::npos) << words;
 }
 
 }  // namespace
