@@ -7,7 +7,7 @@
 namespace vps::viewer {
 
 struct FrameTargets {
-  int width, height;  ///< of the finished picture
+  int width, height;  ///< size of the finished picture [px]
   int factor;         ///< supersampling: the colour image is factor times as wide and high
   int samples;        ///< multisampling on top of it
 

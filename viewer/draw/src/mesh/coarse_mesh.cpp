@@ -11,7 +11,7 @@
 namespace vps::viewer {
 namespace {
 
-/// Which of the six sides of a cube the normal faces.
+/// The side of a cube (0 to 5) that the normal faces.
 std::uint64_t side(const std::array<float, 3>& n) {
   int axis = 0;
   for (int k = 1; k < 3; ++k)
@@ -31,7 +31,7 @@ std::vector<std::uint32_t> colorNumbers(const ShadingMesh& mesh) {
 
 }  // namespace
 
-/// Which vertices lie on a crease or an open border.
+/// For each vertex, whether it lies on a crease or an open border.
 const std::vector<bool>& CoarseMesh::creased() {
   if (!is_creased_.empty()) return is_creased_;
   std::uint32_t last = 0;

@@ -50,7 +50,7 @@ double cornerAngle(const Mesh& mesh, std::uint32_t corner) {
 }
 
 /// Adds one shading vertex per vertex, smooth group around it, and colour. A corner's normal is the mean over
-/// the faces that meet its own at less than the crease angle. Faces are weighted by their angle at the
+/// the faces whose angle to its own face is below the crease angle. Faces are weighted by their angle at the
 /// vertex, so that the mean does not depend on the triangulation of flat faces.
 /// @param colors  by triangle; empty: no colours
 void addVertices(const Mesh& mesh, const std::vector<Vec3>& normals, const scenes::FaceColors& colors,

@@ -15,7 +15,8 @@ namespace {
 
 using Eigen::Vector3f;
 
-const Vector3f kHandColor(0.028f, 0.21f, 0.74f);  // blue: the warm depth colours of contacts stand out on it
+const Vector3f kHandColor(0.028f, 0.21f,
+                          0.74f);  // blue, on which the warm depth colours of contacts are clearly visible
 
 }  // namespace
 
@@ -27,7 +28,7 @@ struct Renderer::Impl {
   std::vector<PartExtent> parts;
   Lettering lettering;
   std::string description;
-  std::optional<LastDraft> last_draft;  ///< none: the next draft is drawn as a whole
+  std::optional<LastDraft> last_draft;  ///< empty: the whole next draft is drawn
   bool drew_whole = false;
 
   explicit Impl(const RenderScene& scene) : parts(partExtents(scene)) {
@@ -151,7 +152,7 @@ Image Renderer::render(const scenes::Snapshot& snapshot, const Camera& camera, c
     impl.last_draft.reset();
 
   glEnable(GL_DEPTH_TEST);
-  // Opacities combine as those of layers, because the picture is blended over its background at the end.
+  // Opacities are accumulated as for layers, because the picture is blended over its background at the end.
   glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
   glClearStencil(0);
   Image image = clamped.is_draft ? impl.drawDraft(snapshot, camera, clamped)

@@ -27,10 +27,11 @@ struct View {
   double radius_m = 1;  ///< radius of a sphere around everything that is drawn
   double detail_m = 1;  ///< radius of a sphere around the visible region: smaller than radius_m in a close-up
   Vec3 floor_C;         ///< the point of the floor under the centre
-  Eigen::Vector4f cut_C = kNoCut;                                   ///< (n, w): the section keeps n.p <= w
-  bool has_caps = false;                                            ///< whether the eye sees cut faces
-  Eigen::Matrix4f shadow_from_C = Eigen::Matrix4f::Identity();      ///< to texture coordinates and depth
-  Eigen::Matrix4f shadow_projection = Eigen::Matrix4f::Identity();  ///< to clip coordinates
+  Eigen::Vector4f cut_C = kNoCut;                               ///< (n, w): the section keeps n.p <= w
+  bool has_caps = false;                                        ///< whether the eye sees cut faces
+  Eigen::Matrix4f shadow_from_C = Eigen::Matrix4f::Identity();  ///< from C to texture coordinates and depth
+  Eigen::Matrix4f shadow_projection =
+      Eigen::Matrix4f::Identity();  ///< from C to clip coordinates of the shadow map
 };
 
 /// @param box_W box around everything that is drawn; if it is empty, a box of 2 m around the origin is used

@@ -9,7 +9,7 @@
 
 namespace vps::viewer {
 
-/// A perspective camera that looks from eye to target. Near and far planes follow from what is drawn.
+/// A perspective camera that looks from eye to target. Near and far planes are computed from the drawn scene.
 struct VPS_VIEWER_API Camera {
   Vec3 eye_W = Vec3(1, -1, 1);
   Vec3 target_W = Vec3::Zero();

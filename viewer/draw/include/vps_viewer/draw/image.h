@@ -37,7 +37,7 @@ VPS_VIEWER_API Image loadPng(const std::string& file);
 
 /// The difference of two images. A pixel's difference is the greatest of its channels' differences, 0 to 255.
 struct ImageDifference {
-  bool is_same_size = true;  ///< if false, the other members have their greatest values
+  bool is_same_size = true;  ///< false: the sizes differ, and the other members have their greatest values
   double share_beyond = 0;   ///< share of pixels that differ by more than the tolerance, 0 to 1
   int greatest = 0;
   double mean = 0;  ///< over all pixels

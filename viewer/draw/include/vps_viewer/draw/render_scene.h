@@ -67,8 +67,8 @@ struct DrawOptions {
   std::string caption;                  ///< smaller lines under the title, separated by '\n'
   double contact_full_scale_m = 20e-6;  ///< contact depth at the red end of the colour scale
   double force_full_scale_N = 15;       ///< force whose arrow has a sixth of the picture's size
-  int supersampling =
-      2;  ///< samples per pixel in each direction, in addition to multisampling: 1 fast, 2 for print
+  /// Samples per pixel in each direction, in addition to multisampling: 1 fast, 2 for print.
+  int supersampling = 2;
   /// For a moving view: no shadows, ambient occlusion or outlines, and coarser meshes in scenes of more than
   /// kDraftTriangles. If only parts and marks moved since the last draft, only the rectangle around them is
   /// drawn again, with the same bits.

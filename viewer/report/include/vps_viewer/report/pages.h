@@ -32,7 +32,7 @@ VPS_VIEWER_API std::string studyPage(const scenes::StudyResult& result);
 VPS_VIEWER_API std::string deviationText(const scenes::StudyVariable& variable, double value);
 
 /// Writes compare.html, and for each step plots/path_N and plots/force_N (PNG and SVG), into dir, which
-/// exists. Returns notes on what could not be drawn. Throws LoadError when dir cannot be written.
+/// exists. Returns notes on plots that could not be drawn. Throws LoadError when dir cannot be written.
 VPS_VIEWER_API std::vector<std::string> writeComparePage(const scenes::RunComparison& result,
                                                          const std::string& dir);
 

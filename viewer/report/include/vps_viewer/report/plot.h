@@ -29,7 +29,8 @@ struct Plot {
 /// Whether a plot was written. Functions here do not throw, so that a missing gnuplot never ends a run.
 struct PlotOutcome {
   bool is_written = false;
-  std::string failure_reason;  ///< for the user: "gnuplot is not installed (Debian: apt install gnuplot-nox)"
+  std::string failure_reason;  ///< the reason for the user: "gnuplot is not installed (Debian: apt install
+                               ///< gnuplot-nox)"
   explicit operator bool() const { return is_written; }
 };
 
