@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Calibration: where a device stands in a room, and where the dual arm's right base stands.
+// Calibration: the pose of a device in a room, and the pose of the dual arm's right base.
 #pragma once
 
 #include <cstddef>
@@ -14,8 +14,8 @@ namespace vps::device {
 
 /// A point touched by the handle's origin.
 struct TouchedPoint {
-  Vec3 p_D = Vec3::Zero();  ///< as the device reads it
-  Vec3 p_S = Vec3::Zero();  ///< where it is in the room
+  Vec3 p_D = Vec3::Zero();  ///< position read by the device
+  Vec3 p_S = Vec3::Zero();  ///< position in the room
 };
 
 struct Placement {
@@ -38,7 +38,7 @@ struct BaseCalibration {
   /// too similar to determine all six numbers, more positions and tilts are needed; Fault: no convergence,
   /// the start is too far off.
   Status status = Status::Fault;
-  DualArmParameters parameters;       ///< the given ones with the right base corrected; unchanged unless Ok
+  DualArmParameters parameters;       ///< given parameters with the right base corrected; unchanged unless Ok
   double rms_m = 0;                   ///< residual | |P_R - P_L| - L |
   double sigma_m = 0, sigma_rad = 0;  ///< standard deviation of the result, greatest direction
   int iterations = 0;

@@ -21,9 +21,9 @@ struct TickReport {
   Status status = Status::Ok;
   Pose X_WG;  ///< proxy
   Twist V_WG;
-  Wrench F_hand_W;          ///< on the hand, after safety, in W about the handle's origin
+  Wrench F_hand_W;          ///< wrench on the hand, after safety, in W about the handle's origin
   Wrench F_hand_D;          ///< the wrench that was written to the device, in D about the handle's origin
-  double clutch_ratio = 1;  ///< of the clutch after the tick: 0 open, 1 closed
+  double clutch_ratio = 1;  ///< ratio of the clutch after the tick: 0 open, 1 closed
 };
 
 /// Energy that passes the hand [J]. The device's work on the hand is the acting force (delayed as the
@@ -36,10 +36,11 @@ struct TickReport {
 struct PassivityObserver {
   double to_hand_J = 0;     ///< sum of the positive works
   double from_hand_J = 0;   ///< sum of the negative works, as a positive number
-  double dissipated_J = 0;  ///< by the device's own least damping over the same displacements
-  double balance_J = 0;     ///< at the last observation of stored energy, in scene joules; 0 at the first
-  double least_J = 0;       ///< the least balance so far
-  double injected_J = 0;    ///< greatest rise of the balance above its least value before
+  double dissipated_J = 0;  ///< energy dissipated by the device's least damping over the same displacements
+  double balance_J =
+      0;               ///< balance at the last observation of stored energy, in scene joules; 0 at the first
+  double least_J = 0;  ///< the least balance so far
+  double injected_J = 0;  ///< greatest rise of the balance above its least value before
   /// Upper bound of the error of injected_J that the encoders' resolution allows, in scene joules. With
   /// readings off by at most e, summation by parts bounds the sum of F . (change of e) by e times (the total
   /// variation of F, plus its present magnitude). A worst case: every error has the worst sign.
@@ -75,12 +76,12 @@ struct PhysicsState {
   HeldPart held;
 };
 
-/// Physics in another process, instead of CouplingPort::physics. The haptic thread calls it: an
-/// implementation must not throw, allocate, lock or wait.
+/// Interface to physics in another process, which replaces CouplingPort::physics. The haptic thread calls it,
+/// so an implementation must not throw, allocate, lock or wait.
 class VPS_DEVICE_API RemotePhysics {
  public:
   virtual ~RemotePhysics() = default;
-  /// Replaces `state` by the newest state, if that is newer than at the last call.
+  /// Replaces `state` by the newest state, if a new one has arrived since the last call.
   virtual void receive(PhysicsState& state) noexcept = 0;
   /// Sends the state after a tick.
   virtual void send(const HapticState& state) noexcept = 0;

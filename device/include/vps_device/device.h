@@ -25,9 +25,9 @@ enum class DeviceEventKind : std::uint8_t {
   PulledApart,  ///< the gimbal centres' distance differs from L [m]
   LeftArmLost,
   RightArmLost,
-  ClockBackwards,  ///< [s]
-  Silent,          ///< nothing new from the hardware [s]
-  SharpMotion,     ///< too fast [m/s or rad/s]
+  ClockBackwards,  ///< the time stamp decreased [s]
+  Silent,          ///< the hardware has sent no new reading [s]
+  SharpMotion,     ///< the handle moved too fast [m/s or rad/s]
   PeerLost,        ///< no wrench was written in time [s]
   BadForce,        ///< the loop's force is not finite
   BadPose,         ///< the device's pose is not finite
@@ -54,9 +54,9 @@ enum class DeviceEventKind : std::uint8_t {
 enum class Severity : std::uint8_t { Notice, Warning, Fault };
 
 VPS_DEVICE_API Severity severityOf(DeviceEventKind kind) noexcept;
-/// A few words for a person: "an arm's reading jumped".
+/// Short description of an event for the user: "an arm's reading jumped".
 VPS_DEVICE_API const char* toText(DeviceEventKind kind) noexcept;
-/// What the user can do: "check the encoder's cable, then re-arm".
+/// Remedy for the user: "check the encoder's cable, then re-arm".
 VPS_DEVICE_API const char* remedyOf(DeviceEventKind kind) noexcept;
 /// Sound of an event; a notice has none. assumed: an octave between warning and fault, both where hearing is
 /// most sensitive.
@@ -109,7 +109,7 @@ struct DeviceLimits {
   Vec3 workspace_min_D = Vec3::Zero();  ///< box of the handle's origin [m]
   Vec3 workspace_max_D = Vec3::Zero();
   double rate_hz = 1000;        ///< read-write cycles per second
-  double delay_s = 0;           ///< from a reading to the effect of the wrench computed from it
+  double delay_s = 0;           ///< delay from a reading to the effect of the wrench computed from it
   double damping_Ns_per_m = 0;  ///< least viscous damping over the workspace, handle within 30 deg
   double damping_Nms_per_rad = 0;
   double coulomb_N = 0;  ///< least dry friction over the workspace

@@ -16,19 +16,19 @@ namespace vps::device {
 
 /// Options for opening a device. A kind ignores options that do not apply to it.
 struct DeviceOptions {
-  std::string parameter_file;          ///< of the dual arm; empty: the built-in parameters
-  double rate_hz = 1000;               ///< of read-write cycles
-  bool has_quantised_encoders = true;  ///< of a simulated device
-  Pose X_DH_start;                     ///< of a simulated device
+  std::string parameter_file;          ///< parameter file of the dual arm; empty: the built-in parameters
+  double rate_hz = 1000;               ///< rate of read-write cycles
+  bool has_quantised_encoders = true;  ///< a simulated device rounds its readings to encoder steps
+  Pose X_DH_start;                     ///< first pose of a simulated device's handle
   /// Box about D's origin that the handle can reach, for devices under rate control, whose range is free.
   Vec3 workspace_m = Vec3(0.4, 0.6, 0.4);
-  std::shared_ptr<HandleWish> wish;  ///< of the mouse, from its window
+  std::shared_ptr<HandleWish> wish;  ///< wish that the window sets and the mouse device follows
 };
 
 /// Exactly one of `open` and `simulate` is set.
 struct DeviceKind {
   std::string_view name;         ///< "space_mouse"
-  std::string_view description;  ///< in one line
+  std::string_view description;  ///< description in one line
   std::string_view remedy;       ///< what to do if the device does not answer
   /// Opens a device that a person moves. Throws LoadError. A device that is not plugged in opens too, and
   /// reads as lost (Status::Fault) until it is plugged in.

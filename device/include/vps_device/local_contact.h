@@ -16,8 +16,10 @@ namespace vps::device {
 struct LocalContactSettings {
   /// The part stands still once the last physics state is older. assumed: five steps of 100 Hz physics
   double hold_limit_s = 0.05;
-  std::size_t contact_limit = 4096;  ///< of near points; with more, the last state is held
-  /// Of contacts in the step; of more contacts only every second, third, ... one enters the step.
+  std::size_t contact_limit =
+      4096;  ///< greatest number of near points; if there are more, the last state is held
+  /// Greatest number of contacts in the step. If there are more, only every second, third, ... contact enters
+  /// the step.
   std::size_t solve_limit = 64;
   /// Points this near may touch within the tick. assumed: 50 mm/s at 1 kHz
   double margin_m = 50e-6;
@@ -25,8 +27,8 @@ struct LocalContactSettings {
 
 /// The held part and the map that it may touch. Map and shell must outlive their use.
 struct LocalPart {
-  const VoxMap* map = nullptr;        ///< of the fixed parts
-  const PointShell* shell = nullptr;  ///< of the part
+  const VoxMap* map = nullptr;        ///< voxmap of the fixed parts
+  const PointShell* shell = nullptr;  ///< pointshell of the held part
   Pose X_WM;
   Pose X_PG;                      ///< the grasp frame, at the centre of mass
   double mass_kg = 0;             ///< > 0
@@ -37,8 +39,8 @@ struct LocalPart {
     double friction = 0;       ///< coefficient between both parts
     double k_N_per_m3 = 1e12;  ///< contact stiffness per area
   };
-  Material material;               ///< of parts that are not in `of_owner`
-  std::vector<Material> of_owner;  ///< by the map's owner (Contact::owner)
+  Material material;               ///< material of parts that are not in `of_owner`
+  std::vector<Material> of_owner;  ///< materials by the map's owner (Contact::owner)
 
   [[nodiscard]] const Material& materialAt(const Contact& contact) const noexcept {
     return contact.owner < of_owner.size() ? of_owner[contact.owner] : material;
@@ -66,7 +68,7 @@ class VPS_DEVICE_API LocalContact {
                        double dt_s) noexcept;
 
   struct Report {
-    std::size_t contacts = 0;  ///< touching, in the last tick
+    std::size_t contacts = 0;  ///< touching contacts in the last tick
     /// Ticks in which the part was held instead: too many contacts, state too old, or result not finite.
     std::uint64_t held = 0;
     double jump_J = 0;  ///< sum of the energy that new states added to the coupling's springs

@@ -31,8 +31,9 @@ struct LoopSettings {
   double injected_bound_J = 1e-3;
   bool has_passivity_controller = true;  ///< active once stored energy is observed
   double clutch_s = 0.1;  ///< duration of opening and closing the clutch. assumed: longer than a startle
-  /// It is a fault if the state of a held part (by its time stamp) stays the same for longer. 0: never a
-  /// fault, as in lockstep, where physics cannot fall behind. RealTimeLoop defaults to 0.1 s.
+  /// Limit on the time for which the state of a held part (by its time stamp) may stay the same; a longer
+  /// time is a fault. 0: never a fault, as in lockstep, where physics cannot fall behind. RealTimeLoop
+  /// defaults to 0.1 s.
   double physics_limit_s = 0;
   LocalContact* local = nullptr;       ///< predicts the part between physics states; may be null
   DeviceEventQueue* events = nullptr;  ///< receives safety faults, from the loop's thread; may be null
@@ -76,14 +77,14 @@ class VPS_DEVICE_API HapticLoop {
   /// that tick is a round trip ago, and the motion since then would count as energy. The call is separate
   /// from the tick, so that a recording can note which state a tick used.
   void receivePart() noexcept;
-  /// The rest of tick(), with the state that receivePart() took.
+  /// Does the rest of tick(), with the state that receivePart() took.
   /// @return  Status of the device, or Fault while safety holds the force at zero
   const TickReport& tickWithReceivedPart(double dt_s) noexcept;
   [[nodiscard]] const PhysicsState& received() const noexcept { return received_; }
 
-  /// Other gains from the next tick on, as when physics changes its rate. Softer gains take energy out of the
-  /// springs, stiffer gains add energy: set stiffer gains only while nothing is held. Unusable gains are a
-  /// fault, as in the constructor.
+  /// Sets other gains from the next tick on, for example when physics changes its rate. Softer gains take
+  /// energy out of the springs, stiffer gains add energy: set stiffer gains only while nothing is held.
+  /// Unusable gains are a fault, as in the constructor.
   void setGains(const CouplingGains& gains) noexcept;
 
   /// Latches a fault that a driver has found; rearm() clears it.
@@ -145,16 +146,17 @@ class VPS_DEVICE_API HapticLoop {
   Pose X_DH_before_;
   bool has_before_ = false;
   std::array<Wrench, kMaxDelay + 2> F_written_D_{};         ///< newest first
-  double delay_ticks_ = 0;                                  ///< of the device itself
-  Wrench F_accounted_D_;                                    ///< by the last accountEnergy()
-  double force_variation_N_ = 0, torque_variation_Nm_ = 0;  ///< sums of its changes
+  double delay_ticks_ = 0;                                  ///< delay of the device itself
+  Wrench F_accounted_D_;                                    ///< wrench used by the last accountEnergy()
+  double force_variation_N_ = 0, torque_variation_Nm_ = 0;  ///< sums of the changes of F_accounted_D_
   double net_scene_J_ = 0, balance_start_J_ = 0;            // scene joules
   /// Energy that passed the hand until a tick, less the device's own dissipation.
   struct Work {
-    double time_s = 0;  ///< of the tick's sample
+    double time_s = 0;  ///< time of the tick's sample
     double scene_J = 0;
   };
-  std::array<Work, 512> works_{};  ///< of the last ticks: tick number modulo the size
+  std::array<Work, 512>
+      works_{};  ///< work until each of the last ticks, at index tick number modulo the size
   bool has_stored_ = false;
   double snapshot_age_s_ = 0, snapshot_time_s_ = 0;
   std::uint64_t reported_faults_ = 0;

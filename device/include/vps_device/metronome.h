@@ -8,18 +8,18 @@
 
 namespace vps::device {
 
-/// A clock, which tests replace. Called by one thread at a time.
+/// Interface of a clock; tests use one of their own. Called by one thread at a time.
 class VPS_DEVICE_API RealTimeClock {
  public:
   virtual ~RealTimeClock() = default;
   [[nodiscard]] virtual std::int64_t now_ns() noexcept = 0;
-  /// Returns at or after that time.
+  /// Sleeps until the given time, and returns at or after it.
   virtual void sleepUntil(std::int64_t time_ns) noexcept = 0;
 };
 
-/// The system's monotonic clock, by absolute waits.
+/// The system's monotonic clock, with absolute waits.
 VPS_DEVICE_API RealTimeClock& monotonicClock() noexcept;
-/// The same clock, in seconds.
+/// Time of the system's monotonic clock in seconds.
 [[nodiscard]] inline double monotonicSeconds() noexcept {
   return 1e-9 * static_cast<double>(monotonicClock().now_ns());
 }
@@ -28,10 +28,10 @@ VPS_DEVICE_API RealTimeClock& monotonicClock() noexcept;
 struct Beat {
   std::int64_t due_ns = 0;
   std::int64_t woke_ns = 0;          ///< the delay is woke_ns - due_ns
-  std::int64_t periods = 1;          ///< since the last beat; 1 if none was missed
+  std::int64_t periods = 1;          ///< periods since the last beat; 1 if none was missed
   std::int64_t missed_before = 0;    ///< periods missed because the work of the last beat took too long
   std::int64_t missed_asleep = 0;    ///< periods missed because the system woke the thread late
-  bool has_clock_gone_back = false;  ///< the beats restart from now
+  bool has_clock_gone_back = false;  ///< the clock was set back, so the beats restart from now
 };
 
 /// Waits for one beat after the other. A beat that falls due while work is still running is missed, and

@@ -23,18 +23,19 @@ struct OperatorHabits {
   /// Greatest error about the axis of insertion. Sight does not correct it, since the part covers the hole.
   /// Drawn from a uniform distribution, once per task.
   double aim_turn_rad = 0;
-  double speed_m_s = 0.05;    ///< average along the path
-  double turn_rad_s = 0.5;    ///< average rotation
+  double speed_m_s = 0.05;    ///< average speed along the path
+  double turn_rad_s = 0.5;    ///< average rotational speed
   double press_N = 5;         ///< final force at the target
   double force_limit_N = 15;  ///< limit of the hand's spring force
   double torque_limit_Nm = 0.8;
-  double k_N_per_m = 700;        ///< translation
-  double k_lateral_share = 0.5;  ///< of k across the axis while inserting: soft, so that chamfers guide
+  double k_N_per_m = 700;  ///< translation
+  double k_lateral_share =
+      0.5;  ///< share of the stiffness across the axis while inserting: soft, so that chamfers guide the part
   double k_Nm_per_rad = 3;
   double damping_ratio = 0.7;
-  double mass_kg = 1.5;  ///< of hand and forearm, as felt at the handle
+  double mass_kg = 1.5;  ///< effective mass of hand and forearm at the handle
   double inertia_kgm2 = 0.004;
-  double insert_share = 0.5;  ///< of speed_m_s while inserting
+  double insert_share = 0.5;  ///< share of speed_m_s while inserting
   double lag_rad_s = 40;      ///< natural frequency of the muscles' lag, critically damped
   double see_rate_hz = 60;    ///< rate of visual samples
   /// Standard deviations and delay of sight. Position: a minute of arc, which normal eyes resolve, at 0.35 m.
@@ -50,13 +51,13 @@ struct OperatorHabits {
   double see_limit_rad = 0.05;
   double stuck_s = 0.4;         ///< a pushed part without progress for this long is stuck
   double progress_m = 0.05e-3;  ///< a shorter advance is no progress
-  double back_off_m = 1e-3;     ///< how far it withdraws to try again
+  double back_off_m = 1e-3;     ///< distance of withdrawal before another attempt
   double touch_N = 1;         ///< resistance that counts as touching. assumed: ten times what a finger feels
   double search_N = 1.5;      ///< push while searching. assumed: light, so that the part slides
-  double tilt_rad = 0.1;      ///< with which a corner is put in first. assumed
+  double tilt_rad = 0.1;      ///< tilt with which a corner is inserted first. assumed
   double search_m = 0.08e-3;  ///< pitch of the spiral. assumed: below the error of sight
   double search_limit_m = 0.5e-3;  ///< radius of the spiral: five errors of sight
-  double turn_limit_rad = 0.11;    ///< of the search about the axis, to each side. assumed: 6 degrees
+  double turn_limit_rad = 0.11;    ///< range of the search about the axis, to each side. assumed: 6 degrees
   double press_s = 0.3;
   double rest_m_s = 1e-3;   ///< a slower hand is at rest
   double still_m_s = 1e-4;  ///< a hand that is slower stands still, and releases the part
@@ -95,10 +96,10 @@ struct OperatorTask {
   std::vector<std::size_t> index_points;
   Pose X_WP_target;
   Pose X_PG;
-  double tolerance_m = 0.1e-3;  ///< part's origin against the target
+  double tolerance_m = 0.1e-3;  ///< tolerance of the part's origin at the target
   double tolerance_rad = 0.01;
   double timeout_s = 20;
-  Vec3 weight_W = Vec3::Zero();  ///< of the part [N], which the hand carries by feed-forward
+  Vec3 weight_W = Vec3::Zero();  ///< weight of the part [N], which the hand carries by feed-forward
   /// Visible shape of the part: the point of its leading end (the end that goes in first) that is farthest
   /// from the axis of insertion through G, in P. Zero: not known, and the hand does not tilt the part.
   Vec3 tip_P = Vec3::Zero();

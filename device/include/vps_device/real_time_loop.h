@@ -36,17 +36,18 @@ class VPS_DEVICE_API TimedDevice final : public Device {
 
 /// The functions are called by the loop's thread and must not allocate, lock, throw or wait.
 struct RealTimeSettings {
-  int priority = 80;  ///< SCHED_FIFO; 0: none. assumed: above interrupt threads (50), below the kernel's
+  int priority =
+      80;  ///< SCHED_FIFO priority; 0: none. assumed: above interrupt threads (50), below the kernel's
   bool locks_memory = true;
   /// Replaces LoopSettings::physics_limit_s if that is 0. assumed: ten steps of 100 Hz physics, and shorter
   /// than a person needs to notice that a part has stopped
   double physics_limit_s = 0.1;
   double stale_s = 2e-3;           ///< ticks with an older physics state are counted
   RealTimeClock* clock = nullptr;  ///< null: the system's
-  /// Before each tick, after the requests and HapticLoop::receivePart(). periods: elapsed since the last
-  /// tick.
+  /// Called before each tick, after the requests and HapticLoop::receivePart(), with the number of periods
+  /// since the last tick.
   std::function<void(HapticLoop& loop, std::int64_t periods)> before_tick;
-  /// After each tick, with the time since the last one: moves a simulated device.
+  /// Called after each tick with the time since the last tick, for example to move a simulated device.
   std::function<void(HapticLoop& loop, double dt_s)> after_tick;
   /// Carries out a request made by call(), with its code.
   std::function<void(HapticLoop& loop, std::int32_t code)> on_call;
@@ -61,9 +62,10 @@ class VPS_DEVICE_API RealTimeLoop {
                const RealTimeSettings& real_time = {});
   ~RealTimeLoop();
 
-  /// Refusals of the system are in the report, and in settings.events. Throws as PeriodicThread::start().
+  /// Starts the loop's thread. The report and settings.events tell what the system refused. Throws as
+  /// PeriodicThread::start() does.
   RealTimeReport start();
-  /// Afterwards the wrench is zero. A held part stays held, for the next start().
+  /// Stops the loop's thread and sets the wrench to zero. A held part stays held, for the next start().
   void stop();
   [[nodiscard]] bool isRunning() const noexcept { return thread_.isRunning(); }
 
@@ -88,7 +90,7 @@ class VPS_DEVICE_API RealTimeLoop {
 
   [[nodiscard]] const TickStatistics& statistics() const noexcept { return statistics_; }
 
-  /// The loop; only while it is not running.
+  /// The loop. Call this only while it is not running.
   [[nodiscard]] HapticLoop& loop() noexcept { return loop_; }
   /// Runs one period, for a driver that replaces the thread; only while the loop is not running. Never
   /// throws, allocates or locks.

@@ -32,7 +32,7 @@ class VPS_DEVICE_API Recorder final : public RunLog {
   /// Creates the file and writes the head. Throws LoadError if it cannot be created, or if the name belongs
   /// to a file that is not a recording of this program.
   Recorder(const std::string& file, const RecordingHead& head, std::size_t ring_entries = 8192);
-  /// Without finish(): keeps the unfinished file if a device was read, and removes it otherwise.
+  /// If finish() was not called, keeps the unfinished file if a device was read, and removes it otherwise.
   ~Recorder() override;
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
@@ -64,7 +64,8 @@ struct VPS_DEVICE_API RecordedRun {
   std::string file;
   RecordingHead head;
   std::vector<LogEntry> entries;
-  std::string damage;  ///< empty if the file is complete; else what is wrong, where, and what was kept
+  std::string damage;  ///< empty if the file is complete; else a text with the damage, its place, and the
+                       ///< entries kept
 
   [[nodiscard]] const McapAttachment* attachment(std::string_view name) const;
   [[nodiscard]] std::size_t reads() const;
@@ -83,7 +84,7 @@ VPS_DEVICE_API std::vector<std::pair<std::string, std::string>> csvTables(const 
 /// last sample it is lost (Status::Fault).
 class VPS_DEVICE_API Recording final : public Device {
  public:
-  /// Takes the run over.
+  /// Takes ownership of the run.
   explicit Recording(RecordedRun run);
   explicit Recording(const std::string& file) : Recording(loadRecording(file)) {}
 
@@ -100,8 +101,9 @@ class VPS_DEVICE_API Recording final : public Device {
 
  private:
   RecordedRun run_;
-  std::vector<std::size_t> reads_;                   ///< indices into run_.entries
-  std::vector<std::optional<std::uint8_t>> phases_;  ///< before each read, and after the last
+  std::vector<std::size_t> reads_;  ///< indices into run_.entries
+  std::vector<std::optional<std::uint8_t>>
+      phases_;  ///< phases logged before each read, and after the last read
   std::size_t next_ = 0;
 };
 

@@ -17,7 +17,7 @@ namespace vps::device {
 
 /// A wrench that was written to the device, after safety: on the hand about H's origin, in D.
 struct WrittenWrench {
-  double time_s = 0;  ///< of the sample that it was computed from
+  double time_s = 0;  ///< time of the sample from which the wrench was computed
   Wrench F_Ho_D;
 };
 
@@ -32,10 +32,10 @@ struct RunEvent {
   double time_s = 0;
   std::int32_t step = -1;
   RunEventKind kind = RunEventKind::Note;
-  std::uint8_t phase = 0;       ///< of Phase: toByte(OperatorState)
+  std::uint8_t phase = 0;       ///< for Phase: toByte(OperatorState)
   std::array<char, 96> text{};  ///< zero-terminated
 
-  /// Truncates longer text.
+  /// Sets the event's text; a longer text is truncated.
   void setWords(std::string_view words) noexcept {
     text.fill(0);
     std::copy_n(words.begin(), std::min(words.size(), text.size() - 1), text.begin());
@@ -81,9 +81,9 @@ enum class SyncEventKind : std::uint8_t {
 };
 
 struct SyncEvent {
-  double time_s = 0;          ///< of the loop's last sample
+  double time_s = 0;          ///< time of the loop's last sample
   std::int32_t tick = 0;      ///< ticks so far, including this one
-  std::int32_t periods = 1;   ///< of the loop since its last tick
+  std::int32_t periods = 1;   ///< periods of the loop since its last tick
   std::int32_t snapshot = 0;  ///< PhysicsState::step of the state that the tick used
   SyncEventKind kind = SyncEventKind::Tick;
 };
@@ -109,7 +109,7 @@ class VPS_DEVICE_API RunLog {
   RunLog& operator=(const RunLog&) = default;
 };
 
-/// Forwards to a device and logs its samples and wrenches. Device and log outlive it.
+/// Forwards to a device and logs its samples and wrenches. Device and log must outlive this object.
 class VPS_DEVICE_API TappedDevice final : public Device {
  public:
   TappedDevice(Device& inner, RunLog& log) : inner_(inner), log_(log) {}

@@ -13,7 +13,8 @@ namespace vps::device {
 struct SafetyLimits {
   double force_N = 30;
   double torque_Nm = 2.5;
-  /// assumed: full force in 2 ms; a coupling of 3 kN/m struck at 1 m/s needs a fifth
+  /// Greatest rate of change of force. assumed: full force in 2 ms; a coupling of 3 kN/m that is struck at 1
+  /// m/s needs a fifth of this rate
   double slew_N_per_s = 15000;
   double slew_Nm_per_s = 1250;
   double jump_m = 0.02;  ///< greatest step between samples. assumed: no hand moves at 20 m/s (at 1 kHz)

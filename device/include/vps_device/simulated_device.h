@@ -20,8 +20,8 @@ struct HandForce {
   Mat3 b_Ns_per_m = Mat3::Zero();
   Mat3 k_Nm_per_rad = Mat3::Zero();
   Mat3 b_Nms_per_rad = Mat3::Zero();
-  Wrench F;            ///< feed-forward
-  double mass_kg = 0;  ///< of hand and forearm, as felt at the handle; the person carries its weight
+  Wrench F;            ///< feed-forward wrench
+  double mass_kg = 0;  ///< effective mass of hand and forearm at the handle; the person carries its weight
   double inertia_kgm2 = 0;
 };
 

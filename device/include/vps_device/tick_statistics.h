@@ -17,9 +17,9 @@ namespace vps::device {
 class VPS_DEVICE_API TickHistogram {
  public:
   static constexpr int kSplit = 64;    ///< buckets per octave
-  static constexpr int kOctaves = 34;  ///< above the first 64 ns, which are exact
+  static constexpr int kOctaves = 34;  ///< octaves above the first 64 ns, which are exact
 
-  /// Negative counts as 0. O(1).
+  /// Adds a time; a negative time counts as 0. O(1).
   void add(std::int64_t ns) noexcept;
 
   struct Summary {
@@ -51,13 +51,13 @@ VPS_DEVICE_API const char* toText(TickCause cause) noexcept;
 /// One tick's times [ns].
 struct VPS_DEVICE_API TickTiming {
   std::uint64_t tick = 0;          ///< number of the tick
-  std::int64_t late_ns = 0;        ///< from its due time to its start
-  std::int64_t device_ns = 0;      ///< in the device's read and write
+  std::int64_t late_ns = 0;        ///< time from the tick's due time to its start
+  std::int64_t device_ns = 0;      ///< time in the device's read and write
   std::int64_t own_ns = 0;         ///< other time until the wrench was written
-  std::int64_t after_tick_ns = 0;  ///< from then to the end of RealTimeSettings::after_tick
+  std::int64_t after_tick_ns = 0;  ///< time from the write to the end of RealTimeSettings::after_tick
   std::int64_t snapshot_ns = 0;    ///< time for which the physics state has stayed the same
 
-  /// From the due time until the wrench is written: the delay that the hand feels.
+  /// Time from the due time until the wrench is written: the delay that the hand feels.
   [[nodiscard]] std::int64_t response_ns() const noexcept { return late_ns + device_ns + own_ns; }
   /// The part that took longest; after_tick_ns counts only if `includes_after_tick`.
   [[nodiscard]] TickCause cause(bool includes_after_tick = false) const noexcept;
@@ -74,9 +74,9 @@ class VPS_DEVICE_API TickStatistics {
   void miss(std::uint64_t periods, TickCause cause) noexcept;
 
   struct Summary {
-    TickHistogram::Summary tick;      ///< device and own work
-    TickHistogram::Summary late;      ///< woken late
-    TickHistogram::Summary response;  ///< due until written
+    TickHistogram::Summary tick;      ///< duration: device and own work
+    TickHistogram::Summary late;      ///< delay of the start
+    TickHistogram::Summary response;  ///< time from the due time until the wrench is written
     std::uint64_t missed = 0;         ///< periods without a tick
     std::array<std::uint64_t, kTickCauses> missed_by{};
     std::uint64_t stale = 0;  ///< ticks that used an old physics state

@@ -69,11 +69,11 @@ struct Grasp {
 /// lift it without doing the work.
 class Clutch {
  public:
-  /// Opens over fade_s.
+  /// Opens the clutch over fade_s.
   void open() noexcept { is_closing_ = false; }
-  /// Closes over fade_s.
+  /// Closes the clutch over fade_s.
   void close() noexcept { is_closing_ = true; }
-  /// Closes and opens at once; only while the coupling exerts no force.
+  /// Closes or opens the clutch at once. Only allowed while the coupling exerts no force.
   void closeAtOnce() noexcept {
     is_closing_ = true;
     ratio_ = 1;

@@ -73,7 +73,7 @@ DeviceKind dualArmKind() {
 
 DeviceKind idealDualArmKind() {
   return {"ideal_dual_arm",
-          "the same with exact encoders, a rigid structure and no delay",
+          "simulated dual arm with exact encoders, a rigid structure and no delay",
           "",
           nullptr,
           simulateIdealDualArm,

@@ -69,7 +69,7 @@ bool DualArmController::isSane(const DualArmReading& reading) noexcept {
   return false;
 }
 
-// Checks that no gimbal centre has jumped, and that their distance is the handle's length.
+// Checks that no gimbal centre has jumped, and that the distance between both centres is the handle's length.
 bool DualArmController::isWhole(const JointVector& values, double dt_s) noexcept {
   const DualArmParameters& p = settings_.arms;
   const DualArmJoints now = fromVector(values), before = fromVector(joints_);

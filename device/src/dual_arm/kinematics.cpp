@@ -153,7 +153,8 @@ Pose armBase(const DualArmParameters& parameters, Side side) noexcept {
 
 Mat3 barrelRotation(const DualArmParameters& parameters, const ArmJoints& left) noexcept {
   // The barrel is fixed to the plate such that (6) at q = 0 and t = 0 gives the identity for the handle in D.
-  // Its z3, along which the handle is singular, then is horizontal and across the arm.
+  // The barrel's axis z3, along which the handle is singular, then is horizontal and perpendicular to the
+  // arm.
   const Mat3 R_plate_3 = columns({-1, 0, 0}, {0, 0, -1}, {0, -1, 0});
   const ArmAxes a = armAxes(left);
   const Mat3 R_A_plate = columns(a.e3, a.e1, a.e2);

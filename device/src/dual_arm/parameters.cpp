@@ -162,7 +162,7 @@ std::string slurp(const std::string& file) {
 
 }  // namespace
 
-/// Reads one file; its values replace those that are already set.
+/// Reads one file. Its values replace earlier values.
 struct DualArmFileReader {
   static DualArmParameters unset() { return DualArmParameters(DualArmParameters::Unset{}); }
 
@@ -227,7 +227,7 @@ struct DualArmFileReader {
           fail(field, member,
                "has '" + std::string(key.str()) + "'; next to value it may have sourced or assumed");
         if (!member.is_string() || !note.words.empty())
-          fail(field, member, "must say one of sourced and assumed, as text in quotes");
+          fail(field, member, "must have either sourced or assumed, as text in quotes");
         note.words = *member.value<std::string>();
         note.is_sourced = key == "sourced";
       }

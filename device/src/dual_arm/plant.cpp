@@ -168,7 +168,7 @@ DualArmPlant::Vec6 DualArmPlant::solve(double dt_s, const HandForce& hand, const
   M_hand.bottomRightCorner<3, 3>().diagonal().array() = hand.mass_kg;
   hand_side.topLeftCorner<3, 3>() = hand.b_Nms_per_rad + dt_s * hand.k_Nm_per_rad;
   hand_side.bottomRightCorner<3, 3>() = hand.b_Ns_per_m + dt_s * hand.k_N_per_m;
-  // Weight, and the hand's spring and damper evaluated at rest in the present pose.
+  // The load is the weight, and the hand's spring and damper at rest in the present pose.
   const Vec6 V = stacked(V_DH_.w, V_DH_.v);
   const Vec6 F = stacked(handleWeight(settings_.arms)) + stacked(handWrench(hand, X_DH_, Twist{}));
   const Vec6 momentum = (M_handle_ + M_hand) * V + J.transpose() * link_inertia_.cwiseProduct(link_rate_);

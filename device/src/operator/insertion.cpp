@@ -51,8 +51,8 @@ void Insertion::next(bool succeeded, const Feel& feel) noexcept {
   }
 }
 
-// Straight ahead, then each search in the order of the rows, again and again. A search that does not suit the
-// part leaves its turn to the next search that does; without such a search it has no turn.
+// The operator first tries straight ahead, then each search in the order of the rows, repeatedly. A search
+// that does not suit the part is replaced by the next search that does.
 OperatorStrategy Insertion::nextSearch() const noexcept {
   std::array<OperatorStrategy, kStrategies> turns{};  // from the last turn to the first
   std::size_t count = 0;
@@ -78,7 +78,7 @@ void Insertion::noteNextMouth(const Feel& feel) noexcept {
   stuck_inside_ = searches_ = searches_deeper_ = 0;
 }
 
-// The part touches and slides no farther: it is home, in the hole, or beside the hole.
+// The part touches and slides no farther: it is at its target, in the hole, or next to the hole.
 void Insertion::afterTouch(const Feel& feel) noexcept {
   if (std::abs(feel.seen_short_m) < situation_.near_m) return start(OperatorStrategy::PressHome, feel);
   if (!has_aligned_) {

@@ -37,7 +37,7 @@ class VirtualOperator::Person {
 
  private:
   struct Segment {
-    Pose X_from, X_to;  // of G
+    Pose X_from, X_to;  // poses of G
     double start_s = 0, duration_s = 1;
   };
 
@@ -120,24 +120,25 @@ class VirtualOperator::Person {
   OperatorPhase phase_ = OperatorPhase::Idle;
   double begin_s_ = 0, phase_s_ = 0, done_s_ = 0;
 
-  std::vector<Pose> path_;  // of G: start, way points, target
+  std::vector<Pose> path_;  // path of G: start, way points, target
   std::size_t next_ = 0;    // index in path_ of the segment's end
   std::size_t goal_ = 0;    // of goal()
   Segment segment_;
-  Vec3 axis_W_ = Vec3::UnitZ();                         // of insertion
-  double tip_m_ = 0;                                    // from G along the axis to the leading end
+  Vec3 axis_W_ = Vec3::UnitZ();                         // axis of insertion
+  double tip_m_ = 0;                                    // distance from G along the axis to the leading end
   Vec3 aim_m_ = Vec3::Zero(), aim_rad_ = Vec3::Zero();  // aim error, drawn once per task
   bool has_aimed_ = false;                              // the aim error is part of belief_
 
-  Vec3 misread_rad_ = Vec3::Zero();  // about the axis; sight does not correct it
+  Vec3 misread_rad_ = Vec3::Zero();  // error about the axis, which sight does not correct
 
   Belief belief_;
-  Vec3 sag_m_ = Vec3::Zero();  // of a heavy part below the hand; zero for other parts
+  Vec3 sag_m_ = Vec3::Zero();  // displacement of a heavy part below the hand; zero for other parts
   double seen_for_s_ = 0;
   Feel feel_;
   // Felt offset of the leading end from the grasp, and from its line.
   Vec3 lean_m_ = Vec3::Zero(), tip_felt_m_ = Vec3::Zero();
-  // Of a slender part: felt offset of its leading end when it is at its hole, and how long that was observed.
+  // For a slender part: felt offset of its leading end when the end is at its hole, and the time of this
+  // observation.
   Vec3 hole_m_ = Vec3::Zero();
   double hole_seen_for_s_ = 0;
   Insertion insertion_;
@@ -145,7 +146,7 @@ class VirtualOperator::Person {
   double spin_rad_ = 0;             // wanted rotation about the axis
   double handle_rad_ = 0;           // rotation of the handle about the axis, from the middle of its range
   double handle_goal_rad_ = 0;      // handle_rad_ at which the handle is grasped again
-  Mat3 R_felt_ = Mat3::Identity();  // of the hand, one step ago
+  Mat3 R_felt_ = Mat3::Identity();  // rotation of the hand one step ago
   bool is_regrasping_ = false;      // in Regrasp of a screw
   double reach_m_ = 0;              // wanted position of the hand along the axis, beyond the target
   bool is_home_ = false;

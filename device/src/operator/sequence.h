@@ -29,7 +29,7 @@ class Sequence {
   [[nodiscard]] OperatorStrategy strategy() const noexcept { return strategy_; }
   /// The strategy in use. Not before the first begin().
   [[nodiscard]] const Strategy& present() const noexcept { return of(strategy_); }
-  /// In all searches of the task.
+  /// Number of retries in all searches of the task.
   [[nodiscard]] int retries() const noexcept { return earlier_retries_ + retries_; }
 
  protected:
@@ -49,7 +49,7 @@ class Sequence {
 
   Situation situation_;
   OperatorStrategy strategy_ = OperatorStrategy::None;
-  int retries_ = 0;  ///< of this search
+  int retries_ = 0;  ///< retries of this search
 
  private:
   std::array<std::unique_ptr<Strategy>, kStrategies> strategies_;
@@ -93,7 +93,7 @@ class Screwing final : public Sequence {
 
   bool is_coming_off_ = false;
   double screwed_from_rad_ = 0,
-         screwed_rad_ = 0;  ///< of the last ScrewOn: where it began, and how far it turned
+         screwed_rad_ = 0;  ///< angles of the last ScrewOn: its start, and its rotation
 };
 
 }  // namespace vps::device

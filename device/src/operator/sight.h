@@ -23,7 +23,7 @@ class Sight {
   bool look(const OperatorView& view, const Vec3& felt_m = Vec3::Zero()) noexcept;
   /// The offset that the hand felt at the time of seen().
   [[nodiscard]] const Vec3& felt_m() const noexcept { return felt_m_; }
-  /// The part's pose as seen.
+  /// The seen pose of the part.
   [[nodiscard]] const Pose& seen() const noexcept { return X_seen_; }
   [[nodiscard]] bool hasSeen() const noexcept { return has_seen_; }
 
@@ -33,8 +33,9 @@ class Sight {
     Pose X_WP;
     Vec3 felt_m = Vec3::Zero();
   };
-  static constexpr std::size_t kPictures = 64;              // in the delay line
-  static constexpr std::uint64_t kStream = 0x5159ac0ffee5;  // other random numbers than those of the aim
+  static constexpr std::size_t kPictures = 64;  // length of the delay line
+  static constexpr std::uint64_t kStream =
+      0x5159ac0ffee5;  // a random stream that differs from the stream of aim errors
 
   OperatorHabits habits_;
   Random random_;

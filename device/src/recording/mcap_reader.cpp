@@ -29,8 +29,7 @@ class Parser {
   McapContent parse() {
     if (!isMcap(bytes_)) {
       const bool is_cut = kMagic.starts_with(bytes_);
-      fail(0,
-           is_cut ? "is shorter than the first bytes of an MCAP file" : "does not begin as an MCAP file does",
+      fail(0, is_cut ? "is shorter than the first bytes of an MCAP file" : "does not begin like an MCAP file",
            is_cut);
       return std::move(content_);
     }
@@ -161,7 +160,8 @@ class Parser {
     const std::string_view compression = in.text(), records = in.text<std::uint64_t>();
     if (!in.isGood()) return fail(at, kContradiction);
     if (!compression.empty())
-      return fail(at, "has a chunk compressed by '" + std::string(compression) + "', which is not read here");
+      return fail(at, "has a chunk compressed by '" + std::string(compression) +
+                          "', which this program cannot decompress");
     if (bytes != records.size() || (crc != 0 && crc != crc32(records)))
       return fail(at, "has a chunk whose checksum is wrong");
     inside(static_cast<std::size_t>(records.data() - bytes_.data()), records);

@@ -29,7 +29,7 @@ class VPS_DEVICE_API ByteWriter {
   void put(float value) { put(std::bit_cast<std::uint32_t>(value)); }
   void bytes(std::string_view bytes) { out_.append(bytes); }
 
-  /// A length of type Length, then the bytes. The length must fit into Length.
+  /// Appends a length of type Length, then the bytes. The length must fit into Length.
   template <std::unsigned_integral Length = std::uint32_t>
   void text(std::string_view text) {
     put(static_cast<Length>(text.size()));
@@ -71,7 +71,7 @@ class VPS_DEVICE_API ByteReader {
     bytes_.remove_prefix(static_cast<std::size_t>(count));
     return taken;
   }
-  /// A length of type Length, and that many bytes.
+  /// Reads a length of type Length, and as many bytes.
   template <std::unsigned_integral Length = std::uint32_t>
   std::string_view text() {
     return take(get<Length>());

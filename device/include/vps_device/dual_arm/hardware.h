@@ -11,7 +11,7 @@ namespace vps::device {
 /// The encoders at one instant.
 struct DualArmReading {
   DualArmJoints joints;
-  double time_s = 0;     ///< by the hardware's clock; an unchanged time means no new reading
+  double time_s = 0;     ///< time by the hardware's clock; an unchanged time means no new reading
   bool has_left = true;  ///< false: the left arm does not answer
   bool has_right = true;
 };
@@ -39,7 +39,7 @@ class VPS_DEVICE_API MotorHeat {
  public:
   explicit MotorHeat(const DualArmParameters& parameters) noexcept;
 
-  /// `efforts` held for dt_s.
+  /// Adds the heat of `efforts`, held for dt_s.
   void add(const JointVector& efforts, double dt_s) noexcept;
 
   /// Present limit of each motor: the peak while it is cool, falling to the continuous limit as it warms.

@@ -20,7 +20,7 @@ struct DualArmPlantSettings {
   DualArmParameters arms;
   bool has_quantised_encoders = true;  ///< false: exact readings, without noise
   bool is_rigid = false;               ///< true: no elasticity
-  std::uint64_t seed = 1;              ///< of the encoders' noise
+  std::uint64_t seed = 1;              ///< seed of the encoders' noise
   Pose X_DH_start;
 };
 
@@ -50,7 +50,9 @@ class VPS_DEVICE_API DualArmPlant final : public DualArmHardware {
   [[nodiscard]] const MotorHeat& heat() const noexcept { return heat_; }
   /// Wrench of the hand on the handle in the last step, in D.
   [[nodiscard]] const Wrench& lastHandWrench() const noexcept { return F_hand_; }
-  [[nodiscard]] double kinetic_J() const noexcept { return kinetic_J_; }  ///< of arms, handle and hand
+  [[nodiscard]] double kinetic_J() const noexcept {
+    return kinetic_J_;
+  }  ///< kinetic energy of arms, handle and hand
   [[nodiscard]] double structure_J() const noexcept {
     return structure_J_;
   }  ///< stored in the elastic structure and the stops
@@ -61,7 +63,7 @@ class VPS_DEVICE_API DualArmPlant final : public DualArmHardware {
   using Mat6 = Eigen::Matrix<double, 6, 6>;
   using Row6 = Eigen::Matrix<double, 1, 6>;
 
-  struct Motors;  ///< the motors' side of one step
+  struct Motors;  ///< result of a step on the motors' side
   [[nodiscard]] Mat6 handleInertia() const noexcept;
   [[nodiscard]] Motors motorsOf(double dt_s) const noexcept;
   double addStops(double dt_s, const Vec6& V_next, Mat6& A, Vec6& b) const noexcept;
@@ -77,7 +79,7 @@ class VPS_DEVICE_API DualArmPlant final : public DualArmHardware {
   JointVector motor_inertia_, link_inertia_, viscous_, coulomb_;
   Pose X_DH_;
   Twist V_DH_;
-  HandleMotion motion_;  ///< at the handle's pose; at a singularity that of the last valid pose
+  HandleMotion motion_;  ///< motion at the handle's pose; at a singularity, at the last valid pose
   JointVector link_rate_ = JointVector::Zero();  ///< joint rates on the handle's side, at the last step
   JointVector motor_ = JointVector::Zero();      ///< joints on the motors' side
   JointVector motor_rate_ = JointVector::Zero();

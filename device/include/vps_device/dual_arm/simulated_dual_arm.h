@@ -13,8 +13,8 @@ struct SimulatedDualArmSettings {
   DualArmParameters arms;
   bool has_quantised_encoders = true;  ///< false: exact readings, without noise
   bool is_rigid = false;               ///< true: no elasticity
-  double rate_hz = 1000;               ///< of read-write cycles
-  std::uint64_t seed = 1;              ///< of the encoders' noise
+  double rate_hz = 1000;               ///< rate of read-write cycles
+  std::uint64_t seed = 1;              ///< seed of the encoders' noise
   Pose X_DH_start;
 };
 

@@ -12,7 +12,7 @@ namespace vps::device {
 
 inline constexpr double kGravity_m_s2 = 9.81;
 
-/// On the handle about its centre of mass, in D.
+/// Wrench of the weight on the handle about its centre of mass, in D.
 inline Wrench handleWeight(const DualArmParameters& parameters) noexcept {
   return {Vec3::Zero(), Vec3(0, 0, -parameters.handle_kg * kGravity_m_s2)};
 }
@@ -34,12 +34,13 @@ VPS_DEVICE_API JointVector structureDrift(const DualArmParameters& parameters, c
 
 /// Greatest upward force [N] with the handle straight and its midpoint at p_DE, motors at `limits`.
 struct VerticalForce {
-  double left_N = 0;   ///< of the left arm alone, at its gimbal
-  double right_N = 0;  ///< of the right arm alone
-  double both_N = 0;   ///< of the pair on the handle, without a couple, in addition to the handle's weight
-  double sum_N = 0;    ///< left_N + right_N less the weight; the hand has to bear the couple
+  double left_N = 0;   ///< force of the left arm alone, at its gimbal
+  double right_N = 0;  ///< force of the right arm alone
+  double both_N =
+      0;  ///< force of both arms on the handle, without a couple, in addition to the handle's weight
+  double sum_N = 0;  ///< left_N + right_N less the weight; the hand has to bear the couple
 };
-/// Zero where the device is singular.
+/// Computes the strength; zero if the device is singular at this pose.
 VPS_DEVICE_API VerticalForce verticalForce(const DualArmParameters& parameters, const Vec3& p_DE,
                                            const JointVector& limits) noexcept;
 
@@ -47,7 +48,7 @@ VPS_DEVICE_API VerticalForce verticalForce(const DualArmParameters& parameters, 
 struct EffortMap {
   Eigen::Matrix<double, 7, 3> force = Eigen::Matrix<double, 7, 3>::Zero();   ///< N m or N, per N at H
   Eigen::Matrix<double, 7, 3> torque = Eigen::Matrix<double, 7, 3>::Zero();  ///< per N m about H
-  JointVector weight = JointVector::Zero();                                  ///< to carry the handle
+  JointVector weight = JointVector::Zero();  ///< efforts that carry the handle
 };
 [[nodiscard]] VPS_DEVICE_API Status effortMap(const DualArmParameters& parameters, const Pose& X_DH,
                                               EffortMap& map) noexcept;

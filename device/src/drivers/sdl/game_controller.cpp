@@ -92,7 +92,7 @@ std::unique_ptr<Device> openGameController(const RateSettings& settings) {
 DeviceKind gameControllerKind() {
   return {"game_controller",
           "game controller through SDL2, moved by a person; gives no force",
-          "plug a controller in that SDL2 knows",
+          "plug in a controller that SDL2 supports",
           [](const DeviceOptions& options) { return openGameController(rateSettings(options)); },
           nullptr,
           [] {

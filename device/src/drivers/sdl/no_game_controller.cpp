@@ -7,7 +7,8 @@
 namespace vps::device {
 
 std::unique_ptr<Device> openGameController(const RateSettings&) {
-  throw LoadError("", "", "this build has no game controller; install libsdl2-dev and build again");
+  throw LoadError("", "",
+                  "this build does not support game controllers; install libsdl2-dev and build again");
 }
 
 DeviceKind gameControllerKind() {

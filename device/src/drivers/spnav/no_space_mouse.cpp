@@ -7,7 +7,7 @@
 namespace vps::device {
 
 std::unique_ptr<Device> openSpaceMouse(const RateSettings&) {
-  throw LoadError("", "", "this build has no space mouse; install libspnav-dev and build again");
+  throw LoadError("", "", "this build does not support space mice; install libspnav-dev and build again");
 }
 
 DeviceKind spaceMouseKind() {

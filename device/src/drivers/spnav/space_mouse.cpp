@@ -122,7 +122,7 @@ class SpaceMouse final : public HandSource {
 
 std::unique_ptr<Device> openSpaceMouse(const RateSettings& settings) {
   if (is_in_use.exchange(true))
-    throw LoadError("", "", "the space mouse is in use by this program already; close that device first");
+    throw LoadError("", "", "this program already uses the space mouse; close that device first");
   return std::make_unique<PolledDevice<SpaceMouse>>(settings, "space_mouse");
 }
 

@@ -16,11 +16,11 @@ constexpr double kLeastError_m = 10e-6;     // assumed: a hand does not place a 
 // than an error of sight where g is eight errors of sight.
 constexpr double kHasCome = 8;
 
-/// Holds the part where it is seen at its target, as no contact tells where the target is. While the part
-/// moves there, each picture counts as it is. Afterwards the hand averages, over all pictures, the position
-/// of the target relative to the felt position of the part: the hand overcomes friction by pushing on, and
-/// the noise of sight does not move the part. Pictures of a fast part do not count, since the picture is late
-/// and the touch is not.
+/// Holds the part where it is seen at its target, since no contact tells the position of the target. While
+/// the part moves to the target, each picture is used without averaging. Afterwards the hand averages, over
+/// all pictures, the position of the target relative to the felt position of the part: the hand overcomes
+/// friction by pushing on, and the noise of sight does not move the part. Pictures of a fast part do not
+/// count, since the picture is late and the touch is not.
 class PlaceBySight final : public Strategy {
  public:
   Outcome step(const Feel& feel, double dt_s) noexcept override {

@@ -12,22 +12,22 @@
 
 namespace vps::device {
 
-/// What the operator feels. Positions are those of the part at the grasp frame G, as the hand feels them: the
-/// hand's own position, corrected by the coupling's deflection under the felt force. a: axis of insertion.
+/// Feeling of the hand. All positions are of the part at the grasp frame G, computed from the hand's own
+/// position and the coupling's deflection under the felt force. a is the axis of insertion.
 struct Feel {
   double time_s = 0;
-  double along_m = 0;            ///< beyond the target along a; negative before the target
+  double along_m = 0;            ///< position along a, positive beyond the target
   Vec3 across_m = Vec3::Zero();  ///< distance from the line through the target along a
   /// Offset of the leading end from that line; for a slender part, from where its hole was seen.
   Vec3 tip_m = Vec3::Zero();
-  Mat3 R_hand = Mat3::Identity();  ///< of the hand, in W
+  Mat3 R_hand = Mat3::Identity();  ///< rotation of the hand, in W
   double spin_rad = 0;             ///< rotation of the hand about a since the insertion began, not wrapped
   Vec3 lean_rad = Vec3::Zero();    ///< tilt of the hand from a
   double twist_Nm = 0;             ///< torque on the hand, about a
   int grips = 0;                   ///< number of re-grasps
   double resist_N = 0;             ///< force on the hand against a
   Vec3 side_N = Vec3::Zero();      ///< force on the hand, across a
-  double speed_m_s = 0;            ///< of the hand along a
+  double speed_m_s = 0;            ///< speed of the hand along a
   double seen_short_m = 0;         ///< distance of the part before its target, as seen: delayed and noisy
   double seen_for_s = 0;           ///< time for which the part has been seen since the last leg began
 };
@@ -36,30 +36,30 @@ struct Feel {
 struct Move {
   Vec3 across_m = Vec3::Zero();  ///< displacement of the part's leading end
   Vec3 turn_rad = Vec3::Zero();  ///< rotation about the leading end
-  double speed_m_s = 0;          ///< along a; negative: backwards
+  double speed_m_s = 0;          ///< speed along a; negative: backwards
   double push_N = 0;             ///< greatest push along a
-  double spin_rad_s = 0;         ///< about a
+  double spin_rad_s = 0;         ///< rotational speed about a
   bool looks = false;            ///< sight corrects the believed position of the hole
-  bool gives_way = false;        ///< the felt side force and torque correct it
+  bool gives_way = false;        ///< felt side force and torque correct the believed position of the hole
 };
 
 enum class Outcome {
   GoingOn,
   Done,       ///< the strategy reached its purpose
-  Failed,     ///< it did not
+  Failed,     ///< the strategy did not reach its purpose
   Unopposed,  ///< the part is seen beyond its target, and nothing stopped it
 };
 
-/// What a strategy knows of the task.
+/// Data of the task that a strategy may use.
 struct Situation {
   OperatorHabits habits;
   Vec3 axis_W = Vec3::UnitZ();
   Vec3 corner_W = Vec3::Zero();  ///< unit vector across a to the part's corner; zero: not known
-  double push_limit_N = 0;       ///< of the present attempt
+  double push_limit_N = 0;       ///< push limit of the present attempt
   double near_m = 0;             ///< a part seen this close to the target may be at the target
   bool has_touched = false;      ///< the part has touched: the hole guides it, sight no longer does
   double mouth_m = 0;            ///< `along_m` at the first touch
-  double tip_m = 0;              ///< from G along the axis to the leading end
+  double tip_m = 0;              ///< distance from G along the axis to the leading end
   bool is_slender = false;       ///< a small tilt displaces the leading end by more than a search covers
   bool has_corners = false;      ///< the part may have to be turned about the axis
   bool backs_off_whole = true;   ///< back off to before the mouth, instead of a little within the hole
@@ -99,7 +99,7 @@ class Strategy {
   virtual Outcome step(const Feel& feel, double dt_s) noexcept = 0;
   [[nodiscard]] const Move& move() const noexcept { return move_; }
 
-  /// True for a strategy that looks for the hole on the surface beside it. The operator tries all searches
+  /// True for a strategy that looks for the hole on the surface around it. The operator tries all searches
   /// that suit the part in turn, in the order of their rows in VPS_OPERATOR_STRATEGIES.
   [[nodiscard]] virtual bool isSearch() const noexcept { return false; }
   /// Whether a search may help with such a part.
