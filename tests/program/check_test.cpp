@@ -73,7 +73,8 @@ TEST_F(Check, WhatFreesAnOverlapIsSaidBesideWhatIsNotShown) {
   const Ran ran = run("check drawn.toml --no-play");
   EXPECT_EQ(ran.status, 3) << ran.out << ran.err;
   EXPECT_NE(ran.out.find("not shown: 'far' is nowhere near another part"), std::string::npos) << ran.out;
-  EXPECT_NE(ran.out.find("; the overlapping parts are free if 'pin' moves by 0.0200 mm along +z"), std::string::npos)
+  EXPECT_NE(ran.out.find("; the overlapping parts are free if 'pin' moves by 0.0200 mm along +z"),
+            std::string::npos)
       << ran.out;
 }
 
