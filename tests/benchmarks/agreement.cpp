@@ -12,7 +12,8 @@
 namespace vps::bench {
 namespace {
 
-/// The map as OpenVDB reads it. It is kept for the next case on the same map, since writing takes seconds.
+/// The map as OpenVDB reads it. The field is kept for the next case on the same map, since writing takes
+/// seconds.
 const RivalField& sameField(const VoxMap& map) {
   static std::unique_ptr<RivalField> kept;
   static VoxMap kept_map;

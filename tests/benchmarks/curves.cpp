@@ -38,7 +38,7 @@ void writeLine(std::ostream& out, double x, const Scene& scene, const Motion& mo
 
 constexpr const char* kColumns = " median_us p99_us openvdb_us touching build_cpu_s\n";
 
-/// The same surface with four times the triangles.
+/// Returns the same surface with four times the triangles.
 Mesh subdivided(const Mesh& mesh) {
   Mesh fine;
   for (const auto& [a, b, c] : mesh.triangles) {

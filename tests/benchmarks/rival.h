@@ -33,7 +33,7 @@ class RivalField {
 };
 
 /// Reads all points of a shell in a field, one after the other: transform, trilinear distance, and for
-/// touching points gradient, force and torque. It uses no hierarchy and no temporal coherence.
+/// touching points gradient, force and torque. The rival uses no hierarchy and no temporal coherence.
 class RivalQuery {
  public:
   virtual ~RivalQuery() = default;

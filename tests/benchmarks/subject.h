@@ -21,7 +21,7 @@ struct SubjectOptions {
 std::vector<std::string> instructionPaths();
 
 /// A shell against a map, step by step. Answers are for one-sided contact with the trilinear gradient, like
-/// those of the rivals.
+/// the rivals' answers.
 class Subject {
  public:
   /// Map and shell must outlive it.

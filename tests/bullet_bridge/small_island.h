@@ -120,8 +120,8 @@ class SmallIsland {
     return sum;
   }
 
-  /// Signorini's condition, Coulomb's cone with friction against the slip, and that the velocities are those
-  /// of the impulses, all within `near_m_s`.
+  /// Signorini's condition, Coulomb's cone with friction against the slip, and that the velocities follow
+  /// from the impulses, all within `near_m_s`.
   void expectLaws(double near_m_s) {
     const std::vector<Vec6> u = solved();
     std::vector<Vec6> owed;

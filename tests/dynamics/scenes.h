@@ -157,7 +157,7 @@ struct HeapResult {
 /// Twenty seconds (short: ten bodies, eight seconds). Sleeping is enabled, below 5 mm/s and 0.2 rad/s.
 HeapResult dropHeap(const SceneSettings& settings);
 
-/// One of the two parts of the heap: a gear of 20 teeth.
+/// Makes one of the two parts of the heap: a gear of 20 teeth.
 PartMesh makeHeapGear();
 /// The engine for this scene: shells of about 5,000 points.
 Engine heapEngine();

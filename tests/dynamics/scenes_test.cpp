@@ -127,8 +127,9 @@ struct State {
 
 // Two gears of the falling heap: the tip of a tooth slides out of the other gear's bore at 1.4 m/s, over the
 // rim of the bore. The plane of the bore's facet lets the tip pass, and the tip passes the edges of the rim
-// one after the other. It is then inside the end face, although it was in front of this face at the start of
-// the step. Where this face is left out, 13 of the first 40 cases are 2 to 32 um deep after their first step.
+// one after the other. The tip is then inside the end face, although it was in front of this face at the
+// start of the step. Where this face is left out, 13 of the first 40 cases are 2 to 32 um deep after their
+// first step.
 TEST(SlidingGears, ATipThatLeavesABoreOverItsRimStaysOutside) {
   const PartMesh part = makeHeapGear();
   const Engine engine = heapEngine();

@@ -68,7 +68,7 @@ struct Outcome {
 enum class Verdict { Holds, ExpectedFailure, Fails, Worse, HoldsUnexpectedly };
 const char* nameOf(Verdict verdict);
 
-/// @param member  only this member; -1: all members, or those of the short form
+/// @param member  only this member; -1: all members, or the members of the short form
 Outcome measure(const Family& family, bool is_short, int member = -1);
 Verdict judge(const Family& family, const Outcome& outcome, bool is_short);
 

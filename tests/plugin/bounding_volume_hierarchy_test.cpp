@@ -64,7 +64,7 @@ TEST(Hierarchy, DividesInTheOrderOfTheNodes) {
   EXPECT_EQ(tree.nodes[0].skip, tree.nodes.size());
 }
 
-// Of items with equal keys, those with the lower indices go to the left.
+// Of items with equal keys, the items with the lower indices go to the left.
 TEST(Hierarchy, TellsEqualKeysApartByIndex) {
   std::vector<std::uint32_t> items = {7, 2, 9, 4, 0, 5};
   divideByKey(items, 3, [](std::uint32_t) { return 1.0; });

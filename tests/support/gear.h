@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Involute gears, outer and inner, that mesh with each other.
 //
-// An inner gear is a plate from which the outline of an outer gear is cut. So one outline serves both; only
-// the tip and root circles are exchanged.
+// An inner gear is a plate from which the outline of an outer gear is cut. One outline therefore serves both;
+// only the tip and root circles are exchanged.
 #pragma once
 
 #include <cmath>
@@ -96,8 +96,8 @@ inline Mesh makeSpurGear(const GearShape& gear) {
   });
 }
 
-/// A ring with teeth inside; its tooth space 0 is centred on angle 0. It has as many triangles as a gear of
-/// makeSpurGear().
+/// A ring with teeth inside; its tooth space 0 is centred on angle 0. The mesh has as many triangles as a
+/// gear of makeSpurGear().
 inline Mesh makeRingGear(const GearShape& gear) {
   const double pitch_m = pitchRadius(gear);
   GearShape space = gear;

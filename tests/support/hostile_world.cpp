@@ -150,8 +150,8 @@ void HostileWorld::remove(Slot& slot) {
   slot.is_in_world = false;
 }
 
-// Bullet's own algorithms do not support a swap of shapes. So if neither the old nor the new shape is a
-// Shape, or if a body has two swaps between steps, the body is removed and added again, as Bullet requires.
+// Bullet's own algorithms do not support a swap of shapes. If neither the old nor the new shape is a Shape,
+// or if a body has two swaps between steps, the body is removed and added again, as Bullet requires.
 void HostileWorld::swap(Slot& slot, int kind, bool deletes_first) {
   if (!slot.body) return;
   Owned next = make(kind);

@@ -26,7 +26,7 @@ class Random {
   double uniform(double low, double high) {
     return low + (high - low) * 0x1p-53 * static_cast<double>(bits() >> 11);
   }
-  /// Every decade is equally likely. Both limits must be positive.
+  /// Every decade is equally likely. `low` and `high` must be positive.
   double logUniform(double low, double high) { return low * std::exp(uniform(0, std::log(high / low))); }
   /// 0 to count - 1.
   int index(int count) { return static_cast<int>(bits() % static_cast<std::uint64_t>(count)); }

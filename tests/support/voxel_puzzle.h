@@ -173,8 +173,8 @@ inline VoxelPuzzle randomCube(int size, std::size_t parts, std::uint64_t seed) {
 }
 
 /// A chain in which each link slides in the jaw of the next link, in a direction across that of the joint
-/// before, and is blocked by arms of the link after the next. So all links but the last can leave the last
-/// one only together, then all but the last two, and so on.
+/// before, and is blocked by arms of the link after the next. All links but the last can therefore leave the
+/// last one only together, then all but the last two, and so on.
 ///
 ///      from the side, along the slot        from above
 ///              jaw of the next                arms of the link after it

@@ -119,8 +119,8 @@ struct Surface {
 
 std::vector<Surface> surfaces() {
   static const PartMesh flat = dynamics::makePart(makeBox(Vec3(60e-3, 60e-3, 10e-3)));
-  // The cylinder is along y, so that the ball slides around it. Its flats are 20 mm (1 - cos(pi / 512)) = 0.4
-  // um inside the circle.
+  // The cylinder is along y, so that the ball slides around it. The cylinder's flats are 20 mm (1 - cos(pi /
+  // 512)) = 0.4 um inside the circle.
   static const PartMesh cylinder = dynamics::makePart(transformed(
       makeCylinder(kRound_m, 60e-3, 512), Pose(rotationFromVector(Vec3(M_PI / 2, 0, 0)), Vec3::Zero())));
   static const PartMesh sphere = dynamics::makePart(makeSphere(kRound_m, 6));

@@ -94,7 +94,7 @@ TopoDS_Shape hole(double r, double depth, double chamfer) {
   return turned({{0, -1}, {r + chamfer + 1, -1}, {r, chamfer}, {r, depth}, {0, depth}});
 }
 
-/// A socket head cap screw. Its head rests on z = 0, and its shank points to -z.
+/// A socket head cap screw. The screw's head rests on z = 0, and its shank points to -z.
 TopoDS_Shape screw(double length) {
   const TopoDS_Shape body = turned({{0, -length},
                                     {kThread - 0.6, -length},
@@ -138,7 +138,7 @@ TopoDS_Shape bearingRing(double inner, double outer) {
   return without(ring, {BRepPrimAPI_MakeTorus(14, 2.7).Shape()});
 }
 
-/// A shaft around z. Its larger journal, which stops the gear, is at negative z.
+/// A shaft around z. The shaft's larger journal, which stops the gear, is at negative z.
 TopoDS_Shape shaft() {
   return turned({{0, -72},
                  {7.5, -72},

@@ -84,7 +84,8 @@ bool clockRow(double seconds) {
   auto* other = static_cast<Other*>(
       mmap(nullptr, sizeof(Other), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0));
   new (other) Other;
-  // The other node is started before this process has threads of DDS. Its process group is killed at the end.
+  // The other node is started before this process has threads of DDS. The other node's process group is
+  // killed at the end.
   const pid_t group = startOther(session, *other);
   setpgid(group, group);
   std::unique_ptr<scenes::Link> render;

@@ -19,7 +19,7 @@ SceneSettings settingsFor(const Options& options, Mode mode, const dynamics::Eng
 
 // A peg that is engaged by less than mu times its diameter can wedge, like a real peg (Whitney 1982: the line
 // between the two contacts is within both friction cones). At 1 degree and mu 0.15, or at 2 degrees and mu
-// 0.1, the peg stays tilted in the mouth, at rest. So the friction is lower for a greater tilt.
+// 0.1, the peg stays tilted in the mouth, at rest. The friction is therefore lower for a greater tilt.
 void pegRow(const Options& options, Table& table) {
   const dynamics::Engine engine = dynamics::vpsEngine();
   constexpr double kDegree_rad = M_PI / 180;

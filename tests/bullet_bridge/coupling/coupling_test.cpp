@@ -155,7 +155,7 @@ TEST_P(CouplingWithSolver, LimitsTheSpringAndKeepsItsDirection) {
 
 TEST_P(CouplingWithSolver, ReportsTheForceThatActedOnThePart) {
   // A light part, a stiff spring and an oblique lever: near some limits the spring's direction does not
-  // converge within the solver's rounds. Nothing else acts, so the change of momentum is the coupling's
+  // converge within the solver's rounds. No other force acts, so the change of momentum is the coupling's
   // impulse.
   const double mass_kg = 1e-3, dt_s = 1e-3;
   for (double limit_N = 0.1; limit_N < 100; limit_N *= 1.1) {

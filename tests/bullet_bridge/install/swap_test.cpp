@@ -92,7 +92,7 @@ TEST(Swap, AHullByAnotherWithTheSameBoundingBox) {
 }
 
 TEST(Swap, AnyRandomSequenceIsSafe) {
-  // The same sequences each time; tests/fuzz runs others.
+  // This test runs the same sequences each time; tests/fuzz runs others.
   std::mt19937 random(17);
   for (int run = 0; run < 40; ++run) {
     std::vector<std::uint8_t> bytes(120);

@@ -103,7 +103,8 @@ class PegInBore : public testing::TestWithParam<Case> {
 };
 
 TEST_P(PegInBore, DroppedItSeats) {
-  // It starts half the clearance off the axis and 1 mm above the seat's chamfer; it falls and comes to rest.
+  // The peg starts half the clearance off the axis and 1 mm above the seat's chamfer; it falls and comes to
+  // rest.
   btRigidBody& body = world.add(peg_, Pose::translation(Vec3(3e-6, 2e-6, -0.004)));
   for (int i = 0; i < 1500; ++i) step(body, i % 5 == 0);
   const Pose rest = test::partPose(body, peg_);
@@ -168,8 +169,8 @@ TEST_P(PegInBore, PushedThroughTheCouplingItSeatsAndHolds) {
   report("push");
   std::printf("[ measured ] seat error %.2f um, jitter %.1e m/s, force %.3f N\n",
               (rest.p.z() + kDepth_m) * 1e6, speed_m_s, coupling.wrench().f.z());
-  // The coupling's torque tilts the peg as far as the clearance allows. It then stands on its lower rim, and
-  // the centre of its lower face is raised by the rim's radius times the tilt.
+  // The coupling's torque tilts the peg as far as the clearance allows. The peg then stands on its lower rim,
+  // and the centre of its lower face is raised by the rim's radius times the tilt.
   const double tilt_rad = rotationVector(rest.R).norm();
   const double soft_m = GetParam().solver == SolverKind::Penalty ? kSoft_m : 0;
   EXPECT_LE(tilt_rad, (1.2 * GetParam().clearance_m + soft_m) / (kDepth_m - 1.5e-3));

@@ -124,7 +124,8 @@ TEST(Penalty, ABallAtRestThatGrowsIsRaised) {
   ASSERT_EQ(stats(world.dispatcher).pair_updates, updates);
   ball.setUnscaledRadius(toBt(kGrown_m));
   world.step(200);
-  // It touches at the plate's points, 1 mm apart, and sinks by up to s^2 / (4 r) between them.
+  // The ball touches the plate at the plate's points, 1 mm apart, and sinks by up to s^2 / (4 r) between
+  // them.
   EXPECT_NEAR(body.getWorldTransform().getOrigin().z(), kGrown_m, 1e-6 / (4 * kRadius_m));
 }
 

@@ -60,7 +60,7 @@ TEST_P(RestWithSolver, ABoxOnAPlateStaysWhereItWasPlaced) {
 }
 
 // Edges of 15 degrees have no crossings and may have no shell points, so only the check of the solved step
-// finds them. Its contacts are kept, or each step would be solved twice and its pairs searched again.
+// finds them. The edges' contacts are kept, or each step would be solved twice and its pairs searched again.
 TEST(Rest, APrismAcrossTwoOthersRestsOnItsEdgesWithoutBeingSearchedAgain) {
   World world(SolverKind::Constraint);
   const Built rail = test::build(makeCylinder(0.005, 0.03, 24), 7850, 0.5e-3, 1e-3);
@@ -173,7 +173,8 @@ TEST_P(RestWithSolver, SticksBelowTheFrictionAngleAndSlidesAbove) {
       if (ratio < 1) {
         EXPECT_LE(moved_m, 1e-6) << mu;
       } else {
-        // a = g (sin - mu cos). It has slid for 0.2 s, then slides for 0.1 s more: a (0.3^2 - 0.2^2) / 2.
+        // a = g (sin - mu cos). The box has slid for 0.2 s, then slides for 0.1 s more: a (0.3^2 - 0.2^2)
+        // / 2.
         const double a = kGravity * (std::sin(angle_rad) - mu * std::cos(angle_rad));
         // The acceleration is 3 % of the friction's. The stock solver in single precision has an error of 0.2
         // % of the friction (measured; allowed: 0.3 %), all others less than a tenth of it.
@@ -471,7 +472,7 @@ TEST(Slide, AnisotropicFrictionIsThatOfBullet) {
                                     : world.addShape(bullets, part.frame.mass_kg, Vec3(2, 3, 4) * 1e-7, X_WP);
         ground.setFriction(1);
         body.setFriction(toBt(0.5));
-        // The body's axes are the principal ones: those of the box in another order.
+        // The body's axes are the principal ones: the axes of the box in another order.
         const Vec3 x_B = fromBt(body.getWorldTransform()).R.transpose() * Vec3::UnitX();
         body.setAnisotropicFriction(toBt(Vec3(Vec3::Ones() - 0.8 * x_B.cwiseAbs())));
         world.step(20);

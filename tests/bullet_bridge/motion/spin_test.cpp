@@ -48,14 +48,14 @@ INSTANTIATE_TEST_SUITE_P(With, Spin, testing::Values(SolverKind::Constraint, Sol
 TEST_P(Spin, AShaftWithRoomAroundItTurnsAsIfItWereAlone) {
   SpinningShaft shaft(GetParam());
   for (int i = 0; i < 50; ++i) shaft.world.step();
-  // Its centre of mass is off the axis by rounding.
+  // The shaft's centre of mass is off the axis by rounding.
   const double epsilon = std::numeric_limits<btScalar>::epsilon();
   EXPECT_LT(shaft.aside_m(), 16 * epsilon * kShaft_m);
   EXPECT_NEAR(shaft.body->getAngularVelocity().z(), 100 * std::numbers::pi,
               50 * 100 * std::numbers::pi * epsilon);
 }
 
-// It falls across its axis into the bore, which holds it.
+// The shaft falls across its axis into the bore, which holds it.
 TEST_P(Spin, AShaftThatLeavesItsAxisIsHeld) {
   SpinningShaft shaft(GetParam());
   for (int i = 0; i < 50; ++i) shaft.world.step();

@@ -19,7 +19,7 @@ const Built& cube() {
   return built;
 }
 
-/// What the callbacks were called with, in this order.
+/// Counts the calls of each callback, and records their order.
 struct Calls {
   int added = 0, processed = 0, started = 0, ended = 0, destroyed = 0, given = 0;
   std::string order;  ///< first letters, repeated calls once
@@ -82,8 +82,8 @@ class Callbacks : public testing::Test {
     gContactEndedCallback = nullptr;
     gContactDestroyedCallback = nullptr;
   }
-  /// A cube rests on another cube for some steps and is then lifted or removed. Both are parts, or Bullet's
-  /// boxes.
+  /// A cube rests on another cube for some steps and is then lifted or removed. Both bodies are parts, or
+  /// both are Bullet's boxes.
   Calls rest(bool is_part, int steps, bool is_lifted) {
     calls_ = {};
     World world;

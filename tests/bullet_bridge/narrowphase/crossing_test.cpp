@@ -74,8 +74,8 @@ TEST(Crossing, SupportsAPartThatTouchesNowhereElse) {
   const Vec3 start = fromBt(scene.body->getWorldTransform().getOrigin());
   scene.world.step(1000);
   const Vec3 moved = fromBt(scene.body->getWorldTransform().getOrigin()) - start;
-  // It descends by the gap and no farther. An overlap below 1 um, which the contact margin may leave, is not
-  // removed.
+  // The part descends by the gap and no farther. An overlap below 1 um, which the contact margin may leave,
+  // is not removed.
   EXPECT_NEAR(moved.z(), -kGap_m, 1e-6);
   EXPECT_LT(moved.head<2>().norm(), 1e-6);
   const double speed_m_s = fromBt(scene.body->getLinearVelocity()).norm();
@@ -102,8 +102,8 @@ TEST(Crossing, SlidesOverShellPointsWithoutAJolt) {
 }
 
 // A peg that has gone into its hole by far less than a voxel: rims face each other on a narrow strip, where
-// the field, which rounds edges off, reads up to 0.4 voxels more than the gap. They lie along each other, so
-// that no edges cross.
+// the field, which rounds edges off, reads up to 0.4 voxels more than the gap. The rims lie along each other,
+// so that no edges cross.
 TEST(Rims, ThatFaceEachOtherOnANarrowStripHoldAPeg) {
   constexpr double kRadius_m = 5.12e-3, kGap_m = 10e-6, kHigh_m = 10.25e-3;
   for (const double into_m : {10e-6, 30e-6, 60e-6}) {

@@ -97,7 +97,7 @@ Found find(const Built& below, const Pose& X_WBall, const Truth& truth) {
 }
 
 // Facets of the ball are sqrt(4 pi / 20480 * 4 / sqrt(3)) r = 0.19 mm wide and up to a third of its square
-// over 2 r inside the ball, 1.2 um; those of the parts below as well.
+// over 2 r inside the ball, 1.2 um; the same holds for facets of the parts below.
 constexpr double kFacets_m = 2.4e-6;
 // Newton's steps end within 5e-3 of the spacing, divided by the smaller radius; the same again for
 // interpolated normals.
@@ -120,7 +120,7 @@ double gapAt(int i) {
   return (i - 5) * 1e-6;
 }
 
-// At the pole of a lathe's mesh 144 facets meet in a fan, whose normals are not those of the ball.
+// At the pole of a lathe's mesh 144 facets meet in a fan, whose normals differ from the ball's normals.
 TEST(CurvedContact, PointsBesideTheHubOfAFanFindIt) {
   constexpr double kPi = std::numbers::pi, kRadius_m = 0.5e-3;
   std::vector<std::array<double, 2>> profile;

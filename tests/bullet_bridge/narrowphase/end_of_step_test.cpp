@@ -114,7 +114,7 @@ TEST(EndOfStep, AHollowFaceIsNearerThanItsPlane) {
   }
 }
 
-// The same with a moving bore and a ball at rest.
+// The same test with a moving bore and a ball at rest.
 TEST(EndOfStep, EitherBodyMayBeTheOneThatMoves) {
   const double way_m = 0.15e-3, play_m = kBore_m - kBall_m;
   const Scene scene(bore(), Vec3(play_m, 0, 0), Vec3::Zero(), Vec3(0, -way_m / kStep_s, 0));

@@ -36,7 +36,7 @@ struct Placed {
   btCollisionObject object;
 };
 
-// Shapes whose models lie turned and beside their frames, at any poses.
+// Shapes whose models are rotated and shifted against their frames, at arbitrary poses.
 TEST(PairView, NoPointOfTheBodiesIsNearerThanItsLeastDistance) {
   std::mt19937 random(5);
   std::normal_distribution<double> normal;

@@ -68,7 +68,7 @@ TEST(MapCandidates, MakeRepresentativePointsOnlyWhereManyAreNear) {
   const std::size_t many = smallQueryLimit(settings);
   QueryState state(*models.map, *models.shell);
   std::size_t tested = 0, near = 0;
-  for (const double height_m : {0.1, 0.0041, 0.004}) {  // far, beside each other, face on face
+  for (const double height_m : {0.1, 0.0041, 0.004}) {  // far apart, side by side, face on face
     const SideView side{plate.shape.get(), Pose::translation(Vec3(0, 0, height_m)), 0};
     const SideView other{plate.shape.get(), Pose(), 1};
     for (const double shift_m : {0.0199, 0.0}) {

@@ -64,7 +64,7 @@ TEST(ContactNewton, NeverAddsEnergy) {
 }
 
 // Contacts need a little more impulse than they had, as after a check. The solution must meet the laws of
-// contact, and the bodies' velocities must be those of the impulses.
+// contact, and the bodies' velocities must follow from the impulses.
 TEST(ContactNewton, TheVelocitiesOfTheImpulsesObeyTheLawsAsWell) {
   constexpr double kResidual_m_s = 1e-5;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
@@ -76,7 +76,7 @@ TEST(ContactNewton, TheVelocitiesOfTheImpulsesObeyTheLawsAsWell) {
     ASSERT_TRUE(newton.solve(made.sweeps.contacts(), kResidual_m_s, kMany).is_converged) << seed;
     made.sweeps.applyImpulses();
     const std::vector<Vec6> u = made.solved();
-    // A tenth of the residual by the law, and that of each body by its imbalance.
+    // The law may be violated by a tenth of the residual, and each body's velocity by its imbalance.
     for (const RigidContact& c : made.sweeps.contacts()) {
       const double v = c.normal.velocity([&](int body) { return u[static_cast<std::size_t>(body)]; });
       EXPECT_GE(v, c.target_m_s - 2.1 * kResidual_m_s) << seed;
@@ -189,7 +189,7 @@ TEST(ContactNewton, SlidesWithTheForceBeyondFrictionAndSticksBelow) {
 }
 
 // Contacts with normals in all directions, either order of bodies, gaps, a moving floor, and pairs whose
-// contacts are not consecutive. The velocities must equal those of very many sweeps.
+// contacts are not consecutive. The velocities must equal the velocities after very many sweeps.
 struct Random : Cubes {
   static constexpr int kCubes = 15;
   explicit Random(unsigned seed) {

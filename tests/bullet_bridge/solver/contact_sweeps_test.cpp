@@ -68,8 +68,8 @@ TEST(ContactSweeps, KeepLinearAndAngularMomentumOfBodiesThatOnlyTouchEachOther) 
   }
 }
 
-// A ball falls at v along one wall of a groove of two walls at 45 degrees. It keeps only the velocity along
-// the groove.
+// A ball falls at v along one wall of a groove of two walls at 45 degrees. The ball keeps only the velocity
+// along the groove.
 TEST(ContactSweeps, ABodyInAGrooveKeepsItsVelocityAlongIt) {
   SmallIsland made;
   made.add(0.1, Vec3::Zero(), Vec3(0.3, 0.7, -1));

@@ -154,7 +154,7 @@ TEST(EarlyEnd, ABodyIsNotStoppedForWhatComesToIt) {
   EXPECT_GT(made.island.bodies[0].way_share, 0);
 }
 
-// The same in a world, where a pair that always reports a missed contact uses up the rounds.
+// The same test in a world, where a pair that always reports a missed contact uses up the rounds.
 TEST(EarlyEnd, ASolversStepEndsWherePointsAreNotDeep) {
   static const test::Built box = test::steelBox(), plate = test::plate();
   test::World scene;

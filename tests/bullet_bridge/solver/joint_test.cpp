@@ -61,8 +61,8 @@ TEST_P(JointsWithSolver, APendulumSwingsByTheFormula) {
   World world(GetParam());
   const Built box = steelBox();
   btRigidBody& body = world.add(box, Pose());
-  // The box hangs at the middle of an edge, 10 mm from its centre, axis y. It starts at rest and horizontal,
-  // with the angular acceleration m g l / I. After 20 steps the angle is 0.5 degrees.
+  // The box hangs at the middle of an edge, 10 mm from its centre, axis y. The pendulum starts at rest and
+  // horizontal, with the angular acceleration m g l / I. After 20 steps the angle is 0.5 degrees.
   btHingeConstraint hinge(body, inBody(box, Vec3(-0.01, 0, 0)), axisInBody(box, Vec3(0, 1, 0)));
   world.world->addConstraint(&hinge);
   constexpr int kSteps = 20;
@@ -94,8 +94,8 @@ TEST_P(JointsWithSolver, AJointTypeOfTheHostsOwnHoldsItsBody) {
   }
   const Vec3 p = fromBt(body.getWorldTransform().getOrigin());
   const double speed_m_s = fromBt(body.getLinearVelocity()).norm();
-  // It swings down from the side: v^2 / 2 = g h. A step along the tangent leaves the circle by (v dt)^2 / 2r,
-  // of which a fifth is corrected in each step; symplectic steps change the energy by about g dt v.
+  // The body swings down from the side: v^2 / 2 = g h. A step along the tangent leaves the circle by (v dt)^2
+  // / 2r, of which a fifth is corrected in each step; symplectic steps change the energy by about g dt v.
   EXPECT_LE(off_m, 1.1 * std::pow(speed_m_s * 1e-3, 2) / (2 * kLength_m) / 0.2);
   EXPECT_LT(p.z(), -0.03);
   EXPECT_NEAR(speed_m_s * speed_m_s / 2, -kGravity * p.z(), kGravity * 1e-3 * speed_m_s);
@@ -149,8 +149,8 @@ TEST_P(JointsWithSolver, AHingedPartLeansOnItsStopWithItsTorque) {
   const Pose before = test::partPose(body, box);
   world.step(500);
   const Pose after = test::partPose(body, box);
-  // The hinge holds the lower edge at the plate, but sharp edges rest at a gap of 0.1 um. So the push raises
-  // the other edge, by a few times that gap.
+  // The hinge holds the lower edge at the plate, but sharp edges rest at a gap of 0.1 um. The push therefore
+  // raises the other edge, by a few times that gap.
   EXPECT_LE((after.p - before.p).norm(), 1e-7);
   EXPECT_NEAR(after.p.z(), 0.005, 4 * FeatureMotion::kRest_m);
   world.world->removeConstraint(&hinge);

@@ -82,8 +82,8 @@ struct Bounces {
   }
 };
 
-/// The mean of the signed errors over 12 heights. It is near zero if the time of the impact within the step
-/// does not matter.
+/// The mean of the signed errors over 12 heights. The mean is near zero if the time of the impact within the
+/// step does not matter.
 double meanBounceError(int member) {
   double sum = 0;
   int count = 0;

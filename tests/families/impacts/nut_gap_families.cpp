@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // C: a nut with restitution on its rod. The threads have a radial clearance of 0.1 mm. The nut crosses it
-// within a step of 1 ms and then touches along whole flanks. Its depth must be that of the same run without
-// restitution.
+// within a step of 1 ms and then touches along whole flanks. The nut's depth must equal the depth in the same
+// run without restitution.
 #include <algorithm>
 #include <array>
 #include <cmath>

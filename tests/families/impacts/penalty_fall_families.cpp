@@ -3,9 +3,9 @@
 //
 // A block of mass m that stops on a spring of stiffness k compresses the spring by v sqrt(m/k). In a column
 // of blocks the pressure of an impact depends on the speed and not on the number of blocks, since a wave runs
-// up the column, and two impacts at once correspond to at most twice the speed. So no contact may be deeper
-// than 2 v sqrt(m/k), and the energy may rise by at most m g dt v, the error of Bullet's integration for a
-// rising body.
+// up the column, and two impacts at once correspond to at most twice the speed. No contact may therefore be
+// deeper than 2 v sqrt(m/k), and the energy may rise by at most m g dt v, the error of Bullet's integration
+// for a rising body.
 #include <cmath>
 #include <cstdio>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // D: a body that lies flat on a plate without friction, or lands flat on it, and spins about the vertical.
 //
-// The plate pushes evenly and along the vertical only. So the body keeps its height, its place and its spin,
-// however far it turns in a step. If Bullet turns a body by less than its angular velocity, which is
+// The plate pushes evenly and along the vertical only. The body therefore keeps its height, its place and its
+// spin, however far it turns in a step. If Bullet turns a body by less than its angular velocity, which is
 // reported, the corners are not where the velocity would take them; then only the energy is judged, which
 // must not grow.
 #include <algorithm>

@@ -34,8 +34,8 @@ struct Roll {
   double radius_m = 10e-3, v_m_s = 0.2, slope_rad = 0, duration_s = 1, rate_hz = 1000;
 };
 
-// In members 0 to 2 the fault was found. The others start fast enough not to stop on a corner, and slowly
-// enough for their corners not to lift off (v^2 < g r).
+// In members 0 to 2 the fault was found. The other bodies start fast enough not to stop on a corner, and
+// slowly enough for their corners not to lift off (v^2 < g r).
 Roll rollOf(int member) {
   if (member == 0) return {};
   if (member == 1) return {.rate_hz = 250};

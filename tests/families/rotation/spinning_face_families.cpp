@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// K: a part spins on a flat face. Coulomb friction of a pressure p at the radius r has the moment mu p r. So
-// a pressure that is even over the face brakes with mu m g times the mean radius of the face, at any speed.
-// The mean radius of a disc is 2/3 R, so a disc slows down by 4/3 mu g / R. If all pressure is at the rim, a
-// disc is braked one and a half times as much.
+// K: a part spins on a flat face. Coulomb friction of a pressure p at the radius r has the moment mu p r. A
+// pressure that is even over the face brakes with mu m g times the mean radius of the face, at any speed. The
+// mean radius of a disc is 2/3 R, so a disc slows down by 4/3 mu g / R. If all pressure is at the rim, a disc
+// is braked one and a half times as much.
 #include <cmath>
 #include <cstdio>
 #include <numbers>

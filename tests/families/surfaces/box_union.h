@@ -47,7 +47,7 @@ BoxMember boxMember(int i);
 
 /// One closed shell for each box, in the boxes' frame.
 Mesh shellsOf(const std::vector<Box>& boxes);
-/// The same shells; shell i faces inwards if faces_in[i] is true.
+/// The same closed shells; shell i faces inwards if faces_in[i] is true.
 Mesh shellsOf(const std::vector<Box>& boxes, const std::vector<bool>& faces_in);
 /// The mass properties of a body after it is moved by X.
 MassProperties moved(const MassProperties& mass, const Pose& X);

@@ -139,7 +139,7 @@ scenes::Scene sceneOf(const Made& made) {
              Vec3(apart_m, 0, 0.5 * gear.width_m)),
         false);
   }
-  // The same settings as loadScene() gives a scene without [fidelity].
+  // Returns the settings that loadScene() gives a scene without [fidelity].
   scene.chooses_voxel = scene.chooses_spacing = true;
   scenes::resolveFidelity(scene);
   return scene;

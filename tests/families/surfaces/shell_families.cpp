@@ -173,7 +173,7 @@ Crossing crossingMember(int i) {
   }
 }
 
-/// True if a box lies within another one. It would be a void if it faced inwards.
+/// True if a box lies within another one. The inner box's shell would be a void if it faced inwards.
 bool isNested(const std::vector<Box>& boxes) {
   for (const Box& inner : boxes)
     for (const Box& outer : boxes)

@@ -263,8 +263,8 @@ TEST(EdgeCrossing, OfTwoHollowEdgesAtTheirJointsIsFoundAtAnyDepth) {
   }
 }
 
-// Two roofs whose ridges cross at a right angle, 100 um apart. They are within the cutoff only if they come
-// nearer in the step, and not if they have passed each other's ends by the end of the step.
+// Two roofs whose ridges cross at a right angle, 100 um apart. Crossings are within the cutoff only if their
+// edges come nearer in the step, and not if they have passed each other's ends by the end of the step.
 TEST(FindCrossings, EdgesThatComeNearInTheStepAreFound) {
   const double gap_m = 100e-6, cutoff_m = 20e-6;
   EdgeSegment s;

@@ -165,8 +165,8 @@ TEST(FeatureMotion, ACornerMeetsAFaceWhereTheFormulaSays) {
   EXPECT_NEAR(c.gap_m(end.inverse()), height_m - fall_m, 1e-12);
 }
 
-// The same corner at other places above the face: height and place follow the formula, while it is near and
-// outside.
+// Moves the same corner to other places above the face: height and place follow the formula, while it is near
+// and outside.
 TEST(FeatureMotion, AContactIsMeasuredAgainAtAnotherPose) {
   const Body floor(box(Vec3(20e-3, 20e-3, 5e-3)));
   const Body tip(tetrahedron());
@@ -351,8 +351,8 @@ TEST(FeatureMotion, NoOverlapIsMissed) {
   EXPECT_LT(reported_in_vain, overlaps);
 }
 
-// A corner comes within the rest gap of an edge between two faces and continues into the solid. It may pass
-// either face's plane first, and its own surface may keep it from touching one of the faces.
+// A corner comes within the rest gap of an edge between two faces and continues into the solid. The corner
+// may pass either face's plane first, and its own surface may keep it from touching one of the faces.
 TEST(FeatureMotion, NoCornerThatPassesAnEdgeIsMissed) {
   const Vec3 half(3e-3, 2e-3, 2e-3);
   const Body a(box(half));
@@ -382,7 +382,7 @@ TEST(FeatureMotion, NoCornerThatPassesAnEdgeIsMissed) {
 }
 
 // A block's corner starts nearer to a floor than the rest gap, rises on an arc and comes down again to a
-// larger gap. Nothing is missed, although the last of the segments in which the motion is examined begins
+// larger gap. No contact is missed, although the last of the segments in which the motion is examined begins
 // farther from the floor.
 TEST(FeatureMotion, AWayThatEndsAsNearAsItBeganMeetsNothing) {
   const Vec3 half(4e-3, 2e-3, 1e-3);

@@ -24,9 +24,9 @@ std::uint32_t topFacetAtTheEdge(const FeatureSet& part) {
   return FeatureSet::kNone;
 }
 
-// A corner is 30 nm above a box's top and 50 nm beside its wall, and moves down. It passes the top's plane
-// beside the wall, which therefore has the contact, unless the corner's own surface keeps it from touching
-// walls.
+// A corner is 30 nm above a box's top and 50 nm beside its wall, and moves down. The corner passes the top's
+// plane next to the wall, which therefore has the contact, unless the corner's own surface keeps it from
+// touching walls.
 TEST(BorderOwner, IsAFaceOnlyIfTheCornerCanTouchIt) {
   const test::FeatureBody box(makeBox(2 * kHalf));
   const std::uint32_t top = topFacetAtTheEdge(box.features);

@@ -152,7 +152,7 @@ TEST(ResampledVoxMap, AChainOfMountingsKeepsTheBricksThatItNeeds) {
     ASSERT_EQ(chain.owner(p), once.owner(p));
   });
   // A pool has memory for twice the bricks of the map and the mounting, and no more. Each brick has 736 nodes
-  // and owners of 2 bytes, and 10 bytes more. The cells are those of `once`.
+  // and owners of 2 bytes, and 10 bytes more. The cells equal the cells of `once`.
   const double cells_bytes = static_cast<double>(once.memoryBytes());
   EXPECT_LT(static_cast<double>(chain.memoryBytes()),
             2 * 2 * static_cast<double>(chain.brickCount()) * (2 * 736 * 2 + 10) + cells_bytes);

@@ -411,8 +411,8 @@ TEST(FaultyMesh, NarrowCracksAreClosed) {
   }
 }
 
-/// A pipe of two open walls, r = 10 and 9 mm, both facing out. Its inner wall is flipped, so that winding
-/// numbers are near 2 within, and still above 0.5 some millimetres in front of its mouths.
+/// A pipe of two open walls, r = 10 and 9 mm, both facing out. The pipe's inner wall is flipped, so that
+/// winding numbers are near 2 within, and still above 0.5 some millimetres in front of its mouths.
 Mesh pipeWithAFlippedWall() {
   Mesh pipe;
   for (const double radius_m : {0.01, 0.009}) {

@@ -152,7 +152,7 @@ TEST(MeshOverlap, EqualBodiesInOnePlaceOverlap) {
     EXPECT_GE(found_m, 2.5e-3);
     EXPECT_LE(found_m, 5e-3 + 1e-12);
   }
-  // Its walls are 10 mm thick.
+  // The tube's walls are 10 mm thick.
   const double in_tube_m = deepestOverlap(tube, Pose(), tube, Pose()).depth_m;
   EXPECT_GE(in_tube_m, 2.5e-3);
   EXPECT_LE(in_tube_m, 5e-3 + 1e-12);

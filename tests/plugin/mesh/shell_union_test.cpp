@@ -116,7 +116,7 @@ TEST(ShellUnion, AnInvertedShellThatCrossesTheOpenPartOfAnotherIsASolid) {
     EXPECT_NEAR(solidMass(joined(channel, bar)).volume_m3 / (kChannel_m3 + 0.04 * 0.02 * 0.01), 1, 1e-12);
 }
 
-/// The block's faces are those of a single block, except for a line around its middle.
+/// The faces equal the faces of a single block, except for a line around its middle.
 Mesh blockOfTwoHalves(const Vec3& min, const Vec3& max) {
   const double middle_m = 0.5 * (min.z() + max.z());
   Mesh mesh =
@@ -215,8 +215,8 @@ TEST(ShellUnion, AnOpenPatchElsewhereDoesNotPreventIt) {
   EXPECT_NEAR(solid.signedDistance({0.004, 0.01, 0.01}), -0.004, 1e-12);
 }
 
-/// A crack separates the side of one arm from the rest. It is too wide to be joined, and narrow enough for
-/// the shell to count as closed.
+/// A crack separates the side of one arm from the rest. The crack is too wide to be joined, and narrow enough
+/// for the shell to count as closed.
 TEST(ShellUnion, ShellsThatTouchButHaveCracksAreSaidNotToBeUnited) {
   Mesh arm = block({0, 0, 0.009}, {0.01, 0.02, 0.04});
   Mesh cut = arm;

@@ -30,7 +30,7 @@ bool followsItsRule(const std::vector<Vec3>& points, const std::vector<std::uint
   return true;
 }
 
-// So few points wait through the finest levels that only their neighbours are kept there.
+// In the finest levels so few points wait that only their neighbours are kept there.
 TEST(ProgressiveOrder, FollowsItsRuleWithPointsThatAreNearlyOrExactlyTheSame) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> within(-1, 1);

@@ -39,7 +39,7 @@ struct FakeClock final : device::RealTimeClock {
   std::int64_t now, oversleep = 0;
 };
 
-/// A log that keeps its entries and counts those that were reported as lost.
+/// A log that keeps its entries and counts the entries that were reported as lost.
 class KeptLog final : public device::RunLog {
  public:
   void add(const device::LogEntry& entry) noexcept override { entries.push_back(entry); }

@@ -84,8 +84,8 @@ inline device::LoopSettings wallLoop(const SampledWall& w) {
   return settings;
 }
 
-/// A handle on a rail along x. Its position is set directly or moved by mass, damping and force; it keeps the
-/// wrenches that were written.
+/// A handle on a rail along x. The device's position is set directly or moved by mass, damping and force; the
+/// device keeps the wrenches that were written.
 class RailDevice final : public device::Device {
  public:
   explicit RailDevice(double period_s) : period_s_(period_s) {}
