@@ -16,8 +16,8 @@ namespace vps::device {
 struct LocalContactSettings {
   /// The part stands still once the last physics state is older. assumed: five steps of 100 Hz physics
   double hold_limit_s = 0.05;
-  std::size_t contact_limit =
-      4096;  ///< greatest number of near points; if there are more, the last state is held
+  /// Greatest number of near points; if there are more, the last state is held.
+  std::size_t contact_limit = 4096;
   /// Greatest number of contacts in the step. If there are more, only every second, third, ... contact enters
   /// the step.
   std::size_t solve_limit = 64;

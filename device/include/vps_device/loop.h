@@ -155,8 +155,8 @@ class VPS_DEVICE_API HapticLoop {
     double time_s = 0;  ///< time of the tick's sample
     double scene_J = 0;
   };
-  std::array<Work, 512>
-      works_{};  ///< work until each of the last ticks, at index tick number modulo the size
+  /// Work until each of the last ticks, at index tick number modulo the size.
+  std::array<Work, 512> works_{};
   bool has_stored_ = false;
   double snapshot_age_s_ = 0, snapshot_time_s_ = 0;
   std::uint64_t reported_faults_ = 0;

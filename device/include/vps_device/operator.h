@@ -29,8 +29,8 @@ struct OperatorHabits {
   double force_limit_N = 15;  ///< limit of the hand's spring force
   double torque_limit_Nm = 0.8;
   double k_N_per_m = 700;  ///< translation
-  double k_lateral_share =
-      0.5;  ///< share of the stiffness across the axis while inserting: soft, so that chamfers guide the part
+  /// Share of the stiffness across the axis while inserting: soft, so that chamfers guide the part.
+  double k_lateral_share = 0.5;
   double k_Nm_per_rad = 3;
   double damping_ratio = 0.7;
   double mass_kg = 1.5;  ///< effective mass of hand and forearm at the handle
@@ -89,8 +89,8 @@ struct ScrewTask {
 /// the part's centre of mass, where the hand carries the weight without torque.
 struct OperatorTask {
   Pose X_WP_start;
-  std::vector<Pose>
-      way_points;  ///< X_WP; insertion begins at the last one, or at the start if there are none
+  /// X_WP; insertion begins at the last one, or at the start if there are none
+  std::vector<Pose> way_points;
   /// Indices of way points at which the device reaches its workspace limit: the hand stops there for
   /// indexing.
   std::vector<std::size_t> index_points;

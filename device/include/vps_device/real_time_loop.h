@@ -36,8 +36,8 @@ class VPS_DEVICE_API TimedDevice final : public Device {
 
 /// The functions are called by the loop's thread and must not allocate, lock, throw or wait.
 struct RealTimeSettings {
-  int priority =
-      80;  ///< SCHED_FIFO priority; 0: none. assumed: above interrupt threads (50), below the kernel's
+  /// SCHED_FIFO priority; 0: none. assumed: above interrupt threads (50), below the kernel's
+  int priority = 80;
   bool locks_memory = true;
   /// Replaces LoopSettings::physics_limit_s if that is 0. assumed: ten steps of 100 Hz physics, and shorter
   /// than a person needs to notice that a part has stopped

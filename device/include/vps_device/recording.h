@@ -102,8 +102,8 @@ class VPS_DEVICE_API Recording final : public Device {
  private:
   RecordedRun run_;
   std::vector<std::size_t> reads_;  ///< indices into run_.entries
-  std::vector<std::optional<std::uint8_t>>
-      phases_;  ///< phases logged before each read, and after the last read
+  /// Phases logged before each read, and after the last read.
+  std::vector<std::optional<std::uint8_t>> phases_;
   std::size_t next_ = 0;
 };
 

@@ -15,8 +15,8 @@ constexpr double kHot = 0.8;            // share of the allowed heat: warns befo
 constexpr double kNearStop_rad = 0.03;  // plates, q2, q3: 2 deg
 constexpr double kNearStop_m = 0.02;    // slides
 constexpr double kArmsNear_m = 0.02;    // between their surfaces
-constexpr double kNearSingular_rad =
-    1.2;  // q2: 21 deg before the singularity; the motor needs 3 times the torque
+// q2: 21 deg before the singularity; the motor needs 3 times the torque
+constexpr double kNearSingular_rad = 1.2;
 
 bool isTwistWithin(const Twist& V, double v_m_s, double w_rad_s) {
   return V.v.norm() <= v_m_s && V.w.norm() <= w_rad_s;

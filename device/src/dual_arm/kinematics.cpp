@@ -7,8 +7,8 @@
 namespace vps::device {
 namespace {
 
-constexpr double kSingular =
-    1e-6;  // cosine or metres; below it a joint rate exceeds a million times the handle's
+// Cosine or metres; below it a joint rate exceeds a million times the handle's.
+constexpr double kSingular = 1e-6;
 
 Mat3 columns(const Vec3& x, const Vec3& y, const Vec3& z) {
   Mat3 m;

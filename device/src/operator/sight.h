@@ -34,8 +34,8 @@ class Sight {
     Vec3 felt_m = Vec3::Zero();
   };
   static constexpr std::size_t kPictures = 64;  // length of the delay line
-  static constexpr std::uint64_t kStream =
-      0x5159ac0ffee5;  // a random stream that differs from the stream of aim errors
+  // A random stream that differs from the stream of aim errors.
+  static constexpr std::uint64_t kStream = 0x5159ac0ffee5;
 
   OperatorHabits habits_;
   Random random_;

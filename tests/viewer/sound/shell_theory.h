@@ -37,8 +37,8 @@ inline std::vector<double> shellFrequencies(const ThinShell& shell, int n) {
   constexpr int kTerms = 15, kSteps = 800;  // 11 and 19 terms give the same to 0.1 %
   const double nu = shell.poissons_ratio, h = shell.thick_m;
   const double B = shell.youngs_modulus_Pa * h / (1 - nu * nu), D = B * h * h / 12;
-  MatrixXd elastic =
-      MatrixXd::Zero(6, 6);  // elasticity of membrane strains, then of curvatures: along, around, twist
+  // Elasticity of membrane strains, then of curvatures: along, around, twist.
+  MatrixXd elastic = MatrixXd::Zero(6, 6);
   for (const int i : {0, 3}) {
     elastic.block(i, i, 2, 2) << 1, nu, nu, 1;
     elastic(i + 2, i + 2) = (1 - nu) / 2;

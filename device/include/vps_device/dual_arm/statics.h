@@ -36,8 +36,8 @@ VPS_DEVICE_API JointVector structureDrift(const DualArmParameters& parameters, c
 struct VerticalForce {
   double left_N = 0;   ///< force of the left arm alone, at its gimbal
   double right_N = 0;  ///< force of the right arm alone
-  double both_N =
-      0;  ///< force of both arms on the handle, without a couple, in addition to the handle's weight
+  /// Force of both arms on the handle, without a couple, in addition to the handle's weight.
+  double both_N = 0;
   double sum_N = 0;  ///< left_N + right_N less the weight; the hand has to bear the couple
 };
 /// Computes the strength; zero if the device is singular at this pose.

@@ -17,8 +17,8 @@ namespace vps::viewer {
 struct Brick {
   std::array<int, 3> at{};               ///< column, row, layer
   std::array<int, kBrickNodes> nodes{};  ///< indices of the nodes, in the order of brickNode()
-  std::shared_ptr<const BrickFilling>
-      cut;  ///< filled region of a brick at the surface; null: the whole brick is filled
+  /// Filled region of a brick at the surface; null: the whole brick is filled.
+  std::shared_ptr<const BrickFilling> cut;
 };
 
 struct BrickGrid {

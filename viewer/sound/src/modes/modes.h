@@ -13,8 +13,8 @@
 namespace vps::viewer {
 
 struct ModeSettings {
-  std::size_t most_bricks =
-      320;  ///< most filled bricks. assumed: modes of a part take at most a second on one core
+  /// Most filled bricks. assumed: modes of a part take at most a second on one core.
+  std::size_t most_bricks = 320;
   std::size_t most_modes = 40;
   double most_hz = 18000;  ///< higher modes are left out, since few people hear them
 };

@@ -25,8 +25,8 @@ namespace vps::viewer {
 namespace {
 
 constexpr int kMixerPriority = 1;  // the priority that askForShortPeriods() gives to OpenAL's own thread
-constexpr double kSlowCard_s =
-    0.1;  // upper bound of a period; a longer one reported by a driver is taken as this
+// Upper bound of a period; a longer one reported by a driver is taken as this.
+constexpr double kSlowCard_s = 0.1;
 
 /// A source that plays a queue of short buffers. The OpenAL context must be current in all functions.
 class Queue {
@@ -169,8 +169,8 @@ class LoopbackCard {
  private:
   void play() {
     const double period_s = static_cast<double>(kCardPeriod) / rate_hz_;
-    const double ahead_s =
-        (kCardPeriods - 1) * period_s;  // time of the mixed samples that are still to be played
+    // Time of the mixed samples that are still to be played.
+    const double ahead_s = (kCardPeriods - 1) * period_s;
     std::vector<float> stereo(std::size_t{2} * kCardPeriod), mono(kCardPeriod);
     device::requestRealTime(kMixerPriority, false);  // without the permission the priority stays normal
     double due_s = device::monotonicSeconds();

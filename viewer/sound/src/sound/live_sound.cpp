@@ -15,8 +15,8 @@ namespace {
 
 constexpr double kFullScale_Pa = 0.2;  // 80 dB at the listener. assumed: the sound of a tool that is put down
 constexpr float kLiveBeepLevel = 0.1f;  // -20 dB, as in WAV files
-constexpr std::size_t kMostWaiting =
-    500;  // snapshots: half a second at 1 kHz; older snapshots are late and dropped
+// Snapshots: half a second at 1 kHz; older snapshots are late and dropped.
+constexpr std::size_t kMostWaiting = 500;
 
 float loudness(float pressure_Pa) {
   return std::tanh(pressure_Pa / static_cast<float>(kFullScale_Pa));  // louder samples saturate smoothly

@@ -30,8 +30,8 @@ double radiated(double omega, double surface_m2) {
   return ka * ka / (1 + ka * ka);
 }
 
-constexpr double kCurvature_m =
-    5e-3;  // radius of curvature at the contact. assumed: edges and fillets of a part
+// Radius of curvature at the contact. assumed: edges and fillets of a part.
+constexpr double kCurvature_m = 5e-3;
 
 using IsInside = std::function<bool(const Vec3& p_P)>;
 
@@ -39,8 +39,8 @@ using IsInside = std::function<bool(const Vec3& p_P)>;
 /// here: for the millions of tests, a solid takes ten times as long as a map and its construction. Only for
 /// walls that are thin compared to the map's voxels the solid is used.
 IsInside insideOf(const scenes::ScenePart& part, double volume_m3) {
-  constexpr double kVoxelsAcross =
-      250;  // about as fine as the samples of bricks, with ten bricks across a part
+  // About as fine as the samples of bricks, with ten bricks across a part.
+  constexpr double kVoxelsAcross = 250;
   constexpr double kVoxelsInWall = 3;
   if (part.model && part.model->map && !part.is_cropped)
     return [map = part.model->map](const Vec3& p_P) { return map->isInsideCoarse(p_P); };

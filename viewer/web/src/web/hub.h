@@ -95,8 +95,8 @@ class WebHub {
   std::unique_ptr<BlowSounds> sounds_;  ///< null: no browser plays sound
   std::uint64_t shots_ = 0;
   std::map<std::size_t, ShadingMesh> meshes_;
-  std::map<std::pair<std::size_t, bool>, std::shared_ptr<const std::string>>
-      files_;  ///< by part and level, fine or coarse
+  /// By part and level, fine or coarse.
+  std::map<std::pair<std::size_t, bool>, std::shared_ptr<const std::string>> files_;
 };
 
 }  // namespace vps::viewer

@@ -33,15 +33,15 @@ struct Session {
   const WindowOptions& options;
   Timeline line;  ///< snapshots of the tour or of the recording
   bool is_recording = false;
-  FollowedSession* followed =
-      nullptr;  ///< session of vps render that the window shows; null: it shows no session
+  /// Session of vps render that the window shows; null: it shows no session.
+  FollowedSession* followed = nullptr;
   RenderScene drawn;
   ModelView models;  ///< owns the meshes of contact models in `drawn`, if these are shown
   ViewState view;
   PictureArea area;   ///< the picture in the window
   PictureArea focus;  ///< picture of `view.camera`: `area`, or if there are tiles, the tile under the cursor
-  std::vector<PictureTile>
-      tiles;  ///< pictures of a display file or of Spectral stereo, in `area`; empty: one picture
+  /// Pictures of a display file or of Spectral stereo, in `area`; empty: one picture.
+  std::vector<PictureTile> tiles;
   std::vector<std::string> tile_names;  ///< by tile; empty: tiles have no names
   std::size_t tile = 0;                 ///< index of the tile that is `focus`
   scenes::Snapshot shown;               ///< snapshot before the exploded view moves parts

@@ -20,11 +20,10 @@ struct TapPlan {
   double reach_m = 0.1;         ///< greatest distance along d_D at which contact is sought
   double speed_m_s = 0.05;      ///< assumed: the speed of a person's tap
   double press_N = 2;           ///< force on the hand that ends a tap
-  double hold_s =
-      0.1;  ///< contact time of a tap, longer than a slow picture takes, so that a picture shows it
-  double least_s = 0.1,
-         most_s =
-             0.2;  ///< bounds of the random pause between taps, so that they do not follow another period
+  /// Contact time of a tap, longer than a slow picture takes, so that a picture shows it.
+  double hold_s = 0.1;
+  /// Bounds of the random pause between taps, so that they do not follow another period.
+  double least_s = 0.1, most_s = 0.2;
 };
 
 /// Times of one tick of the device, by device::monotonicSeconds(), and the force written.

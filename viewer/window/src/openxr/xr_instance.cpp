@@ -10,8 +10,8 @@ XrConnection::XrConnection() {
   setenv("XR_LOADER_DEBUG", "none", 0);  // whyNot() reports errors, so the loader need not print them
   static constexpr const char* kOpenGl[] = {XR_KHR_OPENGL_ENABLE_EXTENSION_NAME};
   auto wanted = xrStruct<XrInstanceCreateInfo>(XR_TYPE_INSTANCE_CREATE_INFO);
-  wanted.applicationInfo.apiVersion =
-      XR_MAKE_VERSION(1, 0, 0);  // old runtimes refuse a newer version, which is not needed
+  // Old runtimes refuse a newer version, which is not needed.
+  wanted.applicationInfo.apiVersion = XR_MAKE_VERSION(1, 0, 0);
   wanted.enabledExtensionCount = 1;
   wanted.enabledExtensionNames = kOpenGl;
   std::snprintf(static_cast<char*>(wanted.applicationInfo.applicationName), XR_MAX_APPLICATION_NAME_SIZE,

@@ -22,11 +22,11 @@ struct PictureRequest {
   Camera camera;
   DrawOptions options;
   StereoMode stereo = StereoMode::Mono;
-  std::optional<EyePair>
-      eyes;  ///< used in place of `camera`; without stereo the picture is seen from the middle between them
+  /// Used in place of `camera`; without stereo the picture is seen from the middle between them.
+  std::optional<EyePair> eyes;
   ScreenRows rows;  ///< for an interleaved picture
-  std::vector<PictureTile>
-      tiles;  ///< drawn on black in place of `camera` and `eyes`; empty: one whole picture
+  /// Drawn on black in place of `camera` and `eyes`; empty: one whole picture.
+  std::vector<PictureTile> tiles;
 };
 /// Whether both requests give the same picture.
 [[nodiscard]] VPS_VIEWER_API bool isSame(const PictureRequest& a, const PictureRequest& b);

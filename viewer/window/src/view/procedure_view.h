@@ -18,8 +18,8 @@ namespace vps::viewer {
                                                        double share, double size_m);
 
 struct PlannedPath {
-  std::vector<Vec3>
-      points_W;  ///< path of the part's centre of mass: start, way points, target; empty: no step
+  /// Path of the part's centre of mass: start, way points, target; empty: no step.
+  std::vector<Vec3> points_W;
   Vec3 axis_W = Vec3::Zero();  ///< direction of the last leg, a unit vector; zero if the leg has no length
 };
 

@@ -19,8 +19,8 @@ struct Chapter {
   std::string name;
   double start_s = 0;
   std::string verdict;  ///< as text; empty: not known
-  std::string reason =
-      {};  ///< the judge's reason for the verdict; empty: the part fits, or the reason is unknown
+  /// The judge's reason for the verdict; empty: the part fits, or the reason is unknown.
+  std::string reason = {};
 };
 
 /// A quantity at the times Timeline::time_s; NaN where it is not known.
