@@ -184,12 +184,13 @@ TEST_P(RestWithSolver, SticksBelowTheFrictionAngleAndSlidesAbove) {
     }
 }
 
-// The slope is between the angles of kinetic and of static friction: what rests stays, what slides goes on.
+// The slope is between the angles of kinetic and of static friction: a box at rest stays, and a sliding box
+// continues to slide. A step without friction adds 3 mm/s at most, which must not count as sliding.
 TEST_P(RestWithSolver, AFrictionModelGivesTheCoefficientAtRestAndWhileSliding) {
   constexpr double kMu = 0.3, kKinetic = 0.8 * kMu, kSpeed_m_s = 0.1;
   bullet::Settings settings;
   settings.friction_model = {"static and kinetic",
-                             [](double mu, double slip_m_s) { return slip_m_s > 1e-3 ? 0.8 * mu : mu; }};
+                             [](double mu, double slip_m_s) { return slip_m_s > 1e-2 ? 0.8 * mu : mu; }};
   const double angle_rad = std::atan(0.9 * kMu);
   const Mat3 R = rotationFromVector(Vec3(0, angle_rad, 0));
   const Vec3 down = R * Vec3(1, 0, 0);
