@@ -17,6 +17,7 @@ using vps::bullet::toBt;
 namespace {
 
 void run(const char* file, const char* unit) {
+  // Reads the file. The first part of it becomes the body.
   vps::scenes::ImportSettings reading;
   reading.unit_m = vps::scenes::unitFromText(unit);  // STL, OBJ and PLY do not state it
   const vps::scenes::ImportedPart part = vps::scenes::importCad(file, reading).parts.at(0);
@@ -26,6 +27,7 @@ void run(const char* file, const char* unit) {
       vps::Pose::translation({0, 0, 1e-3 - vps::bounds(part.mesh).min.z()});  // 1 mm above the plane
   const vps::bullet::Body body = vps::bullet::makeBody(part.mesh, settings);
 
+  // An ordinary Bullet world with VPS contact, and a plane as the ground.
   btDefaultCollisionConfiguration config;
   btCollisionDispatcher dispatcher(&config);
   btDbvtBroadphase broadphase;
@@ -38,6 +40,7 @@ void run(const char* file, const char* unit) {
   world.addRigidBody(&ground);
   world.addRigidBody(body.rigid.get());
   vps::bullet::tuneWorld(world);
+  // Half a second in steps of one millisecond; then the lowest point of the mesh lies on the plane.
   for (int i = 0; i < 500; ++i) world.stepSimulation(toBt(1e-3), 0);
   const double lowest_m = vps::bounds(vps::transformed(part.mesh, body.X_WP())).min.z();
   std::printf("%s of %.1f g lies %.3f um above the plane\n", part.name.c_str(), 1e3 * body.frame.mass_kg,

@@ -40,6 +40,7 @@ double forceOn(const btCollisionObject& body, btCollisionDispatcher& dispatcher,
 }  // namespace
 
 int main() {
+  // An ordinary Bullet world, and VPS contact in its dispatcher.
   btDefaultCollisionConfiguration config;
   btCollisionDispatcher dispatcher(&config);
   btDbvtBroadphase broadphase;
@@ -47,9 +48,11 @@ int main() {
   btDiscreteDynamicsWorld world(&dispatcher, &broadphase, &solver, &config);
   world.setGravity(btVector3(0, 0, toBt(-9.81)));
   vps::bullet::install(dispatcher);
+  // Bullet calls these functions once for each pair of bodies: when contact starts, and when it ends.
   gContactStartedCallback = onStarted;
   gContactEndedCallback = onEnded;
 
+  // A steel ring, 0.5 mm above a plane. Bullet's parameters are then set for small parts.
   vps::bullet::BodySettings settings;
   settings.X_WP = vps::Pose::translation({0, 0, 0.0055});
   const vps::bullet::Body ring = vps::bullet::makeBody(vps::makeTube(0.012, 0.006, 0.01, 64), settings);
@@ -59,13 +62,16 @@ int main() {
   world.addRigidBody(ring.rigid.get());
   vps::bullet::tuneWorld(world);
 
+  // The ring falls and comes to rest in 0.3 s: the plane then carries its weight.
   for (int i = 0; i < 300; ++i) world.stepSimulation(toBt(1e-3), 0);
   const double force_N = forceOn(*ring.rigid, dispatcher, 1e-3), weight_N = 9.81 * ring.frame.mass_kg;
   std::printf("the plane carries %.4f N of %.4f N\n", force_N, weight_N);
+  // A push upwards ends the contact. A body may sleep, so it is activated first.
   ring.rigid->activate();
   ring.rigid->setLinearVelocity(btVector3(0, 0, 1));
   for (int i = 0; i < 50; ++i) world.stepSimulation(toBt(1e-3), 0);
 
+  // Bodies leave the world before they are destroyed. The callbacks are global, so they are reset.
   world.removeRigidBody(ring.rigid.get());
   world.removeRigidBody(&ground);
   gContactStartedCallback = nullptr;

@@ -22,6 +22,7 @@ void fill(btTriangleMesh& triangles) {
 }  // namespace
 
 int main() {
+  // The part's triangles, and an ordinary Bullet world.
   btTriangleMesh triangles;
   fill(triangles);
   btDefaultCollisionConfiguration config;
@@ -33,21 +34,24 @@ int main() {
 
   // Was: btGImpactCollisionAlgorithm::registerAlgorithm(&dispatcher);
   vps::bullet::install(dispatcher);
-  // Was: btGImpactMeshShape shape(&triangles); shape.updateBound(); shape.calculateLocalInertia(mass,
-  // inertia);
+  // Was: btGImpactMeshShape shape(&triangles);
+  //      shape.updateBound();
+  //      shape.calculateLocalInertia(mass, inertia);
   //      btRigidBody ring(mass, &motion, &shape, inertia);
+  // Now one call makes shape, mass, inertia and body.
   vps::bullet::BodySettings settings;
   settings.X_WP = vps::Pose::translation({0, 0, 0.045});
   const vps::bullet::Body ring = vps::bullet::makeBody(triangles, settings);
   world.addRigidBody(ring.rigid.get());
 
+  // A peg of 10 mm diameter on the ground, both of Bullet's own shapes; nothing changes for them.
   btCylinderShapeZ peg_shape(btVector3(toBt(0.005), toBt(0.005), toBt(0.02)));
   btStaticPlaneShape ground_shape(btVector3(0, 0, 1), 0);
   btRigidBody peg(0, nullptr, &peg_shape), ground(0, nullptr, &ground_shape);
   peg.setWorldTransform(toBt(vps::Pose::translation({0, 0, 0.02})));
   world.addRigidBody(&peg);
   world.addRigidBody(&ground);
-  vps::bullet::tuneWorld(world);
+  vps::bullet::tuneWorld(world);  // Bullet's parameters for parts of millimetres and grams
   for (int i = 0; i < 1000; ++i) world.stepSimulation(toBt(1e-3), 0);
 
   const double z_m = ring.X_WP().p.z();

@@ -17,6 +17,7 @@
 using vps::bullet::toBt;
 
 int main() {
+  // A Bullet world for multibodies, with VPS contact in its dispatcher.
   btDefaultCollisionConfiguration config;
   btCollisionDispatcher dispatcher(&config);
   btDbvtBroadphase broadphase;
@@ -49,6 +50,7 @@ int main() {
                     toBt(vps::Vec3(R_BP * vps::Vec3(0.1, 0, 0))), true);
   arm.finalizeMultiDof();
   world.addMultiBody(&arm);
+  // The collider gives the second link the ring's shape.
   btMultiBodyLinkCollider collider(&arm, 1);
   collider.setCollisionShape(ring.shape.get());
   arm.getLink(1).m_collider = &collider;
@@ -60,6 +62,7 @@ int main() {
   arm.updateCollisionObjectWorldTransforms(turns, origins);
   vps::bullet::tuneWorld(world);
 
+  // The slide moves down, and the hinge turns to its target.
   btMultiBodyJointMotor slide(&arm, 0, toBt(-0.05), toBt(5e-3));  // down at 50 mm/s, with 5 N at most
   btMultiBodyJointMotor hinge(&arm, 1, 0, toBt(1e-3));
   hinge.setPositionTarget(0, toBt(0.02));

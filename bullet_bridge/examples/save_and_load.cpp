@@ -30,6 +30,7 @@ struct World {
   }
 };
 
+/// A world in which a tilted ring has fallen for 20 ms, as the bytes of a .bullet file.
 std::vector<char> saved() {
   World first;
   vps::bullet::BodySettings settings;
@@ -53,6 +54,7 @@ std::vector<char> saved() {
 
 int main() {
   std::vector<char> file = saved();
+  // Loads the bytes into a second world: WorldImporter makes the parts' shapes again.
   World second;
   vps::bullet::WorldImporter importer(&second.world);  // in place of btBulletWorldImporter
   if (!importer.loadFileFromMemory(file.data(), static_cast<int>(file.size()))) return 1;
@@ -60,6 +62,7 @@ int main() {
   const btRigidBody& ring = *btRigidBody::upcast(importer.getRigidBodyByIndex(1));
   std::printf("loaded %zu bytes: %d bodies, the ring at %.3f mm", file.size(), importer.getNumRigidBodies(),
               1e3 * ring.getWorldTransform().getOrigin().z());
+  // The ring continues to fall and comes to rest on the plane.
   second.step(500);
   const double z_m = ring.getWorldTransform().getOrigin().z();
   std::printf(", later at %.3f mm: half its height\n", 1e3 * z_m);
