@@ -32,7 +32,7 @@ struct LocalPart {
   Pose X_WM;
   Pose X_PG;                      ///< the grasp frame, at the centre of mass
   double mass_kg = 0;             ///< > 0
-  Mat3 inertia_G = Mat3::Zero();  ///< about G, in G [kg m^2], positive
+  Mat3 inertia_G = Mat3::Zero();  ///< moment of inertia about G, in G [kg m^2], positive
   Vec3 gravity_W = Vec3::Zero();
   /// Contact parameters against one part of the map.
   struct Material {

@@ -124,7 +124,7 @@ struct OperatorView {
   /// The grasp frame as the hand holds it (the coupling's proxy), without delay: the sense of the own arm.
   Pose X_WG_hand;
   Twist V_WG_hand;
-  Pose X_WP;  ///< of the part; the operator samples and delays it
+  Pose X_WP;  ///< true pose of the part, which the operator samples and delays
   Twist V_WP;
   Wrench F_hand_W;  ///< wrench of the device on the hand
 };

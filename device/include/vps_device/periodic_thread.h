@@ -25,7 +25,7 @@ struct PeriodicSettings {
 struct RealTimeReport {
   bool has_priority = false;
   bool has_locked_memory = false;
-  std::vector<std::string> warnings;  ///< for the user: each refusal, and the remedy
+  std::vector<std::string> warnings;  ///< messages for the user: each refusal, with its remedy
 };
 
 /// Calls a function at absolute times on a thread of its own, with SCHED_FIFO and locked memory if requested

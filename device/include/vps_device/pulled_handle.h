@@ -14,13 +14,14 @@ namespace vps::device {
 using HandleWish = TripleBuffer<Pose>;  ///< X_DH
 
 struct PulledHandleSettings {
-  double k_N_per_m = 3000;   ///< of the spring. assumed: 3 mm for its greatest force
+  double k_N_per_m = 3000;   ///< stiffness of the spring. assumed: 3 mm for its greatest force
   double k_Nm_per_rad = 25;  ///< assumed: 2 degrees for its greatest torque
-  double b_Ns_per_m = 30;    ///< of the handle in its surroundings. assumed: 0.33 m/s at the greatest force
+  /// Damping of the handle by its surroundings. assumed: 0.33 m/s at the greatest force
+  double b_Ns_per_m = 30;
   double b_Nms_per_rad = 0.25;  ///< assumed: 4 rad/s at the greatest torque
   double force_N = 10;    ///< greatest pull. assumed: between the virtual operator's press and its limit
   double torque_Nm = 1;   ///< greatest turn of the spring. assumed: the dual arm's continuous torque
-  double rate_hz = 1000;  ///< of the loop that reads
+  double rate_hz = 1000;  ///< rate of the loop that reads the handle
 };
 
 /// The handle has no inertia. Damped by its surroundings it moves under the spring and under the force on the

@@ -13,20 +13,20 @@ namespace vps::device {
 /// Deflection of cap or sticks, in D (x towards the person, y to the right, z up); each -1 to 1.
 struct Deflection {
   Vec3 push = Vec3::Zero();
-  Vec3 turn = Vec3::Zero();    ///< about D's axes, right-handed
+  Vec3 turn = Vec3::Zero();    ///< rotation about D's axes, right-handed
   bool is_recentring = false;  ///< button: the handle returns to the middle while it is pressed
 };
 
 struct RateSettings {
-  double speed_m_s = 0.08;  ///< at full deflection. assumed: across the dual arm's workspace in 5 s
+  double speed_m_s = 0.08;  ///< speed at full deflection. assumed: across the dual arm's workspace in 5 s
   double turn_rad_s = 0.8;  ///< assumed: half a turn in 4 s
   double dead_zone = 0.1;   ///< share of full deflection that counts as none. assumed: where worn sticks rest
   double curve = 2;         ///< exponent of the deflection beyond the dead zone, for fine control. assumed
-  double recentre_m_s =
-      0.2;  ///< speed of the return to the middle. assumed: a tenth of the guard's jump limit
+  /// Speed of the return to the middle. assumed: a tenth of the guard's jump limit
+  double recentre_m_s = 0.2;
   double recentre_rad_s = 1.5;
-  Vec3 workspace_m = Vec3(0.4, 0.6, 0.4);  ///< about D's origin; as the dual arm's
-  double rate_hz = 1000;                   ///< of the loop that reads
+  Vec3 workspace_m = Vec3(0.4, 0.6, 0.4);  ///< box about D's origin, of the dual arm's size
+  double rate_hz = 1000;                   ///< rate of the loop that reads the device
 };
 
 /// Integrates deflections to a handle's pose. Deterministic: same calls, same bits. Nothing allocates.

@@ -129,8 +129,9 @@ class VPS_DEVICE_API RealTimeLoop {
   TickTiming timing_before_;
   std::array<Request, kRequests> requests_{};
   std::atomic<std::size_t> posted_{0}, handled_{0};
-  std::atomic<bool> lacks_priority_{false}, lacks_locking_{false};  ///< to be reported by the loop's thread
-  std::int64_t quiet_ticks_ = 0;                                    ///< ticks until misses are reported again
+  std::atomic<bool> lacks_priority_{false},
+      lacks_locking_{false};      ///< refusals that the loop's thread has to report
+  std::int64_t quiet_ticks_ = 0;  ///< ticks until misses are reported again
 };
 
 }  // namespace vps::device

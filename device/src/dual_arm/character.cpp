@@ -23,7 +23,7 @@ constexpr double kPi = std::numbers::pi;
 constexpr int kAcross = 9, kAlong = 13;  // places: every 50 mm of the paper's workspace
 constexpr int kTilts = 8;                // attitudes of 45 deg about axes across the handle
 constexpr double kTilt_rad = kPi / 4;
-constexpr int kDirections = 4000;  // of a sphere: 0.003 sr each
+constexpr int kDirections = 4000;  // directions of a sphere, each for 0.003 sr
 constexpr int kFarPoses = 4000;
 
 /// Collects the samples of figures, and makes each figure from its samples.

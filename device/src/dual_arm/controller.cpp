@@ -102,7 +102,8 @@ Status DualArmController::poseOf(const JointVector& joints, Pose& X_DH) const no
 
 void DualArmController::follow(const Pose& X_DH, double dt_s) noexcept {
   if (has_read_) {
-    const double gain = 1 / (settings_.arms.velocity_filter_s + dt_s);  // of a first-order filter, times dt
+    // Gain of a first-order filter, divided by dt.
+    const double gain = 1 / (settings_.arms.velocity_filter_s + dt_s);
     last_.V_DH.v += gain * (X_DH.p - last_.X_DH.p - dt_s * last_.V_DH.v);
     last_.V_DH.w += gain * (rotationVector(X_DH.R * last_.X_DH.R.transpose()) - dt_s * last_.V_DH.w);
   }

@@ -42,10 +42,10 @@ bool armInverseJacobian(const ArmJoints& joints, Mat3& J_inverse) {
 struct Configuration {
   DualArmJoints joints;
   Mat3 R_DL, R_DR;       // arm bases
-  Mat3 J_left, J_right;  // of the arms, each in its base frame
+  Mat3 J_left, J_right;  // Jacobians of the arms, each in its base frame
   Mat3 J_left_inverse, J_right_inverse;
   Mat3 J_barrel;          // angular, left, in its base frame
-  Vec3 p_HL, p_HR, p_EH;  // from H to the gimbal centres, from E to H
+  Vec3 p_HL, p_HR, p_EH;  // vectors from H to the gimbal centres, and from E to H
   Vec3 Y, z3, n;          // handle axis, barrel axis, and the direction in which the gimbal transmits torque
   double q2_rad = 0, cos_q2 = 1;
 };

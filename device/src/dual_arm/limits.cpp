@@ -16,7 +16,7 @@ constexpr double kGreatestTilt_rad = 0.5236;
 
 // Within this range the rotation midway between two rotations is unique.
 constexpr double kGreatestTurn_rad = 1.5;
-constexpr int kTurnBisections = 10;  // to 1.5 mrad
+constexpr int kTurnBisections = 10;  // gives an accuracy of 1.5 mrad
 constexpr int kCubeMiddle = 13;
 
 /// Point 0 to 26 of the grid of -1, 0 and 1 along each axis.

@@ -14,7 +14,7 @@ namespace {
 // Below these joint speeds dry friction is proportional to the speed: about 2 mm/s at the handle, slower than
 // the tremor of a hand.
 constexpr double kPlateSlip_rad_s = 2e-3, kLinkSlip_m_s = 2e-3, kRotorSlip_rad_s = 2e-2;
-constexpr int kIterations = 3;  // for friction and stops, which depend on the unknown speed
+constexpr int kIterations = 3;  // iterations for friction and stops, which depend on the unknown speed
 
 template <typename Pair>
 Eigen::Matrix<double, 6, 1> stacked(const Pair& turn, const Pair& line) {

@@ -6,8 +6,8 @@
 namespace vps::device {
 namespace {
 
-constexpr double kMargin = 0.8;        // of the passive stiffness, since the device's numbers are estimates
-constexpr double kDampingShare = 0.2;  // of the device's damping; a greater share reduces the stiffness
+constexpr double kMargin = 0.8;  // share of the passive stiffness, since the device's numbers are estimates
+constexpr double kDampingShare = 0.2;  // share of the device's damping; a greater share reduces the stiffness
 
 struct Spring {
   double k = 0, b = 0;

@@ -10,7 +10,7 @@
 namespace vps::device {
 namespace {
 
-constexpr int kRounds = 6;           // of the active-set iteration; two or three suffice
+constexpr int kRounds = 6;           // most rounds of the active-set iteration; two or three suffice
 constexpr double kCreep_m_s = 1e-3;  // above this speed friction has its full value. assumed: 10 um in 10 ms
 
 using Vec6 = Eigen::Matrix<double, 6, 1>;  // angular, then linear

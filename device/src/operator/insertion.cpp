@@ -8,9 +8,9 @@ namespace vps::device {
 namespace {
 
 constexpr int kLittleBackOffs = 3;   // afterwards the part is withdrawn to before the mouth
-constexpr double kDeeper_m = 2e-3;   // this far beyond one mouth there may be another mouth
+constexpr double kDeeper_m = 2e-3;   // distance beyond one mouth at which there may be another mouth
 constexpr double kFreeWay_m = 3e-3;  // three times the back-off distance: the part had left the first hole
-constexpr int kSearchesDeeper = 4;   // at one place, before the part is withdrawn to the first mouth
+constexpr int kSearchesDeeper = 4;   // searches at one place before the part is withdrawn to the first mouth
 
 }  // namespace
 
@@ -54,7 +54,7 @@ void Insertion::next(bool succeeded, const Feel& feel) noexcept {
 // The operator first tries straight ahead, then each search in the order of the rows, repeatedly. A search
 // that does not suit the part is replaced by the next search that does.
 OperatorStrategy Insertion::nextSearch() const noexcept {
-  std::array<OperatorStrategy, kStrategies> turns{};  // from the last turn to the first
+  std::array<OperatorStrategy, kStrategies> turns{};  // strategies in the reverse order of their turns
   std::size_t count = 0;
   OperatorStrategy suited = OperatorStrategy::None;
   for (std::size_t row = kStrategies - 1; row > 0; --row) {

@@ -14,7 +14,7 @@ constexpr double kLeastGain = 0.2;  // share of the first gain, so that old pict
 constexpr double kGiveWay_per_s = 4;
 constexpr double kNear = 4;       // distance to the target, in errors of sight
 constexpr double kGuided = 0.25;  // share of tip_m_: this deep in its hole a slender part cannot tilt freely
-constexpr double kPivots_m = 5e-3;  // this deep in a hole a slender part turns about its mouth
+constexpr double kPivots_m = 5e-3;  // depth from which a slender part in a hole turns about the hole's mouth
 constexpr double kHome_per_s = 4;   // rate of a slender part's end towards the seen hole
 
 Vec3 shortened(const Vec3& v, double limit) noexcept {

@@ -122,7 +122,7 @@ class VirtualOperator::Person {
 
   std::vector<Pose> path_;  // path of G: start, way points, target
   std::size_t next_ = 0;    // index in path_ of the segment's end
-  std::size_t goal_ = 0;    // of goal()
+  std::size_t goal_ = 0;    // index in path_ of goal()
   Segment segment_;
   Vec3 axis_W_ = Vec3::UnitZ();                         // axis of insertion
   double tip_m_ = 0;                                    // distance from G along the axis to the leading end
@@ -147,7 +147,7 @@ class VirtualOperator::Person {
   double handle_rad_ = 0;           // rotation of the handle about the axis, from the middle of its range
   double handle_goal_rad_ = 0;      // handle_rad_ at which the handle is grasped again
   Mat3 R_felt_ = Mat3::Identity();  // rotation of the hand one step ago
-  bool is_regrasping_ = false;      // in Regrasp of a screw
+  bool is_regrasping_ = false;      // the hand re-grasps a screw
   double reach_m_ = 0;              // wanted position of the hand along the axis, beyond the target
   bool is_home_ = false;
 

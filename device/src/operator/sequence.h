@@ -23,7 +23,7 @@ class Sequence {
   void begin(const Situation& situation, const Feel& feel) noexcept;
   /// Before a new task: retries() counts from 0.
   void forgetRetries() noexcept { retries_ = earlier_retries_ = 0; }
-  /// Done when the part is home. Never Failed: the operator gives up at its timeout.
+  /// Returns Done when the part is at its target. Never Failed: the operator gives up at its timeout.
   Outcome step(const Feel& feel, double dt_s) noexcept;
 
   [[nodiscard]] OperatorStrategy strategy() const noexcept { return strategy_; }

@@ -46,7 +46,7 @@ int lockMemory() {
 
 // Constant-initialised: a function's static variable might be initialised, and allocate, on the haptic
 // thread.
-constinit MonotonicClock the_monotonic_clock;  // no state
+constinit MonotonicClock the_monotonic_clock;  // the clock has no state
 
 }  // namespace
 

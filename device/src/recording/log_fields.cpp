@@ -71,7 +71,7 @@ class CdrWriter {
     if constexpr (std::is_same_v<T, Text>) {
       align(4);
       const std::size_t length = ::strnlen(x.data(), x.size());
-      w.put(static_cast<std::uint32_t>(length + 1));  // with its terminating zero
+      w.put(static_cast<std::uint32_t>(length + 1));  // the length includes the terminating zero
       w.bytes({x.data(), length});
       w.put(std::uint8_t{0});
     } else if constexpr (kIsByte<T>) {

@@ -148,8 +148,8 @@ void McapWriter::write(std::uint16_t channel, std::uint32_t sequence, std::uint6
   w.put(std::uint64_t{2 + 4 + 8 + 8 + data.size()});
   w.put(channel);
   w.put(sequence);
-  w.put(time_ns);  // logged
-  w.put(time_ns);  // published
+  w.put(time_ns);  // time of logging
+  w.put(time_ns);  // time of publishing
   w.bytes(data);
   ++counts_[channel];
   ++message_count_;
@@ -240,7 +240,7 @@ std::string McapWriter::chunkBytes(const ChunkPlace& chunk) {
     for (const std::uint64_t value : {chunk.first_ns, chunk.last_ns, chunk.at, chunk.length}) w.put(value);
     w.text(mapBytes(chunk.index_at));
     w.put(chunk.index_length);
-    w.text("");  // not compressed: both sizes are equal
+    w.text("");  // name of the compression: none, so both sizes are equal
     w.put(chunk.bytes);
     w.put(chunk.bytes);
   });

@@ -221,7 +221,7 @@ struct Recorder::Work {
   bool has_read = false, is_finished = false;
   std::atomic<bool> is_ending{false};
   std::thread thread;
-  std::uint32_t number = 0;  ///< of the next entry; dropped entries are numbered too
+  std::uint32_t number = 0;  ///< number of the next entry; dropped entries are numbered too
   std::atomic<std::uint64_t> dropped{0};
 };
 

@@ -16,7 +16,8 @@ inline constexpr const char* kAbout = "vps.run";
 inline constexpr const char* kDevice = "vps.device";
 inline constexpr const char* kEnd = "vps.end";
 inline constexpr const char* kFormat = "1";  ///< increases when an older reader would misread the file
-inline constexpr std::string_view kOldSyncTopic = "/run/meeting";  ///< of sync events, in older recordings
+/// Topic of sync events in older recordings.
+inline constexpr std::string_view kOldSyncTopic = "/run/meeting";
 
 /// visit(name, number) for each number of the limits. The structured binding names every member, so that a
 /// new member that is missing here does not compile.

@@ -164,7 +164,7 @@ std::vector<float> heardOfWheel(double speed_m_s, bool turns) {
   scene.parts.resize(2);
   scene.parts[0].part = {"plate", makeBox({1, 0.1, 5e-3}), {}, {}};
   scene.parts[0].is_fixed = true;
-  scene.parts[1].part = {"wheel", makeCylinder(0.02, 0.01, 64), {}, {}};  // about z
+  scene.parts[1].part = {"wheel", makeCylinder(0.02, 0.01, 64), {}, {}};  // the axis is z
   RunSound sound(scene);
   const Mat3 across = rotationFromVector(Vec3(std::numbers::pi / 2, 0, 0));
   for (int step = 1; step <= 300; ++step) {

@@ -73,7 +73,7 @@ struct McapContent {
   std::string profile, library;
   std::map<std::uint16_t, McapSchema> schemas;
   std::map<std::uint16_t, McapChannel> channels;
-  std::vector<McapMessage> messages;  ///< in the file's order
+  std::vector<McapMessage> messages;  ///< messages in the order of the file
   std::vector<McapAttachment> attachments;
   std::vector<McapMetadata> metadata;
   std::optional<McapDamage> damage;  ///< empty: the file is complete, and every checksum is right
@@ -99,7 +99,7 @@ class VPS_DEVICE_API McapWriter {
 
   McapWriter(Sink sink, const std::string& profile, const std::string& library);
 
-  /// Both return the id. A schema and a channel must be added before the first message that needs them.
+  /// Adds a schema or a channel and returns its id. Add both before the first message that needs them.
   std::uint16_t addSchema(const std::string& name, const std::string& encoding, const std::string& data);
   std::uint16_t addChannel(McapChannel channel);
   void addAttachment(const McapAttachment& attachment);
@@ -135,7 +135,7 @@ class VPS_DEVICE_API McapWriter {
 
   Sink sink_;
   std::uint64_t at_ = 0;
-  std::uint32_t crc_ = 0;  ///< of the data section, then of the summary
+  std::uint32_t crc_ = 0;  ///< checksum of the data section, then of the summary
   std::vector<McapSchema> schemas_;
   std::vector<McapChannel> channels_;
   std::vector<Indexed> attachments_, metadata_;

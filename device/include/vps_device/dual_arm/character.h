@@ -24,7 +24,7 @@ struct Duty {
 
 struct DualArmCharacter {
   // Workspace.
-  Vec3 workspace_m = Vec3::Zero();  ///< as the parameters state
+  Vec3 workspace_m = Vec3::Zero();  ///< workspace of the parameters
   /// Greatest box of that shape that is reached with the handle straight, as a multiple of it.
   double straight_scale = 0;
   double tilted_scale = 0;           ///< straight_scale with every tilt of up to 45 deg
@@ -33,9 +33,9 @@ struct DualArmCharacter {
   double centre_solid_angle_sr = 0;  ///< solid_angle_sr at the workspace's centre
   // Motors. "Worst": available in every direction at that place and attitude. Attitudes: straight, and 45 deg
   // tilts.
-  Duty straight_force_N, force_N;              ///< worst direction; handle straight, and all attitudes
-  Duty straight_torque_Nm, torque_Nm;          ///< worst direction; handle straight, and all attitudes
-  Duty any_force_N, any_torque_Nm;             ///< also over directions: the median is the typical value
+  Duty straight_force_N, force_N;      ///< worst direction; handle straight, and all attitudes
+  Duty straight_torque_Nm, torque_Nm;  ///< worst direction; handle straight, and all attitudes
+  Duty any_force_N, any_torque_Nm;     ///< statistics also over directions; the median is the typical value
   Duty up_N, left_up_N, right_up_N, sum_up_N;  ///< figure 5, straight
   // Mechanics.
   Extent held_stiffness_N_per_m;  ///< the hand holds the handle's direction
@@ -52,8 +52,8 @@ struct DualArmCharacter {
   // Isotropy.
   /// Greatest motor load for a force: least place over greatest place.
   double pair_isotropy = 0, arm_isotropy = 0;
-  Extent ellipsoid_isotropy;      ///< of the pair: weakest over strongest direction at a place
-  Extent arm_ellipsoid_isotropy;  ///< of one arm: weakest over strongest direction at a place
+  Extent ellipsoid_isotropy;      ///< for both arms: weakest over strongest direction at a place
+  Extent arm_ellipsoid_isotropy;  ///< for one arm: weakest over strongest direction at a place
   Extent arm_manipulability_m2;   ///< Yoshikawa's, sqrt(det J J^T) = d^2 cos t2 of one arm
   Extent pair_force_mean_N;       ///< geometric mean of the force ellipsoid's half axes, continuous
   // Between the arms' sliding links.

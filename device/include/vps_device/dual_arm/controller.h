@@ -14,9 +14,9 @@ namespace vps::device {
 
 struct DualArmControllerSettings {
   DualArmParameters arms;
-  double rate_hz = 1000;               ///< of read-write cycles
-  bool has_quantised_encoders = true;  ///< for limits()
-  bool is_rigid = false;               ///< no deflection under the handle's weight
+  double rate_hz = 1000;               ///< rate of read-write cycles
+  bool has_quantised_encoders = true;  ///< limits() states the encoders' resolution
+  bool is_rigid = false;               ///< the structure has no deflection under the handle's weight
   bool needs_calibration = false;      ///< incremental encoders: no wrench before calibrate()
 };
 

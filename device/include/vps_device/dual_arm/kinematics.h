@@ -113,7 +113,7 @@ VPS_DEVICE_API Mat3 gimbalRotation(double q1_rad, double q2_rad, double q3_rad) 
 
 /// Joints and derivatives at one pose of the handle, for motion and stops.
 struct HandleMotion {
-  JointVector joints = JointVector::Zero();  ///< in joint order
+  JointVector joints = JointVector::Zero();  ///< values in joint order
   JointMatrix J = JointMatrix::Zero();       ///< joint rates = J V, as handleJacobian
   double q2_rad = 0;                         ///< the gimbal's, which no motor moves
   Eigen::Matrix<double, 1, 6> J_q2 = Eigen::Matrix<double, 1, 6>::Zero();  ///< q2' = J_q2 V

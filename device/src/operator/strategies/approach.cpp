@@ -11,7 +11,8 @@ constexpr double kApproachNear_m = 1.5e-3;  // slow from here on, so that sight 
 constexpr double kCare = 0.6;               // share of the insertion speed, as an edge may be met at any time
 constexpr double kSlow_m_s = 3e-3;
 constexpr double kApproachTouch_s = 0.02;  // shorter than a tap, longer than a jerk of the start
-constexpr double kOvershoot = 4;           // errors of sight beyond the target: nothing stops the part
+// Nothing stops a part that is seen this many errors of sight beyond its target.
+constexpr double kOvershoot = 4;
 
 /// Hovers until the part has been seen for long enough, then moves ahead until the part touches, slowly near
 /// the target.

@@ -8,7 +8,8 @@ namespace {
 
 constexpr double kBackOffSpeed_m_s = 15e-3;
 constexpr double kBackOffLongest_s = 4;
-constexpr double kBackOffLookLongest_s = 3;  // until the end of a slender part is before its hole
+// Longest time until the end of a slender part is in front of its hole.
+constexpr double kBackOffLookLongest_s = 3;
 constexpr double kBackOffNear_m = 0.1e-3;
 
 /// Withdraws: a little within the hole, or to before its mouth, where the operator looks again.

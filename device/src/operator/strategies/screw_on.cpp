@@ -14,7 +14,7 @@ constexpr double kScrewNear_m = 0.5e-3;
 constexpr double kCaughtTurns = 1;  // the part must follow the thread after these turns
 constexpr double kCheckTurns = 0.5;
 constexpr double kStall_rad = 0.01, kStall_s = 0.5;
-constexpr double kJamShare = 0.6;  // of the hand's greatest torque
+constexpr double kJamShare = 0.6;  // share of the hand's greatest torque
 
 /// Turns the part onto the thread, and compares its advance along the axis with the pitch. Done: the part is
 /// seen at its target, or it is tight. Failed: it does not follow the thread, leans, or is stuck.

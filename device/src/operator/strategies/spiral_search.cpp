@@ -7,7 +7,7 @@
 namespace vps::device {
 namespace {
 
-constexpr double kSpiralSpeed_m_s = 2.5e-3;   // along the spiral
+constexpr double kSpiralSpeed_m_s = 2.5e-3;   // speed along the spiral
 constexpr double kTurnMost_rad_s = 12;        // near the centre: two turns a second
 constexpr double kSlenderDropped_m = 0.3e-3;  // the edge of a slender part that sways rises and falls by less
 /// Friction holds a part that is pressed on the surface, and a spring couples the hand to it. The hand feels
@@ -54,8 +54,8 @@ class SpiralSearch final : public Strategy {
   }
 
   double angle_rad_ = 0, wait_s_ = 0, level_m_ = 0;
-  Vec3 center_m_ = Vec3::Zero();  ///< of the spiral
-  Vec3 lead_m_ = Vec3::Zero();    ///< of the hand ahead of the part
+  Vec3 center_m_ = Vec3::Zero();  ///< centre of the spiral
+  Vec3 lead_m_ = Vec3::Zero();    ///< lead of the hand ahead of the part
 };
 
 }  // namespace

@@ -69,7 +69,7 @@ struct Situation {
 };
 
 // Values that several strategies share.
-inline constexpr double kInside_m = 0.5e-3;    ///< this far beyond the first touch the part is in the hole
+inline constexpr double kInside_m = 0.5e-3;    ///< a part this far beyond the first touch is in the hole
 inline constexpr double kDropped_m = 0.15e-3;  ///< a part that drops by this much has found the hole
 inline constexpr double kCreep_m_s = 10e-3;    ///< speed at which a part is lowered onto a surface
 inline constexpr double kLower_s = 2;          ///< longest time for lowering

@@ -6,12 +6,12 @@ namespace {
 
 constexpr double kLean_s = 0.4, kUpright_s = 0.6, kDrop_s = 0.3;
 constexpr double kTiltInTouch_s = 0.02;
-constexpr double kShift_m = 0.35e-3;  // of the corner into the hole: three errors of sight
-constexpr double kSlide_m = 1e-3;     // farther than the corner can be from its wall
+constexpr double kShift_m = 0.35e-3;  // shift of the corner into the hole: three errors of sight
+constexpr double kSlide_m = 1e-3;  // length of the slide, more than the distance of the corner from its wall
 constexpr double kSlide_m_s = 2.5e-3;
-constexpr double kCaught_N = 0.9;            // more than friction of the push
-constexpr double kPreload_m = 0.3e-3;        // keeps the corner at its walls while the part is turned upright
-constexpr double kTiltInDropped_m = 0.3e-3;  // deeper than the rounding of an edge
+constexpr double kCaught_N = 0.9;      // side force of a caught corner, more than the friction of the push
+constexpr double kPreload_m = 0.3e-3;  // keeps the corner at its walls while the part is turned upright
+constexpr double kTiltInDropped_m = 0.3e-3;  // depth of a drop, more than the radius of a rounded edge
 
 /// Tilts the part with one corner ahead, puts that corner into the hole, slides it against the wall and turns
 /// the part upright there. For holes with sharp edges: the search finds a hole that is farther away than the

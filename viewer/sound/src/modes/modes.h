@@ -25,7 +25,7 @@ struct VPS_VIEWER_API BodyModes {
   double mass_kg = 0;
   double surface_m2 = 0;
   std::vector<double> frequency_hz;  ///< sorted, the lowest first
-  std::vector<double> normal_rms;    ///< by mode: rms of the displacement along the surface normal
+  std::vector<double> normal_rms;    ///< rms, in each mode, of the displacement along the surface normal
   BrickGrid grid;                    ///< grid without the fillings of its bricks
   Eigen::MatrixXf nodes;             ///< mode shapes: a column per mode, three rows per node of the grid
 

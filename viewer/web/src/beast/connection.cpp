@@ -29,8 +29,8 @@ using ErrorCode = beast::error_code;
 using Request = http::request<http::empty_body>;
 using Response = http::response<http::string_body>;
 
-constexpr std::chrono::seconds kRequestLimit{20};  // for one request and its response
-constexpr std::chrono::seconds kSilenceLimit{30};  // for a WebSocket, on which pings count
+constexpr std::chrono::seconds kRequestLimit{20};  // longest time for one request and its response
+constexpr std::chrono::seconds kSilenceLimit{30};  // longest silence of a WebSocket; pings end the silence
 constexpr std::size_t kLongestHeader = 8192;
 // A browser that does not read is disconnected when this much waits to be sent.
 constexpr std::size_t kMostWaiting = 512, kMostWaitingBytes = 4U << 20U;

@@ -68,7 +68,7 @@ void dragPart(Session& session, const ImGuiIO& io) {
   const HandMotion motion = turns ? (io.KeyShift ? HandMotion::Twist : HandMotion::Turn)
                                   : (io.KeyShift ? HandMotion::Depth : HandMotion::Across);
   if (drag[0] != 0 || drag[1] != 0) session.drag.drag(session.view.camera, drag, session.focus.size, motion);
-  constexpr double kWheelStep = 0.01;  // of the scene's size
+  constexpr double kWheelStep = 0.01;  // distance per click of the wheel, as a share of the scene's size
   if (io.MouseWheel != 0)
     session.drag.pull(session.view.camera, kWheelStep * io.MouseWheel * session.box_W().size().norm());
 }

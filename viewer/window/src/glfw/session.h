@@ -42,7 +42,7 @@ struct Session {
   PictureArea focus;  ///< picture of `view.camera`: `area`, or if there are tiles, the tile under the cursor
   /// Pictures of a display file or of Spectral stereo, in `area`; empty: one picture.
   std::vector<PictureTile> tiles;
-  std::vector<std::string> tile_names;  ///< by tile; empty: tiles have no names
+  std::vector<std::string> tile_names;  ///< name of each tile; empty: tiles have no names
   std::size_t tile = 0;                 ///< index of the tile that is `focus`
   scenes::Snapshot shown;               ///< snapshot before the exploded view moves parts
   scenes::Snapshot placed;              ///< snapshot that is drawn: `shown` or its exploded view

@@ -19,7 +19,7 @@ namespace vps::viewer {
 
 namespace {
 
-constexpr double kFullBlow_Pa = 0.2;  // as for the sound of a run, see live_sound.cpp
+constexpr double kFullBlow_Pa = 0.2;  // full scale, the same as for the sound of a run in live_sound.cpp
 constexpr std::chrono::milliseconds kSoundPeriod{10};
 /// Delay from a snapshot to its sound: synthesis, the period of the writing thread, and the card's three
 /// periods. assumed from the 9 ms that `vps view --measure-latency` measures from a contact to its sample.

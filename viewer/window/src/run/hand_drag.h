@@ -15,10 +15,10 @@
 namespace vps::viewer {
 
 enum class HandMotion {
-  Across,  ///< parallel to the screen, so that the grabbed point stays under the cursor
-  Depth,   ///< along the line of sight; a drag down the screen moves towards the viewer
-  Turn,    ///< about the screen's axes, as orbit() turns the view
-  Twist,   ///< about the line of sight
+  Across,  ///< moves the part parallel to the screen, so that the grabbed point stays under the cursor
+  Depth,   ///< moves the part along the line of sight; a drag down the screen moves towards the viewer
+  Turn,    ///< turns the part about the screen's axes, as orbit() turns the view
+  Twist,   ///< turns the part about the line of sight
 };
 
 /// Converts drags of the cursor to the pose that the mouse device's handle is pulled to. The handle's axes

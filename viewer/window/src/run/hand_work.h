@@ -52,7 +52,7 @@ class VPS_VIEWER_API HandWork {
 
   const scenes::Scene* scene_;
   bool is_free_ = false;
-  std::vector<Done> done_, undone_;  ///< in the order of time
+  std::vector<Done> done_, undone_;  ///< steps in the order of time
 };
 
 /// Adds the step results of earlier runs of the same work to a run's result, and updates the verdict of the

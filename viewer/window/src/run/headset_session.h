@@ -38,7 +38,7 @@ class VPS_VIEWER_API HeadsetSession {
   void show(const scenes::Snapshot& snapshot, const DrawOptions& options);
   [[nodiscard]] std::array<HeadsetHand, 2> hands() const;
   /// Vibrates a controller for a moment.
-  /// @param share  of the greatest amplitude
+  /// @param share  strength, as a share of the greatest amplitude
   void tremble(std::size_t hand, double share);
   /// Messages for the user since the last call: the session has begun or has ended.
   [[nodiscard]] std::vector<std::string> takeMessages();

@@ -20,7 +20,7 @@ inline constexpr std::int64_t kPresentAfter_ns = 50'000'000;
 /// Keeps snapshots until they are due. Used by one thread.
 class Presentation {
  public:
-  /// @param after_ns  from the time a snapshot was taken until it is due
+  /// @param after_ns  time from when a snapshot was taken until it is due
   explicit Presentation(std::int64_t after_ns = kPresentAfter_ns) : after_ns_(after_ns) {}
 
   /// Adds a snapshot.

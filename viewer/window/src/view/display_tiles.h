@@ -33,8 +33,8 @@ struct TilePlace {
 /// A view for two eyes, and the rectangle of the picture that shows it.
 struct PictureTile {
   EyePair eyes;
-  TilePlace place;  ///< in a picture of the size in DrawOptions
-  int eye = 0;      ///< as DisplayOutput::eye
+  TilePlace place;  ///< place in a picture of the size in DrawOptions
+  int eye = 0;      ///< the same values as DisplayOutput::eye
 };
 
 /// Lays the outputs out in rows of equal cells. The number of rows is chosen so that the outputs are as large

@@ -30,7 +30,7 @@ struct Ray {
 struct PickedPlace {
   std::size_t part = 0;  ///< index into the RenderScene
   Vec3 p_W = Vec3::Zero();
-  double distance_m = 0;  ///< from the eye
+  double distance_m = 0;  ///< distance from the eye
 };
 
 /// The first visible surface on the ray: of a part that the options show, or the section's cut face. Material

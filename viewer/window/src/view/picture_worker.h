@@ -24,7 +24,7 @@ struct PictureRequest {
   StereoMode stereo = StereoMode::Mono;
   /// Used in place of `camera`; without stereo the picture is seen from the middle between them.
   std::optional<EyePair> eyes;
-  ScreenRows rows;  ///< for an interleaved picture
+  ScreenRows rows;  ///< rows of an interleaved picture
   /// Drawn on black in place of `camera` and `eyes`; empty: one whole picture.
   std::vector<PictureTile> tiles;
 };
@@ -78,7 +78,7 @@ class VPS_VIEWER_API PictureWorker {
   std::function<void()> on_done_;
   mutable std::mutex mutex_;
   std::condition_variable wake_;
-  std::optional<PictureRequest> wanted_;  ///< not drawn in full yet
+  std::optional<PictureRequest> wanted_;  ///< request that is not drawn in full yet
   std::optional<PictureRequest> last_;    ///< the newest request
   std::optional<DrawnPicture> done_;
   std::string failure_, description_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The scene on a table before the wearer of a headset.
+// Places the scene on a table in front of the wearer of a headset.
 //
 //        y up            The room's frame R is OpenXR's local space: its origin is the first position of the
 //        |               head, y is up, and -z is ahead. The scene is on a table in front of and below

@@ -18,7 +18,7 @@ namespace vps::viewer {
 struct Chapter {
   std::string name;
   double start_s = 0;
-  std::string verdict;  ///< as text; empty: not known
+  std::string verdict;  ///< text of the verdict; empty: not known
   /// The judge's reason for the verdict; empty: the part fits, or the reason is unknown.
   std::string reason = {};
 };

@@ -21,13 +21,13 @@ enum class CameraPath {
 struct VideoSettings {
   int width = 1280, height = 720;
   double frames_per_s = 25;
-  double speed = 1;          ///< of playback; 1: real time
-  std::string view = "iso";  ///< one of standardViews()
+  double speed = 1;          ///< speed of playback; 1: real time
+  std::string view = "iso";  ///< name of one of standardViews()
   CameraPath path = CameraPath::Fixed;
   /// If set, the film shows the first screen of the display file as its first viewer sees it, in the screen's
   /// size; `view` and `path` are ignored.
   std::optional<scenes::Display> display;
-  StereoMode stereo = StereoMode::Mono;  ///< not Spectral, which needs two films
+  StereoMode stereo = StereoMode::Mono;  ///< any mode but Spectral, which needs two films
   Progress progress;
 };
 
