@@ -13,11 +13,10 @@ namespace vps::bullet {
 /// most mu times the normal force. A host may define its own model.
 struct FrictionModel {
   const char* name = "";
-  /// @param mu         coefficient of both materials at rest: the product of the two bodies' friction
-  /// @param slip_m_s   speed at which the two surfaces slide on each other at the start of the step, >= 0
-  /// @return           coefficient in this step, finite and >= 0
-  /// Null means that the coefficient is mu at every speed. It is called for each contact and step, from
-  /// several threads with bullet::Dispatcher, and must not throw.
+  /// Returns the coefficient in a step, finite and >= 0. `mu` is the coefficient at rest, the product of both
+  /// bodies' friction; `slip_m_s` >= 0 is the speed at which the two surfaces slide on each other at the
+  /// start of the step. The function is called for each contact and step, from several threads with
+  /// bullet::Dispatcher, and must not throw. Null: the coefficient is mu at every speed.
   double (*coefficient)(double mu, double slip_m_s) = nullptr;
   const char* description = "";
 };
@@ -36,7 +35,7 @@ struct Settings {
   /// a message (log.h) reports once. Penalty contact has no restitution.
   ContactMethod contact_method = ContactMethod::Constraint;
   double stiffness_N_per_m3 = 1e12;  ///< stiffness per area of penalty contact; assumed: steel, 0.2 m thick
-  FrictionModel friction_model = kFrictionModels[0];
+  FrictionModel friction_model = kFrictionModels[0];  ///< Coulomb's law; kFrictionModels lists all models
   int contact_limit = 32;  ///< contacts of each pair, >= 4; the checks of a step may add 16
   /// A point is a contact if it can come within this distance during the step. With a larger value the solver
   /// gets contacts that do not act; with a smaller one points are missed that rotation and the solver's
@@ -46,8 +45,8 @@ struct Settings {
   Gradient gradient = Gradient::Continuous;
   bool use_surfaces = true;  ///< refine contacts by ShapeModels::surfaces, if a shape has them
   /// Greatest number of near points of one side of a pair, and of edge crossings, that are examined, lowest
-  /// ids first; 0: all. It bounds the time of a step, but the area of the left-out points has no contact. At
-  /// least contact_limit.
+  /// ids first; 0: all. The limit bounds the time of a step, but the area of the left-out points has no
+  /// contact. At least contact_limit.
   int candidate_limit = 0;
   /// Report (log.h), once per cause, that bodies turn farther in a step than contacts allow (turn.h).
   bool warns_of_turns = true;
