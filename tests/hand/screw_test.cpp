@@ -30,7 +30,7 @@ TEST(Screw, ANutIsTurnedBackUntilItDropsAndThenScrewedOn) {
   // pitch, and the advance through the chamfers does not follow the thread.
   EXPECT_NEAR(step.turns, 1, 0.3);
   EXPECT_NEAR(step.advance_per_turn_m, 3e-3, 0.2 * 3e-3);
-  EXPECT_GT(step.index_count, 4);  // a turn back and a turn on, in strokes of 78 degrees
+  EXPECT_GT(step.index_count, 4);  // a turn back and a turn forward, in segments of 78 degrees
   EXPECT_TRUE(step.by_contact);
 }
 

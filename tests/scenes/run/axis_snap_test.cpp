@@ -17,7 +17,7 @@
 namespace vps::scenes {
 namespace {
 
-/// A block of 20 mm, 20 mm above where it is to stand on a plate, so that nothing touches it.
+/// A block of 20 mm, held 20 mm above its place on a plate, so that it touches no other part.
 Scene blockAbove() {
   Scene scene;
   scene.file = "scene.toml";
@@ -103,8 +103,8 @@ TEST(AxisSnap, APathWithoutALastLegHasNoAxis) {
   EXPECT_FALSE(axisSnap(step, Vec3::Zero(), {}, 1, 1, 1e-3));
 }
 
-/// The hand pulls the block 4 mm off its axis; later axis snap comes on. Times are of the simulation: on a
-/// busy machine it falls behind the clock by which the hand gives up.
+/// The hand pulls the block 4 mm off its axis; later axis snap is switched on. Times are simulated: on a busy
+/// machine, simulated time falls behind real time, by which the hand gives up.
 struct Felt {
   double before_N = 0, after_N = 0, part_before_m = 0, part_after_m = 0;  ///< across the axis
   AssembleResult result;
@@ -121,7 +121,7 @@ Felt pullAside(const std::string& record, double pulled_s, double snapped_s) {
   SnapshotTap tap;
   tap.give = [&](Snapshot&& shot) {
     tap.is_wanted = true;
-    if (shot.step < 0 || !shot.has_hand || shot.time_s > 2.4) return;  // then the hand gives up
+    if (shot.step < 0 || !shot.has_hand || shot.time_s > 2.4) return;  // after that the hand gives up
     (snaps ? felt.after_N : felt.before_N) = shot.F_hand_W.f.x();
     (snaps ? felt.part_after_m : felt.part_before_m) = shot.bodies[1].X_WP.p.x();
   };
@@ -140,12 +140,13 @@ TEST(AxisSnap, IsFeltByTheHandThroughTheCoupling) {
   EXPECT_NEAR(felt.part_before_m, 4e-3, 0.1e-3);
   EXPECT_LT(std::abs(felt.before_N), 0.1);
   const AxisSnap snap = snapOfBlock();
-  // At rest the three springs in series carry one force: what the hand feels is the snap's at the part.
+  // At rest the three springs in series carry the same force: the hand feels the force of the snap spring.
   EXPECT_NEAR(felt.after_N, -snap.line.force(felt.part_after_m), 0.05);
   EXPECT_LT(felt.after_N, -1);
   EXPECT_GT(felt.after_N, -kPeak_N);
   EXPECT_LT(felt.part_after_m, felt.part_before_m - 0.3e-3);
-  // Switching it on is the program's work, not the loop's. 1 mJ: what the passivity controller leaves.
+  // Switching it on is the program's work, not the loop's. 1 mJ: the energy that the passivity controller
+  // leaves.
   EXPECT_LT(felt.result.energy.injected_J, 1e-3);
 }
 

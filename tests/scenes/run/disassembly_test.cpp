@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Maintenance runs whose answer is known by construction.
+// Disassembly runs whose answer is known by construction.
 #include "vps_scenes/run/derived_scenes.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kMm = 1e-3;
 
-/// A plate that lies on the cup, over the peg's hole, and comes from the side.
+/// A plate that covers the peg's hole in the cup and is mounted from the side.
 SceneStep lidStep(Scene& scene) {
   const PegInCup shape;
   scene.parts.push_back(scenePart("lid", makeBox({24 * kMm, 24 * kMm, 2 * kMm}),
@@ -30,7 +30,7 @@ SceneStep lidStep(Scene& scene) {
   step.X_WP_start.p.x() += 40 * kMm;
   step.way_points = {step.X_WP_target};
   step.way_points[0].p.x() += 20 * kMm;
-  step.is_held = true;  // it lies on the peg's end
+  step.is_held = true;  // the lid lies on the peg's end
   step.timeout_s = 10;
   return step;
 }
@@ -43,10 +43,10 @@ TEST(Disassembly, APegLeavesItsCupByContact) {
   EXPECT_EQ(result.verdict, Verdict::Fits) << step.reason;
   EXPECT_TRUE(step.is_taken_off);
   EXPECT_LE(step.max_penetration_m, step.penetration_limit_m);
-  // 11 mm up: a quarter of that exceeds kAway_m.
+  // The path is 11 mm long, and a quarter of that exceeds kAway_m.
   EXPECT_DOUBLE_EQ(step.tolerance_m, kAway_m);
   EXPECT_GT(result.finished.bodies[1].X_WP.p.z(), pegInCup({}).steps[0].X_WP_start.p.z() - kAway_m);
-  // Taken off it is in nobody's way, and no picture shows it in its place.
+  // After the step, the part blocks no other part, and snapshots do not show it in place.
   EXPECT_EQ(result.finished.bodies[1].role, BodyRole::Waiting);
 }
 
@@ -63,7 +63,7 @@ TEST(Disassembly, ThePartsComeOffInReverseAndAreThenInNobodysWay) {
 
 TEST(Disassembly, APegUnderALidThatIsStillThereDoesNotComeOff) {
   Scene scene = pegInCup({});
-  scene.steps.insert(scene.steps.begin(), lidStep(scene));  // so that the peg is to leave first
+  scene.steps.insert(scene.steps.begin(), lidStep(scene));  // so that the peg is taken off first
   scene.steps[1].timeout_s = 4;
   scene = disassemblyOf(std::move(scene));
   AssembleOptions options;
@@ -91,7 +91,7 @@ TEST(Disassembly, AScrewTurnsOutOfItsThreadAndLeavesAsItThenStands) {
   Scene scene = pegInCup({});
   SceneStep& step = scene.steps[0];
   step.motion = StepMotion::Screw;
-  step.pitch_m = -2 * kMm;  // left-hand; 11 mm are five turns and a half
+  step.pitch_m = -2 * kMm;  // left-hand; 11 mm are five and a half turns
   const SceneStep off = disassemblyOf(scene).steps[0];
   EXPECT_EQ(off.motion, StepMotion::Push);
   std::vector<Pose> way{off.X_WP_start};
@@ -101,7 +101,7 @@ TEST(Disassembly, AScrewTurnsOutOfItsThreadAndLeavesAsItThenStands) {
   for (std::size_t i = 1; i < way.size(); ++i) {
     const Vec3 turn = rotationVector(way[i].R * way[i - 1].R.transpose());
     EXPECT_LE(turn.norm(), 0.5 * std::numbers::pi + 1e-9);
-    // A left-hand screw that goes up turns clockwise, seen from above: against z.
+    // A left-hand screw that moves up turns clockwise seen from above, which is negative about z.
     EXPECT_NEAR(turn.z() * 2 * kMm / (2 * std::numbers::pi), -(way[i].p - way[i - 1].p).z(), 1e-12);
     turned_rad += turn.z();
   }

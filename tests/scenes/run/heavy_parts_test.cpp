@@ -36,7 +36,8 @@ Scene cubesOnPlate(const std::vector<double>& sizes_m) {
   return scene;
 }
 
-// 7.9 kg: more than twice the force of the device. Without a hoist it pulls the device out of its workspace.
+// 7.9 kg: more than twice the force of the device. Without a hoist the part pulls the device out of its
+// workspace.
 TEST(HeavyParts, AreBroughtAsLightOnesAreAndTold) {
   Scene scene = cubesOnPlate({0.1, 0.03});
   std::vector<std::string> warnings;
@@ -56,17 +57,17 @@ TEST(HeavyParts, AreBroughtAsLightOnesAreAndTold) {
       << warnings[0];
 }
 
-// What falls into its place has not been brought there.
+// A part that falls into its place has not been brought there.
 TEST(HeavyParts, APartThatFallsWhileTheDeviceFailsIsNotShown) {
   Scene scene = pegInCup({});
-  scene.coupling.max_force_N = 2000;  // the loop takes no more than 1000
+  scene.coupling.max_force_N = 2000;  // the loop accepts at most 1000
   const AssembleResult result = assemble(scene);
   EXPECT_EQ(result.verdict, Verdict::NotShown);
   EXPECT_FALSE(result.steps[0].completed);
   EXPECT_NE(result.steps[0].reason.find("the device failed"), std::string::npos) << result.steps[0].reason;
 }
 
-/// A peg of this mass that is brought into its cup in this direction.
+/// A peg of mass mass_kg that is moved into its cup in a given direction.
 Scene pegInto(const Vec3& direction, double mass_kg) {
   Scene scene = pegInCup({});
   const Pose X_turn(Quat::FromTwoVectors(-Vec3::UnitZ(), direction.normalized()).toRotationMatrix(),
@@ -75,8 +76,8 @@ Scene pegInto(const Vec3& direction, double mass_kg) {
   SceneStep& step = scene.steps[0];
   step.X_WP_start = X_turn * step.X_WP_start;
   step.X_WP_target = X_turn * step.X_WP_target;
-  step.is_held = true;        // at the bottom of a cup that lies, or is upside down
-  step.tolerance_m = 0.2e-3;  // its play of 0.1 mm, longer than the cup is deep
+  step.is_held = true;        // the cup may lie on its side or be upside down
+  step.tolerance_m = 0.2e-3;  // above the play of 0.1 mm, since the peg is longer than the cup is deep
   Part& peg = scene.parts[1].part;
   peg.material.density_kg_m3 = mass_kg / massProperties(peg.mesh).volume_m3;
   return scene;
@@ -127,7 +128,7 @@ class FailingHand final : public Hand {
   FailingDevice failing;
 };
 
-// As in real time: what went wrong in one step is over in the next.
+// As in real time, a fault in one step does not affect the next step.
 TEST(HeavyParts, ADeviceThatFailedIsArmedAgainForTheNextStep) {
   FailingHand hand;
   device::CouplingPort port;

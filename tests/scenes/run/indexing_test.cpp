@@ -75,8 +75,8 @@ TEST(PathSegments, APathThatFitsIsOneSegmentAroundTheMiddle) {
 }
 
 TEST(PathSegments, AStraightMetreTakesThreeSegmentsOfAtMostThirtySixCentimetres) {
-  // A segment has 0.4 m less 20 mm on each side. The last ones are filled, so the first is the remaining 0.28
-  // m.
+  // A segment has 0.4 m minus 20 mm on each side. The later segments have this length, so the first has the
+  // remaining 0.28 m.
   const Scene scene = farPin();
   const PathSegments segments = splitPath(scene, scene.steps[0], kWorkspace);
   ASSERT_EQ(segments.index_points, (std::vector<std::size_t>{0, 1}));
@@ -86,7 +86,7 @@ TEST(PathSegments, AStraightMetreTakesThreeSegmentsOfAtMostThirtySixCentimetres)
   expectWithinWorkspace(scene, scene.steps[0], segments);
 }
 
-/// Turned about z by this angle, at the target's place.
+/// Pose at the target's position, rotated about z by this angle.
 Pose turned(double turn_rad, double z_m) {
   return Pose(rotationFromVector(Vec3(0, 0, turn_rad)), Vec3(0, 0, z_m));
 }
@@ -107,7 +107,7 @@ Scene turningPin() {
 TEST(PathSegments, TwoFullTurnsAreSegmentsOfTwiceTheDevicesRangeLessItsMargin) {
   const Scene scene = turningPin();
   const PathSegments segments = splitPath(scene, scene.steps[0], kWorkspace);
-  // A segment has 2 (0.78 - 0.1) = 1.36 rad; 4 pi are nine of them and a rest.
+  // A segment has 2 (0.78 - 0.1) = 1.36 rad; 4 pi are nine of these segments and a remainder.
   EXPECT_EQ(segments.index_points.size(), 9u);
   EXPECT_NEAR(rotationVector(segments.X_DH_start.back().R).z(), -0.68, 1e-9);
   expectWithinWorkspace(scene, scene.steps[0], segments);
@@ -151,7 +151,7 @@ TEST(Indexing, APartMovesAMetreWithAWorkspaceOfFortyCentimetres) {
   EXPECT_TRUE(step.completed) << step.failure_reason;
   EXPECT_EQ(step.index_count, 2);
   EXPECT_LE(result.energy.injected_J, 1e-3);
-  // While the hand returns, the proxy stands still and the part hangs at rest on the coupling.
+  // While the hand returns, the proxy does not move and the part hangs at rest on the coupling.
   int still = 0;
   for (std::size_t i = 1; i < result.trace.size(); ++i)
     still += result.trace[i].X_W_Proxy.p == result.trace[i - 1].X_W_Proxy.p &&
@@ -174,7 +174,7 @@ TEST(Indexing, APartIsTurnedByTwoFullTurnsThroughADeviceThatTurnsByFortyFiveDegr
     farthest_rad = std::max(farthest_rad, turned_rad);
   }
   EXPECT_NEAR(turned_rad, 4 * std::numbers::pi, 0.01);
-  EXPECT_LT(farthest_rad, 4 * std::numbers::pi + 0.1);  // never turned back and again
+  EXPECT_LT(farthest_rad, 4 * std::numbers::pi + 0.1);  // the part is never turned back
 }
 
 TEST(Indexing, ATurnBeyondTheDeviceIsRefusedWithoutIndexing) {

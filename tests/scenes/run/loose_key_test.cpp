@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a loose fit lets a part lie beside its place is no error.
+// A displacement within the clearance of a loose fit is no error.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,7 +16,7 @@ namespace {
 TEST(LooseKey, IsHomeWhereverItsPocketLetsItLie) {
   PegInCup key;
   key.flats = 4;
-  key.peg_m = 6e-3;                                        // to its corners
+  key.peg_m = 6e-3;                                        // radius of the corners
   key.bore_m = key.peg_m + 0.5 * 0.2e-3 * std::sqrt(2.0);  // so that 0.2 mm are between its sides
   for (const std::uint64_t seed : {1, 2, 3, 4}) {
     Scene scene = pegInCup(key);

@@ -19,8 +19,8 @@ namespace {
 
 constexpr double kMm = 1e-3;
 
-/// A pin that is set down on a plate of 40 mm; a shelf 100 mm away that nothing comes near; a label that no
-/// step moves; a twin of the pin for the second step. The low rates keep a run below a second.
+/// A pin that is set down on a plate of 40 mm; a shelf 100 mm away, which no part approaches; a label that no
+/// step moves; a copy of the pin for the second step. The low rates keep a run below a second.
 Scene pinsOnPlate() {
   Scene scene;
   scene.file = scene.name = "pins";
@@ -164,7 +164,7 @@ TEST(ModelPlan, AReducedAssemblyEqualsTheWholeOneToTheBitWithLessMemory) {
   EXPECT_LT(reduced.modelled.field_points, all.modelled.field_points / 4);
 }
 
-// It is released 10 mm above the plate, and falls out of its region onto a plate that was not modelled.
+// The pin is released 10 mm above the plate and falls out of its region onto a plate that was not modelled.
 TEST(ModelPlan, APartThatLeavesItsRegionMeetsTheFixedPartsAroundItAsWell) {
   Scene scene = pinsOnPlate();
   scene.steps.resize(1);
@@ -175,18 +175,18 @@ TEST(ModelPlan, APartThatLeavesItsRegionMeetsTheFixedPartsAroundItAsWell) {
   const AssembleResult reduced = assembled(scene, false), all = assembled(scene, true);
   EXPECT_EQ(reduced.widened, 2);
   EXPECT_EQ(all.widened, 0);
-  // It lies on the plate: 1 mm of plate, 1 mm of pin.
+  // The pin lies on the plate; half the thickness of each is 1 mm.
   EXPECT_NEAR(reduced.trace.back().X_WP.p.z(), 2 * kMm, 10e-6);
   // The new field is another body, which may swap the bodies of the pair, so the bits differ. The limit is
   // the drift that a part at rest may have; measured 0.4 um.
   EXPECT_LE(greatestDistance(reduced, all), kRestDriftLimit_m);
   EXPECT_LE(reduced.steps[0].max_penetration_m, reduced.steps[0].penetration_limit_m);
-  // The shelf, 100 mm away, stays out: of the plate some 60 % is nearer than the pin's new region reaches.
+  // The shelf, 100 mm away, is not modelled. Some 60 % of the plate lies inside the pin's new region.
   EXPECT_EQ(reduced.modelled.voxmaps, 3u) << "plate, pin and field";
   EXPECT_LT(reduced.modelled.field_points, all.modelled.field_points);
 }
 
-// With voxels of 0.1 mm a region grows by 5.1, 10, 20 and 41 mm, and then goes everywhere.
+// With voxels of 0.1 mm a region grows by 5.1, 10, 20 and 41 mm, and is then unbounded.
 TEST(ModelPlan, APartThatFallsFarMeetsWhatIsFarBelow) {
   Scene scene = pinsOnPlate();
   scene.steps.resize(1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is modelled anew when a part leaves the region of its step.
+// Which parts are modelled again when a part leaves the region of its step.
 #include "world/placed_parts.h"
 
 #include <gtest/gtest.h>
@@ -61,7 +61,7 @@ double slid_m(Simulation& simulation, std::size_t block, double y_m) {
   return x_m;
 }
 
-// v t - mu g t^2 / 2, each step with the velocity of its end.
+// v t - mu g t^2 / 2, integrated with the velocity at the end of each step.
 double slides_m(double mu) {
   return 0.5 * 0.03 - mu * 9.81 * 1e-6 * 30 * 31 / 2;
 }

@@ -51,7 +51,7 @@ TEST(LeanInFits, ALongRingIsOffByHalfItsClearance) {
               0.02 * expected_m);
 }
 
-// 3 mm each, 30 mm from end to end.
+// Two fits of 3 mm, 30 mm from end to end.
 TEST(LeanInFits, TwoShortFitsHoldAsOneLongOne) {
   const double alone_m = leanInFits_m(shaft(), {drawn("low", ring(3e-3), {0, 0, 15e-3})});
   const double both_m = leanInFits_m(
@@ -68,7 +68,7 @@ Mesh ringOf(double hole_m, double outer_m, double length_m) {
   return test::lathe({{hole_m, 0}, {outer_m, 0}, {outer_m, length_m}, {hole_m, length_m}}, kFlats);
 }
 
-/// Along x, from its origin on.
+/// A part that lies along x, starting at its origin.
 ScenePart lying(const std::string& name, const Mesh& mesh, double x_m, bool is_fixed) {
   ScenePart part = scenePart(name, mesh, {x_m, 0, 0}, is_fixed);
   part.X_WP.R = rotationFromVector(Vec3(0, std::numbers::pi / 2, 0));
@@ -103,7 +103,7 @@ TEST(DisplacedMates, AreThoseThatWereMovedAndFit) {
   for (const ScenePart& part : scene.parts) X_WP.push_back(part.X_WP);
   const Vec3 down_m(0, 0, -50e-6);
   X_WP[1].p += down_m;
-  X_WP[0].p += Vec3(0, 1e-3, 0);  // fixed: it is where it is drawn
+  X_WP[0].p += Vec3(0, 1e-3, 0);  // the wall is fixed, so its pose does not count
   const std::vector<Vec3> by_m = displacedMates_m(scene, 1, X_WP);
   ASSERT_EQ(by_m.size(), 1U);
   EXPECT_LT((by_m[0] - down_m).norm(), 1e-9);
@@ -119,7 +119,7 @@ TEST(DisplacedMates, AShaftPassesOnNothingAlongItsAxis) {
   const std::vector<Vec3> by_m = displacedMates_m(scene, 1, X_WP);
   ASSERT_EQ(by_m.size(), 2U);
   EXPECT_LT((by_m[0] - down_m).norm(), 1e-9);
-  EXPECT_LT((by_m[1] - down_m - along_m).norm(), 1e-9);  // it may stand on the axle's shoulder
+  EXPECT_LT((by_m[1] - down_m - along_m).norm(), 1e-9);  // the collar may rest on the axle's shoulder
 }
 
 // The axle hangs 50 um low in its hole, and the collar as much lower on the axle: 100 um, the tolerance of

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Recorded runs repeat to the bit, and the scene in a recording comes back.
+// Recorded runs repeat to the bit, and the scene in a recording can be read.
 #include "vps_scenes/run/replay.h"
 
 #include <gtest/gtest.h>
@@ -70,7 +70,7 @@ TEST(Replay, TheCommittedRecordingRunsAgainBitForBit) {
   EXPECT_GT(run.reads(), 500u);
   ASSERT_EQ(replayed.result.steps.size(), 1u);
   EXPECT_TRUE(replayed.result.steps[0].completed);
-  EXPECT_GT(replayed.result.steps[0].peak_force_N, 4);  // it was pressed home
+  EXPECT_GT(replayed.result.steps[0].peak_force_N, 4);  // the peg was pressed to its target
 }
 
 TEST(Replay, ARecordedRunGivesTheSameReport) {
@@ -99,7 +99,8 @@ TEST(Replay, AChangedSceneDepartsAndTheTickIsReported) {
   // The first row of the trace follows the first physics step, in which the pin falls.
   EXPECT_EQ(replayed.departure.find("tick 1 (0.004 s): /run/trace: p_wp_m.z was "), 0u) << replayed.departure;
   EXPECT_NE(replayed.other_version.find("was recorded by vps 0.0.1"), std::string::npos);
-  EXPECT_EQ(replayed.result.haptic.count, recordedPin().result.haptic.count);  // it went on to its end
+  EXPECT_EQ(replayed.result.haptic.count,
+            recordedPin().result.haptic.count);  // the replay continued to its end
 }
 
 TEST(Replay, ACutRecordingRunsUpToTheCut) {
@@ -118,7 +119,7 @@ TEST(Replay, ACutRecordingRunsUpToTheCut) {
 TEST(Replay, ARunThatFailsBeforeItStartsLeavesNoFile) {
   const test::TemporaryFolder folder;
   Scene scene = pinOnPlate();
-  scene.steps[0].X_WP_start = Pose::translation({0, 0, 1e-3});  // 1 mm deep
+  scene.steps[0].X_WP_start = Pose::translation({0, 0, 1e-3});  // 1 mm inside the plate
   EXPECT_THROW(assembleAndRecord(scene, folder.path() / "run.mcap"), LoadError);
   EXPECT_TRUE(fs::is_empty(folder.path()));
 }
@@ -179,7 +180,7 @@ TEST(SceneArchive, EarlierVersionsAreReadWithDefaultsForLaterSettings) {
   // motion, a byte, with two numbers, and for each part two numbers, and version 6 whether the step takes its
   // part off, a byte, and the device's placement, a byte and twelve numbers. Version 7 brought the colours of
   // faces: for each part two counts, here with two colours of three floats and twelve numbers, and version 8
-  // the parts of a step, four bytes. Each stands at the end.
+  // the parts of a step, four bytes. The fields of each version follow those of the version before.
   const auto before = [&](const std::string& later, int version, std::size_t added) {
     return "vps-scene-" + std::to_string(version) + "\n" +
            later.substr(magic.size(), later.size() - magic.size() - added);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Rods that the hand holds in their middle, far from the end that has to find its hole: friction at that end
-// leans them, so that it is elsewhere than the hand takes it.
+// tilts the rods, so that the end is not where the hand assumes it.
 #include <gtest/gtest.h>
 
 #include <sstream>
@@ -16,7 +16,7 @@ namespace {
 constexpr int kFlats = 48;
 constexpr double kRadius_m = 3e-3, kBore_m = 3.03e-3;  // 30 um on each side, a tenth of the error of the aim
 constexpr double kPlate_m = 8e-3;
-constexpr double kBelow_m = 4e-3;  // of the rod's end, in its place, below the last plate
+constexpr double kBelow_m = 4e-3;  // distance of the rod's end below the last plate, at the target
 
 /// A plate from z - 8 mm to z, with a hole without a chamfer.
 ScenePart plate(const std::string& name, double z_m) {
@@ -39,7 +39,7 @@ Scene rodOver(double length_m, const std::vector<double>& plates_m, std::uint64_
   step.X_WP_start.p.z() = 2e-3;
   step.timeout_s = 60;
   step.is_held = true;  // nothing stops it in its holes
-  // Its play in the last plate, of which the far end is this much longer than the plate is thick.
+  // The rod's play in the last plate, extrapolated to the far end.
   step.tolerance_m = 2 * (kBore_m - kRadius_m) * length_m / kPlate_m;
   scene.steps.push_back(step);
   scene.fidelity.haptic_rate_hz = scene.fidelity.physics_rate_hz = 500;
@@ -76,8 +76,8 @@ TEST_P(SlenderRod, FindsItsHoleFromMostAims) {
 
 INSTANTIATE_TEST_SUITE_P(OfAllLengths, SlenderRod, testing::Values(5, 10, 20, 30, 40));
 
-// The play in the first hole lets the end be 0.3 mm off before the second one, so that finding it within a
-// minute is a matter of chance: 6 of 8 aims do, and which ones changes with any change of contact.
+// The play in the first hole allows an error of 0.3 mm at the second hole, so that finding it within a minute
+// is a matter of chance: 6 of 8 aims do, and which ones changes with any change of contact.
 TEST(RodThroughTwoPlates, FindsTheSecondHoleAsWellFromMostAims) {
   int found = 0;
   std::string words;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Smooth bumps that are smaller than the distance between points of the pointshells: a part must not be said
-// to fit where they are in each other's way.
+// Smooth bumps that are smaller than the distance between points of the pointshells: a part whose bump hits
+// another bump must not be reported as fitting.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -24,7 +24,7 @@ struct Bump {
   }
 };
 
-/// A section of a prism around z with four walls: where it cuts one of them.
+/// Section of a prism around z with four walls: the points on one wall.
 struct Cut {
   int wall = 0;
   double u_m = 0;  ///< across the wall, from its middle
@@ -62,7 +62,7 @@ Vec3 onWall(const Cut& cut, double half_m, double z) {
 constexpr double kGroove_m = 0.4e-3;
 constexpr double kHalf_m = 5e-3, kDepth_m = 12e-3, kLength_m = 16e-3, kPlay_m = 10e-6;
 
-/// A peg that stands on z = 0, with a bump on its wall.
+/// A peg upright on z = 0, with a bump on its wall.
 Mesh bumpyPeg(const Bump& bump) {
   constexpr double kChamfer_m = 0.5e-3;
   const std::vector<Cut> cuts = cutsOf(kHalf_m, bump);
@@ -102,7 +102,7 @@ Mesh bumpyHole(const Bump& bump) {
   });
 }
 
-/// The bumps meet half way down, and are past each other at the end.
+/// The bumps meet halfway down and have passed each other at the end.
 Scene bumpPastBump(double radius_m, double height_m, double across_m, double along_m) {
   const Bump pegs{across_m, 3e-3 + along_m, radius_m, height_m};
   const Bump holes{across_m, -kDepth_m + 8e-3 + along_m, radius_m, height_m};
@@ -128,8 +128,8 @@ TEST(SmallBumps, AreClosedMeshes) {
   }
 }
 
-// In each other's way by 0.29 and 0.15 mm, less 20 um by which the peg can be pushed aside. The third pair
-// passed through each other between all points, and was said to fit, before bumps had points of their own.
+// The bumps overlap by 0.29 and 0.15 mm, minus 20 um by which the peg can be pushed aside. Before bumps had
+// points of their own, the third pair passed between all points and was reported as fitting.
 TEST(SmallBumps, ThatDoNotPassEachOtherAreNotSaidToFit) {
   struct Case {
     double radius_m, height_m, across_m, along_m;
@@ -142,7 +142,7 @@ TEST(SmallBumps, ThatDoNotPassEachOtherAreNotSaidToFit) {
   }
 }
 
-// 70 um between their tops.
+// The gap between the tops of the bumps is 70 um.
 TEST(SmallBumps, ThatPassEachOtherFit) {
   Scene scene = bumpPastBump(0.5e-3, 0.17e-3, 0.2e-3, 0.1e-3);
   const AssembleResult result = assemble(scene);

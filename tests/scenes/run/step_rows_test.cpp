@@ -30,8 +30,8 @@ TEST(StepRows, AllRowsOfAShortStepAreKept) {
   EXPECT_EQ(rows.takeRows().size(), 11u);
 }
 
-// Every second one of 11 to 20 steps, every fourth one of 21 to 40, and so on: at equal distances from the
-// first one, so that between the half and the whole of `most` is kept.
+// Of 11 to 20 steps every second one is kept, of 21 to 40 every fourth one, and so on, at equal distances
+// from the first. The number of kept rows is between half of `most` and `most`.
 TEST(StepRows, OfALongStepRowsAtEqualDistancesAndTheDeepestSampleAreKept) {
   for (int count = 11; count < 500; ++count)
     for (const int deepest : {0, 1, count / 2, count - 1}) {
@@ -54,7 +54,8 @@ TEST(StepRows, OfALongStepRowsAtEqualDistancesAndTheDeepestSampleAreKept) {
     }
 }
 
-// Of a thinned step no sample follows the one before it, but both of a fast physics step are kept.
+// In a thinned step, samples do not follow each other directly, but both samples of a fast physics step are
+// kept.
 TEST(StepRows, OfALongStepTheTwoSamplesOfEachFastPhysicsStepAreKept) {
   for (int count = 11; count < 200; ++count)
     for (const int fast : {1, count / 2, count - 1}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A ring that has to pass one land of a shaft before the one that it belongs on.
+// A ring that has to pass one land of a shaft before it reaches its own land.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -47,14 +47,14 @@ Scene ringOverTwoLands(std::uint64_t seed) {
 }
 
 TEST(SteppedShaft, TakesARingOverItsFirstLandToItsSecond) {
-  // One of sixty aims is still searching, or not pressed home yet, when its time is over; after a change of
-  // rounding it is another one.
+  // With one of sixty aims, the ring is not yet pressed to its target when the time is over. Which aim this
+  // is changes with any change of rounding.
   constexpr std::uint64_t kAims = 8, kMostLate = 1;
   std::uint64_t late = 0;
   std::ostringstream said;
   for (std::uint64_t seed = 1; seed <= kAims; ++seed) {
     Scene scene = ringOverTwoLands(seed);
-    // How deep it goes into the sharp edges of the lands is not checked here.
+    // The penetration at the sharp edges of the lands is not checked here.
     const StepResult step = assemble(scene).steps[0];
     if (step.completed && step.by_contact) continue;
     said << "aim " << seed << ": " << step.reason << ": ";

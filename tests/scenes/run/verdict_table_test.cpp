@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What evidence gives which verdict, reason and exit status, one case a row, on both sides of each limit.
+// Verdict, reason and exit status for each kind of evidence: one case in each row, on both sides of each
+// limit.
 #include "vps_scenes/run/verdict.h"
 
 #include <gtest/gtest.h>

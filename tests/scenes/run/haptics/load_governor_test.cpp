@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kPeriod_s = 1e-3, kMostLate_s = 0.02;
 
-/// Six levels below the scene's own, each at half the cost of the one above.
+/// Six levels below level 0, each with half the cost of the level above.
 LoadGovernor halving() {
   return LoadGovernor(std::vector<double>(6, 2.0));
 }
@@ -24,7 +24,7 @@ struct Course {
   std::vector<int> levels;  ///< after each change
   std::vector<double> times_s;
 };
-/// Steps that are late follow at once, as those of PhysicsClock; up to 20 ms late.
+/// Like PhysicsClock: late steps follow at once, up to a delay of 20 ms.
 Course follow(LoadGovernor& governor, double seconds, const std::function<double(double)>& load,
               bool may_rise = true) {
   Course course;
@@ -58,7 +58,8 @@ TEST(LoadGovernor, OneLateStepInAWindowChangesNothingHoweverLate) {
   EXPECT_FALSE(governor.isOverloaded());
 }
 
-// One step in ten takes nine periods, the others a twentieth: 0.945 on average. Or a fifth: 1.08.
+// One step in ten takes nine periods and the others a twentieth of one, 0.945 on average; or a fifth of
+// one, 1.08 on average.
 TEST(LoadGovernor, LateStepsThatAreMadeUpForChangeNothing) {
   for (const double others : {0.05, 0.2}) {
     LoadGovernor governor = halving();
@@ -68,7 +69,7 @@ TEST(LoadGovernor, LateStepsThatAreMadeUpForChangeNothing) {
   }
 }
 
-// Steps of 1.04 periods lose 4 % of the time, of 1.1 periods 9 %.
+// Steps of 1.04 periods lose 4 % of the time, and steps of 1.1 periods lose 9 %.
 TEST(LoadGovernor, LateStepsCountByTheTimeTheyLose) {
   for (const double load : {1.04, 1.1}) {
     LoadGovernor governor = halving();
@@ -77,8 +78,8 @@ TEST(LoadGovernor, LateStepsCountByTheTimeTheyLose) {
   }
 }
 
-// 5 periods are 2.5, 1.25, 0.625 at levels 1, 2, 3. A window is 0.25 s, and its last step may end up to 5 ms
-// later, besides the 20 ms that are made up for.
+// Steps of 5 periods take 2.5, 1.25 and 0.625 periods at levels 1, 2 and 3. A window is 0.25 s. Its last step
+// may end up to 5 ms later, and 20 ms of delay are made up for.
 TEST(LoadGovernor, ALoadThatDoesNotFitGoesDownLevelByLevelAndStaysWhereItFits) {
   LoadGovernor governor = halving();
   const Course course = follow(governor, 20, [](double) { return 5.0; });
@@ -97,8 +98,8 @@ TEST(LoadGovernor, ALoadThatNoLevelCanCarryEndsAtTheLastLevelAsOverloaded) {
   EXPECT_TRUE(governor.isOverloaded());
 }
 
-// At half speed half of the time is lost. Where a fifth is lost that would be worse, where three fifths are
-// it is better. Steps of 1.25 periods lose a fifth, of 2.5 periods three fifths.
+// At half speed, half of the time is lost. That is worse than losing a fifth, and better than losing three
+// fifths. Steps of 1.25 periods lose a fifth, of 2.5 periods three fifths.
 TEST(LoadGovernor, TimeIsSlowedOnlyWhereMoreOfItIsLost) {
   for (const bool is_heavy : {false, true}) {
     LoadGovernor governor({2.0}, {}, {1, 0.5});
@@ -126,7 +127,8 @@ TEST(LoadGovernor, StallsDoNotKeepItFromGoingUp) {
   EXPECT_EQ(course.levels, (std::vector<int>{1, 0}));
 }
 
-// At level 1 these steps take 0.55 periods; at level 0 they would take 1.1, so it must stay.
+// At level 1 these steps take 0.55 periods; at level 0 they would take 1.1, so the governor must stay at
+// level 1.
 TEST(LoadGovernor, ItDoesNotGoUpWhereTheLoadWouldNotFit) {
   LoadGovernor governor = halving();
   EXPECT_EQ(follow(governor, 60, [](double) { return 1.1; }).levels, (std::vector<int>{1}));

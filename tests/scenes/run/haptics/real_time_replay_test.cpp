@@ -14,7 +14,7 @@
 namespace vps::scenes {
 namespace {
 
-/// Recorded once for all tests: it runs in real time.
+/// A run that is recorded once for all tests, since it takes real time.
 const test::Recorded& realTimeRecording() {
   static const test::Recorded recorded = [] {
     const test::TemporaryFolder folder;
@@ -61,7 +61,7 @@ TEST(RealTimeReplay, TheRecordingHoldsEachTickStepAndCommand) {
 TEST(RealTimeReplay, ATruncatedRecordingRunsUpToItsEnd) {
   for (const double share : {0.1, 0.33331, 0.5, 0.77777}) {
     device::RecordedRun cut = realTimeRecording().run;
-    for (int more = 0; more < 5; ++more) {  // also within a tick
+    for (int more = 0; more < 5; ++more) {  // cuts within a tick too
       device::RecordedRun some = cut;
       some.entries.resize(static_cast<std::size_t>(share * static_cast<double>(cut.entries.size())) +
                           static_cast<std::size_t>(more));

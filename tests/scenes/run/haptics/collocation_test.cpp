@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From touched points to the place in the room where a part in hand is drawn.
+// From touched calibration points to the position in the room at which a part in hand is drawn.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -14,7 +14,7 @@
 namespace vps::scenes {
 namespace {
 
-/// Where the device really stands: 0.8 m to the right of the room's origin, turned and a little tilted.
+/// True pose of the device: 0.8 m to the right of the room's origin, rotated and slightly tilted.
 Pose trueDevice() {
   return {rotationFromVector(Vec3(0.05, -0.1, 1.2)), Vec3(0.8, 0.3, 0.7)};
 }
@@ -61,7 +61,7 @@ Scene block() {
 /// The mouse's handle needs 1.5 s from its start to the first place, half a metre away.
 constexpr double kFirst_s = 3;
 
-/// A hand that goes to these places, a second each.
+/// A hand that moves to these places and stays for a second at each.
 std::vector<Vec3> drawnPlaces(const Display& display, const std::vector<Vec3>& p_D) {
   Scene scene = block();
   display.placeDevice(scene.device);
@@ -95,7 +95,7 @@ TEST(Collocation, ThePartInHandIsDrawnWhereTheHandIsToTheResidual) {
   ASSERT_EQ(found.status, Status::Ok);
   ASSERT_GT(found.rms_m, 0.1e-3) << "there is a residual";
   const Display display = wall(found);
-  // Around where the scene stands, in the device's own frame.
+  // Places around the scene, in the device's frame.
   const Pose X_DS = trueDevice().inverse();
   std::vector<Vec3> p_D;
   for (const Vec3& p_S : {Vec3(1, 0.2, 1.1), Vec3(1.05, 0.2, 1.15), Vec3(0.95, 0.25, 1.08)})
@@ -103,8 +103,8 @@ TEST(Collocation, ThePartInHandIsDrawnWhereTheHandIsToTheResidual) {
   const std::vector<Vec3> drawn_S = drawnPlaces(display, p_D);
   for (std::size_t i = 0; i < p_D.size(); ++i) {
     const Vec3 hand_S = trueDevice() * p_D[i];
-    // The greatest residual, twice over since these points are outside of those that were touched, and 0.1 mm
-    // of the room that coupling and mouse still give after a second.
+    // Tolerance: twice the greatest residual, since these points lie outside the touched ones, plus 0.1 mm
+    // for the error that coupling and mouse still have after a second.
     EXPECT_LT((drawn_S[i] - hand_S).norm(), 2 * found.greatest_m + 0.1e-3) << i;
   }
 }

@@ -28,7 +28,7 @@ Snapshot with(const Pose& first, const Pose& second) {
 
 TEST(PartGaps, ArePlacedWhereTheSnapshotHasTheParts) {
   const PartGaps gaps(plateAndCubes());
-  // 30 um above the plate; the other cube is 1 mm beside it.
+  // The first cube is 30 um above the plate and 1 mm from the other cube.
   const Snapshot shot =
       with(Pose::translation(Vec3(0, 0, 0.02 + 30e-6)), Pose::translation(Vec3(0.021, 0, 0.025)));
   const std::vector<PartGap> found = gaps.of(1, shot, 2e-3);
@@ -65,13 +65,13 @@ TEST(PartGaps, AreZeroWherePartsOverlapAndLeaveOutPartsThatWait) {
 
 TEST(PartGaps, TellBetweenWhichPartsAContactIs) {
   const PartGaps gaps(plateAndCubes());
-  // The first cube stands 2 um deep in the plate and 3 um deep in the second cube, which is beside it.
+  // The first cube is 2 um deep in the plate and 3 um deep in the second cube at its side.
   Snapshot shot =
       with(Pose::translation(Vec3(0, 0, 0.02 - 2e-6)), Pose::translation(Vec3(0.02 - 3e-6, 0, 0.025)));
   shot.contacts = {{Vec3(0.004, 0.002, 0.01), Vec3::UnitZ(), 2e-6, 1.5, Vec3::Zero()},
                    {Vec3(-0.004, 0.002, 0.01), Vec3::UnitZ(), 2e-6, 0.5, Vec3::Zero()},
                    {Vec3(0.01, 0.003, 0.0295), Vec3::UnitX(), 3e-6, 0.25, Vec3::Zero()},
-                   {Vec3(0.3, 0.3, 0.3), Vec3::UnitX(), 3e-6, 9, Vec3::Zero()}};  // at no part
+                   {Vec3(0.3, 0.3, 0.3), Vec3::UnitX(), 3e-6, 9, Vec3::Zero()}};  // far from every part
   const std::vector<PartTouch> touches = gaps.touches(shot);
   ASSERT_EQ(touches.size(), 2u);
   EXPECT_EQ(touches[0].a, 0u);

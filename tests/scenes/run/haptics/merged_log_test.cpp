@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The order in which a recording has what physics and a loop elsewhere log.
+// The order of entries in a recording of physics and of a loop in another process.
 #include "haptics/merged_log.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace {
 
 using device::SyncEventKind;
 
-/// What it gets, in words.
+/// A log that describes each entry in words.
 class Words final : public device::RunLog {
  public:
   void add(const device::LogEntry& entry) noexcept override {
@@ -86,8 +86,8 @@ TEST_F(MergedLogTest, ACommandFollowsTheTicksBeforeItAndPhysicsFollowsIt) {
   EXPECT_EQ(words_.text, "tick1 wrench step1 begin1 note ");
 }
 
-// A part that is handed over is grasped where the handle is then. A replay read the device where the
-// recording had the step.
+// A part that is handed over is grasped at the present pose of the handle. A replay once read the device at
+// the wrong position in the recording: at the step.
 TEST_F(MergedLogTest, WhatACommandReadsOfTheDeviceFollowsTheStepBeforeIt) {
   step(1);
   log_.waitForEvent(SyncEventKind::Begin);

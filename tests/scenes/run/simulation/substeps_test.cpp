@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Parts that turn farther in a step than it can hold: what is said of them, and steps that are divided.
+// Parts that turn in a step by more than the limit: their reports, and steps that are divided.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,8 +16,8 @@ namespace {
 
 constexpr double kMm = 1e-3, kRpm = std::numbers::pi / 30;
 
-/// Without gravity and friction: a shaft in a bore, or alone. With 5.03 mm there is room at any angle; in a
-/// bore of 5.0064 mm and 64 sides, the corners of the shaft pass the sides at 0.4 um.
+/// A shaft in a bore, or alone, without gravity and friction. A bore of 5.03 mm leaves clearance at any
+/// angle; in a bore of 5.0064 mm and 64 sides, the corners of the shaft pass the sides at 0.4 um.
 Scene shaftScene(double rpm, bool is_in_bore, double bore_m = 5.03 * kMm) {
   Scene scene;
   scene.file = scene.name = "shaft";
@@ -43,7 +43,7 @@ TEST(Substeps, APartThatTurnsTooFastIsNamedOnceWithWhatHoldsIt) {
     const std::string words = inWords(turn);
     EXPECT_NE(words.find("'shaft' turns"), std::string::npos) << words;
     EXPECT_NE(words.find("10000 rpm"), std::string::npos) << words;
-    // At the rate that it states nothing is said any more.
+    // At the rate that the report states, nothing is reported.
     Scene fine = shaftScene(10'000, is_in_bore, 5.0064 * kMm);
     fine.fidelity.physics_rate_hz = std::ceil(turn.needed_hz) + 1;
     EXPECT_TRUE(simulate(fine, 0.02).fast_turns.empty());
@@ -53,7 +53,7 @@ TEST(Substeps, APartThatTurnsTooFastIsNamedOnceWithWhatHoldsIt) {
 TEST(Substeps, AShaftWithRoomAroundItDoesNotTouchWhatItTurnsIn) {
   Scene at_3000 = shaftScene(3000, true), at_10000 = shaftScene(10'000, true);
   EXPECT_TRUE(simulate(at_3000, 0.02).fast_turns.empty());  // 0.31 rad in a step
-  const SimulateResult faster = simulate(at_10000, 0.02);   // 1.05 rad: Bullet turns it by less
+  const SimulateResult faster = simulate(at_10000, 0.02);   // 1.05 rad: Bullet turns the shaft by less
   ASSERT_EQ(faster.fast_turns.size(), 1U);
   EXPECT_FALSE(faster.fast_turns[0].is_in_contact);
 }
@@ -84,7 +84,7 @@ TEST(Substeps, AutoChangesNoBitWhereNoStepNeedsIt) {
   EXPECT_EQ(a.bodies[0].X_WP.R, b.bodies[0].X_WP.R);
 }
 
-// As many steps of a tenth of the length.
+// Ten times as many steps of a tenth of the length.
 TEST(Substeps, ANumberOfThemIsTheSameAsAHigherRate) {
   Scene divided = shaftScene(2000, true), fast = shaftScene(2000, true);
   divided.fidelity.substeps = 8;
@@ -95,8 +95,8 @@ TEST(Substeps, ANumberOfThemIsTheSameAsAHigherRate) {
   EXPECT_EQ(a.step.count * 8, b.step.count);
 }
 
-// The judge is told where bodies are after each part: between the ends of a whole step they may have been
-// anywhere.
+// The judge receives the poses after each substep, since the motion between the ends of a whole step would be
+// unknown.
 TEST(Substeps, EachPartOfAStepIsShown) {
   Scene scene = shaftScene(60'000, false);  // a whole turn in a step
   scene.fidelity.substeps = 0;
@@ -113,12 +113,12 @@ TEST(Substeps, EachPartOfAStepIsShown) {
     least_x = std::min(least_x, simulation.pose(0).R(0, 0));
   });
   EXPECT_EQ(shown, count);
-  EXPECT_GE(count, 8);  // of 0.785 rad at most
+  EXPECT_GE(count, 8);  // parts of 0.785 rad at most
   EXPECT_LT(least_x, -0.9);
   EXPECT_GT(simulation.pose(0).R(0, 0), 0.99);
 }
 
-// A cube that tips over turns fast for a moment, about the edge on which it stands.
+// A cube that tips over turns fast for a moment, about the edge that it rests on.
 TEST(Substeps, NothingIsSaidOfACubeThatTipsOver) {
   Scene scene;
   scene.file = scene.name = "cube";
@@ -137,7 +137,7 @@ TEST(Substeps, TheWorstPartIsNamedAndTheOthersAreCounted) {
   EXPECT_NE(words.find("'fast' turns"), std::string::npos) << words;
   EXPECT_NE(words.find("and 2 other parts"), std::string::npos) << words;
   EXPECT_NE(words.find("\"auto\""), std::string::npos) << words;
-  fidelity.substeps = 0;  // is set already
+  fidelity.substeps = 0;  // resolved already
   EXPECT_EQ(inWords({slow, fast}, fidelity).find("\"auto\""), std::string::npos);
   EXPECT_EQ(inWords(std::vector<FastTurn>(), fidelity), "");
 }

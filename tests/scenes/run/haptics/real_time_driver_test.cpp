@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kPeriod_s = 1e-3;
 
-/// Oscillates by itself; only the loop's thread uses it.
+/// A device that oscillates by itself; only the loop's thread uses it.
 class Swing final : public device::Device {
  public:
   device::DeviceSample read() noexcept override { return sample; }
@@ -52,7 +52,7 @@ class SwingingHand final : public Hand {
   double speed_ = 0, next_ = 0;
 };
 
-/// Repeats the samples of a log.
+/// A device that repeats the samples of a log.
 class RepeatedSamples final : public Hand, public device::Device {
  public:
   explicit RepeatedSamples(const std::vector<device::LogEntry>& entries) {
@@ -88,7 +88,7 @@ device::LoopSettings settings() {
   return s;
 }
 
-/// A run with every command that there is: hand-over, work, a new grasp on the way, release, and return.
+/// A run with every command: hand-over, work, re-grasp, release and return.
 /// @return the proxies that the physics thread used
 std::vector<Vec3> drive(HapticDriver& driver, int steps) {
   std::vector<Vec3> seen;
@@ -145,7 +145,8 @@ TEST(RealTimeDriver, ARecordedEventComesWithWhatPhysicsKnewOfTheHandThen) {
   };
   using enum device::SyncEventKind;
   using device::OperatorPhase;
-  // Two steps without a tick between them; what is logged after a tick still belongs to the step before.
+  // Two steps without a tick between them. Entries that are logged after a tick still belong to the earlier
+  // step.
   const std::vector<RecordedEvent> events =
       recordedEvents({event(Begin), phase(OperatorPhase::Reach), event(Tick), event(Step), event(Step),
                       phase(OperatorPhase::Done), event(Tick), event(Step), event(LetGo)});

@@ -33,7 +33,7 @@ Scene setDown() {
   return scene;
 }
 
-/// Without force, as a space mouse; z of the handle follows the script, tick by tick.
+/// A device without force output, like a space mouse. The handle's z follows the script, tick by tick.
 class ScriptedDevice final : public device::Device {
  public:
   explicit ScriptedDevice(std::function<double(double t_s)> z_m) : z_m_(std::move(z_m)) {}
@@ -103,7 +103,8 @@ TEST(PersonHand, ASpaceMouseWithoutADaemonIsRefusedWithTheRemedy) {
   const std::string words = refusal("space_mouse", true);
   unsetenv("SPNAV_SOCKET");
   EXPECT_NE(words.find("scene.toml: device 'space_mouse': "), std::string::npos) << words;
-  const bool has_library = words.find("libspnav-dev") == std::string::npos;  // else this build lacks it
+  const bool has_library =
+      words.find("libspnav-dev") == std::string::npos;  // otherwise this build has no such library
   EXPECT_TRUE(!has_library || words.find("start spacenavd") != std::string::npos) << words;
 }
 
@@ -118,7 +119,8 @@ TEST(PersonHand, AMouseThatIsDraggedPutsThePartDownByContact) {
   AssembleOptions options;
   options.is_real_time = true;
   options.wish = std::make_shared<device::HandleWish>();
-  // Once the clutch has closed, dragged to 1 mm below its start: 0.8 mm into the plate.
+  // After the clutch has closed, the handle is dragged to 1 mm below its start, which is 0.8 mm inside the
+  // plate.
   options.after_step = [&](double time_s) {
     if (time_s > 0.6) options.wish->write(Pose::translation({0, 0, -1e-3}));
   };

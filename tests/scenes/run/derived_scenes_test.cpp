@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Assemblies that go on from what was put down before.
+// Assemblies that continue from parts that were put down before.
 #include "vps_scenes/run/derived_scenes.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ Scene pins() {
   return scene;
 }
 
-/// The first step of two pins, and where it left its pin.
+/// The result of the first step of two pins, and the pose at which it left its pin.
 PutDown leftPin(AssembleResult* whole = nullptr) {
   Scene scene = pins();
   PutDown left{1, {}};
@@ -47,7 +47,7 @@ TEST(PutDown, AfterAStepIsTakenBackTheSameMotionGivesTheSameBits) {
   ASSERT_EQ(once.steps.size(), 1u);
   EXPECT_EQ(once.steps[0].part, "right");
   EXPECT_EQ(once.steps[0].verdict, whole.steps[1].verdict);
-  // What lies there is not touched by what comes after, to the last bit.
+  // A part that was put down keeps its pose to the bit in later steps.
   const Pose& X_WP = once.finished.bodies[1].X_WP;
   EXPECT_EQ(X_WP.p, left.X_WP.p);
   EXPECT_EQ(X_WP.R, left.X_WP.R);
@@ -84,7 +84,7 @@ TEST(PutDown, PartsThatStartAtOnePlaceAreLaidOutSideBySide) {
 TEST(PutDown, APartTakenFreelyGoesWhereTheHandGoesAndNeverEndsByItself) {
   const Scene scene = twoPins();
   std::vector<Pose> X_WP = laidOut(scene);
-  X_WP[2] = scene.steps[1].X_WP_target;  // it lies at its target, which ends no step here
+  X_WP[2] = scene.steps[1].X_WP_target;  // the part lies at its target, which does not end the step here
   Scene free = sceneOfOnePart(scene, X_WP, 2);
   EXPECT_TRUE(free.parts[1].is_fixed);
   EXPECT_FALSE(free.parts[2].is_fixed);
@@ -94,7 +94,8 @@ TEST(PutDown, APartTakenFreelyGoesWhereTheHandGoesAndNeverEndsByItself) {
   options.is_real_time = true;
   options.stop = &stop;
   options.wish = std::make_shared<device::HandleWish>();
-  // At rest for longer than ends a step of a procedure, then 1 mm up and 1 mm aside, and stopped.
+  // The handle rests for longer than the time that ends a step of a procedure, then moves 1 mm up and 1 mm
+  // sideways; then the run is stopped.
   options.after_step = [&](double time_s) {
     if (time_s > 1) options.wish->write(Pose::translation({1e-3, 0, 1e-3}));
     if (time_s > 2) stop = true;
@@ -102,7 +103,8 @@ TEST(PutDown, APartTakenFreelyGoesWhereTheHandGoesAndNeverEndsByItself) {
   const AssembleResult result = assemble(free, options);
   EXPECT_GT(result.simulated_s, 2);
   const Vec3 way_m = result.trace.back().X_WP.p - X_WP[2].p;
-  // The handle stands at its wish, and the coupling carries 63 ug: far below a micrometre.
+  // The handle is at the requested pose, and the coupling carries 63 ug, which stretches it by far less than
+  // a micrometre.
   EXPECT_LT((way_m - Vec3(1e-3, 0, 1e-3)).norm(), 20e-6) << way_m.transpose();
 }
 

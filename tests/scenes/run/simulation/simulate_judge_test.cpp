@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `simulate` with its overlap judged by exact distance, and with parts that are no ordinary solids.
+// `simulate` with its overlap judged by exact distance, and with parts that are not ordinary solids.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -52,8 +52,8 @@ TEST(SimulateJudge, ABlockThatFallsOnAPlateIsWithinTheLimit) {
   EXPECT_TRUE(judged.at_start.empty());
 }
 
-// A thousand times as heavy as the block on the plate, a block falls on it. A solution that has not converged
-// lets it press the light one through the plate.
+// A block falls on a block on the plate that has a thousandth of its mass. If the solver has not converged,
+// the heavy block presses the light one through the plate.
 TEST(SimulateJudge, AHeavyBlockDoesNotPressALightOneThroughThePlate) {
   const Mesh cube = makeBox({10 * kMm, 10 * kMm, 10 * kMm});
   Scene scene = blockOnPlate(0);
@@ -144,9 +144,9 @@ TEST(SimulateJudge, BodiesThatStartOverlappedAreSaidAndSeparatedGently) {
   EXPECT_NEAR(judged.at_start[0].start.depth_m, 0.5 * kMm, 1 * kUm);
   ASSERT_TRUE(judged.at_start[0].apart_s.has_value());
   EXPECT_GT(*judged.at_start[0].apart_s, 0.5 * kMm / 0.06);
-  // Not counted as missed by contact.
+  // The overlap does not count as missed by contact.
   EXPECT_TRUE(judged.isWithinLimit()) << judged.deepest.depth_m;
-  // The bridge separates at 0.05 m/s; a step of gravity comes on top.
+  // The bridge separates at 0.05 m/s; gravity adds the speed of one step.
   EXPECT_LT(watched.fastest_m_s, 0.05 + 0.0099);
 }
 
@@ -192,7 +192,7 @@ TEST(SimulateJudge, APlateThinnerThanAVoxelHoldsABlock) {
     Scene scene = blockOnPlate(1 * kMm, share * 0.25 * kMm);
     ASSERT_EQ(scene.fidelity.voxel_m, 0.25 * kMm);
     const Watched watched = judged(scene, 0.2);
-    // An overlap cannot be deeper than half the plate, so the pose tells, too.
+    // An overlap cannot be deeper than half the plate's thickness, so the pose is tested too.
     EXPECT_NEAR(watched.result.bodies.front().X_WP.p.z(), 3 * kMm, 10 * kUm) << share;
     EXPECT_TRUE(watched.result.overlap->isWithinLimit()) << watched.result.overlap->deepest.depth_m;
   }

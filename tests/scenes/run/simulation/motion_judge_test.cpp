@@ -47,7 +47,8 @@ TEST(MotionJudge, APassageThroughAPlateIsAsDeepAsHalfThePlateAndHasItsTime) {
   }
 }
 
-// A ball in a bore lies within the bore's hull: its triangles do not meet the bore's on the way.
+// A ball in a bore lies inside the bore's convex hull, although their triangles do not intersect during the
+// motion.
 TEST(MotionJudge, WhatFliesAlongABoreIsExcludedByItsFacets) {
   constexpr int kSides = 48;
   const Mesh bore = makeTube(10 * kMm, 5 * kMm / std::cos(M_PI / kSides) + 10 * kUm, 40 * kMm, kSides);
@@ -107,7 +108,7 @@ TEST(MotionJudge, WhatRestsIsMeasuredOnce) {
   EXPECT_LE(judge.measured(), 3U);
 }
 
-// Along a bore no direction keeps the hulls apart.
+// In a bore no direction separates the hulls.
 TEST(MotionJudge, WithoutCreditTheBoundTellsWhatMayHaveBeenMissed) {
   const Mesh tube = makeTube(10 * kMm, 5.02 * kMm, 60 * kMm, 64);
   MotionJudge judge = judgeOf(tube, kBall, Pose::translation({0, 0, -20 * kMm}));
@@ -131,8 +132,8 @@ TEST(MotionJudge, ADepthThatIsAllowedDoesNotCountUntilItIsForbiddenAgain) {
   EXPECT_NEAR(judge.deepest().depth_m, 130 * kUm, 5 * kUm);
 }
 
-// A box that lies on the floor and turns about its vertical axis by 57 degrees within a step has its
-// corners beyond those of both poses: it hits a post beside it.
+// A box on the floor turns about its vertical axis by 57 degrees in a step. During the motion its corners are
+// farther out than at both end poses, so it hits a post at its side.
 TEST(MotionJudge, ATurnWithinAStepIsFollowedAlongItsArcs) {
   const Mesh post = makeBox({2 * kMm, 2 * kMm, 20 * kMm}), bar = makeBox({40 * kMm, 4 * kMm, 4 * kMm});
   const double reach_m = std::hypot(20.0, 2.0) * kMm;
@@ -156,7 +157,7 @@ TEST(MotionJudge, AnOpenSheetIsSeenWhenItIsPassed) {
   MotionJudge judge = judgeOf(sheet, kBall, Pose::translation({3 * kMm, 7 * kMm, 20 * kMm}));
   judge.addStep(1e-3, {Pose(), Pose::translation({3 * kMm, 7 * kMm, -30 * kMm})}, 0);
   judge.search();
-  // The sheet passes the ball's middle.
+  // The sheet passes through the middle of the ball.
   EXPECT_NEAR(judge.deepest().depth_m, 5 * kMm, 0.5 * kMm);
 }
 
@@ -194,15 +195,15 @@ TEST(OverlapRecord, APassageBetweenTwoSamplesOfAStepIsFound) {
   const OverlapVerdict verdict = judgeSamples(judge, body("ball", kBall), samples, 200);
   EXPECT_NEAR(verdict.worst.depth_m, 1 * kMm, MotionJudge::toleranceOf(1 * kMm));
   EXPECT_EQ(verdict.worst.against, 0U);
-  EXPECT_LT(verdict.unsearched_m, 1.2 * kMm);  // it is as deep all along its way through the plate
+  EXPECT_LT(verdict.unsearched_m, 1.2 * kMm);  // the depth is the same along the whole path through the plate
 }
 
-/// Over the edge of a plate and down beside it, in two legs, then at rest.
+/// A path in two legs, over the edge of a plate and down along its side, with a rest at the end.
 std::vector<OverlapSample> aroundAnEdge(int rest) {
   StepRows rows(1000);
   rows.beginStep(bounds(kBall));
   const Vec3 corner(56 * kMm, 0, 7 * kMm), from(4.16 * kMm, 0, 7 * kMm), to(56 * kMm, 0, -44.84 * kMm);
-  constexpr int kLeg = 576;  // steps of 0.09 mm; the corner is amid two samples
+  constexpr int kLeg = 576;  // steps of 0.09 mm; the corner is between two samples
   for (int i = 0; i < 2 * kLeg + rest; ++i) {
     const double share = std::min(1.0, static_cast<double>(i % kLeg) / kLeg);
     const Vec3 p = i < kLeg       ? Vec3(from + share * (corner - from))
@@ -213,7 +214,8 @@ std::vector<OverlapSample> aroundAnEdge(int rest) {
   return rows.takeSamples();
 }
 
-// The chord of two samples that are 128 steps apart leads through the plate, and the way does not.
+// The straight line between two samples that are 128 steps apart leads through the plate, but the path does
+// not.
 TEST(OverlapRecord, AThinnedWayAroundAnEdgeIsFree) {
   VoxMapSettings voxels;
   voxels.voxel_m = 0.5 * kMm;
@@ -269,7 +271,8 @@ TEST(OverlapJudge, AVertexOfAFinelyMeshedBallHasItsDepth) {
   }
 }
 
-// Soft contact, so that it sinks by much more than what the solver is told at the start of a step.
+// Contact is soft, so that the body sinks in by much more than the depth that the solver sees at the start of
+// a step.
 TEST(Simulate, ReportsTheExactDepthAndBesideItThatOfTheContacts) {
   Scene scene;
   scene.file = scene.name = "sinks";
@@ -283,7 +286,7 @@ TEST(Simulate, ReportsTheExactDepthAndBesideItThatOfTheContacts) {
     lowest_m = std::min(lowest_m, bodies.front().X_WP.p.z());
   };
   const SimulateResult result = simulate(scene, 0.03, options);
-  const double depth_m = 3 * kMm - lowest_m;  // it falls flat
+  const double depth_m = 3 * kMm - lowest_m;  // the body falls flat
   ASSERT_GT(depth_m, 5 * kUm);
   EXPECT_NEAR(result.max_penetration_m, depth_m, MotionJudge::toleranceOf(depth_m));
   EXPECT_EQ(result.exact.deepest.depth_m, result.max_penetration_m);
