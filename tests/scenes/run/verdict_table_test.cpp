@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -118,7 +119,9 @@ TEST_P(VerdictTable, GivesVerdictReasonAndExitStatus) {
   EXPECT_EQ(toText(judged.verdict), std::string(toText(GetParam().verdict)));
   EXPECT_EQ(exitStatusOf(judged.verdict), GetParam().exit_status);
   EXPECT_EQ(isGood(judged.verdict), judged.reason.empty());
-  if (GetParam().reason != "?") EXPECT_EQ(judged.reason, GetParam().reason);
+  if (GetParam().reason != "?") {
+    EXPECT_EQ(judged.reason, GetParam().reason);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Rows, VerdictTable, testing::ValuesIn(cases()),
@@ -134,12 +137,10 @@ TEST(Verdicts, HaveARowEachInTheOrderOfTheEnumeration) {
 
 TEST(Verdicts, BlockedIsWorseThanNotShownAndNotShownIsWorseThanFits) {
   using enum Verdict;
-  for (const auto& [a, b, worst] : {std::array{Fits, Fits, Fits},
-                                    {Fits, NotShown, NotShown},
-                                    {Fits, Blocked, Blocked},
-                                    {NotShown, NotShown, NotShown},
-                                    {NotShown, Blocked, Blocked},
-                                    {Blocked, Blocked, Blocked}}) {
+  const std::vector<std::array<Verdict, 3>> rows{{Fits, Fits, Fits},           {Fits, NotShown, NotShown},
+                                                 {Fits, Blocked, Blocked},     {NotShown, NotShown, NotShown},
+                                                 {NotShown, Blocked, Blocked}, {Blocked, Blocked, Blocked}};
+  for (const auto& [a, b, worst] : rows) {
     EXPECT_EQ(worse(a, b), worst);
     EXPECT_EQ(worse(b, a), worst);
   }
