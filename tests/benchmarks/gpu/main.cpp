@@ -26,7 +26,7 @@
 #include <vector>
 
 #include "benchmarks/scene_parts.h"
-#include "core/wall_clock.h"
+#include "core/machine.h"
 #include "gl/egl_context.h"
 #include "vps/voxmap.h"
 
