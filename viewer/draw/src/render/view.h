@@ -7,6 +7,7 @@
 
 #include "gl/scene_buffers.h"
 #include "marks/marks.h"
+#include "vps_viewer/draw/camera.h"
 #include "vps_viewer/draw/render_scene.h"
 
 namespace vps::viewer {
