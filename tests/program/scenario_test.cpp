@@ -48,7 +48,7 @@ TEST_F(Scenario, BearingBlockGoesTogetherByContact) {
     // The step was made by contact: the part touched others on its way, and the hand felt a force at the end.
     EXPECT_GE(step["impacts"].get<int>() + step["slides"].get<int>(), 1) << part;
     EXPECT_GT(step["peak_force_N"].get<double>(), 1) << part;
-    EXPECT_LE(step["peak_force_N"].get<double>(), 30) << part;  // the device's peak, Table 1
+    EXPECT_LE(step["peak_force_N"].get<double>(), 30) << part;  // the device's peak, from its paper
   }
   EXPECT_EQ(data["contacts_left_out"].get<long>(), 0);
   EXPECT_EQ(data["physics"]["ticks"].get<long>(), data["haptic"]["ticks"].get<long>());

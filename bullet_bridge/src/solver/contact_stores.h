@@ -31,8 +31,8 @@ class PenaltyContacts {
   void add(const btPersistentManifold* manifold, PenaltyPair* pair);
   void remove(const PenaltyPair* pair);
 
-  /// Null if the manifold has no penalty points, only its own contacts. Takes no lock, since Bullet solves
-  /// after all pairs have been processed.
+  /// Null if the manifold has no penalty points, so that its own points are rigid contacts. Takes no lock,
+  /// since Bullet solves after all pairs have been processed.
   [[nodiscard]] PenaltyPair* find(const btPersistentManifold* manifold) const;
 
   /// True once a Solver has used this store.

@@ -69,7 +69,7 @@ VPS_DEVICE_API Beep beepOf(DeviceEventKind kind) noexcept;
 struct DeviceEvent {
   double time_s = 0;
   DeviceEventKind kind = DeviceEventKind::Rearmed;
-  double value = 0;  ///< the quantity in brackets in the comment of the kind
+  double value = 0;  ///< the quantity that DeviceEventKind gives in brackets for this kind
 };
 
 /// Queue from the haptic thread to one reader; neither waits. A full queue keeps the older events, which show

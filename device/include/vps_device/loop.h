@@ -137,7 +137,8 @@ class VPS_DEVICE_API HapticLoop {
   DeviceLimits limits_;
   SafetyGuard guard_;
   PhysicsState received_;
-  double spare_Ns_per_m_ = 0, spare_Nms_per_rad_ = 0;  // b - K T/2 - B, at the device
+  /// Damping of the device that the coupling leaves: b - K T/2 - B, with the period T.
+  double spare_Ns_per_m_ = 0, spare_Nms_per_rad_ = 0;
   Grasp grasp_;
   Clutch clutch_;
   bool is_holding_ = false;

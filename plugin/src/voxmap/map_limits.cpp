@@ -74,7 +74,7 @@ double estimatedBytes(double area_m2, const Vec3& size_m, double h, double band_
   const double cell_m = VoxMap::kBrick * h;
   const double bricks = area_m2 / (cell_m * cell_m) * (2 * band_voxels / VoxMap::kBrick + 1.5);
   const Vec3 cells = (size_m.array() + 2 * band_voxels * h) / cell_m + 3;
-  constexpr double kTemporary = 15;  // bytes a cell, assumed: temporary memory of building
+  constexpr double kTemporary = 15;  // assumed: bytes of temporary memory for each cell while building
   return bricks * VoxPool::kBytes + directoryBytes(cells) + cells.prod() * kTemporary;
 }
 

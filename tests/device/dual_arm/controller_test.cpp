@@ -108,7 +108,7 @@ TEST(DualArmController, ALostPeerLeavesOnlyTheHandlesWeightCarried) {
   Wrench F;
   ASSERT_EQ(handleWrench(rig.plant.settings().arms, rig.plant.pose(), rig.controller.efforts(), F),
             Status::Ok);
-  EXPECT_NEAR(F.f.z(), 9.81 * 0.2, 2e-3);  // the weight, by 1 mm of an old pose in 0.75 m
+  EXPECT_NEAR(F.f.z(), 9.81 * 0.2, 2e-3);  // the weight, at a pose that is off by 1 mm in arms of 0.75 m
   EXPECT_LT(F.f.head<2>().norm(), 5e-3);
   rig.controller.rearm();
   rig.tick(wanted);

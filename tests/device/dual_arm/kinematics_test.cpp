@@ -287,7 +287,7 @@ TEST(Handle, ArmsDoNotCollideWithTheHandleUpTo70DegreesFromStraight) {
 
 TEST(Handle, GimbalAllowsTwelveSteradiansOfDirections) {
   const DualArmParameters p;
-  EXPECT_NEAR(4 * kPi * std::sin(p.q2_max_rad), 12, 0.01);  // Table 1: about 12
+  EXPECT_NEAR(4 * kPi * std::sin(p.q2_max_rad), 12, 0.01);  // Table 1 of the paper: about 12
 }
 
 TEST(Handle, JacobianIsTheDerivativeOfTheJoints) {

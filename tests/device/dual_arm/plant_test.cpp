@@ -80,7 +80,7 @@ TEST(DualArmPlant, WithFixedMotorsTheHandleYieldsByTheStructureAlone) {
   }
   RecordProperty("softest_N_per_m", std::to_string(softest));
   RecordProperty("stiffest_N_per_m", std::to_string(stiffest));
-  // Table 1: 14 to 18 N/mm, along the axes at the workspace's centre, faces, edges and corners.
+  // Table 1 of the paper: 14 to 18 N/mm, along the axes at the workspace's centre, faces, edges and corners.
   EXPECT_GT(softest, 14000);
   EXPECT_LT(stiffest, 18000);
 }

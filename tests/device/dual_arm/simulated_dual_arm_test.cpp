@@ -51,8 +51,8 @@ TEST(SimulatedDualArm, EncodersReadWithin100MicrometresAnd5MilliradiansOverTheWo
     if (tilt_rad < 0.785) worst_straight_rad = std::max(worst_straight_rad, rad);
   }
   RecordProperty("worst_m", std::to_string(worst_m));
-  EXPECT_LE(worst_m, p.resolution_m);  // Table 1
-  EXPECT_LE(worst_rad, 0.005);         // Table 1
+  EXPECT_LE(worst_m, p.resolution_m);  // Table 1 of the paper
+  EXPECT_LE(worst_rad, 0.005);         // Table 1 of the paper
   EXPECT_LE(worst_straight_rad, p.resolution_rad);
   EXPECT_GT(worst_m, 20e-6) << "the encoders are not quantised";
 }

@@ -29,8 +29,9 @@ using Skip = std::function<bool(const Vec3&)>;
 /// Counts grid nodes around a map, up to 8 voxels away, with a wrong sign; `skip` excludes nodes.
 std::size_t wrongSigns(const VoxMap& map, const Truth& distance_m, const Skip& skip = {}) {
   const double h = map.voxel_m();
-  // Half a quantum, and the rounding of the node's own place. A node that is nearer to the surface is stored
-  // as 0, which has no side; its value must then be within this of the truth.
+  // Half a quantum of the stored distances, and the rounding of the node's coordinates. A node that is nearer
+  // to the surface is stored as 0, which has no side; its value must then differ from the truth by at most
+  // this.
   const double rounding_m = 0.51 * map.quantum_m();
   const Eigen::Array3i low = (map.bounds().min / h).array().floor().cast<int>() - 8;
   const Eigen::Array3i high = (map.bounds().max / h).array().ceil().cast<int>() + 8;

@@ -30,7 +30,8 @@ bool followsItsRule(const std::vector<Vec3>& points, const std::vector<std::uint
   return true;
 }
 
-// In the finest levels so few points wait that only their neighbours are kept there.
+// In the finest levels only few points have not joined yet, and the search grid keeps only the joined points
+// near them.
 TEST(ProgressiveOrder, FollowsItsRuleWithPointsThatAreNearlyOrExactlyTheSame) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> within(-1, 1);

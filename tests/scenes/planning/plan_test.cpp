@@ -203,8 +203,8 @@ TEST(Plan, ADovetailSlidesAlongItsGroove) {
 }
 
 // The tail rests on the groove's floor, with 0.125 mm to each wall; the walls lean by 0.5 mm per mm of
-// height. It moves in the middle of its vertical play of 0.25 mm, and is lowered at the end. If it is drawn
-// in the middle of its play, it moves straight.
+// height. The tail moves in the middle of its vertical play of 0.25 mm, and is lowered at the end. If the
+// tail is drawn in the middle of its play, it moves straight.
 TEST(Plan, ATailThatRestsInItsGrooveGoesWhereItHasMostRoom) {
   for (const double z_m : {0.0, -0.05e-3}) {
     const std::vector<DrawnPart> parts = {at("groove", dovetailGroove(), {0, 0, 0}),

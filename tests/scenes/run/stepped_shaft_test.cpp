@@ -61,8 +61,9 @@ TEST(SteppedShaft, TakesARingOverItsFirstLandToItsSecond) {
     for (const auto& span : step.strategies)
       said << span.strategy << ' ' << span.start_s << '+' << span.duration_s << "; ";
     const auto isSaid = [&](const char* words) { return step.reason.find(words) != std::string::npos; };
-    EXPECT_TRUE(isSaid("gave up after its time was over") ||
-                isSaid("its time (timeout_s) was over before the hand had pressed it to its target"))
+    EXPECT_TRUE(
+        isSaid("gave up after its time was over") ||
+        isSaid("the step's time (timeout_s) was over before the hand had pressed the part to its target"))
         << said.str();
     ++late;
   }

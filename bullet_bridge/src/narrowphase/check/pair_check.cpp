@@ -146,9 +146,9 @@ void PairCheck::findMissed(const Pose (&X_WB_end)[2], CheckRound round, std::vec
 }
 
 // Between two curved bodies a row is taken again only in the plane that it had. The plane of the next facet
-// is another contact, and rows that go from facet to facet never converge. Without rows that are taken again
-// a frictionless bolt loses 2.2 % of its acceleration; with rows of the next facet a peg does not enter a
-// bore of 10 um clearance.
+// belongs to another contact; if rows could change from facet to facet, the rounds of the solver would not
+// converge. Without rows that are taken again a frictionless bolt loses 2.2 % of its acceleration; with rows
+// of the next facet a peg does not enter a bore of 10 um clearance.
 //
 // Appends the rows of the step's contacts, taken at the end of a motion. Before the step is solved: the
 // contacts whose row depends on the time at which it is taken. After it: contacts that carry load and end the

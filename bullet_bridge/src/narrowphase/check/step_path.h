@@ -37,10 +37,10 @@ class StepPath {
   StepPath(const btCollisionObject* const (&objects)[2], const Pose (&start)[2], const Pose (&end)[2],
            double dt_s);
 
-  /// Rows are taken at the end of the step from now on, where they are the exact derivatives of the gaps. In
-  /// a far turn with other contacts that hold the body, a contact's push may open its gap by less than the
-  /// turn of the levers closes it, so that a harder push ends deeper. With exact derivatives the rounds
-  /// converge.
+  /// Rows are taken at the end of the step from now on, where they are the exact derivatives of the gaps. If
+  /// a body rotates far while other contacts hold it, a contact's push may open its gap by less than the
+  /// rotation of its lever closes it, so that the contact ends deeper after a harder push. With exact
+  /// derivatives the rounds of the solver converge.
   void settle() { is_settled_ = true; }
   [[nodiscard]] bool isSettled() const { return is_settled_; }
   /// The contact as a row of the solver, at the poses of the start and with its gap there.

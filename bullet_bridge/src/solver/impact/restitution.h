@@ -20,15 +20,17 @@
 //
 // Time of the impact. Bullet adds the kick of gravity and other forces, dt f / m, to the velocity and then
 // moves the body (symplectic Euler). Its poses lie exactly on a parabola, whose velocity there is the stored
-// one plus half a kick. The velocity at an impact at time tau of the step is the stored velocity plus (1/2
-// + tau / dt) of the kick. This velocity is reflected, and half a kick is subtracted again. The rest of the
-// step's kick, 1 - tau / dt, would only act after the displacement, which ends at the contact: contacts that
-// were hit keep their velocities in it. A body therefore bounces e^2 times as high at each impact, for any
-// step size. Bodies that rest on contacts or hang on joints do not approach by the kick, since these stop it.
+// one plus half a kick. The velocity at an impact at time tau of the step is the stored velocity plus (1/2 +
+// tau / dt) of the kick. The velocity at the impact is reflected, and half a kick is subtracted from the
+// result, which gives the velocity to store. The rest of the step's kick, 1 - tau / dt, would only act after
+// the displacement, which ends at the contact: contacts that were hit keep their velocities in it. A body
+// therefore bounces e^2 times as high at each impact, for any step size. Bodies that rest on contacts or hang
+// on joints do not approach by the kick, since these stop it.
 //
-// The additional impulses act at the end pose, on both bodies along one line. Linear and angular momentum are
-// therefore conserved to rounding, although the displacement does not match the end velocities. The line
-// moves with the body that turns more easily, so that a box that bounces off a plate is not turned by it.
+// The impulses of the restitution act at the end pose, on both bodies along one line. Linear and angular
+// momentum are therefore conserved to rounding, although the displacement does not match the end velocities.
+// The line moves with the body that turns more easily, so that a box that bounces off a plate is not turned
+// by it.
 //
 // Energy. At one pose, reflections keep the energy and settling reduces it. But the bounce happens at another
 // pose than the one before the step, a difference of the order of the step. Therefore the group's change of

@@ -220,7 +220,7 @@ bool ContactNewton::convexStep() {
   return true;
 }
 
-// Greatest change of the bodies' velocities by the missing momentum.
+// The greatest speed that a body would gain from the momentum that the equation still misses.
 double ContactNewton::imbalance_m_s() {
   scratch_.resize(u_.size());
   for (std::size_t i = 0; i < u_.size(); ++i) scratch_[i] = island_.bodies[i].effective_inverse * missing_[i];

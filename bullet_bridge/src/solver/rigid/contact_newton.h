@@ -11,11 +11,12 @@
 // (method of multipliers) and leaves no error. Rounds begin soft, where Newton's method converges well, and
 // become stiffer. Sticking and slipping need no separate cases.
 //
-// The term mu |v_t| is De Saxce's. Without it a sliding contact would separate at that speed. The term makes
-// the matrix of Newton's method unsymmetric, and the equation is not the condition of a minimum. A step, or a
-// share of it, is therefore accepted if it reduces the missing momentum. If no share does, a step of the
-// convex problem with the present value of the term is taken instead; its exact line search makes progress
-// from any point. A round that still does not converge is repeated with more compliance.
+// The term mu |v_t| is De Saxce's. Without it a sliding contact would separate at that speed. The term mu
+// |v_t| makes the matrix of Newton's method unsymmetric, and the equation is not the condition of a minimum.
+// A step, or a share of it, is therefore accepted if it reduces the momentum that the equation misses. If no
+// share does, a step of the convex problem with the present value of the term is taken instead; its exact
+// line search makes progress from any point. A round that still does not converge is repeated with more
+// compliance.
 //
 // If the term were taken from the previous round, the rounds would converge linearly only: of 47 problems of
 // ten brackets that lie on each other, 30 were solved in 60 steps, instead of 46.

@@ -21,7 +21,7 @@ namespace vps::bullet {
 
 /// A contact without which two bodies overlap at the end of the step.
 struct MissedContact {
-  btManifoldPoint* point = nullptr;  ///< a new point, or one that the solver has, with another plane; null if
+  btManifoldPoint* point = nullptr;  ///< a new point, or a point of the solver with another plane; null if
                                      ///< the manifolds are full
   const btCollisionObject* object[2] = {nullptr, nullptr};
   double end_gap_m = 0;  ///< gap at the end of the step, in the motion that was checked
@@ -41,7 +41,7 @@ struct CheckRound {
   [[nodiscard]] bool isFirst() const { return is_own && number == 0; }
   /// True if contacts that carry load although they end the step apart may get new rows, or be let go.
   [[nodiscard]] bool mayRetake() const { return is_own && number < kMostRetakes; }
-  /// True if the rounds should end soon.
+  /// True if rows are no longer taken again, so that the rounds of the solver come to an end.
   [[nodiscard]] bool isLate() const { return is_own && number >= kMostRetakes; }
 };
 

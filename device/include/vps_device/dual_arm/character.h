@@ -57,8 +57,9 @@ struct DualArmCharacter {
   Extent arm_manipulability_m2;   ///< Yoshikawa's, sqrt(det J J^T) = d^2 cos t2 of one arm
   Extent pair_force_mean_N;       ///< geometric mean of the force ellipsoid's half axes, continuous
   // Between the arms' sliding links.
-  double straight_clearance_m = 0, tilted_clearance_m = 0;  ///< least, with tilts up to 45 deg
-  double far_clearance_m = 0;  ///< least, in all directions that the joints allow; negative: the arms collide
+  double straight_clearance_m = 0, tilted_clearance_m = 0;  ///< least, with the handle tilted up to 45 deg
+  /// Least, with the handle in all directions that the joints allow; negative: the arms collide.
+  double far_clearance_m = 0;
   // Coupling.
   DeviceLimits limits_1kHz, limits_4kHz;
   CouplingGains gains_1kHz, gains_4kHz;  ///< physics at 1 kHz

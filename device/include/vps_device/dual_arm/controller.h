@@ -15,7 +15,7 @@ namespace vps::device {
 struct DualArmControllerSettings {
   DualArmParameters arms;
   double rate_hz = 1000;               ///< rate of read-write cycles
-  bool has_quantised_encoders = true;  ///< limits() states the encoders' resolution
+  bool has_quantised_encoders = true;  ///< true: limits() contains the encoders' resolution; false: 0
   bool is_rigid = false;               ///< the structure has no deflection under the handle's weight
   bool needs_calibration = false;      ///< incremental encoders: no wrench before calibrate()
 };
@@ -76,8 +76,8 @@ class VPS_DEVICE_API DualArmController final : public Device {
   unsigned long saturated_ = 0;
 };
 
-/// The device's limits at this rate, for gains and safety: least damping and dry friction over the
-/// workspace with the handle within 30 deg of straight.
+/// The device's limits at this rate, for gains and safety. Damping and dry friction are the least over the
+/// workspace, with the handle rotated by at most 30 deg from its straight direction.
 VPS_DEVICE_API DeviceLimits dualArmLimits(const DualArmParameters& parameters, double rate_hz,
                                           bool has_quantised_encoders);
 

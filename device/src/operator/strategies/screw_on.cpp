@@ -66,8 +66,8 @@ class ScrewOn final : public Strategy {
     move_.gives_way = true;
   }
 
-  /// Compares the advance along the axis since the last mark with the pitch. The first mark is a whole turn
-  /// later, when the play is taken up.
+  /// Compares the advance along the axis since the last comparison with the pitch. The first comparison is
+  /// made after a whole turn, when the play of the thread is taken up.
   [[nodiscard]] bool followsThread(const Feel& feel) noexcept {
     const double turns = turnsOn(situation_.screw) * (feel.spin_rad - mark_rad_) / (2 * std::numbers::pi);
     if (turns < (has_caught_ ? kCheckTurns : kCaughtTurns)) return true;

@@ -319,12 +319,12 @@ class Repairer {
     return true;
   }
 
-  /// Turns facets to agree within each patch, and turns patches that cracks separate to agree with each
-  /// other; the minority is turned.
+  /// Turns facets so that their orientations agree within each patch, and turns patches that cracks separate
+  /// so that they agree with each other; the minority is turned.
   void findPatches() {
     const std::size_t count = mesh().triangles.size();
     // Two facets that share an edge need not be neighbours: they may be copies of one facet, if an odd number
-    // of facets ends there.
+    // of facets ends at that edge.
     std::vector<std::array<std::uint8_t, 3>> has_copy(count, {0, 0, 0});
     forEachEdge(joined_.edges, [&](std::span<const HalfEdge> same) {
       if (same.size() > 1 && same.size() % 2 == 1)

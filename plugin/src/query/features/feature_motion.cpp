@@ -75,7 +75,7 @@ bool findFirst(Kind kind, const std::vector<Pose>& way_10, double least_m, doubl
   return false;
 }
 
-constexpr int kHalvings = 40;  // accurate to a picometre on a way of a metre
+constexpr int kHalvings = 40;  // accurate to a picometre on a path of a metre
 
 Nearest nearestAt(const Features& f, double share) {
   Vec3 at[3];

@@ -15,8 +15,9 @@ namespace {
 
 constexpr std::size_t kSuspects = 50;  ///< number of poses with the deepest contacts that are always judged
 
-/// Credit for the search between two samples, in the unit of Overlap::work. The run is over, so each search
-/// can run to its end, which takes about fifty measures of some ten units; the credit is only an upper bound.
+/// Work allowed for the search between two samples, in the unit of Overlap::work. The run is over, so each
+/// search can run to its end, which takes about fifty measurements of some ten units each; this is only an
+/// upper bound.
 constexpr double kCredit = 200e3;
 
 std::vector<MovingBody> bodiesOf(const OverlapJudge& judge, const JudgedBody& moving) {

@@ -344,7 +344,8 @@ Reach MotionSearch::reach(const Motion& motion, double most, const std::vector<N
   return backedOff(reach, motion, speed);
 }
 
-/// Moves back by the rest depth to which facets may penetrate each other.
+/// Moves the part back along its path until the facets that stopped it no longer penetrate by the rest depth,
+/// kRest_m.
 Reach MotionSearch::backedOff(Reach reach, const Motion& motion_W, double speed) const {
   const Held held = heldAt(reach.by.held);
   const Motion motion = motion_W.in(held.part->X_WP.inverse());

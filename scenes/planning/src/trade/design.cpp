@@ -114,8 +114,8 @@ std::vector<TradeSetting> tradeReferences(const Scene& scene) {
       t.fidelity.contact_method = ContactMethod::Constraint;
     });
   };
-  return {reference("reference", 0.5, 2), reference("reference, rates as they are", 0.5, 1),
-          reference("reference, 0.7 of the lengths, rates as they are", 0.7, 1)};
+  return {reference("reference", 0.5, 2), reference("reference at the scene's rates", 0.5, 1),
+          reference("reference at the scene's rates, 0.7 of its lengths", 0.7, 1)};
 }
 
 TradeSetting tradeSuggestion(const Scene& scene, const std::vector<TradeRow>& rows) {

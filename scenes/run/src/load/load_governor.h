@@ -65,7 +65,7 @@ class LoadGovernor {
   [[nodiscard]] bool isOverloaded() const noexcept;
 
  private:
-  /// Sums of a window for one cost of the steps.
+  /// Sums of the present window for steps of one cost: the measured cost, or that of the level above.
   struct Course {
     double elapsed_s = 0, lost_s = 0;
     int late = 0;

@@ -192,8 +192,8 @@ void LoadShedder::finish(double time_s) {
     change.is_done = false;
     change.why += std::string("; but the points could not be made:  ") + error.what();
   }
-  // After a failure downwards, the next level is still tried; after one upwards, this level is tried again
-  // later.
+  // If a change to a level with less load fails, the level after it can still be tried; if a change to a
+  // level with more load fails, the present level is kept and the change is tried again later.
   if (!change.is_done && change.to < change.from)
     governor_.stayAt(change.from);
   else

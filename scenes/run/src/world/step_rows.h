@@ -19,8 +19,8 @@ class StepRows {
 
   /// @param box_P  bounds of the moved part, in its frame
   void beginStep(const Box& box_P);
-  /// If a step has more than `most` physics steps, every second row is kept and the deeper one of each two
-  /// samples; later every fourth row, and so on. In addition, both samples of up to `most` fast physics steps
+  /// If a step has more than `most` physics steps, every second row and the deeper of each two samples are
+  /// kept; later every fourth row, and so on. In addition, both samples of up to `most` fast physics steps
   /// (kFast_m) are kept.
   void add(const TraceRow& row, const OverlapSample& sample);
 
@@ -40,7 +40,7 @@ class StepRows {
   std::vector<TraceRow> rows_;
   std::size_t first_row_ = 0;
   std::vector<OverlapSample> samples_;  ///< one for each row of the current step
-  std::vector<OverlapSample> fast_;     ///< in pairs, since the first thinning
+  std::vector<OverlapSample> fast_;     ///< two for each fast physics step; empty before thinning
   OverlapSample last_;
   Box box_P_;
   std::size_t stride_ = 1;  ///< number of physics steps for each row of the current step

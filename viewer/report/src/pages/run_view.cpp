@@ -205,7 +205,7 @@ RunView runView(const scenes::Scene& scene, const scenes::AssembleResult& result
   const std::string controls = textOf(folder + "examples/js/controls/OrbitControls.js");
   if (library.empty() || controls.empty())
     return {{},
-            "three.js, which turns the run in the browser, is not in " + folder + ": install libjs-three"};
+            "three.js, which draws the run in the browser, is not in " + folder + ": install libjs-three"};
   RunView view;
   view.html = kThreeNotice;
   view.html.append(kRunViewBox)

@@ -10,7 +10,8 @@ namespace vps::scenes {
 inline constexpr auto kPlannedPoseFields = std::make_tuple(
     field("position_m", &Pose::p,
           "translation of the world motion that brings the part from its target to this pose"),
-    field("rotation_xyzw", &Pose::quaternion, "rotation of the same motion"));
+    field("rotation_xyzw", &Pose::quaternion,
+          "rotation of the world motion that brings the part from its target to this pose"));
 
 inline constexpr auto kPlannedStepFields = std::make_tuple(
     field("name", &PlannedStep::name,
@@ -99,7 +100,8 @@ inline constexpr auto kPlannedContactFields = std::make_tuple(
     field("fits", &PlannedContact::fits, "kinds of fit, with the name in a standard"),
     field("blocked", &PlannedContact::blocked_W,
           "unit directions in which b stops a, out of the axes of the world, of a and of its fits"),
-    field("free", &PlannedContact::free_W, "the directions out of the same set in which b does not stop a"));
+    field("free", &PlannedContact::free_W,
+          "directions out of the axes named at `blocked` in which b does not stop a"));
 static_assert(coversAllMembers<PlannedContact>(kPlannedContactFields));
 
 inline constexpr auto kEqualPartsFields =

@@ -57,8 +57,8 @@ struct AssembleOptions : ModelOptions {
   const std::atomic<bool>* snaps = nullptr;
   /// Requests to a run in real time, such as to release the part. Null: there are no requests.
   RunRequests* requests = nullptr;
-  /// Called after each step of the procedure with the result so far. Its totals are not filled in yet, and
-  /// its `finished` shows where the parts are. May be empty.
+  /// Called after each step of the procedure with the result so far. The result's totals are not filled in
+  /// yet; its member `finished` holds the present poses of the parts. May be empty.
   std::function<void(const AssembleResult&)> on_step;
   /// The haptic loop computes the part's motion itself between physics steps (vps_device/local_contact.h),
   /// for physics slower than the loop. A run with local contact cannot be recorded. In real time the loop is

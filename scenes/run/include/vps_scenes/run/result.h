@@ -192,7 +192,7 @@ struct RealTimeResult {
   TickTimes late;                     ///< times from a tick's due time to its start
   TickTimes response;                 ///< times from a tick's due time to its wrench
   std::vector<std::pair<std::string, std::uint64_t>> missed_by;  ///< missed haptic periods by cause
-  std::uint64_t stale_ticks = 0;  ///< ticks whose part was older than two physics steps
+  std::uint64_t stale_ticks = 0;  ///< ticks that used a pose of the part older than two physics steps
   std::uint64_t worst_tick = 0;   ///< the longest response
   double worst_us = 0;
   std::string worst_cause;

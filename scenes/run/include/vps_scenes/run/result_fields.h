@@ -186,7 +186,8 @@ inline constexpr auto kRealTimeHapticFields = std::make_tuple(
                                     field("response_us", &RealTimeResult::worst_us,
                                           "time from its due time to its wrench"),
                                     field("cause", &RealTimeResult::worst_cause, "cause of its delay"))),
-    field("stale_ticks", &RealTimeResult::stale_ticks, "ticks whose part was older than two physics steps"),
+    field("stale_ticks", &RealTimeResult::stale_ticks,
+          "ticks that used a pose of the part older than two physics steps"),
     field("faults", &RealTimeResult::faults, "faults of the safety chain"),
     field("has_priority", &RealTimeResult::has_priority, "the thread has real-time priority"),
     field("has_locked_memory", &RealTimeResult::has_locked_memory, "the memory is locked"),
@@ -225,10 +226,10 @@ inline constexpr auto kAssembleFields = std::make_tuple(
     object("haptic",
            std::make_tuple(
                field("rate_hz", &AssembleResult::haptic_rate_hz, "rate of the haptic loop"),
-               field("ticks", path(&AssembleResult::haptic, &TickTimes::count), "number of its ticks"))),
+               field("ticks", path(&AssembleResult::haptic, &TickTimes::count), "number of haptic ticks"))),
     object("physics", std::make_tuple(field("rate_hz", &AssembleResult::physics_rate_hz, "rate of physics"),
                                       field("ticks", path(&AssembleResult::physics, &TickTimes::count),
-                                            "number of steps"))),
+                                            "number of physics steps"))),
     group("energy", &AssembleResult::energy, kEnergyFields),
     group("local_contact", &AssembleResult::local_contact,
           std::make_tuple(

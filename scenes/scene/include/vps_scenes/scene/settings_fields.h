@@ -248,10 +248,10 @@ inline constexpr auto kFidelityFields = std::make_tuple(
           {.range = {.min = 4, .max = kCount.max}}),
     field("haptic_rate_hz", &Fidelity::haptic_rate_hz, "rate of the haptic loop", {.range = kRate_Hz}),
     field("physics_rate_hz", &Fidelity::physics_rate_hz, "rate of the physics steps", {.range = kRate_Hz}),
-    field(
-        "substeps", &Fidelity::substeps,
-        "number of parts of each physics step; `\"auto\"`: as many as the fastest rotation needs, see below",
-        {.range = {.min = 0, .max = 1e4}, .since = 8, .type = "number or `\"auto\"`", .zero_word = "auto"}),
+    field("substeps", &Fidelity::substeps,
+          "number of equal substeps of each physics step; `\"auto\"`: as many as the fastest rotation needs, "
+          "see below",
+          {.range = {.min = 0, .max = 1e4}, .since = 8, .type = "number or `\"auto\"`", .zero_word = "auto"}),
     field("solver_iterations", &Fidelity::solver_iterations, "iterations of the contact solver in a step",
           {.range = kCount}),
     field(
