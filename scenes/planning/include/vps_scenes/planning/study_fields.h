@@ -36,7 +36,7 @@ inline constexpr auto kStudyFields =
                     field("blocked", &StudyResult::blocked, "runs that geometry rules out"),
                     field("yield", &StudyResult::yield, "share of the runs that fit"),
                     field("yield_low", &StudyResult::yield_low, "lower end of Wilson's 95 % interval"),
-                    field("upper end of Wilson's 95 % interval", &StudyResult::yield_high, "upper end"),
+                    field("yield_high", &StudyResult::yield_high, "upper end of Wilson's 95 % interval"),
                     list("effects", &StudyResult::effects, kStudyEffectFields),
                     list("runs", &StudyResult::runs, kStudyRunFields));
 
