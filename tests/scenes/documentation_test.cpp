@@ -80,6 +80,7 @@ std::string defaultOf(const T& value, Quantity) {
 
 std::string line(std::string_view key, const std::string& type, const std::string& standard,
                  std::string_view meaning) {
+  EXPECT_EQ(key.find(' '), std::string_view::npos) << "'" << key << "' is a description, not a key";
   const auto cell = [](std::string_view text) {
     return " " + std::string(text) + (text.empty() ? "|" : " |");
   };
@@ -118,6 +119,7 @@ const char* const kSettingHead = "| key | type | default | meaning |\n|---|---|-
 // --- Results: path of the key, meaning
 
 void addResult(std::string& out, const std::string& prefix, std::string_view key, std::string_view meaning) {
+  EXPECT_EQ(key.find(' '), std::string_view::npos) << "'" << key << "' is a description, not a key";
   out += "| `" + prefix + std::string(key) + "` | " + std::string(meaning) + " |\n";
 }
 template <class Get>
