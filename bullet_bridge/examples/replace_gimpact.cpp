@@ -12,7 +12,7 @@ using vps::bullet::toBt;
 
 namespace {
 
-// Triangles as the host has them: here a ring with a hole of 10.1 mm.
+// Triangles as the host application has them: here a ring with a hole of 10.1 mm.
 void fill(btTriangleMesh& triangles) {
   const vps::Mesh ring = vps::makeTube(0.010, 0.00505, 0.005, 128);
   for (const auto& t : ring.triangles)

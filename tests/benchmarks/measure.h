@@ -76,7 +76,7 @@ struct AccuracyPoint {
   std::string shape;
   bool is_sharp = false;
   double voxel_m = 0;
-  Spread distance_m;                     ///< against the exact distance to the mesh
+  Spread distance_m;                     ///< error of the distance, against the exact distance to the mesh
   Spread continuous_rad, trilinear_rad;  ///< error of the normal, for both ways to read it
 };
 

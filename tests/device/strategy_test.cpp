@@ -28,7 +28,7 @@ TEST(Strategy, EachHasANameARowInTheDocumentationAndAMaker) {
   EXPECT_STREQ(toText(OperatorStrategy::None), "none");
   EXPECT_STREQ(toText(OperatorStrategy::ScrewOn), "screw_on");
   EXPECT_STREQ(toText(static_cast<OperatorStrategy>(kStrategies)), "unknown");
-  // A recording keeps the number of the row.
+  // Recordings store a strategy by the number of its row, so these numbers must not change.
   EXPECT_EQ(static_cast<int>(OperatorStrategy::Approach), 1);
   EXPECT_EQ(static_cast<int>(OperatorStrategy::ScrewOn), 11);
 }

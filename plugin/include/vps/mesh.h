@@ -46,7 +46,7 @@ struct MeshReport {
   std::size_t holes = 0;               ///< groups of connected open edges
   std::size_t t_junctions = 0;         ///< vertices within an open edge: cracks without width
   std::size_t flipped_facets = 0;      ///< turned to agree with their neighbours
-  std::size_t turned_shells = 0;       ///< whole shells that faced in and were turned
+  std::size_t turned_shells = 0;       ///< whole shells that faced inward and were turned
   std::size_t overlapping_shells = 0;  ///< shells with facets within another shell
   std::size_t internal_facets = 0;     ///< facets with solid on both sides: not surface, left out
   std::size_t sheet_facets = 0;        ///< facets of free sheets: a surface without an inside

@@ -48,7 +48,8 @@ inline int mostAlongAxes(const NodeValue* nodes) {
       {mostDifference<1, 0, 0>(nodes), mostDifference<0, 1, 0>(nodes), mostDifference<0, 0, 1>(nodes)});
 }
 
-/// Converts a difference of neighbours along an axis to VoxLayout::steepest. Rounding alone makes a quantum.
+/// Converts a difference of neighbours along an axis to VoxLayout::steepest. Rounding of the values alone can
+/// make a difference of one quantum, which is subtracted.
 inline float steepnessOf(int difference, double voxel_m, double quantum_m) {
   return static_cast<float>((difference - 1) * quantum_m / voxel_m * (1 + 1e-6));
 }

@@ -106,8 +106,8 @@ int wrong(bool is_tiled) {
   return count;
 }
 
-// In the one wrong landing, points that the first solution lacks are added in so many rounds that no row is
-// taken again in the last rounds.
+// In the one wrong landing, points that the first solution lacks are added in so many rounds of the solver
+// that no row is computed again in the last rounds.
 TEST(Landing, OnALevelFloorIsVertical) {
   EXPECT_LE(wrong(false), 1);
 }

@@ -182,8 +182,9 @@ TEST_P(JointsWithSolver, ACouplingPullsASliderAlongItsRailOnly) {
   coupling.setTarget(target);
   world.step(1000);
   const Pose X_WP = test::partPose(body, box);
-  // Along the rail the part is at its target; across it the spring is stretched by 2 mm: 4 N. The rows of a
-  // slider have an error from erp with a cfm of 0: a thousandth is more than that.
+  // Along the rail the part is at its target; across it the spring is stretched by 2 mm: 4 N. The erp of a
+  // slider's rows leaves an error although their cfm is 0; the tolerances of some thousandths are larger than
+  // that error.
   EXPECT_NEAR(X_WP.p.x(), 3e-3, 1e-6);
   EXPECT_NEAR(X_WP.p.y(), 0, 1e-5);
   EXPECT_NEAR(coupling.wrench().f.y(), 4, 0.02);

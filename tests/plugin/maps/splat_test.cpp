@@ -192,7 +192,7 @@ TEST(CenterBounds, AreTheDistanceToTheMarkedCubes) {
         least = std::min(least, boxDistance(8 * at.cast<double>() + Vec3::Constant(4) - c, {1, 1, 0.5}));
       least = std::max(least, 0.0);
       EXPECT_LE(bound[cell], least);
-      EXPECT_GE(bound[cell], least * (1 - 3e-6));  // 1e-6 given back, and as much for floats
+      EXPECT_GE(bound[cell], least * (1 - 3e-6));  // the bound is lowered by 1e-6; the rest is float rounding
     }
   }
 }

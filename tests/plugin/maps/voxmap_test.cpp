@@ -63,7 +63,7 @@ TEST(VoxMap, NodesOfSliversAreExact) {
 TEST(VoxMap, NodesOfATinyPartAreExact) {
   expectNodesExact(makeSphere(0.2e-3, 2));
 }
-TEST(VoxMap, NodesOfAThinPlateAreExact) {  // a fifth of a voxel
+TEST(VoxMap, NodesOfAThinPlateAreExact) {  // its thickness is a fifth of a voxel
   expectNodesExact(transformed(makeBox({0.01, 0.008, 0.1e-3}), RandomPoints(3).pose(0.001)));
 }
 TEST(VoxMap, NodesOfASpikeAreExact) {

@@ -130,7 +130,7 @@ class WebServerTest : public testing::Test {
       stream.text(true);
       stream.write(boost::asio::buffer(text));
     }
-    /// Receives and acknowledges the next snapshot. Returns its number.
+    /// Receives and acknowledges the next snapshot. Returns the snapshot's number.
     std::uint32_t nextShot() {
       for (;;) {
         const std::string bytes = read();

@@ -50,7 +50,7 @@ bool spinsFreely(const PairView& start, const Pose (&X_WS_end)[2], PairState& st
 void addFeatureContacts(const PairView& start, const EndPoses& end, CheckRound round, PairState& state,
                         std::vector<MissedContact>& out);
 
-/// Which rows of contacts are taken again at the bodies' end poses.
+/// Which rows of contacts are computed again, from the bodies' end poses.
 struct Relinearising {
   enum class Rows : std::uint8_t {
     Predicted,  ///< before the solve: all rows, for motion at the last velocities
@@ -64,12 +64,12 @@ struct Relinearising {
   [[nodiscard]] bool isOfLoad() const { return rows == Rows::Loaded; }
 };
 
-/// True if the row of a contact must be taken again at the end of the step. False if the bodies would overlap
-/// there, since that end pose is meaningless.
+/// True if the row of a contact must be computed again, from the end poses of the step. False if the bodies
+/// would overlap at the end poses, which are then meaningless.
 bool isOutOfPlace(const Candidate& start, const Candidate& end, const StepPath& path,
                   const Relinearising& which, const Settings& settings);
 
-/// Appends the feature contacts whose rows must be taken again at the end of the step.
+/// Appends the feature contacts whose rows must be computed again, from the end poses of the step.
 void lineariseFeatures(const PairView& start, const EndPoses& end, const Relinearising& which,
                        PairState& state, std::vector<MissedContact>& out);
 

@@ -141,19 +141,19 @@ void PairCheck::findMissed(const Pose (&X_WB_end)[2], CheckRound round, std::vec
   if (!round.mayRetake() || out.size() != had || !(m.bend_m > apart_m)) return;
   if (m.turnsFar(0) && areBothCurved(at_start.pair, state_)) return;
   relinearise(m, at_start, {Relinearising::Rows::Loaded, apart_m}, out);
-  // A row that is taken again leaves its load to neighbouring rows that are equally wrong.
+  // A row that is computed again leaves its load to neighbouring rows that are equally wrong.
   if (out.size() != had) relinearise(m, at_start, {Relinearising::Rows::Others, apart_m}, out);
 }
 
-// Between two curved bodies a row is taken again only in the plane that it had. The plane of the next facet
-// belongs to another contact; if rows could change from facet to facet, the rounds of the solver would not
-// converge. Without rows that are taken again a frictionless bolt loses 2.2 % of its acceleration; with rows
-// of the next facet a peg does not enter a bore of 10 um clearance.
+// Between two curved bodies a row is computed again only in the plane that it had. The plane of the next
+// facet belongs to another contact; if rows could change from facet to facet, the rounds of the solver would
+// not converge. Without rows that are computed again a frictionless bolt loses 2.2 % of its acceleration;
+// with rows of the next facet a peg does not enter a bore of 10 um clearance.
 //
-// Appends the rows of the step's contacts, taken at the end of a motion. Before the step is solved: the
-// contacts whose row depends on the time at which it is taken. After it: contacts that carry load and end the
-// step apart (under a rolling body, contacts in front of it that do not arrive, and contacts that it leaves),
-// and contacts that would get their load.
+// Appends the rows of the step's contacts, computed from the end poses of a motion. Before the step is
+// solved: the contacts whose row depends on the poses from which it is computed. After the step is solved:
+// contacts that carry load and end the step apart (under a rolling body, contacts in front of it that do not
+// arrive, and contacts that it leaves), and contacts that would get their load.
 void PairCheck::relinearise(const Motion& m, const Placed& at_start, const Relinearising& which,
                             std::vector<MissedContact>& out) {
   const Settings& settings = state_.context->settings;

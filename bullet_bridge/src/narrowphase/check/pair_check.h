@@ -101,9 +101,9 @@ bool checksAlone(const PairView& pair, const PairState& state);
 /// for which a solver with linear rows ends the step with the gaps that were found, less the contacts' rest
 /// gaps.
 ///
-/// Gravity, the user's forces and the pull of couplings act as predicted. Other bodies and joints are not
-/// known, so contacts that only they cause are missed. Bodies are not changed, nor are the impulses of
-/// contacts that existed in the last step.
+/// The step is solved with gravity, the user's forces and the predicted pull of couplings. Other bodies and
+/// joints are not known, so contacts that only they cause are missed. Bodies are not changed, nor are the
+/// impulses of contacts that existed in the last step.
 void addMissedAlone(btDispatcher& dispatcher, const PairView& pair, PairState& state);
 
 }  // namespace vps::bullet

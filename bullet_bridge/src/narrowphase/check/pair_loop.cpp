@@ -188,7 +188,8 @@ void addMissedAlone(btDispatcher& dispatcher, const PairView& pair, PairState& s
   loop.checks.assign(1, state.check.get());
   SolverSettings settings;  // end poses are accurate to a hundredth of the overlap that a check tolerates
   settings.residual_m_s = 0.01 * kToleratedShare * state.motion.contact_margin_m / dt_s;
-  // Rows are not taken again (is_own is false), since the motion of the pair alone is not that of the world.
+  // Rows are not computed again (is_own is false), since the motion of the pair alone is not that of the
+  // world.
   loop.run(info, settings.iteration_limit, false, [&] { return loop.solveContacts(settings); });
   loop.contacts.finish();
   before.restore(state.writer->lostLoad_Ns());

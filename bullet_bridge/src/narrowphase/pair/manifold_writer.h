@@ -58,8 +58,8 @@ class ManifoldWriter {
   /// @param keeps_spare  allocate spare manifolds, so that the solver can add contacts
   void write(std::span<const Candidate> contacts, const btCollisionObjectWrapper* const (&bodies)[2],
              const RelativeMotion& motion, bool keeps_spare);
-  /// Adds a contact, or replaces the contact with its key. Returns null if the manifolds are full. The
-  /// pointer is valid until the next write().
+  /// Adds a contact, or replaces the contact that has the same key. Returns null if the manifolds are full.
+  /// The pointer is valid until the next write().
   btManifoldPoint* put(const Candidate& contact, const btCollisionObjectWrapper* const (&bodies)[2],
                        const RelativeMotion& motion);
   /// The present contact with this key; null if there is none.

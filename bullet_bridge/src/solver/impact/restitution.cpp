@@ -50,8 +50,8 @@ int Restitution::rootOf(int body) const {
 }
 
 // Finds the gap at which each contact counts as touching. Sharp features rest at a gap and hold the faces
-// between them at that gap, so all contacts of a face within it touch. With contacts of the edges alone, of
-// which one side may be missing, a face that lands flush would turn.
+// between them at that gap, so all contacts of a face within it touch. If only the contacts of a face's edges
+// touched, a face that lands flush would turn, since the contacts of one edge may be missing.
 void Restitution::findTouch(std::span<const RigidContact> contacts) {
   std::map<std::pair<const btCollisionObject*, const btCollisionObject*>, double> rest_m;
   const auto restOf_m = [&](const RigidContact& c) -> double& { return rest_m[{c.object[0], c.object[1]}]; };

@@ -20,7 +20,7 @@ Vec6 externalImpulse(const btRigidBody& b, double dt_s) {
 }
 
 // Bullet has three approximations of the gyroscopic torque, and each of them dissipates or adds energy. If
-// any of them is enabled, the island rotates the body exactly (meanAngularVelocity()).
+// any of these approximations is enabled, the island rotates the body exactly (meanAngularVelocity()).
 bool turnsFreely(const btRigidBody& b) {
   constexpr int kAny = BT_ENABLE_GYROSCOPIC_FORCE_EXPLICIT | BT_ENABLE_GYROSCOPIC_FORCE_IMPLICIT_WORLD |
                        BT_ENABLE_GYROSCOPIC_FORCE_IMPLICIT_BODY;

@@ -35,13 +35,13 @@ struct MissedContact {
 /// The number and kind of a check within a step.
 struct CheckRound {
   int number = 0;      ///< from 0
-  bool is_own = true;  ///< true if bullet::Solver solves the step; false: rows are not taken again
+  bool is_own = true;  ///< true if bullet::Solver solves the step; false: rows are not computed again
 
   /// True if small gaps are to be restored too.
   [[nodiscard]] bool isFirst() const { return is_own && number == 0; }
   /// True if contacts that carry load although they end the step apart may get new rows, or be let go.
   [[nodiscard]] bool mayRetake() const { return is_own && number < kMostRetakes; }
-  /// True if rows are no longer taken again, so that the rounds of the solver come to an end.
+  /// True if rows are no longer computed again, so that the rounds of the solver come to an end.
   [[nodiscard]] bool isLate() const { return is_own && number >= kMostRetakes; }
 };
 
@@ -51,18 +51,19 @@ class StepCheck {
   virtual ~StepCheck() = default;
   [[nodiscard]] virtual const btCollisionObject* object(int i) const = 0;
   /// Appends the contacts whose lever or normal turns during the step, with their rows at the end poses that
-  /// the bodies would have at the last step's velocities. If they hardly turn, only contacts that carried
-  /// load. Rows taken at the start would brake or drive rolling bodies.
+  /// the bodies would have at the last step's velocities. If lever and normal hardly turn, only contacts that
+  /// carried load are appended. Rows at the start poses would brake or drive rolling bodies.
   virtual void linearise(const Pose (&X_WB_end)[2], std::vector<MissedContact>& out) = 0;
   /// Appends the contacts that the step lacks, and, in the first kMostRetakes checks, contacts that carry
-  /// load although they end the step apart. Later checks do not correct rows, so that the rounds end.
+  /// load although they end the step apart. Later checks do not correct rows, so that the rounds of the
+  /// solver come to an end.
   /// @param X_WB_end  poses of the bodies' frames at the end of the step
   virtual void findMissed(const Pose (&X_WB_end)[2], CheckRound round, std::vector<MissedContact>& out) = 0;
   /// Greatest share of the step before sharp features of the bodies come too close together; 1 if they do
   /// not.
   virtual double freeShare(const Pose (&X_WB_end)[2]) = 0;
   /// Greatest share of the step, positive, during which no point of the bodies is much deeper than allowed or
-  /// than before the step; 1 if none is at the end.
+  /// than before the step; 1 if no point is so deep at the end.
   virtual double freeShareOfPoints(const Pose (&X_WB_end)[2]) = 0;
   /// Must be called after the step: the check is not valid until the narrow phase visits the pair again,
   /// which it may never do if the user makes the bodies ignore each other.

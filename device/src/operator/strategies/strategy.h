@@ -102,7 +102,7 @@ class Strategy {
   /// True for a strategy that looks for the hole on the surface around it. The operator tries all searches
   /// that suit the part in turn, in the order of their rows in VPS_OPERATOR_STRATEGIES.
   [[nodiscard]] virtual bool isSearch() const noexcept { return false; }
-  /// Whether a search may help with such a part.
+  /// Whether this search may help with a part in this situation.
   [[nodiscard]] virtual bool suits(const Situation&) const noexcept { return true; }
   /// True if the hole is where the last Move displaced and turned the part to, once the search is done.
   [[nodiscard]] virtual bool findsByOffset() const noexcept { return false; }

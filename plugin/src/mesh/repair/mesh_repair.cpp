@@ -747,7 +747,7 @@ std::string describe(const MeshReport& report) {
   say(report.duplicate_triangles, "duplicate facet left out", "duplicate facets left out");
   say(report.degenerate_triangles, "facet without area", "facets without area");
   say(report.flipped_facets, "flipped facet turned", "flipped facets turned");
-  say(report.turned_shells, "shell that faced in turned", "shells that faced in turned");
+  say(report.turned_shells, "inward-facing shell turned", "inward-facing shells turned");
   say(report.united_shells, "touching or overlapping shell united", "touching or overlapping shells united");
   if (report.united_shells == 0) say(report.overlapping_shells, "overlapping shell", "overlapping shells");
   say(report.internal_facets, "facet within the solid left out", "facets within the solid left out");

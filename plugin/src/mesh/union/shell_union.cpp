@@ -34,7 +34,7 @@ class Shells {
  public:
   /// The facets of other shells that are flush with a facet at a point.
   struct Flush {
-    int same = 0, opposite = 0;  ///< shells with a facet there that faces the same way, or the other way
+    int same = 0, opposite = 0;  ///< shells with a flush facet that faces the same way, or the opposite way
     bool is_first = true;        ///< no shell before the facet's own has a facet that faces the same way
   };
 

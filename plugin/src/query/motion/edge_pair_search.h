@@ -94,7 +94,7 @@ class EdgePairSearch {
       at.has_line = true;
       at.from = at.center + X_.from.R * (b.from - b.center);
       at.to = at.center + X_.from.R * (b.to - b.center);
-      // No point moves farther than the centre's way plus its own rotation about the centre.
+      // No point moves farther than the centre's path plus the point's own rotation about the centre.
       at.reach_m = std::sqrt(at.way2_m2) + turn_rad_ * b.radius_m + b.width_m + reach_m_;
     }
     const double near_m = a.width_m + at.reach_m;

@@ -89,7 +89,7 @@ std::optional<std::pair<std::string, std::string>> commonBall(OneFile& one, OneF
                                                               std::size_t& queries) {
   const std::size_t count = std::clamp<std::size_t>(30'000 / one.parts.size(), 20, 300);
   for (Placed& part : one.parts) {
-    std::vector<std::pair<Placed*, Box>> near;  // with the box of possible centres of the ball
+    std::vector<std::pair<Placed*, Box>> near;  // with the box from middles()
     for (Placed& neighbor : other.parts)
       if (const Box both = middles(part.box, neighbor.box, radius_m); !both.isEmpty())
         near.emplace_back(&neighbor, both);
@@ -115,7 +115,8 @@ std::string ownFramesWarning(const std::vector<ImportedPart>& parts, const std::
   // Radius of the ball, as a fraction of the smaller file's least extent. Threads and press fits overlap by
   // less.
   constexpr double kDeep = 0.1;
-  // Limits of the effort for this hint: the preparation of distances, and the comparison of boxes.
+  // Greater assemblies get no warning: preparing distances to so many triangles, or comparing the boxes of so
+  // many parts, would take too long.
   constexpr std::size_t kMostTriangles = 300'000, kMostParts = 3'000;
   std::size_t triangles = 0, own_count = 0;
   for (const ImportedPart& part : parts) triangles += part.mesh.triangles.size();

@@ -34,7 +34,7 @@ double floatRounding(const Mesh& mesh, const Eigen::Affine3d& X_WP = Eigen::Affi
 
 /// The meaning of open shapes that together form a closed surface.
 enum class Shapes {
-  AreParts,     ///< each is a part
+  AreParts,     ///< each open shape is a part
   BoundBodies,  ///< VRML from CAD, a shape for each face: each connected surface is a part
   BoundOne,     ///< OBJ of one part, a group for each face
 };

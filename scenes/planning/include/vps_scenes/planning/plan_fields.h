@@ -27,7 +27,8 @@ inline constexpr auto kPlannedStepFields = std::make_tuple(
         "depth beyond the drawn overlap that facets need to pass each other on the path; no path without it "
         "was found; 0: none is needed"),
     field("is_carried", &PlannedStep::is_carried,
-          "a part in place keeps it from falling; false: its step says `holds`"),
+          "a part in place keeps the step's part from falling at its target; false: the scene's step has "
+          "`holds`"),
     field("falling", &PlannedStep::falling,
           "parts in place that nothing else carries until this step is done"),
     field("is_on_bench", &PlannedStep::is_on_bench,

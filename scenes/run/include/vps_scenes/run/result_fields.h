@@ -44,7 +44,7 @@ inline constexpr auto kStepFields = std::make_tuple(
           "error of that depth: the distance of the meshes from the exact faces"),
     field("stuck_against", &StepResult::stuck_against,
           "the part that it touched when the hand gave up; empty if none, or if the hand did not give up"),
-    field("stuck_at_m", &StepResult::stuck_at_W, "where they touched, in the world"),
+    field("stuck_at_m", &StepResult::stuck_at_W, "where these two parts touched, in the world"),
     field("stands_on", &StepResult::stands_on,
           "an earlier part that did not reach its target and was put there for this step; empty if none"),
     field("mesh_doubt", &StepResult::mesh_doubt,
@@ -100,15 +100,16 @@ inline constexpr auto kStepFields = std::make_tuple(
     field("final_error_rad", &StepResult::final_error_rad, "rotation from the target"),
     field("rest_drift_m", &StepResult::rest_drift_m,
           "greatest displacement of any point of the part in `rest_s` after release"),
-    field("late_drift_m", &StepResult::late_drift_m,
-          "the same in the second half of that time; more than 5 um: the part is not at rest"),
+    field(
+        "late_drift_m", &StepResult::late_drift_m,
+        "greatest such displacement in the second half of `rest_s`; more than 5 um: the part is not at rest"),
     field("rest_s", &StepResult::rest_s, "simulated time that the part was watched after release"));
 
-inline constexpr auto kStrategyFields =
-    std::make_tuple(field("strategy", &StrategyUse::strategy,
-                          "strategy of the virtual operator: device/VIRTUAL_OPERATOR.md lists them"),
-                    field("start_s", &StrategyUse::start_s, "simulated time at which it began"),
-                    field("duration_s", &StrategyUse::duration_s, "duration of its use"));
+inline constexpr auto kStrategyFields = std::make_tuple(
+    field("strategy", &StrategyUse::strategy,
+          "strategy of the virtual operator: device/VIRTUAL_OPERATOR.md lists them"),
+    field("start_s", &StrategyUse::start_s, "simulated time at which the strategy began"),
+    field("duration_s", &StrategyUse::duration_s, "simulated time for which the strategy was used"));
 static_assert(coversAllMembers<StrategyUse>(kStrategyFields));
 
 /// Lists, which a table of steps has no column for.
@@ -159,9 +160,9 @@ static_assert(coversAllMembers<ModelledCost>(kModelledFields));
 inline constexpr auto kLoadChangeFields = std::make_tuple(
     field("time_s", &LoadLevelChange::time_s, "simulated time"),
     object("from", std::make_tuple(field("level", &LoadLevelChange::from, "load level before"),
-                                   field("words", &LoadLevelChange::was, "that level in words"))),
+                                   field("words", &LoadLevelChange::was, "load level before, in words"))),
     object("to", std::make_tuple(field("level", &LoadLevelChange::to, "load level after"),
-                                 field("words", &LoadLevelChange::is, "that level in words"))),
+                                 field("words", &LoadLevelChange::is, "load level after, in words"))),
     field("is_done", &LoadLevelChange::is_done,
           "false: the change was not possible, and `why` gives the reason"),
     field("why", &LoadLevelChange::why, "reason for the change"),

@@ -101,7 +101,7 @@ struct SimulateResult {
 };
 
 /// Names the part that needs the highest physics rate, with the remedy and the number of other parts that
-/// turn too fast. Empty if there is none.
+/// turn too fast. Empty if no part turns too fast.
 VPS_SCENES_API std::string inWords(const std::vector<FastTurn>& turns, const Fidelity& fidelity);
 
 /// Every part that is not fixed is a dynamic body at its designed pose. The limit of overlap is 10 um, or a
