@@ -8,6 +8,8 @@
 //      |____ slip velocity  | /                 | /
 //      |                    |/___ displacement  |/___ slip velocity
 //
+// Models whose coefficient depends on the speed of slip are rows of kFrictionModels in vps_bullet/settings.h.
+//
 // Sources: Coulomb 1785 for the law; Dahl 1968 for the bristle.
 #pragma once
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The table of CAD formats. A further library needs its reader (a source, and a declaration in readers.h) and
-// a row in formats.cpp for each of its formats.
+// The table of CAD formats. A further library needs its reader (a source, and a declaration in readers.h),
+// and for each of its formats a value of CadFormat and a row in formats.cpp.
 #pragma once
 
 #include <array>

@@ -262,7 +262,6 @@ inline constexpr auto kTraceFields = std::make_tuple(
     field("contacts", &TraceRow::contacts, "number of contacts"),
     field("depth_m", &TraceRow::depth_m, "deepest penetration by the voxmap"),
     field("strategy", &TraceRow::strategy,
-          "0 none, 1 approach, 2 touch, 3 tilt_in, 4 spiral_search, 5 align_by_torque, 6 back_off, "
-          "7 press_home, 8 place_by_sight, 9 turn_search"));
+          "number of the strategy's row in VPS_OPERATOR_STRATEGIES (vps_device/operator.h), from 1; 0 none"));
 
 }  // namespace vps::scenes

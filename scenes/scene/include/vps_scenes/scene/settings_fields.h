@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The keys of a scene file: one field table for each of its TOML tables, in the order of the documentation,
-// which is made from these tables. Rows of `field()` are read, archived and written without further code.
+// which is made from these tables. Rows of `field()` are read and written without further code. They are also
+// archived, except those of kSceneKeys, kPartKeys, kToleranceFields and kFidelityWishFields: what a recording
+// needs of these is named in run/src/record/scene_archive.cpp. Rows of `Key` are documented only;
+// loadScene(), sceneText() and the archive name their members.
 #pragma once
 
 #include "vps_scenes/scene/fields.h"
