@@ -48,7 +48,7 @@ void run(const char* file, const char* unit) {
   world.removeRigidBody(body.rigid.get());
   world.removeRigidBody(&ground);
   vps::bullet::uninstall(dispatcher);
-  if (!(lowest_m > -5e-6 && lowest_m < 5e-6)) throw std::runtime_error("it does not lie on the plane");
+  if (!(lowest_m > -5e-6 && lowest_m < 5e-6)) throw std::runtime_error("the part does not lie on the plane");
 }
 
 }  // namespace

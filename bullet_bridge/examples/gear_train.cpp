@@ -119,7 +119,7 @@ int main() {
     world.stepSimulation(toBt(1e-3), 0);
     for (int k = 0; k < 3; ++k) turned_rad[k] += 1e-3 * gears[k].body.rigid->getAngularVelocity().z();
   }
-  std::printf("turned by %.4f, %.4f and %.4f revolutions in 0.3 s\n", turned_rad[0] / (2 * kPi),
+  std::printf("the gears turned by %.4f, %.4f and %.4f revolutions in 0.3 s\n", turned_rad[0] / (2 * kPi),
               turned_rad[1] / (2 * kPi), turned_rad[2] / (2 * kPi));
   for (Gear& gear : gears) {
     world.removeConstraint(gear.axle.get());

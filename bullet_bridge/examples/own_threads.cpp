@@ -64,6 +64,6 @@ int main() {
   // The same worlds one after the other, each with two threads: every pose must have the same bits.
   int same = 0;
   for (int i = 0; i < kWorlds; ++i) same += together[i] == drop(*plate.shape, 0.1 * i, 2) ? 1 : 0;
-  std::printf("%d of %d worlds end with the same bits as alone\n", same, kWorlds);
+  std::printf("%d of %d worlds end with the same bits in both runs\n", same, kWorlds);
   return same == kWorlds ? 0 : 1;
 }

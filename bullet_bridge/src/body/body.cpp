@@ -26,7 +26,7 @@ void say(const Mesh& mesh, const PartModel& part, const Resolution& chosen, cons
   std::snprintf(
       words, sizeof words,
       "%s of %.3g x %.3g x %.3g mm: voxel %.3g mm, spacing %.3g mm, %zu points (budget %zu), %.1f MB, "
-      "built in %.2g s; BodySettings::fidelity chooses otherwise",
+      "built in %.2g s; set BodySettings::fidelity for other values",
       settings.name.c_str(), 1e3 * size.x(), 1e3 * size.y(), 1e3 * size.z(), 1e3 * chosen.voxel_m,
       1e3 * chosen.spacing_m, part.shell->size(), settings.point_budget,
       1e-6 * static_cast<double>((part.map ? part.map->memoryBytes() : 0) + part.shell->memoryBytes()),

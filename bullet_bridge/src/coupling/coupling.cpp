@@ -20,7 +20,7 @@ constexpr btTypedConstraintType kNoStockType = MAX_CONSTRAINT_TYPE;
 
 void requireDynamic(const btRigidBody& part) {
   if (!(part.getInvMass() > 0))
-    throw std::invalid_argument("CouplingConstraint: the part in hand has no mass; give it one");
+    throw std::invalid_argument("CouplingConstraint: the part in hand has no mass; give its body a mass");
 }
 
 void requireUsable(const CouplingGains& g) {

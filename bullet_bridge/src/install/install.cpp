@@ -249,9 +249,9 @@ int manifoldBytesOfLibrary() {
   words.append(whose)
       .append(" a manifold of ")
       .append(std::to_string(theirs))
-      .append(" bytes, and this package one of ");
+      .append(" bytes, and a manifold of this package has ");
   words.append(std::to_string(sizeof(btPersistentManifold)));
-  words.append(": it is Bullet in another precision. vps::bullet was built for ")
+  words.append(": Bullet was compiled in another precision. vps::bullet was built for ")
       .append(is_double ? "double" : "single");
   words.append(
       is_double
@@ -298,9 +298,10 @@ void requireUsable(const Settings& s) {
   for (const double slip_m_s : {0.0, 1e-3, 1.0}) {
     const double mu = s.friction_model.coefficient ? s.friction_model.coefficient(0.1, slip_m_s) : 0.1;
     if (!(mu >= 0) || !std::isfinite(mu))
-      throw std::invalid_argument("install: friction_model gives a coefficient of " + std::to_string(mu) +
-                                  " at a slip of " + std::to_string(slip_m_s) +
-                                  " m/s where the materials have 0.1; it must be 0 or more and finite");
+      throw std::invalid_argument(
+          "install: friction_model gives a coefficient of " + std::to_string(mu) + " at a slip of " +
+          std::to_string(slip_m_s) +
+          " m/s where the bodies' friction is 0.1; the coefficient must be 0 or more and finite");
   }
 }
 

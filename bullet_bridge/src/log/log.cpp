@@ -103,9 +103,9 @@ void warnOfForgottenInstall() {
   constexpr int kBoxes = 12;
   if (++g_boxes != kBoxes) return;
   report(LogLevel::Error,
-         "a bullet::Shape is in a world, and install() was not called for any dispatcher: it collides with "
-         "nothing, or as a mesh that Bullet does not support. Call vps::bullet::install(dispatcher) before "
-         "the first step");
+         "a bullet::Shape is in a world, and install() was not called for any dispatcher: the Shape collides "
+         "with nothing, or as a mesh that Bullet does not support. Call vps::bullet::install(dispatcher) "
+         "before the first step");
 }
 
 }  // namespace vps::bullet

@@ -89,7 +89,7 @@ void keepOneSide(Mesh& mesh) {
 NativeShapeMesh hullOf(const btCollisionShape& shape, const std::vector<Vec3>& points) {
   std::vector<double> coordinates;
   for (const Vec3& p : points) {
-    if (!p.allFinite()) refuse(shape, "a corner of it is not a number");
+    if (!p.allFinite()) refuse(shape, "a corner of the shape is not a number");
     coordinates.insert(coordinates.end(), {p.x(), p.y(), p.z()});
   }
   if (points.size() < 3) refuse(shape, "it has fewer than three corners");
@@ -183,7 +183,7 @@ Mesh allTriangles(const btConcaveShape& shape) {
   CollectTriangles all;
   shape.processAllTriangles(&all, low - beyond, high + beyond);
   for (const Vec3& p : all.mesh.vertices)
-    if (!p.allFinite()) refuse(shape, "a corner of it is not a number");
+    if (!p.allFinite()) refuse(shape, "a corner of the shape is not a number");
   Mesh mesh = welded(all.mesh);
   if (mesh.triangles.empty() || !(area(mesh) > 0))
     refuse(shape, "it reports no triangles; build a bullet::Shape from its mesh");

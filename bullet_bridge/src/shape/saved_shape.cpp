@@ -157,7 +157,7 @@ const char* Shape::serialize(void* data, btSerializer* serializer) const {
     saved.compound.addChildShape(btTransform::getIdentity(), saved.mesh.get());
   } else {
     report(LogLevel::Error,
-           "a bullet::Shape without a mesh was saved as an empty compound: give its models the mesh");
+           "a bullet::Shape without a mesh was saved as an empty compound: set ShapeModels::mesh");
   }
   const char* type = saved.compound.serialize(data, serializer);
   saved.name = nameOf(models_, X_SM_);

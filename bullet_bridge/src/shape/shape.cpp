@@ -299,7 +299,7 @@ void Shape::setLocalScaling(const btVector3& scaling) {
 void Shape::setMargin(btScalar margin) {
   if (!(margin >= 0))
     throw std::invalid_argument(
-        "Shape: setMargin() must not get a negative margin; it has no effect in any case");
+        "Shape: setMargin() must not get a negative margin; a margin has no effect in any case");
   static std::atomic_flag was_reported;
   if (margin != 0)
     warnOnce(was_reported,

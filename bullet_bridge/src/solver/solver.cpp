@@ -229,13 +229,14 @@ Solver::~Solver() = default;
 
 void Solver::reportGroups() {
   if (points_solved_ >= points_near_ || std::exchange(has_reported_groups_, true)) return;
-  report(LogLevel::Warning,
-         std::to_string(points_near_)
-             .append(" penalty points are near in one island: neighbours are solved together, as ")
-             .append(std::to_string(points_solved_))
-             .append(
-                 " points (SolverSettings::point_limit). Contact is a little stiffer then; a coarser spacing "
-                 "of the parts or ContactMethod::Constraint avoids it"));
+  report(
+      LogLevel::Warning,
+      std::to_string(points_near_)
+          .append(" penalty points of one island are near a surface: neighbours are solved together, as ")
+          .append(std::to_string(points_solved_))
+          .append(
+              " points (SolverSettings::point_limit). This makes contact a little stiffer; a coarser spacing "
+              "of the parts or ContactMethod::Constraint avoids the grouping"));
 }
 
 btScalar Solver::solveGroup(btCollisionObject** bodies, int body_count, btPersistentManifold** manifolds,

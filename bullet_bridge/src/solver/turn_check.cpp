@@ -35,11 +35,12 @@ void reportClampedTurn(TurnReports& reports, std::span<btCollisionObject* const>
     if (!(w_rad_s * dt_s > kBulletTurn_rad) || reports.clamped.test_and_set()) continue;
     const Spin spin(w_rad_s, dt_s, kBulletTurn_rad);
     const Vec3 at = fromBt(body->getWorldTransform().getOrigin());
-    char words[400];
+    char words[500];
     std::snprintf(words, sizeof words,
-                  "the body at (%.4g, %.4g, %.4g) m turns with %.4g rpm, %.3g degrees in a step, and above "
-                  "%.3g Bullet turns a body by less than its speed: %.0f steps a second or more hold it "
-                  "(substepsFor() of turn.h). Further such bodies are not reported.",
+                  "the body at (%.4g, %.4g, %.4g) m turns with %.4g rpm, %.3g degrees in a step. Above "
+                  "%.3g degrees Bullet turns a body by less than its angular velocity times the step; %.0f "
+                  "steps a second or more avoid this error (substepsFor() of turn.h). Further bodies that "
+                  "turn so fast are not reported.",
                   at.x(), at.y(), at.z(), spin.rpm, spin.degrees, spin.limit_degrees,
                   std::ceil(spin.rate_hz * (1 - 1e-9)));
     report(LogLevel::Warning, words);
@@ -56,9 +57,9 @@ void reportContactTurn(TurnReports& reports, const btCollisionObject& body0, con
   std::snprintf(
       words, sizeof words,
       "the bodies at (%.4g, %.4g, %.4g) m and (%.4g, %.4g, %.4g) m touch and turn against each other "
-      "with %.4g rpm, %.3g degrees in a step; contacts hold up to %.3g, so that teeth or corners may "
-      "be missed: %.0f steps a second or more hold them (substepsFor() of turn.h). Further such "
-      "bodies are not reported.",
+      "with %.4g rpm, %.3g degrees in a step; above %.3g degrees contacts of teeth or corners may be "
+      "missed; %.0f steps a second or more avoid this error (substepsFor() of turn.h). Further bodies "
+      "that turn so fast are not reported.",
       at[0].x(), at[0].y(), at[0].z(), at[1].x(), at[1].y(), at[1].z(), spin.rpm, spin.degrees,
       spin.limit_degrees, std::ceil(spin.rate_hz * (1 - 1e-9)));
   report(LogLevel::Warning, words);

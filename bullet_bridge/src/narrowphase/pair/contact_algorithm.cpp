@@ -60,13 +60,14 @@ void countInitialOverlap(const PairView& pair, PairState& state) {
   if (context.overlapping_starts++ > 0) return;
   const Vec3 at = pair.center_W();
   const Vec3 body[2] = {pair.X_WS[0].p, pair.X_WS[1].p};
-  char words[400];
-  std::snprintf(words, sizeof words,
-                "the bodies at (%.4g, %.4g, %.4g) m and (%.4g, %.4g, %.4g) m begin at least %.3g mm inside "
-                "each other, near (%.4g, %.4g, %.4g) m; a voxmap measures no deeper than its band. They are "
-                "moved apart at 0.05 m/s. Further pairs that begin so are not reported.",
-                body[0].x(), body[0].y(), body[0].z(), body[1].x(), body[1].y(), body[1].z(), 1e3 * overlap_m,
-                at.x(), at.y(), at.z());
+  char words[500];
+  std::snprintf(
+      words, sizeof words,
+      "the bodies at (%.4g, %.4g, %.4g) m and (%.4g, %.4g, %.4g) m begin at least %.3g mm inside "
+      "each other, near (%.4g, %.4g, %.4g) m; a voxmap measures no deeper than its band. Both bodies "
+      "are moved apart at 0.05 m/s. Further pairs that begin inside each other are not reported.",
+      body[0].x(), body[0].y(), body[0].z(), body[1].x(), body[1].y(), body[1].z(), 1e3 * overlap_m, at.x(),
+      at.y(), at.z());
   report(LogLevel::Warning, words);
 }
 
