@@ -66,9 +66,9 @@ class AskProgram : public Program {
 };
 
 TEST_F(AskProgram, WhoIsThereAndWhatTheyDo) {
-  expectRefused("ask who --session " + session_, "no vps render that accepts requests runs it");
+  expectRefused("ask who --session " + session_, "no vps render that accepts requests runs this session");
   startRender();
-  ASSERT_TRUE(whoSays("device: none, the run waits for it")) << texts();
+  ASSERT_TRUE(whoSays("device: none, the run waits for a device")) << texts();
   watch_ = start({"watch", "--terminal"}, "watch.txt");
   EXPECT_TRUE(whoSays("watchers: 1")) << texts();
   startDevice();

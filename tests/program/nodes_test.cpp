@@ -108,7 +108,7 @@ TEST_F(NodesProgram, ASecondRenderOfASessionIsRefused) {
   ASSERT_TRUE(nodes_->join()) << texts();
   const Ran second = run("render pin_down.toml --out other --session program-" + std::to_string(getpid()));
   EXPECT_EQ(second.status, 2);
-  EXPECT_NE(second.err.find("another vps render already runs it"), std::string::npos) << second.err;
+  EXPECT_NE(second.err.find("another vps render already runs this session"), std::string::npos) << second.err;
 }
 
 TEST_F(NodesProgram, BadSessionNamesAreRefused) {

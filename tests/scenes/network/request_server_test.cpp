@@ -110,7 +110,7 @@ class RequestHandlerTest : public testing::Test {
 
 TEST_F(RequestHandlerTest, WhoTellsSceneStepDeviceAndWatchers) {
   EXPECT_TRUE(says(ask(AskKind::Who), "'two pins' (scene " + contentHash(bytes_) + "), before its first"));
-  EXPECT_TRUE(says(ask(AskKind::Who), "device: none, the run waits for it"));
+  EXPECT_TRUE(says(ask(AskKind::Who), "device: none, the run waits for a device"));
   joinDevice();
   requests_.beginStep(1);
   const std::unique_ptr<Link> watcher = joinSession(session_, NodeRole::Watch);
@@ -557,8 +557,8 @@ TEST(SessionRequest, AWishForARecordingThatIsNotGrantedSaysWhy) {
   const auto names = [](const std::string& words, const char* part) {
     return words.find(part) != std::string::npos;
   };
-  EXPECT_PRED2(names, early.waitUntilAsked(0.3), "no vps render that accepts requests runs it");
-  EXPECT_PRED2(names, early.finish(), "no vps render that accepts requests runs it");
+  EXPECT_PRED2(names, early.waitUntilAsked(0.3), "no vps render that accepts requests runs this session");
+  EXPECT_PRED2(names, early.finish(), "no vps render that accepts requests runs this session");
   const RequestServer server(options);
   SessionRecording refused(wish);
   EXPECT_PRED2(names, refused.waitUntilAsked(10), "only `who` is allowed here");

@@ -162,7 +162,7 @@ TEST(Report, SaysWhatAHoistCarries) {
   };
   EXPECT_EQ(pageOf("by_hand").find("hoist"), std::string::npos);
   result.steps.front().hoist_N = 62.04;
-  EXPECT_NE(pageOf("hoist").find("carries 62.0 N of its weight"), std::string::npos);
+  EXPECT_NE(pageOf("hoist").find("carries 62.0 N of the part's weight"), std::string::npos);
 }
 
 TEST(Report, WithoutPicturesItHasTheTables) {

@@ -207,7 +207,7 @@ TEST_F(WebServerTest, AddressesThatOthersReachNeedATokenAndGetOne) {
       const WebServer server(run, options);
       FAIL() << address;
     } catch (const LoadError& refused) {
-      EXPECT_NE(std::string(refused.what()).find("`ip addr` lists them"), std::string::npos)
+      EXPECT_NE(std::string(refused.what()).find("`ip addr` lists the addresses"), std::string::npos)
           << refused.what();
     }
   }

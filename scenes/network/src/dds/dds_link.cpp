@@ -380,7 +380,8 @@ std::unique_ptr<Link> makeNetworkSession(const std::string& session, std::string
     other.start();
     if (other.find() && other.isAlive(NodeRole::Render))
       throw LoadError(
-          "", "", sessionWords(session) + ": another vps render already runs it; choose another --session");
+          "", "",
+          sessionWords(session) + ": another vps render already runs this session; choose another --session");
   }
   auto link = std::make_unique<DdsLink>(session, NodeRole::Render, network);
   link->open(scene_bytes);

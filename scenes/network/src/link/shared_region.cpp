@@ -102,7 +102,8 @@ void requireSessionName(const std::string& session) {
   const auto is_good = [](unsigned char c) { return std::isalnum(c) != 0 || c == '-' || c == '_'; };
   if (!session.empty() && session.size() <= 32 && std::all_of(session.begin(), session.end(), is_good))
     return;
-  throw LoadError("", "", sessionWords(session) + ": use up to 32 letters, digits, - and _ for its name");
+  throw LoadError("", "",
+                  sessionWords(session) + ": use up to 32 letters, digits, - and _ for the session's name");
 }
 
 SharedRegion::SharedRegion(SharedRegion&& other) noexcept
@@ -148,7 +149,8 @@ SharedRegion SharedRegion::create(const std::string& session, std::size_t bytes)
       refuse(session, std::string("shared memory cannot be mapped: ") + std::strerror(errno));
     return region;
   }
-  refuse(session, "another vps render already runs it; choose another --session, or stop that one");
+  refuse(session,
+         "another vps render already runs this session; choose another --session, or stop that vps render");
 }
 
 SharedRegion SharedRegion::open(const std::string& session, bool is_writable) {
@@ -156,17 +158,17 @@ SharedRegion SharedRegion::open(const std::string& session, bool is_writable) {
   const int file = shm_open(name.c_str(), (is_writable ? O_RDWR : O_RDONLY) | O_CLOEXEC, 0);
   if (file < 0) {
     if (errno == ENOENT) return {};
-    refuse(session, std::string("its shared memory cannot be opened: ") + std::strerror(errno));
+    refuse(session, std::string("the session's shared memory cannot be opened: ") + std::strerror(errno));
   }
   SharedRegion region(file, {}, "");
   struct stat status {};
   if (fstat(file, &status) != 0 || status.st_size <= 0) return {};
   if (status.st_uid != getuid() || (status.st_mode & 0777) != kMode)
-    refuse(session, "its shared memory is accessible to other users, so it is not used; remove " +
+    refuse(session, "the session's shared memory is accessible to other users and is not used; remove " +
                         std::string(kFolder) + name);
   region.memory_ = mapped(file, static_cast<std::size_t>(status.st_size), is_writable);
   if (!region.isOpen())
-    refuse(session, std::string("its shared memory cannot be mapped: ") + std::strerror(errno));
+    refuse(session, std::string("the session's shared memory cannot be mapped: ") + std::strerror(errno));
   return region;
 }
 

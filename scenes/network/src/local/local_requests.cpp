@@ -98,13 +98,13 @@ class LocalServer final : public ServerChannel {
     if (bind(listener_.file(), reinterpret_cast<const sockaddr*>(&name.address), name.size) != 0)
       throw LoadError("", "",
                       sessionWords(session) + (errno == EADDRINUSE
-                                                   ? ": another vps render already runs it; choose another "
-                                                     "--session, or stop that one"
-                                                   : std::string(": its request socket cannot be opened: ") +
+                                                   ? ": another vps render already runs this session; choose "
+                                                     "another --session, or stop that vps render"
+                                                   : std::string(": the request socket cannot be opened: ") +
                                                          std::strerror(errno)));
     if (listen(listener_.file(), static_cast<int>(kMostConnected)) != 0)
       throw LoadError(
-          "", "", sessionWords(session) + ": its request socket cannot be opened: " + std::strerror(errno));
+          "", "", sessionWords(session) + ": the request socket cannot be opened: " + std::strerror(errno));
   }
 
   std::optional<IncomingRequest> receive(std::chrono::milliseconds limit) override {
@@ -199,12 +199,14 @@ std::unique_ptr<ClientChannel> findLocalServer(const std::string& session, uid_t
   const Name name = socketName(session, user);
   Socket socket = newSocket(SOCK_NONBLOCK);
   if (connect(socket.file(), reinterpret_cast<const sockaddr*>(&name.address), name.size) != 0) {
-    if (errno == EAGAIN) throw LoadError("", "", sessionWords(session) + ": its vps render does not respond");
+    if (errno == EAGAIN)
+      throw LoadError("", "", sessionWords(session) + ": the session's vps render does not respond");
     return nullptr;
   }
   // Any user may bind a free name, so the owner of the socket is checked.
   if (const std::optional<uid_t> owner = userOf(socket.file()); !owner || (*owner != user && *owner != 0))
-    throw LoadError("", "", sessionWords(session) + ": its name is used by a program of another user");
+    throw LoadError("", "",
+                    sessionWords(session) + ": the session's name is used by a program of another user");
   return std::make_unique<LocalClient>(std::move(socket));
 }
 

@@ -365,8 +365,7 @@ std::optional<RealTimeResult> RemoteDriver::realTime() {
   result.behind_s = clock_.behind_s();
   result.physics_late = clock_.late();
   if (interruptions_ > 0)
-    result.warnings.push_back("number of times that the device was lost: " + std::to_string(interruptions_) +
-                              " times");
+    result.warnings.push_back("number of times that the device was lost: " + std::to_string(interruptions_));
   if (const std::string refused = end_.refusals(); !refused.empty())
     result.warnings.push_back("refused messages of the device: " + refused);
   if (const std::string doubts = end_.doubts(); !doubts.empty()) result.warnings.push_back(doubts);

@@ -55,8 +55,8 @@ void requirePossible(const Scene& scene, const RenderOptions& options) {
   requireSteps(scene);
   if (!options.has_local_contact) return;
   throw LoadError(scene.file, "",
-                  "local contact needs the parts' models in the process of the haptic loop; leave it out, or "
-                  "use vps assemble --real-time");
+                  "local contact needs the parts' models in the process of the haptic loop; turn local "
+                  "contact off, or use vps assemble --real-time");
 }
 
 /// Round trip from a state of the proxy to its answer. The coupling gains depend on it, and it is reported.

@@ -35,7 +35,7 @@ struct TrackedHeads::Work {
       if (isBehind(moved, screen)) {
         if (!std::exchange(stream.is_behind, true))
           news.push_back("the head of '" + viewer.name + "' is behind '" + screen.name +
-                         "'; the last pose in front of it is used");
+                         "'; the last pose in front of that screen is used");
         return false;
       }
     stream.is_behind = false;

@@ -23,11 +23,12 @@ class Asking {
       : session_(session),
         channel_(network.empty() ? findLocalServer(session) : findNetworkServer(session, network)),
         writer_(newSender()),
-        remedy_(network.empty() ? "its vps render is stopped or too busy"
-                                : "check that its vps render uses this --network, and that the certificates "
-                                  "are of the same authority and allow requests") {
+        remedy_(network.empty() ? "the session's vps render is stopped or too busy"
+                                : "check that the session's vps render uses this --network, and that the "
+                                  "certificates are of the same authority and allow requests") {
     if (channel_ == nullptr)
-      throw LoadError("", "", sessionWords(session) + ": no vps render that accepts requests runs it");
+      throw LoadError("", "",
+                      sessionWords(session) + ": no vps render that accepts requests runs this session");
   }
 
   /// Sends a message and returns the answer. Throws LoadError if no answer comes in time, if the session has
@@ -66,9 +67,9 @@ class Asking {
   bool isAnswerTo(const std::string& bytes, std::uint64_t number, Message&& message) const {
     const Reading reading = MessageReader().read(bytes, message);
     if (reading == Reading::BadVersion)
-      throw LoadError(
-          "", "",
-          sessionWords(session_) + " is run by another version of vps render; use the same version for both");
+      throw LoadError("", "",
+                      sessionWords(session_) +
+                          " is run by another version of vps render; use the same version for both programs");
     return reading == Reading::Good && message.asker == writer_.sender() && message.number == number;
   }
   [[nodiscard]] bool isAnswerTo(const std::string& bytes, std::uint64_t number) const {

@@ -164,7 +164,7 @@ RequestHandler::Answer RequestHandler::who() const {
   }
   words += "\ndevice: ";
   if (!facts.has_device)
-    words += facts.is_running ? "none, the run waits for it" : "none";
+    words += facts.is_running ? "none, the run waits for a device" : "none";
   else
     words += (facts.device.empty() ? "joining" : quoted(facts.device) + ", " + gainsInWords(gainsOf(facts))) +
              (requests_.isFaulted() ? "; safe state after a fault, without force" : "");
@@ -232,7 +232,7 @@ RequestHandler::Answer RequestHandler::setGains(double k_N_per_m, double k_Nm_pe
   gains_step_ = requests_.step();
   const bool is_bounded = gains.k_N_per_m < wish.k_N_per_m || gains.k_Nm_per_rad < wish.k_Nm_per_rad;
   return {true,
-          "from the next part on " + gainsInWords(gains) +
+          "from the next part on the coupling has " + gainsInWords(gains) +
               (is_bounded ? ", the limit at which this device is passive" : ""),
           false};
 }
@@ -255,7 +255,7 @@ RequestHandler::Answer RequestHandler::addPiece(std::uint64_t sender, const Piec
   if (options_.rights != RequestRights::All) return {false, "refused: this session accepts no scenes", false};
   const std::string hash = textOf(piece.hash);
   if (!isSceneHash(hash) || piece.total == 0 || piece.total > kMostScene || piece.size > PieceMessage::kMost)
-    return {false, "refused: this is not a valid piece of a scene", false};
+    return {false, "refused: the piece of the scene is invalid", false};
   if (piece.offset == 0) transfer_ = {sender, hash, {}, piece.total, 0};
   Transfer& now = transfer_;
   if (now.sender != sender || now.hash != hash || now.total != piece.total ||
@@ -344,7 +344,7 @@ RequestHandler::Answer RequestHandler::record(std::uint64_t sender, const std::s
   if (wants_file && !addFetcher(sender, "", facts.number + (is_next ? 1 : 0))) return {false, kCrowd, false};
   recording_ = (std::filesystem::path(folder) / name).string();
   const char* which = is_next ? "the next run is recorded in " : "this run is recorded in ";
-  return {true, which + unusedFile(recording_) + (is_late ? "; `vps ask again` starts it" : ""), false};
+  return {true, which + unusedFile(recording_) + (is_late ? "; `vps ask again` starts that run" : ""), false};
 }
 
 bool RequestHandler::addFetcher(std::uint64_t sender, const std::string& file, std::uint64_t wanted) {

@@ -94,7 +94,8 @@ struct SessionRecording::Work {
       }
     }
     failure = withProblem(
-        "no vps render of this session has answered; check that it runs and accepts requests from this node");
+        "no vps render of this session has answered; check that vps render runs and accepts requests from "
+        "this node");
     return {};
   }
   void keepProblem(const std::string& words) {
@@ -129,7 +130,7 @@ struct SessionRecording::Work {
         return;
       }
     }
-    failure = "stopped before the run had ended";
+    failure = "the transfer of the recording was stopped before the run had ended";
   }
   /// Tells the render node that the file has arrived, so that it does not wait.
   static void tellThatItIsHere(Asking& asking, const AskMessage& message) {

@@ -79,7 +79,8 @@ std::string stepTable(const scenes::RunComparison& result) {
                     both(s.expert.peak_force_N, s.trainee.peak_force_N, "%.2f"),
                     both(s.expert.mean_force_N, s.trainee.mean_force_N, "%.2f")});
   return html::table({"part", "score", "time [s]", "path [mm]", "farthest from the expert's path [mm]",
-                      "on average [mm]", "turned against it [degrees]", "peak force [N]", "mean force [N]"},
+                      "mean distance from that path [mm]", "rotated against the expert's pose [degrees]",
+                      "peak force [N]", "mean force [N]"},
                      rows);
 }
 

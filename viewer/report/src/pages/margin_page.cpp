@@ -28,7 +28,8 @@ std::string growthChart(const scenes::MarginResult& result) {
                     : step.growth_fails_m ? micrometres(step.growth_m) + " µm"
                                           : "more than " + micrometres(step.growth_m) + " µm",
                     colorOf(step)});
-  return barChart(bars, "Greatest growth of every face of the step's part with which it still goes in.");
+  return barChart(bars,
+                  "Greatest growth of every face of the step's part with which the part still goes in.");
 }
 
 std::string positionChart(const scenes::MarginResult& result) {
@@ -84,9 +85,8 @@ std::string marginPage(const scenes::MarginResult& result) {
           "<p>The part of each step was made larger by moving all its faces outwards, while the other parts "
           "stayed as drawn. A diameter grows by twice the number. " +
           (result.has_contact
-               ? "The growth is the greatest one with which the virtual operator still brought the part "
-                 "home, with one seed; "
-                 "by geometry alone it may be larger."
+               ? "The growth is the greatest with which the virtual operator still brought the part to its "
+                 "target, with one seed; by geometry alone the growth may be larger."
                : "The growth is by geometry alone, without a run of the hand: an upper bound.") +
           " Resolution " + micrometres(result.resolution_m) +
           " µm. Position and angle are measured with the part lifted off its seat by a hundredth of its "

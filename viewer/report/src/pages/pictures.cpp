@@ -221,8 +221,9 @@ std::string pictures(const scenes::CheckResult& result) {
         "<figure class=\"section\">" + picture(renderer, i, box_W, Vec3(0.75, -1.25, 0.85)) +
         picture(renderer, i, box_W, Vec3(-0.75, 1.25, -0.85)) + "<figcaption><b>" + escapeHtml(map.part) +
         "</b>, from the front, right and above, and from the opposite side. At the measured points " +
-        (least_m < 0 ? "it reaches up to " + format(-1e6 * least_m, "%.2f µm") + " into another part."
-                     : "its least distance from another part is " + format(1e6 * least_m, "%.2f µm") + ".") +
+        (least_m < 0
+             ? "the part reaches up to " + format(-1e6 * least_m, "%.2f µm") + " into another part."
+             : "the part's least distance from another part is " + format(1e6 * least_m, "%.2f µm") + ".") +
         "</figcaption></figure>\n";
   }
   return out;

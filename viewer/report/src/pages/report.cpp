@@ -103,12 +103,13 @@ std::string stepFacts(const scenes::StepResult& s) {
                                          " mm a turn, leaning by up to " +
                                          format(180 / std::numbers::pi * s.lean_rad, "%.2f") + " degrees");
   if (s.press_needed_N > 0)
-    facts.emplace_back("Force to press it in",
-                       format(s.press_needed_N, "%.0f") + " N, by Lamé's formula; the hand does not feel it");
+    facts.emplace_back(
+        "Force to press the part in",
+        format(s.press_needed_N, "%.0f") + " N, by Lamé's formula; the hand does not feel this force");
   if (s.hoist_N > 0)
     facts.emplace_back("Hangs on a hoist",
                        "which carries " + format(s.hoist_N, "%.1f") +
-                           " N of its weight, as the hand may carry no more than the rest; "
+                           " N of the part's weight, as the hand may carry no more than the rest; "
                            "forces on the hand are those of a part that is lighter by this weight");
   return html::facts(facts);
 }
@@ -159,7 +160,7 @@ std::string stepSection(std::size_t i, const scenes::StepResult& step, const Ste
     if (!pictures.start.empty())
       out += html::figure(pictures.start,
                           step.is_taken_off
-                              ? "In place; the part at the place where it is put down is transparent."
+                              ? "In place; the part is transparent at the place where the hand puts it down."
                               : "Start; the target is transparent.");
     if (!pictures.contact.empty()) out += html::figure(pictures.contact, "In contact, in section.");
     if (!pictures.end.empty()) out += html::figure(pictures.end, "End, in section.");
@@ -237,7 +238,7 @@ std::string method(const scenes::Scene& scene, const scenes::AssembleResult& res
   return "<h2>Energy</h2>\n" +
          html::facts({{"Work done on the hand", format(1e3 * result.energy.to_hand_J, "%.3f") + " mJ"},
                       {"Work done by the hand", format(1e3 * result.energy.from_hand_J, "%.3f") + " mJ"},
-                      {"Injected energy (received by the hand beyond what was stored)",
+                      {"Injected energy (received by the hand beyond the stored energy)",
                        format(1e3 * result.energy.injected_J, "%.4f") + " mJ"}}) +
          "<h2>What was modelled</h2>\n" +
          html::facts({{"Voxel size, point spacing", format(1e3 * scene.fidelity.voxel_m, "%g") + " mm, " +

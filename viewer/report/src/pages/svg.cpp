@@ -174,13 +174,14 @@ std::string captionOf(const scenes::CheckResult& result, const scenes::CheckedSe
   if (section.is_fit) {
     const scenes::CheckedFit& fit = result.fits[section.of];
     const bool is_shaft = fit.kind != scenes::FitKind::Key;
-    out = "<b>" + escapeHtml(fit.shaft) + "</b> in <b>" + escapeHtml(fit.bore) +
-          "</b>: " + (is_shaft ? "⌀ " : "width ") + format(1e3 * fit.shaft_m, "%.4f") + " in " +
-          format(1e3 * fit.bore_m, "%.4f") + " mm, " +
-          (fit.diametral_clearance_m < 0 ? "interference " : "clearance ") +
-          micrometres(std::abs(fit.diametral_clearance_m)) + " µm ± " + micrometres(fit.error_m) + " µm" +
-          (is_shaft ? " in diameter, so half of it to each side if centred" : " both sides together") +
-          (standardOf(fit).empty() ? "" : "; " + standardOf(fit));
+    out =
+        "<b>" + escapeHtml(fit.shaft) + "</b> in <b>" + escapeHtml(fit.bore) +
+        "</b>: " + (is_shaft ? "⌀ " : "width ") + format(1e3 * fit.shaft_m, "%.4f") + " in " +
+        format(1e3 * fit.bore_m, "%.4f") + " mm, " +
+        (fit.diametral_clearance_m < 0 ? "interference " : "clearance ") +
+        micrometres(std::abs(fit.diametral_clearance_m)) + " µm ± " + micrometres(fit.error_m) + " µm" +
+        (is_shaft ? " in diameter, so half of this value to each side if centred" : " both sides together") +
+        (standardOf(fit).empty() ? "" : "; " + standardOf(fit));
     out += is_shaft ? ". Section through the axis" : ". Section across the length";
   } else {
     const scenes::CheckedPair& pair = result.pairs[section.of];

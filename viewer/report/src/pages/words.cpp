@@ -29,9 +29,9 @@ std::string contactWords(const scenes::StepResult& step) {
   if (!step.completed)
     return step.is_taken_off ? "no: the part did not come off" : "no: the part did not reach its target";
   if (step.by_contact) return "yes";
-  if (step.is_taken_off) return "no: no other part guided it on its path";
-  return "no: no other part guided it; the hand placed it by sight alone, so only the tolerance tells where "
-         "it is";
+  if (step.is_taken_off) return "no: no other part guided this part on its path";
+  return "no: no other part guided this part; the hand placed it by sight alone, so only the tolerance tells "
+         "where it is";
 }
 
 std::string easeWords(const scenes::AssembleResult& result) {
@@ -152,7 +152,7 @@ std::string assemblyWords(const scenes::CheckResult& result) {
     case scenes::Verdict::Blocked:
       return "cannot be assembled: " + result.places.reason;
     case scenes::Verdict::NotShown:
-      return "whether it can be assembled is not shown: " + result.places.reason;
+      return "whether the parts can be assembled is not shown: " + result.places.reason;
     case scenes::Verdict::Fits:
       break;
   }
@@ -189,7 +189,7 @@ std::string playDoubt(const scenes::CheckedPart& part, const scenes::CheckResult
            std::abs(fit.diametral_clearance_m) <= fit.error_m + kEqual_m;
   });
   return std::string(has_equal ? "round faces of equal size touch" : "facets cross others as drawn")
-      .append("; its play is uncertain by ")
+      .append("; the part's play is uncertain by ")
       .append(html::format(1e6 * part.play_error_m, "%.1f"))
       .append(" um and ")
       .append(html::format(1e3 * part.play_error_rad, "%.2g"))

@@ -167,7 +167,7 @@ class HttpEnd : public std::enable_shared_from_this<HttpEnd<Stream>> {
       case WebAnswer::BadHost:
         return refuse(http::status::forbidden, "open the page by the address that vps prints");
       case WebAnswer::BadOrigin:
-        return refuse(http::status::forbidden, "the page of another server may not use this one");
+        return refuse(http::status::forbidden, "a page of another server may not use this server");
       case WebAnswer::Unauthenticated:
         return refuse(http::status::unauthorized,
                       "open the page by the address that vps prints, with its token");

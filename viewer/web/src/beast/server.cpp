@@ -45,13 +45,13 @@ asio::ip::address addressOf(const std::string& text) {
     throw LoadError("", "",
                     "--listen " + text +
                         ": name one address of this machine, such as 192.168.1.20; `ip addr` "
-                        "lists them");
+                        "lists the addresses");
   return address;
 }
 
 std::string remedyFor(const ErrorCode& failed) {
   if (failed == boost::system::errc::address_not_available)
-    return "--listen takes an address of this machine; `ip addr` lists them";
+    return "--listen takes an address of this machine; `ip addr` lists the addresses";
   if (failed == boost::system::errc::permission_denied) return "choose a port above 1023";
   return "choose another port";
 }
@@ -110,7 +110,7 @@ std::unique_ptr<ssl::context> tlsContext(const std::string& certificate_file, co
   if (isTooWeak(failed))
     throw LoadError(
         certificate_file, "",
-        "(--tls) has a key or a signature that is too weak for OpenSSL; make one of 2048 bits or more");
+        "(--tls) has a key or a signature that is too weak for OpenSSL; make a key of 2048 bits or more");
   if (failed) throw LoadError(certificate_file, "", "(--tls) holds no certificate in PEM form");
   requireInTime(*context, certificate_file);
   // This call also compares the key with the certificate, and fails if the key is of another kind.
