@@ -130,8 +130,9 @@ TEST_F(Scenario, ModellingOnlyWhatTheSceneRequiresGivesTheSameRunForLessMemory) 
 TEST_F(Scenario, ExplainPrintsWhatIsModelledOfTheBearingBlockAndWhatThatSaves) {
   const Ran ran = run("explain " + kScenes + "bearing_block/scene.toml --measure --json explain.json");
   ASSERT_EQ(ran.status, 0) << ran.err;
-  for (const char* words : {"housing", "near 9 paths", "shares the models of dowel_1",
-                            "no later step comes near it, so it is never cooked", "with --model-everything"})
+  for (const char* words :
+       {"housing", "near 9 paths", "shares the models of dowel_1",
+        "no later step comes near the part, so it is never cooked", "with --model-everything"})
     EXPECT_NE(ran.out.find(words), std::string::npos) << words << ran.out;
   const json data = read("explain.json");
   EXPECT_EQ(data["parts"].size(), 10u);

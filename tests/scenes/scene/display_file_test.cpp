@@ -54,7 +54,8 @@ TEST_F(DisplayFile, AScreenBehindTheHeadIsRefused) {
   // A head that is rotated by 180 degrees looks away from the wall.
   const std::string away =
       "[[viewer]]\nname = 'anna'\nhead = {position = [0, -1, 0.5], rpy_deg = [90, 0, 180]}\n";
-  EXPECT_NE(refusal(kWall + away).find("has 'wall' behind it"), std::string::npos) << refusal(kWall + away);
+  EXPECT_NE(refusal(kWall + away).find("has 'wall' behind the head"), std::string::npos)
+      << refusal(kWall + away);
   const std::string behind =
       "[[viewer]]\nname = 'anna'\nhead = {position = [0, 1, 0.5], rpy_deg = [90, 0, 0]}\n";
   EXPECT_NE(refusal(kWall + behind).find("of 'anna' is behind 'wall'"), std::string::npos)

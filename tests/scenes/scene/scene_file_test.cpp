@@ -325,7 +325,7 @@ TEST_F(SceneFile, EveryMistakeIsReportedWithLineAndKey) {
       {"start = {rotation_xyzw = [0, 0, 0, 1], rpy_deg = [0, 0, 0]}\n", "9", "key 'rpy_deg'"},
       {"motion = 'screw'\n", "9", "key 'motion' is a screw, but the mesh has no thread"},
       {"pitch = '2mm'\n", "9", "key 'pitch' applies to a screw only"},
-      {"motion = 'screw'\npitch = 1\nstart = {rpy_deg = [0, 0, 9]}\n", "9", "but the path rotates it"},
+      {"motion = 'screw'\npitch = 1\nstart = {rpy_deg = [0, 0, 9]}\n", "9", "but the path rotates the part"},
       {"way_points = 3\n", "9", "key 'way_points' is 3; expected a list of poses"},
       {"way_points = [1]\n", "9", "key 'way_points'"},
       {"[[step]]\n", "9", "[[step]] has no 'part'"},
@@ -395,10 +395,9 @@ TEST_F(SceneFile, PartsFartherAwayThan1000KmAreRefused) {
   const std::string pin = kPin + "pose = {position = [0, ";
   EXPECT_EQ(messageOf(pin + "0.99e9, 0]}\n"), "");
   for (const char* far_mm : {"1.01e9", "-1.01e9", "1e300"}) {
-    EXPECT_EQ(
-        messageOf(pin + far_mm + ", 0]}\n"),
-        "scene.toml: part 'pin': is more than 1000 km from the origin; check its unit, its pose and those "
-        "of its steps");
+    EXPECT_EQ(messageOf(pin + far_mm + ", 0]}\n"),
+              "scene.toml: part 'pin': is more than 1000 km from the origin; check its unit, its pose and "
+              "the poses of its steps");
     EXPECT_NE(messageOf(kStep + "target = {position = [" + far_mm + ", 0, 0]}\n").find("more than 1000 km"),
               std::string::npos);
   }

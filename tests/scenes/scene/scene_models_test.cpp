@@ -123,7 +123,7 @@ TEST(MeshWarning, AHoleIsNamedWithWhatItLeavesUncertain) {
   report.certain_share = 0.91229;
   const std::string words = meshWarning(report);
   EXPECT_EQ(words.find("is not a closed surface: 2 shells, 4 open edges"), 0U) << words;
-  EXPECT_NE(words.find("certain for 91.22 % of the space near it"), std::string::npos) << words;
+  EXPECT_NE(words.find("certain for 91.22 % of the space near the surface"), std::string::npos) << words;
 }
 
 TEST(MeshWarning, OverlappingShellsAreNotCalledOpen) {

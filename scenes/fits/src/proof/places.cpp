@@ -184,8 +184,8 @@ class PlaceSearch {
     const std::optional<CheckedPair> drawn = checkPair(parts_[pair.a], parts_[pair.b], checked_.near_m);
     if (drawn && drawn->state == PairState::Clash && !drawn->is_uncertain) return {};
     return "the overlap of " + quoted(parts_[pair.a].name) + " and " + quoted(parts_[pair.b].name) +
-           " is less than the distance of their meshes from the true faces, so the meshes cannot show that "
-           "it is gone";
+           " is less than the distance of their meshes from the true faces, so the meshes cannot show that a "
+           "motion clears the overlap";
   }
 
   /// The proof, in words, that no motion within kSightTolerance_m clears the touches of a try; empty if

@@ -210,10 +210,11 @@ void requireMemory(const Scene& scene, const ModelPlan& plan, double most_bytes)
       scene, plan, [&](const ScenePart& part) { return fidelityOf(part, scene.fidelity); }, most_bytes);
   if (about <= most_bytes) return;
   std::array<char, 200> words{};
-  std::snprintf(words.data(), words.size(),
-                "its models need about %.3g MB of memory, but only %.3g MB are available; choose larger "
-                "voxels and spacing (",
-                1e-6 * about, 1e-6 * most_bytes);
+  std::snprintf(
+      words.data(), words.size(),
+      "the models of its parts need about %.3g MB of memory, but only %.3g MB are available; choose larger "
+      "voxels and spacing (",
+      1e-6 * about, 1e-6 * most_bytes);
   throw LoadError(
       scene.file, "",
       words.data() + Remedy(scene, plan, most_bytes).words() +

@@ -145,11 +145,12 @@ class Planner {
     for (std::size_t s = 0; s < scene_.steps.size(); ++s) {
       if (scene_.steps[s].part != i) continue;
       part.has_map = part.has_shell = true;
-      part.why = scene_.steps[s].takes_off ? "in place until step " + std::to_string(s + 1) + " takes it off"
-                                           : "moves in step " + std::to_string(s + 1) + servesLater(i, s);
+      part.why = scene_.steps[s].takes_off
+                     ? "in place until step " + std::to_string(s + 1) + " takes the part off"
+                     : "moves in step " + std::to_string(s + 1) + servesLater(i, s);
       return;
     }
-    part.why = "no step moves it and it is not fixed: nothing can touch it, so it is only drawn";
+    part.why = "no step moves the part and it is not fixed: nothing can touch the part, so it is only drawn";
   }
 
   /// The later steps for which a mounted part is cooked, in words.
@@ -158,7 +159,7 @@ class Planner {
     for (std::size_t s = moved_in + 1; s < plan_.steps.size(); ++s)
       if (std::ranges::count(plan_.steps[s].cooked, i) > 0)
         steps += (steps.empty() ? "" : ", ") + std::to_string(s + 1);
-    return steps.empty() ? "; no later step comes near it, so it is never cooked"
+    return steps.empty() ? "; no later step comes near the part, so it is never cooked"
                          : "; then cooked, for step " + steps;
   }
 
@@ -168,7 +169,7 @@ class Planner {
       if (std::ranges::count(step.cooked, i) > 0) part.kept_P.push_back(moved(*step.region_W, X_PW));
     part.has_map = part.has_shell = !part.kept_P.empty();
     part.why = part.has_map ? "fixed: cooked in the region where a moving part may come"
-                            : "fixed, but no moving part comes near: nothing can touch it";
+                            : "fixed, but no moving part comes near: nothing can touch the part";
   }
 
   void planFree(std::size_t i, PartModelPlan& part) {
@@ -176,14 +177,16 @@ class Planner {
     if (scene_.parts[i].is_fixed) {
       const bool is_cooked = std::ranges::count(all.cooked, i) > 0;
       part.has_shell = is_cooked && all.has_shell;
-      part.why = is_cooked ? "fixed: only in the cooked field" : "nothing moves, so nothing can touch it";
+      part.why =
+          is_cooked ? "fixed: only in the cooked field" : "no part moves, so nothing can touch this part";
       return;
     }
     std::size_t others = 0;
     for (std::size_t j = 0; j < scene_.parts.size(); ++j) others += j != i && !scene_.parts[j].is_fixed;
     part.has_shell = true;
     part.has_map = others > 0 || all.has_shell;
-    part.why = part.has_map ? "moves freely" : "moves freely, one-sided: only its points are tested";
+    part.why =
+        part.has_map ? "moves freely" : "moves freely, one-sided: only the points of this part are tested";
   }
 
   void shareEqual() {

@@ -37,7 +37,8 @@ std::string meshWarning(const MeshReport& report) {
   words += found.substr(0, found.rfind(';'));
   char certain[96];
   // The share is rounded down, so that 100 % means all of the space.
-  std::snprintf(certain, sizeof certain, "; inside and outside are certain for %.4g %% of the space near it",
+  std::snprintf(certain, sizeof certain,
+                "; inside and outside are certain for %.4g %% of the space near the surface",
                 std::floor(1e4 * report.certain_share) / 1e2);
   return words + certain;
 }

@@ -75,9 +75,11 @@ DisplayViewer readViewer(const SceneKeys& keys, std::size_t number) {
   const bool is_recorded = keys.text("recorded", recorded), is_topic = keys.text("topic", viewer.topic);
   if (is_recorded && (is_topic || viewer.is_placed))
     keys.fail("recorded", "gives the pose of the head at all times; leave out " +
-                              std::string(is_topic ? "'topic'" : "'head'") + ", or this");
+                              std::string(is_topic ? "'topic'" : "'head'") + ", or 'recorded'");
   if (!viewer.is_placed && !is_recorded && !is_topic)
-    keys.fail("head", "is missing; give its pose, {position = [...]}, or its stream: 'recorded' or 'topic'");
+    keys.fail(
+        "head",
+        "is missing; give the head's pose, {position = [...]}, or a stream of poses: 'recorded' or 'topic'");
   if (is_recorded) readTrack(keys, recorded, viewer);
   if (is_topic) readTopic(keys, viewer);
   keys.length("eye_distance", viewer.eye_distance_m, {.min = 0, .max = 1});
@@ -106,8 +108,9 @@ void requireInFront(const SceneKeys& keys, const DisplayViewer& viewer, const Di
        {screen.lower_left_S, screen.lower_right_S, screen.upper_left_S, Vec3(screen.upper_left_S + across_S)})
     is_seen = is_seen || -viewer.X_SE.R.col(2).dot(corner_S - viewer.X_SE.p) > 0;
   if (!is_seen)
-    keys.fail("head", "of '" + viewer.name + "' has '" + screen.name +
-                          "' behind it; a head looks along its -z: rotate it by rpy_deg or rotation_xyzw");
+    keys.fail("head",
+              "of '" + viewer.name + "' has '" + screen.name +
+                  "' behind the head; a head looks along its -z: rotate it by rpy_deg or rotation_xyzw");
 }
 
 }  // namespace
@@ -139,7 +142,8 @@ HeadTrack loadHeadTrack(const std::string& file) {
       throw LoadError(row.place, "",
                       "has no rotation in columns 5 to 8; expected a unit quaternion x, y, z, w");
     if (!track.time_s.empty() && n[0] <= track.time_s.back())
-      throw LoadError(row.place, "", "is not later than the row before; put the rows in order of time");
+      throw LoadError(row.place, "",
+                      "has a time that is not later than in the row before; put the rows in order of time");
     track.time_s.push_back(n[0]);
     track.X_SE.push_back(*X_SE);
   }
@@ -188,7 +192,7 @@ Display loadDisplay(const std::string& file) {
         readScreen(SceneKeys(*table, context, "[[screen]]",
                              {"name", "lower_left", "lower_right", "upper_left", "pixels"}),
                    display.screens.size() + 1));
-  if (display.screens.empty()) throw LoadError(file, "", "has no [[screen]]; give its corners");
+  if (display.screens.empty()) throw LoadError(file, "", "has no [[screen]]; give the corners of a screen");
   for (const toml::table* table : top.tables("viewer")) {
     const SceneKeys keys(*table, context, "[[viewer]]",
                          {"name", "head", "recorded", "topic", "ros_domain", "network", "eye_distance"});

@@ -164,7 +164,7 @@ class SceneReader {
     std::string file, fallback;
     if (top_.text("cad_fallback", fallback) && !top_.has("cad"))
       top_.fail("cad_fallback",
-                "replaces a 'cad' where its library is missing, but the file has no 'cad'; add one");
+                "replaces a 'cad' whose library is missing, but the file has no 'cad'; add the key 'cad'");
     if (!top_.text("cad", file)) return;
     if (fallback.empty()) return addCad("cad", file);
     try {
@@ -195,7 +195,7 @@ class SceneReader {
     readFields(keys, part, kPartKeys);
     for (const char* key : {"velocity_m_s", "angular_velocity_rad_s"})
       if (part.is_fixed && keys.has(key))
-        keys.fail(key, "has no effect on a fixed part; leave one of them out");
+        keys.fail(key, "has no effect on a fixed part; leave out the key or 'fixed'");
     if (keys.has("color")) part.part.face_colors = {};  // the file sets one colour for the whole part
     readColor(keys, part.part.color);
   }
@@ -231,14 +231,15 @@ class SceneReader {
   ScenePart& cadPart(const SceneKeys& keys) {
     std::string name, node;
     if (!keys.text("name", name) && !keys.has("node"))
-      keys.failWhole("has neither 'name' nor 'file'; give one");
-    if (cad_count_ == 0) keys.failWhole("has no 'file'; name the mesh it is made of");
+      keys.failWhole("has neither 'name' nor 'file'; give one of the two keys");
+    if (cad_count_ == 0) keys.failWhole("has no 'file'; name the part's mesh file");
     const bool has_node = keys.text("node", node);
     const auto of_cad = std::span(scene_.parts).first(cad_count_);
     const std::size_t index =
         partNamed(keys, has_node ? "node" : "name", has_node ? node : name, of_cad, nameOf);
     if (is_described_[index])
-      keys.failWhole("describes '" + of_cad[index].part.name + "' for the second time");
+      keys.failWhole("describes '" + of_cad[index].part.name +
+                     "' for the second time; describe each part in one [[part]]");
     is_described_[index] = true;
     if (!name.empty()) scene_.parts[index].part.name = name;
     return scene_.parts[index];
@@ -248,7 +249,7 @@ class SceneReader {
     const SceneKeys keys(table, context_, "[[group]]", keysOf(kGroupKeys));
     PartGroup group;
     if (!keys.text("name", group.name) || group.name.empty())
-      keys.failWhole("has no 'name'; give the body one");
+      keys.failWhole("has no 'name'; give the body a name");
     if (!keys.texts("parts", group.parts)) keys.failWhole("has no 'parts'; list the names of its parts");
     if (group.parts.size() < 2) keys.fail("parts", "names fewer than two parts; a group has two or more");
     const ScenePart* first = nullptr;
@@ -279,7 +280,7 @@ class SceneReader {
     const SceneKeys keys(table, context_, "[[step]]", keysOf(kStepKeys));
     SceneStep step;
     std::string name;
-    if (!keys.text("part", name)) keys.failWhole("has no 'part'; name the part it mounts");
+    if (!keys.text("part", name)) keys.failWhole("has no 'part'; name the part that the step mounts");
     if (const auto in = group_of_.find(name);
         in != group_of_.end() && in->second != name &&
         std::ranges::find(scene_.parts, name, nameOf) == scene_.parts.end())
@@ -287,7 +288,8 @@ class SceneReader {
                             "'; name the group, which moves as one");
     step.part = partNamed(keys, "part", name, scene_.parts, nameOf);
     const ScenePart& part = scene_.parts[step.part];
-    if (part.is_fixed) keys.fail("part", "names '" + name + "', which is fixed; a step moves its part");
+    if (part.is_fixed)
+      keys.fail("part", "names '" + name + "', which is fixed; a step mounts a part that is not fixed");
     for (const SceneStep& earlier : scene_.steps)
       if (earlier.part == step.part) keys.fail("part", "names '" + name + "', which an earlier step mounts");
 
@@ -295,7 +297,8 @@ class SceneReader {
     keys.pose("target", step.X_WP_target);
     step.X_WP_start = step.X_WP_target;
     if (Vec3 offset_W; keys.position("approach", offset_W)) {
-      if (keys.has("start")) keys.fail("approach", "cannot be combined with 'start'; give one of them");
+      if (keys.has("start"))
+        keys.fail("approach", "cannot be combined with 'start'; give one of the two keys");
       step.X_WP_start.p += offset_W;
     } else if (!keys.pose("start", step.X_WP_start)) {
       step.X_WP_start.p.z() += liftToClear(step);
@@ -357,7 +360,7 @@ class SceneReader {
   /// Checks the device file, which the run reads again, so that an error is reported with line and key.
   void readDeviceFile(const SceneKeys& keys, const std::string& file) {
     if (!device::findDeviceKind(scene_.device.kind)->isSimulated())
-      keys.fail("parameters", "applies to a dual_arm or an ideal_dual_arm only; leave it out");
+      keys.fail("parameters", "applies to a dual_arm or an ideal_dual_arm only; leave the key out");
     try {
       device::loadDualArm(path(file));
     } catch (const LoadError& error) {

@@ -333,7 +333,7 @@ Pose SceneKeys::requirePose(std::string_view key, const toml::node& node, Pose f
   double q[4], rpy_deg[3];
   if (keys.numbers("rotation_xyzw", 4, q)) {
     if (keys.has("rpy_deg"))
-      keys.fail("rpy_deg", "cannot be combined with 'rotation_xyzw'; give one of them");
+      keys.fail("rpy_deg", "cannot be combined with 'rotation_xyzw'; give one of the two keys");
     const Quat rotation(q[3], q[0], q[1], q[2]);
     // Files state four digits or more, so a larger deviation is a mistake and not rounding.
     if (std::abs(rotation.norm() - 1) > 1e-3)

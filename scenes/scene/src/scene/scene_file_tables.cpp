@@ -66,11 +66,13 @@ class FidelityReader {
     readFields(keys, wish, kFidelityWishFields);
     if (!is_auto) {
       for (const std::string_view key : keysOf(kFidelityWishFields))
-        if (keys.has(key)) keys.fail(key, "has an effect with 'auto = true' only; add that, or leave it out");
+        if (keys.has(key))
+          keys.fail(key, "has an effect with 'auto = true' only; add 'auto = true', or leave the key out");
       return;
     }
     for (const char* key : {"voxel", "spacing"})
-      if (keys.has(key)) keys.fail(key, "cannot be combined with 'auto = true', which chooses it");
+      if (keys.has(key))
+        keys.fail(key, "cannot be combined with 'auto = true', which chooses voxel and spacing");
     setWish(wish);
   }
 
@@ -92,16 +94,18 @@ void completeScrew(const SceneKeys& keys, const Mesh& mesh, SceneStep& step) {
   constexpr double kTurned_rad = 1e-6;  // more than the rounding of the file's numbers
   if (step.motion != StepMotion::Screw) {
     for (const char* key : {"pitch", "torque_Nm"})
-      if (keys.has(key)) keys.fail(key, "applies to a screw only; add motion = \"screw\", or leave it out");
+      if (keys.has(key))
+        keys.fail(key, "applies to a screw only; add motion = \"screw\", or leave the key out");
     return;
   }
   const auto turns = [&](const Pose& X_WP) {
     return rotationVector(X_WP.R * step.X_WP_target.R.transpose()).norm() > kTurned_rad;
   };
   if (turns(step.X_WP_start) || std::any_of(step.way_points.begin(), step.way_points.end(), turns))
-    keys.fail("motion",
-              "is a screw, but the path rotates it; give start and way points the rotation of the target, "
-              "since the hand turns a screw by itself");
+    keys.fail(
+        "motion",
+        "is a screw, but the path rotates the part; give start and way points the rotation of the target, "
+        "since the hand turns a screw by itself");
   if (step.pitch_m == 0) step.pitch_m = leadOnMesh_m(mesh, step);
   if (step.pitch_m == 0)
     keys.fail("motion",

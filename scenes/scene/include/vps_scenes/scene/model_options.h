@@ -30,8 +30,8 @@ struct ModelOptions {
 };
 
 /// Defects of a mesh that make its inside uncertain, in words: "is not a closed surface: 2 open edges; inside
-/// and outside are certain for 99.9 % of the space near it". Empty for a mesh without such defects, such as a
-/// closed block with a void in it.
+/// and outside are certain for 99.9 % of the space near the surface". Empty for a mesh without such defects,
+/// such as a closed block with a void in it.
 VPS_SCENES_API std::string meshWarning(const MeshReport& report);
 
 }  // namespace vps::scenes

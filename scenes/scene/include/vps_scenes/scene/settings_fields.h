@@ -32,37 +32,40 @@ inline constexpr Range kCount{.min = 1, .max = 1e6};
 inline constexpr auto kSceneKeys = std::make_tuple(
     Key{"name", "text", "the folder's name", "name of the scene in reports"},
     Key{"unit", "`\"um\"`, `\"mm\"`, `\"cm\"`, `\"m\"`, `\"inch\"`", "none",
-        "unit of plain lengths, and of meshes that do not state theirs"},
+        "unit of lengths that are plain numbers, and of meshes that state no unit"},
     Key{"gravity", "3 numbers [m/s^2]", "`[0, 0, -9.81]`", "acceleration of gravity in the world"},
     Key{"cad", "file", "none",
-        "an assembly: each of its parts is a part of the scene, with its name and designed pose"},
+        "CAD file of an assembly: each part of the file is a part of the scene, with its name and designed "
+        "pose"},
     Key{"cad_fallback", "file", "none",
-        "read instead of `cad` where this build lacks the library of its format; it has the same part names"},
+        "file that is read instead of `cad` if this build lacks the library for the format of `cad`; both "
+        "files have the same part names"},
     Key{"deflection", "length", "`\"1um\"`",
-        "greatest distance between a curved face and its triangles (STEP, IGES)"},
+        "greatest distance between a curved face and its triangles, for STEP and IGES files"},
     Key{"missing", "text", "none",
-        "geometry of the CAD file that no part has; each command warns of it, and `vps import` writes it"},
+        "geometry of the CAD file that no part has; each command warns of this geometry; `vps import` writes "
+        "the key"},
     field("release_s", &Scene::release_s,
           "time for which a mounted part stays dynamic before it joins the fixed field",
           {.range = kNotNegative, .type = "seconds"}),
     Key{"material", "table", "steel",
-        "`density`, `friction`, `restitution`, `stiffness` of all parts that do not state their own"},
+        "`density`, `friction`, `restitution`, `stiffness` of all parts that state no values of their own"},
     Key{"part"}, Key{"group"}, Key{"step"}, Key{"device"}, Key{"operator"}, Key{"coupling"}, Key{"fidelity"},
     Key{"record"});
 
-inline constexpr auto kMaterialFields =
-    std::make_tuple(field("density", &Material::density_kg_m3, "density of the material",
-                          {.range = kPositive, .type = "kg/m^3"}),
-                    field("friction", &Material::friction,
-                          "Coulomb coefficient of the material on itself; two parts have the geometric mean "
-                          "of their coefficients",
-                          {.range = kNotNegative}),
-                    field("restitution", &Material::restitution,
-                          "0 inelastic to 1 elastic; two parts have the product of their values",
-                          {.range = {.min = 0, .max = 1}, .type = "0 to 1"}),
-                    field("stiffness", &Material::stiffness_N_per_m3,
-                          "penalty stiffness per area; two parts have the lower of their values",
-                          {.range = kPositive, .type = "N/m^3"}));
+inline constexpr auto kMaterialFields = std::make_tuple(
+    field("density", &Material::density_kg_m3, "density of the material",
+          {.range = kPositive, .type = "kg/m^3"}),
+    field("friction", &Material::friction,
+          "Coulomb coefficient of the material on itself; two parts have the geometric mean "
+          "of their coefficients",
+          {.range = kNotNegative}),
+    field("restitution", &Material::restitution,
+          "coefficient of restitution, 0 inelastic to 1 elastic; two parts have the product of their values",
+          {.range = {.min = 0, .max = 1}, .type = "0 to 1"}),
+    field("stiffness", &Material::stiffness_N_per_m3,
+          "penalty stiffness per area; two parts have the lower of their values",
+          {.range = kPositive, .type = "N/m^3"}));
 static_assert(coversAllMembers<Material>(kMaterialFields));
 
 /// `[[part]]`: tolerances for `vps study`. Not archived, since a recording holds a single run.
@@ -90,11 +93,12 @@ inline constexpr auto kToleranceFields = std::make_tuple(
     field("angle_tolerance_deg", &PartTolerance::angle_rad,
           "`vps study`: greatest rotation of the part about each of its axes",
           {.quantity = Quantity::Angle, .range = kNotNegative}),
-    field("friction_tolerance", &PartTolerance::friction, "`vps study`: greatest difference from `friction`",
+    field("friction_tolerance", &PartTolerance::friction,
+          "`vps study`: greatest deviation of the friction coefficient from `friction`",
           {.range = kNotNegative}),
     field("distribution", &PartTolerance::distribution,
-          "`vps study`: normal: the limits are three standard deviations from their mean; uniform: uniform "
-          "between the limits"));
+          "`vps study`: distribution of each deviation; normal: the limits are three standard deviations "
+          "from their mean; uniform: constant density between the limits"));
 static_assert(coversAllMembers<PartTolerance>(kToleranceFields));
 
 /// `[[part]]`
@@ -103,27 +107,27 @@ inline constexpr auto kPartKeys = std::make_tuple(
     Key{"node", "text", "",
         "the part's name within the file, if the file has several parts; `\"*\"`: the whole file as one "
         "part"},
-    Key{"name", "text", "`node`, or the file's stem", "unique in the scene"},
+    Key{"name", "text", "`node`, or the file's stem", "name of the part, unique in the scene"},
     Key{"pose", "pose", "as in the file", "designed pose in the world"},
     Key{"velocity_m_s", "3 numbers", "0",
         "velocity of the part's origin in the world, at the start of `vps simulate`"},
     Key{"angular_velocity_rad_s", "3 numbers", "0",
-        "angular velocity in the world, at the start of `vps simulate`"},
+        "angular velocity of the part in the world, at the start of `vps simulate`"},
     field("fixed", &ScenePart::is_fixed, "the part never moves and is in place from the start"),
     group("", path(&ScenePart::part, &Part::material), kMaterialFields),
     Key{"color", "`\"#rrggbb\"` or 3 numbers 0 to 1", "as in the file, or grey", "colour in sRGB"},
     field("deflection", &ScenePart::deflection_m,
-          "greatest distance of the mesh from the exact faces; `vps import` writes it",
+          "greatest distance of the mesh from the exact faces; `vps import` writes the key",
           {.quantity = Quantity::Length, .range = kNotNegative, .default_text = "the file's, or estimated"}),
     field("rounding", &ScenePart::rounding_m,
           "greatest displacement of the vertices by a file that rounded them to 32-bit floats; `vps import` "
-          "writes it",
+          "writes the key",
           {.quantity = Quantity::Length, .range = kNotNegative, .default_text = "the file's"}),
     field("allow_overlap", &ScenePart::allow_overlap,
           "the part may start inside another one (interference fits)"),
     field("press_fit", &ScenePart::press_fit_m,
-          "declared interference of a part that is pressed in, in diameter or width: `vps check` judges an "
-          "overlap by it and computes the force",
+          "declared interference of a part that is pressed in, in diameter or width: `vps check` compares an "
+          "overlap with this length and computes the force",
           {.quantity = Quantity::Length, .range = kNotNegative, .default_text = "none"}),
     field("youngs_modulus", &ScenePart::youngs_modulus_Pa,
           "Young's modulus, for the force of a press fit; assumed: steel",
@@ -131,8 +135,8 @@ inline constexpr auto kPartKeys = std::make_tuple(
     field("poissons_ratio", &ScenePart::poissons_ratio,
           "Poisson's ratio, for the force of a press fit; assumed: steel", {.range = {.min = 0, .max = 0.5}}),
     field("scenery", &ScenePart::is_scenery,
-          "`vps assemble` leaves the part out: it is not fixed, no step moves it, and nothing collides with "
-          "it"),
+          "`vps assemble` leaves the part out: the part is not fixed, no step moves it, and nothing collides "
+          "with it"),
     field("fastener", &ScenePart::fastener,
           "kind of fastener that `vps plan` recognized by the shape, as `\"nut M8\"`; information for "
           "readers, without effect",
@@ -150,7 +154,7 @@ inline constexpr auto kStepKeys = std::make_tuple(
     Key{"target", "pose", "the designed pose", "pose of the mounted part"},
     Key{"start", "pose", "see below",
         "pose in which the hand takes the part; position or rotation that is left out is the target's"},
-    Key{"approach", "3 lengths", "see below", "the start as an offset from the target, in the world"},
+    Key{"approach", "3 lengths", "see below", "offset of the start from the target, in the world"},
     Key{"way_points", "list of poses", "none",
         "poses of the part that the hand passes, from start to target"},
     field("tolerance", &SceneStep::tolerance_m,
@@ -166,7 +170,7 @@ inline constexpr auto kStepKeys = std::make_tuple(
           {.quantity = Quantity::Angle, .range = kNotNegative, .default_text = "not judged"}),
     field("clearance", &SceneStep::clearance_m,
           "diametral clearance of the tightest fit that the part enters; the part may penetrate another by a "
-          "quarter of it, and by 10 um at most",
+          "quarter of this clearance, and by 10 um at most",
           {.quantity = Quantity::Length, .range = kNotNegative, .default_text = "not stated"}),
     field("timeout_s", &SceneStep::timeout_s, "simulated time after which the step has failed",
           {.range = kPositive, .type = "seconds"}),
@@ -175,14 +179,17 @@ inline constexpr auto kStepKeys = std::make_tuple(
           "by itself",
           {.since = 4}),
     field("motion", &SceneStep::motion,
-          "push: the part moves along the last leg of the path; screw: it also rotates about that leg, see "
-          "below",
+          "push: the part moves along the last leg of the path; screw: the part also rotates about the last "
+          "leg, see below",
           {.since = 5}),
-    field("pitch", &SceneStep::pitch_m, "of a screw: travel in one turn; negative: a left-hand thread",
+    field("pitch", &SceneStep::pitch_m,
+          "lead of a screw, the travel in one turn; negative: a left-hand thread",
           {.quantity = Quantity::Length, .since = 5, .default_text = "found in the mesh"}),
     field("torque_Nm", &SceneStep::torque_Nm,
-          "of a screw: the screw is turned until it resists with this torque",
-          {.range = kNotNegative, .since = 5, .default_text = "turned to the height of its target"}));
+          "torque to which a screw is tightened: the hand turns the screw until it resists with this torque",
+          {.range = kNotNegative,
+           .since = 5,
+           .default_text = "the screw is turned to the height of its target"}));
 static_assert(coversAllMembers<SceneStep, 5>(kStepKeys));
 
 /// `[device]`
@@ -192,7 +199,8 @@ inline constexpr auto kDeviceKeys = std::make_tuple(
     Key{"parameters", "file", "none",
         "parameters that differ from [the built-in dual arm](../../device/data/dual_arm.toml)"},
     field("scale", &DeviceSettings::scale, "scene metres per device metre", {.range = kPositive}),
-    field("quantised_encoders", &DeviceSettings::has_quantised_encoders, "encoders have a finite resolution"),
+    field("quantised_encoders", &DeviceSettings::has_quantised_encoders,
+          "the device's encoders have a finite resolution"),
     field("indexing", &DeviceSettings::has_indexing,
           "a path that exceeds the workspace or the rotation of the device is split, see below; false: such "
           "a path is an error",
@@ -247,7 +255,8 @@ inline constexpr auto kFidelityFields = std::make_tuple(
           "the fixed parts are tested as well"),
     field("gradient", &Fidelity::gradient, "how the field's gradient is interpolated"),
     field("contact_limit", &Fidelity::contact_limit,
-          "contacts of each pair of parts given to the solver; checks of solved steps may add up to 16",
+          "greatest number of contacts of each pair of parts that the solver receives; checks of solved "
+          "steps may add up to 16",
           {.range = {.min = 4, .max = kCount.max}}),
     field("haptic_rate_hz", &Fidelity::haptic_rate_hz, "rate of the haptic loop", {.range = kRate_Hz}),
     field("physics_rate_hz", &Fidelity::physics_rate_hz, "rate of the physics steps", {.range = kRate_Hz}),
@@ -271,16 +280,17 @@ inline constexpr auto kFidelityWishFields = std::make_tuple(
         "tolerance", &FidelityWish::tolerance_m,
         "greatest error of depth at 95 of 100 points of every surface",
         {.quantity = Quantity::Length, .range = kPositive, .default_text = "`\"10um\"` if no bound is set"}),
-    field("budget_hz", &FidelityWish::budget_hz, "physics steps per second",
+    field("budget_hz", &FidelityWish::budget_hz,
+          "least number of physics steps that the machine must compute per second",
           {.range = kRate_Hz, .default_text = "no limit"}),
-    field("memory_MB", &FidelityWish::memory_bytes, "memory of all models",
+    field("memory_MB", &FidelityWish::memory_bytes, "greatest memory of all models",
           {.quantity = Quantity::Megabytes, .range = kPositive, .default_text = "no limit"}));
 static_assert(coversAllMembers<FidelityWish, 1>(kFidelityWishFields));
 
 /// `[fidelity]`: the source of the values.
 inline constexpr auto kFidelityChoiceKeys =
     std::make_tuple(Key{"preset", "`\"fast\"`, `\"normal\"`, `\"fine\"`", "`\"normal\"`",
-                        "sets the keys that the table does not have"},
+                        "preset that sets the keys that the table does not have"},
                     Key{"auto", "bool", "false",
                         "the program chooses `voxel` and `spacing`, see [FIDELITY.md](../FIDELITY.md)"});
 

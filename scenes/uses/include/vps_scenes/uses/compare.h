@@ -66,7 +66,7 @@ VPS_SCENES_API RunComparison compareRuns(const device::RecordedRun& expert,
                                          const device::RecordedRun& trainee);
 
 inline constexpr auto kRunMeasureFields = std::make_tuple(
-    field("duration_s", &RunMeasures::duration_s, "from taking the part to letting it go, simulated time"),
+    field("duration_s", &RunMeasures::duration_s, "simulated time from taking the part to releasing it"),
     field("path_m", &RunMeasures::path_m, "length of the path of the part's centre of mass"),
     field("peak_force_N", &RunMeasures::peak_force_N, "greatest force on the hand"),
     field("mean_force_N", &RunMeasures::mean_force_N, "mean force on the hand over time"));
@@ -74,10 +74,10 @@ static_assert(coversAllMembers<RunMeasures>(kRunMeasureFields));
 
 inline constexpr auto kComparedStepFields = std::make_tuple(
     field("part", &ComparedStep::part, "part of the step"),
-    field("done", &ComparedStep::is_done, "the trainee brought the part to its target"),
+    field("done", &ComparedStep::is_done, "whether the trainee brought the part to its target"),
     field("score", &ComparedStep::score,
-          "0 to 100: mean of the ratios of time, path and peak force, each the expert's value divided by the "
-          "trainee's and at most 1; forces below 1 N count as 1 N; 0: the step is not done"),
+          "score from 0 to 100: the mean of the ratios of time, path and peak force, each the expert's value "
+          "divided by the trainee's and at most 1; forces below 1 N count as 1 N; 0: the step is not done"),
     field("detour_m", &ComparedStep::detour_m, "length of the trainee's path minus the expert's"),
     field("deviation_m", &ComparedStep::deviation_m,
           "greatest distance of the trainee's path from the expert's path"),

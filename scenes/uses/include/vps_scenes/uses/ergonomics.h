@@ -85,21 +85,24 @@ struct Ergonomics {
 /// O(samples).
 VPS_SCENES_API Ergonomics measureErgonomics(const Scene& scene, const std::vector<TraceRow>& trace);
 
-inline constexpr auto kStepErgonomicsFields = std::make_tuple(
-    field("part", &StepErgonomics::part, "part of the step"),
-    field("body", &StepErgonomics::body, "`small woman` or `large man` (assumed sizes)"),
-    field("posture", &StepErgonomics::posture, "`seated` or `standing`"),
-    field("hand", &StepErgonomics::hand, "`left` or `right`: the hand with less strain"),
-    field("greatest_reach", &StepErgonomics::greatest_reach,
-          "greatest distance of the hand from the shoulder, as a share of the arm's length"),
-    field("out_of_reach_share", &StepErgonomics::out_of_reach_share,
-          "share of the time in hand with the part out of reach"),
-    field("raised_rad", &StepErgonomics::raised_rad, "greatest angle of the upper arm from hanging down"),
-    field("elbow_least_rad", &StepErgonomics::elbow_least_rad, "least flexion of the elbow; 0: stretched"),
-    field("elbow_most_rad", &StepErgonomics::elbow_most_rad, "greatest flexion of the elbow"),
-    field("rula_mean", &StepErgonomics::rula_mean,
-          "mean over time of RULA's score of upper and lower arm, 2 (best) to 6"),
-    field("rula_worst", &StepErgonomics::rula_worst, "greatest score of the step"));
+inline constexpr auto kStepErgonomicsFields =
+    std::make_tuple(field("part", &StepErgonomics::part, "part of the step"),
+                    field("body", &StepErgonomics::body, "`small woman` or `large man` (assumed sizes)"),
+                    field("posture", &StepErgonomics::posture, "`seated` or `standing`"),
+                    field("hand", &StepErgonomics::hand, "`left` or `right`: the hand with less strain"),
+                    field("greatest_reach", &StepErgonomics::greatest_reach,
+                          "greatest distance of the hand from the shoulder, as a share of the arm's length"),
+                    field("out_of_reach_share", &StepErgonomics::out_of_reach_share,
+                          "share of the time in which the hand holds the part out of the arm's reach"),
+                    field("raised_rad", &StepErgonomics::raised_rad,
+                          "greatest angle between the upper arm and the vertical, 0 when the arm hangs down"),
+                    field("elbow_least_rad", &StepErgonomics::elbow_least_rad,
+                          "least flexion of the elbow; 0: the arm is stretched"),
+                    field("elbow_most_rad", &StepErgonomics::elbow_most_rad, "greatest flexion of the elbow"),
+                    field("rula_mean", &StepErgonomics::rula_mean,
+                          "mean over time of RULA's score of upper and lower arm, 2 (best) to 6"),
+                    field("rula_worst", &StepErgonomics::rula_worst,
+                          "greatest RULA score of upper and lower arm in the step"));
 static_assert(coversAllMembers<StepErgonomics>(kStepErgonomicsFields));
 
 }  // namespace vps::scenes
