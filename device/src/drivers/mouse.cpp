@@ -47,7 +47,7 @@ std::unique_ptr<Device> openMouse(std::shared_ptr<HandleWish> wish, const Pulled
 DeviceKind mouseKind() {
   return {"mouse",
           "the mouse in the window of vps view: a spring from the cursor to the part",
-          "use it in a window: vps view SCENE --hand mouse",
+          "use the mouse in a window: vps view SCENE --hand mouse",
           openFor,
           nullptr,
           [] { return std::string(); }};

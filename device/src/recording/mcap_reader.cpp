@@ -189,7 +189,7 @@ class Parser {
       const std::string_view body = in.text<std::uint64_t>();
       if (!in.isGood()) return fail(begin, kContradiction);
       if (opcode != kMessage && opcode != kSchema && opcode != kChannel)
-        return fail(begin, "has a chunk with a record that does not belong there");
+        return fail(begin, "has a chunk with a record that does not belong in a chunk");
       plain(begin, opcode, body);
       if (content_.damage && !was_cut) return;
     }

@@ -56,7 +56,7 @@ TEST(LiveRunTest, ADeviceThatIsUnpluggedIsSaidWithWhatHelpsAndTheRunGoesOn) {
   bool is_said = false;
   ASSERT_TRUE(soon([&] {
     for (const std::string& words : run.takeMessages())
-      is_said |= words.find("does not answer; check its power and cable") != std::string::npos;
+      is_said |= words.find("does not answer; check the device's power and cable") != std::string::npos;
     return is_said;
   }));
   const std::size_t before = run.status().steps;

@@ -113,7 +113,7 @@ class Reader {
     if (bad_colors_ > 0)
       cad_.warnings.push_back(
           counted(bad_colors_, "colour") +
-          " referred to but missing in the file; the object's own colour, or grey, is used there");
+          " referred to but missing in the file; the object's own colour, or grey, is used instead");
   }
 
  private:

@@ -358,9 +358,9 @@ std::string inWords(const Tessellation& tessellation, const ImportSettings& sett
     add(std::string("its volume differs from the exact volume by as much as a layer on its surface of ") +
         deviation);
   return faults +
-         "; neither finer triangles nor healing the faces helped, so measurements there are no more accurate "
-         "than this; if that matters, export the part from the CAD program as a mesh (STL, OBJ), or model "
-         "these faces again";
+         "; neither finer triangles nor healing the faces helped, so measurements near these faults may "
+         "have errors of the same size; if greater accuracy is needed, export the part from the CAD program "
+         "as a mesh (STL, OBJ), or model these faces again";
 }
 
 }  // namespace vps::scenes::import
