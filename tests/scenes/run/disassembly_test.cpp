@@ -73,7 +73,7 @@ TEST(Disassembly, APegUnderALidThatIsStillThereDoesNotComeOff) {
   EXPECT_EQ(result.steps[0].part, "peg");
   EXPECT_EQ(result.steps[0].verdict, Verdict::NotShown);
   EXPECT_EQ(result.steps[0].stuck_against, "lid");
-  EXPECT_NE(result.steps[0].reason.find("gave up taking it off"), std::string::npos)
+  EXPECT_NE(result.steps[0].reason.find("gave up taking the part off"), std::string::npos)
       << result.steps[0].reason;
 }
 

@@ -135,7 +135,7 @@ class Explained {
       }
     out.words = "'" + pair_.a + "' and '" + pair_.b + "' overlap by " +
                 millimetres(pair_.interference_depth_m) +
-                " as drawn; on their paths they may overlap by as much";
+                " as drawn; on their paths they may overlap by the same depth";
     return out;
   }
 
@@ -189,7 +189,7 @@ class Explained {
                 is_hole ? 0.5 * fit_->shaft_m + kPassingRoom_m : 0.5 * fit_->bore_m - kPassingRoom_m};
     out.words += "; the screw motion follows the thread's axis, and " +
                  std::string(is_hole ? "the hole of '" : "the shank of '") + name + "' is made " +
-                 millimetres(2 * out.resized->to_radius_m) + " wide to let it pass";
+                 millimetres(2 * out.resized->to_radius_m) + " wide so that the screw can pass";
     return out;
   }
 

@@ -164,9 +164,10 @@ class FreeParts {
     double bytes = is_any ? modelBytes() : 0;
     if (bytes <= kMostModels_bytes) return "";
     std::array<char, 160> words{};
-    std::snprintf(words.data(), words.size(),
-                  "; larger ones than each large part alone needs, since all models would take about %.0f MB",
-                  1e-6 * bytes);
+    std::snprintf(
+        words.data(), words.size(),
+        "; larger voxels than each large part alone needs, since all models would take about %.0f MB",
+        1e-6 * bytes);
     constexpr int kMostTries = 20;  // each try removes about the capped parts' share of the excess
     constexpr double kSurplus =
         1.02;  // the estimate is only about proportional to 1 / voxel^2, because of bricks

@@ -94,7 +94,7 @@ class Variables {
               .append(tolerance.size_class)
               .append("' of a ")
               .append(is_hole ? "hole" : "shaft")
-              .append(", but vps check finds no such fit of it; state size_lower and size_upper"));
+              .append(", but vps check finds no such fit of this part; state size_lower and size_upper"));
     const double nominal_m = tolerance.nominal_m > 0 ? tolerance.nominal_m
                                                      : kNominalStep_m * std::round(*drawn_m / kNominalStep_m);
     const std::optional<Zone> zone = isoZone(tolerance.size_class, nominal_m);

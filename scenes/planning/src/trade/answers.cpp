@@ -83,8 +83,8 @@ std::string forRate(const TradeResult& result, double rate_hz) {
   if (best == nullptr)
     return head + "no measured setting suffices; the fastest, " + named(*fastest) + ", sustains " +
            number("%.0f Hz", rateOf(*fastest));
-  return head + "choose " + named(*best) + ": it sustains " + number("%.0f Hz", rateOf(*best)) + "; " +
-         errorWords(*best);
+  return head + "choose " + named(*best) + ": this setting sustains " + number("%.0f Hz", rateOf(*best)) +
+         "; " + errorWords(*best);
 }
 
 std::string forError(const TradeResult& result, double error_m) {
@@ -101,8 +101,8 @@ std::string forError(const TradeResult& result, double error_m) {
   if (best == nullptr)
     return head + "no measured setting suffices; the most accurate, " + named(*most_accurate) +
            ", has an error of " + micrometres(errorOf(*most_accurate));
-  return head + "choose " + named(*best) + ": it sustains " + number("%.0f Hz", rateOf(*best)) + " here; " +
-         errorWords(*best);
+  return head + "choose " + named(*best) + ": this setting sustains " + number("%.0f Hz", rateOf(*best)) +
+         " on this machine; " + errorWords(*best);
 }
 
 /// The effect of one changed setting relative to the scene's own, from rows that change only this setting.

@@ -203,7 +203,8 @@ void Trade::measureReference() {
   }
   if (!isStopped())
     result_.left_out.emplace_back(
-        "reference: there was no time for even the coarsest one, so runs are not compared with a reference");
+        "reference: there was no time for even the coarsest reference run, so runs are not compared with a "
+        "reference");
 }
 
 void Trade::fillOrLeaveOut(TradeRow& row) {

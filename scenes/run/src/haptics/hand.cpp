@@ -73,15 +73,15 @@ void requireTurns(const Scene& scene, const SceneStep& step, const device::Devic
   };
   if (!scene.device.has_indexing && limits.workspace_rad > 0)
     refuse(
-        "is a screw, which needs more turns than the device's handle has; let the hand re-grasp it "
-        "([device] indexing = true)");
+        "is a screw, which needs more turns than the device's handle has; let the hand re-grasp the "
+        "screw ([device] indexing = true)");
   const double most_Nm =
       std::min(device::OperatorHabits{}.torque_limit_Nm,
                limits.peak_torque_Nm > 0 ? limits.peak_torque_Nm : device::OperatorHabits{}.torque_limit_Nm);
   char words[160];
   std::snprintf(
       words, sizeof words,
-      "is to be screwed on with %g N m, but the hand has %.2g N m at most; choose a smaller torque_Nm",
+      "is to be screwed on with %g N m, but the hand exerts %.2g N m at most; choose a smaller torque_Nm",
       step.torque_Nm, most_Nm);
   if (step.torque_Nm > most_Nm) refuse(words);
 }

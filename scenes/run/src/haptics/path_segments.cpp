@@ -137,7 +137,8 @@ GraspPath inSegments(const std::vector<Pose>& X_WG, const Workspace& workspace_W
   throw LoadError(scene.file, scene.parts[step.part].part.name, words);
 }
 
-constexpr const char* kIndexingRemedy = "let the hand re-grasp it along the path ([device] indexing = true)";
+constexpr const char* kIndexingRemedy =
+    "let the hand re-grasp the part along the path ([device] indexing = true)";
 
 [[noreturn]] void refuseLength(const Scene& scene, const SceneStep& step, const Vec3& needed_m,
                                const Vec3& workspace_m) {
@@ -158,8 +159,8 @@ constexpr double inDegrees(double rad) {
   char words[240];
   std::snprintf(
       words, sizeof words,
-      "its path turns it by %.0f degrees to each side, and the device's handle turns by %.0f; turn it "
-      "less, or %s",
+      "its path turns the part by %.0f degrees to each side, but the device's handle turns by %.0f; turn the "
+      "part less, or %s",
       inDegrees(needed_rad), inDegrees(limit_rad), kIndexingRemedy);
   refuse(scene, step, words);
 }

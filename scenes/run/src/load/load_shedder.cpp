@@ -69,7 +69,7 @@ std::string describeBound(const LoadLevelChange& change, const CouplingGains& ow
   char text[300];
   std::snprintf(text, sizeof text,
                 "a contact up to %.3g mm deep can go undetected, which is the greatest distance of any place "
-                "from a point",
+                "on the surface from a tested point",
                 1e3 * change.unseen_bound_m);
   std::string cost = text;
   if (level.periods() > 1) {
@@ -79,7 +79,8 @@ std::string describeBound(const LoadLevelChange& change, const CouplingGains& ow
     cost += text;
   }
   if (level.time_divisor > 1)
-    cost += "; the part moves at 1/" + std::to_string(level.time_divisor) + " of its speed, and feels " +
+    cost += "; the part moves at 1/" + std::to_string(level.time_divisor) +
+            " of its speed, and feels to the hand " +
             std::to_string(level.time_divisor * level.time_divisor) + " times as heavy";
   return cost;
 }

@@ -36,9 +36,11 @@ AssembleResult assembleAndRecord(Scene& scene, const std::string& file, const As
 Scene recordedScene(const device::RecordedRun& run) {
   const device::McapAttachment* scene = run.attachment(kSceneAttachment);
   if (scene == nullptr)
-    throw LoadError(run.file, "",
-                    "holds no scene" + (run.damage.empty() ? std::string(", only a device; --csv shows it")
-                                                           : ": " + run.damage));
+    throw LoadError(
+        run.file, "",
+        "holds no scene" + (run.damage.empty()
+                                ? std::string(", only the motion of a device; --csv shows this motion")
+                                : ": " + run.damage));
   return sceneFromBytes(scene->data, run.file);
 }
 

@@ -25,14 +25,14 @@ std::string failureReason(const AssemblyWorld& world, const SceneStep& step, con
   if (world.hasEnded()) return "the recording ends here";
   if (world.isStopped()) return "stopped";
   const std::string tolerance = " (tolerance " + lengthInWords(result.tolerance_m) + ")";
-  const std::string where = "its surface was up to " + lengthInWords(result.final_error_m) +
+  const std::string where = "the part's surface was up to " + lengthInWords(result.final_error_m) +
                             " from its place at the target" + tolerance;
   if (is_done) {
     const bool was_there = brought_error_m <= result.tolerance_m;
     std::string words =
-        was_there ? "the hand brought it to within " + lengthInWords(brought_error_m) + " of its target" +
-                        tolerance + " and released it"
-                  : "the hand took it to be in place and released it, but its surface was up to " +
+        was_there ? "the hand brought the part to within " + lengthInWords(brought_error_m) +
+                        " of its target" + tolerance + " and released it"
+                  : "the hand took the part to be in place and released it, but its surface was up to " +
                         lengthInWords(brought_error_m) + " from its place at the target" + tolerance;
     const bool has_left =
         result.final_error_m > result.tolerance_m && (was_there || result.rest_drift_m > result.tolerance_m);
@@ -43,17 +43,17 @@ std::string failureReason(const AssemblyWorld& world, const SceneStep& step, con
           .append(kHoldsRemedy);
     return words;
   }
-  if (world.state().gives_up) return "it was released on request:  " + where;
+  if (world.state().gives_up) return "the part was released on request:  " + where;
   const bool is_late = world.state().time_s - result.start_s > step.timeout_s;
   if (!step.takes_off && is_late && result.final_error_m <= result.tolerance_m)
     return "the step's time (timeout_s) was over before the hand had pressed the part to its target, so the "
            "part is not shown to be in place:  " +
            where + "; increase timeout_s";
-  std::string reason = std::string("the hand gave up") + (step.takes_off ? " taking it off" : "") +
+  std::string reason = std::string("the hand gave up") + (step.takes_off ? " taking the part off" : "") +
                        (is_late ? " after its time was over: " : ": ");
   reason.append(where);
   if (!result.stuck_against.empty())
-    reason.append("; it then touched '")
+    reason.append("; the part then touched '")
         .append(result.stuck_against)
         .append("' at ")
         .append(placeInWords(result.stuck_at_W));
@@ -139,11 +139,11 @@ void judgeCompletion(AssemblyWorld& world, const SceneStep& step, const Pose& X_
 
   std::string& reason = result.failure_reason;
   if (is_there) {
-    if (!fault.empty()) reason = "it is at its height, but " + fault;
+    if (!fault.empty()) reason = "the part is at its height, but " + fault;
   } else {
     reason = failureReason(world, step, result, is_done, errorAt(brought.X_WP));
     if (is_done && is_turned && is_within)
-      reason.append("; it is turned by ")
+      reason.append("; the part is turned by ")
           .append(degreesInWords(result.final_error_rad))
           .append(" (tolerance ")
           .append(degreesInWords(step.tolerance_rad))

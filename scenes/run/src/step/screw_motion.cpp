@@ -50,12 +50,14 @@ void measureScrew(std::span<const TraceRow> rows, const SceneStep& step, const V
 std::string threadFault(const SceneStep& step, const StepResult& result) {
   const double pitch_m = std::abs(step.pitch_m);
   if (result.strategies.empty()) return {};  // a person turned the part
-  if (result.turns == 0) return "it was never screwed on, since no contact like that of a thread stopped it";
-  const std::string figures =
-      "in " + turnsInWords(result.turns) + " it advanced by  " + lengthInWords(result.advance_per_turn_m) +
-      " a turn (pitch " + lengthInWords(pitch_m) + ") and leaned by up to " + degreesInWords(result.lean_rad);
+  if (result.turns == 0)
+    return "the part was never screwed on, since no contact like that of a thread stopped it";
+  const std::string figures = "in " + turnsInWords(result.turns) + " the part advanced by  " +
+                              lengthInWords(result.advance_per_turn_m) + " a turn (pitch " +
+                              lengthInWords(pitch_m) + ") and leaned by up to " +
+                              degreesInWords(result.lean_rad);
   if (result.lean_rad > device::ScrewTask::kCrossedLean_rad) return "the thread is crossed: " + figures;
-  if (result.turns < kLeastTurns) return "it could not be screwed on:  " + figures;
+  if (result.turns < kLeastTurns) return "the part could not be screwed on:  " + figures;
   const double off = result.advance_per_turn_m / pitch_m - 1;
   if (std::abs(off) <= device::ScrewTask::kOffPitch) return {};
   return (off < 0 ? "the threads did not catch: " : "the thread is skipped: ") + figures;

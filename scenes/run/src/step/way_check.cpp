@@ -47,9 +47,9 @@ std::string wallOnTheWay(AssemblyWorld& world, const SceneStep& step) {
     if (here.depth_m > deepest.depth_m) deepest = here;
   }
   if (deepest.depth_m < kShallow_m) return {};
-  return "; its path leads through '" + judge.name(deepest.against) + "', up to " +
+  return "; the part's path leads through '" + judge.name(deepest.against) + "', up to " +
          lengthInWords(deepest.depth_m) + " deep at " + placeInWords(deepest.p_W) +
-         ": set start or way_points that lead around it";
+         ": set start or way_points that lead around this part";
 }
 
 bool isFreeBetween(const OverlapJudge& judge, const JudgedBody& body, const Vec3& center_P, const Pose& from,

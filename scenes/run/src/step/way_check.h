@@ -9,7 +9,7 @@
 
 namespace vps::scenes {
 
-/// "; its path leads through 'wall', up to 3.20 mm deep at ...", or empty if all tested
+/// "; the part's path leads through 'wall', up to 3.20 mm deep at ...", or empty if all tested
 /// poses are free. Makes 24 exact measurements of overlap for each leg of the path.
 std::string wallOnTheWay(AssemblyWorld& world, const SceneStep& step);
 

@@ -11,20 +11,21 @@ namespace vps::scenes {
 namespace {
 
 std::string depthReason(const Evidence& e) {
-  return "on its path it was " + lengthInWords(e.depth_m) + " deep inside '" + e.deepest_against +
+  return "on its path the part was " + lengthInWords(e.depth_m) + " deep inside '" + e.deepest_against +
          "', more than the " + lengthInWords(e.depth_limit_m) + " that count as contact";
 }
 
 std::string driftReason(const Evidence& e) {
-  return "it moved by " + lengthInWords(e.rest_drift_m) + " after its release: " + kHoldsRemedy;
+  return "the part moved by " + lengthInWords(e.rest_drift_m) + " after its release: " + kHoldsRemedy;
 }
 
 std::string pressReason(const Evidence& e) {
   char words[240];
-  std::snprintf(words, sizeof words,
-                "its path is free, but pressing it %s takes about %.0f N (by the formula for its declared "
-                "interference), and the hand has %.0f N ([operator] force_limit_N); use a press",
-                e.is_taken_off ? "out" : "in", e.press_needed_N, e.hand_N);
+  std::snprintf(
+      words, sizeof words,
+      "the path is free, but pressing the part %s takes about %.0f N (by the formula for its declared "
+      "interference), and the hand has %.0f N ([operator] force_limit_N); use a press",
+      e.is_taken_off ? "out" : "in", e.press_needed_N, e.hand_N);
   return words;
 }
 
@@ -44,7 +45,7 @@ constexpr std::array kRules{
     Rule{[](const Evidence& e) { return !e.isAtRest(); }, Verdict::NotShown, driftReason},
     Rule{[](const Evidence& e) { return e.press_needed_N > e.hand_N; }, Verdict::NotShown, pressReason},
     Rule{[](const Evidence& e) { return !e.doubt.empty(); }, Verdict::NotShown,
-         [](const Evidence& e) { return "the hand brought it to its target, but " + e.doubt; }},
+         [](const Evidence& e) { return "the hand brought the part to its target, but " + e.doubt; }},
 };
 
 }  // namespace
@@ -56,13 +57,13 @@ Judgement judge(const Evidence& evidence) {
 }
 
 std::string overlapReason(const std::string& other, double depth_m, double error_m, const Vec3& at_W) {
-  return "as drawn, it overlaps '" + other + "' by " + lengthInWords(depth_m) + " (error " +
+  return "as drawn, the part overlaps '" + other + "' by " + lengthInWords(depth_m) + " (error " +
          lengthInWords(error_m) + ") at " + placeInWords(at_W);
 }
 
 std::string closedRoomReason(const std::string& other, bool starts_inside) {
-  return std::string(starts_inside ? "it starts" : "its target is") + " in a cavity of '" + other +
-         "' that has no opening";
+  return std::string(starts_inside ? "the part starts" : "the part's target is") + " in a cavity of '" +
+         other + "' that has no opening";
 }
 
 }  // namespace vps::scenes

@@ -123,9 +123,10 @@ void AssemblyWorld::take(std::size_t index) {
   const double own_kg = simulation_.addBody(step.part, X_WP_start, most_kg);
   const double hoist_N = std::max(0.0, own_kg - most_kg) * g_m_s2;
   if (hoist_N > 0 && options_.warn)
-    options_.warn("'" + scene_.parts[step.part].part.name + "' weighs " + newtons(own_kg * g_m_s2) +
-                  ", and the hand carries " + newtons(most_kg * g_m_s2) +
-                  " of it; a hoist carries the rest, so forces on the hand are as for a lighter part");
+    options_.warn(
+        "'" + scene_.parts[step.part].part.name + "' weighs " + newtons(own_kg * g_m_s2) +
+        ", and the hand carries " + newtons(most_kg * g_m_s2) +
+        " of this weight; a hoist carries the rest, so forces on the hand are as for a lighter part");
   state_.roles[step.part] = BodyRole::InHand;
   state_.moving = {step.part,
                    Pose::translation(simulation_.centreOfMass(step.part)),

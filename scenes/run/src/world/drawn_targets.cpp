@@ -224,8 +224,8 @@ std::string meshDoubt(const Scene& scene, const CheckResult& checked, const std:
 std::string aloneDoubt(const CheckResult& checked, const StepResult& step) {
   const bool is_alone = std::ranges::find(checked.alone, step.part) != checked.alone.end();
   if (!is_alone || step.is_taken_off) return {};
-  return "at its target it is nowhere near another part, so that nothing shows that it fits; check whether "
-         "the parts are laid out side by side, or each in a frame of its own";
+  return "at its target the part is nowhere near another part, so that nothing shows that it fits; check "
+         "whether the parts are laid out side by side, or each in a frame of its own";
 }
 
 double toleranceOf(const CheckResult& checked, const std::vector<InPlace>& in_place, const SceneStep& planned,

@@ -22,10 +22,9 @@ inline constexpr auto kPlannedStepFields = std::make_tuple(
     field("insertion", &PlannedStep::insertion_W,
           "unit direction of the last leg, in the world; 0 for a turn"),
     field("lead_m", &PlannedStep::lead_m, "lead of a screw: its travel in one turn; negative: left-hand"),
-    field(
-        "allowance_m", &PlannedStep::allowance_m,
-        "depth beyond the drawn overlap that facets need to pass each other on the path; no path without it "
-        "was found; 0: none is needed"),
+    field("allowance_m", &PlannedStep::allowance_m,
+          "depth beyond the drawn overlap that facets need to pass each other on the path; no path without "
+          "this depth was found; 0: the path needs no such depth"),
     field("is_carried", &PlannedStep::is_carried,
           "a part in place keeps the step's part from falling at its target; false: the scene's step has "
           "`holds`"),
@@ -38,7 +37,8 @@ inline constexpr auto kPlannedStepFields = std::make_tuple(
           "than 5 mm"),
     field("nearest", &PlannedStep::nearest, "the part nearest to the path, at `clearance_m`"),
     field("fit_clearance_m", &PlannedStep::fit_clearance_m,
-          "diametral clearance of the step's tightest fit with parts in place; null: it has no such fit"));
+          "diametral clearance of the step's tightest fit with parts in place; null: the part has no such "
+          "fit"));
 static_assert(coversAllMembers<PlannedStep>(kPlannedStepFields));
 
 inline constexpr auto kPlannedOrderFields = std::make_tuple(
@@ -51,7 +51,7 @@ static_assert(coversAllMembers<PlannedOrder>(kPlannedOrderFields));
 
 inline constexpr auto kBlockedPartFields =
     std::make_tuple(field("name", &BlockedPart::name, "a part that was not taken off"),
-                    field("by", &BlockedPart::by, "parts that stop it in the directions that were tried"),
+                    field("by", &BlockedPart::by, "parts that stop `name` in the directions that were tried"),
                     field("is_searched", &BlockedPart::is_searched,
                           "false: the search for paths of several legs ended at its work limit"));
 static_assert(coversAllMembers<BlockedPart>(kBlockedPartFields));
@@ -97,39 +97,43 @@ inline constexpr auto kOverlapChoiceFields = std::make_tuple(
 inline constexpr auto kPlannedContactFields = std::make_tuple(
     field("a", &PlannedContact::a, "a part"), field("b", &PlannedContact::b, "a part near `a`"),
     field("state", &PlannedContact::state, "state of the pair, as `vps check` reports it"),
-    field("clearance_m", &PlannedContact::clearance_m, "least distance of their surfaces"),
-    field("fits", &PlannedContact::fits, "kinds of fit, with the name in a standard"),
+    field("clearance_m", &PlannedContact::clearance_m, "least distance of the surfaces of `a` and `b`"),
+    field("fits", &PlannedContact::fits,
+          "kinds of the fits between `a` and `b`, with the name in a standard"),
     field("blocked", &PlannedContact::blocked_W,
-          "unit directions in which b stops a, out of the axes of the world, of a and of its fits"),
+          "unit directions in which `b` stops `a`, out of the axes of the world, of `a` and of the fits of "
+          "`a`"),
     field("free", &PlannedContact::free_W,
-          "directions out of the axes named at `blocked` in which b does not stop a"));
+          "directions out of the axes named at `blocked` in which `b` does not stop `a`"));
 static_assert(coversAllMembers<PlannedContact>(kPlannedContactFields));
 
 inline constexpr auto kEqualPartsFields =
     std::make_tuple(field("names", &EqualParts::names, "parts of equal geometry"));
 static_assert(coversAllMembers<EqualParts>(kEqualPartsFields));
 
-inline constexpr auto kPlanFields = std::make_tuple(
-    field("assembly", &PlanResult::assembly, "name of the planned assembly"),
-    list("fasteners", &PlanResult::fasteners, kFastenerFields),
-    list("choices", &PlanResult::choices, kOverlapChoiceFields),
-    field("blocked_count", &PlanResult::blocked, "number of parts that were not taken off"),
-    list("assemblies", &PlanResult::assemblies, kPlannedAssemblyFields),
-    list("contacts", &PlanResult::contacts, kPlannedContactFields),
-    list("equal", &PlanResult::equal, kEqualPartsFields),
-    list("overlaps", &PlanResult::overlaps, kCheckedPairFields),
-    list("twice", &PlanResult::twice, kDrawnTwiceFields),
-    list("uncertain", &PlanResult::uncertain, kCheckedPairFields),
-    field("cut_motions", &PlanResult::cut_motions,
-          "number of straight motions that were too long to follow to their end; they count as stopped"));
+inline constexpr auto kPlanFields =
+    std::make_tuple(field("assembly", &PlanResult::assembly, "name of the planned assembly"),
+                    list("fasteners", &PlanResult::fasteners, kFastenerFields),
+                    list("choices", &PlanResult::choices, kOverlapChoiceFields),
+                    field("blocked_count", &PlanResult::blocked, "number of parts that were not taken off"),
+                    list("assemblies", &PlanResult::assemblies, kPlannedAssemblyFields),
+                    list("contacts", &PlanResult::contacts, kPlannedContactFields),
+                    list("equal", &PlanResult::equal, kEqualPartsFields),
+                    list("overlaps", &PlanResult::overlaps, kCheckedPairFields),
+                    list("twice", &PlanResult::twice, kDrawnTwiceFields),
+                    list("uncertain", &PlanResult::uncertain, kCheckedPairFields),
+                    field("cut_motions", &PlanResult::cut_motions,
+                          "number of straight motions that count as stopped because they were too long to "
+                          "follow to their end"));
 inline constexpr auto kPlanWallFields =
     std::make_tuple(field("check_s", &PlanResult::check_wall_s, "time to check the parts as drawn"),
                     field("plan_s", &PlanResult::plan_wall_s, "time to plan the disassembly"));
 
 inline constexpr auto kWayFaultFields = std::make_tuple(
-    field("kind", &WayFault::kind,
-          "`through` (overlaps a part in place), `order` (the part in place has to come later), `support` "
-          "(no part carries it when it is let go), `clearance` (less than was planned)"),
+    field(
+        "kind", &WayFault::kind,
+        "`through` (overlaps a part in place), `order` (the part in place has to come later), `support` (no "
+        "part carries the moved part when the hand lets go), `clearance` (less clearance than planned)"),
     field("part", &WayFault::part, "the part that moves"),
     field("against", &WayFault::against, "the part in place that the path overlaps"),
     field("depth_m", &WayFault::depth_m, "greatest depth on the path"),

@@ -31,7 +31,7 @@ inline constexpr auto kStudyFields =
     std::make_tuple(field("scene", &StudyResult::scene, "name of the scene"),
                     field("seed", path(&StudyResult::settings, &StudySettings::seed), "seed of the study"),
                     field("by_contact", path(&StudyResult::settings, &StudySettings::has_contact),
-                          "the virtual hand made the runs; false: geometry alone judged them"),
+                          "the virtual hand made the runs; false: geometry alone judged the runs"),
                     field("good", &StudyResult::good, "runs that fit"),
                     field("blocked", &StudyResult::blocked, "runs that geometry rules out"),
                     field("yield", &StudyResult::yield, "share of the runs that fit"),
@@ -48,20 +48,20 @@ inline constexpr auto kStepMarginFields = std::make_tuple(
           "greatest outward offset of all faces of the part with which the step succeeds; half of the growth "
           "in diameter"),
     field("growth_fails_m", &StepMargin::growth_fails_m,
-          "least offset with which the step fails; null: it succeeds with all offsets that were tried"),
+          "least offset with which the step fails; null: the step succeeds with all offsets that were tried"),
     field("fails_as", &StepMargin::fails_as,
           "verdict with `growth_fails_m`: `blocked` (by geometry) or `not_shown`; `fits`: no offset failed"),
     field("fails_why", &StepMargin::fails_why, "reason of the verdict `fails_as`"),
     field("growth_bound_m", &StepMargin::growth_bound_m, "greatest offset that geometry alone allows"),
     field("position_m", &StepMargin::position_m,
-          "least displacement along an axis of its play across the path that makes the part touch at its "
-          "target; "
-          "null: no displacement does"),
+          "least displacement across the path, along an axis of the part's play, at which the part touches "
+          "another part at its target; null: no displacement makes the part touch"),
     field("position_axis", &StepMargin::position_W,
           "direction of the displacement `position_m`, in the world"),
     field("position_error_m", &StepMargin::position_error_m, "bound of the error of `position_m`"),
     field("angle_rad", &StepMargin::angle_rad,
-          "least rotation about an axis across the path that makes the part touch; null: no rotation does"),
+          "least rotation about an axis across the path that makes the part touch; null: no rotation makes "
+          "the part touch"),
     field("angle_error_rad", &StepMargin::angle_error_rad, "bound of the error of `angle_rad`"),
     field("checks", &StepMargin::checks, "number of exact measurements"),
     field("runs", &StepMargin::runs, "number of runs of the virtual hand"));

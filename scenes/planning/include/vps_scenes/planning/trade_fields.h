@@ -25,7 +25,8 @@ inline constexpr auto kTradeRunFields = std::make_tuple(
     field("final_error_m", &TradeRun::final_error_m, "worst distance of a part's origin from its target"),
     field("peak_force_N", &TradeRun::peak_force_N, "greatest force on the virtual hand"),
     field("to_hand_J", &TradeRun::to_hand_J, "work done on the virtual hand"),
-    field("injected_J", &TradeRun::injected_J, "as `energy.injected_J` of `assemble`"),
+    field("injected_J", &TradeRun::injected_J,
+          "greatest energy that the simulation added, as `energy.injected_J` of `assemble`"),
     field("contacts_left_out", &TradeRun::contacts_left_out,
           "near points left out because a query's list was full"),
     field("bytes", &TradeRun::bytes, "memory of all models, with the cooked field"));
@@ -49,7 +50,8 @@ inline constexpr auto kTradeRowFields = std::make_tuple(
 
 inline constexpr auto kTradeRowWallFields = std::make_tuple(
     field("models_s", &TradeRow::models_wall_s, "time to build the models that no earlier row had built"),
-    field("on_front", &TradeRow::is_on_front, "no other row is as fast, as small and as accurate"),
+    field("on_front", &TradeRow::is_on_front,
+          "no other row is as fast, as small in memory and as accurate as this row"),
     group("", when(&TradeRow::has_probe),
           std::make_tuple(group("query_us", &TradeRow::query, kProcessorTimes, "wrench query of a pose"),
                           group("all_points_us", &TradeRow::all_points, kProcessorTimes,

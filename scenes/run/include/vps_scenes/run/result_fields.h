@@ -35,43 +35,48 @@ inline constexpr auto kLoopTimes =
 inline constexpr auto kStepFields = std::make_tuple(
     field("part", &StepResult::part, "name of the part"),
     field("verdict", &StepResult::verdict, "`fits`, `blocked` or `not_shown`"),
-    field("reason", &StepResult::reason, "reason of the verdict; empty when it fits"),
+    field("reason", &StepResult::reason, "reason of the verdict; empty when the part fits"),
     field("blocked_by", &StepResult::blocked_by,
-          "the part that it overlaps at its target, as drawn, or that shuts it in or out; empty if none"),
-    field("blocked_at_m", &StepResult::blocked_at_W, "where the overlap is, in the world"),
-    field("blocked_depth_m", &StepResult::blocked_depth_m, "depth of that overlap"),
+          "the part that the moved part, as drawn, overlaps at its target, or whose closed cavity shuts the "
+          "moved part in or out; empty if none"),
+    field("blocked_at_m", &StepResult::blocked_at_W, "where the overlap with `blocked_by` is, in the world"),
+    field("blocked_depth_m", &StepResult::blocked_depth_m, "depth of the overlap with `blocked_by`"),
     field("blocked_error_m", &StepResult::blocked_error_m,
-          "error of that depth: the distance of the meshes from the exact faces"),
+          "error of `blocked_depth_m`: the distance of the meshes from the exact faces"),
     field("stuck_against", &StepResult::stuck_against,
-          "the part that it touched when the hand gave up; empty if none, or if the hand did not give up"),
-    field("stuck_at_m", &StepResult::stuck_at_W, "where these two parts touched, in the world"),
+          "the part that the moved part touched when the hand gave up; empty if none, or if the hand did not "
+          "give up"),
+    field("stuck_at_m", &StepResult::stuck_at_W,
+          "where the moved part touched `stuck_against`, in the world"),
     field("stands_on", &StepResult::stands_on,
-          "an earlier part that did not reach its target and was put there for this step; empty if none"),
-    field("mesh_doubt", &StepResult::mesh_doubt,
-          "why it is not shown that the part fits, although the hand brought it to its target: the known "
-          "error of the meshes exceeds its clearance, no other part is near its target, or a motion between "
-          "two steps was not searched to its end; empty: no doubt"),
-    field("aligned_by", &StepResult::aligned_by,
-          "a later part that fits into it and moves it from where the hand left it to its target; empty if "
+          "an earlier part that did not reach its target and was put at its target for this step; empty if "
           "none"),
+    field("mesh_doubt", &StepResult::mesh_doubt,
+          "why the run does not show that the part fits, although the hand brought the part to its target: "
+          "the known error of the meshes exceeds the part's clearance, no other part is near its target, or "
+          "a motion between two steps was not searched to its end; empty: no doubt"),
+    field("aligned_by", &StepResult::aligned_by,
+          "a later part that fits into the step's part and moves the step's part from where the hand left it "
+          "to its target; empty if none"),
     field("taken_off", &StepResult::is_taken_off,
-          "the step took the part off (`--disassemble`); its target is where it was put away"),
+          "the step took the part off (`--disassemble`); the part's target is where it was put away"),
     field("completed", &StepResult::completed, "the part reached its target within tolerance"),
     field("by_contact", &StepResult::by_contact,
           "completed, and other parts guided the part across its path; false: placed by sight alone"),
     field("guide_force_N", &StepResult::guide_force_N,
-          "greatest force across the last leg of its path while it was in hand"),
+          "greatest force across the last leg of the part's path while the part was in hand"),
     field("failure_reason", &StepResult::failure_reason,
           "why the part did not reach its target; empty when completed"),
     field("start_s", &StepResult::start_s, "simulated time at which the step began"),
     field("duration_s", &StepResult::duration_s, "simulated time that the step took"),
     field("max_penetration_m", &StepResult::max_penetration_m,
           "deepest penetration during the step and the time after release, by exact distance along all sharp "
-          "edges, at the vertices of curved faces and at the shells' points on faces, at every 20th pose "
-          "and the fifty with the deepest contacts, and on motions between the poses of two physics steps "
-          "that are more than 0.1 mm apart"),
+          "edges, at the vertices of curved faces and at the shells' points on faces, at every 20th pose and "
+          "the fifty with the deepest contacts, and on motions between the poses of two physics steps that "
+          "are more than 0.1 mm apart"),
     field("penetration_limit_m", &StepResult::penetration_limit_m,
-          "min(10 um, clearance / 4); for a part that is taken off, in addition to the overlap as drawn"),
+          "limit of the penetration: min(10 um, clearance / 4); for a part that is taken off, in addition to "
+          "the overlap as drawn"),
     field("deepest_against", &StepResult::deepest_against, "name of the part that was penetrated deepest"),
     field("deepest_at_m", &StepResult::deepest_at_W, "place of the deepest penetration, in the world"),
     field("deepest_time_s", &StepResult::deepest_time_s, "simulated time of the deepest penetration"),
@@ -82,15 +87,16 @@ inline constexpr auto kStepFields = std::make_tuple(
     field("impacts", &StepResult::impacts, "number of impacts"),
     field("slides", &StepResult::slides, "number of contacts that slide"),
     field("index_count", &StepResult::index_count,
-          "number of times that the device was clutched and recentred, on a path longer than its workspace "
-          "or a rotation beyond its range"),
-    field("turns", &StepResult::turns, "of a screw: number of turns, the last time that it was screwed on"),
+          "number of times that the device was clutched and recentred, on a path longer than the device's "
+          "workspace or a rotation beyond its range"),
+    field("turns", &StepResult::turns, "number of turns of a screw, the last time that it was screwed on"),
     field("advance_per_turn_m", &StepResult::advance_per_turn_m,
-          "of a screw: travel along the axis in these turns, divided by their number"),
+          "travel of a screw along its axis during `turns`, divided by `turns`"),
     field("lean_rad", &StepResult::lean_rad,
-          "of a screw: greatest angle between its axis and that of its target during these turns"),
+          "greatest angle between the axis of a screw and the axis of its target during `turns`"),
     field("press_needed_N", &StepResult::press_needed_N,
-          "force that presses it in, by Lamé's formula for the declared interference; 0: not a press fit"),
+          "force that presses the part in, by Lamé's formula for the declared interference; 0: not a press "
+          "fit"),
     field("hoist_N", &StepResult::hoist_N,
           "share of the weight that a hoist carries, since the weight exceeds half of the coupling's "
           "greatest force; forces on the hand are then those of a lighter part; 0: no hoist"),
@@ -100,9 +106,9 @@ inline constexpr auto kStepFields = std::make_tuple(
     field("final_error_rad", &StepResult::final_error_rad, "rotation from the target"),
     field("rest_drift_m", &StepResult::rest_drift_m,
           "greatest displacement of any point of the part in `rest_s` after release"),
-    field(
-        "late_drift_m", &StepResult::late_drift_m,
-        "greatest such displacement in the second half of `rest_s`; more than 5 um: the part is not at rest"),
+    field("late_drift_m", &StepResult::late_drift_m,
+          "greatest displacement of any point of the part in the second half of `rest_s`; more than 5 um: "
+          "the part is not at rest"),
     field("rest_s", &StepResult::rest_s, "simulated time that the part was watched after release"));
 
 inline constexpr auto kStrategyFields = std::make_tuple(
@@ -116,12 +122,13 @@ static_assert(coversAllMembers<StrategyUse>(kStrategyFields));
 inline constexpr auto kStepLists =
     std::make_tuple(list("strategies", &StepResult::strategies, kStrategyFields));
 
-inline constexpr auto kStepWallFields = std::make_tuple(
-    field("cook_s", &StepResult::cook_wall_s,
-          "time to build the fixed field of the next step, on its own thread"),
-    field("swap_s", &StepResult::swap_wall_s, "time to put that field in place, between two physics steps"),
-    field("missed_while_cooking", &StepResult::missed_while_cooking,
-          "haptic periods missed while the field was built, in real time"));
+inline constexpr auto kStepWallFields =
+    std::make_tuple(field("cook_s", &StepResult::cook_wall_s,
+                          "time to build the fixed field of the next step, on its own thread"),
+                    field("swap_s", &StepResult::swap_wall_s,
+                          "time to put the next step's field in place, between two physics steps"),
+                    field("missed_while_cooking", &StepResult::missed_while_cooking,
+                          "haptic periods missed while the field was built, in real time"));
 static_assert(coversAllMembers<StepResult>(kStepFields, kStepLists, kStepWallFields));
 
 // --- Parts of the result of a run
@@ -138,10 +145,10 @@ static_assert(coversAllMembers<EnergyLedger>(kEnergyFields));
 /// A part that turned in one step by more than the limit.
 inline constexpr auto kFastTurnFields = std::make_tuple(
     field("part", &FastTurn::part, "name of the part"),
-    field("in_contact", &FastTurn::is_in_contact, "the rotation is relative to the part that it touches"),
+    field("in_contact", &FastTurn::is_in_contact, "`turn_rad` is the rotation relative to a part in contact"),
     field("angular_velocity_rad_s", &FastTurn::w_rad_s,
           "angular velocity at which the part needs the shortest step"),
-    field("turn_rad", &FastTurn::turn_rad, "its rotation in a step or substep (`substeps`)"),
+    field("turn_rad", &FastTurn::turn_rad, "rotation of the part in a step or substep (`substeps`)"),
     field("limit_rad", &FastTurn::limit_rad,
           "greatest rotation that is simulated correctly: 0.1 between bodies in contact, else the limit of "
           "Bullet"),
@@ -172,10 +179,10 @@ inline constexpr auto kLoadChangeFields = std::make_tuple(
     field("unseen_bound_m", &LoadLevelChange::unseen_bound_m,
           "greatest depth of a contact between the points that can go undetected"),
     field("misread_m", &LoadLevelChange::misread_m,
-          "least distance measured with the new points minus that measured with the old ones; null beyond "
-          "the band"),
-    field("k_N_per_m", &LoadLevelChange::k_N_per_m, "stiffness of the coupling from here on"),
-    field("build_s", &LoadLevelChange::build_wall_s, "time from the decision to its effect"));
+          "least distance measured with the new points minus the least distance measured with the old "
+          "points; null beyond the voxmap's band"),
+    field("k_N_per_m", &LoadLevelChange::k_N_per_m, "stiffness of the coupling after the change"),
+    field("build_s", &LoadLevelChange::build_wall_s, "time from the decision to the effect of the change"));
 static_assert(coversAllMembers<LoadLevelChange>(kLoadChangeFields));
 
 inline constexpr auto kRealTimeHapticFields = std::make_tuple(
@@ -183,10 +190,11 @@ inline constexpr auto kRealTimeHapticFields = std::make_tuple(
     group("late_us", &RealTimeResult::late, kPercentiles, "time from a tick's due time to its start"),
     group("response_us", &RealTimeResult::response, kPercentiles,
           "time from a tick's due time to its wrench"),
-    object("worst", std::make_tuple(field("tick", &RealTimeResult::worst_tick, "number of the slowest tick"),
-                                    field("response_us", &RealTimeResult::worst_us,
-                                          "time from its due time to its wrench"),
-                                    field("cause", &RealTimeResult::worst_cause, "cause of its delay"))),
+    object("worst", std::make_tuple(
+                        field("tick", &RealTimeResult::worst_tick, "number of the slowest tick"),
+                        field("response_us", &RealTimeResult::worst_us,
+                              "time from the slowest tick's due time to its wrench"),
+                        field("cause", &RealTimeResult::worst_cause, "cause of the slowest tick's delay"))),
     field("stale_ticks", &RealTimeResult::stale_ticks,
           "ticks that used a pose of the part older than two physics steps"),
     field("faults", &RealTimeResult::faults, "faults of the safety chain"),
@@ -236,9 +244,10 @@ inline constexpr auto kAssembleFields = std::make_tuple(
           std::make_tuple(
               field("held_ticks", &LocalContact::held, "ticks that used the last snapshot unchanged"),
               field("jump_J", &LocalContact::jump_J, "energy of the jumps at new snapshots"),
-              field("greatest_jump_m", &LocalContact::greatest_jump_m, "greatest of these jumps"))),
+              field("greatest_jump_m", &LocalContact::greatest_jump_m, "greatest jump at a new snapshot"))),
     field("widened", &AssembleResult::widened,
-          "number of times that a part reached the border of its region, so that more was modelled"),
+          "number of times that a part reached the border of its region, so that more of the surrounding "
+          "parts was modelled"),
     group("modelled", &AssembleResult::modelled, kModelledFields));
 
 inline constexpr auto kAssembleWallFields = std::make_tuple(

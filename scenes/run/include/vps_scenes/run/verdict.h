@@ -79,6 +79,7 @@ VPS_SCENES_API std::string closedRoomReason(const std::string& other, bool start
 
 /// Remedy for a part that does not stay where it was put.
 inline constexpr const char* kHoldsRemedy =
-    "nothing holds it there; if a fixture or the next part will hold it, set holds = true in its [[step]]";
+    "nothing holds it there; if a fixture or the next part will hold the part, set holds = true in its "
+    "[[step]]";
 
 }  // namespace vps::scenes
