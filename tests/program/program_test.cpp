@@ -51,7 +51,7 @@ TEST_F(Program, TradePrintsAFidelityToPasteOrReportsThatNoneQualifies) {
 
   const Ran none = run("trade scene.toml --budget-hz 500000");
   EXPECT_EQ(none.status, 1);
-  EXPECT_NE(none.err.find("no fidelity meets this"), std::string::npos) << none.err;
+  EXPECT_NE(none.err.find("no fidelity meets the requirements"), std::string::npos) << none.err;
   EXPECT_EQ(none.out, "");
   expectRefused("trade scene.toml --tolerance -1um", "--tolerance");
   expectRefused("trade scene.toml --tolerance soon", "--tolerance");
@@ -342,7 +342,7 @@ TEST_F(Program, SimulateJudgesOverlapByExactDistanceAndItsExitStatusTells) {
   write("hard.toml", scene("") + "pose = {position = [0, 0, 9.5]}\n");
   const Ran hard = run("simulate hard.toml --seconds 0.05 --judge-every 1 --json hard.json");
   EXPECT_EQ(hard.status, 0) << hard.out << hard.err;
-  EXPECT_NE(hard.out.find("deepest by exact distance"), std::string::npos) << hard.out;
+  EXPECT_NE(hard.out.find("deepest overlap by exact distance"), std::string::npos) << hard.out;
   const json judged = json::parse(slurp(folder_ / "hard.json"))["overlap"];
   EXPECT_EQ(judged["poses_judged"], 51);
   EXPECT_TRUE(judged["is_within_limit"]);
@@ -367,7 +367,7 @@ TEST_F(Program, SimulateJudgesOverlapByExactDistanceAndItsExitStatusTells) {
   // The parts separate at 0.05 m/s, so 0.5 mm take 10 ms.
   const Ran stuck = run("simulate inside.toml --seconds 0.004 --judge-every 1 --json stuck.json");
   EXPECT_EQ(stuck.status, 1) << stuck.out << stuck.err;
-  EXPECT_NE(stuck.err.find("they did not come apart"), std::string::npos) << stuck.err;
+  EXPECT_NE(stuck.err.find("these parts did not come apart"), std::string::npos) << stuck.err;
   EXPECT_NE(stuck.out.find("not within the limit: 1 pair of bodies overlapped from start to end"),
             std::string::npos)
       << stuck.out;

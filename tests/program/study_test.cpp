@@ -79,7 +79,7 @@ TEST_F(StudyProgram, ARunThatIsRepeatedIsTheSameAsInTheLog) {
   ASSERT_EQ(run(std::string(kRun) + "--log study.jsonl").status, 0);
   const Ran same = run(std::string(kRun) + "--log study.jsonl --repeat 5");
   EXPECT_EQ(same.status, 0) << same.out;
-  EXPECT_NE(same.out.find("the same as in the log"), std::string::npos) << same.out;
+  EXPECT_NE(same.out.find("this run has the same bits as in the log"), std::string::npos) << same.out;
   std::string log = slurp(folder_ / "study.jsonl");
   const std::size_t at = log.find("\"run\":5,\"verdict\":\"");
   ASSERT_NE(at, std::string::npos) << log;

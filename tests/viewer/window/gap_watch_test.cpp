@@ -53,8 +53,10 @@ TEST(GapWatchTest, TellsHowFarPartsAreAtThePosesThatAreShown) {
   scenes::Snapshot pressed = cubeAt(-2e-6, 3);
   pressed.contacts = {{Vec3(0, 0, 0.01), Vec3::UnitZ(), 2e-6, 2.5, Vec3::Zero()}};
   watch.request(pressed, {1, 0});
-  EXPECT_EQ(gapLines(scene, measuredAt(watch, 1, 3)), std::vector<std::string>{"plate: touches it, 2.5 N"});
-  EXPECT_EQ(gapLines(scene, measuredAt(watch, 0, 3)), std::vector<std::string>{"cube: touches it, 2.5 N"});
+  EXPECT_EQ(gapLines(scene, measuredAt(watch, 1, 3)),
+            std::vector<std::string>{"plate: touches this part, 2.5 N"});
+  EXPECT_EQ(gapLines(scene, measuredAt(watch, 0, 3)),
+            std::vector<std::string>{"cube: touches this part, 2.5 N"});
 }
 
 TEST(GapWatchTest, EndsWhileSomethingIsWanted) {

@@ -26,8 +26,8 @@ void addCadOptions(CLI::App& command, CadArguments& given) {
       ->type_name("AXIS");
   command
       .add_option("--part-per", given.part_per,
-                  "what becomes one part: each solid or closed surface (body), also each open object, group "
-                  "or shape (object), or each file (file)")
+                  "what becomes one part: body: each solid or closed surface; object: also each open object, "
+                  "group or shape; file: each file")
       ->type_name("THING")
       ->check(CLI::IsMember({"body", "object", "file"}));
   command

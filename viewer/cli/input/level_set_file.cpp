@@ -29,7 +29,7 @@ void* openModule() {
 
 /// Opens the module once and never closes it, because voxmaps that it made point to its code.
 const LevelSetModule& module(const std::string& file) {
-  static std::string why = "it is not next to the program";
+  static std::string why = "the module is not next to the program";
   static const auto* const found = [] {
     void* const opened = openModule();
     if (opened != nullptr) return static_cast<const LevelSetModule*>(dlsym(opened, kLevelSetSymbol));

@@ -99,7 +99,7 @@ void addCacheOptions(CLI::App& command, CacheArguments& given) {
       ->excludes(folder);
   command
       .add_option("--cache-limit", given.limit_GB,
-                  "size limit of that folder; the least recently used files are removed")
+                  "size limit of the cache folder; the least recently used files are removed")
       ->type_name("GB")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();

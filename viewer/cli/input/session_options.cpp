@@ -17,8 +17,8 @@ CLI::Option* addNetworkOption(CLI::App& command, scenes::SessionNetwork& network
                             ->type_name("INTERFACE");
   command
       .add_option("--security", network.security,
-                  "folder with this node's certificates (scenes/make_certificates.sh), which keep others "
-                  "from reading or moving anything; none: everybody who reaches the interface can")
+                  "folder with this node's certificates (scenes/make_certificates.sh), without which "
+                  "nobody can read or move anything; none: everybody who reaches the interface can do both")
       ->type_name("FOLDER")
       ->needs(option);
   return option;

@@ -135,7 +135,7 @@ std::string checkHeadline(const scenes::CheckResult& result) {
                     std::to_string(result.pairs.size()) + " pairs near each other, ";
   const std::string answer = assemblyWords(result);
   const std::size_t clashes = result.clashes();
-  if (clashes == 0) return out + (answer.empty() ? "no clash beyond the error" : answer);
+  if (clashes == 0) return out + (answer.empty() ? "no clash deeper than the error of the check" : answer);
   const scenes::CheckedPair& worst = *result.deepestClash();
   out += std::to_string(clashes) + (clashes == 1 ? " clash: " : " clashes, the deepest: ") + worst.a +
          " and " + worst.b + " by " + um(worst.interference_depth_m) + " um (+- " + um(worst.error_m) +

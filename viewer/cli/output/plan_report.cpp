@@ -77,8 +77,8 @@ std::string benchText(const scenes::PlannedAssembly& assembly) {
     if (!step.is_on_bench) left.push_back(step.name);
   }
   if (!is_any || left.empty()) return "";
-  return "Not laid out on the bench, because it is covered on all sides when it is mounted: " + listed(left) +
-         ".\n";
+  return "Parts that are not laid out on the bench, because they are covered on all sides when mounted: " +
+         listed(left) + ".\n";
 }
 
 std::string assemblyTable(const scenes::PlannedAssembly& assembly) {
@@ -104,7 +104,7 @@ std::string assemblyTable(const scenes::PlannedAssembly& assembly) {
   if (!held.empty())
     out +=
         "Nothing carries " + listed(held) +
-        "; the hand holds each until the end of its step. If a fixture holds it "
+        "; the hand holds each of these parts until the end of its step. If a fixture holds such a part "
         "afterwards, give the fixture as a part; a part that is not to be assembled gets scenery = true.\n";
   for (const scenes::PlannedStep& step : assembly.steps)
     if (!step.falling.empty())

@@ -86,7 +86,7 @@ void printSteps(const scenes::AssembleResult& result, const Fidelity& fidelity) 
     const char* name = step.part.c_str();
     if (!step.reason.empty()) std::printf("%s: %s\n", name, step.reason.c_str());
     if (step.completed && !step.by_contact && !step.is_taken_off)
-      std::printf("%s: by contact: %s\n", name, contactWords(step).c_str());
+      std::printf("%s: assembled by contact: %s\n", name, contactWords(step).c_str());
     if (!step.stands_on.empty())
       std::printf("%s: this step was tried with '%s' put at its target, which it had not reached\n", name,
                   step.stands_on.c_str());

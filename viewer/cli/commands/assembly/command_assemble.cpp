@@ -89,7 +89,7 @@ scenes::Verdict runScene(const AssembleArguments& given) {
     bar.clear();
     if (so_far) {
       printSteps(*so_far, scene.fidelity);
-      std::printf("stopped; results so far: %s\n", unfinished.c_str());
+      std::printf("stopped; the results so far are in %s\n", unfinished.c_str());
     }
     throw;
   }
@@ -131,9 +131,11 @@ scenes::Verdict runPlanned(const AssembleArguments& given,
     const std::string name = fs::path(part.scene.scene).stem().string();
     if (!scene_files[i].has_steps) {
       std::printf(
-          "\n%s\nNone of its parts can be taken off, so it was not run; the plan names what is in the way.\n",
+          "\n%s\nNo part of this subassembly can be taken off, so it was not run; the plan names what is in "
+          "the way.\n",
           name.c_str());
-      const scenes::Judgement judged = scenes::judge({.blocked = "none of its parts can be taken off"});
+      const scenes::Judgement judged =
+          scenes::judge({.blocked = "no part of this subassembly can be taken off"});
       whole = scenes::worse(whole, judged.verdict);
       table.add({name, words(judged.verdict), "-"});
       return;

@@ -95,10 +95,10 @@ std::function<int()> addCheck(CLI::App& command) {
   command.add_option("--near", given->near,
                      "clearance up to which pairs are reported, with unit (default: 1mm)");
   command.add_flag("--no-play", given->has_no_play,
-                   "leave out play and ways out, which take the longest time");
-  command.add_option("--csv", given->csv, "write each number with its error on a line of this file")
+                   "do not compute the play of parts and their ways out, which take the longest time");
+  command.add_option("--csv", given->csv, "CSV file with one number and its error on each line")
       ->type_name("FILE");
-  command.add_option("--html", given->html, "write a page with tables")->type_name("FILE");
+  command.add_option("--html", given->html, "write an HTML page with tables")->type_name("FILE");
   addPdfOption(command, given->pdf);
   addJsonOption(command, given->json);
   return [given] { return runCheck(*given); };

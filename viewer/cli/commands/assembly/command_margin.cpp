@@ -83,10 +83,10 @@ std::function<int()> addMargin(CLI::App& command) {
   addSceneArgument(command, given->scene.scene);
   command.add_option("--resolution", given->resolution, "resolution of the growth, with unit")
       ->capture_default_str();
-  command.add_flag(
-      "!--geometry", given->has_contact,
-      "use exact distances alone, without runs of the virtual operator: quick, and an upper bound");
-  command.add_option("--html", given->html, "write a page with bars")->type_name("FILE");
+  command.add_flag("!--geometry", given->has_contact,
+                   "use exact distances alone, without runs of the virtual operator: quick, and the result "
+                   "is an upper bound");
+  command.add_option("--html", given->html, "write an HTML page with a bar chart")->type_name("FILE");
   addPdfOption(command, given->pdf);
   addFidelityOptions(command, given->scene.fidelity);
   addJsonOption(command, given->json);

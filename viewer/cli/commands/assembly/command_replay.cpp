@@ -39,10 +39,11 @@ int verdict(const device::RecordedRun& run, const scenes::ReplayResult& replayed
   const double end_s = replayed.result.simulated_s;
   if (!replayed.departure.empty()) {
     if (!replayed.other_version.empty()) warn(run.file + " " + replayed.other_version);
-    std::printf("differs from the recording at %s\n", replayed.departure.c_str());
+    std::printf("the replay differs from the recording at %s\n", replayed.departure.c_str());
     return kBad;
   }
-  std::printf("the same bits: %zu entries up to %.3f s\n", replayed.equal, end_s);
+  std::printf("the replay has the same bits as the recording: %zu entries up to %.3f s\n", replayed.equal,
+              end_s);
   if (run.damage.empty()) return kGood;
   warn(run.file + " " + run.damage);
   return kBad;

@@ -50,15 +50,15 @@ bool printOverlap(const scenes::JudgedOverlap& judged) {
   const auto um = [](double length_m) { return fixed(length_m * 1e6, 2); };
   for (const auto& [start, apart_s, end_depth_m] : judged.at_start)
     warn("'" + start.a + "' starts " + um(start.depth_m) + " um inside '" + start.b + "'; " +
-         (apart_s ? "they were apart after " + fixed(*apart_s, 3) + " s"
-                  : "they did not come apart, and end " + um(end_depth_m) + " um inside each other"));
+         (apart_s ? "these parts were apart after " + fixed(*apart_s, 3) + " s"
+                  : "these parts did not come apart, and end " + um(end_depth_m) + " um inside each other"));
   const scenes::PairOverlap& deepest = judged.deepest;
-  std::printf("deepest by exact distance %s um (limit %s um)", um(deepest.depth_m).c_str(),
+  std::printf("deepest overlap by exact distance %s um (limit %s um)", um(deepest.depth_m).c_str(),
               um(judged.limit_m).c_str());
   if (deepest.depth_m > 0)
     std::printf(", '%s' in '%s' at %s s", deepest.a.c_str(), deepest.b.c_str(),
                 fixed(deepest.time_s, 4).c_str());
-  std::printf("; judged at %zu instants\n", judged.poses_judged);
+  std::printf("; overlap measured at %zu instants\n", judged.poses_judged);
   if (judged.neverApart() > 0)
     std::printf("not within the limit: %zu %s overlapped from start to end\n", judged.neverApart(),
                 judged.neverApart() == 1 ? "pair of bodies" : "pairs of bodies");
@@ -72,7 +72,7 @@ std::string depthInWords(const scenes::SimulateResult& result) {
   const std::string which = deepest.depth_m > 0 ? ", '" + deepest.a + "' in '" + deepest.b + "' at " +
                                                       fixed(deepest.time_s, 4) + " s"
                                                 : "";
-  const std::string found = "deepest " + um(deepest.depth_m) + " by exact distance" + which;
+  const std::string found = "deepest overlap " + um(deepest.depth_m) + " by exact distance" + which;
   const std::string bound = um(result.exact.bound_m);
   if (!result.exact.is_searched) return found + "; the search was not completed: at most " + bound;
   if (result.exact.bound_m <= 2e-6 + 1.05 * deepest.depth_m) return found + ", at no time more than " + bound;

@@ -86,7 +86,7 @@ void printResult(const scenes::StudyResult& result) {
                deviationText(effect.variable, effect.variable.upper), fixed(100 * effect.yield_if_halved, 2),
                fixed(100 * effect.gain, 2), fixed(100 * effect.gain_error, 2)});
   std::fputs(table.text().c_str(), stdout);
-  std::printf("yield %s %% (95 %%: %s to %s %%): %zu of %zu runs fit, %zu are blocked, %zu not shown\n",
+  std::printf("yield %s %% (95 %%: %s to %s %%): %zu of %zu runs fit, %zu are blocked, %zu are 'not shown'\n",
               fixed(100 * result.yield, 2).c_str(), fixed(100 * result.yield_low, 2).c_str(),
               fixed(100 * result.yield_high, 2).c_str(), result.good, result.runs.size(), result.blocked,
               result.runs.size() - result.good - result.blocked);
@@ -123,7 +123,8 @@ int repeatRun(const scenes::Scene& scene, const std::vector<scenes::StudyVariabl
   const auto known = std::ranges::find(done, number, &scenes::StudyRun::run);
   if (known == done.end()) return kGood;
   const bool is_same = studyLine(*known) == line;
-  std::printf("%s\n", is_same ? "the same as in the log, to the bit" : "differs from the run in the log");
+  std::printf("%s\n", is_same ? "this run has the same bits as in the log"
+                              : "this run differs from the run in the log");
   return is_same ? kGood : kBad;
 }
 
@@ -184,9 +185,9 @@ std::function<int()> addStudy(CLI::App& command) {
       ->capture_default_str()
       ->check(CLI::Range(std::size_t{1}, std::size_t{100000000}));
   command.add_option("--seed", given->seed, "seed of the random deviations")->capture_default_str();
-  command.add_flag(
-      "!--geometry", given->has_contact,
-      "judge by exact distances alone, without runs of the virtual operator: quick, and an upper bound");
+  command.add_flag("!--geometry", given->has_contact,
+                   "judge by exact distances alone, without runs of the virtual operator: quick, and the "
+                   "yield is an upper bound");
   command
       .add_option("--log", given->log,
                   "file with a line for each run; an interrupted study continues with the runs that are "
@@ -205,7 +206,7 @@ std::function<int()> addStudy(CLI::App& command) {
                   "make the runs on the workers of this Dask scheduler, which need vps and the scene's files "
                   "at the same paths")
       ->type_name("ADDRESS");
-  command.add_option("--html", given->html, "write a page with histograms")->type_name("FILE");
+  command.add_option("--html", given->html, "write an HTML page with histograms")->type_name("FILE");
   addPdfOption(command, given->pdf);
   addFidelityOptions(command, given->fidelity);
   addJsonOption(command, given->json);

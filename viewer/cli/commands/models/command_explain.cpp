@@ -186,8 +186,10 @@ int runExplain(const ExplainArguments& given) {
   if (answer.everything)
     std::fputs(totalOf("with --model-everything  ", answer.everything->cost).c_str(), stdout);
   if (!given.is_measured)
-    std::fputs("estimated from areas and edges; --measure builds the models and measures memory and time\n",
-               stdout);
+    std::fputs(
+        "memory is estimated from areas and edges; --measure builds the models and measures memory and "
+        "time\n",
+        stdout);
   return kGood;
 }
 
@@ -196,11 +198,12 @@ int runExplain(const ExplainArguments& given) {
 std::function<int()> addExplain(CLI::App& command) {
   const auto given = std::make_shared<ExplainArguments>();
   addSceneOptions(command, given->scene);
-  command.add_flag("--simulate", given->is_for_simulate,
-                   "explain vps simulate instead of vps assemble; the default for a scene without steps");
+  command.add_flag(
+      "--simulate", given->is_for_simulate,
+      "explain the models of vps simulate instead of vps assemble; the default for a scene without steps");
   command.add_flag("--measure", given->is_measured,
                    "build the models, and those of --model-everything, and measure their memory and time; "
-                   "without this option both are estimated");
+                   "without this option the memory is estimated, and times are not given");
   addJsonOption(command, given->json);
   return [given] { return runExplain(*given); };
 }

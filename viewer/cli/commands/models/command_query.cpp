@@ -89,7 +89,7 @@ void warnIfThin(const Mesh& mesh, double voxel_m, const std::string& file) {
   const double thinnest_m = bounds(mesh).size().minCoeff();
   if (voxel_m > thinnest_m / 2)
     warn(file + ": is " + fixed(thinnest_m * 1e3, 3) + " mm thin, less than two voxels of " +
-         fixed(voxel_m * 1e3, 3) + " mm: depths in it are unreliable; use a finer --voxel");
+         fixed(voxel_m * 1e3, 3) + " mm: depths in this part are unreliable; use a finer --voxel");
 }
 
 /// The contents of the two files: meshes, or the voxmap of A and the pointshell of B.

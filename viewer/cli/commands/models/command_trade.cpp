@@ -40,7 +40,7 @@ void print(const scenes::TradeResult& result) {
   for (const std::string& words : scenes::tradeKnobs(result)) std::printf("  %s\n", words.c_str());
   std::printf("\n");
   for (const std::string& words : scenes::tradeAnswers(result)) std::printf("%s\n", words.c_str());
-  for (const std::string& words : result.fixed) std::printf("not set by a scene: %s\n", words.c_str());
+  for (const std::string& words : result.fixed) std::printf("fixed, not set by a scene: %s\n", words.c_str());
   for (const std::string& words : result.left_out) std::printf("left out: %s\n", words.c_str());
 }
 
@@ -90,7 +90,7 @@ int pick(scenes::Scene scene, const scenes::FidelityWish& wish, OutputFile& json
   json.write(toJson(scene.name, choice));
   bar.clear();
   if (!choice.is_met) {
-    say("no fidelity meets this: " + choice.failure_reason);
+    say("no fidelity meets the requirements: " + choice.failure_reason);
     return kBad;
   }
   std::printf("# %s\n%s", scenes::describe(choice).c_str(), scenes::toToml(choice.fidelity).c_str());
@@ -134,7 +134,7 @@ int runTrade(const TradeArguments& given) {
   print(result);
   if (!plot) warn("no plot: " + plot.failure_reason);
   if (!is_stopped) return kGood;
-  say("stopped; the rows measured until then are above" +
+  say("stopped; the rows that were measured before the stop are above" +
       std::string(out || !given.csv.empty() || !given.json.empty() ? " and saved" : ""));
   return kCouldNot;
 }
@@ -152,7 +152,8 @@ std::function<int()> addTrade(CLI::App& command) {
       ->check(CLI::Range(1.0, 1e6));
   command.add_option("--tolerance", given->tolerance,
                      "pick a fidelity whose error of depth is at most this length, with unit");
-  command.add_option("--memory", given->memory, "pick a fidelity whose models need at most this: 64MB, 1GB");
+  command.add_option("--memory", given->memory,
+                     "pick a fidelity whose models need at most this much memory, such as 64MB or 1GB");
   command.add_option("--csv", given->csv, "write the table to this file")->type_name("FILE");
   addFidelityOptions(command, given->fidelity);
   addJsonOption(command, given->json);

@@ -92,14 +92,15 @@ bool compareWith(const Image& wanted, const Image& image, const SnapshotArgument
   answer.mean_difference = found.mean;
   const char* const file = given.compare.c_str();
   if (!found.is_same_size) {
-    std::printf("%s is %d x %d, the picture %d x %d\n", file, wanted.width, wanted.height, image.width,
-                image.height);
+    std::printf("the expected picture %s has %d x %d pixels, and the new picture has %d x %d\n", file,
+                wanted.width, wanted.height, image.width, image.height);
     return false;
   }
   const bool is_equal = found.share_beyond == 0;
-  std::printf("%s %s: %.3f %% of the pixels differ by more than %d, the greatest by %d\n",
-              is_equal ? "same as" : "differs from", file, 100 * found.share_beyond, given.tolerance,
-              found.greatest);
+  std::printf(
+      "the picture %s %s: %.3f %% of the pixels differ by more than %d, and the greatest difference is %d\n",
+      is_equal ? "is the same as" : "differs from", file, 100 * found.share_beyond, given.tolerance,
+      found.greatest);
   return is_equal;
 }
 
@@ -213,7 +214,7 @@ std::function<int()> addSnapshot(CLI::App& command) {
   command.add_option("--view", given->view, "direction from which the scene is seen")
       ->capture_default_str()
       ->check(CLI::IsMember(viewNames()));
-  command.add_flag("--section", given->has_section, "cut away the front half");
+  command.add_flag("--section", given->has_section, "cut away the front half of the scene");
   std::vector<std::string> modes;
   for (const StereoMode mode : stereoModes()) modes.emplace_back(toText(mode));
   command.add_option("--stereo", given->stereo, "how the pictures for both eyes are combined")
@@ -240,10 +241,13 @@ std::function<int()> addSnapshot(CLI::App& command) {
                   "of the parts that a step moves, voxels of the others)")
       ->delimiter(',')
       ->check(CLI::IsMember({"points", "voxels"}));
-  command.add_option("--compare", given->compare, "exit with status 1 if the picture differs from this one")
+  command
+      .add_option("--compare", given->compare,
+                  "compare the picture with this PNG file, and exit with status 1 if they differ")
       ->type_name("IMAGE");
   command
-      .add_option("--tolerance", given->tolerance, "difference of a channel that counts as equal, 0 to 255")
+      .add_option("--tolerance", given->tolerance,
+                  "greatest difference of a colour channel that counts as equal, 0 to 255")
       ->capture_default_str()
       ->check(CLI::Range(0, 255));
   command.add_option("--difference", given->difference, "picture of the difference to write")

@@ -36,7 +36,8 @@ std::string soundOf(const device::RecordedRun& run, const Progress& progress) {
   const scenes::ReplayResult replayed = scenes::replay(run, options);
   throwIfStopped();
   if (!replayed.departure.empty())
-    warn(run.file + " gives other results when it runs again, so sound and pictures differ from " +
+    warn(run.file +
+         " gives other results when it runs again, so the sound does not match the pictures from " +
          replayed.departure + " on");
   return heard.wav();
 }
@@ -122,7 +123,9 @@ std::function<int()> addVideo(CLI::App& command) {
       ->capture_default_str()
       ->check(CLI::IsMember({"iso", "front", "back", "left", "right", "top", "bottom"}));
   command
-      .add_option("--camera", given->camera, "fixed, orbit (once around) or follow (with the part in hand)")
+      .add_option(
+          "--camera", given->camera,
+          "motion of the camera: fixed, orbit (once around the scene) or follow (with the part in hand)")
       ->capture_default_str()
       ->check(CLI::IsMember({"fixed", "orbit", "follow"}));
   std::vector<std::string> modes;

@@ -52,16 +52,17 @@ void print(const LatencyResult& result) {
   std::fputs(table.text().c_str(), stdout);
   std::printf(
       "%zu contacts of '%s'; pictures of %d x %d by %s, %.1f ms each; sound: %s\n"
-      "apart: %s (bound: 99 of 100 within %.0f ms). The time that a display takes to show a picture is not "
+      "time between picture, sound and force: %s (bound: 99 of 100 contacts within %.0f ms). The time that a "
+      "display takes to show a picture is not "
       "included.\n",
       result.contacts.size(), result.part.c_str(), result.width, result.height, result.drawn_by.c_str(),
       1e3 * result.picture_wall_s,
-      result.hasSound() ? ("a card in the program, three periods of 64 samples; samples late " +
-                           std::to_string(result.late_samples) + " times, the mixer " +
+      result.hasSound() ? ("a simulated sound card with three periods of 64 samples; samples were late " +
+                           std::to_string(result.late_samples) + " times, the mixer was late " +
                            std::to_string(result.late_mixes) + " times")
                               .c_str()
                         : result.silence.c_str(),
-      result.isGood() ? "good" : "too far, or not all contacts were found", 1e3 * kApart_s);
+      result.isGood() ? "good" : "too long, or not all contacts were found", 1e3 * kApart_s);
 }
 
 /// Runs vps view --measure-latency: prints the table and writes the JSON file, unless its name is empty.
@@ -179,7 +180,7 @@ std::function<int()> addView(CLI::App& command) {
                    "controller's trigger picks a part and, with --hand mouse, takes it");
   std::vector<std::string> modes;
   for (const StereoMode mode : stereoModes()) modes.emplace_back(toText(mode));
-  command.add_option("--stereo", given->stereo, "stereo mode at the start; key S switches")
+  command.add_option("--stereo", given->stereo, "stereo mode at the start; the key S changes the mode")
       ->capture_default_str()
       ->check(CLI::IsMember(modes));
   command.add_flag("--quad-buffer", window.has_stereo_buffers,
@@ -187,8 +188,9 @@ std::function<int()> addView(CLI::App& command) {
                    "the mode mono");
   command
       .add_option("--display", given->display,
-                  "display file (TOML): the window shows the picture of each screen for each viewer (key O: "
-                  "one alone); if the file states where the device stands, the part is drawn at the hand")
+                  "display file (TOML): the window shows the picture of each screen for each viewer (the "
+                  "key O shows one picture alone); if the file states where the device stands, the part is "
+                  "drawn at the hand")
       ->type_name("FILE");
   command
       .add_option("--output", window.output,
@@ -197,9 +199,9 @@ std::function<int()> addView(CLI::App& command) {
       ->needs("--display");
   // A flag, because an option with an optional value would take the scene file as its value.
   command
-      .add_flag(
-          "--full-screen{1}", window.full_screen,
-          "fill the first monitor without panels, or another one, as in --full-screen=2; key F11 switches")
+      .add_flag("--full-screen{1}", window.full_screen,
+                "fill the first monitor, or monitor 2 with --full-screen=2, without panels; the key F11 "
+                "switches full screen on or off")
       ->check(CLI::Range(1, 64));
   command
       .add_option("--show", given->show,

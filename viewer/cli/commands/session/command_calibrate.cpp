@@ -141,7 +141,8 @@ std::string roomFile(const CalibrateArguments& given) {
   if (given.points.empty() && !(given.written_display + given.written_scene).empty())
     throw LoadError("", "", "--write-display and --write-scene need --points, and do not work with --bases");
   if (!given.display.empty() && !given.written_display.empty())
-    throw LoadError("", "", "--display and --write-display both name the room; give one");
+    throw LoadError("", "",
+                    "--display and --write-display both name the room; give only one of the two options");
   const std::string room = given.display.empty() ? given.written_display : given.display;
   if (room.empty() && !given.written_scene.empty())
     throw LoadError("", "", "--write-scene needs the display file of the room; add --display FILE");
@@ -197,7 +198,9 @@ void writeInto(const CalibrateArguments& given, const Calibrated& found) {
 
 int runCalibrate(const CalibrateArguments& given) {
   if (given.points.empty() == given.bases.empty())
-    throw LoadError("", "", "give --points TABLE (where the device stands) or --bases TABLE (its two arms)");
+    throw LoadError(
+        "", "",
+        "give --points TABLE to find where the device stands, or --bases TABLE to calibrate its two arms");
   const std::string room = roomFile(given);
   OutputFile out(given.out, {given.points, given.bases, given.parameters, room, given.written_scene});
   const Calibrated found =

@@ -254,7 +254,8 @@ std::function<int()> addDevice(CLI::App& command) {
           "re-arm the device automatically when a lost render node is back; simulated devices always do this")
       ->needs(session);
   addRecordOption(command, given->record)->needs(session)->excludes("--list");
-  command.add_flag("--stay", given->stays, "wait for the next session when one has ended")->needs(session);
+  command.add_flag("--stay", given->stays, "when a session has ended, wait for the next session")
+      ->needs(session);
   addJsonOption(command, given->json);
   command.get_option("--json")->needs(characterise);
   return [given] { return runDevice(*given); };

@@ -274,7 +274,7 @@ std::function<int()> addWatch(CLI::App& command) {
   const auto given = std::make_shared<WatchArguments>();
   addSceneOptions(command, given->scene);
   command.get_option("scene")->required(false)->description(
-      "scene file (TOML) to run, or recording (MCAP) to play, for the web page; without it a session is "
+      "scene file (TOML) to run, or recording (MCAP) to play, for the web page; without a file a session is "
       "followed");
   addSessionOption(command, given->session);
   addNetworkOption(command, given->network);

@@ -144,7 +144,8 @@ EyePair eyesOf(const Camera& camera, double eye_distance_m, double picture_aspec
 Camera cameraFor(const scenes::Display& display, const scenes::DisplayScreen& screen, const Vec3& eye_S) {
   const Mat3 R_S = screen.axes();
   if (R_S.col(2).dot(eye_S - screen.lower_left_S) <= 0)
-    throw LoadError(display.file, screen.name, "has an eye behind it; move the head or the screen");
+    throw LoadError(display.file, screen.name,
+                    "has the eye of a viewer behind its plane; move the head or the screen");
   const Mat3 R_WS = display.X_SW.R.transpose();
   return behindRectangle(display.toScene(eye_S), display.toScene(screen.lower_left_S),
                          (screen.lower_right_S - screen.lower_left_S).norm() / display.scale,

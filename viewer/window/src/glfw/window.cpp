@@ -34,7 +34,7 @@ PictureSize pictureSize(const PictureArea& area) {
 void typed(Session& session, const std::string& key) {
   if (session.run && key == "Space") return session.run->pause(!session.run->isPaused());
   if (session.followed != nullptr && key == "Space")
-    return session.say("a session cannot be paused from here");
+    return session.say("a session cannot be paused from this window");
   for (const KeyBinding& binding : keyBindings())
     if (key == binding.key) apply(binding.action, session.view, session.shownLine(), session.box_W());
 }

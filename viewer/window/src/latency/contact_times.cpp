@@ -88,7 +88,7 @@ double ContactTimes::apart_s(bool has_sound) const {
 
 const std::vector<LatencyStage>& latencyStages() {
   static const std::vector<LatencyStage> kStages = {
-      {"found", "physics step with the contact done", &ContactTimes::found_s},
+      {"found", "physics: end of the step with the contact", &ContactTimes::found_s},
       {"force", "force: wrench written to the device", &ContactTimes::force_s},
       {"sound_written", "sound: sample given to the card", &ContactTimes::sound_written_s, true},
       {"sound", "sound: sample played", &ContactTimes::sound_s, true},

@@ -108,7 +108,7 @@ std::vector<std::string> gapLines(const scenes::Scene& scene, const MeasuredGaps
   };
   for (const scenes::PartGap& gap : measured.gaps) {
     if (const auto touch = touchOf(gap.other); touch != measured.touches.end())
-      std::snprintf(words, sizeof words, ": touches it, %.3g N", touch->force_N);
+      std::snprintf(words, sizeof words, ": touches this part, %.3g N", touch->force_N);
     else if (gap.distance_m > 0)
       std::snprintf(words, sizeof words, ": %.4g µm away", gap.distance_m * 1e6);
     else

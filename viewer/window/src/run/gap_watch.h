@@ -64,8 +64,8 @@ class VPS_VIEWER_API GapWatch {
   std::thread thread_;  ///< started by the first request
 };
 
-/// A line of text for each part within 1 mm: "housing: touches it, 2.5 N", "plate: contact", "shaft: 12.5 µm
-/// away". If there is no such part, the line "nothing within 1 mm".
+/// A line of text for each part within 1 mm: "housing: touches this part, 2.5 N", "plate: contact",
+/// "shaft: 12.5 µm away". If there is no such part, the line "nothing within 1 mm".
 [[nodiscard]] VPS_VIEWER_API std::vector<std::string> gapLines(const scenes::Scene& scene,
                                                                const MeasuredGaps& measured);
 
