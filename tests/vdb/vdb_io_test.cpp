@@ -410,7 +410,8 @@ TEST_F(ForeignVdb, AFileThatWouldNotFitInMemoryIsRefusedBeforeItIsRead) {
   FloatGrid::Ptr grid = ball();
   grid->insertMeta("file_mem_bytes", openvdb::Int64Metadata(std::int64_t{1} << 40));
   store({grid}, false);
-  EXPECT_NE(complaint().find("needs 1024 GiB for grid '[0]', the limit is 4; resample"), std::string::npos)
+  EXPECT_NE(complaint().find("needs 1024 GiB for grid '[0]', the limit is 4 GiB; resample"),
+            std::string::npos)
       << complaint();
   // Two leaves as far apart as can be.
   grid = ball();

@@ -34,7 +34,7 @@ Digest bytesKeyOf(std::string_view made_from) {
 std::optional<std::string> readBytes(const fs::path& file, const Digest& key, std::string& why) {
   HashedReader reader(file);
   const auto header = readHeader<BytesHeader>(
-      reader, file, key, "is not of this cache",
+      reader, file, key, "is not a file of this cache",
       [](const BytesHeader& h) {
         return sizeof(BytesHeader) + std::min(h.bytes, kMostBytes) + sizeof(Digest);
       },
@@ -65,7 +65,7 @@ std::optional<std::string> ByteCache::find(std::string_view made_from) const {
   if (bytes)
     CacheFolder::touch(file);
   else
-    folder_->warn(file, why + "; the result is made again");
+    folder_->warn(file, why + "; the result is computed again");
   return bytes;
 }
 

@@ -101,7 +101,7 @@ std::optional<Header> readHeader(HashedReader& reader, const std::filesystem::pa
   reader.read(&header, sizeof header);
   if (!reader.isGood() || header.start.magic != expected.magic) return why = not_this_kind, std::nullopt;
   if (!header.start.isOfSameVersion(expected))
-    return why = "is of another version of this program", std::nullopt;
+    return why = "was written by another version of this program", std::nullopt;
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(file, error);
   const std::optional<std::uint64_t> bytes = bytesOf(header);

@@ -85,9 +85,8 @@ void CacheFolder::keep(const fs::path& file, const std::function<bool(const fs::
     has_failed_ = true;
   }
   warn(folder_,
-       "models could not be kept in this folder, so that they are built again next time; is it a folder, may "
-       "you "
-       "write to it, is the disk full?");
+       "models could not be kept in this folder and will be built again next time; check that the folder "
+       "exists, that you may write to it, and that the disk is not full");
 }
 
 void CacheFolder::limit(const fs::path& newest) {

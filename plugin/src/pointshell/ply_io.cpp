@@ -192,7 +192,7 @@ class PlyReader {
       row_bytes_ += known.bytes;
       return;
     }
-    fail("property '" + name + "' of a point has type '" + type + "', which is not a number's");
+    fail("property '" + name + "' of a point has type '" + type + "', which is not a type of number");
   }
 
   void requireColumns() const {

@@ -43,7 +43,7 @@ void requireSettings(const Mesh& mesh, const PointShellSettings& settings, const
   if (const double enough_m = fittingSpacing_m(mesh, settings.spacing_m); enough_m > settings.spacing_m)
     throw LoadError("", part,
                     "a point spacing of " + microns(settings.spacing_m) + " gives too many points; " +
-                        microns(std::ceil(enough_m * 1e6) * 1e-6) + " is enough, or check the units");
+                        microns(std::ceil(enough_m * 1e6) * 1e-6) + " is fine enough, or check the units");
 }
 
 PointShell laidOut(const std::vector<ShellSample>& samples, double spacing_m) {

@@ -142,8 +142,9 @@ void requireTiles(const std::string& file, const FloatGrid& grid) {
 void requireValues(const std::string& file, const FloatGrid& grid) {
   const double background = static_cast<double>(grid.background());
   if (grid.tree().leafCount() == 0)
-    refuseVdb(file, "the file is empty: no value lies within a band; export it again");
-  if (background < 0) refuseVdb(file, "the file is inside out: its background is negative; turn its sign");
+    refuseVdb(file, "the file is empty: it has no values in a band around a surface; export it again");
+  if (background < 0)
+    refuseVdb(file, "the file is inside out: its background is negative; negate all values");
   if (!(background > 0))
     refuseVdb(file, "the file looks like a fog volume: its background is 0; convert it to a level set");
   if (!std::isfinite(background)) refuseVdb(file, "the file has no band: its background is not a number");
@@ -173,7 +174,7 @@ void widenBand(const std::string& file, LevelSet& level_set) {
   const double band = static_cast<double>(level_set.grid->background()) / level_set.voxel_m;
   if (band < 1 - 1e-6)
     refuseVdb(file, "the file has a band of " + digits(band) +
-                        " voxels; at least 1 is needed, 3 would do (Houdini: VDB " +
+                        " voxels; at least 1 voxel is needed, 3 are enough (Houdini: VDB " +
                         "Renormalize or VDB Rebuild)");
   const int missing = static_cast<int>(std::ceil(kMinBand - band + 1e-3));
   // Steps across edges too, so that the new band is as wide in every direction.

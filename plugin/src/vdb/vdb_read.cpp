@@ -25,7 +25,7 @@ std::string bytesOf(const std::string& file) {
   std::error_code unknown;
   const std::uintmax_t size = std::filesystem::file_size(file, unknown);
   if (!unknown && static_cast<double>(size) > kMemoryLimit_bytes)
-    refuseVdb(file, "the file is larger than the 4 GiB that are read; resample it with larger voxels");
+    refuseVdb(file, "the file is larger than 4 GiB, the limit; resample it with larger voxels");
   std::ifstream in(file, std::ios::binary);
   if (!in) refuseVdb(file, "the file cannot be read; check its name");
   return {std::istreambuf_iterator<char>(in), {}};
@@ -139,9 +139,8 @@ PlacedVdb read(const std::string& file, const std::string& name) {
     const Origin origin = originOf(bytes);
     if (origin == Origin::Changed)
       refuseVdb(file,
-                "the file is damaged or cut short, or another program changed it and left our metadata "
-                "'vps_...' in; "
-                "build it again, or remove them");
+                "the file is damaged or cut short, or another program changed it and kept our metadata "
+                "'vps_...'; build the file again, or remove these metadata");
     VdbArchive archive(std::move(bytes), kMemoryLimit_bytes);
     if (origin == Origin::Ours) return {OwnFile(file, archive).read(), Pose()};
     return readOthers(file, archive, name);

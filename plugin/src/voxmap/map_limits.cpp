@@ -11,7 +11,8 @@ namespace vps {
 namespace {
 
 static_assert(kMemoryLimit_bytes / VoxLayout::kCellBytes < 2147483648.0, "kernels count cells in int");
-static_assert(kMemoryLimit_bytes / VoxPool::kBytes < VoxPool::kMaxBricks, "all bricks that fit have a name");
+static_assert(kMemoryLimit_bytes / VoxPool::kBytes < VoxPool::kMaxBricks,
+              "all bricks that fit into memory have a name");
 
 }  // namespace
 
@@ -23,7 +24,8 @@ void requireSettings(const VoxMapSettings& settings, const std::string& part) {
     throw LoadError("", part, "the voxel size must lie between 1e-30 and 1e30 m; is the unit right?");
   // A band read from a map is rounded, see quantumOf().
   if (!(settings.band_voxels >= 3 * (1 - 1e-6)) || !(settings.band_voxels <= 64 * (1 + 1e-6)))
-    throw LoadError("", part, "the band must be 3 to 64 voxels wide on each side; 4 is usual");
+    throw LoadError("", part,
+                    "the band must be 3 to 64 voxels wide on each side of the surface; 4 voxels are usual");
 }
 
 void requirePose(const Pose& X_MP) {
@@ -51,7 +53,7 @@ void requireDirectory(const Vec3& cells, const std::string& file, const std::str
   std::snprintf(what_for, sizeof what_for, " for its directory of %.6g x %.6g x %.6g bricks", cells.x(),
                 cells.y(), cells.z());
   std::snprintf(remedy, sizeof remedy,
-                "voxels %.2g times as large would fit, or what lies far apart moved nearer",
+                "make the voxels %.2g times as large, or move parts that lie far apart closer together",
                 1.05 * std::cbrt(bytes / kMemoryLimit_bytes));
   requireMemory(bytes, what_for, remedy, file, part);
 }
@@ -62,7 +64,7 @@ void requireMemory(double bytes, const std::string& what_for, const std::string&
   constexpr double kGiB = 1024.0 * 1024 * 1024;
   char needs[48], limit[48];
   std::snprintf(needs, sizeof needs, "needs %.4g GiB", bytes / kGiB);
-  std::snprintf(limit, sizeof limit, ", the limit is %.0f; ", kMemoryLimit_bytes / kGiB);
+  std::snprintf(limit, sizeof limit, ", the limit is %.0f GiB; ", kMemoryLimit_bytes / kGiB);
   throw LoadError(file, part, needs + what_for + limit + remedy);
 }
 
@@ -116,7 +118,7 @@ void requireFits(const Mesh& mesh, const VoxMapSettings& settings, const std::st
   while (bytesAt(h) > kMemoryLimit_bytes) h *= 1.05;
   char what_for[48], remedy[48];
   std::snprintf(what_for, sizeof what_for, " at %.3g mm voxels", settings.voxel_m * 1e3);
-  std::snprintf(remedy, sizeof remedy, "%.2g mm would fit", h * 1.05e3);
+  std::snprintf(remedy, sizeof remedy, "voxels of %.2g mm would fit", h * 1.05e3);
   requireMemory(bytesAt(settings.voxel_m), what_for, remedy, "", part);
 }
 

@@ -26,8 +26,8 @@ double directoryBytes(const Vec3& cells);
 /// @param cells  along each axis; of type double, since the count may exceed the range of an index
 VPS_API void requireDirectory(const Vec3& cells, const std::string& file = "", const std::string& part = "");
 
-/// Refuses data that would not fit in memory, with the message "needs 12 GiB for its bricks, the limit is 4;
-/// REMEDY".
+/// Refuses data that would not fit in memory, with the message "needs 12 GiB for its bricks, the limit is 4
+/// GiB; REMEDY".
 /// @param what_for  the purpose in the message, such as " for its bricks"
 VPS_API void requireMemory(double bytes, const std::string& what_for, const std::string& remedy,
                            const std::string& file = "", const std::string& part = "");

@@ -62,7 +62,7 @@ class Merger {
     const auto kept = std::count_if(out_->bricks.begin(), out_->bricks.end(),
                                     [](std::uint32_t brick) { return !isConstant(brick); });
     requireMemory((static_cast<double>(kept) + static_cast<double>(new_bricks_.size())) * VoxPool::kBytes,
-                  " for its bricks", "larger voxels would do");
+                  " for its bricks", "use larger voxels");
     const std::uint32_t first = takeBricks(*out_, new_bricks_.size());
     if (first != 0)
       out_->leases.push_back(std::make_shared<BrickLease>(out_->pool, first, new_bricks_.size()));

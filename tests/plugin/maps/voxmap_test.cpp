@@ -425,7 +425,9 @@ TEST(VoxMap, TheVoxelSizeNamedInTheErrorFits) {
   } catch (const LoadError& error) {
     double fits_mm = 0;
     const std::string text = error.what();
-    ASSERT_EQ(std::sscanf(text.c_str() + text.find("is 4; ") + 6, "%lf mm would fit", &fits_mm), 1) << text;
+    ASSERT_EQ(
+        std::sscanf(text.c_str() + text.find("is 4 GiB; ") + 10, "voxels of %lf mm would fit", &fits_mm), 1)
+        << text;
     EXPECT_GT(fits_mm, 1e-3);
     EXPECT_LT(fits_mm, 0.1);
   }

@@ -567,7 +567,8 @@ TEST(FaultyMesh, TheReportReadsAsASentence) {
   report.flipped_facets = 1;
   report.certain_share = 0.99876;
   EXPECT_EQ(describe(report),
-            "12 shells, 34 open edges, 1 flipped facet turned; the sign is certain for 99.87 %");
+            "12 shells, 34 open edges, 1 flipped facet turned; the sign of the distance is certain at "
+            "99.87 % of the nodes");
 }
 
 }  // namespace

@@ -754,9 +754,8 @@ std::string describe(const MeshReport& report) {
   say(report.sheet_facets, "facet of a sheet without an inside", "facets of sheets without an inside");
   if (report.is_union_incomplete)
     text += std::string(text.empty() ? "" : ", ") +
-            "shells that touch or overlap could not be united, so that depths near them are those of single "
-            "shells and "
-            "the mass counts twice what two of them share";
+            "shells that touch or overlap could not be united, so that depths near these shells are those of "
+            "single shells and the mass counts the common volume of two shells twice";
   if (report.joined_corners > 0) {
     char joined[96];
     std::snprintf(joined, sizeof joined, "%s%zu %s joined across cracks of up to %.2g um",
@@ -764,9 +763,9 @@ std::string describe(const MeshReport& report) {
                   report.joined_corners == 1 ? "corner" : "corners", 1e6 * report.joined_m);
     text += joined;
   }
-  char certain[64];
+  char certain[80];
   // Rounded down, so that 100 % means all nodes.
-  std::snprintf(certain, sizeof certain, "; the sign is certain for %.4g %%",
+  std::snprintf(certain, sizeof certain, "; the sign of the distance is certain at %.4g %% of the nodes",
                 std::floor(1e4 * report.certain_share) / 1e2);
   return text + certain;
 }
