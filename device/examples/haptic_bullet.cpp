@@ -36,7 +36,7 @@ int main() {
   vps::device::HapticLoop loop(device, port, settings);
   vps::bullet::CouplingConstraint coupling(block, vps::Pose{}, settings.gains);
   world.addConstraint(&coupling, true);
-  loop.grasp(vps::bullet::fromBt(block.getWorldTransform()));  // wherever the handle is: no jump
+  loop.grasp(vps::bullet::fromBt(block.getWorldTransform()));  // no force jumps, wherever the handle is
 
   vps::device::HandForce hand;  // a spring of 500 N/m, whose far end moves down by 20 mm in a second
   hand.k_N_per_m = 500 * vps::Mat3::Identity();
@@ -57,5 +57,5 @@ int main() {
   std::printf("the hand presses with %.2f N and feels %.2f N\n", pressed_N, felt_N);
   world.removeConstraint(&coupling);
   for (btRigidBody* b : {&floor, &block}) world.removeRigidBody(b);
-  return std::abs(felt_N - pressed_N) < 0.5 && felt_N > 3 ? 0 : 1;  // friction holds 0.14 N at worst
+  return std::abs(felt_N - pressed_N) < 0.5 && felt_N > 3 ? 0 : 1;  // device friction holds at most 0.14 N
 }

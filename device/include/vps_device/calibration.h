@@ -40,13 +40,13 @@ struct BaseCalibration {
   Status status = Status::Fault;
   DualArmParameters parameters;       ///< given parameters with the right base corrected; unchanged unless Ok
   double rms_m = 0;                   ///< residual | |P_R - P_L| - L |
-  double sigma_m = 0, sigma_rad = 0;  ///< standard deviation of the result, greatest direction
+  double sigma_m = 0, sigma_rad = 0;  ///< standard deviation of the result in its worst direction
   int iterations = 0;
 };
 
 /// The gimbal centres are L apart at every pose of the handle: six unknowns (shift and rotation of the right
 /// base), one equation per reading, least squares by Gauss-Newton from `parameters`. L is assumed to be
-/// known. Allocates nothing; O(readings) each of a few iterations.
+/// known. Allocates nothing; O(readings) in each of a few iterations.
 VPS_DEVICE_API BaseCalibration calibrateBases(const DualArmParameters& parameters,
                                               std::span<const DualArmJoints> readings) noexcept;
 

@@ -31,19 +31,20 @@ struct TickReport {
 ///
 /// The balance is net work - dissipation - decrease of stored energy - actuator work. If device, coupling and
 /// scene generate no energy, the balance never rises; friction of contacts and the coupling's damper decrease
-/// it. Its greatest rise above its own least value so far is therefore the most energy that was generated,
-/// net of dissipation, in any interval. Energy dissipated early does not compensate energy generated later.
+/// it. The greatest rise of the balance above its least value so far is therefore the most energy that was
+/// generated, net of dissipation, in any interval. Energy dissipated early does not compensate energy
+/// generated later.
 struct PassivityObserver {
   double to_hand_J = 0;     ///< sum of the positive works
   double from_hand_J = 0;   ///< sum of the negative works, as a positive number
-  double dissipated_J = 0;  ///< energy dissipated by the device's least damping over the same displacements
+  double dissipated_J = 0;  ///< dissipation by the device's least damping over the handle's displacements
   double balance_J =
-      0;               ///< balance at the last observation of stored energy, in scene joules; 0 at the first
-  double least_J = 0;  ///< the least balance so far
-  double injected_J = 0;  ///< greatest rise of the balance above its least value before
+      0;  ///< balance at the last observation of stored energy, in scene joules; 0 at the first observation
+  double least_J = 0;     ///< the least balance so far
+  double injected_J = 0;  ///< greatest rise of the balance above its least value until then
   /// Upper bound of the error of injected_J that the encoders' resolution allows, in scene joules. With
   /// readings off by at most e, summation by parts bounds the sum of F . (change of e) by e times (the total
-  /// variation of F, plus its present magnitude). A worst case: every error has the worst sign.
+  /// variation of F, plus its present magnitude). The bound is a worst case: every error has the worst sign.
   double quantisation_error_bound_J = 0;
 
   /// How far the balance is above its least value now.
@@ -70,14 +71,14 @@ struct HeldPart {
 struct PhysicsState {
   CouplingState part;
   std::int32_t step = 0;  ///< number of states published so far, including this one
-  /// Energy stored in the scene (kinetic, gravity, springs, contact), in scene joules. The loop observes it
-  /// once per `step`; empty if it is not known, for example while nothing is held.
+  /// Energy stored in the scene (kinetic, gravity, springs, contact), in scene joules. The loop observes this
+  /// energy once per `step`; empty if the energy is not known, for example while nothing is held.
   std::optional<double> stored_J;
   HeldPart held;
 };
 
-/// Interface to physics in another process, which replaces CouplingPort::physics. The haptic thread calls it,
-/// so an implementation must not throw, allocate, lock or wait.
+/// Interface to physics in another process, which replaces CouplingPort::physics. The haptic thread calls
+/// this interface, so an implementation must not throw, allocate, lock or wait.
 class VPS_DEVICE_API RemotePhysics {
  public:
   virtual ~RemotePhysics() = default;
@@ -92,7 +93,8 @@ class VPS_DEVICE_API RemotePhysics {
   RemotePhysics& operator=(const RemotePhysics&) = default;
 };
 
-/// Each side reads the other's latest state without waiting. Each buffer has one writer and one reader.
+/// The haptic side and the physics side read each other's latest state without waiting. Each buffer has one
+/// writer and one reader.
 struct CouplingPort {
   TripleBuffer<HapticState> haptic;    ///< written by the haptic thread
   TripleBuffer<PhysicsState> physics;  ///< written by the physics thread; not used with `remote`

@@ -100,7 +100,8 @@ struct DeviceSample {
   Status status = Status::Ok;  ///< other than Ok: the pose must not be used
 };
 
-/// Capabilities of a device, from which the coupling gains are derived. Zero means not known.
+/// Capabilities of a device, from which the coupling gains are derived. Zero means that the value is not
+/// known.
 struct DeviceLimits {
   double continuous_force_N = 0;
   double peak_force_N = 0;
@@ -108,7 +109,7 @@ struct DeviceLimits {
   double peak_torque_Nm = 0;
   Vec3 workspace_min_D = Vec3::Zero();  ///< box of the handle's origin [m]
   Vec3 workspace_max_D = Vec3::Zero();
-  double rate_hz = 1000;        ///< read-write cycles per second
+  double rate_hz = 1000;        ///< read and write cycles per second
   double delay_s = 0;           ///< delay from a reading to the effect of the wrench computed from it
   double damping_Ns_per_m = 0;  ///< least viscous damping over the workspace, handle within 30 deg
   double damping_Nms_per_rad = 0;
@@ -122,7 +123,8 @@ struct DeviceLimits {
 };
 
 /// A 6-DOF haptic device. One thread calls read() and write() in turn; neither throws, allocates or waits.
-/// Code that may do so (a driver, a socket, a window) runs on a thread of its own. A new device is:
+/// Code that may throw, allocate or wait (a driver, a socket, a window) runs on a thread of its own. A new
+/// device is:
 ///
 ///   class MyDevice final : public Device {
 ///     DeviceSample read() noexcept override { return sample_.read(); }
@@ -133,8 +135,8 @@ struct DeviceLimits {
 ///     TripleBuffer<Wrench> wrench_;        // and reads this one; neither thread waits
 ///   };
 ///
-/// A device that may stop sending stamps its samples, and returns Fault once the last sample is too old. To
-/// make a device available to scenes by name: device/DRIVERS.md.
+/// A device that may stop sending stamps its samples, and returns Fault once the last sample is too old.
+/// device/DRIVERS.md tells how to make a device available to scenes by name.
 class VPS_DEVICE_API Device {
  public:
   virtual ~Device() = default;
@@ -142,8 +144,8 @@ class VPS_DEVICE_API Device {
   /// The newest pose. Status other than Ok when the device is lost or singular.
   virtual DeviceSample read() noexcept = 0;
 
-  /// Wrench on the hand about H's origin, in D, held until the next write. The device saturates it and keeps
-  /// its direction; a wrench that is not finite counts as zero.
+  /// Wrench on the hand about H's origin, in D, held until the next write. The device saturates the wrench
+  /// and keeps its direction; a wrench that is not finite counts as zero.
   virtual void write(const Wrench& F_Ho_D) noexcept = 0;
 
   /// Clears a fault that the device itself has latched. The next pose may be anywhere.

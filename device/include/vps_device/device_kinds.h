@@ -20,9 +20,10 @@ struct DeviceOptions {
   double rate_hz = 1000;               ///< rate of read-write cycles
   bool has_quantised_encoders = true;  ///< a simulated device rounds its readings to encoder steps
   Pose X_DH_start;                     ///< first pose of a simulated device's handle
-  /// Box about D's origin that the handle can reach, for devices under rate control, whose range is free.
+  /// Box about D's origin that the handle can reach, for devices under rate control, which have no range of
+  /// their own.
   Vec3 workspace_m = Vec3(0.4, 0.6, 0.4);
-  std::shared_ptr<HandleWish> wish;  ///< wish that the window sets and the mouse device follows
+  std::shared_ptr<HandleWish> wish;  ///< wanted handle pose, set by the window, followed by the mouse device
 };
 
 /// Exactly one of `open` and `simulate` is set.

@@ -22,13 +22,14 @@ VPS_DEVICE_API double couplingDelay_s(const CouplingTiming& timing) noexcept;
 
 /// The stiffest gains that keep the sampled coupling passive on this device, with a margin:
 ///   B = b / 5,   K = 0.8 min((b - B) / (T/2 + t_d), 2 b / T, 2 f_c / D)
-/// with the device's own delay in t_d, per kind of motion, springs limited to the device's peak. Translated
-/// into the scene by the scales. Source: [Colgate and Schenkel 1997], extended by the delay t_d: a sampled
-/// spring K with damping B on a device with damping b is passive if b > K (T/2 + t_d) + |B|; [Abbott and
-/// Okamura 2005] for f_c and D. Terms whose device value is not known (zero) are omitted.
+/// with the device's own delay in t_d, per kind of motion, springs limited to the device's peak. The gains
+/// are translated into the scene by the scales of `timing`. Source: [Colgate and Schenkel 1997], extended by
+/// the delay t_d: a sampled spring K with damping B on a device with damping b is passive if b > K (T/2 +
+/// t_d) + |B|; [Abbott and Okamura 2005] for f_c and D. Terms whose device value is not known (zero) are
+/// omitted.
 VPS_DEVICE_API CouplingGains deriveGains(const DeviceLimits& limits, const CouplingTiming& timing) noexcept;
 
-/// For each gain and each spring limit the smaller value of both.
+/// For each gain and each spring limit, the smaller of the values of `a` and `b`.
 VPS_DEVICE_API CouplingGains softerOf(const CouplingGains& a, const CouplingGains& b) noexcept;
 
 /// True if the gains are finite, not negative, and at most 1 MN/m, 10 kN m/rad, dampers 10 kN s/m, 1 kN m

@@ -14,14 +14,15 @@
 namespace vps::device {
 
 struct LocalContactSettings {
-  /// The part stands still once the last physics state is older. assumed: five steps of 100 Hz physics
+  /// Once the last physics state is older than this limit, the part stands still. assumed: five steps of 100
+  /// Hz physics
   double hold_limit_s = 0.05;
   /// Greatest number of near points; if there are more, the last state is held.
   std::size_t contact_limit = 4096;
-  /// Greatest number of contacts in the step. If there are more, only every second, third, ... contact enters
-  /// the step.
+  /// Greatest number of contacts in the step. If there are more contacts, only every second, third, ...
+  /// contact enters the step.
   std::size_t solve_limit = 64;
-  /// Points this near may touch within the tick. assumed: 50 mm/s at 1 kHz
+  /// Points within this distance may touch within the tick. assumed: 50 mm/s at 1 kHz
   double margin_m = 50e-6;
 };
 
@@ -69,7 +70,8 @@ class VPS_DEVICE_API LocalContact {
 
   struct Report {
     std::size_t contacts = 0;  ///< touching contacts in the last tick
-    /// Ticks in which the part was held instead: too many contacts, state too old, or result not finite.
+    /// Ticks in which the part was held still instead of being predicted: too many contacts, state too old,
+    /// or result not finite.
     std::uint64_t held = 0;
     double jump_J = 0;  ///< sum of the energy that new states added to the coupling's springs
     double greatest_jump_m = 0;

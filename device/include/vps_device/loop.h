@@ -20,7 +20,8 @@ struct LoopSettings {
   CouplingGains gains;
   WorkspaceMap map;
   /// The map is calibrated: it gives the true place of the device. From grasping on, the grasp frame's origin
-  /// is at the handle, so that the part is seen where the hand is. A part is to be handed over only there.
+  /// is at the handle, so that the part is seen where the hand is. A part must be handed over only where the
+  /// handle is.
   bool is_collocated = false;
   SafetyLimits safety;
   double period_s = 1e-3;
@@ -53,8 +54,8 @@ class VPS_DEVICE_API HapticLoop {
   void release() noexcept;
 
   /// Opens the clutch over clutch_s: the hand comes free while the proxy stands still and holds the part. A
-  /// device smaller than the scene needs this to reach farther (indexing). It also precedes release() where
-  /// force would otherwise jump.
+  /// device smaller than the scene needs an open clutch to reach farther (indexing). Opening the clutch also
+  /// precedes release() where force would otherwise jump.
   void disengage() noexcept { clutch_.open(); }
   /// Closes the clutch over clutch_s: the hand holds the part again, from wherever the handle is now.
   void engage() noexcept { clutch_.close(); }
@@ -68,14 +69,14 @@ class VPS_DEVICE_API HapticLoop {
 
   /// One tick of one period: receivePart() and tickWithReceivedPart().
   const TickReport& tick() noexcept { return tick(settings_.period_s); }
-  /// One tick, dt_s after the last one: a driver that missed periods passes the longer time. The time counts
-  /// as one to four periods, so that the force never jumps after a pause.
+  /// One tick, dt_s after the last tick: a driver that missed periods passes the longer time. dt_s counts as
+  /// one to four periods, so that the force never jumps after a pause.
   const TickReport& tick(double dt_s) noexcept;
 
-  /// Takes the latest PhysicsState from the port; the next tick uses it. Observes its stored energy if it is
-  /// a new step, against the work on the hand until the tick whose proxy that step answers: over a network
-  /// that tick is a round trip ago, and the motion since then would count as energy. The call is separate
-  /// from the tick, so that a recording can note which state a tick used.
+  /// Takes the latest PhysicsState from the port; the next tick uses it. If the state is of a new step,
+  /// compares its stored energy with the work on the hand until the tick whose proxy that step answers: over
+  /// a network that tick is a round trip ago, and the motion since then would count as energy. receivePart()
+  /// is separate from the tick, so that a recording can note which state a tick used.
   void receivePart() noexcept;
   /// Does the rest of tick(), with the state that receivePart() took.
   /// @return  Status of the device, or Fault while safety holds the force at zero
@@ -93,7 +94,7 @@ class VPS_DEVICE_API HapticLoop {
   /// Observes the energy stored in the scene now (kinetic, gravity, springs, contact) and the work done so
   /// far by actuators other than the hand, both in scene joules. Call once per physics step, from the loop's
   /// thread, with the handle where the last tick read it. A driver that publishes PhysicsState::stored_J does
-  /// not need it.
+  /// not need this call.
   void observeStoredEnergy(double stored_J, double actuator_J) noexcept;
 
   [[nodiscard]] bool isHolding() const noexcept { return is_holding_; }
@@ -110,7 +111,7 @@ class VPS_DEVICE_API HapticLoop {
   [[nodiscard]] double snapshotAge_s() const noexcept { return snapshot_age_s_; }
 
   /// Convert a handle pose in D to the grasp frame, and a hand's impedance about G in W to the impedance
-  /// about H in D. They connect a VirtualOperator to a SimulatedDevice.
+  /// about H in D. These functions connect a VirtualOperator to a SimulatedDevice.
   [[nodiscard]] Pose toGrasp(const Pose& X_DH) const noexcept;
   [[nodiscard]] HandForce toDevice(const HandForce& hand_W) const noexcept;
 

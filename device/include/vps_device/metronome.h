@@ -8,7 +8,7 @@
 
 namespace vps::device {
 
-/// Interface of a clock; tests use one of their own. Called by one thread at a time.
+/// Interface of a clock; tests use a clock of their own. Called by one thread at a time.
 class VPS_DEVICE_API RealTimeClock {
  public:
   virtual ~RealTimeClock() = default;
@@ -35,8 +35,9 @@ struct Beat {
 };
 
 /// Waits for one beat after the other. A beat that falls due while work is still running is missed, and
-/// wait() returns at the next one. With a limit above 0 such a beat is late instead: wait() returns at once,
-/// so that occasional late work is made up for. Never throws, allocates or locks.
+/// wait() returns at the next one. With `most_late_ns` above 0 a beat that falls due during work is late
+/// instead of missed: wait() returns at once, so that occasional late work is made up for. Never throws,
+/// allocates or locks.
 class Metronome {
  public:
   /// @param period_ns  > 0

@@ -14,14 +14,14 @@
 namespace vps::device {
 
 /// Parameters of the hand. Impedance: order of magnitude of [Mussa-Ivaldi, Hogan and Bizzi 1985; Dolan,
-/// Friedman and Nagurka 1993; Tsuji et al. 1995; Speich, Shao and Goldfarb 2005]; all values assumed within
-/// it.
+/// Friedman and Nagurka 1993; Tsuji et al. 1995; Speich, Shao and Goldfarb 2005]; all values are assumed
+/// within that order.
 struct OperatorHabits {
   std::uint64_t seed = 1;
-  double aim_error_m = 0.3e-3;  ///< standard deviation across the path, each axis
+  double aim_error_m = 0.3e-3;  ///< standard deviation across the path, in each axis
   double aim_error_rad = 0.005;
   /// Greatest error about the axis of insertion. Sight does not correct it, since the part covers the hole.
-  /// Drawn from a uniform distribution, once per task.
+  /// The error is drawn from a uniform distribution, once per task.
   double aim_turn_rad = 0;
   double speed_m_s = 0.05;    ///< average speed along the path
   double turn_rad_s = 0.5;    ///< average rotational speed
@@ -40,14 +40,14 @@ struct OperatorHabits {
   double see_rate_hz = 60;    ///< rate of visual samples
   /// Standard deviations and delay of sight. Position: a minute of arc, which normal eyes resolve, at 0.35 m.
   /// Rotation: the smallest visible rotation of a line [Regan and Price 1986: 0.2 to 0.5 degrees]. Delay:
-  /// until a seen error is corrected [Saunders and Knill 2003: 0.12 to 0.16 s]. assumed: the same holds for a
-  /// held part
+  /// until a seen error is corrected [Saunders and Knill 2003: 0.12 to 0.16 s]. assumed: the values hold for
+  /// a held part as well
   double see_error_m = 0.1e-3;
   double see_error_rad = 0.0035;
   double see_delay_s = 0.15;  ///< at most 1 s
   double fixation_s = 0.3;    ///< each fixation of the eye has a new error [Rayner 1998: 0.26 to 0.33 s]
   double see_gain_per_s = 2;  ///< initial gain of the correction of a seen error; later pictures are averaged
-  double see_limit_m = 3e-3;  ///< bound of that correction
+  double see_limit_m = 3e-3;  ///< bound of the correction of a seen error
   double see_limit_rad = 0.05;
   double stuck_s = 0.4;         ///< a pushed part without progress for this long is stuck
   double progress_m = 0.05e-3;  ///< a shorter advance is no progress
@@ -73,7 +73,7 @@ VPS_DEVICE_API HandForce evenHand(const OperatorHabits& habits) noexcept;
 /// A part that is screwed on: it is turned about the axis of insertion, through G, and pushed lightly.
 struct ScrewTask {
   /// Tilt that shows a crossed thread. An M16 nut that is crossed by half a pitch tilts by 3.6 degrees; a
-  /// loose nut tilts by less than a degree within its play. assumed: between both
+  /// loose nut tilts by less than a degree within its play. assumed: a value between both tilts
   static constexpr double kCrossedLean_rad = 0.035;
   /// Tolerance of the advance per turn, as a share of the pitch. assumed: a part that skips threads or does
   /// not catch is off by more
@@ -89,7 +89,7 @@ struct ScrewTask {
 /// the part's centre of mass, where the hand carries the weight without torque.
 struct OperatorTask {
   Pose X_WP_start;
-  /// X_WP; insertion begins at the last one, or at the start if there are none
+  /// poses X_WP; insertion begins at the last way point, or at the start if there are no way points
   std::vector<Pose> way_points;
   /// Indices of way points at which the device reaches its workspace limit: the hand stops there for
   /// indexing.
@@ -101,7 +101,8 @@ struct OperatorTask {
   double timeout_s = 20;
   Vec3 weight_W = Vec3::Zero();  ///< weight of the part [N], which the hand carries by feed-forward
   /// Visible shape of the part: the point of its leading end (the end that goes in first) that is farthest
-  /// from the axis of insertion through G, in P. Zero: not known, and the hand does not tilt the part.
+  /// from the axis of insertion through G, in P. Zero: the point is not known, and the hand does not tilt the
+  /// part.
   Vec3 tip_P = Vec3::Zero();
   /// Compliance between handle and part [m/N], which a person feels.
   double give_m_per_N = 0;
@@ -114,7 +115,7 @@ struct OperatorTask {
 };
 
 /// Displacement of a part below the hand that carries it, by the spring between them; the hand is held higher
-/// by as much. Zero for a light part, whose displacement sight corrects.
+/// by this displacement. Zero for a light part, whose displacement sight corrects.
 VPS_DEVICE_API Vec3 sagBelowHand_m(const OperatorHabits& habits, const Vec3& weight_W,
                                    double give_m_per_N) noexcept;
 
@@ -135,7 +136,7 @@ enum class OperatorPhase { Idle, Reach, Insert, Press, Done, Failed, Regrasp };
 VPS_DEVICE_API const char* toText(OperatorPhase phase) noexcept;
 
 /// The strategies of the hand while it inserts or presses, each with its name in results. A recording keeps
-/// the number of the row, so that a new strategy takes the last row; there is room for 15.
+/// the number of the row, so that a new strategy takes the last row; a recording has room for 15 strategies.
 #define VPS_OPERATOR_STRATEGIES(ROW)                                                                    \
   ROW(Approach, "approach")             /* moves ahead, guided by sight, until it touches */            \
   ROW(Touch, "touch")                   /* pushes lightly and lets the part slide */                    \
@@ -172,10 +173,10 @@ constexpr OperatorState stateFromByte(std::uint8_t byte) noexcept {
 /// Minimum jerk from 0 to 1 over s in [0, 1]: 10 s^3 - 15 s^4 + 6 s^5, clamped outside. Source: [Flash and
 /// Hogan 1985].
 VPS_DEVICE_API double minimumJerk(double s) noexcept;
-/// Its derivative by s.
+/// The derivative of minimumJerk() by s.
 VPS_DEVICE_API double minimumJerkRate(double s) noexcept;
 
-/// Same seed, task and views: same bits.
+/// The same seed, task and views give the same results, bit for bit.
 class VPS_DEVICE_API VirtualOperator {
  public:
   explicit VirtualOperator(const OperatorHabits& habits = {});

@@ -40,10 +40,10 @@ class VPS_DEVICE_API PeriodicThread {
   /// Calls `work` once per period until stop(). Returns when the thread runs. An exception from `work` ends
   /// the thread and is rethrown by stop(). Throws LoadError for a rate outside 1 Hz to 100 kHz.
   RealTimeReport start(std::function<void(const Beat&)> work);
-  /// Waits for the end of the current beat. Rethrows an exception of the work, once. No effect if not
-  /// running.
+  /// Waits for the end of the current beat. Rethrows an exception of the work, once. No effect if the thread
+  /// does not run.
   void stop();
-  /// False also once work has thrown.
+  /// False also once `work` has thrown.
   [[nodiscard]] bool isRunning() const noexcept { return is_running_.load(std::memory_order_acquire); }
 
  private:

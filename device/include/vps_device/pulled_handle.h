@@ -14,8 +14,8 @@ namespace vps::device {
 using HandleWish = TripleBuffer<Pose>;  ///< X_DH
 
 struct PulledHandleSettings {
-  double k_N_per_m = 3000;   ///< stiffness of the spring. assumed: 3 mm for its greatest force
-  double k_Nm_per_rad = 25;  ///< assumed: 2 degrees for its greatest torque
+  double k_N_per_m = 3000;   ///< stiffness of the spring. assumed: 3 mm at the spring's greatest force
+  double k_Nm_per_rad = 25;  ///< assumed: 2 degrees at the spring's greatest torque
   /// Damping of the handle by its surroundings. assumed: 0.33 m/s at the greatest force
   double b_Ns_per_m = 30;
   double b_Nms_per_rad = 0.25;  ///< assumed: 4 rad/s at the greatest torque
@@ -25,8 +25,9 @@ struct PulledHandleSettings {
 };
 
 /// The handle has no inertia. Damped by its surroundings it moves under the spring and under the force on the
-/// hand:  b v = pull + f,  pull = k (p_wish - p), limited. It therefore stands still where a part meets a
-/// wall, and the pull is the force of the hand. Deterministic: same calls, same bits. Nothing allocates.
+/// hand:  b v = pull + f,  pull = k (p_wish - p), limited. The handle therefore stands still where a part
+/// meets a wall, and the pull is the force of the hand. Deterministic: the same calls give the same bits.
+/// Nothing allocates.
 class VPS_DEVICE_API PulledHandle {
  public:
   explicit PulledHandle(const PulledHandleSettings& settings = {}) : settings_(settings) {}

@@ -29,7 +29,8 @@ struct RateSettings {
   double rate_hz = 1000;                   ///< rate of the loop that reads the device
 };
 
-/// Integrates deflections to a handle's pose. Deterministic: same calls, same bits. Nothing allocates.
+/// Integrates deflections to a handle's pose. Deterministic: the same calls give the same bits. Nothing
+/// allocates.
 class VPS_DEVICE_API RateControl {
  public:
   explicit RateControl(const RateSettings& settings = {}) : settings_(settings) {}
@@ -52,12 +53,13 @@ VPS_DEVICE_API double rateShare(double deflection, const RateSettings& settings)
 
 /// Space mouse and game controller. A thread of the device's own calls the library, which may wait, allocate
 /// and search for hardware; the haptic thread reads the latest deflection from a TripleBuffer. A device that
-/// is absent or unplugged reads as lost (Status::Fault), and the thread searches for it again; once it is
-/// back, the handle continues where it stood. The safety guard needs rearm() then, as after every loss.
+/// is absent or unplugged reads as lost (Status::Fault), and the thread searches for the device again; once
+/// the device is back, the handle continues where it stood. The safety guard needs rearm() once the device is
+/// back, as after every loss of a device.
 
 /// The first space mouse of the spacenavd daemon (socket: SPNAV_SOCKET, /etc/spnavrc or /var/run/spnav.sock).
-/// Button 0 re-centres. Throws LoadError if this build lacks libspnav, or while another one exists: the
-/// library supports one connection per program.
+/// Button 0 re-centres. Throws LoadError if this build lacks libspnav, or while another space mouse device
+/// exists: the library supports one connection per program.
 VPS_DEVICE_API std::unique_ptr<Device> openSpaceMouse(const RateSettings& settings = {});
 
 /// The first game controller that SDL finds. Left stick: sideways, and towards or away from the person;

@@ -39,11 +39,11 @@ struct RealTimeSettings {
   /// SCHED_FIFO priority; 0: none. assumed: above interrupt threads (50), below the kernel's
   int priority = 80;
   bool locks_memory = true;
-  /// Replaces LoopSettings::physics_limit_s if that is 0. assumed: ten steps of 100 Hz physics, and shorter
-  /// than a person needs to notice that a part has stopped
+  /// Replaces LoopSettings::physics_limit_s if that limit is 0. assumed: ten steps of 100 Hz physics, and
+  /// shorter than a person needs to notice that a part has stopped
   double physics_limit_s = 0.1;
   double stale_s = 2e-3;           ///< ticks with an older physics state are counted
-  RealTimeClock* clock = nullptr;  ///< null: the system's
+  RealTimeClock* clock = nullptr;  ///< null: the system's clock
   /// Called before each tick, after the requests and HapticLoop::receivePart(), with the number of periods
   /// since the last tick.
   std::function<void(HapticLoop& loop, std::int64_t periods)> before_tick;
@@ -57,7 +57,7 @@ struct RealTimeSettings {
 /// report of the last tick is in CouplingPort::haptic.
 class VPS_DEVICE_API RealTimeLoop {
  public:
-  /// device, port and settings.events outlive the loop. settings.period_s is the rate.
+  /// device, port and settings.events outlive the loop. settings.period_s gives the rate.
   RealTimeLoop(Device& device, CouplingPort& port, const LoopSettings& settings,
                const RealTimeSettings& real_time = {});
   ~RealTimeLoop();
@@ -69,8 +69,8 @@ class VPS_DEVICE_API RealTimeLoop {
   void stop();
   [[nodiscard]] bool isRunning() const noexcept { return thread_.isRunning(); }
 
-  /// Each requests a call of the function of the same name in HapticLoop. False if the ring is full: the loop
-  /// does not run, or is far behind.
+  /// Each of these functions requests a call of the function of the same name in HapticLoop. False if the
+  /// ring is full: the loop does not run, or is far behind.
   bool grasp(const Pose& X_WG) noexcept { return post({Request::Grasp, X_WG}); }
   bool handOver(const Pose& X_WG) noexcept { return post({Request::HandOver, X_WG}); }
   bool disengage() noexcept { return post({Request::Disengage}); }
@@ -80,8 +80,8 @@ class VPS_DEVICE_API RealTimeLoop {
   bool setGains(const CouplingGains& gains) noexcept { return post({Request::Gains, {}, gains}); }
   /// RealTimeSettings::on_call is called with this code.
   bool call(std::int32_t code) noexcept { return post({Request::Call, {}, {}, code}); }
-  /// True while a request is not yet carried out. Once false, all that the loop's thread wrote while it
-  /// carried the requests out is visible to the caller.
+  /// True while a request is not yet carried out. Once the result is false, all that the loop's thread wrote
+  /// while it carried the requests out is visible to the caller.
   [[nodiscard]] bool hasOpenRequests() const noexcept {
     return posted_.load(std::memory_order_acquire) != handled_.load(std::memory_order_acquire);
   }
@@ -90,7 +90,7 @@ class VPS_DEVICE_API RealTimeLoop {
 
   [[nodiscard]] const TickStatistics& statistics() const noexcept { return statistics_; }
 
-  /// The loop. Call this only while it is not running.
+  /// The loop. Call this function only while the loop is not running.
   [[nodiscard]] HapticLoop& loop() noexcept { return loop_; }
   /// Runs one period, for a driver that replaces the thread; only while the loop is not running. Never
   /// throws, allocates or locks.

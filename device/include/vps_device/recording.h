@@ -20,7 +20,7 @@ namespace vps::device {
 struct RecordingHead {
   std::map<std::string, std::string> about;  ///< version, scene, seed, rates, choices, for users and tools
   std::string device;
-  DeviceLimits limits;  ///< a replay derives the same gains from them
+  DeviceLimits limits;  ///< a replay derives the same gains from these limits
   std::vector<McapAttachment> attachments;
 };
 
@@ -81,7 +81,7 @@ VPS_DEVICE_API RecordedRun recordingFrom(std::string_view bytes, const std::stri
 VPS_DEVICE_API std::vector<std::pair<std::string, std::string>> csvTables(const RecordedRun& run);
 
 /// A device that repeats a recording: each read() returns the next sample, whatever is written. After the
-/// last sample it is lost (Status::Fault).
+/// last sample the device is lost (Status::Fault).
 class VPS_DEVICE_API Recording final : public Device {
  public:
   /// Takes ownership of the run.

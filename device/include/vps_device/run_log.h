@@ -48,8 +48,8 @@ struct RunEvent {
 /// A sample of the run for graphs, at a lower rate.
 struct RunTrace {
   double time_s = 0;
-  Pose X_WP;       ///< part in hand
-  Pose X_W_Proxy;  ///< the handle in the scene
+  Pose X_WP;       ///< pose of the part in the hand
+  Pose X_W_Proxy;  ///< pose of the handle in the scene
   Wrench F_hand_W;
   double depth_m = 0;
   std::int32_t step = -1;
@@ -57,10 +57,11 @@ struct RunTrace {
   std::uint8_t phase = 0;  ///< 0 reach, 1 insert, 2 press, 3 rest
 };
 
-/// Order in which haptic and physics threads exchanged state in a real-time run. Lockstep has no such events.
+/// Order in which haptic and physics threads exchanged state in a real-time run. Runs in lockstep have no
+/// such events.
 enum class SyncEventKind : std::uint8_t {
-  Tick,     ///< a tick of the loop, with that physics state
-  Step,     ///< a physics step, with the proxy of that tick
+  Tick,     ///< a tick of the loop, with physics state `snapshot`
+  Step,     ///< a physics step, with the proxy of tick `tick`
   Settled,  ///< background work has finished
   Paused,   ///< the loop has stopped
   // Commands of the physics thread that the loop's thread has carried out:
@@ -74,9 +75,9 @@ enum class SyncEventKind : std::uint8_t {
   LetGo,
   Rearm,
   // Others:
-  SnapOn,  ///< axis snap acts from this physics step on
+  SnapOn,  ///< axis snap acts from the present physics step on
   SnapOff,
-  GiveUp,  ///< the part is released on request, after this physics step
+  GiveUp,  ///< the part is released on request, after the present physics step
   Silent,  ///< physics in another process does not answer, which is a fault in the next tick
 };
 

@@ -55,7 +55,7 @@ class VPS_DEVICE_API SafetyGuard {
   /// Clears a fault; force returns over rearm_s.
   void rearm() noexcept;
 
-  /// Latches a fault found elsewhere.
+  /// Latches a fault that other code has found.
   void latchFault(SafetyFault fault) noexcept { trip(fault); }
 
   [[nodiscard]] const SafetyState& state() const noexcept { return state_; }

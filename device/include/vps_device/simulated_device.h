@@ -11,8 +11,8 @@ namespace vps::device {
 /// implicitly. Wrench of the hand on the handle about the handle's origin, in one frame (W from an operator,
 /// D for a device):
 ///   f   = k (p_eq - p) + b (v_eq - v) + F.f,     tau = the same formula with rotation vectors + F.tau,
-/// and the hand's own inertia moves with the handle. k and b are symmetric and not negative. Default: no
-/// hand.
+/// and the hand's own inertia moves with the handle. k and b are symmetric and not negative. By default there
+/// is no hand.
 struct HandForce {
   Pose X_eq;  ///< equilibrium of the handle
   Twist V_eq;

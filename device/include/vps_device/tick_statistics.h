@@ -13,7 +13,7 @@
 namespace vps::device {
 
 /// Histogram of times with 64 buckets per octave: percentiles have a relative error of 1/64, from 1 ns to 18
-/// minutes (longer times count as 18 minutes). One writer, any number of readers; neither waits. 18 kB.
+/// minutes (longer times count as 18 minutes). One writer, any number of readers; none of them waits. 18 kB.
 class VPS_DEVICE_API TickHistogram {
  public:
   static constexpr int kSplit = 64;    ///< buckets per octave
@@ -26,8 +26,8 @@ class VPS_DEVICE_API TickHistogram {
     std::uint64_t count = 0;
     std::int64_t p50_ns = 0, p99_ns = 0, p999_ns = 0, max_ns = 0;
   };
-  /// Nearest rank, rounded up to the bucket's end (at most 1/64 too large, never too small); the maximum is
-  /// exact. O(buckets). While ticks are being added, the last ones may be missing.
+  /// Percentiles by nearest rank, rounded up to the bucket's end (at most 1/64 too large, never too small);
+  /// the maximum is exact. O(buckets). While ticks are being added, the last ones may be missing.
   [[nodiscard]] Summary summary() const noexcept;
   /// The least value that this share of all times does not exceed, as in summary().
   [[nodiscard]] std::int64_t percentile(double share) const noexcept;
@@ -59,7 +59,7 @@ struct VPS_DEVICE_API TickTiming {
 
   /// Time from the due time until the wrench is written: the delay that the hand feels.
   [[nodiscard]] std::int64_t response_ns() const noexcept { return late_ns + device_ns + own_ns; }
-  /// The part that took longest; after_tick_ns counts only if `includes_after_tick`.
+  /// The part of the tick that took longest; after_tick_ns counts only if `includes_after_tick`.
   [[nodiscard]] TickCause cause(bool includes_after_tick = false) const noexcept;
 };
 
@@ -74,8 +74,8 @@ class VPS_DEVICE_API TickStatistics {
   void miss(std::uint64_t periods, TickCause cause) noexcept;
 
   struct Summary {
-    TickHistogram::Summary tick;      ///< duration: device and own work
-    TickHistogram::Summary late;      ///< delay of the start
+    TickHistogram::Summary tick;      ///< duration of a tick: device and own work
+    TickHistogram::Summary late;      ///< delay of a tick's start
     TickHistogram::Summary response;  ///< time from the due time until the wrench is written
     std::uint64_t missed = 0;         ///< periods without a tick
     std::array<std::uint64_t, kTickCauses> missed_by{};
@@ -92,8 +92,8 @@ class VPS_DEVICE_API TickStatistics {
   TickHistogram tick_, late_, response_;
   std::array<std::atomic<std::uint64_t>, kTickCauses> missed_by_{};
   std::atomic<std::uint64_t> stale_{0};
-  // A sequence lock: odd while being written. Every field is atomic, so that a torn read is detected rather
-  // than undefined.
+  // worst_version_ is a sequence lock: odd while worst_ is being written. Every field is atomic, so that a
+  // torn read is detected rather than undefined.
   std::int64_t worst_response_ns_ = -1;
   std::atomic<std::uint64_t> worst_version_{0};
   std::array<std::atomic<std::int64_t>, 6> worst_{};

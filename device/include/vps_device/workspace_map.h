@@ -41,7 +41,7 @@ struct WorkspaceMap {
 /// How the hand holds the part. The grasp frame G moves with the handle by an offset that is fixed when
 /// grasping, so that grasping at any place and attitude gives no force. Rotating the handle rotates G about
 /// its own origin:
-///   p_WG = p_WH + offset_W,   R_WG = R_WH R_HG,   hence equal twists, and wrenches pass unchanged.
+///   p_WG = p_WH + offset_W,   R_WG = R_WH R_HG,   hence twists are equal, and wrenches pass unchanged.
 struct Grasp {
   Vec3 offset_W = Vec3::Zero();
   Mat3 R_HG = Mat3::Identity();
@@ -64,9 +64,9 @@ struct Grasp {
 ///   force on the hand = g x the coupling's,   displacement of the proxy = g x the hand's
 ///
 /// Power is equal on both sides at every ratio, so that energy is conserved while the ratio changes, whatever
-/// the hand's motion and the spring's extension. At 0 the proxy stands still and holds the part; the hand is
-/// free. Fading only the force would not conserve energy: a hand that rises while a weight fades in would
-/// lift it without doing the work.
+/// the hand's motion and the spring's extension. At ratio 0 the proxy stands still and holds the part; the
+/// hand is free. Fading only the force would not conserve energy: a hand that rises while a weight fades in
+/// would lift it without doing the work.
 class Clutch {
  public:
   /// Opens the clutch over fade_s.

@@ -61,7 +61,7 @@ class VPS_DEVICE_API ByteReader {
   double getDouble() { return std::bit_cast<double>(get<std::uint64_t>()); }
   float getFloat() { return std::bit_cast<float>(get<std::uint32_t>()); }
 
-  /// The next `count` bytes; empty, and no longer good, if there are fewer.
+  /// The next `count` bytes; if fewer are left, returns empty, and isGood() becomes false.
   std::string_view take(std::uint64_t count) {
     if (!is_good_ || count > bytes_.size()) {
       is_good_ = false;
@@ -71,7 +71,7 @@ class VPS_DEVICE_API ByteReader {
     bytes_.remove_prefix(static_cast<std::size_t>(count));
     return taken;
   }
-  /// Reads a length of type Length, and as many bytes.
+  /// Reads a length of type Length, then that number of bytes.
   template <std::unsigned_integral Length = std::uint32_t>
   std::string_view text() {
     return take(get<Length>());
@@ -83,7 +83,7 @@ class VPS_DEVICE_API ByteReader {
 };
 
 /// CRC-32, the checksum of Ethernet, zip and MCAP (reflected polynomial 0xedb88320, as ISO-HDLC).
-/// @param crc  of the bytes before, to continue a sum; 0 to begin
+/// @param crc  of the preceding bytes, to continue a checksum; 0 to begin one
 /// O(bytes).
 inline std::uint32_t crc32(std::string_view bytes, std::uint32_t crc = 0) {
   static constexpr std::array<std::uint32_t, 256> kTable = [] {

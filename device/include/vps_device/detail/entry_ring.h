@@ -47,7 +47,7 @@ class VPS_DEVICE_API EntryRing {
 
  private:
   std::vector<Slot> slots_;
-  // On separate cache lines, to avoid false sharing.
+  // head_ and tail_ are on separate cache lines, to avoid false sharing.
   alignas(64) std::atomic<std::size_t> head_{0};
   alignas(64) std::atomic<std::size_t> tail_{0};
 };

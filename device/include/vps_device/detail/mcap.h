@@ -99,7 +99,8 @@ class VPS_DEVICE_API McapWriter {
 
   McapWriter(Sink sink, const std::string& profile, const std::string& library);
 
-  /// Adds a schema or a channel and returns its id. Add both before the first message that needs them.
+  /// Adds a schema or a channel and returns its id. Add schemas and channels before the first message that
+  /// needs them.
   std::uint16_t addSchema(const std::string& name, const std::string& encoding, const std::string& data);
   std::uint16_t addChannel(McapChannel channel);
   void addAttachment(const McapAttachment& attachment);
@@ -108,7 +109,7 @@ class VPS_DEVICE_API McapWriter {
   void write(std::uint16_t channel, std::uint32_t sequence, std::uint64_t time_ns, std::string_view data);
   /// Passes the buffered messages to the sink as a chunk.
   void flush();
-  /// Ends the file with its indexes. Nothing may follow.
+  /// Ends the file with its indexes. Nothing may be written afterwards.
   void finish();
 
  private:

@@ -43,7 +43,7 @@ class VPS_DEVICE_API DualArmController final : public Device {
   void forgetMotion() noexcept;
 
   [[nodiscard]] bool hasFault() const noexcept { return has_fault_; }
-  [[nodiscard]] DeviceEventKind fault() const noexcept { return fault_; }  ///< only while hasFault()
+  [[nodiscard]] DeviceEventKind fault() const noexcept { return fault_; }  ///< valid only while hasFault()
   [[nodiscard]] const JointVector& efforts() const noexcept {
     return efforts_;
   }  ///< the last command to the motors
@@ -76,8 +76,8 @@ class VPS_DEVICE_API DualArmController final : public Device {
   unsigned long saturated_ = 0;
 };
 
-/// The device's limits at this rate, for gains and safety. Damping and dry friction are the least over the
-/// workspace, with the handle rotated by at most 30 deg from its straight direction.
+/// The device's limits at the rate `rate_hz`, for gains and safety. Damping and dry friction are the least
+/// over the workspace, with the handle rotated by at most 30 deg from its straight direction.
 VPS_DEVICE_API DeviceLimits dualArmLimits(const DualArmParameters& parameters, double rate_hz,
                                           bool has_quantised_encoders);
 

@@ -23,7 +23,7 @@ class VPS_DEVICE_API DualArmHardware {
 
   virtual DualArmReading read() noexcept = 0;
 
-  /// Motor efforts in joint order [N m, N], held until the next. The hardware switches its motors off by
+  /// Motor efforts in joint order [N m, N], held until the next call. The hardware switches its motors off by
   /// itself when no command arrives for its watchdog's time.
   virtual void drive(const JointVector& efforts) noexcept = 0;
 
@@ -42,7 +42,8 @@ class VPS_DEVICE_API MotorHeat {
   /// Adds the heat of `efforts`, held for dt_s.
   void add(const JointVector& efforts, double dt_s) noexcept;
 
-  /// Present limit of each motor: the peak while it is cool, falling to the continuous limit as it warms.
+  /// Present limit of each motor: the peak while the motor is cool, falling to the continuous limit as the
+  /// motor warms.
   [[nodiscard]] JointVector limits() const noexcept;
   /// Share of the range from continuous to peak that the warmest motor may use, 0 to 1.
   [[nodiscard]] double peakShare() const noexcept;

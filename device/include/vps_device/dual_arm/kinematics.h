@@ -57,14 +57,15 @@ VPS_DEVICE_API Vec3 armPosition(const ArmJoints& joints) noexcept;
 /// dp/d(t1, t2, d3), singular at t2 = +-90 deg.
 VPS_DEVICE_API Mat3 armJacobian(const ArmJoints& joints) noexcept;
 
-/// Angular velocity of the barrel by (t1, t2, d3) rates.
+/// Jacobian from the rates of (t1, t2, d3) to the barrel's angular velocity.
 VPS_DEVICE_API Mat3 armAngularJacobian(const ArmJoints& joints) noexcept;
 
-/// Base frame of an arm in D. assumed: the arms face each other along D's y; the right one as calibrated.
+/// Base frame of an arm in D. assumed: the arms face each other along D's y; the right arm's base is as
+/// calibrated.
 VPS_DEVICE_API Pose armBase(const DualArmParameters& parameters, Side side) noexcept;
 
-/// R_D3 of the left barrel. assumed: it turns with the plate, and at t1 = t2 = q = 0 the handle's axes are
-/// D's.
+/// R_D3 of the left barrel. assumed: the barrel turns with the plate, and at t1 = t2 = q = 0 the handle's
+/// axes are D's.
 VPS_DEVICE_API Mat3 barrelRotation(const DualArmParameters& parameters, const ArmJoints& left) noexcept;
 
 // --- The paper's three coordinate systems: one local to each arm, and one independent of both
@@ -76,7 +77,7 @@ enum class DeviceFrame {
 };
 VPS_DEVICE_API const char* toText(DeviceFrame frame) noexcept;
 
-/// Pose of a frame in D; the right arm's as calibrated.
+/// Pose of a frame in D; the right arm's frame is as calibrated.
 VPS_DEVICE_API Pose framePose(const DualArmParameters& parameters, DeviceFrame frame) noexcept;
 
 /// Expresses a pose, velocity or wrench given in `from` in `to`. Velocity and wrench keep their reference
@@ -93,12 +94,13 @@ VPS_DEVICE_API Wrench inFrame(const DualArmParameters& parameters, const Wrench&
 /// R_3E, the paper's (6).
 VPS_DEVICE_API Mat3 gimbalRotation(double q1_rad, double q2_rad, double q3_rad) noexcept;
 
-/// Gimbal angles from Y_EE in the barrel's frame, the paper's (7) with its signs corrected for the whole
-/// plane. Singular when |q2| = 90 deg (q1 then zero).
+/// Gimbal angles from Y_EE in the barrel's frame: the paper's equation (7) with its signs corrected for the
+/// whole plane. Singular when |q2| = 90 deg (q1 is then zero).
 [[nodiscard]] VPS_DEVICE_API Status gimbalAngles(const Vec3& Y_3, double& q1_rad, double& q2_rad) noexcept;
 
-/// Pose of the handle H (centre of mass) in D from measured joints, (1) to (8). The gimbal centres' distance
-/// need not be exactly L (quantised joints). BadPose or Singular leave X_DH untouched.
+/// Pose of the handle H (centre of mass) in D from measured joints, by the paper's equations (1) to (8). The
+/// gimbal centres' distance need not be exactly L (quantised joints). BadPose or Singular leave X_DH
+/// untouched.
 [[nodiscard]] VPS_DEVICE_API Status handlePose(const DualArmParameters& parameters,
                                                const DualArmJoints& joints, Pose& X_DH) noexcept;
 
@@ -115,7 +117,7 @@ VPS_DEVICE_API Mat3 gimbalRotation(double q1_rad, double q2_rad, double q3_rad) 
 struct HandleMotion {
   JointVector joints = JointVector::Zero();  ///< values in joint order
   JointMatrix J = JointMatrix::Zero();       ///< joint rates = J V, as handleJacobian
-  double q2_rad = 0;                         ///< the gimbal's, which no motor moves
+  double q2_rad = 0;                         ///< angle of the gimbal, which no motor moves
   Eigen::Matrix<double, 1, 6> J_q2 = Eigen::Matrix<double, 1, 6>::Zero();  ///< q2' = J_q2 V
 };
 
@@ -142,8 +144,8 @@ VPS_DEVICE_API double armClearance_m(const DualArmParameters& parameters,
 
 // --- Statics
 
-/// Motor efforts that give the wrench F_Ho_D to the hand with the handle at X_DH; no squeeze along the handle
-/// beyond f/2 on each side. Status as handleJacobian; efforts then zero.
+/// Motor efforts that give the wrench F_Ho_D to the hand with the handle at X_DH; along the handle each arm
+/// exerts f/2, without a squeeze in addition. Status as handleJacobian; unless Ok, the efforts are zero.
 [[nodiscard]] VPS_DEVICE_API Status motorEfforts(const DualArmParameters& parameters, const Pose& X_DH,
                                                  const Wrench& F_Ho_D, JointVector& efforts) noexcept;
 
@@ -152,11 +154,11 @@ VPS_DEVICE_API double armClearance_m(const DualArmParameters& parameters,
                                                  const JointVector& efforts, Wrench& F_Ho_D) noexcept;
 
 /// Greatest factor s in [0, 1] such that |bias + s wanted| keeps within `limit` for each motor. Zero if the
-/// bias alone does not. Scaling the whole wrench keeps its direction.
+/// bias alone exceeds `limit`. Scaling the whole wrench keeps its direction.
 VPS_DEVICE_API double saturationScale(const JointVector& bias, const JointVector& wanted,
                                       const JointVector& limit) noexcept;
 
-/// Motor limits; share 0 continuous, 1 peak, linear between.
+/// Motor limits for a share from 0 (continuous) to 1 (peak), linear in between.
 VPS_DEVICE_API JointVector motorLimits(const DualArmParameters& parameters, double peak_share) noexcept;
 
 }  // namespace vps::device

@@ -16,12 +16,12 @@ struct VPS_DEVICE_API DualArmParameters {
   DualArmParameters();
 
   // Geometry.
-  Vec3 workspace_m = Vec3::Zero();    ///< box of the handle's origin, centred at D's origin
-  double handle_m = 0;                ///< L, between gimbal centres
-  Vec3 p_EH = Vec3::Zero();           ///< vector from the midpoint (1) to the handle's centre of mass H, in E
-  double base_m = 0;                  ///< distance from D's origin to each base, along y
-  Vec3 right_shift_m = Vec3::Zero();  ///< shift of the right base from its nominal pose, in its frame
-  Vec3 right_turn_rad = Vec3::Zero();       ///< rotation vector of the right base from its nominal pose
+  Vec3 workspace_m = Vec3::Zero();     ///< box of the handle's origin, centred at D's origin
+  double handle_m = 0;                 ///< L, distance between the gimbal centres
+  Vec3 p_EH = Vec3::Zero();            ///< vector from the handle's midpoint to its centre of mass H, in E
+  double base_m = 0;                   ///< distance from D's origin to each base, along y
+  Vec3 right_shift_m = Vec3::Zero();   ///< shift of the right base from its nominal pose, in its frame
+  Vec3 right_turn_rad = Vec3::Zero();  ///< rotation vector of the right base from its nominal pose
   double reach_min_m = 0, reach_max_m = 0;  ///< range of d3
   double plate_max_rad = 0;                 ///< limit of |t1| and |t2|
   double q2_max_rad = 0, q3_max_rad = 0;    ///< limits of |q2| and |q3|
@@ -32,7 +32,7 @@ struct VPS_DEVICE_API DualArmParameters {
   double plate_kgm2 = 0;            ///< inertia of plate, link and balance weight about each axis
   double link_kg = 0;               ///< mass of a sliding link with its tendon drive
   double rotor_kgm2 = 0;            ///< inertia of the handle's motor with its gear
-  double motor_share = 0;           ///< share of the last three inertias on the motors' side of the structure
+  double motor_share = 0;           ///< share of plate_kgm2, link_kg and rotor_kgm2 on the motors' side
   double plate_damping_Nms = 0, link_damping_Ns_per_m = 0, rotor_damping_Nms = 0;
   double plate_coulomb_Nm = 0, link_coulomb_N = 0, rotor_coulomb_Nm = 0;
   // Structure: elasticity between the motors, where the encoders are, and the handle.
@@ -94,7 +94,7 @@ VPS_DEVICE_API const DualArmFile& builtInDualArm();
 /// found and what is expected.
 VPS_DEVICE_API DualArmFile loadDualArm(const std::string& file);
 
-/// As the function above, from text; `name` is the file's name in messages.
+/// As loadDualArm(), from text; `name` is the file's name in messages.
 VPS_DEVICE_API DualArmFile parseDualArm(const std::string& text, const std::string& name);
 
 }  // namespace vps::device

@@ -20,13 +20,14 @@ inline Wrench handleWeight(const DualArmParameters& parameters) noexcept {
 // --- Elasticity between the motors and the handle, reduced to the joints
 
 /// Stiffness of each joint [N m/rad, N/m, N m/rad] with the arms at `joints`: capstan, tendon and link in
-/// series with the gimbal and the handle. The stiffness of these two is equal in every direction; since the
-/// columns of an arm's Jacobian are orthogonal, it acts on each joint separately.
+/// series with the gimbal and the handle. The stiffness of gimbal and handle is equal in every direction;
+/// since the columns of an arm's Jacobian are orthogonal, this stiffness acts on each joint separately.
 VPS_DEVICE_API JointVector structureStiffness(const DualArmParameters& parameters,
                                               const JointVector& joints) noexcept;
 
-/// Force on the joints by the change of that stiffness with the joints, with the springs extended by
-/// `stretch`: -1/2 sum_i dK_i/dq stretch_i^2. Without it a loaded moving arm would not conserve energy.
+/// Force on the joints by the change of structureStiffness() with the joints, with the springs extended by
+/// `stretch`: -1/2 sum_i dK_i/dq stretch_i^2. Without this force a loaded moving arm would not conserve
+/// energy.
 VPS_DEVICE_API JointVector structureDrift(const DualArmParameters& parameters, const JointVector& joints,
                                           const JointVector& stretch) noexcept;
 
@@ -40,14 +41,14 @@ struct VerticalForce {
   double both_N = 0;
   double sum_N = 0;  ///< left_N + right_N less the weight; the hand has to bear the couple
 };
-/// Computes the strength; zero if the device is singular at this pose.
+/// Computes the greatest upward force; zero if the device is singular at this pose.
 VPS_DEVICE_API VerticalForce verticalForce(const DualArmParameters& parameters, const Vec3& p_DE,
                                            const JointVector& limits) noexcept;
 
 /// Motor efforts for forces along D's axes, or for torques about them: columns x, y, z.
 struct EffortMap {
   Eigen::Matrix<double, 7, 3> force = Eigen::Matrix<double, 7, 3>::Zero();   ///< N m or N, per N at H
-  Eigen::Matrix<double, 7, 3> torque = Eigen::Matrix<double, 7, 3>::Zero();  ///< per N m about H
+  Eigen::Matrix<double, 7, 3> torque = Eigen::Matrix<double, 7, 3>::Zero();  ///< N m or N, per N m about H
   JointVector weight = JointVector::Zero();  ///< efforts that carry the handle
 };
 [[nodiscard]] VPS_DEVICE_API Status effortMap(const DualArmParameters& parameters, const Pose& X_DH,
