@@ -17,7 +17,8 @@ namespace fs = std::filesystem;
 
 constexpr const char* kUnsecured = "none";
 
-/// Folder of the security plugins: the folder of the Cyclone DDS library, or Debian's subfolder there.
+/// Folder of the security plugins: the folder of the Cyclone DDS library, or Debian's subfolder of that
+/// folder.
 fs::path pluginFolder() {
   Dl_info info{};
   if (dladdr(reinterpret_cast<const void*>(&dds_create_participant), &info) != 0 &&
@@ -35,7 +36,7 @@ std::string fileOf(const fs::path& folder, const char* name) {
     throw LoadError(
         folder.string(), "",
         std::string("has no ") + name + "; scenes/make_certificates.sh makes a folder for each node");
-  // Cyclone DDS's settings are XML, where these characters are special.
+  // Cyclone DDS's settings are XML, in which the characters <, >, & and " are special.
   for (const char c : file.string())
     if (c == '<' || c == '>' || c == '&' || c == '"')
       throw LoadError(file.string(), "",

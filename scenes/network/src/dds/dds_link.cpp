@@ -27,7 +27,7 @@ namespace {
 
 constexpr std::int64_t kBeat_ns = 20'000'000;
 constexpr auto kSign_ns = static_cast<std::int64_t>(1e9 * kSignPeriod_s);
-constexpr double kAlive_s = 0.1;  ///< a node counts as lost if its last beat is older
+constexpr double kAlive_s = 0.1;  ///< a node without a beat for this time counts as lost
 constexpr double kFind_s = 1;     ///< time limit to find a session
 /// Time limit to hear another node. Assumed: DDS finds a neighbour within a tenth of a second.
 constexpr double kListen_s = 0.5;
@@ -68,9 +68,9 @@ struct Peer {
   NodeRole role = NodeRole::Watch;
   std::uint64_t session = 0;
   bool has_ended = false;
-  std::int64_t sent_ns = 0;   ///< sending time of its last beat, by its clock
-  std::int64_t heard_ns = 0;  ///< arrival time of its last beat, by our clock
-  MessageOrder order;         ///< order of its beats
+  std::int64_t sent_ns = 0;   ///< sending time of the peer's last beat, by the peer's clock
+  std::int64_t heard_ns = 0;  ///< arrival time of the peer's last beat, by our clock
+  MessageOrder order;         ///< order of the peer's beats
   ClockEstimate clock;
   std::vector<double> trips_s;  ///< the last round trips
   std::size_t next_trip = 0;
@@ -122,7 +122,7 @@ class DdsLink final : public Link {
   void start() {
     pump_ = std::thread([this] { pump(); });
   }
-  /// Waits for a render node. False: there is none, or its scene has not arrived.
+  /// Waits for a render node. Returns false if there is no render node, or if its scene has not arrived.
   bool find() {
     return waitFor(kFind_s, [this] {
       const std::lock_guard lock(mutex_);
@@ -262,7 +262,7 @@ class DdsLink final : public Link {
   std::map<std::uint64_t, std::string> scenes_;
   std::vector<char> buffer_ = std::vector<char>(kLongestMessage);
   sem_t wake_{};
-  mutable sem_t arrived_{};                 ///< at most 1: a message has arrived since the last wait
+  mutable sem_t arrived_{};                 ///< 0 or 1; 1: a message has arrived since the last wait
   std::atomic<std::uint64_t> signs_{0};     ///< counts messages of the render node
   std::atomic<std::int64_t> stated_ns_{0};  ///< time of physics' last state
   std::atomic<bool> is_ending_{false};
@@ -302,7 +302,7 @@ void DdsLink::pump() {
     }
   }
   passOn();
-  for (int i = 0; i < 3; ++i) sendBeats();  // best effort, so several are sent
+  for (int i = 0; i < 3; ++i) sendBeats();  // beats may be lost, so several are sent
 }
 
 void DdsLink::passOn() {

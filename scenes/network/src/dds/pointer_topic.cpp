@@ -11,7 +11,8 @@ namespace vps::scenes {
 
 namespace {
 
-constexpr std::size_t kMostPointers = 256;  // 8 processes that point 30 times a second fill this in a second
+constexpr std::size_t kMostPointers =
+    256;  // 8 processes that point 30 times a second send as many in a second
 
 class DdsPointerTopic final : public PointerTopic {
  public:
@@ -40,7 +41,7 @@ class DdsPointerTopic final : public PointerTopic {
   std::mutex mutex_;
   std::deque<std::string> waiting_;
   DdsParticipant participant_;
-  DdsTopic out_, in_;  // after all members that threads of DDS use
+  DdsTopic out_, in_;  // declared after all members that threads of DDS use
 };
 
 }  // namespace

@@ -63,7 +63,7 @@ dds_topic_descriptor_t descriptor(const char* name, std::size_t size, const std:
           .restrict_data_representation = 0};
 }
 
-/// Returns the entity. Throws LoadError if DDS refused to make it.
+/// Returns the entity. Throws LoadError if DDS refused to make the entity.
 dds_entity_t require(dds_entity_t made) {
   if (made >= 0) return made;
   throw LoadError("", "", std::string("ROS 2 topics: ") + dds_strretcode(-made));
@@ -95,8 +95,8 @@ constexpr std::uint32_t kWrenchOps[] = {kNumber,  offsetof(WrenchStamped, header
                                         kText,    offsetof(WrenchStamped, header.frame),
                                         kDoubles, offsetof(WrenchStamped, wrench),
                                         6,        DDS_OP_RTS};
-// Operands of a list: its offset, the element size, and the distances to the next instruction and to the
-// element's.
+// Operands of a list: the list's offset, the size of an element, and the distances to the next instruction
+// and to the instructions of an element.
 constexpr std::uint32_t kTfOps[] = {kList,
                                     offsetof(TfMessage, transforms),
                                     sizeof(TransformStamped),
@@ -157,7 +157,7 @@ struct RosTopics::Work {
     for (const ScenePart& part : scene.parts) frames.push_back(name + "/" + rosName(part.part.name));
   }
 
-  DdsParticipant participant;  // deleting it deletes its writers
+  DdsParticipant participant;  // deleting the participant deletes its writers
   dds_entity_t handle = 0, force = 0, tf = 0;
   std::vector<std::string> frames;
   std::vector<TransformStamped> transforms;
@@ -204,14 +204,15 @@ struct HeadTopic::Work {
     const dds_entity_t name =
         ros::require(dds_create_topic(participant.entity(), &type, ("rt" + topic).c_str(), nullptr, nullptr));
     dds_qos_t* qos = dds_create_qos();
-    dds_qset_reliability(qos, DDS_RELIABILITY_BEST_EFFORT, 0);  // matches reliable writers, too
+    dds_qset_reliability(qos, DDS_RELIABILITY_BEST_EFFORT,
+                         0);  // a best-effort reader matches reliable writers, too
     dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, 1);
     reader = dds_create_reader(participant.entity(), name, qos, nullptr);
     dds_delete_qos(qos);
     ros::require(reader);
   }
 
-  DdsParticipant participant;  // deleting it deletes its reader
+  DdsParticipant participant;  // deleting the participant deletes its reader
   dds_entity_t reader = 0;
 };
 

@@ -98,7 +98,8 @@ dds_domainid_t domainOf(const SessionNetwork& network, int wanted) {
   // Cyclone DDS logs a line for each peer without a certificate of our authority; its log is disabled, so
   // that it does not mix with the program's messages.
   dds_set_log_sink([](void*, const dds_log_data_t*) {}, nullptr);
-  // Loopback has no multicast, so participants look for each other at the ports of the first few.
+  // Loopback has no multicast, so participants look for each other at the ports of the first few
+  // participants.
   const std::string find =
       isLoopback(interface)
           ? "<AllowMulticast>false</AllowMulticast></General><Discovery><ParticipantIndex>auto"
@@ -122,7 +123,7 @@ struct Qos {
   explicit Qos(Delivery delivery) {
     if (delivery == Delivery::Newest) {
       dds_qset_reliability(qos, DDS_RELIABILITY_BEST_EFFORT, 0);
-      dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, 16);  // buffer until a thread of DDS takes them
+      dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, 16);  // samples are kept until a thread of DDS takes them
     } else {
       dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, DDS_MSECS(100));
       dds_qset_history(qos, delivery == Delivery::Kept ? DDS_HISTORY_KEEP_LAST : DDS_HISTORY_KEEP_ALL, 1);

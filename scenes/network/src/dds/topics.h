@@ -40,8 +40,8 @@ std::string topicName(const std::string& session, const std::string& name);
 /// Data type of a topic.
 enum class TopicType {
   Message,  ///< in IDL: struct Message { sequence<octet> bytes; };
-  State,    ///< in IDL: struct State { octet bytes[40]; }; a dense state, whose sending time is the sample's
-            ///< timestamp
+  State,    ///< in IDL: struct State { octet bytes[40]; }; a dense state, whose sending time is the DDS
+            ///< sample's timestamp
 };
 
 /// A topic that is either written or received.

@@ -27,7 +27,7 @@ RingWriter::RingWriter(SharedWord* memory, RingShape shape) noexcept
 
 // Words are stored with release order, so that the odd stamp is visible before any of them. A reader that
 // loads one of these words with acquire order therefore sees the odd stamp in its final check. On x86 these
-// are ordinary moves.
+// loads and stores are ordinary moves.
 bool RingWriter::write(std::string_view message) noexcept {
   if (message.size() > shape_.bytes) return false;
   SharedWord* slot = slotOf(memory_, shape_, number_);

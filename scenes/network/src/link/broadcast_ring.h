@@ -5,7 +5,7 @@
 // while it is being written, so that a reader detects a message that was overwritten during reading. If the
 // writer is killed in the middle of a message, earlier messages stay intact, and the next writer continues. A
 // TripleBuffer is not used for states, because it has only one reader and keeps the ownership of its slots in
-// the two processes, where it is lost if one is killed.
+// the two processes, where the ownership is lost if a process is killed.
 #pragma once
 
 #include <atomic>
@@ -19,7 +19,8 @@ namespace vps::scenes {
 using SharedWord = std::atomic<std::uint64_t>;
 static_assert(SharedWord::is_always_lock_free && sizeof(SharedWord) == 8, "processes must not share a lock");
 
-/// Number and size of the slots. Both are constants of the program and are never read from shared memory.
+/// Number and size of the slots. Both numbers are constants of the program and are never read from shared
+/// memory.
 struct RingShape {
   std::uint32_t slots = 0;  ///< a power of two
   std::uint32_t bytes = 0;  ///< longest message, a multiple of 8

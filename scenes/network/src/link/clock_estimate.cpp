@@ -9,7 +9,7 @@ namespace vps::scenes {
 namespace {
 
 constexpr std::int64_t kSpan_ns =
-    250'000'000;                     // span of which the exchange with the shortest round trip is kept
+    250'000'000;  // of the exchanges in such a span, only that with the shortest round trip is kept
 constexpr double kMostDrift = 1e-3;  // assumed: ten times the drift of a bad quartz clock
 constexpr int kStep = 20;  // number of contradictions in a row after which the other clock was presumably
                            // set; the estimate restarts
@@ -95,7 +95,7 @@ double ClockEstimate::error_s() const noexcept {
 
 std::int64_t sentByClockHere_ns(std::int64_t sent_ns, double offset_s, std::int64_t now_ns) noexcept {
   constexpr std::int64_t kWrap_ns = (std::int64_t{1} << 32U) * 1000;
-  // Reduced modulo the wrap, so that no value sent by a peer can overflow.
+  // The offset is reduced modulo kWrap_ns, so that no value sent by a peer can overflow.
   const std::int64_t offset_ns =
       static_cast<std::int64_t>(std::fmod(1e9 * offset_s, static_cast<double>(kWrap_ns)));
   std::int64_t ago_ns = (now_ns % kWrap_ns - sent_ns % kWrap_ns + offset_ns) % kWrap_ns;

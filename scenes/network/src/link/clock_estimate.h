@@ -5,11 +5,11 @@
 //               \                   /         error  <= half of the round trip (t3 - t0) - (t2 - t1)
 //   there        t1 ----------- t2
 //
-// The error is greatest if one direction took all of the time, so exchanges with a short round trip are the
-// most accurate. Of each quarter of a second only the exchange with the shortest round trip is kept (source:
-// [Mills 1991], clock filter), and a line is fitted to the kept exchanges of the last 16 s. An exchange has
-// less weight the more its round trip exceeds the shortest one. The estimate therefore survives a machine
-// that is busy for seconds and has no short round trip in this time.
+// The error is greatest if one direction took the whole round trip, so exchanges with a short round trip are
+// the most accurate. Of each quarter of a second only the exchange with the shortest round trip is kept
+// (source: [Mills 1991], clock filter), and a line is fitted to the kept exchanges of the last 16 s. An
+// exchange has less weight the more its round trip exceeds the shortest one. The estimate therefore survives
+// a machine that is busy for seconds and has no short round trip in this time.
 #pragma once
 
 #include <array>

@@ -28,13 +28,13 @@ enum class WireForm : std::uint8_t {
 /// Message streams between nodes, each with one writer. Of a state channel only the newest message matters;
 /// other channels deliver all messages in order.
 enum class Channel : std::uint8_t {
-  Haptic,    ///< state, device to all
-  Physics,   ///< state, render to device
-  Snapshot,  ///< state, render to watchers
-  Request,   ///< render to device
-  Reply,     ///< device to render
-  Log,       ///< device to render: entries of the haptic loop's log, for a recording
-  News,      ///< render to watchers: events, in words
+  Haptic,    ///< state of the haptic loop, from the device node to all nodes
+  Physics,   ///< state of the part, from the render node to the device node
+  Snapshot,  ///< snapshot of the scene, from the render node to the watchers
+  Request,   ///< requests of the render node to the device node
+  Reply,     ///< the device node's replies to requests
+  Log,       ///< entries of the haptic loop's log, from the device node to the render node, for a recording
+  News,      ///< events in words, from the render node to the watchers
 };
 inline constexpr std::size_t kChannels = 7;
 
@@ -118,15 +118,17 @@ class Link {
   [[nodiscard]] virtual std::uint64_t lost(Channel channel) const noexcept = 0;
 
   /// A counter that changes at least every kSignPeriod_s while the render node is alive, even during a long
-  /// physics step. The device node's haptic thread reads it, so it neither locks nor calls the system.
+  /// physics step. The device node's haptic thread reads the counter, so this function neither locks nor
+  /// calls the system.
   [[nodiscard]] virtual std::uint64_t signsOfLife() const noexcept { return 0; }
 
   /// The form in which states are sent.
   [[nodiscard]] virtual WireForm form() const noexcept { return WireForm::Exact; }
 
   // The functions below may call the system.
-  /// Over UDP, waits until a message comes, at most `most_ns`; for threads with nothing else to do, one at a
-  /// time. In shared memory it returns at once, since arrivals are not signalled there.
+  /// Over UDP, waits until a message comes, at most `most_ns`; only a thread with nothing else to do may
+  /// wait, and only one thread at a time. In shared memory the call returns at once, since shared memory does
+  /// not signal arrivals.
   virtual void waitForMessage(std::int64_t /*most_ns*/) const {}
   /// Whether a live process has the role.
   [[nodiscard]] virtual bool isAlive(NodeRole role) const = 0;
@@ -136,7 +138,7 @@ class Link {
   [[nodiscard]] virtual std::uint64_t sessionId() const = 0;
   /// Whether the render node has ended the session regularly.
   [[nodiscard]] virtual bool hasEnded() const = 0;
-  /// Timing of a peer; empty within one machine, and until it is known.
+  /// Timing of a peer; empty within one machine, and until the timing is known.
   [[nodiscard]] virtual std::optional<PeerTiming> timing(NodeRole) const { return {}; }
   /// The nodes of this session that sent contradictory times.
   [[nodiscard]] virtual std::vector<PeerDoubt> doubts() const { return {}; }
@@ -153,11 +155,11 @@ class Link {
 /// session. Throws LoadError if the session exists.
 std::unique_ptr<Link> makeSession(const std::string& session, std::string_view scene_bytes);
 /// Joins a session in shared memory, for the other nodes. Returns null if there is no such session. Throws
-/// LoadError if it belongs to another version of this program, or if another device has joined it.
+/// LoadError if the session belongs to another version of this program, or if another device has joined it.
 std::unique_ptr<Link> joinSession(const std::string& session, NodeRole role);
 
-/// Creates or joins a session in the given network. Over UDP it waits up to a second for a session to be
-/// found. Also throws LoadError if this build has no network support.
+/// Creates or joins a session in the given network. Over UDP the call waits up to a second for a session to
+/// be found. Also throws LoadError if this build has no network support.
 std::unique_ptr<Link> makeSession(const std::string& session, std::string_view scene_bytes,
                                   const SessionNetwork& network);
 std::unique_ptr<Link> joinSession(const std::string& session, NodeRole role, const SessionNetwork& network);
@@ -188,7 +190,8 @@ class PointerTopic {
   PointerTopic& operator=(const PointerTopic&) = delete;
 
   virtual void send(std::string_view message) = 0;
-  /// Messages received since the last call, including the own ones; in a flood, the newest.
+  /// Messages received since the last call, including this watcher's own messages; in a flood, only the
+  /// newest messages.
   virtual std::vector<std::string> take() = 0;
 
  protected:

@@ -121,7 +121,7 @@ SharedRegion& SharedRegion::operator=(SharedRegion&& other) noexcept {
 SharedRegion::~SharedRegion() {
   removeName();
   if (!memory_.empty()) munmap(memory_.data(), memory_.size());
-  if (file_ >= 0) close(file_);  // frees the roles
+  if (file_ >= 0) close(file_);  // closing the file frees the roles
 }
 
 void SharedRegion::removeName() {
@@ -176,14 +176,15 @@ bool SharedRegion::take(NodeRole role) const {
   return lockByte(file_, role);
 }
 
-// A read lock on a byte with the process's number; read locks do not exclude each other.
+// Takes a read lock on a byte for the process's number; read locks do not exclude each other.
 void SharedRegion::markWatcher() const {
   struct flock lock = byteOf(NodeRole::Watch, F_RDLCK);
   lock.l_start = kWatchers + getpid();
   fcntl(file_, F_OFD_SETLK, &lock);
 }
 
-// The system reports any lock of a range, not necessarily the first, so both sides of it are searched.
+// The system reports any lock of a range, not necessarily the first, so the ranges on both sides of that lock
+// are searched.
 std::size_t SharedRegion::watchers() const {
   std::size_t count = 0;
   std::vector<std::pair<off_t, off_t>> ranges = {{kWatchers, kWatchers + kMostProcesses}};

@@ -4,8 +4,8 @@
 //
 // A process that takes a role holds a lock on one byte of the region for as long as it lives. The system
 // frees the lock however the process ends, so the lock shows that the process is alive; a region whose
-// owner's lock is free was left behind by a crash. These locks guard no data, and no haptic thread takes or
-// tests one.
+// owner's lock is free was left behind by a crash. The locks of roles guard no data, and no haptic thread
+// takes or tests one.
 #pragma once
 
 #include <cstddef>
@@ -30,10 +30,11 @@ class SharedRegion {
   /// Creates a region of zeros that this process owns in the role Render; only this user can read and write
   /// it. A region of the same name whose owner is dead is replaced. Throws LoadError if the owner is alive,
   /// or the system refuses.
-  /// @param session  name of the session for its own region; or this name, a dot and another name
+  /// @param session  name of the session for its main region; for a further region, the name of the session,
+  /// a dot and another name
   static SharedRegion create(const std::string& session, std::size_t bytes);
-  /// Opens the region of a session; the result is not open if there is none, or if it is still being created.
-  /// Throws LoadError for a region that other users could have written.
+  /// Opens the region of a session; the result is not open if the region does not exist or is still being
+  /// created. Throws LoadError for a region that other users could have written.
   static SharedRegion open(const std::string& session, bool is_writable);
 
   [[nodiscard]] bool isOpen() const { return !memory_.empty(); }
@@ -59,7 +60,7 @@ class SharedRegion {
   std::string name_;  ///< name to remove with this object; empty: another process removes it
 };
 
-/// Removes the regions of this user whose owners are dead. Returns their number.
+/// Removes the regions of this user whose owners are dead. Returns the number of removed regions.
 std::size_t removeDeadRegions();
 /// Removes the region of a session if its owner is dead.
 void removeIfDead(const std::string& session);

@@ -20,8 +20,8 @@ namespace vps::scenes {
 
 namespace {
 
-constexpr std::size_t kMostConnected = 16;  // connections of this user
-constexpr std::size_t kMostStrangers = 4;   // connections of other users, who only get a refusal
+constexpr std::size_t kMostConnected = 16;  // limit of connections of this user
+constexpr std::size_t kMostStrangers = 4;   // limit of connections of other users, who only get a refusal
 
 class Socket {
  public:

@@ -20,8 +20,8 @@ constexpr std::uint64_t kScheme = kMagic | kMessageVersion;
 
 enum class SessionState : std::uint64_t { Making, Open, Ended };
 
-/// Words of the header. Each is written once before the state becomes Open, except kSigns, which counts while
-/// it is open.
+/// Words of the header. Each word is written once before the session's state becomes Open, except kSigns,
+/// which counts while the session is open.
 enum Head : std::size_t { kState, kSchemeWord, kIdentity, kSceneSize, kSigns, kHeadWords = 8 };
 
 constexpr std::size_t offsetOf(std::size_t channel) {
@@ -120,7 +120,7 @@ std::unique_ptr<Link> joinSession(const std::string& session, NodeRole role) {
   requireSessionName(session);
   SharedRegion region = SharedRegion::open(session, role == NodeRole::Device);
   if (!region.isOpen() || region.memory().size() < kSceneOffset) return nullptr;
-  if (!region.isTaken(NodeRole::Render)) {  // left behind by a crash
+  if (!region.isTaken(NodeRole::Render)) {  // the region was left behind by a crash
     removeIfDead(session);
     return nullptr;
   }

@@ -17,7 +17,7 @@ constexpr unsigned kSenderBits = 18, kNumberBits = 24, kTickBits = 8, kTimeBits 
                    kComponentBits = 18;
 constexpr double kStep_m = 1e-6, kStep_s = 1e-6;
 constexpr double kLargest_m = kStep_m * ((1 << (kLengthBits - 1U)) - 1);
-constexpr double kLargest_J = 1e12;  // the limit of all numbers between nodes
+constexpr double kLargest_J = 1e12;  // the limit of all numbers that nodes send
 /// Greatest increase of time, or of steps, between consecutive dense states, so that the lower bits identify
 /// the full value.
 constexpr double kMostLater_s = 1000;
@@ -136,8 +136,8 @@ void putHead(BitWriter& w, DenseKind kind, std::uint64_t sender, std::uint64_t n
   w.put(static_cast<std::uint32_t>(tick), kTickBits);
 }
 constexpr unsigned kHeadBits = 8 + kSenderBits + kNumberBits;
-/// Ticks increase, so of the ticks with these lower bits the next one is taken, or one slightly before the
-/// last.
+/// The tick with these lower bits that follows `last`, since ticks increase, or that is slightly before
+/// `last`.
 std::int32_t tickAfter(std::uint64_t low, std::int32_t last) noexcept {
   constexpr std::int64_t kBefore = 8;
   const std::int64_t middle = last + (std::int64_t{1} << (kTickBits - 1U)) - kBefore;
@@ -165,8 +165,8 @@ Twist scaled(const Twist& V, double share) noexcept {
   return {share * V.w, share * V.v};
 }
 
-/// Whether a state is older than the newest one. If its number is much lower, one of the two numbers was
-/// damaged.
+/// Whether a state is older than the newest one. A state whose tick is much lower does not count as older,
+/// since one of the two ticks was damaged.
 bool isLate(std::int32_t tick, std::int32_t now) noexcept {
   constexpr std::int32_t kFarthest = 64;
   return tick < now && tick >= now - kFarthest;
@@ -184,7 +184,8 @@ bool isNear(const Twist& a, const Twist& b) noexcept {
 
 }  // namespace
 
-/// Decides whether a whole state is due, and counts. @param is_news  a change that all readers need at once
+/// Decides whether a whole state is due, and counts the states. @param is_news  a change that all readers
+/// need at once
 bool DenseWriter::isDue(bool is_news, bool is_wished) noexcept {
   if (is_news) whole_left_ = kWholeAfterNews;
   const bool is_due =

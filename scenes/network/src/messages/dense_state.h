@@ -80,8 +80,8 @@ inline constexpr std::uint64_t kDenseSenders = std::uint64_t{1} << 18U;
 constexpr bool isDense(std::string_view bytes) noexcept {
   return bytes.size() == kDenseMessageBytes && (static_cast<unsigned char>(bytes[0]) & 0x80U) != 0;
 }
-/// Reads a dense state. Values that it lacks keep those of `m`, which also supply the upper bits of tick and
-/// time. Returns false if the bytes contain values that no state has.
+/// Reads a dense state. Values that a dense state lacks keep the values of `m`, which also supply the upper
+/// bits of tick and time. Returns false if the bytes contain values that no state has.
 bool readDense(std::string_view bytes, const DenseBase& base, HapticMessage& m) noexcept;
 bool readDense(std::string_view bytes, const DenseBase& base, PhysicsMessage& m) noexcept;
 /// @param last_number  number of the previous dense state; 0: none

@@ -32,7 +32,8 @@ class MessageOrder {
     std::uint64_t number = 0;
     std::int64_t sent_ns = 0, at_ns = 0;
   };
-  /// Counts messages that look old but continue each other. Returns true once they are to be trusted.
+  /// Counts messages that look old but continue each other. Returns true once these messages are to be
+  /// trusted.
   bool continuesRun(const Heard& message) noexcept;
 
   Heard last_;  ///< last accepted message; number 0: none yet

@@ -47,7 +47,7 @@ enum class MessageKind : std::uint16_t {
   DensePhysics,
   Fetched,
 };
-inline constexpr std::size_t kMessageKinds = 18;  ///< including 0, which no message has
+inline constexpr std::size_t kMessageKinds = 18;  ///< number of kinds, including 0, which no message has
 
 /// Header of each message.
 struct Envelope {
@@ -136,15 +136,15 @@ struct NewsMessage {
   std::array<char, 512> text{};  ///< zero-terminated
 };
 
-/// Shows over a network that a node is alive; sent every 20 ms. It returns the times of each peer's last
+/// Shows over a network that a node is alive; sent every 20 ms. A beat returns the times of each peer's last
 /// beat, for the clock estimate.
 struct BeatMessage {
   NodeRole role = NodeRole::Render;
   std::uint64_t session = 0;  ///< Link::sessionId()
   bool has_ended = false;
   std::uint64_t peer = 0;         ///< sender of the beat whose times are returned; 0: none
-  std::int64_t peer_sent_ns = 0;  ///< sending time of that beat, by the peer's clock
-  std::int64_t received_ns = 0;   ///< arrival time of that beat, by the sender's clock
+  std::int64_t peer_sent_ns = 0;  ///< sending time of the returned beat, by the peer's clock
+  std::int64_t received_ns = 0;   ///< arrival time of the returned beat, by the clock of this beat's sender
 };
 
 /// Position of a watching person's pointer, sent to the other watchers.
@@ -174,7 +174,7 @@ struct AskMessage {
   double k_N_per_m = 0;         ///< for Gains
   double k_Nm_per_rad = 0;      ///< for Gains; 0: unchanged
   bool wants_file = false;      ///< for Record: the sender will fetch the file when it is complete
-  std::uint64_t offset = 0;     ///< for Fetch [bytes]; the size of the file means that all was received
+  std::uint64_t offset = 0;     ///< for Fetch [bytes]; the size of the file: the whole file was received
 };
 
 struct AnswerMessage {
@@ -185,7 +185,8 @@ struct AnswerMessage {
   std::array<char, 1024> text{};  ///< resulting state, or the reason of a refusal; zero-terminated
 };
 
-/// A piece of a scene's archive. Pieces are sent in order, each answered before the next.
+/// A piece of a scene's archive. Pieces are sent in order, and each piece is answered before the next piece
+/// is sent.
 struct PieceMessage {
   static constexpr std::size_t kMost = 32 * 1024;
   std::array<char, 64> hash{};  ///< hash of the whole archive, zero-terminated
@@ -210,8 +211,8 @@ enum class Reading : std::uint8_t {
   BadKind,
   BadValue,  ///< not finite, out of range, or not a rotation
   WrongSender,
-  Replayed,     ///< its number does not exceed the last number of its kind
-  TooFarAhead,  ///< its number exceeds what the sender can have sent by now; see MessageOrder
+  Replayed,     ///< the message's number does not exceed the last number of this kind of message
+  TooFarAhead,  ///< the message's number exceeds what the sender can have sent by now; see MessageOrder
   // The next results do not count as faults of the sender.
   Early,      ///< a dense state before the first whole one, which is normal after a late join
   Overtaken,  ///< a dense state that arrived after a later whole one
@@ -259,8 +260,9 @@ class MessageReader {
     sender_ = sender;
     forget();
   }
-  /// Returns Good if `message` was filled; otherwise it is unchanged. Reads all forms. A dense state lacks
-  /// some values, for which `message` must hold the previously read state. Allocates for snapshots only.
+  /// Returns Good if `message` was filled; otherwise it is unchanged. Reads messages in all forms. A dense
+  /// state lacks some values, for which `message` must hold the previously read state. Allocates for
+  /// snapshots only.
   template <typename Message>
   Reading read(std::string_view bytes, Message& message) noexcept;
 

@@ -14,7 +14,7 @@ struct Steps {
         middle(1 << (bits - 1U)),
         scale((middle - 1) * 1.41421356237309515) {}
   std::uint64_t mask;
-  double middle;  ///< step that stands for zero; no step is exact for rotations
+  double middle;  ///< step that stands for zero
   double scale;   ///< the three smaller components are at most 1/sqrt(2)
 };
 

@@ -40,10 +40,10 @@ struct RenderOptions : AssembleOptions {
 
 /// Runs the procedure in real time, with the hand in a device node. Waits for a device and then builds the
 /// models that the scene requires. If the device is lost, physics stops until a device has joined again. With
-/// `server`, others may ask for a recording until the run begins. Throws as assemble(), and LoadError if
-/// another process runs the session.
-/// @param file  file of the recording; empty: none. A run in which the device was lost can be replayed up to
-/// the loss only.
+/// `server`, other programs may request a recording until the run begins. Throws as assemble(), and LoadError
+/// if another process runs the session.
+/// @param file  file of the recording; empty: the run is not recorded. A run in which the device was lost can
+/// be replayed up to the loss only.
 VPS_SCENES_API AssembleResult renderNode(Scene& scene, const RenderOptions& options,
                                          const std::string& file = "");
 
@@ -55,9 +55,9 @@ struct DeviceNodeOptions {
   /// True: force returns automatically when the render node is back after a loss. False: a device that is
   /// held by a person is re-armed at the next step; a simulated device always re-arms.
   bool rearms = false;
-  bool stays = false;     ///< true: waits for the next session when one has ended
+  bool stays = false;     ///< true: waits for the next session when a session has ended
   std::string kind = {};  ///< kind of device; empty: as the scene states
-  std::shared_ptr<device::HandleWish> wish = nullptr;  ///< as in AssembleOptions
+  std::shared_ptr<device::HandleWish> wish = nullptr;  ///< as AssembleOptions::wish
   std::function<void()> before_hello =
       nullptr;  ///< called when a session was joined and its run has not begun
 };
@@ -99,19 +99,19 @@ struct SessionForce {
 /// A watcher reads a session and cannot change it. Used by one thread.
 class VPS_SCENES_API SessionWatcher {
  public:
-  /// Joins a session as a watcher. Returns null if there is no such session. Throws LoadError if it cannot be
-  /// watched.
+  /// Joins a session as a watcher. Returns null if there is no such session. Throws LoadError if the session
+  /// cannot be watched.
   static std::unique_ptr<SessionWatcher> join(const std::string& session, const SessionNetwork& network = {});
   ~SessionWatcher();
 
   [[nodiscard]] const Scene& scene() const;
-  /// The newest snapshot; each is returned once.
+  /// The newest snapshot; each snapshot is returned once.
   std::optional<Snapshot> takeSnapshot();
-  /// Time at which the last snapshot was sent, by the monotonic clock of this machine. Over a network it is
-  /// accurate to half a round trip. For about the first 0.3 s, until the clock offset is known, the time of
-  /// this call is returned.
+  /// Time at which the last snapshot was sent, by the monotonic clock of this machine. Over a network the
+  /// time is accurate to half a round trip. For about the first 0.3 s, until the clock offset is known, the
+  /// time of this call is returned.
   [[nodiscard]] std::int64_t snapshotSent_ns() const;
-  /// The next news; each is returned once.
+  /// The next message to the watchers; each message is returned once.
   std::optional<SessionNews> takeNews();
   std::optional<SessionForce> takeForce();
   /// True if the session has ended, or its render node is lost.

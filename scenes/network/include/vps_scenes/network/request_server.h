@@ -44,12 +44,12 @@ class VPS_SCENES_API RequestServer {
   RequestServer(const RequestServer&) = delete;
   RequestServer& operator=(const RequestServer&) = delete;
 
-  /// Becomes true when the run has to end, because another run was requested or the user stops. For
-  /// AssembleOptions::stop.
+  /// Becomes true when the run has to end, because another run was requested or the user stops. Pass the
+  /// result as AssembleOptions::stop.
   [[nodiscard]] const std::atomic<bool>* endsRun() const;
-  /// The scene of the requested run; empty: none was requested. Clears endsRun(), unless the user stops.
+  /// The scene of the requested run; empty: no run was requested. Clears endsRun(), unless the user stops.
   std::optional<Scene> takeNext();
-  /// Waits for the scene of the next run. Empty: the user stops.
+  /// Waits for the scene of the next run. The result is empty if the user stops the program.
   std::optional<Scene> waitForNext();
   /// The file of the next run's recording, which does not exist yet; empty: no recording was requested.
   [[nodiscard]] std::string recording() const;

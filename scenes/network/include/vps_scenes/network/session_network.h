@@ -15,13 +15,13 @@ struct SessionNetwork {
       : interface(std::move(interface)), security(std::move(security)) {}
   SessionNetwork(const char* interface) : interface(interface) {}
 
-  /// True: shared memory of one machine. False: UDP.
+  /// True if the session uses shared memory of one machine instead of a network. False: UDP.
   [[nodiscard]] bool empty() const { return interface.empty(); }
   bool operator==(const SessionNetwork&) const = default;
 
   std::string interface;  ///< "lo" for this machine only, "eth0"; empty: shared memory
   /// Folder with the certificates of this node, made by scenes/make_certificates.sh: nodes authenticate each
-  /// other, and all data is encrypted. Empty: no security, allowed on loopback only, whose users trust each
+  /// other, and all data is encrypted. Empty: no security; allowed on loopback only, where users trust each
   /// other. "none": no security on any interface; everybody who can reach it can read and write the session.
   std::string security;
 };

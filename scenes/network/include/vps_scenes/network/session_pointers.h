@@ -1,5 +1,5 @@
 // Shares the places that watchers point at with the other watchers of a session. The render node and the
-// device node are not involved. part in it.
+// device node are not involved.
 #pragma once
 
 #include <memory>
@@ -32,9 +32,9 @@ class VPS_SCENES_API SessionPointers {
   /// Sets or clears the place that a person of this process points at.
   /// @param person  1 to kMostPersons; other numbers are ignored
   void point(int person, const std::optional<Vec3>& p_W);
-  /// Changes of the pointers of other processes, each once; when a process ends, its pointers are cleared.
-  /// Call it several times a second: it also repeats the pointers of this process, for watchers that join
-  /// later.
+  /// Changes of the pointers of other processes, each change once; when a process ends, its pointers are
+  /// cleared. Call take() several times a second, since take() also repeats the pointers of this process, for
+  /// watchers that join later.
   std::vector<SessionPointer> take();
 
  private:

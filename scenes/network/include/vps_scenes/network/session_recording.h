@@ -16,13 +16,13 @@ struct SessionRecordingOptions {
   std::string session = "default";
   SessionNetwork network;
   std::string file;  ///< local file for the recording
-  std::string name;  ///< name of the file at the render node; empty: that of `file`
+  std::string name;  ///< name of the file at the render node; empty: the name of `file`
   const std::atomic<bool>* stop = nullptr;
-  Say say;  ///< messages for the user; may be empty; called by a thread of its own
+  Say say;  ///< messages for the user; may be empty; called on a separate thread
 };
 
-/// Works in its own thread from the constructor on. A run that waits for its device is recorded. If a run has
-/// begun, it is fetched if it is recorded anyway; otherwise the next run is recorded.
+/// Runs a separate thread from the constructor on. A run that waits for its device is recorded. If a run has
+/// begun and is being recorded, that recording is fetched; otherwise the next run is recorded.
 class VPS_SCENES_API SessionRecording {
  public:
   explicit SessionRecording(SessionRecordingOptions options);
@@ -34,8 +34,8 @@ class VPS_SCENES_API SessionRecording {
   /// Waits until the render node has answered the request, at most `most_s`. Returns the reason of a refusal;
   /// empty: granted.
   std::string waitUntilAsked(double most_s);
-  /// Call it when the run is over: waits until the file has arrived. Returns the reason of a failure; empty:
-  /// the file has arrived.
+  /// Call finish() when the run is over; the call waits until the file has arrived. Returns the reason of a
+  /// failure; empty: the file has arrived.
   std::string finish();
 
  private:

@@ -19,14 +19,14 @@ struct SessionAnswer {
   std::string words;  ///< the reply: the resulting state, or the reason of a refusal
 };
 
-/// All functions wait for the answer. They throw LoadError if there is no such session, if it has another
-/// version, or if no answer comes within 5 s.
+/// All functions wait for the answer. The functions throw LoadError if there is no such session, if it has
+/// another version, or if no answer comes within 5 s.
 class VPS_SCENES_API SessionRequest {
  public:
   explicit SessionRequest(std::string session, SessionNetwork network = {});
 
   [[nodiscard]] SessionAnswer who() const;
-  /// Takes the next part of the procedure. @param part  its name; empty: any
+  /// Takes the next part of the procedure. @param part  name of the part; empty: any part
   [[nodiscard]] SessionAnswer take(const std::string& part = "") const;
   /// Releases the part in hand where it is.
   [[nodiscard]] SessionAnswer release() const;

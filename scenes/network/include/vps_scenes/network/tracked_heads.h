@@ -25,7 +25,7 @@ class VPS_SCENES_API TrackedHeads {
   TrackedHeads& operator=(TrackedHeads&&) noexcept;
 
   /// The display with the current pose of each head: a constant pose as the file states, a recorded pose at
-  /// that time, or the newest pose from the network. A head keeps its last pose if the new pose is behind a
+  /// `time_s`, or the newest pose from the network. A head keeps its last pose if the new pose is behind a
   /// screen or unknown.
   const Display& at(double time_s);
   [[nodiscard]] const Display& display() const;
@@ -34,7 +34,7 @@ class VPS_SCENES_API TrackedHeads {
   void waitForAll(double limit_s);
   /// Whether a head follows a network topic, so that the display changes over time.
   [[nodiscard]] bool isLive() const;
-  /// Messages since the last call, each once: a head that moved behind a screen, or whose poses stopped.
+  /// Messages since the last call about heads that moved behind a screen or whose poses no longer arrive.
   [[nodiscard]] std::vector<std::string> takeNews();
 
  private:
