@@ -17,9 +17,9 @@ namespace vps {
 
 /// A node of a Hierarchy. The left child of an inner node is the next node.
 struct HierarchyNode {
-  std::uint32_t first = 0, end = 0;  ///< its items: this range of the order
-  std::uint32_t right = 0;           ///< its right child; 0 for a leaf
-  std::uint32_t skip = 0;  ///< the node after its subtree: the next one of a walk that leaves it out
+  std::uint32_t first = 0, end = 0;  ///< the node's items: a range of Hierarchy::order
+  std::uint32_t right = 0;           ///< the node's right child; 0 for a leaf
+  std::uint32_t skip = 0;            ///< the node after the subtree, for a search that leaves the subtree out
   [[nodiscard]] bool isLeaf() const noexcept { return right == 0; }
 };
 
@@ -28,16 +28,16 @@ struct HierarchyNode {
 /// - a loop over the nodes in reverse order reaches children before their parents.
 struct Hierarchy {
   std::vector<std::uint32_t> order;  ///< the indices of the items, in the order of the leaves
-  std::vector<HierarchyNode> nodes;  ///< the first is the root; none without items
+  std::vector<HierarchyNode> nodes;  ///< the first node is the root; empty without items
 };
 
 /// Builds a hierarchy from the root down. Cost: O(n log n) if divide() is linear and its parts are balanced.
 /// @param divide  called once for each node, in the order of the nodes, as divide(std::span<std::uint32_t>)
 ///                with the indices of the node's items (for the root in ascending order). divide() reorders
 ///                the indices and returns how many of them, counted from the first, form the left child; 0
-///                makes a leaf. Here a user chooses the size of leaves and the criterion of the order, and
-///                may compute bounds of the node. divideByKey() and divideByPoint() reorder alike with every
-///                standard library.
+///                makes a leaf. With divide() the caller chooses the size of leaves and the criterion of the
+///                order, and may compute bounds of the node. divideByKey() and divideByPoint() give the same
+///                two parts with every standard library.
 template <typename Divide>
 [[nodiscard]] Hierarchy buildHierarchy(std::size_t item_count, Divide divide) {
   Hierarchy tree;
@@ -45,7 +45,7 @@ template <typename Divide>
   std::iota(tree.order.begin(), tree.order.end(), 0U);
   struct Waiting {
     std::uint32_t first, end, parent;
-    bool is_right;  ///< child of the parent
+    bool is_right;  ///< the items form the parent's right child
   };
   std::vector<Waiting> waiting;
   if (item_count > 0) waiting.push_back({0, static_cast<std::uint32_t>(item_count), 0, false});
@@ -67,23 +67,23 @@ template <typename Divide>
 }
 
 /// Copies the links of a hierarchy to nodes that also have data, such as bounds: nodes[n] becomes node n of
-/// the tree. There are as many nodes afterwards as the tree has.
+/// the tree. Resizes `nodes` to the number of the tree's nodes.
 template <typename Node>
 void copyLinks(const Hierarchy& tree, std::vector<Node>& nodes) {
   nodes.resize(tree.nodes.size());
   for (std::size_t n = 0; n < nodes.size(); ++n) static_cast<HierarchyNode&>(nodes[n]) = tree.nodes[n];
 }
 
-/// The axis along which a box is longest; the first of equal ones.
+/// The axis along which a box is longest; the first axis if several sides are equal.
 [[nodiscard]] inline int longestAxis(const Box& box) {
   int axis = 0;
   box.size().maxCoeff(&axis);
   return axis;
 }
 
-/// Reorders items so that the first `left_count` are those with the least key(index). Of equal keys the lower
-/// index is less, so that both parts, though not the order within them, are the same with every standard
-/// library. O(n).
+/// Reorders items so that the first `left_count` are those with the least key(index). Of two items with equal
+/// keys the one with the lower index is less, so that both parts, though not the order within them, are the
+/// same with every standard library. O(n).
 template <typename Key>
 void divideByKey(std::span<std::uint32_t> items, std::size_t left_count, Key key) {
   std::nth_element(items.begin(), items.begin() + static_cast<std::ptrdiff_t>(left_count), items.end(),
@@ -93,8 +93,8 @@ void divideByKey(std::span<std::uint32_t> items, std::size_t left_count, Key key
                    });
 }
 
-/// As divideByKey(), by the coordinate of points[index] along the longest side of the box around the items'
-/// points.
+/// Calls divideByKey() with the coordinate of points[index] along the longest side of the box around the
+/// items' points.
 inline void divideByPoint(std::span<std::uint32_t> items, std::size_t left_count,
                           std::span<const Vec3> points) {
   Box box;
@@ -108,20 +108,20 @@ inline void divideByPoint(std::span<std::uint32_t> items, std::size_t left_count
 class VPS_API BoxTree {
  public:
   struct Node : HierarchyNode {
-    Box box;  ///< around the boxes of its items
+    Box box;  ///< the box around the boxes of the node's items
   };
-  /// Along which axis a node is divided.
+  /// The axis along which a node is divided.
   enum class Axis {
-    OfCenters,  ///< along the longest side of the box around the centres of its items' boxes
-    OfBoxes,    ///< along the longest side of the box around its items' boxes
+    OfCenters,  ///< along the longest side of the box around the centres of the items' boxes
+    OfBoxes,    ///< along the longest side of the box around the items' boxes
   };
 
   /// Builds the same tree with every standard library. O(n log n).
-  /// @param most_in_leaf  a node with more boxes than this has children: fewer where a test of an item is
-  /// costly
+  /// @param most_in_leaf  a node with more boxes than this is divided; choose a small value if the test of an
+  /// item is costly
   explicit BoxTree(std::span<const Box> boxes, std::uint32_t most_in_leaf = 4, Axis axis = Axis::OfCenters);
 
-  /// In depth-first order, as Hierarchy::nodes; empty without boxes.
+  /// The nodes in depth-first order, as in Hierarchy::nodes; empty without boxes.
   [[nodiscard]] const std::vector<Node>& nodes() const noexcept { return nodes_; }
   /// Indices of the boxes that the tree was built from.
   [[nodiscard]] const std::vector<std::uint32_t>& order() const noexcept { return order_; }
@@ -144,7 +144,7 @@ class VPS_API BoxTree {
 
   /// Calls visit(index) for each of the boxes that shares a point with `box`, in the order of the leaves,
   /// until visit() returns false. O(log n + visited) where few boxes overlap.
-  /// @param boxes  from which the tree was built
+  /// @param boxes  the boxes from which the tree was built
   /// @return whether visit() never returned false
   template <typename Visit>
   bool forEachOverlap(std::span<const Box> boxes, const Box& box, Visit visit) const {
@@ -171,9 +171,9 @@ class VPS_API BoxTree {
 };
 
 /// Calls visit(index of a box of a, of b) for all pairs of boxes in those pairs of leaves for which
-/// bound(box of a, box of b, both in one frame) is less than limit(), which may fall on the way; the pair of
-/// nodes with the smaller bound first.
-/// @param place  gives a box of a node of b in the frame of a
+/// bound(box of a, box of b, both in one frame) is less than limit(), which may decrease during the search;
+/// visits the pair of nodes with the smaller bound first.
+/// @param place  transforms a box of a node of b to the frame of a
 template <typename Place, typename Bound, typename Limit, typename Visit>
 void visitPairs(const BoxTree& a, const BoxTree& b, Place place, Bound bound, Limit limit, Visit visit) {
   struct Waiting {

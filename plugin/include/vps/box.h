@@ -19,7 +19,7 @@ struct Box {
   [[nodiscard]] Vec3 size() const { return max - min; }
 };
 
-/// True if the boxes share a point. An empty box shares none.
+/// True if the boxes share a point. An empty box shares no point with any box.
 [[nodiscard]] inline bool overlap(const Box& a, const Box& b) noexcept {
   return !a.isEmpty() && !b.isEmpty() && (a.min.array() <= b.max.array()).all() &&
          (b.min.array() <= a.max.array()).all();
@@ -41,8 +41,8 @@ struct Box {
   out.max.array() += by_m;
   return out;
 }
-/// Squared distance [m^2] of the boxes' nearest points; 0 where they overlap, infinite if a new Box, which is
-/// empty, is one of them.
+/// Squared distance [m^2] of the boxes' nearest points; 0 where they overlap, infinite if one of the boxes is
+/// a new Box, which is empty.
 [[nodiscard]] inline double distance2(const Box& a, const Box& b) noexcept {
   return (a.min - b.max).cwiseMax(b.min - a.max).cwiseMax(0.0).squaredNorm();
 }

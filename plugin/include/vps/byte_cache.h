@@ -16,10 +16,10 @@ namespace vps {
 
 class CacheFolder;
 
-/// A cache of byte strings that can be computed again. Each is kept in a file whose name is the 128-bit hash
-/// (XXH3) of its inputs. Damage, sharing between programs, the size limit and read-only disks are handled as
-/// in VoxMapCache. VoxMapCache and ByteCache may use one folder; the limit then applies to the files of both
-/// together.
+/// A cache of byte strings that can be computed again. Each byte string is kept in a file whose name is the
+/// 128-bit hash (XXH3) of its inputs. Damage, sharing between programs, the size limit and read-only disks
+/// are handled as in VoxMapCache. VoxMapCache and ByteCache may use one folder; the limit then applies to the
+/// files of both together.
 class VPS_API ByteCache {
  public:
   using Warn = std::function<void(const std::string&)>;
@@ -30,9 +30,9 @@ class VPS_API ByteCache {
   /// @param made_from  everything that determines the bytes, and the version of the program that makes them
   /// @return nothing if the cache has no such file or, after a warning, if the file is damaged
   [[nodiscard]] std::optional<std::string> find(std::string_view made_from) const;
-  /// Writes the file, replacing an older one. If that fails, a warning is given once.
+  /// Writes the file, replacing an older one. If the file cannot be written, a warning is given once.
   void keep(std::string_view made_from, std::string_view bytes) const;
-  /// Path of the file for these inputs. The file need not exist.
+  /// Path of the file for the inputs `made_from`. The file need not exist.
   [[nodiscard]] std::filesystem::path fileOf(std::string_view made_from) const;
 
  private:

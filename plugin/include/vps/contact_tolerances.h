@@ -2,12 +2,12 @@
 // Tolerances of contact: of the queries of this library, and of the narrow phase and the solver for Bullet.
 //
 // This file holds each number that decides whether two lengths, directions or places are equal, whether
-// bodies touch, when an iteration has converged, and how much work a step may do at most. Other numbers stay
-// where they are used: flags, tags, sentinels and indices; sizes of tables, tiles and cells, lane counts and
-// stacks; bounds that follow from a number format; values that must agree with Bullet's; material values;
-// promises of a public class (FeatureMotion::kRest_m, RepresentativePoints::kSame_m); and numbers that affect
-// only run time, such as the width of a tube, the shape of a tree, or when sweeps give way to Newton's
-// method.
+// bodies touch, when an iteration has converged, and how much work a step may do at most. Numbers of other
+// kinds stay where they are used: flags, tags, sentinels and indices; sizes of tables, tiles and cells, lane
+// counts and stacks; bounds that follow from a number format; values that must agree with Bullet's; material
+// values; promises of a public class (FeatureMotion::kRest_m, RepresentativePoints::kSame_m); and numbers
+// that affect only run time, such as the width of a tube, the shape of a tree, or when sweeps give way to
+// Newton's method.
 //
 // A name that ends in "Share" is a fraction; its comment starts with the quantity that it is a fraction of.
 // Angles of faces and edges follow PointShellSettings::edge_angle_rad's default.
@@ -16,7 +16,7 @@
 // of vps_families, or a test of the bridge, the queries or the scenes. Replay is the test
 // Replay.TheCommittedRecordingRunsAgainBitForBit, which pins the bits of one recorded scene and no bound.
 // "No test pins it" means: the families B_mass_ratio_turns, B_corners, B_fast_corners, B_heights and I_flush,
-// that recording, and the tests of crossings, edges and cones passed with the value doubled (an angle:
+// the test Replay, and the tests of crossings, edges and cones passed with the value doubled (an angle:
 // doubled and halved); other tests were not tried.
 #pragma once
 
@@ -24,18 +24,17 @@
 
 namespace vps {
 
-// --- Rounding: below these, nothing is known ---------------------------------------------------------------
+// --- Rounding: smaller differences are rounding errors -----------------------------------------------------
 
 /// Rounding error of a length: points that are nearer to each other define no direction, and two measurements
-/// of one distance differ by less. The solver's remaining error is smaller [m].
-/// Test: I_flush.
+/// of one distance differ by less. The solver's remaining error is smaller than this [m]. Test: I_flush.
 inline constexpr double kRounding_m = 1e-9;
-/// Fraction of a length, of a momentum, or of the fastest approach velocity of an impact: rounding error.
-/// Test: DistanceQuery.IsTheLeastBetweenConvexBodies, at forty times.
+/// Rounding error as a fraction of a length, of a momentum, or of the fastest approach velocity of an impact.
+/// Test: DistanceQuery.IsTheLeastBetweenConvexBodies fails at forty times the value.
 inline constexpr double kRoundingShare = 1e-9;
-/// Velocity error to which a row counts as held, or as stopped by an impact. Larger than rounding, so that a
-/// row that is held already keeps its bits [m/s]; for a joint's angle [rad/s].
-/// Assumed; no test pins it.
+/// Velocity error below which a row of the solver counts as held, or as stopped by an impact. The value is
+/// larger than rounding errors, so that a row that is held already keeps its bits [m/s]; for a joint's angle
+/// [rad/s]. Assumed; no test pins it.
 inline constexpr double kRoundingSpeed_m_s = 1e-9;
 /// Fraction of a sum of many terms (the inverse mass of a row that depends on others, the energy of an
 /// impact) that is rounding error. Assumed; no test pins it.
@@ -43,9 +42,8 @@ inline constexpr double kSumRounding = 1e-12;
 /// A sum or difference of unit vectors shorter than this has no direction; a smaller sine counts as zero.
 /// Assumed; no test pins it.
 inline constexpr double kNoDirection = 1e-6;
-/// Sine of the angle between facets below which they lie in one plane. Above the rounding error of
-/// single-precision files.
-/// Assumed; no test pins it.
+/// Sine of the angle between facets below which they lie in one plane. The value is above the rounding error
+/// of files in single precision. Assumed; no test pins it.
 inline constexpr double kSinFlat = 1e-4;
 
 // --- Angles ------------------------------------------------------------------------------------------------
@@ -55,26 +53,24 @@ inline constexpr double kSinFlat = 1e-4;
 /// Test: Replay.
 inline constexpr double kCosSameFace = 0.94;
 /// 8 degrees, the angle of a polygon of 45 corners: neighbouring facets or segments at a smaller angle, but
-/// not in one plane, approximate a curved surface or edge. Assumed. A coarser polygon is taken as it is: with
-/// normals of the curve, chain links of 10 corners gained energy, since their gap is that of the segments.
-/// Test: FeatureSet.SidesThatTurnByLessThanEightDegreesAreACurve.
+/// not in one plane, approximate a curved surface or edge. Assumed. A coarser polygon counts as a polygon:
+/// with normals of the curve, chain links of 10 corners gained energy, since their gap is measured between
+/// the segments. Test: FeatureSet.SidesThatTurnByLessThanEightDegreesAreACurve.
 inline constexpr double kCosCurved = 0.9903;
-/// 0.8 degrees: planes at a smaller angle belong to one contact. Smaller than the angle between neighbouring
-/// facets of a cylinder of 400.
-/// Assumed; no test pins it.
+/// 0.8 degrees: planes at a smaller angle belong to one contact. The angle is smaller than that between
+/// neighbouring facets of a cylinder of 400 facets. Assumed; no test pins it.
 inline constexpr double kCosSamePlane = 0.9999;
 /// 45 degrees: the limit between "along" and "across" a direction.
 /// Assumed; no test pins it.
 inline constexpr double kCosAlike = 0.7;
-/// Sine of the angle between two edges below which they count as parallel and define no common plane. Far
-/// above rounding, far below the turns of curved edges.
-/// Assumed; no test pins it.
+/// Sine of the angle between two edges below which they count as parallel and define no common plane. The
+/// value is far above rounding errors and far below the angles between segments of curved edges. Assumed; no
+/// test pins it.
 inline constexpr double kSinParallel = 1e-3;
 /// Sine of 5 degrees: a direction that leaves an edge or a face at a smaller angle runs along it, and a plane
-/// that leans into a face by less still lies on the face. So an edge that passes from one edge of a fine
-/// polygon to the next stays in contact. Where two lines cross at a smaller angle, the place of the crossing
-/// is mostly rounding error.
-/// Assumed; no test pins it.
+/// that leans into a face by less still lies on the face. Therefore an edge that slides from one edge of a
+/// fine polygon to the next stays in contact. Where two lines cross at a smaller angle, the place of the
+/// crossing is mostly rounding error. Assumed; no test pins it.
 inline constexpr double kSinLean = 0.087;
 /// Sine of 11 degrees: a face at a more grazing angle to a direction does not face it, as the side of a box
 /// does not face the table's top that the box stands on. The mean normal of a corner faces all of its faces.
@@ -91,14 +87,13 @@ inline constexpr double kTanPastEnd = 0.18;
 
 // --- Lengths of contact ------------------------------------------------------------------------------------
 
-/// Two places nearer to each other than this are the same. It is a twentieth of the default contact margin,
-/// far above the noise of a part at rest (1 nm) and below any depth that matters. A contact keeps its plane
-/// for a smaller motion, and a candidate that was a contact before is preferred to one that is nearer by
-/// less [m].
-/// Test: I_flush.
+/// Two places nearer to each other than this are the same. The value is a twentieth of the default contact
+/// margin, far above the noise of a part at rest (1 nm) and below any depth that matters. A contact keeps its
+/// plane while it moves by less than this, and a candidate that was a contact before is preferred to a
+/// candidate that is nearer by less than this [m]. Test: I_flush.
 inline constexpr double kSamePlace_m = 1e-6;
-/// Gaps that differ by less are the same: the difference is worth no query and changes no contact's role [m].
-/// Test: Replay.
+/// Gaps that differ by less than this are the same: the difference is worth no query and changes no contact's
+/// role [m]. Test: Replay.
 inline constexpr double kSameGap_m = 1e-7;
 /// Upper bound of the seam between parts that are mounted on each other [m].
 /// Assumed; no test pins it.
@@ -106,13 +101,13 @@ inline constexpr double kSeam_m = 10e-6;
 /// Overlaps below this share of the contact margin are left to the solver's push: 1 um of 20 um, far above
 /// the solver's remaining error. Test: Replay.
 inline constexpr double kToleratedShare = 0.05;
-/// An older overlap may grow in a step by this share of the tolerated overlap, because it is rounded.
-/// Assumed; no test pins it.
+/// An older overlap may grow in a step by this share of the tolerated overlap, because of rounding. Assumed;
+/// no test pins it.
 inline constexpr double kGrowthShare = 0.1;
-/// A step whose rounds did not converge continues as long as no point is deeper than this share of the
-/// contact margin. With the growth of one step the limit is 10 um of 20, the depth that an impact may leave;
-/// with a smaller value steps would end early because of overlaps that the push removes. Assumed; no test
-/// pins it.
+/// A step that still has overlaps after the last round of checks continues as long as no point is deeper than
+/// this share of the contact margin. With the growth of one step the limit is 10 um at a margin of 20 um, the
+/// depth that an impact may leave; with a smaller value steps would end early because of overlaps that the
+/// push removes. Assumed; no test pins it.
 inline constexpr double kUnsolvedShare = 0.5 / (1 + kGrowthShare);
 /// At the end of a step a contact that carries load has at most this share of the contact margin as its gap.
 /// The value is half of the gap at which edges rest; with a tenth of that gap, some polygons roll better and
@@ -120,8 +115,8 @@ inline constexpr double kUnsolvedShare = 0.5 / (1 + kGrowthShare);
 inline constexpr double kApartShare = 0.0025;
 /// A vertex that stands out from the middle of its facet by less than this share of the contact margin is no
 /// feature. At a margin of 20 um, facets of 1 mm on a ball of 14 mm have vertices 14 um high, which are
-/// features; facets of 0.2 mm on a ball of 5 mm have vertices 1 um high, which are not. The families C_balls
-/// and G_impact need it. Test: C_balls.
+/// features; facets of 0.2 mm on a ball of 5 mm have vertices 1 um high, which are not. The test families
+/// C_balls and G_impact need this limit. Test: C_balls.
 inline constexpr double kFacetCornerShare = 0.25;
 /// Greatest overlap of two edges that counts as a crossing, as a share of the query range and of the cutoff.
 /// At greater depth shell points lie inside the other part and carry the contact. Assumed; no test pins it.
@@ -130,13 +125,12 @@ inline constexpr double kEdgeDepthShare = 0.25;
 /// approach. Test: I_flush.
 inline constexpr double kHeldShare = 0.2;
 /// Error of the field's distance at sharp edges, in voxels. Measured: 0.40 at a point of an edge that lies
-/// beside another edge.
-/// Test: Replay.
+/// next to another edge. Test: Replay.
 inline constexpr double kEdgeError_voxels = 0.45;
 /// Error of the field's distance away from edges, in voxels.
 /// Test: I_flush.
 inline constexpr double kFaceError_voxels = 0.05;
-/// Points that are farther than the nearest one by at most this share of the shell's spacing are reported
+/// Points that are farther than the nearest point by at most this share of the shell's spacing are reported
 /// too, such as the points of a face that lies opposite to a face. Assumed; no test pins it.
 inline constexpr double kBeyondShare = 0.1;
 /// Accuracy to which the nearest point of a curved face is found, as a share of the shell's spacing; normals
@@ -164,34 +158,32 @@ inline constexpr double kSettledShare = 1e-6;
 /// Allowed error of the solver, as a share of the fastest speed in the island: a micrometre on a path of a
 /// decimetre. Test: I_flush.
 inline constexpr double kSpeedErrorShare = 1e-5;
-/// A tenth, used in three tests of progress. A contact's law is solved to this share of the residual (solved
-/// only to the whole residual, a nut turned by 2 %, since the error has the same sign from step to step). A
-/// line search ends at this share of the slope. A round must reduce the error to this share of the last
-/// round's error, or the contacts become stiffer; after a round that did not converge they become softer by
-/// this factor [Bertsekas 1982, ch. 2]. Test: B_mass_ratio_turns.
+/// A tenth, used in three tests of progress. A contact's law is solved to this share of the residual (when it
+/// was solved only to the whole residual, a nut turned by 2 %, since the error has the same sign from step to
+/// step). A line search ends at this share of the slope. A round (outer iteration) must reduce the error to
+/// this share of the last round's error, or the contacts are made stiffer; after a round that did not
+/// converge the contacts are made softer by this factor [Bertsekas 1982, ch. 2]. Test: B_mass_ratio_turns.
 inline constexpr double kAccuracyShare = 0.1;
-/// Error to which the first round is solved [m/s].
-/// Test: Replay.
+/// Error to which the first round (outer iteration) is solved [m/s]. Test: Replay.
 inline constexpr double kFirstError_m_s = 1e-2;
-/// A contact's compliance in the first round, as a share of a free body's. A stiff contact leaves little
-/// error in a round, but Newton's method then needs many steps from a distant start; with a compliant contact
-/// it is the reverse.
-/// Test: B_mass_ratio_turns.
+/// A contact's compliance in the first round (outer iteration), as a share of a free body's compliance. A
+/// stiff contact leaves little error in a round, but Newton's method then needs many steps from a distant
+/// start; a compliant contact leaves more error and needs fewer steps. Test: B_mass_ratio_turns.
 inline constexpr double kFirstCompliance = 0.1;
-/// A contact's least compliance, as a share of a free body's.
-/// Test: Replay and B_mass_ratio_turns, at ten times.
+/// A contact's least compliance, as a share of a free body's compliance. Test: Replay and B_mass_ratio_turns
+/// fail at ten times the value.
 inline constexpr double kLeastCompliance = 1e-7;
-/// Factor, from one round to the next, of the contacts' compliance and of the error to which the round is
-/// solved. With a tenth, a third of the problems of a pile have a round that does not converge; with 0.8
-/// there are too many rounds. Test: ContactNewton.SettlesTheFrictionOfAHeapInFewSteps.
+/// Factor, from one round (outer iteration) to the next, of the contacts' compliance and of the error to
+/// which the round is solved. With a factor of 0.1, a third of the problems of a pile have a round that does
+/// not converge; with 0.8 there are too many rounds. Test: ContactNewton.SettlesTheFrictionOfAHeapInFewSteps.
 inline constexpr double kRoundShare = 0.5;
 /// Contacts whose loads are equal to within this share of the face's load are left unchanged, so that a body
 /// at rest needs no new solution in each step. Test: EvenPressure.LeavesWhatIsEvenAndWhatIsHeldInOneWay, and
 /// piles at rest.
 inline constexpr double kEvenShare = 0.05;
 /// Share of a face's load that evening out the pressure may leave to the solver. Contacts of a thread, whose
-/// normals all lean alike, carry some moments only by great impulses against each other. Test:
-/// EvenPressure.KeepsForceAndMomentOfAnyLoadAndNothingPulls, M_torque.
+/// normals are all inclined in the same way, carry some moments only by great impulses against each other.
+/// Test: EvenPressure.KeepsForceAndMomentOfAnyLoadAndNothingPulls, M_torque.
 inline constexpr double kUnspreadShare = 1e-4;
 /// Stiffness of a joint relative to a free body, and relative mass of a body in the directions in which it is
 /// held. A joint is therefore a spring that misses its target by a millionth. Joints have no multipliers,
@@ -200,39 +192,38 @@ inline constexpr double kRigidRatio = 1e6;
 /// Factor of stiffness by which the push that separates overlapping bodies is softer.
 /// Test: I_flush.
 inline constexpr double kPushSoftness = 0.1;
-/// An approach slower than this share of the fastest one is stopped without an impact of its own. Contacts of
-/// flush faces that rest on each other would otherwise be reflected or not depending on the sign of their
-/// rounding error, and the bodies would turn. The rule costs at most the square of this in energy.
-/// Assumed; no test pins it.
+/// An approach slower than this share of the fastest approach is stopped without an impact of its own.
+/// Contacts of flush faces that rest on each other would otherwise be reflected or not depending on the sign
+/// of their rounding error, and the bodies would turn. The rule changes the energy by at most the square of
+/// this share. Assumed; no test pins it.
 inline constexpr double kSlowApproachShare = 1e-2;
 
 // --- Budgets -----------------------------------------------------------------------------------------------
 
-/// Rounds in which a check corrects a step, or halvings of the step; most steps need two or three.
-/// Test: B_mass_ratio_turns.
+/// Greatest number of rounds in which a check corrects a step, or of halvings of the step; most steps need
+/// two or three. Test: B_mass_ratio_turns.
 inline constexpr int kMostRounds = 8;
-/// How often a contact's place, or its row, is computed again; most need one or two.
-/// Test: Replay.
+/// Greatest number of times that a contact's place, or its row, is computed again; most contacts need one or
+/// two. Test: Replay.
 inline constexpr int kMostRetakes = 5;
-/// Limit of iterations that converge after a few where they converge at all, and number of Newton steps that
-/// are always allowed: if these are cut short, each step is solved again for the contacts that it misses.
-/// Test: Replay.
+/// Limit of iterations that converge after a few steps where they converge at all, and number of Newton steps
+/// that are always allowed: with fewer, each step of the simulation is solved again for the contacts that its
+/// solution misses. Test: Replay.
 inline constexpr int kMostIterations = 60;
-/// Sweeps over the friction of an impact. They converge slowly where flush faces have dozens of contacts.
-/// Assumed; no test pins it.
+/// Greatest number of sweeps over the friction of an impact. The sweeps converge slowly where flush faces
+/// have dozens of contacts. Assumed; no test pins it.
 inline constexpr int kMostImpactSweeps = 400;
-/// Places that are tested along one path or one search direction.
-/// Test: Replay.
+/// Greatest number of places that are tested along one path or one search direction. Test: Replay.
 inline constexpr int kMostPlaces = 20;
-/// Contacts of one kind that one check adds to a pair. Six hold a body; the next check adds more.
-/// Test: Replay.
+/// Greatest number of contacts of one kind that one check adds to a pair. Six contacts hold a body; the next
+/// check adds more contacts. Test: Replay.
 inline constexpr std::size_t kMostAdded = 8;
 /// Segments of the path of one step, each as long as the range of a query: 0.5 m at a voxel of 0.25 mm.
 /// Assumed; no test pins it.
 inline constexpr double kMostStretches = 1000;
 /// Products of rows in one impact, about 0.1 s of work. A body between two others of R times its mass takes
-/// pi sqrt(R / 2) impacts; between flush faces each takes about 300 products.
-/// Assumed; no test pins it.
+/// pi sqrt(R / 2) impacts; between flush faces each impact takes about 300 products. Assumed; no test pins
+/// it.
 inline constexpr std::size_t kMostImpactWork = 10'000'000;
 
 }  // namespace vps

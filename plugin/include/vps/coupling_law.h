@@ -29,13 +29,15 @@ struct CouplingState {
 };
 
 /// Wrench on the part about its grasp point, in W: k times the pose error plus b times the velocity error,
-/// springs limited. The proxy gets the opposite. Zero if anything is not finite. Never throws or allocates.
-/// Source: Colgate, Stanley and Brown 1995 (virtual coupling); rotation error as a rotation vector.
+/// with the springs' forces limited. The opposite wrench acts on the proxy. The wrench is zero if any input
+/// is not finite. Never throws or allocates. Source: Colgate, Stanley and Brown 1995 (virtual coupling);
+/// rotation error as a rotation vector.
 VPS_API Wrench couplingWrench(const CouplingGains& gains, const CouplingState& proxy,
                               const CouplingState& part) noexcept;
 
 /// Energy stored in the coupling's springs [J]. Beyond a spring's limit its force is constant, so the energy
-/// grows linearly there. Takes both states as coupled. Never throws or allocates.
+/// grows linearly there. The member is_coupled of both states is ignored: the coupling counts as active.
+/// Never throws or allocates.
 VPS_API double couplingEnergy_J(const CouplingGains& gains, const CouplingState& proxy,
                                 const CouplingState& part) noexcept;
 

@@ -2,7 +2,8 @@
 // The convex sharp edges of parts, and the crossings between the edges of two parts.
 //
 // Two parts touch where a point meets a face, or where an edge crosses an edge. Pointshells do not sample
-// crossings of edges: the nearest points on both edges may be half their spacing away from the crossing.
+// crossings of edges: the nearest points on both edges may be half the points' spacing away from the
+// crossing.
 #pragma once
 
 #include <cstdint>
@@ -15,14 +16,15 @@
 
 namespace vps {
 
-/// A straight piece of an edge between two faces of a part, in the frame of its set.
+/// A straight piece of an edge between two faces of a part, in the frame of its EdgeSet.
 struct EdgeSegment {
   Vec3 from = Vec3::Zero(), to = Vec3::Zero();
   Vec3 into[2] = {Vec3::Zero(), Vec3::Zero()};  ///< unit, across the edge into each face
   Vec3 outward = Vec3::Zero();                  ///< mean of the faces' outward normals, unit
   std::uint16_t owner = 0;                      ///< index of the part
-  bool ends[2] = {true, true};  ///< at from, at to: false where the edge continues in another segment
-  /// True where the edge continues in a segment that turns by less than 8 degrees: both approximate a curve.
+  bool ends[2] = {true, true};  ///< at `from`, at `to`: false where the edge continues in another segment
+  /// True where the edge continues in a segment that turns by less than 8 degrees: both segments approximate
+  /// a curve.
   bool is_curved[2] = {false, false};
 
   /// Outward unit normal of the face beside the segment; not defined for a segment without length.
@@ -49,7 +51,7 @@ class VPS_API EdgeSet {
   /// O(n log n).
   explicit EdgeSet(std::vector<EdgeSegment> segments);
   [[nodiscard]] const std::vector<EdgeSegment>& segments() const noexcept { return segments_; }
-  [[nodiscard]] const EdgeTree& tree() const noexcept { return tree_; }  ///< of the segments
+  [[nodiscard]] const EdgeTree& tree() const noexcept { return tree_; }  ///< the tree of the segments
 
  private:
   std::vector<EdgeSegment> segments_;
@@ -60,7 +62,7 @@ class VPS_API EdgeSet {
 /// of the plane along both edges. The contact force is normal to that plane.
 struct EdgeCrossing {
   std::uint32_t edge[2] = {0, 0};
-  Vec3 p[2] = {Vec3::Zero(), Vec3::Zero()};  ///< the point on each, in the frame of set 0
+  Vec3 p[2] = {Vec3::Zero(), Vec3::Zero()};  ///< the point on each edge, in the frame of set 0
   Vec3 n = Vec3::Zero();                     ///< across both edges, from set 1 to set 0, unit
   /// n (p[0] - p[1]); negative where the parts overlap. While the gap is open, each point may lie past its
   /// edge's end by a tenth of the gap (0.18 of it where the edge continues); the distance there is up to 2 %
@@ -68,11 +70,11 @@ struct EdgeCrossing {
   double gap_m = 0;
 };
 
-/// Which crossings are looked for.
+/// The limits of a search for crossings.
 struct CrossingRange {
   double cutoff_m = 0;  ///< greatest gap, in addition to the approach of the edges in the step
   double depth_m = 0;   ///< greatest overlap
-  Pose X_01_end;        ///< set 1 in set 0 after the step
+  Pose X_01_end;        ///< pose of set 1 in set 0 after the step
 };
 
 /// The pairs of edges that come near each other, kept while two parts move as expected.
@@ -98,7 +100,7 @@ class VPS_API CrossingMemory {
   void search(const EdgeSet& edges0, const EdgeSet& edges1, double reach_m);
 
   std::vector<Pair> near_;
-  std::unique_ptr<MotionTube> tube_;  // of the search
+  std::unique_ptr<MotionTube> tube_;  // the tube of the last search
   double reach_m_ = 0;
   bool is_valid_ = false;
 };

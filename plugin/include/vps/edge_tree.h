@@ -25,7 +25,8 @@ class VPS_API EdgeTree {
     double radius_m = 0;
     Vec3 from = Vec3::Zero(), to = Vec3::Zero();  ///< the node's edges lie within width_m of this line
     double width_m = 0;
-    Vec3 along = Vec3::Zero();  ///< unit, either way: each edge of the node is within spread_rad of it
+    /// Unit, of either sign: each edge of the node is within spread_rad of this direction.
+    Vec3 along = Vec3::Zero();
     double spread_rad = 0;
   };
 
@@ -33,7 +34,8 @@ class VPS_API EdgeTree {
   /// Every edge must have a length above zero. O(n log n).
   explicit EdgeTree(std::vector<Line> lines);
   [[nodiscard]] const std::vector<Line>& lines() const noexcept { return lines_; }
-  /// In depth-first order, as Hierarchy::nodes; a leaf has one edge. Empty without edges.
+  /// The nodes in depth-first order, as in Hierarchy::nodes; a leaf has one edge. Without edges there are no
+  /// nodes.
   [[nodiscard]] const std::vector<Node>& nodes() const noexcept { return nodes_; }
   /// The children of an inner node of this tree.
   [[nodiscard]] std::array<const Node*, 2> children(const Node& node) const noexcept {
@@ -63,7 +65,7 @@ class VPS_API EdgeTree {
     Vec3 center;
     double radius_m;
     std::uint32_t skip;  ///< number of nodes from this one to HierarchyNode::skip
-    std::uint32_t edge;  ///< of a leaf; kNoEdge for an inner node
+    std::uint32_t edge;  ///< the edge of a leaf; kNoEdge for an inner node
   };
   /// Returns the same as sqrt(distance2) > limit, to the bit. Rounding changes squares by less than 1e-15 of
   /// them, so only values that are nearly equal need the root.
@@ -78,8 +80,8 @@ class VPS_API EdgeTree {
 
   std::vector<Line> lines_;
   std::vector<Node> nodes_;
-  std::vector<std::uint32_t> order_;  // of the edges, by leaf
-  std::vector<Ball> balls_;           // of the nodes
+  std::vector<std::uint32_t> order_;  // indices of the edges, by leaf
+  std::vector<Ball> balls_;           // the balls of the nodes
 };
 
 }  // namespace vps

@@ -42,7 +42,7 @@ enum class Status {
   BadPose,     ///< a pose or velocity is not finite; the answer is zero
   Truncated,   ///< a buffer is full; the answer is valid but incomplete, and a counter says by how much
   BeyondBand,  ///< everything is farther away than the narrow band; distances are bounds
-  Fault,       ///< the device or peer failed; zero wrench until re-armed
+  Fault,       ///< the device or peer failed; the wrench is zero until the device is re-armed
   Singular,    ///< a mechanism is in a singular position, where no answer exists; the answer is zero
 };
 
@@ -64,8 +64,8 @@ inline const char* toText(Status status) {
   return "unknown";
 }
 
-/// Called from time to time with the name of the current work and the share done, 0 to 1. May be empty. Never
-/// called from the haptic loop.
+/// Called from time to time with the name of the current work and the share done, 0 to 1. The function may be
+/// empty. Never called from the haptic loop.
 using Progress = std::function<void(std::string_view doing, double share)>;
 
 }  // namespace vps

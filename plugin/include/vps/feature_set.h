@@ -54,15 +54,15 @@ class VPS_API FeatureSet {
   /// True if the facet approximates a curved surface: it is one of three or more facets in a row that turn by
   /// less than 8 degrees each.
   [[nodiscard]] bool isCurved(std::uint32_t facet) const { return (facet_flags_[facet] & kCurved) != 0; }
-  /// As above, for a triangle of a mesh; meshes are numbered in the order in which they were added. False for
-  /// triangles without area.
+  /// isCurved() for a triangle of a mesh; meshes are numbered in the order in which they were added. False
+  /// for triangles without area.
   [[nodiscard]] bool isCurved(std::size_t mesh, std::uint32_t triangle) const {
     const std::uint32_t facet = facet_of_[first_triangle_[mesh] + triangle];
     return facet != kNone && isCurved(facet);
   }
   static constexpr std::uint32_t kNone = ~0U;
-  /// The facets across the sides of a facet; side k runs from corner k to the next. kNone if a side has no
-  /// neighbour or more than one.
+  /// The facets across the sides of a facet; side k runs from corner k to the next corner. kNone if a side
+  /// has no neighbour or more than one.
   [[nodiscard]] const std::array<std::uint32_t, 3>& neighbours(std::uint32_t facet) const {
     return neighbours_[facet];
   }
@@ -80,14 +80,14 @@ class VPS_API FeatureSet {
   [[nodiscard]] std::span<const Vec3> raysAt(std::uint32_t corner) const {
     return std::span(rays_).subspan(first_ray_[corner], first_ray_[corner + 1] - first_ray_[corner]);
   }
-  /// True if the surface around the corner at a vertex lies behind the plane through it with this normal, to
-  /// within a slope of a thousandth. O(log n).
+  /// True if the surface around the corner at a vertex lies behind the plane through the vertex with normal
+  /// n, to within a slope of a thousandth. O(log n).
   /// @param n  unit, away from the part
   [[nodiscard]] bool isOutermostAt(std::uint32_t vertex, const Vec3& n) const;
   [[nodiscard]] const Box& box() const { return box_; }
   [[nodiscard]] double radius_m() const { return 0.5 * box_.size().norm(); }
 
-  /// For searches of FeatureMotion.
+  /// The tree of the edges, for searches of FeatureMotion.
   [[nodiscard]] const EdgeTree& edgeTree() const;
   [[nodiscard]] const CornerTree& cornerTree() const;
   [[nodiscard]] const FacetTree& facetTree() const;
@@ -103,8 +103,8 @@ class VPS_API FeatureSet {
   std::vector<std::uint8_t> facet_flags_;
   std::vector<std::array<std::uint32_t, 3>> neighbours_;
   std::vector<float> sagitta_m_;
-  std::vector<std::uint32_t> facet_of_;      // of the triangles of all meshes
-  std::vector<std::size_t> first_triangle_;  // of each mesh
+  std::vector<std::uint32_t> facet_of_;      // the facet of each triangle of all meshes
+  std::vector<std::size_t> first_triangle_;  // the first triangle of each mesh
   std::vector<FeatureEdge> edges_;
   std::vector<std::uint32_t> corners_;
   std::vector<std::uint32_t> edges_at_, first_edge_;

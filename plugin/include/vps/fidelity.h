@@ -9,7 +9,7 @@
 
 namespace vps {
 
-/// Whether one part's points are tested against the other's field, or both ways.
+/// Whether only one part's points are tested against the other part's field, or both parts' points.
 enum class Sides { One, Both };
 
 /// How contacts become motion.
@@ -36,7 +36,7 @@ inline const char* toText(ContactMethod method) {
 struct Fidelity {
   double voxel_m = 0.25e-3;   ///< grid step of voxmaps
   double spacing_m = 0.5e-3;  ///< distance between shell points
-  Sides sides = Sides::Both;  ///< One: only the moving part's points against the fixed part's field
+  Sides sides = Sides::Both;  ///< One: tests only the moving part's points against the fixed part's field
   Gradient gradient = Gradient::Continuous;
   int contact_limit = 32;  ///< contacts per pair for the solver; checks of solved steps add up to 16
   double haptic_rate_hz = 1000;

@@ -31,13 +31,14 @@ inline double combinedFriction(double mu_a, double mu_b) {
   return frictionFactor(mu_a) * frictionFactor(mu_b);
 }
 
-/// Length of a tangential impulse or force. Not std::hypot: impulses are far from the ends of a double's
-/// range, and std::hypot took a sixth of the solving time of a heap.
+/// Length of a tangential impulse or force. std::hypot is not used: impulses are far from the ends of a
+/// double's range, and std::hypot took a sixth of the solving time of a heap.
 inline double tangentLength(double t1, double t2) {
   return std::sqrt(t1 * t1 + t2 * t2);
 }
 
-/// Cone: shortens a tangential impulse or force to `limit` (mu times the normal one), keeping its direction.
+/// Cone: shortens a tangential impulse or force to `limit` (mu times the normal impulse or force), keeping
+/// its direction.
 inline void limitToCone(double& t1, double& t2, double limit) {
   const double length = tangentLength(t1, t2);
   if (!(length > limit)) return;
@@ -49,9 +50,9 @@ inline void limitToCone(double& t1, double& t2, double limit) {
 /// limit. A bristle holds a part at rest without creep, because its force follows displacement and not
 /// velocity.
 struct BristleForce {
-  Vec3 f_N = Vec3::Zero();        ///< along the bend
+  Vec3 f_N = Vec3::Zero();        ///< force along the bend
   double slip_m = 0;              ///< length of the bend if nothing had slipped; 0: the bristle sticks
-  Vec3 direction = Vec3::Zero();  ///< of the slip, unit; zero: it sticks
+  Vec3 direction = Vec3::Zero();  ///< direction of the slip, unit; zero: the bristle sticks
 };
 
 /// @param bend_m   displacement of the bristle's root relative to its tip, in the tangent plane

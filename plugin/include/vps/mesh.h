@@ -32,21 +32,22 @@ struct MassProperties {
 struct MeshReport {
   std::size_t triangles = 0;
   std::size_t degenerate_triangles = 0;
-  std::size_t duplicate_triangles = 0;  ///< beyond the first with the same three corners, either way round
-  std::size_t open_edges = 0;           ///< edges with one triangle
-  std::size_t non_manifold_edges = 0;   ///< edges with more than two
-  std::size_t flipped_edges = 0;        ///< edges whose two triangles disagree on orientation
-  std::size_t shells = 0;               ///< connected components
+  /// Triangles beyond the first with the same three corners, in either orientation.
+  std::size_t duplicate_triangles = 0;
+  std::size_t open_edges = 0;          ///< edges with one triangle
+  std::size_t non_manifold_edges = 0;  ///< edges with more than two triangles
+  std::size_t flipped_edges = 0;       ///< edges whose two triangles disagree on orientation
+  std::size_t shells = 0;              ///< connected components
   [[nodiscard]] bool isClosed() const {
     return open_edges == 0 && non_manifold_edges == 0 && flipped_edges == 0;
   }
 
-  std::size_t joined_corners = 0;      ///< corners moved onto another one, to close cracks narrower than 2 um
-  double joined_m = 0;                 ///< greatest distance by which a corner was moved
-  std::size_t holes = 0;               ///< groups of connected open edges
-  std::size_t t_junctions = 0;         ///< vertices within an open edge: cracks without width
-  std::size_t flipped_facets = 0;      ///< turned to agree with their neighbours
-  std::size_t turned_shells = 0;       ///< whole shells that faced inward and were turned
+  std::size_t joined_corners = 0;  ///< corners moved onto another corner, to close cracks narrower than 2 um
+  double joined_m = 0;             ///< greatest distance by which a corner was moved
+  std::size_t holes = 0;           ///< groups of connected open edges
+  std::size_t t_junctions = 0;     ///< vertices within an open edge: cracks without width
+  std::size_t flipped_facets = 0;  ///< facets turned to agree with their neighbours
+  std::size_t turned_shells = 0;   ///< whole shells that faced inward and were turned
   std::size_t overlapping_shells = 0;  ///< shells with facets within another shell
   std::size_t internal_facets = 0;     ///< facets with solid on both sides: not surface, left out
   std::size_t sheet_facets = 0;        ///< facets of free sheets: a surface without an inside

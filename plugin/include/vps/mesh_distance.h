@@ -49,12 +49,12 @@ class VPS_API MeshDistance {
 
   /// Outward unit normal, at point q of a triangle, of the curved surface that the facets approximate. The
   /// normal is interpolated between the normals of the triangle's corners (Phong 1975). A corner's normal is
-  /// the mean of the faces around it that are within 20 degrees of this triangle. On a flat face it is the
-  /// face's normal.
+  /// the mean of the faces around it that are within 20 degrees of this triangle. On a flat face the result
+  /// is the face's normal.
   [[nodiscard]] Vec3 smoothNormal(std::uint32_t triangle, const Vec3& q) const noexcept;
   /// Derivative S of smoothNormal() along a triangle [1/m]: dn = S dx, symmetric, zero across the triangle. A
-  /// ball of radius r has 1/r in both directions, a hollow of radius r has -1/r. Zero for a flat face and for
-  /// a triangle without area.
+  /// ball of radius r has curvature 1/r in both directions, a hollow of radius r has -1/r. Zero for a flat
+  /// face and for a triangle without area.
   [[nodiscard]] Mat3 smoothCurvature(std::uint32_t triangle) const noexcept;
 
   /// Writes up to `most` triangles whose bounding boxes may overlap `box`, in no particular order; returns
@@ -82,7 +82,8 @@ class VPS_API MeshDistance {
   using Lanes = Eigen::Array<float, kLanes, 1>;
   using IsLane = Eigen::Array<bool, kLanes, 1>;
   /// Eight boxes in one node, in floats about the mesh's centre, rounded outwards; unused lanes are
-  /// infinitely far. Plain arrays, since a program that includes this may be compiled for wider vectors.
+  /// infinitely far. The members are plain arrays, since a program that includes this header may be compiled
+  /// for wider vectors.
   struct Node {
     Node();
     void set(int lane, const Vec3& min_m, const Vec3& max_m, std::uint32_t to);
@@ -95,11 +96,12 @@ class VPS_API MeshDistance {
     std::uint32_t child[kLanes] = {};  ///< a node, or a triangle and kTriangle
   };
   static constexpr std::uint32_t kTriangle = 1U << 31;
-  /// Nodes on these levels divide their triangles by area, which may take off few at a time; nodes below, by
-  /// count, so that each of the eight children has an eighth of their triangles, up to eight.
+  /// Nodes on the upper levels, of this number, divide their triangles by area, which may separate only a few
+  /// triangles at a time; nodes below divide by count, so that each of the eight children has an eighth of
+  /// the triangles, up to a difference of eight.
   static constexpr int kLevelsByArea = 20;
-  /// Greatest number of levels: by count, ten for the 2^28 groups of eight triangles that there can be, and
-  /// one whose children are triangles.
+  /// Greatest number of levels: below the levels by area, ten levels for the greatest number of groups of
+  /// eight triangles, 2^28, and one level whose children are triangles.
   static constexpr int kMostLevels = kLevelsByArea + 11;
 
   Mesh mesh_;

@@ -26,21 +26,22 @@ enum class Crossing { Unknown, Seen };
 
 /// Surveys a mesh with shared vertices (see welded()) that requireUsable() accepts, and repairs it:
 /// - Corners on both sides of a crack narrower than 2 um and a ten-thousandth of the mesh's size are joined.
-///   Wider cracks stay; the items below treat only these.
+///   Wider cracks stay; in the following items "cracks" are only these wider cracks.
 /// - Of triangles with the same corners, or with cracks between them, one is kept. Of a back-to-back pair no
 /// facet is kept if the pair is a wall between two solids, and one facet if the pair is the only surface
 /// there (a surface
 ///   exported for both sides, or given twice and turned once).
 /// - Facets are turned to agree across edges of two facets, and across cracks and T-junctions; the minority
 /// is
-///   turned. Such cracks may be as wide as 1/600 of the mesh's size and a quarter of the edges beside them.
+///   turned. The cracks in this comparison may be as wide as 1/600 of the mesh's size and a quarter of the
+///   edges beside the crack.
 /// - Closed shells that face in are turned, with all shells within them, except voids: shells that lie wholly
 ///   within a shell that faces out, which they may touch. Shells that cross or copy another are solids and
 ///   are turned first.
 /// - Open patches are turned if the rest of the mesh shows clearly on which side the solid is.
 /// - Closed shells that touch or cross each other are united: facets are cut along the intersections, and
 ///   pieces with solid on both sides, or on neither, are left out. Facets without area are left out first;
-///   open patches stay beside the union. Shells touch within 2.4e-7 of the greatest coordinate, four
+///   open patches stay next to the union. Shells touch within 2.4e-7 of the greatest coordinate, four
 ///   roundings of a float. If no closed surface is found, if the union would take more than about half a
 ///   minute, or if a crack separates parts of a shell that touches another, nothing is cut and the report
 ///   says so.
@@ -48,7 +49,7 @@ enum class Crossing { Unknown, Seen };
 ///   solid within solid adds nothing, nor does a void within a void, since voids unite as solids do, crossing
 ///   or nested. Within a cavity a shell that faces out is therefore a solid, and a shell that faces in is
 ///   ignored.
-/// A sound mesh is returned unchanged: O(n). Others need about two winding numbers a triangle.
+/// A sound mesh is returned unchanged: O(n). Other meshes need about two winding numbers for each triangle.
 /// `surface` is never empty.
 VPS_API RepairedMesh repairMesh(Mesh mesh, Crossing crossing = Crossing::Unknown);
 
@@ -71,8 +72,8 @@ VPS_API MassProperties massOf(const RepairedMesh& repaired);
 /// without building the data for distances. O(n log n). Throws LoadError as requireUsable(), naming the part.
 VPS_API MassProperties solidMass(const Mesh& mesh, const std::string& part = "");
 
-/// The report as one line of text: "12 shells, 34 open edges in 2 holes, 3 flipped facets turned; the sign is
-/// certain for 99.8 %".
+/// The report as one line of text: "12 shells, 34 open edges in 2 holes, 3 flipped facets turned; the sign of
+/// the distance is certain at 99.8 % of the nodes".
 VPS_API std::string describe(const MeshReport& report);
 
 }  // namespace vps

@@ -29,7 +29,7 @@ class VPS_API ModelEstimate {
   [[nodiscard]] double mapBytes(const std::vector<Box>& kept_P = {}) const;
   /// Estimate of PointShell::size() of the shell that croppedShell() returns; no boxes: of the whole shell.
   [[nodiscard]] double pointCount(const std::vector<Box>& kept_P = {}) const;
-  /// Estimate of PointShell::memoryBytes() of a shell with so many points.
+  /// Estimate of PointShell::memoryBytes() of a shell with `point_count` points.
   [[nodiscard]] static double shellBytes(double point_count);
 
  private:

@@ -18,7 +18,7 @@ struct Material {
   double density_kg_m3 = 7850;  ///< steel
   double friction = 0.15;       ///< Coulomb coefficient of the material on itself; see combinedFriction()
   double restitution = 0;       ///< 0 inelastic to 1 elastic
-  double stiffness_N_per_m3 = 1e12;  ///< penalty stiffness per area (paper, section 4.1)
+  double stiffness_N_per_m3 = 1e12;  ///< penalty stiffness per area (Tripicchio et al., section 4.1)
 };
 
 /// How to read a mesh with a hole that is wider than the spacing of its points. Narrower holes, cracks,
@@ -41,9 +41,9 @@ struct PartModel {
   std::shared_ptr<const Solid> solid;  ///< what map and shell are built from
 };
 
-/// Builds all models of a part, from one Solid. `mesh` is the given one, or the solid's if facets had to be
-/// turned, so that its volume is positive; for a sheet it is the given one. Throws LoadError as buildVoxMap()
-/// and buildPointShell().
+/// Builds all models of a part, from one Solid. PartModel::mesh is the given mesh, or the solid's mesh if
+/// facets had to be turned, so that its volume is positive; for a sheet it is the given mesh. Throws
+/// LoadError as buildVoxMap() and buildPointShell().
 /// @param open  how to read a mesh with a wide hole; for a sheet, `solid` is a Solid::sheet()
 VPS_API std::shared_ptr<const PartModel> buildPartModel(const std::string& name, Mesh mesh,
                                                         const VoxMapSettings& voxels = {},
@@ -51,7 +51,7 @@ VPS_API std::shared_ptr<const PartModel> buildPartModel(const std::string& name,
                                                         const Material& material = {},
                                                         OpenMesh open = OpenMesh::Sheet);
 
-/// The same part with another sampling of its surface. Everything else stays shared.
+/// The same part with another sampling of its surface. All other models are shared with the given part.
 VPS_API std::shared_ptr<const PartModel> withShell(const PartModel& model,
                                                    std::shared_ptr<const PointShell> shell);
 

@@ -74,7 +74,6 @@ class VPS_API Solid {
   [[nodiscard]] const MeshReport& report() const noexcept { return report_; }
   /// Volume, centre and inertia of the solid: of the repaired mesh, as by massOf() in mesh_repair.h. All zero
   /// for a sheet.
-  /// zero for a sheet.
   [[nodiscard]] const MassProperties& mass() const noexcept { return mass_; }
   /// True if pseudonormals do not decide everywhere.
   [[nodiscard]] bool isByWinding() const noexcept { return interior_ != nullptr; }
