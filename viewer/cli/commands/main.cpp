@@ -34,7 +34,7 @@ int couldNot(const std::string& reason) {
   return kCouldNot;
 }
 
-/// CLI11 reports an unknown command as a missing one, and arguments that are too many in reverse order.
+/// CLI11 reports an unknown command as a missing command, and surplus arguments in reverse order.
 std::string reasonOf(const CLI::ParseError& error, const CLI::App& app) {
   const bool has_command = !app.get_subcommands().empty();
   const auto left_over = app.remaining(true);
@@ -89,7 +89,7 @@ int runSafely(int argc, char** argv) {
     return run(argc, argv);
   } catch (const std::bad_alloc&) {
     return couldNot("not enough memory; use a coarser --voxel and --spacing, or a smaller part");
-  } catch (const std::exception& error) {  // LoadError, Stopped, and what libraries throw
+  } catch (const std::exception& error) {  // LoadError, Stopped, and exceptions of libraries
     return couldNot(error.what());
   } catch (...) {
     return couldNot("an unknown error; please report it with the command that caused it");

@@ -32,7 +32,7 @@ struct CadArguments {
 };
 
 /// Adds --units, --deflection, --up, --part-per, --group, --no-groups and --time-limit. addCacheOptions()
-/// adds those of the cache.
+/// adds the options of the cache.
 void addCadOptions(CLI::App& command, CadArguments& given);
 
 /// Import settings from the options. The defaults suit an unknown file: parts with more than `most_triangles`
@@ -44,8 +44,8 @@ scenes::ImportSettings importSettingsFrom(const CadArguments& given, std::size_t
 scenes::ImportedCad importedCad(const std::vector<std::string>& files, scenes::ImportSettings settings,
                                 const CadArguments& given, const Progress& progress);
 
-/// Whether these are CAD files, which are read into one frame, and not a scene file. Throws LoadError for a
-/// scene among several files, and for a file that is not CAD.
+/// Whether the files are CAD files, which are read into one frame, and not a scene file. Throws LoadError for
+/// a scene among several files, and for a file that is not CAD.
 bool areCadFiles(const std::vector<std::string>& files);
 /// The files, quoted as in TOML, with commas between them.
 std::string listedFiles(const std::vector<std::string>& files);

@@ -16,8 +16,8 @@ namespace vps::viewer {
 
 namespace {
 
-/// Opens the module in the folder of the program, as in a build, or in the folder where it is installed. Null
-/// if neither has it.
+/// Opens the module in the folder of the program, as in a build, or in the folder where it is installed.
+/// Returns null if neither folder has the module.
 void* openModule() {
   namespace fs = std::filesystem;
   std::error_code none;

@@ -17,7 +17,7 @@ VoxMap loadLevelSet(const std::string& file);
 /// Writes a voxmap. Throws LoadError if the file cannot be written, or as requireOpenVdb().
 void saveLevelSet(const VoxMap& map, const std::string& file);
 
-/// Functions that the module provides. Both throw LoadError.
+/// Functions that the module provides. Both functions throw LoadError.
 struct LevelSetModule {
   VoxMap (*load)(const std::string& file) = nullptr;
   void (*save)(const VoxMap& map, const std::string& file) = nullptr;

@@ -21,7 +21,7 @@ std::string stlBytes(const Mesh& mesh) {
   };
   put(static_cast<std::uint32_t>(mesh.triangles.size()));
   for (const auto& triangle : mesh.triangles) {
-    for (int axis = 0; axis < 3; ++axis) put(0.0f);  // the normal: readers compute it from the winding
+    for (int axis = 0; axis < 3; ++axis) put(0.0f);  // zero normal: readers use the winding
     for (const std::uint32_t vertex : triangle)
       for (int axis = 0; axis < 3; ++axis) put(static_cast<float>(mesh.vertices[vertex][axis]));
     put(std::uint16_t{0});
@@ -32,7 +32,7 @@ std::string stlBytes(const Mesh& mesh) {
 std::string meshExtension(const Mesh& mesh, const scenes::FaceColors& colors) {
   constexpr double kMostRounding_m = 0.1e-6, kFloat = 0x1p-24;
   constexpr double kFar =
-      4;  // in sizes of the mesh: a reader that subtracts the centre of the vertices gains two bits
+      4;  // distance from the origin in sizes of the mesh; a reader that subtracts the centre gains two bits
   const Box box = bounds(mesh);
   const double farthest_m = box.min.cwiseAbs().cwiseMax(box.max.cwiseAbs()).norm();
   const bool is_far = kFloat * farthest_m > kMostRounding_m && farthest_m > kFar * box.size().norm();
@@ -52,7 +52,7 @@ std::string meshBytes(const Mesh& mesh, const scenes::FaceColors& colors) {
     for (int axis = 0; axis < 3; ++axis) put(out, mesh.vertices[vertex][axis]);
   };
   // A vertex at which several colours meet is written once for each colour.
-  std::map<std::array<std::uint32_t, 2>, std::uint32_t> number_of;  // of vertex and colour
+  std::map<std::array<std::uint32_t, 2>, std::uint32_t> number_of;  // by vertex and colour
   if (colors.isNone())
     for (std::uint32_t vertex = 0; vertex < mesh.vertices.size(); ++vertex) {
       putVertex(vertex);
@@ -84,7 +84,7 @@ std::string partFileName(const std::string& name, const std::string& extension,
   std::string stem;
   for (const unsigned char c : name)
     stem += std::isalnum(c) || c == '-' || c == '_' ? static_cast<char>(c) : '_';
-  constexpr std::size_t kLongest = 100;  // bytes; file systems take 255, and names of folders come before
+  constexpr std::size_t kLongest = 100;  // bytes; file systems allow at least 255 bytes
   if (stem.size() > kLongest) stem.resize(kLongest);
   if (stem.empty()) stem = "part";
   // "A.stl" and "a.stl" are one file on some systems.

@@ -21,9 +21,10 @@ std::string meshExtension(const Mesh& mesh, const scenes::FaceColors& colors = {
 /// floats relative to the size of the mesh; OBJ colours (sRGB) are stored by vertex.
 std::string meshBytes(const Mesh& mesh, const scenes::FaceColors& colors = {});
 
-/// A file name made from a part's name, different from those in `taken`, to which it is added. Binary PLY
-/// would be smaller than STL, but the assimp of Debian 12 reads a first data byte of 0x0A as a line end.
-/// @param extension  meshExtension() of its mesh
+/// A file name made from a part's name, different from the names in `taken`, to which the new name is added.
+/// Binary PLY would be smaller than STL, but the assimp of Debian 12 reads a first data byte of 0x0A as a
+/// line end.
+/// @param extension  meshExtension() of the part's mesh
 std::string partFileName(const std::string& name, const std::string& extension, std::set<std::string>& taken);
 
 }  // namespace vps::viewer

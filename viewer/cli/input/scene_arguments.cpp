@@ -150,7 +150,7 @@ std::string folderOf(const CacheArguments& given) {
 }
 
 std::uint64_t limitOf(const CacheArguments& given) {
-  constexpr double kMost_GB = 1e9;  // so that the bytes stay within 64 bits
+  constexpr double kMost_GB = 1e9;  // so that the number of bytes fits into 64 bits
   return static_cast<std::uint64_t>(1e9 * std::min(given.limit_GB, kMost_GB));
 }
 
@@ -214,7 +214,7 @@ scenes::Scene sceneFrom(const std::string& file, const FidelityArguments& given,
     say("chosen: " + scene.fidelity_choice);
     return scene;
   }
-  // The command line overrides the choice, so its models are of no use.
+  // The command line overrides the automatic choice, so the models of this choice are of no use.
   scene.fidelity_choice.clear();
   for (scenes::ScenePart& part : scene.parts) part.model.reset();
   return scene;

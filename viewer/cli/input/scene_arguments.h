@@ -70,10 +70,10 @@ void addCacheOptions(CLI::App& command, CacheArguments& given);
 /// Adds SCENE, --model-everything, and the options of addCacheOptions() and addFidelityOptions().
 void addSceneOptions(CLI::App& command, SceneArguments& given);
 
-/// The scene, with the command line's fidelity instead of its own. Prints warnings about its CAD files on
-/// stderr. Throws LoadError when one of `outputs` is a file that the scene was read from, and names the
-/// command that reads `file` when it is no scene but a CAD file, a level set or a recording.
-/// @param cache cache for the parts of its CAD files
+/// The scene, with the command line's fidelity instead of its own. Prints warnings about the scene's CAD
+/// files on stderr. Throws LoadError when one of `outputs` is a file that the scene was read from, and names
+/// the command that reads `file` when it is no scene but a CAD file, a level set or a recording.
+/// @param cache cache for the parts of the scene's CAD files
 scenes::Scene sceneFrom(const std::string& file, const FidelityArguments& given,
                         const std::vector<std::string>& outputs, const CacheArguments& cache);
 
@@ -86,16 +86,16 @@ std::optional<double> unitFrom(const std::string& text);
 /// Throws LoadError when --units or --deflection is given for a scene file, which states both itself.
 void requireOwnUnits(const std::string& scene, const std::string& units, const std::string& deflection);
 
-/// Reads a scene. Parts of its CAD files are taken from the cache if they are there.
+/// Reads a scene. Parts of the scene's CAD files are taken from the cache if the cache has them.
 scenes::Scene loadedScene(const std::string& file, const CacheArguments& cache, const Progress& progress);
 
 /// The cache in a folder, which reports damaged files on stderr; none for an empty name.
 std::optional<VoxMapCache> cacheFrom(const std::string& folder);
-/// The cache that the options stand for; none with --no-cache, or if the user has no folder for caches.
+/// The cache that the options choose; none with --no-cache, or if the user has no folder for caches.
 std::optional<VoxMapCache> cacheFrom(const CacheArguments& given);
-/// The cache for the parts of CAD files, in the same folder.
+/// The cache for the parts of CAD files, in the same folder as the models.
 std::optional<ByteCache> cadCacheFrom(const CacheArguments& given);
-/// bullet-vps in $XDG_CACHE_HOME, or else in $HOME/.cache; empty where neither is an absolute path.
+/// bullet-vps in $XDG_CACHE_HOME, or else in $HOME/.cache; empty if neither variable has an absolute path.
 /// Source: XDG Base Directory Specification 0.8.
 std::string defaultCacheFolder();
 

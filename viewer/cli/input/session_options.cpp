@@ -51,7 +51,7 @@ scenes::SessionRecordingOptions recordingOptions(const std::string& session,
 }
 
 void requireAsked(scenes::SessionRecording& recording, const std::string& option) {
-  constexpr double kLimit_s = 8;  // longer than an answer takes
+  constexpr double kLimit_s = 8;  // longer than vps render takes to answer
   if (const std::string why = recording.waitUntilAsked(kLimit_s); !why.empty())
     throw LoadError(option, "", why);
 }

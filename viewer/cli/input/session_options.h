@@ -23,8 +23,8 @@ CLI::Option* addRecordOption(CLI::App& command, std::string& file);
 scenes::SessionRecordingOptions recordingOptions(const std::string& session,
                                                  const scenes::SessionNetwork& network,
                                                  const std::string& file);
-/// Waits until vps render has agreed to record. Throws LoadError that names the option if it refuses or does
-/// not answer.
+/// Waits until vps render has agreed to record. Throws LoadError that names the option if vps render refuses
+/// or does not answer.
 void requireAsked(scenes::SessionRecording& recording, const std::string& option);
 /// Waits for the recording, and prints its file name, or the reason why there is none. Returns an exit
 /// status.

@@ -4,8 +4,9 @@
 //   std::function<int()> addName(CLI::App& command);
 //
 // which adds the options to the command and returns the function that runs it after the command line has been
-// parsed. That function returns an exit status or throws; main.cpp turns an exception into one line on stderr
-// and kCouldNot. A row of commands/command_list.inc names the function and holds the command's help.
+// parsed. The returned function returns an exit status or throws; main.cpp turns an exception into one line
+// on stderr and kCouldNot. A row of commands/command_list.inc names the function and holds the command's
+// help.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -28,7 +28,8 @@ bool isStream(const fs::path& path) {
   return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
 }
 
-/// The target of symbolic links, which need not exist. A rename onto a link would replace the link itself.
+/// The target of symbolic links; the target need not exist. A rename onto a link would replace the link
+/// itself.
 fs::path resolveLinks(fs::path path) {
   constexpr int kMaxLinks = 40;  // as many as Linux follows
   std::error_code error;
@@ -37,7 +38,7 @@ fs::path resolveLinks(fs::path path) {
   return path;
 }
 
-/// @param named  the file for messages, where `file` is a temporary one
+/// @param named  file name for messages; `file` may be a temporary file
 void writeDirectly(const std::string& file, std::string_view bytes, const std::string& named) {
   errno = 0;
   std::ofstream out(file, std::ios::binary | std::ios::trunc);
@@ -78,7 +79,7 @@ OutputFile::OutputFile(const std::string& file, const std::vector<std::string>& 
   if (fs::is_directory(file, error)) throw LoadError(file, "", "is a folder; name a file to write");
   requireNotRead(file, inputs);
   if (isStream(file)) {
-    partial_ = file;  // opening a pipe now would end its reader's input when it is closed again
+    partial_ = file;  // opening a pipe now would end its reader's input when the pipe is closed again
     return;
   }
   whole_.emplace(resolveLinks(file));

@@ -17,8 +17,8 @@ namespace vps::viewer {
 /// Throws LoadError if `output` is one of the files that the command reads, even under another name.
 void requireNotRead(const std::string& output, const std::vector<std::string>& inputs);
 
-/// One output file. It is opened when the work starts, so that a file that cannot be written is reported
-/// before the work.
+/// One output file. The file is opened when the work starts, so that a file that cannot be written is
+/// reported before the work.
 class OutputFile {
  public:
   /// Throws LoadError if the file cannot be written, or if it is one of the command's `inputs`. With an
@@ -52,7 +52,8 @@ class OutputFolder {
   [[nodiscard]] const std::string& partial() const { return partial_; }
   /// Writes a new file into the temporary folder.
   void write(const std::string& name, std::string_view bytes) const;
-  /// Moves each new file into place and replaces earlier files of the same name. Other files are kept.
+  /// Moves each new file into place and replaces earlier files of the same name. Other files in the folder
+  /// are kept.
   void commit();
 
  private:
@@ -65,8 +66,8 @@ void addPdfOption(CLI::App& command, std::string& file);
 
 /// Throws LoadError if PDF files cannot be printed on this machine (missingForPdf()).
 void requirePdf();
-/// Prints the HTML file `page` as the file `pdf`. Throws LoadError if that fails, and then keeps an earlier
-/// file.
+/// Prints the HTML file `page` as the file `pdf`. Throws LoadError if the page cannot be printed, and then
+/// keeps an earlier PDF file.
 void requirePrinted(const std::string& page, const std::string& pdf);
 
 /// A page as PDF. The object is made before the work, so that a missing Chromium is reported early.
@@ -74,7 +75,7 @@ class PdfFile {
  public:
   /// With an empty name nothing is written. Throws as requirePdf() and OutputFile do.
   PdfFile(const std::string& file, const std::vector<std::string>& inputs);
-  /// Prints the page. Throws LoadError if that fails.
+  /// Prints the page. Throws LoadError if the page cannot be printed.
   void write(const std::string& html);
 
  private:

@@ -145,7 +145,7 @@ class DrawnThrough {
   [[nodiscard]] std::size_t parts() const { return set_of_.size(); }
   [[nodiscard]] std::size_t clashes() const { return clashes_; }
   [[nodiscard]] double most_m() const { return most_m_; }
-  /// Number of parts of the largest set that is connected by such overlaps.
+  /// Number of parts of the largest set that is connected by overlaps too deep for a fit.
   [[nodiscard]] std::size_t largest() const {
     std::map<std::size_t, std::size_t> sizes;
     std::size_t most = 0;
@@ -169,7 +169,7 @@ class DrawnThrough {
 // Files of single parts often have a frame of their own each, so that the parts overlap one another. Models
 // that are made for pictures have bodies of several shapes that intersect.
 std::string framesText(const scenes::PlanResult& plan) {
-  constexpr std::size_t kFewest = 3;  // assumed: two overlapping parts are a drawn interference
+  constexpr std::size_t kFewest = 3;  // assumed: an overlap of only two parts is intended
   const DrawnThrough drawn(plan);
   const std::size_t count = drawn.parts(), pairs = count * (count - 1) / 2;
   if (count < kFewest || 2 * count < partCount(plan.assemblies.front())) return "";

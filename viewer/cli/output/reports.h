@@ -28,7 +28,7 @@ std::string checkCsv(const scenes::CheckResult& result);
 
 // --- vps plan
 
-/// A line for each different fastener with the names of the parts; empty if there are none.
+/// A line for each different fastener with the names of the parts; empty if there are no fasteners.
 std::string fastenerText(const std::vector<scenes::Fastener>& fasteners);
 /// Tables of the steps of all assemblies, and the parts that cannot be taken off.
 std::string planTables(const scenes::PlanResult& plan);

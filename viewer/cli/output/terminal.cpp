@@ -108,7 +108,7 @@ void giveWay() {
 #ifdef SCHED_BATCH
   // A batch thread that wakes up does not preempt another thread, however long it has slept.
   const sched_param none{};
-  sched_setscheduler(0, SCHED_BATCH, &none);  // if refused, nothing changes
+  sched_setscheduler(0, SCHED_BATCH, &none);  // if the system refuses, nothing changes
 #endif
   constexpr int kNice = 10;
   if (getpriority(PRIO_PROCESS, 0) < kNice) setpriority(PRIO_PROCESS, 0, kNice);
@@ -117,7 +117,7 @@ void giveWay() {
 
 void limitStacks() {
 #ifdef __GLIBC__
-  constexpr std::size_t kStack_bytes = 1024 * 1024;  // assumed: four times what a haptic thread touches
+  constexpr std::size_t kStack_bytes = 1024 * 1024;  // assumed: four times a haptic thread's need
   pthread_attr_t attributes;
   if (pthread_attr_init(&attributes) != 0) return;
   if (pthread_attr_setstacksize(&attributes, kStack_bytes) == 0) pthread_setattr_default_np(&attributes);

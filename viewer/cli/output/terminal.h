@@ -23,7 +23,7 @@ void warn(const std::string& words);
 long processId();
 
 /// Makes the first Ctrl-C (or SIGTERM) set stopRequested(), so that the program can remove unfinished files
-/// before it ends; a second one ends it at once.
+/// before it ends; a second signal ends the program at once.
 void catchStop();
 const std::atomic<bool>& stopRequested();
 
@@ -61,7 +61,7 @@ class ProgressBar {
 };
 
 /// Lowers the priority of this process, so that others run first on a busy processor. Threads that are
-/// started later get it, too.
+/// started later get the lower priority, too.
 void giveWay();
 
 /// Gives threads that are started later stacks of 1 MiB. A process that drives a device locks its memory, so

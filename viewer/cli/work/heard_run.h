@@ -28,7 +28,7 @@ class HeardRun {
       if (sound_) sound_->beep(device::beepOf(event.kind));
     };
   }
-  /// The sound as the bytes of a WAV file. Prints its loudness on stdout.
+  /// The sound as the bytes of a WAV file. Prints the loudness of the sound on stdout.
   [[nodiscard]] std::string wav();
 
  private:

@@ -91,8 +91,8 @@ std::optional<scenes::PlanFindings> readFindings(const std::string& file, const 
 }
 
 /// Faces that are splines can have a hundred times as many triangles as the same faces as cylinders; one
-/// public bolt has 227,717. The time of the search for paths grows with the product of the numbers of
-/// triangles of two parts.
+/// public bolt has 227,717 triangles. The time of the search for paths grows with the product of the numbers
+/// of triangles of two parts.
 constexpr std::size_t kMostToPlan = 50'000;
 constexpr double kCoarsestToPlan_m = 16e-6;
 
@@ -255,7 +255,7 @@ std::map<std::string, double> plannedClearances(const std::string& scene_file) {
       }
     }
   } catch (const json::exception&) {
-    return {};  // written by another program
+    return {};  // another program wrote plan.json
   }
   return out;
 }

@@ -31,7 +31,7 @@ struct PlannedFolder {
   std::size_t steps = 0;  ///< number of steps of all assemblies
   struct SceneFile {
     std::string path;
-    bool has_steps = true;  ///< false: none of its parts can be taken off
+    bool has_steps = true;  ///< false: no part of the assembly can be taken off
   };
   /// The scene of the product, then those of its subassemblies, each after the assembly that mounts it.
   std::vector<SceneFile> scene_files;
@@ -46,8 +46,8 @@ inline constexpr const char* kUnfinishedPlan = "unfinished_plan.json";
 PlannedFolder planInto(const PlanArguments& given, ProgressBar& bar);
 
 /// The least clearance on the path of each part of a scene file, from the plan.json in the same folder.
-/// Clearances of more than kNearWay_m count as kNearWay_m. Empty if there is no plan.json, or if it has no
-/// assembly of that name.
+/// Clearances of more than kNearWay_m count as kNearWay_m. Empty if there is no plan.json, or if plan.json
+/// has no assembly with the scene file's name.
 std::map<std::string, double> plannedClearances(const std::string& scene_file);
 
 }  // namespace vps::viewer

@@ -25,7 +25,7 @@ class StudyLog {
            const std::vector<scenes::StudyVariable>& variables);
 
   [[nodiscard]] const std::vector<scenes::StudyRun>& runs() const { return runs_; }
-  /// Appends a run and flushes the file. Throws LoadError if that fails.
+  /// Appends a run and flushes the file. Throws LoadError if the file cannot be written.
   void add(const scenes::StudyRun& run);
 
  private:

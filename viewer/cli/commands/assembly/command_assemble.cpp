@@ -107,13 +107,14 @@ scenes::Verdict runScene(const AssembleArguments& given) {
   if (!given.sound.empty()) wav.write(heard.wav());
 
   printOutcome(scene, result, notes, given.record, given.out);
-  // Printed last, so that a failure loses no other result.
+  // The PDF file is printed last, so that a failure loses no other result.
   if (given.has_pdf) requirePrinted(given.out + "/report.html", given.out + "/report.pdf");
   return result.verdict;
 }
 
 /// Runs the subassemblies of a planned product, inner ones first, each into a folder of its own, and then the
-/// product, which mounts each of them as one part. --disassemble reverses this order.
+/// product, which mounts each of them as one part. --disassemble runs the product first, and then the
+/// subassemblies, outer ones first.
 scenes::Verdict runPlanned(const AssembleArguments& given,
                            const std::vector<PlannedFolder::SceneFile>& scene_files) {
   namespace fs = std::filesystem;

@@ -76,7 +76,7 @@ int runCheck(const CheckArguments& given) {
   bar.clear();
   std::fputs(checkTables(result).c_str(), stdout);
   std::printf("%s\n", checkHeadline(result).c_str());
-  pdf.write(page);  // last, so that a failure loses no other result
+  pdf.write(page);  // printed last, so that a failure loses no other result
   return scenes::exitStatusOf(result.verdict());
 }
 

@@ -39,7 +39,7 @@ std::string marginTable(const scenes::MarginResult& result) {
   return table.text();
 }
 
-/// Prints the table and the tightest step, which is the first. Returns the exit status.
+/// Prints the table and the tightest step, which is the first of result.steps. Returns the exit status.
 int tell(const scenes::MarginResult& result) {
   std::fputs(marginTable(result).c_str(), stdout);
   if (result.steps.empty()) return kCouldNot;
@@ -63,7 +63,7 @@ int runMargin(const MarginArguments& given) {
   ProgressBar bar;
   scenes::Scene scene = sceneFrom(given.scene.scene, given.scene.fidelity,
                                   {given.json, given.html, given.pdf}, given.scene.cache);
-  // No cache: each model has another size and would displace models that are used again.
+  // No cache is used: each model has another size and would displace models that are used again.
   setModelOptions(options, bar, std::nullopt, given.scene.models_everything);
   const scenes::MarginResult result = scenes::measureMargins(scene, options);
   throwIfStopped();
@@ -72,7 +72,7 @@ int runMargin(const MarginArguments& given) {
   html.write(page);
   bar.clear();
   const int status = tell(result);
-  pdf.write(page);  // last, so that a failure loses no other result
+  pdf.write(page);  // printed last, so that a failure loses no other result
   return status;
 }
 

@@ -45,7 +45,7 @@ std::string traceRow(double time_s, const std::vector<scenes::BodyState>& bodies
   return csvLine(cells);
 }
 
-/// Prints the overlaps by exact distance. Returns false if one exceeds the scene's limit.
+/// Prints the overlaps by exact distance. Returns false if an overlap exceeds the scene's limit.
 bool printOverlap(const scenes::JudgedOverlap& judged) {
   const auto um = [](double length_m) { return fixed(length_m * 1e6, 2); };
   for (const auto& [start, apart_s, end_depth_m] : judged.at_start)

@@ -26,7 +26,7 @@ namespace vps::viewer {
 namespace {
 
 /// Many more tasks than workers, so that no worker is idle for long at the end; few enough that starting a
-/// process for each costs little.
+/// process for each task costs little.
 constexpr std::size_t kDaskTasks = 64;
 
 struct StudyArguments {
@@ -172,7 +172,7 @@ int runStudyCommand(StudyArguments given, bool has_last) {
   html.write(page);
   bar.clear();
   printResult(result);
-  pdf.write(page);  // last, so that a failure loses no other result
+  pdf.write(page);  // printed last, so that a failure loses no other result
   return kGood;
 }
 

@@ -85,7 +85,7 @@ const Mesh& meshOf(const Source& source, const ExportArguments& given, const std
   return source.mesh;
 }
 
-/// Writes one file to `partial`. Returns its row of the result.
+/// Writes one file to `partial`. Returns the file's row of the result.
 ExportedFileAnswer writeModel(const Source& source, const ExportArguments& given, const std::string& file,
                               const std::string& partial, const Progress& progress) {
   ExportedFileAnswer row;
@@ -169,7 +169,7 @@ std::function<int()> addExport(CLI::App& command) {
   command.add_option("--part", given->part, "name of the part, for a scene with several")->type_name("NAME");
   addUnitsOption(command, given->units);
   addFidelityOptions(command, given->fidelity);
-  command.remove_option(command.get_option("--sides"));  // belongs to a query
+  command.remove_option(command.get_option("--sides"));  // --sides belongs to a query
   addPointsOption(command, given->fidelity);
   addCacheOption(command, given->cache);
   addJsonOption(command, given->json);

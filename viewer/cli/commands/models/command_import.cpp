@@ -68,7 +68,7 @@ Proposal propose(const std::vector<scenes::ScenePart>& bodies) {
   return proposal;
 }
 
-/// Whether `part` is the part of `body` that is marked as fixed: of a group only the first part is.
+/// Whether `part` is the part of `body` that is marked as fixed: only the first part of a group is marked.
 bool isOf(const std::string& part, const std::string& body, const std::vector<scenes::PartGroup>& groups) {
   for (const scenes::PartGroup& group : groups)
     if (group.name == body) return part == group.parts.front();

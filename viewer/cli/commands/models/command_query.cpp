@@ -259,7 +259,7 @@ int runQuery(const QueryArguments& given) {
   std::optional<NamedMesh> a, b;
   if (operands.mesh_a) a.emplace(NamedMesh{*operands.mesh_a, given.mesh_a});
   if (operands.mesh_b) b.emplace(NamedMesh{*operands.mesh_b, given.mesh_b});
-  std::string choice;  // the choice in words; the same for A and B if both are meshes
+  std::string choice;  // choice of the fidelity in words; the same for A and B if both are meshes
   const auto fidelityOf = [&](const std::optional<NamedMesh>& mesh, const std::optional<NamedMesh>& other) {
     return mesh ? fidelityFrom(given.fidelity, *mesh, other ? &*other : nullptr, choice) : usual;
   };

@@ -79,8 +79,8 @@ std::vector<std::string> viewNames() {
   return names;
 }
 
-/// Prints how much the picture differs from the expected one, and fills the answer. Returns whether they
-/// agree.
+/// Prints how much the picture differs from the expected one, and fills the answer. Returns whether the
+/// pictures agree.
 bool compareWith(const Image& wanted, const Image& image, const SnapshotArguments& given,
                  SnapshotAnswer& answer) {
   const ImageDifference found = compare(image, wanted, given.tolerance);

@@ -197,7 +197,7 @@ std::function<int()> addView(CLI::App& command) {
                   "picture of the display file that is shown alone at the start: SCREEN, SCREEN_VIEWER, ...")
       ->type_name("NAME")
       ->needs("--display");
-  // A flag, because an option with an optional value would take the scene file as its value.
+  // --full-screen is a flag, because an option with an optional value would take the scene file as its value.
   command
       .add_flag("--full-screen{1}", window.full_screen,
                 "fill the first monitor, or monitor 2 with --full-screen=2, without panels; the key F11 "

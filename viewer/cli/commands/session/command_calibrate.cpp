@@ -163,8 +163,8 @@ const std::string& requireWritable(const std::string& file) {
 }
 
 /// A user's TOML file in which a command changes single values. The edited text is written to a temporary
-/// file with the same permissions; commit() replaces the file by it. Without commit() the file is not
-/// changed.
+/// file with the same permissions; commit() replaces the user's file by the temporary file. Without commit()
+/// the file is not changed.
 class EditedFile {
  public:
   /// Throws LoadError when the file cannot be read, edited or replaced.

@@ -48,7 +48,7 @@ struct WatchArguments {
 };
 
 constexpr std::chrono::milliseconds kWatchPoll{5};
-constexpr std::chrono::milliseconds kLook{50};  ///< without ROS 2: messages wait in a ring of 256
+constexpr std::chrono::milliseconds kLook{50};  ///< time between reads without ROS 2; 256 messages can wait
 
 /// Follows one session: reads its messages, snapshots and forces, prints them, and publishes them in ROS 2.
 class Watching {
@@ -57,7 +57,7 @@ class Watching {
       : watcher_(watcher), rate_hz_(given.rate_hz) {
     try {
       pointers_.emplace(given.session, given.network);
-    } catch (const LoadError& refused) {  // the certificates are older than pointers
+    } catch (const LoadError& refused) {  // the certificates were made before pointers existed
       say(std::string("pointers are not shown: ") + refused.what());
     }
     const std::string interface = given.network.empty() ? "lo" : given.network.interface;
@@ -210,8 +210,8 @@ int showWindow(const WatchArguments& given) {
   return kNotShown;
 }
 
-/// Shows the window and returns the exit status. Empty if no window can be opened, for example because no
-/// server answers at DISPLAY; the reason has been printed then.
+/// Shows the window and returns the exit status. The result is empty if no window can be opened, for example
+/// because no server answers at DISPLAY; the function then prints the reason.
 std::optional<int> tryWindow(const WatchArguments& given) {
   try {
     return showWindow(given);

@@ -61,7 +61,7 @@ EglContext::EglContext() : display_(openDisplay()) {
   if (context_ == EGL_NO_CONTEXT) fail("the driver has no OpenGL 4.5 core profile");
 }
 
-// The display stays open, because it belongs to the process and others may use it.
+// The display stays open, because other code of the process may use it.
 EglContext::~EglContext() {
   eglDestroyContext(display_, context_);
 }

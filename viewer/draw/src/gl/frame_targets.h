@@ -9,21 +9,21 @@ namespace vps::viewer {
 struct FrameTargets {
   int width, height;  ///< size of the finished picture [px]
   int factor;         ///< supersampling: the colour image is factor times as wide and high
-  int samples;        ///< multisampling on top of it
+  int samples;        ///< samples of multisampling, in addition to supersampling
 
   // Normal and depth of the visible surface, for ambient occlusion, at the size of the finished picture. A
-  // draft has no ambient occlusion; there these textures have one pixel.
+  // draft has no ambient occlusion, so geometry and occlusion of a draft have one pixel.
   gl::Texture geometry;
   gl::Renderbuffer geometry_depth;
   gl::Framebuffer geometry_target;
   gl::Texture occlusion_raw, occlusion;
   gl::Framebuffer occlusion_raw_target, occlusion_target;
-  // Background and the shadow on the floor, in linear colour. Both are smooth, so one sample a pixel is
-  // enough.
+  // Background and the shadow on the floor, in linear colour. Background and shadow are smooth, so one sample
+  // a pixel is enough.
   gl::Texture behind;
   gl::Framebuffer behind_target;
-  // Linear colour and opacity of parts, edges and marks, multisampled, with stencil. They are later blended
-  // over `behind` and converted to sRGB.
+  // Linear colour and opacity of parts, edges and marks, multisampled, with stencil. The colours are later
+  // blended over `behind` and converted to sRGB.
   gl::Texture color;
   gl::Renderbuffer depth;
   gl::Framebuffer color_target;

@@ -12,10 +12,10 @@
 namespace vps::viewer::gl {
 
 /// Throws std::runtime_error, with a remedy, if the graphics card was reset or ran out of memory since the
-/// last call. The picture is then invalid.
+/// last call. The picture is invalid after such an exception.
 void requireSound();
 
-/// An object's name and the function that deletes it; movable.
+/// The name of an OpenGL object and the function that deletes the object; movable.
 template <void (*Delete)(GLuint)>
 class Object {
  public:
@@ -66,7 +66,8 @@ Buffer makeBuffer(std::span<const T> items) {
   return makeBuffer(items.data(), items.size_bytes());
 }
 VertexArray makeVertexArray();
-/// Adds attribute `location`: `count` floats at `offset` bytes. With divisor 1 it advances once per instance.
+/// Adds attribute `location`: `count` floats at `offset` bytes. With divisor 1 the attribute advances once
+/// per instance.
 void addAttribute(const VertexArray& array, const Buffer& buffer, GLuint location, int count,
                   std::size_t offset, std::size_t stride, GLuint divisor = 0);
 

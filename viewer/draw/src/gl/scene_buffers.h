@@ -69,7 +69,7 @@ struct DrawnBody {
   std::size_t part = 0;
   Pose X_CP;  ///< mesh centre in the camera frame
   Eigen::Vector3f color = Eigen::Vector3f::Zero();
-  bool shows_faces = false;  ///< its faces have their own colours in place of `color`
+  bool shows_faces = false;  ///< the part's faces have their own colours in place of `color`
   bool is_cut = false;
   Detail detail = Detail::Full;
 };

@@ -26,7 +26,7 @@ void main() {
 
 // Lights that are fixed to the camera, so that every view is well lit: a large key light top left, a fill
 // light from the right, a rim light from behind, and a sky over a light floor. Highlights are reflections of
-// these lights with Schlick's Fresnel term [Schlick 1994].
+// the lights with Schlick's Fresnel term [Schlick 1994].
 inline constexpr const char* kStudio = R"(
 uniform vec3 up_C;
 uniform sampler2D light_reaching;  // share of the light of the sky (x) and of the key light (y): see kOcclusionFragment
@@ -139,8 +139,8 @@ void main() {
 
 // Computes ambient occlusion in screen space (the share of the hemisphere over a pixel that no nearer
 // geometry covers) and the key light's soft shadow. The sample patterns are fixed and differ from pixel to
-// pixel of a square of 4 x 4, which the blur afterwards averages exactly. Each point of a surface thus gets
-// 160 directions and 64 depths.
+// pixel of a square of 4 x 4, which the blur afterwards averages exactly. After the blur each point of a
+// surface has 160 directions and 64 depths.
 inline constexpr const char* kOcclusionFragment = R"(
 in vec2 uv;
 uniform sampler2D geometry;

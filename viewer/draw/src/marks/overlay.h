@@ -28,7 +28,7 @@ class Lettering {
   [[nodiscard]] bool isReady() const;
   /// Width of one line of UTF-8 text [px].
   [[nodiscard]] double width(const std::string& utf8, const TextStyle& style) const;
-  /// Draws one line whose baseline begins at (x, y). Returns its width.
+  /// Draws one line whose baseline begins at (x, y). Returns the width of the line.
   double write(Image& image, double x, double y, const std::string& utf8, const TextStyle& style) const;
 
  private:

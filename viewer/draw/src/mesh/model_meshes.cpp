@@ -19,7 +19,7 @@ void addQuad(Mesh& mesh, const std::array<Vec3, 4>& corners) {
 
 using Place = Eigen::Vector3i;
 
-/// The cells of a grid over the map's box whose middle is inside.
+/// The cells of a grid over the map's box whose middle is inside the map.
 struct Cells {
   double edge_m;
   Vec3 low_M;

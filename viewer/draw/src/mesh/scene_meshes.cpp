@@ -36,7 +36,7 @@ CutPlane sectionAlong(const Vec3& p_W, const Vec3& d_W, const Vec3& to_viewer_W)
   double best = 0;
   for (int axis = 0; axis < 3; ++axis) {
     const Vec3 n = Vec3::Unit(axis) * (viewer[axis] < 0 ? -1 : 1);
-    constexpr double kSinFiveDegrees = 0.087;  // a motion at a smaller angle to the plane counts as in it
+    constexpr double kSinFiveDegrees = 0.087;  // a motion at a smaller angle counts as in the plane
     if (std::abs(n.dot(d)) < kSinFiveDegrees && n.dot(viewer) > best) {
       best = n.dot(viewer);
       cut.n_W = n;

@@ -11,11 +11,12 @@
 
 namespace vps::viewer {
 
-/// A part's extent and, if it is fixed, its pose. A renderer keeps this list after the meshes are uploaded.
+/// A part's extent and, if it is fixed, its pose. A renderer keeps these extents after the meshes are
+/// uploaded.
 struct PartExtent {
   Box bounds_P;
   bool is_fixed = false;
-  Pose X_WP;  ///< pose of a fixed part; the snapshot has the poses of others
+  Pose X_WP;  ///< pose of a fixed part; the snapshot has the poses of other parts
 };
 
 std::vector<PartExtent> partExtents(const RenderScene& scene);

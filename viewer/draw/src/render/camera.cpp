@@ -40,9 +40,9 @@ Camera frameScene(const Box& box_W, const Vec3& direction, double fov_rad, doubl
   camera.eye_W = camera.target_W + back;
   const Pose X_WC = camera.pose();
 
-  // Let (x, y, z) be a corner in the camera frame, moved to the target. At distance d it is inside the
-  // picture if |x| <= (d - z) tan(fov/2) aspect and |y| <= (d - z) tan(fov/2). Each gives a least d; the
-  // camera takes the greatest of them.
+  // Let (x, y, z) be a corner of the box relative to the target, in the camera frame. If the eye is at
+  // distance d, the corner is inside the picture if |x| <= (d - z) tan(fov/2) aspect and |y| <= (d - z)
+  // tan(fov/2). Each corner gives a least d; the camera takes the greatest of these distances.
   const double tan_y = std::tan(0.5 * fov_rad) * (1 - margin), tan_x = tan_y * aspect;
   double distance_m = 1e-6;
   for (const Vec3& p_W : corners(box_W)) {

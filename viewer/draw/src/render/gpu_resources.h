@@ -47,7 +47,7 @@ struct GpuResources {
   ShaderPrograms programs;
   ShadowTargets shadows;
   FrameTargets* frame = nullptr;                           ///< targets of the current picture
-  std::map<const Mesh*, std::unique_ptr<GpuMesh>> meshes;  ///< equal parts share one
+  std::map<const Mesh*, std::unique_ptr<GpuMesh>> meshes;  ///< equal parts share a GpuMesh
   MarkShape arrow = MarkShape::arrow(), disc = MarkShape::disc();
   gl::Buffer quad_corners;
   gl::VertexArray quad = gl::makeVertexArray(), empty = gl::makeVertexArray();

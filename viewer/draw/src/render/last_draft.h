@@ -34,8 +34,8 @@ struct LastDraft {
 /// A cube that replaces the box around everything that is drawn when the view of a draft is computed. The
 /// cube stays the same while parts move a little. The view covers 2.2 half diagonals of the cube in each
 /// direction.
-/// @param last  cube of the last draft; kept if its half diagonal is within a quarter of the box's and the
-/// middle of the box within 0.7 of the cube's half diagonal; null: no last draft
+/// @param last  cube of the last draft; kept if the box's half diagonal is 0.8 to 1.25 of the cube's and the
+/// middles are less than 0.7 of the cube's half diagonal apart; null: no last draft
 Box coarseBounds(const Box& box, const Box* last);
 
 /// The rectangle outside of which both drafts have the same pixels; std::nullopt if their cameras or

@@ -124,7 +124,8 @@ DrawOptions withoutOverlay(DrawOptions options) {
   return options;
 }
 
-/// The rectangle that parts and marks can cover. On llvmpipe other pixels would cost as much.
+/// The rectangle that parts and marks can cover. On llvmpipe the pixels outside the rectangle would cost as
+/// much time as those inside it.
 PixelRect partsOnScreen(const std::vector<DrawnBody>& bodies, const DrawnBody* target, const MarkList& marks,
                         const View& view, const DrawOptions& options) {
   PixelRect rect;

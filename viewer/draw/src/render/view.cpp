@@ -88,7 +88,7 @@ View makeView(const Box& drawn_W, const Camera& camera, const DrawOptions& optio
   setLens(view, camera, options);
   setFloor(view, box_W, camera);
   if (options.cut) setCut(view, *options.cut);
-  const Vec3 key = Vec3(-0.55, 0.75, 0.60).normalized();  // kKey in shaders.h
+  const Vec3 key = Vec3(-0.55, 0.75, 0.60).normalized();  // same direction as kKey in shaders.h
   view.shadow_projection = parallelProjection(view.center_C, 1.05 * view.radius_m, key, Vec3::UnitX());
   view.shadow_from_C = clipToTexture() * view.shadow_projection;
   return view;

@@ -53,7 +53,7 @@ struct PixelRect {
 PixelRect intersection(const PixelRect& a, const PixelRect& b);
 /// The smallest rectangle around both; an empty rectangle is ignored.
 PixelRect join(const PixelRect& a, const PixelRect& b);
-/// The four rectangles that `all` has around `inner`, which lies in it: below, above, left, right.
+/// The four rectangles that `all` has around `inner`, which lies in `all`: below, above, left, right.
 std::array<PixelRect, 4> around(const PixelRect& all, const PixelRect& inner);
 /// The same rectangle in a picture that is `factor` times as large.
 PixelRect scaled(const PixelRect& rect, int factor);

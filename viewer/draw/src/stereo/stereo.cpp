@@ -58,7 +58,7 @@ Image throughSpectralFilter(const Image& image, bool is_left) {
   return out;
 }
 
-/// The camera of an eye in front of a rectangle; all in one frame.
+/// The camera of an eye in front of a rectangle; all arguments are in one frame.
 /// @param R  columns: to the right, up, and towards the eye
 Camera behindRectangle(const Vec3& eye, const Vec3& lower_left, double width_m, double height_m,
                        const Mat3& R) {

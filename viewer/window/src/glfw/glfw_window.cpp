@@ -121,7 +121,7 @@ void GlfwWindow::onAny(GLFWwindow* window) {
 }
 
 void GlfwWindow::openImGui() {
-  // These callbacks are set before those of ImGui, which call them.
+  // These callbacks are set before ImGui sets its own, which call these callbacks.
   glfwSetKeyCallback(window_, [](GLFWwindow* w, int key, int, int action, int) {
     onAny(w);
     const char* name = nameOf(key);

@@ -22,7 +22,8 @@ void requireDisplay();
 class GlfwWindow {
  public:
   /// Throws std::runtime_error if there is no display or it has no OpenGL 3.3.
-  /// @param wants_stereo  asks the driver for a buffer for each eye; hasStereo() tells whether it has them
+  /// @param wants_stereo  asks the driver for a buffer for each eye; hasStereo() tells whether the driver has
+  /// such buffers
   GlfwWindow(const std::string& title, PictureSize size, bool wants_stereo = false);
   ~GlfwWindow();
   GlfwWindow(const GlfwWindow&) = delete;
@@ -55,8 +56,8 @@ class GlfwWindow {
   void present();
   /// Uploads the picture to the texture that picture() returns.
   void setPicture(const Image& image);
-  /// Whether the window has a buffer for each eye. If so, the left half of setPicture()'s image is the left
-  /// eye's.
+  /// Whether the window has a buffer for each eye. With such buffers, the left half of setPicture()'s image
+  /// is the left eye's picture.
   [[nodiscard]] bool hasStereo() const { return has_stereo_; }
   /// The picture's texture, for ImGui's AddImage().
   [[nodiscard]] void* picture() const;

@@ -88,7 +88,7 @@ void useMouse(Session& session) {
   const PixelPlace at =
       inOneEye(session.view.stereo, {io.MousePos.x - session.focus.x, io.MousePos.y - session.focus.y},
                session.focus.size);
-  if (session.drag.isGrabbed()) {  // the drag goes on over the panels
+  if (session.drag.isGrabbed()) {  // the drag continues while the cursor is over the panels
     dragPart(session, io);
     return grabOrLetGo(session, io, at);
   }

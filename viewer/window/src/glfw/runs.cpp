@@ -31,7 +31,7 @@ void tellVerdict(Chapter& chapter, const scenes::StepResult& step) {
   chapter.reason = step.reason.empty() ? step.failure_reason : step.reason;
 }
 
-/// The time axis of what begins now.
+/// Resets the time axis and the figures when a run or free assembly begins.
 void beginLine(Session& session) {
   Timeline& line = session.run_line;
   line = {};
@@ -176,7 +176,7 @@ void noteSteps(Session& session) {
 void keepFigures(Session& session, const scenes::RunFigures& figures) {
   constexpr double kRate_s = 1;
   const double now_s = device::monotonicSeconds();
-  if (session.figures.ticks == 0) {  // the first counts; models were built before
+  if (session.figures.ticks == 0) {  // the run's first counts: models were built before, which takes time
     session.figures = session.figures_before = figures;
     session.figures_s = session.figures_before_s = now_s;
   }

@@ -161,7 +161,7 @@ void askForPicture(Session& session, PictureWorker& worker, const GlfwWindow& wi
   if (wanted.stereo == StereoMode::Interleaved)
     wanted.rows = {session.area.size.width, session.area.size.height,
                    window.screenRow() + static_cast<int>(session.area.y)};
-  if (session.heads) wanted.options.show_ground = false;  // the floor is the room's
+  if (session.heads) wanted.options.show_ground = false;  // the room has a floor of its own
   wanted.options.width = size.width;
   wanted.options.height = size.height;
   if (window.hasStereo()) addStereoBuffers(wanted);
@@ -342,7 +342,7 @@ void viewRecording(const device::RecordedRun& run, const WindowOptions& options)
 }
 
 std::optional<scenes::Verdict> viewSession(const WindowOptions& options) {
-  requireDisplay();  // before the wait, which may be long
+  requireDisplay();  // checked before the wait for the session, which may be long
   if (options.has_sound) askForShortPeriods();
   const auto is_stopped = [&] { return options.stop != nullptr && options.stop->load(); };
   std::unique_ptr<scenes::SessionWatcher> watcher;

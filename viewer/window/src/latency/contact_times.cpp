@@ -11,11 +11,11 @@ namespace {
 
 constexpr double kApartContacts_s = 0.06;  // assumed: bounces of a part are shorter
 constexpr double kLongest_s = 0.3;         // a later event does not belong to the contact
-constexpr double kBefore_s = 0.05;  // force and sound without contact are taken from this time before it ...
-constexpr double kNear_s = 5e-3;    // ... until this time before it
-constexpr double kForceStep_N = 0.5;  // assumed: a person feels such a step
-constexpr float kClick = 4;           // a click is this much louder than the peak before the contact
-constexpr float kSilence = 1e-5F;     // share of full scale: -100 dB
+constexpr double kBefore_s = 0.05;         // force and sound without contact are those from kBefore_s ...
+constexpr double kNear_s = 5e-3;           // ... to kNear_s before the contact
+constexpr double kForceStep_N = 0.5;       // assumed: a person feels such a step
+constexpr float kClick = 4;                // a click is this much louder than the peak before the contact
+constexpr float kSilence = 1e-5F;          // share of full scale: -100 dB
 
 template <class List, class TimeOf>
 auto firstAt(const List& list, double time_s, TimeOf timeOf) {

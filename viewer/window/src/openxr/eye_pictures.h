@@ -21,7 +21,8 @@ class EyePictures {
 
   [[nodiscard]] int width() const { return width_; }
   [[nodiscard]] int height() const { return height_; }
-  /// Copies a picture, of at most this size, to the swapchain. Returns its place, for the frame's layer.
+  /// Copies a picture, at most as large as the swapchain, to the swapchain. Returns the picture's place, for
+  /// the frame's layer.
   XrSwapchainSubImage put(const Image& image);
 
  private:
@@ -41,7 +42,7 @@ class GlxContext {
   GlxContext& operator=(const GlxContext&) = delete;
 
   /// Makes the context current on this thread. While a Renderer draws on a thread, no GLX context may be
-  /// current there.
+  /// current on that thread.
   void makeCurrent() const;
   void release() const;
   [[nodiscard]] XrGraphicsBindingOpenGLXlibKHR binding() const;

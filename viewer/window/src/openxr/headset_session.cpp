@@ -363,7 +363,7 @@ void HeadsetSession::show(const scenes::Snapshot& snapshot, const DrawOptions& o
   const std::lock_guard lock(work_->mutex);
   work_->shown = snapshot;
   work_->options = options;
-  work_->options.show_ground = false;  // the floor is the room's
+  work_->options.show_ground = false;  // the room has a floor of its own
   work_->options.show_legend = work_->options.show_flash = false;
   work_->options.title.clear();
   work_->options.caption.clear();

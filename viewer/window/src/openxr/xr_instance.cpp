@@ -10,7 +10,7 @@ XrConnection::XrConnection() {
   setenv("XR_LOADER_DEBUG", "none", 0);  // whyNot() reports errors, so the loader need not print them
   static constexpr const char* kOpenGl[] = {XR_KHR_OPENGL_ENABLE_EXTENSION_NAME};
   auto wanted = xrStruct<XrInstanceCreateInfo>(XR_TYPE_INSTANCE_CREATE_INFO);
-  // Old runtimes refuse a newer version, which is not needed.
+  // Old runtimes refuse versions above 1.0, which are not needed.
   wanted.applicationInfo.apiVersion = XR_MAKE_VERSION(1, 0, 0);
   wanted.enabledExtensionCount = 1;
   wanted.enabledExtensionNames = kOpenGl;

@@ -18,9 +18,9 @@ namespace vps::viewer {
 
 namespace {
 
-constexpr double kLeastSpeed_m_s = 2e-3;      // assumed: slower impacts are inaudible
-constexpr double kLength_s = 0.4;             // assumed: a part in a hand has decayed by 70 dB
-constexpr std::size_t kMostWaitingBlows = 4;  // an ear cannot tell more apart
+constexpr double kLeastSpeed_m_s = 2e-3;  // assumed: slower impacts are inaudible
+constexpr double kLength_s = 0.4;  // assumed: by then the sound of a part in a hand has decayed by 70 dB
+constexpr std::size_t kMostWaitingBlows = 4;  // a listener cannot tell more impacts apart
 
 std::vector<double> massesOf(const scenes::Scene& scene) {
   std::vector<double> masses_kg;

@@ -24,7 +24,7 @@ constexpr std::chrono::milliseconds kSoundPeriod{10};
 /// Delay from a snapshot to its sound: synthesis, the period of the writing thread, and the card's three
 /// periods. assumed from the 9 ms that `vps view --measure-latency` measures from a contact to its sample.
 constexpr std::int64_t kSoundWay_ns = 9'000'000;
-constexpr double kReopen_s = 2;  // between attempts to open a card that was lost; as in LiveSound
+constexpr double kReopen_s = 2;  // time between attempts to open a card that was lost; as in LiveSound
 
 }  // namespace
 
@@ -71,7 +71,7 @@ struct FollowedSession::Sound {
       ahead.resize(std::max(ahead.size(), kPeriod));
       for (float& x : ahead) x = std::clamp(x, -1.0f, 1.0f);
       if (!std::exchange(was_open, output.isOpen()))
-        next = std::chrono::steady_clock::now();  // the time until here need not be caught up
+        next = std::chrono::steady_clock::now();  // no samples for the time without a card
       output.write(std::span(ahead).first(kPeriod), silence, to_L);
       ahead.erase(ahead.begin(), ahead.begin() + kPeriod);
       std::this_thread::sleep_until(next + kSoundPeriod);

@@ -75,9 +75,9 @@ struct HandMark {
 };
 [[nodiscard]] VPS_VIEWER_API HandMark handMark(const scenes::Snapshot& shot);
 
-/// Left ends of the mark's text in the picture. Without stereo the mark is next to the hand. In stereo it is
-/// at the left border, which both eyes see at the depth of the screen; if each eye has its own half of the
-/// picture, there is a mark in each half.
+/// Left ends of the mark's text in the picture. Without stereo the mark is next to the hand. In stereo the
+/// mark is at the left border, which both eyes see at the depth of the screen; if each eye has its own half
+/// of the picture, there is a mark in each half.
 [[nodiscard]] VPS_VIEWER_API std::vector<PixelPlace> handMarkPlaces(StereoMode mode, const Vec3& hand_W,
                                                                     const Camera& camera, PictureSize size);
 

@@ -28,9 +28,9 @@ class VPS_VIEWER_API HandWork {
   /// Adds a finished step of the procedure, or a part that was put down in free assembly. Undone steps cannot
   /// be redone afterwards.
   void putDown(const scenes::PutDown& put, const scenes::StepResult& result = {});
-  /// Undoes the last step. Returns false if there is none.
+  /// Undoes the last step. Returns false if there is no step to undo.
   bool undo();
-  /// Restores the step that was undone last. Returns false if there is none.
+  /// Restores the step that was undone last. Returns false if no step was undone.
   bool redo();
 
   /// Index of the procedure's next step; the number of steps if all are done.

@@ -32,7 +32,7 @@ LiveRun::LiveRun(scenes::Scene scene, const LiveSettings& settings, std::functio
   if (!settings.hand.empty()) scene_.device.kind = settings.hand;
   is_by_clock_ = settings.device != nullptr || isByPerson(scene_.device.kind);
   if (scene_.device.kind == "mouse" || settings.device != nullptr)
-    scene_.device.placement.reset();  // such a device has no place in the room
+    scene_.device.placement.reset();  // a mouse and a settings.device have no place in the room
   snaps_ = settings.snaps;
   if (is_by_clock_) {
     is_paused_ = false;

@@ -21,9 +21,9 @@ namespace vps::viewer {
 struct LiveSettings {
   std::string record;           ///< file to record the run in; empty: none
   bool is_paused = false;       ///< the run begins paused
-  double speed = 1;             ///< simulated per real second; 0: as fast as possible
+  double speed = 1;             ///< simulated seconds per real second; 0: as fast as possible
   scenes::ModelOptions models;  ///< its `progress` is replaced
-  std::string hand;             ///< kind of device that moves the part; empty: the scene's. See isByPerson()
+  std::string hand;  ///< kind of device that moves the part; empty: the scene's kind. See isByPerson()
   std::shared_ptr<device::HandleWish> wish;  ///< pose that the mouse device reads
   bool has_sound = true;                     ///< plays sound, if there is a sound card
   bool snaps = false;                        ///< the run begins with axis snap
@@ -99,7 +99,8 @@ class VPS_VIEWER_API LiveRun {
   std::vector<std::string> messages_;
   std::unique_ptr<LiveSound> sound_;  ///< null: silent
   std::function<void(const scenes::Snapshot&)> watch_;
-  /// The window has asked for a snapshot. With sound or `watch_` the run makes one in each step anyway.
+  /// The window has asked for a snapshot. With sound or `watch_` the run makes a snapshot in each step
+  /// anyway.
   std::atomic<bool> is_asked_{false};
   LiveStatus status_;
   double speed_;

@@ -103,7 +103,7 @@ class FilmView {
     if (heads_) {
       const scenes::Display& display = heads_->at(time_s);
       wanted.eyes = eyesOf(display, display.screens.front(), display.viewers.front());
-      wanted.options.show_ground = false;  // the floor is the room's
+      wanted.options.show_ground = false;  // the room has a floor of its own
       return;
     }
     wanted.camera = camera_.at(share, wanted.snapshot);

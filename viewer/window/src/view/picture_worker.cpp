@@ -48,7 +48,7 @@ bool isSameView(const PictureRequest& a, const PictureRequest& b) {
 }
 
 /// Draws all tiles on black.
-/// @param options  those of a draft may have fewer pixels than the request
+/// @param options  options of a draft may have fewer pixels than the request
 Image drawTiles(Renderer& renderer, const PictureRequest& asked, const DrawOptions& options) {
   const bool has_rows = asked.stereo == StereoMode::Interleaved;  // a draft keeps the rows of the screen
   const int whole_w = has_rows && asked.rows.width > 0 ? asked.rows.width : options.width;
@@ -179,16 +179,17 @@ void PictureWorker::run(const RenderScene& scene, double wait_s) {
 }
 
 void PictureWorker::drawAll(Renderer& renderer) {
-  // While a full picture is drawn, which may take a second, there are no drafts. So the view must rest first.
+  // While a full picture is drawn, which may take a second, there are no drafts. A full picture is therefore
+  // drawn only when the view is at rest.
   constexpr auto kRest = std::chrono::milliseconds(150);
   // A draft that takes longer than kSlowDraft_s (20 pictures a second) gets fewer pixels, down to a third of
-  // the width and height; a draft faster than kFastDraft_s gets more. assumed: a third still shows where
-  // parts move.
+  // the width and height; a draft faster than kFastDraft_s gets more. assumed: a third of the width and
+  // height still shows where parts move.
   constexpr double kSlowDraft_s = 0.05, kFastDraft_s = 0.015;
   constexpr int kMostShrink = 3;
   // In a view at rest only the region that changed is drawn. A contact must be visible within 24 ms, the
-  // bound between picture, sound and force. It may happen while a draft is drawn and then appears in the next
-  // one, so two such drafts must fit into the bound.
+  // bound between picture, sound and force. A contact may begin while a draft is drawn and then appears in
+  // the next draft, so two such drafts must fit into the bound.
   constexpr double kSlowPart_s = 0.006, kFastPart_s = 0.002;
   int shrink = 1;
   PictureRequest asked;

@@ -22,7 +22,7 @@ struct PictureRequest {
   Camera camera;
   DrawOptions options;
   StereoMode stereo = StereoMode::Mono;
-  /// Used in place of `camera`; without stereo the picture is seen from the middle between them.
+  /// Used in place of `camera`; without stereo the picture is seen from the middle between the eyes.
   std::optional<EyePair> eyes;
   ScreenRows rows;  ///< rows of an interleaved picture
   /// Drawn on black in place of `camera` and `eyes`; empty: one whole picture.

@@ -15,7 +15,7 @@ void goTo(ViewState& state, const Timeline& line, double time_s) {
   state.time_s = std::clamp(time_s, 0.0, line.end_s);
 }
 
-/// Goes to the start of the current step; from there, to the start of the step before.
+/// Goes to the start of the current step; at that start, to the start of the previous step.
 void goToLastStep(ViewState& state, const Timeline& line) {
   std::size_t now = line.chapterAt(state.time_s);
   if (now > 0 && state.time_s - line.chapters[now].start_s < kNudge_s) --now;
@@ -34,7 +34,7 @@ void toggleSection(ViewState& state, const Box& box_W) {
     state.draw.cut = sectionFacing(state.camera, box_W);
 }
 
-/// Switches through: all outputs, each output alone, and all again.
+/// Switches from all outputs to each output alone in turn, and then back to all outputs.
 void nextOutput(ViewState& state) {
   const std::size_t next = state.output ? *state.output + 1 : 0;
   state.output = next < state.outputs && state.outputs > 1 ? std::optional(next) : std::nullopt;

@@ -62,7 +62,7 @@ struct KeyBinding {
 };
 /// All keys, in the order of the list that `?` shows.
 VPS_VIEWER_API std::span<const KeyBinding> keyBindings();
-/// The actions of the mouse, for the same list.
+/// The actions of the mouse, for the list that `?` shows.
 VPS_VIEWER_API std::span<const KeyBinding> mouseBindings();
 
 struct ViewState {

@@ -16,8 +16,8 @@ struct VPS_VIEWER_API Camera {
   Vec3 up_W = Vec3::UnitZ();
   double fov_rad = 0.5;  ///< vertical angle of view; 0.5 is a short telephoto lens, which keeps proportions
   /// Off-axis frustum: position of the picture's middle, as tangents to the right of and above the line from
-  /// eye to target. The line stays perpendicular to the picture; fov_rad is then 2 atan(half the picture's
-  /// height / distance).
+  /// eye to target. The line from eye to target stays perpendicular to the picture; fov_rad is then 2
+  /// atan(half the picture's height / distance).
   double shift_x = 0, shift_y = 0;
   double aspect = 0;  ///< width over height of the frustum; 0: as the picture's pixels
 

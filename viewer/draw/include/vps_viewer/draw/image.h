@@ -27,8 +27,9 @@ struct VPS_VIEWER_API Image {
 /// rgb has the wrong size.
 VPS_VIEWER_API std::string pngBytes(const Image& image);
 
-/// Writes a PNG file, whole or not at all. The same image gives the same bytes (no time stamp). The folder
-/// must exist. Throws LoadError when it cannot be written, std::runtime_error when rgb has the wrong size.
+/// Writes a PNG file, whole or not at all. The same image gives the same bytes (no time stamp). The file's
+/// folder must exist. Throws LoadError when the file cannot be written, std::runtime_error when rgb has the
+/// wrong size.
 VPS_VIEWER_API void savePng(const Image& image, const std::string& file);
 
 /// Reads any 8- or 16-bit PNG as RGB; transparent pixels are blended with white. Throws LoadError if the file
@@ -40,7 +41,7 @@ struct ImageDifference {
   bool is_same_size = true;  ///< false: the sizes differ, and the other members have their greatest values
   double share_beyond = 0;   ///< share of pixels that differ by more than the tolerance, 0 to 1
   int greatest = 0;
-  double mean = 0;  ///< over all pixels
+  double mean = 0;  ///< mean difference over all pixels
 };
 
 /// @param tolerance difference that counts as equal, 0 to 255; 2 covers the different rounding of SSE and AVX

@@ -47,7 +47,8 @@ VPS_VIEWER_API ShownModels shownModels(const std::vector<std::string>& words);
 /// of the parts that a step moves and voxels of the others, as contact uses them.
 class VPS_VIEWER_API ModelView {
  public:
-  /// Replaces the meshes of `drawn` by meshes that the ModelView owns; keep it as long as `drawn` is used.
+  /// Replaces the meshes of `drawn` by meshes that the ModelView owns; keep the ModelView as long as `drawn`
+  /// is used.
   ModelView(const scenes::Scene& scene, const ShownModels& shown, RenderScene& drawn);
 
  private:

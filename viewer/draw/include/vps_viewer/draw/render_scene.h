@@ -15,7 +15,7 @@
 
 namespace vps::viewer {
 
-/// One mesh that can be drawn; BodySnapshot::part is an index into the list of them.
+/// One mesh that can be drawn; BodySnapshot::part is an index into the list of these meshes.
 struct DrawnMesh {
   const Mesh* mesh = nullptr;  ///< must live as long as the constructor of Renderer runs
   std::array<float, 3> color = {0.7f, 0.72f, 0.75f};  ///< linear RGB
@@ -77,7 +77,8 @@ struct DrawOptions {
   bool operator==(const DrawOptions&) const = default;
 };
 
-/// Greatest width and height of a picture. pictureLength_px() clamps other sizes to 1 and this.
+/// Greatest width and height of a picture. pictureLength_px() clamps a size to the range from 1 to this
+/// value.
 inline constexpr int kGreatestPicture_px = 8192;
 [[nodiscard]] constexpr int pictureLength_px(int wanted) {
   return std::clamp(wanted, 1, kGreatestPicture_px);
@@ -88,7 +89,7 @@ inline constexpr int kGreatestPicture_px = 8192;
   return std::max(4, height / 18);
 }
 
-/// The box in W around everything that the snapshot shows. With show_waiting it includes waiting parts.
+/// The box in W around everything that the snapshot shows. With show_waiting the box includes waiting parts.
 VPS_VIEWER_API Box snapshotBounds(const RenderScene& scene, const scenes::Snapshot& snapshot,
                                   bool show_waiting = false);
 

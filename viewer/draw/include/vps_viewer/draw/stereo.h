@@ -14,8 +14,8 @@ namespace vps::viewer {
 
 enum class StereoMode {
   Mono,         ///< one picture, from the middle between the eyes
-  SideBySide,   ///< left eye in the left half, each squeezed to half its width
-  TopBottom,    ///< left eye in the upper half, each squeezed to half its height
+  SideBySide,   ///< left eye in the left half, each picture squeezed to half its width
+  TopBottom,    ///< left eye in the upper half, each picture squeezed to half its height
   Interleaved,  ///< alternating rows, the uppermost for the left eye: line-polarised screens
   Anaglyph,     ///< for red-cyan glasses: left red, right green and blue
   /// Two pictures, for two projectors with interference filters: each eye has its own three narrow bands of

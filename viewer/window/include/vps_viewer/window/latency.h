@@ -39,12 +39,13 @@ struct ContactTimes {
   double drawing_s = -1;        ///< drawing of the first picture with the contact began
   double picture_s = -1;        ///< the same picture read back
 
-  /// Time between the first and the last of picture, sound and force; negative if one was not found.
+  /// Time between the first and the last of picture, sound and force; negative if one of these events was not
+  /// found.
   /// @param has_sound  false: only picture and force count
   [[nodiscard]] VPS_VIEWER_API double apart_s(bool has_sound) const;
 };
 
-/// A row of the table of delays: one event of the way from the encoder to the eye, ear or hand.
+/// A row of the table of delays: one event between the encoder and the eye, ear or hand.
 struct LatencyStage {
   const char* key;    ///< "picture_ms"
   const char* words;  ///< "picture: read back"

@@ -28,8 +28,8 @@ struct WindowOptions {
   std::string output;              ///< name of the display's picture that is shown alone at first; empty: all
   int full_screen = 0;             ///< monitor that the picture fills at first, counted from 1; 0: none
   bool runs = false;               ///< begins with a run of the procedure instead of the tour
-  std::string hand;                ///< kind of device that moves the part in a run; empty: the scene's
-  double speed = 1;                ///< simulated per real second; 0: a run is as fast as it can be
+  std::string hand;                ///< kind of device that moves the part in a run; empty: the scene's kind
+  double speed = 1;                ///< simulated seconds per real second; 0: as fast as possible
   bool seeks_headset = false;      ///< shows the scene in a headset too, if OpenXR finds one
   bool has_sound = true;           ///< plays the sound of a run, if there is a sound card
   std::string record;              ///< file in which a run is recorded; empty: none
