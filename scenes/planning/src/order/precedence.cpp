@@ -47,7 +47,7 @@ std::vector<PlannedOrder> reducedOrder(const std::vector<PlannedOrder>& order) {
   for (const PlannedOrder& one : order) after[one.before].insert(one.after);
   std::vector<PlannedOrder> out;
   for (const PlannedOrder& one : order) {
-    // Search for a chain of other steps from the first step to the second.
+    // Search for a chain of other steps that leads from one.before to one.after.
     std::vector<std::string> waiting;
     std::set<std::string> seen;
     for (const std::string& next : after[one.before])

@@ -67,7 +67,7 @@ std::vector<std::vector<std::size_t>> connectedGroups(const PairMotions& motions
   std::vector<std::vector<std::size_t>> groups, larger;
   for (const std::size_t part : movable) larger.push_back({part});
   while (!larger.empty() && groups.size() < kMostGroups) {
-    std::set<std::vector<std::size_t>> found;  // each set sorted by part
+    std::set<std::vector<std::size_t>> found;  // sets of parts, each sorted by part
     for (const std::vector<std::size_t>& group : larger)
       for (const std::size_t part : movable) {
         if (found.size() + groups.size() >= kMostGroups) break;

@@ -63,7 +63,7 @@ class TakingApart {
     screws_.resize(motions.parts().size());
     legs_.resize(motions.parts().size());
     if (!progress) return;
-    // The progress of a single search has no known end: it only reports activity, and lets the caller cancel.
+    // A single search has no known end: its progress only reports activity, and lets the caller cancel.
     const auto count = static_cast<double>(remaining_.size() - fixed_.size());
     progress_ = [this, count, &progress](std::string_view, double) {
       progress("taking apart", 1 - static_cast<double>(remaining_.size() - fixed_.size()) / count);
@@ -97,8 +97,8 @@ class TakingApart {
     return byLegs();
   }
 
-  /// Searches paths of several legs. The work limits do not depend on the machine: about five seconds per
-  /// part, a minute in all.
+  /// Searches paths of several legs. The work limits do not depend on the machine: about five seconds for
+  /// each part, and a minute in all.
   Removal byLegs() {
     const std::size_t parts = remaining_.size() - fixed_.size();
     const std::uint64_t share = shareOfWork(parts);
@@ -164,7 +164,7 @@ class TakingApart {
 
   /// The best direction in which a part passes all remaining parts; likely directions are tried first. A
   /// direction that needs an allowance for overlapping facets, such as a hole that is a little too small, is
-  /// used only if no other is free.
+  /// used only if no other direction is free.
   std::optional<Way> straightWay(std::size_t part) {
     std::optional<Way> last_resort;
     for (std::vector<std::size_t> directions : {motions_.axesOf(part), motions_.around()}) {
@@ -204,8 +204,8 @@ class TakingApart {
     return is_along ? kAlongFit : slope + kMore;
   }
 
-  /// Tests the part that stopped the motion last time first. A direction that was free stays free, since
-  /// parts only leave.
+  /// Tests first the part that stopped the motion in the last test. A direction that was free stays free,
+  /// since the remaining parts only become fewer.
   bool leaves(std::size_t part, std::size_t direction) {
     const auto [known, is_new] = stopped_by_[part].try_emplace(direction, part);
     std::size_t& by = known->second;
@@ -219,7 +219,8 @@ class TakingApart {
     return true;
   }
 
-  /// Searches again only if a part has left since that could have blocked the screw.
+  /// Searches again only if a part has left since the last search, because that part may have blocked the
+  /// screw.
   std::optional<Way> screwOf(std::size_t part) {
     Screw& known = screws_[part];
     if (known.is_known && (known.way || known.among == remaining_.size())) return known.way;
@@ -231,7 +232,7 @@ class TakingApart {
     const auto isIn = [](const std::vector<std::size_t>& parts, std::size_t part) {
       return std::ranges::binary_search(parts, part);
     };
-    const auto isCarried = [&](std::size_t part) {  // by a part that stays
+    const auto isCarried = [&](std::size_t part) {  // whether a part that stays carries this part
       return std::ranges::any_of(motions_.carriersOf(part), [&](std::size_t carrier) {
         return isIn(remaining_, carrier) && !isIn(removal.parts, carrier);
       });
@@ -273,8 +274,8 @@ class TakingApart {
 
   [[nodiscard]] Disassembly::Blocked blockedOf(std::size_t part) const {
     Disassembly::Blocked blocked{part, {}, !legs_[part].isSpent()};
-    // Blocking parts that touch this part are reported; if there are none, as for a link in a chain, all
-    // blocking parts.
+    // Only blocking parts that touch this part are reported; if no blocking part touches it, as for a link in
+    // a chain, all blocking parts are reported.
     for (const bool has_to_meet : {true, false}) {
       for (const std::size_t held : remaining_) {
         if (held == part || (has_to_meet && !motions_.areNear(held, part))) continue;
@@ -297,7 +298,7 @@ class TakingApart {
   /// By part and direction: the part that stopped the motion last; the part itself if nothing stopped it.
   std::vector<std::map<std::size_t, std::size_t>> stopped_by_;
   std::vector<Screw> screws_;
-  std::vector<SearchWork> legs_;  ///< by part, of its last search for legs
+  std::vector<SearchWork> legs_;  ///< by part: the work of the last search for legs of the part
   std::uint64_t work_of_legs_ = 0;
   const std::function<void(const Removal&)>& on_removal_;
   Progress progress_;

@@ -11,7 +11,7 @@
 
 namespace vps::scenes {
 
-/// One part that leaves, or several that leave as one.
+/// One part that leaves, or several parts that leave as one.
 struct Removal {
   std::vector<std::size_t> parts;  ///< ascending
   Way way;
@@ -30,24 +30,25 @@ struct Disassembly {
   std::vector<Blocked> blocked;
 };
 
-/// Takes parts off the fixed ones, one after the other. Rules of preference, in this order: no part falls; no
-/// allowance for meshes; straight before screws; upwards, along round fits, sideways, down; the direction of
-/// the previous removal; the loosest fit (so that pins are in place before the parts that they locate); the
-/// highest part; the first part. If no part leaves alone, the smallest set that leaves straight moves as one.
-/// If no set does, paths of several legs are searched, of single parts and then of sets, with work limits for
-/// each search and for all. The parts that remain in the end are blocked. Runs on all cores.
-/// @param on_removal  called with each removal when it is found
+/// Takes parts off the fixed parts, one after the other. Rules of preference, in this order: no part falls;
+/// no allowance for meshes; straight before screws; upwards, along round fits, sideways, down; the direction
+/// of the previous removal; the loosest fit (so that pins are in place before the parts that they locate);
+/// the highest part; the first part. If no part leaves alone, the smallest set of parts that leaves straight
+/// moves as one. If no set leaves straight, paths of several legs are searched, of single parts and then of
+/// sets, with work limits for each search and for all. The parts that remain in the end are blocked. Runs on
+/// all cores.
+/// @param on_removal  called with each removal when the removal is found
 Disassembly takeApart(const PairMotions& motions, const std::vector<std::size_t>& members,
                       const std::vector<std::size_t>& fixed, const Progress& progress,
                       const std::function<void(const Removal&)>& on_removal = {});
 
-/// The smallest set of parts without a fixed one that leaves straight, with its direction. Each part and
-/// direction gives the set of all parts that it would push along. Empty if no set leaves.
+/// The smallest set of parts without a fixed part that leaves straight, with its direction. Each part and
+/// direction gives the set of all parts that this part would push along. Empty if no set leaves.
 Removal smallestGroup(const PairMotions& motions, const std::vector<std::size_t>& remaining,
                       const std::vector<std::size_t>& fixed, const Progress& progress);
 
-/// Sets of parts without a fixed one, each connected by pairs that are near each other: all sets of two or
-/// more parts, smaller ones first, at most 256.
+/// Sets of parts without a fixed part, each connected by pairs that are near each other: all sets of two or
+/// more parts, smaller sets first, at most 256 sets.
 std::vector<std::vector<std::size_t>> connectedGroups(const PairMotions& motions,
                                                       const std::vector<std::size_t>& remaining,
                                                       const std::vector<std::size_t>& fixed);
@@ -57,12 +58,12 @@ int slopeOf(const PairMotions& motions, const Vec3& direction_W);
 
 struct BasePart {
   std::size_t part = 0;
-  std::string reason;  ///< why it was chosen, in words
+  std::string reason;  ///< why the part was chosen as the base, in words
 };
 
 /// Proposes a base among the parts with at least half the volume of the largest part: the part with most
-/// neighbours that it touches or fits; of equals the largest, then the first. The volume of an open mesh is
-/// that of its box.
+/// neighbours that it touches or fits; among equals the largest part, then the first part. The volume of an
+/// open mesh is the volume of its box.
 BasePart proposedBase(const PairMotions& motions, const std::vector<std::size_t>& members);
 
 /// @param names  names of the removals, in their order

@@ -167,7 +167,8 @@ class Explained {
     return share > kLeast && share < kMost;
   }
 
-  /// Assumed: no tighter than H7/u6 of ISO 286, which has about 0.1 % of the diameter plus 40 um.
+  /// Assumed: a press fit is no tighter than H7/u6 of ISO 286, whose interference is about 0.1 % of the
+  /// diameter plus 40 um.
   [[nodiscard]] bool isPressFit() const { return interference_m() < 1e-3 * fit_->shaft_m + 40e-6; }
 
   [[nodiscard]] OverlapChoice thread(OverlapChoice out) const {

@@ -13,8 +13,8 @@
 
 namespace vps::scenes {
 
-/// Radial clearance that a resized shaft or hole gets. With 20 um in diameter the virtual hand found the hole
-/// in 100 of 100 tries; shafts that pass several holes need more.
+/// Radial clearance that a resized shaft or hole gets. With a clearance of 20 um in diameter the virtual hand
+/// found the hole in 100 of 100 tries; shafts that pass several holes need more.
 inline constexpr double kPassingRoom_m = 25e-6;
 
 /// A choice for each overlapping pair: its OverlapKind and the change to the planned scenes. Pairs with a
@@ -26,7 +26,7 @@ std::vector<OverlapChoice> overlapChoices(const std::vector<PlacedSurface>& part
                                           const std::vector<std::size_t>& fixed);
 
 /// A choice for each part that is not a body: a face, or a surface without an inside, which has no mass that
-/// a hand could carry. Empty if no part is a body.
+/// a hand could carry. There is no choice if no part is a body.
 std::vector<OverlapChoice> noVolumeChoices(const std::vector<PlacedSurface>& parts,
                                            const std::vector<std::size_t>& fixed);
 
@@ -52,16 +52,16 @@ std::vector<Fastener> fastenersIn(const std::vector<PlacedSurface>& parts, const
 /// surface. A wire has one or two narrow bands at every distance, a shell has bands as wide as itself, and a
 /// perforated plate has many bands.
 struct WireMeasure {
-  double length_m = 0;  ///< along the centre line; of a loop, its circumference
+  double length_m = 0;  ///< length along the centre line; for a loop, its circumference
   double width_m = 0;   ///< mean diagonal of the box of a band
-  double bands = 0;     ///< number of bands per distance that 95 % of all distances do not exceed
+  double bands = 0;     ///< number of bands at one distance, which 95 % of all distances do not exceed
   [[nodiscard]] double slenderness() const { return width_m > 0 ? length_m / width_m : 0; }
 };
 
-/// Measures on a grid of cells along the surface. A cell is as wide as a quarter of the thickness of a round
-/// wire, or wider so that there are at most about 50,000 cells; turns of a spring that are nearer to each
-/// other than two cells are merged. Empty for a mesh without volume or area. O(cells log cells). The result
-/// is the same on every machine.
+/// Measures the surface of a mesh on a grid of cells along the surface. A cell is as wide as a quarter of the
+/// thickness of a round wire, or wider so that there are at most about 50,000 cells; turns of a spring that
+/// are nearer to each other than two cells are merged. All measures are 0 for a mesh without volume or area.
+/// O(cells log cells). The result is the same on every machine.
 WireMeasure measureWire(const Mesh& mesh);
 
 /// Whether a part is much longer than wide, with at most two bands at each distance from its end.

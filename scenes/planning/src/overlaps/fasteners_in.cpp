@@ -16,8 +16,9 @@ namespace {
 /// empty.
 std::string keyWords(const PartSurface& part) {
   constexpr double kFilled =
-      0.8;  // share of its box: round ends take a fifth of a box that is as long as wide
-  constexpr double kLeastLength = 1.2, kMostFlatness = 4;  // assumed: DIN 6885 has widths up to 1.8 heights
+      0.8;  // share of its box that a key fills: round ends take a fifth of a box that is as long as wide
+  constexpr double kLeastLength = 1.2,
+                   kMostFlatness = 4;  // assumed: the keys of DIN 6885 are up to 1.8 times as wide as high
   std::array<double, 3> size_m = {part.box().size().x(), part.box().size().y(), part.box().size().z()};
   const double volume_m3 = std::abs(massProperties(part.mesh()).volume_m3);
   if (volume_m3 < kFilled * part.box().size().prod()) return "";

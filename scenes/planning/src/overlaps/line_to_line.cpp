@@ -15,7 +15,7 @@ namespace vps::scenes {
 namespace {
 
 constexpr double kRounding =
-    2e-6;  // relative to the size: rounding of one face's size in files with six digits
+    2e-6;  // relative to the size of a face: rounding of the size in files with six digits
 
 bool isLineToLine(const CheckedFit& fit) {
   return fit.kind == FitKind::Shaft &&

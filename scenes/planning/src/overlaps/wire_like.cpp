@@ -94,7 +94,8 @@ class SurfaceCells {
   std::size_t kept_ = 0;
 };
 
-/// Distances from one cell along the surface, in cells; infinite for cells that are not connected to it.
+/// Distances from one cell along the surface, in cells; infinite for cells that are not connected to that
+/// cell.
 std::vector<double> distancesFrom(const SurfaceCells& cells, std::uint32_t start) {
   std::vector<double> distance(cells.size(), std::numeric_limits<double>::infinity());
   using Entry = std::pair<double, std::uint32_t>;

@@ -166,7 +166,7 @@ class Bench {
     return std::nullopt;
   }
 
-  /// Prepends to the step's path: lift, move across, lower, move aside.
+  /// Prepends the motions from the bench to the step's path: lift, move across, lower, move aside.
   void begin(PlannedStep& step, const Box& start, const Vec3& aside, const Vec3& corner) const {
     const Vec3 lie = corner - start.min;
     const Vec3 lifted(lie.x(), lie.y(), clear_m_ - start.min.z()), over(aside.x(), aside.y(), lifted.z());

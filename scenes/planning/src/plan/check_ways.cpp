@@ -32,8 +32,8 @@ const char* toText(WayFaultKind kind) {
 namespace {
 
 constexpr int kPosesOfLeg = 24;
-constexpr double kTouch_m = 10e-6;  // as StepResult::penetration_limit_m without a clearance
-constexpr double kFall_m = 1e-3;    // a part that sinks by less counts as carried, as in planning
+constexpr double kTouch_m = 10e-6;  // limit of StepResult::penetration_limit_m for a step without a clearance
+constexpr double kFall_m = 1e-3;  // a part that sinks by less than kFall_m counts as carried, as in planning
 
 /// A piece of a path with one motion that starts at a pose.
 struct WayPiece {
@@ -55,7 +55,8 @@ class WayCheck {
     held_ = std::make_shared<const StandingParts>(std::move(standing));
   }
 
-  /// The fault with the greatest depth beyond the allowed depth on the path; no part if the path is free.
+  /// The fault with the greatest depth beyond the allowed depth on the path; its part is empty if the path is
+  /// free.
   [[nodiscard]] WayFault deepest() const {
     WayFault worst;
     for (const Pose& X_WP : poses_W()) consider(X_WP, worst);
@@ -73,7 +74,7 @@ class WayCheck {
   }
 
  private:
-  static constexpr std::uint64_t kMostWork = 2'000'000;  // a few seconds per leg
+  static constexpr std::uint64_t kMostWork = 2'000'000;  // takes a few seconds for each leg
 
   [[nodiscard]] Overlap depthAt(const PlacedSurface& held, const Pose& X_WP) const {
     return deepestOverlap(part_.surface->overlap(), X_WP, held.surface->overlap(), held.X_WP);
@@ -95,9 +96,10 @@ class WayCheck {
     }
   }
 
-  /// Searches along a piece until the part is stopped, measures there and at eight poses up to 1.3 mm beyond,
-  /// and continues from the last of these. The search ends early once a fault is found, and incomplete at the
-  /// limit of work or of stops; the rest of the leg is then checked only at its 24 regular poses.
+  /// Searches along a piece until the part is stopped, measures the depth at eight poses up to 1.3 mm beyond
+  /// that pose, and continues from the last of these poses. The search ends early once a fault is found, and
+  /// incomplete at the limit of work or of stops; the rest of the leg is then checked only at its 24 regular
+  /// poses.
   void follow(WayPiece piece, WayFault& worst) const {
     constexpr int kStopsWithFault = 16, kBeyond = 8;
     constexpr int kMostStops = 1024;  // 1.3 m of a path on which the part is stopped everywhere
@@ -114,8 +116,8 @@ class WayCheck {
         s = std::min(piece.most, reach.s + (1 << k) * kTouch_m / speed);
         consider(piece.motion_W.at(s) * piece.X_WP, worst);
       }
-      // A straight motion and a turn about a fixed axis stay the same motion from the new pose on; the centre
-      // advances.
+      // From the new pose on, a straight motion and a turn about a fixed axis stay the same motion; only the
+      // centre advances.
       piece.X_WP = piece.motion_W.at(s) * piece.X_WP;
       if (piece.motion_W.is_turn)
         piece.motion_W.center += piece.motion_W.forward_m * s * piece.motion_W.direction;
@@ -284,7 +286,8 @@ PlannedAssembly asPlanned(const Scene& scene) {
 void addLostClearances(const Scene& scene, const std::vector<PlacedSurface>& placed,
                        const std::map<std::string, double>& planned_m, const Progress& progress,
                        std::vector<WayFault>& of_step) {
-  constexpr double kSame_m = 2e-6, kSameShare = 2e-3;  // each clearance is measured to within half of that
+  constexpr double kSame_m = 2e-6,
+                   kSameShare = 2e-3;  // each clearance is measured to within half of these values
   CheckSettings settings;
   settings.has_play = false;
   const CheckResult checked = checkPlaced(scene.name, placed, settings, progress);

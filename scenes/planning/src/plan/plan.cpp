@@ -49,7 +49,7 @@ std::size_t PlanResult::blocked() const {
 
 namespace {
 
-/// Distance along d until a moving box has left another box; 0 if it never meets that box.
+/// Distance along d until a moving box has left another box; 0 if the moving box never touches the other box.
 double leavingDistance(const Box& moving, const Box& held, const Vec3& d) {
   constexpr double kAcross = 1e-9;  // rounding of a direction along an axis
   double apart_m = std::numeric_limits<double>::infinity();
@@ -65,8 +65,8 @@ double leavingDistance(const Box& moving, const Box& held, const Vec3& d) {
 }
 
 /// Distance that parts move on their last leg until they have left the boxes of all held parts, plus half of
-/// their own length. For a screw, measured from its target without turning: a hand starts it outside its mate
-/// and turns it onto its thread.
+/// their own length. The distance of a screw is measured from its target without turning: a hand starts the
+/// screw outside its mate and turns it onto its thread.
 double leavingDistance(const PairMotions& motions, const Removal& removal,
                        const std::vector<std::size_t>& held) {
   const Vec3& d = removal.way.legs.back().motion.direction;
@@ -176,7 +176,7 @@ class Planner {
   }
 
   /// Adds poses along a turn, at most an eighth of a turn apart. The hand moves the part's centre on a
-  /// straight line between poses; the poses are close enough to keep it within 2 um of its circle.
+  /// straight line between poses; the poses are close enough to keep the centre within 2 um of its circle.
   static void appendTurn(const Leg& leg, const Pose& from_W, const Vec3& center_W, std::vector<Pose>& out) {
     if (!leg.motion.is_turn) return;
     constexpr double kMost_rad = 0.79, kLeast_rad = 0.05, kOff_m = 2e-6;

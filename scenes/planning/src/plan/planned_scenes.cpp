@@ -16,7 +16,7 @@ namespace {
 /// Moves the vertices of a cylinder, and of chamfers at its ends, to the new radius if they lie outside it
 /// (for a hole: inside it).
 void resize(Mesh& mesh, const Resized& to) {
-  constexpr double kOn = 1e-3;  // relative to the radius
+  constexpr double kOn = 1e-3;  // distance from the cylinder, relative to the radius
   const bool is_wider = to.to_radius_m > to.from_radius_m;
   const double reach_m = is_wider ? 0.1 * to.from_radius_m : to.from_radius_m;
   for (Vec3& x : mesh.vertices) {
@@ -115,7 +115,7 @@ class SceneMaker {
     return part;
   }
 
-  /// The parts of a subassembly as one part, in the frame of the first.
+  /// The parts of a subassembly as one part, in the frame of the first part.
   [[nodiscard]] ScenePart united(const PlannedStep& step) const {
     std::vector<ScenePart> parts;
     for (const std::string& name : step.parts) parts.push_back(partNamed(name));
@@ -142,8 +142,8 @@ class SceneMaker {
   }
 
   /// Time limit of a step: the default limit, twice the hand's time for the path (with the device recentred
-  /// every 0.2 m), and two rounds of searches on each of the last legs. The hand moves at a third of its
-  /// speed on the last leg, since it may meet an edge there.
+  /// every 0.2 m), and the time of two rounds of searches on each of the last legs. The hand moves at a third
+  /// of its speed on the last leg, since the part may meet an edge there.
   [[nodiscard]] double timeFor(const SceneStep& step) const {
     constexpr double kBetween_m = 0.2, kRecentre_s = 2, kLastLeg = 3;
     // Measured: a slide reaches its dovetail after 52 s, in the second round of searches.

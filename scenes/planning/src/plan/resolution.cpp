@@ -20,14 +20,14 @@ namespace vps::scenes {
 
 namespace {
 
-/// Memory limit of the models of one part: that of a cube of kLargestUsual_m.
+/// Memory limit of the models of one part: the memory of a cube of kLargestUsual_m.
 double mostBytes() {
   static const double bytes =
       expectedMapBytes(makeBox(Vec3::Constant(kLargestUsual_m)), voxMapSettings(Fidelity()));
   return bytes;
 }
 
-/// A voxel size, and what it does not resolve.
+/// A voxel size, and the size that it does not resolve.
 struct Choice {
   double voxel_m = 0;
   std::string missed;  ///< the size below kVoxelsAcross voxels, in words; empty: all sizes are resolved
@@ -48,7 +48,7 @@ double fitting_m(const ScenePart& part, double wanted_m) {
 }
 
 /// Composes "voxels of 1.5 mm for 'a', 'b', 'c' and 4 others": one clause per voxel size, with a warning if
-/// it is too coarse.
+/// the voxel size is too coarse.
 class ChoiceWords {
  public:
   void add(const std::string& of, const Choice& choice) {
@@ -77,7 +77,7 @@ class ChoiceWords {
 
  private:
   struct Group {
-    std::string voxel, missed;  ///< missed: of the group's first part
+    std::string voxel, missed;  ///< voxel size, and the size that it misses in the group's first part
     std::vector<std::string> names;
   };
 
@@ -112,7 +112,7 @@ class FreeParts {
   }
 
  private:
-  /// A choice, and whether the memory limit made it coarser.
+  /// A choice, and whether the memory limit made its voxels coarser.
   struct Capped {
     Choice choice;
     bool is_capped = false;
@@ -157,7 +157,7 @@ class FreeParts {
   }
 
   /// Enlarges all voxels that the memory limit chose by one common factor, until all models together take no
-  /// more than kMostModels_bytes. Needed for scenes with many large parts.
+  /// more than kMostModels_bytes. Scenes with many large parts need this.
   /// @return the reason in words; empty: nothing was changed
   std::string coarsenForSum() {
     const bool is_any = fixed_.is_capped || std::ranges::any_of(own_, &Capped::is_capped);
@@ -198,7 +198,7 @@ class FreeParts {
   std::vector<MeetingSize> sizes_;
   MeetingSize least_fixed_;
   Capped fixed_;
-  std::vector<Capped> own_;  ///< by part; only for movable parts
+  std::vector<Capped> own_;  ///< choices by part; only for movable parts
 };
 
 }  // namespace

@@ -19,9 +19,9 @@ namespace vps::scenes {
 namespace {
 
 constexpr double kMostGrowth =
-    0.05;  // relative to the least extent: offsets must stay far below the size of facets
-constexpr double kLift =
-    0.01;  // relative to the part's diagonal: lifts the part off its seat, which would stop every tilt
+    0.05;  // greatest offset relative to the least extent: offsets must stay far below the size of facets
+constexpr double kLift = 0.01;   // height relative to the part's diagonal that lifts the part off its seat,
+                                 // which would stop every tilt
 constexpr double kAcross = 0.5;  // |cos| below which an axis counts as across the path
 
 /// The greatest offset that passes and the least offset that fails, by one criterion.
@@ -55,7 +55,7 @@ class StepProbe {
   StepMargin measure() {
     StepMargin out;
     out.part = scene_.parts[scene_.steps[0].part].part.name;
-    if (scene_.steps[0].tolerance_m <= 0)  // all sizes get the tolerance of the part as drawn
+    if (scene_.steps[0].tolerance_m <= 0)  // the part has the tolerance of its drawn size at all sizes
       scene_.steps[0].tolerance_m = checkDrawnTargets(scene_, {})[0].tolerance_m;
     measureGrowth(out);
     measurePlay(out);

@@ -13,8 +13,8 @@ namespace vps::scenes {
 
 namespace {
 
-constexpr double kSigmas =
-    3;  // from the middle to a limit: 99.73 % of a normal distribution lie within three
+constexpr double kSigmas = 3;  // standard deviations from the middle to a limit: 99.73 % of a normal
+                               // distribution lie within three of them
 
 std::uint64_t mixed(std::uint64_t x) {
   return device::Random(x).next();
@@ -27,7 +27,7 @@ std::uint64_t hashOf(std::string_view text) {
   return hash;
 }
 
-/// Generator for one run of a study and one name. Its numbers do not depend on other runs and names.
+/// Generator for one run of a study and one name. The random numbers do not depend on other runs and names.
 device::Random generatorOf(std::uint64_t seed, std::uint64_t run, std::string_view name) {
   return device::Random(mixed(mixed(mixed(seed) ^ run) ^ hashOf(name)));
 }
@@ -46,7 +46,7 @@ double standardNormal(device::Random& random) {
 void add(const StudyVariable& variable, double value, PartDeviation& to) {
   switch (variable.quantity) {
     case StudyQuantity::Size:
-      to.growth_m += (variable.is_hole ? -0.5 : 0.5) * value;  // half on each side
+      to.growth_m += (variable.is_hole ? -0.5 : 0.5) * value;  // half of the deviation on each side
       break;
     case StudyQuantity::X:
     case StudyQuantity::Y:

@@ -81,7 +81,7 @@ class Study {
   const std::vector<std::size_t>& numbers_;
   const StudyOptions& options_;
   std::atomic<std::size_t> ended_ = 0;
-  std::mutex mutex_;  ///< guards runs_ and calls of options_.on_run
+  std::mutex mutex_;  ///< guards runs_ and the calls of options_.on_run
   std::vector<StudyRun> runs_;
 };
 

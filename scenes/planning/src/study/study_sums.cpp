@@ -29,7 +29,7 @@ void addInterval(StudyResult& result, double count) {
 double weightIfHalved(const StudyVariable& variable, double value) {
   const double of_half = (value - variable.middle()) / (0.5 * (variable.upper - variable.lower));
   if (variable.distribution == Distribution::Uniform) return std::abs(of_half) <= 0.5 ? 2 : 0;
-  const double z = 3 * of_half;  // the limits are three standard deviations away
+  const double z = 3 * of_half;  // the limits are three standard deviations from the middle
   return 2 * std::exp(-1.5 * z * z);
 }
 

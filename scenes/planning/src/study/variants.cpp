@@ -29,8 +29,8 @@ struct Placed {
   double growth_m = 0, turn_rad = 0;
 };
 
-/// Rise of the highest of these parts near a point, against the axis, compared with the drawing. A tilt lifts
-/// a part of this radius at one edge.
+/// Rise of the highest of the parts in place near the point p_W, against the axis, compared with the drawing.
+/// A tilt lifts a part of radius_m at one edge.
 double seatRise(const std::vector<Placed>& in_place, const Vec3& p_W, const Vec3& axis_W, double radius_m) {
   if (in_place.empty() || axis_W.isZero()) return 0;
   double rise_m = -std::numeric_limits<double>::infinity();

@@ -10,18 +10,18 @@
 
 namespace vps::scenes {
 
-/// Moves every face of one part outwards by `by_m`, or inwards if it is negative, and removes the part's
+/// Moves every face of one part outwards by `by_m`, or inwards if by_m is negative, and removes the part's
 /// models.
 void growPart(ScenePart& part, double by_m);
 
 /// The scene with the step's part larger by `by_m` on every face. A part that stands on a seat then stands
-/// higher by this amount, so its path and its target are moved back by it, against the last leg of the path.
+/// higher by `by_m`, so its path and its target are moved back by `by_m`, against the last leg of the path.
 Scene withGrownStep(const Scene& scene, std::size_t step, double by_m);
 
 /// Deviation of one part from the drawing.
 struct PartDeviation {
-  double growth_m = 0;             ///< offset of every face, outwards
-  double friction = 0;             ///< added to the friction of its material
+  double growth_m = 0;             ///< outward offset of every face
+  double friction = 0;             ///< friction added to that of the part's material
   Vec3 move_P_m = Vec3::Zero();    ///< displacement, in its own frame
   Vec3 turn_P_rad = Vec3::Zero();  ///< rotation about its origin, in its own frame
   [[nodiscard]] bool isDisplaced() const { return !move_P_m.isZero() || !turn_P_rad.isZero(); }
@@ -29,9 +29,9 @@ struct PartDeviation {
 };
 
 /// The scene with each part changed by its deviation. For a fixed part the displacement applies to its pose,
-/// for a moved part to its target. Along the last leg of its path a part stops at its seat: there its target
-/// follows the size, displacement and tilt of the highest part in place, so that only deviations across the
-/// path can block it.
+/// for a moved part to its target. Along the last leg of its path a part stops at its seat: along this leg
+/// its target follows the size, displacement and tilt of the highest part in place, so that only deviations
+/// across the path can block the part.
 Scene withDeviations(const Scene& scene, const std::vector<PartDeviation>& deviations);
 
 /// A scene with one step and the parts in place before it: the fixed parts, and the parts of earlier steps,
@@ -45,13 +45,14 @@ struct DrawnMisfit {
   [[nodiscard]] bool isFound() const { return !reason.empty(); }
 };
 
-/// Finds misfits in variants of one scene. The parts of that scene are prepared once.
+/// Finds misfits in variants of one scene. The parts of the scene are prepared once.
 class DrawnFit {
  public:
   explicit DrawnFit(const Scene& scene);
 
-  /// A misfit is an overlap beyond its error, or a shaft that is larger than its bore, measured on the
-  /// cylinders that the meshes approximate. Overlaps that the scene allows or declares are not misfits.
+  /// A misfit is an overlap that exceeds its error of measurement, or a shaft that is larger than its bore,
+  /// measured on the cylinders that the meshes approximate. Overlaps that the scene allows or declares are
+  /// not misfits.
   [[nodiscard]] DrawnMisfit findMisfit(const Scene& variant) const;
 
   /// Checks the variant; parts that equal those of the prepared scene are not prepared again.
@@ -59,7 +60,7 @@ class DrawnFit {
 
  private:
   std::vector<DrawnPart> parts_;
-  std::vector<PlacedSurface> placed_;  // refers to parts_
+  std::vector<PlacedSurface> placed_;  // surfaces, which refer to parts_
 };
 
 }  // namespace vps::scenes

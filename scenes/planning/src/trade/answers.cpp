@@ -54,7 +54,7 @@ bool isUsable(const TradeRow& row) {
   return row.has_run && row.has_probe && row.run.completed && row.probe.force <= kForceLimit;
 }
 
-/// "'voxel x2' (voxel 0.5 mm, spacing 0.5 mm, both sides)"
+/// For example "'voxel x2' (voxel 0.5 mm, spacing 0.5 mm, both sides)"
 std::string named(const TradeRow& row) {
   const Fidelity& f = row.setting.fidelity;
   return "'" + row.setting.name + "' (voxel " + number("%.4g mm", 1e3 * f.voxel_m) + ", spacing " +
@@ -105,7 +105,8 @@ std::string forError(const TradeResult& result, double error_m) {
          " on this machine; " + errorWords(*best);
 }
 
-/// The effect of one changed setting relative to the scene's own, from rows that change only this setting.
+/// The effect of one changed setting relative to the scene's own fidelity, from rows that change only this
+/// setting.
 std::string knobLine(const TradeRow& own, const TradeRow& row) {
   const auto change = [](double value, double from) {
     return from > 0 ? number("%+.0f %%", 100 * (value / from - 1)) : std::string("-");

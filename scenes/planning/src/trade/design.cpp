@@ -148,7 +148,7 @@ TradeSetting tradeSuggestion(const Scene& scene, const std::vector<TradeRow>& ro
        [&](const TradeSetting& t) { best.fidelity.contact_limit = t.fidelity.contact_limit; });
   take(TradeKnob::SolverIterations,
        [&](const TradeSetting& t) { best.fidelity.solver_iterations = t.fidelity.solver_iterations; });
-  if (changes < 2) best.name.clear();  // a single changed setting was measured already
+  if (changes < 2) best.name.clear();  // a fidelity with a single changed setting was measured already
   return best;
 }
 

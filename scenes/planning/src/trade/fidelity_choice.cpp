@@ -23,11 +23,13 @@ namespace {
 constexpr double kCoarsest_m = 2e-3, kFinest_m = 15e-6;
 constexpr double kStep = 0.70710678118654752;  ///< ratio of successive voxel sizes
 constexpr std::size_t kSamples = 2000;         ///< number of sample points per part
-constexpr double kShare = 0.95;                ///< share of the sample points that keep the error
-/// Share of the tolerance that the samples keep, so that other points keep the tolerance too.
+constexpr double kShare = 0.95;                ///< share of the sample points that do not exceed the error
+/// Share of the tolerance that the errors at the sample points keep, so that other points keep the whole
+/// tolerance.
 constexpr double kMargin = 0.8;
-constexpr double kMaxSpacing = 8;      ///< greatest spacing, in voxels
-constexpr double kMachineShare = 0.5;  ///< assumed: the other half is for points and for other programs
+constexpr double kMaxSpacing = 8;  ///< greatest spacing, in voxels
+constexpr double kMachineShare =
+    0.5;  ///< share of memory for maps. assumed: points and programs need the rest
 /// Greatest ratio of expectedMapBytes() to a map's memory; tests check it.
 constexpr double kExpectedOverKept = 2.5;
 
@@ -87,7 +89,7 @@ class Chooser {
   }
   [[nodiscard]] bool isAffordable() const { return isQuickEnough() && isSmallEnough(); }
 
-  /// Estimates the memory of maps before they are built; sets failure_reason if it is too much.
+  /// Estimates the memory of maps before the maps are built; sets failure_reason if the memory is too much.
   bool hasRoomForMaps(double voxel_m);
   bool findVoxel();
   [[nodiscard]] double worstError(double voxel_m, double enough_m);
@@ -121,11 +123,11 @@ bool Chooser::hasRoomForMaps(double voxel_m) {
   const double machine_bytes =
       options_.machine_bytes > 0 ? options_.machine_bytes : kMachineShare * machineMemoryBytes();
   // The estimate is up to kExpectedOverKept times the memory of the map, so a wish is refused only if no map
-  // can meet it. Without a tolerance, larger voxels may meet the wish.
+  // can meet it. If the wish has no tolerance, larger voxels may meet it.
   const bool fits_wish =
       !wish_.memory_bytes || !wish_.tolerance_m || bytes <= kExpectedOverKept * *wish_.memory_bytes;
   const bool fits_machine =
-      machine_bytes == 0 || 2 * bytes <= machine_bytes;  // counted twice: in the parts, and cooked
+      machine_bytes == 0 || 2 * bytes <= machine_bytes;  // each map counts twice: in its part, and cooked
   if (fits_wish && fits_machine) return true;
   char words[250];
   std::snprintf(
@@ -170,7 +172,7 @@ void Chooser::count() {
   buildModels(scene_, {});
   const ModelledCost cost = modelledCost(scene_);
   choice_.points = cost.points;
-  choice_.bytes = 2 * cost.bytes;  // once in the parts, once cooked
+  choice_.bytes = 2 * cost.bytes;  // models are stored once in the parts and once in the cooked field
   std::size_t most = 0;
   for (const ScenePart& part : scene_.parts)
     if (!part.is_fixed) most = std::max(most, part.model->shell->size());

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kRepeats = 5;
 
-/// The penalty wrench of one pair, as a haptic loop computes it; on P about its origin, in W.
+/// The penalty wrench of one pair, as a haptic loop computes it: on the moving part P about P's origin, in W.
 ModelResponse queryPair(const PartModel& fixed, const Pose& X_WM, const PartModel& held, const Pose& X_WP,
                         const Fidelity& fidelity, bool is_exhaustive) {
   QueryOptions options;

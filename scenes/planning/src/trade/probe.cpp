@@ -23,10 +23,11 @@ struct ExactContact {
 };
 
 /// Computes the exact distance of each sample that may touch; the solid's map, whose error is known, excludes
-/// the others.
+/// the other samples.
 /// @param X_SB  pose of the sampled part B in the solid's frame S
 /// @param p_SO  reference point of the wrench, in the solid's frame
-/// @return the same bits for any number of threads. O(samples), plus an exact distance for each near sample.
+/// @return the same bits for any number of threads. Costs O(samples), plus an exact distance for each near
+/// sample.
 ExactContact exactContact(const JudgedBody& solid, const std::vector<SurfaceSample>& samples,
                           const Pose& X_SB, const Vec3& p_SO) {
   std::vector<double> estimate_m(samples.size());
@@ -126,7 +127,8 @@ Probe::Truth Probe::truthAt(const Pose& X_WP) const {
     const ExactContact on_fixed =
         exactContact(moving_body_.body, fixed.samples, X_SP.inverse(), Vec3::Zero());
     truth.distance_m = std::min({truth.distance_m, on_moving.least_m, on_fixed.least_m});
-    // The mean of both directions, as in queryBothSides(): both converge to the same force.
+    // The wrench is the mean over both directions, as in queryBothSides(): the forces of both directions
+    // converge to the same force.
     truth.F_W.f += 0.5 * (fixed.X_WB.R * on_moving.F_S.f - X_WP.R * on_fixed.F_S.f);
     truth.F_W.tau += 0.5 * (fixed.X_WB.R * on_moving.F_S.tau - X_WP.R * on_fixed.F_S.tau);
   }
@@ -170,8 +172,8 @@ std::vector<Pose> probePoses(const Scene& scene, const AssembleResult& run, std:
   const double reach_m = scene.steps.front().clearance_m + 20e-6;
   for (std::size_t i = 0; i < std::min(count, touching.size()); ++i) {
     Pose X_WP = touching[i * touching.size() / std::min(count, touching.size())]->X_WP;
-    const double length_m =
-        draw() * reach_m;  // drawn before the direction, since the order of draws matters; see inUnitCube()
+    const double length_m = draw() * reach_m;  // drawn before the direction, since the order
+                                               // of draws matters; see inUnitCube()
     const Vec3 offset = draw.inUnitCube().normalized() * length_m;
     if (i % 2 == 1) X_WP.p += offset;
     poses.push_back(X_WP);

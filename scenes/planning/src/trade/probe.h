@@ -25,12 +25,12 @@ struct ModelResponse {
   std::size_t points = 0;  ///< number of points tested, both sides
 };
 
-/// Queries all fixed parts as a haptic loop would, and sums their wrenches. `moving` is the index of the
-/// moved part.
+/// Queries all fixed parts as a haptic loop would, and sums their wrenches. The argument `moving` is the
+/// index of the moved part.
 ModelResponse queryModels(const Scene& scene, std::size_t moving, const Pose& X_WP, bool is_exhaustive);
 
-/// Least signed distance to any fixed part [m]; negative is depth. Uses the points of one or both sides, as
-/// set in the scene's fidelity.
+/// Least signed distance to any fixed part [m]; negative is depth. The distance uses the points of one or
+/// both sides, as set in the scene's fidelity.
 double leastDistance(const Scene& scene, std::size_t moving, const Pose& X_WP);
 
 /// Time of one query, over the given poses; each pose is measured five times.
@@ -79,7 +79,8 @@ class Probe {
 };
 
 /// Up to `count` contact poses of the run's first step, evenly spaced in time. Every second pose is displaced
-/// by up to the clearance plus 20 um, so that it penetrates. Seeded: the same run gives the same poses.
+/// by up to the clearance plus 20 um, so that it penetrates. The displacements are seeded: the same run gives
+/// the same poses.
 std::vector<Pose> probePoses(const Scene& scene, const AssembleResult& run, std::size_t count);
 
 }  // namespace vps::scenes

@@ -13,7 +13,7 @@ namespace vps::scenes {
 
 struct SurfaceSample {
   Vec3 p = Vec3::Zero();
-  double area_m2 = 0;  ///< 0 for a vertex, which is used for distances only
+  double area_m2 = 0;  ///< area of the sample; 0 for a vertex, which is used for distances only
 };
 
 /// Samples each triangle with about one point per spacing_m^2, at least one, and adds all vertices; in the
@@ -28,9 +28,9 @@ class SeededDraw {
  public:
   explicit SeededDraw(std::uint64_t seed) : random_(seed) {}
   double operator()() { return static_cast<double>(random_() >> 11) * 0x1p-53; }
-  /// Draws from the cube of size 1 around the origin, z first. Each coordinate has its own statement, because
-  /// the evaluation order of arguments is unspecified; the order z, y, x keeps the results of earlier
-  /// versions.
+  /// Draws a point from the cube of size 1 around the origin, coordinate z first. Each coordinate has its own
+  /// statement, because the evaluation order of arguments is unspecified; the order z, y, x keeps the results
+  /// of earlier versions.
   Vec3 inUnitCube() {
     const double z = (*this)() - 0.5;
     const double y = (*this)() - 0.5;

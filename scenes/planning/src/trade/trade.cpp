@@ -49,13 +49,13 @@ std::vector<std::string> fixedChoices() {
 /// Stores the maps of one scene's parts by voxel size, and their shells by spacing.
 class ModelStore {
  public:
-  /// Sets the models of the scene's parts; builds those that are not stored. Returns the build time [s].
+  /// Sets the models of the scene's parts; builds the models that are not stored. Returns the build time [s].
   /// Throws as buildModels().
   double fill(Scene& scene, const ModelOptions& options);
 
  private:
   using Key = std::pair<std::size_t, double>;
-  std::vector<std::shared_ptr<const PartModel>> models_;  ///< models of the last row, by part
+  std::vector<std::shared_ptr<const PartModel>> models_;  ///< models of the last measured row, by part
   std::map<Key, std::shared_ptr<const VoxMap>> maps_;
   std::map<Key, std::shared_ptr<const PointShell>> shells_;
 };
@@ -167,7 +167,7 @@ TradeResult Trade::run() {
   measure(design.front());
   for (std::size_t i = 1; i < design.size() && !isStopped(); ++i) {
     measure(design[i]);
-    // Measured early, since all other runs are compared with the reference.
+    // The reference is measured early, since all other runs are compared with it.
     if (i == 1) measureReference();
   }
   const TradeSetting suggestion = tradeSuggestion(scene_, result_.rows);
@@ -282,7 +282,7 @@ void Trade::runProcedure(const Scene& scene, TradeRow& row) {
     report(row.setting.name);
     if (isStopped() || (!is_own && plan_.left_s() < 0)) is_late = true;
   };
-  Scene used = scene;  // a copy, since a run crops the models and later rows need them whole
+  Scene used = scene;  // a copy, since a run crops the models, and later rows need the whole models
   const AssembleResult result = assemble(used, options);
   row.run.wall_s = std::chrono::duration<double>(Clock::now() - begun).count();
   if (is_late) {

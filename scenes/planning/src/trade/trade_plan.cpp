@@ -8,7 +8,7 @@ namespace vps::scenes {
 namespace {
 
 constexpr double kSuggestionShare = 0.6;  ///< reserve for the suggestion, relative to the scene's own run
-constexpr int kMinRuns = 4;               ///< with fewer runs there is no suggestion
+constexpr int kMinRuns = 4;               ///< least number of runs for a suggestion
 constexpr double kReferenceShare = 0.4;   ///< limit for the reference, as a share of the remaining time
 constexpr double kTimeMargin = 1.2;       ///< bound of the real time relative to the estimate
 

@@ -9,13 +9,13 @@
 
 namespace vps::scenes {
 
-/// The scene's own fidelity; each setting alone coarser and finer, the most informative first; and all
-/// settings together coarser and finer.
+/// The settings to measure: the scene's own fidelity; each setting alone coarser and finer, the most
+/// informative setting first; and all settings together coarser and finer.
 std::vector<TradeSetting> tradeDesign(const Scene& scene);
 
-/// References to compare the other rows with, the best first: half the lengths, twice the rates and four
-/// times the solver iterations; then, for less time, with the scene's own rates; then, for still less time,
-/// with 0.7 of the lengths.
+/// References to compare the other rows with, the best reference first: half the lengths, twice the rates and
+/// four times the solver iterations; then, for less run time, the same with the scene's own rates; then, for
+/// still less run time, with 0.7 of the lengths.
 std::vector<TradeSetting> tradeReferences(const Scene& scene);
 
 /// Combines, for each setting, the cheapest row whose error is at most a tenth above that of the scene's own
@@ -36,11 +36,12 @@ class TradePlan {
   /// Remaining time, minus a reserve for the suggestion, which is measured last.
   [[nodiscard]] double left_s() const;
 
-  /// True if there is time to build and probe a setting's models; for a reference, also to run it.
+  /// True if there is time to build and probe a setting's models; for a reference, also time to run the
+  /// scene.
   [[nodiscard]] bool hasTimeForModels(const TradeSetting& setting) const;
   [[nodiscard]] bool hasTimeForRun(const TradeSetting& setting) const;
 
-  /// Records the times of the scene's own setting, from which the others are estimated.
+  /// Records the times of the scene's own setting, from which the times of other settings are estimated.
   void ownModelsTook(double wall_s) { own_models_s_ = wall_s; }
   void ownProbeTook(double wall_s) { own_probe_s_ = wall_s; }
   void runTook(const TradeSetting& setting, double wall_s);
@@ -50,7 +51,7 @@ class TradePlan {
  private:
   using Clock = std::chrono::steady_clock;
 
-  /// Estimated time of a setting, relative to the scene's own.
+  /// Estimated time of a setting, relative to the time of the scene's own setting.
   [[nodiscard]] double modelShare(const TradeSetting& setting) const;
   [[nodiscard]] double runShare(const TradeSetting& setting) const;
   [[nodiscard]] double probe_s(const TradeSetting& setting) const;

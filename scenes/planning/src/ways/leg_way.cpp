@@ -15,11 +15,11 @@ constexpr std::size_t kMostPlaces = 96;
 constexpr double kLeastLeg = 0.02;  // share of the part's size; shorter legs count as play
 constexpr double kTurn_rad = 2 * std::numbers::pi;
 /// Stops within a leg, as shares of the leg. Assumed: an opening at the side of a leg is wider than an eighth
-/// of it.
+/// of the leg.
 constexpr std::array kStops = {1.0, 0.5, 0.75, 0.25, 0.875, 0.625, 0.375, 0.125};
 
 struct Place {
-  Pose X_W;  ///< motion of the world that brings the part to this place
+  Pose X_W;  ///< world motion that brings the part from its target to this place
   std::vector<Leg> legs;
 };
 
@@ -127,7 +127,7 @@ class LegSearch {
       const double middle_m = 0.5 * (free_m + stopped_m);
       (isFreeBefore(middle_m) ? free_m : stopped_m) = middle_m;
     }
-    // The bisection tested other places in this range; the middle has to be tested as well.
+    // The bisection tested other places in the free range; the middle of the range has to be tested as well.
     if (isFreeBefore(0.5 * free_m)) last.s -= 0.5 * free_m;
   }
 

@@ -38,8 +38,8 @@ ContactProbes::ContactProbes(const PlacedSurface& a, const PlacedSurface& b, dou
 }
 
 bool ContactProbes::areStopped(const Vec3& d_W) const {
-  constexpr double kWays[] = {
-      8, 80};  // in allowed depths: far enough to exceed the allowed depth at a slope of an eighth
+  constexpr double kWays[] = {8, 80};  // distances in units of the allowed depth: far enough to exceed the
+                                       // allowed depth at a slope of an eighth
   return std::ranges::any_of(kWays, [&](double way) {
     return std::ranges::any_of(sides_, [&](const Side& side) {
       const Pose X_OW = side.other->X_WP.inverse();
@@ -53,26 +53,26 @@ bool ContactProbes::areStopped(const Vec3& d_W) const {
 
 namespace {
 
-/// Work limit for one motion of one pair, about ten seconds. A bolt of 227,717 facets needs 2 million.
+/// Work limit for one motion of one pair, about ten seconds. A bolt of 227,717 facets needs 2 million units.
 constexpr std::uint64_t kMostWork = 10'000'000;
-/// Work limit for the test whether a motion needs an allowance. A motion that needs one is stopped early;
-/// others take long if faces slide along each other.
+/// Work limit for the test whether a motion needs an allowance. A motion that needs an allowance is stopped
+/// early; other motions take long if faces slide along each other.
 constexpr std::uint64_t kMostExactWork = 300'000;
-constexpr double kFall_m = 1e-3;  // assumed: a part that sinks by less than this counts as carried
+constexpr double kFall_m = 1e-3;  // assumed: a part that sinks by less than kFall_m counts as carried
 
 /// Depth by which parts may overlap on a path, beyond the drawn overlap and its error: facets of curved faces
-/// of equal size cross by more than their chord error when they slide along each other. It is half of the 10
-/// um that a step may penetrate, or a thousandth of the size of small parts. A search with 1 um took ten
-/// times as long.
+/// of equal size cross by more than their chord error when they slide along each other. This depth is half of
+/// the 10 um that a step may penetrate, or a thousandth of the size of small parts. A search with a depth of
+/// 1 um took ten times as long.
 double touchOf(const PlacedSurface& a, const PlacedSurface& b) {
   constexpr double kTouch_m = 5e-6, kShare = 1e-3;
   return std::min(
       {kTouch_m, kShare * a.surface->box().size().norm(), kShare * b.surface->box().size().norm()});
 }
 
-/// Whether a plane across an axis of the world separates two boxes, apart from some depth, while one of them
-/// moves all the way along d. This avoids motion searches along faces that lie on each other, which take a
-/// second if the faces have many edges.
+/// Whether a plane across an axis of the world separates two boxes, apart from an overlap of depth_m, while
+/// one of them moves all the way along d. This test avoids motion searches along faces that lie on each
+/// other, which take a second if the faces have many edges.
 bool staysBeside(const Box& moving, const Box& held, const Vec3& d, double depth_m, double way_m) {
   for (int axis = 0; axis < 3; ++axis) {
     const double nearer_m = way_m * d[axis];
@@ -160,7 +160,7 @@ void PairMotions::findNear(const CheckResult& checked, const Progress& progress)
   std::vector<std::pair<const Pair, Near>*> all;
   for (auto& one : near_) all.push_back(&one);
   const Vec3 down_W = -directions_[up_];
-  std::vector<std::array<bool, 2>> falls(all.size());  // of the first part, of the second part
+  std::vector<std::array<bool, 2>> falls(all.size());  // whether the first and the second part of a pair fall
   forEachOnCores(all.size(), progress, "preparing motions", [&](std::size_t i) {
     auto& [pair, near] = *all[i];
     near.search = std::make_unique<const MotionSearch>(
@@ -205,7 +205,7 @@ bool PairMotions::stops(std::size_t held, std::size_t part, std::size_t directio
       !staysBeside(moving, fixed, motion.direction, depth_m, leave_m_) &&
       (is_near ? near->second.stops(motion, leave_m_, work)
                : search(parts_[part], part, {held}).reach(motion, leave_m_, &work).is_stopped);
-  // Another thread may have found the answer in the meantime.
+  // Another thread may have found the same answer in the meantime.
   if (known_.emplace(key, Answer{is_stopped, work.isSpent()}).second && work.isSpent()) ++cut_;
   return is_stopped;
 }

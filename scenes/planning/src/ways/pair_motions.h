@@ -16,10 +16,10 @@
 
 namespace vps::scenes {
 
-/// Points on the surfaces of two parts where they touch. If such a point, moved a little, is deeper in the
-/// other part than allowed, the motion is stopped. The converse does not hold: if no point is that deep, a
-/// motion search has to decide. A query of 64 points takes 0.2 ms, a search along flush curved faces 10 to
-/// 100 ms.
+/// Points on the surfaces of two parts where they touch. A straight motion is stopped if such a point, moved
+/// a little along the motion, is deeper in the other part than allowed. The converse does not hold: if no
+/// point is deeper than allowed, a motion search has to decide. A query of 64 points takes 0.2 ms, and a
+/// motion search along flush curved faces 10 to 100 ms.
 class ContactProbes {
  public:
   ContactProbes() = default;
@@ -30,8 +30,8 @@ class ContactProbes {
  private:
   struct Side {
     const PlacedSurface* other = nullptr;
-    std::vector<Vec3> points_W;  ///< on the surface of the part that is not `other`
-    double sign = 1;             ///< sign of the motion
+    std::vector<Vec3> points_W;  ///< points on the surface of the part that is not `other`
+    double sign = 1;             ///< sign of the motion of points_W along d
   };
   static std::vector<Vec3> touching(const PlacedSurface& of, const PlacedSurface& other, double within_m);
 
@@ -53,8 +53,8 @@ class Directions {
 };
 
 /// Straight motions of each part past each other part. A part leaves several held parts if it passes each of
-/// them, and a group leaves if each member does, so that only pairs are searched: the blocking graph of
-/// Wilson and Latombe (1994), one for each direction.
+/// them, and a group leaves if each member leaves, so that only pairs are searched: this is the blocking
+/// graph of Wilson and Latombe (1994), with one graph for each direction.
 class PairMotions {
  public:
   /// `parts` and `checked` have to outlive this object.
@@ -64,29 +64,29 @@ class PairMotions {
   [[nodiscard]] const std::vector<PlacedSurface>& parts() const { return parts_; }
   [[nodiscard]] const Directions& directions() const { return directions_; }
   [[nodiscard]] std::size_t up() const { return up_; }
-  /// Likely directions of a part: up, the world's axes, the part's axes, and those of its fits.
+  /// Likely directions of a part: up, the world's axes, the part's axes, and the axes of its fits.
   [[nodiscard]] const std::vector<std::size_t>& axesOf(std::size_t part) const { return axes_[part]; }
-  /// The other directions: the vertices of a subdivided icosahedron.
+  /// Directions to try after the likely directions: the vertices of a subdivided icosahedron.
   [[nodiscard]] const std::vector<std::size_t>& around() const { return around_; }
   [[nodiscard]] const std::vector<CheckedFit>& fitsOf(std::size_t part) const { return fits_[part]; }
-  /// The other part of each fit in fitsOf().
+  /// For each fit in fitsOf(), the other part of the fit.
   [[nodiscard]] const std::vector<std::size_t>& matesOf(std::size_t part) const { return mates_[part]; }
   [[nodiscard]] bool areNear(std::size_t a, std::size_t b) const { return near_.contains(std::minmax(a, b)); }
 
   /// Whether the held part stops a part that moves away in a direction. Results are cached. Thread-safe.
   bool stops(std::size_t held, std::size_t part, std::size_t direction) const;
-  /// For a motion that is not stopped: the allowance for meshes [m], beyond the drawn overlap, that the
-  /// motion may need; 0 if it needs none. A motion needs it if it is stopped when facets may be no deeper in
-  /// each other than at the part's placement. Also 0 if the work limit ends the test. Results are cached.
-  /// Thread-safe.
+  /// The allowance for meshes [m], beyond the drawn overlap, that a motion that is not stopped may need; 0 if
+  /// the motion needs no allowance. A motion needs an allowance if it is stopped when facets may be no deeper
+  /// in each other than at the part's placement. The allowance is also 0 if the work limit ends the test.
+  /// Results are cached. Thread-safe.
   double allowanceOf(std::size_t held, std::size_t part, std::size_t direction) const;
-  /// The answers of stops() so far, and those of an earlier plan of the same parts. A motion is encoded as
-  /// its slot(), then a bit for the answer and a bit that is set if the motion was too long to follow.
+  /// The answers of stops() so far, and the answers of an earlier plan of the same parts. A motion is encoded
+  /// as its slot(), then a bit for the answer and a bit that is set if the motion was too long to follow.
   [[nodiscard]] std::vector<std::uint64_t> found() const;
   void take(const std::vector<std::uint64_t>& found);
   /// Number of motions of stops() that were too long to follow to their end.
   [[nodiscard]] std::size_t cutMotions() const { return cut_; }
-  /// The parts that keep this one from falling by more than 1 mm, ascending.
+  /// The parts that keep `part` from falling by more than 1 mm, ascending.
   [[nodiscard]] const std::vector<std::size_t>& carriersOf(std::size_t part) const { return carriers_[part]; }
   /// The parts that this part carries, ascending.
   [[nodiscard]] const std::vector<std::size_t>& carriedBy(std::size_t part) const { return carried_[part]; }
@@ -104,7 +104,7 @@ class PairMotions {
     double allowance_m = 0;  ///< share of crossing_m that exceeds the drawn overlap
     std::unique_ptr<const MotionSearch> search;
     ContactProbes probes;
-    /// Whether a straight motion of the first part is stopped by the second.
+    /// Whether the second part stops a straight motion of the first part.
     bool stops(const Motion& motion, double most_m, SearchWork& work) const {
       return probes.areStopped(motion.direction) || search->reach(motion, most_m, &work).is_stopped;
     }
@@ -124,7 +124,8 @@ class PairMotions {
   std::vector<std::vector<std::size_t>> carriers_, carried_;
   double leave_m_ = 0;
   mutable std::atomic<std::size_t> cut_ = 0;
-  /// By slot(): whether the part is stopped. Contains only pairs whose boxes do not decide.
+  /// By slot(): whether the part is stopped. The map known_ contains only pairs whose boxes do not decide the
+  /// answer.
   struct Answer {
     bool is_stopped = false, is_cut = false;
   };

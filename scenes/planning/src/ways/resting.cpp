@@ -37,7 +37,7 @@ void addSupports(const PlacedSurface& of, const PlacedSurface& other, double wit
   const auto add = [&](const Vec3& p_W) {
     if (!isWithin(p_W, near_W)) return;
     const Vec3 p = X_OW * p_W;
-    if (std::abs(solid.signedDistance(p, h_m)) > within_m) return;  // the search ends at h_m, without a sign
+    if (std::abs(solid.signedDistance(p, h_m)) > within_m) return;  // beyond h_m the distance has no sign
     Vec3 n;
     for (int k = 0; k < 3; ++k)
       n[k] = (solid.signedDistance(p + h_m * Vec3::Unit(k)) - solid.signedDistance(p - h_m * Vec3::Unit(k))) /
@@ -57,8 +57,8 @@ void addSupports(const PlacedSurface& of, const PlacedSurface& other, double wit
   }
 }
 
-/// Whether contact forces at the points can balance a weight at the centre, by non-negative least squares
-/// (coordinate descent).
+/// Whether contact forces at the points of support can balance a weight at the centre, by non-negative least
+/// squares (coordinate descent).
 bool canCarry(const std::vector<Support>& supports, const Vec3& center_W, const Vec3& up_W, double size_m) {
   constexpr int kSweeps = 300;
   constexpr double kBalanced = 0.03;  // residual, as a share of the weight, at a lever of the part's size
@@ -172,7 +172,7 @@ Motion along(const Vec3& d_W) {
 }
 
 /// Distance by which a part, displaced by `aside_m`, can move in both directions along an axis: the smaller
-/// one, at most kSightTolerance_m.
+/// of the two distances, at most kSightTolerance_m.
 double toBothSides_m(const PairMotions& motions, std::size_t part, const std::vector<std::size_t>& held,
                      const Vec3& aside_m, const Vec3& axis_W) {
   const PlacedSurface placed = displaced(motions.parts()[part], Pose::translation(aside_m));
@@ -181,8 +181,8 @@ double toBothSides_m(const PairMotions& motions, std::size_t part, const std::ve
   return std::min(there_m, search.reach(along(-axis_W), there_m).s);
 }
 
-/// The place along `play_m` with most room in all four directions; between leaning walls the room across
-/// narrows.
+/// The place along `play_m` with most room in all four directions; between leaning walls, the room across
+/// `play_m` narrows.
 Vec3 roomiest_m(const PairMotions& motions, std::size_t part, const std::vector<std::size_t>& held,
                 const Vec3& play_m, const Vec3& across_W) {
   constexpr int kPlaces = 16;
@@ -204,7 +204,7 @@ Vec3 toMostRoom_m(const PairMotions& motions, std::size_t part, const std::vecto
                   const Vec3& out_W) {
   constexpr double kAcross = 1e-6;
   constexpr double kRests_m = 10e-6;      // within this distance, the part counts as touching the side
-  constexpr double kLeastPlay_m = 40e-6;  // assumed: less does not help a hand that sees to 0.1 mm
+  constexpr double kLeastPlay_m = 40e-6;  // assumed: less play does not help a hand that sees to 0.1 mm
   const PlacedSurface& home = motions.parts()[part];
   const MotionSearch search = motions.search(home, part, held);
   for (const std::size_t axis : motions.axesOf(part)) {

@@ -9,13 +9,14 @@
 namespace vps::scenes {
 
 /// True for a part that is carried only by holes with level axes, and whose centre of mass lies outside all
-/// of them along the axis: a bolt through a wall, before its nut is on. Such a part leans by the play of its
-/// hole. Straight motions do not detect this, since the part turns.
+/// of these holes along the axis: a bolt through a wall, before its nut is on. Such a part leans by the play
+/// of its hole. Straight motions do not detect such a lean, since the part turns.
 /// @param held  parts in place
 bool leansInHole(const PairMotions& motions, std::size_t part, const std::vector<std::size_t>& held);
 
 /// Whether the part sinks by more than its position tolerance, because it is drawn above all parts that could
-/// carry it, or off the middle of a hole. The tolerance is that of its tightest fit, or 0.5 mm without a fit.
+/// carry it, or off the middle of a hole. The position tolerance is that of the part's tightest fit, or 0.5
+/// mm without a fit.
 bool sinksFromItsPlace(const PairMotions& motions, std::size_t part, const std::vector<std::size_t>& held);
 
 /// True for a part that sinks onto the parts in place and then touches them at points that cannot balance its
@@ -24,9 +25,9 @@ bool tipsOver(const PairMotions& motions, std::size_t part, const std::vector<st
 
 /// Displacement from a part's target to the place with most room to all sides across a straight path out, for
 /// a part that is drawn against one side of its play. A slide that rests on the plate of its dovetail, for
-/// example, often catches the edge of that plate if a hand aims for the place where it is drawn. Zero if the
-/// part has play to both sides or to none, if it is not stopped within kSightTolerance_m, or if the path is
-/// not free from the displaced place.
+/// example, often catches the edge of that plate if a hand aims for the place where the slide is drawn. The
+/// displacement is zero if the part has play to both sides or to none, if the part is not stopped within
+/// kSightTolerance_m, or if the path is not free from the displaced place.
 Vec3 toMostRoom_m(const PairMotions& motions, std::size_t part, const std::vector<std::size_t>& held,
                   const Vec3& out_W);
 

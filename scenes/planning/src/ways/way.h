@@ -15,7 +15,7 @@ namespace vps::scenes {
 /// A piece of a path, in the world.
 struct Leg {
   Motion motion;
-  double s = 0;  ///< length or angle; for the last leg PairMotions::leave_m()
+  double s = 0;  ///< length or angle of the motion; PairMotions::leave_m() for the last leg
 };
 
 /// Way::direction of a path that is not straight.
@@ -30,41 +30,43 @@ struct Way {
   double allowance_m = 0;                ///< of a straight path, see PairMotions::allowanceOf()
 };
 
-/// The poses at the ends of all legs but the last, as motions of the world; the first is the target.
+/// The poses at the ends of all legs but the last, as motions of the world; the first pose is the target.
 std::vector<Pose> cornersOf(const Way& way);
 
 /// Whether a held part stops another part on its path.
 bool stopsWay(const PairMotions& motions, std::size_t held, std::size_t part, const Way& way);
 
-/// A screw motion out of a thread that the part's fits have with one of the held parts, then straight on.
+/// A screw motion out of the thread of a fit between the part and one of the held parts, followed by a
+/// straight motion.
 std::optional<Way> screwWay(const PairMotions& motions, std::size_t part,
                             const std::vector<std::size_t>& held);
 
 /// A path of several legs for parts that move as one. Legs are straight along the parts' axes; a single part
-/// may also turn about the axes of its round fits. Breadth first: from each place the part moves as far as it
-/// can and to stops in between, so that a path with the fewest legs is found first. The search ends when
-/// `work` is spent, at 4 legs or at 96 places, so an empty result is not a proof. Source: the search over
-/// pushes of Tian et al., Assemble Them All, 2022, with exact motions in place of simulated ones.
+/// may also turn about the axes of its round fits. The search is breadth first: from each place the part
+/// moves as far as it can and to stops in between, so that a path with the fewest legs is found first. The
+/// search ends when `work` is spent, at 4 legs or at 96 places, so an empty result is not a proof. Source:
+/// the search over pushes of Tian et al., Assemble Them All, 2022, with exact motions in place of simulated
+/// ones.
 std::optional<Way> legWay(const PairMotions& motions, const std::vector<std::size_t>& parts,
                           const std::vector<std::size_t>& held, SearchWork& work);
 
-/// The placed parts of a plan, with which its paths are measured.
+/// The placed parts of a plan, with which the paths of the plan are measured.
 struct Placing {
   const std::vector<PlacedSurface>& parts;
   const CheckResult& checked;
   Vec3 up_W;
 };
 
-/// Sets PlannedStep::clearance_m, nearest and fit_clearance_m of each step. A distance changes by no more
-/// than the surface moves; a leg is bisected until no smaller distance is possible, within a micrometre or a
-/// thousandth of the distance. Runs on all cores.
+/// Sets PlannedStep::clearance_m, nearest and fit_clearance_m of each step. A distance between parts changes
+/// by no more than the moving surface moves; each leg is therefore bisected until no smaller distance is
+/// possible, within a micrometre or a thousandth of the distance. Runs on all cores.
 void measureWays(const Placing& placing, PlannedAssembly& assembly, const Progress& progress);
 
-/// Gives each step a start on a bench: a plane below the whole assembly. The parts lie on it in rings around
-/// the assembly, in the order of the steps and with the orientation of their starts, with gaps of a twentieth
-/// of the assembly's size. From the bench a part is lifted above everything, moved across, and lowered to its
-/// original start. The boxes of all starts and of the assembly do not overlap. A step whose part cannot be
-/// lowered, because parts in place cover its start on all sides, keeps its start.
+/// Gives each step a start on a bench: a plane below the whole assembly. The parts lie on the bench in rings
+/// around the assembly, in the order of the steps and with the orientation of their starts, with gaps of a
+/// twentieth of the assembly's size. From the bench a part is lifted above everything, moved across, and
+/// lowered to its original start. The boxes of all starts and of the assembly do not overlap. A step whose
+/// part cannot be lowered, because parts in place cover its start on all sides, keeps its start.
 void layOnBench(const Placing& placing, PlannedAssembly& assembly);
 
 }  // namespace vps::scenes

@@ -23,7 +23,7 @@ constexpr double kResting_m = 10e-6;  // gap that rounding of a drawing leaves b
 /// Indices of parts by name, and the pairs that touch.
 struct Numbers {
   std::map<std::string, std::size_t> of;
-  std::set<Pair> touching;  ///< in contact at their targets, or in a fit
+  std::set<Pair> touching;  ///< pairs that are in contact at their targets, or in a fit
 
   explicit Numbers(const Placing& placing) {
     for (std::size_t i = 0; i < placing.parts.size(); ++i) of[placing.parts[i].name] = i;
@@ -35,8 +35,8 @@ struct Numbers {
   }
 };
 
-/// The path of one part as its scene states it: poses, between which the part's centre moves on straight
-/// lines.
+/// The path of one part as its scene states the path: poses, between which the part's centre moves on
+/// straight lines.
 class PartWay {
  public:
   PartWay(const PlacedSurface& part, const PlannedStep& step) : part_(part) {
@@ -55,7 +55,7 @@ class PartWay {
       const Box end = moved(part_.surface->box(), poses_[i + 1]);
       swept.add(end.min);
       swept.add(end.max);
-      // A turn sweeps a larger box than that of its end poses.
+      // A turn sweeps a larger box than the box around its end poses.
       const double turned_m = radius_m_ * angleBetween(poses_[i], poses_[i + 1]);
       if (!overlap(grown(swept, best_m + turned_m), held.box_W)) continue;
       Leg leg{held, poses_[i], poses_[i + 1], 0};
@@ -76,7 +76,7 @@ class PartWay {
   struct Leg {
     const PlacedSurface& held;
     const Pose &from, &to;
-    double length_m;  ///< upper bound of the path of any surface point
+    double length_m;  ///< upper bound of the path length of any surface point
   };
 
   static double angleBetween(const Pose& a, const Pose& b) {
@@ -103,9 +103,10 @@ class PartWay {
   }
 
   /// Least distance along a straight leg without a turn, in one descent of both trees: the boxes are swept
-  /// along the whole leg. The distance of two facets is convex along the leg, since both are convex sets and
-  /// one is translated.
-  /// @return at most best_m; exceeds the least distance by at most a micrometre or a thousandth
+  /// along the whole leg. The distance of two facets is convex along the leg, since both facets are convex
+  /// sets and one facet is translated.
+  /// @return at most best_m; exceeds the least distance by at most a micrometre or a thousandth of that
+  /// distance
   [[nodiscard]] double leastAlong(const Leg& leg, double best_m) const {
     const PartSurface &held = *leg.held.surface, &moving = *part_.surface;
     const Pose X_HP = leg.held.X_WP.inverse() * leg.from;
@@ -147,7 +148,8 @@ class PartWay {
     };
     constexpr int kMostHalvings = 40;
     Point from = at(0), to = at(1);
-    // A tangent of a convex function lies below it, and the minimum lies where the slope changes its sign.
+    // A tangent of a convex function lies below the function, and the minimum lies where the slope changes
+    // its sign.
     for (int i = 0; i < kMostHalvings && from.slope_m < 0 && to.slope_m > 0; ++i) {
       const double crossing = (to.gap_m - from.gap_m + from.slope_m * from.share - to.slope_m * to.share) /
                               (from.slope_m - to.slope_m);
@@ -192,7 +194,7 @@ class PartWay {
 
 void measureWays(const Placing& placing, PlannedAssembly& assembly, const Progress& progress) {
   const Numbers numbers(placing);
-  std::vector<std::size_t> held;  // in order of assembly
+  std::vector<std::size_t> held;  // held parts in order of assembly
   std::vector<std::size_t> held_before;
   for (const std::string& name : assembly.fixed) held.push_back(numbers.of.at(name));
   for (const PlannedStep& step : assembly.steps) {

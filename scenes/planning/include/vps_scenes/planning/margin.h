@@ -20,10 +20,10 @@ struct MarginOptions : ModelOptions {
   /// False: geometry alone decides, without a run of the virtual hand; the growth is then an upper bound.
   bool has_contact = true;
   const std::atomic<bool>* stop =
-      nullptr;  ///< the caller sets it to end early, between two runs; an early end throws nothing
+      nullptr;  ///< the caller sets the flag to end early, between two runs; an early end throws nothing
 };
 
-/// Margins of one step, with the parts that are in place before it as drawn.
+/// Margins of one step, where the parts that are in place before the step are as drawn.
 struct StepMargin {
   std::size_t step = 0;  ///< index in Scene::steps
   std::string part;
@@ -36,17 +36,18 @@ struct StepMargin {
   std::optional<double> growth_fails_m;
   Verdict fails_as = Verdict::Fits;  ///< verdict with growth_fails_m, or as drawn; Fits: no failure was found
   std::string fails_why;
-  /// By geometry alone: greatest offset that no overlap and no fit rules out.
+  /// Greatest offset that geometry alone allows: no overlap and no fit rules it out.
   double growth_bound_m = 0;
-  /// Least displacement at the target that makes the part touch, lifted off its seat. Only displacements
-  /// along the play axes (check.h) across the path are tried; between the axes the least displacement may be
-  /// smaller by up to a factor of sqrt(2) for flat walls. None: the part overlaps there, or nothing stops it.
+  /// Least displacement at the target that makes the part, lifted off its seat, touch another part. Only
+  /// displacements along the play axes (check.h) across the path are tried; between the axes the least
+  /// displacement may be smaller by up to a factor of sqrt(2) for flat walls. None: the part overlaps another
+  /// part at its target, or no displacement makes it touch.
   std::optional<double> position_m;
   /// Direction of the displacement position_m.
   Vec3 position_W = Vec3::Zero();
   double position_error_m = 0;
   std::optional<double> angle_rad;  ///< least rotation about an axis across the path that makes the part
-                                    ///< touch; none as for position_m
+                                    ///< touch; none: as for position_m
   double angle_error_rad = 0;
   std::size_t checks = 0, runs = 0;  ///< exact measurements and runs that the step took
 };
@@ -55,13 +56,14 @@ struct MarginResult {
   std::string scene;
   double resolution_m = 0;
   bool has_contact = true;
-  std::vector<StepMargin> steps;  ///< steps that fail as drawn first, then by growth
+  std::vector<StepMargin> steps;  ///< steps that fail as drawn first, then in order of growth_m
 };
 
-/// Measures each step by itself, with the part of the step offset by shrunkMesh() and all others as drawn.
-/// First geometry bounds the growth; then runs of the virtual operator with the scene's seed look for the
-/// greatest growth within this bound with which the step succeeds. The bisection assumes that a part fails if
-/// a smaller one failed. Growth is tried up to a twentieth of the part's least extent. Throws as assemble().
+/// Measures each step by itself, with the part of the step offset by shrunkMesh() and all other parts as
+/// drawn. First geometry bounds the growth; then runs of the virtual operator with the scene's seed look for
+/// the greatest growth within this bound with which the step succeeds. The bisection assumes that a part
+/// fails if the same part with a smaller offset failed. Growth is tried up to a twentieth of the part's least
+/// extent. Throws as assemble().
 VPS_SCENES_API MarginResult measureMargins(const Scene& scene, const MarginOptions& options = {});
 
 }  // namespace vps::scenes

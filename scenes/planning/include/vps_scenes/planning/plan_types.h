@@ -13,28 +13,28 @@
 
 namespace vps::scenes {
 
-/// Intermediate results of a plan that was stopped. A later plan of the same parts reuses them.
+/// Intermediate results of a plan that was stopped. A later plan of the same parts reuses these results.
 struct PlanFindings {
   std::vector<std::uint64_t> motions;  ///< straight motions of pairs, each with its result
   std::vector<std::string> taken_off;  ///< parts and sets of parts, in the order of removal
 };
 
 struct PlanSettings {
-  /// Names of the parts that stand still; empty: one is proposed, out of the largest parts the one with most
-  /// neighbours.
+  /// Names of the parts that stand still; empty: one part is proposed, out of the largest parts the part with
+  /// most neighbours.
   std::vector<std::string> fixed;
-  Vec3 up_W = Vec3::UnitZ();  ///< unit, against gravity
-  /// True: the parts start next to each other around the fixed parts, and are lifted over them. False: each
-  /// part starts on its last leg, just outside the assembly.
+  Vec3 up_W = Vec3::UnitZ();  ///< unit vector against gravity
+  /// True: the parts start next to each other around the fixed parts, and are lifted over the fixed parts.
+  /// False: each part starts on its last leg, just outside the assembly.
   bool has_bench = false;
   const PlanFindings* known = nullptr;  ///< findings of an earlier plan of the same parts; null: none
   PlanFindings* found =
-      nullptr;  ///< receives the findings, also if `progress` throws; null: they are dropped
+      nullptr;  ///< receives the findings, also if `progress` throws; null: the findings are dropped
 };
 
 enum class WayKind {
   Straight,  ///< one straight motion
-  Screw,     ///< turned out of a thread, then straight
+  Screw,     ///< a turn out of a thread, then a straight motion
   Legs,      ///< several straight or turning legs
 };
 VPS_SCENES_API const char* toText(WayKind kind);
@@ -50,17 +50,17 @@ struct PlannedStep {
   Vec3 insertion_W = Vec3::Zero();  ///< unit direction of the last leg towards the target
   double lead_m = 0;                ///< lead of a screw: its travel in one turn; negative: left-hand
   /// For a straight path that is stopped if facets may overlap no deeper than drawn: the additional depth
-  /// that facets may have, from the deviation of meshes from the faces and 5 um. It is non-zero only if no
-  /// path without it was found.
+  /// that facets may have, from the deviation of meshes from the faces and 5 um. The allowance is non-zero
+  /// only if no path without an allowance was found.
   double allowance_m = 0;
-  bool is_carried = false;           ///< a part in place keeps it from falling once it is at its target
+  bool is_carried = false;           ///< a part in place keeps the step's part from falling at its target
   std::vector<std::string> falling;  ///< parts in place that nothing else carries until this step is done
-  bool is_on_bench = false;          ///< it starts on the bench, see PlanSettings
-  /// Least clearance on the whole path to parts in place that it does not touch or fit at its target, to a
-  /// micrometre; empty: no such part is nearer than kNearWay_m.
+  bool is_on_bench = false;          ///< the part starts on the bench, see PlanSettings
+  /// Least clearance on the whole path to parts in place that the moved part does not touch or fit at its
+  /// target, to a micrometre; empty: no such part is nearer than kNearWay_m.
   std::optional<double> clearance_m;
   std::string nearest;  ///< the part nearest to the path, at clearance_m
-  /// Diametral clearance of the step's tightest fit with parts in place; empty: it has no such fit.
+  /// Diametral clearance of the step's tightest fit with parts in place; empty: the part has no such fit.
   std::optional<double> fit_clearance_m;
 };
 /// Clearances above this distance are not reported.
@@ -123,7 +123,7 @@ enum class OverlapKind {
   Flexible,    ///< a spring, belt or seal that is drawn undeformed
   LineToLine,  ///< no overlap: a shaft that is drawn exactly as wide as its hole
   NoVolume,    ///< no overlap: a part without a closed volume
-  Clash,       ///< nothing explains it
+  Clash,       ///< nothing explains the overlap
 };
 VPS_SCENES_API const char* toText(OverlapKind kind);
 
@@ -148,18 +148,19 @@ struct OverlapChoice {
 struct PlanResult {
   std::string assembly;
   std::vector<Fastener> fasteners;
-  /// Parts without volume, overlaps that are not allowed, and shafts drawn line to line; one choice each.
+  /// Parts without volume, overlaps that are not allowed, and shafts drawn line to line; one choice for each.
   std::vector<OverlapChoice> choices;
-  std::vector<PlannedAssembly> assemblies;  ///< the whole assembly first, then its subassemblies
+  std::vector<PlannedAssembly> assemblies;  ///< first the whole assembly, then its subassemblies
   std::vector<PlannedContact>
       contacts;                   ///< the contact graph, with the directions in which parts block each other
   std::vector<EqualParts> equal;  ///< sets of at least two equal parts
-  /// Overlaps as drawn. On their paths, these parts may overlap as deep as they are drawn.
+  /// Overlaps of the parts as drawn. On their paths, these pairs of parts may overlap as deep as they are
+  /// drawn.
   std::vector<CheckedPair> overlaps;
-  std::vector<DrawnTwice> twice;       ///< also listed in overlaps
+  std::vector<DrawnTwice> twice;       ///< pairs drawn twice, which are also listed in overlaps
   std::vector<CheckedPair> uncertain;  ///< pairs for which the measurement cannot decide whether they overlap
-  /// Number of straight motions of a part past another that were too long to follow to their end; they count
-  /// as stopped.
+  /// Number of straight motions of a part past another that were too long to follow to their end, and
+  /// therefore count as stopped.
   std::size_t cut_motions = 0;
   double check_wall_s = 0, plan_wall_s = 0;
   [[nodiscard]] std::size_t steps() const;
@@ -169,19 +170,19 @@ struct PlanResult {
 enum class WayFaultKind {
   Through,    ///< the path overlaps a part in place
   Order,      ///< the path overlaps a part in place, and would be free if that part were mounted later
-  Support,    ///< no part in place carries it when it is let go
+  Support,    ///< no part in place carries the moved part when the hand lets go
   Clearance,  ///< the path passes a part nearer than was planned
 };
 VPS_SCENES_API const char* toText(WayFaultKind kind);
 
-/// A fault of a step as its scene states it.
+/// A fault of a step of a scene, on the path that the scene states.
 struct WayFault {
   WayFaultKind kind = WayFaultKind::Through;
   std::string part, against;
   double depth_m = 0;    ///< greatest overlap of the meshes on the path
   double allowed_m = 0;  ///< overlap of the meshes at the target, plus 10 um
   Vec3 at_W = Vec3::Zero();
-  double clearance_m = 0, planned_m = 0;  ///< for a Clearance fault
+  double clearance_m = 0, planned_m = 0;  ///< least and planned clearance of a Clearance fault
 };
 
 }  // namespace vps::scenes

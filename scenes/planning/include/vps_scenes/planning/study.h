@@ -36,16 +36,16 @@ struct StudyVariable {
 struct StudySettings {
   std::uint64_t seed = 1;
   /// False: exact distances alone judge a run, without the virtual hand; the run fits if no overlap and no
-  /// fit rules it out.
+  /// fit rules out that the parts fit.
   bool has_contact = true;
-  unsigned threads = 0;  ///< runs at the same time, each on one core; 0: as many as there are cores
+  unsigned threads = 0;  ///< number of runs at the same time, each on one core; 0: as many as there are cores
 };
 
-/// One run. It depends only on the scene, the seed and the run number.
+/// Result of one run, which depends only on the scene, the seed and the run number.
 struct StudyRun {
   std::size_t run = 0;
   Verdict verdict = Verdict::NotShown;
-  std::string part, reason;  ///< of the first step that does not fit; empty: all fit
+  std::string part, reason;  ///< part and reason of the first step that does not fit; empty: all steps fit
   double simulated_s = 0;
   std::vector<double> values;  ///< deviation of each variable
 };
@@ -65,14 +65,14 @@ struct StudyResult {
   std::string scene;
   StudySettings settings;
   std::size_t good = 0, blocked = 0;
-  double yield = 0, yield_low = 0, yield_high = 0;  ///< with Wilson's 95 % interval
-  std::vector<StudyEffect> effects;                 ///< sorted by gain, the greatest first
+  double yield = 0, yield_low = 0, yield_high = 0;  ///< yield with Wilson's 95 % interval
+  std::vector<StudyEffect> effects;                 ///< sorted by gain, the greatest gain first
   std::vector<StudyRun> runs;                       ///< in order of run numbers
 };
 
 struct StudyOptions : ModelOptions {
-  const std::atomic<bool>* stop = nullptr;  ///< the caller sets it to end early; unfinished runs are dropped
-  /// Called with each run as it ends, by one thread at a time.
+  const std::atomic<bool>* stop = nullptr;  ///< set by the caller to end early; unfinished runs are dropped
+  /// Called with each run when the run ends, by one thread at a time.
   std::function<void(const StudyRun&)> on_run;
 };
 
@@ -81,12 +81,12 @@ struct StudyOptions : ModelOptions {
 VPS_SCENES_API std::vector<StudyVariable> studyVariables(const Scene& scene);
 
 /// The deviations of one run. A counter-based generator computes each deviation from the seed, the run number
-/// and the variable's name, so that it does not depend on other runs and variables.
+/// and the variable's name, so that no deviation depends on other runs and variables.
 VPS_SCENES_API std::vector<double> sampleStudy(const std::vector<StudyVariable>& variables,
                                                std::uint64_t seed, std::size_t run);
 
-/// The scene of the given run: sizes by offset faces, displaced placements, friction, and a seed for the
-/// virtual hand.
+/// The scene of the given run: with offset faces for deviations of size, displaced placements, changed
+/// friction, and a seed for the virtual hand.
 VPS_SCENES_API Scene sampledScene(const Scene& scene, const std::vector<StudyVariable>& variables,
                                   std::uint64_t seed, std::size_t run);
 
@@ -97,13 +97,13 @@ VPS_SCENES_API std::vector<StudyRun> runStudy(const Scene& scene, const std::vec
                                               const std::vector<std::size_t>& numbers,
                                               const StudyOptions& options = {});
 
-/// Computes yield and effects of the runs, which may come in any order. If two runs have the same number, the
-/// first counts.
+/// Computes yield and effects of the runs, which may come in any order. If two runs have the same number,
+/// only the first of them counts.
 VPS_SCENES_API StudyResult sumUpStudy(const std::string& scene, const std::vector<StudyVariable>& variables,
                                       const StudySettings& settings, std::vector<StudyRun> runs);
 
-/// Identifies a study: equal fingerprints mean that runs of the same number are equal. Made of scene,
-/// tolerances, seed and `has_contact`.
+/// Identifies a study: equal fingerprints mean that runs of the same number are equal. The fingerprint is
+/// made of scene, tolerances, seed and `has_contact`.
 VPS_SCENES_API std::string studyFingerprint(const Scene& scene, const std::vector<StudyVariable>& variables,
                                             const StudySettings& settings);
 

@@ -26,7 +26,7 @@ enum class TradeKnob {
   PhysicsRate,
   SolverIterations,
   Together,   ///< several settings
-  Reference,  ///< all settings, far finer; the other runs are compared with this one
+  Reference,  ///< all settings far finer than in the scene; the other runs are compared with this run
 };
 VPS_SCENES_API const char* toText(TradeKnob knob);
 
@@ -74,7 +74,8 @@ struct TradeRow {
   double models_wall_s = 0;     ///< time to build the models that no earlier row had built
   TradeRun run;
   RunErrors off;
-  /// True if no other row is as fast, as small and as accurate, and better in one of these.
+  /// True if no other row is as fast, as small in memory and as accurate, and better in speed, memory or
+  /// accuracy.
   bool is_on_front = false;
 };
 
@@ -88,10 +89,10 @@ struct TradeResult {
   std::string scene;
   std::string excerpt;  ///< the part of the scene that was run: "step 1 of 9: bushing_lower"
   std::size_t poses = 0, poses_inside = 0;
-  double reference_spacing_m = 0;  ///< of the samples over which the exact wrench is summed
+  double reference_spacing_m = 0;  ///< spacing of the samples over which the exact wrench is summed
   std::vector<TradeRow> rows;
-  std::vector<std::string> left_out;  ///< settings that were not measured, and why; one line each
-  std::vector<std::string> fixed;     ///< choices that a scene cannot make, and why; one line each
+  std::vector<std::string> left_out;  ///< settings that were not measured, with the reason; one line for each
+  std::vector<std::string> fixed;  ///< choices that a scene cannot make, with the reason; one line for each
 };
 
 /// Error of depth with a row's setting [m]: the larger of the worst model error at the probe's poses and the
@@ -100,13 +101,13 @@ VPS_SCENES_API double errorOf(const TradeRow& row);
 /// Physics rate [Hz] that the row's 99th percentile of processor time per step allows; 0 without a run.
 VPS_SCENES_API double rateOf(const TradeRow& row);
 
-/// Runs the scene at a set of fidelities: first its own, then with one setting changed at a time, then with
-/// several changed together. A scene of many steps is represented by its first step, unless is_thorough.
-/// Elapsed time decides which rows are measured, but affects no content of a row apart from times. Throws as
-/// assemble().
+/// Runs the scene at a set of fidelities: first at the scene's own fidelity, then with one setting changed at
+/// a time, then with several settings changed together. A scene of many steps is represented by its first
+/// step, unless is_thorough. Elapsed time decides which rows are measured, but affects no value in a row
+/// apart from times. Throws as assemble().
 VPS_SCENES_API TradeResult trade(const Scene& scene, const TradeOptions& options = {});
 
-/// Recommendations, one a line: "for 1000 Hz on this machine choose ...", or that no setting suffices.
+/// Recommendations, one on each line: "for 1000 Hz on this machine choose ...", or that no setting suffices.
 /// Considers the rows that completed the run with a force error of at most one half.
 VPS_SCENES_API std::vector<std::string> tradeAnswers(const TradeResult& result);
 /// The effect of each changed setting relative to the scene's own fidelity, a line for each row.
