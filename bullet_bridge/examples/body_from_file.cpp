@@ -17,9 +17,9 @@ using vps::bullet::toBt;
 namespace {
 
 void run(const char* file, const char* unit) {
-  // Reads the file. The first part of it becomes the body.
+  // Reads the file. The first part of the file becomes the body.
   vps::scenes::ImportSettings reading;
-  reading.unit_m = vps::scenes::unitFromText(unit);  // STL, OBJ and PLY do not state it
+  reading.unit_m = vps::scenes::unitFromText(unit);  // STL, OBJ and PLY do not state their unit
   const vps::scenes::ImportedPart part = vps::scenes::importCad(file, reading).parts.at(0);
   vps::bullet::BodySettings settings;
   settings.name = part.name;
@@ -57,7 +57,7 @@ int main(int argc, char** argv) {
   try {
     run(argc > 1 ? argv[1] : "part.stl", argc > 2 ? argv[2] : "mm");
     return 0;
-  } catch (const std::exception& error) {  // a file that cannot be read is refused in words
+  } catch (const std::exception& error) {  // for example: the file cannot be read
     std::fprintf(stderr, "%s\n", error.what());
     return 1;
   }

@@ -52,7 +52,7 @@ int main() {
   gContactStartedCallback = onStarted;
   gContactEndedCallback = onEnded;
 
-  // A steel ring, 0.5 mm above a plane. Bullet's parameters are then set for small parts.
+  // A steel ring, 0.5 mm above a plane. tuneWorld() sets Bullet's parameters for small parts.
   vps::bullet::BodySettings settings;
   settings.X_WP = vps::Pose::translation({0, 0, 0.0055});
   const vps::bullet::Body ring = vps::bullet::makeBody(vps::makeTube(0.012, 0.006, 0.01, 64), settings);

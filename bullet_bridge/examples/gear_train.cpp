@@ -32,7 +32,7 @@ std::vector<std::pair<double, double>> outlineOf(int teeth) {
   const auto halfTooth = [&](double r_m) {  // half of a tooth's angle at a radius
     const double at_pitch_rad = (kPi * kModule_m / 2 - kBacklash_m) / (2 * pitch_m);
     const double by_involute_rad = r_m > base_m ? involute(std::acos(base_m / r_m)) : 0;
-    // The involute ends at the base circle. Below it the flank is nearly radial.
+    // The involute ends at the base circle. Below the base circle the flank is nearly radial.
     return at_pitch_rad + involute(kPressure_rad) - by_involute_rad +
            0.05 * std::fmax(0, base_m - r_m) / pitch_m;
   };
@@ -55,7 +55,7 @@ vps::Mesh makeGear(int teeth) {
   const auto count = static_cast<std::uint32_t>(outline.size());
   vps::Mesh mesh;
   for (const auto& [r_m, angle_rad] : outline) {
-    // A section of the ring: down at the outside, up, in along the top, and down at the bore.
+    // Corners of a section of the ring: outside at the bottom and top, bore at the top and bottom.
     const vps::Vec3 ray(std::cos(angle_rad), std::sin(angle_rad), 0), up(0, 0, kHalfWidth_m);
     mesh.vertices.insert(mesh.vertices.end(),
                          {r_m * ray - up, r_m * ray + up, kBore_m * ray + up, kBore_m * ray - up});
@@ -99,8 +99,8 @@ int main() {
 
   // A tooth of the first gear points at the second gear, which is turned by half a tooth, so that a space
   // between its teeth receives that tooth. The second gear also has a space on its far side. The third gear
-  // has an odd number of teeth and is turned by half a tooth, so that one of its teeth points into that
-  // space.
+  // has an odd number of teeth and is turned by half a tooth, so that one of its teeth points into the second
+  // gear's space.
   const double x1_m = kModule_m * (kTeeth[0] + kTeeth[1]) / 2,
                x2_m = x1_m + kModule_m * (kTeeth[1] + kTeeth[2]) / 2;
   Gear gears[3] = {{kTeeth[0], 0, 0}, {kTeeth[1], x1_m, kPi / kTeeth[1]}, {kTeeth[2], x2_m, kPi / kTeeth[2]}};

@@ -48,7 +48,8 @@ int main() {
   const double z_m = ring.X_WP().p.z();
   std::printf("the ring lies at %.4f mm: half its height\n", 1e3 * z_m);
 
-  // Bodies leave the world before they are destroyed, and the dispatcher gives up VPS contact.
+  // Bodies leave the world before they are destroyed, and uninstall() removes VPS contact from the
+  // dispatcher.
   for (btRigidBody* body : {ring.rigid.get(), &peg, &ground}) world.removeRigidBody(body);
   vps::bullet::uninstall(dispatcher);
   return std::abs(z_m - 0.0025) < 5e-6 ? 0 : 1;

@@ -19,7 +19,7 @@ namespace {
 /// Lets a ring fall on the shared plate in a world of its own. Returns where the ring comes to rest.
 btTransform drop(vps::bullet::Shape& plate, double tilt_rad, int threads) {
   btDefaultCollisionConfiguration config;
-  // A drop-in dispatcher that searches contacts with this number of threads.
+  // A drop-in dispatcher that searches contacts with `threads` threads.
   vps::bullet::Dispatcher dispatcher(&config, threads);  // 1: all work stays in the calling thread
   btDbvtBroadphase broadphase;
   btSequentialImpulseConstraintSolver solver;
@@ -48,7 +48,7 @@ btTransform drop(vps::bullet::Shape& plate, double tilt_rad, int threads) {
 }  // namespace
 
 int main() {
-  // A fixed body has no mass. It is built once.
+  // The plate is built once, as a fixed body, which has no mass.
   vps::bullet::BodySettings fixed;
   fixed.is_fixed = true;
   const vps::bullet::Body plate = vps::bullet::makeBody(vps::makeBox({0.06, 0.06, 0.01}), fixed);
@@ -56,7 +56,7 @@ int main() {
   // Four worlds at the same time, each in a thread of the host and without threads of its own.
   constexpr int kWorlds = 4;
   std::vector<btTransform> together(kWorlds);
-  std::vector<std::thread> pool;  // stands for the host's own threads
+  std::vector<std::thread> pool;  // represents the host's own threads
   for (int i = 0; i < kWorlds; ++i)
     pool.emplace_back([&, i] { together[i] = drop(*plate.shape, 0.1 * i, 1); });
   for (std::thread& thread : pool) thread.join();

@@ -38,8 +38,8 @@ VPS_BULLET_API void setMaterial(btCollisionObject& body, const Material& materia
 
 struct BodySettings {
   Material material;  ///< density of the body, friction, restitution
-  /// Voxel size and spacing of the models. If not set, they follow from the part's size and point_budget, and
-  /// a message (LogLevel::Info) reports the choice.
+  /// Voxel size and spacing of the models. If not set, both values follow from the part's size and
+  /// point_budget, and a message (LogLevel::Info) reports the choice.
   std::optional<Fidelity> fidelity;
   std::size_t point_budget = 20'000;
   Pose X_WP;              ///< initial pose of the part's frame
@@ -55,7 +55,7 @@ class VPS_BULLET_API PartMotionState : public btMotionState {
  public:
   BT_DECLARE_ALIGNED_ALLOCATOR();
   PartMotionState(const Pose& X_WP, const Pose& X_PB) : X_WP_(X_WP), X_PB_(X_PB) {}
-  /// Pose of the mesh's frame. With fixed substeps Bullet interpolates it between steps.
+  /// Pose of the mesh's frame. With fixed substeps Bullet interpolates the pose between steps.
   [[nodiscard]] const Pose& X_WP() const { return X_WP_; }
   void getWorldTransform(btTransform& X_WB) const override;
   void setWorldTransform(const btTransform& X_WB) override;

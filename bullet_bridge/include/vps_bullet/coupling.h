@@ -20,9 +20,9 @@ namespace vps::bullet {
 /// wrench equals couplingWrench(). The spring's force and torque are limited separately, keeping their
 /// directions.
 ///
-/// It has no solver rows; the 6x6 block is solved in solveConstraintObsolete, once per iteration. Add it with
-/// world.addConstraint(&coupling, true): with `true` the contact query includes the coupling's pull in its
-/// prediction. Equal inputs give equal bits: no state is kept from step to step.
+/// The constraint has no solver rows; its 6x6 block is solved in solveConstraintObsolete, once per iteration.
+/// Add the constraint with world.addConstraint(&coupling, true): with `true` the contact query includes the
+/// coupling's pull in its prediction. Equal inputs give equal bits: no state is kept from step to step.
 class VPS_BULLET_API CouplingConstraint : public btTypedConstraint {
  public:
   BT_DECLARE_ALIGNED_ALLOCATOR();
@@ -52,11 +52,11 @@ class VPS_BULLET_API CouplingConstraint : public btTypedConstraint {
   /// start of the step.
   [[nodiscard]] const Wrench& wrench() const { return F_PG_W_; }
   /// Velocity (about the body's origin, in W) that the coupling alone would add to the part in a step. The
-  /// contact query uses it to predict how far points can move.
+  /// contact query uses this velocity to predict how far points can move.
   [[nodiscard]] Twist freeVelocity(double dt_s) const;
 
-  /// Reason why the coupling has no effect with that solver; nullptr if it works. A coupling needs a solver
-  /// that calls solveConstraintObsolete: btSequentialImpulseConstraintSolver or bullet::Solver.
+  /// Reason why the coupling has no effect with `solver`; nullptr if the coupling works. A coupling needs a
+  /// solver that calls solveConstraintObsolete: btSequentialImpulseConstraintSolver or bullet::Solver.
   [[nodiscard]] static const char* unsupportedReason(const btConstraintSolver& solver);
 
   void buildJacobian() override;

@@ -13,8 +13,8 @@ namespace vps::bullet {
 
 /// Makes every bullet::Shape collide in worlds that use this dispatcher: with each other and with Bullet's
 /// own shapes, in contact and closest-point queries, in both orders, for every shape type (listed in
-/// native_shapes.md). This includes existing pairs. A second call replaces the settings. Sets a near
-/// callback, which calls the host's near callback. See tuneWorld() for the parameters of the world. Throws
+/// native_shapes.md). Existing pairs are included. A second call replaces the settings. Sets a near callback,
+/// which calls the host's near callback. See tuneWorld() for the parameters of the world. Throws
 /// std::invalid_argument for settings out of range, Bullet in another precision, and btCollisionDispatcherMt
 /// with several threads.
 VPS_BULLET_API void install(btCollisionDispatcher& dispatcher, const Settings& settings = {});

@@ -26,8 +26,8 @@ VPS_BULLET_API void setLogHook(LogHook hook);
 /// Drops messages below this level. The initial level is Warning.
 VPS_BULLET_API void setLogLevel(LogLevel least);
 
-/// Greatest number of messages per second that reach the hook. The next message that does tells how many were
-/// dropped.
+/// Greatest number of messages per second that reach the hook. The next message that reaches the hook tells
+/// how many messages were dropped.
 inline constexpr int kLogLimit = 20;
 
 }  // namespace vps::bullet

@@ -9,8 +9,8 @@
 
 namespace vps::bullet {
 
-/// A law of dry friction. In each step it gives the coefficient mu of every contact: the friction force is at
-/// most mu times the normal force. A host may define its own model.
+/// A law of dry friction. In each step the law gives the coefficient mu of every contact: the friction force
+/// is at most mu times the normal force. A host may define its own model.
 struct FrictionModel {
   const char* name = "";
   /// Returns the coefficient in a step, finite and >= 0. `mu` is the coefficient at rest, the product of both
@@ -46,7 +46,7 @@ struct Settings {
   bool use_surfaces = true;  ///< refine contacts by ShapeModels::surfaces, if a shape has them
   /// Greatest number of near points of one side of a pair, and of edge crossings, that are examined, lowest
   /// ids first; 0: all. The limit bounds the time of a step, but the area of the left-out points has no
-  /// contact. At least contact_limit.
+  /// contact. Values other than 0 must be at least contact_limit.
   int candidate_limit = 0;
   /// Report (log.h), once per cause, that bodies turn farther in a step than contacts allow (turn.h).
   bool warns_of_turns = true;
@@ -61,10 +61,10 @@ struct Stats {
   std::size_t candidates = 0;
   std::size_t contacts = 0;  ///< candidates that the solver received
   std::size_t left_out = 0;  ///< candidates beyond candidate_limit, which should then be raised
-  /// Pairs that overlapped at their first query by more than their motion explains. Their bodies are moved
-  /// apart at 0.05 m/s. A message (log.h) names the first such pair.
+  /// Pairs that overlapped at their first query by more than their motion explains. The bodies of such a pair
+  /// are moved apart at 0.05 m/s. A message (log.h) names the first such pair.
   std::size_t overlapping_starts = 0;
-  double deepest_start_m = 0;  ///< the deepest of these overlaps
+  double deepest_start_m = 0;  ///< deepest overlap of the pairs in overlapping_starts
 };
 
 }  // namespace vps::bullet

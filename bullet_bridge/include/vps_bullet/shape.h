@@ -66,14 +66,15 @@ struct Surface {
 /// parts: it then has one map and one shell, but one exact surface for each part. Any model may be missing.
 /// Without a map, points of other shapes are tested against the surfaces (exact, but slower), or, without
 /// surfaces, not at all. Without a shell, the shape's own points are not tested against others. Without
-/// triangles, rays miss it.
+/// triangles, rays miss the shape.
 struct ShapeModels {
   std::shared_ptr<const VoxMap> map;
   std::shared_ptr<const PointShell> shell;
   std::shared_ptr<const Mesh> mesh;
   /// The exact surfaces that the map was built from, in the map's owner order. The field finds the contacts,
-  /// and the surfaces refine distance and normal of those that reach the solver. This removes the field's
-  /// interpolation error (up to 0.3 voxel at a sharp inner edge). If empty, contacts have the field's values.
+  /// and the surfaces refine distance and normal of those that reach the solver. The refinement removes the
+  /// field's interpolation error (up to 0.3 voxel at a sharp inner edge). If empty, contacts have the field's
+  /// values.
   std::vector<Surface> surfaces;
 };
 
@@ -113,7 +114,7 @@ class VPS_BULLET_API Shape : public btConcaveShape {
   /// isEdgePoint() of all points; empty if there are no surfaces.
   [[nodiscard]] std::span<const std::uint8_t> edgePoints() const { return is_edge_point_; }
   /// Inward unit normal, in the models' frame, at a shell point on a face: that of the curved surface that
-  /// the facets approximate. On edges, and without surfaces, it is the shell's own normal.
+  /// the facets approximate. On edges, and without surfaces, the result is the shell's own normal.
   [[nodiscard]] const Vec3& smoothInward(std::uint32_t id) const {
     return smooth_inward_.empty() ? models_.shell->inward[id] : smooth_inward_[id];
   }
@@ -152,8 +153,8 @@ class VPS_BULLET_API Shape : public btConcaveShape {
   void calculateLocalInertia(btScalar mass, btVector3& inertia) const override;
   void processAllTriangles(btTriangleCallback* callback, const btVector3& min,
                            const btVector3& max) const override;
-  /// Scales the part about the shape's origin, for all bodies of this shape. Costs as much as building its
-  /// models. Allowed only between steps. Afterwards call btCollisionWorld::updateSingleAabb, and
+  /// Scales the part about the shape's origin, for all bodies of this shape. The cost is that of building the
+  /// part's models. Allowed only between steps. Afterwards call btCollisionWorld::updateSingleAabb, and
   /// setMassProps, since Bullet keeps a body's mass. Throws std::invalid_argument for a scale that is not
   /// positive, finite and equal in x, y and z (otherwise the field would no longer hold distances), and for
   /// models with a map but without surfaces or a mesh; the shape is then unchanged.

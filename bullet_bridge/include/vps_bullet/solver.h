@@ -18,8 +18,8 @@ struct SolverSettings {
   /// sweeps are used. Newton's method may always take sixty steps, or three per body, even if that exceeds
   /// this limit. For penalty contacts: steps of Newton's method in all rounds. >= 1
   int iteration_limit = 400;
-  /// Greatest number of penalty points of one island that are solved one by one; 0: no limit. If more are
-  /// near, up to 256 neighbours are solved as one point, the deepest, with the stiffness of all, which a
+  /// Greatest number of penalty points of one island that are solved one by one; 0: no limit. If more points
+  /// are near, up to 256 neighbours are solved as one point, the deepest, with the stiffness of all, which a
   /// message (log.h) reports once. A step takes 1 to 2 us per solved point.
   std::size_t point_limit = 8000;
 };
@@ -46,18 +46,18 @@ class VPS_BULLET_API Solver : public btSequentialImpulseConstraintSolver {
   /// Iterations of the last island that this solver solved, counted as for iteration_limit, without up to 30
   /// final sweeps.
   [[nodiscard]] int iterationsUsed() const { return iterations_used_; }
-  /// Number of penalty points that were solved for that island, and number of points that were near.
+  /// Number of penalty points that were solved for the last island, and number of points that were near.
   [[nodiscard]] std::size_t pointsSolved() const { return points_solved_; }
   [[nodiscard]] std::size_t pointsNear() const { return points_near_; }
-  /// True if that island reached the residual, or 1e-5 of the bodies' greatest speed if this is larger.
+  /// True if the last island reached the residual, or 1e-5 of the bodies' greatest speed if this is larger.
   [[nodiscard]] bool hasConverged() const { return is_converged_; }
   /// Number of steps in which bodies of an island moved only a share of their motion, because no contacts
-  /// were found that keep them apart at the end of the step. Their velocities are not changed.
+  /// were found that keep them apart at the end of the step. The bodies' velocities are not changed.
   [[nodiscard]] std::size_t shortenedSteps() const { return shortened_steps_; }
   /// Number of steps in which bodies of an island were moved apart without a velocity, because they
-  /// overlapped or their sharp features were nearer than the rest gap. Such a step does not conserve angular
-  /// momentum: it changes by m d x v for each body, where the displacement d is below a micrometre unless
-  /// bodies began inside each other.
+  /// overlapped or their sharp features were nearer than the rest gap. A pushed step does not conserve
+  /// angular momentum, which changes by m d x v for each body, where the displacement d is below a micrometre
+  /// unless bodies began inside each other.
   [[nodiscard]] std::size_t pushedSteps() const { return pushed_steps_; }
 
  private:

@@ -39,8 +39,8 @@ VPS_BULLET_API WorldTuning tuneWorld(btDiscreteDynamicsWorld& world, int solver_
 VPS_BULLET_API void restoreWorld(btDiscreteDynamicsWorld& world, const WorldTuning& tuning);
 
 /// A body that stays below both speeds for two seconds (Bullet's gDeactivationTime) may fall asleep. Bullet's
-/// defaults, 0.8 m/s and 1 rad/s, stop a part that slides at 0.1 m/s. At 1 mm/s a body has the energy of
-/// 0.05 um of height; 0.1 rad/s is that speed at a radius of 10 mm.
+/// defaults, 0.8 m/s and 1 rad/s, stop a part that slides at 0.1 m/s. At 1 mm/s a body has the energy of 0.05
+/// um of height; 0.1 rad/s is 1 mm/s at a radius of 10 mm.
 inline constexpr double kSleepSpeed_m_s = 1e-3;
 inline constexpr double kSleepSpin_rad_s = 0.1;
 

@@ -17,17 +17,17 @@ namespace vps::bullet {
 
 /// Greatest turn in a step of two bodies in contact, relative to each other [rad]. A contact is a plane for
 /// the whole step, and a point at distance r from the axis leaves its plane by r turn^2 / 2. At 0.1 rad this
-/// is 5 % of its path, and the plane's normal is off by 6 degrees. Measured with involute gears of 12 to 100
-/// teeth: the driven gear's speed is right to 0.3 % up to 0.12 rad, and wrong by 1 % or more from 0.13 to
-/// 0.17 rad on (tests/families, D_gears).
+/// distance is 5 % of the point's path, and the plane's normal is off by 6 degrees. Measured with involute
+/// gears of 12 to 100 teeth: the driven gear's speed is right to 0.3 % up to 0.12 rad, and wrong by 1 % or
+/// more from 0.13 to 0.17 rad on (tests/families, D_gears).
 inline constexpr double kContactTurn_rad = 0.1;
 /// If bodies turn farther than kContactTurn_rad: greatest distance by which a contact point may leave its
 /// plane within a step without a report [m]: the overlap that is allowed between parts (10 um, also in
 /// scenes). A point at distance r from the axis of the relative motion leaves its plane by r turn^2 / 2; for
 /// rolling contact r is 0.
 inline constexpr double kContactSagitta_m = 10e-6;
-/// Number of consecutive steps with such turns after which they are reported. An impact and its rebound last
-/// one or two steps each, and cause no more than these steps' error.
+/// Turns that are too far for contacts are reported after this number of consecutive steps. An impact and its
+/// rebound last one or two steps each, so the error that they cause is limited to these steps.
 inline constexpr int kTurnsInRow = 5;
 /// Greatest turn in a step that Bullet carries out fully (btTransformUtil::integrateTransform) [rad].
 inline constexpr double kBulletTurn_rad = std::numbers::pi / 4;

@@ -98,7 +98,7 @@ Resolution resolutionFor(const Mesh& mesh, std::size_t point_budget) {
     throw std::invalid_argument("resolutionFor: the mesh has no area");
   Resolution resolution;
   resolution.spacing_m = std::sqrt(area_m2 / static_cast<double>(point_budget));
-  resolution.voxel_m = 0.5 * resolution.spacing_m;  // as in all presets
+  resolution.voxel_m = 0.5 * resolution.spacing_m;  // half of the spacing, as in all presets
   return resolution;
 }
 

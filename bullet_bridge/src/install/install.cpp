@@ -46,8 +46,8 @@ bool hasSurface(const Shape& shape) {
   return shape.models().map || !shape.models().surfaces.empty();
 }
 
-// Contact needs the points of one side and the surface of the other. A pair without these would silently have
-// no contact.
+// Contact needs the points of one side and the surface of the other. A pair without such points or surface
+// would silently have no contact.
 void requireContact(bool is_possible) {
   if (!is_possible)
     throw std::invalid_argument(
@@ -112,7 +112,7 @@ struct CreateFunction : ContactCreateFunction {
   // Warns of Bullet's default sleeping threshold of 0.8 m/s, which stops sliding parts; see tuneBody().
   void warnOfSleep(const btCollisionObject& object) {
     const btRigidBody* body = btRigidBody::upcast(&object);
-    constexpr double kFast_m_s = 0.1;  // a part that is pushed by hand
+    constexpr double kFast_m_s = 0.1;  // speed of a part that is pushed by hand
     if (!body || body->isStaticOrKinematicObject() || body->getActivationState() == DISABLE_DEACTIVATION ||
         !(body->getLinearSleepingThreshold() > kFast_m_s))
       return;
@@ -130,8 +130,8 @@ struct CreateFunction : ContactCreateFunction {
   std::set<std::string> reported_;
 };
 
-// Called for every pair of a compound with another shape that is not a Shape. If neither contains a Shape, it
-// calls the function that was registered before.
+// Called for every pair of a compound with another shape that is not a Shape. If neither of the two shapes
+// contains a Shape, the function that was registered before is called.
 struct CompoundCreateFunction : btCollisionAlgorithmCreateFunc {
   const CreateFunction* ours = nullptr;
   btCollisionAlgorithmCreateFunc* before = nullptr;
@@ -189,7 +189,7 @@ Installation* find(const btCollisionDispatcher& dispatcher) {
 template <typename Visit>
 void forEachPair(int mine, const Visit& visit) {
   for (int type = 0; type < MAX_BROADPHASE_COLLISION_TYPES; ++type) {
-    if (type == SOFTBODY_SHAPE_PROXYTYPE) continue;  // Bullet's own algorithm
+    if (type == SOFTBODY_SHAPE_PROXYTYPE) continue;  // soft bodies keep Bullet's own algorithm
     visit(mine, type);
     if (type != mine) visit(type, mine);
   }
@@ -262,7 +262,7 @@ int manifoldBytesOfLibrary() {
 }
 
 /// Throws std::invalid_argument if Bullet's library, or the code that made the dispatcher, was compiled in
-/// the other precision, in which all of Bullet's types have another size.
+/// another precision than this library, in which all of Bullet's types have another size.
 void requireSamePrecision(const btCollisionDispatcher& dispatcher) {
   constexpr int kOurs = static_cast<int>(sizeof(btPersistentManifold));
   static const int library = manifoldBytesOfLibrary();

@@ -27,26 +27,27 @@ int wantedMode(int mode) {
   return mode & ~(SOLVER_RANDMIZE_ORDER | SOLVER_INTERLEAVE_CONTACT_AND_FRICTION_CONSTRAINTS);
 }
 
-/// Calls visit(value, wanted, name) for every parameter that tuneWorld sets, in a fixed order.
-/// Bullet's defaults: btContactSolverInfo.h and btDbvtBroadphase.cpp of 3.24; measured: the bridge's tests.
+/// Calls visit(value, wanted, name) for every parameter that tuneWorld sets, in a fixed order. Sources:
+/// Bullet's defaults from btContactSolverInfo.h and btDbvtBroadphase.cpp of 3.24; measured values from the
+/// bridge's tests.
 template <typename Visit>
 void forEachParameter(btDiscreteDynamicsWorld& world, int solver_iterations, const Visit& visit) {
   btContactSolverInfo& info = world.getSolverInfo();
-  // The stock solver's residual decreases with the number of iterations (Bullet: 10). bullet::Solver has its
-  // own settings.
+  // The stock solver's residual decreases with the number of iterations (Bullet's default: 10).
+  // bullet::Solver has its own settings.
   visit(info.m_numIterations, solver_iterations, "solver iterations");
   // Position errors are corrected without adding velocity, from the first micrometre on. Parts never reach
   // Bullet's threshold of 40 mm.
   visit(info.m_splitImpulse, 1, "split impulse");
   visit(info.m_splitImpulsePenetrationThreshold, btScalar(0), "split impulse threshold [m]");
-  // Overlap is corrected by rotation as much as by translation (Bullet: a tenth).
+  // Overlap is corrected by rotation as much as by translation (Bullet's default: a tenth).
   visit(info.m_splitImpulseTurnErp, btScalar(1), "split impulse turn erp");
   // Share of an overlap that is corrected in one step; this is Bullet's own value.
   visit(info.m_erp2, btScalar(0.2), "contact erp");
   // A tolerated overlap and a compliance of contacts each let a part sink.
   visit(info.m_linearSlop, btScalar(0), "linear slop [m]");
   visit(info.m_globalCfm, btScalar(0), "global cfm");
-  // Contacts keep their ids, so last step's impulses are close to this step's (Bullet: 0.85).
+  // Contacts keep their ids, so last step's impulses are close to this step's (Bullet's default: 0.85).
   visit(info.m_warmstartingFactor, btScalar(1), "warm starting factor");
   // Islands are solved one by one, so that a part's result does not depend on other bodies in the world.
   visit(info.m_minimumSolverBatchSize, 1, "least solver batch size");

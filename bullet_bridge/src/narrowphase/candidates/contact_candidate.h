@@ -26,15 +26,15 @@ inline constexpr double kOutOfReach_m = 1;
 /// with an edge of body 1.
 struct Candidate {
   Vec3 p_W = Vec3::Zero();         ///< the shell's point now; at a crossing the point on body 0's edge
-  Vec3 n_W = Vec3::Zero();         ///< unit, from body 1 to body 0
+  Vec3 n_W = Vec3::Zero();         ///< unit normal, from body 1 to body 0
   double distance_m = 0;           ///< signed gap now
   double predicted_m = 0;          ///< gap at the end of the step in free motion
   double area_m2 = 0;              ///< surface that the point represents
-  Vec3 area_off_W = Vec3::Zero();  ///< centre of that surface, relative to p_W
+  Vec3 area_off_W = Vec3::Zero();  ///< centre of the represented surface, relative to p_W
   Eigen::Matrix3f area_spread = Eigen::Matrix3f::Zero();  ///< mean of d d', d from the centre, in W [m2]
   double impulse_Ns = 0;                                  ///< normal impulse of this contact in the last step
   double rest_m = 0;                                      ///< gap at which sharp features rest
-  double met_s = 0;            ///< time within the step at which a fast body meets it
+  double met_s = 0;            ///< time within the step at which a fast body meets the contact plane
   double curvature_per_m = 0;  ///< for faces that touch flush: greatest sum of both curvatures
   double hollow_per_m = 0;     ///< curvature of a concave face that bends from its plane towards the point
   bool is_flush = false;       ///< curved surfaces of both parts lie flush around the contact
@@ -62,7 +62,7 @@ struct RelativeMotion {
   double dt_s = 0;
   double contact_margin_m = 0;
   double speed_m_s = 0;      ///< upper bound of the relative speed of the smaller body's points
-  double own_speed_m_s = 0;  ///< the same bound without the pull of couplings
+  double own_speed_m_s = 0;  ///< bound as speed_m_s, without the pull of couplings
   double pull_share = 1;     ///< share of the couplings' pull that V includes
   bool is_checked = false;   ///< isSurelyChecked(): contacts that the selection lacks are found later
 
@@ -94,23 +94,23 @@ struct SideView {
 };
 
 struct QueryState {
-  /// O(points / 16). The shell must outlive it.
+  /// O(points / 16). The shell must outlive this object.
   QueryState(const VoxMap& map, const PointShell& shell) : query(map, shell) {}
 
   QueryMemory query;
   /// Two representative points of each group of neighbours with similar normals. Built in O(points) for
   /// constraint contact, the first time that more points than smallQueryLimit() are near; most pairs never
-  /// need them.
+  /// need these points.
   std::optional<RepresentativePoints> leading;
-  /// @param radius_m  of the pair's smaller body
+  /// @param radius_m  radius of the pair's smaller body
   void lead(const PointShell& shell, std::span<const std::uint8_t> on_edge, double radius_m);
 };
 
 /// Up to this number of near points of one side, every near point is examined.
 std::size_t smallQueryLimit(const Settings& settings);
 /// Approximate number of candidates that are refined by the exact surfaces, including candidates that turn
-/// out to be out of reach. With half as many, most steps of a shaft in its bushings had to be solved again,
-/// which cost more.
+/// out to be out of reach. With half as many refined candidates, most steps of a shaft in its bushings had to
+/// be solved again, which cost more.
 std::size_t refinedLimit(const Settings& settings);
 /// True if representative points are to be used for this number of near points.
 bool needsLeading(std::size_t near_points, const PointShell& shell, const Settings& settings);
@@ -120,7 +120,7 @@ struct SideQuery {
   QueryState* state = nullptr;  ///< null: report all near points and store nothing
   Twist step_W;                 ///< motion of this body relative to the other body, about W's origin [rad, m]
   std::span<const std::uint32_t> always;  ///< ids of the last step's contacts, ascending
-  double radius_m = 0;                    ///< of the smaller body
+  double radius_m = 0;                    ///< radius of the smaller body
 };
 
 /// Converts a contact that a point of `side` has in the map of `other`.
@@ -156,7 +156,7 @@ std::size_t findSurfaceCandidates(const SideView& side, const SideView& other, d
                                   std::size_t& points_tested);
 
 /// Finds where edges of two Shapes cross within a range. Distance and normal are exact.
-/// @param memory  of the two Shapes, or null
+/// @param memory  memory of the two Shapes' crossings, or null
 /// @return number of crossings left out by settings.candidate_limit, which limits all candidates in `out`
 std::size_t findCrossingCandidates(const SideView& body0, const SideView& body1, const CrossingRange& range,
                                    const Settings& settings, CrossingMemory* memory,
@@ -189,15 +189,16 @@ void reduceBySpread(std::vector<Candidate>& candidates, std::size_t limit, doubl
 /// surfaces (if it has any) or from the primitive `theirs`. Candidates on curved faces that touch flush, and
 /// on a primitive's round side, move to the place of least distance. Where no surface is in reach, the
 /// field's values remain.
-/// @param motion  of zero duration in a query: distances are then between points, not to planes
+/// @param motion  motion in the step; of zero duration in a query, where distances are between points, not to
+///   planes
 /// @param is_two_sided  the other body's points are queried too, and keep the contacts that they find
 void refine(std::vector<Candidate>& candidates, const SideView& side, const SideView& other,
             const btCollisionShape& theirs, const RelativeMotion& motion, bool is_two_sided);
 
 /// Sets exact distance and normal of the points of `side` that lie on edges, where the other side has a map
-/// and surfaces. They are measured at the poses that both bodies would have at the end of the step at
-/// constant velocity, unless the bodies overlap there and do not overlap now. `distance_m` is the present
-/// distance to the plane found at those poses.
+/// and surfaces. Distance and normal are measured at the poses that both bodies would have at the end of the
+/// step at constant velocity, unless the bodies overlap there and do not overlap now. `distance_m` is the
+/// present distance to the plane found at these end poses.
 /// @param way  displacement of body 0 and body 1 in the step, in W
 void refineEdges(std::vector<Candidate>& candidates, const SideView& side, const SideView& other,
                  const btCollisionShape& theirs, const Pose (&way)[2], const RelativeMotion& motion);

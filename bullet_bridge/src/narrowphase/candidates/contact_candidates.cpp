@@ -14,7 +14,7 @@ namespace vps::bullet {
 
 namespace {
 
-// Greatest cell of merged groups, as a share share of the smaller body's radius. Assumed.
+// Greatest cell of merged groups, as a share of the smaller body's radius. Assumed.
 constexpr double kMostCellShare = 0.5;
 
 std::size_t limitOf(const Settings& settings, const PointShell& shell) {
@@ -209,7 +209,7 @@ constexpr std::size_t kTilePoints = 16;
 constexpr double kTileSpacings = 6;  // diagonal of a tile and a margin, in spacings
 // Tiles of a dense shell are larger: three of reduceByCell()'s cells. The tile size does not depend on the
 // number of points, since contact must not change when the shell is cropped.
-constexpr double kTileShare = 0.18;  // of the smaller body's radius
+constexpr double kTileShare = 0.18;  // share of the smaller body's radius
 
 }  // namespace
 

@@ -37,7 +37,7 @@ bool isCurved(const EdgeSegment& s) {
 }
 
 // Direction of a curved edge at the joint of two segments: tangent of the parabola through the joint and the
-// far ends of both segments. At the end of the edge it is the direction of the segment.
+// far ends of both segments. At the end of the edge the result is the direction of the segment.
 Vec3 directionAt(const EdgeSet& edges, const EdgeSegment& s, int end) {
   const Vec3 way = s.to - s.from;
   if (!s.is_curved[end]) return way;
@@ -47,7 +47,7 @@ Vec3 directionAt(const EdgeSet& edges, const EdgeSegment& s, int end) {
   edges.tree().forEachNear(joint, kRounding_m, [&](std::uint32_t i) {
     const EdgeSegment& other = edges.segments()[i];
     if (&other == &s) return;
-    // The other segment, turned so that it runs in the direction of this one.
+    // The other segment, turned so that it runs in the direction of segment s.
     const bool is_reversed = ((end == 0 ? other.from : other.to) - joint).norm() <= kRounding_m;
     const Vec3 goes_on = is_reversed ? Vec3(other.from - other.to) : Vec3(other.to - other.from);
     const double cos = way.dot(goes_on) / (way.norm() * goes_on.norm());

@@ -161,7 +161,7 @@ std::vector<Candidate> nearestFarPoints(const PairView& pair, double wanted_m, C
   findWithin(pair, still.contact_margin_m, context, points);
   dropUnreachable(still, points);
   if (points.empty()) return points;
-  // These points are not refined as contacts are: the distance from a curved face's plane is not the distance
+  // Far points are not refined as contacts are: the distance from a curved face's plane is not the distance
   // from the face if the point is far away.
   const auto limit = static_cast<std::size_t>(context.settings.contact_limit);
   const double radius_m = pair.radius_m();

@@ -52,7 +52,7 @@ struct Later {
       : now(at_start), motion(in_step), t_s(time_s), pair(at_start) {
     if (t_s > 0) advance(pair, now, motion.dt_s, t_s);
   }
-  /// Refers a plane found at that time to the bodies' present poses.
+  /// Refers a plane found at the later time to the bodies' present poses.
   void moveBack(Candidate& c) const {
     if (!(t_s > 0)) return;
     c.distance_m -= c.n_W.dot(motion.velocityAt(c.p_W) * t_s);
@@ -94,8 +94,8 @@ void findStepCandidates(const PairView& pair, const RelativeMotion& motion, Pair
     find(later.pair, std::min(motion.contact_margin_m + travel_m / strides, range_m), context, met, nullptr,
          nullptr);
     useOwnNormalsForPenalty(later.pair, context.settings, met);
-    // Keep what a point meets first, as planes relative to where the bodies are now. A point that is behind a
-    // plane when the stride begins has met another plane before.
+    // Keeps the planes that points meet first, referred to the bodies' present poses. A point that is behind
+    // a plane at the start of this part of the path has met another plane before.
     std::erase_if(met, [&](Candidate& c) {
       const double approach_m = -c.n_W.dot(motion.velocityAt(c.p_W)) * motion.dt_s / strides;
       if (c.distance_m - approach_m > motion.contact_margin_m) return true;

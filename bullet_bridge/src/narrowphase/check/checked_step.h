@@ -32,16 +32,16 @@ struct PairCheck::Placed {
 
 /// The solved step.
 struct PairCheck::Motion {
-  Pose start[2], end[2];        ///< of the shapes
-  Displacement step;            ///< from start to end
-  Displacement since_selected;  ///< from where the contacts were selected to the end
+  Pose start[2], end[2];        ///< poses of the shapes
+  Displacement step;            ///< motion from start to end
+  Displacement since_selected;  ///< motion from the poses of the selection to the end
   double tolerated_m = 0;
   double travel_m = 0;  ///< greatest displacement of a point of the smaller body relative to the other body
   double deviation_m = 0;  ///< greatest distance of a point from the position that the selection predicted
   double turn_rad = 0, turn_deviation_rad = 0;  ///< rotation, and its difference from the predicted one
   StepPath path;
   Vec3 center_W = Vec3::Zero();  ///< centre of the smaller body at the start
-  double radius_m = 0;           ///< of the smaller body
+  double radius_m = 0;           ///< radius of the smaller body
   Vec3 moved_W = Vec3::Zero(),
        turned = Vec3::Zero();  ///< displacement and rotation of body 0 relative to body 1
   double bend_m = 0;           ///< greatest distance of a point's path from its tangent

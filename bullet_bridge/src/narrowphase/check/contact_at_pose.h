@@ -38,12 +38,12 @@ bool isInside(const Vec3& p_W, const SideView& other, double near_m, double tole
 bool refineAt(const PairView& pair, double max_m, const Settings& settings, Candidate& c);
 
 /// True if both shapes have curved faces. Curved faces may lie flush in each other, as in threads and
-/// bearings. Their gaps then differ from facet to facet by more than the motion changes them, and solver rows
-/// that follow the facets would drive a screw.
+/// bearings. The gaps between such faces differ from facet to facet by more than the motion changes them, and
+/// solver rows that follow the facets would drive a screw.
 bool areBothCurved(const PairView& pair, PairState& state);
 
 /// Lists the contacts of shell points twice: `now` as the step has them, `ends` measured at the poses of
-/// `there`. A contact that is out of reach at those poses has a zero normal in `ends`.
+/// `there`. A contact that is out of reach at the poses of `there` has a zero normal in `ends`.
 /// @param only_loaded  list only the contacts that carry load
 void findThere(const PairView& there, const PairState& state, bool only_loaded, std::vector<Candidate>& now,
                std::vector<Candidate>& ends);

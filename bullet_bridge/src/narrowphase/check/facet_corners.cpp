@@ -22,7 +22,7 @@ std::optional<std::uint32_t> facetOf(const Candidate& c, const SideView& side) {
   return closest.triangle;
 }
 
-// Moves the candidate to a vertex if it is deeper in one of the other side's solids.
+// Moves the candidate to a vertex if the vertex is deeper in one of the other side's solids.
 bool moveTo(const Vec3& vertex_W, const SideView& other, double reach_m, Candidate& c) {
   bool is_moved = false;
   const std::vector<Surface>& surfaces = other.shape->models().surfaces;

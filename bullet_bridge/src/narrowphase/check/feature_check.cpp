@@ -12,8 +12,8 @@ namespace vps::bullet {
 
 namespace {
 
-// Bits that mark a feature's kind in a contact's key, so that keys are unique. Edges have the same indices as
-// in edge crossings, so they have a bit too.
+// Bits that mark a feature's kind in a contact's key, so that keys are unique. An edge has the same index as
+// in edge crossings, so its key has a bit too.
 constexpr std::uint32_t kCorner = 1U << 28, kFacet = 2U << 28, kEdge = 4U << 28;
 
 Pose poseBetween(const PairView& pair, const Pose (&X_WS)[2]) {
@@ -25,8 +25,8 @@ double restGapOf_m(const PairView& pair) {
 }
 
 // True if the corner of a contact stays within the tolerated depth of the other body from the time at which
-// they meet to the end of the step. In a far turn a corner that grazes a curved face would otherwise be held
-// by the plane of one facet, which leads away from the face.
+// the corner meets the other body to the end of the step. If the bodies turn far, a corner that grazes a
+// curved face would otherwise be held by the plane of one facet, which leads away from the face.
 bool grazes(const FeatureContact& c, const PairView& start, const EndPoses& end, double tolerated_m) {
   if (c.kind == FeatureContact::Kind::EdgeOnEdge) return false;
   const int i = c.kind == FeatureContact::Kind::CornerOnFacet ? 0 : 1;
@@ -122,7 +122,7 @@ struct FeaturePlacer {
 };
 
 // Finds a shell point or edge crossing at the same place of the same plane. The contact's point may lie on
-// the other body, across the gap. Returns null if there is none.
+// the other body, across the gap. Returns null if there is no such contact.
 Candidate* findAt(std::vector<Candidate>& contacts, const Candidate& at) {
   const auto found = std::find_if(contacts.begin(), contacts.end(), [&](const Candidate& c) {
     const Vec3 to = c.p_W - at.p_W;
@@ -154,7 +154,7 @@ class Linearised {
 
   MissedContact operator()(const FeatureContact& c, PairState& state) const {
     const Candidate start = at_start_(c), end = at_end_(c);
-    // In a far turn no single lever represents the whole path.
+    // If the bodies turn far, no single lever represents the whole path.
     const Candidate acting = end_.turns_far && !end_.path.isSettled() ? start : end_.path.acting(start, end);
     MissedContact missed;
     missed.point = state.writer->put(acting, start_.wrapper, state.motion);
@@ -220,7 +220,8 @@ double restGap_m(const PairView& pair, const Settings& settings) {
 bool spinsFreely(const PairView& start, const Pose (&X_WS_end)[2], PairState& state) {
   const Settings& settings = state.context->settings;
   const double least_m = kToleratedShare * settings.contact_margin_m;
-  // Bodies that touch have no room, and the search for room would take as long as many steps.
+  // Bodies that touch have no free space around them, and the search for free space would take as long as
+  // many steps.
   if (!hasFeatures(start, settings) || mayOverlap(state.selection, -least_m)) return false;
   return state.spin.staysApart(start.shape[0]->features(), start.shape[1]->features(), start.X_01_models(),
                                poseBetween(start, X_WS_end), least_m);
@@ -298,7 +299,7 @@ void addMissedFeatures(const PairView& pair, const Settings& settings, PairState
   for (const FeatureContact& c : state.missed_features) {
     Candidate at = place(c);
     Candidate* same = findAt(contacts, at);
-    // A crossing of flush curved edges rests without a gap, but a missed one needs the rest gap. The
+    // A crossing of flush curved edges rests without a gap, but a missed crossing needs the rest gap. The
     // crossing's distance may be measured from the curved surface, while the feature's is measured from the
     // facets.
     if (same)

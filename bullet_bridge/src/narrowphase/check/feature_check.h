@@ -19,15 +19,15 @@ bool hasFeatures(const PairView& pair, const Settings& settings);
 double restGap_m(const PairView& pair, const Settings& settings);
 
 /// Adds the feature contacts that were missed in earlier steps and are still near, in key order; at most 16,
-/// beyond the contact limit. Without them a part that rests on features would be solved twice in each step,
-/// first without these contacts.
+/// beyond the contact limit. Without this call a part that rests on features would be solved twice in each
+/// step, first without the missed contacts.
 void addMissedFeatures(const PairView& pair, const Settings& settings, PairState& state,
                        std::vector<Candidate>& contacts);
 
 /// Sets the rest gap of contacts of sharp features and of flat faces. If the contacts of a face lay deeper
 /// than the contacts of its edges, the edges would carry the load alone. Bullet's own solvers keep the
-/// friction of contacts that lose their load while they iterate. With these solvers all contacts except flush
-/// ones on curved faces get the rest gap, so that none lies deeper.
+/// friction of contacts that lose their load while they iterate. With Bullet's solvers all contacts except
+/// flush ones on curved faces get the rest gap, so that none lies deeper.
 /// @param is_own  true if bullet::Solver solves the pair, false for one of Bullet's solvers
 void markSharp(const PairView& pair, const Settings& settings, bool is_own, std::vector<Candidate>& contacts);
 

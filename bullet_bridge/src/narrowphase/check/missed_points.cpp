@@ -76,9 +76,10 @@ void PairCheck::findOverlaps(const Motion& m, const PairView& pair, std::vector<
   std::erase_if(found, [&](const Candidate& c) { return c.distance_m >= -m.tolerated_m; });
 }
 
-// For a point that was behind its present plane at the start and so did not enter through it. The plane that
-// the point had at the start decides. If the point does not cross that plane either, but was outside at the
-// start, it slid past the edge of the face that it faced; it must leave through its present plane.
+// For a point that was behind its present plane at the start, and so did not enter through that plane, the
+// plane that the point had at the start decides. If the point does not cross its plane of the start either,
+// but was outside at the start, it slid past the edge of the face that it faced; it must leave through its
+// present plane.
 bool PairCheck::refineAtStart(const Motion& m, const PairView& at_start, Candidate& start,
                               Candidate& end) const {
   Candidate then = start;

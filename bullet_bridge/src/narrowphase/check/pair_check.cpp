@@ -151,9 +151,9 @@ void PairCheck::findMissed(const Pose (&X_WB_end)[2], CheckRound round, std::vec
 // with rows of the next facet a peg does not enter a bore of 10 um clearance.
 //
 // Appends the rows of the step's contacts, computed from the end poses of a motion. Before the step is
-// solved: the contacts whose row depends on the poses from which it is computed. After the step is solved:
-// contacts that carry load and end the step apart (under a rolling body, contacts in front of it that do not
-// arrive, and contacts that it leaves), and contacts that would get their load.
+// solved, these are the contacts whose row depends on the poses from which it is computed. After the step is
+// solved, these are contacts that carry load and end the step apart (under a rolling body, contacts in front
+// of it that do not arrive, and contacts that it leaves), and contacts that would get their load.
 void PairCheck::relinearise(const Motion& m, const Placed& at_start, const Relinearising& which,
                             std::vector<MissedContact>& out) {
   const Settings& settings = state_.context->settings;

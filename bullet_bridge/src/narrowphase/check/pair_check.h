@@ -21,7 +21,7 @@ namespace vps::bullet {
 ///
 ///   1. Bounds of the motion: how far any point moved relative to the other body, and how far from the
 ///      position that was predicted.
-///   2. The points that were refined for the step's selection, including those that were left out of it:
+///   2. The points that were refined for the step's selection, including those that the selection left out:
 ///      the exact gaps of their planes at the end of the step. (The solver's gaps are first-order in the
 ///      motion.)
 ///   3. The exact motion of corners, sharp edges and facets (feature_check.h).
@@ -76,7 +76,7 @@ class PairCheck final : public StepCheck {
   bool is_of_this_step_ = false;
   const btCollisionObject* object_[2] = {nullptr, nullptr};
   const btCollisionShape* shape_[2] = {nullptr, nullptr};
-  const btCollisionShape* root_[2] = {nullptr, nullptr};  ///< of the bodies; shape_ may be a child
+  const btCollisionShape* root_[2] = {nullptr, nullptr};  ///< shapes of the bodies; shape_ may be a child
   Pose X_BS_[2];
 };
 

@@ -91,10 +91,10 @@ class Impulses {
       for (int i = 0; i < counts_.back(); ++i) points_.push_back(manifold->getContactPoint(i));
     }
   }
-  /// Contacts that are new in this step share the load of contacts that have gone, in proportion to their
-  /// solved impulses. Bullet's solvers keep the friction of contacts that are loaded and unloaded again while
-  /// they iterate. Without starting impulses, contacts that take the load of others would make a body slide
-  /// too slowly.
+  /// Contacts that are new in this step share the load of contacts that no longer exist, in proportion to
+  /// their solved impulses. Bullet's solvers keep the friction of contacts that are loaded and unloaded again
+  /// while they iterate. Without starting impulses, contacts that take the load of other contacts would make
+  /// a body slide too slowly.
   void restore(double lost_load_Ns) const {
     const double new_load_Ns = loadOfNew_Ns();
     const double share = new_load_Ns > 0 ? std::clamp(lost_load_Ns / new_load_Ns, 0.0, 1.0) : 0;

@@ -49,8 +49,8 @@ double StepPath::effect(const Row& of, const Row& on) const {
 
 namespace {
 
-// Accuracy of the change of velocity and of the gap: in floats, differences of positions a decimetre from the
-// centre.
+// Accuracy of the change of velocity and of the gap: that of differences of float positions a decimetre from
+// the centre.
 constexpr double kKnown_m = 10 * kRounding_m;
 
 template <typename Row>

@@ -26,7 +26,8 @@ namespace vps::bullet {
 /// effective lever lies between both corners. Such a tau is used only if the bodies approach each other by
 /// less than their weight moves them in a step, since a faster approach is an impact, which acts at the
 /// corner; and only as far as the row still closes half of a gap, so that the rounds of the solver end.
-/// Points of faces never use it: the differences of their gaps from facet to facet would drive a screw.
+/// Points of faces never use a tau above 1: the differences of their gaps from facet to facet would drive a
+/// screw.
 ///
 /// Both bodies' levers pass through one point of the world, so that angular momentum is conserved. The point
 /// moves with the body that turns more easily, whose lever is then exact.

@@ -138,7 +138,7 @@ void CompoundPair::processCollision(const btCollisionObjectWrapper* body0,
   const btCollisionObjectWrapper* bodies[] = {body0, body1};
   const btCollisionObjectWrapper &mine = *bodies[state.side], &other = *bodies[1 - state.side];
   const btCompoundShape& compound = compoundOf(mine);
-  if (state.revision != compound.getUpdateRevision()) state.children.clear();  // children added or removed
+  if (state.revision != compound.getUpdateRevision()) state.children.clear();  // children have changed
   state.revision = compound.getUpdateRevision();
   while (state.children.size() < static_cast<std::size_t>(compound.getNumChildShapes()))
     state.children.emplace_back(nullptr, AlgorithmDeleter{m_dispatcher});

@@ -141,8 +141,8 @@ void passToSolver(PairState& state) {
 }
 
 // True if the pair gets spare manifolds for contacts that the solver may add. Contact with other bodies may
-// throw the pair's bodies at each other within the step. A pair with a kinematic body and no contact gets
-// none, since Bullet wakes a sleeping body for each manifold with a kinematic one.
+// throw the pair's bodies at each other within the step. A pair with a kinematic body and no contact gets no
+// spare manifolds, since Bullet wakes a sleeping body for each manifold with a kinematic body.
 bool mayNeedMore(const PairView& pair, const PairState& state) {
   if (state.context->settings.contact_method != ContactMethod::Constraint) return false;
   const auto isKinematic = [&](int i) { return pair.wrapper[i]->getCollisionObject()->isKinematicObject(); };

@@ -56,7 +56,7 @@ void ManifoldWriter::readManifolds() {
   for (const btPersistentManifold* manifold : manifolds_)
     for (int i = 0; i < manifold->getNumContacts(); ++i)
       old_.push_back({keyOf(manifold->getContactPoint(i)), manifold->getContactPoint(i)});
-  // The points are usually in this order already, and sorting them is expensive.
+  // The points are usually in ascending order of their keys already, and sorting them is expensive.
   const auto isBefore = [](const Old& a, const Old& b) { return a.key < b.key; };
   if (!std::is_sorted(old_.begin(), old_.end(), isBefore)) std::sort(old_.begin(), old_.end(), isBefore);
 }
@@ -78,7 +78,7 @@ void ManifoldWriter::write(std::span<const Candidate> contacts,
                            bool keeps_spare) {
   readManifolds();
   const std::size_t used = (contacts.size() + kPerManifold - 1) / kPerManifold;
-  // Assumed: a pair with many contacts may lack more of them.
+  // Assumed: a pair with many contacts may lack more contacts.
   const std::size_t manifold_count = keeps_spare ? used + 4 + used / 2 : used;
   while (manifolds_.size() < manifold_count) {
     btPersistentManifold* manifold = dispatcher_.getNewManifold(objects_[0], objects_[1]);
@@ -88,7 +88,7 @@ void ManifoldWriter::write(std::span<const Candidate> contacts,
   const bool is_custom = wantsAdded(objects_[0], objects_[1]);
   const PairMaterial material(bodies, friction_model_);
   // Bullet's own algorithms call the added callback again for up to four points in each step and keep the
-  // other points' values. Here one manifold per step is added again, in turn.
+  // other points' values. Here the points of one manifold per step are added again, each manifold in turn.
   const std::size_t added_again = used > 0 ? turn_++ % used : 0;
   lost_load_Ns_ = 0;
   for (const Old& had : old_) lost_load_Ns_ += had.point.m_appliedImpulse;
@@ -105,7 +105,7 @@ void ManifoldWriter::write(std::span<const Candidate> contacts,
       const Candidate& c = contacts[first + static_cast<std::size_t>(i)];
       btManifoldPoint& point = manifold.getContactPoint(i);
       point = makePoint(c, material, bodies, motion);
-      while (old != old_.end() && old->key < c.key()) ++old;  // both are ascending by key
+      while (old != old_.end() && old->key < c.key()) ++old;  // both lists are ascending by key
       bool is_kept = false;
       if (old != old_.end() && old->key == c.key()) {
         copyImpulses(point, old->point);

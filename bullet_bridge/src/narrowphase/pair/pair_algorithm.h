@@ -45,9 +45,11 @@ class PairAlgorithm : public btActivatingCollisionAlgorithm {
 ///
 ///   1. Find candidates: points of each side that can touch the other within the step, and crossings of edges
 ///      (speculative contact: the distance may be > 0).
-///   2. Reduce them to about contact_limit that keep depth, extent and directions, preferring last step's.
+///   2. Reduce the candidates to about contact_limit that keep depth, extent and directions; contacts of the
+///      last step are preferred.
 ///   3. Refine distance and normal by the exact surfaces.
-///   4. Write them into as many manifolds of four as needed, each contact with its impulse of the last step.
+///   4. Write the contacts into as many manifolds of four as needed, each contact with its impulse of the
+///      last step.
 ///
 /// Manifold points are written directly: addContactPoint would merge neighbours nearer than the breaking
 /// threshold. gContactAddedCallback and the contact-stiffness flags still work. m_index0/m_index1 hold the
@@ -100,9 +102,10 @@ bool containsShape(const btCollisionShape& shape);
 
 /// Runs, for each child of a compound and the other body, the algorithm that the dispatcher has for them.
 ///
-/// Bullet's own algorithm for compounds visits a child when its box touches the other's. This is too late for
-/// speculative contact: a part that falls at 0.6 m/s was found only when it was up to a step's travel deep
-/// (0.4 mm at 1 kHz, 7 mm at 60 Hz). CompoundPair visits a child when it can touch within the step.
+/// Bullet's own algorithm for compounds visits a child when its box touches the other body's. Such a visit is
+/// too late for speculative contact: a part that falls at 0.6 m/s was found only when it was up to a step's
+/// travel deep (0.4 mm at 1 kHz, 7 mm at 60 Hz). CompoundPair visits a child when it can touch within the
+/// step.
 class CompoundPair final : public PairAlgorithm {
  public:
   CompoundPair(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* body0,
@@ -130,9 +133,9 @@ class EmptyPair final : public PairAlgorithm {
 };
 
 /// Frees a pair's algorithm if it was made for other shapes, before install(), or by a function that GImpact
-/// registered over ours, so that Bullet makes a new one. Bullet itself keeps the algorithm while the bodies
-/// are near each other, whatever shapes they get. Does nothing for pairs without a Shape, and without an
-/// installation.
+/// registered in place of that of install(), so that Bullet makes a new one. Bullet itself keeps the
+/// algorithm while the bodies are near each other, whatever shapes they get. Does nothing for pairs without a
+/// Shape, and without an installation.
 void renewIfSwapped(btBroadphasePair& pair, btCollisionDispatcher& dispatcher);
 
 }  // namespace vps::bullet

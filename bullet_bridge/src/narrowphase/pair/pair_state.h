@@ -59,8 +59,8 @@ struct Selection {
 };
 
 /// Motion in a step for which a check found no missed contact. The result holds for any motion that begins
-/// and ends within a share of the rest gap of it. Most pairs repeat their motion from round to round, and
-/// bodies at rest from step to step.
+/// and ends within a share of the rest gap of that motion. Most pairs repeat their motion from round to
+/// round, and bodies at rest from step to step.
 class ClearWay {
  public:
   void forget() { is_known_ = false; }
@@ -84,7 +84,7 @@ class ClearWay {
 
  private:
   Pose X_01_start_, X_01_end_;
-  ShapeKey key_[2];  // of sides that are no Shape
+  ShapeKey key_[2];  // keys of sides that are not a Shape
   bool is_known_ = false, has_small_gaps_ = false;
 };
 
@@ -96,7 +96,7 @@ struct PairState {
   RelativeMotion motion;
   bool is_prepared = false;
   int turns_in_row = 0;        ///< consecutive steps in which the bodies turned too far against each other
-  double fastest_rad_s = 0;    ///< their greatest rotation rate in these steps
+  double fastest_rad_s = 0;    ///< the bodies' greatest relative rotation rate in these steps
   bool was_queried = false;    ///< the pair was queried in an earlier step
   bool is_incomplete = false;  ///< the solved step needed contacts that the selection lacks
   std::unique_ptr<StepCheck> check;   ///< with rigid contact
@@ -106,7 +106,7 @@ struct PairState {
                                                 ///< missed and that are still near
   ClearWay clear_way;                           ///< with rigid contact
   std::vector<std::uint64_t> let_go;  ///< keys of the contacts of this step that letGo() was called for
-  SpinClearance spin;                 ///< with rigid contact: of the models
+  SpinClearance spin;                 ///< with rigid contact: free space around the models
   CrossingMemory crossings;           ///< with rigid contact: crossings of the models' edges
   PenaltyPair penalty;                ///< with penalty contact
   bool is_registered = false;         ///< `penalty` is registered in the context's PenaltyContacts
@@ -116,8 +116,8 @@ struct PairState {
   std::uint64_t revision[2] = {
       0, 0};  ///< revisions of the shapes to which the ids in writer and selection refer
 
-  /// Notes that a contact is let go: it carries load although no surface faces its point. Returns false if it
-  /// was let go in this step before, so that the rounds of a step end.
+  /// Notes that a contact is let go: it carries load although no surface faces its point. Returns false if
+  /// the contact was let go in this step before, so that the rounds of a step end.
   bool letGo(std::uint64_t key) {
     if (std::find(let_go.begin(), let_go.end(), key) != let_go.end()) return false;
     let_go.push_back(key);

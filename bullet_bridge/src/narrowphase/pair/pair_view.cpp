@@ -31,7 +31,7 @@ Twist linkVelocity(const btMultiBodyLinkCollider& collider, double dt_s) {
       V.v += dt_s / multi.getBaseMass() * fromBt(multi.getBaseForce());
     return V;
   }
-  thread_local btAlignedObjectArray<btVector3> w, v;  // of base and links, each in its own frame
+  thread_local btAlignedObjectArray<btVector3> w, v;  // velocities of base and links, each in its own frame
   w.resize(multi.getNumLinks() + 1);
   v.resize(multi.getNumLinks() + 1);
   multi.compTreeLinkVelocities(&w[0], &v[0]);

@@ -46,8 +46,8 @@ struct PairView {
   }
   /// Pose of body 1 in body 0.
   [[nodiscard]] Pose X_01() const { return X_WS[0].inverse() * X_WS[1]; }
-  /// Upper bound of the relative displacement combined values of the two bodies' points near the smaller
-  /// body, for a motion of body 1 given in body 0.
+  /// Upper bound of the relative displacement of the two bodies' points near the smaller body, for a motion
+  /// of body 1 given in body 0.
   [[nodiscard]] double movedBy_m(const Pose& motion_0) const {
     const Vec3 center_0 = X_WS[0].inverse() * center_W();
     return (motion_0 * center_0 - center_0).norm() + (motion_0.R - Mat3::Identity()).norm() * radius_m();
@@ -104,14 +104,14 @@ double queryRange_m(const PairView& pair);
 /// between nodes, so it reads too much along the edges of a part. Zero for exact distances: of crossings, and
 /// from native shapes.
 double fieldError_m(const PairView& pair, const Candidate& c);
-/// Greatest such error of any point of the pair [m].
+/// Greatest fieldError_m() of any point of the pair [m].
 double fieldError_m(const PairView& pair);
 
-/// True if the points of side i are queried. With Sides::One only the smaller body's points are, since points
-/// of a larger body may be too far apart to touch it.
+/// True if the points of side i are queried. With Sides::One only the smaller body's points are queried,
+/// since points of a larger body may be too far apart to touch it.
 bool queriesPoints(const PairView& pair, int i, Sides sides);
 
-/// Number of sides whose points are queried. With two sides their areas overlap.
+/// Number of sides whose points are queried. With two sides, the areas of their points overlap.
 int sideCount(const PairView& pair, Sides sides);
 
 /// Moves both bodies to their poses at t_s within a step of dt_s, in free motion at the velocity of the
@@ -142,7 +142,7 @@ class PairMaterial {
 
   const btCollisionObject* object_[2];
   const Shape* shape_[2];          // null if no surface of the shape has a material of its own
-  double friction_, restitution_;  // of the bodies
+  double friction_, restitution_;  // combined values of the bodies
   double (*coefficient_)(double mu, double slip_m_s);  // FrictionModel::coefficient
 };
 
